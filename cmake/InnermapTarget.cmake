@@ -1,0 +1,13 @@
+# Compile options of our own targets; nothing is set globally.
+function(innermap_own_target target)
+  target_compile_features(${target} PUBLIC cxx_std_17)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow)
+  if(INNERMAP_WARNINGS_AS_ERRORS)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(INNERMAP_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${INNERMAP_SANITIZE} -fno-omit-frame-pointer)
+    target_link_options(${target} PRIVATE -fsanitize=${INNERMAP_SANITIZE})
+  endif()
+endfunction()

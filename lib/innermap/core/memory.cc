@@ -1,0 +1,75 @@
+#include "innermap/core/memory.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+
+#include "innermap/core/error.h"
+
+namespace innermap {
+
+void requireMemory(const std::string& what, std::uint64_t bytes, std::uint64_t limit,
+                   const std::string& advice) {
+  if (limit == 0 || bytes <= limit) return;
+  throw MemoryError(fmt::format("{} needs {} of memory, more than the limit of {}; {}", what,
+                                formatBytes(bytes), formatBytes(limit), advice));
+}
+
+std::uint64_t availableMemory() {
+  std::uint64_t bytes = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
+                        static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+  for (const char* path :
+       {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
+    std::ifstream file(path);
+    std::uint64_t limit = 0;
+    if (file >> limit && limit > 0) bytes = std::min(bytes, limit);
+  }
+  return bytes;
+}
+
+std::uint64_t peakMemory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+std::string formatBytes(std::uint64_t bytes) {
+  static const char* const units[] = {"B", "kB", "MB", "GB", "TB", "PB", "EB"};
+  double value = static_cast<double>(bytes);
+  int unit = 0;
+  for (; value >= 999.5 && unit < 6; ++unit) value /= 1000;
+  return fmt::format("{:.3g} {}", value, units[unit]);
+}
+
+std::uint64_t parseBytes(const std::string& setting, const std::string& text) {
+  const auto fail = [&]() -> std::uint64_t {
+    throw SettingError(setting, "'" + text + "' is not a size; write for example 800M or 1.5GB");
+  };
+  if (text.empty() || !(std::isdigit(static_cast<unsigned char>(text[0])) || text[0] == '.'))
+    return fail();
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  std::string unit(end);
+  std::transform(unit.begin(), unit.end(), unit.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  if (!unit.empty() && unit.back() == 'b') unit.pop_back();
+  const bool binary = unit.size() == 2 && unit[1] == 'i';
+  const double base = binary ? 1024 : 1000;
+  if (binary) unit.pop_back();
+  static const std::string prefixes = "kmgtpe";
+  double scale = 1;
+  if (unit.size() == 1 && prefixes.find(unit[0]) != std::string::npos)
+    scale = std::pow(base, static_cast<double>(prefixes.find(unit[0]) + 1));
+  else if (!unit.empty())
+    return fail();
+  const double bytes = value * scale;
+  if (!(bytes >= 0) || bytes >= 1.8e19) return fail();
+  return static_cast<std::uint64_t>(bytes);
+}
+
+}  // namespace innermap

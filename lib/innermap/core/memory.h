@@ -1,0 +1,27 @@
+// Memory is said before it is used.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace innermap {
+
+// Throws MemoryError when `bytes` exceeds `limit` (bytes; 0 means no limit). The message names
+// `what`, the need, the limit, and ends with `advice`: settings that would fit.
+void requireMemory(const std::string& what, std::uint64_t bytes, std::uint64_t limit,
+                   const std::string& advice);
+
+// Physical memory of the machine, or of the control group the process runs in, in bytes.
+std::uint64_t availableMemory();
+
+// The largest resident size this process has had, in bytes.
+std::uint64_t peakMemory();
+
+// "1.5 GB": three significant digits, powers of 1000.
+std::string formatBytes(std::uint64_t bytes);
+
+// Reads "500M", "1.5GB", "2GiB", "800000000" (units of bytes). Throws SettingError naming
+// `setting` when the text is not such a size or does not fit 64 bits.
+std::uint64_t parseBytes(const std::string& setting, const std::string& text);
+
+}  // namespace innermap

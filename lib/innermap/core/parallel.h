@@ -1,0 +1,33 @@
+// Threads. Loops are cut into blocks of a fixed size, so that what a block computes never depends
+// on the number of threads; results are therefore the same for any number of them.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string_view>
+
+#include "innermap/core/progress.h"
+
+namespace innermap {
+
+// Bounds the number of threads used by the whole process while it lives; 0 means all cores.
+// Also keeps BLAS to the calling thread: parallelism is ours, over fixed blocks.
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int threads);
+  ~ThreadLimit();
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+ private:
+  void* control_;
+};
+
+// Calls body(begin, end) for consecutive blocks of `blockSize` indices that cover [0, count).
+// Polls `progress` between blocks and throws Cancelled; reports the share done as `stage` when
+// `stage` is not empty. Exceptions thrown by body come out here.
+void parallelBlocks(std::size_t count, std::size_t blockSize,
+                    const std::function<void(std::size_t, std::size_t)>& body,
+                    Progress* progress = nullptr, std::string_view stage = {});
+
+}  // namespace innermap

@@ -1,0 +1,68 @@
+// A solid in OpenVDB grids.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "innermap/core/progress.h"
+#include "innermap/levelset/solid.h"
+
+namespace innermap {
+
+struct LevelSetSettings {
+  double voxelSize = 0;         // world units; 0 means: resolution decides
+  int resolution = 128;         // voxels along the longest side of the solid's box, in [4, 4096]
+  double halfWidth = 3;         // of the narrow band, voxels, in [2, 100]
+  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  Progress* progress = nullptr;
+};
+
+// The voxel size in world units that the settings mean for this solid. Throws SettingError for
+// values out of range, or for a voxel size that would give more than 4096 voxels across.
+double voxelSizeFor(const Solid& solid, const LevelSetSettings& settings);
+
+// Transform of uniform scale whose index space has the solid's lower box corner near the origin
+// (coordinates stay small however far away the solid is). Voxel centres are at whole indices.
+openvdb::math::Transform::Ptr transformFor(const Solid& solid, double voxelSize);
+
+// Signed distance (negative inside), class level set, named "surface". Within the band the distance
+// is exact (double precision, rounded to float); beyond it the constants +-halfWidth * voxelSize.
+// Sign by winding number, so right for open, dirty and multi-component meshes.
+// Throws MemoryError (before allocating), SettingError, Cancelled.
+openvdb::FloatGrid::Ptr makeLevelSet(const Solid& solid, const LevelSetSettings& settings = {});
+
+// Estimate of makeLevelSet's peak need in bytes.
+std::uint64_t levelSetMemory(const Solid& solid, const LevelSetSettings& settings);
+
+// Fog volume: 1 inside, 0 outside, and the voxel cell's share inside the solid along the surface.
+// Named "density", class fog volume. The sum of the values times the voxel's volume is the solid's
+// volume.
+openvdb::FloatGrid::Ptr makeFog(const openvdb::FloatGrid& levelSet);
+
+// Share of the unit cell about a voxel centre on the negative side of the plane with signed
+// distance `distance` (voxels) and gradient `normal` (unit vector): Scardovelli and Zaleski,
+// "Analytical Relations Connecting Linear Interfaces and Volume Fractions in Rectangular Grids"
+// (J. Comp. Phys. 2000).
+double cellFraction(double distance, const Vec3& normal);
+
+// How well a level set holds its solid.
+struct LevelSetCheck {
+  double meshVolume = 0, gridVolume = 0;  // world units cubed
+  double volumeError = 0;                 // |grid - mesh| / mesh
+  double lostSurface = 0;  // share of surface points with no sign change within two voxels
+  std::vector<std::string> warnings;  // over 1% volume error, over 0.1% lost surface
+};
+LevelSetCheck checkLevelSet(const openvdb::FloatGrid& levelSet, const Solid& solid);
+
+// Attributes of the closest triangle carried onto the active voxels of `levelSet`: "uv" (Vec3f,
+// third component 0) when the mesh has texture coordinates, "Cd" (Vec3f) when it has vertex
+// colours. `mesh` is the mesh that `solid` was made of. Voxels whose closest point lies on a cap
+// take the nearest triangle that has the attribute.
+std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const openvdb::FloatGrid& levelSet,
+                                                       const Solid& solid, const Mesh& mesh,
+                                                       Progress* progress = nullptr);
+
+}  // namespace innermap

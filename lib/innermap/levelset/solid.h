@@ -1,0 +1,65 @@
+// The solid that a mesh bounds: all points of winding number over one half. For a mesh whose parts
+// overlap that is their union, and only the exposed part of the surface bounds it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "innermap/core/progress.h"
+#include "innermap/core/vec3.h"
+#include "innermap/mesh/mesh.h"
+#include "innermap/mesh/repair.h"
+
+namespace innermap {
+
+struct SolidSettings {
+  // Triangles that other parts cut are split into pieces of at most this edge length to tell
+  // exposed from buried; fraction of the diagonal, in (0, 1).
+  double pieceSize = 1.0 / 256;
+  Progress* progress = nullptr;
+};
+
+// Immutable; copies share their data; safe from any number of threads.
+class Solid {
+ public:
+  // Repairs the mesh first. Throws DataError when it has no inside, as repair() does.
+  explicit Solid(const Mesh& mesh, const SolidSettings& settings = {});
+
+  const RepairedMesh& repaired() const;
+
+  // The exposed surface, as pieces of the repaired mesh's triangles: the whole repaired mesh
+  // where nothing overlaps. Piece t lies in triangle pieceParent()[t] of repaired().mesh and its
+  // corners have the barycentric coordinates pieceCorners()[t] there.
+  const Mesh& surface() const;
+  const std::vector<int>& pieceParent() const;
+  const std::vector<std::array<std::array<double, 3>, 3>>& pieceCorners() const;
+
+  // The address on repaired().mesh of a point given on surface(), and so on any target.
+  SurfacePoint address(const SurfacePoint& onSurface) const;
+
+  bool overlaps() const;    // some of the mesh is buried in other parts
+  const Box3& box() const;  // of surface()
+  double diagonal() const;  // of box(); the unit of all length settings
+  double area() const;      // of surface(), world units squared
+  double volume() const;    // world units cubed: of the mesh by the divergence theorem; where
+                            // parts overlap, of the union by a level set 256 voxels across
+
+  bool inside(const Vec3& p) const;            // winding number over 0.5
+  double distance(const Vec3& p) const;        // to surface(), unsigned, exact
+  double signedDistance(const Vec3& p) const;  // negative inside
+
+  // Closest point of surface(); triangle -1 when farther than `within`.
+  struct Closest {
+    SurfacePoint onSurface;
+    Vec3 position;
+    double distance;
+  };
+  Closest closest(const Vec3& p, double within) const;
+
+ private:
+  struct Implementation;
+  std::shared_ptr<const Implementation> implementation_;
+};
+
+}  // namespace innermap

@@ -1,0 +1,63 @@
+// What is wrong with a mesh, and what each finding means for a map.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "innermap/core/progress.h"
+#include "innermap/mesh/mesh.h"
+
+namespace innermap {
+
+struct BoundaryLoop {
+  std::vector<int> vertices;  // in order along the loop
+  double length = 0;          // world units
+};
+
+struct Crossing {
+  int first = 0, second = 0;  // triangles that intersect each other
+  Vec3 place;                 // a point near the intersection, world units
+};
+
+struct MeshReport {
+  std::size_t vertices = 0, triangles = 0, polygons = 0;
+  int components = 0;  // connected by shared vertices; loose vertices do not count
+  std::vector<BoundaryLoop> boundaryLoops;
+  std::vector<std::array<int, 2>> nonManifoldEdges;  // shared by three triangles or more
+  std::vector<int> nonManifoldVertices;              // whose triangles form more than one fan
+  std::vector<int> duplicateTriangles;   // same three vertices, same orientation, as an earlier one
+  std::vector<int> oppositeTriangles;    // same three vertices, other orientation
+  std::vector<int> degenerateTriangles;  // repeated vertex, or height under 1e-12 of the diagonal
+  std::size_t inconsistentEdges = 0;     // both triangles run along it in the same direction
+  std::vector<int> looseVertices;
+  std::size_t selfIntersections = 0;  // pairs of triangles
+  std::vector<Crossing> crossings;    // the first `listed` of them
+  bool outward = true;                // signed volume (holes capped) is positive
+  bool closed = true;                 // no boundary loop
+  // Sum over components of (2 - Euler characteristic - boundary loops) / 2; only meaningful when
+  // manifold.
+  int genus = 0;
+  double area = 0, volume = 0;  // volume with the holes capped
+  Box3 box;
+};
+
+struct CheckSettings {
+  bool selfIntersections = true;
+  std::size_t listed = 20;  // crossings that are placed; all are counted
+  Progress* progress = nullptr;
+};
+
+// Throws Cancelled; DataError as validate().
+MeshReport checkMesh(const Mesh& mesh, const CheckSettings& settings = {});
+
+struct Finding {
+  std::string name;  // "boundary_loops"
+  std::size_t count = 0;
+  std::string what;     // "2 boundary loops, the longest 0.0131 long around vertex 4120"
+  std::string meaning;  // "the solid is closed by caps there; ..."
+};
+
+// The findings worth telling, most serious first; empty for a clean closed mesh.
+std::vector<Finding> findings(const MeshReport& report);
+
+}  // namespace innermap

@@ -1,0 +1,44 @@
+// Mesh files in: OBJ, PLY, OFF, STL.
+//
+// OBJ is parsed by tinyobjloader. PLY, OFF and STL have readers of our own: no packaged reader
+// keeps non-manifold faces, reads triangle strips and refuses a header that promises more than the
+// file holds before memory is allocated for it.
+#pragma once
+
+#include <string>
+
+#include "innermap/core/progress.h"
+#include "innermap/mesh/mesh.h"
+
+namespace innermap {
+
+struct ReadSettings {
+  Progress* progress = nullptr;
+};
+
+// Reads by the extension (case-insensitive) .obj, .ply, .off, .stl.
+//
+// Vertices keep the file's order and number, loose ones included. STL corners are welded where
+// their coordinates are equal bit by bit, in order of first appearance (STL has no connectivity).
+// Convex polygons are cut as a fan from their lowest vertex index, others by ear clipping in their
+// mean plane. A polygon of fewer than three corners is an error.
+//
+// OBJ: v (with optional colour), vt, f with negative indices; groups and materials are ignored.
+// PLY: ASCII, binary little and big endian, any numeric types; vertex x y z, red green blue (uchar
+// or float), s t / u v; face vertex_indices or vertex_index; tristrips.
+// OFF: OFF, COFF, NOFF, STOFF and comments. STL: ASCII and binary, told apart by size.
+//
+// Throws FileError: missing file, unknown extension, wrong or truncated content (with the line or
+// byte), counts beyond the file's size, indices out of range, NaN or infinite coordinates, no
+// vertices or no faces. Colours are clamped to [0, 1].
+Mesh readMesh(const std::string& path, const ReadSettings& settings = {});
+
+// Reads a mesh that must have the connectivity of `reference` (a pose, the target of a map) and
+// takes over the reference's triangulation, so that a polygon is cut alike in all frames.
+// Throws as readMesh; DataError when the number of vertices or any polygon differs, naming the
+// first difference and saying that meshes of other connectivity need a correspondence first
+// (`innermap correspond`, which does not exist yet).
+Mesh readMeshLike(const std::string& path, const Mesh& reference,
+                  const ReadSettings& settings = {});
+
+}  // namespace innermap

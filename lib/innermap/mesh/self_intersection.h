@@ -1,0 +1,21 @@
+// Pairs of triangles of one mesh that pass through each other.
+#pragma once
+
+#include <vector>
+
+#include "innermap/core/progress.h"
+#include "innermap/mesh/check.h"
+#include "innermap/mesh/mesh.h"
+
+namespace innermap {
+
+// All pairs (first < second, sorted) of triangles that intersect in more than what they share:
+// pairs with a common edge count only when folded flat onto each other (coplanar overlap), pairs
+// with a common vertex when they intersect away from it. Touching in a point or along an edge
+// without passing through may or may not be counted. Degenerate triangles are left out. Interval
+// overlap method, Moller, "A Fast Triangle-Triangle Intersection Test" (1997), in double precision.
+std::vector<Crossing> selfIntersections(const Points& vertices,
+                                        const std::vector<Triangle>& triangles,
+                                        Progress* progress = nullptr);
+
+}  // namespace innermap

@@ -1,0 +1,40 @@
+// Bounding volume hierarchy over triangles: closest points and pairs that may touch.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "innermap/core/vec3.h"
+#include "innermap/mesh/mesh.h"
+
+namespace innermap {
+
+struct ClosestPoint {
+  SurfacePoint address;  // triangle -1 when nothing is within the search radius
+  Vec3 position;
+  double distance = std::numeric_limits<double>::infinity();
+};
+
+// Immutable after construction; safe from any number of threads. Keeps copies of the positions.
+class TriangleTree {
+ public:
+  TriangleTree(const Points& vertices, const std::vector<Triangle>& triangles);
+
+  // The closest point of all triangles, if it is nearer than `within`. Exact up to rounding
+  // (Ericson, Real-Time Collision Detection, 5.1.5). Among equals the lowest triangle index wins.
+  ClosestPoint closest(const Vec3& p,
+                       double within = std::numeric_limits<double>::infinity()) const;
+
+  // Calls visit(i, j), i < j, for each pair of triangles whose boxes overlap.
+  void overlappingPairs(const std::function<void(int, int)>& visit) const;
+
+  std::size_t size() const;
+
+ private:
+  struct Implementation;
+  std::shared_ptr<const Implementation> implementation_;
+};
+
+}  // namespace innermap

@@ -1,0 +1,15 @@
+// Mesh files out.
+#pragma once
+
+#include <string>
+
+#include "innermap/mesh/mesh.h"
+
+namespace innermap {
+
+// Writes .ply (binary little endian, double) or .obj (17 digits) by the extension: vertices,
+// triangles, vertex colours; OBJ also texture coordinates. The file appears whole or not at all.
+// Throws FileError.
+void writeMesh(const std::string& path, const Mesh& mesh);
+
+}  // namespace innermap

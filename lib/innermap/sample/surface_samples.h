@@ -1,0 +1,33 @@
+// Samples of triangle meshes, by address.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "innermap/core/progress.h"
+#include "innermap/mesh/mesh.h"
+
+namespace innermap {
+
+struct SampleSettings {
+  std::uint64_t seed = 1;
+  Progress* progress = nullptr;
+};
+
+// Exactly `count` independent samples, uniform by area. Sample i depends on (seed, i) alone.
+// Throws DataError when the mesh has no area, SettingError when count is over 1e8.
+std::vector<SurfacePoint> randomSamples(const Mesh& mesh, std::size_t count,
+                                        const SampleSettings& settings = {});
+
+// Exactly `count` blue-noise samples: random ones thinned by weighted sample elimination (Yuksel,
+// "Sample Elimination for Generating Poisson Disk Sample Sets", Eurographics 2015). The result is
+// the same for any number of threads.
+std::vector<SurfacePoint> blueNoiseSamples(const Mesh& mesh, std::size_t count,
+                                           const SampleSettings& settings = {});
+
+// Weighted sample elimination itself: indices (ascending) of the `count` of `points` that are kept,
+// the points lying on a surface of area `area`.
+std::vector<std::size_t> eliminateSamples(const Points& points, std::size_t count, double area,
+                                          Progress* progress = nullptr);
+
+}  // namespace innermap
