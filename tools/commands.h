@@ -1,0 +1,23 @@
+// All commands, in the order of the help.
+#pragma once
+
+#include <vector>
+
+#include "command.h"
+
+namespace innermap::tool {
+
+Command makeCheckCommand();
+Command makeVoxelizeCommand();
+Command makeSliceCommand();
+Command makeInfoCommand();
+Command makeHelpCommand();
+
+std::vector<Command> allCommands();
+
+// Of innermap::tool's own; the commands' texts come from their tables.
+std::string generalHelp();
+std::string commandHelp(const Command& command);
+std::string markdownHelp();  // the README's command reference
+
+}  // namespace innermap::tool

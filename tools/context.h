@@ -1,0 +1,68 @@
+// What a running command is given: progress, limits, timing, a place for messages.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "innermap/core/progress.h"
+#include "innermap/output/report.h"
+
+namespace innermap::tool {
+
+// The options that every command has.
+struct CommonOptions {
+  int threads = 0;
+  std::string maxMemory;
+  bool dryRun = false;
+  std::string report;
+  bool quiet = false;
+  bool help = false;
+};
+
+// A command calls it from one thread; progress() may be used from any.
+class Context {
+ public:
+  Context(const CommonOptions& options, Progress& progress);
+  ~Context();
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+
+  Progress* progress() const { return &progress_; }
+
+  // Bytes: --max-memory, or 80% of the machine's.
+  std::uint64_t maxMemory() const { return maxMemory_; }
+
+  bool dryRun() const { return options_.dryRun; }
+  // What --dry-run says: a line for each thing that would be done, and the peak need in bytes (also
+  // whether it is over the limit), on stdout.
+  void plan(const std::vector<std::string>& lines, std::uint64_t bytes);
+
+  // Throws FileError unless a file can be created at `path`; does nothing in a dry run.
+  void willWrite(const std::string& path) const;
+
+  // Runs `body` and adds its wall time to the report's "seconds" under `stage`.
+  void timed(const std::string& stage, const std::function<void()>& body);
+
+  // One line each on stderr (not with --quiet: notes; warnings always), and in the report.
+  void note(const std::string& text);     // what was repaired or chosen
+  void warning(const std::string& text);  // what makes the result doubtful
+
+  // Results, on stdout. Nothing else goes there.
+  void print(const std::string& text);
+
+  // Sections that the command fills; the framework writes it to --report F afterwards.
+  Report& report() { return report_; }
+  // With peak memory as it now stands; for a command that writes a report file of its own.
+  const Report& finishedReport();
+
+ private:
+  const CommonOptions& options_;
+  Progress& progress_;
+  std::uint64_t maxMemory_ = 0;
+  Report report_;
+};
+
+}  // namespace innermap::tool

@@ -1,0 +1,81 @@
+// One option or argument of a command: all that parsing, help and the README say of it.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace innermap::tool {
+
+// Two numbers, "LO,HI" on the command line.
+using NumberPair = std::pair<double, double>;
+
+// Where the value goes. std::uint64_t serves std::size_t too.
+using Target =
+    std::variant<bool*, int*, std::uint64_t*, double*, std::string*, std::optional<int>*,
+                 std::optional<std::uint64_t>*, std::optional<double>*, std::optional<NumberPair>*>;
+
+struct Option {
+  std::string name;         // "--voxel-size"; a positional argument's is in capitals: "MESH"
+  std::string shortName;    // "-o", or empty
+  std::string placeholder;  // "LENGTH"; empty for a flag
+  std::string unit;         // "world units", or empty
+  std::string help;
+  std::string defaultText;  // empty: none worth telling
+  bool required = false;
+  std::vector<std::string> choices;
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+  bool lowerOpen = false;  // the least value itself is not allowed
+  Target target;
+
+  bool isFlag() const { return std::holds_alternative<bool*>(target); }
+  bool isPositional() const { return name[0] != '-'; }
+  bool hasRange() const { return lower > -1e300 || upper < 1e300; }
+};
+
+// Chained after Command::option(...): .unit("world units").above(0).defaults("from --resolution")
+class OptionBuilder {
+ public:
+  // The option is named by its place: the table may still grow.
+  OptionBuilder(std::vector<Option>& table, std::size_t index) : table_(table), index_(index) {}
+
+  OptionBuilder& unit(std::string text) { return set(&Option::unit, std::move(text)); }
+  OptionBuilder& shortName(std::string text) { return set(&Option::shortName, std::move(text)); }
+  // By default the bound variable's value when registered is shown, if it is a number or text.
+  OptionBuilder& defaults(std::string text) { return set(&Option::defaultText, std::move(text)); }
+  OptionBuilder& choices(std::vector<std::string> names) {
+    return set(&Option::choices, std::move(names));
+  }
+  OptionBuilder& required() { return set(&Option::required, true); }
+  OptionBuilder& range(double lower, double upper) {
+    return set(&Option::lower, lower).set(&Option::upper, upper);
+  }
+  OptionBuilder& atLeast(double lower) { return set(&Option::lower, lower); }
+  OptionBuilder& above(double lower) {
+    return set(&Option::lower, lower).set(&Option::lowerOpen, true);
+  }
+  OptionBuilder& atMost(double upper) { return set(&Option::upper, upper); }
+
+ private:
+  template <class T, class U>
+  OptionBuilder& set(T Option::*member, U&& value) {
+    table_[index_].*member = std::forward<U>(value);
+    return *this;
+  }
+  std::vector<Option>& table_;
+  std::size_t index_;
+};
+
+// "above 0", "4 to 4096", "at least 2"; empty when there is no range.
+std::string rangeText(const Option& option);
+
+// Parses `text` into the option's target. Throws UsageError for what is not a number, a whole
+// number or one of the choices, SettingError for a value out of range.
+void parseInto(const Option& option, const std::string& text);
+
+}  // namespace innermap::tool
