@@ -8,10 +8,18 @@ find_dependency(OpenVDB)
 set(CMAKE_WARN_DEPRECATED "${_innermap_warn_deprecated}")
 find_dependency(TBB)
 find_dependency(OpenEXR)
-find_dependency(OpenImageIO)
 find_dependency(fmt)
 find_dependency(hwy)
 find_dependency(tinyobjloader)
+
+# OpenImageIO's own package asks for OpenCV's headers, which nothing here needs.
+if(NOT TARGET innermap_oiio)
+  find_library(INNERMAP_OIIO OpenImageIO REQUIRED)
+  find_library(INNERMAP_OIIO_UTIL OpenImageIO_Util REQUIRED)
+  add_library(innermap_oiio INTERFACE IMPORTED)
+  set_target_properties(innermap_oiio PROPERTIES
+    INTERFACE_LINK_LIBRARIES "${INNERMAP_OIIO};${INNERMAP_OIIO_UTIL}")
+endif()
 
 if(NOT TARGET innermap_lapacke)
   find_library(INNERMAP_LAPACKE lapacke REQUIRED)

@@ -1,0 +1,266 @@
+#include "innermap/solve/dense_solver.h"
+
+#include <cblas.h>
+#include <lapacke.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "innermap/core/error.h"
+#include "innermap/core/memory.h"
+#include "innermap/solve/kernel_sum.h"
+
+namespace innermap {
+namespace {
+
+constexpr std::size_t kAffine = 4;  // 1, x, y, z
+
+Points normalised(const Points& points, const Vec3& center, double scale) {
+  Points out(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) out[i] = (points[i] - center) / scale;
+  return out;
+}
+
+void fillAffine(const Points& points, double* out, std::size_t stride) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    out[i] = 1;
+    for (int a = 0; a < 3; ++a) out[(1 + a) * stride + i] = points[i][a];
+  }
+}
+
+// R11^-1 b, in place. Affine directions that the points do not span (a plane, a line) get 0.
+void solveUpper(const Matrix& r, Matrix& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < kAffine; ++i) largest = std::max(largest, std::abs(r(i, i)));
+  for (std::size_t c = 0; c < b.columns(); ++c)
+    for (std::size_t i = kAffine; i-- > 0;) {
+      double sum = b(i, c);
+      for (std::size_t j = i + 1; j < kAffine; ++j) sum -= r(i, j) * b(j, c);
+      b(i, c) = std::abs(r(i, i)) > 1e-12 * largest ? sum / r(i, i) : 0;
+    }
+}
+
+double filterFactor(Regularization method, double sigma, double threshold) {
+  if (sigma <= 0) return 0;
+  if (method == Regularization::truncatedSvd) return sigma > threshold ? 1 : 0;
+  return sigma * sigma / (sigma * sigma + threshold * threshold);
+}
+
+double span(const Matrix& values) {
+  double widest = 0;
+  for (std::size_t k = 0; k < values.columns(); ++k) {
+    const auto [low, high] =
+        std::minmax_element(values.column(k), values.column(k) + values.rows());
+    widest = std::max(widest, *high - *low);
+  }
+  return widest;
+}
+
+double largestMagnitude(const Matrix& values) {
+  double largest = 0;
+  for (std::size_t i = 0; i < values.rows() * values.columns(); ++i)
+    largest = std::max(largest, std::abs(values.data()[i]));
+  return largest;
+}
+
+void svd(Matrix& r, Matrix& s, Matrix& u, Matrix& vt) {
+  const lapack_int n = static_cast<lapack_int>(r.rows());
+  s = Matrix(r.rows(), 1);
+  u = Matrix(r.rows(), r.rows());
+  vt = Matrix(r.rows(), r.rows());
+  const SingleThreadedBlas guard;
+  if (LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'S', n, n, r.data(), n, s.data(), u.data(), n, vt.data(),
+                     n) != 0)
+    throw DataError(
+        "solve: the singular value decomposition did not converge; the points hold NaN or "
+        "infinite numbers");
+}
+
+}  // namespace
+
+std::uint64_t denseSolverMemory(std::size_t collocation, std::size_t sources, std::size_t heldOut) {
+  const std::uint64_t m = collocation, n = sources, h = heldOut;
+  // The matrix; R22, U, V^T and 4 n^2 of workspace, of which U^T takes the place; held-out modes.
+  return 8 * (m * (n + kAffine) + 7 * n * n + 2 * h * n + 64 * n);
+}
+
+// A right-hand side in the coordinates of the factorization.
+struct DenseSolver::Projected {
+  Matrix affine;  // R11^-1 (Q^T b)_1, 4 x #K
+  Matrix modes;   // U^T (Q^T b)_2, #sources x #K
+};
+
+DenseSolver::DenseSolver(const Points& collocation, const Points& sources, const Points& heldOut,
+                         const DenseSettings& settings)
+    : sources_(sources.size()) {
+  const std::size_t m = collocation.size(), n = sources.size(), columns = n + kAffine;
+  if (n == 0) throw SettingError("sources", "there are none; use at least 1");
+  if (m < columns)
+    throw SettingError("collocation points", std::to_string(m) + " for " + std::to_string(n) +
+                                                 " sources; use at least " +
+                                                 std::to_string(columns));
+  requireMemory("the dense solver with " + std::to_string(n) + " sources and " + std::to_string(m) +
+                    " collocation points",
+                denseSolverMemory(m, n, heldOut.size()), settings.maxMemory,
+                "use fewer sources (memory grows with their square)");
+  const Box3 box = boundingBox(collocation);
+  center_ = box.center();
+  scale_ = box.diagonal() > 0 ? box.diagonal() : 1;
+
+  const Points normalisedSources = normalised(sources, center_, scale_);
+  {
+    const Points p = normalised(collocation, center_, scale_);
+    Matrix a(m, columns);
+    fillAffine(p, a.data(), m);
+    fillKernelMatrix(p, normalisedSources, 1, a.column(kAffine), m, settings.progress);
+    qr_ = BlockedQr(std::move(a), settings.progress);
+  }
+  Matrix r22(n, n);
+  {
+    const Matrix r = qr_.upperTriangle();
+    affineBlock_ = Matrix(kAffine, kAffine);
+    coupling_ = Matrix(kAffine, n);
+    for (std::size_t j = 0; j < columns; ++j)
+      for (std::size_t i = 0; i <= j; ++i) {
+        if (j < kAffine)
+          affineBlock_(i, j) = r(i, j);
+        else if (i < kAffine)
+          coupling_(i, j - kAffine) = r(i, j);
+        else
+          r22(i - kAffine, j - kAffine) = r(i, j);
+      }
+  }
+  solveUpper(affineBlock_, coupling_);
+  reportProgress(settings.progress, "singular values", 0);
+  {
+    Matrix u;
+    svd(r22, singularValues_, u, rightTransposed_);
+    leftTransposed_ = std::move(r22);
+    for (std::size_t j = 0; j < n; ++j)
+      for (std::size_t i = 0; i < n; ++i) leftTransposed_(j, i) = u(i, j);
+  }
+  reportProgress(settings.progress, "singular values", 1);
+  if (heldOut.empty()) return;
+  const Points h = normalised(heldOut, center_, scale_);
+  heldOutAffine_ = Matrix(h.size(), kAffine);
+  fillAffine(h, heldOutAffine_.data(), h.size());
+  Matrix kernel(h.size(), n), right(n, n);
+  fillKernelMatrix(h, normalisedSources, 1, kernel.data(), h.size(), settings.progress);
+  multiply(false, -1, heldOutAffine_, coupling_, 1, kernel, settings.progress);
+  for (std::size_t j = 0; j < n; ++j)
+    for (std::size_t i = 0; i < n; ++i) right(i, j) = rightTransposed_(j, i);
+  heldOutModes_ = Matrix(h.size(), n);
+  multiply(false, 1, kernel, right, 0, heldOutModes_, settings.progress);
+}
+
+DenseSolver::Projected DenseSolver::project(const Matrix& values) const {
+  Matrix c = values;
+  qr_.applyTransposedQ(c);
+  Projected out{Matrix(kAffine, values.columns()), Matrix(sources_, values.columns())};
+  Matrix tail(sources_, values.columns());
+  for (std::size_t k = 0; k < values.columns(); ++k) {
+    std::copy_n(c.column(k), kAffine, out.affine.column(k));
+    std::copy_n(c.column(k) + kAffine, sources_, tail.column(k));
+  }
+  solveUpper(affineBlock_, out.affine);
+  multiply(false, 1, leftTransposed_, tail, 0, out.modes);
+  return out;
+}
+
+// What the charges have to explain at the held-out points.
+Matrix DenseSolver::heldOutResidual(const Projected& rhs, const Matrix& heldOutValues) const {
+  Matrix residual = heldOutValues;
+  multiply(false, -1, heldOutAffine_, rhs.affine, 1, residual);
+  return residual;
+}
+
+double DenseSolver::chooseRegularization(const Projected& rhs, Regularization method,
+                                         const Matrix& values, const Matrix& heldOutValues) const {
+  constexpr int kCandidates = 66;  // 1, then 10^(-k/4) down to 1e-16
+  const std::size_t channels = values.columns();
+  const double largest = singularValues_(0, 0);
+  std::vector<double> candidates;
+  for (int c = 0; c < kCandidates; ++c)
+    candidates.push_back(c == 0 ? 1.0 : std::pow(10.0, -(c - 1) / 4.0));
+  // All candidates at once: one matrix product.
+  Matrix coefficients(sources_, kCandidates * channels);
+  for (int c = 0; c < kCandidates; ++c)
+    for (std::size_t k = 0; k < channels; ++k)
+      for (std::size_t i = 0; i < sources_ && c > 0; ++i) {
+        const double f = filterFactor(method, singularValues_(i, 0), candidates[c] * largest);
+        coefficients(i, c * channels + k) = f > 0 ? f * rhs.modes(i, k) / singularValues_(i, 0) : 0;
+      }
+  const Matrix residual = heldOutResidual(rhs, heldOutValues);
+  Matrix predicted(residual.rows(), coefficients.columns());
+  multiply(false, 1, heldOutModes_, coefficients, 0, predicted);
+  std::vector<double> squares(kCandidates, 0.0);
+  for (int c = 0; c < kCandidates; ++c)
+    for (std::size_t k = 0; k < channels; ++k)
+      for (std::size_t i = 0; i < residual.rows(); ++i) {
+        const double e = residual(i, k) - predicted(i, c * channels + k);
+        squares[c] += e * e;
+      }
+  const double best = *std::min_element(squares.begin(), squares.end());
+  // Below the rounding of the data itself all are alike: take the tamest.
+  const double rounding = 8 * std::numeric_limits<double>::epsilon() * largestMagnitude(values);
+  const double enough =
+      std::max(1.02 * 1.02 * best, rounding * rounding * static_cast<double>(residual.rows()));
+  for (int c = 0; c < kCandidates; ++c)
+    if (squares[c] <= enough) return candidates[c];
+  return candidates.back();
+}
+
+DenseSolution DenseSolver::solve(const Matrix& values, Regularization method,
+                                 const Matrix& heldOutValues,
+                                 std::optional<double> regularization) const {
+  if (regularization && !(*regularization >= 0 && *regularization <= 1))
+    throw SettingError("regularization", "must lie in [0, 1]");
+  if (!regularization && (heldOutModes_.empty() || heldOutValues.empty()))
+    throw SettingError("regularization", "give one, or held-out points to choose it by");
+  const Projected rhs = project(values);
+  DenseSolution out;
+  out.regularization =
+      regularization ? *regularization : chooseRegularization(rhs, method, values, heldOutValues);
+  const std::size_t channels = values.columns();
+  const double threshold = out.regularization * singularValues_(0, 0);
+  const bool none = out.regularization >= 1;
+
+  Matrix filtered(sources_, channels);
+  for (std::size_t i = 0; i < sources_ && !none; ++i) {
+    const double sigma = singularValues_(i, 0), f = filterFactor(method, sigma, threshold);
+    if (sigma > threshold) {
+      out.rank = i + 1;
+      out.condition = singularValues_(0, 0) / sigma;
+    }
+    for (std::size_t k = 0; k < channels && f > 0; ++k)
+      filtered(i, k) = f * rhs.modes(i, k) / sigma;
+  }
+  if (!heldOutValues.empty() && !heldOutModes_.empty()) {
+    Matrix residual = heldOutResidual(rhs, heldOutValues);
+    multiply(false, -1, heldOutModes_, filtered, 1, residual);
+    double sum = 0;
+    for (std::size_t i = 0; i < residual.rows() * channels; ++i)
+      sum += residual.data()[i] * residual.data()[i];
+    out.heldOutRms = std::sqrt(sum / static_cast<double>(residual.rows()));
+  }
+  Matrix weights(sources_, channels);
+  multiply(true, 1, rightTransposed_, filtered, 0, weights);
+  Matrix affine = rhs.affine;
+  multiply(false, -1, coupling_, weights, 1, affine);
+
+  out.affine.center = center_;
+  out.affine.coefficients = Matrix(kAffine, channels);
+  for (std::size_t k = 0; k < channels; ++k) {
+    out.affine.coefficients(0, k) = affine(0, k);
+    for (std::size_t a = 1; a < kAffine; ++a) out.affine.coefficients(a, k) = affine(a, k) / scale_;
+  }
+  const double valueSpan = span(values);
+  if (valueSpan > 0) out.weightNorm = largestMagnitude(weights) / valueSpan;
+  // 1 / |x - q| in world units is 1 / scale times the normalised kernel.
+  for (std::size_t i = 0; i < sources_ * channels; ++i) weights.data()[i] *= scale_;
+  out.weights = std::move(weights);
+  return out;
+}
+
+}  // namespace innermap

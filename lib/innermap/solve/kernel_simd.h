@@ -1,0 +1,25 @@
+// The innermost loops of kernel_sum.h, chosen at run time for the machine's instruction set.
+#pragma once
+
+#include <cstddef>
+
+namespace innermap::simd {
+
+// `sources`: 3 + K numbers each (x, y, z, weights), K in 1..3. `x`, `y`, `z`: coordinates of
+// `count` targets, readable up to the next multiple of kPadding. Writes (not adds) values[k *
+// stride + i] and, when gradients is not null, gradients[(3 * k + a) * stride + i]; stride is at
+// least the padded count.
+void sumCharges(const double* sources, std::size_t sourceCount, int channels, const double* x,
+                const double* y, const double* z, std::size_t count, std::size_t stride,
+                double* values, double* gradients);
+
+// out[i] = scale / |t_i - (qx, qy, qz)| for `count` targets; same padding of the inputs. Writes
+// exactly `count` numbers.
+void kernelColumn(const double* x, const double* y, const double* z, std::size_t count, double qx,
+                  double qy, double qz, double scale, double* out);
+
+const char* targetName();
+
+constexpr std::size_t kPadding = 64;  // targets; a multiple of every vector length in use
+
+}  // namespace innermap::simd
