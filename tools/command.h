@@ -70,7 +70,7 @@ class Command {
   Command(std::string name, std::string summary)
       : name_(std::move(name)), summary_(std::move(summary)) {}
 
-  // Arguments without a name, in order; all are required.
+  // Arguments without a name, in order; required unless .optional().
   OptionBuilder positional(const std::string& name, Target target, const std::string& help);
   OptionBuilder option(const std::string& name, const std::string& placeholder, Target target,
                        const std::string& help);
@@ -102,7 +102,7 @@ std::vector<Option> commonOptionTable(CommonOptions& common);
 void parseArguments(const Command& command, CommonOptions& common,
                     const std::vector<std::string>& arguments);
 
-// " (did you mean 'x'?)" for the nearest of `known`, or "".
+// "; did you mean x?" for the nearest of `known`, or "".
 std::string didYouMean(const std::string& typed, const std::vector<std::string>& known);
 
 }  // namespace innermap::tool

@@ -12,6 +12,8 @@
 
 namespace innermap::tool {
 
+class TerminalProgress;
+
 // The options that every command has.
 struct CommonOptions {
   int threads = 0;
@@ -25,12 +27,12 @@ struct CommonOptions {
 // A command calls it from one thread; progress() may be used from any.
 class Context {
  public:
-  Context(const CommonOptions& options, Progress& progress);
+  Context(const CommonOptions& options, TerminalProgress& progress);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
-  Progress* progress() const { return &progress_; }
+  Progress* progress() const;
 
   // Bytes: --max-memory, or 80% of the machine's.
   std::uint64_t maxMemory() const { return maxMemory_; }
@@ -46,7 +48,7 @@ class Context {
   // Runs `body` and adds its wall time to the report's "seconds" under `stage`.
   void timed(const std::string& stage, const std::function<void()>& body);
 
-  // One line each on stderr (not with --quiet: notes; warnings always), and in the report.
+  // One line each on stderr (nothing with --quiet), and in the report.
   void note(const std::string& text);     // what was repaired or chosen
   void warning(const std::string& text);  // what makes the result doubtful
 
@@ -59,8 +61,10 @@ class Context {
   const Report& finishedReport();
 
  private:
+  void say(const std::string& kind, const std::string& text);
+
   const CommonOptions& options_;
-  Progress& progress_;
+  TerminalProgress& progress_;
   std::uint64_t maxMemory_ = 0;
   Report report_;
 };

@@ -51,6 +51,7 @@ class OptionBuilder {
   OptionBuilder& choices(std::vector<std::string> names) {
     return set(&Option::choices, std::move(names));
   }
+  OptionBuilder& optional() { return set(&Option::required, false); }  // positional arguments
   OptionBuilder& required() { return set(&Option::required, true); }
   OptionBuilder& range(double lower, double upper) {
     return set(&Option::lower, lower).set(&Option::upper, upper);

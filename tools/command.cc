@@ -1,0 +1,195 @@
+#include "command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <numeric>
+
+namespace innermap::tool {
+namespace {
+
+// The bound variable's value before parsing, as the help shows it.
+std::string defaultOf(const Target& target) {
+  struct Visitor {
+    std::string operator()(const bool*) const { return ""; }
+    std::string operator()(const int* v) const { return fmt::format("{}", *v); }
+    std::string operator()(const std::uint64_t* v) const { return fmt::format("{}", *v); }
+    std::string operator()(const double* v) const { return fmt::format("{:.6g}", *v); }
+    std::string operator()(const std::string* v) const { return *v; }
+    std::string operator()(const std::optional<int>*) const { return ""; }
+    std::string operator()(const std::optional<std::uint64_t>*) const { return ""; }
+    std::string operator()(const std::optional<double>*) const { return ""; }
+    std::string operator()(const std::optional<NumberPair>*) const { return ""; }
+  };
+  return std::visit(Visitor{}, target);
+}
+
+std::size_t editDistance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t(0));
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] != b[j - 1]);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+    }
+  }
+  return row[b.size()];
+}
+
+void addOption(std::vector<Option>& table, Option option) {
+  option.defaultText = defaultOf(option.target);
+  table.push_back(std::move(option));
+}
+
+// One option or argument in CLI11, which only cuts the command line into values: the texts go to
+// `given`, and are parsed strictly afterwards.
+struct Given {
+  const Option* option = nullptr;
+  std::vector<std::string> values;
+  bool flag = false;
+};
+
+CLI::Option* declare(CLI::App& app, Given& given) {
+  const Option& o = *given.option;
+  const std::string names = o.shortName.empty() ? o.name : o.shortName + "," + o.name;
+  if (o.isFlag()) return app.add_flag(names, given.flag);
+  return app.add_option(names, given.values)
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+std::string nameFor(const std::string& command) { return "innermap " + command; }
+
+[[noreturn]] void refuse(const Command& command, const std::string& what) {
+  throw UsageError(fmt::format("{}; see '{} --help'", what, nameFor(command.name())));
+}
+
+// What is left over after parsing: a mistyped option, or too many arguments.
+void refuseLeftOvers(const Command& command, const std::vector<Option>& all,
+                     const std::vector<std::string>& rest) {
+  if (rest.empty()) return;
+  std::vector<std::string> known;
+  for (const Option& o : all) {
+    if (o.isPositional()) continue;
+    known.push_back(o.name);
+    if (!o.shortName.empty()) known.push_back(o.shortName);
+  }
+  for (const std::string& text : rest) {
+    if (text.size() < 2 || text[0] != '-' || text == "--") continue;
+    const std::string name = text.substr(0, text.find('='));
+    refuse(command, fmt::format("unknown option '{}'{}", name, didYouMean(name, known)));
+  }
+  refuse(command, fmt::format("unexpected argument '{}'", rest.front()));
+}
+
+void take(const Command& command, const Given& given) {
+  const Option& o = *given.option;
+  if (o.isFlag()) {
+    if (given.flag) *std::get<bool*>(o.target) = true;
+    return;
+  }
+  if (given.values.size() > 1) refuse(command, o.name + " is given more than once");
+  if (given.values.empty()) {
+    if (o.required)
+      refuse(command, o.isPositional()
+                          ? o.name + " is missing (" + o.help + ")"
+                          : fmt::format("{} {} is missing ({})", o.name, o.placeholder, o.help));
+    return;
+  }
+  const std::string& text = given.values.front();
+  if (!o.isPositional() && text.size() > 2 && text.compare(0, 2, "--") == 0)
+    refuse(command, fmt::format("{} needs a value, not '{}'", o.name, text));
+  parseInto(o, text);
+}
+
+}  // namespace
+
+OptionBuilder Command::positional(const std::string& name, Target target, const std::string& help) {
+  Option o;
+  o.name = name;
+  o.placeholder = name;
+  o.help = help;
+  o.required = true;
+  o.target = target;
+  options_.push_back(std::move(o));
+  return {options_, options_.size() - 1};
+}
+
+OptionBuilder Command::option(const std::string& name, const std::string& placeholder,
+                              Target target, const std::string& help) {
+  Option o;
+  o.name = name;
+  o.placeholder = placeholder;
+  o.help = help;
+  o.target = target;
+  addOption(options_, std::move(o));
+  return {options_, options_.size() - 1};
+}
+
+OptionBuilder Command::flag(const std::string& name, bool* target, const std::string& help) {
+  return option(name, "", target, help);
+}
+
+std::vector<Option> commonOptionTable(CommonOptions& common) {
+  Command c("", "");
+  c.option("--threads", "N", &common.threads, "number of threads; 0 means all cores")
+      .range(0, 1024);
+  c.option("--max-memory", "SIZE", &common.maxMemory,
+           "memory that may be used, such as 800M or 4GB; what needs more is refused before it "
+           "starts")
+      .defaults("80% of the machine's");
+  c.flag("--dry-run", &common.dryRun,
+         "say what would be done and how much memory it needs; write nothing");
+  c.option("--report", "FILE", &common.report, "write what was done, with times, as JSON");
+  c.flag("--quiet", &common.quiet, "nothing on stderr but errors").shortName("-q");
+  c.flag("--help", &common.help, "this help").shortName("-h");
+  return c.options();
+}
+
+void parseArguments(const Command& command, CommonOptions& common,
+                    const std::vector<std::string>& arguments) {
+  std::vector<Option> all = command.options();
+  for (Option& o : commonOptionTable(common)) all.push_back(std::move(o));
+
+  CLI::App app;
+  app.set_help_flag();
+  app.allow_extras();
+  std::vector<Given> given(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    given[i].option = &all[i];
+    declare(app, given[i]);
+  }
+  std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
+  try {
+    app.parse(reversed);
+  } catch (const CLI::ArgumentMismatch&) {
+    // The only arity here is one value, so the last argument is an option without its value.
+    refuse(command, arguments.back() + " needs a value");
+  } catch (const CLI::ParseError& error) {
+    refuse(command, error.what());
+  }
+  for (const Given& g : given)
+    if (g.option->name == "--help" && g.flag) common.help = true;
+  if (common.help) return;
+  refuseLeftOvers(command, all, app.remaining());
+  for (const Given& g : given) take(command, g);
+}
+
+std::string didYouMean(const std::string& typed, const std::vector<std::string>& known) {
+  std::string best;
+  std::size_t least = std::max<std::size_t>(2, typed.size() / 3) + 1;
+  for (const std::string& name : known) {
+    const bool prefix = typed.size() >= 4 && name.compare(0, typed.size(), typed) == 0;
+    const std::size_t distance = prefix ? 1 : editDistance(typed, name);
+    if (distance >= least || distance >= name.size()) continue;
+    least = distance;
+    best = name;
+  }
+  return best.empty() ? "" : "; did you mean " + best + "?";
+}
+
+}  // namespace innermap::tool

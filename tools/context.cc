@@ -1,0 +1,77 @@
+#include "context.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+
+#include "innermap/core/file.h"
+#include "innermap/core/memory.h"
+#include "terminal_progress.h"
+
+namespace innermap::tool {
+
+Context::Context(const CommonOptions& options, TerminalProgress& progress)
+    : options_(options), progress_(progress) {
+  maxMemory_ = options.maxMemory.empty() ? availableMemory() / 10 * 8
+                                         : parseBytes("--max-memory", options.maxMemory);
+  if (maxMemory_ == 0) throw SettingError("--max-memory", "must be above 0; write for example 4GB");
+}
+
+Context::~Context() = default;
+
+Progress* Context::progress() const { return &progress_; }
+
+void Context::plan(const std::vector<std::string>& lines, std::uint64_t bytes) {
+  for (const std::string& line : lines) print(line + "\n");
+  print(fmt::format("memory: about {} of at most {}{}\n", formatBytes(bytes),
+                    formatBytes(maxMemory_),
+                    bytes > maxMemory_ ? ", so this would be refused" : ""));
+  report_.set("dry_run", true);
+  report_.set("memory_needed_bytes", static_cast<std::int64_t>(bytes));
+}
+
+void Context::willWrite(const std::string& path) const {
+  if (!dryRun()) requireWritable(path);
+}
+
+void Context::timed(const std::string& stage, const std::function<void()>& body) {
+  throwIfCancelled(&progress_);
+  const auto start = std::chrono::steady_clock::now();
+  body();
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  for (auto& [name, seconds] : report_.seconds)
+    if (name == stage) {
+      seconds += elapsed.count();
+      return;
+    }
+  report_.seconds.emplace_back(stage, elapsed.count());
+}
+
+void Context::say(const std::string& kind, const std::string& text) {
+  if (options_.quiet) return;
+  progress_.clear();
+  std::fprintf(stderr, "innermap: %s%s\n", kind.c_str(), text.c_str());
+}
+
+void Context::note(const std::string& text) {
+  report_.notes.push_back(text);
+  say("", text);
+}
+
+void Context::warning(const std::string& text) {
+  report_.warnings.push_back(text);
+  say("warning: ", text);
+}
+
+void Context::print(const std::string& text) {
+  progress_.clear();
+  std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+const Report& Context::finishedReport() {
+  report_.peakMemory = peakMemory();
+  return report_;
+}
+
+}  // namespace innermap::tool

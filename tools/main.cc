@@ -1,0 +1,106 @@
+// The innermap program: finds the command, parses its options, turns errors into exit codes.
+#include <cstdio>
+#include <cstring>
+#include <new>
+
+#include "commands.h"
+#include "innermap/core/error.h"
+#include "innermap/core/file.h"
+#include "innermap/core/parallel.h"
+#include "innermap/output/version.h"
+#include "signals.h"
+#include "terminal_progress.h"
+
+namespace innermap::tool {
+namespace {
+
+enum ExitCode { kDone = 0, kFailed = 1, kUsage = 2, kCancelled = 130 };
+
+const Command& find(const std::vector<Command>& commands, const std::string& name) {
+  std::vector<std::string> names;
+  for (const Command& c : commands) {
+    if (c.name() == name) return c;
+    names.push_back(c.name());
+  }
+  const char* const what = name[0] == '-' ? "option" : "command";
+  throw UsageError(std::string("unknown ") + what + " '" + name + "'" + didYouMean(name, names) +
+                   (name[0] == '-' ? "; options stand after the command" : "") +
+                   "; see 'innermap --help'");
+}
+
+void execute(const Command& command, const CommonOptions& common, TerminalProgress& progress) {
+  Context context(common, progress);
+  if (!common.report.empty()) context.willWrite(common.report);
+  const ThreadLimit threads(common.threads);
+  context.report().command = command.name();
+  command.execute(context);
+  throwIfCancelled(&progress);
+  if (!common.report.empty() && !common.dryRun)
+    writeReport(common.report, context.finishedReport());
+}
+
+void runCommand(const std::vector<std::string>& arguments) {
+  if (arguments.empty()) throw UsageError("no command given; see 'innermap --help'");
+  const std::string& first = arguments.front();
+  if (first == "--version" || first == "-V") {
+    std::printf("innermap %s\n", versionText());
+    return;
+  }
+  if (first == "--help" || first == "-h") {
+    std::fputs(generalHelp().c_str(), stdout);
+    return;
+  }
+  const std::vector<Command> commands = allCommands();
+  const Command& command = find(commands, first);
+  CommonOptions common;
+  parseArguments(command, common, {arguments.begin() + 1, arguments.end()});
+  if (common.help) {
+    std::fputs(commandHelp(command).c_str(), stdout);
+    return;
+  }
+  // Signals may come until the very end of the process.
+  static TerminalProgress progress(TerminalProgress::styleFor(common.quiet));
+  handleSignals(progress);
+  try {
+    execute(command, common, progress);
+  } catch (...) {
+    progress.clear();
+    throw;
+  }
+  progress.clear();
+}
+
+int fail(int code, const std::string& message) {
+  // One line, whatever a file's name or another library's message holds.
+  std::string line = message;
+  for (char& c : line)
+    if (static_cast<unsigned char>(c) < 32 || c == 127) c = ' ';
+  std::fprintf(stderr, "innermap: %s\n", line.c_str());
+  return code;
+}
+
+int run(const std::vector<std::string>& arguments) {
+  try {
+    runCommand(arguments);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout))
+      return fail(kFailed, "standard output cannot be written");
+    return kDone;
+  } catch (const Cancelled&) {
+    return fail(kCancelled, "cancelled; nothing was written");
+  } catch (const UsageError& error) {
+    return fail(kUsage, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(
+        kFailed,
+        "memory is exhausted; use fewer or larger voxels, fewer points, or another machine");
+  } catch (const std::exception& error) {
+    return fail(kFailed, error.what());
+  } catch (...) {
+    return fail(kFailed, "an unknown error occurred");
+  }
+}
+
+}  // namespace
+}  // namespace innermap::tool
+
+int main(int argc, char** argv) { return innermap::tool::run({argv + (argc > 0), argv + argc}); }

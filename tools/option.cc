@@ -1,0 +1,111 @@
+#include "option.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "command.h"
+
+namespace innermap::tool {
+namespace {
+
+std::string inUnit(const Option& option) {
+  return option.unit.empty() ? "" : " (" + option.unit + ")";
+}
+
+[[noreturn]] void outOfRange(const Option& option, const std::string& text) {
+  throw SettingError(option.name, fmt::format("{} is out of range; give a number {}{}", text,
+                                              rangeText(option), inUnit(option)));
+}
+
+// The whole text must be one number: no sign '+', no blanks, no nan or inf.
+template <class T>
+T parseNumber(const Option& option, const std::string& text, const char* what) {
+  T value{};
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error == std::errc::result_out_of_range && stop == end)
+    throw SettingError(option.name,
+                       "'" + text + "' is too large or too small a number" +
+                           (option.hasRange() ? "; give one " + rangeText(option) : ""));
+  bool good = error == std::errc() && stop == end;
+  if constexpr (std::is_floating_point_v<T>) good = good && std::isfinite(value);
+  if (!good)
+    throw UsageError(fmt::format("{}: '{}' is not {}{}", option.name, text, what, inUnit(option)));
+  const double v = static_cast<double>(value);
+  if (v < option.lower || v > option.upper || (option.lowerOpen && v == option.lower))
+    outOfRange(option, text);
+  return value;
+}
+
+NumberPair parsePair(const Option& option, const std::string& text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos)
+    throw UsageError(option.name + ": '" + text + "' is not two numbers with a comma between");
+  const char* const what = "two numbers with a comma between";
+  return {parseNumber<double>(option, text.substr(0, comma), what),
+          parseNumber<double>(option, text.substr(comma + 1), what)};
+}
+
+// A negative count is a number, but out of range: the message should say so.
+std::uint64_t parseCount(const Option& option, const std::string& text) {
+  if (!text.empty() && text[0] == '-') {
+    Option anyRange = option;
+    anyRange.lower = -1e300;
+    parseNumber<std::int64_t>(anyRange, text, "a whole number");
+    Option fromZero = option;
+    fromZero.lower = std::max(0.0, option.lower);
+    outOfRange(fromZero, text);
+  }
+  return parseNumber<std::uint64_t>(option, text, "a whole number");
+}
+
+std::string parseText(const Option& option, const std::string& text) {
+  if (option.choices.empty()) {
+    if (text.empty()) throw UsageError(option.name + ": is empty; give a value");
+    return text;
+  }
+  if (std::find(option.choices.begin(), option.choices.end(), text) == option.choices.end())
+    throw UsageError(fmt::format("{}: '{}' is not one of {}{}", option.name, text,
+                                 fmt::join(option.choices, ", "),
+                                 didYouMean(text, option.choices)));
+  return text;
+}
+
+}  // namespace
+
+std::string rangeText(const Option& option) {
+  const bool lower = option.lower > -1e300, upper = option.upper < 1e300;
+  const std::string low = fmt::format("{:.15g}", option.lower);
+  const std::string high = fmt::format("{:.15g}", option.upper);
+  if (lower && option.lowerOpen) return "above " + low + (upper ? " up to " + high : "");
+  if (lower && upper) return "from " + low + " to " + high;
+  if (lower) return "of at least " + low;
+  if (upper) return "of at most " + high;
+  return "";
+}
+
+void parseInto(const Option& option, const std::string& text) {
+  struct Visitor {
+    const Option& option;
+    const std::string& text;
+    void operator()(bool* to) const { *to = true; }
+    void operator()(int* to) const { *to = parseNumber<int>(option, text, "a whole number"); }
+    void operator()(std::uint64_t* to) const { *to = parseCount(option, text); }
+    void operator()(double* to) const { *to = parseNumber<double>(option, text, "a number"); }
+    void operator()(std::string* to) const { *to = parseText(option, text); }
+    void operator()(std::optional<int>* to) const {
+      *to = parseNumber<int>(option, text, "a whole number");
+    }
+    void operator()(std::optional<std::uint64_t>* to) const { *to = parseCount(option, text); }
+    void operator()(std::optional<double>* to) const {
+      *to = parseNumber<double>(option, text, "a number");
+    }
+    void operator()(std::optional<NumberPair>* to) const { *to = parsePair(option, text); }
+  };
+  std::visit(Visitor{option, text}, option.target);
+}
+
+}  // namespace innermap::tool

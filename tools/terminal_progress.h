@@ -1,0 +1,41 @@
+// Progress on stderr: a bar on a terminal, plain lines otherwise.
+#pragma once
+
+#include <chrono>
+#include <mutex>
+#include <set>
+#include <string>
+
+#include "innermap/core/progress.h"
+
+namespace innermap::tool {
+
+class TerminalProgress : public Progress {
+ public:
+  enum class Style { kNone, kLines, kBar };
+
+  // kBar when stderr is a terminal that can move its cursor.
+  static Style styleFor(bool quiet);
+
+  explicit TerminalProgress(Style style) : style_(style) {}
+  ~TerminalProgress() override { clear(); }
+
+  void report(std::string_view stage, double fraction) override;
+
+  // Takes the bar away, so that a message can be written.
+  void clear();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void drawBar(std::string_view stage, double fraction);
+  void writeLine(std::string_view stage, double fraction);
+
+  const Style style_;
+  std::mutex mutex_;
+  Clock::time_point last_{};
+  std::string stage_;           // last shown
+  std::set<std::string> seen_;  // stages that have had their line
+  bool drawn_ = false;          // a bar stands on the terminal
+};
+
+}  // namespace innermap::tool
