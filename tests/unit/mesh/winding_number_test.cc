@@ -1,0 +1,130 @@
+#include "innermap/mesh/winding_number.h"
+
+#include <gtest/gtest.h>
+
+#include "innermap/core/random.h"
+#include "shapes.h"
+
+namespace innermap {
+namespace {
+
+using shapes::randomPoint;
+
+TEST(WindingNumber, ClosedSurfaceSeparatesInsideFromOutside) {
+  const Mesh mesh = shapes::torus(60, 30);
+  const WindingNumber winding(mesh.vertices, mesh.triangles);
+  const CounterRandom random(3, 1);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p = 1.5 * randomPoint(random, i);
+    const double q = std::hypot(std::hypot(p.x, p.y) - 1, p.z);
+    if (std::abs(q - 0.35) < 0.01) continue;
+    const double expected = q < 0.35 ? 1 : 0;
+    EXPECT_NEAR(winding.exactAt(p), expected, 1e-12);
+    EXPECT_NEAR(winding.at(p), expected, 1e-2);
+  }
+}
+
+TEST(WindingNumber, CountsCoversAndTurns) {
+  const Mesh ball = shapes::icosphere(3);
+  const Mesh twice = shapes::joined(ball, shapes::icosphere(2, 0.5));
+  EXPECT_NEAR(WindingNumber(twice.vertices, twice.triangles).at({0.1, 0, 0}), 2, 1e-2);
+  const Mesh turned = shapes::flipped(ball);
+  EXPECT_NEAR(WindingNumber(turned.vertices, turned.triangles).at({0.1, 0, 0}), -1, 1e-2);
+  // Many covers: more than one turn in the sum of a leaf.
+  Mesh many;
+  for (int i = 0; i < 40; ++i) many = i == 0 ? ball : shapes::joined(many, ball);
+  const WindingNumber winding(many.vertices, many.triangles);
+  EXPECT_NEAR(winding.exactAt({0.1, 0.2, 0}), 40, 1e-10);
+  EXPECT_NEAR(winding.at({0.1, 0.2, 0}), 40, 40 * 1e-2);
+}
+
+TEST(WindingNumber, OneTriangleHasTheClosedFormOfAnOctant) {
+  const Points vertices{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const WindingNumber winding(vertices, {{0, 1, 2}});
+  EXPECT_NEAR(winding.at({0, 0, 0}), 1.0 / 8, 1e-15);
+  EXPECT_NEAR(winding.exactAt({0, 0, 0}), 1.0 / 8, 1e-15);
+  // On either side of the triangle, next to it: half a turn.
+  const Vec3 n{1 / std::sqrt(3.0), 1 / std::sqrt(3.0), 1 / std::sqrt(3.0)};
+  const Vec3 m{1.0 / 3, 1.0 / 3, 1.0 / 3};
+  EXPECT_NEAR(winding.at(m - 1e-9 * n), 0.5, 1e-8);
+  EXPECT_NEAR(winding.at(m + 1e-9 * n), -0.5, 1e-8);
+}
+
+TEST(WindingNumber, AgreesWithTheExactSumOnSoups) {
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    for (const double size : {0.01, 0.1, 0.5}) {
+      SCOPED_TRACE(testing::Message() << "seed " << seed << " size " << size);
+      const Mesh mesh = shapes::soup(2000, size, seed);
+      const WindingNumber winding(mesh.vertices, mesh.triangles);
+      const CounterRandom random(seed, 6);
+      double largest = 0;
+      for (int i = 0; i < 1000; ++i) {
+        const double reach = i % 3 == 0 ? 4 : i % 3 == 1 ? 1 : 0.1;
+        const Vec3 p = reach * randomPoint(random, i);
+        largest = std::max(largest, std::abs(winding.at(p) - winding.exactAt(p)));
+      }
+      EXPECT_LT(largest, 1e-2);
+      EXPECT_GT(largest, 0);  // otherwise nothing was expanded
+    }
+  }
+}
+
+TEST(WindingNumber, AgreesNearTheSurface) {
+  const Mesh mesh = shapes::icosphere(5);
+  const WindingNumber winding(mesh.vertices, mesh.triangles);
+  const CounterRandom random(5, 2);
+  for (int i = 0; i < 2000; ++i) {
+    const Triangle& t = mesh.triangles[random.bits(i) % mesh.triangles.size()];
+    const Vec3 m = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
+    const double offset = std::pow(10.0, -1.0 - i % 10);
+    EXPECT_NEAR(winding.at((1 - offset) * m), 1, 1e-2);
+    EXPECT_NEAR(winding.at((1 + offset) * m), 0, 1e-2);
+  }
+}
+
+TEST(WindingNumber, ScaleAndPlaceDoNotMatter) {
+  const Mesh mesh = shapes::torus(40, 20);
+  const CounterRandom random(8, 1);
+  for (const double scale : {1e-150, 1e-3, 1e3, 1e150}) {
+    const Vec3 shift = scale * Vec3{3000, -2000, 1000};
+    const Mesh moved = shapes::transformed(mesh, scale, shift);
+    const WindingNumber winding(moved.vertices, moved.triangles);
+    for (int i = 0; i < 300; ++i) {
+      const Vec3 p = 1.5 * randomPoint(random, i);
+      const double q = std::hypot(std::hypot(p.x, p.y) - 1, p.z);
+      if (std::abs(q - 0.35) < 0.02) continue;
+      EXPECT_NEAR(winding.at(shift + scale * p), q < 0.35 ? 1 : 0, 1e-2) << scale;
+    }
+  }
+}
+
+TEST(WindingNumber, TinyClusterInALargeMesh) {
+  // A closed ball 1e-7 of the mesh across, far from its centre: expansions of small clusters keep
+  // their digits.
+  const Vec3 place{5, 3, 2};
+  const Mesh mesh = shapes::joined(shapes::icosphere(2, 10), shapes::icosphere(3, 1e-6, place));
+  const WindingNumber winding(mesh.vertices, mesh.triangles);
+  const CounterRandom random(2, 2);
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 d = randomPoint(random, i);
+    if (std::abs(norm(d) - 1) < 0.05) continue;
+    EXPECT_NEAR(winding.at(place + 1e-6 * d), norm(d) < 1 ? 2 : 1, 1e-2);
+  }
+}
+
+TEST(WindingNumber, DegenerateTrianglesAddNothing) {
+  Mesh mesh = shapes::icosphere(2);
+  mesh.triangles.push_back({0, 0, 5});
+  mesh.triangles.push_back({3, 3, 3});
+  const WindingNumber winding(mesh.vertices, mesh.triangles);
+  const CounterRandom random(1, 2);
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 p = 0.5 * randomPoint(random, i);
+    EXPECT_NEAR(winding.at(p), 1, 1e-2);
+    EXPECT_NEAR(winding.exactAt(p), 1, 1e-12);
+  }
+  EXPECT_EQ(WindingNumber({}, {}).at({0, 0, 0}), 0);
+}
+
+}  // namespace
+}  // namespace innermap
