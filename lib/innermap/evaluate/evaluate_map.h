@@ -1,0 +1,51 @@
+// A harmonic map on the grid of its solid: positions, Jacobian determinants, energies, totals.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "innermap/core/progress.h"
+#include "innermap/evaluate/energy.h"
+#include "innermap/field/harmonic_map.h"
+#include "innermap/levelset/solid.h"
+
+namespace innermap {
+
+struct EvaluateSettings {
+  bool map = true, jacobian = true, harmonicEnergy = true, deformationEnergy = true;
+  LameConstants lame;
+  double targetVolume = 0;      // world units cubed; scales the harmonic energy; 0: as the source's
+  double skin = 2;              // active voxels outside the surface, in [0, 3]
+  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  Progress* progress = nullptr;
+};
+
+// Value grids have the level set's transform; active where the signed distance is at most the skin.
+// Voxels outside the solid hold the extension from their closest boundary point c: f(c) + J(c)
+// (p - c) for `map`, the value at c for the others (the field itself is singular at the sources
+// just outside). Background 0.
+struct MapGrids {
+  openvdb::Vec3fGrid::Ptr map;                // target position of each voxel, world units
+  openvdb::FloatGrid::Ptr jacobian;           // det of the map's gradient
+  openvdb::FloatGrid::Ptr harmonicEnergy;     // density, both solids scaled to unit volume
+  openvdb::FloatGrid::Ptr deformationEnergy;  // density psi
+
+  // Integrals over the solid; cells along the surface count by their share inside.
+  double harmonicTotal = 0;     // both solids scaled to unit volume: 3 for a rigid motion
+  double deformationTotal = 0;  // world units cubed times the density's unit
+  double volume = 0;            // of the cells: the solid's, as the grid sees it
+  double jacobianMin = 0, jacobianMax = 0;  // over voxels whose centre is inside
+  double foldedFraction = 0;                // share of the volume with det J <= 0
+  std::uint64_t activeVoxels = 0, interiorVoxels = 0;
+
+  std::vector<openvdb::GridBase::Ptr> all() const;  // those that were asked for
+};
+
+// levelSet: of the same solid, half-width at least the skin. Throws SettingError, MemoryError,
+// Cancelled. Deterministic for any number of threads.
+MapGrids evaluateMap(const HarmonicMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
+                     const EvaluateSettings& settings = {});
+
+}  // namespace innermap

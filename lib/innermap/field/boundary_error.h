@@ -1,0 +1,24 @@
+// How far a field is from its boundary values at points that took no part in the fit. As the field
+// is harmonic, the largest error on the boundary bounds the error everywhere inside.
+#pragma once
+
+#include <cstddef>
+
+#include "innermap/core/progress.h"
+#include "innermap/field/harmonic_field.h"
+
+namespace innermap {
+
+struct BoundaryError {
+  // Euclidean length of the error over all channels, divided by `unit`.
+  double rms = 0, p99 = 0, max = 0;
+  double sumOfSquares = 0;  // the paper's C-Error when taken at the collocation points
+  std::size_t samples = 0;
+};
+
+// values: #points x #K. unit: usually the target's diagonal; must be positive.
+// Throws DataError when sizes disagree, SettingError for a bad unit.
+BoundaryError measureBoundaryError(const HarmonicField& field, const Points& points,
+                                   const Matrix& values, double unit, Progress* progress = nullptr);
+
+}  // namespace innermap

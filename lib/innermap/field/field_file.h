@@ -1,0 +1,39 @@
+// Fields on disk: one PLY file, binary little endian, that point viewers show.
+//
+//   comment innermap field 1
+//   comment affine_center ..., comment affine_K ...: the affine part, 17 digits
+//   comment KEY VALUE: settings and results of the fit
+//   element vertex N: double x y z (sources), double w0 ... wK-1 (weights)
+//   element boundary_vertex V: double x y z, double tx ty tz (source mesh and its target)
+//   element boundary_face T: list uchar int vertex_indices
+//
+// The boundary stands in the file so that it is all one needs to evaluate the map on its solid.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "innermap/field/harmonic_field.h"
+
+namespace innermap {
+
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+struct FieldFile {
+  HarmonicField field;
+  Settings settings;                // keys of [a-z0-9_]; values without line breaks
+  Points boundary, boundaryTarget;  // same size, or both empty
+  std::vector<std::array<int, 3>> boundaryTriangles;
+};
+
+// Throws FileError when the file cannot be written; it appears whole or not at all.
+void writeField(const std::string& path, const FieldFile& file);
+
+// Gives the same field to the last bit. Throws FileError for anything that is not such a file,
+// whole; sizes are checked against the file's before allocating.
+FieldFile readField(const std::string& path);
+
+}  // namespace innermap

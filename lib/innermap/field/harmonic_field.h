@@ -1,0 +1,46 @@
+// A harmonic function with any number of channels: an affine part plus a sum of point charges.
+//
+//   f_k(p) = affine_k(p) + sum_j w_jk / |p - q_j|
+//
+// It satisfies Laplace's equation everywhere but at the sources q_j, so inside a solid that holds
+// none of them its largest error is on the boundary (maximum principle).
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "innermap/core/matrix.h"
+#include "innermap/core/progress.h"
+#include "innermap/core/vec3.h"
+#include "innermap/solve/affine.h"
+#include "innermap/solve/kernel_sum.h"
+
+namespace innermap {
+
+// Immutable; copies share their data; safe from any number of threads. World units.
+class HarmonicField {
+ public:
+  // sources: #N; weights: #N x #K; affine.coefficients: 4 x #K. Throws DataError when the sizes
+  // disagree, K is 0, or a number is not finite.
+  HarmonicField(Points sources, Matrix weights, Affine affine);
+
+  std::size_t channels() const;
+  const Points& sources() const;
+  const Matrix& weights() const;
+  const Affine& affine() const;
+
+  // Values (#points x #K) and, if asked for, gradients (#points x 3 #K; column 3 k + axis) on all
+  // threads. Accuracy: a few units of rounding times the number of sources.
+  FieldSamples evaluate(const Points& points, bool gradients = false,
+                        Progress* progress = nullptr) const;
+
+  // The same for a few points on the calling thread: values[k * count + i],
+  // gradients[(3 * k + axis) * count + i]; gradients may be null. Overwrites.
+  void evaluate(const Vec3* points, std::size_t count, double* values, double* gradients) const;
+
+ private:
+  struct Data;
+  std::shared_ptr<const Data> data_;
+};
+
+}  // namespace innermap
