@@ -1,8 +1,9 @@
 // Mesh files in: OBJ, PLY, OFF, STL.
 //
-// OBJ is parsed by tinyobjloader. PLY, OFF and STL have readers of our own: no packaged reader
-// keeps non-manifold faces, reads triangle strips and refuses a header that promises more than the
-// file holds before memory is allocated for it.
+// The readers are our own. For PLY, OFF and STL no packaged reader keeps non-manifold faces, reads
+// triangle strips and refuses a header that promises more than the file holds before memory is
+// allocated for it. For OBJ the packaged tinyobjloader holds coordinates as floats, reads malformed
+// numbers as zeros and does not refuse negative indices below the first vertex.
 #pragma once
 
 #include <string>
