@@ -1,0 +1,60 @@
+// From boundary values to a field: where the charges stand is chosen by the error at held-out
+// points, then their weights are solved for.
+//
+// Smooth boundary values want the charges far from the boundary, where few of them resolve much;
+// values with kinks want them at one to two spacings. So unless a distance is given, some are tried
+// with few charges first: from 1.25 spacings, about
+// doubling, up to half the diagonal; a farther one must lower the error by a fifth.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "innermap/core/matrix.h"
+#include "innermap/core/progress.h"
+#include "innermap/core/vec3.h"
+#include "innermap/field/harmonic_field.h"
+#include "innermap/solve/dense_solver.h"
+
+namespace innermap {
+
+struct FitProblem {
+  // Boundary points in random order (any first part of them covers the boundary evenly) and the
+  // values there: #collocation x #K and #heldOut x #K.
+  Points collocation, heldOut;
+  Matrix values, heldOutValues;
+  double diagonal = 0;  // of the solid, world units: the unit of distances
+  double area = 0;      // of the boundary, world units squared
+  // Gives about `count` source points at `distance` (fraction of the diagonal) from the boundary;
+  // throws DataError where there is no room for any.
+  std::function<Points(std::size_t count, double distance)> placeSources;
+};
+
+struct FitSettings {
+  std::size_t sources = 2000;      // in [1, 20000]
+  std::optional<double> distance;  // fraction of the diagonal, in [1e-4, 2]; chosen when absent
+  Regularization method = Regularization::tikhonov;
+  std::optional<double> regularization;  // relative, in [0, 1]; chosen when absent
+  std::uint64_t maxMemory = 0;           // bytes; 0 means no limit
+  Progress* progress = nullptr;
+};
+
+struct DistanceTrial {
+  std::size_t sources = 0;
+  double distance = 0;    // fraction of the diagonal
+  double heldOutRms = 0;  // in the values' units
+};
+
+struct FitResult {
+  HarmonicField field;
+  DenseSolution solution;
+  double distance = 0;
+  std::vector<DistanceTrial> trials;  // empty when the distance was given
+};
+
+// Throws SettingError, DataError (no room for sources at any distance), MemoryError, Cancelled.
+FitResult fitField(const FitProblem& problem, const FitSettings& settings = {});
+
+}  // namespace innermap

@@ -1,0 +1,35 @@
+#include "innermap/field/boundary_error.h"
+
+#include <gtest/gtest.h>
+
+#include "field/sphere_problem.h"
+#include "innermap/core/error.h"
+
+namespace innermap {
+namespace {
+
+TEST(BoundaryError, CountsLengthsInUnits) {
+  const HarmonicField f = testing::someField();
+  const Points points = testing::spherePoints(1000, 1);
+  Matrix values = f.evaluate(points).values;
+  // Off by (3, 4, 0) at two points of a hundred, by nothing elsewhere.
+  for (std::size_t i = 0; i < 1000; i += 50) {
+    values(i, 0) += 3;
+    values(i, 1) += 4;
+  }
+  const BoundaryError e = measureBoundaryError(f, points, values, 10);
+  EXPECT_NEAR(e.max, 0.5, 1e-12);
+  EXPECT_NEAR(e.p99, 0.5, 1e-12);
+  EXPECT_NEAR(e.rms, 0.5 * std::sqrt(0.02), 1e-12);
+  EXPECT_NEAR(e.sumOfSquares, 20 * 0.25, 1e-10);
+  EXPECT_EQ(e.samples, 1000u);
+}
+
+TEST(BoundaryError, RefusesBadInput) {
+  const HarmonicField f = testing::someField();
+  EXPECT_THROW(measureBoundaryError(f, Points(2), Matrix(3, 3), 1), DataError);
+  EXPECT_THROW(measureBoundaryError(f, Points(2), Matrix(2, 3), 0), SettingError);
+}
+
+}  // namespace
+}  // namespace innermap

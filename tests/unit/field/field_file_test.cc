@@ -1,0 +1,105 @@
+#include "innermap/field/field_file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "field/sphere_problem.h"
+#include "innermap/core/error.h"
+
+namespace innermap {
+namespace {
+
+class FieldFileTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        std::filesystem::temp_directory_path() / ("innermap_field_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder_);
+    path_ = (folder_ / "map.ply").string();
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  FieldFile sample() const {
+    FieldFile f{testing::someField(), {{"method", "tikhonov"}, {"note", "two words"}}, {}, {}, {}};
+    f.boundary = testing::randomPoints(5, 1);
+    f.boundaryTarget = testing::randomPoints(5, 2);
+    f.boundaryTriangles = {{0, 1, 2}, {2, 3, 4}};
+    return f;
+  }
+
+  std::string contents() const {
+    std::ifstream in(path_, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  void write(const std::string& text) const { std::ofstream(path_, std::ios::binary) << text; }
+
+  std::filesystem::path folder_;
+  std::string path_;
+};
+
+TEST_F(FieldFileTest, ReadsBackTheSameBits) {
+  const FieldFile before = sample();
+  writeField(path_, before);
+  const FieldFile after = readField(path_);
+  const Points points = testing::randomPoints(200, 3);
+  const FieldSamples a = before.field.evaluate(points, true),
+                     b = after.field.evaluate(points, true);
+  EXPECT_EQ(0, std::memcmp(a.values.data(), b.values.data(), 600 * sizeof(double)));
+  EXPECT_EQ(0, std::memcmp(a.gradients.data(), b.gradients.data(), 1800 * sizeof(double)));
+  EXPECT_EQ(after.settings, before.settings);
+  EXPECT_EQ(after.boundaryTriangles, before.boundaryTriangles);
+  EXPECT_EQ(after.boundary[4].z, before.boundary[4].z);
+  EXPECT_EQ(after.boundaryTarget[0].x, before.boundaryTarget[0].x);
+}
+
+TEST_F(FieldFileTest, TruncatedAtAnyPlaceIsRefused) {
+  writeField(path_, sample());
+  const std::string whole = contents();
+  for (std::size_t size = 0; size < whole.size(); size += 1 + size / 8) {
+    write(whole.substr(0, size));
+    EXPECT_THROW(readField(path_), FileError) << size;
+  }
+  write(whole + "x");
+  EXPECT_THROW(readField(path_), FileError);
+}
+
+TEST_F(FieldFileTest, LyingHeaderIsRefusedBeforeAllocating) {
+  writeField(path_, sample());
+  std::string text = contents();
+  text.replace(text.find("element vertex 30"), 17, "element vertex 400000000000");
+  write(text);
+  EXPECT_THROW(readField(path_), FileError);
+}
+
+TEST_F(FieldFileTest, CorruptBytesNeverCrash) {
+  writeField(path_, sample());
+  const std::string whole = contents();
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const CounterRandom random(seed, 1);
+    std::string text = whole;
+    for (int i = 0; i < 4; ++i)
+      text[random.bits(2 * i) % text.size()] = static_cast<char>(random.bits(2 * i + 1));
+    write(text);
+    try {
+      readField(path_);
+    } catch (const Error&) {
+    }
+  }
+}
+
+TEST_F(FieldFileTest, MissingFolderAndBadSettingsAreRefused) {
+  EXPECT_THROW(writeField((folder_ / "no" / "map.ply").string(), sample()), FileError);
+  FieldFile bad = sample();
+  bad.settings.emplace_back("x", "two\nlines");
+  EXPECT_THROW(writeField(path_, bad), DataError);
+  EXPECT_FALSE(std::filesystem::exists(path_));
+  EXPECT_THROW(readField(path_), FileError);
+}
+
+}  // namespace
+}  // namespace innermap
