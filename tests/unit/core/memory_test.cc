@@ -1,0 +1,53 @@
+#include "innermap/core/memory.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "innermap/core/error.h"
+
+namespace innermap {
+namespace {
+
+TEST(Memory, SizesAreRead) {
+  EXPECT_EQ(parseBytes("m", "800M"), 800000000u);
+  EXPECT_EQ(parseBytes("m", "1.5GB"), 1500000000u);
+  EXPECT_EQ(parseBytes("m", "2GiB"), 2147483648u);
+  EXPECT_EQ(parseBytes("m", "12345"), 12345u);
+  EXPECT_EQ(parseBytes("m", "64kb"), 64000u);
+}
+
+TEST(Memory, WhatIsNoSizeIsRefused) {
+  for (const char* text : {"", "x", "-1", "1Q", "5iB", "nan", "inf", "1e30", "1GBs", " 1"})
+    EXPECT_THROW(parseBytes("--max-memory", text), SettingError) << text;
+}
+
+TEST(Memory, SizesAreSaidInThreeDigits) {
+  EXPECT_EQ(formatBytes(0), "0 B");
+  EXPECT_EQ(formatBytes(999), "999 B");
+  EXPECT_EQ(formatBytes(1234567), "1.23 MB");
+  EXPECT_EQ(formatBytes(999999999), "1 GB");
+}
+
+TEST(Memory, OverTheLimitIsRefusedWithAdvice) {
+  EXPECT_NO_THROW(requireMemory("x", 100, 100, ""));
+  EXPECT_NO_THROW(requireMemory("x", ~0ull, 0, ""));
+  try {
+    requireMemory("the grid", 2000000000, 1000000000, "use larger voxels");
+    FAIL();
+  } catch (const MemoryError& e) {
+    EXPECT_STREQ(e.what(),
+                 "the grid needs 2 GB of memory, more than the limit of 1 GB; use larger voxels");
+  }
+}
+
+TEST(Memory, PeakGrowsWithUse) {
+  const std::uint64_t before = peakMemory();
+  std::vector<char> block(1 << 27);
+  for (std::size_t i = 0; i < block.size(); i += 4096) block[i] = static_cast<char>(i);
+  EXPECT_GE(peakMemory(), std::max<std::uint64_t>(before, 1 << 27));
+  EXPECT_GE(availableMemory(), peakMemory());
+}
+
+}  // namespace
+}  // namespace innermap
