@@ -1,0 +1,48 @@
+// One picture of a cross-section: a grid's values as colours from blue (least) to red (most), with
+// the colour bar, the range, the grid's name and the place written on it.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "innermap/core/progress.h"
+
+namespace innermap {
+
+enum class Component { kX = 0, kY = 1, kZ = 2, kLength = 3 };  // of vector grids
+
+struct SectionSettings {
+  std::string grid;  // name of the grid to show; empty: the first of jacobian, deformation_energy,
+                     // harmonic_energy, map, density, surface that is there, else the first grid
+  Component component = Component::kLength;  // ignored for scalar grids
+  int axis = 2;                              // 0, 1, 2: x, y, z
+  double at = 0.5;                           // fraction of the active box along the axis, in [0, 1]
+  std::optional<double> position;            // world coordinate along the axis; wins over `at`
+  std::optional<std::pair<double, double>> range;  // of the colours; unset: from the values inside
+  double outliers = 0.005;  // share of values cut off at each end when the range is unset, [0, 0.5)
+  int pixels = 900;         // longer side of the section itself, in [64, 8192]
+  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  Progress* progress = nullptr;
+};
+
+struct SectionResult {
+  std::string grid;
+  double position = 0;          // world coordinate of the cut
+  double least = 0, most = 0;   // values inside the cut, all of them
+  double lower = 0, upper = 0;  // the colours' range
+  int width = 0, height = 0;    // of the picture
+};
+
+// Writes a PNG (8 bits, sRGB). The cut is interpolated between voxels, over active ones only. The
+// solid is where `surface` is negative, else where `density` is over one half, else where the grid
+// is active; outside it the picture is light grey. Values that are not finite are black.
+// The file appears whole or not at all. Throws FileError, DataError (no such grid, nothing of the
+// solid in the cut), SettingError, MemoryError, Cancelled.
+SectionResult writeSectionImage(const std::string& path, const openvdb::GridPtrVec& grids,
+                                const SectionSettings& settings = {});
+
+}  // namespace innermap

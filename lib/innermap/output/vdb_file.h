@@ -1,0 +1,76 @@
+// OpenVDB files out and in.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "innermap/core/progress.h"
+
+namespace innermap {
+
+// What the grids are called in the file. innermap's own names (surface, density, map, jacobian,
+// harmonic_energy, deformation_energy, Cd, uv) are those of Houdini wherever Houdini has one;
+// Blender and Cycles look for the colour in `color`, which the other schemes call `Cd`.
+enum class NamingScheme { kInnermap, kBlender, kHoudini };
+
+// "innermap", "blender", "houdini"; throws SettingError for other texts.
+NamingScheme parseNamingScheme(const std::string& setting, const std::string& text);
+
+// The name that the scheme has for one of innermap's own; other names stay.
+std::string gridName(const std::string& own, NamingScheme scheme);
+
+enum class VdbCompression { kNone, kZip, kBlosc };  // OpenVDB drops kZip for level sets and fog
+
+struct VdbWriteSettings {
+  NamingScheme names = NamingScheme::kInnermap;
+  VdbCompression compression = VdbCompression::kBlosc;  // beside the active mask's compression
+  Progress* progress = nullptr;
+};
+
+// Writes the grids, which are not changed, with statistics metadata (active voxels, box, memory),
+// the creator, and offsets, so that single grids can be read. The file appears whole or not at all.
+// Throws FileError; DataError when two grids have the same name or one has none (programs then pick
+// any of them, or show nothing) or one longer than the 63 characters that Blender takes; Cancelled.
+void writeVdb(const std::string& path, const openvdb::GridPtrVec& grids,
+              const openvdb::MetaMap& fileMetadata = {}, const VdbWriteSettings& settings = {});
+
+struct VdbReadSettings {
+  std::vector<std::string> names;  // of the grids to read; empty means all
+  std::uint64_t maxMemory = 0;     // bytes; 0 means no limit
+  Progress* progress = nullptr;
+};
+
+struct VdbContents {
+  openvdb::GridPtrVec grids;  // in the file's order
+  openvdb::MetaMap metadata;  // the file's own
+};
+
+// Reads grids of any value type that OpenVDB has in its standard tree (float, double, int32, int64,
+// bool, vec3s, vec3d, vec3i, mask), by innermap's or any other program. Files are not trusted: the
+// structure is walked through and checked against the file's size before OpenVDB reads it, so a
+// truncated or damaged file costs neither memory nor a crash. Delayed loading is off.
+// Throws FileError (a missing grid: listing those that are there), MemoryError, Cancelled.
+VdbContents readVdb(const std::string& path, const VdbReadSettings& settings = {});
+
+// What a file says about one of its grids, without reading its voxels.
+struct VdbGridInfo {
+  std::string name;
+  std::string type;             // "float", "vec3s", ...; with " (half)" when saved as half floats
+  std::string gridClass;        // "level set", "fog volume", "staggered", "unknown"
+  std::uint64_t bytes = 0;      // in the file
+  std::uint64_t memory = 0;     // that reading it takes, bytes
+  openvdb::GridBase::Ptr grid;  // empty but for its metadata and transform
+};
+
+struct VdbInfo {
+  std::vector<VdbGridInfo> grids;
+  openvdb::MetaMap metadata;
+  std::string version;  // "10.0/224"
+};
+
+VdbInfo readVdbInfo(const std::string& path, Progress* progress = nullptr);
+
+}  // namespace innermap
