@@ -19,10 +19,13 @@ struct Crossing {
   Vec3 place;                 // a point near the intersection, world units
 };
 
+// Connectivity is told after joining seams: vertices that files keep apart where texture or normals
+// jump count as one where two boundary edges coincide bit by bit and run in opposite directions.
 struct MeshReport {
   std::size_t vertices = 0, triangles = 0, polygons = 0;
-  int components = 0;  // connected by shared vertices; loose vertices do not count
-  std::vector<BoundaryLoop> boundaryLoops;
+  int components = 0;         // connected by shared vertices; loose vertices do not count
+  std::size_t seamEdges = 0;  // edges closed by joining seams
+  std::vector<BoundaryLoop> boundaryLoops;           // of edges with an odd number of triangles
   std::vector<std::array<int, 2>> nonManifoldEdges;  // shared by three triangles or more
   std::vector<int> nonManifoldVertices;              // whose triangles form more than one fan
   std::vector<int> duplicateTriangles;   // same three vertices, same orientation, as an earlier one
@@ -32,12 +35,13 @@ struct MeshReport {
   std::vector<int> looseVertices;
   std::size_t selfIntersections = 0;  // pairs of triangles
   std::vector<Crossing> crossings;    // the first `listed` of them
-  bool outward = true;                // signed volume (holes capped) is positive
+  bool outward = true;                // signed volume (holes capped) is not negative
   bool closed = true;                 // no boundary loop
   // Sum over components of (2 - Euler characteristic - boundary loops) / 2; only meaningful when
   // manifold.
   int genus = 0;
-  double area = 0, volume = 0;  // volume with the holes capped
+  double area = 0;    // world units squared
+  double volume = 0;  // signed, with the holes capped; world units cubed
   Box3 box;
 };
 

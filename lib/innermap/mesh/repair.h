@@ -1,5 +1,6 @@
-// From a mesh as it comes to one that bounds a solid: loose vertices and degenerate or duplicate
-// triangles are left out, orientation is made consistent and outward, holes are capped.
+// From a mesh as it comes to one that bounds a solid: loose vertices, duplicate triangles and those
+// with a repeated vertex are left out, orientation is made consistent and outward, holes are
+// capped.
 #pragma once
 
 #include <string>
@@ -18,8 +19,8 @@ struct CapVertex {
 
 struct RepairedMesh {
   // The first vertices are those of the input, in its order (loose ones included, unused); cap
-  // vertices follow. Every edge has as many triangles one way as the other, so winding numbers are
-  // whole numbers.
+  // vertices follow. Every edge has as many triangles one way as the other (vertices at the same
+  // place along a seam counted as one), so winding numbers are whole numbers.
   Mesh mesh;
   std::vector<CapVertex> capVertices;
   std::vector<int> parent;         // #T: the input's triangle, or -1 for a cap's
@@ -38,6 +39,10 @@ struct RepairSettings {
 // winding number -1 is turned; an inner shell that bounds a cavity is kept. Throws DataError when
 // no solid remains: every triangle degenerate, or the volume enclosed by the repaired mesh not
 // above 1e-9 of the diagonal cubed ("has no inside").
+//
+// Triangles without area but with three vertices are kept: they hold the surface together. Seams,
+// where files double vertices along texture borders, are joined where two boundary edges coincide
+// bit by bit; caps never close them.
 RepairedMesh repair(const Mesh& mesh, const RepairSettings& settings = {});
 
 // The same repair on other positions of the same connectivity (a target, a frame): positions of

@@ -1,6 +1,7 @@
 // Pairs of triangles of one mesh that pass through each other.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "innermap/core/progress.h"
@@ -11,11 +12,18 @@ namespace innermap {
 
 // All pairs (first < second, sorted) of triangles that intersect in more than what they share:
 // pairs with a common edge count only when folded flat onto each other (coplanar overlap), pairs
-// with a common vertex when they intersect away from it. Touching in a point or along an edge
-// without passing through may or may not be counted. Degenerate triangles are left out. Interval
-// overlap method, Moller, "A Fast Triangle-Triangle Intersection Test" (1997), in double precision.
+// with a common vertex when they intersect away from it, pairs with three common vertices never.
+// Vertices are common when their positions are equal bit by bit. Touching in a point or along an
+// edge without passing through may or may not be counted. Degenerate triangles are left out.
+// Interval overlap method, Moller, "A Fast Triangle-Triangle Intersection Test" (1997), in double
+// precision.
 std::vector<Crossing> selfIntersections(const Points& vertices,
                                         const std::vector<Triangle>& triangles,
                                         Progress* progress = nullptr);
+
+// The same, one at a time in an order that is the same for any number of threads, for meshes whose
+// crossings would not fit in memory.
+void forEachSelfIntersection(const Points& vertices, const std::vector<Triangle>& triangles,
+                             Progress* progress, const std::function<void(const Crossing&)>& visit);
 
 }  // namespace innermap

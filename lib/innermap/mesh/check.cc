@@ -1,0 +1,194 @@
+#include "innermap/mesh/check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <tuple>
+
+#include "innermap/mesh/self_intersection.h"
+#include "innermap/mesh/topology.h"
+
+namespace innermap {
+namespace {
+
+// Corners 3 t + c of the triangles, united where triangles share an edge.
+DisjointSets unitedCorners(const std::vector<Triangle>& triangles,
+                           const std::vector<EdgeUse>& edges) {
+  DisjointSets sets(3 * triangles.size());
+  forEachEdge(edges, [&](const EdgeUse* begin, const EdgeUse* end) {
+    const auto cornerAt = [](const EdgeUse& use, bool low) {
+      return 3 * use.triangle + (low == use.forward ? use.corner : (use.corner + 1) % 3);
+    };
+    for (const EdgeUse* use = begin + 1; use < end; ++use) {
+      sets.unite(cornerAt(*begin, true), cornerAt(*use, true));
+      sets.unite(cornerAt(*begin, false), cornerAt(*use, false));
+    }
+  });
+  return sets;
+}
+
+std::vector<int> verticesOfSeveralFans(const std::vector<Triangle>& triangles,
+                                       const std::vector<EdgeUse>& edges, std::size_t vertices) {
+  DisjointSets corners = unitedCorners(triangles, edges);
+  std::vector<int> fan(vertices, -1);
+  std::vector<bool> several(vertices, false);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (hasRepeatedVertex(triangles[t])) continue;
+    for (int c = 0; c < 3; ++c) {
+      const int v = triangles[t][c], root = corners.find(static_cast<int>(3 * t) + c);
+      if (fan[v] < 0) fan[v] = root;
+      several[v] = several[v] || fan[v] != root;
+    }
+  }
+  std::vector<int> result;
+  for (std::size_t v = 0; v < vertices; ++v)
+    if (several[v]) result.push_back(static_cast<int>(v));
+  return result;
+}
+
+void checkEdges(const std::vector<EdgeUse>& edges, const Mesh& mesh, MeshReport& report) {
+  std::vector<DirectedEdge> odd;
+  forEachEdge(edges, [&](const EdgeUse* begin, const EdgeUse* end) {
+    const std::ptrdiff_t uses = end - begin;
+    if (uses % 2 == 1)
+      odd.push_back(begin->forward ? DirectedEdge{begin->low, begin->high}
+                                   : DirectedEdge{begin->high, begin->low});
+    if (uses > 2) report.nonManifoldEdges.push_back({begin->low, begin->high});
+    if (uses == 2 && begin[0].forward == begin[1].forward) ++report.inconsistentEdges;
+  });
+  for (std::vector<int>& vertices : traceLoops(odd, false)) {
+    BoundaryLoop loop;
+    for (std::size_t k = 0; k < vertices.size(); ++k)
+      loop.length +=
+          norm(mesh.vertices[vertices[(k + 1) % vertices.size()]] - mesh.vertices[vertices[k]]);
+    loop.vertices = std::move(vertices);
+    report.boundaryLoops.push_back(std::move(loop));
+  }
+  report.closed = report.boundaryLoops.empty();
+}
+
+void checkTriangles(const Mesh& mesh, const std::vector<Triangle>& joined, MeshReport& report) {
+  const double least = 1e-12 * report.box.diagonal();
+  // (sorted vertices, triangle, even permutation of the sorted vertices)
+  std::vector<std::tuple<Triangle, int, bool>> keys;
+  keys.reserve(joined.size());
+  for (std::size_t t = 0; t < joined.size(); ++t) {
+    const int index = static_cast<int>(t);
+    const Vec3 &a = mesh.vertices[mesh.triangles[t][0]], &b = mesh.vertices[mesh.triangles[t][1]],
+               &c = mesh.vertices[mesh.triangles[t][2]];
+    const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
+    const double twiceArea = 2 * norm(areaVector(mesh, index));
+    const bool repeated = hasRepeatedVertex(joined[t]);
+    if (repeated || !(twiceArea > least * longest)) report.degenerateTriangles.push_back(index);
+    if (repeated) continue;
+    const Triangle& j = joined[t];
+    Triangle sorted = j;
+    std::sort(sorted.begin(), sorted.end());
+    const auto lowest = std::min_element(j.begin(), j.end()) - j.begin();
+    keys.emplace_back(sorted, index, j[(lowest + 1) % 3] == sorted[1]);
+  }
+  std::sort(keys.begin(), keys.end());
+  bool seen[2] = {false, false};
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const auto& [vertices, triangle, even] = keys[i];
+    if (i == 0 || vertices != std::get<0>(keys[i - 1])) seen[0] = seen[1] = false;
+    if (seen[even])
+      report.duplicateTriangles.push_back(triangle);
+    else if (seen[!even])
+      report.oppositeTriangles.push_back(triangle);
+    seen[even] = true;
+  }
+  std::sort(report.duplicateTriangles.begin(), report.duplicateTriangles.end());
+  std::sort(report.oppositeTriangles.begin(), report.oppositeTriangles.end());
+}
+
+void checkComponents(const std::vector<Triangle>& joined, const std::vector<EdgeUse>& edges,
+                     std::size_t vertices, MeshReport& report) {
+  DisjointSets sets(vertices);
+  std::vector<bool> used(vertices, false);
+  std::int64_t euler = 0;
+  for (const Triangle& t : joined) {
+    for (const int v : t) {
+      sets.unite(t[0], v);
+      used[v] = true;
+    }
+    if (!hasRepeatedVertex(t)) ++euler;
+  }
+  forEachEdge(edges, [&](const EdgeUse*, const EdgeUse*) { --euler; });
+  for (std::size_t v = 0; v < vertices; ++v) {
+    if (!used[v]) continue;
+    ++euler;
+    if (sets.find(static_cast<int>(v)) == static_cast<int>(v)) ++report.components;
+  }
+  const std::int64_t loops = static_cast<std::int64_t>(report.boundaryLoops.size());
+  report.genus = static_cast<int>((2 * report.components - euler - loops) / 2);
+}
+
+double cappedVolume(const Mesh& mesh, const std::vector<EdgeUse>& edges) {
+  const Vec3 center = boundingBox(mesh).center();
+  double volume = 6 * signedVolume(mesh);
+  for (const std::vector<int>& loop : traceLoops(cappingEdges(edges), true)) {
+    const Vec3 apex = weightedSum(mesh.vertices, loopCentroid(mesh.vertices, loop));
+    for (std::size_t k = 0; k < loop.size(); ++k)
+      volume += coneVolume6(center, mesh.vertices[loop[k]],
+                            mesh.vertices[loop[(k + 1) % loop.size()]], apex);
+  }
+  return volume / 6;
+}
+
+void checkCrossings(const Mesh& mesh, const CheckSettings& settings, MeshReport& report) {
+  const auto before = [](const Crossing& a, const Crossing& b) {
+    return a.first != b.first ? a.first < b.first : a.second < b.second;
+  };
+  // A heap with the last of the listed ones on top: memory stays bounded whatever their number.
+  std::vector<Crossing>& listed = report.crossings;
+  forEachSelfIntersection(mesh.vertices, mesh.triangles, settings.progress,
+                          [&](const Crossing& crossing) {
+                            ++report.selfIntersections;
+                            if (listed.size() >= settings.listed) {
+                              if (listed.empty() || !before(crossing, listed.front())) return;
+                              std::pop_heap(listed.begin(), listed.end(), before);
+                              listed.pop_back();
+                            }
+                            listed.push_back(crossing);
+                            std::push_heap(listed.begin(), listed.end(), before);
+                          });
+  std::sort(listed.begin(), listed.end(), before);
+}
+
+}  // namespace
+
+MeshReport checkMesh(const Mesh& mesh, const CheckSettings& settings) {
+  validate(mesh);
+  reportProgress(settings.progress, "checking", 0);
+  MeshReport report;
+  report.vertices = mesh.vertices.size();
+  report.triangles = mesh.triangles.size();
+  report.polygons =
+      mesh.polygonStart.empty() ? mesh.triangles.size() : mesh.polygonStart.size() - 1;
+  report.box = boundingBox(mesh);
+  report.area = surfaceArea(mesh);
+
+  std::vector<bool> used(mesh.vertices.size(), false);
+  for (const Triangle& t : mesh.triangles)
+    for (const int v : t) used[v] = true;
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (!used[v]) report.looseVertices.push_back(static_cast<int>(v));
+
+  const std::vector<int> to = joinSeams(mesh.vertices, mesh.triangles, &report.seamEdges);
+  const std::vector<Triangle> joined = mapped(mesh.triangles, to);
+  throwIfCancelled(settings.progress);
+  const std::vector<EdgeUse> edges = sortedEdges(joined);
+  checkEdges(edges, mesh, report);
+  checkTriangles(mesh, joined, report);
+  report.nonManifoldVertices = verticesOfSeveralFans(joined, edges, mesh.vertices.size());
+  checkComponents(joined, edges, mesh.vertices.size(), report);
+  report.volume = cappedVolume(mesh, edges);
+  report.outward = report.volume >= 0;
+  reportProgress(settings.progress, "checking", 0.5);
+  if (settings.selfIntersections) checkCrossings(mesh, settings, report);
+  reportProgress(settings.progress, "checking", 1);
+  return report;
+}
+
+}  // namespace innermap
