@@ -90,6 +90,42 @@ void PendingFile::commit() {
   committed_ = true;
 }
 
+PendingFolder::PendingFolder(const std::string& folder)
+    : folder_(folder), made_(makeFolder(folder)) {
+  try {
+    requireWritable((std::filesystem::path(folder) / "innermap").string());
+  } catch (...) {
+    if (made_) rmdir(folder_.c_str());
+    throw;
+  }
+}
+
+PendingFolder::~PendingFolder() {
+  for (const auto& [temporary, final] : files_) {
+    unlink(temporary.c_str());
+    forget(temporary);
+  }
+  if (made_) rmdir(folder_.c_str());
+}
+
+std::string PendingFolder::file(const std::string& name) {
+  const std::filesystem::path folder(folder_);
+  const std::string temporary =
+      (folder / (".part-" + std::to_string(getpid()) + "-" + name)).string();
+  remember(temporary);
+  files_.emplace_back(temporary, (folder / name).string());
+  return temporary;
+}
+
+void PendingFolder::commit() {
+  for (const auto& [temporary, final] : files_)
+    if (rename(temporary.c_str(), final.c_str()) != 0)
+      throw FileError(final, "cannot be put in place (" + systemMessage() + ")");
+  for (const auto& [temporary, final] : files_) forget(temporary);
+  files_.clear();
+  made_ = false;
+}
+
 void removeUnfinishedFiles() noexcept {
   for (Slot& slot : slots)
     if (slot.ready) unlink(slot.path);
@@ -111,14 +147,15 @@ void writeWholeFile(const std::string& path, const std::function<void(std::ostre
 
 void requireWritable(const std::string& path) { PendingFile probe(path); }
 
-void makeFolder(const std::string& path) {
+bool makeFolder(const std::string& path) {
   if (path.empty()) throw FileError("output", "the folder's path is empty; give a folder");
   std::error_code error;
-  std::filesystem::create_directories(path, error);
+  const bool made = std::filesystem::create_directories(path, error);
   if (error || !std::filesystem::is_directory(path))
     throw FileError(path, "cannot be made a folder (" +
                               (error ? error.message() : std::string("a file has that name")) +
                               "); choose another place");
+  return made;
 }
 
 }  // namespace innermap

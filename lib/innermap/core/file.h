@@ -4,6 +4,8 @@
 #include <functional>
 #include <iosfwd>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace innermap {
 
@@ -28,6 +30,28 @@ class PendingFile {
   bool committed_ = false;
 };
 
+// Files that appear in a folder together or not at all. The folder is made when missing, and
+// removed again on destruction without commit() when it was made here.
+class PendingFolder {
+ public:
+  // Throws FileError when the folder cannot be made or not be written to.
+  explicit PendingFolder(const std::string& folder);
+  ~PendingFolder();
+  PendingFolder(const PendingFolder&) = delete;
+  PendingFolder& operator=(const PendingFolder&) = delete;
+
+  // Where to write the file that will be called `name`; the extension is the same.
+  std::string file(const std::string& name);
+
+  // Renames all files that file() was called for; they must exist. Throws FileError.
+  void commit();
+
+ private:
+  std::string folder_;
+  bool made_ = false;
+  std::vector<std::pair<std::string, std::string>> files_;  // temporary, final
+};
+
 // Async-signal-safe; for the last moments of a process.
 void removeUnfinishedFiles() noexcept;
 
@@ -39,7 +63,7 @@ void writeWholeFile(const std::string& path, const std::function<void(std::ostre
 // computations.
 void requireWritable(const std::string& path);
 
-// Creates the folder and its parents when missing. Throws FileError.
-void makeFolder(const std::string& path);
+// Creates the folder and its parents when missing; true when it was. Throws FileError.
+bool makeFolder(const std::string& path);
 
 }  // namespace innermap

@@ -75,6 +75,25 @@ TEST_F(FileTest, UnwritablePlacesAreRefused) {
   EXPECT_TRUE(fs::is_directory(at("b/c/d")));
 }
 
+TEST_F(FileTest, AFolderOfFilesAppearsTogether) {
+  const auto write = [](const std::string& path) {
+    writeWholeFile(path, [](std::ostream& out) { out << "x"; });
+  };
+  {
+    PendingFolder folder(at("out"));
+    write(folder.file("a.png"));
+    write(folder.file("b.exr"));
+    EXPECT_FALSE(fs::exists(at("out/a.png")));
+  }
+  EXPECT_FALSE(fs::exists(at("out"))) << "made here, so removed here";
+  PendingFolder folder(at("out"));
+  EXPECT_EQ(fs::path(folder.file("a.png")).extension(), ".png");
+  write(folder.file("a.png"));
+  folder.commit();
+  EXPECT_TRUE(fs::exists(at("out/a.png")));
+  EXPECT_THROW(PendingFolder(at("out/a.png")), FileError);
+}
+
 TEST_F(FileTest, UnfinishedFilesCanBeRemovedAtOnce) {
   PendingFile file(at("a"));
   removeUnfinishedFiles();

@@ -1,0 +1,110 @@
+#include "boundary_pair.h"
+
+#include <fmt/format.h>
+
+#include "innermap/core/error.h"
+#include "innermap/mesh/check.h"
+#include "innermap/mesh/read.h"
+
+namespace innermap::tool {
+namespace {
+
+MeshReport check(const Mesh& mesh, Context& context) {
+  CheckSettings settings;
+  settings.listed = 1;
+  settings.progress = context.progress();
+  return checkMesh(mesh, settings);
+}
+
+ReportMesh reportOf(const Mesh& mesh, const MeshReport& report, int caps) {
+  ReportMesh out;
+  out.path = mesh.name;
+  out.vertices = report.vertices;
+  out.triangles = report.triangles;
+  out.boundaryLoops = static_cast<int>(report.boundaryLoops.size());
+  out.caps = caps;
+  out.genus = report.genus;
+  out.diagonal = report.box.diagonal();
+  return out;
+}
+
+void warnOfCrossings(const std::string& what, const MeshReport& report, const std::string& meaning,
+                     Context& context) {
+  context.report().set(what + ".self_intersections",
+                       static_cast<std::int64_t>(report.selfIntersections));
+  if (report.crossings.empty()) return;
+  const Crossing& c = report.crossings.front();
+  context.warning(fmt::format(
+      "{} has {} pair{} of triangles that pass through each other, the first near ({:.6g}, {:.6g}, "
+      "{:.6g}); {}",
+      what, report.selfIntersections, report.selfIntersections == 1 ? "" : "s", c.place.x,
+      c.place.y, c.place.z, meaning));
+}
+
+}  // namespace
+
+Matrix BoundaryPair::targetsOf(const std::vector<SurfacePoint>& onSurface) const {
+  std::vector<SurfacePoint> addresses;
+  addresses.reserve(onSurface.size());
+  for (const SurfacePoint& p : onSurface) addresses.push_back(solid.address(p));
+  const Points points = interpolate(moved, solid.repaired().mesh.triangles, addresses);
+  Matrix values(points.size(), 3);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (int a = 0; a < 3; ++a) values(i, a) = points[i][a];
+  return values;
+}
+
+BoundaryPair makeBoundaryPair(Mesh source, Mesh target, Context& context) {
+  MeshReport sourceReport, targetReport;
+  context.timed("check", [&] {
+    sourceReport = check(source, context);
+    targetReport = check(target, context);
+  });
+  SolidSettings settings;
+  settings.progress = context.progress();
+  std::optional<Solid> solid;
+  context.timed("solid", [&] { solid.emplace(source, settings); });
+  const RepairedMesh& repaired = solid->repaired();
+  for (const std::string& note : repaired.notes) context.note(source.name + ": " + note);
+
+  BoundaryPair pair{std::move(source), std::move(target), *solid, {}, 0, 0};
+  pair.moved = repairedPositions(repaired, pair.target.vertices);
+  Mesh moved = repaired.mesh;
+  moved.vertices = pair.moved;
+  moved.name = pair.target.name;
+  pair.targetDiagonal = boundingBox(moved).diagonal();
+  if (!(pair.targetDiagonal > 0))
+    throw DataError(pair.target.name +
+                    ": all vertices are in one place; give a target with extent");
+  context.timed("solid", [&] {
+    pair.targetVolume =
+        pair.solid.overlaps() ? Solid(moved, settings).volume() : std::abs(signedVolume(moved));
+  });
+  if (!(pair.targetVolume > 1e-9 * std::pow(pair.targetDiagonal, 3)))
+    throw DataError(pair.target.name + ": encloses no volume; give a target that has an inside");
+
+  Report& report = context.report();
+  report.source = reportOf(pair.source, sourceReport, repaired.caps);
+  report.source->volume = pair.solid.volume();
+  report.target = reportOf(pair.target, targetReport, repaired.caps);
+  report.target->volume = pair.targetVolume;
+  warnOfCrossings("source", sourceReport,
+                  "parts that overlap are united, slight crossings do little harm", context);
+  warnOfCrossings("target", targetReport,
+                  "no map onto it can be one-to-one there (see innermap check)", context);
+  return pair;
+}
+
+BoundaryPair readBoundaryPair(const std::string& sourcePath, const std::string& targetPath,
+                              Context& context) {
+  Mesh source, target;
+  context.timed("read", [&] {
+    ReadSettings settings;
+    settings.progress = context.progress();
+    source = readMesh(sourcePath, settings);
+    target = readMeshLike(targetPath, source, settings);
+  });
+  return makeBoundaryPair(std::move(source), std::move(target), context);
+}
+
+}  // namespace innermap::tool

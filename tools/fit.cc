@@ -1,0 +1,54 @@
+// `innermap fit`: two meshes to a map.
+#include <fmt/format.h>
+
+#include "boundary_pair.h"
+#include "commands.h"
+#include "fitting.h"
+#include "innermap/core/memory.h"
+
+namespace innermap::tool {
+namespace {
+
+struct FitOptions {
+  std::string source, target, output;
+  FittingOptions fitting;
+};
+
+void run(const FitOptions& options, Context& context) {
+  context.willWrite(options.output);
+  const BoundaryPair pair = readBoundaryPair(options.source, options.target, context);
+  const PointCounts counts = pointCounts(options.fitting, pair.source.vertices.size());
+  const std::uint64_t need = fittingMemory(counts);
+  if (context.dryRun())
+    return context.plan(
+        {fmt::format("fit {} charges to {} boundary points", counts.sources, counts.collocation),
+         "write the map to " + options.output},
+        need);
+  requireMemory(fmt::format("fitting {} sources", counts.sources), need, context.maxMemory(),
+                "use fewer --sources (memory grows with their square) or raise --max-memory");
+  const Fitted fitted = fitMap(pair, options.fitting, context);
+  context.timed("write", [&] { writeField(options.output, fitted.file); });
+  context.print(fmt::format("boundary error: rms {:.2e}, 99% {:.2e}, max {:.2e} of the diagonal\n",
+                            fitted.error.rms, fitted.error.p99, fitted.error.max));
+}
+
+}  // namespace
+
+Command makeFitCommand() {
+  auto o = std::make_shared<FitOptions>();
+  Command c("fit", "Fit a harmonic map to two meshes of the same connectivity");
+  c.description(
+      "Charges outside the source solid are weighted so that the map meets the target on the "
+      "boundary. The file holds charges and weights in double precision and both boundaries; its "
+      "certificate is the error at 20,000 boundary points that took no part in the fit.");
+  c.positional("SOURCE", &o->source, "mesh of the solid: .obj, .ply, .off or .stl");
+  c.positional("TARGET", &o->target, "the same mesh with its vertices moved");
+  c.option("--output", "FILE", &o->output, "the map, a .ply file").shortName("-o").required();
+  addFittingOptions(c, o->fitting);
+  c.example("innermap fit rest.obj pose.obj -o map.ply");
+  c.example("innermap fit rest.obj pose.obj -o map.ply --sources 4000 --distance 0.02");
+  c.run([o](Context& context) { run(*o, context); });
+  return c;
+}
+
+}  // namespace innermap::tool

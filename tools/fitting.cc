@@ -1,0 +1,244 @@
+#include "fitting.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "innermap/core/memory.h"
+#include "innermap/field/fit.h"
+#include "innermap/output/version.h"
+#include "innermap/sample/source_points.h"
+#include "innermap/sample/surface_samples.h"
+
+namespace innermap::tool {
+namespace {
+
+constexpr std::size_t kFreshSamples = 20000;
+constexpr double kPointsPerSource = 4;
+constexpr double kMostSources = 20000;
+
+// Seeds of the three sets of boundary points, so that none has a point of another.
+enum Stream : std::uint64_t { kCollocation = 0, kHeldOut = 1, kFresh = 2, kSources = 3 };
+std::uint64_t seedOf(const FittingOptions& options, Stream stream) {
+  return 4 * options.seed + stream;
+}
+
+Points positionsOf(const Mesh& mesh, const std::vector<SurfacePoint>& samples) {
+  return interpolate(mesh.vertices, mesh.triangles, samples);
+}
+
+FitProblem makeProblem(const BoundaryPair& pair, const FittingOptions& options,
+                       const PointCounts& counts, Context& context) {
+  const Mesh& surface = pair.solid.surface();
+  SampleSettings sample;
+  sample.progress = context.progress();
+  FitProblem problem;
+  sample.seed = seedOf(options, kCollocation);
+  const auto collocation = blueNoiseSamples(surface, counts.collocation, sample);
+  sample.seed = seedOf(options, kHeldOut);
+  const auto heldOut = randomSamples(surface, counts.heldOut, sample);
+  problem.collocation = positionsOf(surface, collocation);
+  problem.values = pair.targetsOf(collocation);
+  problem.heldOut = positionsOf(surface, heldOut);
+  problem.heldOutValues = pair.targetsOf(heldOut);
+  problem.diagonal = pair.solid.diagonal();
+  problem.area = pair.solid.area();
+  SourceSettings source;
+  source.seed = seedOf(options, kSources);
+  source.progress = context.progress();
+  problem.placeSources = [&pair, &options, source](std::size_t count, double distance) mutable {
+    source.count = count;
+    return options.radiusRatio ? sourceSphere(pair.solid, *options.radiusRatio, source)
+                               : sourceShell(pair.solid, distance, source);
+  };
+  return problem;
+}
+
+BoundaryError certify(const HarmonicField& field, const BoundaryPair& pair,
+                      const FittingOptions& options, Context& context) {
+  SampleSettings sample;
+  sample.seed = seedOf(options, kFresh);
+  sample.progress = context.progress();
+  const auto fresh = randomSamples(pair.solid.surface(), kFreshSamples, sample);
+  return measureBoundaryError(field, positionsOf(pair.solid.surface(), fresh),
+                              pair.targetsOf(fresh), pair.targetDiagonal, context.progress());
+}
+
+void fillReport(const FitResult& fit, const FitProblem& problem, const BoundaryError& error,
+                double cError, const FittingOptions& options, Context& context) {
+  Report& report = context.report();
+  const DenseSolution& s = fit.solution;
+  ReportSolve solve;
+  solve.method = options.method;
+  solve.sources = fit.field.sources().size();
+  solve.collocation = problem.collocation.size();
+  solve.rank = s.rank;
+  solve.regularization = s.regularization;
+  report.solve = solve;
+  report.set("solve.placement", options.radiusRatio ? "sphere" : "shell");
+  if (options.radiusRatio)
+    report.set("solve.radius_ratio", *options.radiusRatio);
+  else
+    report.set("solve.distance", fit.distance);
+  report.set("solve.condition", s.condition);
+  report.set("solve.weight_norm", s.weightNorm);
+  report.set("solve.held_out", static_cast<std::int64_t>(problem.heldOut.size()));
+  report.set("solve.seed", static_cast<std::int64_t>(options.seed));
+  std::vector<double> distances, errors;
+  for (const DistanceTrial& t : fit.trials) {
+    distances.push_back(t.distance);
+    errors.push_back(t.heldOutRms);
+  }
+  if (!distances.empty()) {
+    report.set("solve.tried_distances", distances);
+    report.set("solve.tried_errors", errors);
+  }
+  ReportBoundaryError e;
+  e.rms = error.rms;
+  e.p99 = error.p99;
+  e.max = error.max;
+  e.samples = error.samples;
+  e.cError = cError;
+  report.boundaryError = e;
+}
+
+Settings describe(const BoundaryPair& pair, const FitResult& fit, const BoundaryError& error,
+                  double cError, const FittingOptions& options) {
+  const auto number = [](double x) { return fmt::format("{:.9g}", x); };
+  const auto path = [](std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, '_');
+    return text;
+  };
+  Settings settings{{"version", versionText()},
+                    {"source", path(pair.source.name)},
+                    {"target", path(pair.target.name)},
+                    {"method", options.method},
+                    {"seed", std::to_string(options.seed)},
+                    {"regularization", number(fit.solution.regularization)},
+                    {"rank", std::to_string(fit.solution.rank)},
+                    {"boundary_error_rms", number(error.rms)},
+                    {"boundary_error_p99", number(error.p99)},
+                    {"boundary_error_max", number(error.max)},
+                    {"boundary_error_samples", std::to_string(error.samples)},
+                    {"c_error", number(cError)}};
+  if (options.radiusRatio)
+    settings.emplace_back("radius_ratio", number(*options.radiusRatio));
+  else
+    settings.emplace_back("distance", number(fit.distance));
+  return settings;
+}
+
+std::size_t countOf(double count, const char* option, double least, double most) {
+  if (!(count >= least && count <= most))
+    throw SettingError(option, fmt::format("gives {:.6g} points; it must give {:.6g} to {:.6g}",
+                                           count, least, most));
+  return static_cast<std::size_t>(count);
+}
+
+}  // namespace
+
+void addFittingOptions(Command& command, FittingOptions& o) {
+  command.option("--sources", "N", &o.sources, "number of charges").range(1, kMostSources);
+  command.option("--collocation", "N", &o.collocation, "boundary points that the map is fitted to")
+      .range(8, 1e7)
+      .defaults("4 a source");
+  command
+      .option("--source-ratio", "R", &o.sourceRatio,
+              "charges as a multiple of the source's vertices (sRatio), in place of --sources")
+      .above(0)
+      .atMost(100);
+  command
+      .option("--collocation-ratio", "R", &o.collocationRatio,
+              "boundary points as a multiple of the source's vertices (cRatio), in place of "
+              "--collocation")
+      .above(0)
+      .atMost(1000);
+  command.option("--distance", "D", &o.distance, "of the charges from the surface (O-Distance)")
+      .unit("fraction of the source's diagonal")
+      .range(1e-4, 2)
+      .defaults("chosen by held-out error");
+  command
+      .option("--radius-ratio", "R", &o.radiusRatio,
+              "charges on a sphere, in place of a shell: its radius as a multiple of half the "
+              "diagonal (R-Ratio)")
+      .above(1)
+      .atMost(100);
+  command
+      .option("--method", "NAME", &o.method,
+              "regularisation: Tikhonov's, or truncation of singular values (the paper's)")
+      .choices({"tikhonov", "tsvd"});
+  command
+      .option("--regularization", "T", &o.regularization,
+              "threshold of singular values, or Tikhonov's lambda")
+      .unit("fraction of the largest singular value")
+      .range(0, 1)
+      .defaults("chosen by held-out error");
+  command.option("--seed", "N", &o.seed, "of all random points").range(0, 1e15);
+}
+
+PointCounts pointCounts(const FittingOptions& o, std::size_t vertices) {
+  if (o.distance && o.radiusRatio)
+    throw UsageError("--distance and --radius-ratio exclude each other; give one of them");
+  if (o.collocation && o.collocationRatio)
+    throw UsageError("--collocation and --collocation-ratio exclude each other; give one of them");
+  const double v = static_cast<double>(vertices);
+  PointCounts counts;
+  counts.sources = o.sourceRatio
+                       ? countOf(std::round(*o.sourceRatio * v), "--source-ratio", 1, kMostSources)
+                       : o.sources;
+  const double n = static_cast<double>(counts.sources);
+  const double wanted = o.collocation        ? static_cast<double>(*o.collocation)
+                        : o.collocationRatio ? std::round(*o.collocationRatio * v)
+                                             : std::max(kPointsPerSource * n, 16.0);
+  counts.collocation =
+      countOf(wanted, o.collocationRatio ? "--collocation-ratio" : "--collocation", n + 4, 1e7);
+  counts.heldOut = std::clamp<std::size_t>(counts.sources, 1000, 5000);
+  return counts;
+}
+
+std::uint64_t fittingMemory(const PointCounts& counts) {
+  // Blue noise thins five candidates a point; each costs some 100 bytes.
+  return denseSolverMemory(counts.collocation, counts.sources, counts.heldOut) +
+         500 * (counts.collocation + counts.sources) + 200 * kFreshSamples;
+}
+
+Fitted fitMap(const BoundaryPair& pair, const FittingOptions& options, Context& context) {
+  const PointCounts counts = pointCounts(options, pair.source.vertices.size());
+  FitProblem problem;
+  context.timed("sample", [&] { problem = makeProblem(pair, options, counts, context); });
+  FitSettings settings;
+  settings.sources = counts.sources;
+  settings.distance = options.distance;
+  // On a sphere the distance plays no part: one fit, nothing to choose.
+  if (options.radiusRatio) settings.distance = 1.0;
+  settings.method =
+      options.method == "tsvd" ? Regularization::truncatedSvd : Regularization::tikhonov;
+  settings.regularization = options.regularization;
+  settings.maxMemory = context.maxMemory();
+  settings.progress = context.progress();
+  std::optional<FitResult> fit;
+  context.timed("fit", [&] { fit.emplace(fitField(problem, settings)); });
+  BoundaryError error;
+  double cError = 0;
+  context.timed("certificate", [&] {
+    error = certify(fit->field, pair, options, context);
+    cError = measureBoundaryError(fit->field, problem.collocation, problem.values,
+                                  pair.targetDiagonal, context.progress())
+                 .sumOfSquares;
+  });
+  fillReport(*fit, problem, error, cError, options, context);
+  if (error.max > 0.1)
+    context.warning(
+        fmt::format("the boundary error reaches {:.2g} of the diagonal: this map is not to be "
+                    "trusted; use more "
+                    "--sources",
+                    error.max));
+  Fitted out{{fit->field, describe(pair, *fit, error, cError, options), pair.source.vertices,
+              pair.target.vertices, pair.source.triangles},
+             error};
+  return out;
+}
+
+}  // namespace innermap::tool

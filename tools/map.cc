@@ -1,0 +1,134 @@
+// `innermap map`: the main job, from two meshes to grids, slices, a picture and a report.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "boundary_pair.h"
+#include "commands.h"
+#include "evaluation.h"
+#include "fitting.h"
+#include "innermap/core/file.h"
+#include "innermap/core/memory.h"
+#include "innermap/output/exr_slices.h"
+#include "innermap/output/section_image.h"
+#include "innermap/output/slice.h"
+
+namespace innermap::tool {
+namespace {
+
+struct MapOptions {
+  std::string source, target, output;
+  FittingOptions fitting;
+  EvaluationOptions evaluation;
+  std::string sliceAxis = "z";
+  std::uint64_t sliceCount = 16;
+  std::string sectionGrid = "deformation_energy", sectionAxis = "auto";
+  std::optional<double> sectionAt;
+};
+
+// The axis along which the solid is thinnest shows most of it.
+int thinnestAxis(const Solid& solid) {
+  const Vec3 extent = solid.box().extent();
+  int axis = 0;
+  for (int a = 1; a < 3; ++a)
+    if (extent[a] < extent[axis]) axis = a;
+  return axis;
+}
+
+// The fraction along the axis whose layer cuts most of the solid.
+double fullestLayer(const openvdb::FloatGrid& density, int axis) {
+  const openvdb::CoordBBox box = density.evalActiveVoxelBoundingBox();
+  std::vector<double> filled(static_cast<std::size_t>(std::max(1, box.dim()[axis])), 0.0);
+  for (auto value = density.cbeginValueOn(); value; ++value) {
+    openvdb::CoordBBox covered;
+    value.getBoundingBox(covered);
+    const double area = static_cast<double>(covered.volume()) / covered.dim()[axis] * *value;
+    for (int i = covered.min()[axis]; i <= covered.max()[axis]; ++i)
+      filled[static_cast<std::size_t>(i - box.min()[axis])] += area;
+  }
+  const auto fullest = std::max_element(filled.begin(), filled.end()) - filled.begin();
+  return (static_cast<double>(fullest) + 0.5) / static_cast<double>(filled.size());
+}
+
+void writePictures(const openvdb::GridPtrVec& grids, const BoundaryPair& pair,
+                   PendingFolder& folder, const MapOptions& options, Context& context) {
+  ExrSliceSettings slices;
+  slices.axis = parseAxis("--slice-axis", options.sliceAxis);
+  slices.count = static_cast<int>(options.sliceCount);
+  slices.maxMemory = context.maxMemory();
+  slices.progress = context.progress();
+  writeExrSlices(folder.file("slices.exr"), grids, slices);
+  SectionSettings section;
+  section.grid = options.sectionGrid;
+  section.axis = options.sectionAxis == "auto" ? thinnestAxis(pair.solid)
+                                               : parseAxis("--section-axis", options.sectionAxis);
+  section.at =
+      options.sectionAt
+          ? *options.sectionAt
+          : fullestLayer(*openvdb::gridConstPtrCast<openvdb::FloatGrid>(grids[1]), section.axis);
+  section.maxMemory = context.maxMemory();
+  section.progress = context.progress();
+  writeSectionImage(folder.file("section.png"), grids, section);
+}
+
+void run(const MapOptions& options, Context& context) {
+  const BoundaryPair pair = readBoundaryPair(options.source, options.target, context);
+  const PointCounts counts = pointCounts(options.fitting, pair.source.vertices.size());
+  const std::uint64_t fitting = fittingMemory(counts),
+                      evaluation = evaluationMemory(pair.solid, options.evaluation);
+  if (context.dryRun())
+    return context.plan(
+        {fmt::format("fit {} charges to {} boundary points", counts.sources, counts.collocation),
+         "write map.ply, map.vdb, slices.exr, section.png and report.json to " + options.output},
+        std::max(fitting, evaluation));
+  requireMemory(fmt::format("fitting {} sources", counts.sources), fitting, context.maxMemory(),
+                "use fewer --sources (memory grows with their square) or raise --max-memory");
+  requireMemory("evaluating the map", evaluation, context.maxMemory(),
+                "lower --resolution or raise --voxel-size (memory grows with the cube)");
+  PendingFolder folder(options.output);
+  const Fitted fitted = fitMap(pair, options.fitting, context);
+  const openvdb::GridPtrVec grids = evaluateGrids(pair, fitted.file, options.evaluation, context);
+  context.timed("write", [&] {
+    writeField(folder.file("map.ply"), fitted.file);
+    writeGrids(folder.file("map.vdb"), grids, options.evaluation, context);
+    writePictures(grids, pair, folder, options, context);
+  });
+  context.print(fmt::format("boundary error: rms {:.2e}, 99% {:.2e}, max {:.2e} of the diagonal\n",
+                            fitted.error.rms, fitted.error.p99, fitted.error.max) +
+                evaluationText(context.report()));
+  writeReport(folder.file("report.json"), context.finishedReport());
+  folder.commit();
+}
+
+}  // namespace
+
+Command makeMapCommand() {
+  auto o = std::make_shared<MapOptions>();
+  Command c("map", "Map the inside of a solid onto another: fit, evaluate, slice, report");
+  c.description(
+      "Writes map.ply (the map itself), map.vdb (its grids), slices.exr, section.png and "
+      "report.json into a folder. SOURCE and TARGET have the same faces and vertex order.");
+  c.positional("SOURCE", &o->source, "mesh of the solid: .obj, .ply, .off or .stl");
+  c.positional("TARGET", &o->target, "the same mesh with its vertices moved");
+  c.option("--output", "FOLDER", &o->output, "where the five files go; made when missing")
+      .shortName("-o")
+      .required();
+  addFittingOptions(c, o->fitting);
+  addEvaluationOptions(c, o->evaluation);
+  c.option("--slice-axis", "AXIS", &o->sliceAxis, "of slices.exr").choices({"x", "y", "z"});
+  c.option("--slice-count", "N", &o->sliceCount, "parts of slices.exr").range(1, 4096);
+  c.option("--section-grid", "NAME", &o->sectionGrid, "grid shown in section.png")
+      .choices({"surface", "density", "map", "jacobian", "harmonic_energy", "deformation_energy"});
+  c.option("--section-axis", "AXIS", &o->sectionAxis, "of section.png; auto: the thinnest")
+      .choices({"auto", "x", "y", "z"});
+  c.option("--section-at", "T", &o->sectionAt, "place of the section along its axis")
+      .unit("fraction of the box")
+      .range(0, 1)
+      .defaults("where it cuts most");
+  c.example("innermap map rest.obj pose.obj -o out");
+  c.example("innermap map rest.obj pose.obj -o out --sources 4000 --resolution 256");
+  c.run([o](Context& context) { run(*o, context); });
+  return c;
+}
+
+}  // namespace innermap::tool
