@@ -87,8 +87,9 @@ TEST_F(FileTest, AFolderOfFilesAppearsTogether) {
   }
   EXPECT_FALSE(fs::exists(at("out"))) << "made here, so removed here";
   PendingFolder folder(at("out"));
-  EXPECT_EQ(fs::path(folder.file("a.png")).extension(), ".png");
-  write(folder.file("a.png"));
+  const std::string temporary = folder.file("a.png");
+  EXPECT_EQ(fs::path(temporary).extension(), ".png");
+  write(temporary);
   folder.commit();
   EXPECT_TRUE(fs::exists(at("out/a.png")));
   EXPECT_THROW(PendingFolder(at("out/a.png")), FileError);
