@@ -11,11 +11,14 @@ struct OffsetSettings {
   Progress* progress = nullptr;
 };
 
-// Isosurface of the unsigned distance to solid.surface() at `distance`, the sheets inside the
-// solid left out; triangles, world units, not closed in general where it was cut. Extracted from a
-// grid with voxels of half the distance, at least 1/400 of the diagonal (but never coarser than
-// the distance itself), then each vertex moved to the exact distance; vertices that cannot be
-// (within 5%) are dropped with their triangles.
+// Surface of the points outside the solid at `distance` from solid.surface(); triangles, oriented
+// outward, world units, not closed in general where it was cut. Each vertex is at the exact
+// distance (those that cannot be brought within 5% of it are dropped with their triangles).
+//
+// Down to a distance of 1/400: isosurface of the unsigned distance on a grid with voxels of half
+// the distance, at least 1/400 and at most 1/16 of the diagonal, the sheets inside the solid left
+// out. Below that a grid would be too large, and the surface itself, cut to triangles of 1/400, is
+// moved out along its normals.
 Mesh offsetSurface(const Solid& solid, const OffsetSettings& settings);
 
 }  // namespace innermap

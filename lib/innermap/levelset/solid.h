@@ -14,9 +14,10 @@
 namespace innermap {
 
 struct SolidSettings {
-  // Triangles that other parts cut are split into pieces of at most this edge length to tell
-  // exposed from buried; fraction of the diagonal, in (0, 1).
-  double pieceSize = 1.0 / 256;
+  // Triangles that other parts cut are split along the cut until the pieces that it runs through
+  // are no longer than this, and each piece is told exposed or buried as a whole; fraction of the
+  // diagonal, in (0, 1). Doubled as often as it takes to stay under some millions of pieces.
+  double pieceSize = 1.0 / 2048;
   Progress* progress = nullptr;
 };
 
@@ -28,9 +29,9 @@ class Solid {
 
   const RepairedMesh& repaired() const;
 
-  // The exposed surface, as pieces of the repaired mesh's triangles: the whole repaired mesh
-  // where nothing overlaps. Piece t lies in triangle pieceParent()[t] of repaired().mesh and its
-  // corners have the barycentric coordinates pieceCorners()[t] there.
+  // The exposed surface, oriented outward, as pieces of the repaired mesh's triangles: the whole
+  // repaired mesh where nothing overlaps. Piece t lies in triangle pieceParent()[t] of
+  // repaired().mesh and its corners have the barycentric coordinates pieceCorners()[t] there.
   const Mesh& surface() const;
   const std::vector<int>& pieceParent() const;
   const std::vector<std::array<std::array<double, 3>, 3>>& pieceCorners() const;
@@ -42,8 +43,12 @@ class Solid {
   const Box3& box() const;  // of surface()
   double diagonal() const;  // of box(); the unit of all length settings
   double area() const;      // of surface(), world units squared
-  double volume() const;    // world units cubed: of the mesh by the divergence theorem; where
-                            // parts overlap, of the union by a level set 256 voxels across
+  // World units cubed, by the divergence theorem over surface(); where that is not closed well
+  // enough (pieces larger than 1/1024 of the diagonal), by a level set 256 voxels across, once.
+  double volume() const;
+  // The exact exposed surface is nowhere farther than this from surface(), world units: 0 where
+  // nothing overlaps, the size of the pieces along cuts otherwise.
+  double gap() const;
 
   bool inside(const Vec3& p) const;            // winding number over 0.5
   double distance(const Vec3& p) const;        // to surface(), unsigned, exact

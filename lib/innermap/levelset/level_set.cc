@@ -1,0 +1,189 @@
+#include "innermap/levelset/level_set.h"
+
+#include <openvdb/tools/SignedFloodFill.h>
+
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+#include "innermap/core/memory.h"
+#include "innermap/core/parallel.h"
+#include "innermap/levelset/band.h"
+
+namespace innermap {
+namespace {
+
+using openvdb::Coord;
+using openvdb::FloatGrid;
+using openvdb::FloatTree;
+using Leaf = FloatTree::LeafNodeType;
+
+constexpr int kMaxAcross = 4096;
+
+double longestSide(const Solid& solid) {
+  const Vec3 e = solid.box().extent();
+  return std::max({e.x, e.y, e.z});
+}
+
+void checkHalfWidth(const LevelSetSettings& settings) {
+  if (!(settings.halfWidth >= 2 && settings.halfWidth <= 100)) {
+    throw SettingError("halfWidth", "must lie between 2 and 100 voxels");
+  }
+}
+
+Vec3 originOf(const Solid& solid, double voxelSize) {
+  // The box starts on the boundary between two voxels, so that faces of boxes do not run through
+  // voxel centres; the band fits at positive indices for usual widths.
+  const double shift = 7.5 * voxelSize;
+  return solid.box().lower - Vec3{shift, shift, shift};
+}
+
+// Signs of one leaf's voxels. Two neighbours have the same sign when the balls about them that are
+// free of surface meet; one winding number settles each set of voxels so connected.
+class LeafSigns {
+ public:
+  LeafSigns(const Solid& solid, const Band& band, const Coord& leaf, double voxelSize,
+            const double* distances)
+      : distances_(distances) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+    const double reach = voxelSize + 2 * solid.gap();
+    for (int x = 0; x < 8; ++x) {
+      for (int y = 0; y < 8; ++y) {
+        for (int z = 0; z < 8; ++z) {
+          const int i = x << 6 | y << 3 | z;
+          if (x < 7) connect(i, i + 64, reach);
+          if (y < 7) connect(i, i + 8, reach);
+          if (z < 7) connect(i, i + 1, reach);
+        }
+      }
+    }
+    // The farthest voxel of a set speaks for it.
+    std::array<int, Band::kLeafVoxels> speaker;
+    speaker.fill(-1);
+    for (int i = 0; i < Band::kLeafVoxels; ++i) {
+      int& s = speaker[root(i)];
+      if (s < 0 || distances[i] > distances[s]) s = i;
+    }
+    for (int i = 0; i < Band::kLeafVoxels; ++i) {
+      if (speaker[i] < 0) continue;
+      const int s = speaker[i];
+      inside_[i] = solid.inside(band.position(leaf.offsetBy(s >> 6, s >> 3 & 7, s & 7)));
+    }
+  }
+
+  bool inside(int i) { return inside_[root(i)]; }
+
+ private:
+  void connect(int i, int j, double reach) {
+    if (!(distances_[i] + distances_[j] > reach)) return;
+    i = root(i);
+    j = root(j);
+    parent_[std::max(i, j)] = std::min(i, j);
+  }
+  int root(int i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+
+  const double* distances_;
+  std::array<int, Band::kLeafVoxels> parent_;
+  std::array<bool, Band::kLeafVoxels> inside_{};
+};
+
+// Null when no voxel is in the band.
+std::unique_ptr<Leaf> makeLeaf(const Solid& solid, const Band& band, const Coord& origin,
+                               double voxelSize, double background) {
+  std::array<double, Band::kLeafVoxels> distances;
+  band.distances(origin, distances.data());
+  const auto inBand = [&](double d) { return d < background; };
+  if (std::none_of(distances.begin(), distances.end(), inBand)) return nullptr;
+  LeafSigns signs(solid, band, origin, voxelSize, distances.data());
+  auto leaf = std::make_unique<Leaf>(origin, static_cast<float>(background), false);
+  for (int i = 0; i < Band::kLeafVoxels; ++i) {
+    const bool active = inBand(distances[i]);
+    const double d = active ? distances[i] : background;
+    leaf->setValueOnly(static_cast<openvdb::Index>(i),
+                       static_cast<float>(signs.inside(i) ? -d : d));
+    leaf->setActiveState(static_cast<openvdb::Index>(i), active);
+  }
+  return leaf;
+}
+
+}  // namespace
+
+double voxelSizeFor(const Solid& solid, const LevelSetSettings& settings) {
+  const double longest = longestSide(solid);
+  if (settings.voxelSize == 0) {
+    if (settings.resolution < 4 || settings.resolution > kMaxAcross) {
+      throw SettingError("resolution", "must lie between 4 and 4096 voxels");
+    }
+    return longest / settings.resolution;
+  }
+  if (!(settings.voxelSize > 0) || !std::isfinite(settings.voxelSize)) {
+    throw SettingError("voxelSize", "must be a positive length, or 0 to let the resolution decide");
+  }
+  // Rounding aside, the size that a resolution of 4096 gives is allowed.
+  if (longest / settings.voxelSize > kMaxAcross * (1 + 1e-9)) {
+    throw SettingError("voxelSize",
+                       "gives more than 4096 voxels along the longest side; at least " +
+                           std::to_string(longest / kMaxAcross) + " is needed");
+  }
+  return settings.voxelSize;
+}
+
+openvdb::math::Transform::Ptr transformFor(const Solid& solid, double voxelSize) {
+  auto transform = openvdb::math::Transform::createLinearTransform(voxelSize);
+  const Vec3 origin = originOf(solid, voxelSize);
+  transform->postTranslate(openvdb::Vec3d(origin.x, origin.y, origin.z));
+  return transform;
+}
+
+std::uint64_t levelSetMemory(const Solid& solid, const LevelSetSettings& settings) {
+  checkHalfWidth(settings);
+  const double h = voxelSizeFor(solid, settings);
+  const Band band(solid, originOf(solid, h), h, 0, settings.halfWidth * h);
+  const double leaves = 1.25 * band.estimateLeaves(settings.progress);
+  const double leafBytes = sizeof(Leaf) + Band::kLeafVoxels * sizeof(float) + 3 * sizeof(Coord);
+  // Nodes of 128 voxels a side hold 256 leaves of a flat surface; half of that is common.
+  const double middleNodes = leaves / 100 + 8;
+  using Upper = FloatTree::RootNodeType::ChildNodeType;
+  using Middle = Upper::ChildNodeType;
+  const double upperNodes = 8;
+  const double bytes =
+      leaves * leafBytes + middleNodes * sizeof(Middle) + upperNodes * sizeof(Upper);
+  return static_cast<std::uint64_t>(bytes);
+}
+
+FloatGrid::Ptr makeLevelSet(const Solid& solid, const LevelSetSettings& settings) {
+  checkHalfWidth(settings);
+  const double h = voxelSizeFor(solid, settings);
+  const double background = settings.halfWidth * h;
+  if (settings.maxMemory > 0) {
+    requireMemory("level set", levelSetMemory(solid, settings), settings.maxMemory,
+                  "a larger voxel size, a lower resolution or a smaller half width would fit");
+  }
+  openvdb::initialize();
+  const Band band(solid, originOf(solid, h), h, 0, background);
+  const std::vector<Coord> origins = band.leaves(settings.progress);
+  std::vector<std::unique_ptr<Leaf>> leaves(origins.size());
+  parallelBlocks(
+      origins.size(), 16,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          leaves[i] = makeLeaf(solid, band, origins[i], h, background);
+        }
+      },
+      settings.progress, "level set");
+  auto grid = FloatGrid::create(static_cast<float>(background));
+  for (std::unique_ptr<Leaf>& leaf : leaves) {
+    if (leaf) grid->tree().addLeaf(leaf.release());
+  }
+  openvdb::tools::signedFloodFill(grid->tree(), true, 1, 1);
+  grid->setTransform(transformFor(solid, h));
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  grid->setName("surface");
+  throwIfCancelled(settings.progress);
+  return grid;
+}
+
+}  // namespace innermap

@@ -1,0 +1,152 @@
+#include "innermap/levelset/offset_surface.h"
+
+#include <openvdb/tools/SignedFloodFill.h>
+#include <openvdb/tools/VolumeToMesh.h>
+
+#include <cmath>
+#include <memory>
+
+#include "innermap/core/parallel.h"
+#include "innermap/levelset/band.h"
+#include "innermap/levelset/displaced_surface.h"
+
+namespace innermap {
+namespace {
+
+using openvdb::Coord;
+using openvdb::FloatGrid;
+using Leaf = FloatGrid::TreeType::LeafNodeType;
+
+constexpr double kFinest = 1.0 / 400, kCoarsest = 1.0 / 16;  // voxels, fractions of the diagonal
+constexpr double kTolerance = 0.05;  // of the distance, for vertices that stay
+
+// Distance minus `level`, in voxels, within 2.5 of the isosurface; index space is band's lattice.
+FloatGrid::Ptr distanceGrid(const Band& band, double level, double voxelSize, Progress* progress) {
+  constexpr float kBackground = 2.5f;
+  const std::vector<Coord> origins = band.leaves(progress);
+  std::vector<std::unique_ptr<Leaf>> leaves(origins.size());
+  parallelBlocks(
+      origins.size(), 16,
+      [&](std::size_t begin, std::size_t end) {
+        std::array<double, Band::kLeafVoxels> distances;
+        for (std::size_t l = begin; l < end; ++l) {
+          band.distances(origins[l], distances.data());
+          auto leaf = std::make_unique<Leaf>(origins[l], kBackground, false);
+          bool any = false;
+          for (openvdb::Index i = 0; i < leaf->SIZE; ++i) {
+            const double value = (distances[i] - level) / voxelSize;
+            const float clamped = static_cast<float>(std::clamp<double>(value, -2.5, 2.5));
+            const bool active = std::abs(clamped) < kBackground;
+            leaf->setValueOnly(i, clamped);
+            leaf->setActiveState(i, active);
+            any |= active;
+          }
+          if (any) leaves[l] = std::move(leaf);
+        }
+      },
+      progress, "offset surface");
+  auto grid = FloatGrid::create(kBackground);
+  for (auto& leaf : leaves) {
+    if (leaf) grid->tree().addLeaf(leaf.release());
+  }
+  openvdb::tools::signedFloodFill(grid->tree(), true, 1, 1);
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  return grid;
+}
+
+// In world units. The grid's own coordinates are small: the extractor works in single precision.
+Mesh isosurface(const FloatGrid& grid, const Vec3& origin, double voxelSize) {
+  std::vector<openvdb::Vec3s> points;
+  std::vector<openvdb::Vec3I> triangles;
+  std::vector<openvdb::Vec4I> quads;
+  openvdb::tools::volumeToMesh(grid, points, triangles, quads, 0.0, 0.0);
+  Mesh mesh;
+  mesh.vertices.reserve(points.size());
+  for (const openvdb::Vec3s& p : points) {
+    mesh.vertices.push_back(origin + voxelSize * Vec3{p[0], p[1], p[2]});
+  }
+  // The extractor winds polygons clockwise seen from outside.
+  const auto add = [&](openvdb::Index a, openvdb::Index b, openvdb::Index c) {
+    mesh.triangles.push_back({static_cast<int>(a), static_cast<int>(c), static_cast<int>(b)});
+  };
+  mesh.triangles.reserve(triangles.size() + 2 * quads.size());
+  for (const openvdb::Vec3I& t : triangles) add(t[0], t[1], t[2]);
+  for (const openvdb::Vec4I& q : quads) {
+    add(q[0], q[1], q[2]);
+    add(q[0], q[2], q[3]);
+  }
+  return mesh;
+}
+
+Mesh fromGrid(const Solid& solid, double distance, Progress* progress) {
+  const double diagonal = solid.diagonal();
+  const double voxelSize =
+      std::min(distance, std::clamp(0.5 * distance, kFinest * diagonal, kCoarsest * diagonal));
+  // Whole numbers of voxels from the lower end of everything, so that indices are not negative.
+  const double reach = distance + 6 * voxelSize;
+  const Vec3 origin = solid.box().lower - Vec3{reach, reach, reach};
+  const double width = 2.5 * voxelSize;
+  const Band band(solid, origin, voxelSize, std::max(0.0, distance - width), distance + width);
+  const FloatGrid::Ptr grid = distanceGrid(band, distance, voxelSize, progress);
+  throwIfCancelled(progress);
+  return isosurface(*grid, origin, voxelSize);
+}
+
+}  // namespace
+
+bool moveToDistance(const Solid& solid, double distance, Vec3& p) {
+  Vec3 best = p;
+  double bestError = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < 8; ++step) {
+    const Solid::Closest c = solid.closest(p, std::numeric_limits<double>::infinity());
+    const double error = std::abs(c.distance - distance);
+    if (error < bestError) {
+      best = p;
+      bestError = error;
+    }
+    if (error <= 1e-6 * distance || !(c.distance > 0)) break;
+    p = c.position + (distance / c.distance) * (p - c.position);
+  }
+  p = best;
+  return bestError <= kTolerance * distance;
+}
+
+Mesh offsetSurface(const Solid& solid, const OffsetSettings& settings) {
+  if (!(settings.distance >= 1e-4 && settings.distance <= 2)) {
+    throw SettingError("distance", "must lie between 0.0001 and 2 (fraction of the diagonal)");
+  }
+  const double distance = settings.distance * solid.diagonal();
+  Mesh mesh =
+      settings.distance >= kFinest
+          ? fromGrid(solid, distance, settings.progress)
+          : displacedSurface(solid, distance, kFinest * solid.diagonal(), settings.progress);
+  std::vector<char> good(mesh.vertices.size(), 0);
+  parallelBlocks(
+      good.size(), 128,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) {
+          Vec3& p = mesh.vertices[v];
+          good[v] = !solid.inside(p) && moveToDistance(solid, distance, p) && !solid.inside(p);
+        }
+      },
+      settings.progress, "offset surface");
+  Mesh result;
+  result.name = solid.surface().name + " at a distance";
+  std::vector<int> moved(good.size(), -1);
+  for (const Triangle& t : mesh.triangles) {
+    if (!good[t[0]] || !good[t[1]] || !good[t[2]]) continue;
+    Triangle kept{};
+    for (int k = 0; k < 3; ++k) {
+      int& v = moved[t[k]];
+      if (v < 0) {
+        v = static_cast<int>(result.vertices.size());
+        result.vertices.push_back(mesh.vertices[t[k]]);
+      }
+      kept[k] = v;
+    }
+    result.triangles.push_back(kept);
+  }
+  return result;
+}
+
+}  // namespace innermap
