@@ -1,0 +1,37 @@
+#include "innermap/evaluate/active_region.h"
+
+#include <gtest/gtest.h>
+
+#include "innermap/core/error.h"
+#include "innermap/levelset/level_set.h"
+#include "mesh/shapes.h"
+
+namespace innermap {
+namespace {
+
+openvdb::FloatGrid::Ptr ball(int resolution) {
+  LevelSetSettings settings;
+  settings.resolution = resolution;
+  return makeLevelSet(Solid(shapes::icosphere(3)), settings);
+}
+
+TEST(ActiveRegion, HoldsTheInsideAndTheSkin) {
+  const auto grid = ball(48);
+  const double voxel = grid->voxelSize()[0];
+  const auto region = activeRegion(*grid, 2, 1, 0);
+  auto mask = region->getConstAccessor();
+  auto distance = grid->getConstAccessor();
+  const openvdb::CoordBBox box = openvdb::CoordBBox(openvdb::Coord(-8), openvdb::Coord(56));
+  for (auto ijk = box.begin(); ijk; ++ijk)
+    ASSERT_EQ(mask.isValueOn(*ijk), distance.getValue(*ijk) <= 2 * voxel) << *ijk;
+  EXPECT_EQ(region->tree().activeTileCount(), 0u);
+}
+
+TEST(ActiveRegion, RefusesASkinBeyondTheBandAndTooMuchMemory) {
+  const auto grid = ball(32);
+  EXPECT_THROW(activeRegion(*grid, 5, 1, 0), SettingError);
+  EXPECT_THROW(activeRegion(*grid, 2, 100, 100000), MemoryError);
+}
+
+}  // namespace
+}  // namespace innermap

@@ -1,0 +1,190 @@
+#include "innermap/evaluate/evaluate_map.h"
+
+#include <gtest/gtest.h>
+
+#include "innermap/core/error.h"
+#include "innermap/core/parallel.h"
+#include "innermap/levelset/level_set.h"
+#include "mesh/shapes.h"
+
+namespace innermap {
+namespace {
+
+Vec3 turned(const Vec3& p) {
+  const double a = 0.5, b = 0.8;
+  const Vec3 q{std::cos(a) * p.x - std::sin(a) * p.y, std::sin(a) * p.x + std::cos(a) * p.y, p.z};
+  return {q.x, std::cos(b) * q.y - std::sin(b) * q.z, std::sin(b) * q.y + std::cos(b) * q.z};
+}
+
+// The cube [-1, 1]^3 turned off the grid's axes.
+Mesh cube() {
+  Mesh mesh = shapes::box({-1, -1, -1}, {1, 1, 1});
+  for (Vec3& v : mesh.vertices) v = turned(v);
+  return mesh;
+}
+
+HarmonicMap affineMap(const Mat3& m, const Vec3& shift) {
+  Affine affine;
+  affine.coefficients = Matrix(4, 3);
+  for (int r = 0; r < 3; ++r) {
+    affine.coefficients(0, r) = shift[r];
+    for (int a = 0; a < 3; ++a) affine.coefficients(1 + a, r) = m[r][a];
+  }
+  return HarmonicMap(HarmonicField({}, Matrix(0, 3), affine));
+}
+
+// Identity and three charges outside the cube.
+HarmonicMap chargedMap() {
+  Affine affine;
+  affine.coefficients = Matrix(4, 3);
+  for (int r = 0; r < 3; ++r) affine.coefficients(1 + r, r) = 1;
+  Matrix weights(3, 3);
+  for (int i = 0; i < 9; ++i) weights.data()[i] = 0.3 * std::sin(i + 1.0);
+  return HarmonicMap(
+      HarmonicField({{2.4, 0.3, 0}, {-0.2, 2.6, 0.4}, {0.3, 0.2, -2.5}}, weights, affine));
+}
+
+openvdb::FloatGrid::Ptr levelSet(const Solid& solid, int resolution) {
+  LevelSetSettings settings;
+  settings.resolution = resolution;
+  return makeLevelSet(solid, settings);
+}
+
+MapGrids evaluate(const HarmonicMap& map, const Solid& solid, int resolution,
+                  const EvaluateSettings& settings = {}) {
+  return evaluateMap(map, solid, *levelSet(solid, resolution), settings);
+}
+
+// Integral over the cube by 8 Gauss-Legendre points a side: the integrands are analytic there.
+template <class Function>
+double integral(const Function& f) {
+  const double x[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
+                       0.9602898564975363};
+  const double w[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
+                       0.1012285362903763};
+  double sum = 0;
+  for (int i = 0; i < 8; ++i)
+    for (int j = 0; j < 8; ++j)
+      for (int k = 0; k < 8; ++k) {
+        const auto at = [&](int n) { return n < 4 ? x[n] : -x[n - 4]; };
+        sum += w[i % 4] * w[j % 4] * w[k % 4] * f(turned({at(i), at(j), at(k)}));
+      }
+  return sum;
+}
+
+TEST(EvaluateMap, RigidMotionsHaveNoDeformationEnergy) {
+  const Vec3 x = turned({1, 0, 0}), y = turned({0, 1, 0}), z = turned({0, 0, 1});
+  const Mat3 m{{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
+  const MapGrids g = evaluate(affineMap(m, {5, 6, 7}), Solid(cube()), 32);
+  EXPECT_LT(g.deformationTotal, 1e-28);
+  // Energy density 3 everywhere; the total is 3 times the grid's share of the volume.
+  EXPECT_NEAR(g.harmonicTotal, 3 * g.volume / 8, 1e-10);
+  EXPECT_NEAR(g.jacobianMin, 1, 1e-12);
+  EXPECT_NEAR(g.jacobianMax, 1, 1e-12);
+  EXPECT_EQ(g.foldedFraction, 0);
+}
+
+TEST(EvaluateMap, UniformScalingHasClosedForms) {
+  const double s = 1.7;
+  EvaluateSettings settings;
+  settings.targetVolume = 8 * s * s * s;
+  const MapGrids g =
+      evaluate(affineMap({{{s, 0, 0}, {0, s, 0}, {0, 0, s}}}, {}), Solid(cube()), 32, settings);
+  const double e = s * s - 1, psi = e * e * (4.5 * 0.0335 + 3 * 0.0224);
+  EXPECT_NEAR(g.harmonicTotal, 3 * g.volume / 8, 1e-9);  // unit volumes: as the identity
+  EXPECT_NEAR(g.deformationTotal, psi * g.volume, 1e-9);
+  EXPECT_NEAR(g.volume, 8, 8 * 0.01);
+}
+
+TEST(EvaluateMap, ReflectionIsFoldedEverywhere) {
+  const MapGrids g =
+      evaluate(affineMap({{{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {}), Solid(cube()), 24);
+  EXPECT_NEAR(g.foldedFraction, 1, 1e-12);
+  EXPECT_NEAR(g.jacobianMin, -1, 1e-12);
+}
+
+TEST(EvaluateMap, TotalsConvergeAtSecondOrder) {
+  const HarmonicMap map = chargedMap();
+  const Solid solid(cube());
+  const double harmonic =
+      integral([&](const Vec3& p) { return harmonicEnergyDensity(map.jacobian(p)); }) / 8;
+  const double deformation =
+      integral([&](const Vec3& p) { return deformationEnergyDensity(map.jacobian(p)); });
+  double harmonicError[2], deformationError[2];
+  const int resolutions[2] = {24, 96};
+  for (int level = 0; level < 2; ++level) {
+    const MapGrids g = evaluate(map, solid, resolutions[level]);
+    harmonicError[level] = std::abs(g.harmonicTotal - harmonic) / harmonic;
+    deformationError[level] = std::abs(g.deformationTotal - deformation) / deformation;
+  }
+  // Two halvings at second order would give 16; grid alignment makes single figures noisy.
+  EXPECT_LT(harmonicError[1], harmonicError[0] / 6) << harmonicError[0];
+  EXPECT_LT(deformationError[1], deformationError[0] / 6) << deformationError[0];
+  EXPECT_LT(harmonicError[1], 1e-3);
+  EXPECT_LT(deformationError[1], 1e-2);
+}
+
+TEST(EvaluateMap, GridsHoldTheMapInsideAndItsExtensionInTheSkin) {
+  const HarmonicMap map = chargedMap();
+  const Solid solid(cube());
+  const auto surface = levelSet(solid, 32);
+  const double voxel = surface->voxelSize()[0];
+  const MapGrids g = evaluateMap(map, solid, *surface);
+  std::size_t outside = 0;
+  for (auto v = g.map->cbeginValueOn(); v; ++v) {
+    const openvdb::Vec3d w = surface->transform().indexToWorld(v.getCoord());
+    const Vec3 p{w.x(), w.y(), w.z()}, q = map(p);
+    const double distance = solid.signedDistance(p);
+    if (std::abs(distance) < 1e-6) continue;
+    ASSERT_LE(distance, 2 * voxel * (1 + 1e-5));
+    // The linear extension's error: second derivatives of the map are below 1 here.
+    const double tolerance = distance < 0 ? 1e-6 : 1e-6 + distance * distance;
+    for (int a = 0; a < 3; ++a) ASSERT_NEAR((*v)[a], q[a], tolerance);
+    if (distance < 0) {
+      ASSERT_NEAR(g.jacobian->tree().getValue(v.getCoord()), determinant(map.jacobian(p)), 1e-5);
+      ASSERT_NEAR(g.harmonicEnergy->tree().getValue(v.getCoord()),
+                  harmonicEnergyDensity(map.jacobian(p)), 1e-5);
+    }
+    outside += distance > 0;
+  }
+  EXPECT_GT(outside, g.interiorVoxels / 20);
+  EXPECT_EQ(g.map->activeVoxelCount(), g.activeVoxels);
+  EXPECT_EQ(g.jacobian->activeVoxelCount(), g.activeVoxels);
+  EXPECT_EQ(g.map->getVectorType(), openvdb::VEC_INVARIANT);
+  EXPECT_EQ(g.map->transform(), surface->transform());
+  EXPECT_EQ(g.all().size(), 4u);
+}
+
+TEST(EvaluateMap, SameBitsForAnyNumberOfThreads) {
+  const Solid solid(cube());
+  const MapGrids all = evaluate(chargedMap(), solid, 40);
+  const ThreadLimit one(1);
+  const MapGrids single = evaluate(chargedMap(), solid, 40);
+  EXPECT_EQ(all.harmonicTotal, single.harmonicTotal);
+  EXPECT_EQ(all.deformationTotal, single.deformationTotal);
+  EXPECT_EQ(all.jacobianMin, single.jacobianMin);
+  for (auto v = all.map->cbeginValueOn(); v; ++v)
+    ASSERT_EQ(*v, single.map->tree().getValue(v.getCoord()));
+}
+
+TEST(EvaluateMap, RefusesBadSettingsAndStopsWhenCancelled) {
+  const Solid solid(cube());
+  const auto surface = levelSet(solid, 16);
+  EvaluateSettings settings;
+  settings.lame.mu = -1;
+  EXPECT_THROW(evaluateMap(chargedMap(), solid, *surface, settings), SettingError);
+  settings = {};
+  settings.skin = 7;
+  EXPECT_THROW(evaluateMap(chargedMap(), solid, *surface, settings), SettingError);
+  settings = {};
+  settings.maxMemory = 1000;
+  EXPECT_THROW(evaluateMap(chargedMap(), solid, *surface, settings), MemoryError);
+  Progress progress;
+  progress.cancel();
+  settings = {};
+  settings.progress = &progress;
+  EXPECT_THROW(evaluateMap(chargedMap(), solid, *surface, settings), Cancelled);
+}
+
+}  // namespace
+}  // namespace innermap
