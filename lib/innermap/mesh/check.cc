@@ -67,21 +67,21 @@ void checkEdges(const std::vector<EdgeUse>& edges, const Mesh& mesh, MeshReport&
   report.closed = report.boundaryLoops.empty();
 }
 
-void checkTriangles(const Mesh& mesh, const std::vector<Triangle>& joined, MeshReport& report) {
+void checkTriangles(const Mesh& mesh, MeshReport& report) {
   const double least = 1e-12 * report.box.diagonal();
   // (sorted vertices, triangle, even permutation of the sorted vertices)
   std::vector<std::tuple<Triangle, int, bool>> keys;
-  keys.reserve(joined.size());
-  for (std::size_t t = 0; t < joined.size(); ++t) {
+  keys.reserve(mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const int index = static_cast<int>(t);
     const Vec3 &a = mesh.vertices[mesh.triangles[t][0]], &b = mesh.vertices[mesh.triangles[t][1]],
                &c = mesh.vertices[mesh.triangles[t][2]];
     const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
     const double twiceArea = 2 * norm(areaVector(mesh, index));
-    const bool repeated = hasRepeatedVertex(joined[t]);
+    const bool repeated = hasRepeatedVertex(mesh.triangles[t]);
     if (repeated || !(twiceArea > least * longest)) report.degenerateTriangles.push_back(index);
     if (repeated) continue;
-    const Triangle& j = joined[t];
+    const Triangle& j = mesh.triangles[t];
     Triangle sorted = j;
     std::sort(sorted.begin(), sorted.end());
     const auto lowest = std::min_element(j.begin(), j.end()) - j.begin();
@@ -102,38 +102,64 @@ void checkTriangles(const Mesh& mesh, const std::vector<Triangle>& joined, MeshR
   std::sort(report.oppositeTriangles.begin(), report.oppositeTriangles.end());
 }
 
-void checkComponents(const std::vector<Triangle>& joined, const std::vector<EdgeUse>& edges,
-                     std::size_t vertices, MeshReport& report) {
-  DisjointSets sets(vertices);
-  std::vector<bool> used(vertices, false);
-  std::int64_t euler = 0;
-  for (const Triangle& t : joined) {
+void checkComponents(const Mesh& mesh, MeshReport& report) {
+  DisjointSets sets(mesh.vertices.size());
+  std::vector<bool> used(mesh.vertices.size(), false);
+  for (const Triangle& t : mesh.triangles)
     for (const int v : t) {
       sets.unite(t[0], v);
       used[v] = true;
     }
-    if (!hasRepeatedVertex(t)) ++euler;
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    const int vertex = static_cast<int>(v);
+    if (!used[v]) report.looseVertices.push_back(vertex);
+    if (used[v] && sets.find(vertex) == vertex) ++report.components;
   }
-  forEachEdge(edges, [&](const EdgeUse*, const EdgeUse*) { --euler; });
-  for (std::size_t v = 0; v < vertices; ++v) {
-    if (!used[v]) continue;
-    ++euler;
-    if (sets.find(static_cast<int>(v)) == static_cast<int>(v)) ++report.components;
-  }
-  const std::int64_t loops = static_cast<std::int64_t>(report.boundaryLoops.size());
-  report.genus = static_cast<int>((2 * report.components - euler - loops) / 2);
 }
 
-double cappedVolume(const Mesh& mesh, const std::vector<EdgeUse>& edges) {
+// Of the surface cut apart where parts only touch in a vertex: every fan has its own vertex.
+int genusOf(const std::vector<Triangle>& triangles, const std::vector<EdgeUse>& edges) {
+  DisjointSets fans = unitedCorners(triangles, edges), parts(triangles.size());
+  std::int64_t euler = 0, components = 0;
+  std::vector<DirectedEdge> boundary;
+  forEachEdge(edges, [&](const EdgeUse* begin, const EdgeUse* end) {
+    --euler;
+    for (const EdgeUse* use = begin + 1; use < end; ++use)
+      parts.unite(begin->triangle, use->triangle);
+    if ((end - begin) % 2 == 1)
+      boundary.push_back({fans.find(3 * begin->triangle + begin->corner),
+                          fans.find(3 * begin->triangle + (begin->corner + 1) % 3)});
+  });
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (hasRepeatedVertex(triangles[t])) continue;
+    ++euler;
+    const int triangle = static_cast<int>(t);
+    if (parts.find(triangle) == triangle) ++components;
+    for (int c = 0; c < 3; ++c)
+      if (fans.find(3 * triangle + c) == 3 * triangle + c) ++euler;
+  }
+  const std::int64_t loops = static_cast<std::int64_t>(traceLoops(boundary, false).size());
+  return static_cast<int>((2 * components - euler - loops) / 2);
+}
+
+// Volume and genus, with seams joined. The volume is that with the remaining loops capped as repair
+// does, but oriented as in the file.
+void checkSolid(const Mesh& mesh, MeshReport& report) {
+  const std::vector<int> to = joinSeams(mesh.vertices, mesh.triangles, &report.seamEdges);
+  const std::vector<Triangle> joined = mapped(mesh.triangles, to);
+  const std::vector<EdgeUse> edges = sortedEdges(joined);
+  report.genus = genusOf(joined, edges);
   const Vec3 center = boundingBox(mesh).center();
   double volume = 6 * signedVolume(mesh);
   for (const std::vector<int>& loop : traceLoops(cappingEdges(edges), true)) {
+    ++report.openLoops;
     const Vec3 apex = weightedSum(mesh.vertices, loopCentroid(mesh.vertices, loop));
     for (std::size_t k = 0; k < loop.size(); ++k)
       volume += coneVolume6(center, mesh.vertices[loop[k]],
                             mesh.vertices[loop[(k + 1) % loop.size()]], apex);
   }
-  return volume / 6;
+  report.volume = volume / 6;
+  report.outward = report.volume >= 0;
 }
 
 void checkCrossings(const Mesh& mesh, const CheckSettings& settings, MeshReport& report) {
@@ -169,22 +195,14 @@ MeshReport checkMesh(const Mesh& mesh, const CheckSettings& settings) {
   report.box = boundingBox(mesh);
   report.area = surfaceArea(mesh);
 
-  std::vector<bool> used(mesh.vertices.size(), false);
-  for (const Triangle& t : mesh.triangles)
-    for (const int v : t) used[v] = true;
-  for (std::size_t v = 0; v < used.size(); ++v)
-    if (!used[v]) report.looseVertices.push_back(static_cast<int>(v));
-
-  const std::vector<int> to = joinSeams(mesh.vertices, mesh.triangles, &report.seamEdges);
-  const std::vector<Triangle> joined = mapped(mesh.triangles, to);
   throwIfCancelled(settings.progress);
-  const std::vector<EdgeUse> edges = sortedEdges(joined);
+  const std::vector<EdgeUse> edges = sortedEdges(mesh.triangles);
   checkEdges(edges, mesh, report);
-  checkTriangles(mesh, joined, report);
-  report.nonManifoldVertices = verticesOfSeveralFans(joined, edges, mesh.vertices.size());
-  checkComponents(joined, edges, mesh.vertices.size(), report);
-  report.volume = cappedVolume(mesh, edges);
-  report.outward = report.volume >= 0;
+  checkTriangles(mesh, report);
+  report.nonManifoldVertices = verticesOfSeveralFans(mesh.triangles, edges, mesh.vertices.size());
+  checkComponents(mesh, report);
+  throwIfCancelled(settings.progress);
+  checkSolid(mesh, report);
   reportProgress(settings.progress, "checking", 0.5);
   if (settings.selfIntersections) checkCrossings(mesh, settings, report);
   reportProgress(settings.progress, "checking", 1);

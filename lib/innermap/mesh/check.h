@@ -19,13 +19,16 @@ struct Crossing {
   Vec3 place;                 // a point near the intersection, world units
 };
 
-// Connectivity is told after joining seams: vertices that files keep apart where texture or normals
-// jump count as one where two boundary edges coincide bit by bit and run in opposite directions.
+// Connectivity is the file's own, by vertex index; only seamEdges, openLoops, volume and genus look
+// at positions.
 struct MeshReport {
   std::size_t vertices = 0, triangles = 0, polygons = 0;
-  int components = 0;         // connected by shared vertices; loose vertices do not count
-  std::size_t seamEdges = 0;  // edges closed by joining seams
-  std::vector<BoundaryLoop> boundaryLoops;           // of edges with an odd number of triangles
+  int components = 0;  // connected by shared vertices; loose vertices do not count
+  std::vector<BoundaryLoop> boundaryLoops;  // of edges with an odd number of triangles
+  // Boundary edges that coincide bit by bit with one that runs the other way: files double vertices
+  // where texture or normals jump, and the solid does not end there.
+  std::size_t seamEdges = 0;
+  std::size_t openLoops = 0;  // loops that remain when seams are joined: repair caps them
   std::vector<std::array<int, 2>> nonManifoldEdges;  // shared by three triangles or more
   std::vector<int> nonManifoldVertices;              // whose triangles form more than one fan
   std::vector<int> duplicateTriangles;   // same three vertices, same orientation, as an earlier one
@@ -37,8 +40,9 @@ struct MeshReport {
   std::vector<Crossing> crossings;    // the first `listed` of them
   bool outward = true;                // signed volume (holes capped) is not negative
   bool closed = true;                 // no boundary loop
-  // Sum over components of (2 - Euler characteristic - boundary loops) / 2; only meaningful when
-  // manifold.
+  // Handles: sum over components of (2 - Euler characteristic - boundary loops) / 2, with seams
+  // joined and the surface cut apart where parts touch in a vertex only. Meaningless where edges
+  // are not manifold.
   int genus = 0;
   double area = 0;    // world units squared
   double volume = 0;  // signed, with the holes capped; world units cubed

@@ -50,12 +50,17 @@ void addBoundary(const MeshReport& report, Findings& out) {
   const BoundaryLoop& longest = *std::max_element(
       report.boundaryLoops.begin(), report.boundaryLoops.end(),
       [](const BoundaryLoop& a, const BoundaryLoop& b) { return a.length < b.length; });
-  out.add("boundary_loops", report.boundaryLoops.size(),
-          fmt::format("{}, the longest {:.3g} long with {} edges at vertex {}",
-                      counted(report.boundaryLoops.size(), "boundary loop", "boundary loops"),
-                      longest.length, longest.vertices.size(), longest.vertices.front()),
-          "the solid is closed by a cap over each loop, whose centre follows the loop in the "
-          "target; a wide hole is better closed by hand");
+  std::string what =
+      fmt::format("{}, the longest {:.3g} long with {} edges at vertex {}",
+                  counted(report.boundaryLoops.size(), "boundary loop", "boundary loops"),
+                  longest.length, longest.vertices.size(), longest.vertices.front());
+  if (report.seamEdges > 0)
+    what += fmt::format("; {} left when doubled vertices are joined", report.openLoops);
+  out.add("boundary_loops", report.boundaryLoops.size(), what,
+          report.openLoops == 0
+              ? "the solid is closed: all of them are seams, which are joined"
+              : "the solid is closed by a cap over each loop, whose centre follows the loop in the "
+                "target; a wide hole is better closed by hand");
 }
 
 void addOrientation(const MeshReport& report, Findings& out) {

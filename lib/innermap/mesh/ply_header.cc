@@ -91,7 +91,7 @@ class HeaderReader {
     PlyElement element;
     element.name = std::string(words_[1]);
     for (const char c : words_[2]) {
-      if (c < '0' || c > '9' || element.count > UINT64_MAX / 100)
+      if (c < '0' || c > '9' || element.count > (UINT64_MAX - 9) / 10)
         fail(quoted(words_[2]) + " is not a number of elements");
       element.count = element.count * 10 + static_cast<std::uint64_t>(c - '0');
     }
