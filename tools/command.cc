@@ -57,6 +57,10 @@ CLI::Option* declare(CLI::App& app, Given& given) {
   const Option& o = *given.option;
   const std::string names = o.shortName.empty() ? o.name : o.shortName + "," + o.name;
   if (o.isFlag()) return app.add_flag(names, given.flag);
+  // A positional list would swallow the arguments of those after it.
+  if (o.isPositional())
+    return app.add_option_function<std::string>(
+        names, [&given](const std::string& text) { given.values = {text}; });
   return app.add_option(names, given.values)
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

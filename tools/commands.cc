@@ -3,8 +3,8 @@
 namespace innermap::tool {
 
 std::vector<Command> allCommands() {
-  return {makeCheckCommand(), makeVoxelizeCommand(), makeSliceCommand(), makeInfoCommand(),
-          makeHelpCommand()};
+  return {makeMapCommand(),      makeFitCommand(),   makeEvaluateCommand(), makeCheckCommand(),
+          makeVoxelizeCommand(), makeSliceCommand(), makeInfoCommand(),     makeHelpCommand()};
 }
 
 }  // namespace innermap::tool

@@ -7,6 +7,9 @@
 
 namespace innermap::tool {
 
+Command makeMapCommand();
+Command makeFitCommand();
+Command makeEvaluateCommand();
 Command makeCheckCommand();
 Command makeVoxelizeCommand();
 Command makeSliceCommand();
