@@ -1,4 +1,4 @@
-// Surfaces moved along their normals; moving points to a given distance.
+// Surfaces moved along their normals.
 #pragma once
 
 #include "innermap/core/progress.h"
@@ -10,9 +10,5 @@ namespace innermap {
 // `distance` along their angle-weighted normals (both world units). Not checked against other
 // parts of the surface.
 Mesh displacedSurface(const Solid& solid, double distance, double edge, Progress* progress);
-
-// Moves p away from or towards the closest points of solid.surface() until its distance is
-// `distance` (world units), within 5%; false when it does not get there.
-bool moveToDistance(const Solid& solid, double distance, Vec3& p);
 
 }  // namespace innermap

@@ -20,6 +20,12 @@ using Leaf = FloatTree::LeafNodeType;
 
 constexpr int kMaxAcross = 4096;
 
+// Rounded up: the band is as wide as asked in single precision too.
+float backgroundOf(double width) {
+  const float f = static_cast<float>(width);
+  return f < width ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
+}
+
 double longestSide(const Solid& solid) {
   const Vec3 e = solid.box().extent();
   return std::max({e.x, e.y, e.z});
@@ -46,7 +52,8 @@ class LeafSigns {
             const double* distances)
       : distances_(distances) {
     std::iota(parent_.begin(), parent_.end(), 0);
-    const double reach = voxelSize + 2 * solid.gap();
+    // More than one voxel by a margin for rounding: faces often lie just between two voxels.
+    const double reach = (1 + 1e-6) * voxelSize + 2 * solid.gap();
     for (int x = 0; x < 8; ++x) {
       for (int y = 0; y < 8; ++y) {
         for (int z = 0; z < 8; ++z) {
@@ -92,13 +99,14 @@ class LeafSigns {
 
 // Null when no voxel is in the band.
 std::unique_ptr<Leaf> makeLeaf(const Solid& solid, const Band& band, const Coord& origin,
-                               double voxelSize, double background) {
+                               double voxelSize, float background) {
   std::array<double, Band::kLeafVoxels> distances;
   band.distances(origin, distances.data());
-  const auto inBand = [&](double d) { return d < background; };
+  // After rounding to float the value must still be within the background.
+  const auto inBand = [&](double d) { return static_cast<float>(d) < background; };
   if (std::none_of(distances.begin(), distances.end(), inBand)) return nullptr;
   LeafSigns signs(solid, band, origin, voxelSize, distances.data());
-  auto leaf = std::make_unique<Leaf>(origin, static_cast<float>(background), false);
+  auto leaf = std::make_unique<Leaf>(origin, background, false);
   for (int i = 0; i < Band::kLeafVoxels; ++i) {
     const bool active = inBand(distances[i]);
     const double d = active ? distances[i] : background;
@@ -157,7 +165,7 @@ std::uint64_t levelSetMemory(const Solid& solid, const LevelSetSettings& setting
 FloatGrid::Ptr makeLevelSet(const Solid& solid, const LevelSetSettings& settings) {
   checkHalfWidth(settings);
   const double h = voxelSizeFor(solid, settings);
-  const double background = settings.halfWidth * h;
+  const float background = backgroundOf(settings.halfWidth * h);
   if (settings.maxMemory > 0) {
     requireMemory("level set", levelSetMemory(solid, settings), settings.maxMemory,
                   "a larger voxel size, a lower resolution or a smaller half width would fit");
@@ -174,7 +182,7 @@ FloatGrid::Ptr makeLevelSet(const Solid& solid, const LevelSetSettings& settings
         }
       },
       settings.progress, "level set");
-  auto grid = FloatGrid::create(static_cast<float>(background));
+  auto grid = FloatGrid::create(background);
   for (std::unique_ptr<Leaf>& leaf : leaves) {
     if (leaf) grid->tree().addLeaf(leaf.release());
   }

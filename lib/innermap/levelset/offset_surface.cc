@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <memory>
+#include <numeric>
 
 #include "innermap/core/parallel.h"
 #include "innermap/levelset/band.h"
@@ -18,11 +19,16 @@ using openvdb::FloatGrid;
 using Leaf = FloatGrid::TreeType::LeafNodeType;
 
 constexpr double kFinest = 1.0 / 400, kCoarsest = 1.0 / 16;  // voxels, fractions of the diagonal
-constexpr double kTolerance = 0.05;  // of the distance, for vertices that stay
+constexpr double kPiece = 1.0 / 150;  // triangles that are moved without a grid
+constexpr double kTolerance = 0.05;   // of the distance, for vertices that stay
 
-// Distance minus `level`, in voxels, within 2.5 of the isosurface; index space is band's lattice.
+// Half the width of the band, in voxels: both ends of every lattice edge that the isosurface cuts
+// are within one voxel of it.
+constexpr double kBand = 1.25;
+
+// Distance minus `level`, in voxels, exact in the band; index space is band's lattice.
 FloatGrid::Ptr distanceGrid(const Band& band, double level, double voxelSize, Progress* progress) {
-  constexpr float kBackground = 2.5f;
+  constexpr float kBackground = static_cast<float>(kBand);
   const std::vector<Coord> origins = band.leaves(progress);
   std::vector<std::unique_ptr<Leaf>> leaves(origins.size());
   parallelBlocks(
@@ -35,7 +41,7 @@ FloatGrid::Ptr distanceGrid(const Band& band, double level, double voxelSize, Pr
           bool any = false;
           for (openvdb::Index i = 0; i < leaf->SIZE; ++i) {
             const double value = (distances[i] - level) / voxelSize;
-            const float clamped = static_cast<float>(std::clamp<double>(value, -2.5, 2.5));
+            const float clamped = static_cast<float>(std::clamp(value, -kBand, kBand));
             const bool active = std::abs(clamped) < kBackground;
             leaf->setValueOnly(i, clamped);
             leaf->setActiveState(i, active);
@@ -85,51 +91,75 @@ Mesh fromGrid(const Solid& solid, double distance, Progress* progress) {
   // Whole numbers of voxels from the lower end of everything, so that indices are not negative.
   const double reach = distance + 6 * voxelSize;
   const Vec3 origin = solid.box().lower - Vec3{reach, reach, reach};
-  const double width = 2.5 * voxelSize;
+  const double width = kBand * voxelSize;
   const Band band(solid, origin, voxelSize, std::max(0.0, distance - width), distance + width);
   const FloatGrid::Ptr grid = distanceGrid(band, distance, voxelSize, progress);
   throwIfCancelled(progress);
   return isosurface(*grid, origin, voxelSize);
 }
 
-}  // namespace
-
-bool moveToDistance(const Solid& solid, double distance, Vec3& p) {
-  Vec3 best = p;
-  double bestError = std::numeric_limits<double>::infinity();
-  for (int step = 0; step < 8; ++step) {
-    const Solid::Closest c = solid.closest(p, std::numeric_limits<double>::infinity());
-    const double error = std::abs(c.distance - distance);
-    if (error < bestError) {
-      best = p;
-      bestError = error;
+// Vertices outside the solid. Two neighbours are on the same side when the balls about them that
+// are free of surface meet; one winding number settles each set of vertices so connected.
+std::vector<char> outsideVertices(const Solid& solid, const Mesh& mesh,
+                                  const std::vector<char>& atDistance, double distance,
+                                  Progress* progress) {
+  std::vector<int> parent(mesh.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  const double reach = 2 * ((1 - kTolerance) * distance - solid.gap());
+  for (const Triangle& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = t[k], b = t[(k + 1) % 3];
+      if (!atDistance[a] || !atDistance[b]) continue;
+      if (!(norm(mesh.vertices[a] - mesh.vertices[b]) < reach)) continue;
+      const int s = root(a), r = root(b);
+      parent[std::max(s, r)] = std::min(s, r);
     }
-    if (error <= 1e-6 * distance || !(c.distance > 0)) break;
-    p = c.position + (distance / c.distance) * (p - c.position);
   }
-  p = best;
-  return bestError <= kTolerance * distance;
+  std::vector<int> roots;
+  for (std::size_t v = 0; v < parent.size(); ++v) {
+    if (atDistance[v] && parent[v] == static_cast<int>(v)) roots.push_back(parent[v]);
+  }
+  std::vector<char> outside(parent.size(), 0);
+  parallelBlocks(
+      roots.size(), 64,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          outside[roots[i]] = !solid.inside(mesh.vertices[roots[i]]);
+        }
+      },
+      progress);
+  for (std::size_t v = 0; v < parent.size(); ++v) {
+    if (atDistance[v]) outside[v] = outside[root(static_cast<int>(v))];
+  }
+  return outside;
 }
+
+}  // namespace
 
 Mesh offsetSurface(const Solid& solid, const OffsetSettings& settings) {
   if (!(settings.distance >= 1e-4 && settings.distance <= 2)) {
     throw SettingError("distance", "must lie between 0.0001 and 2 (fraction of the diagonal)");
   }
   const double distance = settings.distance * solid.diagonal();
-  Mesh mesh =
-      settings.distance >= kFinest
-          ? fromGrid(solid, distance, settings.progress)
-          : displacedSurface(solid, distance, kFinest * solid.diagonal(), settings.progress);
-  std::vector<char> good(mesh.vertices.size(), 0);
+  Mesh mesh = settings.distance >= kFinest
+                  ? fromGrid(solid, distance, settings.progress)
+                  : displacedSurface(solid, distance, kPiece * solid.diagonal(), settings.progress);
+  std::vector<char> atDistance(mesh.vertices.size(), 0);
   parallelBlocks(
-      good.size(), 128,
+      atDistance.size(), 128,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
-          Vec3& p = mesh.vertices[v];
-          good[v] = !solid.inside(p) && moveToDistance(solid, distance, p) && !solid.inside(p);
+          atDistance[v] =
+              moveToDistance(solid, distance, mesh.vertices[v]) <= kTolerance * distance;
         }
       },
       settings.progress, "offset surface");
+  const std::vector<char> good =
+      outsideVertices(solid, mesh, atDistance, distance, settings.progress);
   Mesh result;
   result.name = solid.surface().name + " at a distance";
   std::vector<int> moved(good.size(), -1);

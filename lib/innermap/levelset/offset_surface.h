@@ -17,8 +17,13 @@ struct OffsetSettings {
 //
 // Down to a distance of 1/400: isosurface of the unsigned distance on a grid with voxels of half
 // the distance, at least 1/400 and at most 1/16 of the diagonal, the sheets inside the solid left
-// out. Below that a grid would be too large, and the surface itself, cut to triangles of 1/400, is
+// out. Below that a grid would be too large, and the surface itself, cut to triangles of 1/150, is
 // moved out along its normals.
 Mesh offsetSurface(const Solid& solid, const OffsetSettings& settings);
+
+// Moves p away from or towards the closest points of solid.surface() until its distance is
+// `distance` (world units); returns by how much it still differs (in a crease between parts there
+// may be no such point nearby).
+double moveToDistance(const Solid& solid, double distance, Vec3& p);
 
 }  // namespace innermap

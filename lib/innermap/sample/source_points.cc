@@ -13,7 +13,6 @@ namespace innermap {
 namespace {
 
 constexpr std::size_t kMaxSources = 10'000'000;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void checkCount(const SourceSettings& settings) {
   if (settings.count < 1 || settings.count > kMaxSources) {
@@ -27,17 +26,18 @@ Points relativeTo(Points points, const Vec3& center) {
   return points;
 }
 
-// Moves p out to `distance` from the surface; false where it stays nearer than 0.97 of it (in a
-// crease between parts) or comes to lie inside.
-bool settle(const Solid& solid, double distance, Vec3& p) {
-  for (int step = 0; step < 4; ++step) {
-    const Solid::Closest c = solid.closest(p, kInfinity);
-    if (!(c.distance > 0)) return false;
-    if (std::abs(c.distance - distance) <= 1e-9 * distance) return !solid.inside(p);
-    p = c.position + (distance / c.distance) * (p - c.position);
+// Moves a sample of triangle `t` of the shell to `distance` from the surface; false where it stays
+// nearer than 0.97 of it (in a crease between parts) or comes to lie inside.
+bool settle(const Solid& solid, const Mesh& shell, int t, double distance, Vec3& p) {
+  const double error = moveToDistance(solid, distance, p);
+  if (!(error <= 0.03 * distance)) return false;
+  // The shell's vertices are outside. When the balls about one of them and about p that are free
+  // of surface meet, so is p.
+  const double reach = 1.9 * distance - 2 * solid.gap();
+  for (const int v : shell.triangles[t]) {
+    if (norm(shell.vertices[v] - p) < reach) return true;
   }
-  const double d = solid.closest(p, kInfinity).distance;
-  return d >= 0.97 * distance && d <= 1.05 * distance && !solid.inside(p);
+  return !solid.inside(p);
 }
 
 // Those of the shell's random samples [begin, end) that settle, in their order.
@@ -54,7 +54,7 @@ Points settledCandidates(const Solid& solid, const Mesh& shell, double distance,
       [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
           points[i] = positionOf(shell, samples[begin + i]);
-          good[i] = settle(solid, distance, points[i]);
+          good[i] = settle(solid, shell, samples[begin + i].triangle, distance, points[i]);
         }
       },
       settings.progress, "placing sources");
