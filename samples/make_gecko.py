@@ -38,11 +38,11 @@ EYE = np.array([0.122, 0.790, 0.098, 0.078])
 # Turns at joints in the second pose, degrees: about z (in the plane of the body), and about x for
 # the spine (lift). Spine: one for each joint away from its root at index ROOT, both ways.
 ROOT = 7
-SPINE_TURN = {6: 7, 5: 8, 4: 12, 3: 12, 2: 6, 8: -6, 9: -8, 10: -9, 11: -10, 12: -12, 13: -14,
-              14: -15, 15: -15}
+SPINE_TURN = {6: 9, 5: 11, 4: 12, 3: 12, 2: 6, 8: -10, 9: -11, 10: -9, 11: -8, 12: -9, 13: -12,
+              14: -14, 15: -15}
 SPINE_LIFT = {5: 4, 4: 7, 3: 7, 13: -5, 14: -7, 15: -7}
-LEG_TURN = {("fore", 1): (34, -20, -14), ("fore", -1): (10, 10, 0),
-            ("hind", 1): (-26, 24, 8), ("hind", -1): (-16, 18, 6)}
+LEG_TURN = {("fore", 1): (20, -2, -12), ("fore", -1): (10, 10, 0),
+            ("hind", 1): (-18, 12, 8), ("hind", -1): (-16, 18, 6)}
 
 
 def mirrored(points):
@@ -241,8 +241,8 @@ def bones():
 def posed(points, triangles):
     distances, transforms = zip(*[(f(points), m) for f, m in bones()])
     d = np.array(distances).T
-    weights = np.exp(-(d - d.min(axis=1, keepdims=True)) / 0.02)
-    for _ in range(60):
+    weights = np.exp(-(d - d.min(axis=1, keepdims=True)) / 0.03)
+    for _ in range(120):
         weights = 0.5 * weights + 0.5 * neighbour_mean(triangles, weights, len(points))
     weights /= weights.sum(axis=1, keepdims=True)
     blended = np.einsum("vb,bij->vij", weights, np.array(transforms)[:, :3, :])
