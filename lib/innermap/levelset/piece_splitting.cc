@@ -90,11 +90,11 @@ Side classify(const WindingNumber& winding, const Corners& t, double diagonal) {
   // not so small that it drowns in rounding.
   const double offset = std::clamp(1e-3 * area / longest, 1e-11 * diagonal, 1e-8 * diagonal);
   const Vec3 m = (t[0] + t[1] + t[2]) / 3;
-  const double out = winding.at(m + (offset / area) * n);
-  const double in = winding.at(m - (offset / area) * n);
-  side.exposed = (in > 0.5) != (out > 0.5);
-  side.reversed = side.exposed && out > 0.5;
-  side.covers = static_cast<int>(std::lround(std::min(std::abs(in - out), 1e6)));
+  const int out = winding.wholeAt(m + (offset / area) * n);
+  const int in = winding.wholeAt(m - (offset / area) * n);
+  side.exposed = (in > 0) != (out > 0);
+  side.reversed = side.exposed && out > 0;
+  side.covers = std::abs(in - out);
   return side;
 }
 

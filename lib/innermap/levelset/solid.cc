@@ -103,7 +103,7 @@ double Solid::volume() const {
   return i.volume;
 }
 
-bool Solid::inside(const Vec3& p) const { return implementation_->winding.at(p) > 0.5; }
+bool Solid::inside(const Vec3& p) const { return implementation_->winding.wholeAt(p) > 0; }
 
 double Solid::distance(const Vec3& p) const { return implementation_->tree.closest(p).distance; }
 

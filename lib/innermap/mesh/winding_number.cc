@@ -8,7 +8,8 @@ namespace innermap {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr float kBeta = 2;  // clusters farther than this many radii are expanded
+// Clusters farther than this many radii are expanded.
+constexpr double kBeta = 2.1, kRoughBeta = 1.25;
 
 // Complex number whose argument is half the solid angle of a triangle seen from the origin
 // (van Oosterom and Strackee 1983).
@@ -253,7 +254,8 @@ struct WindingNumber::Implementation {
     return {c[0], c[1], c[2]};
   }
 
-  double at(const Vec3& world) const {
+  // `narrower`: squared ratio of the opening radius wanted to the one stored.
+  double at(const Vec3& world, float narrower) const {
     if (bvh.nodes.empty() || !isFinite(world)) return 0;
     const Vec3 p = frame.toLocal(world);
     AngleSum near;
@@ -268,7 +270,7 @@ struct WindingNumber::Implementation {
       const float dy = static_cast<float>(e.center[1] - p.y);
       const float dz = static_cast<float>(e.center[2] - p.z);
       const float r2 = dx * dx + dy * dy + dz * dz;
-      if (r2 > e.openRadius2) {
+      if (r2 > narrower * e.openRadius2) {
         far += e.at(dx, dy, dz, r2);
         continue;
       }
@@ -299,7 +301,14 @@ struct WindingNumber::Implementation {
 WindingNumber::WindingNumber(const Points& vertices, const std::vector<Triangle>& triangles)
     : implementation_(std::make_shared<const Implementation>(vertices, triangles)) {}
 
-double WindingNumber::at(const Vec3& p) const { return implementation_->at(p); }
+double WindingNumber::at(const Vec3& p) const { return implementation_->at(p, 1); }
+
+int WindingNumber::wholeAt(const Vec3& p) const {
+  constexpr float kNarrower = static_cast<float>(kRoughBeta * kRoughBeta / (kBeta * kBeta));
+  double winding = implementation_->at(p, kNarrower);
+  if (std::abs(winding - std::round(winding)) > 0.2) winding = implementation_->at(p, 1);
+  return static_cast<int>(std::lround(winding));
+}
 
 double WindingNumber::exactAt(const Vec3& p) const { return implementation_->exactAt(p); }
 

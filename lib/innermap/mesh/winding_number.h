@@ -22,6 +22,10 @@ class WindingNumber {
   // Absolute error below 1e-2 (accuracy 2 in the paper's terms); on the surface itself undefined.
   double at(const Vec3& p) const;
 
+  // For closed meshes (as repair() makes them), whose winding numbers are whole: at() rounded, in
+  // about half the time, since a rough expansion tells whole numbers apart.
+  int wholeAt(const Vec3& p) const;
+
   // The exact sum of solid angles over all triangles, O(#T).
   double exactAt(const Vec3& p) const;
 

@@ -82,6 +82,20 @@ TEST(WindingNumber, AgreesNearTheSurface) {
   }
 }
 
+TEST(WindingNumber, WholeNumbersOfClosedMeshes) {
+  // Overlapping balls, one of them inside out.
+  Mesh mesh = shapes::joined(shapes::icosphere(4), shapes::icosphere(3, 0.8, {0.7, 0, 0}));
+  mesh = shapes::joined(mesh, shapes::flipped(shapes::icosphere(3, 0.5, {0, 0.9, 0})));
+  const WindingNumber winding(mesh.vertices, mesh.triangles);
+  const CounterRandom random(15, 2);
+  for (int i = 0; i < 5000; ++i) {
+    const Vec3 p = 1.6 * randomPoint(random, i);
+    const double exact = winding.exactAt(p);
+    ASSERT_NEAR(exact, std::round(exact), 1e-9);
+    EXPECT_EQ(winding.wholeAt(p), std::lround(exact));
+  }
+}
+
 TEST(WindingNumber, ScaleAndPlaceDoNotMatter) {
   const Mesh mesh = shapes::torus(40, 20);
   const CounterRandom random(8, 1);
