@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "innermap/core/memory.h"
+#include "innermap/core/random.h"
 #include "innermap/field/fit.h"
 #include "innermap/output/version.h"
 #include "innermap/sample/source_points.h"
@@ -19,7 +20,13 @@ constexpr double kPointsPerSource = 4;
 constexpr double kMostSources = 20000;
 
 // Seeds of the three sets of boundary points, so that none has a point of another.
-enum Stream : std::uint64_t { kCollocation = 0, kHeldOut = 1, kFresh = 2, kSources = 3 };
+enum Stream : std::uint64_t {
+  kCollocation = 0,
+  kHeldOut = 1,
+  kFresh = 2,
+  kSources = 3,
+  kVertices = 4
+};
 std::uint64_t seedOf(const FittingOptions& options, Stream stream) {
   return 4 * options.seed + stream;
 }
@@ -28,20 +35,56 @@ Points positionsOf(const Mesh& mesh, const std::vector<SurfacePoint>& samples) {
   return interpolate(mesh.vertices, mesh.triangles, samples);
 }
 
-FitProblem makeProblem(const BoundaryPair& pair, const FittingOptions& options,
-                       const PointCounts& counts, Context& context) {
+BoundaryData surfaceData(const BoundaryPair& pair, const FittingOptions& options,
+                         const PointCounts& counts, Context& context) {
   const Mesh& surface = pair.solid.surface();
   SampleSettings sample;
   sample.progress = context.progress();
-  FitProblem problem;
   sample.seed = seedOf(options, kCollocation);
   const auto collocation = blueNoiseSamples(surface, counts.collocation, sample);
   sample.seed = seedOf(options, kHeldOut);
   const auto heldOut = randomSamples(surface, counts.heldOut, sample);
-  problem.collocation = positionsOf(surface, collocation);
-  problem.values = pair.targetsOf(collocation);
-  problem.heldOut = positionsOf(surface, heldOut);
-  problem.heldOutValues = pair.targetsOf(heldOut);
+  return {positionsOf(surface, collocation), positionsOf(surface, heldOut),
+          pair.targetsOf(collocation), pair.targetsOf(heldOut)};
+}
+
+// The mesh's own vertices on the boundary (not those of caps, nor buried ones), shuffled; a fifth
+// of them is held out.
+BoundaryData vertexData(const BoundaryPair& pair, const FittingOptions& options,
+                        const PointCounts& counts) {
+  const Mesh& mesh = pair.solid.repaired().mesh;
+  std::vector<char> used(pair.source.vertices.size(), 0);
+  for (const Triangle& t : mesh.triangles)
+    for (const int v : t)
+      if (static_cast<std::size_t>(v) < used.size()) used[v] = 1;
+  const double touching = 1e-9 * pair.solid.diagonal();
+  std::vector<std::pair<std::uint64_t, std::size_t>> order;
+  const CounterRandom random(options.seed, kVertices);
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (used[v] && (!pair.solid.overlaps() || pair.solid.distance(mesh.vertices[v]) <= touching))
+      order.emplace_back(random.bits(v), v);
+  std::sort(order.begin(), order.end());
+  const std::size_t heldOut = std::min(order.size() / 5, counts.heldOut),
+                    points = std::min(order.size() - heldOut, counts.collocation);
+  BoundaryData data;
+  const auto take = [&](std::size_t first, std::size_t count, Points& at, Matrix& values) {
+    values = Matrix(count, 3);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t v = order[first + i].second;
+      at.push_back(mesh.vertices[v]);
+      for (int a = 0; a < 3; ++a) values(i, a) = pair.moved[v][a];
+    }
+  };
+  take(0, heldOut, data.heldOut, data.heldOutValues);
+  take(heldOut, points, data.points, data.values);
+  return data;
+}
+
+FitProblem makeProblem(const BoundaryPair& pair, const FittingOptions& options,
+                       const PointCounts& counts, Context& context) {
+  FitProblem problem;
+  problem.surface = surfaceData(pair, options, counts, context);
+  if (options.interpolation != "linear") problem.vertices = vertexData(pair, options, counts);
   problem.diagonal = pair.solid.diagonal();
   problem.area = pair.solid.area();
   SourceSettings source;
@@ -69,10 +112,11 @@ void fillReport(const FitResult& fit, const FitProblem& problem, const BoundaryE
                 double cError, const FittingOptions& options, Context& context) {
   Report& report = context.report();
   const DenseSolution& s = fit.solution;
+  const BoundaryData& data = fit.smooth ? problem.vertices : problem.surface;
   ReportSolve solve;
   solve.method = options.method;
   solve.sources = fit.field.sources().size();
-  solve.collocation = problem.collocation.size();
+  solve.collocation = data.points.size();
   solve.rank = s.rank;
   solve.regularization = s.regularization;
   report.solve = solve;
@@ -81,9 +125,10 @@ void fillReport(const FitResult& fit, const FitProblem& problem, const BoundaryE
     report.set("solve.radius_ratio", *options.radiusRatio);
   else
     report.set("solve.distance", fit.distance);
+  report.set("solve.interpolation", fit.smooth ? "smooth" : "linear");
   report.set("solve.condition", s.condition);
   report.set("solve.weight_norm", s.weightNorm);
-  report.set("solve.held_out", static_cast<std::int64_t>(problem.heldOut.size()));
+  report.set("solve.held_out", static_cast<std::int64_t>(data.heldOut.size()));
   report.set("solve.seed", static_cast<std::int64_t>(options.seed));
   std::vector<double> distances, errors;
   for (const DistanceTrial& t : fit.trials) {
@@ -115,6 +160,7 @@ Settings describe(const BoundaryPair& pair, const FitResult& fit, const Boundary
                     {"source", path(pair.source.name)},
                     {"target", path(pair.target.name)},
                     {"method", options.method},
+                    {"interpolation", fit.smooth ? "smooth" : "linear"},
                     {"seed", std::to_string(options.seed)},
                     {"regularization", number(fit.solution.regularization)},
                     {"rank", std::to_string(fit.solution.rank)},
@@ -165,6 +211,12 @@ void addFittingOptions(Command& command, FittingOptions& o) {
               "diagonal (R-Ratio)")
       .above(1)
       .atMost(100);
+  command
+      .option(
+          "--interpolation", "NAME", &o.interpolation,
+          "what the target is between vertices: linear, as its triangles; smooth, when vertices "
+          "sample a smooth deformation; auto: by the error at held-out vertices")
+      .choices({"auto", "linear", "smooth"});
   command
       .option("--method", "NAME", &o.method,
               "regularisation: Tikhonov's, or truncation of singular values (the paper's)")
@@ -224,9 +276,15 @@ Fitted fitMap(const BoundaryPair& pair, const FittingOptions& options, Context& 
   double cError = 0;
   context.timed("certificate", [&] {
     error = certify(fit->field, pair, options, context);
-    cError = measureBoundaryError(fit->field, problem.collocation, problem.values,
-                                  pair.targetDiagonal, context.progress())
+    const BoundaryData& data = fit->smooth ? problem.vertices : problem.surface;
+    cError = measureBoundaryError(fit->field, data.points, data.values, pair.targetDiagonal,
+                                  context.progress())
                  .sumOfSquares;
+    if (fit->smooth)
+      context.report().set("boundary_error.vertices_rms",
+                           measureBoundaryError(fit->field, data.heldOut, data.heldOutValues,
+                                                pair.targetDiagonal, context.progress())
+                               .rms);
   });
   fillReport(*fit, problem, error, cError, options, context);
   if (error.max > 0.1)

@@ -17,6 +17,7 @@ struct FittingOptions {
   std::optional<std::uint64_t> collocation;
   std::optional<double> sourceRatio, collocationRatio;  // per vertex of the source mesh
   std::optional<double> distance, radiusRatio;
+  std::string interpolation = "auto";
   std::string method = "tikhonov";
   std::optional<double> regularization;
   std::uint64_t seed = 1;

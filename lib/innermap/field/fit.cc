@@ -6,20 +6,31 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
+#include "innermap/field/boundary_error.h"
 
 namespace innermap {
 namespace {
 
-constexpr double kNearest = 1.25;  // spacings
+constexpr double kNearest = 0.8;   // spacings
 constexpr double kFarthest = 0.5;  // of the diagonal
 // A farther shell has larger weights that cancel each other: it must earn its place.
 constexpr double kGain = 0.8;
 constexpr std::size_t kTrialSources = 600;
 constexpr std::size_t kTrialPointsPerSource = 4;
 
+constexpr double kSmoothGain = 0.25;  // of the error at held-out vertices
+constexpr std::size_t kFewestVertices = 100;
+
 struct Solved {
   Points sources;
   DenseSolution solution;
+  double distance = 0;
+};
+
+// The best of the distances tried with few sources, and the nearest of them.
+struct Trial {
+  std::optional<Solved> best;
+  double nearest = 0;
 };
 
 class Fitting {
@@ -29,40 +40,54 @@ class Fitting {
 
   FitResult run() {
     check();
-    if (settings_.distance)
-      return result(*settings_.distance, solve(settings_.sources, *settings_.distance));
-    const std::vector<double> distances = chooseDistances();
+    const bool smooth = chooseSmooth();
+    const BoundaryData& data = smooth ? problem_.vertices : problem_.surface;
+    const std::size_t count = sourcesFor(data, settings_.sources);
     std::optional<Solved> best;
-    double bestDistance = 0;
+    const std::vector<double> distances = distancesFor(smooth, count);
     for (const double distance : distances) {
-      Solved solved = solve(settings_.sources, distance);
-      if (distances.size() > 1)
-        trials_.push_back({solved.sources.size(), distance, solved.solution.heldOutRms});
-      if (best && solved.solution.heldOutRms >= kGain * best->solution.heldOutRms) continue;
-      best = std::move(solved);
-      bestDistance = distance;
+      Solved solved = solve(data, count, data.points.size(), distance);
+      if (distances.size() > 1) remember(solved, smooth);
+      if (!best || solved.solution.heldOutRms < kGain * best->solution.heldOutRms)
+        best = std::move(solved);
     }
-    return result(bestDistance, std::move(*best));
+    HarmonicField field(std::move(best->sources), best->solution.weights, best->solution.affine);
+    return {std::move(field), std::move(best->solution), best->distance, smooth,
+            std::move(trials_)};
   }
 
  private:
   void check() const;
-  std::vector<double> chooseDistances();
-  Solved solve(std::size_t count, double distance) const;
+  bool chooseSmooth();
+  const Trial& trial(bool smooth);
+  Trial makeTrial(bool smooth);
+  std::vector<double> distancesFor(bool smooth, std::size_t count);
+  Solved solve(const BoundaryData& data, std::size_t count, std::size_t points,
+               double distance) const;
+
+  // At least two points a source: vertices may be few.
+  std::size_t sourcesFor(const BoundaryData& data, std::size_t wanted) const {
+    return &data == &problem_.vertices ? std::min(wanted, data.points.size() / 2) : wanted;
+  }
 
   double nearest(std::size_t count) const {
     return kNearest * std::sqrt(problem_.area / static_cast<double>(count)) / problem_.diagonal;
   }
 
-  FitResult result(double distance, Solved solved) {
-    HarmonicField field(std::move(solved.sources), solved.solution.weights, solved.solution.affine);
-    return {std::move(field), std::move(solved.solution), distance, std::move(trials_)};
+  void remember(const Solved& s, bool smooth) {
+    trials_.push_back({s.sources.size(), s.distance, smooth, s.solution.heldOutRms});
   }
 
   const FitProblem& problem_;
   const FitSettings& settings_;
+  std::optional<Trial> trialOf_[2];
   std::vector<DistanceTrial> trials_;
 };
+
+void checkShape(const BoundaryData& data) {
+  if (data.values.rows() != data.points.size() || data.heldOutValues.rows() != data.heldOut.size())
+    throw DataError("fit: the values do not fit the points");
+}
 
 void Fitting::check() const {
   if (settings_.sources < 1 || settings_.sources > 20000)
@@ -71,64 +96,97 @@ void Fitting::check() const {
     throw SettingError("distance", "must lie in 0.0001 to 2 of the diagonal");
   if (!(problem_.diagonal > 0) || !(problem_.area > 0))
     throw DataError("fit: the boundary has no extent");
-  if (problem_.values.rows() != problem_.collocation.size() ||
-      problem_.heldOutValues.rows() != problem_.heldOut.size() ||
-      problem_.values.columns() != problem_.heldOutValues.columns())
-    throw DataError("fit: the values do not fit the points");
-  if (problem_.heldOut.empty() && !(settings_.distance && settings_.regularization))
+  checkShape(problem_.surface);
+  checkShape(problem_.vertices);
+  if (problem_.surface.heldOut.empty() && !(settings_.distance && settings_.regularization))
     throw SettingError("held-out points", "are needed to choose distance and regularisation by");
-  requireMemory(
-      "fitting " + std::to_string(settings_.sources) + " sources",
-      denseSolverMemory(problem_.collocation.size(), settings_.sources, problem_.heldOut.size()),
-      settings_.maxMemory, "use fewer sources (memory grows with their square)");
+  if (settings_.interpolation == Interpolation::smooth &&
+      problem_.vertices.points.size() < kFewestVertices)
+    throw SettingError("interpolation", "smooth needs at least " + std::to_string(kFewestVertices) +
+                                            " vertices on the boundary; choose linear");
+  requireMemory("fitting " + std::to_string(settings_.sources) + " sources",
+                denseSolverMemory(problem_.surface.points.size(), settings_.sources,
+                                  problem_.surface.heldOut.size()),
+                settings_.maxMemory, "use fewer sources (memory grows with their square)");
 }
 
-Solved Fitting::solve(std::size_t count, double distance) const {
+Solved Fitting::solve(const BoundaryData& data, std::size_t count, std::size_t points,
+                      double distance) const {
   Solved out;
+  out.distance = distance;
   out.sources = problem_.placeSources(count, distance);
-  const std::size_t points =
-      count == settings_.sources
-          ? problem_.collocation.size()
-          : std::min(problem_.collocation.size(), kTrialPointsPerSource * out.sources.size() + 16);
-  const Points collocation(problem_.collocation.begin(), problem_.collocation.begin() + points);
-  Matrix values(points, problem_.values.columns());
+  const std::size_t used = std::min(data.points.size(), points);
+  const Points collocation(data.points.begin(),
+                           data.points.begin() + static_cast<std::ptrdiff_t>(used));
+  Matrix values(used, data.values.columns());
   for (std::size_t k = 0; k < values.columns(); ++k)
-    std::copy_n(problem_.values.column(k), points, values.column(k));
+    std::copy_n(data.values.column(k), used, values.column(k));
   DenseSettings dense;
   dense.progress = settings_.progress;
-  const DenseSolver solver(collocation, out.sources, problem_.heldOut, dense);
+  const DenseSolver solver(collocation, out.sources, data.heldOut, dense);
   out.solution =
-      solver.solve(values, settings_.method, problem_.heldOutValues, settings_.regularization);
+      solver.solve(values, settings_.method, data.heldOutValues, settings_.regularization);
   return out;
+}
+
+Trial Fitting::makeTrial(bool smooth) {
+  const BoundaryData& data = smooth ? problem_.vertices : problem_.surface;
+  const std::size_t few =
+      std::max<std::size_t>(1, sourcesFor(data, std::min(kTrialSources, settings_.sources / 2)));
+  Trial out;
+  out.nearest = settings_.distance.value_or(nearest(few));
+  const double farthest = settings_.distance.value_or(std::max(kFarthest, out.nearest));
+  const int steps = static_cast<int>(std::ceil(std::log2(farthest / out.nearest)));
+  for (int step = 0; step <= steps; ++step) {
+    const double ratio = steps ? 1.0 * step / steps : 0;
+    reportProgress(settings_.progress, "choosing the distance", ratio);
+    try {
+      Solved solved = solve(data, few, kTrialPointsPerSource * few + 16,
+                            out.nearest * std::pow(farthest / out.nearest, ratio));
+      remember(solved, smooth);
+      const double rms = solved.solution.heldOutRms;
+      if (!out.best || rms < kGain * out.best->solution.heldOutRms)
+        out.best = std::move(solved);
+      else if (rms > 4 * out.best->solution.heldOutRms)
+        break;
+    } catch (const DataError&) {
+      continue;  // no room at this distance
+    }
+  }
+  return out;
+}
+
+const Trial& Fitting::trial(bool smooth) {
+  if (!trialOf_[smooth]) trialOf_[smooth] = makeTrial(smooth);
+  return *trialOf_[smooth];
+}
+
+bool Fitting::chooseSmooth() {
+  if (settings_.interpolation != Interpolation::automatic)
+    return settings_.interpolation == Interpolation::smooth;
+  const BoundaryData& vertices = problem_.vertices;
+  if (vertices.points.size() < kFewestVertices || vertices.heldOut.empty()) return false;
+  const Trial &linear = trial(false), &smooth = trial(true);
+  if (!smooth.best) return false;
+  if (!linear.best) return true;
+  const HarmonicField field(linear.best->sources, linear.best->solution.weights,
+                            linear.best->solution.affine);
+  const double linearRms =
+      measureBoundaryError(field, vertices.heldOut, vertices.heldOutValues, 1, settings_.progress)
+          .rms;
+  return smooth.best->solution.heldOutRms < kSmoothGain * linearRms;
 }
 
 // The one or two distances worth a fit with all sources. The best distance in a trial with fewer
 // sources stays best as a length when the values are smooth, and in spacings when they are rough;
 // where the trial leaves that open, both are returned.
-std::vector<double> Fitting::chooseDistances() {
-  const std::size_t few = std::max<std::size_t>(1, std::min(kTrialSources, settings_.sources / 2));
-  const double start = nearest(few), atLeast = nearest(settings_.sources);
-  double best = 0, bestRms = 0;
-  const int steps = std::max(0, static_cast<int>(std::ceil(std::log2(kFarthest / start))));
-  for (int step = 0; step <= steps; ++step) {
-    const double d = step == 0 ? start : start * std::pow(kFarthest / start, 1.0 * step / steps);
-    reportProgress(settings_.progress, "choosing the distance", step / (steps + 1.0));
-    try {
-      const Solved solved = solve(few, d);
-      const double rms = solved.solution.heldOutRms;
-      trials_.push_back({solved.sources.size(), d, rms});
-      if (best == 0 || rms < kGain * bestRms) {
-        best = d;
-        bestRms = rms;
-      } else if (rms > 4 * bestRms) {
-        break;
-      }
-    } catch (const DataError&) {
-      continue;  // no room at this distance
-    }
-  }
-  if (best == 0 || best <= start) return {atLeast};
-  const double scaled = std::max(atLeast, best * atLeast / start);
+std::vector<double> Fitting::distancesFor(bool smooth, std::size_t count) {
+  if (settings_.distance) return {*settings_.distance};
+  const Trial& tried = trial(smooth);
+  const double atLeast = nearest(count);
+  if (!tried.best || tried.best->distance <= tried.nearest) return {atLeast};
+  const double best = tried.best->distance,
+               scaled = std::max(atLeast, best * atLeast / tried.nearest);
   if (scaled > 0.8 * best) return {best};
   return {scaled, best};
 }

@@ -2,8 +2,8 @@
 // points, then their weights are solved for.
 //
 // Smooth boundary values want the charges far from the boundary, where few of them resolve much;
-// values with kinks want them at one to two spacings. So unless a distance is given, some are tried
-// with few charges first: from 1.25 spacings, about
+// values with kinks want them at about one spacing. So unless a distance is given, some are tried
+// with few charges first: from 0.8 spacings, about
 // doubling, up to half the diagonal; a farther one must lower the error by a fifth.
 #pragma once
 
@@ -20,21 +20,32 @@
 
 namespace innermap {
 
-struct FitProblem {
-  // Boundary points in random order (any first part of them covers the boundary evenly) and the
-  // values there: #collocation x #K and #heldOut x #K.
-  Points collocation, heldOut;
+// Points in random order: any first part of them covers the boundary evenly. values: #points x #K.
+struct BoundaryData {
+  Points points, heldOut;
   Matrix values, heldOutValues;
-  double diagonal = 0;  // of the solid, world units: the unit of distances
-  double area = 0;      // of the boundary, world units squared
-  // Gives about `count` source points at `distance` (fraction of the diagonal) from the boundary;
-  // throws DataError where there is no room for any.
+};
+
+struct FitProblem {
+  BoundaryData surface;   // anywhere on the boundary, values linear between the mesh's vertices
+  BoundaryData vertices;  // the mesh's vertices alone; may be empty
+  double diagonal = 0;    // of the solid, world units: the unit of distances
+  double area = 0;        // of the boundary, world units squared
+  // Gives `count` source points at `distance` (fraction of the diagonal) from the boundary; throws
+  // DataError where there is no room for any.
   std::function<Points(std::size_t count, double distance)> placeSources;
 };
+
+// What the boundary values are between a mesh's vertices. Linear: what the triangles say, kinks at
+// the edges included. Smooth: the vertices sample a smooth deformation, and the fit passes through
+// them alone; far more exact inside when that is so. Automatic: smooth when it predicts held-out
+// vertices at least four times as well.
+enum class Interpolation { automatic, linear, smooth };
 
 struct FitSettings {
   std::size_t sources = 2000;      // in [1, 20000]
   std::optional<double> distance;  // fraction of the diagonal, in [1e-4, 2]; chosen when absent
+  Interpolation interpolation = Interpolation::automatic;
   Regularization method = Regularization::tikhonov;
   std::optional<double> regularization;  // relative, in [0, 1]; chosen when absent
   std::uint64_t maxMemory = 0;           // bytes; 0 means no limit
@@ -44,6 +55,7 @@ struct FitSettings {
 struct DistanceTrial {
   std::size_t sources = 0;
   double distance = 0;    // fraction of the diagonal
+  bool smooth = false;    // fitted to the vertices
   double heldOutRms = 0;  // in the values' units
 };
 
@@ -51,6 +63,7 @@ struct FitResult {
   HarmonicField field;
   DenseSolution solution;
   double distance = 0;
+  bool smooth = false;  // fitted to the vertices; then with at most half as many sources as those
   std::vector<DistanceTrial> trials;  // empty when the distance was given
 };
 

@@ -14,7 +14,7 @@ TEST(Fit, SmoothValuesChooseAFarShell) {
   FitSettings s;
   s.sources = 400;
   const FitResult r = fitField(p, s);
-  // The nearest shell is at 1.25 sqrt(4 pi / 400) / sqrt(12) = 0.064.
+  // The nearest shell is at 0.8 sqrt(4 pi / 400) / sqrt(12) = 0.041.
   EXPECT_GT(r.distance, 0.2);
   EXPECT_GE(r.trials.size(), 3u);
   const Points fresh = testing::spherePoints(5000, 1, 0.3);
@@ -29,8 +29,8 @@ TEST(Fit, KinkedValuesChooseANearShell) {
     for (std::size_t i = 0; i < points.size(); ++i)
       v(i, 0) += std::abs(std::sin(5 * points[i].x)) + std::abs(std::sin(5 * points[i].y));
   };
-  kink(p.collocation, p.values);
-  kink(p.heldOut, p.heldOutValues);
+  kink(p.surface.points, p.surface.values);
+  kink(p.surface.heldOut, p.surface.heldOutValues);
   FitSettings s;
   s.sources = 800;
   EXPECT_LT(fitField(p, s).distance, 0.1);
@@ -57,6 +57,57 @@ TEST(Fit, DistancesWithoutRoomArePassedOver) {
   FitSettings s;
   s.sources = 400;
   EXPECT_LE(fitField(p, s).distance, 0.15);
+}
+
+// Values at the vertices from a smooth function, between them off by 1e-3.
+FitProblem sampledProblem() {
+  FitProblem p = testing::ballProblem(1600);
+  p.vertices = p.surface;
+  const CounterRandom random(3, 3);
+  const auto disturb = [&](Matrix& v, std::uint64_t stream) {
+    for (std::size_t i = 0; i < v.rows() * v.columns(); ++i)
+      v.data()[i] += 1e-3 * (random.uniform(2 * i + stream) - 0.5);
+  };
+  disturb(p.surface.values, 0);
+  disturb(p.surface.heldOutValues, 1);
+  return p;
+}
+
+TEST(Fit, SmoothSamplesAreFittedAtTheVertices) {
+  const FitProblem p = sampledProblem();
+  FitSettings s;
+  s.sources = 400;
+  const FitResult r = fitField(p, s);
+  EXPECT_TRUE(r.smooth);
+  const Points inside = testing::spherePoints(500, 0.7, 0.3);
+  EXPECT_LT(measureBoundaryError(r.field, inside, testing::harmonicMapValues(inside), 1).max, 1e-7);
+  s.interpolation = Interpolation::linear;
+  const FitResult linear = fitField(p, s);
+  EXPECT_FALSE(linear.smooth);
+  EXPECT_GT(measureBoundaryError(linear.field, inside, testing::harmonicMapValues(inside), 1).max,
+            1e-6);
+}
+
+TEST(Fit, RoughVerticesStayLinear) {
+  FitProblem p = sampledProblem();
+  p.vertices.values = p.surface.values;
+  p.vertices.heldOutValues = p.surface.heldOutValues;
+  FitSettings s;
+  s.sources = 400;
+  EXPECT_FALSE(fitField(p, s).smooth);
+}
+
+TEST(Fit, FewVerticesTakeFewerSources) {
+  FitProblem p = sampledProblem();
+  p.vertices.points.resize(300);
+  Matrix values(300, 3);
+  for (std::size_t k = 0; k < 3; ++k)
+    std::copy_n(p.vertices.values.column(k), 300, values.column(k));
+  p.vertices.values = values;
+  FitSettings s;
+  s.sources = 400;
+  s.interpolation = Interpolation::smooth;
+  EXPECT_EQ(fitField(p, s).field.sources().size(), 150u);
 }
 
 TEST(Fit, RefusesBadSettings) {

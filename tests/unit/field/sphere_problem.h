@@ -19,11 +19,11 @@ inline Matrix harmonicMapValues(const Points& points) {
 
 inline FitProblem ballProblem(std::size_t collocation) {
   FitProblem p;
-  p.collocation = randomPoints(collocation, 1);
-  for (Vec3& q : p.collocation) q = q / norm(q);
-  p.heldOut = spherePoints(400, 1, 2);
-  p.values = harmonicMapValues(p.collocation);
-  p.heldOutValues = harmonicMapValues(p.heldOut);
+  p.surface.points = randomPoints(collocation, 1);
+  for (Vec3& q : p.surface.points) q = q / norm(q);
+  p.surface.heldOut = spherePoints(400, 1, 2);
+  p.surface.values = harmonicMapValues(p.surface.points);
+  p.surface.heldOutValues = harmonicMapValues(p.surface.heldOut);
   p.diagonal = std::sqrt(12.0);
   p.area = 4 * M_PI;
   p.placeSources = [](std::size_t count, double distance) {
