@@ -16,7 +16,8 @@ namespace innermap {
 namespace {
 
 constexpr Rgb kPaper{1, 1, 1}, kOutside{0.93f, 0.93f, 0.935f}, kInk{0.13f, 0.14f, 0.16f},
-    kFaint{0.42f, 0.44f, 0.47f}, kOutline{0.2f, 0.21f, 0.24f}, kBroken{0, 0, 0};
+    kFaint{0.42f, 0.44f, 0.47f}, kOutline{0.2f, 0.21f, 0.24f}, kBroken{0, 0, 0},
+    kNoVoxel{0.76f, 0.77f, 0.78f};
 constexpr int kMargin = 28, kTitle = 78, kFooter = 22, kBarGap = 26, kBarWidth = 26, kLabels = 120,
               kSubsamples = 3;
 
@@ -148,10 +149,11 @@ struct Sampler {
     return weight >= 0.5f;
   }
 
-  float value(double x, double y) const {
+  // None where no voxel is active.
+  std::optional<float> value(double x, double y) const {
     float weight = 0;
     const float v = at(cut.shown.values, &cut.shown.weights, x, y, &weight);
-    return weight > 0 ? v : std::numeric_limits<float>::quiet_NaN();
+    return weight > 0 ? std::optional<float>(v) : std::nullopt;
   }
 };
 
@@ -223,8 +225,10 @@ Rgb pixelColour(const Sampler& sampler, const SectionResult& r, double x, double
     const double sy = y + dy * ((k / kSubsamples + 0.5) / kSubsamples - 0.5);
     Rgb colour = kOutside;
     if (sampler.inside(sx, sy)) {
-      const double v = sampler.value(sx, sy);
-      colour = std::isfinite(v) ? rampColour((v - r.lower) / (r.upper - r.lower)) : kBroken;
+      const std::optional<float> v = sampler.value(sx, sy);
+      colour = !v                  ? kNoVoxel
+               : std::isfinite(*v) ? rampColour((*v - r.lower) / (r.upper - r.lower))
+                                   : kBroken;
     }
     for (int c = 0; c < 3; ++c) sum[c] += colour[c] / (kSubsamples * kSubsamples);
   }

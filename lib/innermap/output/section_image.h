@@ -39,7 +39,8 @@ struct SectionResult {
 
 // Writes a PNG (8 bits, sRGB). The cut is interpolated between voxels, over active ones only. The
 // solid is where `surface` is negative, else where `density` is over one half, else where the grid
-// is active; outside it the picture is light grey. Values that are not finite are black.
+// is active; outside it the picture is light grey. Inside, voxels that are not active are grey and
+// values that are not finite black.
 // The file appears whole or not at all. Throws FileError, DataError (no such grid, nothing of the
 // solid in the cut), SettingError, MemoryError, Cancelled.
 SectionResult writeSectionImage(const std::string& path, const openvdb::GridPtrVec& grids,

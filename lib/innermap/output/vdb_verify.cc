@@ -136,15 +136,22 @@ class Verifier {
     }
   }
 
-  // Sizes of the leaves' blocks, by which OpenVDB skips them when it loads lazily.
+  // What OpenVDB keeps of each leaf to load it lazily: a byte, and the length of its block.
   void delayedLoad(std::uint64_t end) {
+    if (position() == end) return;
     delayedLeaves_ = read<std::uint32_t>();
-    for (int part = 0; part < 2 && position() + 4 <= end; ++part) {
+    for (const std::uint64_t valueSize : {1, 8}) {
       const auto bytes = read<std::uint32_t>();
-      const std::uint64_t raw = std::uint64_t(delayedLeaves_) * (part == 0 ? 1 : 8);
-      const std::uint64_t stored = bytes == ~std::uint32_t(0) ? raw : bytes;
-      if (stored > end - position()) damaged("its table of leaves is longer than it says");
-      skip(stored);
+      if (valueSize == 8 && bytes == ~std::uint32_t(0)) continue;  // no lengths are kept
+      const std::uint64_t raw = valueSize * delayedLeaves_;
+      const std::uint64_t stored = bytes ? bytes : raw;
+      if (position() > end || stored > end - position())
+        damaged("its table of leaves is longer than it says");
+      // Small tables are padded before they are compressed.
+      if (bytes)
+        bloscBlock(stored, raw, raw + 128);
+      else
+        skip(stored);
     }
   }
 
@@ -200,7 +207,7 @@ class Verifier {
 
   void tree(std::int64_t blockPosition) {
     leaves_ = 0;
-    memory_ = 0;
+    memory_ = 2000;  // the tree itself
     origins_.clear();
     if (read<std::int32_t>() != 1) damaged("a tree has several buffers");
     skip(type_.size);  // background
@@ -245,7 +252,8 @@ class Verifier {
     const Mask<kCount> children = mask<kCount>(), values = mask<kCount>();
     if ((children & values).any()) damaged("a node has both a child and a value in one place");
     compressedValues<kCount>(values);
-    memory_ += kCount * std::max<std::uint64_t>(8, type_.size) + 2 * kCount / 8 + 64;
+    // A place holds a value or a pointer.
+    memory_ += kCount * ((type_.size + 7) / 8 * 8) + 2 * kCount / 8 + 64;
     constexpr int kChildLog = kLog == 5 ? 7 : 3;  // voxels along a child's side
     for (std::size_t i = 0; i < kCount; ++i) {
       if (!children[i]) continue;
@@ -299,15 +307,19 @@ class Verifier {
         damaged("a block has the wrong length");
       return skip(bytes);
     }
-    const std::uint64_t end = position() + static_cast<std::uint64_t>(stored);
-    if (static_cast<std::uint64_t>(stored) > size_ - position())
-      damaged("a block is longer than the file");
-    if (compression_ & kBlosc) {
-      if (stored < 16) damaged("a block is too short");
-      const auto head = read<std::array<std::uint32_t, 4>>();
-      if (head[3] != stored || head[1] != bytes) damaged("a block has the wrong length");
-    }
-    stream_.seekg(static_cast<std::streamoff>(end));
+    if (compression_ & kBlosc)
+      bloscBlock(static_cast<std::uint64_t>(stored), bytes, bytes);
+    else
+      skip(static_cast<std::uint64_t>(stored));
+  }
+
+  // Blosc's header gives the lengths again, and its decoder believes them.
+  void bloscBlock(std::uint64_t stored, std::uint64_t least, std::uint64_t most) {
+    if (stored < 16 || stored > size_ - position()) damaged("a block has the wrong length");
+    const auto head = read<std::array<std::uint32_t, 4>>();
+    if (head[3] != stored || head[1] < least || head[1] > most)
+      damaged("a block has the wrong length");
+    skip(stored - sizeof(head));
   }
 
   const std::string& path_;

@@ -1,0 +1,76 @@
+// Temporary files and small grids for the tests of output/.
+#pragma once
+
+#include <openvdb/openvdb.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace innermap::test {
+
+// A folder of its own that goes with the object.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "innermap-XXXXXX").string();
+    path_ = mkdtemp(pattern.data());
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+  std::size_t count() const {
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), {}));
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string contents(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+inline void write(const std::string& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+// Level set of a ball about `centre` (index space), half width 3.
+inline openvdb::FloatGrid::Ptr ball(double radius, openvdb::Vec3d centre, double voxel) {
+  auto grid = openvdb::FloatGrid::create(static_cast<float>(3 * voxel));
+  grid->setName("surface");
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel));
+  const int reach = static_cast<int>(radius) + 4;
+  auto accessor = grid->getAccessor();
+  const openvdb::Coord middle = openvdb::Coord::round(centre);
+  for (int i = -reach; i <= reach; ++i)
+    for (int j = -reach; j <= reach; ++j)
+      for (int k = -reach; k <= reach; ++k) {
+        const openvdb::Coord at = middle.offsetBy(i, j, k);
+        const double d = (at.asVec3d() - centre).length() - radius;
+        if (std::abs(d) < 3)
+          accessor.setValue(at, static_cast<float>(d * voxel));
+        else if (d < 0)
+          accessor.setValueOff(at, static_cast<float>(-3 * voxel));
+      }
+  return grid;
+}
+
+// A grid of any type whose value at (x, y, z) is fill(x, y, z) within a block.
+template <class Grid, class Fill>
+typename Grid::Ptr block(const std::string& name, openvdb::CoordBBox box, const Fill& fill,
+                         double voxel = 1) {
+  auto grid = Grid::create();
+  grid->setName(name);
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel));
+  auto accessor = grid->getAccessor();
+  for (auto at = box.begin(); at != box.end(); ++at) accessor.setValue(*at, fill(*at));
+  return grid;
+}
+
+}  // namespace innermap::test
