@@ -63,6 +63,7 @@ CLI::Option* declare(CLI::App& app, Given& given) {
         names, [&given](const std::string& text) { given.values = {text}; });
   return app.add_option(names, given.values)
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 

@@ -1,0 +1,158 @@
+"""What the command-line tests share: running innermap, small meshes, checks.
+
+A test is a script with functions named test_*; run(globals()) calls them all, prints what fails and
+ends with exit code 1 if anything did. Each function gets a temporary folder of its own as working
+directory. Standard library only.
+"""
+
+import json
+import math
+import os
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import traceback
+from pathlib import Path
+
+PROGRAM = os.environ.get("INNERMAP", "innermap")
+ROOT = Path(os.environ.get("INNERMAP_ROOT", Path(__file__).resolve().parents[2]))
+MODELS = ROOT.parent / "shared" / "models"
+
+
+class Skip(Exception):
+    """Raised by a test that cannot run here."""
+
+
+def innermap(*arguments, exit_code=0, **options):
+    """Runs innermap; checks the exit code, and that a failure is one line on stderr."""
+    done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
+                          timeout=options.pop("timeout", 300), **options)
+    said = f"innermap {' '.join(map(str, arguments))}\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
+    assert done.returncode == exit_code, f"exit code {done.returncode}, not {exit_code}: {said}"
+    if exit_code:
+        assert error_line(done), said
+        assert done.stderr.endswith("\n"), said
+    return done
+
+
+def error_line(done):
+    """The one line that says why; progress and notes may stand before it."""
+    lines = [line for line in done.stderr.split("\n") if line]
+    return lines[-1] if lines and lines[-1].startswith("innermap: ") else ""
+
+
+def fails(exit_code, *arguments, says=(), **options):
+    """Runs innermap, which must fail with one line that holds all of `says`; nothing is written."""
+    before = set(os.listdir("."))
+    done = innermap(*arguments, exit_code=exit_code, **options)
+    line = error_line(done)
+    for text in says:
+        assert text in line, f"'{text}' is not in: {line}"
+    assert set(os.listdir(".")) == before, f"left behind: {set(os.listdir('.')) - before}"
+    return line
+
+
+def no_leftovers(*allowed):
+    """Nothing but `allowed` stands in the folder: no temporary file was left."""
+    extra = set(os.listdir(".")) - set(allowed)
+    assert not extra, f"left behind: {extra}"
+
+
+def file_size_limit(size):
+    """For preexec_fn: files may not grow over `size` bytes, like a disk that is full."""
+    return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+
+def interrupt(*arguments, after, number=signal.SIGINT):
+    """Starts innermap, signals it `after` seconds later; (exit code, seconds it took to end)."""
+    process = subprocess.Popen([PROGRAM, *map(str, arguments)], stdout=subprocess.PIPE,
+                               stderr=subprocess.PIPE, text=True)
+    time.sleep(after)
+    if process.poll() is not None:
+        process.communicate()
+        return None, 0.0
+    start = time.monotonic()
+    process.send_signal(number)
+    try:
+        process.communicate(timeout=30)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.communicate()
+        raise
+    return process.returncode, time.monotonic() - start
+
+
+def write_obj(path, vertices, faces):
+    with open(path, "w", encoding="ascii") as file:
+        for v in vertices:
+            file.write("v {:.17g} {:.17g} {:.17g}\n".format(*v))
+        for f in faces:
+            file.write("f " + " ".join(str(i + 1) for i in f) + "\n")
+    return path
+
+
+def cube(path="cube.obj", size=1.0, origin=(0.0, 0.0, 0.0)):
+    vertices = [tuple(o + size * c for o, c in zip(origin, (i & 1, i >> 1 & 1, i >> 2)))
+                for i in range(8)]
+    faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    return write_obj(path, vertices, faces)
+
+
+def icosphere_arrays(subdivisions=2, radius=1.0):
+    t = (1 + math.sqrt(5)) / 2
+    vertices = [(-1, t, 0), (1, t, 0), (-1, -t, 0), (1, -t, 0), (0, -1, t), (0, 1, t), (0, -1, -t),
+                (0, 1, -t), (t, 0, -1), (t, 0, 1), (-t, 0, -1), (-t, 0, 1)]
+    faces = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4),
+             (11, 10, 2), (10, 7, 6), (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8),
+             (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1)]
+    for _ in range(subdivisions):
+        middles, finer = {}, []
+
+        def middle(a, b):
+            key = (min(a, b), max(a, b))
+            if key not in middles:
+                middles[key] = len(vertices)
+                vertices.append(tuple((x + y) / 2 for x, y in zip(vertices[a], vertices[b])))
+            return middles[key]
+
+        for a, b, c in faces:
+            ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
+            finer += [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
+        faces = finer
+    scale = [radius / math.sqrt(sum(x * x for x in v)) for v in vertices]
+    return [tuple(s * x for x in v) for s, v in zip(scale, vertices)], faces
+
+
+def icosphere(path="ball.obj", subdivisions=2, radius=1.0):
+    return write_obj(path, *icosphere_arrays(subdivisions, radius))
+
+
+def read_json(path):
+    with open(path, encoding="utf-8") as file:
+        return json.load(file)
+
+
+def run(names):
+    """Runs the test_* functions of a script."""
+    failed = skipped = 0
+    tests = [(name, test) for name, test in names.items() if name.startswith("test_")]
+    for name, test in tests:
+        start, home = time.monotonic(), os.getcwd()
+        with tempfile.TemporaryDirectory(prefix="innermap-") as folder:
+            os.chdir(folder)
+            try:
+                test()
+                result = "ok"
+            except Skip as reason:
+                skipped += 1
+                result = f"skipped: {reason}"
+            except Exception:  # pylint: disable=broad-except
+                failed += 1
+                result = "FAILED\n" + traceback.format_exc()
+            finally:
+                os.chdir(home)
+        print(f"{name}: {result} ({time.monotonic() - start:.1f} s)", flush=True)
+    sys.exit(1 if failed else 77 if skipped == len(tests) else 0)

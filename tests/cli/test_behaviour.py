@@ -1,0 +1,143 @@
+#!/usr/bin/env python3
+"""What holds for every command: quiet, dry run, report, limits, full disks, cancelling."""
+
+import os
+import signal
+import subprocess
+
+import cli
+from cli import cube, fails, file_size_limit, icosphere, innermap, interrupt, no_leftovers
+
+
+def test_quiet_says_nothing_and_progress_is_plain_lines():
+    cube()
+    done = innermap("voxelize", "cube.obj", "-o", "a.vdb", "--resolution", "16", "--quiet")
+    assert done.stdout == "" and done.stderr == "", done
+    done = innermap("voxelize", "cube.obj", "-o", "a.vdb", "--resolution", "16")
+    assert done.stdout == ""
+    assert done.stderr and "\r" not in done.stderr and "\x1b" not in done.stderr
+    stages = done.stderr.strip().split("\n")
+    assert len(set(stages)) == len(stages), stages
+
+
+def test_progress_is_a_bar_on_a_terminal():
+    cube()
+    try:
+        import pty
+        primary, secondary = pty.openpty()
+    except (ImportError, OSError) as error:
+        raise cli.Skip(f"no terminal here: {error}")
+    environment = dict(os.environ, TERM="xterm")
+    subprocess.run([cli.PROGRAM, "voxelize", "cube.obj", "-o", "a.vdb", "--resolution", "16"],
+                   stderr=secondary, stdout=subprocess.DEVNULL, env=environment, check=True)
+    os.close(secondary)
+    text = os.read(primary, 100000).decode()
+    os.close(primary)
+    assert "\r" in text and "%" in text
+    assert text.endswith("\r\x1b[K"), "the bar is not taken away"
+
+
+def test_dry_run_writes_nothing_and_tells_the_memory():
+    cube()
+    before = set(os.listdir("."))
+    for command in [["voxelize", "cube.obj", "-o", "a.vdb"], ["check", "cube.obj"],
+                    ["info", "cube.obj"]]:
+        done = innermap(*command, "--dry-run", "--report", "r.json")
+        assert "memory: about" in done.stdout, done.stdout
+        assert set(os.listdir(".")) == before
+    innermap("voxelize", "cube.obj", "-o", "a.vdb", "--resolution", "16")
+    done = innermap("slice", "a.vdb", "-o", "s.exr", "--section", "p.png", "--dry-run")
+    assert "s.exr" in done.stdout and "p.png" in done.stdout
+    no_leftovers("cube.obj", "a.vdb")
+
+
+def test_report_holds_times_and_memory():
+    cube()
+    innermap("voxelize", "cube.obj", "-o", "a.vdb", "--resolution", "16", "--report", "r.json")
+    report = cli.read_json("r.json")
+    assert report["command"] == "voxelize"
+    assert report["source"]["triangles"] == 12
+    assert abs(report["source"]["volume"] - 1) < 1e-9
+    assert report["grid"]["active_voxels"] > 0
+    assert all(s >= 0 for s in report["seconds"].values()) and "write" in report["seconds"]
+    assert report["peak_memory_bytes"] > 1e6
+
+
+def test_too_much_memory_is_refused_before_it_is_used():
+    icosphere()
+    fails(1, "voxelize", "ball.obj", "-o", "a.vdb", "--resolution", "2000", "--max-memory", "50MB",
+          says=["memory", "--voxel-size"])
+
+
+def test_outputs_that_cannot_be_written():
+    cube()
+    os.mkdir("folder")
+    for path in ["missing/a.vdb", "folder"]:
+        line = fails(1, "voxelize", "cube.obj", "-o", path)
+        assert path.split("/")[0] in line
+    fails(1, "check", "cube.obj", "--report", "missing/r.json", says=["missing/r.json"])
+    innermap("voxelize", "cube.obj", "-o", "a.vdb", "--resolution", "16", "--quiet")
+    fails(1, "slice", "a.vdb", "-o", "missing/s.exr", says=["missing/s.exr"])
+    fails(1, "slice", "a.vdb", "--section", "missing/p.png", says=["missing/p.png"])
+    if os.geteuid() != 0:
+        os.chmod("folder", 0o500)
+        fails(1, "voxelize", "cube.obj", "-o", "folder/a.vdb", says=["folder/a.vdb", "writable"])
+
+
+def test_full_disk():
+    icosphere()
+    for size in [0, 1000, 20000]:
+        fails(1, "voxelize", "ball.obj", "-o", "a.vdb", "--resolution", "64", says=["a.vdb"],
+              preexec_fn=file_size_limit(size))
+    innermap("voxelize", "ball.obj", "-o", "a.vdb", "--resolution", "64", "--quiet")
+    for size in [0, 1000, 20000]:
+        fails(1, "slice", "a.vdb", "-o", "s.exr", says=["s.exr"], preexec_fn=file_size_limit(size))
+        fails(1, "slice", "a.vdb", "--section", "p.png", says=["p.png"],
+              preexec_fn=file_size_limit(size))
+    if os.path.exists("/dev/full"):
+        with open("/dev/full", "w", encoding="ascii") as full:
+            done = subprocess.run([cli.PROGRAM, "check", "ball.obj"], stdout=full,
+                                  stderr=subprocess.PIPE, text=True)
+        assert done.returncode == 1 and "standard output" in done.stderr, done
+
+
+def test_a_failure_keeps_the_file_that_was_there():
+    icosphere()
+    innermap("voxelize", "ball.obj", "-o", "a.vdb", "--resolution", "20", "--quiet")
+    with open("a.vdb", "rb") as file:
+        before = file.read()
+    fails(1, "voxelize", "ball.obj", "-o", "a.vdb", "--resolution", "64",
+          preexec_fn=file_size_limit(20000))
+    with open("a.vdb", "rb") as file:
+        assert file.read() == before
+
+
+def test_signals_stop_within_a_second_and_leave_nothing():
+    icosphere(subdivisions=6)
+    caught = 0
+    for after, number in [(0.05, signal.SIGINT), (0.5, signal.SIGINT), (1.5, signal.SIGTERM),
+                          (2.5, signal.SIGINT)]:
+        code, seconds = interrupt("voxelize", "ball.obj", "-o", "a.vdb", "--resolution", "1500",
+                                  "--half-width", "10", "--fog", after=after, number=number)
+        if code is None:
+            os.path.exists("a.vdb") and os.remove("a.vdb")
+            continue
+        # Before main() installs its handlers a signal just kills, which leaves nothing either.
+        assert code == 130 or (after < 0.1 and code == -number), code
+        assert seconds < 1.0, seconds
+        no_leftovers("ball.obj")
+        caught += 1
+    assert caught >= 2, "the run was too short to be interrupted"
+
+
+def test_broken_pipe_is_an_error_not_a_crash():
+    icosphere()
+    process = subprocess.Popen([cli.PROGRAM, "check", "ball.obj", "--json"],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    process.stdout.close()
+    process.stderr.read()
+    process.stderr.close()
+    assert process.wait(60) in (0, 1)
+
+
+cli.run(globals())

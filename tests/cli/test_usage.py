@@ -1,0 +1,107 @@
+#!/usr/bin/env python3
+"""Exit codes, help, mistyped commands and options, values that are refused."""
+
+import re
+
+import cli
+from cli import cube, fails, innermap
+
+COMMANDS = ["check", "voxelize", "slice", "info", "help", "map", "fit", "evaluate"]
+
+
+def test_version_is_the_projects():
+    text = (cli.ROOT / "CMakeLists.txt").read_text()
+    version = re.search(r"project\(innermap VERSION ([0-9.]+)", text).group(1)
+    assert innermap("--version").stdout == f"innermap {version}\n"
+
+
+def test_help_lists_every_command():
+    text = innermap("--help").stdout
+    assert innermap("help").stdout == text
+    for command in COMMANDS:
+        assert re.search(rf"^  {command} ", text, re.M), command
+
+
+def test_each_command_has_help_with_an_example_and_the_common_options():
+    for command in COMMANDS:
+        text = innermap(command, "--help").stdout
+        assert innermap("help", command).stdout == text
+        assert f"usage: innermap {command}" in text
+        assert "example:" in text
+        for option in ["--threads", "--max-memory", "--dry-run", "--report", "--quiet", "--help"]:
+            assert option in text, (command, option)
+        assert max(map(len, text.split("\n"))) <= 100, command
+
+
+def test_help_shows_units_ranges_and_defaults():
+    text = " ".join(innermap("voxelize", "--help").stdout.split())
+    assert "[world units; above 0; default: from --resolution]" in text
+    assert "[from 4 to 4096; default: 128]" in text
+    assert "[innermap, blender, houdini; default: innermap]" in text
+
+
+def test_markdown_has_every_option():
+    text = innermap("help", "--markdown").stdout
+    for command in COMMANDS:
+        assert f"### innermap {command}\n" in text
+    for option in ["--voxel-size LENGTH", "--axis AXIS", "--threads N"]:
+        assert f"{option}`" in text, option
+
+
+def test_mistyped_commands_and_options():
+    cube()
+    fails(2, says=["no command"])
+    fails(2, "voxelise", says=["'voxelise'", "did you mean voxelize?"])
+    fails(2, "chekc", "cube.obj", says=["did you mean check?"])
+    fails(2, "frobnicate", says=["unknown command", "innermap --help"])
+    fails(2, "--qiet", says=["'--qiet'"])
+    fails(2, "voxelize", "cube.obj", "-o", "a.vdb", "--resoluton", "20",
+          says=["'--resoluton'", "did you mean --resolution?"])
+    fails(2, "voxelize", "cube.obj", "-o", "a.vdb", "--voxelsize=0.1",
+          says=["'--voxelsize'", "did you mean --voxel-size?"])
+    fails(2, "voxelize", "cube.obj", "-o", "a.vdb", "--names", "blendr",
+          says=["--names", "did you mean blender?"])
+    fails(2, "help", "slcie", says=["did you mean slice?"])
+
+
+def test_missing_and_surplus_arguments():
+    cube()
+    fails(2, "check", says=["MESH"])
+    fails(2, "voxelize", "cube.obj", says=["--output"])
+    fails(2, "voxelize", "cube.obj", "-o", says=["-o", "value"])
+    fails(2, "voxelize", "cube.obj", "-o", "--fog", says=["--output", "value"])
+    fails(2, "check", "cube.obj", "more.obj", says=["'more.obj'"])
+    fails(2, "voxelize", "cube.obj", "-o", "a.vdb", "-o", "b.vdb", says=["more than once"])
+    fails(2, "slice", "a.vdb", says=["--output", "--section"])
+
+
+def test_values_that_are_not_numbers():
+    cube()
+    for value in ["abc", "1x", "", "nan", "inf", "1e", "0x10", " 1", "1,5", "--5", "+1"]:
+        line = fails(2, "voxelize", "cube.obj", "-o", "a.vdb", "--voxel-size", value)
+        assert "--voxel-size" in line, line
+    for value in ["1.5", "abc", "1e3", "-"]:
+        line = fails(2, "voxelize", "cube.obj", "-o", "a.vdb", "--resolution", value)
+        assert "--resolution" in line, line
+    line = fails(2, "slice", "a.vdb", "--section", "p.png", "--range", "3")
+    assert "--range" in line, line
+
+
+def test_values_out_of_range():
+    cube()
+    for option, value in [("--voxel-size", "0"), ("--voxel-size", "-1"), ("--resolution", "3"),
+                          ("--resolution", "-5"), ("--half-width", "1"), ("--threads", "-1"),
+                          ("--voxel-size", "1e999"), ("--resolution", "99999999999999999999"),
+                          ("--max-memory", "0"), ("--max-memory", "many"),
+                          ("--max-memory", "-4GB")]:
+        line = fails(1, "voxelize", "cube.obj", "-o", "a.vdb", option, value)
+        assert option in line, line
+
+
+def test_values_may_follow_an_equals_sign():
+    cube()
+    innermap("voxelize", "cube.obj", "--output=a.vdb", "--resolution=12", "--quiet")
+    innermap("voxelize", "--resolution", "12", "-q", "-o", "b.vdb", "cube.obj")
+
+
+cli.run(globals())
