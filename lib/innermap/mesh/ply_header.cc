@@ -91,9 +91,10 @@ class HeaderReader {
     PlyElement element;
     element.name = std::string(words_[1]);
     for (const char c : words_[2]) {
-      if (c < '0' || c > '9' || element.count > (UINT64_MAX - 9) / 10)
+      const std::uint64_t digit = static_cast<std::uint64_t>(c - '0');
+      if (c < '0' || c > '9' || element.count > (UINT64_MAX - digit) / 10)
         fail(quoted(words_[2]) + " is not a number of elements");
-      element.count = element.count * 10 + static_cast<std::uint64_t>(c - '0');
+      element.count = element.count * 10 + digit;
     }
     header_.elements.push_back(std::move(element));
   }

@@ -6,7 +6,7 @@
 namespace innermap {
 namespace {
 
-constexpr int kMostCorners = 4096;  // ear clipping is quadratic
+constexpr int kMostCorners = 2048;  // ear clipping is quadratic
 constexpr double kFlat = 1e-10;     // sine under which a corner counts as straight
 
 double cross2(const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; }
@@ -77,6 +77,7 @@ class EarClipping {
       previous_[k] = (k + count - 1) % count;
     }
     current_ = first;
+    budget_ = 1000 + 8 * static_cast<long>(count) * count;
   }
 
   bool run(std::vector<Triangle>& triangles, Progress* progress) {
@@ -85,6 +86,7 @@ class EarClipping {
     while (left > 3) {
       throwIfCancelled(progress);
       if (!advanceToEar(left, false) && !advanceToEar(left, true)) return false;
+      if (budget_ < 0) return false;  // made to be slow
       triangles.push_back({previous_[current_], current_, next_[current_]});
       next_[previous_[current_]] = next_[current_];
       previous_[next_[current_]] = previous_[current_];
@@ -103,13 +105,14 @@ class EarClipping {
     return false;
   }
 
-  bool isEar(int corner, bool straightToo) const {
+  bool isEar(int corner, bool straightToo) {
     const int before = previous_[corner], after = next_[corner];
     const Vec2 &a = flat_[before], &b = flat_[corner], &c = flat_[after];
     const double sine = turn(a, b, c);
     if (sine < 0 || (sine == 0 && !straightToo)) return false;
     const auto same = [](const Vec2& p, const Vec2& q) { return p.x == q.x && p.y == q.y; };
     for (int k = next_[after]; k != before; k = next_[k]) {
+      if (--budget_ < 0) return false;
       const Vec2& p = flat_[k];
       if (same(p, a) || same(p, b) || same(p, c)) continue;  // bridges to holes run twice
       if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
@@ -120,6 +123,7 @@ class EarClipping {
   const std::vector<Vec2>& flat_;
   std::vector<int> next_, previous_;
   int current_ = 0;
+  long budget_ = 0;  // tests of a point against an ear
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace innermap {
 // triangles of local corner numbers [0, count). A triangle stays as it is; a convex polygon is cut
 // as a fan from its lowest vertex index; any other by ear clipping in its mean plane, which starts
 // at the lowest index too, so that the cut does not depend on where the file begins the polygon.
-// Where that fails (self-crossing or flat polygons, more than 4096 corners) the fan is taken.
+// Where that fails (self-crossing or flat polygons, more than 2048 corners) the fan is taken.
 void triangulatePolygon(const Points& vertices, const int* corners, int count,
                         std::vector<Triangle>& triangles, Progress* progress = nullptr);
 

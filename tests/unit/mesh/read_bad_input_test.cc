@@ -152,6 +152,15 @@ TEST(ReadBadInput, MissingFilesFoldersAndPipes) {
   EXPECT_NE(messageOf("").find("extension"), std::string::npos);
 }
 
+TEST(ReadBadInput, AFileLargerThanTheMemoryIsRefused) {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("huge.stl", "solid");
+  std::error_code error;
+  std::filesystem::resize_file(path, 8 * availableMemory(), error);  // sparse
+  if (error) GTEST_SKIP() << "no sparse files here: " << error.message();
+  EXPECT_THROW(readMesh(path), MemoryError);
+}
+
 std::string content(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};

@@ -81,6 +81,32 @@ TEST(Triangulate, StarAndFlatPolygonsFallBackToTheFan) {
   EXPECT_EQ(cut(point, {0, 1, 2, 3, 4, 5}).size(), 4u);
 }
 
+// A comb of many teeth and a spiral: simple, far from star-shaped.
+TEST(Triangulate, CombsAndSpirals) {
+  Points comb, spiral;
+  for (int k = 0; k < 300; ++k) comb.push_back({double(k), k % 2 ? 5.0 : 0.1, 0});
+  comb.push_back({299, -1, 0});
+  comb.push_back({0, -1, 0});
+  const auto turn = [](double r, double angle) {
+    return Vec3{r * std::cos(angle), r * std::sin(angle), 0};
+  };
+  for (int k = 0; k < 200; ++k) spiral.push_back(turn(1 + 0.02 * k, 0.2 * k));
+  for (int k = 199; k >= 0; --k) spiral.push_back(turn(0.8 + 0.02 * k, 0.2 * k));
+  for (Points polygon : {comb, spiral}) {
+    double area = 0, sum = 0;
+    const std::size_t count = polygon.size();
+    for (std::size_t k = 0; k < count; ++k) area += cross(polygon[k], polygon[(k + 1) % count]).z;
+    if (area < 0) std::reverse(polygon.begin(), polygon.end());
+    std::vector<int> corners(count);
+    std::iota(corners.begin(), corners.end(), 0);
+    for (const Triangle& t : cut(polygon, corners)) {
+      EXPECT_GE(area2(polygon, t), 0);
+      sum += area2(polygon, t);
+    }
+    EXPECT_NEAR(sum, std::abs(area), 1e-9);
+  }
+}
+
 TEST(Triangulate, HugePolygonIsQuick) {
   Points v;
   std::vector<int> corners;
