@@ -30,6 +30,8 @@ void fillReport(const MapGrids& grids, double voxelSize, const EvaluationOptions
   energy.harmonic = grids.harmonicTotal;
   energy.deformation = grids.deformationTotal;
   report.energy = energy;
+  report.set("energy.deformation_mean",
+             grids.volume > 0 ? grids.deformationTotal / grids.volume : 0.0);
   report.set("energy.lame_lambda", options.lame.lambda);
   report.set("energy.lame_mu", options.lame.mu);
   ReportJacobian jacobian;

@@ -35,8 +35,10 @@ int thinnestAxis(const Solid& solid) {
   return axis;
 }
 
-// The fraction along the axis whose layer cuts most of the solid.
-double fullestLayer(const openvdb::FloatGrid& density, int axis) {
+// The fraction along the axis of the layer nearest the middle that cuts nearly as much of the solid
+// as any does.
+double fullLayer(const openvdb::FloatGrid& density, int axis) {
+  constexpr double kNearly = 0.9;
   const openvdb::CoordBBox box = density.evalActiveVoxelBoundingBox();
   std::vector<double> filled(static_cast<std::size_t>(std::max(1, box.dim()[axis])), 0.0);
   for (auto value = density.cbeginValueOn(); value; ++value) {
@@ -46,8 +48,13 @@ double fullestLayer(const openvdb::FloatGrid& density, int axis) {
     for (int i = covered.min()[axis]; i <= covered.max()[axis]; ++i)
       filled[static_cast<std::size_t>(i - box.min()[axis])] += area;
   }
-  const auto fullest = std::max_element(filled.begin(), filled.end()) - filled.begin();
-  return (static_cast<double>(fullest) + 0.5) / static_cast<double>(filled.size());
+  const double enough = kNearly * *std::max_element(filled.begin(), filled.end());
+  double best = 0;
+  for (std::size_t i = 0; i < filled.size(); ++i) {
+    const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(filled.size());
+    if (filled[i] >= enough && std::abs(at - 0.5) < std::abs(best - 0.5)) best = at;
+  }
+  return best;
 }
 
 void writePictures(const openvdb::GridPtrVec& grids, const BoundaryPair& pair,
@@ -65,7 +72,7 @@ void writePictures(const openvdb::GridPtrVec& grids, const BoundaryPair& pair,
   section.at =
       options.sectionAt
           ? *options.sectionAt
-          : fullestLayer(*openvdb::gridConstPtrCast<openvdb::FloatGrid>(grids[1]), section.axis);
+          : fullLayer(*openvdb::gridConstPtrCast<openvdb::FloatGrid>(grids[1]), section.axis);
   section.maxMemory = context.maxMemory();
   section.progress = context.progress();
   writeSectionImage(folder.file("section.png"), grids, section);
@@ -124,7 +131,7 @@ Command makeMapCommand() {
   c.option("--section-at", "T", &o->sectionAt, "place of the section along its axis")
       .unit("fraction of the box")
       .range(0, 1)
-      .defaults("where it cuts most");
+      .defaults("near the middle, where it cuts most");
   c.example("innermap map rest.obj pose.obj -o out");
   c.example("innermap map rest.obj pose.obj -o out --sources 4000 --resolution 256");
   c.run([o](Context& context) { run(*o, context); });

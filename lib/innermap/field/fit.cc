@@ -147,7 +147,7 @@ Trial Fitting::makeTrial(bool smooth) {
       const double rms = solved.solution.heldOutRms;
       if (!out.best || rms < kGain * out.best->solution.heldOutRms)
         out.best = std::move(solved);
-      else if (rms > 4 * out.best->solution.heldOutRms)
+      else if (rms > 1.5 * out.best->solution.heldOutRms)
         break;
     } catch (const DataError&) {
       continue;  // no room at this distance
