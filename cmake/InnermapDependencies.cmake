@@ -10,7 +10,6 @@ find_dependency(TBB)
 find_dependency(OpenEXR)
 find_dependency(fmt)
 find_dependency(hwy)
-find_dependency(tinyobjloader)
 
 # OpenImageIO's own package asks for OpenCV's headers, which nothing here needs.
 if(NOT TARGET innermap_oiio)
