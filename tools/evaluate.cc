@@ -3,7 +3,6 @@
 
 #include "commands.h"
 #include "evaluation.h"
-#include "innermap/core/memory.h"
 
 namespace innermap::tool {
 namespace {
@@ -43,8 +42,7 @@ void run(const EvaluateOptions& options, Context& context) {
   const std::uint64_t need = evaluationMemory(pair.solid, options.evaluation);
   if (context.dryRun())
     return context.plan({"evaluate " + options.map, "write grids to " + options.output}, need);
-  requireMemory("evaluating " + options.map, need, context.maxMemory(),
-                "lower --resolution or raise --voxel-size (memory grows with the cube)");
+  requireEvaluationMemory(pair.solid, options.evaluation, context);
   const openvdb::GridPtrVec grids = evaluateGrids(pair, *file, options.evaluation, context);
   context.timed("write", [&] { writeGrids(options.output, grids, options.evaluation, context); });
   context.print(evaluationText(context.report()));

@@ -7,6 +7,7 @@
 #include "innermap/core/memory.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/output/vdb_file.h"
+#include "largest.h"
 
 namespace innermap::tool {
 namespace {
@@ -87,6 +88,21 @@ std::uint64_t evaluationMemory(const Solid& solid, const EvaluationOptions& opti
   // side. 25 bytes a voxel of values, 8 of fog and masks.
   const double voxels = solid.volume() / std::pow(voxel, 3) + 12 * solid.area() / (voxel * voxel);
   return levelSetMemory(solid, settings) + static_cast<std::uint64_t>(33 * voxels);
+}
+
+void requireEvaluationMemory(const Solid& solid, const EvaluationOptions& options,
+                             const Context& context) {
+  const auto fits = [&](std::uint64_t resolution) {
+    EvaluationOptions o = options;
+    o.voxelSize.reset();
+    o.resolution = static_cast<int>(resolution);
+    return evaluationMemory(solid, o) <= context.maxMemory();
+  };
+  const std::uint64_t most = largestThat(4, 4096, fits);
+  requireMemory("evaluating the map on a grid", evaluationMemory(solid, options),
+                context.maxMemory(),
+                most > 0 ? fmt::format("use --resolution {} or raise --max-memory", most)
+                         : "raise --max-memory");
 }
 
 openvdb::GridPtrVec evaluateGrids(const BoundaryPair& pair, const FieldFile& file,

@@ -26,6 +26,11 @@ void addEvaluationOptions(Command& command, EvaluationOptions& options);
 // Peak need in bytes, from the solid's volume and area.
 std::uint64_t evaluationMemory(const Solid& solid, const EvaluationOptions& options);
 
+// Throws MemoryError, with the highest --resolution that would fit, when the need is over the
+// limit.
+void requireEvaluationMemory(const Solid& solid, const EvaluationOptions& options,
+                             const Context& context);
+
 // Grids surface, density, map, jacobian, harmonic_energy, deformation_energy, with the map's
 // settings, its certificate and the totals in their metadata (prefix innermap_). Fills the report's
 // "energy", "jacobian" and "grid".

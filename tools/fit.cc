@@ -4,7 +4,6 @@
 #include "boundary_pair.h"
 #include "commands.h"
 #include "fitting.h"
-#include "innermap/core/memory.h"
 
 namespace innermap::tool {
 namespace {
@@ -24,8 +23,7 @@ void run(const FitOptions& options, Context& context) {
         {fmt::format("fit {} charges to {} boundary points", counts.sources, counts.collocation),
          "write the map to " + options.output},
         need);
-  requireMemory(fmt::format("fitting {} sources", counts.sources), need, context.maxMemory(),
-                "use fewer --sources (memory grows with their square) or raise --max-memory");
+  requireFittingMemory(counts, context);
   const Fitted fitted = fitMap(pair, options.fitting, context);
   context.timed("write", [&] { writeField(options.output, fitted.file); });
   context.print(fmt::format("boundary error: rms {:.2e}, 99% {:.2e}, max {:.2e} of the diagonal\n",

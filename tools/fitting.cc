@@ -11,6 +11,7 @@
 #include "innermap/output/version.h"
 #include "innermap/sample/source_points.h"
 #include "innermap/sample/surface_samples.h"
+#include "largest.h"
 
 namespace innermap::tool {
 namespace {
@@ -251,9 +252,27 @@ PointCounts pointCounts(const FittingOptions& o, std::size_t vertices) {
 }
 
 std::uint64_t fittingMemory(const PointCounts& counts) {
+  constexpr std::uint64_t kProgram = 64'000'000;  // with nothing loaded yet
   // Blue noise thins five candidates a point; each costs some 100 bytes.
-  return denseSolverMemory(counts.collocation, counts.sources, counts.heldOut) +
+  return kProgram + denseSolverMemory(counts.collocation, counts.sources, counts.heldOut) +
          500 * (counts.collocation + counts.sources) + 200 * kFreshSamples;
+}
+
+void requireFittingMemory(const PointCounts& counts, const Context& context) {
+  const double points =
+      static_cast<double>(counts.collocation) / static_cast<double>(counts.sources);
+  const auto fits = [&](std::uint64_t sources) {
+    PointCounts c;
+    c.sources = sources;
+    c.collocation = static_cast<std::size_t>(points * static_cast<double>(sources));
+    c.heldOut = counts.heldOut;
+    return fittingMemory(c) <= context.maxMemory();
+  };
+  const std::uint64_t most = largestThat(1, counts.sources, fits);
+  requireMemory(fmt::format("fitting {} sources", counts.sources), fittingMemory(counts),
+                context.maxMemory(),
+                most > 0 ? fmt::format("use --sources {} or raise --max-memory", most)
+                         : "raise --max-memory");
 }
 
 Fitted fitMap(const BoundaryPair& pair, const FittingOptions& options, Context& context) {

@@ -34,6 +34,9 @@ PointCounts pointCounts(const FittingOptions& options, std::size_t vertices);
 // Peak need in bytes.
 std::uint64_t fittingMemory(const PointCounts& counts);
 
+// Throws MemoryError, with the largest --sources that would fit, when the need is over the limit.
+void requireFittingMemory(const PointCounts& counts, const Context& context);
+
 struct Fitted {
   FieldFile file;
   BoundaryError error;  // at fresh points

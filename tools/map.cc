@@ -8,7 +8,6 @@
 #include "evaluation.h"
 #include "fitting.h"
 #include "innermap/core/file.h"
-#include "innermap/core/memory.h"
 #include "innermap/output/exr_slices.h"
 #include "innermap/output/section_image.h"
 #include "innermap/output/slice.h"
@@ -88,10 +87,8 @@ void run(const MapOptions& options, Context& context) {
         {fmt::format("fit {} charges to {} boundary points", counts.sources, counts.collocation),
          "write map.ply, map.vdb, slices.exr, section.png and report.json to " + options.output},
         std::max(fitting, evaluation));
-  requireMemory(fmt::format("fitting {} sources", counts.sources), fitting, context.maxMemory(),
-                "use fewer --sources (memory grows with their square) or raise --max-memory");
-  requireMemory("evaluating the map", evaluation, context.maxMemory(),
-                "lower --resolution or raise --voxel-size (memory grows with the cube)");
+  requireFittingMemory(counts, context);
+  requireEvaluationMemory(pair.solid, options.evaluation, context);
   PendingFolder folder(options.output);
   const Fitted fitted = fitMap(pair, options.fitting, context);
   const openvdb::GridPtrVec grids = evaluateGrids(pair, fitted.file, options.evaluation, context);

@@ -200,6 +200,13 @@ void writeField(const std::string& path, const FieldFile& file) {
   });
 }
 
+bool isFieldFile(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  const std::string wanted = "ply\nformat binary_little_endian 1.0\ncomment innermap field";
+  std::string start(wanted.size(), '\0');
+  return in.read(start.data(), static_cast<std::streamsize>(start.size())) && start == wanted;
+}
+
 FieldFile readField(const std::string& path) {
   std::error_code error;
   const std::uint64_t size = std::filesystem::file_size(path, error);

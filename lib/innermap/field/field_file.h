@@ -36,4 +36,7 @@ void writeField(const std::string& path, const FieldFile& file);
 // whole; sizes are checked against the file's before allocating.
 FieldFile readField(const std::string& path);
 
+// Whether a file starts as one; false for what cannot be read. Tells a map from a mesh, both .ply.
+bool isFieldFile(const std::string& path);
+
 }  // namespace innermap

@@ -56,6 +56,14 @@ TEST_F(FieldFileTest, ReadsBackTheSameBits) {
   EXPECT_EQ(after.boundaryTarget[0].x, before.boundaryTarget[0].x);
 }
 
+TEST_F(FieldFileTest, IsToldFromOtherFiles) {
+  EXPECT_FALSE(isFieldFile(path_));
+  write("ply\nformat ascii 1.0\n");
+  EXPECT_FALSE(isFieldFile(path_));
+  writeField(path_, sample());
+  EXPECT_TRUE(isFieldFile(path_));
+}
+
 TEST_F(FieldFileTest, TruncatedAtAnyPlaceIsRefused) {
   writeField(path_, sample());
   const std::string whole = contents();
