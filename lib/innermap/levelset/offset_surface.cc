@@ -88,9 +88,11 @@ Mesh fromGrid(const Solid& solid, double distance, Progress* progress) {
   const double diagonal = solid.diagonal();
   const double voxelSize =
       std::min(distance, std::clamp(0.5 * distance, kFinest * diagonal, kCoarsest * diagonal));
-  // Whole numbers of voxels from the lower end of everything, so that indices are not negative.
-  const double reach = distance + 6 * voxelSize;
-  const Vec3 origin = solid.box().lower - Vec3{reach, reach, reach};
+  // Odd shifts: with round ones, lattice points would lie on the isosurface of boxes and other
+  // symmetric shapes, and rounding would decide its topology.
+  const double reach = distance + 4 * voxelSize;
+  const Vec3 origin =
+      solid.box().lower - Vec3{reach, reach, reach} - voxelSize * Vec3{0.3717, 0.4142, 0.2929};
   const double width = kBand * voxelSize;
   const Band band(solid, origin, voxelSize, std::max(0.0, distance - width), distance + width);
   const FloatGrid::Ptr grid = distanceGrid(band, distance, voxelSize, progress);

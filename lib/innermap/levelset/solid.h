@@ -44,7 +44,7 @@ class Solid {
   double diagonal() const;  // of box(); the unit of all length settings
   double area() const;      // of surface(), world units squared
   // World units cubed, by the divergence theorem over surface(); where that is not closed well
-  // enough (pieces larger than 1/1024 of the diagonal), by a level set 256 voxels across, once.
+  // enough (pieces larger than 1/64 of the diagonal), by a level set 256 voxels across, once.
   double volume() const;
   // The exact exposed surface is nowhere farther than this from surface(), world units: 0 where
   // nothing overlaps, the size of the pieces along cuts otherwise.

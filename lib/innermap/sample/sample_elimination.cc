@@ -69,8 +69,10 @@ class Heap {
 };
 
 // Points beyond what evenly spread ones would put into a cell are given up unseen, or points that
-// pile up would cost the square of their number. Keeps at least `count`.
+// pile up would cost the square of their number. Keeps at least `count`, and just so many where
+// that takes piles.
 std::vector<std::size_t> withoutPiles(const NeighbourGrid& grid, std::size_t count) {
+  constexpr std::size_t kPile = 256;
   const std::vector<std::uint32_t>& starts = grid.cellStarts();
   const auto keptWith = [&](std::size_t cap) {
     std::size_t kept = 0;
@@ -79,14 +81,22 @@ std::vector<std::size_t> withoutPiles(const NeighbourGrid& grid, std::size_t cou
     }
     return kept;
   };
-  std::size_t cap = 256;
-  while (keptWith(cap) < count) cap *= 2;
+  std::size_t cap = kPile;
+  if (keptWith(cap) < count) {
+    std::size_t upper = grid.size();  // keeps all
+    while (cap + 1 < upper) {
+      const std::size_t middle = cap + (upper - cap) / 2;
+      (keptWith(middle) < count ? cap : upper) = middle;
+    }
+    cap = upper;
+  }
   std::vector<std::size_t> kept;
   for (std::size_t c = 0; c + 1 < starts.size(); ++c) {
     const std::size_t size = std::min<std::size_t>(cap, starts[c + 1] - starts[c]);
     for (std::size_t i = 0; i < size; ++i) kept.push_back(grid.index(starts[c] + i));
   }
   std::sort(kept.begin(), kept.end());
+  if (cap > kPile) kept.resize(count);
   return kept;
 }
 
@@ -156,7 +166,9 @@ std::vector<std::size_t> eliminateSamples(const Points& points, std::size_t coun
   const NeighbourGrid grid(points, 2 * radius);
   std::vector<std::size_t> kept;
   const std::vector<std::size_t> spread = withoutPiles(grid, count);
-  if (spread.size() == points.size()) {
+  if (spread.size() == count) {
+    kept = spread;
+  } else if (spread.size() == points.size()) {
     kept = thin(grid, count, radius, progress);
   } else {
     Points fewer;
