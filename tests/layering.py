@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Checks the layers: which folder of lib/innermap may include which, that solve/ knows no mesh and
-no grid, that headers whose first line says "// Internal to FOLDER/" stay in their folder, and that
-every public header has its unit test.
+no grid, that headers whose first comment says "Internal to FOLDER/" stay in their folder, and that
+every other header has its unit test.
 
     layering.py [ROOT]      exit code 1 and one line for each finding
 """
@@ -47,7 +47,8 @@ def is_internal(root, included):
     if not os.path.exists(path):
         return False
     with open(path, encoding="utf-8") as file:
-        return file.readline().startswith(f"// Internal to {included.split('/')[1]}/")
+        comment = file.read().split("#pragma once")[0].replace("\n// ", " ")
+    return re.search(rf"\b(Internal|Private) to {included.split('/')[1]}/", comment) is not None
 
 
 def sources(top):
@@ -72,7 +73,7 @@ def check_folder(root, folder):
             if parts[0] != "innermap":
                 if not os.path.dirname(included) and os.path.exists(
                         os.path.join(os.path.dirname(path), included)):
-                    yield f'{here}: include "{included}" by its path, "innermap/{folder}/{included}"'
+                    yield f'{here}: include "innermap/{folder}/{included}", by its path'
                 elif ".." in parts or parts[0] in ("lib", "tools", "tests"):
                     yield f'{here}: includes "{included}", not by its path from lib/'
             elif len(parts) != 3:

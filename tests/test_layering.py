@@ -10,7 +10,7 @@ CLEAN = {
     "lib/innermap/core/a.h": "",
     "tests/unit/core/a_test.cc": '#include "innermap/core/a.h"\nTEST(A, B) {}\n',
     "lib/innermap/mesh/m.cc": '#include "innermap/core/a.h"\n',
-    "lib/innermap/mesh/own.h": "// Internal to mesh/: no test of its own.\n",
+    "lib/innermap/mesh/own.h": "// A thing. Internal\n// to mesh/.\n#pragma once\n",
     "lib/innermap/sample/s.cc": '#include "innermap/mesh/m.cc"\n#include <vector>\n',
     "lib/innermap/solve/s.cc": "// no mesh here\nint x;\n",
 }
@@ -25,6 +25,8 @@ BROKEN = {
                            "not there"),
     "include round the rule": ({"lib/innermap/mesh/m.cc": '#include "../core/a.h"\n'},
                                "not by its path"),
+    "internal to another": ({"lib/innermap/core/c.h": "// Internal to mesh/.\n#pragma once\n"},
+                            "tests/unit/core/c_test.cc is missing"),
     "internal header elsewhere": ({"lib/innermap/sample/s.cc": '#include "innermap/mesh/own.h"\n'},
                                   "is internal to mesh"),
     "internal header in a tool": ({"tools/t.cc": '#include "innermap/mesh/own.h"\n'},
