@@ -27,20 +27,5 @@ for file in map.ply map.vdb slices.exr section.png report.json; do
   fi
 done
 
-# The two geckos are clean closed meshes and a good map exists: a report that says otherwise is
-# wrong, or the defaults are.
-/usr/bin/python3 - "$folder/out/report.json" << 'PYTHON'
-import json
-import sys
-
-report = json.load(open(sys.argv[1]))
-assert report["source"]["vertices"] == 6256, report["source"]
-assert report["source"]["boundary_loops"] == 0 and report["source"]["genus"] == 0, report["source"]
-error = report["boundary_error"]
-assert error["samples"] >= 20000, error
-assert 0 < error["rms"] <= error["p99"] <= error["max"], error
-# An order below the size of the toes, 0.03 of the diagonal thick.
-assert error["rms"] < 3e-3, error
-assert report["jacobian"]["folded_fraction"] < 0.01, report["jacobian"]
-assert report["grid"]["interior_voxels"] > 10000, report["grid"]
-PYTHON
+"$root/tests/check_quickstart.py" "$folder/out" "$root/samples/gecko.obj" \
+  "$root/samples/gecko_step.obj"
