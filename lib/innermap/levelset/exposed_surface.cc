@@ -205,7 +205,11 @@ void dropDoubles(const Work& work, ExposedSurface& result, std::vector<char>& dr
   std::vector<int> left(work.sides.size(), 0);  // covers beyond the first that no partner explains
   for (std::size_t i = 0; i < work.sides.size(); ++i) {
     const int t = static_cast<int>(i);
-    for (const Piece& p : work.pieces[t]) result.doubled |= p.side.exposed && p.side.covers > 1;
+    for (const Piece& p : work.pieces[t]) {
+      if (!p.side.exposed || p.side.covers < 2) continue;
+      const auto [a, b, c] = pieceTriangle(cornersOf(work, t), p);
+      result.doubledArea += 0.5 * norm(cross(b - a, c - a));
+    }
     if (!work.pieces[t].empty() || !work.sides[t].exposed || work.sides[t].covers < 2) continue;
     const Vec3 m = centroid(t);
     Cell base;
@@ -228,7 +232,9 @@ void dropDoubles(const Work& work, ExposedSurface& result, std::vector<char>& dr
       kept[key(base)].push_back(t);
     }
   }
-  for (const int l : left) result.doubled |= l > 0;
+  for (std::size_t t = 0; t < left.size(); ++t) {
+    if (left[t] > 0) result.doubledArea += norm(areaVector(work.mesh, static_cast<int>(t)));
+  }
 }
 
 void addPiece(ExposedSurface& result, const Work& work, int parent, const Piece& piece,

@@ -17,8 +17,8 @@ struct ExposedSurface {
   Mesh mesh;          // pieces, outward; vertices of the input first
   std::vector<int> parent;
   std::vector<PieceCorners> corners;
-  double gap = 0;        // longest edge of a piece that a cut runs through, world units
-  bool doubled = false;  // sheets that lie on each other are both kept
+  double gap = 0;          // longest edge of a piece that a cut runs through, world units
+  double doubledArea = 0;  // of sheets kept although another lies on them, world units squared
 };
 
 // `mesh` has whole winding numbers, as repair() makes them. pieceSize is a fraction of the

@@ -95,7 +95,7 @@ double Solid::gap() const { return implementation_->exposed.gap; }
 double Solid::volume() const {
   const Implementation& i = *implementation_;
   std::call_once(i.volumeOnce, [&] {
-    const bool closed = !i.exposed.doubled && i.exposed.gap <= diagonal() / 64;
+    const bool closed = i.exposed.doubledArea <= 1e-4 * i.area && i.exposed.gap <= diagonal() / 64;
     // Isolated: a thread that waits in here must not take up a task that asks for the volume too.
     tbb::this_task_arena::isolate(
         [&] { i.volume = closed ? signedVolume(i.surface()) : gridVolume(*this, 256); });
