@@ -67,9 +67,11 @@ def file_size_limit(size):
 
 
 def interrupt(*arguments, after, number=signal.SIGINT):
-    """Starts innermap, signals it `after` seconds later; (exit code, seconds it took to end)."""
+    """Starts innermap and signals it `after` seconds after its first line of progress; (exit code,
+    seconds it took to end), or (None, 0) when it had ended by then."""
     process = subprocess.Popen([PROGRAM, *map(str, arguments)], stdout=subprocess.PIPE,
                                stderr=subprocess.PIPE, text=True)
+    process.stderr.readline()
     time.sleep(after)
     if process.poll() is not None:
         process.communicate()
