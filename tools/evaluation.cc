@@ -109,6 +109,11 @@ openvdb::GridPtrVec evaluateGrids(const BoundaryPair& pair, const FieldFile& fil
                                   const EvaluationOptions& options, Context& context) {
   const LevelSetSettings settings =
       levelSetSettings(options, context.maxMemory(), context.progress());
+  if (!options.voxelSize && voxelSizeFor(pair.solid, settings) == kSmallestVoxel)
+    context.note(
+        fmt::format("the voxels are {} world units, the smallest that OpenVDB can hold, "
+                    "not as small as --resolution asks for; scale the meshes up for more",
+                    kSmallestVoxel));
   openvdb::FloatGrid::Ptr surface, density;
   context.timed("voxelize", [&] {
     surface = makeLevelSet(pair.solid, settings);

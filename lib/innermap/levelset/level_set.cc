@@ -1,5 +1,6 @@
 #include "innermap/levelset/level_set.h"
 
+#include <fmt/format.h>
 #include <openvdb/tools/SignedFloodFill.h>
 
 #include <cmath>
@@ -19,12 +20,15 @@ using openvdb::FloatTree;
 using Leaf = FloatTree::LeafNodeType;
 
 constexpr int kMaxAcross = 4096;
+constexpr int kMinAcross = 4;
 
 // Rounded up: the band is as wide as asked in single precision too.
 float backgroundOf(double width) {
   const float f = static_cast<float>(width);
   return f < width ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
 }
+
+std::string formatLength(double length) { return fmt::format("{:.4g}", length); }
 
 double longestSide(const Solid& solid) {
   const Vec3 e = solid.box().extent();
@@ -122,19 +126,30 @@ std::unique_ptr<Leaf> makeLeaf(const Solid& solid, const Band& band, const Coord
 double voxelSizeFor(const Solid& solid, const LevelSetSettings& settings) {
   const double longest = longestSide(solid);
   if (settings.voxelSize == 0) {
-    if (settings.resolution < 4 || settings.resolution > kMaxAcross) {
+    if (settings.resolution < kMinAcross || settings.resolution > kMaxAcross) {
       throw SettingError("resolution", "must lie between 4 and 4096 voxels");
     }
-    return longest / settings.resolution;
+    if (longest / kMinAcross < kSmallestVoxel) {
+      throw DataError("the solid is " + formatLength(longest) +
+                      " across, too small for OpenVDB, whose voxels cannot be under " +
+                      formatLength(kSmallestVoxel) + "; scale the mesh up");
+    }
+    return std::max(longest / settings.resolution, kSmallestVoxel);
   }
   if (!(settings.voxelSize > 0) || !std::isfinite(settings.voxelSize)) {
-    throw SettingError("voxelSize", "must be a positive length, or 0 to let the resolution decide");
+    throw SettingError("voxel size",
+                       "must be a positive length, or 0 to let the resolution decide");
+  }
+  if (settings.voxelSize < kSmallestVoxel) {
+    throw SettingError("voxel size", "OpenVDB cannot hold voxels under " +
+                                         formatLength(kSmallestVoxel) +
+                                         " world units; scale the mesh up or use larger voxels");
   }
   // Rounding aside, the size that a resolution of 4096 gives is allowed.
   if (longest / settings.voxelSize > kMaxAcross * (1 + 1e-9)) {
-    throw SettingError("voxelSize",
+    throw SettingError("voxel size",
                        "gives more than 4096 voxels along the longest side; at least " +
-                           std::to_string(longest / kMaxAcross) + " is needed");
+                           formatLength(longest / kMaxAcross) + " is needed");
   }
   return settings.voxelSize;
 }

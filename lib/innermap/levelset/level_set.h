@@ -20,8 +20,13 @@ struct LevelSetSettings {
   Progress* progress = nullptr;
 };
 
-// The voxel size in world units that the settings mean for this solid. Throws SettingError for
-// values out of range, or for a voxel size that would give more than 4096 voxels across.
+// OpenVDB takes no transform whose determinant is below 3e-15.
+constexpr double kSmallestVoxel = 1.45e-5;  // world units
+
+// The voxel size in world units that the settings mean for this solid. A resolution that would need
+// voxels below kSmallestVoxel is lowered; a solid too small even for 4 of those is a DataError.
+// Throws SettingError for values out of range, or for a voxel size that would give more than 4096
+// voxels across.
 double voxelSizeFor(const Solid& solid, const LevelSetSettings& settings);
 
 // Transform of uniform scale whose index space has the solid's lower box corner near the origin

@@ -297,5 +297,15 @@ TEST(Attributes, FollowTheClosestPoint) {
   EXPECT_THROW(makeAttributeGrids(*levelSet, solid, other), DataError);
 }
 
+TEST(LevelSet, TinySolidsGetTheSmallestVoxelsThatOpenVdbHolds) {
+  LevelSetSettings settings;
+  settings.resolution = 128;
+  const Solid tiny(shapes::icosphere(2, 5e-4));
+  EXPECT_DOUBLE_EQ(makeLevelSet(tiny, settings)->voxelSize()[0], kSmallestVoxel);
+  EXPECT_THROW(makeLevelSet(Solid(shapes::icosphere(2, 1e-5)), settings), DataError);
+  settings.voxelSize = 1e-5;
+  EXPECT_THROW(makeLevelSet(tiny, settings), SettingError);
+}
+
 }  // namespace
 }  // namespace innermap
