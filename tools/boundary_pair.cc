@@ -9,6 +9,8 @@
 namespace innermap::tool {
 namespace {
 
+constexpr double kNoVolume = 1e-9;  // of the diagonal cubed
+
 MeshReport check(const Mesh& mesh, Context& context) {
   CheckSettings settings;
   settings.listed = 1;
@@ -26,6 +28,24 @@ ReportMesh reportOf(const Mesh& mesh, const MeshReport& report, int caps) {
   out.genus = report.genus;
   out.diagonal = report.box.diagonal();
   return out;
+}
+
+// Whether all points of the triangles lie in one plane, to a billionth of the diagonal.
+bool isFlat(const Mesh& mesh) {
+  Vec3 origin, normal;
+  double largest = 0;
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+    const Vec3 area = areaVector(mesh, t);
+    if (norm(area) <= largest) continue;
+    largest = norm(area);
+    normal = area / largest;
+    origin = mesh.vertices[mesh.triangles[t][0]];
+  }
+  const double thickness = 1e-9 * boundingBox(mesh).diagonal();
+  for (const Triangle& t : mesh.triangles)
+    for (const int v : t)
+      if (std::abs(dot(normal, mesh.vertices[v] - origin)) > thickness) return false;
+  return true;
 }
 
 void warnOfCrossings(const std::string& what, const MeshReport& report, const std::string& meaning,
@@ -80,8 +100,16 @@ BoundaryPair makeBoundaryPair(Mesh source, Mesh target, Context& context) {
     pair.targetVolume =
         pair.solid.overlaps() ? Solid(moved, settings).volume() : std::abs(signedVolume(moved));
   });
-  if (!(pair.targetVolume > 1e-9 * std::pow(pair.targetDiagonal, 3)))
-    throw DataError(pair.target.name + ": encloses no volume; give a target that has an inside");
+  if (isFlat(moved))
+    throw DataError(pair.target.name +
+                    ": lies in a plane, so it has no inside; give another target");
+  if (!(pair.targetVolume > kNoVolume * std::pow(pair.targetDiagonal, 3))) {
+    pair.targetVolume = 0;
+    context.warning(
+        "the target's parts cancel to no volume, so it is turned inside out somewhere; the "
+        "harmonic "
+        "energy is not scaled to its unit volume");
+  }
 
   Report& report = context.report();
   report.source = reportOf(pair.source, sourceReport, repaired.caps);

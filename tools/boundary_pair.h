@@ -15,7 +15,7 @@ struct BoundaryPair {
   Mesh source, target;        // as read, same connectivity
   Solid solid;                // of the source
   Points moved;               // target positions of all vertices of solid.repaired().mesh
-  double targetVolume = 0;    // world units cubed
+  double targetVolume = 0;    // world units cubed; 0 when its parts cancel
   double targetDiagonal = 0;  // world units
 
   // Where points of solid.surface() go: #points x 3.

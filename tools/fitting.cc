@@ -36,23 +36,27 @@ Points positionsOf(const Mesh& mesh, const std::vector<SurfacePoint>& samples) {
   return interpolate(mesh.vertices, mesh.triangles, samples);
 }
 
-BoundaryData surfaceData(const BoundaryPair& pair, const FittingOptions& options,
-                         const PointCounts& counts, Context& context) {
+using Samples = std::vector<SurfacePoint>;
+
+BoundaryData surfaceData(const BoundaryPair& pair, const Samples& collocation,
+                         const Samples& heldOut) {
   const Mesh& surface = pair.solid.surface();
-  SampleSettings sample;
-  sample.progress = context.progress();
-  sample.seed = seedOf(options, kCollocation);
-  const auto collocation = blueNoiseSamples(surface, counts.collocation, sample);
-  sample.seed = seedOf(options, kHeldOut);
-  const auto heldOut = randomSamples(surface, counts.heldOut, sample);
   return {positionsOf(surface, collocation), positionsOf(surface, heldOut),
           pair.targetsOf(collocation), pair.targetsOf(heldOut)};
 }
 
-// The mesh's own vertices on the boundary (not those of caps, nor buried ones), shuffled; a fifth
-// of them is held out.
+// Samples on caps, which have no vertices of the mesh's own.
+Samples onCaps(const BoundaryPair& pair, const Samples& samples) {
+  Samples out;
+  for (const SurfacePoint& p : samples)
+    if (pair.solid.repaired().parent[pair.solid.address(p).triangle] < 0) out.push_back(p);
+  return out;
+}
+
+// The mesh's own vertices on the boundary (not buried ones), shuffled, and samples of the caps; a
+// fifth of the vertices is held out.
 BoundaryData vertexData(const BoundaryPair& pair, const FittingOptions& options,
-                        const PointCounts& counts) {
+                        const PointCounts& counts, const Samples& collocation) {
   const Mesh& mesh = pair.solid.repaired().mesh;
   std::vector<char> used(pair.source.vertices.size(), 0);
   for (const Triangle& t : mesh.triangles)
@@ -67,25 +71,36 @@ BoundaryData vertexData(const BoundaryPair& pair, const FittingOptions& options,
   std::sort(order.begin(), order.end());
   const std::size_t heldOut = std::min(order.size() / 5, counts.heldOut),
                     points = std::min(order.size() - heldOut, counts.collocation);
-  BoundaryData data;
-  const auto take = [&](std::size_t first, std::size_t count, Points& at, Matrix& values) {
-    values = Matrix(count, 3);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t v = order[first + i].second;
-      at.push_back(mesh.vertices[v]);
-      for (int a = 0; a < 3; ++a) values(i, a) = pair.moved[v][a];
-    }
+  const Samples caps = onCaps(pair, collocation);
+  BoundaryData data{positionsOf(pair.solid.surface(), caps),
+                    {},
+                    Matrix(caps.size() + points, 3),
+                    Matrix(heldOut, 3)};
+  const Matrix capValues = pair.targetsOf(caps);
+  for (std::size_t i = 0; i < caps.size(); ++i)
+    for (int a = 0; a < 3; ++a) data.values(i, a) = capValues(i, a);
+  const auto add = [&](std::size_t v, Points& to, Matrix& values) {
+    for (int a = 0; a < 3; ++a) values(to.size(), a) = pair.moved[v][a];
+    to.push_back(mesh.vertices[v]);
   };
-  take(0, heldOut, data.heldOut, data.heldOutValues);
-  take(heldOut, points, data.points, data.values);
+  for (std::size_t i = 0; i < heldOut; ++i) add(order[i].second, data.heldOut, data.heldOutValues);
+  for (std::size_t i = 0; i < points; ++i) add(order[heldOut + i].second, data.points, data.values);
   return data;
 }
 
 FitProblem makeProblem(const BoundaryPair& pair, const FittingOptions& options,
                        const PointCounts& counts, Context& context) {
+  const Mesh& surface = pair.solid.surface();
+  SampleSettings sample;
+  sample.progress = context.progress();
+  sample.seed = seedOf(options, kCollocation);
+  const Samples collocation = blueNoiseSamples(surface, counts.collocation, sample);
+  sample.seed = seedOf(options, kHeldOut);
+  const Samples heldOut = randomSamples(surface, counts.heldOut, sample);
   FitProblem problem;
-  problem.surface = surfaceData(pair, options, counts, context);
-  if (options.interpolation != "linear") problem.vertices = vertexData(pair, options, counts);
+  problem.surface = surfaceData(pair, collocation, heldOut);
+  if (options.interpolation != "linear")
+    problem.vertices = vertexData(pair, options, counts, collocation);
   problem.diagonal = pair.solid.diagonal();
   problem.area = pair.solid.area();
   SourceSettings source;

@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "innermap/core/memory.h"
+#include "innermap/field/field_file.h"
 #include "innermap/mesh/read.h"
 #include "innermap/output/exr_info.h"
 #include "innermap/output/vdb_file.h"
@@ -100,6 +101,16 @@ void meshInfo(const InfoOptions& options, Context& context) {
   context.print(text);
 }
 
+void mapInfo(const InfoOptions& options, Context& context) {
+  const FieldFile file = readField(options.file);
+  std::string text = fmt::format(
+      "{}: harmonic field, {} channel{}, {} charges, boundary of {} vertices and {} triangles\n",
+      options.file, file.field.channels(), file.field.channels() == 1 ? "" : "s",
+      file.field.sources().size(), file.boundary.size(), file.boundaryTriangles.size());
+  for (const auto& [key, value] : file.settings) text += fmt::format("    {}: {}\n", key, value);
+  context.print(text);
+}
+
 void exrInfo(const InfoOptions& options, Context& context) {
   std::string text;
   const std::vector<ExrPart> parts = readExrInfo(options.file);
@@ -116,6 +127,7 @@ void run(const InfoOptions& options, Context& context) {
   const std::string e = extension(options.file);
   if (e == ".vdb") return vdbInfo(options, context);
   if (e == ".exr") return exrInfo(options, context);
+  if (isFieldFile(options.file)) return mapInfo(options, context);
   meshInfo(options, context);
 }
 
@@ -123,8 +135,8 @@ void run(const InfoOptions& options, Context& context) {
 
 Command makeInfoCommand() {
   auto o = std::make_shared<InfoOptions>();
-  Command c("info", "Say what is in a file: grids, a mesh, or EXR parts");
-  c.positional("FILE", &o->file, "a .vdb, .exr or mesh file");
+  Command c("info", "Say what is in a file: grids, a map, a mesh, or EXR parts");
+  c.positional("FILE", &o->file, "a .vdb, .exr, map or mesh file");
   c.flag("--metadata", &o->metadata, "all metadata of each grid");
   c.example("innermap info map.vdb");
   c.run([o](Context& context) { run(*o, context); });

@@ -63,7 +63,7 @@ void writePictures(const openvdb::GridPtrVec& grids, const BoundaryPair& pair,
   slices.count = static_cast<int>(options.sliceCount);
   slices.maxMemory = context.maxMemory();
   slices.progress = context.progress();
-  writeExrSlices(folder.file("slices.exr"), grids, slices);
+  folder.write("slices.exr", [&](const std::string& path) { writeExrSlices(path, grids, slices); });
   SectionSettings section;
   section.grid = options.sectionGrid;
   section.axis = options.sectionAxis == "auto" ? thinnestAxis(pair.solid)
@@ -74,7 +74,8 @@ void writePictures(const openvdb::GridPtrVec& grids, const BoundaryPair& pair,
           : fullLayer(*openvdb::gridConstPtrCast<openvdb::FloatGrid>(grids[1]), section.axis);
   section.maxMemory = context.maxMemory();
   section.progress = context.progress();
-  writeSectionImage(folder.file("section.png"), grids, section);
+  folder.write("section.png",
+               [&](const std::string& path) { writeSectionImage(path, grids, section); });
 }
 
 void run(const MapOptions& options, Context& context) {
@@ -93,14 +94,17 @@ void run(const MapOptions& options, Context& context) {
   const Fitted fitted = fitMap(pair, options.fitting, context);
   const openvdb::GridPtrVec grids = evaluateGrids(pair, fitted.file, options.evaluation, context);
   context.timed("write", [&] {
-    writeField(folder.file("map.ply"), fitted.file);
-    writeGrids(folder.file("map.vdb"), grids, options.evaluation, context);
+    folder.write("map.ply", [&](const std::string& path) { writeField(path, fitted.file); });
+    folder.write("map.vdb", [&](const std::string& path) {
+      writeGrids(path, grids, options.evaluation, context);
+    });
     writePictures(grids, pair, folder, options, context);
   });
   context.print(fmt::format("boundary error: rms {:.2e}, 99% {:.2e}, max {:.2e} of the diagonal\n",
                             fitted.error.rms, fitted.error.p99, fitted.error.max) +
                 evaluationText(context.report()));
-  writeReport(folder.file("report.json"), context.finishedReport());
+  folder.write("report.json",
+               [&](const std::string& path) { writeReport(path, context.finishedReport()); });
   folder.commit();
 }
 

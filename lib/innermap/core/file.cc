@@ -108,13 +108,21 @@ PendingFolder::~PendingFolder() {
   if (made_) rmdir(folder_.c_str());
 }
 
-std::string PendingFolder::file(const std::string& name) {
+void PendingFolder::write(const std::string& name,
+                          const std::function<void(const std::string&)>& body) {
   const std::filesystem::path folder(folder_);
   const std::string temporary =
-      (folder / (".part-" + std::to_string(getpid()) + "-" + name)).string();
+                        (folder / (".part-" + std::to_string(getpid()) + "-" + name)).string(),
+                    final = (folder / name).string();
   remember(temporary);
-  files_.emplace_back(temporary, (folder / name).string());
-  return temporary;
+  files_.emplace_back(temporary, final);
+  try {
+    body(temporary);
+  } catch (const FileError& error) {
+    const std::string what = error.what(), prefix = temporary + ": ";
+    if (what.rfind(prefix, 0) != 0) throw;
+    throw FileError(final, what.substr(prefix.size()));
+  }
 }
 
 void PendingFolder::commit() {

@@ -40,10 +40,11 @@ class PendingFolder {
   PendingFolder(const PendingFolder&) = delete;
   PendingFolder& operator=(const PendingFolder&) = delete;
 
-  // Where to write the file that will be called `name`; the extension is the same.
-  std::string file(const std::string& name);
+  // Calls `body` with the path where to write the file that will be called `name`: another name
+  // with the same extension. FileErrors of it name the final path.
+  void write(const std::string& name, const std::function<void(const std::string&)>& body);
 
-  // Renames all files that file() was called for; they must exist. Throws FileError.
+  // Renames all files written. Throws FileError.
   void commit();
 
  private:

@@ -77,22 +77,31 @@ TEST_F(FileTest, UnwritablePlacesAreRefused) {
 
 TEST_F(FileTest, AFolderOfFilesAppearsTogether) {
   const auto write = [](const std::string& path) {
+    EXPECT_TRUE(fs::path(path).extension() == ".png" || fs::path(path).extension() == ".exr");
     writeWholeFile(path, [](std::ostream& out) { out << "x"; });
   };
   {
     PendingFolder folder(at("out"));
-    write(folder.file("a.png"));
-    write(folder.file("b.exr"));
+    folder.write("a.png", write);
+    folder.write("b.exr", write);
     EXPECT_FALSE(fs::exists(at("out/a.png")));
   }
   EXPECT_FALSE(fs::exists(at("out"))) << "made here, so removed here";
   PendingFolder folder(at("out"));
-  const std::string temporary = folder.file("a.png");
-  EXPECT_EQ(fs::path(temporary).extension(), ".png");
-  write(temporary);
+  folder.write("a.png", write);
   folder.commit();
   EXPECT_TRUE(fs::exists(at("out/a.png")));
   EXPECT_THROW(PendingFolder(at("out/a.png")), FileError);
+}
+
+TEST_F(FileTest, ErrorsInAFolderNameTheFinalFile) {
+  PendingFolder folder(at("out"));
+  try {
+    folder.write("a.png", [](const std::string& path) { throw FileError(path, "is bad"); });
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_EQ(error.what(), at("out/a.png") + ": is bad");
+  }
 }
 
 TEST_F(FileTest, UnfinishedFilesCanBeRemovedAtOnce) {
