@@ -17,13 +17,13 @@ void run(const FitOptions& options, Context& context) {
   context.willWrite(options.output);
   const BoundaryPair pair = readBoundaryPair(options.source, options.target, context);
   const PointCounts counts = pointCounts(options.fitting, pair.source.vertices.size());
-  const std::uint64_t need = fittingMemory(counts);
+  const std::uint64_t need = fittingMemory(counts, options.fitting);
   if (context.dryRun())
     return context.plan(
         {fmt::format("fit {} charges to {} boundary points", counts.sources, counts.collocation),
          "write the map to " + options.output},
         need);
-  requireFittingMemory(counts, context);
+  requireFittingMemory(counts, options.fitting, context);
   const Fitted fitted = fitMap(pair, options.fitting, context);
   context.timed("write", [&] { writeField(options.output, fitted.file); });
   context.print(fmt::format("boundary error: rms {:.2e}, 99% {:.2e}, max {:.2e} of the diagonal\n",

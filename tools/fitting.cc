@@ -17,8 +17,8 @@ namespace innermap::tool {
 namespace {
 
 constexpr std::size_t kFreshSamples = 20000;
-constexpr double kPointsPerSource = 4;
-constexpr double kMostSources = 20000;
+constexpr double kPointsPerSource = 4, kPointsPerSourceIterative = 3;
+constexpr double kMostSources = 1000000;
 
 // Seeds of the three sets of boundary points, so that none has a point of another.
 enum Stream : std::uint64_t {
@@ -28,6 +28,12 @@ enum Stream : std::uint64_t {
   kSources = 3,
   kVertices = 4
 };
+FitSolver solverOf(const FittingOptions& options) {
+  return options.solver == "auto"    ? FitSolver::automatic
+         : options.solver == "dense" ? FitSolver::dense
+                                     : FitSolver::iterative;
+}
+
 std::uint64_t seedOf(const FittingOptions& options, Stream stream) {
   return 4 * options.seed + stream;
 }
@@ -124,17 +130,21 @@ BoundaryError certify(const HarmonicField& field, const BoundaryPair& pair,
                               pair.targetsOf(fresh), pair.targetDiagonal, context.progress());
 }
 
+std::string methodOf(const FitResult& fit, const FittingOptions& options) {
+  return fit.iterative ? "iterative" : options.method;
+}
+
 void fillReport(const FitResult& fit, const FitProblem& problem, const BoundaryError& error,
                 double cError, const FittingOptions& options, Context& context) {
   Report& report = context.report();
-  const DenseSolution& s = fit.solution;
   const BoundaryData& data = fit.smooth ? problem.vertices : problem.surface;
   ReportSolve solve;
-  solve.method = options.method;
+  solve.method = methodOf(fit, options);
   solve.sources = fit.field.sources().size();
   solve.collocation = data.points.size();
-  solve.rank = s.rank;
-  solve.regularization = s.regularization;
+  solve.rank = fit.rank;
+  solve.regularization = fit.regularization;
+  solve.iterations = fit.iterative ? static_cast<int>(fit.residuals.size()) - 1 : 0;
   report.solve = solve;
   report.set("solve.placement", options.radiusRatio ? "sphere" : "shell");
   if (options.radiusRatio)
@@ -142,8 +152,11 @@ void fillReport(const FitResult& fit, const FitProblem& problem, const BoundaryE
   else
     report.set("solve.distance", fit.distance);
   report.set("solve.interpolation", fit.smooth ? "smooth" : "linear");
-  report.set("solve.condition", s.condition);
-  report.set("solve.weight_norm", s.weightNorm);
+  if (fit.iterative)
+    report.set("solve.residuals", fit.residuals);
+  else
+    report.set("solve.condition", fit.condition);
+  report.set("solve.weight_norm", fit.weightNorm);
   report.set("solve.held_out", static_cast<std::int64_t>(data.heldOut.size()));
   report.set("solve.seed", static_cast<std::int64_t>(options.seed));
   std::vector<double> distances, errors;
@@ -175,11 +188,11 @@ Settings describe(const BoundaryPair& pair, const FitResult& fit, const Boundary
   Settings settings{{"version", versionText()},
                     {"source", path(pair.source.name)},
                     {"target", path(pair.target.name)},
-                    {"method", options.method},
+                    {"method", methodOf(fit, options)},
                     {"interpolation", fit.smooth ? "smooth" : "linear"},
                     {"seed", std::to_string(options.seed)},
-                    {"regularization", number(fit.solution.regularization)},
-                    {"rank", std::to_string(fit.solution.rank)},
+                    {"regularization", number(fit.regularization)},
+                    {"rank", std::to_string(fit.rank)},
                     {"boundary_error_rms", number(error.rms)},
                     {"boundary_error_p99", number(error.p99)},
                     {"boundary_error_max", number(error.max)},
@@ -205,7 +218,7 @@ void addFittingOptions(Command& command, FittingOptions& o) {
   command.option("--sources", "N", &o.sources, "number of charges").range(1, kMostSources);
   command.option("--collocation", "N", &o.collocation, "boundary points that the map is fitted to")
       .range(8, 1e7)
-      .defaults("4 a source");
+      .defaults("4 a source; iterative: 3");
   command
       .option("--source-ratio", "R", &o.sourceRatio,
               "charges as a multiple of the source's vertices (sRatio), in place of --sources")
@@ -257,23 +270,28 @@ PointCounts pointCounts(const FittingOptions& o, std::size_t vertices) {
                        ? countOf(std::round(*o.sourceRatio * v), "--source-ratio", 1, kMostSources)
                        : o.sources;
   const double n = static_cast<double>(counts.sources);
+  const bool iterative =
+      o.solver == "iterative" || (o.solver == "auto" && counts.sources > kMostDenseSources);
+  const double perSource = iterative ? kPointsPerSourceIterative : kPointsPerSource;
   const double wanted = o.collocation        ? static_cast<double>(*o.collocation)
                         : o.collocationRatio ? std::round(*o.collocationRatio * v)
-                                             : std::max(kPointsPerSource * n, 16.0);
+                                             : std::max(perSource * n, 16.0);
   counts.collocation =
       countOf(wanted, o.collocationRatio ? "--collocation-ratio" : "--collocation", n + 4, 1e7);
   counts.heldOut = std::clamp<std::size_t>(counts.sources, 1000, 5000);
   return counts;
 }
 
-std::uint64_t fittingMemory(const PointCounts& counts) {
+std::uint64_t fittingMemory(const PointCounts& counts, const FittingOptions& options) {
   constexpr std::uint64_t kProgram = 64'000'000;  // with nothing loaded yet
   // Blue noise thins five candidates a point; each costs some 100 bytes.
-  return kProgram + denseSolverMemory(counts.collocation, counts.sources, counts.heldOut) +
+  return kProgram +
+         fitMemory(counts.collocation, counts.sources, counts.heldOut, solverOf(options)) +
          500 * (counts.collocation + counts.sources) + 200 * kFreshSamples;
 }
 
-void requireFittingMemory(const PointCounts& counts, const Context& context) {
+void requireFittingMemory(const PointCounts& counts, const FittingOptions& options,
+                          const Context& context) {
   const double points =
       static_cast<double>(counts.collocation) / static_cast<double>(counts.sources);
   const auto fits = [&](std::uint64_t sources) {
@@ -281,10 +299,10 @@ void requireFittingMemory(const PointCounts& counts, const Context& context) {
     c.sources = sources;
     c.collocation = static_cast<std::size_t>(points * static_cast<double>(sources));
     c.heldOut = counts.heldOut;
-    return fittingMemory(c) <= context.maxMemory();
+    return fittingMemory(c, options) <= context.maxMemory();
   };
   const std::uint64_t most = largestThat(1, counts.sources, fits);
-  requireMemory(fmt::format("fitting {} sources", counts.sources), fittingMemory(counts),
+  requireMemory(fmt::format("fitting {} sources", counts.sources), fittingMemory(counts, options),
                 context.maxMemory(),
                 most > 0 ? fmt::format("use --sources {} or raise --max-memory", most)
                          : "raise --max-memory");

@@ -17,6 +17,7 @@ struct FittingOptions {
   std::optional<std::uint64_t> collocation;
   std::optional<double> sourceRatio, collocationRatio;  // per vertex of the source mesh
   std::optional<double> distance, radiusRatio;
+  std::string solver = "auto";
   std::string interpolation = "auto";
   std::string method = "tikhonov";
   std::optional<double> regularization;
@@ -32,10 +33,11 @@ struct PointCounts {
 PointCounts pointCounts(const FittingOptions& options, std::size_t vertices);
 
 // Peak need in bytes.
-std::uint64_t fittingMemory(const PointCounts& counts);
+std::uint64_t fittingMemory(const PointCounts& counts, const FittingOptions& options);
 
 // Throws MemoryError, with the largest --sources that would fit, when the need is over the limit.
-void requireFittingMemory(const PointCounts& counts, const Context& context);
+void requireFittingMemory(const PointCounts& counts, const FittingOptions& options,
+                          const Context& context);
 
 struct Fitted {
   FieldFile file;

@@ -81,14 +81,14 @@ void writePictures(const openvdb::GridPtrVec& grids, const BoundaryPair& pair,
 void run(const MapOptions& options, Context& context) {
   const BoundaryPair pair = readBoundaryPair(options.source, options.target, context);
   const PointCounts counts = pointCounts(options.fitting, pair.source.vertices.size());
-  const std::uint64_t fitting = fittingMemory(counts),
+  const std::uint64_t fitting = fittingMemory(counts, options.fitting),
                       evaluation = evaluationMemory(pair.solid, options.evaluation);
   if (context.dryRun())
     return context.plan(
         {fmt::format("fit {} charges to {} boundary points", counts.sources, counts.collocation),
          "write map.ply, map.vdb, slices.exr, section.png and report.json to " + options.output},
         std::max(fitting, evaluation));
-  requireFittingMemory(counts, context);
+  requireFittingMemory(counts, options.fitting, context);
   requireEvaluationMemory(pair.solid, options.evaluation, context);
   PendingFolder folder(options.output);
   const Fitted fitted = fitMap(pair, options.fitting, context);

@@ -17,6 +17,10 @@ constexpr double kFarthest = 0.5;  // of the diagonal
 constexpr double kGain = 0.8;
 constexpr std::size_t kTrialSources = 600;
 constexpr std::size_t kTrialPointsPerSource = 4;
+constexpr std::size_t kMostSources = 1000000, kMostDense = 20000;
+// The iterative solver's shells: distances in spacings of their own sources.
+constexpr double kIterativeDistance = 0.9, kCoarseDistance = 1.25;
+constexpr double kIterativeGuard = 4;  // spacings; clusters see no farther
 
 constexpr double kSmoothGain = 0.25;  // of the error at held-out vertices
 constexpr std::size_t kFewestVertices = 100;
@@ -33,6 +37,16 @@ struct Trial {
   double nearest = 0;
 };
 
+bool useIterative(std::size_t sources, FitSolver solver) {
+  return solver == FitSolver::iterative ||
+         (solver == FitSolver::automatic && sources > kMostDenseSources);
+}
+
+// Sources of the coarse shell for so many fine ones.
+std::size_t coarseCount(std::size_t sources) {
+  return std::clamp<std::size_t>(sources / 8, std::min<std::size_t>(sources, 300), 2500);
+}
+
 class Fitting {
  public:
   Fitting(const FitProblem& problem, const FitSettings& settings)
@@ -41,6 +55,12 @@ class Fitting {
   FitResult run() {
     check();
     const bool smooth = chooseSmooth();
+    return !smooth && useIterative(settings_.sources, settings_.solver) ? iterative()
+                                                                        : dense(smooth);
+  }
+
+ private:
+  FitResult dense(bool smooth) {
     const BoundaryData& data = smooth ? problem_.vertices : problem_.surface;
     const std::size_t count = sourcesFor(data, settings_.sources);
     std::optional<Solved> best;
@@ -51,12 +71,16 @@ class Fitting {
       if (!best || solved.solution.heldOutRms < kGain * best->solution.heldOutRms)
         best = std::move(solved);
     }
-    HarmonicField field(std::move(best->sources), best->solution.weights, best->solution.affine);
-    return {std::move(field), std::move(best->solution), best->distance, smooth,
-            std::move(trials_)};
+    const DenseSolution& solution = best->solution;
+    HarmonicField field(std::move(best->sources), solution.weights, solution.affine);
+    return {std::move(field),        false,
+            best->distance,          smooth,
+            std::move(trials_),      solution.weightNorm,
+            solution.regularization, solution.condition,
+            solution.rank,           {}};
   }
 
- private:
+  FitResult iterative();
   void check() const;
   bool chooseSmooth();
   const Trial& trial(bool smooth);
@@ -65,9 +89,12 @@ class Fitting {
   Solved solve(const BoundaryData& data, std::size_t count, std::size_t points,
                double distance) const;
 
-  // At least two points a source: vertices may be few.
+  // At least two points a source: vertices may be few. Smooth values need no more sources than the
+  // dense solver takes.
   std::size_t sourcesFor(const BoundaryData& data, std::size_t wanted) const {
-    return &data == &problem_.vertices ? std::min(wanted, data.points.size() / 2) : wanted;
+    if (&data != &problem_.vertices) return wanted;
+    const std::size_t most = settings_.solver == FitSolver::dense ? kMostDense : kMostDenseSources;
+    return std::min({wanted, most, data.points.size() / 2});
   }
 
   double nearest(std::size_t count) const {
@@ -90,8 +117,10 @@ void checkShape(const BoundaryData& data) {
 }
 
 void Fitting::check() const {
-  if (settings_.sources < 1 || settings_.sources > 20000)
-    throw SettingError("sources", "must lie in 1 to 20000 for the dense solver");
+  const bool iterative = useIterative(settings_.sources, settings_.solver);
+  if (settings_.sources < 1 || settings_.sources > (iterative ? kMostSources : kMostDense))
+    throw SettingError("sources", iterative ? "must lie in 1 to 1000000"
+                                            : "must lie in 1 to 20000 for the dense solver");
   if (settings_.distance && !(*settings_.distance >= 1e-4 && *settings_.distance <= 2))
     throw SettingError("distance", "must lie in 0.0001 to 2 of the diagonal");
   if (!(problem_.diagonal > 0) || !(problem_.area > 0))
@@ -105,9 +134,9 @@ void Fitting::check() const {
     throw SettingError("interpolation", "smooth needs at least " + std::to_string(kFewestVertices) +
                                             " vertices on the boundary; choose linear");
   requireMemory("fitting " + std::to_string(settings_.sources) + " sources",
-                denseSolverMemory(problem_.surface.points.size(), settings_.sources,
-                                  problem_.surface.heldOut.size()),
-                settings_.maxMemory, "use fewer sources (memory grows with their square)");
+                fitMemory(problem_.surface.points.size(), settings_.sources,
+                          problem_.surface.heldOut.size(), settings_.solver),
+                settings_.maxMemory, "use fewer sources");
 }
 
 Solved Fitting::solve(const BoundaryData& data, std::size_t count, std::size_t points,
@@ -177,6 +206,43 @@ bool Fitting::chooseSmooth() {
   return smooth.best->solution.heldOutRms < kSmoothGain * linearRms;
 }
 
+FitResult Fitting::iterative() {
+  const std::size_t fine = settings_.sources, coarse = coarseCount(fine);
+  const auto spacing = [&](std::size_t count) {
+    return std::sqrt(problem_.area / static_cast<double>(count));
+  };
+  IterativeSettings s;
+  s.spacing = spacing(fine);
+  const double distance =
+      settings_.distance.value_or(kIterativeDistance * s.spacing / problem_.diagonal);
+  s.distance = distance * problem_.diagonal;
+  if (s.distance > kIterativeGuard * s.spacing)
+    throw SettingError("distance",
+                       "is over 4 spacings of the sources, which the iterative solver cannot take; "
+                       "use a smaller one or the dense solver");
+  s.progress = settings_.progress;
+  Points sources = problem_.placeSources(fine, distance);
+  const Points far = problem_.placeSources(
+      coarse, settings_.distance
+                  ? std::max(distance, kCoarseDistance * spacing(coarse) / problem_.diagonal)
+                  : kCoarseDistance * spacing(coarse) / problem_.diagonal);
+  IterativeSolution solution =
+      IterativeSolver(problem_.surface.points, sources, far, s).solve(problem_.surface.values);
+  sources.insert(sources.end(), far.begin(), far.end());
+  const std::size_t rank = sources.size();
+  return {
+      HarmonicField(std::move(sources), std::move(solution.weights), std::move(solution.affine)),
+      true,
+      distance,
+      false,
+      std::move(trials_),
+      solution.weightNorm,
+      0,
+      0,
+      rank,
+      std::move(solution.residuals)};
+}
+
 // The one or two distances worth a fit with all sources. The best distance in a trial with fewer
 // sources stays best as a length when the values are smooth, and in spacings when they are rough;
 // where the trial leaves that open, both are returned.
@@ -192,6 +258,15 @@ std::vector<double> Fitting::distancesFor(bool smooth, std::size_t count) {
 }
 
 }  // namespace
+
+std::uint64_t fitMemory(std::size_t collocation, std::size_t sources, std::size_t heldOut,
+                        FitSolver solver) {
+  if (!useIterative(sources, solver)) return denseSolverMemory(collocation, sources, heldOut);
+  // The trials are dense.
+  const std::size_t few = std::min(kTrialSources, sources);
+  return std::max(iterativeSolverMemory(collocation, sources, coarseCount(sources)),
+                  denseSolverMemory(kTrialPointsPerSource * few, few, heldOut));
+}
 
 FitResult fitField(const FitProblem& problem, const FitSettings& settings) {
   return Fitting(problem, settings).run();

@@ -17,6 +17,7 @@
 #include "innermap/core/vec3.h"
 #include "innermap/field/harmonic_field.h"
 #include "innermap/solve/dense_solver.h"
+#include "innermap/solve/iterative_solver.h"
 
 namespace innermap {
 
@@ -42,8 +43,15 @@ struct FitProblem {
 // vertices at least four times as well.
 enum class Interpolation { automatic, linear, smooth };
 
+// Dense: one factorization of the whole matrix, time as the cube and memory as the square of the
+// number of sources. Iterative: both in proportion, for linear interpolation, sources at about one
+// spacing. Automatic: dense up to kMostDenseSources.
+enum class FitSolver { automatic, dense, iterative };
+constexpr std::size_t kMostDenseSources = 3000;
+
 struct FitSettings {
-  std::size_t sources = 2000;      // in [1, 20000]
+  std::size_t sources = 2000;  // in [1, 1000000]; dense: at most 20000
+  FitSolver solver = FitSolver::automatic;
   std::optional<double> distance;  // fraction of the diagonal, in [1e-4, 2]; chosen when absent
   Interpolation interpolation = Interpolation::automatic;
   Regularization method = Regularization::tikhonov;
@@ -61,11 +69,21 @@ struct DistanceTrial {
 
 struct FitResult {
   HarmonicField field;
-  DenseSolution solution;
+  bool iterative = false;
   double distance = 0;
   bool smooth = false;  // fitted to the vertices; then with at most half as many sources as those
   std::vector<DistanceTrial> trials;  // empty when the distance was given
+  double weightNorm = 0;              // as in DenseSolution
+  // Dense solver: as in DenseSolution.
+  double regularization = 0, condition = 0;
+  std::size_t rank = 0;
+  // Iterative solver: rms at the collocation points before and after each iteration.
+  std::vector<double> residuals;
 };
+
+// Peak need in bytes of a fit with so many points.
+std::uint64_t fitMemory(std::size_t collocation, std::size_t sources, std::size_t heldOut,
+                        FitSolver solver);
 
 // Throws SettingError, DataError (no room for sources at any distance), MemoryError, Cancelled.
 FitResult fitField(const FitProblem& problem, const FitSettings& settings = {});

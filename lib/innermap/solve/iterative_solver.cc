@@ -203,10 +203,17 @@ IterativeSolver::Unknowns IterativeSolver::localCorrection(const Matrix& residua
   return out;
 }
 
-Matrix IterativeSolver::apply(const Unknowns& x) const {
+// A x for charges [first, last) alone, and the affine part.
+Matrix IterativeSolver::apply(const Unknowns& x, std::size_t first, std::size_t last) const {
+  const std::size_t channels = x.weights.columns(), count = last - first;
+  Matrix weights(count, channels);
+  for (std::size_t k = 0; k < channels; ++k)
+    std::copy_n(x.weights.column(k) + first, count, weights.column(k));
+  const Points sources(sources_.begin() + static_cast<std::ptrdiff_t>(first),
+                       sources_.begin() + static_cast<std::ptrdiff_t>(last));
   Matrix out =
-      sumCharges(Charges(sources_, x.weights), collocation_, false, settings_.progress).values;
-  for (std::size_t k = 0; k < out.columns(); ++k)
+      sumCharges(Charges(sources, weights), collocation_, false, settings_.progress).values;
+  for (std::size_t k = 0; k < channels; ++k)
     for (std::size_t i = 0; i < out.rows(); ++i) {
       const Vec3& p = collocation_[i];
       out(i, k) +=
@@ -219,13 +226,20 @@ IterativeSolution IterativeSolver::solve(const Matrix& values) const {
   if (values.rows() != collocation_.size())
     throw DataError("solve: the values do not fit the collocation points");
   const std::size_t channels = values.columns(), unknowns = kAffine + sources_.size();
-  // Residuals of size 1: the local solves are in single precision.
+  // Centred and of size 1, as the local solves are in single precision.
+  std::vector<double> middle(channels, 0.0);
   double size = 0;
-  for (std::size_t i = 0; i < values.rows() * channels; ++i)
-    size = std::max(size, std::abs(values.data()[i]));
+  for (std::size_t k = 0; k < channels; ++k) {
+    const auto [low, high] =
+        std::minmax_element(values.column(k), values.column(k) + values.rows());
+    middle[k] = 0.5 * (*low + *high);
+    size = std::max(size, *high - *low);
+  }
   if (!(size > 0)) size = 1;
-  Matrix residual = values, x(unknowns, channels);
-  for (std::size_t i = 0; i < values.rows() * channels; ++i) residual.data()[i] /= size;
+  Matrix residual(values.rows(), channels), x(unknowns, channels);
+  for (std::size_t k = 0; k < channels; ++k)
+    for (std::size_t i = 0; i < values.rows(); ++i)
+      residual(i, k) = (values(i, k) - middle[k]) / size;
 
   const auto stack = [&](const Unknowns& u) {
     Matrix z(unknowns, channels);
@@ -242,12 +256,12 @@ IterativeSolution IterativeSolver::solve(const Matrix& values) const {
     reportProgress(settings_.progress, "solving",
                    static_cast<double>(iteration) / settings_.maxIterations);
     const Unknowns coarse = coarseCorrection(residual);
-    const Matrix coarseImage = apply(coarse);
+    const Matrix coarseImage = apply(coarse, fine_, sources_.size());
     Matrix after = residual;
     for (std::size_t i = 0; i < after.rows() * channels; ++i)
       after.data()[i] -= coarseImage.data()[i];
     const Unknowns local = localCorrection(after);
-    const Matrix localImage = apply(local);
+    const Matrix localImage = apply(local, 0, fine_);
     directions.add(stack(coarse), coarseImage);
     directions.add(stack(local), localImage);
     directions.project(residual, x);
@@ -263,7 +277,7 @@ IterativeSolution IterativeSolver::solve(const Matrix& values) const {
   double largest = 0;
   for (std::size_t k = 0; k < channels; ++k) {
     for (std::size_t r = 0; r < kAffine; ++r)
-      out.affine.coefficients(r, k) = size * x(r, k) / (r == 0 ? 1 : scale_);
+      out.affine.coefficients(r, k) = r == 0 ? middle[k] + size * x(r, k) : size * x(r, k) / scale_;
     for (std::size_t j = 0; j < sources_.size(); ++j) {
       largest = std::max(largest, std::abs(x(kAffine + j, k)));
       out.weights(j, k) = size * scale_ * x(kAffine + j, k);

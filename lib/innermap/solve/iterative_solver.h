@@ -62,7 +62,7 @@ class IterativeSolver {
   void buildCluster(Cluster& cluster) const;
   Unknowns coarseCorrection(const Matrix& residual) const;
   Unknowns localCorrection(const Matrix& residual) const;
-  Matrix apply(const Unknowns& x) const;
+  Matrix apply(const Unknowns& x, std::size_t first, std::size_t last) const;
 
   IterativeSettings settings_;
   Vec3 center_;

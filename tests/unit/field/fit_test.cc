@@ -110,6 +110,31 @@ TEST(Fit, FewVerticesTakeFewerSources) {
   EXPECT_EQ(fitField(p, s).field.sources().size(), 150u);
 }
 
+TEST(Fit, ManySourcesAreSolvedForIteratively) {
+  FitProblem p = testing::ballProblem(12000);
+  for (std::size_t i = 0; i < p.surface.points.size(); ++i)
+    p.surface.values(i, 0) += std::abs(std::sin(5 * p.surface.points[i].x));
+  for (std::size_t i = 0; i < p.surface.heldOut.size(); ++i)
+    p.surface.heldOutValues(i, 0) += std::abs(std::sin(5 * p.surface.heldOut[i].x));
+  FitSettings s;
+  s.sources = 4000;
+  const FitResult many = fitField(p, s);
+  EXPECT_TRUE(many.iterative);
+  EXPECT_GE(many.residuals.size(), 2u);
+  s.sources = 1000;
+  const FitResult few = fitField(p, s);
+  EXPECT_FALSE(few.iterative);
+  const auto rms = [&](const FitResult& r) {
+    return measureBoundaryError(r.field, p.surface.heldOut, p.surface.heldOutValues, 1).rms;
+  };
+  // Kinks: at least first order in the spacing, so half, and something for points that are random
+  // instead of blue noise: 3 a source for the many, 12 for the few.
+  EXPECT_LT(rms(many), 0.7 * rms(few));
+  s.distance = 0.5;
+  s.solver = FitSolver::iterative;
+  EXPECT_THROW(fitField(p, s), SettingError);
+}
+
 TEST(Fit, RefusesBadSettings) {
   const FitProblem p = testing::ballProblem(900);
   FitSettings s;
