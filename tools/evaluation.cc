@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/output/vdb_file.h"
@@ -131,7 +132,9 @@ openvdb::GridPtrVec evaluateGrids(const BoundaryPair& pair, const FieldFile& fil
     grids = evaluateMap(HarmonicMap(file.field), pair.solid, *surface, evaluate);
   });
   if (grids.interiorVoxels == 0)
-    context.warning("no voxel's centre is inside the solid; use a higher --resolution");
+    throw DataError(pair.source.name +
+                    ": is thinner than the voxels everywhere, none has its centre inside; use a "
+                    "higher --resolution");
   openvdb::GridPtrVec all{surface, density};
   for (const openvdb::GridBase::Ptr& grid : grids.all()) all.push_back(grid);
   describe(all, grids, file, options);

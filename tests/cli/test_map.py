@@ -203,6 +203,13 @@ def test_all_points_in_one_place_as_target():
     fails(1, "map", "ball.obj", "flat.obj", "-o", "out", says=["flat.obj", "no inside"])
 
 
+def test_thinner_than_a_voxel():
+    vertices, faces = icosphere_arrays(3)
+    write_obj("plate.obj", [(x, y, 0.002 * z) for x, y, z in vertices], faces)
+    fails(1, "map", "plate.obj", "plate.obj", "-o", "out", "--resolution", "32",
+          says=["plate.obj", "--resolution"])
+
+
 def test_full_disk_leaves_nothing():
     pair(harmonic, subdivisions=3)
     for size in [1000, 50000]:
