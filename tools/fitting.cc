@@ -29,6 +29,7 @@ enum Stream : std::uint64_t {
   kVertices = 4
 };
 FitSolver solverOf(const FittingOptions& options) {
+  if (options.radiusRatio) return FitSolver::dense;  // far from most of the surface
   return options.solver == "auto"    ? FitSolver::automatic
          : options.solver == "dense" ? FitSolver::dense
                                      : FitSolver::iterative;
@@ -240,6 +241,12 @@ void addFittingOptions(Command& command, FittingOptions& o) {
               "diagonal (R-Ratio)")
       .above(1)
       .atMost(100);
+  command
+      .option(
+          "--solver", "NAME", &o.solver,
+          "dense: all at once, for up to some 3000 charges; iterative: for many; auto: by their "
+          "number")
+      .choices({"auto", "dense", "iterative"});
   command
       .option(
           "--interpolation", "NAME", &o.interpolation,

@@ -55,8 +55,7 @@ class Fitting {
   FitResult run() {
     check();
     const bool smooth = chooseSmooth();
-    return !smooth && useIterative(settings_.sources, settings_.solver) ? iterative()
-                                                                        : dense(smooth);
+    return !smooth && solver() == FitSolver::iterative ? iterative() : dense(smooth);
   }
 
  private:
@@ -89,6 +88,19 @@ class Fitting {
   Solved solve(const BoundaryData& data, std::size_t count, std::size_t points,
                double distance) const;
 
+  double spacing(std::size_t count) const {
+    return std::sqrt(problem_.area / static_cast<double>(count));
+  }
+
+  // Dense or iterative; the latter cannot take charges that are given far away.
+  FitSolver solver() const {
+    const bool far = settings_.distance && *settings_.distance * problem_.diagonal >
+                                               kIterativeGuard * spacing(settings_.sources);
+    const bool many = useIterative(settings_.sources, settings_.solver);
+    return many && !(far && settings_.solver == FitSolver::automatic) ? FitSolver::iterative
+                                                                      : FitSolver::dense;
+  }
+
   // At least two points a source: vertices may be few. Smooth values need no more sources than the
   // dense solver takes.
   std::size_t sourcesFor(const BoundaryData& data, std::size_t wanted) const {
@@ -97,9 +109,7 @@ class Fitting {
     return std::min({wanted, most, data.points.size() / 2});
   }
 
-  double nearest(std::size_t count) const {
-    return kNearest * std::sqrt(problem_.area / static_cast<double>(count)) / problem_.diagonal;
-  }
+  double nearest(std::size_t count) const { return kNearest * spacing(count) / problem_.diagonal; }
 
   void remember(const Solved& s, bool smooth) {
     trials_.push_back({s.sources.size(), s.distance, smooth, s.solution.heldOutRms});
@@ -117,10 +127,10 @@ void checkShape(const BoundaryData& data) {
 }
 
 void Fitting::check() const {
-  const bool iterative = useIterative(settings_.sources, settings_.solver);
-  if (settings_.sources < 1 || settings_.sources > (iterative ? kMostSources : kMostDense))
-    throw SettingError("sources", iterative ? "must lie in 1 to 1000000"
-                                            : "must lie in 1 to 20000 for the dense solver");
+  const bool iterates = solver() == FitSolver::iterative;
+  if (settings_.sources < 1 || settings_.sources > (iterates ? kMostSources : kMostDense))
+    throw SettingError("sources", iterates ? "must lie in 1 to 1000000"
+                                           : "must lie in 1 to 20000 for the dense solver");
   if (settings_.distance && !(*settings_.distance >= 1e-4 && *settings_.distance <= 2))
     throw SettingError("distance", "must lie in 0.0001 to 2 of the diagonal");
   if (!(problem_.diagonal > 0) || !(problem_.area > 0))
@@ -135,7 +145,7 @@ void Fitting::check() const {
                                             " vertices on the boundary; choose linear");
   requireMemory("fitting " + std::to_string(settings_.sources) + " sources",
                 fitMemory(problem_.surface.points.size(), settings_.sources,
-                          problem_.surface.heldOut.size(), settings_.solver),
+                          problem_.surface.heldOut.size(), solver()),
                 settings_.maxMemory, "use fewer sources");
 }
 
@@ -208,9 +218,6 @@ bool Fitting::chooseSmooth() {
 
 FitResult Fitting::iterative() {
   const std::size_t fine = settings_.sources, coarse = coarseCount(fine);
-  const auto spacing = [&](std::size_t count) {
-    return std::sqrt(problem_.area / static_cast<double>(count));
-  };
   IterativeSettings s;
   s.spacing = spacing(fine);
   const double distance =
