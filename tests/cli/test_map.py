@@ -220,8 +220,8 @@ def test_full_disk_leaves_nothing():
 def test_interrupt_leaves_nothing():
     pair(lambda p: (p[0], p[1], p[2] + 0.2 * abs(p[0])), subdivisions=5)
     caught = 0
-    for after in [0.1, 1, 3]:
-        code, seconds = interrupt("map", "ball.obj", "target.obj", "-o", "out", "--sources", "4000",
+    for after in [0.1, 1, 6]:
+        code, seconds = interrupt("map", "ball.obj", "target.obj", "-o", "out", "--sources", "3000",
                                   after=after, number=signal.SIGINT)
         if code is None:
             continue
