@@ -1,5 +1,5 @@
-// Exact distances to a solid's surface on the voxels of a band around some level of them, found
-// from coarse blocks to fine ones.
+// Internal to levelset/. Exact distances to a solid's surface on the voxels of a band around some
+// level of them, found from coarse blocks to fine ones.
 #pragma once
 
 #include <openvdb/openvdb.h>

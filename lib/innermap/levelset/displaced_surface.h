@@ -1,4 +1,4 @@
-// Surfaces moved along their normals.
+// Internal to levelset/. Surfaces moved along their normals.
 #pragma once
 
 #include "innermap/core/progress.h"

@@ -1,5 +1,5 @@
-// Which parts of a repaired mesh bound the solid of winding number over one half, and which are
-// buried in other parts or doubled. What Solid is made with.
+// Internal to levelset/. Which parts of a repaired mesh bound the solid of winding number over one
+// half, and which are buried in other parts or doubled. What Solid is made with.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Volumes by level set.
+// Internal to levelset/. Volumes by level set.
 #pragma once
 
 #include "innermap/levelset/solid.h"

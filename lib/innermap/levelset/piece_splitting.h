@@ -1,4 +1,4 @@
-// Triangles cut into pieces along what passes through them.
+// Internal to levelset/. Triangles cut into pieces along what passes through them.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// Binary bounding volume hierarchy by the surface area heuristic; what TriangleTree and
-// WindingNumber stand on.
+// Internal to mesh/. Binary bounding volume hierarchy by the surface area heuristic; what
+// TriangleTree and WindingNumber stand on.
 #pragma once
 
 #include <vector>

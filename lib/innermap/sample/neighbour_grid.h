@@ -1,4 +1,5 @@
-// Points in a hashed grid of cubic cells, for searches within one fixed radius.
+// Internal to sample/. Points in a hashed grid of cubic cells, for searches within one fixed
+// radius.
 #pragma once
 
 #include <cstdint>
