@@ -109,48 +109,59 @@ DenseSolver::DenseSolver(const Points& collocation, const Points& sources, const
   scale_ = box.diagonal() > 0 ? box.diagonal() : 1;
 
   const Points normalisedSources = normalised(sources, center_, scale_);
-  {
-    const Points p = normalised(collocation, center_, scale_);
-    Matrix a(m, columns);
-    fillAffine(p, a.data(), m);
-    fillKernelMatrix(p, normalisedSources, 1, a.column(kAffine), m, settings.progress);
-    qr_ = BlockedQr(std::move(a), settings.progress);
-  }
-  Matrix r22(n, n);
-  {
-    const Matrix r = qr_.upperTriangle();
-    affineBlock_ = Matrix(kAffine, kAffine);
-    coupling_ = Matrix(kAffine, n);
-    for (std::size_t j = 0; j < columns; ++j)
-      for (std::size_t i = 0; i <= j; ++i) {
-        if (j < kAffine)
-          affineBlock_(i, j) = r(i, j);
-        else if (i < kAffine)
-          coupling_(i, j - kAffine) = r(i, j);
-        else
-          r22(i - kAffine, j - kAffine) = r(i, j);
-      }
-  }
-  solveUpper(affineBlock_, coupling_);
+  Matrix r22 = factor(normalised(collocation, center_, scale_), normalisedSources, settings);
   reportProgress(settings.progress, "singular values", 0);
-  {
-    Matrix u;
-    svd(r22, singularValues_, u, rightTransposed_);
-    leftTransposed_ = std::move(r22);
-    for (std::size_t j = 0; j < n; ++j)
-      for (std::size_t i = 0; i < n; ++i) leftTransposed_(j, i) = u(i, j);
-  }
+  decompose(r22);
   reportProgress(settings.progress, "singular values", 1);
-  if (heldOut.empty()) return;
-  const Points h = normalised(heldOut, center_, scale_);
-  heldOutAffine_ = Matrix(h.size(), kAffine);
-  fillAffine(h, heldOutAffine_.data(), h.size());
-  Matrix kernel(h.size(), n), right(n, n);
-  fillKernelMatrix(h, normalisedSources, 1, kernel.data(), h.size(), settings.progress);
+  if (!heldOut.empty())
+    prepareHeldOut(normalised(heldOut, center_, scale_), normalisedSources, settings);
+}
+
+// QR of [P A]; keeps what belongs to the affine part and gives R22.
+Matrix DenseSolver::factor(const Points& points, const Points& sources,
+                           const DenseSettings& settings) {
+  const std::size_t m = points.size(), n = sources.size(), columns = n + kAffine;
+  Matrix a(m, columns);
+  fillAffine(points, a.data(), m);
+  fillKernelMatrix(points, sources, 1, a.column(kAffine), m, settings.progress);
+  qr_ = BlockedQr(std::move(a), settings.progress);
+  const Matrix r = qr_.upperTriangle();
+  Matrix r22(n, n);
+  affineBlock_ = Matrix(kAffine, kAffine);
+  coupling_ = Matrix(kAffine, n);
+  for (std::size_t j = 0; j < columns; ++j)
+    for (std::size_t i = 0; i <= j; ++i) {
+      if (j < kAffine)
+        affineBlock_(i, j) = r(i, j);
+      else if (i < kAffine)
+        coupling_(i, j - kAffine) = r(i, j);
+      else
+        r22(i - kAffine, j - kAffine) = r(i, j);
+    }
+  solveUpper(affineBlock_, coupling_);
+  return r22;
+}
+
+// R22 = U S V^T; the storage of R22 then holds U^T.
+void DenseSolver::decompose(Matrix& r22) {
+  Matrix u;
+  svd(r22, singularValues_, u, rightTransposed_);
+  leftTransposed_ = std::move(r22);
+  for (std::size_t j = 0; j < sources_; ++j)
+    for (std::size_t i = 0; i < sources_; ++i) leftTransposed_(j, i) = u(i, j);
+}
+
+void DenseSolver::prepareHeldOut(const Points& points, const Points& sources,
+                                 const DenseSettings& settings) {
+  const std::size_t n = sources.size();
+  heldOutAffine_ = Matrix(points.size(), kAffine);
+  fillAffine(points, heldOutAffine_.data(), points.size());
+  Matrix kernel(points.size(), n), right(n, n);
+  fillKernelMatrix(points, sources, 1, kernel.data(), points.size(), settings.progress);
   multiply(false, -1, heldOutAffine_, coupling_, 1, kernel, settings.progress);
   for (std::size_t j = 0; j < n; ++j)
     for (std::size_t i = 0; i < n; ++i) right(i, j) = rightTransposed_(j, i);
-  heldOutModes_ = Matrix(h.size(), n);
+  heldOutModes_ = Matrix(points.size(), n);
   multiply(false, 1, kernel, right, 0, heldOutModes_, settings.progress);
 }
 

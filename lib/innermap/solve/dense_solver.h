@@ -60,6 +60,9 @@ class DenseSolver {
 
  private:
   struct Projected;
+  Matrix factor(const Points& points, const Points& sources, const DenseSettings& settings);
+  void decompose(Matrix& r22);
+  void prepareHeldOut(const Points& points, const Points& sources, const DenseSettings& settings);
   Projected project(const Matrix& values) const;
   Matrix heldOutResidual(const Projected& rhs, const Matrix& heldOutValues) const;
   double chooseRegularization(const Projected& rhs, Regularization method, const Matrix& values,

@@ -40,11 +40,21 @@ Points subset(const Points& points, const std::vector<std::size_t>& indices) {
   return out;
 }
 
-double meanSquareDiagonal(const Matrix& a, std::size_t firstColumn, std::size_t rows) {
+// Of columns from `firstColumn` on, over the first `rows`.
+double meanSquaredNorm(const Matrix& a, std::size_t firstColumn, std::size_t rows) {
   double sum = 0;
   for (std::size_t j = firstColumn; j < a.columns(); ++j)
     for (std::size_t i = 0; i < rows; ++i) sum += a(i, j) * a(i, j);
   return sum / static_cast<double>(a.columns() - firstColumn);
+}
+
+Matrix stacked(const Matrix& top, const Matrix& bottom) {
+  Matrix out(top.rows() + bottom.rows(), top.columns());
+  for (std::size_t k = 0; k < top.columns(); ++k) {
+    std::copy_n(top.column(k), top.rows(), out.column(k));
+    std::copy_n(bottom.column(k), bottom.rows(), out.column(k) + top.rows());
+  }
+  return out;
 }
 
 double rms(const Matrix& residual) {
@@ -95,10 +105,15 @@ IterativeSolver::IterativeSolver(const Points& collocation, const Points& source
       settings.progress, "factoring clusters");
 
   const Points far = normalised(coarse, center_, scale_);
+  buildCoarse(far);
   sources_.insert(sources_.end(), far.begin(), far.end());
-  std::vector<std::size_t> order(collocation.size());
+}
+
+// Regularised least squares for the coarse charges and the affine part, over rows drawn at random.
+void IterativeSolver::buildCoarse(const Points& far) {
+  std::vector<std::size_t> order(collocation_.size());
   std::iota(order.begin(), order.end(), 0);
-  const CounterRandom random(settings.seed, 11);
+  const CounterRandom random(settings_.seed, 11);
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return std::make_pair(random.bits(a), a) < std::make_pair(random.bits(b), b);
   });
@@ -112,10 +127,10 @@ IterativeSolver::IterativeSolver(const Points& collocation, const Points& source
     a(i, 0) = 1;
     for (std::size_t k = 0; k < 3; ++k) a(i, 1 + k) = seen[i][static_cast<int>(k)];
   }
-  fillKernelMatrix(seen, far, 1, a.column(kAffine), a.rows(), settings.progress);
-  const double lambda = kCoarseLambda * std::sqrt(meanSquareDiagonal(a, kAffine, rows));
+  fillKernelMatrix(seen, far, 1, a.column(kAffine), a.rows(), settings_.progress);
+  const double lambda = kCoarseLambda * std::sqrt(meanSquaredNorm(a, kAffine, rows));
   for (std::size_t j = 0; j < far.size(); ++j) a(rows + j, kAffine + j) = lambda;
-  coarseQr_ = BlockedQr(std::move(a), settings.progress);
+  coarseQr_ = BlockedQr(std::move(a), settings_.progress);
   coarseTriangle_ = coarseQr_.upperTriangle();
 }
 
@@ -222,35 +237,47 @@ Matrix IterativeSolver::apply(const Unknowns& x, std::size_t first, std::size_t 
   return out;
 }
 
+// Values centred and divided by `size`: the local solves are in single precision.
+IterativeSolver::Scaled IterativeSolver::scaled(const Matrix& values) const {
+  Scaled out{values, std::vector<double>(values.columns(), 0.0), 0};
+  for (std::size_t k = 0; k < values.columns(); ++k) {
+    const auto [low, high] =
+        std::minmax_element(values.column(k), values.column(k) + values.rows());
+    out.middle[k] = 0.5 * (*low + *high);
+    out.size = std::max(out.size, *high - *low);
+  }
+  if (!(out.size > 0)) out.size = 1;
+  for (std::size_t k = 0; k < values.columns(); ++k)
+    for (std::size_t i = 0; i < values.rows(); ++i)
+      out.values(i, k) = (values(i, k) - out.middle[k]) / out.size;
+  return out;
+}
+
+// Back to world units.
+void IterativeSolver::unscale(const Scaled& scaled, const Matrix& x, IterativeSolution& out) const {
+  const std::size_t channels = x.columns();
+  out.affine.center = center_;
+  out.affine.coefficients = Matrix(kAffine, channels);
+  out.weights = Matrix(sources_.size(), channels);
+  for (std::size_t k = 0; k < channels; ++k) {
+    out.affine.coefficients(0, k) = scaled.middle[k] + scaled.size * x(0, k);
+    for (std::size_t r = 1; r < kAffine; ++r)
+      out.affine.coefficients(r, k) = scaled.size * x(r, k) / scale_;
+    for (std::size_t j = 0; j < sources_.size(); ++j) {
+      out.weightNorm = std::max(out.weightNorm, std::abs(x(kAffine + j, k)));
+      out.weights(j, k) = scaled.size * scale_ * x(kAffine + j, k);
+    }
+  }
+}
+
 IterativeSolution IterativeSolver::solve(const Matrix& values) const {
   if (values.rows() != collocation_.size())
     throw DataError("solve: the values do not fit the collocation points");
-  const std::size_t channels = values.columns(), unknowns = kAffine + sources_.size();
-  // Centred and of size 1, as the local solves are in single precision.
-  std::vector<double> middle(channels, 0.0);
-  double size = 0;
-  for (std::size_t k = 0; k < channels; ++k) {
-    const auto [low, high] =
-        std::minmax_element(values.column(k), values.column(k) + values.rows());
-    middle[k] = 0.5 * (*low + *high);
-    size = std::max(size, *high - *low);
-  }
-  if (!(size > 0)) size = 1;
-  Matrix residual(values.rows(), channels), x(unknowns, channels);
-  for (std::size_t k = 0; k < channels; ++k)
-    for (std::size_t i = 0; i < values.rows(); ++i)
-      residual(i, k) = (values(i, k) - middle[k]) / size;
-
-  const auto stack = [&](const Unknowns& u) {
-    Matrix z(unknowns, channels);
-    for (std::size_t k = 0; k < channels; ++k) {
-      std::copy_n(u.affine.column(k), kAffine, z.column(k));
-      std::copy_n(u.weights.column(k), sources_.size(), z.column(k) + kAffine);
-    }
-    return z;
-  };
+  const Scaled rhs = scaled(values);
+  const std::size_t unknowns = kAffine + sources_.size();
+  Matrix residual = rhs.values, x(unknowns, values.columns());
   IterativeSolution out;
-  out.residuals.push_back(size * rms(residual));
+  out.residuals.push_back(rhs.size * rms(residual));
   OrthogonalDirections directions(collocation_.size(), unknowns);
   for (int iteration = 0; iteration < settings_.maxIterations; ++iteration) {
     reportProgress(settings_.progress, "solving",
@@ -258,32 +285,17 @@ IterativeSolution IterativeSolver::solve(const Matrix& values) const {
     const Unknowns coarse = coarseCorrection(residual);
     const Matrix coarseImage = apply(coarse, fine_, sources_.size());
     Matrix after = residual;
-    for (std::size_t i = 0; i < after.rows() * channels; ++i)
+    for (std::size_t i = 0; i < after.rows() * after.columns(); ++i)
       after.data()[i] -= coarseImage.data()[i];
     const Unknowns local = localCorrection(after);
-    const Matrix localImage = apply(local, 0, fine_);
-    directions.add(stack(coarse), coarseImage);
-    directions.add(stack(local), localImage);
+    directions.add(stacked(coarse.affine, coarse.weights), coarseImage);
+    directions.add(stacked(local.affine, local.weights), apply(local, 0, fine_));
     directions.project(residual, x);
     ++out.iterations;
-    out.residuals.push_back(size * rms(residual));
-    const double before = out.residuals[out.residuals.size() - 2];
-    if (!(out.residuals.back() < kLeastFall * before)) break;
+    out.residuals.push_back(rhs.size * rms(residual));
+    if (!(out.residuals.back() < kLeastFall * out.residuals[out.residuals.size() - 2])) break;
   }
-
-  out.affine.center = center_;
-  out.affine.coefficients = Matrix(kAffine, channels);
-  out.weights = Matrix(sources_.size(), channels);
-  double largest = 0;
-  for (std::size_t k = 0; k < channels; ++k) {
-    for (std::size_t r = 0; r < kAffine; ++r)
-      out.affine.coefficients(r, k) = r == 0 ? middle[k] + size * x(r, k) : size * x(r, k) / scale_;
-    for (std::size_t j = 0; j < sources_.size(); ++j) {
-      largest = std::max(largest, std::abs(x(kAffine + j, k)));
-      out.weights(j, k) = size * scale_ * x(kAffine + j, k);
-    }
-  }
-  out.weightNorm = largest;
+  unscale(rhs, x, out);
   return out;
 }
 

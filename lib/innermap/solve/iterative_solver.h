@@ -59,7 +59,16 @@ class IterativeSolver {
     Matrix affine, weights;  // 4 x #K, (#sources + #coarse) x #K
   };
 
+  struct Scaled {
+    Matrix values;
+    std::vector<double> middle;  // of each channel
+    double size = 0;             // of the widest channel
+  };
+
   void buildCluster(Cluster& cluster) const;
+  void buildCoarse(const Points& far);
+  Scaled scaled(const Matrix& values) const;
+  void unscale(const Scaled& scaled, const Matrix& x, IterativeSolution& out) const;
   Unknowns coarseCorrection(const Matrix& residual) const;
   Unknowns localCorrection(const Matrix& residual) const;
   Matrix apply(const Unknowns& x, std::size_t first, std::size_t last) const;
