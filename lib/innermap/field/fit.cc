@@ -15,6 +15,9 @@ constexpr double kNearest = 0.8;   // spacings
 constexpr double kFarthest = 0.5;  // of the diagonal
 // A farther shell has larger weights that cancel each other: it must earn its place.
 constexpr double kGain = 0.8;
+// When a trial can hardly tell the nearest distance from the next, a full fit at some more spacings
+// can: the more sources, the smoother the values look.
+constexpr double kClose = 1.25, kNextNearest = 1.6;
 constexpr std::size_t kTrialSources = 600;
 constexpr std::size_t kTrialPointsPerSource = 4;
 constexpr std::size_t kMostSources = 1000000, kMostDense = 20000;
@@ -35,6 +38,7 @@ struct Solved {
 struct Trial {
   std::optional<Solved> best;
   double nearest = 0;
+  bool close = false;  // the second distance is about as good as the nearest
 };
 
 bool useIterative(std::size_t sources, FitSolver solver) {
@@ -184,6 +188,7 @@ Trial Fitting::makeTrial(bool smooth) {
                             out.nearest * std::pow(farthest / out.nearest, ratio));
       remember(solved, smooth);
       const double rms = solved.solution.heldOutRms;
+      if (step == 1 && out.best) out.close = rms < kClose * out.best->solution.heldOutRms;
       if (!out.best || rms < kGain * out.best->solution.heldOutRms)
         out.best = std::move(solved);
       else if (rms > 1.5 * out.best->solution.heldOutRms)
@@ -257,7 +262,10 @@ std::vector<double> Fitting::distancesFor(bool smooth, std::size_t count) {
   if (settings_.distance) return {*settings_.distance};
   const Trial& tried = trial(smooth);
   const double atLeast = nearest(count);
-  if (!tried.best || tried.best->distance <= tried.nearest) return {atLeast};
+  if (!tried.best || tried.best->distance <= tried.nearest) {
+    if (!tried.close) return {atLeast};
+    return {atLeast, kNextNearest * atLeast};
+  }
   const double best = tried.best->distance,
                scaled = std::max(atLeast, best * atLeast / tried.nearest);
   if (scaled > 0.8 * best) return {best};
