@@ -48,6 +48,16 @@ bool isFlat(const Mesh& mesh) {
   return true;
 }
 
+// Of the union where parts overlap; 0 where they cancel.
+double volumeOf(const Mesh& closed, bool overlaps, const SolidSettings& settings) {
+  if (!overlaps) return std::abs(signedVolume(closed));
+  try {
+    return Solid(closed, settings).volume();
+  } catch (const DataError&) {
+    return 0;
+  }
+}
+
 void warnOfCrossings(const std::string& what, const MeshReport& report, const std::string& meaning,
                      Context& context) {
   context.report().set(what + ".self_intersections",
@@ -96,13 +106,11 @@ BoundaryPair makeBoundaryPair(Mesh source, Mesh target, Context& context) {
   if (!(pair.targetDiagonal > 0))
     throw DataError(pair.target.name +
                     ": all vertices are in one place; give a target with extent");
-  context.timed("solid", [&] {
-    pair.targetVolume =
-        pair.solid.overlaps() ? Solid(moved, settings).volume() : std::abs(signedVolume(moved));
-  });
   if (isFlat(moved))
     throw DataError(pair.target.name +
                     ": lies in a plane, so it has no inside; give another target");
+  context.timed("solid",
+                [&] { pair.targetVolume = volumeOf(moved, pair.solid.overlaps(), settings); });
   if (!(pair.targetVolume > kNoVolume * std::pow(pair.targetDiagonal, 3))) {
     pair.targetVolume = 0;
     context.warning(

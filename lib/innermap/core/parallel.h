@@ -10,8 +10,8 @@
 
 namespace innermap {
 
-// Bounds the number of threads used by the whole process while it lives; 0 means all cores.
-// Also keeps BLAS to the calling thread: parallelism is ours, over fixed blocks.
+// Bounds the number of threads used by the whole process while it lives; 0 means all cores. (BLAS
+// is kept to the calling thread where it is called: see SingleThreadedBlas.)
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);
