@@ -31,6 +31,7 @@ NeighbourGrid::NeighbourGrid(const Points& points, double radius)
   });
   points_.reserve(points.size());
   index_.reserve(points.size());
+  cellOf_.reserve(points.size());
   std::vector<std::uint64_t> keys;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (i == 0 || entries[i].key != entries[i - 1].key) {
@@ -39,19 +40,32 @@ NeighbourGrid::NeighbourGrid(const Points& points, double radius)
     }
     points_.push_back(points[entries[i].index]);
     index_.push_back(entries[i].index);
+    cellOf_.push_back(static_cast<std::uint32_t>(keys.size() - 1));
   }
   starts_.push_back(static_cast<std::uint32_t>(points.size()));
+  findRows(keys);
+}
 
-  int bits = 4;
-  while ((std::size_t(1) << bits) < 2 * keys.size()) ++bits;
-  table_.resize(std::size_t(1) << bits);
-  mask_ = table_.size() - 1;
-  shift_ = 64 - bits;
-  for (std::size_t c = 0; c < keys.size(); ++c) {
-    std::uint64_t slot = (keys[c] * 0x9e3779b97f4a7c15u) >> shift_;
-    while (table_[slot].cell != kNone) slot = (slot + 1) & mask_;
-    table_[slot] = {keys[c], static_cast<std::uint32_t>(c)};
-  }
+void NeighbourGrid::findRows(const std::vector<std::uint64_t>& keys) {
+  rows_.resize(keys.size());
+  parallelBlocks(keys.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (int row = 0; row < 9; ++row) {
+      const std::uint64_t offset = static_cast<std::uint64_t>(row / 3 - 1) * kStepX +
+                                   static_cast<std::uint64_t>(row % 3 - 1) * kStepY;
+      const std::uint64_t lowest = keys[begin] + offset - 1;
+      std::size_t first = static_cast<std::size_t>(
+          std::lower_bound(keys.begin(), keys.end(), lowest) - keys.begin());
+      std::size_t last = first;
+      // Keys ascend, so both ends only move up.
+      for (std::size_t c = begin; c < end; ++c) {
+        const std::uint64_t middle = keys[c] + offset;
+        while (first < keys.size() && keys[first] < middle - 1) ++first;
+        last = std::max(first, last);
+        while (last < keys.size() && keys[last] <= middle + 1) ++last;
+        rows_[c][static_cast<std::size_t>(row)] = {starts_[first], starts_[last]};
+      }
+    }
+  });
 }
 
 std::uint64_t NeighbourGrid::keyOf(const Vec3& p) const {

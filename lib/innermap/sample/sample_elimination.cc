@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <numeric>
 
 #include "innermap/core/parallel.h"
@@ -9,63 +11,66 @@
 namespace innermap {
 namespace {
 
-// Binary heap of points by weight, the heaviest on top; ties go to the lower index. Weights only
-// fall.
-class Heap {
+// Points by weight, the heaviest first; ties go to the lower index. Weights only fall, so a binary
+// heap may keep the weight that a point had when it was last looked at: what stands on top with its
+// present weight is the heaviest of all.
+class LazyHeap {
  public:
-  explicit Heap(std::vector<double> weights) : weights_(std::move(weights)) {
-    order_.resize(weights_.size());
-    place_.resize(weights_.size());
-    std::iota(order_.begin(), order_.end(), 0u);
-    std::iota(place_.begin(), place_.end(), 0u);
-    for (std::size_t i = order_.size() / 2; i-- > 0;) sink(i);
+  explicit LazyHeap(std::vector<double> weights) : weights_(std::move(weights)) {
+    entries_.reserve(weights_.size());
+    for (const double weight : weights_) {
+      entries_.push_back({weight, static_cast<std::uint32_t>(entries_.size())});
+    }
+    for (std::size_t i = entries_.size() / 2; i-- > 0;) sink(i, entries_[i]);
   }
 
-  bool contains(std::size_t i) const { return place_[i] != kGone; }
-  std::size_t size() const { return order_.size(); }
+  bool contains(std::size_t i) const { return weights_[i] != kGone; }
+  std::size_t size() const { return entries_.size(); }
 
   std::size_t pop() {
-    const std::uint32_t top = order_.front();
-    place_[top] = kGone;
-    const std::uint32_t last = order_.back();
-    order_.pop_back();
-    if (!order_.empty()) {
-      order_[0] = last;
-      place_[last] = 0;
-      sink(0);
+    for (;;) {
+      const Entry top = entries_.front();
+      const double weight = weights_[top.item];
+      if (weight == top.weight) break;
+      sink(0, {weight, top.item});
     }
-    return top;
+    const std::uint32_t item = entries_.front().item;
+    weights_[item] = kGone;
+    const Entry last = entries_.back();
+    entries_.pop_back();
+    if (!entries_.empty()) sink(0, last);
+    return item;
   }
 
-  void lighten(std::size_t i, double by) {
-    weights_[i] -= by;
-    sink(place_[i]);
-  }
+  void lighten(std::size_t i, double by) { weights_[i] -= by; }
 
  private:
-  static constexpr std::uint32_t kGone = 0xffffffff;
+  // Weights are sums of terms in [0, 1], less what rounding leaves of them.
+  static constexpr double kGone = -std::numeric_limits<double>::infinity();
 
-  bool before(std::uint32_t i, std::uint32_t j) const {
-    return weights_[i] > weights_[j] || (weights_[i] == weights_[j] && i < j);
-  }
+  struct Entry {
+    double weight;
+    std::uint32_t item;
 
-  void sink(std::size_t at) {
-    const std::uint32_t item = order_[at];
+    bool before(const Entry& other) const {
+      return weight > other.weight || (weight == other.weight && item < other.item);
+    }
+  };
+
+  void sink(std::size_t at, const Entry entry) {
     for (;;) {
       std::size_t child = 2 * at + 1;
-      if (child >= order_.size()) break;
-      if (child + 1 < order_.size() && before(order_[child + 1], order_[child])) ++child;
-      if (!before(order_[child], item)) break;
-      order_[at] = order_[child];
-      place_[order_[at]] = static_cast<std::uint32_t>(at);
+      if (child >= entries_.size()) break;
+      if (child + 1 < entries_.size() && entries_[child + 1].before(entries_[child])) ++child;
+      if (!entries_[child].before(entry)) break;
+      entries_[at] = entries_[child];
       at = child;
     }
-    order_[at] = item;
-    place_[item] = static_cast<std::uint32_t>(at);
+    entries_[at] = entry;
   }
 
   std::vector<double> weights_;
-  std::vector<std::uint32_t> order_, place_;
+  std::vector<Entry> entries_;
 };
 
 // Points beyond what evenly spread ones would put into a cell are given up unseen, or points that
@@ -131,7 +136,7 @@ std::vector<std::size_t> thin(const NeighbourGrid& grid, std::size_t count, doub
         }
       },
       progress);
-  Heap heap(std::move(weights));
+  LazyHeap heap(std::move(weights));
   while (heap.size() > count) {
     if (heap.size() % 4096 == 0) {
       reportProgress(progress, "placing samples",
