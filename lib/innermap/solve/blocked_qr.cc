@@ -8,6 +8,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/solve/blas_kernels.h"
 
 extern "C" {
 int openblas_get_num_threads();
@@ -19,6 +20,9 @@ namespace {
 
 constexpr std::size_t kPanel = 64;         // columns factored at once
 constexpr std::size_t kColumnBlock = 128;  // trailing columns updated by one task
+
+// Before main, when no other thread can be in BLAS.
+[[maybe_unused]] const char* const kKernels = chooseBlasKernels();
 
 lapack_int toLapack(std::size_t n) { return static_cast<lapack_int>(n); }
 
