@@ -24,11 +24,14 @@ class NeighbourGrid {
   // The consecutive ranges of points that make up the cells.
   const std::vector<std::uint32_t>& cellStarts() const { return starts_; }
 
+  // The cells in groups by cubes of 2^log2Width cells a side: indices into cellStarts().
+  std::vector<std::vector<std::uint32_t>> cubes(int log2Width) const;
+
   // Calls visit(j, squared distance) for each point j != i within the radius of point i (positions
   // in the order of cells), always in the same order.
   template <typename Visit>
   void forNeighbours(std::size_t i, const Visit& visit) const {
-    const Vec3& p = points_[i];
+    const Vec3 p = points_[i];
     for (const Range& row : rows_[cellOf_[i]]) {
       for (std::uint32_t j = row.begin; j < row.end; ++j) {
         const double squared = squaredNorm(points_[j] - p);
@@ -38,7 +41,8 @@ class NeighbourGrid {
   }
 
  private:
-  static constexpr std::uint64_t kStepY = std::uint64_t(1) << 21, kStepX = std::uint64_t(1) << 42;
+  static constexpr int kBits = 21;  // of the key for each axis
+  static constexpr std::uint64_t kStepY = std::uint64_t(1) << kBits, kStepX = kStepY << kBits;
 
   struct Range {
     std::uint32_t begin = 0, end = 0;
@@ -48,12 +52,13 @@ class NeighbourGrid {
   using Rows = std::array<Range, 9>;
 
   std::uint64_t keyOf(const Vec3& p) const;
-  void findRows(const std::vector<std::uint64_t>& keys);
+  void findRows();
 
   Vec3 lower_;
   double inverseCell_ = 1, squaredRadius_ = 0;
   Points points_;
   std::vector<std::uint32_t> index_, cellOf_, starts_;
+  std::vector<std::uint64_t> keys_;  // of the cells, ascending
   std::vector<Rows> rows_;
 };
 

@@ -1,77 +1,13 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <limits>
 #include <numeric>
 
-#include "innermap/core/parallel.h"
+#include "innermap/sample/greedy_removal.h"
 #include "innermap/sample/neighbour_grid.h"
 #include "innermap/sample/surface_samples.h"
 
 namespace innermap {
 namespace {
-
-// Points by weight, the heaviest first; ties go to the lower index. Weights only fall, so a binary
-// heap may keep the weight that a point had when it was last looked at: what stands on top with its
-// present weight is the heaviest of all.
-class LazyHeap {
- public:
-  explicit LazyHeap(std::vector<double> weights) : weights_(std::move(weights)) {
-    entries_.reserve(weights_.size());
-    for (const double weight : weights_) {
-      entries_.push_back({weight, static_cast<std::uint32_t>(entries_.size())});
-    }
-    for (std::size_t i = entries_.size() / 2; i-- > 0;) sink(i, entries_[i]);
-  }
-
-  bool contains(std::size_t i) const { return weights_[i] != kGone; }
-  std::size_t size() const { return entries_.size(); }
-
-  std::size_t pop() {
-    for (;;) {
-      const Entry top = entries_.front();
-      const double weight = weights_[top.item];
-      if (weight == top.weight) break;
-      sink(0, {weight, top.item});
-    }
-    const std::uint32_t item = entries_.front().item;
-    weights_[item] = kGone;
-    const Entry last = entries_.back();
-    entries_.pop_back();
-    if (!entries_.empty()) sink(0, last);
-    return item;
-  }
-
-  void lighten(std::size_t i, double by) { weights_[i] -= by; }
-
- private:
-  // Weights are sums of terms in [0, 1], less what rounding leaves of them.
-  static constexpr double kGone = -std::numeric_limits<double>::infinity();
-
-  struct Entry {
-    double weight;
-    std::uint32_t item;
-
-    bool before(const Entry& other) const {
-      return weight > other.weight || (weight == other.weight && item < other.item);
-    }
-  };
-
-  void sink(std::size_t at, const Entry entry) {
-    for (;;) {
-      std::size_t child = 2 * at + 1;
-      if (child >= entries_.size()) break;
-      if (child + 1 < entries_.size() && entries_[child + 1].before(entries_[child])) ++child;
-      if (!entries_[child].before(entry)) break;
-      entries_[at] = entries_[child];
-      at = child;
-    }
-    entries_[at] = entry;
-  }
-
-  std::vector<double> weights_;
-  std::vector<Entry> entries_;
-};
 
 // Points beyond what evenly spread ones would put into a cell are given up unseen, or points that
 // pile up would cost the square of their number. Keeps at least `count`, and just so many where
@@ -116,42 +52,13 @@ double largestRadius(const Points& points, std::size_t count, double area) {
 
 std::vector<std::size_t> thin(const NeighbourGrid& grid, std::size_t count, double radius,
                               Progress* progress) {
-  const std::size_t n = grid.size();
   // Yuksel's weight limiting, gamma = 1.5 and beta = 0.65.
-  const double ratio = static_cast<double>(count) / static_cast<double>(n);
-  const double smallest = 2 * radius * (1 - std::pow(ratio, 1.5)) * 0.65;
-  const double inverse = 1 / (2 * radius);
-  const auto weight = [&](double squared) {
-    const double d = std::max(std::sqrt(squared), smallest) * inverse;
-    const double one = 1 - std::min(d, 1.0), two = one * one, four = two * two;
-    return four * four;
-  };
-  std::vector<double> weights(n, 0.0);
-  parallelBlocks(
-      n, 1024,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          grid.forNeighbours(i,
-                             [&](std::size_t, double squared) { weights[i] += weight(squared); });
-        }
-      },
-      progress);
-  LazyHeap heap(std::move(weights));
-  while (heap.size() > count) {
-    if (heap.size() % 4096 == 0) {
-      reportProgress(progress, "placing samples",
-                     static_cast<double>(n - heap.size()) / static_cast<double>(n - count));
-    }
-    const std::size_t gone = heap.pop();
-    grid.forNeighbours(gone, [&](std::size_t j, double squared) {
-      if (heap.contains(j)) heap.lighten(j, weight(squared));
-    });
-  }
+  const double ratio = static_cast<double>(count) / static_cast<double>(grid.size());
+  const NeighbourWeight weight{2 * radius, 2 * radius * (1 - std::pow(ratio, 1.5)) * 0.65};
   std::vector<std::size_t> kept;
   kept.reserve(count);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (heap.contains(i)) kept.push_back(grid.index(i));
-  }
+  for (const std::size_t i : heaviestRemoved(grid, count, weight, progress))
+    kept.push_back(grid.index(i));
   return kept;
 }
 
