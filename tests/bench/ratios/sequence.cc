@@ -1,0 +1,7 @@
+#include "section.h"
+
+namespace innermap::bench {
+
+Tables sequence(const Options&) { return {}; }
+
+}  // namespace innermap::bench
