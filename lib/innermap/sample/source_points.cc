@@ -40,29 +40,59 @@ bool settle(const Solid& solid, const Mesh& shell, int t, double distance, Vec3&
   return !solid.inside(p);
 }
 
-// Those of the shell's random samples [begin, end) that settle, in their order.
-Points settledCandidates(const Solid& solid, const Mesh& shell, double distance, std::size_t begin,
-                         std::size_t end, const SourceSettings& settings) {
-  SampleSettings sampling;
-  sampling.seed = settings.seed;
-  sampling.progress = settings.progress;
-  const std::vector<SurfacePoint> samples = randomSamples(shell, end, sampling);
-  Points points(end - begin);
-  std::vector<char> good(end - begin, 0);
+// Those of the samples that settle, in their order.
+Points settled(const Solid& solid, const Mesh& shell, double distance,
+               const std::vector<SurfacePoint>& samples, Progress* progress) {
+  Points points(samples.size());
+  std::vector<char> good(samples.size(), 0);
   parallelBlocks(
       points.size(), 128,
-      [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-          points[i] = positionOf(shell, samples[begin + i]);
-          good[i] = settle(solid, shell, samples[begin + i].triangle, distance, points[i]);
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          points[i] = positionOf(shell, samples[i]);
+          good[i] = settle(solid, shell, samples[i].triangle, distance, points[i]);
         }
       },
-      settings.progress, "placing sources");
+      progress, "placing sources");
   Points kept;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (good[i]) kept.push_back(points[i]);
   }
   return kept;
+}
+
+// At least `count` settled points spread evenly over the shell, few more than that, or all that
+// there are. Settling takes longest, so random samples are thinned before; a probe says what share
+// of them settles, for only in creases some do not.
+Points settledEvenly(const Solid& solid, const Mesh& shell, double distance,
+                     const SourceSettings& settings) {
+  constexpr std::size_t kProbe = 1000, kMostRounds = 8;
+  constexpr double kReserve = 1.02, kMore = 1.3;
+  SampleSettings sampling;
+  sampling.seed = settings.seed;
+  sampling.progress = settings.progress;
+  const std::size_t probed = std::min(kProbe, 5 * settings.count);
+  const Points probe =
+      settled(solid, shell, distance, randomSamples(shell, probed, sampling), settings.progress);
+  const double share = static_cast<double>(probe.size() + 1) / static_cast<double>(probed + 1);
+  const auto rounds =
+      std::clamp<std::size_t>(static_cast<std::size_t>(0.8 / share + 1), 1, kMostRounds);
+  const std::vector<SurfacePoint> samples = randomSamples(
+      shell, std::min<std::size_t>(5 * settings.count * rounds, 100'000'000), sampling);
+  const Points places =
+      relativeTo(interpolate(shell.vertices, shell.triangles, samples), solid.box().center());
+  for (double most = 8 + kReserve * static_cast<double>(settings.count) / share;; most *= kMore) {
+    std::vector<SurfacePoint> even;
+    const std::size_t wanted = most < static_cast<double>(samples.size())
+                                   ? static_cast<std::size_t>(most)
+                                   : samples.size();
+    for (const std::size_t i :
+         eliminateSamples(places, wanted, surfaceArea(shell), settings.progress)) {
+      even.push_back(samples[i]);
+    }
+    Points points = settled(solid, shell, distance, even, settings.progress);
+    if (points.size() >= settings.count || wanted == samples.size()) return points;
+  }
 }
 
 void requireOutside(const Solid& solid, const Points& points, double least, Progress* progress) {
@@ -99,21 +129,12 @@ Points sourceShell(const Solid& solid, double distance, const SourceSettings& se
   const double area = surfaceArea(shell);
   if (shell.triangles.empty() || !(area > 0)) throw noRoom();
 
-  Points candidates;
-  const std::size_t round = 5 * settings.count;
-  std::size_t drawn = 0;
-  for (int rounds = 0; rounds < 8 && candidates.size() < 4 * settings.count; ++rounds) {
-    const Points more = settledCandidates(solid, shell, world, drawn, drawn + round, settings);
-    candidates.insert(candidates.end(), more.begin(), more.end());
-    drawn += round;
-    if (drawn + round > 100'000'000) break;
-  }
+  const Points candidates = settledEvenly(solid, shell, world, settings);
   if (candidates.size() < settings.count) throw noRoom();
-  const double usable = area * static_cast<double>(candidates.size()) / static_cast<double>(drawn);
   Points points;
   points.reserve(settings.count);
   for (const std::size_t i : eliminateSamples(relativeTo(candidates, solid.box().center()),
-                                              settings.count, usable, settings.progress)) {
+                                              settings.count, area, settings.progress)) {
     points.push_back(candidates[i]);
   }
   requireOutside(solid, points, 0.9 * world, settings.progress);
