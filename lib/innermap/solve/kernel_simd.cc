@@ -13,8 +13,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 #if HWY_TARGET == HWY_SCALAR
 using D = hn::ScalableTag<double>;
 #else
-// Vectors longer than kPadding (wide SVE, say) would read past the padding.
-using D = hn::CappedTag<double, kPadding>;
+// Longer vectors (wide SVE, say) would write past the padding.
+using D = hn::CappedTag<double, kRows / 4>;
 #endif
 using V = hn::Vec<D>;
 
@@ -31,19 +31,22 @@ HWY_INLINE V EstimateInverseSqrt(D d, V x) {
 #endif
 }
 
-// 1/sqrt(x) by two Newton steps, error about one unit of rounding; 0 where x is 0.
+// 1/sqrt(x) by two Newton steps, error about one unit of rounding, or by one where that is enough;
+// 0 where x is 0.
+template <Rounding R = Rounding::full>
 HWY_INLINE V InverseSqrt(D d, V x) {
+  constexpr int kSteps = (HWY_TARGET == HWY_NEON ? 2 : 1) * (R == Rounding::full ? 2 : 1);
   const V half = hn::Set(d, 0.5);
   const V halfX = hn::Mul(half, x);
   V y = EstimateInverseSqrt(d, x);
-  for (int step = 0; step < (HWY_TARGET == HWY_NEON ? 4 : 2); ++step) {
+  for (int step = 0; step < kSteps; ++step) {
     const V t = hn::NegMulAdd(hn::Mul(halfX, y), y, half);
     y = hn::MulAdd(y, t, y);
   }
   return hn::IfThenElseZero(hn::Gt(x, hn::Zero(d)), y);
 }
 
-template <int K>
+template <int K, Rounding R>
 void SumValues(const double* HWY_RESTRICT sources, std::size_t sourceCount, const double* x,
                const double* y, const double* z, std::size_t count, std::size_t stride,
                double* HWY_RESTRICT values) {
@@ -63,7 +66,7 @@ void SumValues(const double* HWY_RESTRICT sources, std::size_t sourceCount, cons
       const V qx = hn::Set(d, s[0]), qy = hn::Set(d, s[1]), qz = hn::Set(d, s[2]);
       for (int u = 0; u < kUnroll; ++u) {
         const V dx = hn::Sub(px[u], qx), dy = hn::Sub(py[u], qy), dz = hn::Sub(pz[u], qz);
-        const V r = InverseSqrt(d, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))));
+        const V r = InverseSqrt<R>(d, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))));
         for (int k = 0; k < K; ++k) sum[u][k] = hn::MulAdd(hn::Set(d, s[3 + k]), r, sum[u][k]);
       }
     }
@@ -72,7 +75,79 @@ void SumValues(const double* HWY_RESTRICT sources, std::size_t sourceCount, cons
   }
 }
 
+#if HWY_TARGET == HWY_SCALAR
+using DF = hn::ScalableTag<float>;
+#else
+using DF = hn::CappedTag<float, kRows / 2>;
+#endif
+using VF = hn::Vec<DF>;
+
+HWY_INLINE VF InverseSqrt(DF d, VF x) {
+  const VF y = hn::ApproximateReciprocalSqrt(x), half = hn::Set(d, 0.5f);
+  const VF t = hn::NegMulAdd(hn::Mul(hn::Mul(half, x), y), y, half);
+  return hn::IfThenElseZero(hn::Gt(x, hn::Zero(d)), hn::MulAdd(y, t, y));
+}
+
+// Adds the sums over `sourceCount` sources at the tile's targets, all in single precision.
 template <int K>
+void SumTile(const float* HWY_RESTRICT sources, std::size_t sourceCount, const float* x,
+             const float* y, const float* z, std::size_t count, std::size_t stride,
+             double* HWY_RESTRICT values) {
+  const DF d;
+  const std::size_t lanes = hn::Lanes(d);
+  constexpr int kUnroll = 2;
+  for (std::size_t i = 0; i < count; i += kUnroll * lanes) {
+    VF px[kUnroll], py[kUnroll], pz[kUnroll], sum[kUnroll][K];
+    for (int u = 0; u < kUnroll; ++u) {
+      px[u] = hn::LoadU(d, x + i + u * lanes);
+      py[u] = hn::LoadU(d, y + i + u * lanes);
+      pz[u] = hn::LoadU(d, z + i + u * lanes);
+      for (int k = 0; k < K; ++k) sum[u][k] = hn::Zero(d);
+    }
+    const float* s = sources;
+    for (std::size_t j = 0; j < sourceCount; ++j, s += 3 + K) {
+      const VF qx = hn::Set(d, s[0]), qy = hn::Set(d, s[1]), qz = hn::Set(d, s[2]);
+      for (int u = 0; u < kUnroll; ++u) {
+        const VF dx = hn::Sub(px[u], qx), dy = hn::Sub(py[u], qy), dz = hn::Sub(pz[u], qz);
+        const VF r = InverseSqrt(d, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))));
+        for (int k = 0; k < K; ++k) sum[u][k] = hn::MulAdd(hn::Set(d, s[3 + k]), r, sum[u][k]);
+      }
+    }
+    float out[kRows];
+    for (int k = 0; k < K; ++k) {
+      for (int u = 0; u < kUnroll; ++u) hn::StoreU(sum[u][k], d, out + u * lanes);
+      for (std::size_t t = 0; t < kUnroll * lanes; ++t) values[k * stride + i + t] += out[t];
+    }
+  }
+}
+
+// In tiles of targets and of sources: partial sums of few terms keep single precision's digits.
+template <int K>
+void SumValuesSingle(const double* sources, std::size_t sourceCount, const double* x,
+                     const double* y, const double* z, std::size_t count, std::size_t stride,
+                     double* values) {
+  constexpr std::size_t kTargets = 4 * kPadding, kSources = 256;
+  float at[3][kTargets], charges[kSources * (3 + K)];
+  for (std::size_t i = 0; i < count; i += kTargets) {
+    const std::size_t size = HWY_MIN(kTargets, count - i),
+                      filled = (size + kRows - 1) / kRows * kRows;
+    for (std::size_t k = 0; k < K; ++k)
+      for (std::size_t t = 0; t < filled; ++t) values[k * stride + i + t] = 0;
+    for (std::size_t t = 0; t < filled; ++t) {
+      at[0][t] = static_cast<float>(x[i + t]);
+      at[1][t] = static_cast<float>(y[i + t]);
+      at[2][t] = static_cast<float>(z[i + t]);
+    }
+    for (std::size_t j = 0; j < sourceCount; j += kSources) {
+      const std::size_t n = HWY_MIN(kSources, sourceCount - j);
+      for (std::size_t c = 0; c < n * (3 + K); ++c)
+        charges[c] = static_cast<float>(sources[j * (3 + K) + c]);
+      SumTile<K>(charges, n, at[0], at[1], at[2], size, stride, values + i);
+    }
+  }
+}
+
+template <int K, Rounding R>
 void SumGradients(const double* HWY_RESTRICT sources, std::size_t sourceCount, const double* x,
                   const double* y, const double* z, std::size_t count, std::size_t stride,
                   double* HWY_RESTRICT values, double* HWY_RESTRICT gradients) {
@@ -86,7 +161,7 @@ void SumGradients(const double* HWY_RESTRICT sources, std::size_t sourceCount, c
     for (std::size_t j = 0; j < sourceCount; ++j, s += 3 + K) {
       const V dx = hn::Sub(px, hn::Set(d, s[0])), dy = hn::Sub(py, hn::Set(d, s[1])),
               dz = hn::Sub(pz, hn::Set(d, s[2]));
-      const V r = InverseSqrt(d, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))));
+      const V r = InverseSqrt<R>(d, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))));
       const V r2 = hn::Mul(r, r);
       for (int k = 0; k < K; ++k) {
         const V wr = hn::Mul(hn::Set(d, s[3 + k]), r);
@@ -106,21 +181,34 @@ void SumGradients(const double* HWY_RESTRICT sources, std::size_t sourceCount, c
   }
 }
 
-template <int K>
+template <int K, Rounding R>
 void Sum(const double* sources, std::size_t sourceCount, const double* x, const double* y,
          const double* z, std::size_t count, std::size_t stride, double* values,
          double* gradients) {
-  if (gradients)
-    SumGradients<K>(sources, sourceCount, x, y, z, count, stride, values, gradients);
+  if (!gradients && R == Rounding::single)
+    SumValuesSingle<K>(sources, sourceCount, x, y, z, count, stride, values);
+  else if (gradients)
+    SumGradients<K, R>(sources, sourceCount, x, y, z, count, stride, values, gradients);
   else
-    SumValues<K>(sources, sourceCount, x, y, z, count, stride, values);
+    SumValues<K, R>(sources, sourceCount, x, y, z, count, stride, values);
 }
 
 void SumCharges(const double* sources, std::size_t sourceCount, int channels, const double* x,
                 const double* y, const double* z, std::size_t count, std::size_t stride,
-                double* values, double* gradients) {
-  const auto sum = channels == 1 ? Sum<1> : channels == 2 ? Sum<2> : Sum<3>;
-  sum(sources, sourceCount, x, y, z, count, stride, values, gradients);
+                double* values, double* gradients, Rounding rounding) {
+  const auto full = channels == 1   ? Sum<1, Rounding::full>
+                    : channels == 2 ? Sum<2, Rounding::full>
+                                    : Sum<3, Rounding::full>;
+  const auto rough = channels == 1   ? Sum<1, Rounding::rough>
+                     : channels == 2 ? Sum<2, Rounding::rough>
+                                     : Sum<3, Rounding::rough>;
+  const auto single = channels == 1   ? Sum<1, Rounding::single>
+                      : channels == 2 ? Sum<2, Rounding::single>
+                                      : Sum<3, Rounding::single>;
+  (rounding == Rounding::full ? full
+   : rounding == Rounding::rough
+       ? rough
+       : single)(sources, sourceCount, x, y, z, count, stride, values, gradients);
 }
 
 void KernelColumn(const double* x, const double* y, const double* z, std::size_t count, double qx,
@@ -158,9 +246,9 @@ HWY_EXPORT(TargetName);
 
 void sumCharges(const double* sources, std::size_t sourceCount, int channels, const double* x,
                 const double* y, const double* z, std::size_t count, std::size_t stride,
-                double* values, double* gradients) {
+                double* values, double* gradients, Rounding rounding) {
   HWY_DYNAMIC_DISPATCH(SumCharges)
-  (sources, sourceCount, channels, x, y, z, count, stride, values, gradients);
+  (sources, sourceCount, channels, x, y, z, count, stride, values, gradients, rounding);
 }
 
 void kernelColumn(const double* x, const double* y, const double* z, std::size_t count, double qx,

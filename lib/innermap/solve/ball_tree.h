@@ -1,0 +1,46 @@
+// Internal to solve/. A tree of balls about points, by halving at the median of the longest side.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "innermap/core/vec3.h"
+
+namespace innermap {
+
+struct Ball {
+  Vec3 center;
+  double radius = 0;
+};
+
+class BallTree {
+ public:
+  struct Node {
+    Ball ball;                         // about all of its points, each with its own radius
+    std::uint32_t begin = 0, end = 0;  // of order()
+    std::uint32_t firstChild = 0, children = 0;
+    std::uint32_t depth = 0;
+    bool leaf() const { return children == 0; }
+    std::size_t count() const { return end - begin; }
+  };
+
+  // pointRadius: what each point stands for reaches so far. leafSize: most points of a leaf, >= 1.
+  // halvings: of a node before it has children (1: two of them, 3: eight), >= 1. Points must be
+  // finite and fewer than 2^31. Children stand behind their parents. Deterministic.
+  BallTree(const Points& points, double pointRadius, std::size_t leafSize, int halvings);
+
+  bool empty() const { return nodes_.empty(); }
+  const std::vector<Node>& nodes() const { return nodes_; }
+  const std::vector<std::uint32_t>& order() const { return order_; }  // indices of the points
+
+ private:
+  using Range = std::pair<std::uint32_t, std::uint32_t>;
+  void halve(const Points& points, Range range, std::size_t leafSize, int times,
+             std::vector<Range>& out);
+  Node makeNode(const Points& points, Range range, double pointRadius, std::uint32_t depth) const;
+
+  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> order_;
+};
+
+}  // namespace innermap
