@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
@@ -67,6 +69,19 @@ void describe(const openvdb::GridPtrVec& grids, const MapGrids& totals, const Fi
   }
 }
 
+// Of the sums: well below the map's own error, as its file states that.
+double sumAccuracy(const FieldFile& file) {
+  constexpr double kShare = 0.02, kFinest = 1e-9, kCoarsest = 1e-5;
+  double error = 0;
+  for (const auto& [key, value] : file.settings) {
+    // Fitted to the vertices alone, a map is far more exact than its error on triangles says.
+    if (key == "interpolation" && value == "smooth") return kFinest;
+    if (key == "boundary_error_rms") error = std::strtod(value.c_str(), nullptr);
+  }
+  return error > 0 ? std::clamp(kShare * error, kFinest, kCoarsest)
+                   : EvaluateSettings().accuracy;
+}
+
 }  // namespace
 
 void addEvaluationOptions(Command& command, EvaluationOptions& o) {
@@ -127,6 +142,7 @@ openvdb::GridPtrVec evaluateGrids(const BoundaryPair& pair, const FieldFile& fil
     EvaluateSettings evaluate;
     evaluate.lame = options.lame;
     evaluate.targetVolume = pair.targetVolume;
+    evaluate.accuracy = sumAccuracy(file);
     evaluate.maxMemory = context.maxMemory();
     evaluate.progress = context.progress();
     grids = evaluateMap(HarmonicMap(file.field), pair.solid, *surface, evaluate);

@@ -9,7 +9,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/evaluate/active_region.h"
-#include "innermap/levelset/level_set.h"
+#include "innermap/evaluate/leaf_plan.h"
 
 namespace innermap {
 namespace {
@@ -23,18 +23,37 @@ struct LeafTotals {
   double harmonic = 0, deformation = 0, volume = 0, folded = 0;
   double jacobianMin = std::numeric_limits<double>::infinity(), jacobianMax = -jacobianMin;
   std::uint64_t active = 0, interior = 0;
+
+  void add(const LeafTotals& t) {
+    harmonic += t.harmonic;
+    deformation += t.deformation;
+    volume += t.volume;
+    folded += t.folded;
+    active += t.active;
+    interior += t.interior;
+    jacobianMin = std::min(jacobianMin, t.jacobianMin);
+    jacobianMax = std::max(jacobianMax, t.jacobianMax);
+  }
 };
 
-// The voxels of one leaf: where the map is evaluated, and what to make of it.
-struct LeafPoints {
-  std::vector<openvdb::Index> offsets;
-  Points evaluated;  // the voxel's centre, or its closest boundary point when it is outside
-  Points beyond;     // from there to the voxel's centre
-  std::vector<double> share;  // of the cell inside the solid, 0..1
-  std::vector<bool> inside;
-};
+// Leaves that are planned and summed together: bounds the memory for what is not a grid yet.
+constexpr std::size_t kLeavesTogether = 4096;
+constexpr std::size_t kExtentSamples = 500;
 
-Vec3 toVec3(const openvdb::Vec3d& v) { return {v.x(), v.y(), v.z()}; }
+using Leaves = openvdb::tree::LeafManager<const openvdb::MaskTree>;
+
+// Where the leaves' values go.
+struct LeafOutput {
+  Vec3Leaf* map = nullptr;
+  FloatLeaf *jacobian = nullptr, *harmonic = nullptr, *deformation = nullptr;
+
+  LeafOutput(const MapGrids& grids, const openvdb::Coord& origin) {
+    if (grids.map) map = grids.map->tree().probeLeaf(origin);
+    if (grids.jacobian) jacobian = grids.jacobian->tree().probeLeaf(origin);
+    if (grids.harmonicEnergy) harmonic = grids.harmonicEnergy->tree().probeLeaf(origin);
+    if (grids.deformationEnergy) deformation = grids.deformationEnergy->tree().probeLeaf(origin);
+  }
+};
 
 class Evaluation {
  public:
@@ -49,8 +68,16 @@ class Evaluation {
   MapGrids run();
 
  private:
-  LeafPoints collect(const openvdb::MaskTree::LeafNodeType& leaf) const;
-  LeafTotals evaluateLeaf(const openvdb::MaskTree::LeafNodeType& leaf, MapGrids& out) const;
+  double accuracy() const;
+  std::vector<LeafTotals> evaluateLeaves(const Leaves& leaves, std::size_t begin, std::size_t end,
+                                         const MapGrids& out) const;
+  FieldSamples atSkin(const std::vector<LeafPlan>& plans) const;
+  void store(const Mat3& j, const Vec3& position, double share, std::size_t offset,
+             const LeafOutput& out, LeafTotals& totals) const;
+  void storeInside(const LeafPlan& plan, const double* values, const double* gradients,
+                   const LeafOutput& out, LeafTotals& totals) const;
+  void storeSkin(const LeafPlan& plan, const FieldSamples& samples, std::size_t firstRow,
+                 const LeafOutput& out, LeafTotals& totals) const;
 
   const HarmonicMap& map_;
   const Solid& solid_;
@@ -59,78 +86,105 @@ class Evaluation {
   double voxel_ = 0, unitVolumeScale_ = 1;
 };
 
-LeafPoints Evaluation::collect(const openvdb::MaskTree::LeafNodeType& leaf) const {
-  LeafPoints out;
-  auto distances = levelSet_.getConstAccessor();
-  for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
-    const openvdb::Coord ijk = voxel.getCoord();
-    const Vec3 center = toVec3(levelSet_.transform().indexToWorld(ijk));
-    const double distance = distances.getValue(ijk);
-    out.offsets.push_back(voxel.pos());
-    out.inside.push_back(distance < 0);
-    double share = distance < 0 ? 1 : 0;
-    Vec3 at = center;
-    // Where the surface may pass through the cell (half its diagonal), or the voxel is outside.
-    if (distance > -0.87 * voxel_) {
-      const Solid::Closest closest = solid_.closest(center, 4 * voxel_);
-      if (closest.onSurface.triangle >= 0) {
-        if (distance >= 0) at = closest.position;
-        const Vec3 away = (distance < 0 ? -1.0 : 1.0) * (center - closest.position);
-        const double length = norm(away);
-        if (length > 1e-12 * voxel_)
-          share = cellFraction((distance < 0 ? -length : length) / voxel_, away / length);
-        else
-          share = 0.5;
-      }
-    }
-    out.share.push_back(share);
-    out.evaluated.push_back(at);
-    out.beyond.push_back(center - at);
-  }
-  return out;
+// World units of the target.
+double Evaluation::accuracy() const {
+  const Points& vertices = solid_.surface().vertices;
+  const std::size_t count = std::min(kExtentSamples, vertices.size());
+  Points some(count), images(count);
+  for (std::size_t i = 0; i < count; ++i) some[i] = vertices[i * vertices.size() / count];
+  map_.evaluate(some.data(), count, images.data(), nullptr);
+  const double extent = boundingBox(images).diagonal();
+  return settings_.accuracy * (extent > 0 ? extent : 1);
 }
 
-LeafTotals Evaluation::evaluateLeaf(const openvdb::MaskTree::LeafNodeType& leaf,
-                                    MapGrids& out) const {
-  const LeafPoints points = collect(leaf);
-  const std::size_t n = points.evaluated.size();
-  Points positions(n);
-  std::vector<Mat3> jacobians(n);
-  map_.evaluate(points.evaluated.data(), n, positions.data(), jacobians.data());
+void Evaluation::store(const Mat3& j, const Vec3& position, double share, std::size_t offset,
+                       const LeafOutput& out, LeafTotals& totals) const {
+  const double det = determinant(j), h = unitVolumeScale_ * harmonicEnergyDensity(j),
+               psi = deformationEnergyDensity(j, settings_.lame);
+  const auto at = static_cast<openvdb::Index>(offset);
+  if (out.map)
+    out.map->setValueOnly(at, openvdb::Vec3f(openvdb::Vec3d(position.x, position.y, position.z)));
+  if (out.jacobian) out.jacobian->setValueOnly(at, static_cast<float>(det));
+  if (out.harmonic) out.harmonic->setValueOnly(at, static_cast<float>(h));
+  if (out.deformation) out.deformation->setValueOnly(at, static_cast<float>(psi));
+  totals.volume += share;
+  totals.harmonic += share * h;
+  totals.deformation += share * psi;
+  if (det <= 0) totals.folded += share;
+  ++totals.active;
+}
 
-  const openvdb::Coord origin = leaf.origin();
-  Vec3Leaf* map = out.map ? out.map->tree().probeLeaf(origin) : nullptr;
-  FloatLeaf* jacobian = out.jacobian ? out.jacobian->tree().probeLeaf(origin) : nullptr;
-  FloatLeaf* harmonic = out.harmonicEnergy ? out.harmonicEnergy->tree().probeLeaf(origin) : nullptr;
-  FloatLeaf* deformation =
-      out.deformationEnergy ? out.deformationEnergy->tree().probeLeaf(origin) : nullptr;
-
-  LeafTotals totals;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Mat3& j = jacobians[i];
-    const Vec3 d = points.beyond[i];
-    Vec3 q = positions[i];
-    for (int r = 0; r < 3; ++r) q[r] += dot(Vec3{j[r][0], j[r][1], j[r][2]}, d);
+void Evaluation::storeInside(const LeafPlan& plan, const double* values, const double* gradients,
+                             const LeafOutput& out, LeafTotals& totals) const {
+  constexpr std::size_t kPoints = 512;
+  auto cut = plan.cut.begin();
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    if (!(plan.inside[i >> 6] >> (i & 63) & 1)) continue;
+    Mat3 j;
+    for (std::size_t r = 0; r < 3; ++r)
+      for (std::size_t a = 0; a < 3; ++a) j[r][a] = gradients[kPoints * (3 * r + a) + i];
+    double share = 1;
+    if (cut != plan.cut.end() && cut->offset == i) share = (cut++)->share;
+    store(j, {values[i], values[kPoints + i], values[2 * kPoints + i]}, share, i, out, totals);
     const double det = determinant(j);
-    const double h = unitVolumeScale_ * harmonicEnergyDensity(j);
-    const double psi = deformationEnergyDensity(j, settings_.lame);
-    const openvdb::Index at = points.offsets[i];
-    if (map) map->setValueOnly(at, openvdb::Vec3f(openvdb::Vec3d(q.x, q.y, q.z)));
-    if (jacobian) jacobian->setValueOnly(at, static_cast<float>(det));
-    if (harmonic) harmonic->setValueOnly(at, static_cast<float>(h));
-    if (deformation) deformation->setValueOnly(at, static_cast<float>(psi));
-
-    const double share = points.share[i];
-    totals.volume += share;
-    totals.harmonic += share * h;
-    totals.deformation += share * psi;
-    if (det <= 0) totals.folded += share;
-    ++totals.active;
-    if (!points.inside[i]) continue;
     ++totals.interior;
     totals.jacobianMin = std::min(totals.jacobianMin, det);
     totals.jacobianMax = std::max(totals.jacobianMax, det);
   }
+}
+
+void Evaluation::storeSkin(const LeafPlan& plan, const FieldSamples& samples, std::size_t firstRow,
+                           const LeafOutput& out, LeafTotals& totals) const {
+  for (std::size_t s = 0; s < plan.skin.size(); ++s) {
+    const LeafPlan::Skin& voxel = plan.skin[s];
+    Mat3 j;
+    Vec3 q;
+    for (int r = 0; r < 3; ++r) {
+      for (int a = 0; a < 3; ++a) j[r][a] = samples.gradients(firstRow + s, 3 * r + a);
+      q[r] = samples.values(firstRow + s, r) + dot(Vec3{j[r][0], j[r][1], j[r][2]}, voxel.beyond);
+    }
+    store(j, q, voxel.share, voxel.offset, out, totals);
+  }
+}
+
+FieldSamples Evaluation::atSkin(const std::vector<LeafPlan>& plans) const {
+  Points points;
+  for (const LeafPlan& plan : plans)
+    for (const LeafPlan::Skin& voxel : plan.skin) points.push_back(voxel.at);
+  return map_.field().evaluate(points, accuracy(), true, settings_.progress);
+}
+
+std::vector<LeafTotals> Evaluation::evaluateLeaves(const Leaves& leaves, std::size_t begin,
+                                                   std::size_t end, const MapGrids& out) const {
+  const std::size_t count = end - begin;
+  std::vector<LeafPlan> plans(count);
+  parallelBlocks(
+      count, 4,
+      [&](std::size_t first, std::size_t last) {
+        for (std::size_t l = first; l < last; ++l)
+          plans[l] = planLeaf(leaves.leaf(begin + l), levelSet_, solid_);
+      },
+      settings_.progress);
+  const FieldSamples skin = atSkin(plans);
+  LatticeBlocks lattice;
+  lattice.spacing = voxel_;
+  const openvdb::Vec3d origin = levelSet_.transform().indexToWorld(openvdb::Vec3d(0));
+  lattice.origin = {origin.x(), origin.y(), origin.z()};
+  std::vector<std::size_t> firstRow(count + 1, 0);
+  for (std::size_t l = 0; l < count; ++l) {
+    const openvdb::Coord first = leaves.leaf(begin + l).origin();
+    lattice.blocks.push_back({{first.x(), first.y(), first.z()}, plans[l].inside});
+    firstRow[l + 1] = firstRow[l] + plans[l].skin.size();
+  }
+  std::vector<LeafTotals> totals(count);
+  map_.field().onLattice(
+      lattice, accuracy(), true,
+      [&](std::size_t l, const double* values, const double* gradients) {
+        const LeafOutput leaf(out, leaves.leaf(begin + l).origin());
+        storeInside(plans[l], values, gradients, leaf, totals[l]);
+        storeSkin(plans[l], skin, firstRow[l], leaf, totals[l]);
+      },
+      settings_.progress, "evaluating the map");
   return totals;
 }
 
@@ -162,25 +216,11 @@ MapGrids Evaluation::run() {
   if (settings_.deformationEnergy)
     out.deformationEnergy = gridLike<openvdb::FloatGrid>(*region, "deformation_energy");
 
-  const openvdb::tree::LeafManager<const openvdb::MaskTree> leaves(region->tree());
-  std::vector<LeafTotals> totals(leaves.leafCount());
-  parallelBlocks(
-      leaves.leafCount(), 1,
-      [&](std::size_t begin, std::size_t) {
-        totals[begin] = evaluateLeaf(leaves.leaf(begin), out);
-      },
-      settings_.progress, "evaluating the map");
-
+  const Leaves leaves(region->tree());
   LeafTotals sum;
-  for (const LeafTotals& t : totals) {
-    sum.harmonic += t.harmonic;
-    sum.deformation += t.deformation;
-    sum.volume += t.volume;
-    sum.folded += t.folded;
-    sum.active += t.active;
-    sum.interior += t.interior;
-    sum.jacobianMin = std::min(sum.jacobianMin, t.jacobianMin);
-    sum.jacobianMax = std::max(sum.jacobianMax, t.jacobianMax);
+  for (std::size_t begin = 0; begin < leaves.leafCount(); begin += kLeavesTogether) {
+    const std::size_t end = std::min(begin + kLeavesTogether, leaves.leafCount());
+    for (const LeafTotals& t : evaluateLeaves(leaves, begin, end, out)) sum.add(t);
   }
   const double cell = voxel_ * voxel_ * voxel_;
   out.volume = sum.volume * cell;
@@ -211,6 +251,8 @@ MapGrids evaluateMap(const HarmonicMap& map, const Solid& solid, const openvdb::
     throw SettingError("Lame constants", "must not be negative");
   if (!(settings.skin >= 0 && settings.skin <= 3))
     throw SettingError("skin", "must lie in [0, 3] voxels");
+  if (!(settings.accuracy >= 1e-12 && settings.accuracy <= 1e-3))
+    throw SettingError("accuracy", "must lie in [1e-12, 1e-3] of the target's extent");
   if (!(settings.targetVolume >= 0)) throw SettingError("target volume", "must not be negative");
   return Evaluation(map, solid, levelSet, settings).run();
 }

@@ -16,8 +16,11 @@ namespace innermap {
 struct EvaluateSettings {
   bool map = true, jacobian = true, harmonicEnergy = true, deformationEnergy = true;
   LameConstants lame;
-  double targetVolume = 0;      // world units cubed; scales the harmonic energy; 0: as the source's
-  double skin = 2;              // active voxels outside the surface, in [0, 3]
+  double targetVolume = 0;  // world units cubed; scales the harmonic energy; 0: as the source's
+  double skin = 2;          // active voxels outside the surface, in [0, 3]
+  // Of the sums of charges: root mean square error of positions as a fraction of the target's
+  // extent, in [1e-12, 1e-3]. The default is what float grids hold.
+  double accuracy = 1e-7;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;
 };

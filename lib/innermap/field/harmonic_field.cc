@@ -12,8 +12,31 @@ struct HarmonicField::Data {
   Points sources;
   Matrix weights;
   Affine affine;
-  Charges charges;
+  FastSum sum;
 };
+
+namespace {
+
+void addAffine(const Affine& affine, const Points& points, FieldSamples& out) {
+  for (std::size_t k = 0; k < out.values.columns(); ++k)
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      out.values(i, k) += affine.value(points[i], k);
+      for (std::size_t a = 0; !out.gradients.empty() && a < 3; ++a)
+        out.gradients(i, 3 * k + a) += affine.coefficients(1 + a, k);
+    }
+}
+
+FastSumSettings settingsFor(double accuracy, bool gradients, Progress* progress) {
+  if (!(accuracy > 0)) throw SettingError("accuracy", "of a field's values must be positive");
+  FastSumSettings settings;
+  settings.accuracy = 1e-12;
+  settings.absolute = accuracy;
+  settings.gradients = gradients;
+  settings.progress = progress;
+  return settings;
+}
+
+}  // namespace
 
 HarmonicField::HarmonicField(Points sources, Matrix weights, Affine affine) {
   const Matrix& c = affine.coefficients;
@@ -24,9 +47,9 @@ HarmonicField::HarmonicField(Points sources, Matrix weights, Affine affine) {
   bool finite = isFinite(affine.center);
   for (std::size_t i = 0; i < 4 * c.columns(); ++i) finite = finite && std::isfinite(c.data()[i]);
   if (!finite) throw DataError("field: the affine part is not finite");
-  Charges charges(sources, weights);
+  FastSum sum(sources, weights);
   data_ = std::make_shared<Data>(
-      Data{std::move(sources), std::move(weights), std::move(affine), std::move(charges)});
+      Data{std::move(sources), std::move(weights), std::move(affine), std::move(sum)});
 }
 
 std::size_t HarmonicField::channels() const { return data_->weights.columns(); }
@@ -42,20 +65,46 @@ void HarmonicField::evaluate(const Vec3* points, std::size_t count, double* valu
     for (std::size_t a = 0; gradients && a < 3; ++a)
       std::fill_n(gradients + (3 * k + a) * count, count, affine.coefficients(1 + a, k));
   }
-  data_->charges.addTo(points, count, values, gradients);
+  data_->sum.plain().addTo(points, count, values, gradients);
 }
 
 FieldSamples HarmonicField::evaluate(const Points& points, bool gradients,
                                      Progress* progress) const {
-  FieldSamples out = sumCharges(data_->charges, points, gradients, progress);
-  const Affine& affine = data_->affine;
-  for (std::size_t k = 0; k < channels(); ++k)
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      out.values(i, k) += affine.value(points[i], k);
-      for (std::size_t a = 0; gradients && a < 3; ++a)
-        out.gradients(i, 3 * k + a) += affine.coefficients(1 + a, k);
-    }
+  FieldSamples out = sumCharges(data_->sum.plain(), points, gradients, progress);
+  addAffine(data_->affine, points, out);
   return out;
+}
+
+FieldSamples HarmonicField::evaluate(const Points& points, double accuracy, bool gradients,
+                                     Progress* progress) const {
+  FieldSamples out = data_->sum.at(points, settingsFor(accuracy, gradients, progress));
+  addAffine(data_->affine, points, out);
+  return out;
+}
+
+void HarmonicField::onLattice(const LatticeBlocks& lattice, double accuracy, bool gradients,
+                              const BlockVisitor& visit, Progress* progress,
+                              std::string_view stage) const {
+  constexpr std::size_t kPoints = 512;
+  const Affine& affine = data_->affine;
+  const auto withAffine = [&](std::size_t block, const double* values, const double* slopes) {
+    const auto& first = lattice.blocks[block].first;
+    std::vector<double> sums(values, values + kPoints * channels()),
+        gradient(slopes, slopes ? slopes + 3 * kPoints * channels() : slopes);
+    for (std::size_t k = 0; k < channels(); ++k) {
+      for (std::size_t i = 0; i < kPoints; ++i) {
+        const Vec3 index{static_cast<double>(first[0]) + static_cast<double>(i >> 6),
+                         static_cast<double>(first[1]) + static_cast<double>(i >> 3 & 7),
+                         static_cast<double>(first[2]) + static_cast<double>(i & 7)};
+        sums[kPoints * k + i] += affine.value(lattice.origin + lattice.spacing * index, k);
+      }
+      for (std::size_t a = 0; slopes && a < 3; ++a)
+        for (std::size_t i = 0; i < kPoints; ++i)
+          gradient[kPoints * (3 * k + a) + i] += affine.coefficients(1 + a, k);
+    }
+    visit(block, sums.data(), slopes ? gradient.data() : nullptr);
+  };
+  data_->sum.onLattice(lattice, withAffine, settingsFor(accuracy, gradients, progress), stage);
 }
 
 }  // namespace innermap

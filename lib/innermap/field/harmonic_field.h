@@ -8,11 +8,13 @@
 
 #include <cstddef>
 #include <memory>
+#include <string_view>
 
 #include "innermap/core/matrix.h"
 #include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/solve/affine.h"
+#include "innermap/solve/fast_sum.h"
 #include "innermap/solve/kernel_sum.h"
 
 namespace innermap {
@@ -34,7 +36,18 @@ class HarmonicField {
   FieldSamples evaluate(const Points& points, bool gradients = false,
                         Progress* progress = nullptr) const;
 
-  // The same for a few points on the calling thread: values[k * count + i],
+  // The same by fast sums: root mean square error of each channel at most `accuracy` (units of the
+  // values, positive); of the charges' part of the gradients, a hundred times that relative to
+  // them. Throws as FastSum::at does.
+  FieldSamples evaluate(const Points& points, double accuracy, bool gradients,
+                        Progress* progress = nullptr) const;
+
+  // The same at the points of a lattice, block by block; see FastSum::onLattice.
+  void onLattice(const LatticeBlocks& lattice, double accuracy, bool gradients,
+                 const BlockVisitor& visit, Progress* progress = nullptr,
+                 std::string_view stage = {}) const;
+
+  // The first for a few points on the calling thread: values[k * count + i],
   // gradients[(3 * k + axis) * count + i]; gradients may be null. Overwrites.
   void evaluate(const Vec3* points, std::size_t count, double* values, double* gradients) const;
 

@@ -80,6 +80,7 @@ FastSum::FastSum(const Points& sources, const Matrix& weights)
 
 std::size_t FastSum::count() const { return data_->tree.count(); }
 std::size_t FastSum::channels() const { return data_->tree.channels(); }
+const Charges& FastSum::plain() const { return data_->direct; }
 
 namespace {
 

@@ -25,8 +25,9 @@ enum class SumMethod { cheapest, direct, hierarchical };
 
 struct FastSumSettings {
   // Root mean square error of the values of each channel, at most the larger of `accuracy` times
-  // that of the values themselves, in [1e-12, 0.1], and `absolute` (in their units, not negative).
-  // Gradients may be a hundred times less exact, relative to theirs.
+  // that of the values themselves, in [1e-12, 0.1], and `absolute` (in their units, not negative;
+  // it never stands for more than a thousandth of the values). Gradients may be a hundred times
+  // less exact, relative to theirs.
   double accuracy = 1e-6;
   double absolute = 0;
   bool gradients = false;
@@ -59,6 +60,7 @@ class FastSum {
 
   std::size_t count() const;
   std::size_t channels() const;
+  const Charges& plain() const;  // the same charges, for plain sums
 
   // The accuracy is checked against plain sums at some of the points, and the order raised where it
   // does not hold. Same result for any number of threads. Throws SettingError for a bad accuracy,

@@ -7,6 +7,8 @@ namespace innermap {
 namespace {
 
 constexpr double kGradients = 100;  // their error may be so many times that of the values
+// Where an absolute accuracy allows more: gradients still count.
+constexpr double kLoosest = 1e-3;
 
 double rootMeanSquare(const double* values, std::size_t count) {
   double sum = 0;
@@ -29,7 +31,9 @@ SumReference::SumReference(FieldSamples exact, const FastSumSettings& settings)
     : exact_(std::move(exact)), relative_(exact_.values.columns(), settings.accuracy) {
   for (std::size_t k = 0; k < relative_.size(); ++k) {
     const double size = rootMeanSquare(exact_.values.column(k), exact_.values.rows());
-    if (size > 0) relative_[k] = std::clamp(settings.absolute / size, relative_[k], 0.1);
+    if (size > 0)
+      relative_[k] =
+          std::clamp(settings.absolute / size, relative_[k], std::max(relative_[k], kLoosest));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/random.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"
 
@@ -153,6 +154,51 @@ TEST(EvaluateMap, GridsHoldTheMapInsideAndItsExtensionInTheSkin) {
   EXPECT_EQ(g.map->getVectorType(), openvdb::VEC_INVARIANT);
   EXPECT_EQ(g.map->transform(), surface->transform());
   EXPECT_EQ(g.all().size(), 4u);
+}
+
+// Identity and thousands of charges on a sphere about the cube: the sums are hierarchical.
+HarmonicMap manyCharges() {
+  const std::size_t count = 4000;
+  const CounterRandom random(5, 1);
+  Points sources(count);
+  Matrix weights(count, 3);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double z = 2 * random.uniform(2 * i) - 1, angle = 6.283 * random.uniform(2 * i + 1),
+                 r = std::sqrt(1 - z * z);
+    sources[i] = 1.8 * Vec3{r * std::cos(angle), r * std::sin(angle), z};
+    for (std::size_t k = 0; k < 3; ++k)
+      weights(i, k) = 2e-3 * (random.uniform(1000000 + 3 * i + k) - 0.5);
+  }
+  Affine affine;
+  affine.coefficients = Matrix(4, 3);
+  for (int r = 0; r < 3; ++r) affine.coefficients(1 + r, r) = 1;
+  return HarmonicMap(HarmonicField(sources, weights, affine));
+}
+
+TEST(EvaluateMap, ManyChargesAreSummedToTheAccuracy) {
+  const HarmonicMap map = manyCharges();
+  const Solid solid(cube());
+  const openvdb::FloatGrid::Ptr surface = levelSet(solid, 48);
+  for (const double accuracy : {1e-4, 1e-7}) {
+    EvaluateSettings settings;
+    settings.accuracy = accuracy;
+    const MapGrids grids = evaluateMap(map, solid, *surface, settings);
+    double squared = 0, jacobian = 0;
+    std::size_t count = 0;
+    for (auto it = grids.map->cbeginValueOn(); it; ++it) {
+      if (count++ % 7 || surface->tree().getValue(it.getCoord()) >= 0) continue;
+      const openvdb::Vec3d p = grids.map->transform().indexToWorld(it.getCoord());
+      const Vec3 exact = map({p.x(), p.y(), p.z()});
+      const openvdb::Vec3f got = *it;
+      squared += squaredNorm(Vec3{got.x(), got.y(), got.z()} - exact);
+      jacobian = std::max(jacobian, std::abs(grids.jacobian->tree().getValue(it.getCoord()) -
+                                             determinant(map.jacobian({p.x(), p.y(), p.z()}))));
+    }
+    const double extent = std::sqrt(12.0), rounding = 6e-8 * extent;
+    EXPECT_LT(std::sqrt(7 * squared / static_cast<double>(count)),
+              3 * (accuracy * extent + rounding));
+    EXPECT_LT(jacobian, 1e-2);
+  }
 }
 
 TEST(EvaluateMap, SameBitsForAnyNumberOfThreads) {
