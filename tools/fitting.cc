@@ -35,6 +35,12 @@ FitSolver solverOf(const FittingOptions& options) {
                                      : FitSolver::iterative;
 }
 
+Interpolation interpolationOf(const FittingOptions& options) {
+  return options.interpolation == "linear"   ? Interpolation::linear
+         : options.interpolation == "smooth" ? Interpolation::smooth
+                                             : Interpolation::automatic;
+}
+
 std::uint64_t seedOf(const FittingOptions& options, Stream stream) {
   return 4 * options.seed + stream;
 }
@@ -321,6 +327,8 @@ Fitted fitMap(const BoundaryPair& pair, const FittingOptions& options, Context& 
   context.timed("sample", [&] { problem = makeProblem(pair, options, counts, context); });
   FitSettings settings;
   settings.sources = counts.sources;
+  settings.solver = solverOf(options);
+  settings.interpolation = interpolationOf(options);
   settings.distance = options.distance;
   // On a sphere the distance plays no part: one fit, nothing to choose.
   if (options.radiusRatio) settings.distance = 1.0;

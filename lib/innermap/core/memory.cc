@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <string>
 
 #include "innermap/core/error.h"
 
@@ -33,6 +34,10 @@ std::uint64_t availableMemory() {
 }
 
 std::uint64_t peakMemory() {
+  // The system's resource usage also counts the process that this one was started from.
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.rfind("VmHWM:", 0) == 0) return 1024 * std::stoull(line.substr(6));
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
