@@ -209,7 +209,7 @@ Tables poisson(const Options& options) {
     double fitSeconds = 0;
     const Outcome ours = charges(file, setting, fitSeconds);
     table.add(row(across, voxels, "innermap", ours, ours));
-    table.note("of which from the mesh to the weights: " + std::to_string(fitSeconds) + " s");
+    table.note("of which from the mesh to the weights: " + digits(fitSeconds) + " s");
     table.add(row(across, voxels, "OpenVDB, staircase",
                   finiteDifferences(setting, Boundary::staircase), ours));
     // An iteration takes as long: one size shows what it is worth.

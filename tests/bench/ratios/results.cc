@@ -16,11 +16,13 @@ namespace {
 
 std::string cell(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
-  if (value.is_number_float()) return fmt::format("{:.3g}", value.get<double>());
+  if (value.is_number_float()) return digits(value.get<double>());
   return value.is_null() ? "" : value.dump();
 }
 
 }  // namespace
+
+std::string digits(double value) { return fmt::format("{:.3g}", value); }
 
 Table::Table(std::string title) : title_(std::move(title)) {
   fmt::print("\n{}\n", title_);

@@ -24,6 +24,8 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+std::string digits(double value);  // three of them
+
 // A table whose rows are objects; the keys of the first row are the columns.
 class Table {
  public:

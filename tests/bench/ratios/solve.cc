@@ -95,9 +95,8 @@ Tables solve(const Options& options) {
   }
   const auto [seconds, way] = qrSeconds(pair, first.points, cases[0].sources, options.threads);
   shells.note("QR of the dense matrix, " + std::to_string(first.points) + " x " +
-              std::to_string(cases[0].sources) + ", by " + way + ": " + std::to_string(seconds) +
-              " s, " + std::to_string(seconds / first.seconds) +
-              " times the first row from mesh to weights");
+              std::to_string(cases[0].sources) + ", by " + way + ": " + digits(seconds) + " s, " +
+              digits(seconds / first.seconds) + " times the first row from mesh to weights");
 
   Table beside("Iterative beside dense");
   for (std::size_t sources : {2000, 4000}) {
@@ -106,9 +105,9 @@ Tables solve(const Options& options) {
     const Solved iterative = run(pair, {sources, 3 * sources, "iterative"}, options);
     beside.add(dense.row);
     beside.add(iterative.row);
-    beside.note("rms of the iterative solver over the dense one's: " +
-                std::to_string(iterative.rms / dense.rms) +
-                "; seconds: " + std::to_string(iterative.seconds / dense.seconds));
+    beside.note(
+        "rms of the iterative solver over the dense one's: " + digits(iterative.rms / dense.rms) +
+        "; seconds: " + digits(iterative.seconds / dense.seconds));
   }
   return {shells.json(), beside.json()};
 }
