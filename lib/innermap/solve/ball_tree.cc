@@ -5,12 +5,12 @@
 
 namespace innermap {
 
-BallTree::BallTree(const Points& points, double pointRadius, std::size_t leafSize, int halvings)
+BallTree::BallTree(const Points& points, const std::vector<double>& radii, std::size_t leafSize,
+                   int halvings)
     : order_(points.size()) {
   std::iota(order_.begin(), order_.end(), 0);
   if (points.empty()) return;
-  nodes_.push_back(
-      makeNode(points, {0, static_cast<std::uint32_t>(points.size())}, pointRadius, 0));
+  nodes_.push_back(makeNode(points, radii, {0, static_cast<std::uint32_t>(points.size())}, 0));
   std::vector<Range> parts;
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     if (nodes_[n].count() <= leafSize) continue;
@@ -19,7 +19,7 @@ BallTree::BallTree(const Points& points, double pointRadius, std::size_t leafSiz
     nodes_[n].firstChild = static_cast<std::uint32_t>(nodes_.size());
     nodes_[n].children = static_cast<std::uint32_t>(parts.size());
     const std::uint32_t depth = nodes_[n].depth + 1;
-    for (const Range& part : parts) nodes_.push_back(makeNode(points, part, pointRadius, depth));
+    for (const Range& part : parts) nodes_.push_back(makeNode(points, radii, part, depth));
   }
 }
 
@@ -44,16 +44,17 @@ void BallTree::halve(const Points& points, Range range, std::size_t leafSize, in
   halve(points, {middle, range.second}, leafSize, times - 1, out);
 }
 
-BallTree::Node BallTree::makeNode(const Points& points, Range range, double pointRadius,
-                                  std::uint32_t depth) const {
+BallTree::Node BallTree::makeNode(const Points& points, const std::vector<double>& radii,
+                                  Range range, std::uint32_t depth) const {
   Box3 box;
   for (std::uint32_t i = range.first; i < range.second; ++i) box.add(points[order_[i]]);
   Node node;
   node.ball.center = box.center();
-  double squared = 0;
-  for (std::uint32_t i = range.first; i < range.second; ++i)
-    squared = std::max(squared, squaredNorm(points[order_[i]] - node.ball.center));
-  node.ball.radius = std::sqrt(squared) + pointRadius;
+  for (std::uint32_t i = range.first; i < range.second; ++i) {
+    const std::uint32_t p = order_[i];
+    node.ball.radius = std::max(
+        node.ball.radius, norm(points[p] - node.ball.center) + radii[radii.size() > 1 ? p : 0]);
+  }
   node.begin = range.first;
   node.end = range.second;
   node.depth = depth;

@@ -24,10 +24,12 @@ class BallTree {
     std::size_t count() const { return end - begin; }
   };
 
-  // pointRadius: what each point stands for reaches so far. leafSize: most points of a leaf, >= 1.
-  // halvings: of a node before it has children (1: two of them, 3: eight), >= 1. Points must be
-  // finite and fewer than 2^31. Children stand behind their parents. Deterministic.
-  BallTree(const Points& points, double pointRadius, std::size_t leafSize, int halvings);
+  // radii: how far what the points stand for reaches, one for all or one each. leafSize: most
+  // points of a leaf, >= 1. halvings: of a node before it has children (1: two of them, 3: eight),
+  // >= 1. Points must be finite and fewer than 2^31. Children stand behind their parents.
+  // Deterministic.
+  BallTree(const Points& points, const std::vector<double>& radii, std::size_t leafSize,
+           int halvings);
 
   bool empty() const { return nodes_.empty(); }
   const std::vector<Node>& nodes() const { return nodes_; }
@@ -37,7 +39,8 @@ class BallTree {
   using Range = std::pair<std::uint32_t, std::uint32_t>;
   void halve(const Points& points, Range range, std::size_t leafSize, int times,
              std::vector<Range>& out);
-  Node makeNode(const Points& points, Range range, double pointRadius, std::uint32_t depth) const;
+  Node makeNode(const Points& points, const std::vector<double>& radii, Range range,
+                std::uint32_t depth) const;
 
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> order_;

@@ -1,15 +1,13 @@
-// Internal to solve/. Charges in a tree of balls, and proxies for its larger nodes.
+// Internal to solve/. Charges in a tree of balls.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "innermap/core/matrix.h"
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/solve/ball_tree.h"
-#include "innermap/solve/expansion_basis.h"
 
 namespace innermap {
 
@@ -45,26 +43,6 @@ class ChargeTree {
   std::size_t channels_ = 0;
   BallTree balls_;
   std::vector<std::vector<double>> packed_;  // one a group, in the order of the tree
-};
-
-// Charges on a sphere in place of those of a node, for every node with more than those.
-class Proxies {
- public:
-  Proxies(const ChargeTree& charges, std::shared_ptr<const ExpansionBasis> basis,
-          Progress* progress);
-
-  bool has(std::size_t node) const { return slot_[node] != kNone; }
-  ChargeSpan of(std::size_t node, std::size_t group) const;
-
- private:
-  static constexpr std::uint32_t kNone = 0xffffffff;
-  void build(std::size_t node, std::size_t group);
-  ChargeSpan standIn(std::size_t node, std::size_t group) const;
-
-  const ChargeTree& charges_;
-  std::shared_ptr<const ExpansionBasis> basis_;
-  std::vector<std::uint32_t> slot_;
-  std::vector<std::vector<double>> packed_;
 };
 
 }  // namespace innermap

@@ -15,11 +15,12 @@ struct Subtree {
   std::shared_ptr<const std::vector<std::uint32_t>> nodes;  // of charges not yet expanded
 };
 
+// Shared by both ways down: `atLeaf(node, parent, nodes, work)`.
+template <typename AtLeaf>
 class Descent {
  public:
-  Descent(const FarField& field, const BallTree& targets, const LeafVisitor& visitor,
-          Progress* progress)
-      : field_(field), nodes_(targets.nodes()), visitor_(visitor), progress_(progress) {}
+  Descent(const FarField& field, const BallTree& targets, const AtLeaf& atLeaf, Progress* progress)
+      : field_(field), nodes_(targets.nodes()), atLeaf_(atLeaf), progress_(progress) {}
 
   void run(std::string_view stage) {
     std::vector<Subtree> subtrees{
@@ -68,9 +69,7 @@ class Descent {
     const BallTree::Node& node = nodes_[n];
     if (node.leaf()) {
       throwIfCancelled(progress_);
-      const Expansion expansion =
-          field_.expandLast(node.ball, parent, nodes, work.near, work.farField);
-      visitor_(node, expansion, work);
+      atLeaf_(node, parent, nodes, work);
       return;
     }
     std::vector<std::uint32_t> left;
@@ -81,15 +80,36 @@ class Descent {
 
   const FarField& field_;
   const std::vector<BallTree::Node>& nodes_;
-  const LeafVisitor& visitor_;
+  const AtLeaf& atLeaf_;
   Progress* progress_;
 };
+
+template <typename AtLeaf>
+void run(const FarField& field, const BallTree& targets, const AtLeaf& atLeaf, Progress* progress,
+         std::string_view stage) {
+  if (!targets.empty()) Descent<AtLeaf>(field, targets, atLeaf, progress).run(stage);
+}
 
 }  // namespace
 
 void descend(const FarField& field, const BallTree& targets, const LeafVisitor& visit,
              Progress* progress, std::string_view stage) {
-  if (!targets.empty()) Descent(field, targets, visit, progress).run(stage);
+  const auto atLeaf = [&](const BallTree::Node& node, const Expansion& parent,
+                          const std::vector<std::uint32_t>& nodes, DescentWorkspace& work) {
+    visit(node, field.expandLast(node.ball, parent, nodes, work.near, work.farField), work);
+  };
+  run(field, targets, atLeaf, progress, stage);
+}
+
+void descendToNodes(const FarField& field, const BallTree& targets, const LeafNodeVisitor& visit,
+                    Progress* progress) {
+  const auto atLeaf = [&](const BallTree::Node& node, const Expansion& parent,
+                          const std::vector<std::uint32_t>& nodes, DescentWorkspace& work) {
+    std::vector<std::uint32_t> left;
+    const Expansion expansion = field.expand(node.ball, parent, nodes, left, work.farField);
+    visit(node, expansion, left, work.sums);
+  };
+  run(field, targets, atLeaf, progress, {});
 }
 
 }  // namespace innermap

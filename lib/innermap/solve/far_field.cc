@@ -24,11 +24,8 @@ void append(const ChargeSpan& span, std::size_t stride, const Vec3& center,
 
 }  // namespace
 
-FarField::FarField(const ChargeTree& charges, const FarFieldSettings& settings, Progress* progress)
-    : charges_(charges),
-      settings_(settings),
-      basis_(ExpansionBasis::get(settings.order)),
-      proxies_(charges, basis_, progress) {
+FarField::FarField(const Proxies& proxies, const FarFieldSettings& settings)
+    : proxies_(proxies), settings_(settings), basis_(proxies.basis()) {
   const std::size_t size = padded(basis_->pointCount());
   x_.resize(size);
   y_.resize(size);
@@ -44,9 +41,9 @@ FarField::FarField(const ChargeTree& charges, const FarFieldSettings& settings, 
 void FarField::split(const BallTree::Node& leaf, const Ball& ball, NearCharges& near,
                      NearCharges& far) const {
   const double reach = ball.radius / settings_.separation, squared = reach * reach;
-  for (std::size_t g = 0; g < charges_.groups(); ++g) {
-    const std::size_t stride = 3 + charges_.width(g);
-    const ChargeSpan span = charges_.charges(leaf, g);
+  for (std::size_t g = 0; g < proxies_.groups(); ++g) {
+    const std::size_t stride = 3 + proxies_.width(g);
+    const ChargeSpan span = proxies_.charges()->charges(leaf, g);
     for (std::size_t i = 0; i < span.count; ++i) {
       const double* q = span.first + i * stride;
       const bool isFar = squaredNorm(Vec3{q[0], q[1], q[2]} - ball.center) >= squared;
@@ -59,9 +56,9 @@ void FarField::split(const BallTree::Node& leaf, const Ball& ball, NearCharges& 
 void FarField::gather(const Ball& ball, const std::vector<std::uint32_t>& nodes,
                       std::vector<std::uint32_t>* left, NearCharges* near,
                       FarFieldWorkspace& work) const {
-  const auto& all = charges_.balls().nodes();
+  const auto& all = proxies_.balls().nodes();
   const double reach = ball.radius / settings_.separation;
-  work.far.resize(charges_.groups());
+  work.far.resize(proxies_.groups());
   for (auto& f : work.far) f.clear();
   work.stack = nodes;
   while (!work.stack.empty()) {
@@ -69,18 +66,19 @@ void FarField::gather(const Ball& ball, const std::vector<std::uint32_t>& nodes,
     work.stack.pop_back();
     const BallTree::Node& node = all[n];
     const double distance = norm(node.ball.center - ball.center);
-    if (distance - node.ball.radius >= reach) {
-      const bool small = !proxies_.has(n);
-      if (small || node.ball.radius <= settings_.separation * (distance - ball.radius)) {
-        for (std::size_t g = 0; g < charges_.groups(); ++g)
-          append(small ? charges_.charges(node, g) : proxies_.of(n, g), 3 + charges_.width(g),
-                 ball.center, work.far[g]);
-        continue;
-      }
-    } else if (left && (node.leaf() || node.ball.radius <= ball.radius)) {
+    const bool far = distance - node.ball.radius >= reach,
+               together = !proxies_.has(n) ||
+                          node.ball.radius <= settings_.separation * (distance - ball.radius);
+    if (far && together) {
+      for (std::size_t g = 0; g < proxies_.groups(); ++g)
+        append(proxies_.standIn(n, g), 3 + proxies_.width(g), ball.center, work.far[g]);
+      continue;
+    }
+    if (left && (node.leaf() || (!far && node.ball.radius <= ball.radius))) {
       left->push_back(n);
       continue;
-    } else if (node.leaf()) {
+    }
+    if (node.leaf()) {
       split(node, ball, *near, work.far);
       continue;
     }
@@ -98,7 +96,7 @@ Expansion FarField::expand(const Ball& ball, const Expansion& parent,
 Expansion FarField::expandLast(const Ball& ball, const Expansion& parent,
                                const std::vector<std::uint32_t>& nodes, NearCharges& near,
                                FarFieldWorkspace& work) const {
-  near.resize(charges_.groups());
+  near.resize(proxies_.groups());
   for (auto& n : near) n.clear();
   gather(ball, nodes, nullptr, &near, work);
   return expansionOf(ball, parent, work);
@@ -110,7 +108,7 @@ Expansion FarField::expansionOf(const Ball& ball, const Expansion& parent,
   const bool none =
       std::all_of(work.far.begin(), work.far.end(), [](const auto& f) { return f.empty(); });
   if (none && parent.coefficients.empty()) return out;
-  const std::size_t groups = charges_.groups(), count = basis_->pointCount(),
+  const std::size_t groups = proxies_.groups(), count = basis_->pointCount(),
                     block = 3 * basis_->paddedCount();
   work.values.assign(3 * count * groups, 0.0);
   work.x = x_;
@@ -119,7 +117,7 @@ Expansion FarField::expansionOf(const Ball& ball, const Expansion& parent,
   for (auto* c : {&work.x, &work.y, &work.z})
     for (double& v : *c) v *= ball.radius;
   for (std::size_t g = 0; g < groups; ++g) {
-    const std::size_t width = charges_.width(g), stride = 3 + width;
+    const std::size_t width = proxies_.width(g), stride = 3 + width;
     simd::sumCharges(work.far[g].data(), work.far[g].size() / stride, static_cast<int>(width),
                      work.x.data(), work.y.data(), work.z.data(), count, count,
                      work.values.data() + 3 * count * g, nullptr, settings_.rounding);
@@ -144,7 +142,7 @@ void FarField::addParent(const Ball& ball, const Expansion& parent, FarFieldWork
   work.harmonics.resize(count * functions);
   basis_->harmonics().fill(work.x.data(), work.y.data(), work.z.data(), count,
                            work.harmonics.data(), count);
-  for (std::size_t g = 0; g < charges_.groups(); ++g)
+  for (std::size_t g = 0; g < proxies_.groups(); ++g)
     simd::multiplyThree(work.harmonics.data(), count, functions,
                         parent.coefficients.data() + block * g, basis_->paddedCount(),
                         work.values.data() + 3 * count * g);

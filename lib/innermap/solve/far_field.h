@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "innermap/solve/ball_tree.h"
-#include "innermap/solve/charge_tree.h"
 #include "innermap/solve/expansion_basis.h"
 #include "innermap/solve/kernel_simd.h"
+#include "innermap/solve/proxies.h"
 
 namespace innermap {
 
@@ -45,20 +45,21 @@ struct FarFieldSettings {
 
 class FarField {
  public:
-  FarField(const ChargeTree& charges, const FarFieldSettings& settings, Progress* progress);
+  // The basis must be that of settings.order.
+  FarField(const Proxies& proxies, const FarFieldSettings& settings);
 
-  const ChargeTree& charges() const { return charges_; }
+  const Proxies& sources() const { return proxies_; }
   const ExpansionBasis& basis() const { return *basis_; }
   simd::Rounding rounding() const { return settings_.rounding; }
 
-  // The expansion in `ball` of its parent's and of those of `nodes` that are far from it; `left`:
-  // the others, none of which is larger than the ball unless it is a leaf.
+  // The expansion in `ball` of its parent's and of those of `nodes` that are far from it. Adds the
+  // others to `left`; none of them is larger than the ball unless it is a leaf.
   Expansion expand(const Ball& ball, const Expansion& parent,
                    const std::vector<std::uint32_t>& nodes, std::vector<std::uint32_t>& left,
                    FarFieldWorkspace& work) const;
 
-  // The same for a ball without children: every charge is expanded or put into `near`, whose old
-  // content goes.
+  // The same for a ball without children and sources that are charges: each of those is expanded or
+  // put into `near`, whose old content goes.
   Expansion expandLast(const Ball& ball, const Expansion& parent,
                        const std::vector<std::uint32_t>& nodes, NearCharges& near,
                        FarFieldWorkspace& work) const;
@@ -71,10 +72,9 @@ class FarField {
   Expansion expansionOf(const Ball& ball, const Expansion& parent, FarFieldWorkspace& work) const;
   void addParent(const Ball& ball, const Expansion& parent, FarFieldWorkspace& work) const;
 
-  const ChargeTree& charges_;
+  const Proxies& proxies_;
   FarFieldSettings settings_;
   std::shared_ptr<const ExpansionBasis> basis_;
-  Proxies proxies_;
   std::vector<double> x_, y_, z_;  // check points, padded
 };
 

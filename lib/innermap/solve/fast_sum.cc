@@ -88,7 +88,10 @@ namespace {
 class Hierarchy {
  public:
   Hierarchy(const ChargeTree& tree, const FarFieldSettings& plan, const FastSumSettings& settings)
-      : tree_(tree), settings_(settings), field_(tree, plan, settings.progress) {}
+      : tree_(tree),
+        settings_(settings),
+        proxies_(tree, ExpansionBasis::get(plan.order), settings.progress),
+        field_(proxies_, plan) {}
 
   FieldSamples at(const Points& points) const;
   void onLattice(const LatticeBlocks& lattice, const BlockVisitor& visit,
@@ -97,13 +100,14 @@ class Hierarchy {
  private:
   const ChargeTree& tree_;
   const FastSumSettings& settings_;
+  Proxies proxies_;
   FarField field_;
 };
 
 FieldSamples Hierarchy::at(const Points& points) const {
   Points local(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) local[i] = tree_.toLocal(points[i]);
-  const BallTree targets(local, kLeastBall, kPointsPerLeaf, 3);
+  const BallTree targets(local, {kLeastBall}, kPointsPerLeaf, 3);
   const std::size_t channels = tree_.channels();
   FieldSamples out = samplesFor(points.size(), channels, settings_.gradients);
   descend(field_, targets,
@@ -130,7 +134,7 @@ void Hierarchy::onLattice(const LatticeBlocks& lattice, const BlockVisitor& visi
   for (const Block& b : lattice.blocks)
     centers.push_back(tree_.toLocal(0.5 * (pointOf(lattice, b, 0) + pointOf(lattice, b, 511))));
   const double spacing = lattice.spacing * tree_.inverseScale();
-  const BallTree targets(centers, LatticeBlock::radius() * spacing, 1, 3);
+  const BallTree targets(centers, {LatticeBlock::radius() * spacing}, 1, 3);
   const LatticeBlock polynomial(field_.basis().harmonics());
   descend(
       field_, targets,

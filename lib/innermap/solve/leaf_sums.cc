@@ -29,27 +29,39 @@ void LeafSums::setTargets(std::size_t count) {
   for (auto* c : {&x_, &y_, &z_}) c->assign(padded(count), 0.0);
 }
 
-void LeafSums::atPoints(const FarField& field, const Points& points, const std::uint32_t* order,
-                        std::size_t count, const Expansion& expansion, const NearCharges& near,
-                        bool gradients) {
-  start(padded(count), near.size(), gradients);
+void LeafSums::setPoints(const Points& points, const std::uint32_t* order, std::size_t count,
+                         const Vec3& center) {
   setTargets(count);
   std::iota(places_.begin(), places_.end(), std::uint16_t{0});
   for (std::size_t i = 0; i < x_.size(); ++i) {
-    const Vec3 p = points[order[std::min(i, count - 1)]] - expansion.ball.center;
+    const Vec3 p = points[order[std::min(i, count - 1)]] - center;
     x_[i] = p.x;
     y_[i] = p.y;
     z_[i] = p.z;
   }
-  if (!expansion.coefficients.empty()) addPolynomial(field, expansion);
+}
+
+void LeafSums::atPoints(const FarField& field, const Points& points, const std::uint32_t* order,
+                        std::size_t count, const Expansion& expansion, const NearCharges& near,
+                        bool gradients) {
+  start(padded(count), near.size(), gradients);
+  setPoints(points, order, count, expansion.ball.center);
+  addPolynomial(field, expansion, field.sources().charges()->inverseScale());
   addNear(field, near);
 }
 
-void LeafSums::addPolynomial(const FarField& field, const Expansion& expansion) {
+void LeafSums::polynomialAt(const FarField& field, const Points& points, const std::uint32_t* order,
+                            std::size_t count, const Expansion& expansion) {
+  start(padded(count), field.sources().groups(), false);
+  setPoints(points, order, count, expansion.ball.center);
+  addPolynomial(field, expansion, 1);
+}
+
+void LeafSums::addPolynomial(const FarField& field, const Expansion& expansion, double slopeScale) {
+  if (expansion.coefficients.empty()) return;
   const ExpansionBasis& basis = field.basis();
   const std::size_t functions = basis.harmonics().count(), padding = basis.paddedCount();
-  const double inverse = 1 / expansion.ball.radius,
-               slope = inverse * field.charges().inverseScale();
+  const double inverse = 1 / expansion.ball.radius, slope = inverse * slopeScale;
   scaledX_ = x_;
   scaledY_ = y_;
   scaledZ_ = z_;
@@ -59,7 +71,7 @@ void LeafSums::addPolynomial(const FarField& field, const Expansion& expansion) 
   basis.harmonics().fill(scaledX_.data(), scaledY_.data(), scaledZ_.data(), places_.size(),
                          harmonics_.data(), stride_);
   std::vector<double> derivative(3 * padding);
-  for (std::size_t g = 0; g < field.charges().groups(); ++g) {
+  for (std::size_t g = 0; g < field.sources().groups(); ++g) {
     const double* coefficients = expansion.coefficients.data() + 3 * padding * g;
     simd::multiplyThree(harmonics_.data(), stride_, functions, coefficients, padding,
                         values_.data() + 3 * g * stride_);
@@ -79,12 +91,12 @@ void LeafSums::addPolynomial(const FarField& field, const Expansion& expansion) 
 
 void LeafSums::addNear(const FarField& field, const NearCharges& near) {
   const std::size_t count = places_.size(), stride = x_.size();
-  const double slope = field.charges().inverseScale();
+  const double slope = field.sources().charges()->inverseScale();
   if (none(near)) return;
   sums_.resize(3 * stride);
   slopes_.resize(gradients_.empty() ? 0 : 9 * stride);
   for (std::size_t g = 0; g < near.size(); ++g) {
-    const std::size_t width = field.charges().width(g);
+    const std::size_t width = field.sources().width(g);
     simd::sumCharges(near[g].data(), near[g].size() / (3 + width), static_cast<int>(width),
                      x_.data(), y_.data(), z_.data(), count, stride, sums_.data(),
                      slopes_.empty() ? nullptr : slopes_.data(), field.rounding());
@@ -105,7 +117,7 @@ void LeafSums::atBlock(const FarField& field, const LatticeBlock& polynomial,
   start(kPoints, near.size(), gradients);
   for (std::size_t g = 0; g < near.size() && !expansion.coefficients.empty(); ++g)
     polynomial.evaluate(expansion.coefficients.data() + 3 * padding * g, padding,
-                        field.charges().inverseScale() / expansion.ball.radius,
+                        field.sources().charges()->inverseScale() / expansion.ball.radius,
                         values_.data() + 3 * kPoints * g,
                         gradients ? gradients_.data() + 9 * kPoints * g : nullptr);
   if (none(near)) return;

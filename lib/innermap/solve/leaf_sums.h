@@ -18,6 +18,10 @@ class LeafSums {
                 std::size_t count, const Expansion& expansion, const NearCharges& near,
                 bool gradients);
 
+  // The expansion alone, in local units.
+  void polynomialAt(const FarField& field, const Points& points, const std::uint32_t* order,
+                    std::size_t count, const Expansion& expansion);
+
   // At a block whose points are `spacing` apart, in the units of the charges; what was not wanted
   // lacks the near charges.
   void atBlock(const FarField& field, const LatticeBlock& polynomial,
@@ -32,7 +36,9 @@ class LeafSums {
  private:
   void start(std::size_t stride, std::size_t groups, bool gradients);
   void setTargets(std::size_t count);
-  void addPolynomial(const FarField& field, const Expansion& expansion);
+  void setPoints(const Points& points, const std::uint32_t* order, std::size_t count,
+                 const Vec3& center);
+  void addPolynomial(const FarField& field, const Expansion& expansion, double slopeScale);
   // Adds near charges at the targets to the places of theirs.
   void addNear(const FarField& field, const NearCharges& near);
 
