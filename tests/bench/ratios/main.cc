@@ -20,9 +20,9 @@ struct Section {
   Tables (*run)(const Options&);
 };
 
-constexpr Section kSections[] = {{"placing", placing}, {"sums", sums},
-                                 {"solve", solve},     {"tolerance", tolerance},
-                                 {"poisson", poisson}, {"sequence", sequence}};
+constexpr Section kSections[] = {
+    {"placing", placing}, {"sums", sums},         {"solve", solve}, {"tolerance", tolerance},
+    {"poisson", poisson}, {"sequence", sequence}, {"jobs", jobs}};
 
 // A folder that goes with the object.
 class Scratch {

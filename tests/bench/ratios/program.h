@@ -18,7 +18,7 @@ struct ProgramRun {
 // innermap::Error when it cannot be started, is ended by a signal or leaves no report.
 ProgramRun runProgram(const std::vector<std::string>& command, const Options& options);
 
-// Seconds of the report's stages up to the weights: all but the certificate and writing.
+// Seconds of the report's stages up to the weights: reading, checking, placing, solving.
 double secondsToWeights(const Json& report);
 
 // Peak resident size.

@@ -204,7 +204,7 @@ Measured measure(const Sources& sources, const Voxels& voxels, int across, doubl
              {"value error", relativeError(kept.values(), exact.values, 1)},
              {"gradient error", relativeError(kept.gradients(), exact.gradients, 3)},
              {"Mvoxels/s", 1e-6 * n / out.seconds},
-             {"bytes/voxel", std::round(bytes / n)}};
+             {"bytes/voxel", static_cast<std::int64_t>(std::max(0.0, bytes / n))}};
   return out;
 }
 
