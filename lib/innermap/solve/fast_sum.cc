@@ -16,7 +16,7 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kPointsPerLeaf = 200;
+constexpr std::size_t kPointsPerLeaf = 400;
 constexpr std::size_t kSampled = 128, kSampledBlocks = 32;
 constexpr double kLeastBall = 1e-9;  // radius of a leaf of coincident points, of the charges' box
 
@@ -57,6 +57,11 @@ std::vector<std::uint16_t> placesOf(const Block& block) {
   for (std::size_t i = 0; i < LatticeBlock::kPoints; ++i)
     if (wanted(block, i)) out.push_back(static_cast<std::uint16_t>(i));
   return out;
+}
+
+bool nothingWanted(const Block& block) {
+  return std::all_of(block.wanted.begin(), block.wanted.end(),
+                     [](std::uint64_t word) { return word == 0; });
 }
 
 std::size_t wantedPoints(const LatticeBlocks& lattice) {
@@ -130,16 +135,25 @@ FieldSamples Hierarchy::at(const Points& points) const {
 void Hierarchy::onLattice(const LatticeBlocks& lattice, const BlockVisitor& visit,
                           std::string_view stage) const {
   Points centers;
-  centers.reserve(lattice.blocks.size());
-  for (const Block& b : lattice.blocks)
-    centers.push_back(tree_.toLocal(0.5 * (pointOf(lattice, b, 0) + pointOf(lattice, b, 511))));
+  std::vector<std::size_t> blocks;
+  const std::vector<double> zeros(LatticeBlock::kPoints * tree_.channels() * 3, 0.0);
+  for (std::size_t b = 0; b < lattice.blocks.size(); ++b) {
+    const Block& block = lattice.blocks[b];
+    if (nothingWanted(block)) {
+      visit(b, zeros.data(), settings_.gradients ? zeros.data() : nullptr);
+      continue;
+    }
+    blocks.push_back(b);
+    centers.push_back(
+        tree_.toLocal(0.5 * (pointOf(lattice, block, 0) + pointOf(lattice, block, 511))));
+  }
   const double spacing = lattice.spacing * tree_.inverseScale();
   const BallTree targets(centers, {LatticeBlock::radius() * spacing}, 1, 3);
   const LatticeBlock polynomial(field_.basis().harmonics());
   descend(
       field_, targets,
       [&](const BallTree::Node& leaf, const Expansion& expansion, DescentWorkspace& work) {
-        const std::size_t b = targets.order()[leaf.begin];
+        const std::size_t b = blocks[targets.order()[leaf.begin]];
         work.sums.atBlock(field_, polynomial, lattice.blocks[b].wanted, spacing, expansion,
                           work.near, settings_.gradients);
         visit(b, work.sums.values(), work.sums.gradients());

@@ -270,6 +270,9 @@ TEST(FastSum, LatticeOfOneVoxelOfNoneAndWithoutGradients) {
   const FastSum sum(sources, w);
   expectAccurate(onLattice(sum, lattice, hierarchical(1e-6, false)),
                  sumCharges(Charges(sources, w), pointsOf(lattice), false), 1e-6);
+  // Blocks that want nothing are visited all the same.
+  lattice.blocks.assign(3, {});
+  EXPECT_EQ(onLattice(sum, lattice, hierarchical(1e-6)).values.rows(), 0u);
   lattice.blocks.clear();
   sum.onLattice(lattice, [](std::size_t, const double*, const double*) { FAIL(); });
 }
