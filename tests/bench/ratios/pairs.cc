@@ -11,7 +11,7 @@
 namespace innermap::bench {
 namespace {
 
-constexpr double kQuarter = 1.57079632679489661923;
+constexpr double kTwist = 1.57079632679489661923, kBend = 0.5 * kTwist;
 constexpr std::uint64_t kFreshSeed = 0x6672657368;  // far from those that users give
 
 int longestAxis(const Box3& box) {
@@ -35,11 +35,11 @@ Vec3 bentAndTwisted(const Vec3& p, const Box3& box) {
   const int a = longestAxis(box), b = (a + 1) % 3, c = (a + 2) % 3;
   const double length = box.extent()[a];
   const Vec3 d = p - box.center();
-  const double turn = kQuarter * d[a] / length;
+  const double turn = kTwist * d[a] / length;
   const double y = std::cos(turn) * d[b] - std::sin(turn) * d[c];
   const double z = std::sin(turn) * d[b] + std::cos(turn) * d[c];
   // The axis becomes an arc of the same length about a centre at distance `radius`.
-  const double radius = length / kQuarter, angle = d[a] / radius;
+  const double radius = length / kBend, angle = d[a] / radius;
   Vec3 q;
   q[a] = (radius - y) * std::sin(angle);
   q[b] = radius - (radius - y) * std::cos(angle);

@@ -20,8 +20,8 @@ struct Pair {
 // The horse's five poses.
 std::vector<Pair> poses(const Options& options);
 
-// Turned about the longest axis of the box by up to 90 degrees, in proportion to the place along
-// it, then bent along it into a quarter of a circle.
+// Turned about the longest axis of the box, in proportion to the place along it, by 90 degrees from
+// end to end; then bent along it into an eighth of a circle.
 Vec3 bentAndTwisted(const Vec3& p, const Box3& box);
 
 // NAME.obj of the models onto its bent and twisted copy, which is written into the scratch folder.

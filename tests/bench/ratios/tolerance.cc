@@ -43,7 +43,7 @@ Tables tolerance(const Options& options) {
   }
   table.note(
       "poses: the horse's; others onto copies of themselves, twisted by 90 degrees along the "
-      "longest axis and bent along it into a quarter of a circle");
+      "longest axis and bent along it into an eighth of a circle");
   return {table.json()};
 }
 
