@@ -1,64 +1,102 @@
 #include "innermap/solve/ball_tree.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "innermap/core/parallel.h"
 
 namespace innermap {
 
-BallTree::BallTree(const Points& points, const std::vector<double>& radii, std::size_t leafSize,
-                   int halvings)
-    : order_(points.size()) {
-  std::iota(order_.begin(), order_.end(), 0);
-  if (points.empty()) return;
-  nodes_.push_back(makeNode(points, radii, {0, static_cast<std::uint32_t>(points.size())}, 0));
-  std::vector<Range> parts;
-  for (std::size_t n = 0; n < nodes_.size(); ++n) {
-    if (nodes_[n].count() <= leafSize) continue;
-    parts.clear();
-    halve(points, {nodes_[n].begin, nodes_[n].end}, leafSize, halvings, parts);
-    nodes_[n].firstChild = static_cast<std::uint32_t>(nodes_.size());
-    nodes_[n].children = static_cast<std::uint32_t>(parts.size());
-    const std::uint32_t depth = nodes_[n].depth + 1;
-    for (const Range& part : parts) nodes_.push_back(makeNode(points, radii, part, depth));
-  }
+// Positions move with their indices: halving reads memory in order.
+struct BallTree::Item {
+  Vec3 position;
+  std::uint32_t index = 0;
+};
+
+namespace {
+
+using Range = std::pair<std::uint32_t, std::uint32_t>;
+
+template <typename Item>
+Box3 boxOf(const std::vector<Item>& items, Range range) {
+  Box3 box;
+  for (std::uint32_t i = range.first; i < range.second; ++i) box.add(items[i].position);
+  return box;
 }
 
-void BallTree::halve(const Points& points, Range range, std::size_t leafSize, int times,
-                     std::vector<Range>& out) {
+template <typename Item>
+void halve(std::vector<Item>& items, Range range, std::size_t leafSize, int times,
+           std::vector<Range>& out) {
   const std::uint32_t count = range.second - range.first;
   if (times == 0 || count <= leafSize) {
     out.push_back(range);
     return;
   }
-  const auto begin = order_.begin() + range.first, end = order_.begin() + range.second;
-  Box3 box;
-  for (auto i = begin; i != end; ++i) box.add(points[*i]);
-  const Vec3 side = box.extent();
+  const Vec3 side = boxOf(items, range).extent();
   const int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
-  std::nth_element(begin, begin + count / 2, end, [&](std::uint32_t a, std::uint32_t b) {
-    const double x = points[a][axis], y = points[b][axis];
-    return x < y || (x == y && a < b);
+  const auto begin = items.begin() + range.first;
+  std::nth_element(begin, begin + count / 2, begin + count, [&](const Item& a, const Item& b) {
+    const double x = a.position[axis], y = b.position[axis];
+    return x < y || (x == y && a.index < b.index);
   });
   const std::uint32_t middle = range.first + count / 2;
-  halve(points, {range.first, middle}, leafSize, times - 1, out);
-  halve(points, {middle, range.second}, leafSize, times - 1, out);
+  halve(items, {range.first, middle}, leafSize, times - 1, out);
+  halve(items, {middle, range.second}, leafSize, times - 1, out);
 }
 
-BallTree::Node BallTree::makeNode(const Points& points, const std::vector<double>& radii,
-                                  Range range, std::uint32_t depth) const {
-  Box3 box;
-  for (std::uint32_t i = range.first; i < range.second; ++i) box.add(points[order_[i]]);
-  Node node;
-  node.ball.center = box.center();
+template <typename Item>
+BallTree::Node makeNode(const std::vector<Item>& items, const std::vector<double>& radii,
+                        Range range, std::uint32_t depth) {
+  BallTree::Node node;
+  node.ball.center = boxOf(items, range).center();
+  double squared = 0;
   for (std::uint32_t i = range.first; i < range.second; ++i) {
-    const std::uint32_t p = order_[i];
-    node.ball.radius = std::max(
-        node.ball.radius, norm(points[p] - node.ball.center) + radii[radii.size() > 1 ? p : 0]);
+    const double distance = squaredNorm(items[i].position - node.ball.center);
+    if (radii.size() == 1)
+      squared = std::max(squared, distance);
+    else
+      node.ball.radius = std::max(node.ball.radius, std::sqrt(distance) + radii[items[i].index]);
   }
+  if (radii.size() == 1) node.ball.radius = std::sqrt(squared) + radii[0];
   node.begin = range.first;
   node.end = range.second;
   node.depth = depth;
   return node;
+}
+
+}  // namespace
+
+// Level by level: the nodes of one are split side by side.
+BallTree::BallTree(const Points& points, const std::vector<double>& radii, std::size_t leafSize,
+                   int halvings) {
+  const auto count = static_cast<std::uint32_t>(points.size());
+  if (count == 0) return;
+  std::vector<Item> items(count);
+  for (std::uint32_t i = 0; i < count; ++i) items[i] = {points[i], i};
+  nodes_.push_back(makeNode(items, radii, {0, count}, 0));
+  for (std::size_t begin = 0; begin < nodes_.size();) {
+    const std::size_t end = nodes_.size();
+    std::vector<std::vector<Node>> children(end - begin);
+    parallelBlocks(end - begin, std::clamp<std::size_t>((end - begin) / 64, 1, 64),
+                   [&](std::size_t first, std::size_t last) {
+                     std::vector<Range> parts;
+                     for (std::size_t n = first; n < last; ++n) {
+                       const Node& node = nodes_[begin + n];
+                       if (node.count() <= leafSize) continue;
+                       parts.clear();
+                       halve(items, {node.begin, node.end}, leafSize, halvings, parts);
+                       for (const Range& part : parts)
+                         children[n].push_back(makeNode(items, radii, part, node.depth + 1));
+                     }
+                   });
+    for (std::size_t n = 0; n < children.size(); ++n) {
+      nodes_[begin + n].firstChild = static_cast<std::uint32_t>(nodes_.size());
+      nodes_[begin + n].children = static_cast<std::uint32_t>(children[n].size());
+      nodes_.insert(nodes_.end(), children[n].begin(), children[n].end());
+    }
+    begin = end;
+  }
+  order_.resize(count);
+  for (std::uint32_t i = 0; i < count; ++i) order_[i] = items[i].index;
 }
 
 }  // namespace innermap

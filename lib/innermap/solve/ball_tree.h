@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "innermap/core/vec3.h"
@@ -36,12 +37,7 @@ class BallTree {
   const std::vector<std::uint32_t>& order() const { return order_; }  // indices of the points
 
  private:
-  using Range = std::pair<std::uint32_t, std::uint32_t>;
-  void halve(const Points& points, Range range, std::size_t leafSize, int times,
-             std::vector<Range>& out);
-  Node makeNode(const Points& points, const std::vector<double>& radii, Range range,
-                std::uint32_t depth) const;
-
+  struct Item;
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> order_;
 };

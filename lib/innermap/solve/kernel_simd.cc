@@ -1,5 +1,8 @@
 #include "innermap/solve/kernel_simd.h"
 
+#include <algorithm>
+#include <type_traits>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "innermap/solve/kernel_simd.cc"
 #include "hwy/foreach_target.h"  // compiles this file once for each instruction set
@@ -33,7 +36,7 @@ HWY_INLINE V EstimateInverseSqrt(D d, V x) {
 
 // 1/sqrt(x) by two Newton steps, error about one unit of rounding, or by one where that is enough;
 // 0 where x is 0.
-template <Rounding R = Rounding::full>
+template <Rounding R>
 HWY_INLINE V InverseSqrt(D d, V x) {
   constexpr int kSteps = (HWY_TARGET == HWY_NEON ? 2 : 1) * (R == Rounding::full ? 2 : 1);
   const V half = hn::Set(d, 0.5);
@@ -46,130 +49,97 @@ HWY_INLINE V InverseSqrt(D d, V x) {
   return hn::IfThenElseZero(hn::Gt(x, hn::Zero(d)), y);
 }
 
-template <int K, Rounding R>
-void SumValues(const double* HWY_RESTRICT sources, std::size_t sourceCount, const double* x,
-               const double* y, const double* z, std::size_t count, std::size_t stride,
-               double* HWY_RESTRICT values) {
-  const D d;
+#if HWY_TARGET == HWY_SCALAR
+using DF = hn::ScalableTag<float>;
+#else
+using DF = hn::CappedTag<float, kRows / 2>;
+#endif
+
+// `nearest`: the largest so far.
+template <Rounding R>
+HWY_INLINE hn::Vec<DF> InverseSqrt(DF d, hn::Vec<DF> x, hn::Vec<DF>& nearest) {
+  const auto y = hn::ApproximateReciprocalSqrt(x), half = hn::Set(d, 0.5f);
+  nearest = hn::Max(nearest, y);
+  const auto t = hn::NegMulAdd(hn::Mul(hn::Mul(half, x), y), y, half);
+  return hn::MulAdd(y, t, y);
+}
+
+template <Rounding R>
+HWY_INLINE V InverseSqrt(D d, V x, V&) {
+  return InverseSqrt<R>(d, x);
+}
+
+// Added to squared distances. In single precision pairs that may coincide are summed again by the
+// caller, who is told of them: no need to mask them out.
+template <Rounding R>
+constexpr double kTiny = R == Rounding::single ? 1e-30 : 0;
+
+template <Rounding R>
+using TagOf = std::conditional_t<R == Rounding::single, DF, D>;
+template <Rounding R>
+using NumberOf = std::conditional_t<R == Rounding::single, float, double>;
+
+// In single precision, returns the largest 1/distance met; 0 otherwise.
+template <int K, Rounding R, class T = NumberOf<R>>
+T SumValues(const T* HWY_RESTRICT sources, std::size_t sourceCount, const T* x, const T* y,
+            const T* z, std::size_t count, std::size_t stride, T* HWY_RESTRICT values) {
+  using Vector = hn::Vec<TagOf<R>>;
+  const TagOf<R> d;
   const std::size_t lanes = hn::Lanes(d);
-  constexpr int kUnroll = 4;
+  constexpr int kUnroll = R == Rounding::single ? 2 : 4;  // kRows targets at most
+  const Vector tiny = hn::Set(d, kTiny<R>);
+  Vector nearest = hn::Zero(d);
   for (std::size_t i = 0; i < count; i += kUnroll * lanes) {
-    V px[kUnroll], py[kUnroll], pz[kUnroll], sum[kUnroll][K];
+    Vector px[kUnroll], py[kUnroll], pz[kUnroll], sum[kUnroll][K];
     for (int u = 0; u < kUnroll; ++u) {
       px[u] = hn::LoadU(d, x + i + u * lanes);
       py[u] = hn::LoadU(d, y + i + u * lanes);
       pz[u] = hn::LoadU(d, z + i + u * lanes);
       for (int k = 0; k < K; ++k) sum[u][k] = hn::Zero(d);
     }
-    const double* s = sources;
+    const T* s = sources;
     for (std::size_t j = 0; j < sourceCount; ++j, s += 3 + K) {
-      const V qx = hn::Set(d, s[0]), qy = hn::Set(d, s[1]), qz = hn::Set(d, s[2]);
+      const Vector qx = hn::Set(d, s[0]), qy = hn::Set(d, s[1]), qz = hn::Set(d, s[2]);
       for (int u = 0; u < kUnroll; ++u) {
-        const V dx = hn::Sub(px[u], qx), dy = hn::Sub(py[u], qy), dz = hn::Sub(pz[u], qz);
-        const V r = InverseSqrt<R>(d, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))));
+        const Vector dx = hn::Sub(px[u], qx), dy = hn::Sub(py[u], qy), dz = hn::Sub(pz[u], qz);
+        const Vector r = InverseSqrt<R>(
+            d, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::MulAdd(dz, dz, tiny))), nearest);
         for (int k = 0; k < K; ++k) sum[u][k] = hn::MulAdd(hn::Set(d, s[3 + k]), r, sum[u][k]);
       }
     }
     for (int u = 0; u < kUnroll; ++u)
       for (int k = 0; k < K; ++k) hn::StoreU(sum[u][k], d, values + k * stride + i + u * lanes);
   }
+  return hn::GetLane(hn::MaxOfLanes(d, nearest));
 }
 
-#if HWY_TARGET == HWY_SCALAR
-using DF = hn::ScalableTag<float>;
-#else
-using DF = hn::CappedTag<float, kRows / 2>;
-#endif
-using VF = hn::Vec<DF>;
-
-HWY_INLINE VF InverseSqrt(DF d, VF x) {
-  const VF y = hn::ApproximateReciprocalSqrt(x), half = hn::Set(d, 0.5f);
-  const VF t = hn::NegMulAdd(hn::Mul(hn::Mul(half, x), y), y, half);
-  return hn::IfThenElseZero(hn::Gt(x, hn::Zero(d)), hn::MulAdd(y, t, y));
-}
-
-// Adds the sums over `sourceCount` sources at the tile's targets, all in single precision.
-template <int K>
-void SumTile(const float* HWY_RESTRICT sources, std::size_t sourceCount, const float* x,
-             const float* y, const float* z, std::size_t count, std::size_t stride,
-             double* HWY_RESTRICT values) {
-  const DF d;
+template <int K, Rounding R, class T = NumberOf<R>>
+T SumGradients(const T* HWY_RESTRICT sources, std::size_t sourceCount, const T* x, const T* y,
+               const T* z, std::size_t count, std::size_t stride, T* HWY_RESTRICT values,
+               T* HWY_RESTRICT gradients) {
+  using Vector = hn::Vec<TagOf<R>>;
+  const TagOf<R> d;
   const std::size_t lanes = hn::Lanes(d);
-  constexpr int kUnroll = 2;
-  for (std::size_t i = 0; i < count; i += kUnroll * lanes) {
-    VF px[kUnroll], py[kUnroll], pz[kUnroll], sum[kUnroll][K];
-    for (int u = 0; u < kUnroll; ++u) {
-      px[u] = hn::LoadU(d, x + i + u * lanes);
-      py[u] = hn::LoadU(d, y + i + u * lanes);
-      pz[u] = hn::LoadU(d, z + i + u * lanes);
-      for (int k = 0; k < K; ++k) sum[u][k] = hn::Zero(d);
-    }
-    const float* s = sources;
-    for (std::size_t j = 0; j < sourceCount; ++j, s += 3 + K) {
-      const VF qx = hn::Set(d, s[0]), qy = hn::Set(d, s[1]), qz = hn::Set(d, s[2]);
-      for (int u = 0; u < kUnroll; ++u) {
-        const VF dx = hn::Sub(px[u], qx), dy = hn::Sub(py[u], qy), dz = hn::Sub(pz[u], qz);
-        const VF r = InverseSqrt(d, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))));
-        for (int k = 0; k < K; ++k) sum[u][k] = hn::MulAdd(hn::Set(d, s[3 + k]), r, sum[u][k]);
-      }
-    }
-    float out[kRows];
-    for (int k = 0; k < K; ++k) {
-      for (int u = 0; u < kUnroll; ++u) hn::StoreU(sum[u][k], d, out + u * lanes);
-      for (std::size_t t = 0; t < kUnroll * lanes; ++t) values[k * stride + i + t] += out[t];
-    }
-  }
-}
-
-// In tiles of targets and of sources: partial sums of few terms keep single precision's digits.
-template <int K>
-void SumValuesSingle(const double* sources, std::size_t sourceCount, const double* x,
-                     const double* y, const double* z, std::size_t count, std::size_t stride,
-                     double* values) {
-  constexpr std::size_t kTargets = 4 * kPadding, kSources = 256;
-  float at[3][kTargets], charges[kSources * (3 + K)];
-  for (std::size_t i = 0; i < count; i += kTargets) {
-    const std::size_t size = HWY_MIN(kTargets, count - i),
-                      filled = (size + kRows - 1) / kRows * kRows;
-    for (std::size_t k = 0; k < K; ++k)
-      for (std::size_t t = 0; t < filled; ++t) values[k * stride + i + t] = 0;
-    for (std::size_t t = 0; t < filled; ++t) {
-      at[0][t] = static_cast<float>(x[i + t]);
-      at[1][t] = static_cast<float>(y[i + t]);
-      at[2][t] = static_cast<float>(z[i + t]);
-    }
-    for (std::size_t j = 0; j < sourceCount; j += kSources) {
-      const std::size_t n = HWY_MIN(kSources, sourceCount - j);
-      for (std::size_t c = 0; c < n * (3 + K); ++c)
-        charges[c] = static_cast<float>(sources[j * (3 + K) + c]);
-      SumTile<K>(charges, n, at[0], at[1], at[2], size, stride, values + i);
-    }
-  }
-}
-
-template <int K, Rounding R>
-void SumGradients(const double* HWY_RESTRICT sources, std::size_t sourceCount, const double* x,
-                  const double* y, const double* z, std::size_t count, std::size_t stride,
-                  double* HWY_RESTRICT values, double* HWY_RESTRICT gradients) {
-  const D d;
-  const std::size_t lanes = hn::Lanes(d);
+  const Vector tiny = hn::Set(d, kTiny<R>);
+  Vector nearest = hn::Zero(d);
   for (std::size_t i = 0; i < count; i += lanes) {
-    const V px = hn::LoadU(d, x + i), py = hn::LoadU(d, y + i), pz = hn::LoadU(d, z + i);
-    V sum[K], gx[K], gy[K], gz[K];
+    const Vector px = hn::LoadU(d, x + i), py = hn::LoadU(d, y + i), pz = hn::LoadU(d, z + i);
+    Vector sum[K], gx[K], gy[K], gz[K];
     for (int k = 0; k < K; ++k) sum[k] = gx[k] = gy[k] = gz[k] = hn::Zero(d);
-    const double* s = sources;
+    const T* s = sources;
     for (std::size_t j = 0; j < sourceCount; ++j, s += 3 + K) {
-      const V dx = hn::Sub(px, hn::Set(d, s[0])), dy = hn::Sub(py, hn::Set(d, s[1])),
-              dz = hn::Sub(pz, hn::Set(d, s[2]));
-      const V r = InverseSqrt<R>(d, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))));
-      const V r2 = hn::Mul(r, r);
+      const Vector dx = hn::Sub(px, hn::Set(d, s[0])), dy = hn::Sub(py, hn::Set(d, s[1])),
+                   dz = hn::Sub(pz, hn::Set(d, s[2]));
+      const Vector r = InverseSqrt<R>(
+          d, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::MulAdd(dz, dz, tiny))), nearest);
+      const Vector r3 = hn::Mul(hn::Mul(r, r), r);
+      const Vector ex = hn::Mul(dx, r3), ey = hn::Mul(dy, r3), ez = hn::Mul(dz, r3);
       for (int k = 0; k < K; ++k) {
-        const V wr = hn::Mul(hn::Set(d, s[3 + k]), r);
-        sum[k] = hn::Add(sum[k], wr);
-        const V wr3 = hn::Mul(wr, r2);
-        gx[k] = hn::NegMulAdd(wr3, dx, gx[k]);
-        gy[k] = hn::NegMulAdd(wr3, dy, gy[k]);
-        gz[k] = hn::NegMulAdd(wr3, dz, gz[k]);
+        const Vector w = hn::Set(d, s[3 + k]);
+        sum[k] = hn::MulAdd(w, r, sum[k]);
+        gx[k] = hn::NegMulAdd(w, ex, gx[k]);
+        gy[k] = hn::NegMulAdd(w, ey, gy[k]);
+        gz[k] = hn::NegMulAdd(w, ez, gz[k]);
       }
     }
     for (int k = 0; k < K; ++k) {
@@ -179,36 +149,77 @@ void SumGradients(const double* HWY_RESTRICT sources, std::size_t sourceCount, c
       hn::StoreU(gz[k], d, gradients + (3 * k + 2) * stride + i);
     }
   }
+  return hn::GetLane(hn::MaxOfLanes(d, nearest));
+}
+
+// In tiles of targets and of sources: partial sums of few terms keep single precision's digits.
+template <int K>
+double SumSingle(const double* sources, std::size_t sourceCount, const double* x, const double* y,
+                 const double* z, std::size_t count, std::size_t stride, double* values,
+                 double* gradients) {
+  constexpr std::size_t kTargets = 256, kSources = 256;
+  float at[3][kTargets], charges[kSources * (3 + K)], sums[K * kTargets], slopes[3 * K * kTargets],
+      nearest = 0;
+  const auto add = [&](const float* from, double* to, std::size_t columns, std::size_t size) {
+    for (std::size_t k = 0; k < columns; ++k)
+      for (std::size_t t = 0; t < size; ++t) to[k * stride + t] += from[k * kTargets + t];
+  };
+  for (std::size_t i = 0; i < count; i += kTargets) {
+    const std::size_t size = HWY_MIN(kTargets, count - i),
+                      filled = (size + kRows - 1) / kRows * kRows;
+    for (std::size_t k = 0; k < K; ++k) std::fill_n(values + k * stride + i, filled, 0.0);
+    for (std::size_t k = 0; gradients && k < 3 * K; ++k)
+      std::fill_n(gradients + k * stride + i, filled, 0.0);
+    for (std::size_t t = 0; t < filled; ++t) {
+      at[0][t] = static_cast<float>(x[i + t]);
+      at[1][t] = static_cast<float>(y[i + t]);
+      at[2][t] = static_cast<float>(z[i + t]);
+    }
+    for (std::size_t j = 0; j < sourceCount; j += kSources) {
+      const std::size_t n = HWY_MIN(kSources, sourceCount - j);
+      for (std::size_t c = 0; c < n * (3 + K); ++c)
+        charges[c] = static_cast<float>(sources[j * (3 + K) + c]);
+      const float met = gradients
+                            ? SumGradients<K, Rounding::single>(charges, n, at[0], at[1], at[2],
+                                                                size, kTargets, sums, slopes)
+                            : SumValues<K, Rounding::single>(charges, n, at[0], at[1], at[2], size,
+                                                             kTargets, sums);
+      nearest = HWY_MAX(nearest, met);
+      add(sums, values + i, K, filled);
+      if (gradients) add(slopes, gradients + i, 3 * K, filled);
+    }
+  }
+  return nearest;
 }
 
 template <int K, Rounding R>
-void Sum(const double* sources, std::size_t sourceCount, const double* x, const double* y,
-         const double* z, std::size_t count, std::size_t stride, double* values,
-         double* gradients) {
-  if (!gradients && R == Rounding::single)
-    SumValuesSingle<K>(sources, sourceCount, x, y, z, count, stride, values);
-  else if (gradients)
-    SumGradients<K, R>(sources, sourceCount, x, y, z, count, stride, values, gradients);
-  else
-    SumValues<K, R>(sources, sourceCount, x, y, z, count, stride, values);
+double Sum(const double* sources, std::size_t sourceCount, const double* x, const double* y,
+           const double* z, std::size_t count, std::size_t stride, double* values,
+           double* gradients) {
+  if constexpr (R == Rounding::single) {
+    return SumSingle<K>(sources, sourceCount, x, y, z, count, stride, values, gradients);
+  } else {
+    return gradients
+               ? SumGradients<K, R>(sources, sourceCount, x, y, z, count, stride, values, gradients)
+               : SumValues<K, R>(sources, sourceCount, x, y, z, count, stride, values);
+  }
 }
 
-void SumCharges(const double* sources, std::size_t sourceCount, int channels, const double* x,
-                const double* y, const double* z, std::size_t count, std::size_t stride,
-                double* values, double* gradients, Rounding rounding) {
-  const auto full = channels == 1   ? Sum<1, Rounding::full>
-                    : channels == 2 ? Sum<2, Rounding::full>
-                                    : Sum<3, Rounding::full>;
-  const auto rough = channels == 1   ? Sum<1, Rounding::rough>
-                     : channels == 2 ? Sum<2, Rounding::rough>
-                                     : Sum<3, Rounding::rough>;
-  const auto single = channels == 1   ? Sum<1, Rounding::single>
-                      : channels == 2 ? Sum<2, Rounding::single>
-                                      : Sum<3, Rounding::single>;
-  (rounding == Rounding::full ? full
-   : rounding == Rounding::rough
-       ? rough
-       : single)(sources, sourceCount, x, y, z, count, stride, values, gradients);
+template <int K>
+double SumRounded(const double* sources, std::size_t sourceCount, const double* x, const double* y,
+                  const double* z, std::size_t count, std::size_t stride, double* values,
+                  double* gradients, Rounding rounding) {
+  const auto sum = rounding == Rounding::full    ? Sum<K, Rounding::full>
+                   : rounding == Rounding::rough ? Sum<K, Rounding::rough>
+                                                 : Sum<K, Rounding::single>;
+  return sum(sources, sourceCount, x, y, z, count, stride, values, gradients);
+}
+
+double SumCharges(const double* sources, std::size_t sourceCount, int channels, const double* x,
+                  const double* y, const double* z, std::size_t count, std::size_t stride,
+                  double* values, double* gradients, Rounding rounding) {
+  const auto sum = channels == 1 ? SumRounded<1> : channels == 2 ? SumRounded<2> : SumRounded<3>;
+  return sum(sources, sourceCount, x, y, z, count, stride, values, gradients, rounding);
 }
 
 void KernelColumn(const double* x, const double* y, const double* z, std::size_t count, double qx,
@@ -220,8 +231,9 @@ void KernelColumn(const double* x, const double* y, const double* z, std::size_t
   for (std::size_t i = 0; i < count; i += lanes) {
     const V dx = hn::Sub(hn::LoadU(d, x + i), sx), dy = hn::Sub(hn::LoadU(d, y + i), sy),
             dz = hn::Sub(hn::LoadU(d, z + i), sz);
-    const V value =
-        hn::Mul(factor, InverseSqrt(d, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)))));
+    const V value = hn::Mul(
+        factor,
+        InverseSqrt<Rounding::full>(d, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)))));
     if (i + lanes <= count) {
       hn::StoreU(value, d, out + i);
     } else {
@@ -244,11 +256,11 @@ HWY_EXPORT(SumCharges);
 HWY_EXPORT(KernelColumn);
 HWY_EXPORT(TargetName);
 
-void sumCharges(const double* sources, std::size_t sourceCount, int channels, const double* x,
-                const double* y, const double* z, std::size_t count, std::size_t stride,
-                double* values, double* gradients, Rounding rounding) {
-  HWY_DYNAMIC_DISPATCH(SumCharges)
-  (sources, sourceCount, channels, x, y, z, count, stride, values, gradients, rounding);
+double sumCharges(const double* sources, std::size_t sourceCount, int channels, const double* x,
+                  const double* y, const double* z, std::size_t count, std::size_t stride,
+                  double* values, double* gradients, Rounding rounding) {
+  return HWY_DYNAMIC_DISPATCH(SumCharges)(sources, sourceCount, channels, x, y, z, count, stride,
+                                          values, gradients, rounding);
 }
 
 void kernelColumn(const double* x, const double* y, const double* z, std::size_t count, double qx,

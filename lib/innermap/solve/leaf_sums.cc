@@ -12,6 +12,8 @@ std::size_t padded(std::size_t n) {
   return (n + simd::kPadding - 1) / simd::kPadding * simd::kPadding;
 }
 
+constexpr double kTooNear = 0.03;  // of the ball's radius
+
 bool none(const NearCharges& near) {
   return std::all_of(near.begin(), near.end(), [](const auto& n) { return n.empty(); });
 }
@@ -47,7 +49,7 @@ void LeafSums::atPoints(const FarField& field, const Points& points, const std::
   start(padded(count), near.size(), gradients);
   setPoints(points, order, count, expansion.ball.center);
   addPolynomial(field, expansion, field.sources().charges()->inverseScale());
-  addNear(field, near);
+  addNear(field, near, expansion.ball.radius);
 }
 
 void LeafSums::polynomialAt(const FarField& field, const Points& points, const std::uint32_t* order,
@@ -89,7 +91,7 @@ void LeafSums::addPolynomial(const FarField& field, const Expansion& expansion, 
   }
 }
 
-void LeafSums::addNear(const FarField& field, const NearCharges& near) {
+void LeafSums::addNear(const FarField& field, const NearCharges& near, double radius) {
   const std::size_t count = places_.size(), stride = x_.size();
   const double slope = field.sources().charges()->inverseScale();
   if (none(near)) return;
@@ -97,9 +99,15 @@ void LeafSums::addNear(const FarField& field, const NearCharges& near) {
   slopes_.resize(gradients_.empty() ? 0 : 9 * stride);
   for (std::size_t g = 0; g < near.size(); ++g) {
     const std::size_t width = field.sources().width(g);
-    simd::sumCharges(near[g].data(), near[g].size() / (3 + width), static_cast<int>(width),
-                     x_.data(), y_.data(), z_.data(), count, stride, sums_.data(),
-                     slopes_.empty() ? nullptr : slopes_.data(), field.rounding());
+    const auto sum = [&](simd::Rounding rounding) {
+      return simd::sumCharges(near[g].data(), near[g].size() / (3 + width), static_cast<int>(width),
+                              x_.data(), y_.data(), z_.data(), count, stride, sums_.data(),
+                              slopes_.empty() ? nullptr : slopes_.data(), rounding);
+    };
+    // Single precision sees coordinates of about the radius: near pairs would lose their digits.
+    const double nearest = sum(field.rounding());
+    if (field.rounding() == simd::Rounding::single && !(nearest * kTooNear * radius < 1))
+      sum(simd::Rounding::rough);
     for (std::size_t k = 0; k < width; ++k)
       for (std::size_t i = 0; i < count; ++i)
         values_[(3 * g + k) * stride_ + places_[i]] += sums_[k * stride + i];
@@ -135,7 +143,7 @@ void LeafSums::atBlock(const FarField& field, const LatticeBlock& polynomial,
     y_[i] = spacing * ((p >> 3 & 7) - 3.5);
     z_[i] = spacing * ((p & 7) - 3.5);
   }
-  addNear(field, near);
+  addNear(field, near, expansion.ball.radius);
 }
 
 }  // namespace innermap

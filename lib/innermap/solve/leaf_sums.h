@@ -39,8 +39,8 @@ class LeafSums {
   void setPoints(const Points& points, const std::uint32_t* order, std::size_t count,
                  const Vec3& center);
   void addPolynomial(const FarField& field, const Expansion& expansion, double slopeScale);
-  // Adds near charges at the targets to the places of theirs.
-  void addNear(const FarField& field, const NearCharges& near);
+  // Adds near charges at the targets to the places of theirs. radius: of their ball.
+  void addNear(const FarField& field, const NearCharges& near, double radius);
 
   std::size_t stride_ = 0;
   std::vector<double> values_, gradients_;

@@ -109,6 +109,22 @@ TEST(FastSum, CoincidentSourcesAndTargets) {
   expectSums(Points(300, Vec3{1, 2, 3}), sources, 3, 1e-6);
 }
 
+// Single precision would take these for coincident, and drop them.
+TEST(FastSum, AlmostCoincidentPairsCount) {
+  const Points sources = testing::randomPoints(1500, 3);
+  Points points = sources;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i].x += std::pow(10.0, -4.0 - 6.0 * static_cast<double>(i) / 1500);
+  for (const double accuracy : {1e-3, 1e-5}) {
+    const Matrix w = randomWeights(1500, 3, 8);
+    const FieldSamples got = FastSum(sources, w).at(points, hierarchical(accuracy)),
+                       exact = sumCharges(Charges(sources, w), points, true);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        ASSERT_NEAR(got.values(i, k) / exact.values(i, k), 1, 100 * accuracy) << i;
+  }
+}
+
 // Halving at medians puts these on the borders between cells.
 TEST(FastSum, PointsOnTheBordersOfCells) {
   Points grid;
