@@ -52,6 +52,11 @@ class Context {
   void note(const std::string& text);     // what was repaired or chosen
   void warning(const std::string& text);  // what makes the result doubtful
 
+  // The command goes on and writes its files, and its report; then the program ends with this line
+  // on stderr and exit code 1.
+  void failAfterwards(const std::string& text) { failure_ = text; }
+  const std::string& failure() const { return failure_; }
+
   // Results, on stdout. Nothing else goes there.
   void print(const std::string& text);
 
@@ -67,6 +72,7 @@ class Context {
   TerminalProgress& progress_;
   std::uint64_t maxMemory_ = 0;
   Report report_;
+  std::string failure_;
 };
 
 }  // namespace innermap::tool

@@ -14,16 +14,15 @@ struct FitOptions {
 };
 
 void run(const FitOptions& options, Context& context) {
+  toleranceOf(options.fitting);  // refuses options that cannot be before anything is read
   context.willWrite(options.output);
   const BoundaryPair pair = readBoundaryPair(options.source, options.target, context);
-  const PointCounts counts = pointCounts(options.fitting, pair.source.vertices.size());
-  const std::uint64_t need = fittingMemory(counts, options.fitting);
+  const std::size_t vertices = pair.source.vertices.size();
+  const std::uint64_t need = fittingMemory(options.fitting, vertices);
   if (context.dryRun())
     return context.plan(
-        {fmt::format("fit {} charges to {} boundary points", counts.sources, counts.collocation),
-         "write the map to " + options.output},
-        need);
-  requireFittingMemory(counts, options.fitting, context);
+        {fittingPlan(options.fitting, vertices), "write the map to " + options.output}, need);
+  requireFittingMemory(options.fitting, vertices, context);
   const Fitted fitted = fitMap(pair, options.fitting, context);
   context.timed("write", [&] { writeField(options.output, fitted.file); });
   context.print(fmt::format("boundary error: rms {:.2e}, 99% {:.2e}, max {:.2e} of the diagonal\n",
@@ -44,6 +43,7 @@ Command makeFitCommand() {
   c.option("--output", "FILE", &o->output, "the map, a .ply file").shortName("-o").required();
   addFittingOptions(c, o->fitting);
   c.example("innermap fit rest.obj pose.obj -o map.ply");
+  c.example("innermap fit rest.obj pose.obj -o map.ply --tolerance 1e-4 --best-effort");
   c.example("innermap fit rest.obj pose.obj -o map.ply --sources 4000 --distance 0.02");
   c.run([o](Context& context) { run(*o, context); });
   return c;

@@ -5,330 +5,114 @@
 #include <algorithm>
 #include <cmath>
 
-#include "innermap/core/memory.h"
-#include "innermap/core/random.h"
-#include "innermap/field/fit.h"
+#include "boundary_samples.h"
 #include "innermap/output/version.h"
-#include "innermap/sample/source_points.h"
-#include "innermap/sample/surface_samples.h"
-#include "largest.h"
 
 namespace innermap::tool {
 namespace {
 
-constexpr std::size_t kFreshSamples = 20000;
-constexpr double kPointsPerSource = 4, kPointsPerSourceIterative = 3;
-constexpr double kMostSources = 1000000;
-
-// Seeds of the three sets of boundary points, so that none has a point of another.
-enum Stream : std::uint64_t {
-  kCollocation = 0,
-  kHeldOut = 1,
-  kFresh = 2,
-  kSources = 3,
-  kVertices = 4
-};
-FitSolver solverOf(const FittingOptions& options) {
-  if (options.radiusRatio) return FitSolver::dense;  // far from most of the surface
-  return options.solver == "auto"    ? FitSolver::automatic
-         : options.solver == "dense" ? FitSolver::dense
-                                     : FitSolver::iterative;
-}
-
-Interpolation interpolationOf(const FittingOptions& options) {
-  return options.interpolation == "linear"   ? Interpolation::linear
-         : options.interpolation == "smooth" ? Interpolation::smooth
-                                             : Interpolation::automatic;
-}
-
-std::uint64_t seedOf(const FittingOptions& options, Stream stream) {
-  return 4 * options.seed + stream;
-}
-
-Points positionsOf(const Mesh& mesh, const std::vector<SurfacePoint>& samples) {
-  return interpolate(mesh.vertices, mesh.triangles, samples);
-}
-
-using Samples = std::vector<SurfacePoint>;
-
-BoundaryData surfaceData(const BoundaryPair& pair, const Samples& collocation,
-                         const Samples& heldOut) {
-  const Mesh& surface = pair.solid.surface();
-  return {positionsOf(surface, collocation), positionsOf(surface, heldOut),
-          pair.targetsOf(collocation), pair.targetsOf(heldOut)};
-}
-
-// Samples on caps, which have no vertices of the mesh's own.
-Samples onCaps(const BoundaryPair& pair, const Samples& samples) {
-  Samples out;
-  for (const SurfacePoint& p : samples)
-    if (pair.solid.repaired().parent[pair.solid.address(p).triangle] < 0) out.push_back(p);
-  return out;
-}
-
-// The mesh's own vertices on the boundary (not buried ones), shuffled, and samples of the caps; a
-// fifth of the vertices is held out.
-BoundaryData vertexData(const BoundaryPair& pair, const FittingOptions& options,
-                        const PointCounts& counts, const Samples& collocation) {
-  const Mesh& mesh = pair.solid.repaired().mesh;
-  std::vector<char> used(pair.source.vertices.size(), 0);
-  for (const Triangle& t : mesh.triangles)
-    for (const int v : t)
-      if (static_cast<std::size_t>(v) < used.size()) used[v] = 1;
-  const double touching = 1e-9 * pair.solid.diagonal();
-  std::vector<std::pair<std::uint64_t, std::size_t>> order;
-  const CounterRandom random(options.seed, kVertices);
-  for (std::size_t v = 0; v < used.size(); ++v)
-    if (used[v] && (!pair.solid.overlaps() || pair.solid.distance(mesh.vertices[v]) <= touching))
-      order.emplace_back(random.bits(v), v);
-  std::sort(order.begin(), order.end());
-  const std::size_t heldOut = std::min(order.size() / 5, counts.heldOut),
-                    points = std::min(order.size() - heldOut, counts.collocation);
-  const Samples caps = onCaps(pair, collocation);
-  BoundaryData data{positionsOf(pair.solid.surface(), caps),
-                    {},
-                    Matrix(caps.size() + points, 3),
-                    Matrix(heldOut, 3)};
-  const Matrix capValues = pair.targetsOf(caps);
-  for (std::size_t i = 0; i < caps.size(); ++i)
-    for (int a = 0; a < 3; ++a) data.values(i, a) = capValues(i, a);
-  const auto add = [&](std::size_t v, Points& to, Matrix& values) {
-    for (int a = 0; a < 3; ++a) values(to.size(), a) = pair.moved[v][a];
-    to.push_back(mesh.vertices[v]);
-  };
-  for (std::size_t i = 0; i < heldOut; ++i) add(order[i].second, data.heldOut, data.heldOutValues);
-  for (std::size_t i = 0; i < points; ++i) add(order[heldOut + i].second, data.points, data.values);
-  return data;
-}
-
-FitProblem makeProblem(const BoundaryPair& pair, const FittingOptions& options,
-                       const PointCounts& counts, Context& context) {
-  const Mesh& surface = pair.solid.surface();
-  SampleSettings sample;
-  sample.progress = context.progress();
-  sample.seed = seedOf(options, kCollocation);
-  const Samples collocation = blueNoiseSamples(surface, counts.collocation, sample);
-  sample.seed = seedOf(options, kHeldOut);
-  const Samples heldOut = randomSamples(surface, counts.heldOut, sample);
-  FitProblem problem;
-  problem.surface = surfaceData(pair, collocation, heldOut);
-  if (options.interpolation != "linear")
-    problem.vertices = vertexData(pair, options, counts, collocation);
-  problem.diagonal = pair.solid.diagonal();
-  problem.area = pair.solid.area();
-  SourceSettings source;
-  source.seed = seedOf(options, kSources);
-  source.progress = context.progress();
-  problem.placeSources = [&pair, &options, source](std::size_t count, double distance) mutable {
-    source.count = count;
-    return options.radiusRatio ? sourceSphere(pair.solid, *options.radiusRatio, source)
-                               : sourceShell(pair.solid, distance, source);
-  };
-  return problem;
-}
-
-BoundaryError certify(const HarmonicField& field, const BoundaryPair& pair,
-                      const FittingOptions& options, Context& context) {
-  SampleSettings sample;
-  sample.seed = seedOf(options, kFresh);
-  sample.progress = context.progress();
-  const auto fresh = randomSamples(pair.solid.surface(), kFreshSamples, sample);
-  return measureBoundaryError(field, positionsOf(pair.solid.surface(), fresh),
-                              pair.targetsOf(fresh), pair.targetDiagonal, context.progress());
-}
-
-std::string methodOf(const FitResult& fit, const FittingOptions& options) {
-  return fit.iterative ? "iterative" : options.method;
-}
-
-void fillReport(const FitResult& fit, const FitProblem& problem, const BoundaryError& error,
-                double cError, const FittingOptions& options, Context& context) {
-  Report& report = context.report();
-  const BoundaryData& data = fit.smooth ? problem.vertices : problem.surface;
+// How the field was found: by a FitResult or an AdaptiveResult.
+struct Outcome {
+  HarmonicField field;
   ReportSolve solve;
-  solve.method = methodOf(fit, options);
-  solve.sources = fit.field.sources().size();
-  solve.collocation = data.points.size();
-  solve.rank = fit.rank;
-  solve.regularization = fit.regularization;
-  solve.iterations = fit.iterative ? static_cast<int>(fit.residuals.size()) - 1 : 0;
-  report.solve = solve;
-  report.set("solve.placement", options.radiusRatio ? "sphere" : "shell");
-  if (options.radiusRatio)
-    report.set("solve.radius_ratio", *options.radiusRatio);
-  else
-    report.set("solve.distance", fit.distance);
-  report.set("solve.interpolation", fit.smooth ? "smooth" : "linear");
-  if (fit.iterative)
-    report.set("solve.residuals", fit.residuals);
-  else
-    report.set("solve.condition", fit.condition);
-  report.set("solve.weight_norm", fit.weightNorm);
-  report.set("solve.held_out", static_cast<std::int64_t>(data.heldOut.size()));
-  report.set("solve.seed", static_cast<std::int64_t>(options.seed));
+  bool smooth = false;
+  BoundaryError error;                                       // at fresh points
+  double cError = 0;                                         // sum of squares at collocation points
+  std::vector<std::pair<std::string, ReportValue>> details;  // of the report's "solve"
+  Settings settings;                                         // of the map's file
+};
+
+std::string number(double x) { return fmt::format("{:.9g}", x); }
+
+void addTrials(const FitResult& fit, Outcome& out) {
   std::vector<double> distances, errors;
   for (const DistanceTrial& t : fit.trials) {
     distances.push_back(t.distance);
     errors.push_back(t.heldOutRms);
   }
-  if (!distances.empty()) {
-    report.set("solve.tried_distances", distances);
-    report.set("solve.tried_errors", errors);
+  if (distances.empty()) return;
+  out.details.emplace_back("tried_distances", distances);
+  out.details.emplace_back("tried_errors", errors);
+}
+
+// A fit with a given number of charges.
+Outcome outcomeOf(const FitResult& fit, const FitProblem& problem, const FittingOptions& options) {
+  const BoundaryData& data = fit.smooth ? problem.vertices : problem.surface;
+  Outcome out{fit.field, {}, fit.smooth, {}, 0, {}, {}};
+  out.solve.method = fit.iterative ? "iterative" : options.method;
+  out.solve.sources = fit.field.sources().size();
+  out.solve.collocation = data.points.size();
+  out.solve.rank = fit.rank;
+  out.solve.regularization = fit.regularization;
+  out.solve.iterations = fit.iterative ? static_cast<int>(fit.residuals.size()) - 1 : 0;
+  out.details.emplace_back("placement", options.radiusRatio ? "sphere" : "shell");
+  if (options.radiusRatio) {
+    out.details.emplace_back("radius_ratio", *options.radiusRatio);
+    out.settings.emplace_back("radius_ratio", number(*options.radiusRatio));
+  } else {
+    out.details.emplace_back("distance", fit.distance);
+    out.settings.emplace_back("distance", number(fit.distance));
   }
-  ReportBoundaryError e;
-  e.rms = error.rms;
-  e.p99 = error.p99;
-  e.max = error.max;
-  e.samples = error.samples;
-  e.cError = cError;
-  report.boundaryError = e;
-}
-
-Settings describe(const BoundaryPair& pair, const FitResult& fit, const BoundaryError& error,
-                  double cError, const FittingOptions& options) {
-  const auto number = [](double x) { return fmt::format("{:.9g}", x); };
-  const auto path = [](std::string text) {
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, '_');
-    return text;
-  };
-  Settings settings{{"version", versionText()},
-                    {"source", path(pair.source.name)},
-                    {"target", path(pair.target.name)},
-                    {"method", methodOf(fit, options)},
-                    {"interpolation", fit.smooth ? "smooth" : "linear"},
-                    {"seed", std::to_string(options.seed)},
-                    {"regularization", number(fit.regularization)},
-                    {"rank", std::to_string(fit.rank)},
-                    {"boundary_error_rms", number(error.rms)},
-                    {"boundary_error_p99", number(error.p99)},
-                    {"boundary_error_max", number(error.max)},
-                    {"boundary_error_samples", std::to_string(error.samples)},
-                    {"c_error", number(cError)}};
-  if (options.radiusRatio)
-    settings.emplace_back("radius_ratio", number(*options.radiusRatio));
+  if (fit.iterative)
+    out.details.emplace_back("residuals", fit.residuals);
   else
-    settings.emplace_back("distance", number(fit.distance));
-  return settings;
+    out.details.emplace_back("condition", fit.condition);
+  out.details.emplace_back("weight_norm", fit.weightNorm);
+  out.details.emplace_back("held_out", static_cast<std::int64_t>(data.heldOut.size()));
+  addTrials(fit, out);
+  return out;
 }
 
-std::size_t countOf(double count, const char* option, double least, double most) {
-  if (!(count >= least && count <= most))
-    throw SettingError(option, fmt::format("gives {:.6g} points; it must give {:.6g} to {:.6g}",
-                                           count, least, most));
-  return static_cast<std::size_t>(count);
+// A fit to a tolerance.
+Outcome outcomeOf(const AdaptiveResult& fit, double unit) {
+  Outcome out{fit.field, {}, false, fit.error, 0, {}, {}};
+  out.solve.method = "adaptive";
+  out.solve.sources = out.solve.rank = fit.field.sources().size();
+  out.solve.collocation = fit.collocation;
+  out.solve.iterations = static_cast<int>(fit.residuals.size()) - 1;
+  out.cError = std::pow(fit.residuals.back() / unit, 2) * static_cast<double>(fit.collocation);
+  std::vector<double> distances, sources, roundSources, roundErrors;
+  for (const AdaptiveLevel& l : fit.levels) {
+    distances.push_back(l.distance);
+    sources.push_back(static_cast<double>(l.sources));
+  }
+  for (const AdaptiveRound& r : fit.rounds) {
+    roundSources.push_back(static_cast<double>(r.sources));
+    roundErrors.push_back(r.error.p99);
+  }
+  out.details = {{"placement", "adaptive"},       {"distance", distances.front()},
+                 {"level_distances", distances},  {"level_sources", sources},
+                 {"round_sources", roundSources}, {"round_p99", roundErrors},
+                 {"residuals", fit.residuals},    {"weight_norm", fit.weightNorm}};
+  out.settings.emplace_back("distance", number(distances.front()));
+  return out;
 }
 
-}  // namespace
-
-void addFittingOptions(Command& command, FittingOptions& o) {
-  command.option("--sources", "N", &o.sources, "number of charges").range(1, kMostSources);
-  command.option("--collocation", "N", &o.collocation, "boundary points that the map is fitted to")
-      .range(8, 1e7)
-      .defaults("4 a source; iterative: 3");
-  command
-      .option("--source-ratio", "R", &o.sourceRatio,
-              "charges as a multiple of the source's vertices (sRatio), in place of --sources")
-      .above(0)
-      .atMost(100);
-  command
-      .option("--collocation-ratio", "R", &o.collocationRatio,
-              "boundary points as a multiple of the source's vertices (cRatio), in place of "
-              "--collocation")
-      .above(0)
-      .atMost(1000);
-  command.option("--distance", "D", &o.distance, "of the charges from the surface (O-Distance)")
-      .unit("fraction of the source's diagonal")
-      .range(1e-4, 2)
-      .defaults("chosen by held-out error");
-  command
-      .option("--radius-ratio", "R", &o.radiusRatio,
-              "charges on a sphere, in place of a shell: its radius as a multiple of half the "
-              "diagonal (R-Ratio)")
-      .above(1)
-      .atMost(100);
-  command
-      .option(
-          "--solver", "NAME", &o.solver,
-          "dense: all at once, for up to some 3000 charges; iterative: for many; auto: by their "
-          "number")
-      .choices({"auto", "dense", "iterative"});
-  command
-      .option(
-          "--interpolation", "NAME", &o.interpolation,
-          "what the target is between vertices: linear, as its triangles; smooth, when vertices "
-          "sample a smooth deformation; auto: by the error at held-out vertices")
-      .choices({"auto", "linear", "smooth"});
-  command
-      .option("--method", "NAME", &o.method,
-              "regularisation: Tikhonov's, or truncation of singular values (the paper's)")
-      .choices({"tikhonov", "tsvd"});
-  command
-      .option("--regularization", "T", &o.regularization,
-              "threshold of singular values, or Tikhonov's lambda")
-      .unit("fraction of the largest singular value")
-      .range(0, 1)
-      .defaults("chosen by held-out error");
-  command.option("--seed", "N", &o.seed, "of all random points").range(0, 1e15);
+void measure(const BoundaryPair& pair, const FitProblem& problem, const FittingOptions& options,
+             Outcome& out, Context& context) {
+  context.timed("certificate", [&] {
+    const auto error = [&](const Points& points, const Matrix& values) {
+      return measureBoundaryError(out.field, points, values, pair.targetDiagonal,
+                                  context.progress());
+    };
+    const BoundarySamples fresh = freshSamples(pair, options, context);
+    out.error = error(fresh.points, fresh.values);
+    const BoundaryData& data = out.smooth ? problem.vertices : problem.surface;
+    out.cError = error(data.points, data.values).sumOfSquares;
+    if (out.smooth)
+      context.report().set("boundary_error.vertices_rms",
+                           error(data.heldOut, data.heldOutValues).rms);
+  });
 }
 
-PointCounts pointCounts(const FittingOptions& o, std::size_t vertices) {
-  if (o.distance && o.radiusRatio)
-    throw UsageError("--distance and --radius-ratio exclude each other; give one of them");
-  if (o.collocation && o.collocationRatio)
-    throw UsageError("--collocation and --collocation-ratio exclude each other; give one of them");
-  const double v = static_cast<double>(vertices);
-  PointCounts counts;
-  counts.sources = o.sourceRatio
-                       ? countOf(std::round(*o.sourceRatio * v), "--source-ratio", 1, kMostSources)
-                       : o.sources;
-  const double n = static_cast<double>(counts.sources);
-  const bool iterative =
-      o.solver == "iterative" || (o.solver == "auto" && counts.sources > kMostDenseSources);
-  const double perSource = iterative ? kPointsPerSourceIterative : kPointsPerSource;
-  const double wanted = o.collocation        ? static_cast<double>(*o.collocation)
-                        : o.collocationRatio ? std::round(*o.collocationRatio * v)
-                                             : std::max(perSource * n, 16.0);
-  counts.collocation =
-      countOf(wanted, o.collocationRatio ? "--collocation-ratio" : "--collocation", n + 4, 1e7);
-  counts.heldOut = std::clamp<std::size_t>(counts.sources, 1000, 5000);
-  return counts;
-}
-
-std::uint64_t fittingMemory(const PointCounts& counts, const FittingOptions& options) {
-  constexpr std::uint64_t kProgram = 64'000'000;  // with nothing loaded yet
-  // Blue noise thins five candidates a point; each costs some 100 bytes.
-  return kProgram +
-         fitMemory(counts.collocation, counts.sources, counts.heldOut, solverOf(options)) +
-         500 * (counts.collocation + counts.sources) + 200 * kFreshSamples;
-}
-
-void requireFittingMemory(const PointCounts& counts, const FittingOptions& options,
-                          const Context& context) {
-  const double points =
-      static_cast<double>(counts.collocation) / static_cast<double>(counts.sources);
-  const auto fits = [&](std::uint64_t sources) {
-    PointCounts c;
-    c.sources = sources;
-    c.collocation = static_cast<std::size_t>(points * static_cast<double>(sources));
-    c.heldOut = counts.heldOut;
-    return fittingMemory(c, options) <= context.maxMemory();
-  };
-  const std::uint64_t most = largestThat(1, counts.sources, fits);
-  requireMemory(fmt::format("fitting {} sources", counts.sources), fittingMemory(counts, options),
-                context.maxMemory(),
-                most > 0 ? fmt::format("use --sources {} or raise --max-memory", most)
-                         : "raise --max-memory");
-}
-
-Fitted fitMap(const BoundaryPair& pair, const FittingOptions& options, Context& context) {
-  const PointCounts counts = pointCounts(options, pair.source.vertices.size());
-  FitProblem problem;
-  context.timed("sample", [&] { problem = makeProblem(pair, options, counts, context); });
+FitSettings fitSettings(const FittingOptions& options, const PointCounts& counts,
+                        Context& context) {
   FitSettings settings;
   settings.sources = counts.sources;
   settings.solver = solverOf(options);
-  settings.interpolation = interpolationOf(options);
+  settings.interpolation = options.interpolation == "auto"     ? Interpolation::automatic
+                           : options.interpolation == "linear" ? Interpolation::linear
+                                                               : Interpolation::smooth;
   settings.distance = options.distance;
   // On a sphere the distance plays no part: one fit, nothing to choose.
   if (options.radiusRatio) settings.distance = 1.0;
@@ -337,33 +121,148 @@ Fitted fitMap(const BoundaryPair& pair, const FittingOptions& options, Context& 
   settings.regularization = options.regularization;
   settings.maxMemory = context.maxMemory();
   settings.progress = context.progress();
+  return settings;
+}
+
+Outcome fitOnShell(const BoundaryPair& pair, const FittingOptions& options, Context& context) {
+  const PointCounts counts = pointCounts(options, pair.source.vertices.size());
+  FitProblem problem;
+  context.timed("sample", [&] { problem = fitProblem(pair, options, counts, context); });
   std::optional<FitResult> fit;
-  context.timed("fit", [&] { fit.emplace(fitField(problem, settings)); });
-  BoundaryError error;
-  double cError = 0;
-  context.timed("certificate", [&] {
-    error = certify(fit->field, pair, options, context);
-    const BoundaryData& data = fit->smooth ? problem.vertices : problem.surface;
-    cError = measureBoundaryError(fit->field, data.points, data.values, pair.targetDiagonal,
-                                  context.progress())
-                 .sumOfSquares;
-    if (fit->smooth)
-      context.report().set("boundary_error.vertices_rms",
-                           measureBoundaryError(fit->field, data.heldOut, data.heldOutValues,
-                                                pair.targetDiagonal, context.progress())
-                               .rms);
-  });
-  fillReport(*fit, problem, error, cError, options, context);
-  if (error.max > 0.1)
+  context.timed("fit",
+                [&] { fit.emplace(fitField(problem, fitSettings(options, counts, context))); });
+  Outcome out = outcomeOf(*fit, problem, options);
+  measure(pair, problem, options, out, context);
+  return out;
+}
+
+// Where vertices sample a smooth deformation, a fit to them is far more exact, and quick.
+std::optional<Outcome> tryVertices(const BoundaryPair& pair, const FittingOptions& options,
+                                   double tolerance, Context& context) {
+  constexpr std::size_t kSources = 1000;
+  if (options.interpolation == "linear") return {};
+  const PointCounts counts{kSources, 4 * kSources, kSources};
+  FitProblem problem;
+  context.timed("sample", [&] { problem = fitProblem(pair, options, counts, context); });
+  std::optional<FitResult> fit;
+  context.timed("fit", [&] { fit = fitSmooth(problem, fitSettings(options, counts, context)); });
+  if (!fit) return {};
+  Outcome out = outcomeOf(*fit, problem, options);
+  measure(pair, problem, options, out, context);
+  if (out.error.p99 > tolerance && options.interpolation == "auto") return {};
+  return out;
+}
+
+std::string whyEnded(AdaptiveEnd end, const FittingOptions& options) {
+  switch (end) {
+    case AdaptiveEnd::maxSources:
+      return fmt::format("--max-sources {} is reached", options.maxSources);
+    case AdaptiveEnd::maxMemory:
+      return "--max-memory is reached";
+    case AdaptiveEnd::noGain:
+      return "more charges do not help";
+    case AdaptiveEnd::met:
+      break;
+  }
+  return "vertices are all that --interpolation smooth fits";
+}
+
+void sayNotMet(const Outcome& out, double tolerance, const std::string& why,
+               const FittingOptions& options, Context& context) {
+  const std::string text = fmt::format(
+      "--tolerance {:g} is not met: 99% of the boundary lies within {:.3g} of the target's "
+      "diagonal, with {} charges; {}",
+      tolerance, out.error.p99, out.solve.sources, why);
+  if (options.bestEffort)
+    context.warning(text);
+  else
+    context.failAfterwards(text + "; what is written is marked so (--best-effort: exit code 0)");
+}
+
+Outcome fitWithin(double tolerance, const BoundaryPair& pair, const FittingOptions& options,
+                  Context& context) {
+  std::optional<Outcome> out = tryVertices(pair, options, tolerance, context);
+  AdaptiveEnd end = AdaptiveEnd::met;
+  if (!out) {
+    AdaptiveSettings settings;
+    settings.tolerance = tolerance;
+    settings.maxSources = options.maxSources;
+    settings.checkSamples = kFreshSamples;
+    settings.maxMemory = context.maxMemory();
+    settings.progress = context.progress();
+    context.timed("fit", [&] {
+      const AdaptiveResult fit = fitToTolerance(adaptiveProblem(pair, options, context), settings);
+      end = fit.end;
+      out.emplace(outcomeOf(fit, pair.targetDiagonal));
+    });
+  }
+  const bool met = out->error.p99 <= tolerance;
+  out->settings.emplace_back("tolerance", number(tolerance));
+  out->settings.emplace_back("tolerance_reached", number(out->error.p99));
+  out->settings.emplace_back("tolerance_met", met ? "true" : "false");
+  context.report().set("tolerance.wanted", tolerance);
+  context.report().set("tolerance.reached", out->error.p99);
+  context.report().set("tolerance.met", met);
+  if (!met) {
+    const std::string why = whyEnded(end, options);
+    context.report().set("tolerance.ended", why);
+    sayNotMet(*out, tolerance, why, options, context);
+  }
+  return std::move(*out);
+}
+
+void fillReport(const Outcome& out, const FittingOptions& options, Report& report) {
+  report.solve = out.solve;
+  for (const auto& [key, value] : out.details) report.set("solve." + key, value);
+  report.set("solve.interpolation", out.smooth ? "smooth" : "linear");
+  report.set("solve.seed", static_cast<std::int64_t>(options.seed));
+  ReportBoundaryError e;
+  e.rms = out.error.rms;
+  e.p99 = out.error.p99;
+  e.max = out.error.max;
+  e.samples = out.error.samples;
+  e.cError = out.cError;
+  report.boundaryError = e;
+}
+
+Settings describe(const BoundaryPair& pair, const Outcome& out, const FittingOptions& options) {
+  const auto path = [](std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, '_');
+    return text;
+  };
+  Settings settings{{"version", versionText()},
+                    {"source", path(pair.source.name)},
+                    {"target", path(pair.target.name)},
+                    {"method", out.solve.method},
+                    {"interpolation", out.smooth ? "smooth" : "linear"},
+                    {"seed", std::to_string(options.seed)},
+                    {"regularization", number(out.solve.regularization)},
+                    {"rank", std::to_string(out.solve.rank)},
+                    {"boundary_error_rms", number(out.error.rms)},
+                    {"boundary_error_p99", number(out.error.p99)},
+                    {"boundary_error_max", number(out.error.max)},
+                    {"boundary_error_samples", std::to_string(out.error.samples)},
+                    {"c_error", number(out.cError)}};
+  settings.insert(settings.end(), out.settings.begin(), out.settings.end());
+  return settings;
+}
+
+}  // namespace
+
+Fitted fitMap(const BoundaryPair& pair, const FittingOptions& options, Context& context) {
+  const std::optional<double> tolerance = toleranceOf(options);
+  const Outcome out = tolerance ? fitWithin(*tolerance, pair, options, context)
+                                : fitOnShell(pair, options, context);
+  fillReport(out, options, context.report());
+  if (out.error.max > 0.1)
     context.warning(
         fmt::format("the boundary error reaches {:.2g} of the diagonal: this map is not to be "
-                    "trusted; use more "
-                    "--sources",
-                    error.max));
-  Fitted out{{fit->field, describe(pair, *fit, error, cError, options), pair.source.vertices,
-              pair.target.vertices, pair.source.triangles},
-             error};
-  return out;
+                    "trusted; use {}",
+                    out.error.max, tolerance ? "a smaller --tolerance" : "more --sources"));
+  return {{out.field, describe(pair, out, options), pair.source.vertices, pair.target.vertices,
+           pair.source.triangles},
+          out.error};
 }
 
 }  // namespace innermap::tool

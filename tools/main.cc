@@ -37,6 +37,7 @@ void execute(const Command& command, const CommonOptions& common, TerminalProgre
   throwIfCancelled(&progress);
   if (!common.report.empty() && !common.dryRun)
     writeReport(common.report, context.finishedReport());
+  if (!context.failure().empty()) throw DataError(context.failure());
 }
 
 void runCommand(const std::vector<std::string>& arguments) {

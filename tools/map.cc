@@ -79,16 +79,17 @@ void writePictures(const openvdb::GridPtrVec& grids, const BoundaryPair& pair,
 }
 
 void run(const MapOptions& options, Context& context) {
+  toleranceOf(options.fitting);  // refuses options that cannot be before anything is read
   const BoundaryPair pair = readBoundaryPair(options.source, options.target, context);
-  const PointCounts counts = pointCounts(options.fitting, pair.source.vertices.size());
-  const std::uint64_t fitting = fittingMemory(counts, options.fitting),
+  const std::size_t vertices = pair.source.vertices.size();
+  const std::uint64_t fitting = fittingMemory(options.fitting, vertices),
                       evaluation = evaluationMemory(pair.solid, options.evaluation);
   if (context.dryRun())
     return context.plan(
-        {fmt::format("fit {} charges to {} boundary points", counts.sources, counts.collocation),
+        {fittingPlan(options.fitting, vertices),
          "write map.ply, map.vdb, slices.exr, section.png and report.json to " + options.output},
         std::max(fitting, evaluation));
-  requireFittingMemory(counts, options.fitting, context);
+  requireFittingMemory(options.fitting, vertices, context);
   requireEvaluationMemory(pair.solid, options.evaluation, context);
   PendingFolder folder(options.output);
   const Fitted fitted = fitMap(pair, options.fitting, context);
@@ -134,7 +135,7 @@ Command makeMapCommand() {
       .range(0, 1)
       .defaults("near the middle, where it cuts most");
   c.example("innermap map rest.obj pose.obj -o out");
-  c.example("innermap map rest.obj pose.obj -o out --sources 4000 --resolution 256");
+  c.example("innermap map rest.obj pose.obj -o out --tolerance 3e-4 --resolution 256");
   c.run([o](Context& context) { run(*o, context); });
   return c;
 }

@@ -8,32 +8,44 @@
 
 namespace innermap {
 
-BoundaryError measureBoundaryError(const HarmonicField& field, const Points& points,
-                                   const Matrix& values, double unit, Progress* progress) {
+std::vector<double> boundaryErrors(const HarmonicField& field, const Points& points,
+                                   const Matrix& values, double unit, double accuracy,
+                                   Progress* progress) {
   if (!(unit > 0)) throw SettingError("unit", "must be positive");
   if (values.rows() != points.size() || values.columns() != field.channels())
     throw DataError("boundary error: the values do not fit the points and channels");
-  BoundaryError out;
-  out.samples = points.size();
-  if (points.empty()) return out;
-  const Matrix got = field.evaluate(points, false, progress).values;
   std::vector<double> lengths(points.size());
+  if (points.empty()) return lengths;
+  const Matrix got = (accuracy > 0 ? field.evaluate(points, accuracy, false, progress)
+                                   : field.evaluate(points, false, progress))
+                         .values;
   for (std::size_t i = 0; i < points.size(); ++i) {
     double square = 0;
     for (std::size_t k = 0; k < values.columns(); ++k) {
       const double e = (got(i, k) - values(i, k)) / unit;
       square += e * e;
     }
-    out.sumOfSquares += square;
     lengths[i] = std::sqrt(square);
   }
-  const std::size_t n = lengths.size();
+  return lengths;
+}
+
+BoundaryError summarizeErrors(std::vector<double> lengths) {
+  BoundaryError out;
+  const std::size_t n = out.samples = lengths.size();
+  if (n == 0) return out;
+  for (const double e : lengths) out.sumOfSquares += e * e;
   out.rms = std::sqrt(out.sumOfSquares / static_cast<double>(n));
   out.max = *std::max_element(lengths.begin(), lengths.end());
   const std::size_t rank = std::min(n - 1, static_cast<std::size_t>(std::ceil(0.99 * n)) - 1);
   std::nth_element(lengths.begin(), lengths.begin() + rank, lengths.end());
   out.p99 = lengths[rank];
   return out;
+}
+
+BoundaryError measureBoundaryError(const HarmonicField& field, const Points& points,
+                                   const Matrix& values, double unit, Progress* progress) {
+  return summarizeErrors(boundaryErrors(field, points, values, unit, 0, progress));
 }
 
 }  // namespace innermap

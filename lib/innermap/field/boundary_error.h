@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "innermap/core/progress.h"
 #include "innermap/field/harmonic_field.h"
@@ -15,6 +16,16 @@ struct BoundaryError {
   double sumOfSquares = 0;  // the paper's C-Error when taken at the collocation points
   std::size_t samples = 0;
 };
+
+// The Euclidean length of the error over all channels at each point, divided by `unit`. Arguments
+// and errors as below. accuracy: of the field's values, as HarmonicField::evaluate takes it; 0: by
+// plain sums.
+std::vector<double> boundaryErrors(const HarmonicField& field, const Points& points,
+                                   const Matrix& values, double unit, double accuracy = 0,
+                                   Progress* progress = nullptr);
+
+// Of the lengths at all points.
+BoundaryError summarizeErrors(std::vector<double> lengths);
 
 // values: #points x #K. unit: usually the target's diagonal; must be positive.
 // Throws DataError when sizes disagree, SettingError for a bad unit.

@@ -62,6 +62,12 @@ class Fitting {
     return !smooth && solver() == FitSolver::iterative ? iterative() : dense(smooth);
   }
 
+  std::optional<FitResult> runSmooth() {
+    check();
+    if (!chooseSmooth()) return {};
+    return dense(true);
+  }
+
  private:
   FitResult dense(bool smooth) {
     const BoundaryData& data = smooth ? problem_.vertices : problem_.surface;
@@ -91,6 +97,10 @@ class Fitting {
   std::vector<double> distancesFor(bool smooth, std::size_t count);
   Solved solve(const BoundaryData& data, std::size_t count, std::size_t points,
                double distance) const;
+
+  SourceLevel level(std::size_t count, double distance) const {
+    return {problem_.placeSources(count, distance), spacing(count), distance * problem_.diagonal};
+  }
 
   double spacing(std::size_t count) const {
     return std::sqrt(problem_.area / static_cast<double>(count));
@@ -223,24 +233,20 @@ bool Fitting::chooseSmooth() {
 
 FitResult Fitting::iterative() {
   const std::size_t fine = settings_.sources, coarse = coarseCount(fine);
-  IterativeSettings s;
-  s.spacing = spacing(fine);
   const double distance =
-      settings_.distance.value_or(kIterativeDistance * s.spacing / problem_.diagonal);
-  s.distance = distance * problem_.diagonal;
-  if (s.distance > kIterativeGuard * s.spacing)
+      settings_.distance.value_or(kIterativeDistance * spacing(fine) / problem_.diagonal);
+  if (distance * problem_.diagonal > kIterativeGuard * spacing(fine))
     throw SettingError("distance",
                        "is over 4 spacings of the sources, which the iterative solver cannot take; "
                        "use a smaller one or the dense solver");
+  double far = kCoarseDistance * spacing(coarse) / problem_.diagonal;
+  if (settings_.distance) far = std::max(distance, far);
+  const SourceLevel levels[2] = {level(coarse, far), level(fine, distance)};
+  IterativeSettings s;
   s.progress = settings_.progress;
-  Points sources = problem_.placeSources(fine, distance);
-  const Points far = problem_.placeSources(
-      coarse, settings_.distance
-                  ? std::max(distance, kCoarseDistance * spacing(coarse) / problem_.diagonal)
-                  : kCoarseDistance * spacing(coarse) / problem_.diagonal);
-  IterativeSolution solution =
-      IterativeSolver(problem_.surface.points, sources, far, s).solve(problem_.surface.values);
-  sources.insert(sources.end(), far.begin(), far.end());
+  const IterativeSolver solver(problem_.surface.points, {levels[0], levels[1]}, s);
+  IterativeSolution solution = solver.solve(problem_.surface.values);
+  Points sources = solver.sources();
   const std::size_t rank = sources.size();
   return {
       HarmonicField(std::move(sources), std::move(solution.weights), std::move(solution.affine)),
@@ -285,6 +291,10 @@ std::uint64_t fitMemory(std::size_t collocation, std::size_t sources, std::size_
 
 FitResult fitField(const FitProblem& problem, const FitSettings& settings) {
   return Fitting(problem, settings).run();
+}
+
+std::optional<FitResult> fitSmooth(const FitProblem& problem, const FitSettings& settings) {
+  return Fitting(problem, settings).runSmooth();
 }
 
 }  // namespace innermap

@@ -88,4 +88,8 @@ std::uint64_t fitMemory(std::size_t collocation, std::size_t sources, std::size_
 // Throws SettingError, DataError (no room for sources at any distance), MemoryError, Cancelled.
 FitResult fitField(const FitProblem& problem, const FitSettings& settings = {});
 
+// fitField for vertices that sample a smooth deformation (settings.interpolation: smooth, or
+// automatic and they do); nothing when they do not. Throws as fitField does.
+std::optional<FitResult> fitSmooth(const FitProblem& problem, const FitSettings& settings = {});
+
 }  // namespace innermap

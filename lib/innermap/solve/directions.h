@@ -4,29 +4,45 @@
 #include <vector>
 
 #include "innermap/core/matrix.h"
+#include "innermap/core/progress.h"
 
 namespace innermap {
 
 class OrthogonalDirections {
  public:
-  OrthogonalDirections(std::size_t images, std::size_t unknowns)
-      : images_(images), unknowns_(unknowns) {}
+  // dependent: columns of whose length no more than this share is left are left out, in (0, 1).
+  OrthogonalDirections(std::size_t images, std::size_t unknowns, double dependent = 1e-8)
+      : images_(images), unknowns_(unknowns), dependent_(dependent) {}
 
   // Adds the columns of `directions` (#unknowns x n) and of their `images` (#images x n), made
   // orthonormal to all that are there (Gram-Schmidt, twice); columns that depend on those are left
-  // out.
-  void add(const Matrix& directions, const Matrix& images);
+  // out (rounding and little else). The same for any number of threads.
+  void add(Matrix directions, Matrix images, Progress* progress = nullptr);
 
-  // Removes from `residual` (#images x #K) its part along each direction added since the last
-  // call, and adds the same multiple of the direction to `x` (#unknowns x #K). Skips a direction
-  // that gains next to nothing for a large change of x: such ones are almost in the operator's null
+  // Removes from `residual` (#images x #K) its part along each direction from number `first` on,
+  // and adds the same multiple of the direction to `x` (#unknowns x #K). Skips a direction that
+  // gains next to nothing for a large change of x: such ones are almost in the operator's null
   // space.
-  void project(Matrix& residual, Matrix& x);
+  void project(std::size_t first, Matrix& residual, Matrix& x) const;
+
+  std::size_t count() const { return column_.size(); }
 
  private:
-  using Column = std::vector<double>;
-  std::size_t images_, unknowns_, projected_ = 0;
-  std::vector<Column> direction_, image_;
+  struct Block {
+    Matrix directions, images;
+  };
+  struct Column {
+    std::size_t block, index;
+    double step;  // length of the direction
+  };
+
+  void removeParts(const Block& old, Block& fresh, Progress* progress) const;
+  bool normalise(Block& block, std::size_t column) const;
+
+  std::size_t images_, unknowns_;
+  double dependent_;
+  std::vector<Block> blocks_;
+  std::vector<Column> column_;
 };
 
 }  // namespace innermap

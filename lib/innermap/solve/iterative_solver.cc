@@ -1,8 +1,5 @@
 #include "innermap/solve/iterative_solver.h"
 
-#include <cblas.h>
-#include <lapacke.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -10,52 +7,26 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
-#include "innermap/core/parallel.h"
-#include "innermap/core/random.h"
-#include "innermap/solve/clusters.h"
 #include "innermap/solve/directions.h"
-#include "innermap/solve/kernel_sum.h"
+#include "innermap/solve/fast_sum.h"
+#include "innermap/solve/sequence_solver.h"
 
 namespace innermap {
 namespace {
 
-constexpr std::size_t kAffine = 4;
-constexpr std::size_t kClusterSize = 150;
-constexpr double kOverlap = 4.5;          // spacings
-constexpr double kLocalLambda = 1e-2;     // relative; strong: weaker ones converge worse
-constexpr double kCoarseLambda = 1e-3;    // relative
-constexpr std::size_t kCoarsePoints = 4;  // collocation points a coarse source
-constexpr double kLeastFall = 0.97;       // of the residual; less is not worth an iteration
-
-Points normalised(const Points& points, const Vec3& center, double scale) {
-  Points out(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) out[i] = (points[i] - center) / scale;
-  return out;
-}
-
-Points subset(const Points& points, const std::vector<std::size_t>& indices) {
-  Points out;
-  out.reserve(indices.size());
-  for (const std::size_t i : indices) out.push_back(points[i]);
-  return out;
-}
-
-// Of columns from `firstColumn` on, over the first `rows`.
-double meanSquaredNorm(const Matrix& a, std::size_t firstColumn, std::size_t rows) {
-  double sum = 0;
-  for (std::size_t j = firstColumn; j < a.columns(); ++j)
-    for (std::size_t i = 0; i < rows; ++i) sum += a(i, j) * a(i, j);
-  return sum / static_cast<double>(a.columns() - firstColumn);
-}
-
-Matrix stacked(const Matrix& top, const Matrix& bottom) {
-  Matrix out(top.rows() + bottom.rows(), top.columns());
-  for (std::size_t k = 0; k < top.columns(); ++k) {
-    std::copy_n(top.column(k), top.rows(), out.column(k));
-    std::copy_n(bottom.column(k), bottom.rows(), out.column(k) + top.rows());
-  }
-  return out;
-}
+constexpr std::size_t kAffine = CoarseSolver::kAffine;
+constexpr double kLeastGain = 0.03;  // of the residual; less is not worth an iteration
+// An iteration's gain (in squares of the residual) is taken to be at least this share of the one
+// before.
+constexpr double kLeastShrinkage = 0.04;
+// What an iteration leaves beyond the best residual, as a share of what it starts from: at least,
+// and of the worst seen so far.
+constexpr double kLeastLeft = 5e-3, kLeftGuard = 1.5;
+// Of a solution, what is no more than this beyond the earlier ones is mostly what they did not
+// resolve.
+constexpr double kAlike = 0.1;
+constexpr double kProductAccuracy = 1e-8;  // far below what a fit leaves
+constexpr double kSameSpacing = 1e-6;      // relative
 
 double rms(const Matrix& residual) {
   double sum = 0;
@@ -64,181 +35,123 @@ double rms(const Matrix& residual) {
   return std::sqrt(sum / static_cast<double>(residual.rows()));
 }
 
+// Whether another iteration would gain next to nothing, from the rms residuals before and after
+// each.
+bool littleIsLeft(const std::vector<double>& r) {
+  const auto square = [&](std::size_t fromEnd) { return std::pow(r[r.size() - 1 - fromEnd], 2); };
+  const double gain = square(1) - square(0);
+  double shrinkage = 1;
+  if (r.size() > 2)
+    shrinkage = std::clamp(2 * std::sqrt(gain / (square(2) - square(1))), kLeastShrinkage, 1.0);
+  return !(gain * shrinkage > 2 * kLeastGain * square(0));
+}
+
+std::size_t sourcesOf(const std::vector<SourceLevel>& levels) {
+  std::size_t count = 0;
+  for (const SourceLevel& level : levels) count += level.sources.size();
+  return count;
+}
+
+Matrix rowsOf(const Matrix& a, std::size_t first) {
+  Matrix out(a.rows() - first, a.columns());
+  for (std::size_t k = 0; k < a.columns(); ++k)
+    std::copy_n(a.column(k) + first, out.rows(), out.column(k));
+  return out;
+}
+
 }  // namespace
 
 std::uint64_t iterativeSolverMemory(std::size_t collocation, std::size_t sources,
                                     std::size_t coarse) {
-  const double ratio = static_cast<double>(collocation) / std::max<double>(1, sources);
-  // A cluster of 12^2 sources sees the collocation points of about (12 + 2 * 6)^2 of them; parts
-  // that stand close to one another double that.
-  const double clusters = sizeof(float) * 2 * 24 * 24 * ratio * static_cast<double>(sources);
-  const double coarsePart = 8.0 * (kCoarsePoints + 3) * coarse * coarse;
-  const double directions = 8.0 * (collocation + sources + coarse) * 6 * 2 * 8;
-  return static_cast<std::uint64_t>(clusters + coarsePart + directions);
-}
-
-IterativeSolver::IterativeSolver(const Points& collocation, const Points& sources,
-                                 const Points& coarse, const IterativeSettings& settings)
-    : settings_(settings), fine_(sources.size()) {
-  if (!(settings.spacing > 0) || !(settings.distance > 0))
-    throw SettingError("iterative solver", "spacing and distance must be positive");
-  if (sources.empty() || coarse.empty())
-    throw SettingError("sources", "there are none; use at least 1 of each level");
-  if (collocation.size() < coarse.size() + kAffine || collocation.size() < sources.size())
-    throw SettingError("collocation points", std::to_string(collocation.size()) + " for " +
-                                                 std::to_string(sources.size()) +
-                                                 " sources; use 2 to 4 a source");
-  requireMemory("the iterative solver with " + std::to_string(sources.size()) + " sources",
-                iterativeSolverMemory(collocation.size(), sources.size(), coarse.size()),
-                settings.maxMemory, "use fewer sources (memory grows in proportion)");
-  const Box3 box = boundingBox(collocation);
-  center_ = box.center();
-  scale_ = box.diagonal() > 0 ? box.diagonal() : 1;
-  collocation_ = normalised(collocation, center_, scale_);
-  sources_ = normalised(sources, center_, scale_);
-  for (auto& indices : clusterPoints(sources_, kClusterSize))
-    clusters_.push_back({std::move(indices), {}, {}});
-
-  const SingleThreadedBlas guard;
-  parallelBlocks(
-      clusters_.size(), 1, [&](std::size_t c, std::size_t) { buildCluster(clusters_[c]); },
-      settings.progress, "factoring clusters");
-
-  const Points far = normalised(coarse, center_, scale_);
-  buildCoarse(far);
-  sources_.insert(sources_.end(), far.begin(), far.end());
-}
-
-// Regularised least squares for the coarse charges and the affine part, over rows drawn at random.
-void IterativeSolver::buildCoarse(const Points& far) {
-  std::vector<std::size_t> order(collocation_.size());
-  std::iota(order.begin(), order.end(), 0);
-  const CounterRandom random(settings_.seed, 11);
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::make_pair(random.bits(a), a) < std::make_pair(random.bits(b), b);
-  });
-  order.resize(std::min(order.size(), kCoarsePoints * far.size() + kAffine));
-  std::sort(order.begin(), order.end());
-  coarseRows_ = std::move(order);
-  const std::size_t rows = coarseRows_.size(), unknowns = kAffine + far.size();
-  Matrix a(rows + far.size(), unknowns);
-  const Points seen = subset(collocation_, coarseRows_);
-  for (std::size_t i = 0; i < rows; ++i) {
-    a(i, 0) = 1;
-    for (std::size_t k = 0; k < 3; ++k) a(i, 1 + k) = seen[i][static_cast<int>(k)];
-  }
-  fillKernelMatrix(seen, far, 1, a.column(kAffine), a.rows(), settings_.progress);
-  const double lambda = kCoarseLambda * std::sqrt(meanSquaredNorm(a, kAffine, rows));
-  for (std::size_t j = 0; j < far.size(); ++j) a(rows + j, kAffine + j) = lambda;
-  coarseQr_ = BlockedQr(std::move(a), settings_.progress);
-  coarseTriangle_ = coarseQr_.upperTriangle();
-}
-
-void IterativeSolver::buildCluster(Cluster& cluster) const {
-  const double h = settings_.spacing / scale_, d = settings_.distance / scale_;
-  const Box3 box = boundingBox(subset(sources_, cluster.sources));
-  const std::vector<std::size_t> around = pointsWithin(sources_, box, kOverlap * h);
-  cluster.rows = pointsWithin(collocation_, box, kOverlap * h + std::max(h, d));
-  const std::size_t n = around.size(), m = cluster.rows.size(), own = cluster.sources.size();
-  if (m == 0) return;
-  // Filled on this thread: clusters are what runs side by side.
-  Matrix a(m, n);
-  const Points rows = subset(collocation_, cluster.rows);
-  for (std::size_t j = 0; j < n; ++j)
-    for (std::size_t i = 0; i < m; ++i) a(i, j) = 1 / norm(rows[i] - sources_[around[j]]);
-  Matrix g(n, n);
-  cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, static_cast<int>(n), static_cast<int>(m), 1,
-              a.data(), static_cast<int>(m), 0, g.data(), static_cast<int>(n));
-  double trace = 0;
-  for (std::size_t j = 0; j < n; ++j) trace += g(j, j);
-  for (std::size_t j = 0; j < n; ++j)
-    g(j, j) += kLocalLambda * kLocalLambda * trace / static_cast<double>(n);
-  const lapack_int order = static_cast<lapack_int>(n);
-  if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', order, g.data(), order) != 0)
-    throw DataError(
-        "solve: a cluster's matrix is singular; the points hold NaN or infinite numbers");
-  Matrix unit(n, own);
-  for (std::size_t k = 0; k < own; ++k) {
-    const auto at = std::lower_bound(around.begin(), around.end(), cluster.sources[k]);
-    unit(static_cast<std::size_t>(at - around.begin()), k) = 1;
-  }
-  LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', order, static_cast<lapack_int>(own), g.data(), order,
-                 unit.data(), order);
-  Matrix rowsOfInverse(m, own);
-  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, static_cast<int>(m), static_cast<int>(own),
-              static_cast<int>(n), 1, a.data(), static_cast<int>(m), unit.data(),
-              static_cast<int>(n), 0, rowsOfInverse.data(), static_cast<int>(m));
-  cluster.solve.assign(rowsOfInverse.data(), rowsOfInverse.data() + m * own);
-}
-
-IterativeSolver::Unknowns IterativeSolver::coarseCorrection(const Matrix& residual) const {
-  const std::size_t rows = coarseRows_.size(), unknowns = coarseTriangle_.rows(),
-                    channels = residual.columns();
-  Matrix b(rows + unknowns - kAffine, channels);
-  for (std::size_t k = 0; k < channels; ++k)
-    for (std::size_t i = 0; i < rows; ++i) b(i, k) = residual(coarseRows_[i], k);
-  coarseQr_.applyTransposedQ(b);
-  const SingleThreadedBlas guard;
-  cblas_dtrsm(CblasColMajor, CblasLeft, CblasUpper, CblasNoTrans, CblasNonUnit,
-              static_cast<int>(unknowns), static_cast<int>(channels), 1, coarseTriangle_.data(),
-              static_cast<int>(unknowns), b.data(), static_cast<int>(b.rows()));
-  Unknowns out{Matrix(kAffine, channels), Matrix(sources_.size(), channels)};
-  for (std::size_t k = 0; k < channels; ++k) {
-    std::copy_n(b.column(k), kAffine, out.affine.column(k));
-    std::copy_n(b.column(k) + kAffine, unknowns - kAffine, out.weights.column(k) + fine_);
-  }
-  return out;
-}
-
-IterativeSolver::Unknowns IterativeSolver::localCorrection(const Matrix& residual) const {
-  const std::size_t channels = residual.columns();
-  Unknowns out{Matrix(kAffine, channels), Matrix(sources_.size(), channels)};
-  const SingleThreadedBlas guard;
-  parallelBlocks(
-      clusters_.size(), 4,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t c = begin; c < end; ++c) {
-          const Cluster& cluster = clusters_[c];
-          const std::size_t m = cluster.rows.size(), own = cluster.sources.size();
-          if (m == 0) continue;
-          std::vector<float> seen(m * channels), weights(own * channels);
-          for (std::size_t k = 0; k < channels; ++k)
-            for (std::size_t i = 0; i < m; ++i)
-              seen[k * m + i] = static_cast<float>(residual(cluster.rows[i], k));
-          cblas_sgemm(CblasColMajor, CblasTrans, CblasNoTrans, static_cast<int>(own),
-                      static_cast<int>(channels), static_cast<int>(m), 1, cluster.solve.data(),
-                      static_cast<int>(m), seen.data(), static_cast<int>(m), 0, weights.data(),
-                      static_cast<int>(own));
-          for (std::size_t k = 0; k < channels; ++k)
-            for (std::size_t j = 0; j < own; ++j)
-              out.weights(cluster.sources[j], k) = weights[k * own + j];
-        }
-      },
-      settings_.progress);
-  return out;
-}
-
-// A x for charges [first, last) alone, and the affine part.
-Matrix IterativeSolver::apply(const Unknowns& x, std::size_t first, std::size_t last) const {
-  const std::size_t channels = x.weights.columns(), count = last - first;
-  Matrix weights(count, channels);
-  for (std::size_t k = 0; k < channels; ++k)
-    std::copy_n(x.weights.column(k) + first, count, weights.column(k));
-  const Points sources(sources_.begin() + static_cast<std::ptrdiff_t>(first),
-                       sources_.begin() + static_cast<std::ptrdiff_t>(last));
-  Matrix out =
-      sumCharges(Charges(sources, weights), collocation_, false, settings_.progress).values;
-  for (std::size_t k = 0; k < channels; ++k)
-    for (std::size_t i = 0; i < out.rows(); ++i) {
-      const Vec3& p = collocation_[i];
-      out(i, k) +=
-          x.affine(0, k) + x.affine(1, k) * p.x + x.affine(2, k) * p.y + x.affine(3, k) * p.z;
-    }
-  return out;
+  const double directions = 8.0 * static_cast<double>(collocation + sources + coarse) * 6 * 2 * 8;
+  return localSolverMemory(collocation, sources) + coarseSolverMemory(coarse) +
+         static_cast<std::uint64_t>(directions);
 }
 
 // Values centred and divided by `size`: the local solves are in single precision.
+struct IterativeSolver::Scaled {
+  Matrix values;
+  std::vector<double> middle;  // of each channel
+  double size = 0;             // of the widest channel
+};
+
+IterativeSolver::IterativeSolver(const Points& collocation, const std::vector<SourceLevel>& levels,
+                                 const IterativeSettings& settings)
+    : settings_(settings) {
+  check(collocation, levels, true);
+  const Box3 box = boundingBox(collocation);
+  center_ = box.center();
+  scale_ = box.diagonal() > 0 ? box.diagonal() : 1;
+  addPoints(collocation);
+  coarseSources_ = normalised(levels.front().sources);
+  coarseRows_.resize(kAffine);
+  std::iota(coarseRows_.begin(), coarseRows_.end(), 0);
+  for (const std::size_t i : addSources(levels.front().sources)) coarseRows_.push_back(kAffine + i);
+  coarse_ = CoarseSolver(collocation_, coarseSources_, settings_.seed, settings_.progress);
+  for (std::size_t l = 1; l < levels.size(); ++l) addLevel(levels[l]);
+}
+
+void IterativeSolver::add(const Points& collocation, const std::vector<SourceLevel>& levels) {
+  check(collocation, levels, false);
+  addPoints(collocation);
+  for (const SourceLevel& level : levels) addLevel(level);
+}
+
+void IterativeSolver::check(const Points& collocation, const std::vector<SourceLevel>& levels,
+                            bool first) const {
+  if (first && levels.empty())
+    throw SettingError("sources", "there are none; use at least one level of them");
+  for (const SourceLevel& level : levels) {
+    if (!(level.spacing > 0) || !(level.distance > 0))
+      throw SettingError("iterative solver", "spacing and distance must be positive");
+    if (level.sources.empty())
+      throw SettingError("sources", "there are none; use at least 1 of each level");
+  }
+  const std::size_t points = collocation_.size() + collocation.size(),
+                    sources = sources_.size() + sourcesOf(levels),
+                    coarse = first ? levels.front().sources.size() : coarseSources_.size();
+  if (points < coarse + kAffine || points < sources)
+    throw SettingError("collocation points", std::to_string(points) + " for " +
+                                                 std::to_string(sources) +
+                                                 " sources; use 2 to 4 a source");
+  requireMemory("the iterative solver with " + std::to_string(sources) + " sources",
+                iterativeSolverMemory(points, sources - coarse, coarse), settings_.maxMemory,
+                "use fewer sources (memory grows in proportion)");
+}
+
+Points IterativeSolver::normalised(const Points& points) const {
+  Points out(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) out[i] = (points[i] - center_) / scale_;
+  return out;
+}
+
+void IterativeSolver::addPoints(const Points& collocation) {
+  const Points points = normalised(collocation);
+  collocation_.insert(collocation_.end(), points.begin(), points.end());
+}
+
+std::vector<std::size_t> IterativeSolver::addSources(const Points& sources) {
+  std::vector<std::size_t> indices(sources.size());
+  std::iota(indices.begin(), indices.end(), sources_.size());
+  sources_.insert(sources_.end(), sources.begin(), sources.end());
+  return indices;
+}
+
+void IterativeSolver::addLevel(const SourceLevel& level) {
+  const double spacing = level.spacing / scale_;
+  auto at = std::find_if(levels_.begin(), levels_.end(), [&](const Level& l) {
+    return l.solver.spacing() <= spacing * (1 + kSameSpacing);
+  });
+  if (at == levels_.end() || at->solver.spacing() < spacing * (1 - kSameSpacing))
+    at = levels_.insert(at, Level{LocalSolver(spacing, level.distance / scale_), {}});
+  at->solver.add(normalised(level.sources), collocation_, settings_.progress);
+  const std::vector<std::size_t> added = addSources(level.sources);
+  at->sources.insert(at->sources.end(), added.begin(), added.end());
+}
+
 IterativeSolver::Scaled IterativeSolver::scaled(const Matrix& values) const {
+  if (values.rows() != collocation_.size())
+    throw DataError("solve: the values do not fit the collocation points");
   Scaled out{values, std::vector<double>(values.columns(), 0.0), 0};
   for (std::size_t k = 0; k < values.columns(); ++k) {
     const auto [low, high] =
@@ -253,50 +166,167 @@ IterativeSolver::Scaled IterativeSolver::scaled(const Matrix& values) const {
   return out;
 }
 
+// An earlier solution as unknowns for the scaled values.
+Matrix IterativeSolver::scaledStart(const IterativeSolution& start, const Scaled& values) const {
+  const std::size_t channels = values.values.columns();
+  if (start.weights.rows() > sources_.size() || start.residual.rows() > collocation_.size() ||
+      start.residual.columns() != channels || start.weights.columns() != channels ||
+      start.affine.coefficients.columns() != channels)
+    throw DataError("solve: the solution to start from does not fit the sources and values");
+  Matrix x(unknowns(), channels);
+  for (std::size_t k = 0; k < channels; ++k) {
+    const Vec3& c = start.affine.center;
+    const Vec3 shift = center_ - c;
+    double middle = start.affine.coefficients(0, k) - values.middle[k];
+    for (int a = 0; a < 3; ++a) {
+      const double slope = start.affine.coefficients(static_cast<std::size_t>(1 + a), k);
+      middle += slope * shift[a];
+      x(static_cast<std::size_t>(1 + a), k) = slope * scale_ / values.size;
+    }
+    x(0, k) = middle / values.size;
+    for (std::size_t j = 0; j < start.weights.rows(); ++j)
+      x(kAffine + j, k) = start.weights(j, k) / (values.size * scale_);
+  }
+  return x;
+}
+
 // Back to world units.
-void IterativeSolver::unscale(const Scaled& scaled, const Matrix& x, IterativeSolution& out) const {
+void IterativeSolver::unscale(const Scaled& values, const Matrix& residual, const Matrix& x,
+                              IterativeSolution& out) const {
+  out.residual = residual;
+  for (std::size_t i = 0; i < residual.rows() * residual.columns(); ++i)
+    out.residual.data()[i] *= values.size;
   const std::size_t channels = x.columns();
   out.affine.center = center_;
   out.affine.coefficients = Matrix(kAffine, channels);
   out.weights = Matrix(sources_.size(), channels);
   for (std::size_t k = 0; k < channels; ++k) {
-    out.affine.coefficients(0, k) = scaled.middle[k] + scaled.size * x(0, k);
+    out.affine.coefficients(0, k) = values.middle[k] + values.size * x(0, k);
     for (std::size_t r = 1; r < kAffine; ++r)
-      out.affine.coefficients(r, k) = scaled.size * x(r, k) / scale_;
+      out.affine.coefficients(r, k) = values.size * x(r, k) / scale_;
     for (std::size_t j = 0; j < sources_.size(); ++j) {
       out.weightNorm = std::max(out.weightNorm, std::abs(x(kAffine + j, k)));
-      out.weights(j, k) = scaled.size * scale_ * x(kAffine + j, k);
+      out.weights(j, k) = values.size * scale_ * x(kAffine + j, k);
     }
   }
 }
 
-IterativeSolution IterativeSolver::solve(const Matrix& values) const {
-  if (values.rows() != collocation_.size())
-    throw DataError("solve: the values do not fit the collocation points");
-  const Scaled rhs = scaled(values);
-  const std::size_t unknowns = kAffine + sources_.size();
-  Matrix residual = rhs.values, x(unknowns, values.columns());
-  IterativeSolution out;
-  out.residuals.push_back(rhs.size * rms(residual));
-  OrthogonalDirections directions(collocation_.size(), unknowns);
-  for (int iteration = 0; iteration < settings_.maxIterations; ++iteration) {
-    reportProgress(settings_.progress, "solving",
-                   static_cast<double>(iteration) / settings_.maxIterations);
-    const Unknowns coarse = coarseCorrection(residual);
-    const Matrix coarseImage = apply(coarse, fine_, sources_.size());
-    Matrix after = residual;
-    for (std::size_t i = 0; i < after.rows() * after.columns(); ++i)
-      after.data()[i] -= coarseImage.data()[i];
-    const Unknowns local = localCorrection(after);
-    directions.add(stacked(coarse.affine, coarse.weights), coarseImage);
-    directions.add(stacked(local.affine, local.weights), apply(local, 0, fine_));
-    directions.project(residual, x);
-    ++out.iterations;
-    out.residuals.push_back(rhs.size * rms(residual));
-    if (!(out.residuals.back() < kLeastFall * out.residuals[out.residuals.size() - 2])) break;
+// What the charges' weights give at the points; all in normalised units.
+Matrix IterativeSolver::image(const Matrix& weights, const Points& sources,
+                              const Points& points) const {
+  FastSumSettings s;
+  s.accuracy = kProductAccuracy;
+  s.progress = settings_.progress;
+  return FastSum(sources, weights).at(points, s).values;
+}
+
+// Adds `weights`, those of the unknowns `rows`, as directions, and follows them. `rows` starts with
+// the affine part when there are four more of them than of sources.
+void IterativeSolver::takeDirections(const Matrix& weights, const std::vector<std::size_t>& rows,
+                                     const Points& sources, OrthogonalDirections& directions,
+                                     Matrix& residual, Matrix& x) const {
+  const std::size_t affine = rows.size() - sources.size();
+  Matrix images = image(rowsOf(weights, affine), sources, collocation_);
+  Matrix z(unknowns(), weights.columns());
+  for (std::size_t k = 0; k < z.columns(); ++k) {
+    for (std::size_t i = 0; i < rows.size(); ++i) z(rows[i], k) = weights(i, k);
+    for (std::size_t i = 0; i < images.rows() && affine > 0; ++i) {
+      const Vec3& p = collocation_[i];
+      images(i, k) += z(0, k) + z(1, k) * p.x + z(2, k) * p.y + z(3, k) * p.z;
+    }
   }
-  unscale(rhs, x, out);
+  const std::size_t first = directions.count();
+  directions.add(std::move(z), std::move(images), settings_.progress);
+  directions.project(first, residual, x);
+}
+
+void IterativeSolver::runLevels(OrthogonalDirections& directions, Matrix& residual,
+                                Matrix& x) const {
+  takeDirections(coarse_.correction(residual), coarseRows_, coarseSources_, directions, residual,
+                 x);
+  for (const Level& level : levels_) {
+    std::vector<std::size_t> rows = level.sources;
+    for (std::size_t& i : rows) i += kAffine;
+    takeDirections(level.solver.correction(residual, settings_.progress), rows,
+                   level.solver.sources(), directions, residual, x);
+  }
+}
+
+// Until enough(residuals), the rms at the start and after each iteration.
+template <class Enough>
+IterativeSolution IterativeSolver::iterate(const Scaled& values, Matrix& residual, Matrix& x,
+                                           const Enough& enough) const {
+  IterativeSolution out;
+  OrthogonalDirections directions(collocation_.size(), unknowns());
+  out.residuals.push_back(values.size * rms(residual));
+  do {
+    reportProgress(settings_.progress, "solving",
+                   static_cast<double>(out.iterations) / settings_.maxIterations);
+    runLevels(directions, residual, x);
+    ++out.iterations;
+    out.residuals.push_back(values.size * rms(residual));
+  } while (out.iterations < settings_.maxIterations && !enough(out.residuals));
+  unscale(values, residual, x, out);
   return out;
+}
+
+// The unknowns of an earlier solution, and its residual: known where it was solved for.
+void IterativeSolver::startFrom(const IterativeSolution& start, const Scaled& values,
+                                Matrix& residual, Matrix& x) const {
+  x = scaledStart(start, values);
+  const std::size_t known = start.residual.rows();
+  const Points fresh(collocation_.begin() + static_cast<std::ptrdiff_t>(known), collocation_.end());
+  const Matrix sums = image(rowsOf(x, kAffine), normalised(sources_), fresh);
+  for (std::size_t k = 0; k < residual.columns(); ++k) {
+    for (std::size_t i = 0; i < known; ++i) residual(i, k) = start.residual(i, k) / values.size;
+    for (std::size_t i = 0; i < fresh.size(); ++i) {
+      const Vec3& p = fresh[i];
+      residual(known + i, k) -=
+          sums(i, k) + x(0, k) + x(1, k) * p.x + x(2, k) * p.y + x(3, k) * p.z;
+    }
+  }
+}
+
+IterativeSolution IterativeSolver::solve(const Matrix& values,
+                                         const IterativeSolution* start) const {
+  const Scaled rhs = scaled(values);
+  Matrix residual = rhs.values, x(unknowns(), values.columns());
+  if (start) startFrom(*start, rhs, residual, x);
+  return iterate(rhs, residual, x, littleIsLeft);
+}
+
+SequenceSolver::SequenceSolver(IterativeSolver solver, std::size_t maxFrames)
+    : solver_(std::move(solver)), maxFrames_(std::max<std::size_t>(1, maxFrames)) {}
+
+SequenceSolver::SequenceSolver(SequenceSolver&&) noexcept = default;
+SequenceSolver& SequenceSolver::operator=(SequenceSolver&&) noexcept = default;
+SequenceSolver::~SequenceSolver() = default;
+
+IterativeSolution SequenceSolver::solve(const Matrix& values) {
+  const IterativeSolver::Scaled rhs = solver_.scaled(values);
+  Matrix residual = rhs.values, x(solver_.unknowns(), values.columns());
+  const bool first = !solutions_;
+  if (!first) solutions_->project(0, residual, x);
+  IterativeSolution out = solver_.iterate(rhs, residual, x, [&](const std::vector<double>& r) {
+    const double left = std::max(kLeastLeft, kLeftGuard * left_) * r.front();
+    return (!first && r.size() == 2 && left * left < 2 * kLeastGain * r[1] * r[1]) ||
+           littleIsLeft(r);
+  });
+  const std::vector<double>& r = out.residuals;
+  if (r.front() > 0)
+    left_ =
+        std::max(left_, std::sqrt(std::max(0.0, r[1] * r[1] - r.back() * r.back())) / r.front());
+  keep(rhs.values, residual, std::move(x));
+  return out;
+}
+
+// The solution as directions: its image is known without a product.
+void SequenceSolver::keep(Matrix values, const Matrix& residual, Matrix x) {
+  if (!solutions_ || solutions_->count() + x.columns() > maxFrames_ * x.columns())
+    solutions_ = std::make_unique<OrthogonalDirections>(values.rows(), x.rows(), kAlike);
+  for (std::size_t i = 0; i < values.rows() * values.columns(); ++i)
+    values.data()[i] -= residual.data()[i];
+  solutions_->add(std::move(x), std::move(values));
 }
 
 }  // namespace innermap

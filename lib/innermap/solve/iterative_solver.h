@@ -1,14 +1,15 @@
 // Least squares for the weights of tens of thousands of point charges, without their dense matrix.
 //
-// Block GCR (Eisenstat, Elman, Schultz, "Variational Iterative Methods for Nonsymmetric Systems of
-// Linear Equations", 1983) on the true residual ||b - A x||: each iteration gives two directions a
-// channel, which all channels share,
-//   a coarse one: dense least squares for charges on a farther shell and the affine part, and
-//   a local one: restricted additive Schwarz, a regularised least-squares problem a cluster of
-//   charges with its surroundings (Cai and Sarkis, "A Restricted Additive Schwarz Preconditioner",
-//   1999),
-// made orthogonal in the image of A. The residual falls monotonically; stopping early regularises.
-// Memory is linear in the number of charges; the number of iterations does not grow with it.
+// The charges stand on levels of falling distance and spacing. Block GCR (Eisenstat, Elman,
+// Schultz, "Variational Iterative Methods for Nonsymmetric Systems of Linear Equations", 1983) on
+// the true residual ||b - A x||: each iteration goes through the levels, coarse to fine, and each
+// gives one direction a channel, which all channels share, orthogonal to all others in the image of
+// A:
+//   the first level dense least squares for its charges and the affine part,
+//   every other one restricted additive Schwarz, a regularised least-squares problem a cluster of
+//   charges with its surroundings.
+// The residual falls monotonically; stopping early regularises. Memory is linear in the number of
+// charges beyond the first level; the number of iterations does not grow with it.
 #pragma once
 
 #include <cstdint>
@@ -18,73 +19,102 @@
 #include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/solve/affine.h"
-#include "innermap/solve/blocked_qr.h"
+#include "innermap/solve/coarse_solver.h"
+#include "innermap/solve/local_solver.h"
 
 namespace innermap {
 
+// Charges at one distance from the boundary, about one and a quarter of their spacing. World units,
+// both positive.
+struct SourceLevel {
+  Points sources;
+  double spacing = 0, distance = 0;
+};
+
 struct IterativeSettings {
-  double spacing = 0;           // of the sources, world units: sqrt(area / number); positive
-  double distance = 0;          // of the sources from the boundary, world units; positive
   int maxIterations = 8;        // in [1, 100]
-  std::uint64_t seed = 1;       // of the rows that the coarse problem sees
+  std::uint64_t seed = 1;       // of the rows that the first level sees
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;
 };
 
 struct IterativeSolution {
-  Matrix weights;  // #sources (then #coarse) x #K, for kernel 1/r in world units
-  Affine affine;   // world units
+  Matrix weights;  // #sources x #K in the order of IterativeSolver::sources(), for kernel 1/r
+  Affine affine;   // world units, as the weights
   int iterations = 0;
   std::vector<double> residuals;  // rms at the collocation points before and after each iteration
   double weightNorm = 0;          // as in DenseSolution
+  Matrix residual;                // values less field at the collocation points, #collocation x #K
 };
 
-// Immutable after construction: what is built serves any number of right-hand sides.
+class OrthogonalDirections;
+
+// What is built serves any number of right-hand sides; const functions may be called from several
+// threads.
 class IterativeSolver {
  public:
-  // collocation: 2 to 4 points a source; coarse: 500 to 3000 more sources on a shell at about 1.25
-  // of their own, wider spacing. Throws SettingError, MemoryError (before allocating), Cancelled.
-  IterativeSolver(const Points& collocation, const Points& sources, const Points& coarse,
-                  const IterativeSettings& settings);
+  // collocation: 2 to 4 points a source. levels: at least one, of falling spacing. The first,
+  // solved densely, best has 500 to 3000 charges. One level alone is a dense solver. Throws
+  // SettingError, MemoryError (before allocating), Cancelled.
+  IterativeSolver(const Points& collocation, const std::vector<SourceLevel>& levels,
+                  const IterativeSettings& settings = {});
 
-  // values: #collocation x #K. Same result for any number of threads.
-  IterativeSolution solve(const Matrix& values) const;
+  // More points, and more charges beyond the first level: a level of the same spacing as one that
+  // is there (to 1e-6 of it) joins it. Only the new charges' clusters are factored. Points and
+  // charges are numbered on from those that are there. Throws as above; what was there then stays
+  // as it was only before a MemoryError or SettingError.
+  void add(const Points& collocation, const std::vector<SourceLevel>& levels);
+
+  // values: #collocation x #K. start: an earlier solution of this solver, for the same values at
+  // the points that there were then. Same result for any number of threads. Throws DataError when
+  // the sizes do not fit.
+  IterativeSolution solve(const Matrix& values, const IterativeSolution* start = nullptr) const;
+
+  const Points& sources() const { return sources_; }  // all levels', world units
+  std::size_t collocation() const { return collocation_.size(); }
 
  private:
-  struct Cluster {
-    std::vector<std::size_t> sources, rows;
-    std::vector<float> solve;  // #sources x #rows, row-major: own rows of G^-1 A^T
+  friend class SequenceSolver;
+  struct Level {
+    LocalSolver solver;
+    std::vector<std::size_t> sources;  // indices into sources_
   };
-  struct Unknowns {
-    Matrix affine, weights;  // 4 x #K, (#sources + #coarse) x #K
-  };
+  struct Scaled;
 
-  struct Scaled {
-    Matrix values;
-    std::vector<double> middle;  // of each channel
-    double size = 0;             // of the widest channel
-  };
-
-  void buildCluster(Cluster& cluster) const;
-  void buildCoarse(const Points& far);
+  void check(const Points& collocation, const std::vector<SourceLevel>& levels, bool first) const;
+  void addPoints(const Points& collocation);
+  std::vector<std::size_t> addSources(const Points& sources);
+  void addLevel(const SourceLevel& level);
   Scaled scaled(const Matrix& values) const;
-  void unscale(const Scaled& scaled, const Matrix& x, IterativeSolution& out) const;
-  Unknowns coarseCorrection(const Matrix& residual) const;
-  Unknowns localCorrection(const Matrix& residual) const;
-  Matrix apply(const Unknowns& x, std::size_t first, std::size_t last) const;
+  void startFrom(const IterativeSolution& start, const Scaled& values, Matrix& residual,
+                 Matrix& x) const;
+  Matrix scaledStart(const IterativeSolution& start, const Scaled& values) const;
+  template <class Enough>
+  IterativeSolution iterate(const Scaled& values, Matrix& residual, Matrix& x,
+                            const Enough& enough) const;
+  void runLevels(OrthogonalDirections& directions, Matrix& residual, Matrix& x) const;
+  void takeDirections(const Matrix& weights, const std::vector<std::size_t>& rows,
+                      const Points& sources, OrthogonalDirections& directions, Matrix& residual,
+                      Matrix& x) const;
+  void unscale(const Scaled& values, const Matrix& residual, const Matrix& x,
+               IterativeSolution& out) const;
+  Matrix image(const Matrix& weights, const Points& sources, const Points& points) const;
+  Points normalised(const Points& points) const;
+  std::size_t unknowns() const { return CoarseSolver::kAffine + sources_.size(); }
 
   IterativeSettings settings_;
   Vec3 center_;
   double scale_ = 1;
-  Points collocation_, sources_;  // normalised; sources_: fine ones, then coarse ones
-  std::size_t fine_ = 0;
-  std::vector<Cluster> clusters_;
-  std::vector<std::size_t> coarseRows_;
-  BlockedQr coarseQr_;
-  Matrix coarseTriangle_;
+  Points collocation_;    // normalised
+  Points sources_;        // world units
+  Points coarseSources_;  // normalised
+  std::vector<std::size_t>
+      coarseRows_;  // of the affine part and the first level among the unknowns
+  CoarseSolver coarse_;
+  std::vector<Level> levels_;  // beyond the first, of falling spacing
 };
 
-// Estimate of the peak need in bytes.
+// Estimate of the peak need in bytes; coarse: sources of the first level, sources: of the others.
 std::uint64_t iterativeSolverMemory(std::size_t collocation, std::size_t sources,
                                     std::size_t coarse);
 

@@ -24,22 +24,21 @@ TEST(Clusters, CoincidentPointsAreSplitToo) {
     EXPECT_LE(cluster.size(), 7u);
 }
 
-TEST(Clusters, PointsWithinAWidenedBox) {
-  const Points points = testing::randomPoints(500, 4);
-  Box3 box;
-  box.add(Vec3{-0.2, -0.2, -0.2});
-  box.add(Vec3{0.2, 0.2, 0.2});
-  const auto inside = pointsWithin(points, box, 0.1);
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3& p = points[i];
-    const bool in = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= 0.3;
-    if (in) {
-      ASSERT_LT(next, inside.size());
-      EXPECT_EQ(inside[next++], i);
-    }
+TEST(Clusters, WideOnesComeApartAtTheGap) {
+  Points points = testing::randomPoints(60, 5);
+  for (std::size_t i = 0; i < 20; ++i) points[i].y += 100;
+  const auto clusters = clusterPoints(points, 150, 10);
+  ASSERT_EQ(clusters.size(), 2u);
+  EXPECT_EQ(clusters[0].size() == 20 ? clusters[0].back() : clusters[1].back(), 19u);
+  std::size_t all = 0;
+  for (const auto& cluster : clusterPoints(points, 150, 0.5)) {
+    Box3 box;
+    for (const std::size_t i : cluster) box.add(points[i]);
+    const Vec3 side = box.extent();
+    EXPECT_LE(std::max({side.x, side.y, side.z}), 0.5);
+    all += cluster.size();
   }
-  EXPECT_EQ(next, inside.size());
+  EXPECT_EQ(all, 60u);
 }
 
 }  // namespace

@@ -32,9 +32,11 @@ TEST(Directions, ManyDirectionsGiveLeastSquares) {
     OrthogonalDirections directions(30, 8);
     for (int round = 0; round < 3; ++round) {
       const Matrix z = randomMatrix(8, 4, seed + 100 + static_cast<std::uint64_t>(round));
+      const std::size_t before = directions.count();
       directions.add(z, product(a, z));
-      directions.project(residual, x);
+      directions.project(before, residual, x);
     }
+    EXPECT_EQ(directions.count(), 8u);
     const Matrix ax = product(a, x);
     for (std::size_t k = 0; k < 3; ++k) {
       for (std::size_t i = 0; i < 30; ++i) EXPECT_NEAR(residual(i, k), b(i, k) - ax(i, k), 1e-11);
@@ -52,11 +54,13 @@ TEST(Directions, DependentAndZeroColumnsAreLeftOut) {
   Matrix residual = randomMatrix(20, 1, 3), x(4, 1);
   OrthogonalDirections directions(20, 4);
   directions.add(z, product(a, z));
-  directions.project(residual, x);
+  directions.project(0, residual, x);
   const Matrix before = residual;
+  EXPECT_EQ(directions.count(), 2u);
   directions.add(z, product(a, z));
   directions.add(Matrix(4, 1), Matrix(20, 1));
-  directions.project(residual, x);
+  EXPECT_EQ(directions.count(), 2u);
+  directions.project(2, residual, x);
   for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(residual(i, 0), before(i, 0));
 }
 

@@ -4,6 +4,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/random.h"
 #include "innermap/solve/dense_solver.h"
 #include "innermap/solve/kernel_sum.h"
 #include "solve/points.h"
@@ -15,19 +16,12 @@ using testing::spherePoints;
 
 struct Problem {
   double spacing = std::sqrt(4 * M_PI / 1200), distance = 1.25 * spacing;
-  Points collocation = spherePoints(3600, 1), sources = spherePoints(1200, 1 + distance, 1),
-         coarse = spherePoints(150, 1.4, 2), fresh = spherePoints(4000, 1, 0.4);
+  Points collocation = spherePoints(3600, 1), fresh = spherePoints(4000, 1, 0.4);
+  SourceLevel coarse{spherePoints(150, 1.4, 2), std::sqrt(4 * M_PI / 150), 0.4},
+      fine{spherePoints(1200, 1 + distance, 1), spacing, distance};
 
-  IterativeSettings settings() const {
-    IterativeSettings s;
-    s.spacing = spacing;
-    s.distance = distance;
-    return s;
-  }
-  Points all() const {
-    Points p = sources;
-    p.insert(p.end(), coarse.begin(), coarse.end());
-    return p;
+  IterativeSolver solver(const IterativeSettings& s = {}) const {
+    return IterativeSolver(collocation, {coarse, fine}, s);
   }
 };
 
@@ -57,23 +51,24 @@ double rmsError(const Solution& s, const Points& sources, const Points& points) 
 
 TEST(IterativeSolver, IsAsGoodAsTheDenseSolver) {
   const Problem p;
-  const IterativeSolution fast = IterativeSolver(p.collocation, p.sources, p.coarse, p.settings())
-                                     .solve(roughValues(p.collocation));
+  const IterativeSolver solver = p.solver();
+  const IterativeSolution fast = solver.solve(roughValues(p.collocation));
   const DenseSolution dense =
-      DenseSolver(p.collocation, p.sources, p.fresh)
+      DenseSolver(p.collocation, p.fine.sources, p.fresh)
           .solve(roughValues(p.collocation), Regularization::tikhonov, roughValues(p.fresh));
-  EXPECT_LT(rmsError(fast, p.all(), p.fresh), 1.15 * rmsError(dense, p.sources, p.fresh));
+  EXPECT_LT(rmsError(fast, solver.sources(), p.fresh),
+            1.1 * rmsError(dense, p.fine.sources, p.fresh));
   EXPECT_LE(fast.iterations, 5);
 }
 
 TEST(IterativeSolver, ResidualsAreTrueAndFall) {
   const Problem p;
-  const IterativeSolution s = IterativeSolver(p.collocation, p.sources, p.coarse, p.settings())
-                                  .solve(roughValues(p.collocation));
+  const IterativeSolver solver = p.solver();
+  const IterativeSolution s = solver.solve(roughValues(p.collocation));
   ASSERT_EQ(s.residuals.size(), static_cast<std::size_t>(s.iterations) + 1);
   for (std::size_t i = 1; i < s.residuals.size(); ++i)
     EXPECT_LE(s.residuals[i], s.residuals[i - 1]);
-  EXPECT_NEAR(rmsError(s, p.all(), p.collocation), s.residuals.back(), 1e-9);
+  EXPECT_NEAR(rmsError(s, solver.sources(), p.collocation), s.residuals.back(), 1e-9);
 }
 
 TEST(IterativeSolver, AffineDataAreExact) {
@@ -81,19 +76,14 @@ TEST(IterativeSolver, AffineDataAreExact) {
   Matrix b(p.collocation.size(), 1);
   for (std::size_t i = 0; i < b.rows(); ++i)
     b(i, 0) = 3 + p.collocation[i].x - 2 * p.collocation[i].z;
-  const IterativeSolution s =
-      IterativeSolver(p.collocation, p.sources, p.coarse, p.settings()).solve(b);
+  const IterativeSolution s = p.solver().solve(b);
   EXPECT_LT(s.residuals.back(), 1e-10);
   EXPECT_LT(s.weightNorm, 1e-8);
 }
 
 TEST(IterativeSolver, SameBitsForAnyNumberOfThreads) {
   const Problem p;
-  const auto weights = [&] {
-    return IterativeSolver(p.collocation, p.sources, p.coarse, p.settings())
-        .solve(roughValues(p.collocation))
-        .weights;
-  };
+  const auto weights = [&] { return p.solver().solve(roughValues(p.collocation)).weights; };
   const Matrix all = weights();
   const ThreadLimit one(1);
   const Matrix single = weights();
@@ -106,32 +96,105 @@ TEST(IterativeSolver, ScaleAndPlaceDoNotMatter) {
     for (Vec3& v : q) v = 1e-3 * v + Vec3{4, 5, 6};
     return q;
   };
-  IterativeSettings small = p.settings();
-  small.spacing *= 1e-3;
-  small.distance *= 1e-3;
+  const auto movedLevel = [&](const SourceLevel& l) {
+    return SourceLevel{moved(l.sources), 1e-3 * l.spacing, 1e-3 * l.distance};
+  };
   const Matrix b = roughValues(p.collocation);
-  const auto one = IterativeSolver(p.collocation, p.sources, p.coarse, p.settings()).solve(b);
+  const auto one = p.solver().solve(b);
   const auto two =
-      IterativeSolver(moved(p.collocation), moved(p.sources), moved(p.coarse), small).solve(b);
+      IterativeSolver(moved(p.collocation), {movedLevel(p.coarse), movedLevel(p.fine)}).solve(b);
   EXPECT_EQ(one.iterations, two.iterations);
   EXPECT_NEAR(one.residuals.back() / two.residuals.back(), 1, 1e-3);
 }
 
-TEST(IterativeSolver, RefusesWhatCannotBe) {
+// Random right-hand sides: nothing that a field of this size could be. The residual must come down
+// to the dense one all the same.
+TEST(IterativeSolver, ReachesTheDenseResidualOnSmallProblems) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const CounterRandom random(seed, 9);
+    const std::size_t count = 40 + random.bits(0) % 200;
+    const double h = std::sqrt(4 * M_PI / static_cast<double>(count));
+    const Points collocation = spherePoints(4 * count, 1, random.uniform(1)),
+                 fine = spherePoints(count, 1 + 1.25 * h, random.uniform(2)),
+                 coarse = spherePoints(count / 4, 1 + 2.5 * h);
+    Matrix b(collocation.size(), 2);
+    for (std::size_t i = 0; i < 2 * collocation.size(); ++i)
+      b.data()[i] = random.uniform(10 + i) - 0.5;
+    IterativeSettings s;
+    s.maxIterations = 30;
+    const IterativeSolver solver(collocation, {{coarse, 2 * h, 2.5 * h}, {fine, h, 1.25 * h}}, s);
+    const IterativeSolution fast = solver.solve(b);
+    const DenseSolution dense =
+        DenseSolver(collocation, solver.sources(), {}).solve(b, Regularization::tikhonov, {}, 1e-3);
+    const auto residual = [&](const Matrix& weights, const Affine& affine) {
+      const Matrix sums = sumCharges(Charges(solver.sources(), weights), collocation, false).values;
+      double square = 0;
+      for (std::size_t k = 0; k < 2; ++k)
+        for (std::size_t i = 0; i < b.rows(); ++i)
+          square += std::pow(b(i, k) - sums(i, k) - affine.value(collocation[i], k), 2);
+      return std::sqrt(square / static_cast<double>(b.rows()));
+    };
+    EXPECT_NEAR(residual(fast.weights, fast.affine), fast.residuals.back(), 1e-9);
+    EXPECT_LT(fast.residuals.back(), 1.05 * residual(dense.weights, dense.affine));
+  }
+}
+
+// The fine level in two parts, one of them added later: another preconditioner, the same problem.
+TEST(IterativeSolver, GrowsAndStartsWarm) {
   const Problem p;
-  IterativeSettings s = p.settings();
-  s.spacing = 0;
-  EXPECT_THROW(IterativeSolver(p.collocation, p.sources, p.coarse, s), SettingError);
-  s = p.settings();
+  const Matrix values = roughValues(p.collocation);
+  SourceLevel left{{}, p.spacing, p.distance}, right = left;
+  for (const Vec3& q : p.fine.sources) (q.x < 0 ? left : right).sources.push_back(q);
+  Points first, second;
+  for (std::size_t i = 0; i < p.collocation.size(); ++i)
+    (i % 3 > 0 ? first : second).push_back(p.collocation[i]);
+  IterativeSolver grown(first, {p.coarse, left});
+  const IterativeSolution before = grown.solve(roughValues(first));
+  grown.add(second, {right});
+  EXPECT_EQ(grown.sources().size(), 1350u);
+  EXPECT_EQ(grown.collocation(), p.collocation.size());
+  Points all = first;
+  all.insert(all.end(), second.begin(), second.end());
+  const Matrix allValues = roughValues(all);
+  const IterativeSolution warm = grown.solve(allValues, &before), cold = grown.solve(allValues);
+  EXPECT_LT(warm.residuals.front(), 0.3 * cold.residuals.front());
+  const IterativeSolution whole = p.solver().solve(values);
+  EXPECT_LT(warm.residuals.back(), 1.1 * whole.residuals.back());
+  EXPECT_LT(rmsError(warm, grown.sources(), p.fresh),
+            1.1 * rmsError(whole, p.solver().sources(), p.fresh));
+  EXPECT_NEAR(rmsError(warm, grown.sources(), all), warm.residuals.back(), 1e-9);
+  EXPECT_THROW(grown.solve(roughValues(first)), DataError);
+  EXPECT_THROW(IterativeSolver(p.collocation, {p.coarse}).solve(values, &warm), DataError);
+}
+
+TEST(IterativeSolver, OneLevelIsEnough) {
+  const Problem p;
+  const IterativeSolver solver(p.collocation, {p.coarse});
+  const IterativeSolution s = solver.solve(roughValues(p.collocation));
+  const DenseSolution dense =
+      DenseSolver(p.collocation, p.coarse.sources, p.fresh)
+          .solve(roughValues(p.collocation), Regularization::tikhonov, roughValues(p.fresh));
+  // It sees 4 points a charge of the 24 that the dense solver has.
+  EXPECT_LT(rmsError(s, solver.sources(), p.fresh),
+            1.2 * rmsError(dense, p.coarse.sources, p.fresh));
+}
+
+TEST(IterativeSolver, RefusesWhatCannotBe) {
+  Problem p;
+  IterativeSettings s;
   s.maxMemory = 10000;
-  EXPECT_THROW(IterativeSolver(p.collocation, p.sources, p.coarse, s), MemoryError);
-  EXPECT_THROW(IterativeSolver(p.collocation, {}, p.coarse, p.settings()), SettingError);
-  EXPECT_THROW(IterativeSolver(p.coarse, p.sources, p.coarse, p.settings()), SettingError);
+  EXPECT_THROW(p.solver(s), MemoryError);
+  EXPECT_THROW(IterativeSolver(p.collocation, {}), SettingError);
+  EXPECT_THROW(IterativeSolver(p.collocation, {p.coarse, {{}, 1, 1}}), SettingError);
+  EXPECT_THROW(IterativeSolver(p.coarse.sources, {p.coarse, p.fine}), SettingError);
   Progress progress;
   progress.cancel();
-  s = p.settings();
+  s.maxMemory = 0;
   s.progress = &progress;
-  EXPECT_THROW(IterativeSolver(p.collocation, p.sources, p.coarse, s), Cancelled);
+  EXPECT_THROW(p.solver(s), Cancelled);
+  p.fine.spacing = 0;
+  EXPECT_THROW(p.solver(), SettingError);
 }
 
 }  // namespace

@@ -1,0 +1,297 @@
+#include "innermap/field/adaptive_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "innermap/core/error.h"
+#include "innermap/core/memory.h"
+#include "innermap/core/point_grid.h"
+#include "innermap/solve/iterative_solver.h"
+
+namespace innermap {
+namespace {
+
+constexpr double kDistance = 1.25;          // spacings
+constexpr double kSourceDarts = 0.83;       // spacings; fills to one charge a spacing squared
+constexpr double kCollocationDarts = 0.46;  // spacings; three points a charge
+constexpr double kMarkReach = 0.8;          // spacings of the level above
+constexpr double kCollocationReach = 2;     // distances, from a new charge
+constexpr int kMostLevels = 14;
+constexpr double kNearest = 1e-6;  // of the diagonal
+constexpr std::size_t kMarkSamples = 30000;
+// Marks are points over the tolerance times a factor that falls to the lower one as it comes near.
+constexpr double kMarkLeast = 0.9, kMarkMost = 1.5;
+// When the tolerance holds but the largest error is over kWorstRatio of the rms: what is marked.
+constexpr double kWorstRatio = 17, kOutlier = 10;
+// Of the tolerance; other points than those that were looked at differ a little.
+constexpr double kMargin = 0.97;
+constexpr double kErrorAccuracy = 1e-3;  // of the tolerance
+constexpr double kLeastGain = 0.97;      // of the 99% point in kPatience rounds
+constexpr std::size_t kPatience = 3;
+
+void append(Matrix& a, const Matrix& b) {
+  Matrix out(a.rows() + b.rows(), b.columns());
+  for (std::size_t k = 0; k < b.columns(); ++k) {
+    if (a.rows() > 0) std::copy_n(a.column(k), a.rows(), out.column(k));
+    std::copy_n(b.column(k), b.rows(), out.column(k) + a.rows());
+  }
+  a = std::move(out);
+}
+
+class AdaptiveFitting {
+ public:
+  AdaptiveFitting(const AdaptiveProblem& problem, const AdaptiveSettings& settings)
+      : problem_(problem), settings_(settings) {}
+
+  AdaptiveResult run();
+
+ private:
+  struct Level {
+    double spacing, distance;  // fractions of the diagonal
+    Points sources, attempts;  // attempts: marks that were refined to this level
+  };
+
+  void check() const;
+  void first();
+  Level& level(std::size_t l);
+  bool refine(const std::vector<Points>& marks);
+  bool refineOnce(const std::vector<Points>& marks);
+  std::vector<Points> markedByLevel(const BoundarySamples& fresh, const std::vector<double>& errors,
+                                    const BoundaryError& error) const;
+  std::size_t levelOf(const Vec3& p, const std::vector<PointGrid>& attempts) const;
+  void solve();
+  bool keepIfBest(const BoundaryError& error);
+  bool gains() const;
+  AdaptiveResult result();
+  std::size_t sourceCount() const;
+  std::uint64_t memory() const;
+
+  const AdaptiveProblem& problem_;
+  const AdaptiveSettings& settings_;
+  std::optional<IterativeSolver> solver_;
+  std::vector<Level> levels_;
+  Points collocation_;
+  Matrix values_;
+  IterativeSolution solution_;
+  std::optional<HarmonicField> field_;
+  std::optional<AdaptiveResult> best_;
+  double bestScore_ = 0;
+  std::vector<AdaptiveRound> rounds_;
+  AdaptiveEnd end_ = AdaptiveEnd::met;
+  std::uint64_t requests_ = 0;
+};
+
+void AdaptiveFitting::check() const {
+  if (!(settings_.tolerance >= kSmallestTolerance && settings_.tolerance <= 1))
+    throw SettingError("tolerance",
+                       "must lie in 1e-12 (double precision holds no less) to 1 of the diagonal");
+  if (settings_.firstSources < 10 || settings_.firstSources > 5000)
+    throw SettingError("first sources", "must lie in 10 to 5000");
+  if (settings_.maxSources < settings_.firstSources || settings_.maxSources > 1000000)
+    throw SettingError("max sources",
+                       "must lie in " + std::to_string(settings_.firstSources) + " to 1000000");
+  if (!(problem_.diagonal > 0) || !(problem_.area > 0) || !(problem_.unit > 0))
+    throw DataError("fit: the boundary has no extent");
+}
+
+AdaptiveFitting::Level& AdaptiveFitting::level(std::size_t l) {
+  while (levels_.size() <= l) {
+    const double first =
+        std::sqrt(problem_.area / static_cast<double>(settings_.firstSources)) / problem_.diagonal;
+    const double spacing = first * std::pow(0.5, static_cast<double>(levels_.size()));
+    levels_.push_back({spacing, kDistance * spacing, {}, {}});
+  }
+  return levels_[l];
+}
+
+std::size_t AdaptiveFitting::sourceCount() const {
+  std::size_t count = 0;
+  for (const Level& l : levels_) count += l.sources.size();
+  return count;
+}
+
+std::uint64_t AdaptiveFitting::memory() const {
+  const std::size_t coarse = levels_.front().sources.size();
+  return iterativeSolverMemory(collocation_.size(), sourceCount() - coarse, coarse);
+}
+
+void AdaptiveFitting::first() {
+  Level& coarse = level(0);
+  PlacementRequest request;
+  request.spacing = kSourceDarts * coarse.spacing;
+  request.reach = coarse.spacing;
+  request.most = settings_.maxSources;
+  request.index = requests_++;
+  coarse.sources = problem_.placeSources(request, coarse.distance);
+  if (coarse.sources.empty())
+    throw DataError("fit: there is no room for charges around the boundary");
+  // The shell is larger than the boundary: by charges, not by area.
+  request.spacing = kCollocationDarts *
+                    std::sqrt(problem_.area / static_cast<double>(coarse.sources.size())) /
+                    problem_.diagonal;
+  request.most = 100 * settings_.firstSources;
+  request.index = requests_++;
+  BoundarySamples samples = problem_.placeCollocation(request);
+  collocation_ = std::move(samples.points);
+  values_ = std::move(samples.values);
+  requireMemory("the first level of charges", memory(), settings_.maxMemory,
+                "raise the limit of memory");
+  IterativeSettings s;
+  s.progress = settings_.progress;
+  solver_.emplace(collocation_,
+                  std::vector<SourceLevel>{{coarse.sources, coarse.spacing * problem_.diagonal,
+                                            coarse.distance * problem_.diagonal}},
+                  s);
+}
+
+// The finest level that was tried around p.
+std::size_t AdaptiveFitting::levelOf(const Vec3& p, const std::vector<PointGrid>& attempts) const {
+  for (std::size_t l = levels_.size(); --l > 0;)
+    if (attempts[l].anyNearer(p, kMarkReach * levels_[l - 1].spacing * problem_.diagonal)) return l;
+  return 0;
+}
+
+// The points that ask for charges, by the level that these should be on.
+std::vector<Points> AdaptiveFitting::markedByLevel(const BoundarySamples& fresh,
+                                                   const std::vector<double>& errors,
+                                                   const BoundaryError& error) const {
+  const double tolerance = settings_.tolerance;
+  double over = tolerance * std::clamp(kMarkLeast * error.p99 / tolerance, kMarkLeast, kMarkMost);
+  if (error.p99 <= kMarkLeast * tolerance) over = kOutlier * error.rms;
+  std::vector<PointGrid> attempts;
+  for (const Level& l : levels_)
+    attempts.emplace_back(l.attempts, 2 * kMarkReach * l.spacing * problem_.diagonal);
+  std::vector<Points> marks(levels_.size() + 1);
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    if (errors[i] > over) marks[levelOf(fresh.points[i], attempts) + 1].push_back(fresh.points[i]);
+  return marks;
+}
+
+// Adds charges around the marks, and boundary points around the charges; false when there is room
+// for none.
+bool AdaptiveFitting::refineOnce(const std::vector<Points>& marks) {
+  std::vector<SourceLevel> added;
+  BoundarySamples points;
+  for (std::size_t l = 1; l < marks.size(); ++l) {
+    if (marks[l].empty()) continue;
+    Level& fine = level(l);
+    const double above = levels_[l - 1].spacing;
+    fine.attempts.insert(fine.attempts.end(), marks[l].begin(), marks[l].end());
+    const std::size_t there = sourceCount();
+    if (fine.distance < kNearest || there >= settings_.maxSources) continue;
+    const Points fresh =
+        problem_.placeSources({marks[l], kMarkReach * above, kSourceDarts * fine.spacing,
+                               fine.sources, settings_.maxSources - there, requests_++},
+                              fine.distance);
+    if (fresh.empty()) continue;
+    fine.sources.insert(fine.sources.end(), fresh.begin(), fresh.end());
+    added.push_back({fresh, fine.spacing * problem_.diagonal, fine.distance * problem_.diagonal});
+    const BoundarySamples more = problem_.placeCollocation(
+        {fresh, kCollocationReach * fine.distance, kCollocationDarts * fine.spacing, collocation_,
+         100 * fresh.size() + 1000, requests_++});
+    collocation_.insert(collocation_.end(), more.points.begin(), more.points.end());
+    points.points.insert(points.points.end(), more.points.begin(), more.points.end());
+    append(points.values, more.values);
+  }
+  if (added.empty()) return false;
+  if (settings_.maxMemory > 0 && memory() > settings_.maxMemory) {
+    end_ = AdaptiveEnd::maxMemory;
+    return false;
+  }
+  append(values_, points.values);
+  solver_->add(points.points, added);
+  return true;
+}
+
+// Where a gap is too narrow for a level, the next finer one is tried.
+bool AdaptiveFitting::refine(const std::vector<Points>& marks) {
+  std::vector<Points> wanted = marks;
+  for (int tries = 0; tries < kMostLevels; ++tries) {
+    if (sourceCount() >= settings_.maxSources) {
+      end_ = AdaptiveEnd::maxSources;
+      return false;
+    }
+    if (refineOnce(wanted)) return true;
+    if (end_ != AdaptiveEnd::met) return false;
+    wanted.insert(wanted.begin(), Points());
+    if (wanted.size() > kMostLevels) break;
+  }
+  end_ = AdaptiveEnd::noGain;
+  return false;
+}
+
+void AdaptiveFitting::solve() {
+  const bool warm = solution_.weights.rows() > 0;
+  solution_ = solver_->solve(values_, warm ? &solution_ : nullptr);
+  field_.emplace(solver_->sources(), solution_.weights, solution_.affine);
+}
+
+bool AdaptiveFitting::keepIfBest(const BoundaryError& error) {
+  if (best_ && !(error.p99 < bestScore_)) return false;
+  bestScore_ = error.p99;
+  best_.emplace(AdaptiveResult{*field_,
+                               {},
+                               AdaptiveEnd::met,
+                               {},
+                               {},
+                               collocation_.size(),
+                               solution_.residuals,
+                               solution_.weightNorm});
+  for (const Level& l : levels_) best_->levels.push_back({l.distance, l.spacing, l.sources.size()});
+  return true;
+}
+
+// Whether the last rounds have lowered the error.
+bool AdaptiveFitting::gains() const {
+  if (rounds_.size() <= kPatience) return true;
+  const auto score = [](const AdaptiveRound& r) { return r.error.p99; };
+  double before = score(rounds_.front()), since = score(rounds_.back());
+  for (std::size_t r = 0; r < rounds_.size(); ++r)
+    (r + kPatience < rounds_.size() ? before : since) =
+        std::min(r + kPatience < rounds_.size() ? before : since, score(rounds_[r]));
+  return since < kLeastGain * before;
+}
+
+AdaptiveResult AdaptiveFitting::run() {
+  check();
+  first();
+  const BoundarySamples checks = problem_.draw(settings_.checkSamples, 0);
+  const auto errorAtChecks = [&](const HarmonicField& field) {
+    return measureBoundaryError(field, checks.points, checks.values, problem_.unit,
+                                settings_.progress);
+  };
+  for (std::uint64_t round = 1;; ++round) {
+    solve();
+    const BoundarySamples fresh = problem_.draw(kMarkSamples, round);
+    const std::vector<double> errors =
+        boundaryErrors(*field_, fresh.points, fresh.values, problem_.unit,
+                       kErrorAccuracy * settings_.tolerance * problem_.unit, settings_.progress);
+    const BoundaryError error = summarizeErrors(errors);
+    rounds_.push_back(
+        {solver_->sources().size(), collocation_.size(), solution_.iterations, error});
+    keepIfBest(error);
+    const bool tame = error.max <= kWorstRatio * error.rms;
+    const double enough = kMargin * settings_.tolerance;
+    if (error.p99 <= enough && tame && errorAtChecks(*field_).p99 <= enough) break;
+    if (!gains()) {
+      end_ = AdaptiveEnd::noGain;
+      break;
+    }
+    if (!refine(markedByLevel(fresh, errors, error))) break;
+  }
+  AdaptiveResult out = std::move(*best_);
+  out.error = errorAtChecks(out.field);
+  out.end = out.error.p99 <= settings_.tolerance ? AdaptiveEnd::met : end_;
+  out.rounds = std::move(rounds_);
+  return out;
+}
+
+}  // namespace
+
+AdaptiveResult fitToTolerance(const AdaptiveProblem& problem, const AdaptiveSettings& settings) {
+  return AdaptiveFitting(problem, settings).run();
+}
+
+}  // namespace innermap

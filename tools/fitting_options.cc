@@ -1,0 +1,205 @@
+#include "fitting_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "innermap/core/memory.h"
+#include "innermap/field/adaptive_fit.h"
+#include "largest.h"
+
+namespace innermap::tool {
+namespace {
+
+constexpr double kDefaultTolerance = 1e-3;
+constexpr std::size_t kSources = 2000, kFirstSources = 1000;
+constexpr std::size_t kFreshSamples = 20000;
+constexpr double kPointsPerSource = 4, kPointsPerSourceIterative = 3;
+constexpr double kMostSources = 1000000;
+
+std::size_t countOf(double count, const char* option, double least, double most) {
+  if (!(count >= least && count <= most))
+    throw SettingError(option, fmt::format("gives {:.6g} points; it must give {:.6g} to {:.6g}",
+                                           count, least, most));
+  return static_cast<std::size_t>(count);
+}
+
+std::uint64_t memoryOf(const PointCounts& counts, FitSolver solver) {
+  constexpr std::uint64_t kProgram = 64'000'000;  // with nothing loaded yet
+  // Blue noise thins five candidates a point; each costs some 100 bytes.
+  return kProgram + fitMemory(counts.collocation, counts.sources, counts.heldOut, solver) +
+         500 * (counts.collocation + counts.sources) + 200 * kFreshSamples;
+}
+
+}  // namespace
+
+FitSolver solverOf(const FittingOptions& options) {
+  if (options.radiusRatio) return FitSolver::dense;  // far from most of the surface
+  return options.solver == "auto"    ? FitSolver::automatic
+         : options.solver == "dense" ? FitSolver::dense
+                                     : FitSolver::iterative;
+}
+
+Interpolation interpolationOf(const FittingOptions& options) {
+  return options.interpolation == "linear"   ? Interpolation::linear
+         : options.interpolation == "smooth" ? Interpolation::smooth
+                                             : Interpolation::automatic;
+}
+
+void addFittingOptions(Command& command, FittingOptions& o) {
+  command
+      .option("--tolerance", "T", &o.tolerance,
+              "charges are placed where the error is until 99% of the boundary lies within T; not "
+              "with the options that place a number of them")
+      .unit("fraction of the target's diagonal; from 1e-12 to 1")
+      .defaults("0.001");
+  command.flag("--best-effort", &o.bestEffort,
+               "exit code 0 when the tolerance cannot be met, too; files are written either way");
+  command.option("--max-sources", "N", &o.maxSources, "charges that --tolerance may take")
+      .range(kFirstSources, kMostSources);
+  command
+      .option("--sources", "N", &o.sources,
+              "number of charges on one shell, in place of --tolerance")
+      .range(1, kMostSources)
+      .defaults(fmt::format("{} when other options ask for such a shell", kSources));
+  command.option("--collocation", "N", &o.collocation, "boundary points that the map is fitted to")
+      .range(8, 1e7)
+      .defaults("4 a source; iterative: 3");
+  command
+      .option("--source-ratio", "R", &o.sourceRatio,
+              "charges as a multiple of the source's vertices (sRatio), in place of --sources")
+      .above(0)
+      .atMost(100);
+  command
+      .option("--collocation-ratio", "R", &o.collocationRatio,
+              "boundary points as a multiple of the source's vertices (cRatio), in place of "
+              "--collocation")
+      .above(0)
+      .atMost(1000);
+  command.option("--distance", "D", &o.distance, "of the charges from the surface (O-Distance)")
+      .unit("fraction of the source's diagonal")
+      .range(1e-4, 2)
+      .defaults("chosen by held-out error");
+  command
+      .option("--radius-ratio", "R", &o.radiusRatio,
+              "charges on a sphere, in place of a shell: its radius as a multiple of half the "
+              "diagonal (R-Ratio)")
+      .above(1)
+      .atMost(100);
+  command
+      .option(
+          "--solver", "NAME", &o.solver,
+          "dense: all at once, for up to some 3000 charges; iterative: for many; auto: by their "
+          "number")
+      .choices({"auto", "dense", "iterative"});
+  command
+      .option(
+          "--interpolation", "NAME", &o.interpolation,
+          "what the target is between vertices: linear, as its triangles; smooth, when vertices "
+          "sample a smooth deformation; auto: by the error at held-out vertices")
+      .choices({"auto", "linear", "smooth"});
+  command
+      .option("--method", "NAME", &o.method,
+              "regularisation: Tikhonov's, or truncation of singular values (the paper's)")
+      .choices({"tikhonov", "tsvd"});
+  command
+      .option("--regularization", "T", &o.regularization,
+              "threshold of singular values, or Tikhonov's lambda")
+      .unit("fraction of the largest singular value")
+      .range(0, 1)
+      .defaults("chosen by held-out error");
+  command.option("--seed", "N", &o.seed, "of all random points").range(0, 1e15);
+}
+
+std::optional<double> toleranceOf(const FittingOptions& o) {
+  const std::pair<bool, const char*> uniform[] = {
+      {o.sources.has_value(), "--sources"},
+      {o.sourceRatio.has_value(), "--source-ratio"},
+      {o.collocation.has_value(), "--collocation"},
+      {o.collocationRatio.has_value(), "--collocation-ratio"},
+      {o.distance.has_value(), "--distance"},
+      {o.radiusRatio.has_value(), "--radius-ratio"},
+      {o.solver != "auto", "--solver"},
+      {o.method != "tikhonov", "--method"},
+      {o.regularization.has_value(), "--regularization"}};
+  if (o.tolerance && !(*o.tolerance >= kSmallestTolerance && *o.tolerance <= 1))
+    throw UsageError(fmt::format(
+        "--tolerance: must lie in 1e-12 to 1 of the target's diagonal, not {:g}; sums in double "
+        "precision hold no less than 1e-12",
+        *o.tolerance));
+  for (const auto& [given, name] : uniform) {
+    if (!given) continue;
+    if (o.tolerance)
+      throw UsageError(
+          fmt::format("--tolerance and {} exclude each other; give one of them", name));
+    return {};
+  }
+  return o.tolerance.value_or(kDefaultTolerance);
+}
+
+PointCounts pointCounts(const FittingOptions& o, std::size_t vertices) {
+  if (o.distance && o.radiusRatio)
+    throw UsageError("--distance and --radius-ratio exclude each other; give one of them");
+  if (o.collocation && o.collocationRatio)
+    throw UsageError("--collocation and --collocation-ratio exclude each other; give one of them");
+  const double v = static_cast<double>(vertices);
+  PointCounts counts;
+  counts.sources = o.sourceRatio
+                       ? countOf(std::round(*o.sourceRatio * v), "--source-ratio", 1, kMostSources)
+                       : o.sources.value_or(kSources);
+  const double n = static_cast<double>(counts.sources);
+  const bool iterative =
+      o.solver == "iterative" || (o.solver == "auto" && counts.sources > kMostDenseSources);
+  const double perSource = iterative ? kPointsPerSourceIterative : kPointsPerSource;
+  const double wanted = o.collocation        ? static_cast<double>(*o.collocation)
+                        : o.collocationRatio ? std::round(*o.collocationRatio * v)
+                                             : std::max(perSource * n, 16.0);
+  counts.collocation =
+      countOf(wanted, o.collocationRatio ? "--collocation-ratio" : "--collocation", n + 4, 1e7);
+  counts.heldOut = std::clamp<std::size_t>(counts.sources, 1000, 5000);
+  return counts;
+}
+
+std::string fittingPlan(const FittingOptions& options, std::size_t vertices) {
+  if (const auto tolerance = toleranceOf(options))
+    return fmt::format("fit up to {} charges until 99% of the boundary lies within {:g}",
+                       options.maxSources, *tolerance);
+  const PointCounts counts = pointCounts(options, vertices);
+  return fmt::format("fit {} charges to {} boundary points", counts.sources, counts.collocation);
+}
+
+std::uint64_t fittingMemory(const FittingOptions& options, std::size_t vertices) {
+  if (toleranceOf(options)) {
+    PointCounts first;
+    first.sources = kFirstSources;
+    first.collocation = static_cast<std::size_t>(kPointsPerSource) * kFirstSources;
+    first.heldOut = kFirstSources;
+    return memoryOf(first, FitSolver::dense);
+  }
+  return memoryOf(pointCounts(options, vertices), solverOf(options));
+}
+
+void requireFittingMemory(const FittingOptions& options, std::size_t vertices,
+                          const Context& context) {
+  if (toleranceOf(options))
+    return requireMemory("the first level of charges", fittingMemory(options, vertices),
+                         context.maxMemory(), "raise --max-memory");
+  const PointCounts counts = pointCounts(options, vertices);
+  const double points =
+      static_cast<double>(counts.collocation) / static_cast<double>(counts.sources);
+  const auto fits = [&](std::uint64_t sources) {
+    PointCounts c;
+    c.sources = sources;
+    c.collocation = static_cast<std::size_t>(points * static_cast<double>(sources));
+    c.heldOut = counts.heldOut;
+    return memoryOf(c, solverOf(options)) <= context.maxMemory();
+  };
+  const std::uint64_t most = largestThat(1, counts.sources, fits);
+  requireMemory(fmt::format("fitting {} sources", counts.sources),
+                memoryOf(counts, solverOf(options)), context.maxMemory(),
+                most > 0 ? fmt::format("use --sources {} or raise --max-memory", most)
+                         : "raise --max-memory");
+}
+
+}  // namespace innermap::tool
