@@ -22,13 +22,13 @@ constexpr int kMostLevels = 14;
 constexpr double kNearest = 1e-6;  // of the diagonal
 constexpr std::size_t kMarkSamples = 30000;
 // Marks are points over the tolerance times a factor that falls to the lower one as it comes near.
-constexpr double kMarkLeast = 0.9, kMarkMost = 1.5;
+constexpr double kMarkLeast = 0.93, kMarkMost = 1.5;
 // When the tolerance holds but the largest error is over kWorstRatio of the rms: what is marked.
 constexpr double kWorstRatio = 17, kOutlier = 10;
 // Of the tolerance; other points than those that were looked at differ a little.
 constexpr double kMargin = 0.97;
 constexpr double kErrorAccuracy = 1e-3;  // of the tolerance
-constexpr double kLeastGain = 0.97;      // of the 99% point in kPatience rounds
+constexpr double kLeastGain = 0.97;      // of the score in kPatience rounds
 constexpr std::size_t kPatience = 3;
 
 void append(Matrix& a, const Matrix& b) {
@@ -39,6 +39,8 @@ void append(Matrix& a, const Matrix& b) {
   }
   a = std::move(out);
 }
+
+bool isTame(const BoundaryError& error) { return error.max <= kWorstRatio * error.rms; }
 
 class AdaptiveFitting {
  public:
@@ -62,9 +64,9 @@ class AdaptiveFitting {
                                     const BoundaryError& error) const;
   std::size_t levelOf(const Vec3& p, const std::vector<PointGrid>& attempts) const;
   void solve();
-  bool keepIfBest(const BoundaryError& error);
+  double score(const BoundaryError& error) const;
+  void keepIfBest();
   bool gains() const;
-  AdaptiveResult result();
   std::size_t sourceCount() const;
   std::uint64_t memory() const;
 
@@ -139,6 +141,7 @@ void AdaptiveFitting::first() {
   requireMemory("the first level of charges", memory(), settings_.maxMemory,
                 "raise the limit of memory");
   IterativeSettings s;
+  s.accuracy = std::clamp(kErrorAccuracy * settings_.tolerance, 1e-12, s.accuracy);
   s.progress = settings_.progress;
   solver_.emplace(collocation_,
                   std::vector<SourceLevel>{{coarse.sources, coarse.spacing * problem_.diagonal,
@@ -159,7 +162,8 @@ std::vector<Points> AdaptiveFitting::markedByLevel(const BoundarySamples& fresh,
                                                    const BoundaryError& error) const {
   const double tolerance = settings_.tolerance;
   double over = tolerance * std::clamp(kMarkLeast * error.p99 / tolerance, kMarkLeast, kMarkMost);
-  if (error.p99 <= kMarkLeast * tolerance) over = kOutlier * error.rms;
+  if (error.p99 <= kMarkLeast * tolerance && error.max > kWorstRatio * error.rms)
+    over = kOutlier * error.rms;
   std::vector<PointGrid> attempts;
   for (const Level& l : levels_)
     attempts.emplace_back(l.attempts, 2 * kMarkReach * l.spacing * problem_.diagonal);
@@ -228,9 +232,17 @@ void AdaptiveFitting::solve() {
   field_.emplace(solver_->sources(), solution_.weights, solution_.affine);
 }
 
-bool AdaptiveFitting::keepIfBest(const BoundaryError& error) {
-  if (best_ && !(error.p99 < bestScore_)) return false;
-  bestScore_ = error.p99;
+// The less the better: the error as long as the tolerance does not hold, then how far the largest
+// error stands out.
+double AdaptiveFitting::score(const BoundaryError& error) const {
+  if (error.p99 > kMargin * settings_.tolerance) return 1 + error.p99 / settings_.tolerance;
+  return error.rms > 0 ? std::min(1.0, 1e-3 * error.max / error.rms) : 0;
+}
+
+void AdaptiveFitting::keepIfBest() {
+  const double now = score(rounds_.back().error);
+  if (best_ && !(now < bestScore_)) return;
+  bestScore_ = now;
   best_.emplace(AdaptiveResult{*field_,
                                {},
                                AdaptiveEnd::met,
@@ -240,18 +252,17 @@ bool AdaptiveFitting::keepIfBest(const BoundaryError& error) {
                                solution_.residuals,
                                solution_.weightNorm});
   for (const Level& l : levels_) best_->levels.push_back({l.distance, l.spacing, l.sources.size()});
-  return true;
 }
 
-// Whether the last rounds have lowered the error.
+// Whether one of the last rounds was better than all before.
 bool AdaptiveFitting::gains() const {
   if (rounds_.size() <= kPatience) return true;
-  const auto score = [](const AdaptiveRound& r) { return r.error.p99; };
-  double before = score(rounds_.front()), since = score(rounds_.back());
-  for (std::size_t r = 0; r < rounds_.size(); ++r)
-    (r + kPatience < rounds_.size() ? before : since) =
-        std::min(r + kPatience < rounds_.size() ? before : since, score(rounds_[r]));
-  return since < kLeastGain * before;
+  double best[2] = {score(rounds_.front().error), score(rounds_.back().error)};
+  for (std::size_t r = 0; r < rounds_.size(); ++r) {
+    double& part = best[r + kPatience < rounds_.size() ? 0 : 1];
+    part = std::min(part, score(rounds_[r].error));
+  }
+  return best[1] < kLeastGain * best[0];
 }
 
 AdaptiveResult AdaptiveFitting::run() {
@@ -271,10 +282,11 @@ AdaptiveResult AdaptiveFitting::run() {
     const BoundaryError error = summarizeErrors(errors);
     rounds_.push_back(
         {solver_->sources().size(), collocation_.size(), solution_.iterations, error});
-    keepIfBest(error);
-    const bool tame = error.max <= kWorstRatio * error.rms;
-    const double enough = kMargin * settings_.tolerance;
-    if (error.p99 <= enough && tame && errorAtChecks(*field_).p99 <= enough) break;
+    keepIfBest();
+    if (error.p99 <= kMargin * settings_.tolerance && isTame(error)) {
+      const BoundaryError other = errorAtChecks(*field_);
+      if (other.p99 <= kMargin * settings_.tolerance && isTame(other)) break;
+    }
     if (!gains()) {
       end_ = AdaptiveEnd::noGain;
       break;

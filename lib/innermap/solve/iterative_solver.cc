@@ -19,14 +19,10 @@ constexpr double kLeastGain = 0.03;  // of the residual; less is not worth an it
 // An iteration's gain (in squares of the residual) is taken to be at least this share of the one
 // before.
 constexpr double kLeastShrinkage = 0.04;
-// What an iteration leaves beyond the best residual, as a share of what it starts from: at least,
-// and of the worst seen so far.
-constexpr double kLeastLeft = 5e-3, kLeftGuard = 1.5;
-// Of a solution, what is no more than this beyond the earlier ones is mostly what they did not
-// resolve.
+// Channels of a solution that are so nearly multiples of each other count as one.
 constexpr double kAlike = 0.1;
-constexpr double kProductAccuracy = 1e-8;  // far below what a fit leaves
-constexpr double kSameSpacing = 1e-6;      // relative
+constexpr double kFinestProduct = 1e-12, kCoarsestProduct = 1e-3;  // relative
+constexpr double kSameSpacing = 1e-6;                              // relative
 
 double rms(const Matrix& residual) {
   double sum = 0;
@@ -101,6 +97,8 @@ void IterativeSolver::check(const Points& collocation, const std::vector<SourceL
                             bool first) const {
   if (first && levels.empty())
     throw SettingError("sources", "there are none; use at least one level of them");
+  if (!(settings_.accuracy >= kFinestProduct && settings_.accuracy <= kCoarsestProduct))
+    throw SettingError("accuracy", "must lie in 1e-12 to 1e-3");
   for (const SourceLevel& level : levels) {
     if (!(level.spacing > 0) || !(level.distance > 0))
       throw SettingError("iterative solver", "spacing and distance must be positive");
@@ -211,11 +209,11 @@ void IterativeSolver::unscale(const Scaled& values, const Matrix& residual, cons
   }
 }
 
-// What the charges' weights give at the points; all in normalised units.
-Matrix IterativeSolver::image(const Matrix& weights, const Points& sources,
-                              const Points& points) const {
+// What the charges' weights give at the points, to a relative accuracy; all in normalised units.
+Matrix IterativeSolver::image(const Matrix& weights, const Points& sources, const Points& points,
+                              double accuracy) const {
   FastSumSettings s;
-  s.accuracy = kProductAccuracy;
+  s.accuracy = std::clamp(accuracy, kFinestProduct, kCoarsestProduct);
   s.progress = settings_.progress;
   return FastSum(sources, weights).at(points, s).values;
 }
@@ -226,7 +224,8 @@ void IterativeSolver::takeDirections(const Matrix& weights, const std::vector<st
                                      const Points& sources, OrthogonalDirections& directions,
                                      Matrix& residual, Matrix& x) const {
   const std::size_t affine = rows.size() - sources.size();
-  Matrix images = image(rowsOf(weights, affine), sources, collocation_);
+  Matrix images =
+      image(rowsOf(weights, affine), sources, collocation_, settings_.accuracy / rms(residual));
   Matrix z(unknowns(), weights.columns());
   for (std::size_t k = 0; k < z.columns(); ++k) {
     for (std::size_t i = 0; i < rows.size(); ++i) z(rows[i], k) = weights(i, k);
@@ -276,7 +275,7 @@ void IterativeSolver::startFrom(const IterativeSolution& start, const Scaled& va
   x = scaledStart(start, values);
   const std::size_t known = start.residual.rows();
   const Points fresh(collocation_.begin() + static_cast<std::ptrdiff_t>(known), collocation_.end());
-  const Matrix sums = image(rowsOf(x, kAffine), normalised(sources_), fresh);
+  const Matrix sums = image(rowsOf(x, kAffine), normalised(sources_), fresh, settings_.accuracy);
   for (std::size_t k = 0; k < residual.columns(); ++k) {
     for (std::size_t i = 0; i < known; ++i) residual(i, k) = start.residual(i, k) / values.size;
     for (std::size_t i = 0; i < fresh.size(); ++i) {
@@ -295,8 +294,7 @@ IterativeSolution IterativeSolver::solve(const Matrix& values,
   return iterate(rhs, residual, x, littleIsLeft);
 }
 
-SequenceSolver::SequenceSolver(IterativeSolver solver, std::size_t maxFrames)
-    : solver_(std::move(solver)), maxFrames_(std::max<std::size_t>(1, maxFrames)) {}
+SequenceSolver::SequenceSolver(IterativeSolver solver) : solver_(std::move(solver)) {}
 
 SequenceSolver::SequenceSolver(SequenceSolver&&) noexcept = default;
 SequenceSolver& SequenceSolver::operator=(SequenceSolver&&) noexcept = default;
@@ -305,28 +303,20 @@ SequenceSolver::~SequenceSolver() = default;
 IterativeSolution SequenceSolver::solve(const Matrix& values) {
   const IterativeSolver::Scaled rhs = solver_.scaled(values);
   Matrix residual = rhs.values, x(solver_.unknowns(), values.columns());
-  const bool first = !solutions_;
-  if (!first) solutions_->project(0, residual, x);
-  IterativeSolution out = solver_.iterate(rhs, residual, x, [&](const std::vector<double>& r) {
-    const double left = std::max(kLeastLeft, kLeftGuard * left_) * r.front();
-    return (!first && r.size() == 2 && left * left < 2 * kLeastGain * r[1] * r[1]) ||
-           littleIsLeft(r);
-  });
-  const std::vector<double>& r = out.residuals;
-  if (r.front() > 0)
-    left_ =
-        std::max(left_, std::sqrt(std::max(0.0, r[1] * r[1] - r.back() * r.back())) / r.front());
+  if (solutions_) solutions_->project(0, residual, x);
+  const IterativeSolution out = solver_.iterate(rhs, residual, x, littleIsLeft);
   keep(rhs.values, residual, std::move(x));
   return out;
 }
 
-// The solution as directions: its image is known without a product.
+// The solution as directions, whose image is known without a product. That of one frame alone: more
+// of them differ by what they did not resolve, and a combination of them magnifies it.
 void SequenceSolver::keep(Matrix values, const Matrix& residual, Matrix x) {
-  if (!solutions_ || solutions_->count() + x.columns() > maxFrames_ * x.columns())
-    solutions_ = std::make_unique<OrthogonalDirections>(values.rows(), x.rows(), kAlike);
+  auto directions = std::make_unique<OrthogonalDirections>(values.rows(), x.rows(), kAlike);
   for (std::size_t i = 0; i < values.rows() * values.columns(); ++i)
     values.data()[i] -= residual.data()[i];
-  solutions_->add(std::move(x), std::move(values));
+  directions->add(std::move(x), std::move(values));
+  solutions_ = std::move(directions);
 }
 
 }  // namespace innermap

@@ -33,6 +33,7 @@ struct SourceLevel {
 
 struct IterativeSettings {
   int maxIterations = 8;        // in [1, 100]
+  double accuracy = 1e-7;       // of products, fraction of the values' span; in [1e-12, 1e-3]
   std::uint64_t seed = 1;       // of the rows that the first level sees
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;
@@ -98,7 +99,8 @@ class IterativeSolver {
                       Matrix& x) const;
   void unscale(const Scaled& values, const Matrix& residual, const Matrix& x,
                IterativeSolution& out) const;
-  Matrix image(const Matrix& weights, const Points& sources, const Points& points) const;
+  Matrix image(const Matrix& weights, const Points& sources, const Points& points,
+               double accuracy) const;
   Points normalised(const Points& points) const;
   std::size_t unknowns() const { return CoarseSolver::kAffine + sources_.size(); }
 

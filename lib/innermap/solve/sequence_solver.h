@@ -1,8 +1,9 @@
 // Right-hand sides one after the other that resemble each other: the frames of an animation.
 //
-// A new right-hand side is first projected onto what the earlier solutions give at the collocation
+// A new right-hand side is first projected onto what the solution before gives at the collocation
 // points, which is known without a product (Fischer, "Projection Techniques for Iterative Solution
-// of Ax = b with Successive Right-Hand Sides", 1998). What is left takes an iteration or two.
+// of Ax = b with Successive Right-Hand Sides", 1998). What is left takes
+// about two iterations, and none of the set-up.
 #pragma once
 
 #include <memory>
@@ -15,9 +16,7 @@ namespace innermap {
 // order of right-hand sides; another order gives slightly different ones, equally good.
 class SequenceSolver {
  public:
-  // Keeps the solutions of at most `maxFrames` right-hand sides, then starts keeping anew; each
-  // takes as much memory as the values and weights.
-  explicit SequenceSolver(IterativeSolver solver, std::size_t maxFrames = 32);
+  explicit SequenceSolver(IterativeSolver solver);
   SequenceSolver(SequenceSolver&&) noexcept;
   SequenceSolver& operator=(SequenceSolver&&) noexcept;
   ~SequenceSolver();
@@ -32,9 +31,7 @@ class SequenceSolver {
   void keep(Matrix values, const Matrix& residual, Matrix x);
 
   IterativeSolver solver_;
-  std::size_t maxFrames_;
-  std::unique_ptr<OrthogonalDirections> solutions_;
-  double left_ = 0;  // by one iteration, of the residual it starts from: the worst so far
+  std::unique_ptr<OrthogonalDirections> solutions_;  // the last
 };
 
 }  // namespace innermap

@@ -25,6 +25,24 @@ TEST(BoundaryError, CountsLengthsInUnits) {
   EXPECT_EQ(e.samples, 1000u);
 }
 
+TEST(BoundaryError, LengthsByFastSumsAreAsAsked) {
+  const HarmonicField f = testing::someField();
+  const Points points = testing::spherePoints(500, 1);
+  const Matrix values(500, 3);
+  const std::vector<double> exact = boundaryErrors(f, points, values, 2),
+                            fast = boundaryErrors(f, points, values, 2, 1e-6);
+  const Matrix got = f.evaluate(points).values;
+  for (std::size_t i = 0; i < 500; ++i) {
+    const double length = std::hypot(got(i, 0), got(i, 1), got(i, 2)) / 2;
+    EXPECT_NEAR(exact[i], length, 1e-12);
+    EXPECT_NEAR(fast[i], length, 1e-5);
+  }
+  const BoundaryError e = summarizeErrors({1, 2, 2});
+  EXPECT_EQ(e.max, 2);
+  EXPECT_DOUBLE_EQ(e.rms, std::sqrt(3.0));
+  EXPECT_EQ(summarizeErrors({}).samples, 0u);
+}
+
 TEST(BoundaryError, RefusesBadInput) {
   const HarmonicField f = testing::someField();
   EXPECT_THROW(measureBoundaryError(f, Points(2), Matrix(3, 3), 1), DataError);

@@ -88,6 +88,20 @@ TEST(Fit, SmoothSamplesAreFittedAtTheVertices) {
             1e-6);
 }
 
+TEST(Fit, OnlySmoothSamplesHaveASmoothFit) {
+  FitProblem p = sampledProblem();
+  FitSettings s;
+  s.sources = 400;
+  const std::optional<FitResult> r = fitSmooth(p, s);
+  ASSERT_TRUE(r);
+  EXPECT_TRUE(r->smooth);
+  p.vertices.values = p.surface.values;
+  p.vertices.heldOutValues = p.surface.heldOutValues;
+  EXPECT_FALSE(fitSmooth(p, s));
+  s.interpolation = Interpolation::smooth;
+  EXPECT_TRUE(fitSmooth(p, s));
+}
+
 TEST(Fit, RoughVerticesStayLinear) {
   FitProblem p = sampledProblem();
   p.vertices.values = p.surface.values;

@@ -1,0 +1,185 @@
+#include "innermap/field/adaptive_fit.h"
+
+#include <gtest/gtest.h>
+
+#include "field/sphere_problem.h"
+#include "innermap/core/error.h"
+#include "innermap/core/parallel.h"
+#include "innermap/core/point_grid.h"
+
+namespace innermap {
+namespace {
+
+constexpr double kDiagonal = 3.4641016151377544;
+
+// Smooth, but for a kink that is sharp near (1, 0, 0) and fades away from it.
+Matrix kinkedValues(const Points& points) {
+  Matrix v = testing::harmonicMapValues(points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3& p = points[i];
+    v(i, 0) += 0.3 * std::abs(p.y) * std::exp(-8 * squaredNorm(p - Vec3{1, 0, 0}));
+  }
+  return v;
+}
+
+Points onSphere(std::size_t count, std::uint64_t seed) {
+  Points points = testing::randomPoints(count, seed);
+  for (Vec3& p : points) p = p / norm(p);
+  return points;
+}
+
+Points darts(const PlacementRequest& request, double radius) {
+  PointGrid taken(request.existing, request.spacing * kDiagonal),
+      marks(request.marks, 2 * request.reach * kDiagonal);
+  Points out;
+  const double area = 4 * M_PI / std::pow(request.spacing * kDiagonal, 2);
+  for (const Vec3& p : onSphere(static_cast<std::size_t>(12 * area) + 50, 100 + request.index)) {
+    const Vec3 q = radius * p;
+    if (!request.marks.empty() && !marks.anyNearer(p, request.reach * kDiagonal) &&
+        !marks.anyNearer(q, request.reach * kDiagonal))
+      continue;
+    if (out.size() == request.most || taken.anyNearer(q, request.spacing * kDiagonal)) continue;
+    taken.add(q);
+    out.push_back(q);
+  }
+  return out;
+}
+
+struct Ball {
+  std::vector<double> distances;  // asked for
+  AdaptiveProblem problem;
+  AdaptiveSettings settings;
+
+  Ball() {
+    problem.diagonal = problem.unit = kDiagonal;
+    problem.area = 4 * M_PI;
+    problem.draw = [](std::size_t count, std::uint64_t draw) {
+      const Points points = onSphere(count, 7 + draw);
+      return BoundarySamples{points, kinkedValues(points)};
+    };
+    problem.placeSources = [this](const PlacementRequest& request, double distance) {
+      distances.push_back(distance);
+      return darts(request, 1 + distance * kDiagonal);
+    };
+    problem.placeCollocation = [](const PlacementRequest& request) {
+      const Points points = darts(request, 1);
+      return BoundarySamples{points, kinkedValues(points)};
+    };
+    settings.firstSources = 150;
+  }
+};
+
+TEST(AdaptiveFit, MeetsTheToleranceWithChargesWhereTheKinkIs) {
+  Ball ball;
+  ball.settings.tolerance = 2e-4;
+  const AdaptiveResult r = fitToTolerance(ball.problem, ball.settings);
+  EXPECT_EQ(r.end, AdaptiveEnd::met);
+  EXPECT_LE(r.error.p99, ball.settings.tolerance);
+  EXPECT_LT(r.error.max, 20 * r.error.rms);
+  EXPECT_EQ(r.error.samples, ball.settings.checkSamples);
+  // Of what no part of the fit saw.
+  const Points fresh = onSphere(20000, 999);
+  EXPECT_LT(measureBoundaryError(r.field, fresh, kinkedValues(fresh), kDiagonal).p99,
+            1.1 * ball.settings.tolerance);
+  ASSERT_GE(r.levels.size(), 3u);
+  std::size_t count = 0, near = 0;
+  for (const AdaptiveLevel& l : r.levels) count += l.sources;
+  EXPECT_EQ(count, r.field.sources().size());
+  for (std::size_t l = 1; l < r.levels.size(); ++l)
+    EXPECT_NEAR(r.levels[l].distance, 0.5 * r.levels[l - 1].distance, 1e-12);
+  // The finest level: where x is over 0.4, which is three tenths of the sphere.
+  std::size_t finest = 0;
+  for (const Vec3& q : r.field.sources()) {
+    if (norm(q) > 1 + 1.1 * r.levels.back().distance * kDiagonal) continue;
+    ++finest;
+    if (q.x > 0.4 * norm(q)) ++near;
+  }
+  EXPECT_EQ(finest, r.levels.back().sources);
+  EXPECT_GT(near, 0.9 * static_cast<double>(finest));
+}
+
+TEST(AdaptiveFit, SmoothValuesNeedOnlyTheFirstLevel) {
+  Ball ball;
+  ball.settings.tolerance = 2e-2;
+  const AdaptiveResult r = fitToTolerance(ball.problem, ball.settings);
+  EXPECT_EQ(r.end, AdaptiveEnd::met);
+  EXPECT_EQ(r.rounds.size(), 1u);
+  EXPECT_EQ(ball.distances.size(), 1u);
+}
+
+TEST(AdaptiveFit, SaysWhichLimitItReached) {
+  Ball ball;
+  ball.settings.tolerance = 1e-5;
+  ball.settings.maxSources = 400;
+  AdaptiveResult r = fitToTolerance(ball.problem, ball.settings);
+  EXPECT_EQ(r.end, AdaptiveEnd::maxSources);
+  EXPECT_LE(r.field.sources().size(), 400u);
+  EXPECT_GT(r.error.p99, ball.settings.tolerance);
+  ball.settings.maxSources = 100000;
+  ball.settings.maxMemory = 9'000'000;
+  r = fitToTolerance(ball.problem, ball.settings);
+  EXPECT_EQ(r.end, AdaptiveEnd::maxMemory);
+  ball.settings.maxMemory = 1000;
+  EXPECT_THROW(fitToTolerance(ball.problem, ball.settings), MemoryError);
+}
+
+TEST(AdaptiveFit, NoRoomForFinerLevelsIsNoGain) {
+  Ball ball;
+  ball.settings.tolerance = 1e-4;
+  const auto place = ball.problem.placeSources;
+  const AdaptiveProblem& problem = ball.problem;
+  ball.problem.placeSources = [&, place](const PlacementRequest& request, double distance) {
+    return request.marks.empty() ? place(request, distance) : Points();
+  };
+  EXPECT_EQ(fitToTolerance(problem, ball.settings).end, AdaptiveEnd::noGain);
+}
+
+// A level that finds no room in a gap is passed over, and the next one tried.
+TEST(AdaptiveFit, GoesOnBelowALevelWithoutRoom) {
+  Ball ball;
+  ball.settings.tolerance = 4e-4;
+  const auto place = ball.problem.placeSources;
+  double second = 0;
+  ball.problem.placeSources = [&, place](const PlacementRequest& request, double distance) {
+    if (!request.marks.empty() && second == 0) second = distance;
+    return distance == second ? Points() : place(request, distance);
+  };
+  const AdaptiveResult r = fitToTolerance(ball.problem, ball.settings);
+  ASSERT_GE(r.levels.size(), 3u);
+  EXPECT_EQ(r.levels[1].sources, 0u);
+  EXPECT_GT(r.levels[2].sources, 0u);
+  EXPECT_EQ(r.end, AdaptiveEnd::met);
+}
+
+TEST(AdaptiveFit, SameForAnyNumberOfThreads) {
+  const auto weights = [] {
+    Ball ball;
+    ball.settings.tolerance = 5e-4;
+    return fitToTolerance(ball.problem, ball.settings).field.weights();
+  };
+  const Matrix all = weights();
+  const ThreadLimit one(1);
+  const Matrix single = weights();
+  ASSERT_EQ(all.rows(), single.rows());
+  EXPECT_TRUE(std::equal(all.data(), all.data() + 3 * all.rows(), single.data()));
+}
+
+TEST(AdaptiveFit, RefusesBadSettings) {
+  for (const double tolerance : {0.0, -1.0, 1e-13, 2.0, std::nan("")}) {
+    Ball ball;
+    ball.settings.tolerance = tolerance;
+    EXPECT_THROW(fitToTolerance(ball.problem, ball.settings), SettingError) << tolerance;
+  }
+  Ball ball;
+  ball.settings.maxSources = 10;
+  EXPECT_THROW(fitToTolerance(ball.problem, ball.settings), SettingError);
+  ball.settings = {};
+  ball.settings.firstSources = 1;
+  EXPECT_THROW(fitToTolerance(ball.problem, ball.settings), SettingError);
+  ball.settings = {};
+  ball.problem.area = 0;
+  EXPECT_THROW(fitToTolerance(ball.problem, ball.settings), DataError);
+}
+
+}  // namespace
+}  // namespace innermap
