@@ -139,13 +139,15 @@ Outcome fitOnShell(const BoundaryPair& pair, const FittingOptions& options, Cont
 // Where vertices sample a smooth deformation, a fit to them is far more exact, and quick.
 std::optional<Outcome> tryVertices(const BoundaryPair& pair, const FittingOptions& options,
                                    double tolerance, Context& context) {
-  constexpr std::size_t kSources = 1000;
+  constexpr std::size_t kSources = 1000, kTrialSources = 200;
   if (options.interpolation == "linear") return {};
   const PointCounts counts{kSources, 4 * kSources, kSources};
   FitProblem problem;
   context.timed("sample", [&] { problem = fitProblem(pair, options, counts, context); });
+  FitSettings settings = fitSettings(options, counts, context);
+  settings.trialSources = kTrialSources;
   std::optional<FitResult> fit;
-  context.timed("fit", [&] { fit = fitSmooth(problem, fitSettings(options, counts, context)); });
+  context.timed("fit", [&] { fit = fitSmooth(problem, settings); });
   if (!fit) return {};
   Outcome out = outcomeOf(*fit, problem, options);
   measure(pair, problem, options, out, context);

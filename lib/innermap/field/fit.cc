@@ -184,8 +184,8 @@ Solved Fitting::solve(const BoundaryData& data, std::size_t count, std::size_t p
 
 Trial Fitting::makeTrial(bool smooth) {
   const BoundaryData& data = smooth ? problem_.vertices : problem_.surface;
-  const std::size_t few =
-      std::max<std::size_t>(1, sourcesFor(data, std::min(kTrialSources, settings_.sources / 2)));
+  const std::size_t few = std::max<std::size_t>(
+      1, sourcesFor(data, std::min(settings_.trialSources, settings_.sources / 2)));
   Trial out;
   out.nearest = settings_.distance.value_or(nearest(few));
   const double farthest = settings_.distance.value_or(std::max(kFarthest, out.nearest));

@@ -53,6 +53,7 @@ struct FitSettings {
   std::size_t sources = 2000;  // in [1, 1000000]; dense: at most 20000
   FitSolver solver = FitSolver::automatic;
   std::optional<double> distance;  // fraction of the diagonal, in [1e-4, 2]; chosen when absent
+  std::size_t trialSources = 600;  // of trials of distances, at most; half the sources at most
   Interpolation interpolation = Interpolation::automatic;
   Regularization method = Regularization::tikhonov;
   std::optional<double> regularization;  // relative, in [0, 1]; chosen when absent
