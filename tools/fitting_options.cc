@@ -55,7 +55,7 @@ void addFittingOptions(Command& command, FittingOptions& o) {
       .unit("fraction of the target's diagonal; from 1e-12 to 1")
       .defaults("0.001");
   command.flag("--best-effort", &o.bestEffort,
-               "exit code 0 when the tolerance cannot be met, too; files are written either way");
+               "exit code 0 also when the tolerance cannot be met; files are written either way");
   command.option("--max-sources", "N", &o.maxSources, "charges that --tolerance may take")
       .range(kFirstSources, kMostSources);
   command
