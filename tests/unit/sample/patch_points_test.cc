@@ -68,6 +68,8 @@ TEST(PatchPoints, NarrowGapsWaitForAShorterDistance) {
   s.reach = 0.05;
   const Points marks{{1.01, 0.5, 0.5}};
   EXPECT_EQ(inGap(patchSources(solid, marks, 0.02, {}, s)), 0);
+  // Fits between the boxes, but over one of them it is too near to the other.
+  EXPECT_EQ(inGap(patchSources(solid, marks, 0.006, {}, s)), 0);
   EXPECT_GT(inGap(patchSources(solid, marks, 0.003, {}, s)), 20);
 }
 
