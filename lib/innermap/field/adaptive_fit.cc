@@ -13,7 +13,7 @@
 namespace innermap {
 namespace {
 
-constexpr double kDistance = 1.0;          // spacings
+constexpr double kDistance = 1.0;           // spacings
 constexpr double kSourceDarts = 0.83;       // spacings; fills to one charge a spacing squared
 constexpr double kCollocationDarts = 0.46;  // spacings; three points a charge
 constexpr double kMarkReach = 0.8;          // spacings of the level above

@@ -24,7 +24,7 @@
 
 namespace innermap {
 
-// Charges at one distance from the boundary, about one and a quarter of their spacing. World units,
+// Charges at one distance from the boundary, about 0.8 to 1.3 of their spacing. World units,
 // both positive.
 struct SourceLevel {
   Points sources;
