@@ -15,7 +15,7 @@ namespace {
 constexpr double kDefaultTolerance = 1e-3;
 constexpr std::size_t kSources = 2000, kFirstSources = 1000;
 constexpr std::size_t kFreshSamples = 20000;
-constexpr double kPointsPerSource = 4, kPointsPerSourceIterative = 3;
+constexpr double kPointsPerSource = 4, kPointsPerManySources = 3;
 constexpr double kMostSources = 1000000;
 
 std::size_t countOf(double count, const char* option, double least, double most) {
@@ -65,7 +65,7 @@ void addFittingOptions(Command& command, FittingOptions& o) {
       .defaults(fmt::format("{} when other options ask for such a shell", kSources));
   command.option("--collocation", "N", &o.collocation, "boundary points that the map is fitted to")
       .range(8, 1e7)
-      .defaults("4 a source; iterative: 3");
+      .defaults("4 a source; 3 a source above 3000");
   command
       .option("--source-ratio", "R", &o.sourceRatio,
               "charges as a multiple of the source's vertices (sRatio), in place of --sources")
@@ -149,9 +149,8 @@ PointCounts pointCounts(const FittingOptions& o, std::size_t vertices) {
                        ? countOf(std::round(*o.sourceRatio * v), "--source-ratio", 1, kMostSources)
                        : o.sources.value_or(kSources);
   const double n = static_cast<double>(counts.sources);
-  const bool iterative =
-      o.solver == "iterative" || (o.solver == "auto" && counts.sources > kMostDenseSources);
-  const double perSource = iterative ? kPointsPerSourceIterative : kPointsPerSource;
+  const double perSource =
+      counts.sources > kMostDenseSources ? kPointsPerManySources : kPointsPerSource;
   const double wanted = o.collocation        ? static_cast<double>(*o.collocation)
                         : o.collocationRatio ? std::round(*o.collocationRatio * v)
                                              : std::max(perSource * n, 16.0);
