@@ -63,12 +63,13 @@ class Evaluation {
     voxel_ = levelSet.voxelSize()[0];
     const double target = settings.targetVolume > 0 ? settings.targetVolume : solid.volume();
     unitVolumeScale_ = std::pow(solid.volume() / target, 2.0 / 3);
+    accuracy_ = sumAccuracy();
   }
 
   MapGrids run();
 
  private:
-  double accuracy() const;
+  double sumAccuracy() const;
   std::vector<LeafTotals> evaluateLeaves(const Leaves& leaves, std::size_t begin, std::size_t end,
                                          const MapGrids& out) const;
   FieldSamples atSkin(const std::vector<LeafPlan>& plans) const;
@@ -84,10 +85,11 @@ class Evaluation {
   const openvdb::FloatGrid& levelSet_;
   const EvaluateSettings& settings_;
   double voxel_ = 0, unitVolumeScale_ = 1;
+  double accuracy_ = 0;  // of sums, world units of the target
 };
 
 // World units of the target.
-double Evaluation::accuracy() const {
+double Evaluation::sumAccuracy() const {
   const Points& vertices = solid_.surface().vertices;
   const std::size_t count = std::min(kExtentSamples, vertices.size());
   Points some(count), images(count);
@@ -151,7 +153,7 @@ FieldSamples Evaluation::atSkin(const std::vector<LeafPlan>& plans) const {
   Points points;
   for (const LeafPlan& plan : plans)
     for (const LeafPlan::Skin& voxel : plan.skin) points.push_back(voxel.at);
-  return map_.field().evaluate(points, accuracy(), true, settings_.progress);
+  return map_.field().evaluate(points, accuracy_, true, settings_.progress);
 }
 
 std::vector<LeafTotals> Evaluation::evaluateLeaves(const Leaves& leaves, std::size_t begin,
@@ -178,7 +180,7 @@ std::vector<LeafTotals> Evaluation::evaluateLeaves(const Leaves& leaves, std::si
   }
   std::vector<LeafTotals> totals(count);
   map_.field().onLattice(
-      lattice, accuracy(), true,
+      lattice, accuracy_, true,
       [&](std::size_t l, const double* values, const double* gradients) {
         const LeafOutput leaf(out, leaves.leaf(begin + l).origin());
         storeInside(plans[l], values, gradients, leaf, totals[l]);

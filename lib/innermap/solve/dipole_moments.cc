@@ -40,8 +40,7 @@ DipoleMoments::DipoleMoments(const SolidHarmonics& harmonics) : harmonics_(harmo
 
 void DipoleMoments::add(const Corners* triangles, std::size_t count, const Ball& ball,
                         double* moments) const {
-  const std::size_t points = rule_.size(),
-                    rows = (points + simd::kPadding - 1) / simd::kPadding * simd::kPadding,
+  const std::size_t points = rule_.size(), rows = simd::padded(points),
                     functions = harmonics_.count();
   std::vector<double> x(rows), y(rows), z(rows), h(rows * functions), sums(3 * functions, 0.0);
   for (std::size_t t = 0; t < count; ++t) {

@@ -7,10 +7,6 @@
 namespace innermap {
 namespace {
 
-std::size_t padded(std::size_t n) {
-  return (n + simd::kPadding - 1) / simd::kPadding * simd::kPadding;
-}
-
 void append(const ChargeSpan& span, std::size_t stride, const Vec3& center,
             std::vector<double>& to) {
   const std::size_t begin = to.size();
@@ -26,7 +22,7 @@ void append(const ChargeSpan& span, std::size_t stride, const Vec3& center,
 
 FarField::FarField(const Proxies& proxies, const FarFieldSettings& settings)
     : proxies_(proxies), settings_(settings), basis_(proxies.basis()) {
-  const std::size_t size = padded(basis_->pointCount());
+  const std::size_t size = simd::padded(basis_->pointCount());
   x_.resize(size);
   y_.resize(size);
   z_.resize(size);

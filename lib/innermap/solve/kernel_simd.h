@@ -29,4 +29,9 @@ const char* targetName();
 // Targets that are read and written together at most: multiples of every vector length in use.
 constexpr std::size_t kPadding = 64, kRows = 32;
 
+// `count` rounded up to a multiple of kPadding.
+inline std::size_t padded(std::size_t count) {
+  return (count + kPadding - 1) / kPadding * kPadding;
+}
+
 }  // namespace innermap::simd

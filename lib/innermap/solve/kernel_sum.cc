@@ -12,16 +12,12 @@ namespace {
 constexpr std::size_t kBlock = 512;  // targets worked on together: one leaf of a grid
 constexpr std::size_t kGroup = 3;    // channels summed together: what fits the registers
 
-std::size_t padded(std::size_t count) {
-  return (count + simd::kPadding - 1) / simd::kPadding * simd::kPadding;
-}
-
 // Coordinates of targets as the kernels read them, padded with copies of the last one.
 struct TargetBlock {
   std::vector<double> x, y, z;
 
   TargetBlock(const Vec3* points, std::size_t count, const Vec3& center, double inverseScale) {
-    const std::size_t size = padded(count);
+    const std::size_t size = simd::padded(count);
     x.resize(size);
     y.resize(size);
     z.resize(size);
@@ -67,7 +63,7 @@ void Charges::addTo(const Vec3* points, std::size_t count, double* values,
                     double* gradients) const {
   if (count == 0 || count_ == 0) return;
   for (std::size_t begin = 0; begin < count; begin += kBlock) {
-    const std::size_t size = std::min(kBlock, count - begin), stride = padded(size);
+    const std::size_t size = std::min(kBlock, count - begin), stride = simd::padded(size);
     const TargetBlock targets(points + begin, size, center_, inverseScale_);
     std::vector<double> sums(kGroup * stride), slopes(gradients ? 3 * kGroup * stride : 0);
     for (std::size_t g = 0; g < groups_.size(); ++g) {

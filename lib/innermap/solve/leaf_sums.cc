@@ -8,10 +8,6 @@
 namespace innermap {
 namespace {
 
-std::size_t padded(std::size_t n) {
-  return (n + simd::kPadding - 1) / simd::kPadding * simd::kPadding;
-}
-
 constexpr double kTooNear = 0.03;  // of the ball's radius
 
 bool none(const NearCharges& near) {
@@ -28,7 +24,7 @@ void LeafSums::start(std::size_t stride, std::size_t groups, bool gradients) {
 
 void LeafSums::setTargets(std::size_t count) {
   places_.resize(count);
-  for (auto* c : {&x_, &y_, &z_}) c->assign(padded(count), 0.0);
+  for (auto* c : {&x_, &y_, &z_}) c->assign(simd::padded(count), 0.0);
 }
 
 void LeafSums::setPoints(const Points& points, const std::uint32_t* order, std::size_t count,
@@ -46,7 +42,7 @@ void LeafSums::setPoints(const Points& points, const std::uint32_t* order, std::
 void LeafSums::atPoints(const FarField& field, const Points& points, const std::uint32_t* order,
                         std::size_t count, const Expansion& expansion, const NearCharges& near,
                         bool gradients) {
-  start(padded(count), near.size(), gradients);
+  start(simd::padded(count), near.size(), gradients);
   setPoints(points, order, count, expansion.ball.center);
   addPolynomial(field, expansion, field.sources().charges()->inverseScale());
   addNear(field, near, expansion.ball.radius);
@@ -54,7 +50,7 @@ void LeafSums::atPoints(const FarField& field, const Points& points, const std::
 
 void LeafSums::polynomialAt(const FarField& field, const Points& points, const std::uint32_t* order,
                             std::size_t count, const Expansion& expansion) {
-  start(padded(count), field.sources().groups(), false);
+  start(simd::padded(count), field.sources().groups(), false);
   setPoints(points, order, count, expansion.ball.center);
   addPolynomial(field, expansion, 1);
 }

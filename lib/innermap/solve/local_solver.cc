@@ -31,7 +31,7 @@ Points subset(const Points& points, const std::vector<std::size_t>& indices) {
 
 // On the calling thread: clusters are what runs side by side.
 Matrix kernelMatrix(const Points& points, const Points& sources) {
-  const std::size_t padded = (points.size() + simd::kPadding - 1) / simd::kPadding * simd::kPadding;
+  const std::size_t padded = simd::padded(points.size());
   std::vector<double> x(padded), y(padded), z(padded);
   for (std::size_t i = 0; i < padded; ++i) {
     const Vec3& p = points[std::min(i, points.size() - 1)];

@@ -62,8 +62,8 @@ ChargeSpan Proxies::standIn(std::size_t node, std::size_t group) const {
 
 void Proxies::addMoments(const ChargeSpan& part, const Ball& ball, std::size_t width,
                          double* moments) const {
-  const std::size_t rows = (part.count + simd::kPadding - 1) / simd::kPadding * simd::kPadding,
-                    stride = 3 + width, functions = basis_->harmonics().count();
+  const std::size_t rows = simd::padded(part.count), stride = 3 + width,
+                    functions = basis_->harmonics().count();
   std::vector<double> x(rows), y(rows), z(rows), weights(rows * width), h(rows * functions);
   for (std::size_t i = 0; i < part.count; ++i) {
     const double* q = part.first + i * stride;

@@ -77,7 +77,7 @@ void SolidHarmonics::fill(const double* x, const double* y, const double* z, std
 }
 
 Matrix SolidHarmonics::at(const Points& points) const {
-  const std::size_t padded = (points.size() + simd::kPadding - 1) / simd::kPadding * simd::kPadding;
+  const std::size_t padded = simd::padded(points.size());
   std::vector<double> x(padded), y(padded), z(padded), all(padded * count_);
   for (std::size_t i = 0; i < points.size(); ++i) {
     x[i] = points[i].x;

@@ -11,13 +11,6 @@
 namespace innermap {
 namespace {
 
-Matrix randomWeights(std::size_t rows, std::size_t columns, std::uint64_t seed) {
-  const CounterRandom random(seed, 3);
-  Matrix w(rows, columns);
-  for (std::size_t i = 0; i < rows * columns; ++i) w.data()[i] = 2 * random.uniform(i) - 1;
-  return w;
-}
-
 double rms(const Matrix& m, std::size_t first, std::size_t columns) {
   double sum = 0;
   for (std::size_t i = 0; i < columns * m.rows(); ++i)
@@ -65,7 +58,7 @@ FastSumSettings hierarchical(double accuracy, bool gradients = true) {
 
 void expectSums(const Points& points, const Points& sources, std::size_t channels,
                 double accuracy) {
-  const Matrix w = randomWeights(sources.size(), channels, sources.size());
+  const Matrix w = testing::randomWeights(sources.size(), channels, sources.size());
   const FieldSamples exact = sumCharges(Charges(sources, w), points, true);
   expectAccurate(FastSum(sources, w).at(points, hierarchical(accuracy)), exact, accuracy);
 }
@@ -74,7 +67,7 @@ TEST(FastSum, HoldsItsAccuracyForRandomPoints) {
   const Points points = testing::randomPoints(6000, 1), sources = testing::randomPoints(12000, 2);
   for (const double accuracy : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10}) {
     SCOPED_TRACE("accuracy " + std::to_string(std::log10(accuracy)));
-    const Matrix w = randomWeights(sources.size(), 3, 7);
+    const Matrix w = testing::randomWeights(sources.size(), 3, 7);
     const FieldSamples exact = sumCharges(Charges(sources, w), points, true),
                        got = FastSum(sources, w).at(points, hierarchical(accuracy));
     expectAccurate(got, exact, accuracy);
@@ -131,7 +124,7 @@ TEST(FastSum, AlmostCoincidentPairsCount) {
   for (std::size_t i = 0; i < points.size(); ++i)
     points[i].x += std::pow(10.0, -4.0 - 6.0 * static_cast<double>(i) / 1500);
   for (const double accuracy : {1e-3, 1e-5}) {
-    const Matrix w = randomWeights(1500, 3, 8);
+    const Matrix w = testing::randomWeights(1500, 3, 8);
     const FieldSamples got = FastSum(sources, w).at(points, hierarchical(accuracy)),
                        exact = sumCharges(Charges(sources, w), points, true);
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -161,7 +154,7 @@ TEST(FastSum, OneSourceAndNone) {
 TEST(FastSum, HoldsItsAccuracyWhereWeightsCancel) {
   const Points points = testing::spherePoints(2000, 1);
   Points sources = testing::spherePoints(1500, 1.5);
-  Matrix w = randomWeights(3000, 1, 8);
+  Matrix w = testing::randomWeights(3000, 1, 8);
   for (std::size_t j = 0; j < 1500; ++j) {
     sources.push_back(sources[j] + Vec3{1e-4, 0, 0});
     w(1500 + j, 0) = -w(j, 0);
@@ -172,7 +165,7 @@ TEST(FastSum, HoldsItsAccuracyWhereWeightsCancel) {
 
 TEST(FastSum, AbsoluteAccuracyIsEnough) {
   const Points points = testing::randomPoints(1000, 1), sources = testing::spherePoints(1000, 2);
-  const Matrix w = randomWeights(1000, 1, 8);
+  const Matrix w = testing::randomWeights(1000, 1, 8);
   const FieldSamples exact = sumCharges(Charges(sources, w), points, false);
   FastSumSettings settings = hierarchical(1e-12, false);
   settings.absolute = 1e-3 * rms(exact.values, 0, 1);
@@ -184,7 +177,7 @@ TEST(FastSum, AbsoluteAccuracyIsEnough) {
 
 TEST(FastSum, ScaleAndPlaceDoNotMatter) {
   const Points points = testing::randomPoints(1000, 1), sources = testing::spherePoints(1000, 1.8);
-  const Matrix w = randomWeights(1000, 3, 8);
+  const Matrix w = testing::randomWeights(1000, 3, 8);
   const FieldSamples here = FastSum(sources, w).at(points, hierarchical(1e-6));
   for (const double scale : {1e-6, 1e6}) {
     Points movedPoints = points, movedSources = sources;
@@ -200,7 +193,7 @@ TEST(FastSum, ScaleAndPlaceDoNotMatter) {
 
 TEST(FastSum, SameForAnyNumberOfThreads) {
   const Points points = testing::randomPoints(5000, 1), sources = testing::randomPoints(3000, 2);
-  const FastSum sum(sources, randomWeights(3000, 3, 1));
+  const FastSum sum(sources, testing::randomWeights(3000, 3, 1));
   FieldSamples one;
   {
     const ThreadLimit limit(1);
@@ -281,7 +274,7 @@ TEST(FastSum, LatticeAgreesWithPlainSums) {
   const LatticeBlocks lattice = ballOfBlocks(48);
   const Points sources = testing::spherePoints(2000, 1.05), points = pointsOf(lattice);
   for (const std::size_t channels : {1, 3, 5}) {
-    const Matrix w = randomWeights(2000, channels, 4);
+    const Matrix w = testing::randomWeights(2000, channels, 4);
     const FieldSamples exact = sumCharges(Charges(sources, w), points, true);
     const FastSum sum(sources, w);
     for (const double accuracy : {1e-3, 1e-5, 1e-7, 1e-10}) {
@@ -300,7 +293,7 @@ TEST(FastSum, LatticeOfOneVoxelOfNoneAndWithoutGradients) {
   LatticeBlocks lattice = ballOfBlocks(8);
   for (auto& b : lattice.blocks) b.wanted = {0, 0, 0, 1 << 27, 0, 0, 0, 0};
   const Points sources = testing::spherePoints(2000, 2);
-  const Matrix w = randomWeights(2000, 3, 4);
+  const Matrix w = testing::randomWeights(2000, 3, 4);
   const FastSum sum(sources, w);
   expectAccurate(onLattice(sum, lattice, hierarchical(1e-6, false)),
                  sumCharges(Charges(sources, w), pointsOf(lattice), false), 1e-6);
@@ -333,7 +326,7 @@ TEST(FastSum, CanBeCancelled) {
   progress.cancel();
   FastSumSettings settings = hierarchical(1e-6);
   settings.progress = &progress;
-  const FastSum sum(sources, randomWeights(3000, 3, 1));
+  const FastSum sum(sources, testing::randomWeights(3000, 3, 1));
   EXPECT_THROW(sum.at(points, settings), Cancelled);
   EXPECT_THROW(sum.onLattice(
                    ballOfBlocks(16), [](std::size_t, const double*, const double*) {}, settings),

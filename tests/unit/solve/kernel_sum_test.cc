@@ -9,13 +9,6 @@
 namespace innermap {
 namespace {
 
-Matrix randomWeights(std::size_t rows, std::size_t columns, std::uint64_t seed) {
-  const CounterRandom random(seed, 3);
-  Matrix w(rows, columns);
-  for (std::size_t i = 0; i < rows * columns; ++i) w.data()[i] = 2 * random.uniform(i) - 1;
-  return w;
-}
-
 // Sum of the absolute terms: what relative rounding errors are relative to.
 void expectSums(const Points& points, const Points& sources, const Matrix& w) {
   const FieldSamples got = sumCharges(Charges(sources, w), points, true);
@@ -45,13 +38,13 @@ TEST(KernelSum, EqualsThePlainLoop) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const std::size_t channels = seed, points = 1 + 97 * (seed - 1), sources = 1 + 61 * (seed - 1);
     expectSums(testing::randomPoints(points, seed), testing::randomPoints(sources, seed + 100),
-               randomWeights(sources, channels, seed));
+               testing::randomWeights(sources, channels, seed));
   }
 }
 
 TEST(KernelSum, CoincidentSourceContributesNothing) {
   const Points points = testing::randomPoints(40, 5);
-  expectSums(points, points, randomWeights(40, 3, 5));
+  expectSums(points, points, testing::randomWeights(40, 3, 5));
 }
 
 TEST(KernelSum, NoSourcesGiveZero) {
@@ -65,13 +58,13 @@ TEST(KernelSum, KeepsDigitsAtAnyScale) {
     Points points = testing::randomPoints(100, 2), sources = testing::randomPoints(50, 3);
     for (Vec3& p : points) p = scale * p;
     for (Vec3& p : sources) p = scale * p;
-    expectSums(points, sources, randomWeights(50, 3, 4));
+    expectSums(points, sources, testing::randomWeights(50, 3, 4));
   }
 }
 
 TEST(KernelSum, SameBitsForAnyNumberOfThreads) {
   const Points points = testing::randomPoints(3000, 11), sources = testing::randomPoints(500, 12);
-  const Charges charges(sources, randomWeights(500, 3, 13));
+  const Charges charges(sources, testing::randomWeights(500, 3, 13));
   const FieldSamples all = sumCharges(charges, points, true);
   const ThreadLimit one(1);
   const FieldSamples single = sumCharges(charges, points, true);
@@ -82,7 +75,7 @@ TEST(KernelSum, SameBitsForAnyNumberOfThreads) {
 
 TEST(KernelSum, MatrixTimesWeightsIsTheSum) {
   const Points points = testing::randomPoints(130, 21), sources = testing::randomPoints(70, 22);
-  const Matrix w = randomWeights(70, 1, 23);
+  const Matrix w = testing::randomWeights(70, 1, 23);
   Matrix a(130, 70);
   fillKernelMatrix(points, sources, 2, a.data(), 130);
   const Matrix sums = sumCharges(Charges(sources, w), points, false).values;

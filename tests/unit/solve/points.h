@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "innermap/core/matrix.h"
 #include "innermap/core/random.h"
 #include "innermap/core/vec3.h"
 
@@ -15,6 +16,14 @@ inline Points randomPoints(std::size_t count, std::uint64_t seed) {
   for (std::size_t i = 0; i < count; ++i)
     for (int a = 0; a < 3; ++a) points[i][a] = 2 * random.uniform(3 * i + a) - 1;
   return points;
+}
+
+// Uniform in [-1, 1], rows x columns.
+inline Matrix randomWeights(std::size_t rows, std::size_t columns, std::uint64_t seed) {
+  const CounterRandom random(seed, 3);
+  Matrix w(rows, columns);
+  for (std::size_t i = 0; i < rows * columns; ++i) w.data()[i] = 2 * random.uniform(i) - 1;
+  return w;
 }
 
 // Fibonacci lattice on the sphere of the given radius about the origin.
