@@ -1,0 +1,34 @@
+// A map beyond its solid, for smoke around a body.
+//
+// Outside, the map is never evaluated (its charges stand there) but extended from the closest
+// boundary point c: E(p) = f(c) + J(c) (p - c). Up to a stated distance it is that, faded to a
+// rigid motion or cut off where it ends.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "innermap/core/vec3.h"
+
+namespace innermap {
+
+struct RigidMotion {
+  Mat3 rotation{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  Vec3 translation;  // p -> rotation p + translation, world units
+
+  Vec3 operator()(const Vec3& p) const;
+};
+
+// The rigid motion that moves `from` onto `to` best by least squares; same number of points, not
+// all in one line. Kabsch, "A solution for the best rotation to relate two sets of vectors" (Acta
+// Cryst. A, 1976). Throws DataError when there are fewer than three points.
+RigidMotion bestRigidMotion(const Points& from, const Points& to);
+
+struct OutsideSettings {
+  double distance = 0;  // fraction of the source's diagonal, in [0, 1]; 0: the solid alone
+  // Where the extension fades to by `distance`, and what moves the rest of the grids beyond;
+  // without one they are cut off there.
+  std::optional<RigidMotion> fadeTo;
+};
+
+}  // namespace innermap

@@ -1,0 +1,41 @@
+// Pull back: grids that live in the target, brought to the source by the solid's map.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "innermap/core/progress.h"
+#include "innermap/field/harmonic_map.h"
+#include "innermap/levelset/solid.h"
+#include "innermap/transfer/carry.h"
+#include "innermap/transfer/outside.h"
+
+namespace innermap {
+
+struct PullSettings {
+  CarrySettings carry;
+  OutsideSettings outside;
+  double skin = 2;              // active voxels outside the surface, in [0, 3]
+  double accuracy = 1e-7;       // of the sums of charges, as EvaluateSettings::accuracy
+  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  Progress* progress = nullptr;
+};
+
+struct PullResult {
+  openvdb::GridPtrVec grids;  // in the order given
+  std::uint64_t voxels = 0;   // active
+  std::vector<std::string> warnings;
+};
+
+// For each voxel p of the source, the grids' values at f(p), moved back by what they are.
+// levelSet: of `source`, half-width at least the skin; its transform is that of the output, which
+// is active where the signed distance is at most the skin. Names, classes, backgrounds, vector
+// types and metadata stay; level sets are rebuilt as distances. Throws as VolumePusher does.
+PullResult pullGrids(const HarmonicMap& map, const Solid& source,
+                     const openvdb::FloatGrid& levelSet, const openvdb::GridPtrVec& grids,
+                     const PullSettings& settings = {});
+
+}  // namespace innermap
