@@ -3,6 +3,7 @@
 
 #include "commands.h"
 #include "evaluation.h"
+#include "saved_map.h"
 
 namespace innermap::tool {
 namespace {
@@ -12,38 +13,15 @@ struct EvaluateOptions {
   EvaluationOptions evaluation;
 };
 
-// The boundaries that the fit had stand in the map's file.
-BoundaryPair boundaryOf(const FieldFile& file, const std::string& path, Context& context) {
-  if (file.boundaryTriangles.empty())
-    throw FileError(path, "holds no boundary; write it with innermap fit or map");
-  Mesh source;
-  source.name = path;
-  source.vertices = file.boundary;
-  source.triangles = file.boundaryTriangles;
-  Mesh target = source;
-  target.vertices = file.boundaryTarget;
-  for (const auto& [key, value] : file.settings) {
-    if (key == "source") source.name = value;
-    if (key == "target") target.name = value;
-  }
-  validate(source);
-  validate(target);
-  return makeBoundaryPair(std::move(source), std::move(target), context);
-}
-
 void run(const EvaluateOptions& options, Context& context) {
   context.willWrite(options.output);
-  std::optional<FieldFile> file;
-  context.timed("read", [&] { file.emplace(readField(options.map)); });
-  if (file->field.channels() != 3)
-    throw FileError(options.map,
-                    fmt::format("has {} channels; a map has 3", file->field.channels()));
-  const BoundaryPair pair = boundaryOf(*file, options.map, context);
+  const FieldFile file = readMap(options.map, context);
+  const BoundaryPair pair = boundaryOf(file, options.map, context);
   const std::uint64_t need = evaluationMemory(pair.solid, options.evaluation);
   if (context.dryRun())
     return context.plan({"evaluate " + options.map, "write grids to " + options.output}, need);
   requireEvaluationMemory(pair.solid, options.evaluation, context);
-  const openvdb::GridPtrVec grids = evaluateGrids(pair, *file, options.evaluation, context);
+  const openvdb::GridPtrVec grids = evaluateGrids(pair, file, options.evaluation, context);
   context.timed("write", [&] { writeGrids(options.output, grids, options.evaluation, context); });
   context.print(evaluationText(context.report()));
 }

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/output/vdb_file.h"
 #include "largest.h"
+#include "saved_map.h"
 
 namespace innermap::tool {
 namespace {
@@ -67,19 +67,6 @@ void describe(const openvdb::GridPtrVec& grids, const MapGrids& totals, const Fi
     number("lame_lambda", options.lame.lambda);
     number("lame_mu", options.lame.mu);
   }
-}
-
-// Of the sums: well below the map's own error, as its file states that.
-double sumAccuracy(const FieldFile& file) {
-  constexpr double kShare = 0.02, kFinest = 1e-9, kCoarsest = 1e-5;
-  double error = 0;
-  for (const auto& [key, value] : file.settings) {
-    // Fitted to the vertices alone, a map is far more exact than its error on triangles says.
-    if (key == "interpolation" && value == "smooth") return kFinest;
-    if (key == "boundary_error_rms") error = std::strtod(value.c_str(), nullptr);
-  }
-  return error > 0 ? std::clamp(kShare * error, kFinest, kCoarsest)
-                   : EvaluateSettings().accuracy;
 }
 
 }  // namespace

@@ -1,0 +1,21 @@
+// A map from its file, with the solid that it was made for.
+#pragma once
+
+#include <string>
+
+#include "boundary_pair.h"
+#include "innermap/field/field_file.h"
+
+namespace innermap::tool {
+
+// Throws FileError for what is not the file of a map with its boundary.
+FieldFile readMap(const std::string& path, Context& context);
+
+// The boundaries that the fit had, which stand in the file.
+BoundaryPair boundaryOf(const FieldFile& file, const std::string& path, Context& context);
+
+// Accuracy of sums of charges, well below the map's own error as its file states that; a fraction
+// of the target's diagonal.
+double sumAccuracy(const FieldFile& file);
+
+}  // namespace innermap::tool
