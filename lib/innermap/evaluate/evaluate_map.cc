@@ -1,15 +1,12 @@
 #include "innermap/evaluate/evaluate_map.h"
 
-#include <openvdb/tree/LeafManager.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/evaluate/active_region.h"
-#include "innermap/evaluate/leaf_plan.h"
+#include "innermap/evaluate/visit_field.h"
 
 namespace innermap {
 namespace {
@@ -36,11 +33,7 @@ struct LeafTotals {
   }
 };
 
-// Leaves that are planned and summed together: bounds the memory for what is not a grid yet.
-constexpr std::size_t kLeavesTogether = 4096;
 constexpr std::size_t kExtentSamples = 500;
-
-using Leaves = openvdb::tree::LeafManager<const openvdb::MaskTree>;
 
 // Where the leaves' values go.
 struct LeafOutput {
@@ -70,15 +63,9 @@ class Evaluation {
 
  private:
   double sumAccuracy() const;
-  std::vector<LeafTotals> evaluateLeaves(const Leaves& leaves, std::size_t begin, std::size_t end,
-                                         const MapGrids& out) const;
-  FieldSamples atSkin(const std::vector<LeafPlan>& plans) const;
+  LeafTotals store(const LeafValues& values, const MapGrids& out) const;
   void store(const Mat3& j, const Vec3& position, double share, std::size_t offset,
              const LeafOutput& out, LeafTotals& totals) const;
-  void storeInside(const LeafPlan& plan, const double* values, const double* gradients,
-                   const LeafOutput& out, LeafTotals& totals) const;
-  void storeSkin(const LeafPlan& plan, const FieldSamples& samples, std::size_t firstRow,
-                 const LeafOutput& out, LeafTotals& totals) const;
 
   const HarmonicMap& map_;
   const Solid& solid_;
@@ -116,77 +103,21 @@ void Evaluation::store(const Mat3& j, const Vec3& position, double share, std::s
   ++totals.active;
 }
 
-void Evaluation::storeInside(const LeafPlan& plan, const double* values, const double* gradients,
-                             const LeafOutput& out, LeafTotals& totals) const {
-  constexpr std::size_t kPoints = 512;
-  auto cut = plan.cut.begin();
-  for (std::size_t i = 0; i < kPoints; ++i) {
-    if (!(plan.inside[i >> 6] >> (i & 63) & 1)) continue;
+LeafTotals Evaluation::store(const LeafValues& values, const MapGrids& out) const {
+  const LeafOutput leaf(out, values.origin);
+  LeafTotals totals;
+  for (std::size_t i = 0; i < values.count; ++i) {
     Mat3 j;
     for (std::size_t r = 0; r < 3; ++r)
-      for (std::size_t a = 0; a < 3; ++a) j[r][a] = gradients[kPoints * (3 * r + a) + i];
-    double share = 1;
-    if (cut != plan.cut.end() && cut->offset == i) share = (cut++)->share;
-    store(j, {values[i], values[kPoints + i], values[2 * kPoints + i]}, share, i, out, totals);
+      for (std::size_t a = 0; a < 3; ++a) j[r][a] = values.gradients[9 * i + 3 * r + a];
+    const double* q = values.values + 3 * i;
+    store(j, {q[0], q[1], q[2]}, values.share[i], values.offset[i], leaf, totals);
+    if (!values.inside[i]) continue;
     const double det = determinant(j);
     ++totals.interior;
     totals.jacobianMin = std::min(totals.jacobianMin, det);
     totals.jacobianMax = std::max(totals.jacobianMax, det);
   }
-}
-
-void Evaluation::storeSkin(const LeafPlan& plan, const FieldSamples& samples, std::size_t firstRow,
-                           const LeafOutput& out, LeafTotals& totals) const {
-  for (std::size_t s = 0; s < plan.skin.size(); ++s) {
-    const LeafPlan::Skin& voxel = plan.skin[s];
-    Mat3 j;
-    Vec3 q;
-    for (int r = 0; r < 3; ++r) {
-      for (int a = 0; a < 3; ++a) j[r][a] = samples.gradients(firstRow + s, 3 * r + a);
-      q[r] = samples.values(firstRow + s, r) + dot(Vec3{j[r][0], j[r][1], j[r][2]}, voxel.beyond);
-    }
-    store(j, q, voxel.share, voxel.offset, out, totals);
-  }
-}
-
-FieldSamples Evaluation::atSkin(const std::vector<LeafPlan>& plans) const {
-  Points points;
-  for (const LeafPlan& plan : plans)
-    for (const LeafPlan::Skin& voxel : plan.skin) points.push_back(voxel.at);
-  return map_.field().evaluate(points, accuracy_, true, settings_.progress);
-}
-
-std::vector<LeafTotals> Evaluation::evaluateLeaves(const Leaves& leaves, std::size_t begin,
-                                                   std::size_t end, const MapGrids& out) const {
-  const std::size_t count = end - begin;
-  std::vector<LeafPlan> plans(count);
-  parallelBlocks(
-      count, 4,
-      [&](std::size_t first, std::size_t last) {
-        for (std::size_t l = first; l < last; ++l)
-          plans[l] = planLeaf(leaves.leaf(begin + l), levelSet_, solid_);
-      },
-      settings_.progress);
-  const FieldSamples skin = atSkin(plans);
-  LatticeBlocks lattice;
-  lattice.spacing = voxel_;
-  const openvdb::Vec3d origin = levelSet_.transform().indexToWorld(openvdb::Vec3d(0));
-  lattice.origin = {origin.x(), origin.y(), origin.z()};
-  std::vector<std::size_t> firstRow(count + 1, 0);
-  for (std::size_t l = 0; l < count; ++l) {
-    const openvdb::Coord first = leaves.leaf(begin + l).origin();
-    lattice.blocks.push_back({{first.x(), first.y(), first.z()}, plans[l].inside});
-    firstRow[l + 1] = firstRow[l] + plans[l].skin.size();
-  }
-  std::vector<LeafTotals> totals(count);
-  map_.field().onLattice(
-      lattice, accuracy_, true,
-      [&](std::size_t l, const double* values, const double* gradients) {
-        const LeafOutput leaf(out, leaves.leaf(begin + l).origin());
-        storeInside(plans[l], values, gradients, leaf, totals[l]);
-        storeSkin(plans[l], skin, firstRow[l], leaf, totals[l]);
-      },
-      settings_.progress, "evaluating the map");
   return totals;
 }
 
@@ -218,12 +149,12 @@ MapGrids Evaluation::run() {
   if (settings_.deformationEnergy)
     out.deformationEnergy = gridLike<openvdb::FloatGrid>(*region, "deformation_energy");
 
-  const Leaves leaves(region->tree());
+  std::vector<LeafTotals> totals(region->tree().leafCount());
+  visitField(map_.field(), solid_, levelSet_, *region,
+             [&](std::size_t leaf, const LeafValues& values) { totals[leaf] = store(values, out); },
+             {accuracy_, "evaluating the map", settings_.progress});
   LeafTotals sum;
-  for (std::size_t begin = 0; begin < leaves.leafCount(); begin += kLeavesTogether) {
-    const std::size_t end = std::min(begin + kLeavesTogether, leaves.leafCount());
-    for (const LeafTotals& t : evaluateLeaves(leaves, begin, end, out)) sum.add(t);
-  }
+  for (const LeafTotals& t : totals) sum.add(t);
   const double cell = voxel_ * voxel_ * voxel_;
   out.volume = sum.volume * cell;
   out.harmonicTotal = sum.harmonic * cell / solid_.volume();

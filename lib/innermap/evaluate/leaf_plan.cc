@@ -1,5 +1,8 @@
 #include "innermap/evaluate/leaf_plan.h"
 
+#include <cmath>
+#include <limits>
+
 #include "innermap/levelset/level_set.h"
 
 namespace innermap {
@@ -25,7 +28,11 @@ LeafPlan planLeaf(const openvdb::MaskTree::LeafNodeType& leaf, const openvdb::Fl
     if (inside) out.inside[offset >> 6] |= std::uint64_t{1} << (offset & 63);
     if (distance <= -kHalfDiagonal * voxel) continue;
     const Vec3 center = toVec3(levelSet.transform().indexToWorld(ijk));
-    const Solid::Closest closest = solid.closest(center, 4 * voxel);
+    // Beyond its band the level set holds a constant.
+    const bool inBand = distance < levelSet.background();
+    const Solid::Closest closest =
+        solid.closest(center, inBand ? 4 * voxel + 2 * std::abs(distance)
+                                     : std::numeric_limits<double>::infinity());
     double share = inside ? 1 : 0;
     Vec3 at = center;
     if (closest.onSurface.triangle >= 0) {
