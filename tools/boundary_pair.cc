@@ -84,51 +84,64 @@ Matrix BoundaryPair::targetsOf(const std::vector<SurfacePoint>& onSurface) const
   return values;
 }
 
-BoundaryPair makeBoundaryPair(Mesh source, Mesh target, Context& context) {
-  MeshReport sourceReport, targetReport;
-  context.timed("check", [&] {
-    sourceReport = check(source, context);
-    targetReport = check(target, context);
-  });
+Mesh movedMesh(const Solid& source, const TargetBoundary& target, const std::string& name) {
+  Mesh moved;
+  moved.name = name;
+  moved.vertices = target.moved;
+  moved.triangles = source.repaired().mesh.triangles;
+  return moved;
+}
+
+Solid makeSourceSolid(const Mesh& source, Context& context) {
+  MeshReport checked;
+  context.timed("check", [&] { checked = check(source, context); });
   SolidSettings settings;
   settings.progress = context.progress();
   std::optional<Solid> solid;
   context.timed("solid", [&] { solid.emplace(source, settings); });
   const RepairedMesh& repaired = solid->repaired();
   for (const std::string& note : repaired.notes) context.note(source.name + ": " + note);
+  Report& report = context.report();
+  report.source = reportOf(source, checked, repaired.caps);
+  report.source->volume = solid->volume();
+  warnOfCrossings("source", checked,
+                  "parts that overlap are united, slight crossings do little harm", context);
+  return *solid;
+}
 
-  BoundaryPair pair{std::move(source), std::move(target), *solid, {}, 0, 0};
-  pair.moved = repairedPositions(repaired, pair.target.vertices);
-  Mesh moved = repaired.mesh;
-  moved.vertices = pair.moved;
-  moved.name = pair.target.name;
-  pair.targetDiagonal = boundingBox(moved).diagonal();
-  if (!(pair.targetDiagonal > 0))
-    throw DataError(pair.target.name +
-                    ": all vertices are in one place; give a target with extent");
+TargetBoundary makeTargetBoundary(const Solid& source, const Mesh& target, Context& context) {
+  TargetBoundary out;
+  out.moved = repairedPositions(source.repaired(), target.vertices);
+  const Mesh moved = movedMesh(source, out, target.name);
+  out.diagonal = boundingBox(moved).diagonal();
+  if (!(out.diagonal > 0))
+    throw DataError(target.name + ": all vertices are in one place; give a target with extent");
   if (isFlat(moved))
-    throw DataError(pair.target.name +
-                    ": lies in a plane, so it has no inside; give another target");
-  context.timed("solid",
-                [&] { pair.targetVolume = volumeOf(moved, pair.solid.overlaps(), settings); });
-  if (!(pair.targetVolume > kNoVolume * std::pow(pair.targetDiagonal, 3))) {
-    pair.targetVolume = 0;
+    throw DataError(target.name + ": lies in a plane, so it has no inside; give another target");
+  SolidSettings settings;
+  settings.progress = context.progress();
+  context.timed("solid", [&] { out.volume = volumeOf(moved, source.overlaps(), settings); });
+  if (!(out.volume > kNoVolume * std::pow(out.diagonal, 3))) {
+    out.volume = 0;
     context.warning(
-        "the target's parts cancel to no volume, so it is turned inside out somewhere; the "
-        "harmonic "
+        target.name +
+        ": its parts cancel to no volume, so it is turned inside out somewhere; the harmonic "
         "energy is not scaled to its unit volume");
   }
+  return out;
+}
 
-  Report& report = context.report();
-  report.source = reportOf(pair.source, sourceReport, repaired.caps);
-  report.source->volume = pair.solid.volume();
-  report.target = reportOf(pair.target, targetReport, repaired.caps);
-  report.target->volume = pair.targetVolume;
-  warnOfCrossings("source", sourceReport,
-                  "parts that overlap are united, slight crossings do little harm", context);
-  warnOfCrossings("target", targetReport,
-                  "no map onto it can be one-to-one there (see innermap check)", context);
-  return pair;
+BoundaryPair makeBoundaryPair(Mesh source, Mesh target, Context& context) {
+  const Solid solid = makeSourceSolid(source, context);
+  MeshReport checked;
+  context.timed("check", [&] { checked = check(target, context); });
+  TargetBoundary boundary = makeTargetBoundary(solid, target, context);
+  context.report().target = reportOf(target, checked, solid.repaired().caps);
+  context.report().target->volume = boundary.volume;
+  warnOfCrossings("target", checked, "no map onto it can be one-to-one there (see innermap check)",
+                  context);
+  return {std::move(source),         std::move(target), solid,
+          std::move(boundary.moved), boundary.volume,   boundary.diagonal};
 }
 
 BoundaryPair readBoundaryPair(const std::string& sourcePath, const std::string& targetPath,

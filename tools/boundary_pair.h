@@ -11,6 +11,23 @@
 
 namespace innermap::tool {
 
+// Where one target, a pose or a frame, takes the boundary of a source.
+struct TargetBoundary {
+  Points moved;         // positions of all vertices of solid.repaired().mesh
+  double volume = 0;    // world units cubed; 0 when its parts cancel
+  double diagonal = 0;  // world units
+};
+
+// The source alone, checked and repaired; its notes, warnings and figures go to the context. Serves
+// any number of targets. Throws what Solid throws.
+Solid makeSourceSolid(const Mesh& source, Context& context);
+
+// target: of the source's connectivity. Throws DataError when it has no extent or is flat.
+TargetBoundary makeTargetBoundary(const Solid& source, const Mesh& target, Context& context);
+
+// The target as a mesh that bounds a solid: the source's repaired triangles, moved.
+Mesh movedMesh(const Solid& source, const TargetBoundary& target, const std::string& name);
+
 struct BoundaryPair {
   Mesh source, target;        // as read, same connectivity
   Solid solid;                // of the source
