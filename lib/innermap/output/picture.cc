@@ -71,6 +71,12 @@ void Picture::set(int x, int y, Rgb colour) {
             pixels_.begin() + (static_cast<std::ptrdiff_t>(y) * width_ + x) * 3);
 }
 
+void Picture::blend(int x, int y, Rgb colour, float share) {
+  if (x < 0 || y < 0 || x >= width_ || y >= height_) return;
+  float* pixel = pixels_.data() + (static_cast<std::size_t>(y) * width_ + x) * 3;
+  for (int c = 0; c < 3; ++c) pixel[c] += share * (colour[c] - pixel[c]);
+}
+
 void Picture::fill(int x0, int y0, int x1, int y1, Rgb colour) {
   for (int y = std::max(0, y0); y < std::min(height_, y1); ++y)
     for (int x = std::max(0, x0); x < std::min(width_, x1); ++x) set(x, y, colour);

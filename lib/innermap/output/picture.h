@@ -25,6 +25,7 @@ class Picture {
   int height() const { return height_; }
 
   void set(int x, int y, Rgb colour);                      // outside the picture: nothing
+  void blend(int x, int y, Rgb colour, float share);       // over what is there; share 0..1
   void fill(int x0, int y0, int x1, int y1, Rgb colour);   // [x0, x1) x [y0, y1)
   void frame(int x0, int y0, int x1, int y1, Rgb colour);  // one pixel wide, outside the box
 
