@@ -21,6 +21,7 @@ std::string defaultOf(const Target& target) {
     std::string operator()(const std::optional<std::uint64_t>*) const { return ""; }
     std::string operator()(const std::optional<double>*) const { return ""; }
     std::string operator()(const std::optional<NumberPair>*) const { return ""; }
+    std::string operator()(const std::vector<std::string>*) const { return ""; }
   };
   return std::visit(Visitor{}, target);
 }
@@ -57,6 +58,8 @@ CLI::Option* declare(CLI::App& app, Given& given) {
   const Option& o = *given.option;
   const std::string names = o.shortName.empty() ? o.name : o.shortName + "," + o.name;
   if (o.isFlag()) return app.add_flag(names, given.flag);
+  if (o.isList())
+    return app.add_option(names, given.values)->expected(1, CLI::detail::expected_max_vector_size);
   // A positional list would swallow the arguments of those after it.
   if (o.isPositional())
     return app.add_option_function<std::string>(
@@ -97,7 +100,7 @@ void take(const Command& command, const Given& given) {
     if (given.flag) *std::get<bool*>(o.target) = true;
     return;
   }
-  if (given.values.size() > 1) refuse(command, o.name + " is given more than once");
+  if (given.values.size() > 1 && !o.isList()) refuse(command, o.name + " is given more than once");
   if (given.values.empty()) {
     if (o.required)
       refuse(command, o.isPositional()
@@ -108,7 +111,7 @@ void take(const Command& command, const Given& given) {
   const std::string& text = given.values.front();
   if (!o.isPositional() && text.size() > 2 && text.compare(0, 2, "--") == 0)
     refuse(command, fmt::format("{} needs a value, not '{}'", o.name, text));
-  parseInto(o, text);
+  for (const std::string& value : given.values) parseInto(o, value);
 }
 
 }  // namespace

@@ -65,12 +65,22 @@ class UsageError : public Error {
   using Error::Error;
 };
 
+// Cancelled when some of the results are in place and stay there; `what` says which.
+class CancelledLate : public Cancelled {
+ public:
+  explicit CancelledLate(std::string what) : what_(std::move(what)) {}
+  const char* what() const noexcept override { return what_.c_str(); }
+
+ private:
+  std::string what_;
+};
+
 class Command {
  public:
   Command(std::string name, std::string summary)
       : name_(std::move(name)), summary_(std::move(summary)) {}
 
-  // Arguments without a name, in order; required unless .optional().
+  // Arguments without a name, in order; required unless .optional(). The last may be a list.
   OptionBuilder positional(const std::string& name, Target target, const std::string& help);
   OptionBuilder option(const std::string& name, const std::string& placeholder, Target target,
                        const std::string& help);

@@ -22,6 +22,8 @@ Context::~Context() = default;
 
 Progress* Context::progress() const { return &progress_; }
 
+void Context::setPart(const std::string& part) { progress_.setPart(part); }
+
 void Context::plan(const std::vector<std::string>& lines, std::uint64_t bytes) {
   for (const std::string& line : lines) print(line + "\n");
   print(fmt::format("memory: about {} of at most {}{}\n", formatBytes(bytes),

@@ -34,6 +34,10 @@ class Context {
 
   Progress* progress() const;
 
+  // For commands that do the same for several things, say frames: which one is under way, shown
+  // with the progress. Empty: none.
+  void setPart(const std::string& part);
+
   // Bytes: --max-memory, or 80% of the machine's.
   std::uint64_t maxMemory() const { return maxMemory_; }
 

@@ -59,7 +59,8 @@ std::string optionLine(const Option& o) {
 std::string usageLine(const Command& command) {
   std::string line = "innermap " + command.name();
   for (const Option& o : command.options())
-    if (o.isPositional()) line += o.required ? " " + o.name : " [" + o.name + "]";
+    if (o.isPositional())
+      line += (o.required ? " " + o.name : " [" + o.name + "]") + (o.isList() ? "..." : "");
   for (const Option& o : command.options())
     if (o.required && !o.isPositional())
       line += " " + (o.shortName.empty() ? o.name : o.shortName) + " " + o.placeholder;

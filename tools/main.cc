@@ -86,6 +86,8 @@ int run(const std::vector<std::string>& arguments) {
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
       return fail(kFailed, "standard output cannot be written");
     return kDone;
+  } catch (const CancelledLate& cancelled) {
+    return fail(kCancelled, cancelled.what());
   } catch (const Cancelled&) {
     return fail(kCancelled, "cancelled; nothing was written");
   } catch (const UsageError& error) {

@@ -104,6 +104,7 @@ void parseInto(const Option& option, const std::string& text) {
       *to = parseNumber<double>(option, text, "a number");
     }
     void operator()(std::optional<NumberPair>* to) const { *to = parsePair(option, text); }
+    void operator()(std::vector<std::string>* to) const { to->push_back(parseText(option, text)); }
   };
   std::visit(Visitor{option, text}, option.target);
 }

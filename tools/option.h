@@ -14,10 +14,11 @@ namespace innermap::tool {
 // Two numbers, "LO,HI" on the command line.
 using NumberPair = std::pair<double, double>;
 
-// Where the value goes. std::uint64_t serves std::size_t too.
-using Target =
-    std::variant<bool*, int*, std::uint64_t*, double*, std::string*, std::optional<int>*,
-                 std::optional<std::uint64_t>*, std::optional<double>*, std::optional<NumberPair>*>;
+// Where the value goes. std::uint64_t serves std::size_t too. A list is for the last positional
+// argument alone, which then takes all that follow.
+using Target = std::variant<bool*, int*, std::uint64_t*, double*, std::string*, std::optional<int>*,
+                            std::optional<std::uint64_t>*, std::optional<double>*,
+                            std::optional<NumberPair>*, std::vector<std::string>*>;
 
 struct Option {
   std::string name;         // "--voxel-size"; a positional argument's is in capitals: "MESH"
@@ -34,6 +35,7 @@ struct Option {
   Target target;
 
   bool isFlag() const { return std::holds_alternative<bool*>(target); }
+  bool isList() const { return std::holds_alternative<std::vector<std::string>*>(target); }
   bool isPositional() const { return name[0] != '-'; }
   bool hasRange() const { return lower > -1e300 || upper < 1e300; }
 };

@@ -9,6 +9,11 @@
 #include "innermap/evaluate/evaluate_map.h"
 
 namespace innermap::tool {
+namespace {
+
+constexpr double kFinestSum = 1e-9;
+
+}  // namespace
 
 FieldFile readMap(const std::string& path, Context& context) {
   std::optional<FieldFile> file;
@@ -37,14 +42,18 @@ BoundaryPair boundaryOf(const FieldFile& file, const std::string& path, Context&
 }
 
 double sumAccuracy(const FieldFile& file) {
-  constexpr double kShare = 0.02, kFinest = 1e-9, kCoarsest = 1e-5;
   double error = 0;
   for (const auto& [key, value] : file.settings) {
     // Fitted to the vertices alone, a map is far more exact than its error on triangles says.
-    if (key == "interpolation" && value == "smooth") return kFinest;
+    if (key == "interpolation" && value == "smooth") return kFinestSum;
     if (key == "boundary_error_rms") error = std::strtod(value.c_str(), nullptr);
   }
-  return error > 0 ? std::clamp(kShare * error, kFinest, kCoarsest) : EvaluateSettings().accuracy;
+  return error > 0 ? sumAccuracy(error) : EvaluateSettings().accuracy;
+}
+
+double sumAccuracy(double boundaryErrorRms) {
+  constexpr double kShare = 0.02, kCoarsest = 1e-5;
+  return std::clamp(kShare * boundaryErrorRms, kFinestSum, kCoarsest);
 }
 
 }  // namespace innermap::tool

@@ -18,4 +18,7 @@ BoundaryPair boundaryOf(const FieldFile& file, const std::string& path, Context&
 // of the target's diagonal.
 double sumAccuracy(const FieldFile& file);
 
+// The same for a map whose boundary error has that root mean square.
+double sumAccuracy(double boundaryErrorRms);
+
 }  // namespace innermap::tool

@@ -42,6 +42,11 @@ void TerminalProgress::report(std::string_view stage, double fraction) {
     writeLine(stage, share);
 }
 
+void TerminalProgress::setPart(const std::string& part) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  part_ = part;
+}
+
 void TerminalProgress::drawBar(std::string_view stage, double fraction) {
   const auto now = Clock::now();
   if (drawn_ && stage == stage_ && now - last_ < kRedraw) return;
@@ -49,11 +54,12 @@ void TerminalProgress::drawBar(std::string_view stage, double fraction) {
   stage_ = stage;
   drawn_ = true;
   const int room = terminalWidth() - 1;
-  const int label = std::clamp(room / 3, 8, 32);
+  const int label = part_.empty() ? std::clamp(room / 3, 8, 32) : std::clamp(room / 2, 8, 56);
+  const std::string text = part_.empty() ? std::string(stage) : part_ + ": " + stage_;
   const int width = std::max(4, room - label - 9);
   const int full = static_cast<int>(std::lround(fraction * width));
   const std::string line =
-      fmt::format("\r{:<{}.{}} [{}{}] {:3.0f}%\x1b[K", stage, label, label, std::string(full, '='),
+      fmt::format("\r{:<{}.{}} [{}{}] {:3.0f}%\x1b[K", text, label, label, std::string(full, '='),
                   std::string(width - full, ' '), 100 * fraction);
   std::fwrite(line.data(), 1, line.size(), stderr);
   std::fflush(stderr);
@@ -61,13 +67,15 @@ void TerminalProgress::drawBar(std::string_view stage, double fraction) {
 
 void TerminalProgress::writeLine(std::string_view stage, double fraction) {
   const auto now = Clock::now();
-  const bool first = seen_.insert(std::string(stage)).second;
+  const std::string text = part_.empty() ? std::string(stage) : part_;
+  const bool first = seen_.insert(text).second;
   if (!first && now - last_ < kLineEvery) return;
   last_ = now;
   if (first)
-    std::fprintf(stderr, "%s\n", std::string(stage).c_str());
+    std::fprintf(stderr, "%s\n", text.c_str());
   else
-    std::fprintf(stderr, "%s: %.0f%%\n", std::string(stage).c_str(), 100 * fraction);
+    std::fprintf(stderr, "%s: %s%.0f%%\n", text.c_str(),
+                 part_.empty() ? "" : (std::string(stage) + ", ").c_str(), 100 * fraction);
 }
 
 void TerminalProgress::clear() {

@@ -22,6 +22,10 @@ class TerminalProgress : public Progress {
 
   void report(std::string_view stage, double fraction) override;
 
+  // What stands before each stage from now on: which of several parts is under way. As plain lines
+  // each part is told once, not its stages.
+  void setPart(const std::string& part);
+
   // Takes the bar away, so that a message can be written.
   void clear();
 
@@ -33,6 +37,7 @@ class TerminalProgress : public Progress {
   const Style style_;
   std::mutex mutex_;
   Clock::time_point last_{};
+  std::string part_;
   std::string stage_;           // last shown
   std::set<std::string> seen_;  // stages that have had their line
   bool drawn_ = false;          // a bar stands on the terminal
