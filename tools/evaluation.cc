@@ -53,12 +53,11 @@ void fillReport(const MapGrids& grids, double voxelSize, const EvaluationOptions
 
 void describe(const openvdb::GridPtrVec& grids, const MapGrids& totals, const FieldFile& file,
               const EvaluationOptions& options) {
+  describe(grids, file);
   for (const openvdb::GridBase::Ptr& grid : grids) {
     const auto number = [&grid](const char* key, double value) {
       grid->insertMeta(std::string("innermap_") + key, openvdb::DoubleMetadata(value));
     };
-    for (const auto& [key, value] : file.settings)
-      grid->insertMeta("innermap_" + key, openvdb::StringMetadata(value));
     number("harmonic_energy_total", totals.harmonicTotal);
     number("deformation_energy_total", totals.deformationTotal);
     number("jacobian_min", totals.jacobianMin);

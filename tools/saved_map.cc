@@ -41,6 +41,21 @@ BoundaryPair boundaryOf(const FieldFile& file, const std::string& path, Context&
   return makeBoundaryPair(std::move(source), std::move(target), context);
 }
 
+Solid targetSolid(const BoundaryPair& pair, Context& context) {
+  Mesh target = pair.solid.repaired().mesh;
+  target.vertices = pair.moved;
+  target.name = pair.target.name;
+  SolidSettings settings;
+  settings.progress = context.progress();
+  return Solid(target, settings);
+}
+
+void describe(const openvdb::GridPtrVec& grids, const FieldFile& file) {
+  for (const openvdb::GridBase::Ptr& grid : grids)
+    for (const auto& [key, value] : file.settings)
+      grid->insertMeta("innermap_" + key, openvdb::StringMetadata(value));
+}
+
 double sumAccuracy(const FieldFile& file) {
   double error = 0;
   for (const auto& [key, value] : file.settings) {

@@ -1,6 +1,8 @@
 // A map from its file, with the solid that it was made for.
 #pragma once
 
+#include <openvdb/openvdb.h>
+
 #include <string>
 
 #include "boundary_pair.h"
@@ -13,6 +15,12 @@ FieldFile readMap(const std::string& path, Context& context);
 
 // The boundaries that the fit had, which stand in the file.
 BoundaryPair boundaryOf(const FieldFile& file, const std::string& path, Context& context);
+
+// The solid that the target bounds.
+Solid targetSolid(const BoundaryPair& pair, Context& context);
+
+// The map's settings and certificate as metadata of grids made with it (prefix innermap_).
+void describe(const openvdb::GridPtrVec& grids, const FieldFile& file);
 
 // Accuracy of sums of charges, well below the map's own error as its file states that; a fraction
 // of the target's diagonal.

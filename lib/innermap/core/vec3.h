@@ -48,6 +48,35 @@ inline double determinant(const Mat3& m) {
              cross(Vec3{m[1][0], m[1][1], m[1][2]}, Vec3{m[2][0], m[2][1], m[2][2]}));
 }
 
+inline Vec3 operator*(const Mat3& m, const Vec3& v) {
+  Vec3 out;
+  for (int r = 0; r < 3; ++r) out[r] = m[r][0] * v.x + m[r][1] * v.y + m[r][2] * v.z;
+  return out;
+}
+
+inline Mat3 product(const Mat3& a, const Mat3& b) {
+  Mat3 out{};
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c)
+      out[r][c] = a[r][0] * b[0][c] + a[r][1] * b[1][c] + a[r][2] * b[2][c];
+  return out;
+}
+
+inline Mat3 transposed(const Mat3& m) {
+  return {{{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}}};
+}
+
+// Entries that are not finite where the determinant is 0.
+inline Mat3 inverse(const Mat3& m) {
+  const Vec3 a{m[0][0], m[0][1], m[0][2]}, b{m[1][0], m[1][1], m[1][2]},
+      c{m[2][0], m[2][1], m[2][2]};
+  const Vec3 bc = cross(b, c), ca = cross(c, a), ab = cross(a, b);
+  const double d = 1 / dot(a, bc);
+  return {{{d * bc.x, d * ca.x, d * ab.x},
+           {d * bc.y, d * ca.y, d * ab.y},
+           {d * bc.z, d * ca.z, d * ab.z}}};
+}
+
 // Axis-aligned box; empty until the first point is added.
 struct Box3 {
   Vec3 lower{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),

@@ -33,8 +33,6 @@ struct LeafTotals {
   }
 };
 
-constexpr std::size_t kExtentSamples = 500;
-
 // Where the leaves' values go.
 struct LeafOutput {
   Vec3Leaf* map = nullptr;
@@ -56,13 +54,12 @@ class Evaluation {
     voxel_ = levelSet.voxelSize()[0];
     const double target = settings.targetVolume > 0 ? settings.targetVolume : solid.volume();
     unitVolumeScale_ = std::pow(solid.volume() / target, 2.0 / 3);
-    accuracy_ = sumAccuracy();
+    accuracy_ = settings.accuracy * targetExtent(map, solid);
   }
 
   MapGrids run();
 
  private:
-  double sumAccuracy() const;
   LeafTotals store(const LeafValues& values, const MapGrids& out) const;
   void store(const Mat3& j, const Vec3& position, double share, std::size_t offset,
              const LeafOutput& out, LeafTotals& totals) const;
@@ -74,17 +71,6 @@ class Evaluation {
   double voxel_ = 0, unitVolumeScale_ = 1;
   double accuracy_ = 0;  // of sums, world units of the target
 };
-
-// World units of the target.
-double Evaluation::sumAccuracy() const {
-  const Points& vertices = solid_.surface().vertices;
-  const std::size_t count = std::min(kExtentSamples, vertices.size());
-  Points some(count), images(count);
-  for (std::size_t i = 0; i < count; ++i) some[i] = vertices[i * vertices.size() / count];
-  map_.evaluate(some.data(), count, images.data(), nullptr);
-  const double extent = boundingBox(images).diagonal();
-  return settings_.accuracy * (extent > 0 ? extent : 1);
-}
 
 void Evaluation::store(const Mat3& j, const Vec3& position, double share, std::size_t offset,
                        const LeafOutput& out, LeafTotals& totals) const {
@@ -176,6 +162,17 @@ std::vector<openvdb::GridBase::Ptr> MapGrids::all() const {
         openvdb::GridBase::Ptr(harmonicEnergy), openvdb::GridBase::Ptr(deformationEnergy)})
     if (grid) grids.push_back(grid);
   return grids;
+}
+
+double targetExtent(const HarmonicMap& map, const Solid& solid) {
+  constexpr std::size_t kSamples = 500;
+  const Points& vertices = solid.surface().vertices;
+  const std::size_t count = std::min(kSamples, vertices.size());
+  Points some(count), images(count);
+  for (std::size_t i = 0; i < count; ++i) some[i] = vertices[i * vertices.size() / count];
+  map.evaluate(some.data(), count, images.data(), nullptr);
+  const double extent = boundingBox(images).diagonal();
+  return extent > 0 ? extent : 1;
 }
 
 MapGrids evaluateMap(const HarmonicMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,

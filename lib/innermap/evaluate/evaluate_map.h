@@ -46,6 +46,10 @@ struct MapGrids {
   std::vector<openvdb::GridBase::Ptr> all() const;  // those that were asked for
 };
 
+// Diagonal of the box of the boundary's image, at some hundred points, world units; 1 where that is
+// 0. The unit of EvaluateSettings::accuracy.
+double targetExtent(const HarmonicMap& map, const Solid& solid);
+
 // levelSet: of the same solid, half-width at least the skin. Throws SettingError, MemoryError,
 // Cancelled. Deterministic for any number of threads.
 MapGrids evaluateMap(const HarmonicMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,

@@ -20,8 +20,8 @@ struct RigidMotion {
 };
 
 // The rigid motion that moves `from` onto `to` best by least squares; same number of points, not
-// all in one line. Kabsch, "A solution for the best rotation to relate two sets of vectors" (Acta
-// Cryst. A, 1976). Throws DataError when there are fewer than three points.
+// all in one line. Horn, "Closed-form solution of absolute orientation using unit quaternions" (J.
+// Opt. Soc. Am. A, 1987). Throws DataError when there are fewer than three pairs.
 RigidMotion bestRigidMotion(const Points& from, const Points& to);
 
 struct OutsideSettings {

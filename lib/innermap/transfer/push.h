@@ -1,8 +1,10 @@
-// Push forward: grids that live in a source solid, carried to the target by the solid's map.
+// Push forward: grids that live in a source solid, carried to the target by the
+// solid's map.
 //
-// For each voxel q of the target the point p with f(p) = q is found: cells of a lattice through the
-// source are mapped, those whose image holds q give the start, Newton steps with the analytic
-// Jacobian do the rest. The grids are sampled at p.
+// For each voxel q of the target the point p with f(p) = q is found: cells of a
+// lattice through the source are mapped, those whose image holds q give the
+// start, Newton steps with the analytic Jacobian do the rest. The grids are
+// sampled at p.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -17,6 +19,7 @@
 #include "innermap/field/harmonic_map.h"
 #include "innermap/levelset/solid.h"
 #include "innermap/transfer/carry.h"
+#include "innermap/transfer/inverse_map.h"
 #include "innermap/transfer/outside.h"
 
 namespace innermap {
@@ -25,50 +28,51 @@ struct PushSettings {
   CarrySettings carry;
   OutsideSettings outside;
   double skin = 2;              // active voxels outside the target's surface, in [0, 3]
-  double tolerance = 1e-3;      // of f(p) = q, target voxels, in [1e-6, 0.1]
+  double tolerance = 1e-3;      // of f(p) = q, target voxels, in [1e-6, 0.01]
   double accuracy = 1e-7;       // of the sums of charges, as EvaluateSettings::accuracy
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;
 };
 
-// A harmonic field on the source that is written on the target's voxels: at q its value at p.
+// A harmonic field on the source that is written on the target's voxels: at q
+// its value at p.
 struct CarriedField {
   std::string name;
   HarmonicField field;  // one channel: a float grid, three: Vec3f
   openvdb::VecType vectorType = openvdb::VEC_INVARIANT;
 };
 
-struct PushStatistics {
-  std::uint64_t voxels = 0;     // active in the output
-  std::uint64_t inverted = 0;   // with residual within 0.01 voxel
-  std::uint64_t uncovered = 0;  // that no mapped cell covers: folds, and gaps at the boundary
-  std::uint64_t failed = 0;     // not inverted: they have the values of the nearest that is
-  double largestResidual = 0;   // of those inverted, target voxels
-  Box3 failedBox;               // world units of the target
-  std::vector<Vec3> failedAt;   // some of them, at most 16
+// Sum of a density's active values times the voxel's volume, in the source and
+// in the target.
+struct CarriedMass {
+  std::string name;
+  double before = 0, after = 0;
 };
 
 struct PushResult {
   openvdb::GridPtrVec grids;  // in the order given, then the fields
-  PushStatistics statistics;
+  InverseStatistics statistics;
+  std::vector<CarriedMass> masses;  // of grids carried as densities
   std::vector<std::string> warnings;
 };
 
-// Keeps what the source alone decides; serves any number of maps (the frames of a sequence).
-// Immutable; one push at a time uses all threads.
+// Keeps what the source alone decides; serves any number of maps (the frames of
+// a sequence). Immutable; one push at a time uses all threads.
 class VolumePusher {
  public:
-  // Throws DataError for a grid of a type that cannot be carried, a tensor with a part missing or
-  // no active voxel near the solid in any grid; SettingError; MemoryError; Cancelled.
+  // Throws DataError for a grid of a type that cannot be carried, a tensor with
+  // a part missing or no active voxel near the solid in any grid; SettingError;
+  // MemoryError; Cancelled.
   VolumePusher(const Solid& source, const openvdb::GridPtrVec& grids,
                const PushSettings& settings = {});
 
-  // targetLevelSet: of the target, class level set, half-width at least the skin; its transform is
-  // that of the output. Output grids keep name, class, background, vector type and metadata; they
-  // are active where the target's signed distance is at most the skin. Level sets are rebuilt as
-  // distances. Same result for any number of threads.
-  PushResult push(const HarmonicMap& map, const Solid& target,
-                  const openvdb::FloatGrid& targetLevelSet,
+  // targetLevelSet: of the target, class level set, half-width at least the
+  // skin; its transform is that of the output. Output grids keep name, class,
+  // background, vector type and metadata; they are active where the target's
+  // signed distance is at most the skin. Level sets are rebuilt as distances.
+  // With outside settings, also where the volume around the source comes to.
+  // Throws as invertMap does. Same result for any number of threads.
+  PushResult push(const HarmonicMap& map, const openvdb::FloatGrid& targetLevelSet,
                   const std::vector<CarriedField>& fields = {}) const;
 
  private:

@@ -1,0 +1,95 @@
+#include "innermap/transfer/pull.h"
+
+#include "innermap/core/error.h"
+#include "innermap/evaluate/active_region.h"
+#include "innermap/evaluate/evaluate_map.h"
+#include "innermap/transfer/carry_output.h"
+#include "innermap/transfer/extended_map.h"
+#include "innermap/transfer/inverse_map.h"
+#include "innermap/transfer/source_lattice.h"
+
+namespace innermap {
+namespace {
+
+class Pull {
+ public:
+  Pull(const HarmonicMap& map, const Solid& source, const openvdb::FloatGrid& levelSet,
+       const PullSettings& settings)
+      : settings_(settings),
+        map_(map, source, levelSet, settings.outside,
+             settings.accuracy * targetExtent(map, source)) {}
+
+  PullResult run(const openvdb::GridPtrVec& grids);
+
+ private:
+  openvdb::MaskGrid::Ptr region(const openvdb::GridPtrVec& grids) const;
+  Points movedBack(const Points& positions) const;
+
+  const PullSettings& settings_;
+  ExtendedMap map_;
+};
+
+// Of the source's solid, and what is around it as far as the map is extended.
+openvdb::MaskGrid::Ptr Pull::region(const openvdb::GridPtrVec& grids) const {
+  openvdb::MaskGrid::Ptr region =
+      activeRegion(map_.levelSet(), settings_.skin, outputBytesPerVoxel(grids), settings_.maxMemory,
+                   settings_.progress);
+  if (!(settings_.outside.distance > 0)) return region;
+  addAround(*region, map_.solid(), map_.reach(), outputBytesPerVoxel(grids) + 16,
+            settings_.maxMemory, settings_.progress);
+  return region;
+}
+
+// The inverse map at positions of the target, found only when a grid holds
+// positions.
+Points Pull::movedBack(const Points& positions) const {
+  if (!settings_.targetLevelSet)
+    throw DataError(
+        "pull: positions (contravariant absolute vectors) need the "
+        "target's level set");
+  const SourceLattice lattice =
+      makeSourceLattice(map_.solid(), {}, {}, settings_.maxMemory, settings_.progress);
+  InverseSettings inverse;
+  inverse.accuracy = settings_.accuracy;
+  inverse.maxMemory = settings_.maxMemory;
+  inverse.progress = settings_.progress;
+  const InvertedMap inverted =
+      invertMap(map_.map(), map_.solid(), lattice, *settings_.targetLevelSet, inverse);
+  return invertAt(map_.map(), map_.solid(), lattice, inverted, positions, inverse);
+}
+
+PullResult Pull::run(const openvdb::GridPtrVec& grids) {
+  PullResult out;
+  if (settings_.targetLevelSet && !(settings_.outside.distance > 0))
+    requireMeeting(grids, *settings_.targetLevelSet, "of the map's target", out.warnings,
+                   settings_.progress);
+  const Carriers carriers =
+      makeCarriers(grids, settings_.carry, settings_.targetLevelSet, settings_.progress);
+  const openvdb::MaskGrid::Ptr active = region(grids);
+  CarryOutput output(carriers, *active);
+  map_.visit(
+      *active,
+      [&](std::size_t, const LeafValues& leaf, const std::vector<MapSample>& samples) {
+        std::vector<Site> sites;
+        for (const MapSample& s : samples) sites.push_back({s.image, inverse(s.jacobian)});
+        output.carry(leaf.origin, sites.data());
+      },
+      "pulling the grids", settings_.progress);
+  out.grids =
+      output.finish([&](const Points& points) { return movedBack(points); }, settings_.progress);
+  noteOutside(out.grids, settings_.outside);
+  out.voxels = active->activeVoxelCount();
+  return out;
+}
+
+}  // namespace
+
+PullResult pullGrids(const HarmonicMap& map, const Solid& source,
+                     const openvdb::FloatGrid& levelSet, const openvdb::GridPtrVec& grids,
+                     const PullSettings& settings) {
+  if (!(settings.accuracy >= 1e-12 && settings.accuracy <= 1e-3))
+    throw SettingError("accuracy", "must lie in [1e-12, 1e-3] of the target's extent");
+  return Pull(map, source, levelSet, settings).run(grids);
+}
+
+}  // namespace innermap

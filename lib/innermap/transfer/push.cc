@@ -1,0 +1,118 @@
+#include "innermap/transfer/push.h"
+
+#include <cmath>
+
+#include "innermap/core/parallel.h"
+#include "innermap/evaluate/evaluate_map.h"
+#include "innermap/transfer/carry_output.h"
+#include "innermap/transfer/extended_map.h"
+#include "innermap/transfer/field_grid.h"
+#include "innermap/transfer/source_lattice.h"
+
+namespace innermap {
+namespace {
+
+InverseSettings inverseSettings(const PushSettings& s) {
+  InverseSettings out;
+  out.outside = s.outside;
+  out.skin = s.skin;
+  out.tolerance = s.tolerance;
+  out.accuracy = s.accuracy;
+  out.maxMemory = s.maxMemory;
+  out.progress = s.progress;
+  return out;
+}
+
+double massOf(const openvdb::GridBase& grid) {
+  const auto sum = [](const auto& typed) {
+    double total = 0;
+    for (auto value = typed.cbeginValueOn(); value; ++value)
+      total += static_cast<double>(*value) * static_cast<double>(value.getVoxelCount());
+    return total * std::abs(typed.transform().baseMap()->determinant());
+  };
+  if (grid.isType<openvdb::FloatGrid>()) return sum(static_cast<const openvdb::FloatGrid&>(grid));
+  return sum(static_cast<const openvdb::DoubleGrid&>(grid));
+}
+
+}  // namespace
+
+struct VolumePusher::Data {
+  Solid source;
+  openvdb::GridPtrVec grids;
+  PushSettings settings;
+  SourceLattice lattice;
+  Carriers carriers;
+  std::vector<std::string> warnings;
+
+  openvdb::GridPtrVec carry(const HarmonicMap& map, const InvertedMap& inverted) const;
+};
+
+VolumePusher::VolumePusher(const Solid& source, const openvdb::GridPtrVec& grids,
+                           const PushSettings& settings) {
+  auto data = std::make_shared<Data>(Data{source, grids, settings, {}, {}, {}});
+  data->lattice =
+      makeSourceLattice(source, settings.outside, grids, settings.maxMemory, settings.progress);
+  if (!grids.empty() && !(settings.outside.distance > 0))
+    requireMeeting(grids, *data->lattice.levelSet, source.surface().name, data->warnings,
+                   settings.progress);
+  data->carriers =
+      makeCarriers(grids, settings.carry, data->lattice.levelSet.get(), settings.progress);
+  data_ = std::move(data);
+}
+
+openvdb::GridPtrVec VolumePusher::Data::carry(const HarmonicMap& map,
+                                              const InvertedMap& inverted) const {
+  CarryOutput output(carriers, *inverted.region);
+  std::vector<openvdb::Coord> origins;
+  for (auto leaf = inverted.region->tree().cbeginLeaf(); leaf; ++leaf)
+    origins.push_back(leaf->origin());
+  parallelBlocks(
+      origins.size(), 8,
+      [&](std::size_t begin, std::size_t end) {
+        std::vector<Site> sites;
+        for (std::size_t l = begin; l < end; ++l) {
+          sites.clear();
+          for (std::size_t i = inverted.first[l]; i < inverted.first[l + 1]; ++i) {
+            Site site{inverted.sources[i], {}};
+            for (std::size_t k = 0; k < 9; ++k)
+              site.derivative[k / 3][k % 3] = static_cast<double>(inverted.jacobians[i][k]);
+            sites.push_back(site);
+          }
+          output.carry(origins[l], sites.data());
+        }
+      },
+      settings.progress, "carrying the grids");
+  const ExtendedMap extended(map, source, *lattice.levelSet, settings.outside,
+                             settings.accuracy * targetExtent(map, source));
+  return output.finish(
+      [&](const Points& points) {
+        Points out;
+        for (const MapSample& s : extended.at(points, settings.progress)) out.push_back(s.image);
+        return out;
+      },
+      settings.progress);
+}
+
+PushResult VolumePusher::push(const HarmonicMap& map, const openvdb::FloatGrid& targetLevelSet,
+                              const std::vector<CarriedField>& fields) const {
+  const Data& d = *data_;
+  const InvertedMap inverted =
+      invertMap(map, d.source, d.lattice, targetLevelSet, inverseSettings(d.settings));
+  PushResult out;
+  out.statistics = inverted.statistics;
+  out.warnings = d.warnings;
+  out.grids = d.carry(map, inverted);
+  for (const auto& carrier : d.carriers)
+    if (carrier->isDensity()) {
+      const std::size_t place = carrier->places().front();
+      out.masses.push_back(
+          {d.grids[place]->getName(), massOf(*d.grids[place]), massOf(*out.grids[place])});
+    }
+  for (const CarriedField& field : fields)
+    out.grids.push_back(
+        fieldGrid(field, d.source, d.lattice, inverted, d.settings.accuracy, d.settings.progress));
+  noteOutside(out.grids, d.settings.outside);
+  return out;
+}
+
+}  // namespace innermap

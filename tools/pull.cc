@@ -1,0 +1,71 @@
+// `innermap pull`: grids that live in a map's target, brought back to its source solid.
+#include <fmt/format.h>
+
+#include "commands.h"
+#include "innermap/levelset/level_set.h"
+#include "innermap/output/vdb_file.h"
+#include "saved_map.h"
+#include "transfer_options.h"
+
+namespace innermap::tool {
+namespace {
+
+struct PullOptions {
+  std::string map, volume, output;
+  TransferOptions transfer;
+};
+
+void run(const PullOptions& options, Context& context) {
+  context.willWrite(options.output);
+  const FieldFile file = readMap(options.map, context);
+  const BoundaryPair pair = boundaryOf(file, options.map, context);
+  PullSettings settings;
+  settings.carry = carrySettings(options.transfer);
+  settings.outside =
+      outsideSettings(options.transfer, pair.solid.repaired().mesh.vertices, pair.moved);
+  settings.accuracy = sumAccuracy(file);
+  settings.maxMemory = context.maxMemory();
+  settings.progress = context.progress();
+  const openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
+  if (context.dryRun())
+    return context.plan(
+        {fmt::format("pull {} grids of {} by {}", grids.size(), options.volume, options.map),
+         "write " + options.output},
+        0);
+  std::optional<Solid> target;
+  context.timed("solid", [&] { target.emplace(targetSolid(pair, context)); });
+  TransferOptions plain;  // the target's level set is none of the output's
+  const openvdb::FloatGrid::Ptr targetLevelSet = outputLevelSet(*target, grids, plain, context);
+  settings.targetLevelSet = targetLevelSet.get();
+  const openvdb::FloatGrid::Ptr levelSet =
+      outputLevelSet(pair.solid, grids, options.transfer, context);
+  PullResult result;
+  context.timed("pull", [&] {
+    result = pullGrids(HarmonicMap(file.field), pair.solid, *levelSet, grids, settings);
+  });
+  for (const std::string& warning : result.warnings) context.warning(warning);
+  context.report().set("pull.voxels", static_cast<std::int64_t>(result.voxels));
+  describe(result.grids, file);
+  context.timed("write",
+                [&] { writeVolume(options.output, result.grids, options.transfer, context); });
+  context.print(fmt::format("pulled {} grids, {} voxels\n", result.grids.size(), result.voxels));
+}
+
+}  // namespace
+
+Command makePullCommand() {
+  auto o = std::make_shared<PullOptions>();
+  Command c("pull", "Bring grids that live in a map's target back to its source solid");
+  c.description(
+      "Each voxel p of the source gets the grids' values at f(p), where the map brings it. "
+      "Everything else is as with push, the other way round.");
+  c.positional("MAP", &o->map, "a map.ply written by fit or map");
+  c.positional("VOLUME", &o->volume, "the grids, a .vdb file in the target's world space");
+  c.option("--output", "FILE", &o->output, "the .vdb file to write").shortName("-o").required();
+  addTransferOptions(c, o->transfer);
+  c.example("innermap pull map.ply posed.vdb -o rest.vdb");
+  c.run([o](Context& context) { run(*o, context); });
+  return c;
+}
+
+}  // namespace innermap::tool
