@@ -1,0 +1,126 @@
+#include "frame_loop.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace innermap::tool {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+void report(const std::vector<FrameResult>& results, Context& context) {
+  std::vector<double> numbers, seconds;
+  std::vector<std::string> files, failures;
+  std::int64_t skipped = 0;
+  for (const FrameResult& r : results) {
+    numbers.push_back(static_cast<double>(r.file.number));
+    seconds.push_back(r.seconds);
+    files.push_back(r.file.path);
+    skipped += r.skipped;
+    if (!r.error.empty()) failures.push_back(fmt::format("{}: {}", r.file.number, r.error));
+  }
+  Report& report = context.report();
+  report.set("frames.count", static_cast<std::int64_t>(results.size()));
+  report.set("frames.skipped", skipped);
+  report.set("frames.broken", failures);
+  report.set("frames.number", numbers);
+  report.set("frames.file", files);
+  report.set("frames.seconds", seconds);
+}
+
+void sayBroken(const std::vector<FrameResult>& results, Context& context) {
+  std::vector<std::int64_t> broken;
+  const FrameResult* first = nullptr;
+  for (const FrameResult& r : results) {
+    if (r.error.empty()) continue;
+    if (!first) first = &r;
+    if (broken.size() < 20) broken.push_back(r.file.number);
+  }
+  if (!first) return;
+  const auto count = std::count_if(results.begin(), results.end(),
+                                   [](const FrameResult& r) { return !r.error.empty(); });
+  if (count == static_cast<std::ptrdiff_t>(results.size()))
+    throw DataError(count == 1 ? first->error
+                               : fmt::format("none of the {} frames can be used; the first: {}",
+                                             count, first->error));
+  context.failAfterwards(fmt::format("{} of {} frames could not be used: {}{}; the first: {}",
+                                     count, results.size(), fmt::join(broken, ", "),
+                                     static_cast<std::size_t>(count) > broken.size() ? ", ..." : "",
+                                     first->error));
+}
+
+// The error's text when the frame is broken.
+std::string tryFrame(FrameResult& result, std::size_t index,
+                     const std::function<bool(std::size_t)>& body) {
+  try {
+    result.skipped = !body(index);
+  } catch (const FileError& error) {
+    return error.what();
+  } catch (const DataError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& context,
+                                   const std::function<bool(std::size_t)>& body) {
+  std::vector<FrameResult> results;
+  std::size_t finished = 0;
+  try {
+    for (const std::size_t index : frames.wanted) {
+      FrameResult result;
+      result.file = frames.all[index];
+      context.setPart(fmt::format("frame {} ({} of {})", result.file.number, results.size() + 1,
+                                  frames.wanted.size()));
+      throwIfCancelled(context.progress());
+      const auto start = Clock::now();
+      result.error = tryFrame(result, index, body);
+      result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+      if (!result.error.empty())
+        context.warning(fmt::format("frame {} is left out: {}", result.file.number, result.error));
+      else
+        ++finished;
+      results.push_back(std::move(result));
+    }
+  } catch (const Cancelled&) {
+    if (!stays || finished == 0) throw;
+    throw CancelledLate(
+        fmt::format("cancelled; {} of {} frames are in place", finished, frames.wanted.size()));
+  }
+  context.setPart("");
+  report(results, context);
+  sayBroken(results, context);
+  return results;
+}
+
+void writeFrame(const FrameFile& frame, const std::function<void()>& write) {
+  try {
+    write();
+  } catch (const FileError& error) {
+    throw OutputFailure(fmt::format("{}; stopped at frame {}", error.what(), frame.number));
+  }
+}
+
+std::string secondsText(const std::vector<FrameResult>& results, Context& context) {
+  double sum = 0, least = 0, most = 0;
+  int count = 0;
+  for (const FrameResult& r : results) {
+    if (r.skipped || !r.error.empty()) continue;
+    sum += r.seconds;
+    least = count ? std::min(least, r.seconds) : r.seconds;
+    most = std::max(most, r.seconds);
+    ++count;
+  }
+  if (count == 0) return "";
+  context.report().set("frames.seconds_mean", sum / count);
+  context.report().set("frames.seconds_least", least);
+  context.report().set("frames.seconds_most", most);
+  return fmt::format("seconds a frame: mean {:.3g}, least {:.3g}, most {:.3g}\n", sum / count,
+                     least, most);
+}
+
+}  // namespace innermap::tool

@@ -1,0 +1,39 @@
+// One frame after the other: a broken one is reported and the others go on.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "frame_options.h"
+
+namespace innermap::tool {
+
+// The result of a frame cannot be written (a full disk, say): the whole run ends.
+class OutputFailure : public Error {
+ public:
+  using Error::Error;
+};
+
+struct FrameResult {
+  FrameFile file;
+  double seconds = 0;
+  bool skipped = false;  // it was there already
+  std::string error;     // empty: good
+};
+
+// Calls `body` for all wanted frames, with the frame's place in frames.all; it returns false for a
+// frame that it skips. FileErrors and DataErrors of it make a broken frame. On
+// cancelling, throws CancelledLate when `stays` is true and frames were finished. Throws DataError
+// when all frames are broken. Fills the report's "frames" and sets the context's failure when some
+// are.
+std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& context,
+                                   const std::function<bool(std::size_t)>& body);
+
+// Calls `write`; its FileErrors become OutputFailures that name the frame.
+void writeFrame(const FrameFile& frame, const std::function<void()>& write);
+
+// "seconds a frame: mean 0.41, least 0.38, most 0.52" of those not skipped; also into the report.
+std::string secondsText(const std::vector<FrameResult>& results, Context& context);
+
+}  // namespace innermap::tool

@@ -1,0 +1,102 @@
+#include "frame_options.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "innermap/core/memory.h"
+#include "innermap/field/fit.h"
+#include "largest.h"
+
+namespace innermap::tool {
+namespace {
+
+constexpr std::uint64_t kPointsPerSource = 3, kMostSources = 1000000;
+
+bool isSameFile(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  return std::filesystem::equivalent(a, b, ignored);
+}
+
+std::string span(const std::vector<FrameFile>& frames) {
+  return frames.size() == 1 ? fmt::format("the only one is {}", frames.front().number)
+                            : fmt::format("there are {} from {} to {}", frames.size(),
+                                          frames.front().number, frames.back().number);
+}
+
+}  // namespace
+
+void addFrameArgument(Command& command, FrameOptions& o) {
+  command.positional("FRAMES", &o.files,
+                     "meshes of the rest pose's connectivity, a frame number in each name: files, "
+                     "a folder, or a pattern in quotes with *, ?, #### or %04d");
+}
+
+void addFrameOptions(Command& command, FrameOptions& o) {
+  command.option("--frames", "LIST", &o.ranges, "which frames: 12, 1-48, 1-48x2 (every second)")
+      .defaults("all");
+  command.option("--sources", "N", &o.sources, "number of charges, the same for all frames")
+      .range(1, static_cast<double>(kMostSources));
+  command.option("--collocation", "N", &o.collocation, "boundary points that frames are fitted to")
+      .range(8, 1e7)
+      .defaults("3 a source");
+  command.option("--distance", "D", &o.distance, "of the charges from the surface")
+      .unit("fraction of the rest pose's diagonal")
+      .range(1e-4, 2)
+      .defaults("1.25 spacings of the charges");
+  command.option("--seed", "N", &o.seed, "of all random points").range(0, 1e15);
+}
+
+Frames listFrames(const FrameOptions& options, const std::string& rest, Context& context) {
+  FrameList list = findFrames(options.files, {".obj", ".ply", ".off", ".stl"});
+  std::vector<std::string> left;
+  for (const std::string& path : list.unnumbered)
+    if (!isSameFile(path, rest)) left.push_back(path);
+  if (list.frames.empty())
+    throw DataError(fmt::format("{}: none of the {} files has a frame number in its name",
+                                options.files.front(), list.unnumbered.size()));
+  if (!left.empty())
+    context.note(fmt::format(
+        "{}{} left out: no frame number in the name", left.front(),
+        left.size() > 1 ? fmt::format(" and {} others", left.size() - 1) : std::string()));
+  Frames frames;
+  frames.all = std::move(list.frames);
+  std::optional<FrameRanges> ranges;
+  if (!options.ranges.empty()) ranges.emplace("--frames", options.ranges);
+  for (std::size_t i = 0; i < frames.all.size(); ++i)
+    if (!ranges || ranges->contains(frames.all[i].number)) frames.wanted.push_back(i);
+  if (frames.wanted.empty())
+    throw SettingError("--frames", fmt::format("'{}' has none of the frames; {}", options.ranges,
+                                               span(frames.all)));
+  return frames;
+}
+
+std::uint64_t collocationOf(const FrameOptions& options) {
+  return options.collocation.value_or(
+      std::max<std::uint64_t>(kPointsPerSource * options.sources, options.sources + 8));
+}
+
+std::uint64_t frameFittingMemory(const FrameOptions& options) {
+  constexpr std::uint64_t kProgram = 64'000'000;  // with nothing loaded yet
+  const std::uint64_t points = collocationOf(options);
+  const FitSolver solver =
+      options.sources > kMostDenseSources ? FitSolver::iterative : FitSolver::dense;
+  // Blue noise thins five candidates a point; each costs some 100 bytes.
+  return kProgram + fitMemory(points, options.sources, 0, solver) +
+         500 * (points + options.sources);
+}
+
+void requireFrameMemory(const FrameOptions& options, std::uint64_t others, const Context& context) {
+  const std::uint64_t most = largestThat(1, kMostSources, [&](std::uint64_t sources) {
+    FrameOptions fewer = options;
+    fewer.sources = sources;
+    fewer.collocation.reset();
+    return frameFittingMemory(fewer) + others <= context.maxMemory();
+  });
+  requireMemory("a sequence with " + std::to_string(options.sources) + " charges",
+                frameFittingMemory(options) + others, context.maxMemory(),
+                most > 0 ? fmt::format("use --sources {} or raise --max-memory", most)
+                         : "use a lower --resolution or raise --max-memory");
+}
+
+}  // namespace innermap::tool
