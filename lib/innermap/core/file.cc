@@ -17,7 +17,7 @@ namespace {
 
 // Names of the files now unfinished, in fixed storage: removeUnfinishedFiles may run in a signal
 // handler, where no lock may be taken and nothing allocated.
-constexpr int kSlots = 64;
+constexpr int kSlots = 1024;
 constexpr std::size_t kLongestPath = 4096;
 struct Slot {
   std::atomic<bool> used{false};

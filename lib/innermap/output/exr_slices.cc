@@ -4,7 +4,6 @@
 #include <OpenEXR/ImfDoubleAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfMatrixAttribute.h>
 #include <OpenEXR/ImfMultiPartOutputFile.h>
@@ -14,15 +13,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <ostream>
 #include <set>
 
 #include "innermap/core/error.h"
 #include "innermap/core/file.h"
 #include "innermap/core/memory.h"
+#include "innermap/output/exr_stream.h"
 #include "innermap/output/slice.h"
 #include "innermap/output/version.h"
 
@@ -30,31 +28,6 @@ namespace innermap {
 namespace {
 
 constexpr float kLargestHalf = 65504.0f;
-
-// OpenEXR's own file stream does not notice a disk that is full when it is closed.
-class OutputStream : public Imf::OStream {
- public:
-  OutputStream(const std::string& path, std::ostream& stream, const Progress* progress)
-      : OStream(path.c_str()), path_(path), stream_(stream), progress_(progress) {}
-
-  void write(const char data[], int count) override {
-    throwIfCancelled(progress_);
-    errno = 0;
-    stream_.write(data, count);
-    if (!stream_)
-      throw FileError(path_, fmt::format("cannot be written ({}); free some space",
-                                         errno ? std::strerror(errno) : "write error"));
-  }
-  std::uint64_t tellp() override { return static_cast<std::uint64_t>(stream_.tellp()); }
-  void seekp(std::uint64_t position) override {
-    stream_.seekp(static_cast<std::streamoff>(position));
-  }
-
- private:
-  std::string path_;
-  std::ostream& stream_;
-  const Progress* progress_;
-};
 
 bool tellsSolid(const openvdb::GridPtrVec& grids) {
   return std::any_of(grids.begin(), grids.end(), [](const auto& grid) {
@@ -181,8 +154,8 @@ ExrSliceResult writeExrSlices(const std::string& path, const openvdb::GridPtrVec
   result.columns = frame.columns();
   result.rows = frame.rows();
   writeWholeFile(path, [&](std::ostream& file) {
-    try {
-      OutputStream stream(path, file, settings.progress);
+    withExrErrors(path, "written", "; free some space", settings.progress, [&] {
+      ExrOutputStream stream(path, file, settings.progress);
       Imf::MultiPartOutputFile output(stream, headers.data(), static_cast<int>(headers.size()));
       for (std::size_t i = 0; i < layers.size(); ++i) {
         reportProgress(settings.progress, "writing slices",
@@ -193,14 +166,7 @@ ExrSliceResult writeExrSlices(const std::string& path, const openvdb::GridPtrVec
         part.writePixels(static_cast<int>(frame.rows()));
         result.clamped += pixels.clamped();
       }
-    } catch (const Error&) {
-      throw;
-    } catch (const std::bad_alloc&) {
-      throw;
-    } catch (const std::exception& error) {
-      throwIfCancelled(settings.progress);
-      throw FileError(path, fmt::format("cannot be written ({}); free some space", error.what()));
-    }
+    });
   });
   reportProgress(settings.progress, "writing slices", 1);
   return result;
