@@ -19,8 +19,10 @@ enum Stream : std::uint64_t {
   kVertices = 4
 };
 
+std::uint64_t seedOf(std::uint64_t seed, Stream stream) { return 4 * seed + stream; }
+
 std::uint64_t seedOf(const FittingOptions& options, Stream stream) {
-  return 4 * options.seed + stream;
+  return seedOf(options.seed, stream);
 }
 
 Points positionsOf(const Mesh& mesh, const std::vector<SurfacePoint>& samples) {
@@ -28,13 +30,6 @@ Points positionsOf(const Mesh& mesh, const std::vector<SurfacePoint>& samples) {
 }
 
 using Samples = std::vector<SurfacePoint>;
-
-BoundaryData surfaceData(const BoundaryPair& pair, const Samples& collocation,
-                         const Samples& heldOut) {
-  const Mesh& surface = pair.solid.surface();
-  return {positionsOf(surface, collocation), positionsOf(surface, heldOut),
-          pair.targetsOf(collocation), pair.targetsOf(heldOut)};
-}
 
 // Samples on caps, which have no vertices of the mesh's own.
 Samples onCaps(const BoundaryPair& pair, const Samples& samples) {
@@ -81,39 +76,86 @@ BoundaryData vertexData(const BoundaryPair& pair, const FittingOptions& options,
 
 }  // namespace
 
-FitProblem fitProblem(const BoundaryPair& pair, const FittingOptions& options,
-                      const PointCounts& counts, Context& context) {
-  const Mesh& surface = pair.solid.surface();
+namespace {
+
+// Blue noise to fit to, and random points to judge by.
+struct SurfaceSamples {
+  Samples collocation, heldOut;
+};
+
+SurfaceSamples surfaceSamples(const Mesh& surface, std::uint64_t seed, const PointCounts& counts,
+                              Context& context) {
   SampleSettings sample;
   sample.progress = context.progress();
-  sample.seed = seedOf(options, kCollocation);
-  const Samples collocation = blueNoiseSamples(surface, counts.collocation, sample);
-  sample.seed = seedOf(options, kHeldOut);
-  const Samples heldOut = randomSamples(surface, counts.heldOut, sample);
+  sample.seed = seedOf(seed, kCollocation);
+  SurfaceSamples out;
+  out.collocation = blueNoiseSamples(surface, counts.collocation, sample);
+  sample.seed = seedOf(seed, kHeldOut);
+  out.heldOut = randomSamples(surface, counts.heldOut, sample);
+  return out;
+}
+
+FitProblem problemOf(const Solid& solid, const ValuesOf& values, std::uint64_t seed,
+                     const SurfaceSamples& samples, Context& context) {
+  const Mesh& surface = solid.surface();
   FitProblem problem;
-  problem.surface = surfaceData(pair, collocation, heldOut);
-  if (options.interpolation != "linear")
-    problem.vertices = vertexData(pair, options, counts, collocation);
-  problem.diagonal = pair.solid.diagonal();
-  problem.area = pair.solid.area();
+  problem.surface = {positionsOf(surface, samples.collocation),
+                     positionsOf(surface, samples.heldOut), values(samples.collocation),
+                     values(samples.heldOut)};
+  problem.diagonal = solid.diagonal();
+  problem.area = solid.area();
   SourceSettings source;
-  source.seed = seedOf(options, kSources);
+  source.seed = seedOf(seed, kSources);
   source.progress = context.progress();
-  problem.placeSources = [&pair, &options, source](std::size_t count, double distance) mutable {
+  problem.placeSources = [&solid, source](std::size_t count, double distance) mutable {
     source.count = count;
-    return options.radiusRatio ? sourceSphere(pair.solid, *options.radiusRatio, source)
-                               : sourceShell(pair.solid, distance, source);
+    return sourceShell(solid, distance, source);
   };
   return problem;
 }
 
-BoundarySamples freshSamples(const BoundaryPair& pair, const FittingOptions& options,
+}  // namespace
+
+FitProblem surfaceProblem(const Solid& solid, const ValuesOf& values, std::uint64_t seed,
+                          const PointCounts& counts, Context& context) {
+  return problemOf(solid, values, seed, surfaceSamples(solid.surface(), seed, counts, context),
+                   context);
+}
+
+FitProblem fitProblem(const BoundaryPair& pair, const FittingOptions& options,
+                      const PointCounts& counts, Context& context) {
+  const SurfaceSamples samples =
+      surfaceSamples(pair.solid.surface(), options.seed, counts, context);
+  const ValuesOf values = [&pair](const Samples& points) { return pair.targetsOf(points); };
+  FitProblem problem = problemOf(pair.solid, values, options.seed, samples, context);
+  if (options.interpolation != "linear")
+    problem.vertices = vertexData(pair, options, counts, samples.collocation);
+  if (options.radiusRatio) {
+    SourceSettings source;
+    source.seed = seedOf(options, kSources);
+    source.progress = context.progress();
+    problem.placeSources = [&pair, &options, source](std::size_t count, double) mutable {
+      source.count = count;
+      return sourceSphere(pair.solid, *options.radiusRatio, source);
+    };
+  }
+  return problem;
+}
+
+BoundarySamples freshSamples(const Solid& solid, const ValuesOf& values, std::uint64_t seed,
                              Context& context) {
   SampleSettings sample;
-  sample.seed = seedOf(options, kFresh);
+  sample.seed = seedOf(seed, kFresh);
   sample.progress = context.progress();
-  const Samples fresh = randomSamples(pair.solid.surface(), kFreshSamples, sample);
-  return {positionsOf(pair.solid.surface(), fresh), pair.targetsOf(fresh)};
+  const Samples fresh = randomSamples(solid.surface(), kFreshSamples, sample);
+  return {positionsOf(solid.surface(), fresh), values(fresh)};
+}
+
+BoundarySamples freshSamples(const BoundaryPair& pair, const FittingOptions& options,
+                             Context& context) {
+  return freshSamples(
+      pair.solid, [&pair](const Samples& points) { return pair.targetsOf(points); }, options.seed,
+      context);
 }
 
 AdaptiveProblem adaptiveProblem(const BoundaryPair& pair, const FittingOptions& options,

@@ -15,7 +15,7 @@ namespace {
 struct SliceOptions {
   std::string file, output, section, axis = "z", grids, grid, component = "length";
   int count = ExrSliceSettings().count;
-  bool half = false;
+  bool half = false, colour = false;
   double at = SectionSettings().at;
   std::optional<double> position;
   std::optional<NumberPair> range;
@@ -53,6 +53,7 @@ SectionSettings sectionSettings(const SliceOptions& options, Context& context) {
   SectionSettings s;
   s.grid = options.grid;
   s.component = componentOf(options.component);
+  s.colour = options.colour;
   s.axis = parseAxis("--axis", options.axis);
   s.at = options.at;
   s.position = options.position;
@@ -139,7 +140,7 @@ Command makeSliceCommand() {
   c.description(
       "The EXR file has a part a slice and a channel a grid (`jacobian.V`, `map.X`), cropped to "
       "the active box; each slice is a layer of voxels, with its place as attributes. The picture "
-      "shows one grid from blue (least) to red (most).");
+      "shows one grid from blue (least) to red (most), or colours as they are.");
   c.positional("FILE", &o->file, "the .vdb file");
   c.option("--output", "FILE", &o->output, "the .exr file to write").shortName("-o");
   c.option("--axis", "AXIS", &o->axis, "direction across the slices").choices({"x", "y", "z"});
@@ -151,17 +152,21 @@ Command makeSliceCommand() {
       .defaults("jacobian, else the first energy, map, density or surface there is");
   c.option("--component", "PART", &o->component, "of a vector grid in the picture")
       .choices({"x", "y", "z", "length"});
+  c.flag("--colour", &o->colour,
+         "the picture shows a vector grid's values as red, green and blue; by default of Cd");
   c.option("--at", "T", &o->at, "where the picture cuts")
       .unit("fraction of the box along the axis")
       .range(0, 1);
   c.option("--position", "P", &o->position, "where the picture cuts, instead of --at")
       .unit("world units");
-  c.option("--range", "LO,HI", &o->range, "values that are blue and red in the picture")
+  c.option("--range", "LO,HI", &o->range,
+           "values that are blue and red in the picture; with --colour, black and white")
       .defaults("all but the outermost 0.5% on each side");
   c.option("--pixels", "N", &o->pixels, "longer side of the section in the picture")
       .range(64, 8192);
   c.example("innermap slice map.vdb --axis z --count 16 -o slices.exr");
   c.example("innermap slice map.vdb --section section.png --grid jacobian --axis x --at 0.5");
+  c.example("innermap slice texture.vdb --section section.png --colour --axis x");
   c.run([o](Context& context) { run(*o, context); });
   return c;
 }

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "innermap/core/error.h"
 #include "innermap/core/file.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
 #include "innermap/output/picture.h"
+#include "innermap/output/section_cut.h"
 #include "innermap/output/slice.h"
 
 namespace innermap {
@@ -21,25 +24,12 @@ constexpr Rgb kPaper{1, 1, 1}, kOutside{0.93f, 0.93f, 0.935f}, kInk{0.13f, 0.14f
 constexpr int kMargin = 28, kTitle = 78, kFooter = 22, kBarGap = 26, kBarWidth = 26, kLabels = 120,
               kSubsamples = 3;
 
-// A layer's values between two voxel layers, with weights: 0 where no voxel is active.
-struct Field {
-  std::vector<float> values, weights;
-};
-
-struct Cut {
-  SliceFrame frame;
-  double layer = 0;
-  Field shown;
-  std::vector<float> inside;  // positive inside the solid; empty: the weights tell
-};
-
-openvdb::GridBase::Ptr gridNamed(const openvdb::GridPtrVec& grids, const std::string& name) {
-  for (const auto& grid : grids)
-    if (grid->getName() == name) return grid;
-  return nullptr;
+bool isColour(const openvdb::GridBase& grid) {
+  return grid.isType<openvdb::Vec3fGrid>() || grid.isType<openvdb::Vec3dGrid>();
 }
 
-openvdb::GridBase::Ptr gridToShow(const openvdb::GridPtrVec& grids, const std::string& wanted) {
+openvdb::GridBase::Ptr gridToShow(const openvdb::GridPtrVec& grids, const std::string& wanted,
+                                  bool colour) {
   if (grids.empty()) throw DataError("there are no grids to show");
   if (!wanted.empty()) {
     if (const auto grid = gridNamed(grids, wanted)) return grid;
@@ -48,128 +38,16 @@ openvdb::GridBase::Ptr gridToShow(const openvdb::GridPtrVec& grids, const std::s
     throw DataError(
         fmt::format("there is no grid '{}' to show; there are {}", wanted, fmt::join(names, ", ")));
   }
+  if (colour)
+    for (const char* name : {"Cd", "color"})
+      if (const auto grid = gridNamed(grids, name)) return grid;
   for (const char* name :
        {"jacobian", "deformation_energy", "harmonic_energy", "map", "density", "surface"})
     if (const auto grid = gridNamed(grids, name)) return grid;
   return grids.front();
 }
 
-std::vector<float> scalarsOf(const openvdb::GridBase& grid, const SliceFrame& frame, int layer,
-                             Component component) {
-  std::vector<SliceChannel> channels = sliceGrid(grid, frame, layer);
-  if (channels.size() == 1) return std::move(channels[0].values);
-  if (component != Component::kLength)
-    return std::move(channels[static_cast<std::size_t>(component)].values);
-  std::vector<float> lengths(channels[0].values.size());
-  for (std::size_t i = 0; i < lengths.size(); ++i)
-    lengths[i] = std::hypot(channels[0].values[i], channels[1].values[i], channels[2].values[i]);
-  return lengths;
-}
-
-// The grid at a layer that may lie between two: both, weighted where active.
-Field fieldAt(const openvdb::GridBase::Ptr& grid, const SliceFrame& frame, double layer,
-              Component component) {
-  const int below = static_cast<int>(std::floor(layer));
-  const float share = static_cast<float>(layer - below);
-  const bool everywhere = grid->getGridClass() == openvdb::GRID_LEVEL_SET;
-  Field field;
-  field.values.assign(frame.rows() * frame.columns(), 0.0f);
-  field.weights = field.values;
-  for (int k = 0; k < 2; ++k) {
-    const float weight = k == 0 ? 1 - share : share;
-    if (weight == 0) continue;
-    const std::vector<float> values = scalarsOf(*grid, frame, below + k, component);
-    const std::vector<float> mask =
-        everywhere ? std::vector<float>(values.size(), 1.0f) : sliceMask({grid}, frame, below + k);
-    for (std::size_t i = 0; i < values.size(); ++i)
-      if (mask[i] > 0) {
-        field.values[i] += weight * values[i];
-        field.weights[i] += weight;
-      }
-  }
-  return field;
-}
-
-// Positive inside, about 1 per voxel of depth near the surface.
-std::vector<float> insideAt(const openvdb::GridPtrVec& grids, const Cut& cut) {
-  if (const auto surface = gridNamed(grids, "surface")) {
-    const double voxel = cut.frame.transform->voxelSize().x();
-    Field f = fieldAt(surface, cut.frame, cut.layer, Component::kLength);
-    for (float& v : f.values) v = static_cast<float>(-v / voxel);
-    return std::move(f.values);
-  }
-  if (const auto density = gridNamed(grids, "density")) {
-    Field f = fieldAt(density, cut.frame, cut.layer, Component::kLength);
-    for (float& v : f.values) v -= 0.5f;
-    return std::move(f.values);
-  }
-  return {};
-}
-
-double layerFor(const SliceFrame& frame, const SectionSettings& s) {
-  const int lower = frame.box.min()[frame.axis], upper = frame.box.max()[frame.axis];
-  if (!s.position) return std::clamp(lower + s.at * (upper - lower), double(lower), double(upper));
-  const double layer = frame.layerAt(*s.position);
-  if (!(layer >= lower - 0.5 && layer <= upper + 0.5))
-    throw SettingError("position",
-                       fmt::format("{:g} is outside the grids; give a coordinate from {:g} to {:g}",
-                                   *s.position, frame.position(lower), frame.position(upper)));
-  return std::clamp(layer, double(lower), double(upper));
-}
-
-// Bilinear interpolation of the cut at image coordinates (voxel centres at whole numbers).
-struct Sampler {
-  const Cut& cut;
-
-  float at(const std::vector<float>& values, const std::vector<float>* weights, double x, double y,
-           float* weight) const {
-    const auto columns = static_cast<int>(cut.frame.columns());
-    const auto rows = static_cast<int>(cut.frame.rows());
-    const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
-    float sum = 0, total = 0;
-    for (int k = 0; k < 4; ++k) {
-      const int xi = std::clamp(x0 + (k & 1), 0, columns - 1);
-      const int yi = std::clamp(y0 + (k >> 1), 0, rows - 1);
-      const double wx = (k & 1) ? x - x0 : 1 - (x - x0), wy = (k >> 1) ? y - y0 : 1 - (y - y0);
-      const std::size_t i = static_cast<std::size_t>(yi) * columns + xi;
-      const float w = static_cast<float>(wx * wy) * (weights ? (*weights)[i] : 1.0f);
-      if (w == 0) continue;
-      // `values` is already weighted over the layers.
-      sum += weights ? static_cast<float>(wx * wy) * values[i] : w * values[i];
-      total += w;
-    }
-    if (weight) *weight = total;
-    return total > 0 ? sum / total : 0.0f;
-  }
-
-  bool inside(double x, double y) const {
-    if (!cut.inside.empty()) return at(cut.inside, nullptr, x, y, nullptr) > 0;
-    float weight = 0;
-    at(cut.shown.values, &cut.shown.weights, x, y, &weight);
-    return weight >= 0.5f;
-  }
-
-  // None where no voxel is active.
-  std::optional<float> value(double x, double y) const {
-    float weight = 0;
-    const float v = at(cut.shown.values, &cut.shown.weights, x, y, &weight);
-    return weight > 0 ? std::optional<float>(v) : std::nullopt;
-  }
-};
-
-std::vector<float> valuesInside(const Cut& cut) {
-  std::vector<float> values;
-  for (std::size_t i = 0; i < cut.shown.values.size(); ++i) {
-    const bool inside = cut.inside.empty() || cut.inside[i] > 0;
-    if (!inside || !(cut.shown.weights[i] > 0)) continue;
-    const float v = cut.shown.values[i] / cut.shown.weights[i];
-    if (std::isfinite(v)) values.push_back(v);
-  }
-  std::sort(values.begin(), values.end());
-  return values;
-}
-
-void chooseRange(const Cut& cut, const SectionSettings& s, SectionResult& result) {
+void chooseRange(const SectionCut& cut, const SectionSettings& s, SectionResult& result) {
   const std::vector<float> values = valuesInside(cut);
   if (values.empty())
     throw DataError(
@@ -179,6 +57,10 @@ void chooseRange(const Cut& cut, const SectionSettings& s, SectionResult& result
   result.least = values.front();
   result.most = values.back();
   const auto cutOff = static_cast<std::size_t>(s.outliers * static_cast<double>(values.size() - 1));
+  if (s.colour) {  // as it is, unless the range says what is black and white
+    std::tie(result.lower, result.upper) = s.range.value_or(std::make_pair(0.0, 1.0));
+    return;
+  }
   result.lower = s.range ? s.range->first : values[cutOff];
   result.upper = s.range ? s.range->second : values[values.size() - 1 - cutOff];
   // A constant: a range about it, so that it has the middle colour.
@@ -196,7 +78,7 @@ struct Layout {
   int totalWidth = 0, totalHeight = 0;
 };
 
-Layout layoutFor(const SliceFrame& frame, int pixels) {
+Layout layoutFor(const SliceFrame& frame, int pixels, bool bar) {
   const openvdb::Vec3d voxel = frame.transform->voxelSize();
   const double w = static_cast<double>(frame.columns()) * voxel[frame.columnAxis];
   const double h = static_cast<double>(frame.rows()) * voxel[frame.rowAxis];
@@ -205,39 +87,56 @@ Layout layoutFor(const SliceFrame& frame, int pixels) {
   l.width = std::max(1, static_cast<int>(std::lround(w * scale)));
   l.height = std::max(1, static_cast<int>(std::lround(h * scale)));
   // Room for the title and for a bar that can be read, however thin the section is.
-  const int room = std::max(l.width, 480), tall = std::max(l.height, 300);
+  const int room = std::max(l.width, bar ? 480 : 600), tall = std::max(l.height, 300);
   l.x = kMargin + (room - l.width) / 2;
   l.y = kTitle + (tall - l.height) / 2;
   l.barX = kMargin + room + kBarGap;
   l.barHeight = std::min(tall, std::max(300, tall * 3 / 4));
   l.barY = kTitle + (tall - l.barHeight) / 2;
-  l.totalWidth = l.barX + kBarWidth + kLabels;
+  l.totalWidth = bar ? l.barX + kBarWidth + kLabels : l.barX - kBarGap + kMargin;
   l.totalHeight = kTitle + tall + kFooter + kMargin;
   return l;
 }
 
+// sRGB's transfer function (IEC 61966-2-1) on [0, 1].
+float encoded(float v) {
+  if (!(v > 0)) return 0;
+  if (v >= 1) return 1;
+  return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
+}
+
+// The colour at a place of the cut inside the solid.
+Rgb colourAt(const SectionSampler& sampler, const SectionCut& cut, const SectionResult& r, double x,
+             double y) {
+  const std::optional<float> v = sampler.value(x, y);
+  if (!v) return kNoVoxel;
+  if (cut.shown.channels.size() == 1)
+    return std::isfinite(*v) ? rampColour((*v - r.lower) / (r.upper - r.lower)) : kBroken;
+  Rgb rgb{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float linear = *sampler.value(x, y, c);
+    if (!std::isfinite(linear)) return kBroken;
+    rgb[c] = encoded(static_cast<float>((linear - r.lower) / (r.upper - r.lower)));
+  }
+  return rgb;
+}
+
 // The colour of one pixel: the mean over subsamples, which also smooths the solid's edge.
-Rgb pixelColour(const Sampler& sampler, const SectionResult& r, double x, double y, double dx,
-                double dy) {
+Rgb pixelColour(const SectionSampler& sampler, const SectionCut& cut, const SectionResult& r,
+                double x, double y, double dx, double dy) {
   Rgb sum{0, 0, 0};
   for (int k = 0; k < kSubsamples * kSubsamples; ++k) {
     const double sx = x + dx * ((k % kSubsamples + 0.5) / kSubsamples - 0.5);
     const double sy = y + dy * ((k / kSubsamples + 0.5) / kSubsamples - 0.5);
-    Rgb colour = kOutside;
-    if (sampler.inside(sx, sy)) {
-      const std::optional<float> v = sampler.value(sx, sy);
-      colour = !v                  ? kNoVoxel
-               : std::isfinite(*v) ? rampColour((*v - r.lower) / (r.upper - r.lower))
-                                   : kBroken;
-    }
+    const Rgb colour = sampler.inside(sx, sy) ? colourAt(sampler, cut, r, sx, sy) : kOutside;
     for (int c = 0; c < 3; ++c) sum[c] += colour[c] / (kSubsamples * kSubsamples);
   }
   return sum;
 }
 
-void drawSection(const Cut& cut, const Layout& l, const SectionResult& r, Progress* progress,
+void drawSection(const SectionCut& cut, const Layout& l, const SectionResult& r, Progress* progress,
                  Picture& picture) {
-  const Sampler sampler{cut};
+  const SectionSampler sampler(cut);
   const double dx = static_cast<double>(cut.frame.columns()) / l.width;
   const double dy = static_cast<double>(cut.frame.rows()) / l.height;
   const auto inside = [&](int px, int py) {
@@ -249,7 +148,7 @@ void drawSection(const Cut& cut, const Layout& l, const SectionResult& r, Progre
         for (auto py = static_cast<int>(begin); py < static_cast<int>(end); ++py)
           for (int px = 0; px < l.width; ++px) {
             Rgb colour =
-                pixelColour(sampler, r, (px + 0.5) * dx - 0.5, (py + 0.5) * dy - 0.5, dx, dy);
+                pixelColour(sampler, cut, r, (px + 0.5) * dx - 0.5, (py + 0.5) * dy - 0.5, dx, dy);
             // A thin line around the solid sets pale colours off from the ground.
             const bool here = inside(px, py);
             if (here && (!inside(px - 1, py) || !inside(px + 1, py) || !inside(px, py - 1) ||
@@ -284,15 +183,16 @@ void drawBar(const Layout& l, const SectionResult& r, Picture& picture) {
   }
 }
 
-std::string shownName(const openvdb::GridBase& grid, Component component) {
+std::string shownName(const openvdb::GridBase& grid, const SectionSettings& s) {
   if (channelNames(grid).size() == 1) return grid.getName();
+  if (s.colour) return grid.getName() + " (colour)";
   static const char* const parts[] = {" (x component)", " (y component)", " (z component)",
                                       " (length)"};
-  return grid.getName() + parts[static_cast<int>(component)];
+  return grid.getName() + parts[static_cast<int>(s.component)];
 }
 
-void drawText(const Cut& cut, const Layout& l, const SectionResult& r, const std::string& name,
-              Picture& picture) {
+void drawText(const SectionCut& cut, const Layout& l, const SectionResult& r,
+              const std::string& name, Picture& picture) {
   const SliceFrame& f = cut.frame;
   picture.text(kMargin, 36, name, 24, kInk);
   const double share = f.layers() > 1 ? (cut.layer - f.box.min()[f.axis]) / (f.layers() - 1) : 0.5;
@@ -331,22 +231,22 @@ void checkSettings(const SectionSettings& s) {
 SectionResult writeSectionImage(const std::string& path, const openvdb::GridPtrVec& grids,
                                 const SectionSettings& settings) {
   checkSettings(settings);
-  const openvdb::GridBase::Ptr grid = gridToShow(grids, settings.grid);
+  const openvdb::GridBase::Ptr grid = gridToShow(grids, settings.grid, settings.colour);
+  if (settings.colour && !isColour(*grid))
+    throw DataError(fmt::format("grid '{}' is no colour but of type {}; show it without colour",
+                                grid->getName(), grid->valueType()));
   openvdb::GridPtrVec needed = {grid};
   for (const char* name : {"surface", "density"})
     if (const auto solid = gridNamed(grids, name))
       if (solid != grid && solid->constTransform() == grid->constTransform())
         needed.push_back(solid);
-  Cut cut;
-  cut.frame = sliceFrame(needed, settings.axis);
-  const Layout layout = layoutFor(cut.frame, settings.pixels);
+  const SliceFrame frame = sliceFrame(needed, settings.axis);
+  const Layout layout = layoutFor(frame, settings.pixels, !settings.colour);
   requireMemory("the section " + path,
-                cut.frame.rows() * cut.frame.columns() * 6 * sizeof(float) +
+                frame.rows() * frame.columns() * 12 * sizeof(float) +
                     std::uint64_t(layout.totalWidth) * layout.totalHeight * 16,
                 settings.maxMemory, "cut along another axis or ask for fewer pixels");
-  cut.layer = layerFor(cut.frame, settings);
-  cut.shown = fieldAt(grid, cut.frame, cut.layer, settings.component);
-  cut.inside = insideAt(needed, cut);
+  const SectionCut cut = cutThrough(grid, needed, frame, settings);
 
   SectionResult result;
   result.grid = grid->getName();
@@ -355,11 +255,11 @@ SectionResult writeSectionImage(const std::string& path, const openvdb::GridPtrV
   Picture picture(layout.totalWidth, layout.totalHeight, kPaper);
   result.width = picture.width();
   result.height = picture.height();
-  drawText(cut, layout, result, shownName(*grid, settings.component), picture);
+  drawText(cut, layout, result, shownName(*grid, settings), picture);
   picture.fill(kMargin, kTitle, layout.barX - kBarGap, picture.height() - kFooter - kMargin,
                kOutside);
   drawSection(cut, layout, result, settings.progress, picture);
-  drawBar(layout, result, picture);
+  if (!settings.colour) drawBar(layout, result, picture);
   const std::vector<unsigned char> bytes = picture.png();
   writeWholeFile(path, [&](std::ostream& file) {
     file.write(reinterpret_cast<const char*>(bytes.data()),

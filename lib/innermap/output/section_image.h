@@ -19,9 +19,12 @@ struct SectionSettings {
   std::string grid;  // name of the grid to show; empty: the first of jacobian, deformation_energy,
                      // harmonic_energy, map, density, surface that is there, else the first grid
   Component component = Component::kLength;  // ignored for scalar grids
-  int axis = 2;                              // 0, 1, 2: x, y, z
-  double at = 0.5;                           // fraction of the active box along the axis, in [0, 1]
-  std::optional<double> position;            // world coordinate along the axis; wins over `at`
+  // A vector grid's values as linear red, green and blue, without a colour bar; by default of `Cd`
+  // or `color`. The range is what is black and white, [0, 1] when unset.
+  bool colour = false;
+  int axis = 2;                    // 0, 1, 2: x, y, z
+  double at = 0.5;                 // fraction of the active box along the axis, in [0, 1]
+  std::optional<double> position;  // world coordinate along the axis; wins over `at`
   std::optional<std::pair<double, double>> range;  // of the colours; unset: from the values inside
   double outliers = 0.005;  // share of values cut off at each end when the range is unset, [0, 0.5)
   int pixels = 900;         // longer side of the section itself, in [64, 8192]

@@ -112,6 +112,37 @@ TEST(SectionImage, ConstantsVectorsAndNaNsWork) {
   EXPECT_EQ(r.most, 8);
 }
 
+TEST(SectionImage, ColoursAreShownAsTheyAre) {
+  const TemporaryFolder folder;
+  openvdb::GridPtrVec grids = scene();
+  // Linear 0.5, 0.2140 and, on the right, 2: over white.
+  const auto colour = block<openvdb::Vec3SGrid>(
+      "Cd", openvdb::CoordBBox(openvdb::Coord(-22), openvdb::Coord(22)),
+      [](auto c) { return openvdb::Vec3f(0.5f, 0.2140f, c.x() > 8 ? 2.0f : 0.0f); });
+  colour->setTransform(grids[0]->transform().copy());
+  grids.push_back(colour);
+  SectionSettings settings;
+  settings.pixels = 450;
+  settings.colour = true;
+  SectionResult r = writeSectionImage(folder.file("s.png"), grids, settings);
+  EXPECT_EQ(r.grid, "Cd");
+  EXPECT_EQ(r.lower, 0);
+  EXPECT_EQ(r.upper, 1);
+  const Image image(folder.file("s.png"));
+  const int cx = image.width() / 2, cy = 78 + 225;
+  const Colour middle = image.at(cx - 50, cy), right = image.at(cx + 150, cy);
+  EXPECT_NEAR(middle.r, 0.7354, 0.003);
+  EXPECT_NEAR(middle.g, 0.5, 0.003);
+  EXPECT_NEAR(middle.b, 0, 0.003);
+  EXPECT_NEAR(right.b, 1, 0.003);
+  settings.range = {{0, 2}};
+  r = writeSectionImage(folder.file("s.png"), grids, settings);
+  EXPECT_NEAR(Image(folder.file("s.png")).at(cx - 50, cy).r, 0.5371, 0.003);
+  settings.grid = "jacobian";
+  EXPECT_THROW(writeSectionImage(folder.file("t.png"), grids, settings), DataError);
+  EXPECT_EQ(folder.count(), 1u);
+}
+
 TEST(SectionImage, RefusesWithAReason) {
   const TemporaryFolder folder;
   const auto grids = scene();
