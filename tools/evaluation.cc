@@ -53,7 +53,7 @@ void fillReport(const MapGrids& grids, double voxelSize, const EvaluationOptions
 
 void describe(const openvdb::GridPtrVec& grids, const MapGrids& totals, const FieldFile& file,
               const EvaluationOptions& options) {
-  describe(grids, file);
+  describeMap(grids, file);
   for (const openvdb::GridBase::Ptr& grid : grids) {
     const auto number = [&grid](const char* key, double value) {
       grid->insertMeta(std::string("innermap_") + key, openvdb::DoubleMetadata(value));

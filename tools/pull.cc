@@ -45,7 +45,7 @@ void run(const PullOptions& options, Context& context) {
   });
   for (const std::string& warning : result.warnings) context.warning(warning);
   context.report().set("pull.voxels", static_cast<std::int64_t>(result.voxels));
-  describe(result.grids, file);
+  describeMap(result.grids, file);
   context.timed("write",
                 [&] { writeVolume(options.output, result.grids, options.transfer, context); });
   context.print(fmt::format("pulled {} grids, {} voxels\n", result.grids.size(), result.voxels));

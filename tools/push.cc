@@ -40,7 +40,7 @@ void run(const PushOptions& options, Context& context) {
     result = pusher.push(HarmonicMap(file.field), *levelSet);
   });
   reportPush(result, context);
-  describe(result.grids, file);
+  describeMap(result.grids, file);
   context.timed("write",
                 [&] { writeVolume(options.output, result.grids, options.transfer, context); });
   context.print(pushText(result));

@@ -50,7 +50,7 @@ Solid targetSolid(const BoundaryPair& pair, Context& context) {
   return Solid(target, settings);
 }
 
-void describe(const openvdb::GridPtrVec& grids, const FieldFile& file) {
+void describeMap(const openvdb::GridPtrVec& grids, const FieldFile& file) {
   for (const openvdb::GridBase::Ptr& grid : grids)
     for (const auto& [key, value] : file.settings)
       grid->insertMeta("innermap_" + key, openvdb::StringMetadata(value));

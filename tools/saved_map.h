@@ -20,7 +20,7 @@ BoundaryPair boundaryOf(const FieldFile& file, const std::string& path, Context&
 Solid targetSolid(const BoundaryPair& pair, Context& context);
 
 // The map's settings and certificate as metadata of grids made with it (prefix innermap_).
-void describe(const openvdb::GridPtrVec& grids, const FieldFile& file);
+void describeMap(const openvdb::GridPtrVec& grids, const FieldFile& file);
 
 // Accuracy of sums of charges, well below the map's own error as its file states that; a fraction
 // of the target's diagonal.
