@@ -13,17 +13,14 @@ using Clock = std::chrono::steady_clock;
 void report(const std::vector<FrameResult>& results, Context& context) {
   std::vector<double> numbers, seconds;
   std::vector<std::string> files, failures;
-  std::int64_t skipped = 0;
   for (const FrameResult& r : results) {
     numbers.push_back(static_cast<double>(r.file.number));
     seconds.push_back(r.seconds);
     files.push_back(r.file.path);
-    skipped += r.skipped;
     if (!r.error.empty()) failures.push_back(fmt::format("{}: {}", r.file.number, r.error));
   }
   Report& report = context.report();
   report.set("frames.count", static_cast<std::int64_t>(results.size()));
-  report.set("frames.skipped", skipped);
   report.set("frames.broken", failures);
   report.set("frames.number", numbers);
   report.set("frames.file", files);
@@ -52,10 +49,9 @@ void sayBroken(const std::vector<FrameResult>& results, Context& context) {
 }
 
 // The error's text when the frame is broken.
-std::string tryFrame(FrameResult& result, std::size_t index,
-                     const std::function<bool(std::size_t)>& body) {
+std::string tryFrame(std::size_t index, const std::function<void(std::size_t)>& body) {
   try {
-    result.skipped = !body(index);
+    body(index);
   } catch (const FileError& error) {
     return error.what();
   } catch (const DataError& error) {
@@ -67,7 +63,7 @@ std::string tryFrame(FrameResult& result, std::size_t index,
 }  // namespace
 
 std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& context,
-                                   const std::function<bool(std::size_t)>& body) {
+                                   const std::function<void(std::size_t)>& body) {
   std::vector<FrameResult> results;
   std::size_t finished = 0;
   try {
@@ -78,7 +74,7 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
                                   frames.wanted.size()));
       throwIfCancelled(context.progress());
       const auto start = Clock::now();
-      result.error = tryFrame(result, index, body);
+      result.error = tryFrame(index, body);
       result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
       if (!result.error.empty())
         context.warning(fmt::format("frame {} is left out: {}", result.file.number, result.error));
@@ -109,7 +105,7 @@ std::string secondsText(const std::vector<FrameResult>& results, Context& contex
   double sum = 0, least = 0, most = 0;
   int count = 0;
   for (const FrameResult& r : results) {
-    if (r.skipped || !r.error.empty()) continue;
+    if (!r.error.empty()) continue;
     sum += r.seconds;
     least = count ? std::min(least, r.seconds) : r.seconds;
     most = std::max(most, r.seconds);

@@ -18,22 +18,20 @@ class OutputFailure : public Error {
 struct FrameResult {
   FrameFile file;
   double seconds = 0;
-  bool skipped = false;  // it was there already
-  std::string error;     // empty: good
+  std::string error;  // empty: good
 };
 
-// Calls `body` for all wanted frames, with the frame's place in frames.all; it returns false for a
-// frame that it skips. FileErrors and DataErrors of it make a broken frame. On
-// cancelling, throws CancelledLate when `stays` is true and frames were finished. Throws DataError
-// when all frames are broken. Fills the report's "frames" and sets the context's failure when some
-// are.
+// Calls `body` for all wanted frames, with the frame's place in frames.all. FileErrors and
+// DataErrors of it make a broken frame. On cancelling, throws CancelledLate when `stays` is true
+// and frames were finished. Throws DataError when all frames are broken. Fills the report's
+// "frames" and sets the context's failure when some are.
 std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& context,
-                                   const std::function<bool(std::size_t)>& body);
+                                   const std::function<void(std::size_t)>& body);
 
 // Calls `write`; its FileErrors become OutputFailures that name the frame.
 void writeFrame(const FrameFile& frame, const std::function<void()>& write);
 
-// "seconds a frame: mean 0.41, least 0.38, most 0.52" of those not skipped; also into the report.
+// "seconds a frame: mean 0.41, least 0.38, most 0.52" of the good ones; also into the report.
 std::string secondsText(const std::vector<FrameResult>& results, Context& context);
 
 }  // namespace innermap::tool

@@ -194,7 +194,6 @@ void run(const SequenceOptions& options, Context& context) {
       runFrames(frames, options.grids, context, [&](std::size_t index) {
         rows.push_back(sequence.run(frames.all[index]));
         context.print(sequenceLine(rows.back()));
-        return true;
       });
   const std::string seconds = secondsText(results, context);
   const std::vector<SequenceRow> table = withBroken(rows, results);

@@ -48,6 +48,20 @@ Vec3 originOf(const Solid& solid, double voxelSize) {
   return solid.box().lower - Vec3{shift, shift, shift};
 }
 
+void checkReach(const Solid& solid, const Vec3& origin, double voxelSize) {
+  constexpr double kFarthest = 1e9;  // voxels; indices have 32 bits
+  for (int a = 0; a < 3; ++a)
+    for (const double side : {solid.box().lower[a], solid.box().upper[a]})
+      if (!(std::abs(side - origin[a]) < kFarthest * voxelSize))
+        throw SettingError("origin", "is over a billion voxels away from the solid");
+}
+
+openvdb::math::Transform::Ptr transformAt(const Vec3& origin, double voxelSize) {
+  auto transform = openvdb::math::Transform::createLinearTransform(voxelSize);
+  transform->postTranslate(openvdb::Vec3d(origin.x, origin.y, origin.z));
+  return transform;
+}
+
 // Signs of one leaf's voxels. Two neighbours have the same sign when the balls about them that are
 // free of surface meet; one winding number settles each set of voxels so connected.
 class LeafSigns {
@@ -155,10 +169,7 @@ double voxelSizeFor(const Solid& solid, const LevelSetSettings& settings) {
 }
 
 openvdb::math::Transform::Ptr transformFor(const Solid& solid, double voxelSize) {
-  auto transform = openvdb::math::Transform::createLinearTransform(voxelSize);
-  const Vec3 origin = originOf(solid, voxelSize);
-  transform->postTranslate(openvdb::Vec3d(origin.x, origin.y, origin.z));
-  return transform;
+  return transformAt(originOf(solid, voxelSize), voxelSize);
 }
 
 std::uint64_t levelSetMemory(const Solid& solid, const LevelSetSettings& settings) {
@@ -186,7 +197,9 @@ FloatGrid::Ptr makeLevelSet(const Solid& solid, const LevelSetSettings& settings
                   "a larger voxel size, a lower resolution or a smaller half width would fit");
   }
   openvdb::initialize();
-  const Band band(solid, originOf(solid, h), h, 0, background);
+  const Vec3 origin = settings.origin.value_or(originOf(solid, h));
+  checkReach(solid, origin, h);
+  const Band band(solid, origin, h, 0, background);
   const std::vector<Coord> origins = band.leaves(settings.progress);
   std::vector<std::unique_ptr<Leaf>> leaves(origins.size());
   parallelBlocks(
@@ -202,7 +215,7 @@ FloatGrid::Ptr makeLevelSet(const Solid& solid, const LevelSetSettings& settings
     if (leaf) grid->tree().addLeaf(leaf.release());
   }
   openvdb::tools::signedFloodFill(grid->tree(), true, 1, 1);
-  grid->setTransform(transformFor(solid, h));
+  grid->setTransform(transformAt(origin, h));
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
   grid->setName("surface");
   throwIfCancelled(settings.progress);

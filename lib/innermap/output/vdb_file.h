@@ -12,8 +12,9 @@
 namespace innermap {
 
 // What the grids are called in the file. innermap's own names (surface, density, map, jacobian,
-// harmonic_energy, deformation_energy, Cd, uv) are those of Houdini wherever Houdini has one;
-// Blender and Cycles look for the colour in `color`, which the other schemes call `Cd`.
+// harmonic_energy, deformation_energy, Cd, uv, velocity) are those of Houdini or Blender wherever
+// those have one: the colour is `color` in Blender and Cycles and `Cd` otherwise, the velocity `v`
+// in Houdini and `velocity` otherwise.
 enum class NamingScheme { kInnermap, kBlender, kHoudini };
 
 // "innermap", "blender", "houdini"; throws SettingError for other texts.

@@ -68,7 +68,9 @@ NamingScheme parseNamingScheme(const std::string& setting, const std::string& te
 }
 
 std::string gridName(const std::string& own, NamingScheme scheme) {
-  return scheme == NamingScheme::kBlender && own == "Cd" ? "color" : own;
+  if (scheme == NamingScheme::kBlender && own == "Cd") return "color";
+  if (scheme == NamingScheme::kHoudini && own == "velocity") return "v";
+  return own;
 }
 
 void writeVdb(const std::string& path, const openvdb::GridPtrVec& grids,

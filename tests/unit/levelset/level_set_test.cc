@@ -132,6 +132,25 @@ TEST(LevelSet, ScaleAndPlaceDoNotMatter) {
   }
 }
 
+TEST(LevelSet, OneLatticeForSeveralSolids) {
+  LevelSetSettings settings;
+  settings.voxelSize = 0.1;
+  settings.origin = Vec3{0.01, -0.02, 5};
+  const auto here = makeLevelSet(Solid(shapes::icosphere(3)), settings),
+             there = makeLevelSet(Solid(shapes::icosphere(3, 1, {0.5, 20 * 0.1, -3})), settings);
+  EXPECT_EQ(here->transform(), there->transform());
+  const openvdb::Vec3d first = here->indexToWorld(openvdb::Vec3d(0));
+  EXPECT_NEAR(first.x(), 0.01, 1e-15);
+  EXPECT_NEAR(first.z(), 5, 1e-15);
+  // The same ball five voxels, twenty and thirty away.
+  EXPECT_EQ(here->activeVoxelCount(), there->activeVoxelCount());
+  const openvdb::Coord far(5, 20, -30);
+  for (auto v = here->cbeginValueOn(); v; ++v)
+    ASSERT_NEAR(*v, there->tree().getValue(v.getCoord() + far), 1e-6);
+  settings.origin = Vec3{1e9, 0, 0};
+  EXPECT_THROW(makeLevelSet(Solid(shapes::icosphere(2)), settings), SettingError);
+}
+
 TEST(LevelSet, SettingsOutOfRange) {
   const Solid solid(shapes::icosphere(2));
   const auto with = [&](auto change) {

@@ -1,0 +1,374 @@
+// `innermap deform`: a volume in a rest pose carried through the frames of an animation.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "commands.h"
+#include "frame_loop.h"
+#include "frame_velocity.h"
+#include "innermap/core/content_hash.h"
+#include "innermap/core/file.h"
+#include "innermap/levelset/level_set.h"
+#include "innermap/output/vdb_file.h"
+#include "innermap/output/version.h"
+#include "transfer_options.h"
+
+namespace innermap::tool {
+namespace {
+
+constexpr double kBand = 3;         // voxels: the skin of 2 and one more for interpolation
+constexpr double kAccuracy = 1e-6;  // of sums of charges; well below what the fits leave
+constexpr char kInputs[] = "innermap_inputs";
+
+struct DeformOptions {
+  std::string rest, volume, output;
+  FrameOptions frames;
+  TransferOptions transfer;
+  bool velocity = false, force = false;
+  double framesPerSecond = 24;
+};
+
+// What decides an output beside the frames' files.
+std::string settingsText(const DeformOptions& o) {
+  const FrameOptions& f = o.frames;
+  const TransferOptions& t = o.transfer;
+  const auto number = [](const auto& v) { return v ? fmt::format("{:.17g}", double(*v)) : "-"; };
+  return fmt::format("{};{};{};{};{};{};{};{};{};{};{};{:.17g};{};{};{};{};{}", versionText(),
+                     f.sources, collocationOf(f), number(f.distance), f.seed, t.grids, t.sampling,
+                     t.density, t.densities, t.stress, t.strain, t.outside, t.fadeTo,
+                     number(t.resolution), number(t.voxelSize), t.names,
+                     o.velocity ? fmt::format("{:.17g}", o.framesPerSecond) : "-");
+}
+
+// Tells which inputs and settings an output was made from.
+class Inputs {
+ public:
+  Inputs(const DeformOptions& options, const Frames& frames, Context& context)
+      : frames_(frames), neighbours_(options.velocity), progress_(context.progress()) {
+    common_ =
+        fmt::format("rest {}, volume {}, settings {:016x}", fingerprintOf(options.rest, progress_),
+                    fingerprintOf(options.volume, progress_), hashOf(settingsText(options)));
+  }
+
+  std::string of(std::size_t index) const {
+    std::string text = common_ + ", frame " + fingerprint(index);
+    if (!neighbours_) return text;
+    if (index > 0) text += ", before " + numbered(index - 1);
+    if (index + 1 < frames_.all.size()) text += ", after " + numbered(index + 1);
+    return text;
+  }
+
+ private:
+  std::string fingerprint(std::size_t index) const {
+    return fingerprintOf(frames_.all[index].path, progress_);
+  }
+  // A neighbour that cannot be read plays no part.
+  std::string numbered(std::size_t index) const {
+    try {
+      return fmt::format("{} {}", frames_.all[index].number, fingerprint(index));
+    } catch (const FileError&) {
+      return "none";
+    }
+  }
+
+  const Frames& frames_;
+  const bool neighbours_;
+  Progress* progress_;
+  std::string common_;
+};
+
+// Whether a whole file made from these inputs is there.
+bool isFinished(const std::string& path, const std::string& inputs) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;
+  try {
+    const VdbInfo info = readVdbInfo(path);
+    const auto made = info.metadata.getMetadata<openvdb::StringMetadata>(kInputs);
+    return made && made->value() == inputs;
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+struct DeformRow {
+  InverseStatistics statistics;
+  BoundaryError error;
+};
+
+// The set-up that all frames share.
+class Deformer {
+ public:
+  Deformer(const DeformOptions& options, const Frames& frames, Context& context)
+      : options_(options),
+        context_(context),
+        solver_(options.rest, options.frames, context),
+        fits_(solver_, frames, context),
+        frames_(frames),
+        grids_(readVolume(options.volume, options.transfer, context)) {
+    const NamingScheme scheme = parseNamingScheme("--names", options.transfer.names);
+    for (const openvdb::GridBase::Ptr& grid : grids_)
+      if (options.velocity && gridName(grid->getName(), scheme) == gridName("velocity", scheme))
+        throw DataError(options.volume + ": already has a grid '" + grid->getName() +
+                        "'; leave out --velocity or choose the others by --grids");
+    chooseLattice();
+    if (options.transfer.fadeTo != "fitted") pusher_.emplace(makePusher({}));
+  }
+
+  double voxelSize() const { return levelSet_.voxelSize; }
+
+  DeformRow run(std::size_t index, const std::string& path, const std::string& inputs) {
+    const std::shared_ptr<const FrameFit> fit = fits_.at(index);
+    std::vector<CarriedField> fields;
+    if (options_.velocity)
+      fields.push_back({"velocity", fits_.velocity(index, options_.framesPerSecond),
+                        openvdb::VEC_CONTRAVARIANT_RELATIVE});
+    openvdb::FloatGrid::Ptr target;
+    context_.timed("level set", [&] {
+      SolidSettings settings;
+      settings.progress = context_.progress();
+      const Solid solid(movedMesh(solver_.solid(), fit->boundary, frames_.all[index].path),
+                        settings);
+      target = makeLevelSet(solid, levelSet_);
+    });
+    PushResult result;
+    context_.timed("push", [&] {
+      const VolumePusher pusher = pusher_ ? *pusher_ : makePusher(fit->boundary.moved);
+      result = pusher.push(HarmonicMap(fit->field), *target, fields);
+    });
+    say(result, frames_.all[index].number);
+    write(index, path, inputs, *fit, result);
+    return {result.statistics, fit->error};
+  }
+
+ private:
+  // All frames have the voxels and the lattice that the rest pose would have.
+  void chooseLattice() {
+    const TransferOptions& t = options_.transfer;
+    levelSet_.halfWidth = kBand;
+    levelSet_.maxMemory = context_.maxMemory();
+    levelSet_.progress = context_.progress();
+    if (t.voxelSize) {
+      levelSet_.voxelSize = *t.voxelSize;
+    } else if (t.resolution) {
+      levelSet_.resolution = *t.resolution;
+    } else {
+      for (const openvdb::GridBase::Ptr& grid : grids_) {
+        const openvdb::Vec3d v = grid->voxelSize();
+        const double finest = std::min({v.x(), v.y(), v.z()});
+        if (levelSet_.voxelSize == 0 || finest < levelSet_.voxelSize) levelSet_.voxelSize = finest;
+      }
+    }
+    levelSet_.voxelSize = voxelSizeFor(solver_.solid(), levelSet_);
+    const openvdb::Vec3d origin =
+        transformFor(solver_.solid(), levelSet_.voxelSize)->indexToWorld(openvdb::Vec3d(0));
+    levelSet_.origin = Vec3{origin.x(), origin.y(), origin.z()};
+  }
+
+  VolumePusher makePusher(const Points& moved) const {
+    PushSettings settings =
+        pushSettings(options_.transfer, solver_.solid().repaired().mesh.vertices, moved, context_);
+    settings.accuracy = kAccuracy;
+    return VolumePusher(solver_.solid(), grids_, settings);
+  }
+
+  void say(const PushResult& result, std::int64_t frame) const {
+    constexpr double kMany = 0.005;
+    for (const std::string& warning : result.warnings)
+      context_.warning(fmt::format("frame {}: {}", frame, warning));
+    const InverseStatistics& s = result.statistics;
+    if (static_cast<double>(s.failed) > kMany * static_cast<double>(s.voxels))
+      context_.warning(fmt::format(
+          "frame {}: {:.3g}% of the voxels come from nowhere in the rest pose, the first at "
+          "({:.6g}, {:.6g}, {:.6g}); they have the values of their neighbours",
+          frame, 100 * static_cast<double>(s.failed) / static_cast<double>(s.voxels),
+          s.failedAt[0].x, s.failedAt[0].y, s.failedAt[0].z));
+  }
+
+  void write(std::size_t index, const std::string& path, const std::string& inputs,
+             const FrameFit& fit, const PushResult& result) const {
+    const FrameFile& frame = frames_.all[index];
+    for (const openvdb::GridBase::Ptr& grid : result.grids) {
+      const auto number = [&grid](const char* key, double value) {
+        grid->insertMeta(std::string("innermap_") + key, openvdb::DoubleMetadata(value));
+      };
+      grid->insertMeta("innermap_frame", openvdb::Int64Metadata(frame.number));
+      number("boundary_error_rms", fit.error.rms);
+      number("boundary_error_p99", fit.error.p99);
+      number("boundary_error_max", fit.error.max);
+      if (options_.velocity) number("frames_per_second", options_.framesPerSecond);
+    }
+    openvdb::MetaMap file;
+    file.insertMeta(kInputs, openvdb::StringMetadata(inputs));
+    VdbWriteSettings settings;
+    settings.names = parseNamingScheme("--names", options_.transfer.names);
+    settings.progress = context_.progress();
+    context_.timed(
+        "write", [&] { writeFrame(frame, [&] { writeVdb(path, result.grids, file, settings); }); });
+  }
+
+  const DeformOptions& options_;
+  Context& context_;
+  const FrameSolver solver_;
+  FrameFits fits_;
+  const Frames& frames_;
+  const openvdb::GridPtrVec grids_;
+  LevelSetSettings levelSet_;
+  std::optional<VolumePusher> pusher_;
+};
+
+std::string lineOf(const FrameFile& frame, const DeformRow& row, double seconds) {
+  const InverseStatistics& s = row.statistics;
+  return fmt::format("{:>8} {:>10} {:>10.4f} {:>10.2e} {:>10.2e} {:>9.3g}\n", frame.number,
+                     s.voxels,
+                     100 * static_cast<double>(s.inverted) /
+                         static_cast<double>(std::max<std::uint64_t>(s.voxels, 1)),
+                     row.error.rms, row.error.p99, seconds);
+}
+
+std::string header() {
+  return fmt::format("{:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "frame", "voxels", "inverted %",
+                     "error rms", "error 99%", "seconds");
+}
+
+// Figures of the frames that were made now; those of others are missing.
+void fillReport(const std::map<std::size_t, DeformRow>& rows, const Frames& frames,
+                Report& report) {
+  std::vector<double> voxels, inverted, rms, p99, most;
+  for (const std::size_t index : frames.wanted) {
+    const auto row = rows.find(index);
+    const auto value = [&](auto of) {
+      return row == rows.end() ? std::nan("") : static_cast<double>(of(row->second));
+    };
+    voxels.push_back(value([](const DeformRow& r) { return r.statistics.voxels; }));
+    inverted.push_back(value([](const DeformRow& r) {
+      return static_cast<double>(r.statistics.inverted) /
+             static_cast<double>(std::max<std::uint64_t>(r.statistics.voxels, 1));
+    }));
+    rms.push_back(value([](const DeformRow& r) { return r.error.rms; }));
+    p99.push_back(value([](const DeformRow& r) { return r.error.p99; }));
+    most.push_back(value([](const DeformRow& r) { return r.error.max; }));
+  }
+  report.set("frames.voxels", voxels);
+  report.set("frames.inverted_fraction", inverted);
+  report.set("frames.boundary_rms", rms);
+  report.set("frames.boundary_p99", p99);
+  report.set("frames.boundary_max", most);
+}
+
+void check(const DeformOptions& options, const Frames& frames) {
+  std::string extension = std::filesystem::path(options.output).extension().string();
+  if (extension != ".vdb")
+    throw UsageError("--output: '" + options.output + "' must end in .vdb, as in a.####.vdb");
+  if (options.velocity && frames.all.size() < 2)
+    throw UsageError("--velocity: needs at least two frames; give more or leave it out");
+  // Refuses what makes no sense before anything is read; which motion fits is not known yet.
+  if (options.transfer.fadeTo != "fitted" || !(options.transfer.outside > 0))
+    outsideSettings(options.transfer, {}, {});
+}
+
+// Those whose output is not there or was made from something else.
+Frames framesLeft(const DeformOptions& options, const Frames& frames, const FramePattern& pattern,
+                  const Inputs& inputs, Context& context) {
+  Frames left = frames;
+  left.wanted.clear();
+  for (const std::size_t index : frames.wanted) {
+    bool toDo = true;
+    try {
+      toDo = options.force || !isFinished(pattern.path(frames.all[index].number), inputs.of(index));
+    } catch (const FileError&) {  // a frame that cannot be read is told of in its turn
+    }
+    if (toDo) left.wanted.push_back(index);
+  }
+  const std::size_t finished = frames.wanted.size() - left.wanted.size();
+  context.report().set("frames.finished_before", static_cast<std::int64_t>(finished));
+  if (finished > 0)
+    context.note(fmt::format("{} of {} frames are finished already; --force makes them again",
+                             finished, frames.wanted.size()));
+  return left;
+}
+
+void plan(const DeformOptions& options, const Frames& frames, const FramePattern& pattern,
+          Context& context) {
+  const auto path = [&](std::size_t i) { return pattern.path(frames.all[i].number); };
+  context.plan(
+      {fmt::format("fit {} charges to {} boundary points for {} frames", options.frames.sources,
+                   collocationOf(options.frames), frames.wanted.size()),
+       "carry " + options.volume + " to " + path(frames.wanted.front()) + " to " +
+           path(frames.wanted.back())},
+      frameFittingMemory(options.frames));
+}
+
+void run(const DeformOptions& options, Context& context) {
+  const FramePattern pattern("--output", options.output);
+  const Frames frames = listFrames(options.frames, options.rest, context);
+  check(options, frames);
+  if (context.dryRun()) return plan(options, frames, pattern, context);
+  requireFrameMemory(options.frames, 0, context);
+  const PendingFolder folder(pattern.folder());
+  std::optional<Inputs> inputs;
+  Frames left;
+  context.timed("compare", [&] {
+    inputs.emplace(options, frames, context);
+    left = framesLeft(options, frames, pattern, *inputs, context);
+  });
+  if (left.wanted.empty()) return;
+  Deformer deformer(options, left, context);
+  std::map<std::size_t, DeformRow> rows;
+  context.print(header());
+  const auto results = runFrames(left, true, context, [&](std::size_t index) {
+    const auto start = std::chrono::steady_clock::now();
+    const FrameFile& frame = frames.all[index];
+    const DeformRow row = deformer.run(index, pattern.path(frame.number), inputs->of(index));
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    context.print(lineOf(frame, row, elapsed.count()));
+    rows[index] = row;
+  });
+  context.report().set("grid.voxel_size", deformer.voxelSize());
+  fillReport(rows, left, context.report());
+  context.print(secondsText(results, context));
+}
+
+}  // namespace
+
+Command makeDeformCommand() {
+  auto o = std::make_shared<DeformOptions>();
+  Command c("deform", "Carry a volume in a rest pose through the frames of an animation");
+  c.description(
+      "VOLUME's grids live inside REST. For each frame REST's inside is mapped onto the frame's, "
+      "the map is inverted and the grids are carried along, as push does. The set-up is made once "
+      "for all frames, all outputs have one voxel size and one lattice, and a frame's result does "
+      "not depend on which others are made. Frames whose output is there already, made from the "
+      "same files and settings, are skipped. A frame that cannot be read or fitted is reported and "
+      "left out; the exit code is then 1.");
+  c.positional("REST", &o->rest, "mesh of the rest pose: .obj, .ply, .off or .stl");
+  c.positional("VOLUME", &o->volume, "the grids, a .vdb file in the rest pose's world space");
+  addFrameArgument(c, o->frames);
+  c.option("--output", "FILES", &o->output,
+           "the .vdb files to write, #### or %04d standing for the frame's number; without, it is "
+           "put before .vdb; the folder is made when missing")
+      .shortName("-o")
+      .required();
+  addFrameOptions(c, o->frames);
+  c.flag("--force", &o->force, "make finished frames again");
+  c.flag("--velocity", &o->velocity,
+         "also write a grid velocity (v with --names houdini) for motion blur, in world units per "
+         "second, from the neighbouring frames");
+  c.option("--fps", "N", &o->framesPerSecond, "frames per second, for --velocity")
+      .above(0)
+      .atMost(1e6);
+  addTransferOptions(c, o->transfer);
+  c.example("innermap deform rest.obj smoke.vdb 'walk.*.obj' -o 'out/smoke.####.vdb' --density");
+  c.example(
+      "innermap deform rest.obj smoke.vdb 'walk.*.obj' -o 'out/smoke.%04d.vdb' --velocity --fps "
+      "25");
+  c.run([o](Context& context) { run(*o, context); });
+  return c;
+}
+
+}  // namespace innermap::tool
