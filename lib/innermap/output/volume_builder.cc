@@ -220,7 +220,9 @@ bool withVolumeType(const std::string& type, const Body& body) {
                                   openvdb::Vec3SGrid, openvdb::Vec3DGrid, openvdb::Vec3IGrid>;
   Types::foreach ([&](const auto& value) {
     using Grid = std::decay_t<decltype(value)>;
-    if (Grid().valueType() != type) return;
+    // OpenVDB calls a mask's values bool too.
+    constexpr bool kMask = std::is_same_v<Grid, openvdb::MaskGrid>;
+    if ((kMask ? "mask" : Grid().valueType()) != type) return;
     found = true;
     body(static_cast<const Grid*>(nullptr));
   });

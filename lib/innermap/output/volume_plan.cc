@@ -117,7 +117,7 @@ void placeTiles(const VolumeTextureSettings& s, VolumeLattice& lattice) {
 VolumeGrid describe(const openvdb::GridBase& grid) {
   VolumeGrid d;
   d.name = grid.getName();
-  d.type = grid.valueType();
+  d.type = grid.isType<openvdb::MaskGrid>() ? "mask" : grid.valueType();
   d.gridClass = openvdb::GridBase::gridClassToString(grid.getGridClass());
   d.vectorType = openvdb::GridBase::vecTypeToString(grid.getVectorType());
   d.channels = channelNames(grid);
