@@ -1,0 +1,268 @@
+#!/usr/bin/env python3
+"""innermap deform: a volume carried through an animation."""
+
+import os
+import subprocess
+
+import cli
+from cli import fails, innermap, interrupt, no_leftovers
+from frames import ball_frames, break_frame, moved, rigid, twisted
+
+SMALL = ["--sources", "400", "--quiet"]
+PYTHON = "/usr/bin/python3"
+
+
+def volume(resolution=20):
+    """rest.vdb: level set and fog of rest.obj."""
+    innermap("voxelize", "rest.obj", "-o", "rest.vdb", "--fog", "--resolution", resolution,
+             "--quiet")
+
+
+def deform(*arguments, output="out/d.####.vdb", **options):
+    return innermap("deform", "rest.obj", "rest.vdb", "frames/*.obj", "-o", output, *SMALL,
+                    *arguments, **options)
+
+
+def read_with_openvdb(code):
+    """What a program prints that reads with OpenVDB's own Python module."""
+    if subprocess.run([PYTHON, "-c", "import pyopenvdb"], capture_output=True).returncode:
+        raise cli.Skip("pyopenvdb is not installed")
+    done = subprocess.run([PYTHON, "-c", "import pyopenvdb as vdb\n" + code], capture_output=True,
+                          text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.split()
+
+
+def content(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def stamps(folder="out"):
+    return {name: os.stat(os.path.join(folder, name)).st_mtime_ns
+            for name in sorted(os.listdir(folder))}
+
+
+def test_frame_numbers_are_kept():
+    ball_frames(rigid, {1: 0.1, 12: 0.5, 1234567: 1.0})
+    volume()
+    done = innermap("deform", "rest.obj", "rest.vdb", "frames", "-o", "out/d.####.vdb",
+                    "--sources", "400", "--report", "r.json")
+    assert sorted(os.listdir("out")) == ["d.0001.vdb", "d.0012.vdb", "d.1234567.vdb"]
+    assert "frame 12 (2 of 3)" in done.stderr and "seconds a frame: mean" in done.stdout
+    report = cli.read_json("r.json")
+    assert report["frames"]["number"] == [1, 12, 1234567]
+    assert min(report["frames"]["inverted_fraction"]) > 0.99
+    assert max(report["frames"]["boundary_max"]) < 1e-9
+    text = innermap("info", "out/d.0012.vdb").stdout
+    for line in ["density: float, fog volume", "surface: float, level set", "innermap_frame: 12",
+                 "innermap_inputs: rest "]:
+        assert line in text, text
+    for output, name in [("p%02d.vdb", "p12.vdb"), ("q.vdb", "q.0012.vdb"), ("#.vdb", "12.vdb")]:
+        deform("--frames", "12", output=output)
+        assert os.path.exists(name), name
+
+
+def test_a_rigid_motion_keeps_the_volume():
+    ball_frames(rigid, {1: 0.0, 2: 0.8, 3: 2.0})
+    volume(32)
+    deform("--density")
+    sums = read_with_openvdb("""
+for path in ["rest.vdb", "out/d.0001.vdb", "out/d.0002.vdb", "out/d.0003.vdb"]:
+    grid = vdb.read(path, "density")
+    h = grid.transform.voxelSize()[0]
+    print(sum(v.value * v.count for v in grid.iterOnValues()) * h ** 3, h)
+    m = grid.transform.indexToWorld((0, 0, 0))
+    print(*m)
+""")
+    masses, sizes = [float(x) for x in sums[0::5]], {float(x) for x in sums[1::5]}
+    for mass in masses[1:]:
+        assert abs(mass / masses[0] - 1) < 0.005, masses
+    assert len(sizes) == 1, sizes
+    # One lattice for all frames.
+    assert sums[7:10] == sums[12:15] == sums[17:20], sums
+
+
+def test_velocity_of_a_translation():
+    ball_frames(moved, {1: 0.1, 2: 0.2, 4: 0.4, 9: 0.9})
+    volume()
+    deform("--velocity", "--fps", "30", "--grids", "density")
+    # 0.1 (1, -2, 0.5) a frame.
+    values = read_with_openvdb("""
+for n in [1, 2, 4, 9]:
+    grid = vdb.read(f"out/d.{n:04d}.vdb", "velocity")
+    values = [v.value for v in grid.iterOnValues()]
+    assert len(values) > 1000
+    for a in range(3):
+        print(min(v[a] for v in values), max(v[a] for v in values))
+""")
+    for i in range(0, len(values), 6):
+        for a, expected in enumerate([3, -6, 1.5]):
+            for value in values[i + 2 * a:i + 2 * a + 2]:
+                assert abs(float(value) - expected) < 1e-4, values
+    deform("--velocity", "--names", "houdini", output="h.vdb")
+    text = innermap("info", "h.0001.vdb").stdout
+    assert "  v: vec3s" in text and "velocity" not in text, text
+    assert "innermap_frames_per_second: 24" in text
+
+
+def test_velocity_is_of_second_order_in_gaps():
+    """Accelerated along x, x = t^2: the parabola through three frames is the motion itself."""
+    ball_frames(lambda v, t: (v[0] + t * t, v[1], v[2]), {1: 1, 2: 2, 5: 5, 6: 6})
+    volume()
+    deform("--velocity", "--fps", "1", "--grids", "density")
+    values = read_with_openvdb("""
+for n in [1, 2, 5, 6]:
+    grid = vdb.read(f"out/d.{n:04d}.vdb", "velocity")
+    print(max(v.value[0] for v in grid.iterOnValues()))
+""")
+    # At the ends the line to the one neighbour.
+    for value, expected in zip(values, [3, 4, 10, 11]):
+        assert abs(float(value) - expected) < 1e-3, values
+
+
+def test_velocity_steps_over_broken_frames():
+    ball_frames(moved, {1: 0.1, 2: 0.2, 3: 0.3})
+    volume()
+    break_frame("frames/f.0002.obj")
+    deform("--velocity", "--grids", "density", exit_code=1)
+    assert sorted(os.listdir("out")) == ["d.0001.vdb", "d.0003.vdb"]
+    values = read_with_openvdb("""
+grid = vdb.read("out/d.0003.vdb", "velocity")
+print(min(v.value[0] for v in grid.iterOnValues()))
+""")
+    assert abs(float(values[0]) - 2.4) < 1e-4
+    fails(2, "deform", "rest.obj", "rest.vdb", "frames/f.0001.obj", "-o", "x.vdb", "--velocity",
+          says=["--velocity", "two frames"])
+
+
+def test_finished_frames_are_skipped_until_something_changes():
+    times = {1: 0.1, 2: 0.2, 3: 0.3, 4: 0.4}
+    ball_frames(twisted, times)
+    volume()
+    deform("--frames", "1-3")
+    first = stamps()
+    done = innermap("deform", "rest.obj", "rest.vdb", "frames/*.obj", "-o", "out/d.####.vdb",
+                    "--sources", "400", "--report", "r.json")
+    assert "3 of 4 frames are finished" in done.stderr
+    assert cli.read_json("r.json")["frames"]["number"] == [4]
+    second = stamps()
+    assert {name: second[name] for name in first} == first and len(second) == 4
+    deform()
+    assert stamps() == second
+    # Another frame's file, a damaged output, other settings, another volume.
+    ball_frames(twisted, {2: 0.25})
+    with open("out/d.0003.vdb", "r+b") as file:
+        file.truncate(2000)
+    deform()
+    third = stamps()
+    assert [n for n in third if third[n] != second[n]] == ["d.0002.vdb", "d.0003.vdb"], third
+    deform("--sampling", "nearest")
+    fourth = stamps()
+    assert all(fourth[n] != third[n] for n in third)
+    innermap("voxelize", "rest.obj", "-o", "rest.vdb", "--fog", "--resolution", "21", "--quiet")
+    deform("--sampling", "nearest")
+    fifth = stamps()
+    assert all(fifth[n] != fourth[n] for n in third)
+    deform("--sampling", "nearest", "--force", "--frames", "1")
+    sixth = stamps()
+    assert [n for n in sixth if sixth[n] != fifth[n]] == ["d.0001.vdb"]
+
+
+def test_a_changed_neighbour_makes_velocities_again():
+    ball_frames(moved, {n: 0.1 * n for n in range(1, 6)})
+    volume(12)
+    deform("--velocity")
+    before = stamps()
+    ball_frames(moved, {3: 0.35})
+    deform("--velocity")
+    after = stamps()
+    assert [n for n in after if after[n] != before[n]] == [f"d.000{n}.vdb" for n in (2, 3, 4)]
+
+
+def test_a_frame_does_not_depend_on_the_others():
+    ball_frames(twisted, {n: 0.1 * n for n in range(1, 5)})
+    volume()
+    deform("--velocity")
+    deform("--velocity", "--frames", "3", "--threads", "1", output="alone/d.####.vdb")
+    # Files hold a random identifier: the values are compared.
+    same = read_with_openvdb("""
+for name in ["density", "surface", "velocity"]:
+    a, b = (vdb.read(f + "/d.0003.vdb", name) for f in ["out", "alone"])
+    assert a.activeVoxelCount() == b.activeVoxelCount()
+    for x, y in zip(a.iterOnValues(), b.iterOnValues()):
+        assert x.min == y.min and x.value == y.value, (name, x.min, x.value, y.value)
+print("same")
+""")
+    assert same == ["same"]
+
+
+def test_a_broken_frame_is_reported_and_the_others_go_on():
+    ball_frames(twisted, {n: 0.1 * n for n in range(1, 5)})
+    volume(12)
+    break_frame("frames/f.0002.obj")
+    os.remove("frames/f.0004.obj")
+    os.symlink("nowhere", "frames/f.0004.obj")
+    done = innermap("deform", "rest.obj", "rest.vdb", "frames/*.obj", "-o", "out/d.vdb",
+                    "--sources", "400", exit_code=1)
+    assert "1 of 3 frames" in cli.error_line(done) and "f.0002.obj" in cli.error_line(done)
+    assert sorted(os.listdir("out")) == ["d.0001.vdb", "d.0003.vdb"]
+
+
+def test_bad_input():
+    ball_frames(moved, {1: 0.1, 2: 0.2})
+    volume(12)
+    names = ["deform", "rest.obj", "rest.vdb", "frames"]
+    fails(2, *names, "-o", "out", says=["--output", ".vdb"])
+    fails(1, *names, "-o", "a.##.##.vdb", says=["--output", "two places"])
+    fails(1, "deform", "rest.obj", "no.vdb", "frames", "-o", "x.vdb", says=["no.vdb"])
+    fails(1, "deform", "no.obj", "rest.vdb", "frames", "-o", "x.vdb", says=["no.obj"])
+    fails(1, "deform", "rest.obj", "rest.obj", "frames", "-o", "x.vdb", *SMALL, says=["rest.obj"])
+    fails(1, *names, "-o", "new/x.vdb", "--grids", "smoke", *SMALL, says=["smoke", "density"])
+    fails(2, *names, "-o", "x.vdb", "--fade-to", "identity", says=["--fade-to", "--outside"])
+    fails(1, *names, "-o", "x.vdb", "--fps", "0", says=["--fps"])
+    innermap("voxelize", cli.cube("far.obj", 1, (50, 50, 50)), "-o", "far.vdb", "--resolution", "8",
+             "--quiet")
+    fails(1, "deform", "rest.obj", "far.vdb", "frames", "-o", "new/x.vdb", *SMALL, says=["rest.obj"])
+    fails(2, "deform", "rest.obj", "rest.vdb", "-o", "x.vdb", says=["FRAMES"])
+    ball_frames(moved, {1: 0.1, 2: 0.2})
+    deform("--velocity", "--grids", "density", "--frames", "1")
+    fails(1, "deform", "rest.obj", "out/d.0001.vdb", "frames", "-o", "y.vdb", "--velocity", *SMALL,
+          says=["velocity", "--grids"])
+    text = innermap(*names, "-o", "x.vdb", "--dry-run").stdout
+    assert "x.0001.vdb to x.0002.vdb" in text and "memory" in text
+
+
+def test_a_full_disk_ends_the_run():
+    ball_frames(twisted, {1: 0.1, 2: 0.2, 3: 0.3})
+    volume()
+    line = fails(1, "deform", "rest.obj", "rest.vdb", "frames", "-o", "out/d.vdb", *SMALL,
+                 says=["d.0001.vdb", "stopped at frame 1"], preexec_fn=cli.file_size_limit(3000))
+    assert "of 3 frames" not in line
+    deform("--frames", "1", output="out/d.vdb")
+    whole = content("out/d.0001.vdb")
+    fails(1, "deform", "rest.obj", "rest.vdb", "frames", "-o", "out/d.vdb", *SMALL,
+          says=["stopped at frame 2"], preexec_fn=cli.file_size_limit(3000))
+    assert os.listdir("out") == ["d.0001.vdb"] and content("out/d.0001.vdb") == whole
+
+
+def test_cancelling_keeps_finished_frames():
+    ball_frames(twisted, {n: 0.01 * n for n in range(1, 80)}, subdivisions=4)
+    volume(64)
+    caught = 0
+    for after in [0, 1, 6]:
+        code, seconds = interrupt("deform", "rest.obj", "rest.vdb", "frames", "-o", "out/d.vdb",
+                                  "--sources", "3500", after=after)
+        if code is None:
+            continue
+        assert code == 130, code
+        assert seconds < 1.5, seconds
+        caught += 1
+        for name in os.listdir("out") if os.path.exists("out") else []:
+            assert name.startswith("d.") and name.endswith(".vdb"), name
+            innermap("info", os.path.join("out", name))
+    assert caught >= 2, "the run was too short to be interrupted"
+    no_leftovers("rest.obj", "rest.vdb", "frames", "out")
+
+
+cli.run(globals())
