@@ -35,6 +35,8 @@ struct Near {
   openvdb::Index offset = 0;
   double factor = 1;
   Solid::Closest closest;
+  bool outside = false;
+  std::size_t row = 0;  // of the field's value at the closest point, where it is wanted
 };
 
 class Continuation {
@@ -53,7 +55,7 @@ class Continuation {
     const openvdb::MaskGrid::Ptr region = activeRegion(levelSet_, settings_.skin, 1 + 12 * count,
                                                        settings_.maxMemory, settings_.progress);
     for (std::size_t g = 0; g < count; ++g) grids_.push_back(gridOn(*region));
-    evaluate(*region);
+    evaluate(settings_.spacing > 0 ? *insideOf(*region) : *region);
     const Leaves leaves(region->tree());
     for (std::size_t begin = 0; begin < leaves.leafCount(); begin += kLeavesTogether) {
       reportProgress(settings_.progress, "meeting the surface",
@@ -71,6 +73,19 @@ class Continuation {
     grid->setTransform(region.transform().copy());
     grid->setVectorType(openvdb::VEC_INVARIANT);
     return grid;
+  }
+
+  // Outside, the boundary's own values stand.
+  openvdb::MaskGrid::Ptr insideOf(const openvdb::MaskGrid& region) const {
+    openvdb::MaskGrid::Ptr inside = region.deepCopy();
+    openvdb::tree::LeafManager<openvdb::MaskTree> leaves(inside->tree());
+    leaves.foreach ([&](openvdb::MaskTree::LeafNodeType& leaf, std::size_t) {
+      const auto distances = levelSet_.getConstAccessor();
+      const openvdb::MaskTree::LeafNodeType all(leaf);
+      for (auto it = all.cbeginValueOn(); it; ++it)
+        if (!(distances.getValue(it.getCoord()) < 0)) leaf.setValueOff(it.pos());
+    });
+    return inside;
   }
 
   void evaluate(const openvdb::MaskGrid& region) {
@@ -114,7 +129,7 @@ class Continuation {
           solid_.closest(p, inside ? reach : std::numeric_limits<double>::infinity());
       if (c.onSurface.triangle < 0) continue;
       const double depth = c.distance - kExactDepth * voxel_;
-      out.push_back({l, it.pos(), inside ? factorAt(depth, settings_.spacing) : 1.0, c});
+      out.push_back({l, it.pos(), inside ? factorAt(depth, settings_.spacing) : 1.0, c, !inside});
     }
     return out;
   }
@@ -128,44 +143,41 @@ class Continuation {
           for (std::size_t i = first; i < last; ++i) near[i] = nearIn(leaves, begin + i);
         },
         settings_.progress);
-    std::vector<std::size_t> firstRow(near.size() + 1, 0);
     Points points;
-    for (std::size_t i = 0; i < near.size(); ++i) {
-      firstRow[i + 1] = firstRow[i] + near[i].size();
-      for (const Near& n : near[i]) points.push_back(n.closest.position);
-    }
-    if (points.empty()) return;
-    const Matrix fitted =
-        field_.evaluate(points, settings_.accuracy, false, settings_.progress).values;
+    for (std::vector<Near>& leaf : near)
+      for (Near& n : leaf) {
+        if (n.outside && settings_.spacing > 0) continue;
+        n.row = points.size();
+        points.push_back(n.closest.position);
+      }
+    Matrix fitted;
+    if (!points.empty())
+      fitted = field_.evaluate(points, settings_.accuracy, false, settings_.progress).values;
     parallelBlocks(
         near.size(), 8,
         [&](std::size_t first, std::size_t last) {
           for (std::size_t i = first; i < last; ++i)
-            correct(leaves.leaf(begin + i).origin(), near[i], fitted, firstRow[i]);
+            correct(leaves.leaf(begin + i).origin(), near[i], fitted);
         },
         settings_.progress);
   }
 
-  void correct(const openvdb::Coord& origin, const std::vector<Near>& near, const Matrix& fitted,
-               std::size_t row) {
+  void correct(const openvdb::Coord& origin, const std::vector<Near>& near, const Matrix& fitted) {
     const std::size_t channels = field_.channels();
     std::vector<double> values(channels);
-    for (std::size_t i = 0; i < near.size(); ++i) {
-      const Near& n = near[i];
-      const bool outside =
-          levelSet_.tree().getValue(origin + Leaf::offsetToLocalCoord(n.offset)) >= 0;
+    for (const Near& n : near) {
       if (settings_.spacing > 0) {
         boundary_(n.closest, values.data());
       } else {
-        for (std::size_t k = 0; k < channels; ++k) values[k] = fitted(row + i, k);
+        for (std::size_t k = 0; k < channels; ++k) values[k] = fitted(n.row, k);
       }
       for (std::size_t g = 0; g < grids_.size(); ++g) {
         Leaf* leaf = grids_[g]->tree().probeLeaf(origin);
         openvdb::Vec3f v = leaf->getValue(n.offset);
         for (int c = 0; c < 3; ++c) {
           const std::size_t k = 3 * g + static_cast<std::size_t>(c);
-          v[c] = static_cast<float>(outside ? values[k]
-                                            : v[c] + n.factor * (values[k] - fitted(row + i, k)));
+          v[c] = static_cast<float>(n.outside ? values[k]
+                                              : v[c] + n.factor * (values[k] - fitted(n.row, k)));
         }
         leaf->setValueOnly(n.offset, v);
       }
