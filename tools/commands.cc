@@ -3,8 +3,9 @@
 namespace innermap::tool {
 
 std::vector<Command> allCommands() {
-  return {makeMapCommand(),      makeFitCommand(),   makeEvaluateCommand(), makeCheckCommand(),
-          makeVoxelizeCommand(), makeSliceCommand(), makeInfoCommand(),     makeHelpCommand()};
+  return {makeMapCommand(),     makeFitCommand(),   makeEvaluateCommand(),
+          makeTextureCommand(), makeCheckCommand(), makeVoxelizeCommand(),
+          makeSliceCommand(),   makeInfoCommand(),  makeHelpCommand()};
 }
 
 }  // namespace innermap::tool

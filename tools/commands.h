@@ -10,6 +10,7 @@ namespace innermap::tool {
 Command makeMapCommand();
 Command makeFitCommand();
 Command makeEvaluateCommand();
+Command makeTextureCommand();
 Command makeCheckCommand();
 Command makeVoxelizeCommand();
 Command makeSliceCommand();

@@ -6,7 +6,7 @@ import re
 import cli
 from cli import cube, fails, innermap
 
-COMMANDS = ["check", "voxelize", "slice", "info", "help", "map", "fit", "evaluate"]
+COMMANDS = ["check", "voxelize", "slice", "info", "help", "map", "fit", "evaluate", "texture"]
 
 
 def test_version_is_the_projects():
