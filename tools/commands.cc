@@ -3,9 +3,12 @@
 namespace innermap::tool {
 
 std::vector<Command> allCommands() {
-  return {makeMapCommand(),     makeFitCommand(),   makeEvaluateCommand(),
-          makeTextureCommand(), makeCheckCommand(), makeVoxelizeCommand(),
-          makeSliceCommand(),   makeInfoCommand(),  makeHelpCommand()};
+  return {makeMapCommand(),      makeFitCommand(),      makeEvaluateCommand(),
+          makeSequenceCommand(), makeDeformCommand(),   makeTextureCommand(),
+          makePushCommand(),     makePullCommand(),     makeTransferDistanceCommand(),
+          makeCheckCommand(),    makeVoxelizeCommand(), makeSliceCommand(),
+          makeExportCommand(),   makeImportCommand(),   makeInfoCommand(),
+          makeHelpCommand()};
 }
 
 }  // namespace innermap::tool

@@ -11,9 +11,16 @@ Command makeMapCommand();
 Command makeFitCommand();
 Command makeEvaluateCommand();
 Command makeTextureCommand();
+Command makeSequenceCommand();
+Command makeDeformCommand();
+Command makePushCommand();
+Command makePullCommand();
 Command makeCheckCommand();
 Command makeVoxelizeCommand();
 Command makeSliceCommand();
+Command makeTransferDistanceCommand();
+Command makeExportCommand();
+Command makeImportCommand();
 Command makeInfoCommand();
 Command makeHelpCommand();
 

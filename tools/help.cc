@@ -114,7 +114,7 @@ std::string generalHelp() {
       "usage: innermap COMMAND [options]\n\ncommands:\n",
       versionText());
   for (const Command& c : allCommands())
-    text += fmt::format("  {:<12}{}\n", c.name(), wrapped(c.summary(), 14, 14));
+    text += fmt::format("  {:<19}{}\n", c.name(), wrapped(c.summary(), 21, 21));
   CommonOptions common;
   text += "\noptions of every command:\n";
   for (const Option& o : commonOptionTable(common)) text += optionLine(o);

@@ -3,9 +3,9 @@
 #include <Imath/half.h>
 #include <OpenEXR/ImfPixelType.h>
 #include <fmt/format.h>
-#include <openvdb/tools/Interpolation.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -49,6 +49,28 @@ class Store {
  private:
   bool half_;
   double most_;
+};
+
+// Voxels along an axis with their shares in a mean of linearly interpolated values; the shares of a
+// box are the products.
+struct AxisWeights {
+  int count = 0;
+  std::array<int, 2 * kMostPointsASide> index;
+  std::array<double, 2 * kMostPointsASide> weight;
+
+  int last() const { return index[count - 1]; }
+
+  // Points ascend: an index is one of the last two or new.
+  void add(int i, double share) {
+    if (share == 0) return;
+    for (int k = count - 1; k >= std::max(0, count - 2); --k)
+      if (index[k] == i) {
+        weight[k] += share;
+        return;
+      }
+    index[count] = i;
+    weight[count++] = share;
+  }
 };
 
 template <class Grid>
@@ -107,34 +129,64 @@ class PointSampler : public VolumeSampler {
   }
 
  private:
-  // The mean over the points in the lattice voxel about `at`; whether any of them is active.
+  // The mean over the points in the lattice voxel about `at`; whether a voxel that it is made of is
+  // active.
   template <class Accessor>
   bool sample(const Accessor& accessor, const openvdb::Vec3d& at, double* sums) const {
+    const openvdb::Vec3d middle = resampling_.scale * at + resampling_.offset;
+    const AxisWeights x = weightsAbout(middle.x()), y = weightsAbout(middle.y()),
+                      z = weightsAbout(middle.z());
     bool on = false;
-    const auto place = [&](int k) { return (k + 0.5) / points_ - 0.5; };
-    for (int x = 0; x < points_; ++x)
-      for (int y = 0; y < points_; ++y)
-        for (int z = 0; z < points_; ++z) {
-          const openvdb::Vec3d p = at + openvdb::Vec3d(place(x), place(y), place(z));
-          on = atPoint(accessor, resampling_.scale * p + resampling_.offset, sums) || on;
+    if (uniform(accessor, x, y, z)) {
+      const openvdb::Coord first(x.index[0], y.index[0], z.index[0]);
+      const Value value = accessor.getValue(first);
+      for (int c = 0; c < kComponents; ++c) sums[c] = component(value, c);
+      return accessor.isValueOn(first);
+    }
+    for (int i = 0; i < x.count; ++i)
+      for (int j = 0; j < y.count; ++j)
+        for (int k = 0; k < z.count; ++k) {
+          Value value;
+          on = accessor.probeValue({x.index[i], y.index[j], z.index[k]}, value) || on;
+          const double weight = x.weight[i] * y.weight[j] * z.weight[k];
+          for (int c = 0; c < kComponents; ++c) sums[c] += weight * component(value, c);
         }
-    if (points_ > 1)
-      for (int c = 0; c < kComponents; ++c) sums[c] /= double(points_) * points_ * points_;
     return on;
   }
 
-  template <class Accessor>
-  bool atPoint(const Accessor& accessor, const openvdb::Vec3d& p, double* sums) const {
-    if constexpr (kInterpolates) {
-      Value value;
-      const bool on = openvdb::tools::BoxSampler::sample(accessor, p, value);
-      for (int c = 0; c < kComponents; ++c) sums[c] += component(value, c);
-      return on;
-    } else {
-      const openvdb::Coord nearest = openvdb::Coord::round(p);
-      for (int c = 0; c < kComponents; ++c) sums[c] += component(accessor.getValue(nearest), c);
-      return accessor.isValueOn(nearest);
+  AxisWeights weightsAbout(double middle) const {
+    AxisWeights weights;
+    if constexpr (!kInterpolates) {
+      weights.add(static_cast<int>(std::lround(middle)), 1);
+      return weights;
     }
+    for (int k = 0; k < points_; ++k) {
+      const double p = middle + resampling_.scale * ((k + 0.5) / points_ - 0.5);
+      const double floor = std::floor(p);
+      weights.add(static_cast<int>(floor), (1 - (p - floor)) / points_);
+      weights.add(static_cast<int>(floor) + 1, (p - floor) / points_);
+    }
+    return weights;
+  }
+
+  // Whether all voxels of the box lie in tiles of one value and state: most of space does.
+  template <class Accessor>
+  static bool uniform(const Accessor& accessor, const AxisWeights& x, const AxisWeights& y,
+                      const AxisWeights& z) {
+    constexpr int kLeaf = 8;  // tiles are no smaller
+    const openvdb::Coord from(x.index[0], y.index[0], z.index[0]);
+    const openvdb::Coord to(x.last(), y.last(), z.last());
+    const Value value = accessor.getValue(from);
+    const bool on = accessor.isValueOn(from);
+    const auto next = [](int i) { return (i & ~(kLeaf - 1)) + kLeaf; };
+    openvdb::Coord at = from;
+    for (at.x() = from.x(); at.x() <= to.x(); at.x() = next(at.x()))
+      for (at.y() = from.y(); at.y() <= to.y(); at.y() = next(at.y()))
+        for (at.z() = from.z(); at.z() <= to.z(); at.z() = next(at.z()))
+          if (accessor.isVoxel(at) || accessor.isValueOn(at) != on ||
+              !(accessor.getValue(at) == value))
+            return false;
+    return true;
   }
 
   const Grid& grid_;

@@ -1,0 +1,111 @@
+#include "innermap/transfer/distance_transfer.h"
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "innermap/core/parallel.h"
+#include "innermap/evaluate/active_region.h"
+
+namespace innermap {
+namespace {
+
+using FloatLeaf = openvdb::FloatTree::LeafNodeType;
+
+constexpr double kMargin = 1 + 1e-9;
+
+// Distances along a way through space: each point is near the one before, which bounds its distance
+// and mostly tells its side.
+class DepthWalk {
+ public:
+  explicit DepthWalk(const Solid& solid) : solid_(solid) {}
+
+  // Unsigned.
+  double distanceAt(const Vec3& p) {
+    const double step = started_ ? norm(p - last_) : 0;
+    const double within = started_ ? kMargin * (distance_ + step) + 1e-12 * solid_.diagonal()
+                                   : std::numeric_limits<double>::infinity();
+    const Solid::Closest closest = solid_.closest(p, within);
+    // Rounding may put the closest point just beyond the bound.
+    const double d = closest.onSurface.triangle >= 0 ? closest.distance : solid_.distance(p);
+    // The balls about two points are free of surface: where they meet, both are on the same side.
+    sameSide_ = started_ && distance_ + d > kMargin * step + 2 * solid_.gap();
+    started_ = true;
+    last_ = p;
+    distance_ = d;
+    return d;
+  }
+
+  // Positive inside.
+  double depthAt(const Vec3& p) {
+    const double d = distanceAt(p);
+    if (!sameSide_) inside_ = solid_.inside(p);
+    return inside_ ? d : -d;
+  }
+
+ private:
+  const Solid& solid_;
+  Vec3 last_;
+  double distance_ = 0;
+  bool started_ = false, sameSide_ = false, inside_ = false;
+};
+
+// A grid with one float leaf for each leaf of `region`: fill(source leaf, result leaf).
+template <class Grid, class Fill>
+openvdb::FloatGrid::Ptr leafByLeaf(const Grid& region, const Fill& fill, Progress* progress) {
+  std::vector<const typename Grid::TreeType::LeafNodeType*> from;
+  region.tree().getNodes(from);
+  std::vector<std::unique_ptr<FloatLeaf>> leaves(from.size());
+  parallelBlocks(
+      from.size(), 8,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          leaves[i] = std::make_unique<FloatLeaf>(from[i]->origin(), 0.0f, false);
+          fill(*from[i], *leaves[i]);
+        }
+      },
+      progress, "distances");
+  auto grid = openvdb::FloatGrid::create(0.0f);
+  for (auto& leaf : leaves) grid->tree().addLeaf(leaf.release());
+  grid->setTransform(region.transform().copy());
+  grid->setName("distance");
+  return grid;
+}
+
+Vec3 vec3(const openvdb::Vec3d& v) { return {v.x(), v.y(), v.z()}; }
+
+}  // namespace
+
+openvdb::FloatGrid::Ptr depthInside(const Solid& solid, const openvdb::FloatGrid& levelSet,
+                                    const DepthSettings& settings) {
+  const openvdb::MaskGrid::Ptr region =
+      activeRegion(levelSet, settings.skin, sizeof(float), settings.maxMemory, settings.progress);
+  return leafByLeaf(
+      *region,
+      [&](const auto& from, FloatLeaf& leaf) {
+        DepthWalk walk(solid);
+        const auto signs = levelSet.getConstUnsafeAccessor();
+        for (auto voxel = from.cbeginValueOn(); voxel; ++voxel) {
+          const openvdb::Coord at = voxel.getCoord();
+          const double d = walk.distanceAt(vec3(levelSet.indexToWorld(at)));
+          leaf.setValueOn(voxel.pos(), static_cast<float>(signs.getValue(at) < 0 ? d : -d));
+        }
+      },
+      settings.progress);
+}
+
+openvdb::FloatGrid::Ptr depthThrough(const openvdb::Vec3fGrid& map, const Solid& target,
+                                     Progress* progress) {
+  return leafByLeaf(
+      map,
+      [&](const auto& from, FloatLeaf& leaf) {
+        DepthWalk walk(target);
+        for (auto voxel = from.cbeginValueOn(); voxel; ++voxel)
+          leaf.setValueOn(voxel.pos(),
+                          static_cast<float>(walk.depthAt(vec3(openvdb::Vec3d(*voxel)))));
+      },
+      progress);
+}
+
+}  // namespace innermap

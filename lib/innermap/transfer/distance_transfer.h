@@ -1,0 +1,37 @@
+// The distance field of a target solid, seen through a map onto its source: Li, Guo, Wang, He, Gu
+// and Qin, "Meshless Harmonic Volumetric Mapping Using Fundamental Solution Methods" (IEEE
+// Transactions on Automation Science and Engineering, 2009), section on transferring fields.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+
+#include "innermap/core/progress.h"
+#include "innermap/levelset/solid.h"
+
+namespace innermap {
+
+// How deep below a solid's surface points are: the distance to the closest point of the surface,
+// world units, positive inside and negative outside. Exact at every voxel (double precision,
+// rounded to float), not only in a band, for any solid: inside is told by the winding number.
+
+struct DepthSettings {
+  double skin = 2;              // active voxels outside the surface, in [0, 3]
+  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  Progress* progress = nullptr;
+};
+
+// levelSet: of `solid`, half-width at least the skin; its transform is that of the result, which is
+// active where the signed distance is at most the skin, named "distance", background 0. Throws
+// SettingError, MemoryError (before allocating), Cancelled. Same result for any number of threads.
+openvdb::FloatGrid::Ptr depthInside(const Solid& solid, const openvdb::FloatGrid& levelSet,
+                                    const DepthSettings& settings = {});
+
+// map: at each active voxel a position in the target's space, world units, as MapGrids::map has
+// them. The result has the map's transform and active voxels: how deep its value lies in `target`.
+// No interpolation. Named "distance", background 0. Throws Cancelled.
+openvdb::FloatGrid::Ptr depthThrough(const openvdb::Vec3fGrid& map, const Solid& target,
+                                     Progress* progress = nullptr);
+
+}  // namespace innermap

@@ -1,0 +1,250 @@
+#!/usr/bin/env python3
+"""export and import: volume textures in EXR, there and back, and as other programs see them."""
+
+import os
+import shutil
+import struct
+import subprocess
+
+import cli
+from cli import Skip, fails, file_size_limit, icosphere, innermap, interrupt, no_leftovers
+
+PYTHON = "/usr/bin/python3"
+
+
+def ball_grid(resolution=40, *more):
+    icosphere(subdivisions=3)
+    innermap("voxelize", "ball.obj", "-o", "ball.vdb", "--resolution", resolution, "--fog",
+             "--quiet", *more)
+
+
+def independent(script, *arguments, module="OpenImageIO"):
+    """Runs a script by the system's Python, which has the programs' own modules."""
+    if not os.path.exists(PYTHON) or subprocess.run(
+            [PYTHON, "-c", f"import {module}, numpy"], capture_output=True, check=False).returncode:
+        raise Skip(f"no {module} module")
+    done = subprocess.run([PYTHON, "-c", script, *map(str, arguments)], capture_output=True,
+                          text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+COMPARE = """
+import sys, numpy, pyopenvdb as vdb
+a, b = vdb.read(sys.argv[1], sys.argv[3]), vdb.read(sys.argv[2], sys.argv[3])
+tolerance = float(sys.argv[4])
+assert a.activeVoxelCount() > 1000
+low, high = a.evalActiveVoxelBoundingBox()
+assert b.evalActiveVoxelBoundingBox() == (low, high)
+shape = [h - l + 3 for l, h in zip(low, high)]
+first = tuple(l - 1 for l in low)
+x, y = numpy.zeros(shape, numpy.float32), numpy.zeros(shape, numpy.float32)
+a.copyToArray(x, ijk=first)
+b.copyToArray(y, ijk=first)
+assert numpy.abs(x - y).max() <= tolerance, numpy.abs(x - y).max()
+assert tolerance or a.activeVoxelCount() == b.activeVoxelCount()
+assert a.gridClass == b.gridClass and a.background == b.background
+p, q = a.transform.indexToWorld((3, 4, 5)), b.transform.indexToWorld((3, 4, 5))
+assert max(abs(s - t) for s, t in zip(p, q)) < 1e-12
+"""
+
+
+def same_grid(one, other, name, tolerance=0):
+    independent(COMPARE, one, other, name, tolerance, module="pyopenvdb")
+
+
+def test_every_layout_comes_back():
+    ball_grid()
+    for layout, name, first in [("atlas", "a.exr", "a.exr"), ("parts", "p.exr", "p.exr"),
+                                ("slices", "s/x.####.exr", "s/x.0000.exr")]:
+        os.makedirs("s", exist_ok=True)
+        done = innermap("export", "ball.vdb", "-o", name, "--layout", layout, "--report", "r.json")
+        report = cli.read_json("r.json")["texture"]
+        assert report["layout"] == layout and report["channels"] == ["R", "G"], report
+        assert report["clamped"] == 0 and f"{report['slices']} slices along z" in done.stdout
+        assert report["files"] == (report["slices"] if layout == "slices" else 1)
+        done = innermap("import", first, "-o", "back.vdb")
+        assert "surface: float" in done.stdout and "density: float" in done.stdout
+        for grid in ("surface", "density"):
+            same_grid("ball.vdb", "back.vdb", grid)
+    innermap("import", "s/x.%04d.exr", "-o", "again.vdb", "--grid", "density")
+    assert "surface" not in innermap("info", "again.vdb").stdout
+    innermap("export", "ball.vdb", "-o", "h.exr", "--half", "--axis", "x", "--rows", "up",
+             "--power-of-two")
+    innermap("import", "h.exr", "-o", "back.vdb")
+    same_grid("ball.vdb", "back.vdb", "density", 1 / 2048)
+    assert os.path.getsize("h.exr") < os.path.getsize("a.exr")
+
+
+def test_independent_readers_find_channels_and_attributes():
+    ball_grid(32)
+    innermap("export", "ball.vdb", "-o", "a.exr", "--grid", "density", "--resolution", "16",
+             "--cube", "--half", "--active")
+    told = independent("""
+import sys, OpenImageIO as oiio, numpy
+image = oiio.ImageInput.open(sys.argv[1])
+spec = image.spec()
+assert (spec.width, spec.height) == (64, 64), (spec.width, spec.height)
+assert list(spec.channelnames) == ["Y", "density.active"], spec.channelnames
+assert str(spec.format) == "half", spec.format
+names = {a.name: a.value for a in spec.extra_attribs}
+assert names["volumeLayout"] == "atlas" and names["volumeAxis"] == "z"
+assert tuple(names["volumeTiles"]) == (4, 4)
+assert tuple(names["volumeResolution"]) == (16, 16, 16)
+assert names["volumeSliceCount"] == 16 and names["volumeRowOrder"] == "down"
+assert names["grid0.name"] == "density" and names["grid0.class"] == "fog volume"
+assert names["grid0.type"] == "float" and names["grid0.channel"] == "Y"
+pixels = image.read_image(oiio.FLOAT)
+# Tile 8, the third row's first, is the middle slice: a disc.
+tile = pixels[32:48, 0:16, 0]
+assert tile[8, 8] == 1 and tile[0, 0] == 0 and pixels[0, 0, 0] == 0
+print(tile.sum())
+""", "a.exr")
+    assert abs(float(told) / (3.14159 * 8 * 8) - 1) < 0.1, told
+    innermap("export", "ball.vdb", "-o", "p.exr", "--layout", "parts")
+    independent("""
+import sys, OpenImageIO as oiio
+image = oiio.ImageInput.open(sys.argv[1])
+parts = 0
+while image.seek_subimage(parts, 0):
+    spec = image.spec()
+    assert list(spec.channelnames) == ["R", "G"]
+    assert spec.getattribute("volumeSliceIndex") == parts
+    parts += 1
+assert parts == spec.getattribute("volumeSliceCount"), parts
+""", "p.exr")
+    if shutil.which("exrinfo"):
+        said = subprocess.run(["exrinfo", "-v", "a.exr"], capture_output=True, text=True,
+                              check=True).stdout
+        for word in ("indexToWorld", "textureToWorld", "volumeWorldMin", "density.active"):
+            assert word in said, word
+    if shutil.which("oiiotool"):
+        subprocess.run(["oiiotool", "a.exr", "--ch", "Y", "-o", "y.png"], check=True,
+                       capture_output=True)
+
+
+def test_what_other_programs_write_is_read_with_options():
+    ball_grid(32)
+    innermap("export", "ball.vdb", "-o", "a.exr", "--grid", "density", "--report", "r.json")
+    told = cli.read_json("r.json")["texture"]
+    independent("""
+import sys, OpenImageIO as oiio
+pixels = oiio.ImageInput.open("a.exr").read_image(oiio.FLOAT)
+spec = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], 1, oiio.FLOAT)
+spec.channelnames = ["R"]
+out = oiio.ImageOutput.create("plain.exr")
+out.open("plain.exr", spec)
+out.write_image(pixels)
+out.close()
+spec.tile_width = spec.tile_height = 16
+out.open("tiled.exr", spec)
+out.write_image(pixels)
+out.close()
+""")
+    fails(1, "import", "plain.exr", "-o", "b.vdb", says=["plain.exr", "volumeTiles", "--tiles"])
+    options = ["--tiles", "{:.0f}x{:.0f}".format(*told["tiles"])]
+    fails(1, "import", "plain.exr", "-o", "b.vdb", *options, says=["indexToWorld", "--voxel-size"])
+    options += ["--voxel-size", "0.0625", "--lower-corner=-1,-1,-1"]
+    fails(1, "import", "plain.exr", "-o", "b.vdb", *options, says=["gridCount", "--grid", "R"])
+    options += ["--grid", "density", "--class", "fog", "--slices", told["slices"]]
+    fails(1, "import", "plain.exr", "-o", "b.vdb", "--tiles", "7x1", says=["--tiles", "7x1"])
+    fails(2, "import", "plain.exr", "-o", "b.vdb", "--tiles", "7", says=["--tiles"])
+    fails(2, "import", "plain.exr", "-o", "b.vdb", "--lower-corner", "0,0,0",
+          says=["--voxel-size"])
+    for name in ("plain.exr", "tiled.exr"):
+        done = innermap("import", name, "-o", "b.vdb", *options)
+        assert "density: float" in done.stdout
+        text = innermap("info", "b.vdb").stdout
+        assert "fog volume" in text and "voxel size 0.0625" in text, text
+
+
+def test_same_bytes_for_any_number_of_threads():
+    ball_grid()
+    seen = set()
+    for threads in (1, 2, 4):
+        innermap("export", "ball.vdb", "-o", "a.exr", "--resolution", "50", "--threads", threads)
+        with open("a.exr", "rb") as file:
+            seen.add(file.read())
+    assert len(seen) == 1
+
+
+def test_overflow_is_said():
+    icosphere(subdivisions=2, radius=1e6)
+    innermap("voxelize", "ball.obj", "-o", "far.vdb", "--resolution", "16", "--quiet")
+    done = innermap("export", "far.vdb", "-o", "h.exr", "--half", "--report", "r.json")
+    assert "clamped" in done.stderr and "--half" in done.stderr
+    assert cli.read_json("r.json")["texture"]["clamped"] > 0
+
+
+def test_wrong_settings_and_grids():
+    ball_grid(24)
+    fails(1, "export", "ball.vdb", "-o", "a.exr", "--grid", "curl", says=["curl", "density"])
+    fails(1, "export", "missing.vdb", "-o", "a.exr", says=["missing.vdb"])
+    fails(1, "export", "ball.vdb", "-o", "no/such/a.exr", says=["a.exr"])
+    fails(2, "export", "ball.vdb", "-o", "a.exr", "--layout", "ring", says=["--layout"])
+    fails(2, "export", "ball.vdb", "-o", "a.exr", "--tiles", "3", says=["--tiles"])
+    fails(1, "export", "ball.vdb", "-o", "a.exr", "--tiles", "2x2", says=["tiles"])
+    fails(1, "export", "ball.vdb", "-o", "a.exr", "--resolution", "0", says=["--resolution"])
+    innermap("export", "ball.vdb", "-o", "a.exr")
+    fails(1, "import", "a.exr", "-o", "b.vdb", "--grid", "curl", says=["curl", "density"])
+    fails(1, "import", "missing.exr", "-o", "b.vdb", says=["missing.exr"])
+    fails(1, "import", "x.####.exr", "-o", "b.vdb", says=["x.####.exr"])
+    fails(1, "import", "a.exr", "-o", "no/such/b.vdb", says=["b.vdb"])
+    fails(1, "import", "a.exr", "-o", "b.vdb", "--max-memory", "1k", says=["memory"])
+    innermap("export", "ball.vdb", "-o", "d.exr", "--dry-run")
+    innermap("import", "a.exr", "-o", "d.vdb", "--dry-run")
+    no_leftovers("ball.obj", "ball.vdb", "a.exr")
+
+
+def test_truncated_and_damaged_files():
+    ball_grid(24)
+    innermap("export", "ball.vdb", "-o", "a.exr")
+    with open("a.exr", "rb") as file:
+        whole = file.read()
+    with open("cut.exr", "wb"):
+        pass
+    for share in range(20):
+        with open("cut.exr", "wb") as file:
+            file.write(whole[:len(whole) * share // 20])
+        fails(1, "import", "cut.exr", "-o", "b.vdb", says=["cut.exr"], timeout=20)
+    # A matrix of no numbers, and a picture said to be huge.
+    at = whole.index(b"indexToWorld\0m44d\0") + len(b"indexToWorld\0m44d\0") + 4
+    with open("nan.exr", "wb") as file:
+        file.write(whole[:at] + struct.pack("<d", float("nan")) + whole[at + 8:])
+    fails(1, "import", "nan.exr", "-o", "b.vdb", says=["nan.exr", "indexToWorld", "--voxel-size"])
+    at = whole.index(b"dataWindow\0box2i\0") + len(b"dataWindow\0box2i\0") + 4
+    with open("huge.exr", "wb") as file:
+        file.write(whole[:at] + struct.pack("<4i", 0, 0, 1 << 29, 1 << 29) + whole[at + 16:])
+    fails(1, "import", "huge.exr", "-o", "b.vdb", says=["huge.exr"], timeout=20)
+
+
+def test_full_disk_leaves_nothing():
+    ball_grid()
+    innermap("export", "ball.vdb", "-o", "whole.exr")
+    size = os.path.getsize("whole.exr")
+    limit = file_size_limit(size // 2)
+    fails(1, "export", "ball.vdb", "-o", "a.exr", says=["a.exr", "space"], preexec_fn=limit)
+    fails(1, "export", "ball.vdb", "-o", "a.exr", "--layout", "parts", says=["a.exr", "space"],
+          preexec_fn=limit)
+    fails(1, "export", "ball.vdb", "-o", "a.####.exr", "--layout", "slices",
+          says=["a.0000.exr", "space"], preexec_fn=file_size_limit(1000))
+    fails(1, "import", "whole.exr", "-o", "b.vdb", says=["b.vdb", "space"],
+          preexec_fn=file_size_limit(20000))
+
+
+def test_cancelling_leaves_nothing():
+    ball_grid(100)
+    for layout in ("atlas", "slices"):
+        for after in (0.05, 0.3):
+            code, seconds = interrupt("export", "ball.vdb", "-o", "a.exr", "--resolution", "900",
+                                      "--layout", layout, after=after)
+            assert code == 130 and seconds < 2, (code, seconds)
+            no_leftovers("ball.obj", "ball.vdb")
+    innermap("export", "ball.vdb", "-o", "a.exr", "--resolution", "256", "--quiet")
+    code, seconds = interrupt("import", "a.exr", "-o", "b.vdb", after=0.02)
+    if code is not None:
+        assert code == 130 and seconds < 2, (code, seconds)
+        no_leftovers("ball.obj", "ball.vdb", "a.exr")
+
+
+cli.run(globals())

@@ -1,0 +1,134 @@
+#include "innermap/transfer/distance_transfer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "innermap/core/error.h"
+#include "innermap/core/parallel.h"
+#include "innermap/evaluate/evaluate_map.h"
+#include "innermap/levelset/level_set.h"
+#include "mesh/shapes.h"
+
+namespace innermap {
+namespace {
+
+const Vec3 kLower{-1, -0.6, -0.8}, kUpper{1.1, 0.7, 0.9};
+
+double boxDepth(const openvdb::Vec3d& p) {
+  double depth = 1e9, outside = 0;
+  for (int a = 0; a < 3; ++a) {
+    const double d = std::min(p[a] - kLower[a], kUpper[a] - p[a]);
+    depth = std::min(depth, d);
+    if (d < 0) outside += d * d;
+  }
+  return outside > 0 ? -std::sqrt(outside) : depth;
+}
+
+openvdb::FloatGrid::Ptr levelSet(const Solid& solid) {
+  LevelSetSettings settings;
+  settings.resolution = 40;
+  return makeLevelSet(solid, settings);
+}
+
+// p -> m p + shift, scaled and turned.
+HarmonicMap affineMap(const Mat3& m, const Vec3& shift) {
+  Affine affine;
+  affine.coefficients = Matrix(4, 3);
+  for (int r = 0; r < 3; ++r) {
+    affine.coefficients(0, r) = shift[r];
+    for (int a = 0; a < 3; ++a) affine.coefficients(1 + a, r) = m[r][a];
+  }
+  return HarmonicMap(HarmonicField({}, Matrix(0, 3), affine));
+}
+
+TEST(DistanceTransfer, DepthIsExactEverywhereInside) {
+  const Solid solid(shapes::box(kLower, kUpper));
+  const auto surface = levelSet(solid);
+  const auto depth = depthInside(solid, *surface);
+  EXPECT_EQ(depth->getName(), "distance");
+  EXPECT_EQ(depth->constTransform(), surface->constTransform());
+  std::size_t inside = 0;
+  double deepest = 0;
+  for (auto v = depth->cbeginValueOn(); v; ++v) {
+    const double expected = boxDepth(depth->indexToWorld(v.getCoord()));
+    ASSERT_NEAR(*v, expected, 1e-6);
+    inside += expected > 0;
+    deepest = std::max(deepest, double(*v));
+  }
+  // Beyond any narrow band, and all of the box.
+  EXPECT_GT(deepest, 10 * surface->voxelSize()[0]);
+  EXPECT_NEAR(double(inside) * std::pow(surface->voxelSize()[0], 3), 2.1 * 1.3 * 1.7, 0.1);
+}
+
+TEST(DistanceTransfer, ThroughASimilarityDistancesScale) {
+  const Mesh mesh = shapes::box(kLower, kUpper);
+  const double c = std::cos(0.7), s = std::sin(0.7);
+  const Mat3 m{{{2 * c, -2 * s, 0}, {2 * s, 2 * c, 0}, {0, 0, 2}}};
+  const Vec3 shift{3, -1, 0.5};
+  const HarmonicMap map = affineMap(m, shift);
+  Mesh moved = mesh;
+  for (Vec3& v : moved.vertices)
+    v = {dot(Vec3{m[0][0], m[0][1], m[0][2]}, v) + shift.x,
+         dot(Vec3{m[1][0], m[1][1], m[1][2]}, v) + shift.y, 2 * v.z + shift.z};
+  const Solid source(mesh), target(moved);
+  const auto surface = levelSet(source);
+  const auto own = depthInside(source, *surface);
+  EvaluateSettings settings;
+  settings.jacobian = settings.harmonicEnergy = settings.deformationEnergy = false;
+  const MapGrids grids = evaluateMap(map, source, *surface, settings);
+  const auto through = depthThrough(*grids.map, target);
+  EXPECT_EQ(through->activeVoxelCount(), own->activeVoxelCount());
+  const auto accessor = own->getConstAccessor();
+  for (auto v = through->cbeginValueOn(); v; ++v)
+    ASSERT_NEAR(*v, 2 * accessor.getValue(v.getCoord()), 2e-5);
+}
+
+TEST(DistanceTransfer, OverlappingTargetsAreTheirUnion) {
+  Mesh two = shapes::box({-1, -1, -1}, {0.5, 1, 1});
+  const Mesh other = shapes::box({-0.5, -1, -1}, {1, 1, 1});
+  for (const auto& t : other.triangles) two.triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
+  two.vertices.insert(two.vertices.end(), other.vertices.begin(), other.vertices.end());
+  const Solid target(two);
+  auto map = openvdb::Vec3fGrid::create();
+  for (int i = 0; i < 9; ++i)
+    map->tree().setValueOn(openvdb::Coord(i, 0, 0), openvdb::Vec3f(-1.2f + 0.3f * float(i), 0, 0));
+  const auto depth = depthThrough(*map, target);
+  for (int i = 0; i < 9; ++i)
+    EXPECT_NEAR(depth->tree().getValue(openvdb::Coord(i, 0, 0)), 1 - std::abs(-1.2 + 0.3 * i),
+                1e-5 + 2 * target.gap());
+}
+
+TEST(DistanceTransfer, SameForAnyNumberOfThreads) {
+  const Solid solid(shapes::box(kLower, kUpper));
+  const auto surface = levelSet(solid);
+  openvdb::FloatGrid::Ptr first;
+  for (const int threads : {1, 2, 4}) {
+    const ThreadLimit limit(threads);
+    const auto depth = depthInside(solid, *surface);
+    if (!first) first = depth;
+    ASSERT_EQ(depth->activeVoxelCount(), first->activeVoxelCount());
+    const auto accessor = first->getConstAccessor();
+    for (auto v = depth->cbeginValueOn(); v; ++v) ASSERT_EQ(*v, accessor.getValue(v.getCoord()));
+  }
+}
+
+TEST(DistanceTransfer, MemoryAndCancellingAreMinded) {
+  const Solid solid(shapes::box(kLower, kUpper));
+  const auto surface = levelSet(solid);
+  DepthSettings settings;
+  settings.maxMemory = 1000;
+  EXPECT_THROW(depthInside(solid, *surface, settings), MemoryError);
+  settings = {};
+  settings.skin = 30;
+  EXPECT_THROW(depthInside(solid, *surface, settings), SettingError);
+  settings = {};
+  Progress progress;
+  progress.cancel();
+  settings.progress = &progress;
+  EXPECT_THROW(depthInside(solid, *surface, settings), Cancelled);
+}
+
+}  // namespace
+}  // namespace innermap
