@@ -22,7 +22,35 @@ void ExtendedMap::fade(const Vec3& p, const Vec3& beyond, MapSample& sample) con
   sample.image = moved + w * apart;
 }
 
+bool ExtendedMap::isRigidAt(const Vec3& p) const {
+  if (!outside_.fadeTo) return false;
+  const Box3& box = solid_.box();
+  double squared = 0;
+  for (int a = 0; a < 3; ++a) {
+    const double beyond = std::max({box.lower[a] - p[a], p[a] - box.upper[a], 0.0});
+    squared += beyond * beyond;
+  }
+  return squared > reach() * reach();
+}
+
 std::vector<MapSample> ExtendedMap::at(const Points& points, Progress* progress) const {
+  std::vector<MapSample> out(points.size());
+  Points near;
+  std::vector<std::size_t> index;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (isRigidAt(points[i])) {
+      out[i] = {(*outside_.fadeTo)(points[i]), outside_.fadeTo->rotation, 2 * reach()};
+    } else {
+      near.push_back(points[i]);
+      index.push_back(i);
+    }
+  }
+  const std::vector<MapSample> found = nearAt(near, progress);
+  for (std::size_t n = 0; n < index.size(); ++n) out[index[n]] = found[n];
+  return out;
+}
+
+std::vector<MapSample> ExtendedMap::nearAt(const Points& points, Progress* progress) const {
   const ExtendedSamples extended =
       sampleExtended(map_.field(), solid_, levelSet_, points, {accuracy_, {}, progress});
   std::vector<MapSample> out(points.size());

@@ -49,6 +49,9 @@ class ExtendedMap {
   bool endless() const { return outside_.fadeTo.has_value(); }
 
  private:
+  // Surely beyond the reach, where only the rigid motion is left.
+  bool isRigidAt(const Vec3& p) const;
+  std::vector<MapSample> nearAt(const Points& points, Progress* progress) const;
   void fade(const Vec3& p, const Vec3& beyond, MapSample& sample) const;
 
   const HarmonicMap& map_;

@@ -11,6 +11,9 @@ namespace {
 // Starts are good to second order, so nearly all points take one or two steps;
 // the rest is along folds and kinks, where halved steps creep.
 constexpr int kMostSteps = 12;
+// A point within the tolerance is moved by the step that is known by then, which costs nothing and
+// squares the error, unless it is a long one: there the Jacobian is nearly singular.
+constexpr double kPolish = 0.01;
 constexpr std::size_t kBlock = 1024;
 
 class Newton {
@@ -63,8 +66,10 @@ class Newton {
     const double length = norm(step);
     if (!std::isfinite(length))
       steps_[i] = {};
-    else
+    else if (residual > settings_.tolerance)
       steps_[i] = (length > settings_.longestStep ? settings_.longestStep / length : 1) * step;
+    else if (length < kPolish * settings_.longestStep)
+      best_[i] += step;
   }
 
   const ExtendedMap& map_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "innermap/core/error.h"
@@ -15,9 +16,23 @@
 namespace innermap {
 namespace {
 
-constexpr int kAcross = 128;  // voxels along the longest side of the solid
-constexpr double kSkin = 2;   // voxels
+constexpr int kAcross = 128;   // voxels along the longest side of the solid
+constexpr int kFewest = 32;    // when much around it has to be covered too
+constexpr double kMost = 2e6;  // voxels of the lattice, about; starts need not be good
+constexpr double kSkin = 2;    // voxels
 constexpr std::uint64_t kVoxelBytes = 12 + 4 + 1;
+
+Box3 worldBox(const openvdb::CoordBBox& box, const openvdb::math::Transform& transform) {
+  Box3 out;
+  for (int corner = 0; corner < 8; ++corner) {
+    const openvdb::Vec3d p = transform.indexToWorld(
+        openvdb::Vec3d(corner & 1 ? box.max().x() + 0.5 : box.min().x() - 0.5,
+                       corner & 2 ? box.max().y() + 0.5 : box.min().y() - 0.5,
+                       corner & 4 ? box.max().z() + 0.5 : box.min().z() - 0.5));
+    out.add(Vec3{p.x(), p.y(), p.z()});
+  }
+  return out;
+}
 
 openvdb::CoordBBox onLattice(const openvdb::CoordBBox& box, const openvdb::math::Transform& from,
                              const openvdb::math::Transform& to) {
@@ -74,6 +89,42 @@ openvdb::MaskTree around(const openvdb::GridPtrVec& grids, const openvdb::math::
   return mask;
 }
 
+// World units cubed that the grids' active voxels span: by whole blocks of 8^3, or by their box
+// where tiles span much with few blocks.
+double extentOf(const openvdb::GridPtrVec& grids) {
+  double volume = 0;
+  Box3 box;
+  bool tiles = false;
+  for (const openvdb::GridBase::Ptr& grid : grids) {
+    const openvdb::Vec3d v = grid->voxelSize();
+    volume += static_cast<double>(grid->baseTree().leafCount()) * 512 * v.x() * v.y() * v.z();
+    box.add(worldBox(grid->evalActiveVoxelBoundingBox(), grid->transform()));
+    tiles = tiles || grid->baseTree().activeTileCount() > 0;
+  }
+  const Vec3 extent = box.extent();
+  return tiles ? extent.x * extent.y * extent.z : volume;
+}
+
+// As fine as the grids, within bounds.
+int latticeResolution(const Solid& solid, const OutsideSettings& outside,
+                      const openvdb::GridPtrVec& grids) {
+  const Vec3 extent = solid.box().extent();
+  const double longest = std::max({extent.x, extent.y, extent.z});
+  double finest = longest / kAcross;
+  if (!grids.empty()) finest = grids.front()->voxelSize()[0];
+  for (const openvdb::GridBase::Ptr& grid : grids)
+    for (int a = 0; a < 3; ++a) finest = std::min(finest, grid->voxelSize()[a]);
+  int most = kAcross;
+  if (outside.distance > 0) {
+    const double margin = 2 * outside.distance * solid.diagonal();
+    double volume = extentOf(grids);
+    if (!outside.fadeTo)
+      volume = std::min(volume, (extent.x + margin) * (extent.y + margin) * (extent.z + margin));
+    most = static_cast<int>(longest / std::cbrt(volume / kMost));
+  }
+  return std::clamp(static_cast<int>(std::min<double>(longest / finest, most)), kFewest, kAcross);
+}
+
 }  // namespace
 
 void addAround(openvdb::MaskGrid& region, const Solid& solid, double distance,
@@ -110,7 +161,7 @@ SourceLattice makeSourceLattice(const Solid& solid, const OutsideSettings& outsi
     throw SettingError("outside", "must lie in [0, 1] of the diagonal");
   SourceLattice out;
   LevelSetSettings settings;
-  settings.resolution = kAcross;
+  settings.resolution = latticeResolution(solid, outside, grids);
   settings.maxMemory = maxMemory;
   settings.progress = progress;
   out.levelSet = makeLevelSet(solid, settings);

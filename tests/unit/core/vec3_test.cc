@@ -16,6 +16,21 @@ TEST(Vec3, DeterminantOfRows) {
   EXPECT_DOUBLE_EQ(determinant(Mat3{{{0, 1, 0}, {1, 0, 0}, {0, 0, 1}}}), -1);
 }
 
+TEST(Vec3, ProductsAndInverses) {
+  const Mat3 m{{{2, 1, 0}, {-1, 3, 0.5}, {0, 4, 1}}};
+  const Vec3 v = m * Vec3{1, 2, 3};
+  EXPECT_DOUBLE_EQ(v.x, 4);
+  EXPECT_DOUBLE_EQ(v.y, 6.5);
+  EXPECT_DOUBLE_EQ(v.z, 11);
+  const Mat3 one = product(m, inverse(m)), t = transposed(m);
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(one[r][c], r == c ? 1 : 0, 1e-15);
+      EXPECT_DOUBLE_EQ(t[r][c], m[c][r]);
+    }
+  EXPECT_FALSE(std::isfinite(inverse(Mat3{})[0][0]));
+}
+
 TEST(Box3, GrowsByPoints) {
   Box3 box;
   EXPECT_TRUE(box.empty());

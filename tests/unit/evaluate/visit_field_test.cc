@@ -1,0 +1,116 @@
+#include "innermap/evaluate/visit_field.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "innermap/core/error.h"
+#include "innermap/core/random.h"
+#include "innermap/evaluate/active_region.h"
+#include "innermap/levelset/level_set.h"
+#include "mesh/shapes.h"
+
+namespace innermap {
+namespace {
+
+// Two channels: 2 x + 1, and one over the distance from a point outside the ball.
+HarmonicField twoChannels() {
+  Affine affine;
+  affine.coefficients = Matrix(4, 2);
+  affine.coefficients(0, 0) = 1;
+  affine.coefficients(1, 0) = 2;
+  Matrix weights(1, 2);
+  weights(0, 1) = 1;
+  return HarmonicField({{0, 0, 1.5}}, weights, affine);
+}
+Vec3 away(const Vec3& p) { return p - Vec3{0, 0, 1.5}; }
+
+struct Scene {
+  Solid solid{shapes::icosphere(3)};
+  openvdb::FloatGrid::Ptr levelSet;
+  openvdb::MaskGrid::Ptr region;
+
+  Scene() {
+    LevelSetSettings settings;
+    settings.resolution = 24;
+    levelSet = makeLevelSet(solid, settings);
+    region = activeRegion(*levelSet, 2, 1, 0);
+  }
+};
+
+TEST(VisitField, ValuesInsideAndBeyond) {
+  const Scene scene;
+  const HarmonicField field = twoChannels();
+  std::atomic<std::size_t> visited{0}, outside{0};
+  std::vector<double> error(scene.region->tree().leafCount(), 0);
+  visitField(field, scene.solid, *scene.levelSet, *scene.region,
+             [&](std::size_t leaf, const LeafValues& v) {
+               ASSERT_EQ(v.channels, 2u);
+               for (std::size_t i = 0; i < v.count; ++i) {
+                 const openvdb::Coord ijk =
+                     v.origin + openvdb::MaskTree::LeafNodeType::offsetToLocalCoord(v.offset[i]);
+                 ASSERT_TRUE(scene.region->tree().isValueOn(ijk));
+                 const openvdb::Vec3d w = scene.levelSet->indexToWorld(ijk);
+                 const Vec3 p{w.x(), w.y(), w.z()}, c = p - v.beyond[i], d = away(c);
+                 const double r = norm(d);
+                 const Vec3 gradient = -1 / (r * r * r) * d;
+                 double e = std::abs(v.values[2 * i] - (2 * p.x + 1));
+                 e = std::max(e,
+                              std::abs(v.values[2 * i + 1] - (1 / r + dot(gradient, v.beyond[i]))));
+                 for (int a = 0; a < 3; ++a)
+                   e = std::max(e, std::abs(v.gradients[6 * i + 3 + a] - gradient[a]));
+                 error[leaf] = std::max(error[leaf], e);
+                 ASSERT_EQ(v.inside[i] != 0, scene.levelSet->tree().getValue(ijk) < 0);
+                 if (!v.inside[i]) {
+                   ++outside;
+                   ASSERT_NEAR(norm(v.beyond[i]), scene.solid.distance(p), 1e-9);
+                 }
+               }
+               visited += v.count;
+             },
+             {1e-10, "test", nullptr});
+  EXPECT_EQ(visited, scene.region->activeVoxelCount());
+  EXPECT_GT(outside, 100u);
+  for (const double e : error) EXPECT_LT(e, 1e-8);
+}
+
+TEST(VisitField, PointsAgreeWithVoxels) {
+  const Scene scene;
+  const HarmonicField field = twoChannels();
+  const CounterRandom random(11, 0);
+  Points points;
+  for (std::uint64_t i = 0; i < 500; ++i) points.push_back(shapes::randomPoint(random, i));
+  const ExtendedSamples found =
+      sampleExtended(field, scene.solid, *scene.levelSet, points, {1e-10, {}, nullptr});
+  std::size_t outside = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool inside = scene.solid.inside(points[i]);
+    outside += !inside;
+    EXPECT_EQ(norm(found.beyond[i]) > 0, !inside) << i;
+    const Vec3 c = points[i] - found.beyond[i], d = away(c);
+    const double r = norm(d);
+    EXPECT_NEAR(found.samples.values(i, 1), 1 / r - dot(d, found.beyond[i]) / (r * r * r), 1e-8);
+    EXPECT_NEAR(found.samples.values(i, 0), 2 * points[i].x + 1, 1e-9);
+  }
+  EXPECT_GT(outside, 50u);
+}
+
+TEST(VisitField, RefusesOtherLattices) {
+  const Scene scene;
+  const auto other = scene.region->deepCopy();
+  other->setTransform(openvdb::math::Transform::createLinearTransform(0.3));
+  const auto nothing = [](std::size_t, const LeafValues&) {};
+  EXPECT_THROW(
+      visitField(twoChannels(), scene.solid, *scene.levelSet, *other, nothing, {1e-8, {}, nullptr}),
+      DataError);
+  EXPECT_THROW(visitField(twoChannels(), scene.solid, *scene.levelSet, *scene.region, nothing, {}),
+               SettingError);
+  Progress progress;
+  progress.cancel();
+  EXPECT_THROW(visitField(twoChannels(), scene.solid, *scene.levelSet, *scene.region, nothing,
+                          {1e-8, {}, &progress}),
+               Cancelled);
+}
+
+}  // namespace
+}  // namespace innermap

@@ -1,0 +1,189 @@
+#include "innermap/transfer/push.h"
+
+#include <gtest/gtest.h>
+
+#include "innermap/core/error.h"
+#include "innermap/core/parallel.h"
+#include "innermap/evaluate/evaluate_map.h"
+#include "transfer/test_maps.h"
+
+namespace innermap {
+namespace {
+
+using namespace test;
+
+// Root mean square.
+double scalarError(const HarmonicMap& map, int resolution, Sampling sampling) {
+  const Solid source(ball()), target(moved(ball(), map));
+  PushSettings settings;
+  settings.carry.sampling = sampling;
+  const auto from = levelSetOf(source, resolution), to = levelSetOf(target, resolution);
+  const PushResult out = VolumePusher(source, {sampledScalar(*from, "s")}, settings).push(map, *to);
+  EXPECT_EQ(out.statistics.failed, 0u);
+  double squares = 0;
+  const std::size_t count =
+      forInside<openvdb::FloatGrid>(*out.grids[0], *to, [&](const Vec3& q, float value) {
+        const double error = value - smooth(preimage(map, q, q));
+        squares += error * error;
+      });
+  return std::sqrt(squares / static_cast<double>(count));
+}
+
+// Nearest: first order; linear: second; quadratic: third.
+TEST(Push, ScalarsConvergeWithTheOrderOfTheSampling) {
+  const double ratios[] = {1.7, 3, 5};
+  int k = 0;
+  for (const Sampling sampling : {Sampling::nearest, Sampling::linear, Sampling::quadratic}) {
+    const double coarse = scalarError(chargedMap(), 20, sampling),
+                 fine = scalarError(chargedMap(), 40, sampling);
+    EXPECT_GT(coarse / fine, ratios[k]) << "sampling " << k;
+    ++k;
+  }
+}
+
+TEST(Push, RigidMotionsAndScalings) {
+  const Mat3 r = rotation(0.5, 1.1);
+  Mat3 scaled = r;
+  for (auto& row : scaled)
+    for (double& x : row) x *= 2.5;
+  for (const Mat3& m : {r, scaled}) {
+    const HarmonicMap map = affineMap(m, {10, -4, 2});
+    const Solid source(ball()), target(moved(ball(), map));
+    const auto from = levelSetOf(source, 40), to = levelSetOf(target, 40);
+    const PushResult out = VolumePusher(source, {sampledScalar(*from, "s")}).push(map, *to);
+    const Mat3 back = inverse(m);
+    double error = 0;
+    forInside<openvdb::FloatGrid>(*out.grids[0], *to, [&](const Vec3& q, float value) {
+      error = std::max(error, std::abs(value - smooth(back * (q - Vec3{10, -4, 2}))));
+    });
+    EXPECT_LT(error, 6e-3);  // h^2 / 8 times the second derivatives
+    EXPECT_EQ(out.statistics.inverted, out.statistics.voxels);
+  }
+}
+
+// A rigid transfer leaves the energy of a deformation as it was: the energy densities of a map,
+// pushed along a rigid motion and integrated.
+TEST(Push, RigidTransferKeepsTheEnergy) {
+  const HarmonicMap map = affineMap(rotation(0.3, -0.8), {1, 2, 3});
+  const Solid source(ball()), target(moved(ball(), map));
+  const auto from = levelSetOf(source, 64), to = levelSetOf(target, 64);
+  const MapGrids energies = evaluateMap(chargedMap(), source, *from);
+  const auto pushed = VolumePusher(source, {energies.deformationEnergy}).push(map, *to).grids[0];
+  const auto fog = makeFog(*to);
+  auto share = fog->getConstAccessor();
+  double total = 0;
+  for (auto v = static_cast<const openvdb::FloatGrid&>(*pushed).cbeginValueOn(); v; ++v)
+    total += *v * share.getValue(v.getCoord());
+  total *= std::pow(to->voxelSize()[0], 3);
+  EXPECT_NEAR(total / energies.deformationTotal, 1, 2e-3);
+}
+
+TEST(Push, FieldsAreCarriedAlong) {
+  const HarmonicMap map = chargedMap();
+  const Solid source(ball()), target(moved(ball(), map));
+  const auto to = levelSetOf(target, 32);
+  const HarmonicMap velocity = affineMap({{{0, -1, 0}, {1, 0, 0}, {0, 0, 0}}}, {0, 0, 3});
+  const VolumePusher pusher(source, {sampledScalar(*levelSetOf(source, 32), "s")});
+  const PushResult out =
+      pusher.push(map, *to, {{"v", velocity.field(), openvdb::VEC_CONTRAVARIANT_RELATIVE}});
+  ASSERT_EQ(out.grids.size(), 2u);
+  EXPECT_EQ(out.grids[1]->getName(), "v");
+  EXPECT_EQ(out.grids[1]->getVectorType(), openvdb::VEC_CONTRAVARIANT_RELATIVE);
+  double error = 0;
+  forInside<openvdb::Vec3SGrid>(*out.grids[1], *to, [&](const Vec3& q, const auto& value) {
+    const Vec3 e = velocity(preimage(map, q, q));
+    for (int a = 0; a < 3; ++a) error = std::max(error, std::abs(value[a] - e[a]));
+  });
+  EXPECT_LT(error, 1e-4);
+}
+
+TEST(Push, OnePusherServesManyMaps) {
+  const Solid source(ball());
+  const auto grid = sampledScalar(*levelSetOf(source, 24), "s");
+  const VolumePusher pusher(source, {grid});
+  for (const double strength : {0.1, 0.3}) {
+    const HarmonicMap map = chargedMap(strength);
+    const auto to = levelSetOf(Solid(moved(ball(), map)), 24);
+    const auto kept = pusher.push(map, *to).grids[0],
+               anew = VolumePusher(source, {grid}).push(map, *to).grids[0];
+    auto other = static_cast<const openvdb::FloatGrid&>(*anew).getConstAccessor();
+    for (auto v = static_cast<const openvdb::FloatGrid&>(*kept).cbeginValueOn(); v; ++v)
+      ASSERT_EQ(*v, other.getValue(v.getCoord()));
+  }
+}
+
+TEST(Push, GridsOfOtherTransformsAreSampledWhereTheyAre) {
+  const HarmonicMap map = affineMap(rotation(0, 0), {0, 0, 0});
+  const Solid source(ball());
+  // Turned, stretched and shifted voxels.
+  auto grid = openvdb::FloatGrid::create();
+  auto transform = openvdb::math::Transform::createLinearTransform(0.05);
+  transform->postRotate(0.6, openvdb::math::Z_AXIS);
+  transform->postScale(openvdb::Vec3d(1, 1.3, 0.8));
+  transform->postTranslate(openvdb::Vec3d(0.01, 0.02, 0.03));
+  grid->setTransform(transform);
+  grid->setName("s");
+  const openvdb::CoordBBox box(openvdb::Coord(-40), openvdb::Coord(40));
+  for (auto ijk = box.begin(); ijk; ++ijk)
+    grid->tree().setValueOn(*ijk,
+                            static_cast<float>(smooth(toVec3(transform->indexToWorld(*ijk)))));
+  const auto to = levelSetOf(source, 32);
+  const auto out = VolumePusher(source, {grid}).push(map, *to).grids[0];
+  double error = 0;
+  forInside<openvdb::FloatGrid>(*out, *to, [&](const Vec3& q, float value) {
+    error = std::max(error, std::abs(value - smooth(q)));
+  });
+  EXPECT_LT(error, 0.01);
+}
+
+TEST(Push, WhatLiesAroundComesAlong) {
+  const HarmonicMap map = affineMap({{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {5, 0, 0});
+  const Solid source(ball()), target(ball());
+  auto grid = openvdb::FloatGrid::create();
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(0.05));
+  grid->setName("smoke");
+  const openvdb::CoordBBox box(openvdb::Coord(-60), openvdb::Coord(60));
+  for (auto ijk = box.begin(); ijk; ++ijk)
+    grid->tree().setValueOn(*ijk, static_cast<float>(smooth(toVec3(grid->indexToWorld(*ijk)))));
+  PushSettings settings;
+  settings.outside.distance = 0.2;
+  const auto to = levelSetOf(Solid(moved(ball(), map)), 40);
+  const auto cut = VolumePusher(source, {grid}, settings).push(map, *to).grids[0];
+  settings.outside.fadeTo = RigidMotion{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {5, 0, 0}};
+  const auto faded = VolumePusher(source, {grid}, settings).push(map, *to).grids[0];
+  const double reach = 0.2 * source.diagonal();
+  double farthest = 0, error = 0;
+  for (auto v = static_cast<const openvdb::FloatGrid&>(*cut).cbeginValueOn(); v; ++v) {
+    const Vec3 p = toVec3(cut->transform().indexToWorld(v.getCoord())) - Vec3{5, 0, 0};
+    farthest = std::max(farthest, norm(p));
+    error = std::max(error, std::abs(*v - smooth(p)));
+  }
+  EXPECT_NEAR(farthest, 1 + reach, 0.1);
+  EXPECT_LT(error, 0.01);
+  EXPECT_EQ(cut->metaValue<std::string>("innermap_outside").find("extended"), 0u);
+  // With a motion to fade to, all of it moves: a cube of 6 instead of a ball.
+  std::size_t corner = 0;
+  for (auto v = static_cast<const openvdb::FloatGrid&>(*faded).cbeginValueOn(); v; ++v) {
+    const Vec3 p = toVec3(faded->transform().indexToWorld(v.getCoord())) - Vec3{5, 0, 0};
+    if (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > 2.9) continue;
+    corner += norm(p) > 4;
+    ASSERT_NEAR(*v, smooth(p), 0.01);
+  }
+  EXPECT_GT(corner, 1000u);
+}
+
+TEST(Push, SaysWhatIsNotThere) {
+  const Solid source(ball());
+  auto far = sampledScalar(*levelSetOf(source, 16), "far");
+  far->transform().postTranslate(openvdb::Vec3d(100, 0, 0));
+  EXPECT_THROW(VolumePusher(source, {far}), DataError);
+  const auto near = sampledScalar(*levelSetOf(source, 16), "near");
+  const PushResult out =
+      VolumePusher(source, {far, near})
+          .push(chargedMap(), *levelSetOf(Solid(moved(ball(), chargedMap())), 16));
+  ASSERT_EQ(out.warnings.size(), 1u);
+  EXPECT_NE(out.warnings[0].find("far"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace innermap
