@@ -44,7 +44,7 @@ Span spanOf(const ChartPanel& panel) {
   const double largest = std::max(std::abs(span.lower), std::abs(span.upper));
   // Below that, labels of four digits would all be alike.
   const double least =
-      std::max({panel.leastSpan, 1e-2 * largest, std::numeric_limits<double>::min()});
+      std::max({panel.leastSpan, 2e-3 * largest, std::numeric_limits<double>::min()});
   double room = 0.08 * (span.upper - span.lower);
   if (span.upper - span.lower < least) room = 0.5 * (least - (span.upper - span.lower));
   const bool positive = span.lower >= 0;
