@@ -167,6 +167,8 @@ TEST(VdbFileNames, RenamesForBlenderAndLeavesTheGridsAlone) {
   EXPECT_EQ(readVdb(folder.file("a.vdb")).grids[0]->getName(), "color");
   EXPECT_EQ(gridName("map", NamingScheme::kBlender), "map");
   EXPECT_EQ(gridName("Cd", NamingScheme::kHoudini), "Cd");
+  EXPECT_EQ(gridName("velocity", NamingScheme::kHoudini), "v");
+  EXPECT_EQ(gridName("velocity", NamingScheme::kBlender), "velocity");
   EXPECT_EQ(parseNamingScheme("--names", "houdini"), NamingScheme::kHoudini);
   EXPECT_THROW(parseNamingScheme("--names", "maya"), SettingError);
 }
