@@ -27,13 +27,13 @@ void run(const PullOptions& options, Context& context) {
   settings.maxMemory = context.maxMemory();
   settings.progress = context.progress();
   const openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
+  std::optional<Solid> target;
+  context.timed("solid", [&] { target.emplace(targetSolid(pair, context)); });
   if (context.dryRun())
     return context.plan(
         {fmt::format("pull {} grids of {} by {}", grids.size(), options.volume, options.map),
          "write " + options.output},
         0);
-  std::optional<Solid> target;
-  context.timed("solid", [&] { target.emplace(targetSolid(pair, context)); });
   TransferOptions plain;  // the target's level set is none of the output's
   const openvdb::FloatGrid::Ptr targetLevelSet = outputLevelSet(*target, grids, plain, context);
   settings.targetLevelSet = targetLevelSet.get();

@@ -25,13 +25,13 @@ void run(const PushOptions& options, Context& context) {
       pushSettings(options.transfer, pair.solid.repaired().mesh.vertices, pair.moved, context);
   settings.accuracy = sumAccuracy(file);
   const openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
+  std::optional<Solid> target;
+  context.timed("solid", [&] { target.emplace(targetSolid(pair, context)); });
   if (context.dryRun())
     return context.plan(
         {fmt::format("push {} grids of {} by {}", grids.size(), options.volume, options.map),
          "write " + options.output},
         0);
-  std::optional<Solid> target;
-  context.timed("solid", [&] { target.emplace(targetSolid(pair, context)); });
   const openvdb::FloatGrid::Ptr levelSet =
       outputLevelSet(*target, grids, options.transfer, context);
   PushResult result;

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "innermap/core/memory.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/output/vdb_file.h"
+#include "largest.h"
 
 namespace innermap::tool {
 namespace {
@@ -53,6 +55,20 @@ double finestVoxel(const openvdb::GridPtrVec& grids) {
     if (finest == 0 || smallest < finest) finest = smallest;
   }
   return finest;
+}
+
+LevelSetSettings levelSetSettings(const openvdb::GridPtrVec& grids, const TransferOptions& options,
+                                  const Context* context) {
+  LevelSetSettings settings;
+  settings.halfWidth = kBand;
+  if (context) settings.maxMemory = context->maxMemory();
+  if (context) settings.progress = context->progress();
+  if (options.resolution) settings.resolution = *options.resolution;
+  if (options.voxelSize)
+    settings.voxelSize = *options.voxelSize;
+  else if (!options.resolution)
+    settings.voxelSize = finestVoxel(grids);
+  return settings;
 }
 
 }  // namespace
@@ -148,17 +164,45 @@ openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& o
   return grids;
 }
 
+std::uint64_t transferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
+                             const TransferOptions& options) {
+  const LevelSetSettings settings = levelSetSettings(grids, options, nullptr);
+  const double voxel = voxelSizeFor(solid, settings);
+  // Sources and Jacobians of the inverse and its starts, 100 bytes a voxel; leaves of 8^3 voxels
+  // are allocated whole, along the surface some 6 voxels to either side. Around it, the space is
+  // taken as full.
+  const double margin = 2 * options.outside * solid.diagonal();
+  const Vec3 extent = solid.box().extent();
+  double volume = solid.volume();
+  if (margin > 0) volume = (extent.x + margin) * (extent.y + margin) * (extent.z + margin);
+  const double voxels = volume / std::pow(voxel, 3) + 12 * solid.area() / (voxel * voxel);
+  std::uint64_t bytesPerVoxel = 100, inputs = 0;
+  for (const openvdb::GridBase::Ptr& grid : grids) {
+    bytesPerVoxel += grid->valueType() == "vec3d" ? 24 : 12;
+    inputs += 2 * grid->memUsage();
+  }
+  constexpr std::uint64_t kLattice = 150'000'000;
+  return levelSetMemory(solid, settings) + inputs + kLattice +
+         static_cast<std::uint64_t>(static_cast<double>(bytesPerVoxel) * voxels);
+}
+
+void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
+                           const TransferOptions& options, const Context& context) {
+  const auto fits = [&](std::uint64_t resolution) {
+    TransferOptions o = options;
+    o.voxelSize.reset();
+    o.resolution = static_cast<int>(resolution);
+    return transferMemory(solid, grids, o) <= context.maxMemory();
+  };
+  const std::uint64_t most = largestThat(4, 4096, fits);
+  requireMemory("carrying the volume", transferMemory(solid, grids, options), context.maxMemory(),
+                most > 0 ? fmt::format("use --resolution {} or raise --max-memory", most)
+                         : "raise --max-memory");
+}
+
 openvdb::FloatGrid::Ptr outputLevelSet(const Solid& solid, const openvdb::GridPtrVec& grids,
                                        const TransferOptions& options, Context& context) {
-  LevelSetSettings settings;
-  settings.halfWidth = kBand;
-  settings.maxMemory = context.maxMemory();
-  settings.progress = context.progress();
-  if (options.resolution) settings.resolution = *options.resolution;
-  if (options.voxelSize)
-    settings.voxelSize = *options.voxelSize;
-  else if (!options.resolution)
-    settings.voxelSize = finestVoxel(grids);
+  const LevelSetSettings settings = levelSetSettings(grids, options, &context);
   openvdb::FloatGrid::Ptr out;
   context.timed("level set", [&] { out = makeLevelSet(solid, settings); });
   return out;

@@ -45,6 +45,15 @@ PushSettings pushSettings(const TransferOptions& options, const Points& from, co
 openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& options,
                                Context& context);
 
+// Peak need in bytes of pushing or pulling the grids to the solid's voxels.
+std::uint64_t transferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
+                             const TransferOptions& options);
+
+// Throws MemoryError, with the highest --resolution that would fit, when the need is over the
+// limit.
+void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
+                           const TransferOptions& options, const Context& context);
+
 // Level set of the output's solid: by --voxel-size or --resolution, else with the finest voxels of
 // the grids.
 openvdb::FloatGrid::Ptr outputLevelSet(const Solid& solid, const openvdb::GridPtrVec& grids,
