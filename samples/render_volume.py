@@ -43,8 +43,7 @@ for path in files:
     width = high[2] - low[2]
     # World y up, seen along -x: z of the file runs to the left.
     volume.rotation_euler = (math.pi / 2, 0, -math.pi / 2)
-    volume.location = (offset + high[2] if False else offset + width / 2 + (low[2] + high[2]) / 2,
-                       0, -(low[1] + high[1]) / 2)
+    volume.location = (offset + width / 2 + (low[2] + high[2]) / 2, 0, -(low[1] + high[1]) / 2)
     volume.data.materials.append(material)
     offset += 1.1 * width
     size = max(size, high[1] - low[1])
@@ -66,12 +65,12 @@ world.node_tree.nodes["Background"].inputs[0].default_value = (0.6, 0.65, 0.7, 1
 scene.world = world
 scene.render.engine = "CYCLES"
 scene.cycles.device = "CPU"
-scene.cycles.samples = 48
+scene.cycles.samples = 96
 scene.cycles.use_denoising = False
 scene.cycles.volume_bounces = 2
 scene.cycles.seed = 1
-scene.render.resolution_x = 900
-scene.render.resolution_y = max(200, int(900 * size * 1.1 / max(offset, size)))
+scene.render.resolution_x = 720
+scene.render.resolution_y = max(200, int(720 * size * 1.1 / max(offset, size)))
 scene.view_settings.view_transform = "Standard"
 scene.render.filepath = os.path.abspath(out)
 bpy.ops.render.render(write_still=True)

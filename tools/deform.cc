@@ -225,10 +225,7 @@ class Deformer {
 std::string lineOf(const FrameFile& frame, const DeformRow& row, double seconds) {
   const InverseStatistics& s = row.statistics;
   return fmt::format("{:>8} {:>10} {:>10.4f} {:>10.2e} {:>10.2e} {:>9.3g}\n", frame.number,
-                     s.voxels,
-                     100 * static_cast<double>(s.inverted) /
-                         static_cast<double>(std::max<std::uint64_t>(s.voxels, 1)),
-                     row.error.rms, row.error.p99, seconds);
+                     s.voxels, 100 * invertedInside(s), row.error.rms, row.error.p99, seconds);
 }
 
 std::string header() {
@@ -246,10 +243,7 @@ void fillReport(const std::map<std::size_t, DeformRow>& rows, const Frames& fram
       return row == rows.end() ? std::nan("") : static_cast<double>(of(row->second));
     };
     voxels.push_back(value([](const DeformRow& r) { return r.statistics.voxels; }));
-    inverted.push_back(value([](const DeformRow& r) {
-      return static_cast<double>(r.statistics.inverted) /
-             static_cast<double>(std::max<std::uint64_t>(r.statistics.voxels, 1));
-    }));
+    inverted.push_back(value([](const DeformRow& r) { return invertedInside(r.statistics); }));
     rms.push_back(value([](const DeformRow& r) { return r.error.rms; }));
     p99.push_back(value([](const DeformRow& r) { return r.error.p99; }));
     most.push_back(value([](const DeformRow& r) { return r.error.max; }));

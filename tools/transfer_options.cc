@@ -47,6 +47,10 @@ RigidMotion parseMotion(const std::string& text) {
   return motion;
 }
 
+double invertedShare(std::uint64_t voxels, std::uint64_t failed) {
+  return voxels ? 1 - static_cast<double>(failed) / static_cast<double>(voxels) : 1;
+}
+
 double finestVoxel(const openvdb::GridPtrVec& grids) {
   double finest = 0;
   for (const openvdb::GridBase::Ptr& grid : grids) {
@@ -216,6 +220,10 @@ void writeVolume(const std::string& path, const openvdb::GridPtrVec& grids,
   writeVdb(path, grids, {}, settings);
 }
 
+double invertedInside(const InverseStatistics& s) {
+  return invertedShare(s.inside, s.failedInside);
+}
+
 void reportPush(const PushResult& result, Context& context) {
   const InverseStatistics& s = result.statistics;
   Report& report = context.report();
@@ -223,13 +231,16 @@ void reportPush(const PushResult& result, Context& context) {
     report.set(std::string("inverse.") + key, static_cast<std::int64_t>(value));
   };
   count("voxels", s.voxels);
-  count("inverted", s.inverted);
+  count("inside", s.inside);
   count("uncovered", s.uncovered);
   count("not_inverted", s.failed);
-  const double voxels = static_cast<double>(std::max<std::uint64_t>(s.voxels, 1));
-  report.set("inverse.inverted_fraction", static_cast<double>(s.inverted) / voxels);
+  count("not_inverted_inside", s.failedInside);
+  // The map itself ends at the surface: its inverse is judged inside.
+  report.set("inverse.inverted_fraction", invertedInside(s));
+  report.set("inverse.inverted_fraction_outside",
+             invertedShare(s.voxels - s.inside, s.failed - s.failedInside));
   report.set("inverse.largest_residual_voxels", s.largestResidual);
-  if (s.failed > 0) {
+  if (s.failedInside > 0) {
     const Vec3 &a = s.failedBox.lower, &b = s.failedBox.upper;
     report.set("inverse.not_inverted_lower", std::vector<double>{a.x, a.y, a.z});
     report.set("inverse.not_inverted_upper", std::vector<double>{b.x, b.y, b.z});
@@ -243,21 +254,19 @@ void reportPush(const PushResult& result, Context& context) {
   }
   for (const std::string& warning : result.warnings) context.warning(warning);
   constexpr double kMany = 0.005;
-  if (static_cast<double>(s.failed) > kMany * voxels)
+  if (1 - invertedInside(s) > kMany)
     context.warning(fmt::format(
-        "{:.3g}% of the voxels come from nowhere in the source, the first at ({:.6g}, {:.6g}, "
-        "{:.6g}); they have the values of their neighbours",
-        100 * static_cast<double>(s.failed) / voxels, s.failedAt[0].x, s.failedAt[0].y,
-        s.failedAt[0].z));
+        "{:.3g}% of the voxels inside come from nowhere in the source, the first near ({:.6g}, "
+        "{:.6g}, {:.6g}); they have the values of their neighbours",
+        100 * (1 - invertedInside(s)), s.failedAt[0].x, s.failedAt[0].y, s.failedAt[0].z));
 }
 
 std::string pushText(const PushResult& result) {
   const InverseStatistics& s = result.statistics;
   std::string text = fmt::format(
-      "inverse: {} voxels, {:.4f}% inverted, {} not, {} in no image of a cell\n", s.voxels,
-      100 * static_cast<double>(s.inverted) /
-          static_cast<double>(std::max<std::uint64_t>(s.voxels, 1)),
-      s.failed, s.uncovered);
+      "inverse: {} voxels inside, {:.4f}% inverted, {} not; {} outside the surface, {} not\n",
+      s.inside, 100 * invertedInside(s), s.failedInside, s.voxels - s.inside,
+      s.failed - s.failedInside);
   for (const CarriedMass& mass : result.masses)
     text +=
         fmt::format("mass of {}: {:.6g} before, {:.6g} after ({:+.3f}%)\n", mass.name, mass.before,

@@ -62,6 +62,9 @@ openvdb::FloatGrid::Ptr outputLevelSet(const Solid& solid, const openvdb::GridPt
 void writeVolume(const std::string& path, const openvdb::GridPtrVec& grids,
                  const TransferOptions& options, Context& context);
 
+// Share of the voxels inside the target that were inverted.
+double invertedInside(const InverseStatistics& statistics);
+
 // Fills the report's "inverse" and "mass"; warns of voxels that are not inverted.
 void reportPush(const PushResult& result, Context& context);
 

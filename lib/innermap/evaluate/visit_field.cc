@@ -20,26 +20,23 @@ constexpr std::size_t kLeafPoints = 512;
 
 using Leaves = openvdb::tree::LeafManager<const openvdb::MaskTree>;
 
-void requireSameLattice(const openvdb::FloatGrid &levelSet,
-                        const openvdb::MaskGrid &region) {
+void requireSameLattice(const openvdb::FloatGrid& levelSet, const openvdb::MaskGrid& region) {
   if (levelSet.transform() != region.transform())
     throw DataError("region: is on another lattice than the level set");
-  if (region.tree().hasActiveTiles())
-    throw DataError("region: has active tiles, not voxels only");
+  if (region.tree().hasActiveTiles()) throw DataError("region: has active tiles, not voxels only");
 }
 
 // What one leaf hands to the visitor, gathered from the lattice sums and the
 // skin's samples.
 class LeafBuffer {
-public:
+ public:
   explicit LeafBuffer(std::size_t channels) : channels_(channels) {
     values_.reserve(kLeafPoints * channels);
     gradients_.reserve(3 * kLeafPoints * channels);
   }
 
-  LeafValues gather(const openvdb::Coord &origin, const LeafPlan &plan,
-                    const double *values, const double *gradients,
-                    const FieldSamples &skin, std::size_t firstRow) {
+  LeafValues gather(const openvdb::Coord& origin, const LeafPlan& plan, const double* values,
+                    const double* gradients, const FieldSamples& skin, std::size_t firstRow) {
     auto cut = plan.cut.begin();
     auto outside = plan.skin.begin();
     for (std::size_t i = 0; i < kLeafPoints; ++i) {
@@ -48,45 +45,38 @@ public:
         addInside(i, isCut ? (cut++)->share : 1.0, values, gradients);
       } else if (outside != plan.skin.end() && outside->offset == i) {
         addOutside(*outside, skin,
-                   firstRow +
-                       static_cast<std::size_t>(outside - plan.skin.begin()));
+                   firstRow + static_cast<std::size_t>(outside - plan.skin.begin()));
         ++outside;
       }
     }
-    return {origin,          offsets_.size(), channels_,
-            offsets_.data(), shares_.data(),  beyond_.data(),
-            inside_.data(),  values_.data(),  gradients_.data()};
+    return {origin,         offsets_.size(), channels_,      offsets_.data(),  shares_.data(),
+            beyond_.data(), inside_.data(),  values_.data(), gradients_.data()};
   }
 
-private:
-  void add(std::size_t offset, double share, const Vec3 &beyond, bool inside) {
+ private:
+  void add(std::size_t offset, double share, const Vec3& beyond, bool inside) {
     offsets_.push_back(static_cast<std::uint16_t>(offset));
     shares_.push_back(share);
     beyond_.push_back(beyond);
     inside_.push_back(inside);
   }
 
-  void addInside(std::size_t i, double share, const double *values,
-                 const double *gradients) {
+  void addInside(std::size_t i, double share, const double* values, const double* gradients) {
     add(i, share, {}, true);
-    for (std::size_t k = 0; k < channels_; ++k)
-      values_.push_back(values[kLeafPoints * k + i]);
+    for (std::size_t k = 0; k < channels_; ++k) values_.push_back(values[kLeafPoints * k + i]);
     for (std::size_t k = 0; k < 3 * channels_; ++k)
       gradients_.push_back(gradients[kLeafPoints * k + i]);
   }
 
-  void addOutside(const LeafPlan::Skin &voxel, const FieldSamples &skin,
-                  std::size_t row) {
+  void addOutside(const LeafPlan::Skin& voxel, const FieldSamples& skin, std::size_t row) {
     add(voxel.offset, voxel.share, voxel.beyond, false);
     for (std::size_t k = 0; k < channels_; ++k) {
       double value = skin.values(row, k);
       for (int a = 0; a < 3; ++a)
-        value += skin.gradients(row, 3 * k + static_cast<std::size_t>(a)) *
-                 voxel.beyond[a];
+        value += skin.gradients(row, 3 * k + static_cast<std::size_t>(a)) * voxel.beyond[a];
       values_.push_back(value);
     }
-    for (std::size_t k = 0; k < 3 * channels_; ++k)
-      gradients_.push_back(skin.gradients(row, k));
+    for (std::size_t k = 0; k < 3 * channels_; ++k) gradients_.push_back(skin.gradients(row, k));
   }
 
   std::size_t channels_;
@@ -96,10 +86,9 @@ private:
   Points beyond_;
 };
 
-void visitLeaves(const HarmonicField &field, const Solid &solid,
-                 const openvdb::FloatGrid &levelSet, const Leaves &leaves,
-                 std::size_t begin, std::size_t end, const LeafVisitor &visit,
-                 const VisitSettings &settings) {
+void visitLeaves(const HarmonicField& field, const Solid& solid, const openvdb::FloatGrid& levelSet,
+                 const Leaves& leaves, std::size_t begin, std::size_t end, const LeafVisitor& visit,
+                 const VisitSettings& settings) {
   const std::size_t count = end - begin;
   std::vector<LeafPlan> plans(count);
   parallelBlocks(
@@ -113,100 +102,85 @@ void visitLeaves(const HarmonicField &field, const Solid &solid,
   std::vector<std::size_t> firstRow;
   LatticeBlocks lattice;
   lattice.spacing = levelSet.voxelSize()[0];
-  const openvdb::Vec3d origin =
-      levelSet.transform().indexToWorld(openvdb::Vec3d(0));
+  const openvdb::Vec3d origin = levelSet.transform().indexToWorld(openvdb::Vec3d(0));
   lattice.origin = {origin.x(), origin.y(), origin.z()};
   for (std::size_t l = 0; l < count; ++l) {
     const openvdb::Coord first = leaves.leaf(begin + l).origin();
-    lattice.blocks.push_back(
-        {{first.x(), first.y(), first.z()}, plans[l].inside});
+    lattice.blocks.push_back({{first.x(), first.y(), first.z()}, plans[l].inside});
     firstRow.push_back(onSkin.size());
-    for (const LeafPlan::Skin &voxel : plans[l].skin)
-      onSkin.push_back(voxel.at);
+    for (const LeafPlan::Skin& voxel : plans[l].skin) onSkin.push_back(voxel.at);
   }
-  const FieldSamples skin =
-      field.evaluate(onSkin, settings.accuracy, true, settings.progress);
+  const FieldSamples skin = field.evaluate(onSkin, settings.accuracy, true, settings.progress);
   field.onLattice(
       lattice, settings.accuracy, true,
-      [&](std::size_t l, const double *values, const double *gradients) {
+      [&](std::size_t l, const double* values, const double* gradients) {
         LeafBuffer buffer(field.channels());
-        visit(begin + l,
-              buffer.gather(leaves.leaf(begin + l).origin(), plans[l], values,
-                            gradients, skin, firstRow[l]));
+        visit(begin + l, buffer.gather(leaves.leaf(begin + l).origin(), plans[l], values, gradients,
+                                       skin, firstRow[l]));
       },
       settings.progress, settings.stage);
 }
 
 // Whether points are inside, and the closest boundary points of those that are
 // not.
-void placeOutside(const Solid &solid, const openvdb::FloatGrid &levelSet,
-                  const Points &points, ExtendedSamples &out, Points &at,
-                  Progress *progress) {
-  // Farther than this from the surface, the level set's sign is sure.
-  const double sure = 1.5 * levelSet.voxelSize()[0];
+void placeOutside(const Solid& solid, const openvdb::FloatGrid& levelSet, const Points& points,
+                  ExtendedSamples& out, Points& at, Progress* progress) {
+  // The interpolated distance is off by no more than its point's mean distance from the cell's
+  // corners, half the diagonal: beyond that its sign is sure.
+  const double sure = 0.87 * levelSet.voxelSize()[0];
   constexpr std::size_t kBlock = 256;
   parallelBlocks(
       points.size(), kBlock,
       [&](std::size_t begin, std::size_t end) {
-        openvdb::tools::GridSampler<openvdb::FloatGrid::ConstAccessor,
-                                    openvdb::tools::BoxSampler>
+        openvdb::tools::GridSampler<openvdb::FloatGrid::ConstAccessor, openvdb::tools::BoxSampler>
             distance(levelSet.getConstAccessor(), levelSet.transform());
         for (std::size_t i = begin; i < end; ++i) {
-          const Vec3 &p = points[i];
-          if (!isFinite(p))
-            throw DataError("points: a coordinate is not finite");
+          const Vec3& p = points[i];
+          if (!isFinite(p)) throw DataError("points: a coordinate is not finite");
           at[i] = p;
           const double d = distance.wsSample(openvdb::Vec3d(p.x, p.y, p.z));
-          if (d < -sure || (d < sure && solid.inside(p)))
-            continue;
-          at[i] = solid.closest(p, std::numeric_limits<double>::infinity())
-                      .position;
+          if (d < -sure || (d < sure && solid.inside(p))) continue;
+          at[i] = solid.closest(p, std::numeric_limits<double>::infinity()).position;
           out.beyond[i] = p - at[i];
         }
       },
       progress);
 }
 
-void requireAccuracy(const VisitSettings &settings) {
-  if (!(settings.accuracy > 0))
-    throw SettingError("accuracy", "of the sums must be above 0");
+void requireAccuracy(const VisitSettings& settings) {
+  if (!(settings.accuracy > 0)) throw SettingError("accuracy", "of the sums must be above 0");
 }
 
-} // namespace
+}  // namespace
 
-void visitField(const HarmonicField &field, const Solid &solid,
-                const openvdb::FloatGrid &levelSet,
-                const openvdb::MaskGrid &region, const LeafVisitor &visit,
-                const VisitSettings &settings) {
+void visitField(const HarmonicField& field, const Solid& solid, const openvdb::FloatGrid& levelSet,
+                const openvdb::MaskGrid& region, const LeafVisitor& visit,
+                const VisitSettings& settings) {
   requireAccuracy(settings);
   requireSameLattice(levelSet, region);
   const Leaves leaves(region.tree());
-  for (std::size_t begin = 0; begin < leaves.leafCount();
-       begin += kLeavesTogether)
+  for (std::size_t begin = 0; begin < leaves.leafCount(); begin += kLeavesTogether)
     visitLeaves(field, solid, levelSet, leaves, begin,
-                std::min(begin + kLeavesTogether, leaves.leafCount()), visit,
-                settings);
+                std::min(begin + kLeavesTogether, leaves.leafCount()), visit, settings);
 }
 
-ExtendedSamples sampleExtended(const HarmonicField &field, const Solid &solid,
-                               const openvdb::FloatGrid &levelSet,
-                               const Points &points,
-                               const VisitSettings &settings) {
+ExtendedSamples sampleExtended(const HarmonicField& field, const Solid& solid,
+                               const openvdb::FloatGrid& levelSet, const Points& points,
+                               const VisitSettings& settings) {
   requireAccuracy(settings);
   ExtendedSamples out;
   out.beyond.resize(points.size());
   Points at(points.size());
   placeOutside(solid, levelSet, points, out, at, settings.progress);
   out.samples = field.evaluate(at, settings.accuracy, true, settings.progress);
-  Matrix &values = out.samples.values;
+  Matrix& values = out.samples.values;
   for (std::size_t k = 0; k < field.channels(); ++k)
     for (int a = 0; a < 3; ++a) {
-      const double *gradient =
-          out.samples.gradients.column(3 * k + static_cast<std::size_t>(a));
+      const double* gradient = out.samples.gradients.column(3 * k + static_cast<std::size_t>(a));
       for (std::size_t i = 0; i < points.size(); ++i)
         values(i, k) += gradient[i] * out.beyond[i][a];
     }
   return out;
 }
 
-} // namespace innermap
+}  // namespace innermap

@@ -51,9 +51,10 @@ class Inversion {
   void chooseRegion(const openvdb::FloatGrid& targetLevelSet, const LatticeImages& images);
   void dropUncovered(std::vector<LeafStarts>& starts);
   void number(InvertedMap& out) const;
-  void invert(const std::vector<LeafStarts>& starts, InvertedMap& out);
-  void record(std::size_t i, const Vec3& target, const NewtonResult& found, std::size_t n,
+  void invert(const openvdb::FloatGrid& targetLevelSet, const std::vector<LeafStarts>& starts,
               InvertedMap& out);
+  void record(std::size_t i, const Vec3& target, bool inside, const NewtonResult& found,
+              std::size_t n, InvertedMap& out);
   void fillFailures(InvertedMap& out);
   bool wanted(const openvdb::Coord& ijk) const { return solid_->tree().isValueOn(ijk); }
 
@@ -108,10 +109,11 @@ NewtonResult Inversion::solve(const Points& targets, Points& sources) const {
   return solveNewton(map_, targets, sources, newton);
 }
 
-void Inversion::record(std::size_t i, const Vec3& target, const NewtonResult& found, std::size_t n,
-                       InvertedMap& out) {
+void Inversion::record(std::size_t i, const Vec3& target, bool inside, const NewtonResult& found,
+                       std::size_t n, InvertedMap& out) {
   InverseStatistics& s = out.statistics;
   const double residual = found.residuals[n] / voxel_;
+  s.inside += inside;
   for (std::size_t k = 0; k < 9; ++k)
     out.jacobians[i][k] = static_cast<float>(found.at[n].jacobian[k / 3][k % 3]);
   if (residual <= kInverted) {
@@ -120,11 +122,15 @@ void Inversion::record(std::size_t i, const Vec3& target, const NewtonResult& fo
     return;
   }
   ++s.failed;
+  if (!inside) return;
+  ++s.failedInside;
   s.failedBox.add(target);
   if (s.failedAt.size() < kListed) s.failedAt.push_back(target);
 }
 
-void Inversion::invert(const std::vector<LeafStarts>& starts, InvertedMap& out) {
+void Inversion::invert(const openvdb::FloatGrid& targetLevelSet,
+                       const std::vector<LeafStarts>& starts, InvertedMap& out) {
+  auto distance = targetLevelSet.getConstAccessor();
   out.sources.resize(out.first.back());
   out.jacobians.resize(out.first.back());
   good_.assign(starts.size(), {});
@@ -135,19 +141,21 @@ void Inversion::invert(const std::vector<LeafStarts>& starts, InvertedMap& out) 
     const std::size_t begin = l;
     Points targets, sources;
     std::vector<LeafPlace> places;
+    std::vector<char> inside;
     for (; l < leaves.size() && targets.size() < kTogether; ++l)
       for (auto voxel = leaves[l].cbeginValueOn(); voxel; ++voxel) {
         const openvdb::Index i = voxel.pos();
         targets.push_back(toVec3(target_.indexToWorld(voxel.getCoord())));
         sources.push_back(toVec3(source.indexToWorld(openvdb::Vec3d(starts[l].source[i]))));
         places.push_back({static_cast<std::uint32_t>(l), static_cast<std::uint16_t>(i)});
+        inside.push_back(distance.getValue(voxel.getCoord()) < 0);
         if (!starts[l].covered[i]) ++out.statistics.uncovered;
       }
     const NewtonResult found = solve(targets, sources);
     for (std::size_t n = 0; n < targets.size(); ++n) {
       const std::size_t i = out.first[begin] + n;
       out.sources[i] = sources[n];
-      record(i, targets[n], found, n, out);
+      record(i, targets[n], inside[n] != 0, found, n, out);
       good_[places[n].leaf].set(places[n].offset, found.residuals[n] <= kInverted * voxel_);
     }
     reportProgress(settings_.progress, "inverting the map",
@@ -189,7 +197,7 @@ InvertedMap Inversion::run(const openvdb::FloatGrid& targetLevelSet) {
   spreadStarts(*region_, starts);
   InvertedMap out;
   number(out);
-  invert(starts, out);
+  invert(targetLevelSet, starts, out);
   fillFailures(out);
   return out;
 }

@@ -29,9 +29,10 @@ struct InverseStatistics {
   std::uint64_t inverted = 0;   // with a residual of at most 0.01 voxel
   std::uint64_t uncovered = 0;  // in no cell's image: folds, and gaps along the boundary
   std::uint64_t failed = 0;     // not inverted
-  double largestResidual = 0;   // of those inverted, target voxels
-  Box3 failedBox;               // world units of the target
-  Points failedAt;              // the first of them, at most 16
+  std::uint64_t inside = 0, failedInside = 0;  // of those with their centre inside the target
+  double largestResidual = 0;                  // of those inverted, target voxels
+  Box3 failedBox;                              // world units of the target
+  Points failedAt;                             // the first of them, at most 16
 };
 
 // For the voxels of `region` in the order of its leaves and of the voxels in

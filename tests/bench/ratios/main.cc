@@ -21,8 +21,8 @@ struct Section {
 };
 
 constexpr Section kSections[] = {
-    {"placing", placing}, {"sums", sums},         {"solve", solve}, {"tolerance", tolerance},
-    {"poisson", poisson}, {"sequence", sequence}, {"jobs", jobs}};
+    {"placing", placing}, {"sums", sums},         {"solve", solve},       {"tolerance", tolerance},
+    {"poisson", poisson}, {"sequence", sequence}, {"transfer", transfer}, {"jobs", jobs}};
 
 // A folder that goes with the object.
 class Scratch {

@@ -26,6 +26,7 @@ Tables solve(const Options& options);      // uniform shells; the dense solver a
 Tables tolerance(const Options& options);  // sources placed where the error is
 Tables poisson(const Options& options);    // OpenVDB's Poisson solver beside our whole way
 Tables sequence(const Options& options);   // frames after the first
+Tables transfer(const Options& options);   // volumes pushed and pulled
 Tables jobs(const Options& options);       // the program's main job, all files
 
 }  // namespace innermap::bench

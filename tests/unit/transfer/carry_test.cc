@@ -39,18 +39,18 @@ struct Pair {
   }
 };
 
-// Largest difference of the components, over the voxels well inside the target, from
+// Root mean square length of the difference, over the voxels well inside the target, from
 // expected(source point, Jacobian there).
 template <class Expected>
 double vectorError(const Pair& pair, const openvdb::GridBase& grid, const Expected& expected) {
-  double error = 0;
-  const std::size_t count = forInside<openvdb::Vec3SGrid>(
-      grid, *pair.to, [&](const Vec3& q, const openvdb::Vec3f& value) {
-        const Vec3 p = preimage(pair.map, q, q), e = expected(p, pair.map.jacobian(p));
-        for (int a = 0; a < 3; ++a) error = std::max(error, std::abs(value[a] - e[a]));
-      });
+  double squares = 0;
+  const std::size_t count = forInside<
+      openvdb::Vec3SGrid>(grid, *pair.to, [&](const Vec3& q, const openvdb::Vec3f& value) {
+    const Vec3 p = preimage(pair.map, q, q);
+    squares += squaredNorm(Vec3{value[0], value[1], value[2]} - expected(p, pair.map.jacobian(p)));
+  });
   EXPECT_GT(count, 100u);
-  return error;
+  return std::sqrt(squares / static_cast<double>(count));
 }
 
 double pushedVectorError(int resolution, openvdb::VecType type) {

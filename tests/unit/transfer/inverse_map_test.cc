@@ -96,7 +96,8 @@ TEST(InverseMap, FoldsAreCountedAndFilled) {
   const InvertedMap inverted = invert(map, ball(), 48);
   const InverseStatistics& s = inverted.statistics;
   EXPECT_EQ(s.inverted + s.failed, s.voxels);
-  EXPECT_EQ(s.failed > 0, !s.failedAt.empty());
+  EXPECT_EQ(s.failedInside > 0, !s.failedAt.empty());
+  EXPECT_LE(s.failedInside, s.failed);
   EXPECT_GT(s.inverted, s.voxels / 2);
   for (const Vec3& p : inverted.sources) ASSERT_TRUE(isFinite(p));
 }
