@@ -8,6 +8,7 @@
 #include "innermap/output/slice.h"
 #include "innermap/output/vdb_file.h"
 #include "innermap/output/volume_texture.h"
+#include "lists.h"
 #include "volume_options.h"
 
 namespace innermap::tool {
@@ -98,7 +99,7 @@ void run(const ExportOptions& options, Context& context) {
                         ? FramePattern("--output", options.output).path(0)
                         : options.output);
   VdbReadSettings read;
-  read.names = parseNames(options.grids);
+  read.names = commaList(options.grids);
   read.maxMemory = context.maxMemory();
   read.progress = context.progress();
   if (context.dryRun()) {

@@ -5,6 +5,7 @@
 #include "innermap/output/slice.h"
 #include "innermap/output/vdb_file.h"
 #include "innermap/output/volume_texture_read.h"
+#include "lists.h"
 #include "volume_options.h"
 
 namespace innermap::tool {
@@ -18,7 +19,7 @@ struct ImportOptions {
 
 VolumeTextureReadSettings settingsOf(const ImportOptions& options, Context& context) {
   VolumeTextureReadSettings s;
-  s.names = parseNames(options.grids);
+  s.names = commaList(options.grids);
   if (!options.layout.empty()) s.layout = parseVolumeLayout("--layout", options.layout);
   if (!options.tiles.empty()) s.tiles = parseTiles("--tiles", options.tiles);
   s.slices = options.slices;

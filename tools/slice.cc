@@ -8,6 +8,7 @@
 #include "innermap/output/exr_slices.h"
 #include "innermap/output/section_image.h"
 #include "innermap/output/vdb_file.h"
+#include "lists.h"
 
 namespace innermap::tool {
 namespace {
@@ -21,16 +22,6 @@ struct SliceOptions {
   std::optional<NumberPair> range;
   int pixels = SectionSettings().pixels;
 };
-
-std::vector<std::string> split(const std::string& list) {
-  std::vector<std::string> names;
-  for (std::size_t from = 0; from < list.size();) {
-    const std::size_t comma = std::min(list.find(',', from), list.size());
-    if (comma > from) names.push_back(list.substr(from, comma - from));
-    from = comma + 1;
-  }
-  return names;
-}
 
 Component componentOf(const std::string& text) {
   return text == "x"   ? Component::kX
@@ -66,7 +57,7 @@ SectionSettings sectionSettings(const SliceOptions& options, Context& context) {
 
 // Which grids are read: all unless chosen; for the section alone, its grid and the solid's.
 std::vector<std::string> namesToRead(const SliceOptions& options, const VdbInfo& info) {
-  std::vector<std::string> names = split(options.grids);
+  std::vector<std::string> names = commaList(options.grids);
   if (names.empty() && !options.output.empty()) return {};
   if (options.section.empty() || (options.output.empty() && options.grid.empty())) return names;
   if (!options.grid.empty()) names.push_back(options.grid);

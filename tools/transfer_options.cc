@@ -10,6 +10,7 @@
 #include "innermap/levelset/level_set.h"
 #include "innermap/output/vdb_file.h"
 #include "largest.h"
+#include "lists.h"
 
 namespace innermap::tool {
 namespace {
@@ -76,16 +77,6 @@ LevelSetSettings levelSetSettings(const openvdb::GridPtrVec& grids, const Transf
 }
 
 }  // namespace
-
-std::vector<std::string> commaList(const std::string& list) {
-  std::vector<std::string> out;
-  for (std::size_t from = 0; from < list.size();) {
-    const std::size_t comma = std::min(list.find(',', from), list.size());
-    if (comma > from) out.push_back(list.substr(from, comma - from));
-    from = comma + 1;
-  }
-  return out;
-}
 
 void addTransferOptions(Command& c, TransferOptions& o) {
   c.option("--grids", "LIST", &o.grids, "grids to carry, with commas between").defaults("all");

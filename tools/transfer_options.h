@@ -28,8 +28,6 @@ struct TransferOptions {
 
 void addTransferOptions(Command& command, TransferOptions& options);
 
-std::vector<std::string> commaList(const std::string& list);
-
 CarrySettings carrySettings(const TransferOptions& options);
 
 // from, to: boundary points before and after the motion, for --fade-to fitted. Throws UsageError

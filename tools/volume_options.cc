@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "command.h"
+#include "lists.h"
 
 namespace innermap::tool {
 namespace {
@@ -19,16 +20,6 @@ int count(const std::string& text) {
 
 }  // namespace
 
-std::vector<std::string> parseNames(const std::string& list) {
-  std::vector<std::string> names;
-  for (std::size_t from = 0; from < list.size();) {
-    const std::size_t comma = std::min(list.find(',', from), list.size());
-    if (comma > from) names.push_back(list.substr(from, comma - from));
-    from = comma + 1;
-  }
-  return names;
-}
-
 std::pair<int, int> parseTiles(const std::string& option, const std::string& text) {
   const std::size_t x = text.find_first_of("xX");
   const int columns = x == std::string::npos ? 0 : count(text.substr(0, x));
@@ -39,7 +30,7 @@ std::pair<int, int> parseTiles(const std::string& option, const std::string& tex
 }
 
 Vec3 parsePoint(const std::string& option, const std::string& text) {
-  const std::vector<std::string> parts = parseNames(text);
+  const std::vector<std::string> parts = commaList(text);
   Vec3 point;
   bool good = parts.size() == 3;
   for (int a = 0; good && a < 3; ++a) {

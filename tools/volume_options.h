@@ -9,9 +9,6 @@
 
 namespace innermap::tool {
 
-// Names with commas between; empty ones are left out.
-std::vector<std::string> parseNames(const std::string& list);
-
 // "8x8": columns and rows, each from 1 to 65536. Throws UsageError naming `option`.
 std::pair<int, int> parseTiles(const std::string& option, const std::string& text);
 
