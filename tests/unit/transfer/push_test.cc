@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/evaluate/evaluate_map.h"
@@ -58,6 +60,98 @@ TEST(Push, RigidMotionsAndScalings) {
     });
     EXPECT_LT(error, 6e-3);  // h^2 / 8 times the second derivatives
     EXPECT_EQ(out.statistics.inverted, out.statistics.voxels);
+  }
+}
+
+// Maps whose inside has a closed form: the harmonic twist and bend (to first order the twist and
+// bend of engineers) and a polynomial. Each by its own formulas, not the fitted map's.
+struct ClosedForm {
+  const char* name;
+  std::function<Vec3(const Vec3&)> map;
+  std::function<Mat3(const Vec3&)> jacobian;
+};
+
+std::vector<ClosedForm> closedForms() {
+  return {{"twist",
+           [](const Vec3& p) {
+             return Vec3{p.x - 0.4 * p.y * p.z, p.y + 0.4 * p.x * p.z, p.z};
+           },
+           [](const Vec3& p) {
+             return Mat3{{{1, -0.4 * p.z, -0.4 * p.y}, {0.4 * p.z, 1, 0.4 * p.x}, {0, 0, 1}}};
+           }},
+          {"bend",
+           [](const Vec3& p) {
+             return Vec3{p.x + 0.3 * p.x * p.z, p.y, p.z - 0.15 * (p.x * p.x - p.y * p.y)};
+           },
+           [](const Vec3& p) {
+             return Mat3{{{1 + 0.3 * p.z, 0, 0.3 * p.x}, {0, 1, 0}, {-0.3 * p.x, 0.3 * p.y, 1}}};
+           }},
+          {"polynomial",
+           [](const Vec3& p) {
+             return Vec3{p.x + 0.2 * (p.x * p.x - p.z * p.z), p.y + 0.2 * p.x * p.y * p.z,
+                         p.z + 0.3 * p.x * p.y};
+           },
+           [](const Vec3& p) {
+             return Mat3{{{1 + 0.4 * p.x, 0, -0.4 * p.z},
+                          {0.2 * p.y * p.z, 1 + 0.2 * p.x * p.z, 0.2 * p.x * p.y},
+                          {0.3 * p.y, 0.3 * p.x, 1}}};
+           }}};
+}
+
+Vec3 comesFrom(const ClosedForm& form, const Vec3& q) {
+  Vec3 p = q;
+  for (int i = 0; i < 40; ++i) p += inverse(form.jacobian(p)) * (q - form.map(p));
+  return p;
+}
+
+struct Errors {
+  double scalar = 0, gradient = 0, velocity = 0, mass = 0;
+};
+
+Errors closedFormErrors(const ClosedForm& form, int resolution) {
+  const HarmonicMap map = fittedMap(form.map);
+  const Solid source(ball()), target(moved(ball(), map));
+  const auto from = levelSetOf(source, resolution), to = levelSetOf(target, resolution);
+  auto density = sampled<openvdb::FloatGrid>(*from, "density", [](const Vec3& p) {
+    return static_cast<float>(std::max(0.0, 0.9 - norm(p)) * smooth(p));
+  });
+  PushSettings settings;
+  settings.carry.densities = {"density"};
+  const PushResult out =
+      VolumePusher(source,
+                   {sampledScalar(*from, "s"), sampledVector(*from, "g", openvdb::VEC_COVARIANT),
+                    sampledVector(*from, "v", openvdb::VEC_CONTRAVARIANT_RELATIVE), density},
+                   settings)
+          .push(map, *to);
+  Errors e;
+  double count = 0;
+  forInside<openvdb::FloatGrid>(*out.grids[0], *to, [&](const Vec3& q, float value) {
+    e.scalar += std::pow(value - smooth(comesFrom(form, q)), 2);
+    ++count;
+  });
+  forInside<openvdb::Vec3SGrid>(*out.grids[1], *to, [&](const Vec3& q, const auto& value) {
+    const Vec3 p = comesFrom(form, q),
+               want = transposed(inverse(form.jacobian(p))) * smoothVector(p);
+    e.gradient += squaredNorm(Vec3{value[0], value[1], value[2]} - want);
+  });
+  forInside<openvdb::Vec3SGrid>(*out.grids[2], *to, [&](const Vec3& q, const auto& value) {
+    const Vec3 p = comesFrom(form, q), want = form.jacobian(p) * smoothVector(p);
+    e.velocity += squaredNorm(Vec3{value[0], value[1], value[2]} - want);
+  });
+  for (double* sum : {&e.scalar, &e.gradient, &e.velocity}) *sum = std::sqrt(*sum / count);
+  e.mass = std::abs(out.masses.at(0).after / out.masses.at(0).before - 1);
+  return e;
+}
+
+TEST(Push, TwistBendAndPolynomialAgreeWithTheirFormulas) {
+  for (const ClosedForm& form : closedForms()) {
+    SCOPED_TRACE(form.name);
+    const Errors coarse = closedFormErrors(form, 24), fine = closedFormErrors(form, 48);
+    EXPECT_GT(coarse.scalar / fine.scalar, 3);
+    EXPECT_GT(coarse.gradient / fine.gradient, 3);
+    EXPECT_GT(coarse.velocity / fine.velocity, 3);
+    EXPECT_LT(fine.scalar, 5e-3);
+    EXPECT_LT(fine.mass, 5e-3);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "innermap/core/random.h"
+#include "innermap/field/fit.h"
 #include "innermap/field/harmonic_map.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/levelset/solid.h"
@@ -38,6 +39,42 @@ inline HarmonicMap chargedMap(double strength = 0.3) {
   for (int i = 0; i < 9; ++i) weights.data()[i] = strength * std::sin(i + 1.0);
   return HarmonicMap(
       HarmonicField({{2.4, 0.3, 0}, {-0.2, 2.6, 0.4}, {0.3, 0.2, -2.5}}, weights, affine));
+}
+
+// Evenly spread points of a sphere about the origin.
+inline Points spherePoints(std::size_t count, double radius) {
+  Points out(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double z = 1 - (2.0 * i + 1) / count, r = std::sqrt(1 - z * z), a = 2.399963229728653 * i;
+    out[i] = radius * Vec3{r * std::cos(a), r * std::sin(a), z};
+  }
+  return out;
+}
+
+// The map of the unit ball that has the boundary values of `function`; that itself, to about
+// 1e-9, where it is harmonic.
+template <class Function>
+HarmonicMap fittedMap(const Function& function) {
+  const auto valuesAt = [&](const Points& points) {
+    Matrix values(points.size(), 3);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      for (int a = 0; a < 3; ++a) values(i, a) = function(points[i])[a];
+    return values;
+  };
+  FitProblem problem;
+  problem.surface.points = spherePoints(1200, 1);
+  problem.surface.heldOut = spherePoints(300, 1);
+  problem.surface.values = valuesAt(problem.surface.points);
+  problem.surface.heldOutValues = valuesAt(problem.surface.heldOut);
+  problem.diagonal = 2 * std::sqrt(3.0);
+  problem.area = 4 * 3.141592653589793;
+  problem.placeSources = [](std::size_t count, double distance) {
+    return spherePoints(count, 1 + distance * 2 * std::sqrt(3.0));
+  };
+  FitSettings settings;
+  settings.sources = 300;
+  settings.distance = 0.3;
+  return HarmonicMap(fitField(problem, settings).field);
 }
 
 inline Mesh ball(double radius = 1, int subdivisions = 4) {
