@@ -117,6 +117,7 @@ class Deformer {
         throw DataError(options.volume + ": already has a grid '" + grid->getName() +
                         "'; leave out --velocity or choose the others by --grids");
     chooseLattice();
+    requireTransferMemory(solver_.solid(), grids_, options.transfer, context);
     if (options.transfer.fadeTo != "fitted") pusher_.emplace(makePusher({}));
   }
 
@@ -178,16 +179,10 @@ class Deformer {
   }
 
   void say(const PushResult& result, std::int64_t frame) const {
-    constexpr double kMany = 0.005;
     for (const std::string& warning : result.warnings)
       context_.warning(fmt::format("frame {}: {}", frame, warning));
-    const InverseStatistics& s = result.statistics;
-    if (static_cast<double>(s.failed) > kMany * static_cast<double>(s.voxels))
-      context_.warning(fmt::format(
-          "frame {}: {:.3g}% of the voxels come from nowhere in the rest pose, the first at "
-          "({:.6g}, {:.6g}, {:.6g}); they have the values of their neighbours",
-          frame, 100 * static_cast<double>(s.failed) / static_cast<double>(s.voxels),
-          s.failedAt[0].x, s.failedAt[0].y, s.failedAt[0].z));
+    const std::string doubt = inversionWarning(result.statistics);
+    if (!doubt.empty()) context_.warning(fmt::format("frame {}: {}", frame, doubt));
   }
 
   void write(std::size_t index, const std::string& path, const std::string& inputs,

@@ -215,6 +215,16 @@ double invertedInside(const InverseStatistics& s) {
   return invertedShare(s.inside, s.failedInside);
 }
 
+std::string inversionWarning(const InverseStatistics& s) {
+  constexpr double kMany = 0.005;
+  if (s.failedAt.empty() || 1 - invertedInside(s) <= kMany) return {};
+  const Vec3& at = s.failedAt.front();
+  return fmt::format(
+      "{:.3g}% of the voxels inside come from nowhere in the source, the first near ({:.6g}, "
+      "{:.6g}, {:.6g}); they have the values of their neighbours",
+      100 * (1 - invertedInside(s)), at.x, at.y, at.z);
+}
+
 void reportPush(const PushResult& result, Context& context) {
   const InverseStatistics& s = result.statistics;
   Report& report = context.report();
@@ -244,12 +254,8 @@ void reportPush(const PushResult& result, Context& context) {
     report.set("mass." + mass.name + "_after", mass.after);
   }
   for (const std::string& warning : result.warnings) context.warning(warning);
-  constexpr double kMany = 0.005;
-  if (1 - invertedInside(s) > kMany)
-    context.warning(fmt::format(
-        "{:.3g}% of the voxels inside come from nowhere in the source, the first near ({:.6g}, "
-        "{:.6g}, {:.6g}); they have the values of their neighbours",
-        100 * (1 - invertedInside(s)), s.failedAt[0].x, s.failedAt[0].y, s.failedAt[0].z));
+  const std::string doubt = inversionWarning(s);
+  if (!doubt.empty()) context.warning(doubt);
 }
 
 std::string pushText(const PushResult& result) {

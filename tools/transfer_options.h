@@ -63,6 +63,9 @@ void writeVolume(const std::string& path, const openvdb::GridPtrVec& grids,
 // Share of the voxels inside the target that were inverted.
 double invertedInside(const InverseStatistics& statistics);
 
+// What to warn of when over 0.5% of the voxels inside are not inverted, else nothing.
+std::string inversionWarning(const InverseStatistics& statistics);
+
 // Fills the report's "inverse" and "mass"; warns of voxels that are not inverted.
 void reportPush(const PushResult& result, Context& context);
 
