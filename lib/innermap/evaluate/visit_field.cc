@@ -13,8 +13,7 @@
 namespace innermap {
 namespace {
 
-// Leaves that are planned and summed together: bounds the memory for what is
-// not visited yet.
+// Leaves that are planned and summed together: bounds the memory for what is not visited yet.
 constexpr std::size_t kLeavesTogether = 4096;
 constexpr std::size_t kLeafPoints = 512;
 
@@ -26,8 +25,7 @@ void requireSameLattice(const openvdb::FloatGrid& levelSet, const openvdb::MaskG
   if (region.tree().hasActiveTiles()) throw DataError("region: has active tiles, not voxels only");
 }
 
-// What one leaf hands to the visitor, gathered from the lattice sums and the
-// skin's samples.
+// What one leaf hands to the visitor, gathered from the lattice sums and the skin's samples.
 class LeafBuffer {
  public:
   explicit LeafBuffer(std::size_t channels) : channels_(channels) {
@@ -49,8 +47,9 @@ class LeafBuffer {
         ++outside;
       }
     }
-    return {origin,         offsets_.size(), channels_,      offsets_.data(),  shares_.data(),
-            beyond_.data(), inside_.data(),  values_.data(), gradients_.data()};
+    return {origin,          offsets_.size(), channels_,
+            offsets_.data(), shares_.data(),  beyond_.data(),
+            inside_.data(),  values_.data(),  gradients ? gradients_.data() : nullptr};
   }
 
  private:
@@ -64,7 +63,7 @@ class LeafBuffer {
   void addInside(std::size_t i, double share, const double* values, const double* gradients) {
     add(i, share, {}, true);
     for (std::size_t k = 0; k < channels_; ++k) values_.push_back(values[kLeafPoints * k + i]);
-    for (std::size_t k = 0; k < 3 * channels_; ++k)
+    for (std::size_t k = 0; gradients && k < 3 * channels_; ++k)
       gradients_.push_back(gradients[kLeafPoints * k + i]);
   }
 
@@ -112,7 +111,7 @@ void visitLeaves(const HarmonicField& field, const Solid& solid, const openvdb::
   }
   const FieldSamples skin = field.evaluate(onSkin, settings.accuracy, true, settings.progress);
   field.onLattice(
-      lattice, settings.accuracy, true,
+      lattice, settings.accuracy, settings.gradients,
       [&](std::size_t l, const double* values, const double* gradients) {
         LeafBuffer buffer(field.channels());
         visit(begin + l, buffer.gather(leaves.leaf(begin + l).origin(), plans[l], values, gradients,
@@ -121,8 +120,7 @@ void visitLeaves(const HarmonicField& field, const Solid& solid, const openvdb::
       settings.progress, settings.stage);
 }
 
-// Whether points are inside, and the closest boundary points of those that are
-// not.
+// Whether points are inside, and the closest boundary points of those that are not.
 void placeOutside(const Solid& solid, const openvdb::FloatGrid& levelSet, const Points& points,
                   ExtendedSamples& out, Points& at, Progress* progress) {
   // The interpolated distance is off by no more than its point's mean distance from the cell's

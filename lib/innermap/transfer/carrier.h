@@ -1,5 +1,5 @@
-// Internal to transfer/. Grids of all types behind one interface: sampled at
-// sites, transformed by what they are, written on the voxels of a region.
+// Internal to transfer/. Grids of all types behind one interface: sampled at sites, transformed by
+// what they are, written on the voxels of a region.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -15,8 +15,8 @@
 
 namespace innermap {
 
-// Where a voxel's value comes from, and the derivative of where things go with
-// respect to where they were.
+// Where a voxel's value comes from, and the derivative of where things go with respect to where
+// they were.
 struct Site {
   Vec3 at;  // world units of the input
   Mat3 derivative;
@@ -30,16 +30,14 @@ class Carrier {
   // Empty grids like the inputs, active in the region.
   virtual openvdb::GridPtrVec makeOutput(const openvdb::MaskGrid& region) const = 0;
 
-  // For the active voxels of the region's leaf at `origin`, in order. One
-  // thread a leaf.
+  // For the active voxels of the region's leaf at `origin`, in order. One thread a leaf.
   virtual void carry(const openvdb::Coord& origin, const Site* sites,
                      const openvdb::GridPtrVec& output) const = 0;
 
   // The output as it should be written: level sets with true distances again.
   virtual void finish(openvdb::GridPtrVec&) const {}
 
-  // Values that are positions, to be moved by the map once they are sampled;
-  // null for others.
+  // Values that are positions, to be moved by the map once they are sampled; null for others.
   virtual openvdb::GridBase* positions(const openvdb::GridPtrVec&) const { return nullptr; }
 
   virtual bool isDensity() const { return false; }
@@ -54,13 +52,11 @@ class Carrier {
   std::vector<std::size_t> places_;
 };
 
-// Carriers for all of `grids`. solid: level set of the solid that they live in,
-// null when it is not known: beyond it attributes (all but level sets, fog
-// volumes and densities) are continued by a few voxels from their nearest, so
-// that sampling along its surface does not meet the background. Throws
-// DataError: a type that cannot be carried, a name that settings have and no
-// grid, a tensor whose parts are missing, doubled or differ in their
-// transforms.
+// Carriers for all of `grids`. solid: level set of the solid that they live in, null when it is not
+// known: beyond it attributes (all but level sets, fog volumes and densities) are continued by a
+// few voxels from their nearest, so that sampling along its surface does not meet the background.
+// Throws DataError: a type that cannot be carried, a name that settings have and no grid, a tensor
+// whose parts are missing or doubled.
 std::vector<std::unique_ptr<Carrier>> makeCarriers(const openvdb::GridPtrVec& grids,
                                                    const CarrySettings& settings,
                                                    const openvdb::FloatGrid* solid,

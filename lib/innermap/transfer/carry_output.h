@@ -20,12 +20,10 @@ class CarryOutput {
  public:
   CarryOutput(const Carriers& carriers, const openvdb::MaskGrid& region);
 
-  // For the active voxels of the region's leaf at `origin`, in order. From any
-  // thread.
+  // For the active voxels of the region's leaf at `origin`, in order. From any thread.
   void carry(const openvdb::Coord& origin, const Site* sites) const;
 
-  // In the order of the grids given. movePositions: of values that are
-  // positions.
+  // In the order of the grids given. movePositions: of values that are positions.
   openvdb::GridPtrVec finish(const std::function<Points(const Points&)>& movePositions,
                              Progress* progress);
 
@@ -34,8 +32,8 @@ class CarryOutput {
   std::vector<openvdb::GridPtrVec> outputs_;
 };
 
-// Throws DataError when no grid has an active voxel within `skin` voxels of the
-// solid; warns of single ones that have none.
+// Throws DataError when no grid has an active voxel within `skin` voxels of the solid; warns of
+// single ones that have none.
 void requireMeeting(const openvdb::GridPtrVec& grids, const openvdb::FloatGrid& solid,
                     const std::string& solidName, std::vector<std::string>& warnings,
                     Progress* progress);

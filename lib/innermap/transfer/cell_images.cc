@@ -11,13 +11,12 @@ namespace innermap {
 namespace {
 
 constexpr int kSide = 9;  // corners of the cells of one leaf
-// A cell that is stretched over more voxels than this starts nothing: it lies
-// across a jump.
+// A cell that is stretched over more voxels than this starts nothing: it lies across a jump.
 constexpr int kWidestImage = 64;
 constexpr double kLeafDepth = 1e-6;  // barycentric coordinates: neighbours share their faces
 
-// Corners along the path from corner 0 to corner 7 that steps through the axes
-// in each order; an odd order gives a tetrahedron that is turned the other way.
+// Corners along the path from corner 0 to corner 7 that steps through the axes in each order; an
+// odd order gives a tetrahedron that is turned the other way.
 struct KuhnTetrahedron {
   std::array<int, 4> corner;
   bool odd;
@@ -35,8 +34,7 @@ struct Corner {
   bool active = false;
 };
 
-// The corners of the cells whose lowest corner is in one leaf of the source's
-// lattice.
+// The corners of the cells whose lowest corner is in one leaf of the source's lattice.
 class LeafCorners {
  public:
   LeafCorners(const LatticeImages& lattice, const openvdb::Coord& origin) : origin_(origin) {
@@ -50,8 +48,7 @@ class LeafCorners {
     }
   }
 
-  // The 8 corners of cell (x, y, z), corner 4 dx + 2 dy + dz; false when one is
-  // not active.
+  // The 8 corners of cell (x, y, z), corner 4 dx + 2 dy + dz; false when one is not active.
   bool cell(const openvdb::Coord& at, std::array<const Corner*, 8>& out) const {
     for (int c = 0; c < 8; ++c) {
       const int n =
@@ -69,8 +66,7 @@ class LeafCorners {
   std::array<Corner, kSide * kSide * kSide> corners_;
 };
 
-// The voxels that a cell's image may cover; empty for one that is too wide or
-// not finite.
+// The voxels that a cell's image may cover; empty for one that is too wide or not finite.
 openvdb::CoordBBox voxelsOf(const std::array<const Corner*, 8>& cell) {
   openvdb::Vec3f lower = cell[0]->image, upper = lower;
   for (const Corner* corner : cell)
@@ -108,8 +104,7 @@ Leaves leavesOf(const LatticeImages& lattice) {
   return out;
 }
 
-// Calls visit(place, voxels) for the cells of a leaf of the lattice that are
-// whole.
+// Calls visit(place, voxels) for the cells of a leaf of the lattice that are whole.
 template <class Visit>
 void forEachCell(const LatticeImages& lattice, const openvdb::Vec3STree::LeafNodeType& leaf,
                  const Visit& visit) {

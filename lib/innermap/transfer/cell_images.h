@@ -1,9 +1,8 @@
-// Internal to transfer/. Where each voxel of the target comes from, to second
-// order.
+// Internal to transfer/. Where each voxel of the target comes from, to second order.
 //
-// The cells of a lattice through the source are cut into six tetrahedra each
-// (Kuhn's, which fit together across cells) and mapped by their corners; a
-// voxel in the image of one has that one's barycentric coordinates.
+// The cells of a lattice through the source are cut into six tetrahedra each (Kuhn's, which fit
+// together across cells) and mapped by their corners; a voxel in the image of one has that one's
+// barycentric coordinates.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -25,8 +24,7 @@ struct LeafStarts {
   std::bitset<512> covered;
 };
 
-// The lattice's images: target index space. region: active voxels of the
-// lattice.
+// The lattice's images: target index space. region: active voxels of the lattice.
 struct LatticeImages {
   openvdb::Vec3SGrid::Ptr images;
   openvdb::FloatGrid::Ptr outside;  // distance from the solid, world units
@@ -35,22 +33,19 @@ struct LatticeImages {
 LatticeImages imagesOf(const ExtendedMap& map, const openvdb::MaskGrid& region,
                        const openvdb::math::Transform& target, Progress* progress);
 
-// Leaves of the target's lattice that images of cells no farther outside than
-// `mostOutside` (world units of the source) may touch, all voxels on. Throws
-// MemoryError when they are too many.
+// Leaves of the target's lattice that images of cells no farther outside than `mostOutside` (world
+// units of the source) may touch, all voxels on. Throws MemoryError when they are too many.
 openvdb::MaskGrid::Ptr touchedLeaves(const LatticeImages& lattice, double mostOutside,
                                      std::uint64_t mostLeaves);
 
-// One for each leaf of `region` in its order. Where several images cover a
-// voxel (folds, parts that the target lets overlap) the one nearest to the
-// source's inside is taken, of those one turned like the whole (`mirrored`:
-// with a negative Jacobian), of those the first.
+// One for each leaf of `region` in its order. Where several images cover a voxel (folds, parts that
+// the target lets overlap) the one nearest to the source's inside is taken, of those one turned
+// like the whole (`mirrored`: with a negative Jacobian), of those the first.
 std::vector<LeafStarts> findStarts(const LatticeImages& lattice, const openvdb::MaskGrid& region,
                                    Progress* progress);
 
-// Voxels of `region` that nothing covers start where their nearest covered
-// neighbour does. They stay uncovered, but for a start; returns for each leaf
-// which voxels have one.
+// Voxels of `region` that nothing covers start where their nearest covered neighbour does. They
+// stay uncovered, but for a start; returns for each leaf which voxels have one.
 std::vector<std::bitset<512>> spreadStarts(const openvdb::MaskGrid& region,
                                            std::vector<LeafStarts>& starts);
 

@@ -93,6 +93,7 @@ class Continuation {
     visit.accuracy = settings_.accuracy;
     visit.stage = "continuing inwards";
     visit.progress = settings_.progress;
+    visit.gradients = false;
     visitField(
         field_, solid_, levelSet_, region,
         [&](std::size_t, const LeafValues& v) {

@@ -6,8 +6,7 @@
 
 namespace innermap {
 
-// w = 1 at the solid, 0 from the reach on, smooth at both ends: F = w E + (1 -
-// w) R.
+// w = 1 at the solid, 0 from the reach on, smooth at both ends: F = w E + (1 - w) R.
 void ExtendedMap::fade(const Vec3& p, const Vec3& beyond, MapSample& sample) const {
   sample.outside = norm(beyond);
   if (!outside_.fadeTo || sample.outside == 0) return;

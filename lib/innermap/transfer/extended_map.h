@@ -1,6 +1,5 @@
-// Internal to transfer/. A map on its solid and beyond: harmonic inside,
-// extended from the closest boundary point outside, faded to a rigid motion
-// where that is asked for.
+// Internal to transfer/. A map on its solid and beyond: harmonic inside, extended from the closest
+// boundary point outside, faded to a rigid motion where that is asked for.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -33,8 +32,7 @@ class ExtendedMap {
 
   std::vector<MapSample> at(const Points& points, Progress* progress) const;
 
-  // The same at lattice voxels; sample i of `samples` is that of the i-th
-  // active voxel of a leaf.
+  // The same at lattice voxels; sample i of `samples` is that of the i-th active voxel of a leaf.
   using Visitor = std::function<void(std::size_t leaf, const LeafValues& values,
                                      const std::vector<MapSample>& samples)>;
   void visit(const openvdb::MaskGrid& region, const Visitor& visit, std::string_view stage,

@@ -1,5 +1,4 @@
-// The inverse of a map on the voxels of its target: where each of them comes
-// from.
+// The inverse of a map on the voxels of its target: where each of them comes from.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -35,8 +34,8 @@ struct InverseStatistics {
   Points failedAt;                             // the first of them, at most 16
 };
 
-// For the voxels of `region` in the order of its leaves and of the voxels in
-// them; voxels of leaf l start at first[l].
+// For the voxels of `region` in the order of its leaves and of the voxels in them; voxels of leaf l
+// start at first[l].
 struct InvertedMap {
   openvdb::MaskGrid::Ptr region;
   std::vector<std::size_t> first;               // #leaves + 1
@@ -45,29 +44,26 @@ struct InvertedMap {
   InverseStatistics statistics;
 };
 
-// A lattice of voxels through a solid, and as far around it as the map is to be
-// used.
+// A lattice of voxels through a solid, and as far around it as the map is to be used.
 struct SourceLattice {
   openvdb::FloatGrid::Ptr levelSet;  // of the solid
   openvdb::MaskGrid::Ptr region;
 };
 
-// For each voxel of the target (those of targetLevelSet whose distance is at
-// most the skin; with settings.outside also those around it that come from the
-// lattice) the point p with f(p) = q: cells of the lattice are mapped, voxels
-// in their images start with second-order accuracy, and Newton steps with the
-// analytic Jacobian do the rest, halved while they do not help. A voxel that is
-// not inverted has the source and Jacobian of the nearest one that is. Outside
-// the solid the map is extended as transfer/outside.h says, so voxels along the
-// boundary, which the map meets but for its boundary error, have sources just
-// outside. Same result for any number of threads. Throws SettingError,
-// DataError (nothing of the target is inverted), MemoryError, Cancelled.
+// For each voxel of the target (those of targetLevelSet whose distance is at most the skin; with
+// settings.outside also those around it that come from the lattice) the point p with f(p) = q:
+// cells of the lattice are mapped, voxels in their images start with second-order accuracy, and
+// Newton steps with the analytic Jacobian do the rest, halved while they do not help. A voxel that
+// is not inverted has the source and Jacobian of the nearest one that is. Outside the solid the map
+// is extended as transfer/outside.h says, so voxels along the boundary, which the map meets but for
+// its boundary error, have sources just outside. Same result for any number of threads. Throws
+// SettingError, DataError (nothing of the target is inverted), MemoryError, Cancelled.
 InvertedMap invertMap(const HarmonicMap& map, const Solid& source, const SourceLattice& lattice,
                       const openvdb::FloatGrid& targetLevelSet,
                       const InverseSettings& settings = {});
 
-// The same at any points of the target, world units; points that are in no
-// voxel of `inverted` stay as they are. #points.
+// The same at any points of the target, world units; points that are in no voxel of `inverted` stay
+// as they are. #points.
 Points invertAt(const HarmonicMap& map, const Solid& source, const SourceLattice& lattice,
                 const InvertedMap& inverted, const Points& targets,
                 const InverseSettings& settings = {});

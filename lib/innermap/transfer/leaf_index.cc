@@ -7,8 +7,7 @@
 namespace innermap {
 namespace {
 
-// Leaf coordinates of 21 bits each: OpenVDB's indices beyond 2^23 do not occur
-// on one lattice here.
+// Leaf coordinates of 21 bits each: OpenVDB's indices beyond 2^23 do not occur on one lattice here.
 std::uint64_t keyOf(const openvdb::Coord& ijk) {
   constexpr std::uint64_t kMask = (1u << 21) - 1;
   const auto part = [](int i) { return static_cast<std::uint64_t>(i >> 3) & kMask; };

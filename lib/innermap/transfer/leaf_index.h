@@ -1,5 +1,5 @@
-// Internal to transfer/. The leaves of a region by number, and values that
-// spread from voxel to voxel through it.
+// Internal to transfer/. The leaves of a region by number, and values that spread from voxel to
+// voxel through it.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -36,10 +36,9 @@ struct LeafPlace {
   std::uint16_t offset = 0;
 };
 
-// Gives each active voxel of the region whose bit in `has` is off what its
-// nearest neighbour with one has, layer by layer: calls copy(from, to) and sets
-// the bit. Voxels that nothing reaches stay off. The same for any number of
-// threads.
+// Gives each active voxel of the region whose bit in `has` is off what its nearest neighbour with
+// one has, layer by layer: calls copy(from, to) and sets the bit. Voxels that nothing reaches stay
+// off. The same for any number of threads.
 void spreadToNeighbours(const LeafIndex& region, std::vector<std::bitset<512>>& has,
                         const std::function<void(LeafPlace from, LeafPlace to)>& copy);
 

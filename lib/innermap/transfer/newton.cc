@@ -8,8 +8,8 @@
 namespace innermap {
 namespace {
 
-// Starts are good to second order, so nearly all points take one or two steps;
-// the rest is along folds and kinks, where halved steps creep.
+// Starts are good to second order, so nearly all points take one or two steps; the rest is along
+// folds and kinks, where halved steps creep.
 constexpr int kMostSteps = 12;
 // A point within the tolerance is moved by the step that is known by then, which costs nothing and
 // squares the error, unless it is a long one: there the Jacobian is nearly singular.

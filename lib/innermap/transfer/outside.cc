@@ -33,8 +33,7 @@ RigidMotion bestRigidMotion(const Points& from, const Points& to) {
     for (int r = 0; r < 3; ++r)
       for (int c = 0; c < 3; ++c) s[r][c] += p[r] * q[c];
   }
-  // Horn's symmetric matrix; the quaternion is its eigenvector of the largest
-  // eigenvalue.
+  // Horn's symmetric matrix; the quaternion is its eigenvector of the largest eigenvalue.
   double n[16] = {s[0][0] + s[1][1] + s[2][2],
                   s[1][2] - s[2][1],
                   s[2][0] - s[0][2],

@@ -40,8 +40,7 @@ openvdb::MaskGrid::Ptr Pull::region(const openvdb::GridPtrVec& grids) const {
   return region;
 }
 
-// The inverse map at positions of the target, found only when a grid holds
-// positions.
+// The inverse map at positions of the target, found only when a grid holds positions.
 Points Pull::movedBack(const Points& positions) const {
   if (!settings_.targetLevelSet)
     throw DataError(

@@ -1,5 +1,4 @@
-// Pull back: grids that live in the target, brought to the source by the
-// solid's map.
+// Pull back: grids that live in the target, brought to the source by the solid's map.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -21,10 +20,9 @@ struct PullSettings {
   OutsideSettings outside;
   double skin = 2;         // active voxels outside the surface, in [0, 3]
   double accuracy = 1e-7;  // of the sums of charges, as EvaluateSettings::accuracy
-  // Of the target's solid, half-width at least 3 voxels; null when it is not
-  // known. With it, attributes that end at the target's surface are continued
-  // by three voxels beyond, so that what is sampled along the surface does not
-  // mix with the background; positions need it.
+  // Of the target's solid, half-width at least 3 voxels; null when it is not known. With it,
+  // attributes that end at the target's surface are continued by three voxels beyond, so that what
+  // is sampled along the surface does not mix with the background; positions need it.
   const openvdb::FloatGrid* targetLevelSet = nullptr;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;
@@ -36,12 +34,11 @@ struct PullResult {
   std::vector<std::string> warnings;
 };
 
-// For each voxel p of the source, the grids' values at f(p), moved back by what
-// they are. levelSet: of `source`, half-width at least the skin; its transform
-// is that of the output, which is active where the signed distance is at most
-// the skin (with outside settings: the outside distance). Names, classes,
-// backgrounds, vector types and metadata stay; level sets are rebuilt as
-// distances. Throws as VolumePusher does.
+// For each voxel p of the source, the grids' values at f(p), moved back by what they are. levelSet:
+// of `source`, half-width at least the skin; its transform is that of the output, which is active
+// where the signed distance is at most the skin (with outside settings: the outside distance).
+// Names, classes, backgrounds, vector types and metadata stay; level sets are rebuilt as distances.
+// Throws as VolumePusher does.
 PullResult pullGrids(const HarmonicMap& map, const Solid& source,
                      const openvdb::FloatGrid& levelSet, const openvdb::GridPtrVec& grids,
                      const PullSettings& settings = {});

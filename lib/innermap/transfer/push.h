@@ -1,10 +1,8 @@
-// Push forward: grids that live in a source solid, carried to the target by the
-// solid's map.
+// Push forward: grids that live in a source solid, carried to the target by the solid's map.
 //
-// For each voxel q of the target the point p with f(p) = q is found: cells of a
-// lattice through the source are mapped, those whose image holds q give the
-// start, Newton steps with the analytic Jacobian do the rest. The grids are
-// sampled at p.
+// For each voxel q of the target the point p with f(p) = q is found: cells of a lattice through the
+// source are mapped, those whose image holds q give the start, Newton steps with the analytic
+// Jacobian do the rest. The grids are sampled at p.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -34,16 +32,14 @@ struct PushSettings {
   Progress* progress = nullptr;
 };
 
-// A harmonic field on the source that is written on the target's voxels: at q
-// its value at p.
+// A harmonic field on the source that is written on the target's voxels: at q its value at p.
 struct CarriedField {
   std::string name;
   HarmonicField field;  // one channel: a float grid, three: Vec3f
   openvdb::VecType vectorType = openvdb::VEC_INVARIANT;
 };
 
-// Sum of a density's active values times the voxel's volume, in the source and
-// in the target.
+// Sum of a density's active values times the voxel's volume, in the source and in the target.
 struct CarriedMass {
   std::string name;
   double before = 0, after = 0;
@@ -56,22 +52,20 @@ struct PushResult {
   std::vector<std::string> warnings;
 };
 
-// Keeps what the source alone decides; serves any number of maps (the frames of
-// a sequence). Immutable; one push at a time uses all threads.
+// Keeps what the source alone decides; serves any number of maps (the frames of a sequence).
+// Immutable; one push at a time uses all threads.
 class VolumePusher {
  public:
-  // Throws DataError for a grid of a type that cannot be carried, a tensor with
-  // a part missing or no active voxel near the solid in any grid; SettingError;
-  // MemoryError; Cancelled.
+  // Throws DataError for a grid of a type that cannot be carried, a tensor with a part missing or
+  // no active voxel near the solid in any grid; SettingError; MemoryError; Cancelled.
   VolumePusher(const Solid& source, const openvdb::GridPtrVec& grids,
                const PushSettings& settings = {});
 
-  // targetLevelSet: of the target, class level set, half-width at least the
-  // skin; its transform is that of the output. Output grids keep name, class,
-  // background, vector type and metadata; they are active where the target's
-  // signed distance is at most the skin. Level sets are rebuilt as distances.
-  // With outside settings, also where the volume around the source comes to.
-  // Throws as invertMap does. Same result for any number of threads.
+  // targetLevelSet: of the target, class level set, half-width at least the skin; its transform is
+  // that of the output. Output grids keep name, class, background, vector type and metadata; they
+  // are active where the target's signed distance is at most the skin. Level sets are rebuilt as
+  // distances. With outside settings, also where the volume around the source comes to. Throws as
+  // invertMap does. Same result for any number of threads.
   PushResult push(const HarmonicMap& map, const openvdb::FloatGrid& targetLevelSet,
                   const std::vector<CarriedField>& fields = {}) const;
 

@@ -53,8 +53,7 @@ openvdb::CoordBBox onLattice(const openvdb::CoordBBox& box, const openvdb::math:
   return out;
 }
 
-// Lattice voxels about the grids' active ones, by whole blocks; at most `most`
-// of them.
+// Lattice voxels about the grids' active ones, by whole blocks; at most `most` of them.
 openvdb::MaskTree around(const openvdb::GridPtrVec& grids, const openvdb::math::Transform& lattice,
                          std::uint64_t most, Progress* progress) {
   openvdb::MaskTree mask;

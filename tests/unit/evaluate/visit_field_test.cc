@@ -74,6 +74,27 @@ TEST(VisitField, ValuesInsideAndBeyond) {
   for (const double e : error) EXPECT_LT(e, 1e-8);
 }
 
+TEST(VisitField, ValuesAlone) {
+  const Scene scene;
+  std::vector<double> error(scene.region->tree().leafCount(), 0);
+  VisitSettings settings;
+  settings.accuracy = 1e-10;
+  settings.gradients = false;
+  visitField(
+      twoChannels(), scene.solid, *scene.levelSet, *scene.region,
+      [&](std::size_t leaf, const LeafValues& v) {
+        ASSERT_EQ(v.gradients, nullptr);
+        for (std::size_t i = 0; i < v.count; ++i) {
+          const openvdb::Coord ijk =
+              v.origin + openvdb::MaskTree::LeafNodeType::offsetToLocalCoord(v.offset[i]);
+          const double x = scene.levelSet->indexToWorld(ijk).x();
+          error[leaf] = std::max(error[leaf], std::abs(v.values[2 * i] - (2 * x + 1)));
+        }
+      },
+      settings);
+  for (const double e : error) EXPECT_LT(e, 1e-8);
+}
+
 TEST(VisitField, PointsAgreeWithVoxels) {
   const Scene scene;
   const HarmonicField field = twoChannels();
