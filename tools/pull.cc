@@ -33,7 +33,8 @@ void run(const PullOptions& options, Context& context) {
     return context.plan(
         {fmt::format("pull {} grids of {} by {}", grids.size(), options.volume, options.map),
          "write " + options.output},
-        0);
+        transferMemory(pair.solid, grids, options.transfer));
+  requireTransferMemory(pair.solid, grids, options.transfer, context);
   TransferOptions plain;  // the target's level set is none of the output's
   const openvdb::FloatGrid::Ptr targetLevelSet = outputLevelSet(*target, grids, plain, context);
   settings.targetLevelSet = targetLevelSet.get();

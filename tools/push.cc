@@ -31,7 +31,8 @@ void run(const PushOptions& options, Context& context) {
     return context.plan(
         {fmt::format("push {} grids of {} by {}", grids.size(), options.volume, options.map),
          "write " + options.output},
-        0);
+        transferMemory(*target, grids, options.transfer));
+  requireTransferMemory(*target, grids, options.transfer, context);
   const openvdb::FloatGrid::Ptr levelSet =
       outputLevelSet(*target, grids, options.transfer, context);
   PushResult result;
