@@ -107,7 +107,6 @@ TEST(InverseMap, VoxelsFromNowhereHaveTheirNeighboursSource) {
   const Solid source(ball());
   const HarmonicMap map = affineMap({{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {});
   // The target given is twice as large as the map's: beyond the skin nothing comes from anywhere.
-  Affine affine;
   const Solid target(ball(1.5));
   InverseSettings settings;
   const InvertedMap inverted =
