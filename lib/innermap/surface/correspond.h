@@ -1,0 +1,85 @@
+// Where each point of one closed surface lies on another that was never related to it.
+//
+// Both are laid out on a common model space (surface/layout.h); rotations of it and matched limb
+// tips give candidates, which are refined by lowering the symmetric Dirichlet energy both ways.
+// After Praun and Hoppe, "Spherical parametrization and remeshing" (SIGGRAPH 2003); Schmidt,
+// Campen, Born, Kobbelt, "Inter-surface maps via constant-curvature metrics" (SIGGRAPH 2020).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "innermap/core/progress.h"
+#include "innermap/mesh/mesh.h"
+#include "innermap/surface/closed_surface.h"
+#include "innermap/surface/layout.h"
+
+namespace innermap {
+
+struct EmbeddingSettings {
+  bool closeHoles = false;  // cap the boundary loops of an open mesh; otherwise it is refused
+  Progress* progress = nullptr;
+};
+
+// A mesh with its shells laid out: what any number of partners can be mapped onto. Immutable, cheap
+// to copy, safe from any number of threads.
+class EmbeddedSurface {
+ public:
+  // Throws what closedSurfaces() throws.
+  explicit EmbeddedSurface(const Mesh& mesh, const EmbeddingSettings& settings = {});
+
+  const SurfaceShells& surfaces() const;
+  // Of a shell of genus 0 or 1; of higher genus: empty.
+  const Layout& layout(std::size_t shell) const;
+  double seconds() const;  // that laying out took
+
+ private:
+  struct Implementation;
+  std::shared_ptr<const Implementation> implementation_;
+};
+
+struct Landmark {
+  int vertex = 0;         // of A's mesh
+  SurfacePoint onTarget;  // of B's mesh
+};
+
+struct CorrespondSettings {
+  std::vector<Landmark> landmarks;  // met to rounding
+  bool aligned = false;  // the two stand in the same pose: prefer agreeing normals and places
+  int candidates = 3;    // that are refined, in [1, 64]; the one of least energy is taken
+  bool refine = true;
+  std::uint64_t seed = 1;
+  double subdivide = 0;  // split A until it follows B within this share of B's diagonal; 0: never
+  Progress* progress = nullptr;
+};
+
+// One shell of A on one of B.
+struct ShellCorrespondence {
+  int source = 0, target = 0;          // shells of A and B
+  ClosedSurface surface;               // A's shell, subdivided where asked
+  Layout image;                        // of `surface` on the model space of B's shell
+  Layout targetLayout;                 // of B's shell there
+  std::vector<SurfacePoint> onTarget;  // #vertices of surface: triangle of B's shell
+  Points positions;                    // #vertices of surface, world units
+};
+
+struct Correspondence {
+  // A with its own vertices first, in order, then those that subdividing added; connectivity as
+  // A's own but for what was subdivided.
+  Mesh source;
+  Points positions;                    // #vertices of source: where each lies on B. A loose vertex
+                                       // lies where the nearest used one does
+  std::vector<SurfacePoint> onTarget;  // of each, triangle of b.surfaces().mesh
+  std::vector<ShellCorrespondence> shells;
+  std::vector<std::string> notes;                       // choices worth telling, a line each
+  std::vector<std::pair<std::string, double>> seconds;  // by stage
+};
+
+// Throws DataError where the solids' topology differs (naming both), where landmarks contradict one
+// another or the orientation; SettingError; Cancelled. Same result for any number of threads.
+Correspondence correspond(const EmbeddedSurface& a, const EmbeddedSurface& b,
+                          const CorrespondSettings& settings = {});
+
+}  // namespace innermap

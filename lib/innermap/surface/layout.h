@@ -1,0 +1,64 @@
+// A closed surface laid out on a model space: the unit sphere, or the plane modulo a lattice (the
+// flat torus). One description serves both: points are rays from the origin, triangles are cones
+// over three rays, and on the torus all points have z = 1, where rays are plane points.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "innermap/core/vec3.h"
+#include "innermap/mesh/mesh.h"
+
+namespace innermap {
+
+enum class ModelSpace { sphere, torus };
+
+// A translation of the plane by a * period[0] + b * period[1].
+struct Shift {
+  int a = 0, b = 0;
+};
+
+inline Shift operator+(const Shift& s, const Shift& t) { return {s.a + t.a, s.b + t.b}; }
+inline Shift operator-(const Shift& s, const Shift& t) { return {s.a - t.a, s.b - t.b}; }
+inline bool operator==(const Shift& s, const Shift& t) { return s.a == t.a && s.b == t.b; }
+
+using CornerShifts = std::array<Shift, 3>;
+
+// Of a ClosedSurface, whose triangles it belongs to. A layout is valid when each triangle's corners
+// p, q, r have det(p, q, r) > 0: then it is one-to-one (degree 1), as the triangles cover the space
+// once.
+struct Layout {
+  ModelSpace space = ModelSpace::sphere;
+  Points place;  // #V; sphere: unit vectors; torus: (x, y, 1)
+
+  // Torus only. period[0] is the lattice vector of the meridian, period[1] that of the longitude,
+  // both with z = 0 and det(period[0], period[1]) > 0 in the plane. Corner k of triangle t stands
+  // at place[triangles[t][k]] moved by shift[t][k].
+  std::array<Vec3, 2> period{};
+  std::vector<CornerShifts> shift;  // #T; empty on the sphere
+
+  Vec3 moved(const Vec3& p, const Shift& s) const {
+    return p + (static_cast<double>(s.a) * period[0] + static_cast<double>(s.b) * period[1]);
+  }
+  Vec3 corner(const std::vector<Triangle>& triangles, int t, int k) const {
+    const Vec3& p = place[triangles[t][k]];
+    return shift.empty() ? p : moved(p, shift[t][k]);
+  }
+};
+
+// Of three rays: six times the signed volume of the cone; positive where a layout is valid.
+inline double tripleProduct(const Vec3& p, const Vec3& q, const Vec3& r) {
+  return dot(p, cross(q - p, r - p));
+}
+
+struct LayoutQuality {
+  std::size_t flips = 0;      // triangles with tripleProduct not above 0
+  double degree = 0;          // signed area covered over that of the space; 1 when valid
+  double areaRatioLog10 = 0;  // the least log10 of (a triangle's share of the space / its share of
+                              // the surface), over triangles that have area
+};
+
+LayoutQuality layoutQuality(const std::vector<Triangle>& triangles, const Points& vertices,
+                            const Layout& layout);
+
+}  // namespace innermap
