@@ -1,0 +1,11 @@
+#include "innermap/mesh/seams.h"
+
+#include "innermap/mesh/topology.h"
+
+namespace innermap {
+
+std::vector<int> joinedVertices(const Points& vertices, const std::vector<Triangle>& triangles) {
+  return joinSeams(vertices, triangles);
+}
+
+}  // namespace innermap
