@@ -110,12 +110,13 @@ Located Locator::find(const Vec3& p, const Located& hint) const {
   const int most = 200 + 8 * static_cast<int>(std::sqrt(static_cast<double>(cones_.size())));
   for (int i = 0; i < most; ++i) {
     const std::array<double, 3> w = cones_[at.triangle].weights(local(p, at));
+    const double rounding = -1e-14 * (std::abs(w[0]) + std::abs(w[1]) + std::abs(w[2]));
     random = random * 1664525u + 1013904223u;
     const int first = static_cast<int>(random >> 16) % 3;
     int leave = -1;
     for (int j = 0; j < 3 && leave < 0; ++j) {
       const int k = (first + j) % 3;
-      if (w[k] < 0) leave = k;
+      if (w[k] < rounding) leave = k;
     }
     if (leave < 0) return at;
     at = step(at, leave);
