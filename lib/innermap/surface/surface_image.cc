@@ -1,0 +1,127 @@
+#include "innermap/surface/surface_image.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "innermap/core/parallel.h"
+#include "innermap/mesh/triangle_tree.h"
+#include "innermap/surface/composed_map.h"
+
+namespace innermap {
+namespace {
+
+constexpr char kStage[] = "carrying points over";
+
+// One pair of shells with what asking needs.
+struct ShellMap {
+  ShellMap(const ShellCorrespondence& shell, const ClosedSurface& b)
+      : onA(shell.surface.triangles, shell.image),
+        onB(b.triangles, shell.targetLayout),
+        composed(shell.surface, onA, b, onB, shell.image.space) {}
+  ShellMap(const ShellMap&) = delete;
+  ShellMap& operator=(const ShellMap&) = delete;
+
+  Locator onA, onB;
+  ComposedMap composed;
+};
+
+using ShellMaps = std::vector<std::unique_ptr<ShellMap>>;
+
+ShellMaps mapsOf(const Correspondence& map, const SurfaceShells& target, Progress* progress) {
+  ShellMaps maps;
+  for (const ShellCorrespondence& shell : map.shells) {
+    throwIfCancelled(progress);
+    maps.push_back(
+        std::make_unique<ShellMap>(shell, target.shells[static_cast<std::size_t>(shell.target)]));
+  }
+  return maps;
+}
+
+// Several shells as one list of triangles.
+struct JoinedShells {
+  Points vertices;
+  std::vector<Triangle> triangles;
+  std::vector<std::size_t> first;  // triangle of each shell
+
+  void add(const ClosedSurface& shell) {
+    const int offset = static_cast<int>(vertices.size());
+    vertices.insert(vertices.end(), shell.vertices.begin(), shell.vertices.end());
+    first.push_back(triangles.size());
+    for (const auto& [i, j, k] : shell.triangles)
+      triangles.push_back({i + offset, j + offset, k + offset});
+  }
+
+  struct Place {
+    std::size_t shell;
+    int triangle;
+  };
+  Place placeOf(int triangle) const {
+    const std::size_t t = static_cast<std::size_t>(triangle);
+    const std::size_t s = static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), t) -
+                                                   first.begin() - 1);
+    return {s, static_cast<int>(t - first[s])};
+  }
+};
+
+}  // namespace
+
+SurfaceImages imagesOf(const Points& points, const Correspondence& map, const SurfaceShells& target,
+                       Progress* progress) {
+  const ShellMaps maps = mapsOf(map, target, progress);
+  JoinedShells shells;
+  for (const ShellCorrespondence& shell : map.shells) shells.add(shell.surface);
+  const TriangleTree tree(shells.vertices, shells.triangles);
+  SurfaceImages result;
+  result.positions.resize(points.size());
+  result.onTarget.resize(points.size());
+  std::vector<double> distance(points.size(), 0);
+  parallelBlocks(
+      points.size(), 256,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const ClosestPoint closest = tree.closest(points[i]);
+          const JoinedShells::Place place = shells.placeOf(closest.address.triangle);
+          const ComposedMap::Image image =
+              maps[place.shell]->composed.at(place.triangle, closest.address.barycentric);
+          const int shell = map.shells[place.shell].target;
+          result.positions[i] = image.position;
+          result.onTarget[i] = {target.meshTriangle[shell][image.triangle], image.barycentric};
+          distance[i] = closest.distance;
+        }
+      },
+      progress, kStage);
+  for (const double d : distance) result.farthest = std::max(result.farthest, d);
+  return result;
+}
+
+Points preimagesOf(const std::vector<SurfacePoint>& onTarget, const Correspondence& map,
+                   const SurfaceShells& target, Progress* progress) {
+  const ShellMaps maps = mapsOf(map, target, progress);
+  JoinedShells shells;
+  std::vector<JoinedShells::Place> places(target.mesh.triangles.size(), {0, -1});
+  for (std::size_t s = 0; s < map.shells.size(); ++s) {
+    const std::size_t b = static_cast<std::size_t>(map.shells[s].target);
+    shells.add(target.shells[b]);
+    for (std::size_t t = 0; t < target.meshTriangle[b].size(); ++t)
+      places[target.meshTriangle[b][t]] = {s, static_cast<int>(t)};
+  }
+  const TriangleTree tree(shells.vertices, shells.triangles);
+  Points result(onTarget.size());
+  parallelBlocks(
+      onTarget.size(), 256,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          SurfacePoint point = onTarget[i];
+          JoinedShells::Place place = places[point.triangle];
+          if (place.triangle < 0) {
+            point = tree.closest(positionOf(target.mesh, point)).address;
+            place = shells.placeOf(point.triangle);
+          }
+          result[i] = maps[place.shell]->composed.of(place.triangle, point.barycentric).position;
+        }
+      },
+      progress, kStage);
+  return result;
+}
+
+}  // namespace innermap
