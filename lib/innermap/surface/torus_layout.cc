@@ -30,9 +30,8 @@ std::vector<CornerShifts> cornerShifts(const HomologyBasis& basis, const TorusCl
   return shift;
 }
 
-// Names the longitudes anew so that period[1] is as short as possible, turns period[0] along x and
-// brings all vertices into one cell.
-void normalize(const std::vector<Triangle>& triangles, Layout& layout) {
+// Names the longitudes anew so that period[1] is as short as possible and turns period[0] along x.
+void normalize(Layout& layout) {
   const Vec3 p = layout.period[0], q = layout.period[1];
   const int twist = -static_cast<int>(std::lround(dot(p, q) / squaredNorm(p)));
   const double length = norm(p), c = p.x / length, s = p.y / length;
@@ -41,24 +40,9 @@ void normalize(const std::vector<Triangle>& triangles, Layout& layout) {
   };
   layout.period = {turned(p), turned(q + static_cast<double>(twist) * p)};
   layout.period[0].y = 0;
-  const double width = layout.period[0].x, height = layout.period[1].y;
-  std::vector<Shift> home(layout.place.size());
-  for (std::size_t v = 0; v < layout.place.size(); ++v) {
-    Vec3& x = layout.place[v];
-    x = turned(x);
-    home[v].b = -static_cast<int>(std::floor(x.y / height));
-    x += static_cast<double>(home[v].b) * layout.period[1];
-    home[v].a = -static_cast<int>(std::floor(x.x / width));
-    x += static_cast<double>(home[v].a) * layout.period[0];
-  }
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      Shift& shift = layout.shift[t][k];
-      shift = Shift{shift.a - twist * shift.b, shift.b} - home[triangles[t][k]];
-    }
-    const Shift first = layout.shift[t][0];
-    for (Shift& shift : layout.shift[t]) shift = shift - first;
-  }
+  for (Vec3& x : layout.place) x = turned(x);
+  for (CornerShifts& corners : layout.shift)
+    for (Shift& shift : corners) shift.a -= twist * shift.b;
 }
 
 }  // namespace
@@ -70,13 +54,32 @@ Layout layOutTorus(const ClosedSurface& surface, Progress* progress) {
     throw DataError(fmt::format("{}: has {} handles, not one", surface.name, basis.size() / 2));
   const TorusClasses classes = torusClasses(surface, edges, basis, progress);
   Layout layout = relaxedTorus(surface, cornerShifts(basis, classes, edges), progress);
-  normalize(surface.triangles, layout);
+  normalize(layout);
+  moveIntoCell(surface.triangles, layout);
   if (isKnotted(meridianCurve(surface, layout), progress))
     throw DataError(fmt::format(
         "{}: no loop around its handle bounds a disc inside the solid, as the tunnel is knotted; "
         "such solids cannot be mapped without cutting the tunnel open",
         surface.name));
   return layout;
+}
+
+void moveIntoCell(const std::vector<Triangle>& triangles, Layout& layout) {
+  const Vec3 &p = layout.period[0], &q = layout.period[1];
+  const double area = p.x * q.y - p.y * q.x;
+  std::vector<Shift> home(layout.place.size());
+  for (std::size_t v = 0; v < layout.place.size(); ++v) {
+    Vec3& x = layout.place[v];
+    home[v] = {-static_cast<int>(std::floor((x.x * q.y - x.y * q.x) / area)),
+               -static_cast<int>(std::floor((p.x * x.y - p.y * x.x) / area))};
+    x = layout.moved(x, home[v]);
+  }
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k)
+      layout.shift[t][k] = layout.shift[t][k] - home[triangles[t][k]];
+    const Shift first = layout.shift[t][0];
+    for (Shift& shift : layout.shift[t]) shift = shift - first;
+  }
 }
 
 Points meridianCurve(const ClosedSurface& surface, const Layout& layout) {

@@ -24,6 +24,10 @@ namespace innermap {
 // itself so that this cannot be told; Cancelled.
 Layout layOutTorus(const ClosedSurface& surface, Progress* progress = nullptr);
 
+// Brings the places of all vertices into one cell of the lattice; the first corners' shifts are 0
+// then. The map stays what it is.
+void moveIntoCell(const std::vector<Triangle>& triangles, Layout& layout);
+
 // The points where a straight line along period[0] crosses the edges of a layout on the torus, on
 // the surface: a simple closed polygon, a meridian. Of several lines the shortest.
 Points meridianCurve(const ClosedSurface& surface, const Layout& layout);
