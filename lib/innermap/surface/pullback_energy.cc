@@ -10,7 +10,6 @@ namespace innermap {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kSamples = 30000;  // over all triangles, at least
 
 }  // namespace
 
@@ -29,11 +28,12 @@ std::vector<Vec2> triangleSamples(int m) {
 }
 
 PullbackEnergy::PullbackEnergy(const ClosedSurface& source, const ProgressiveMesh& mesh,
-                               const Layout& image, const TargetMetric& target)
+                               const Layout& image, const TargetMetric& target, double samples)
     : mesh_(mesh),
       image_(image),
       target_(target),
       points_(source.vertices),
+      samplesWanted_(samples),
       rest_(source.triangles.size()) {
   const double scale = unitAreaScale(source.vertices, source.triangles);
   const Vec3 center = boundingBox(points_).center();
@@ -43,7 +43,8 @@ PullbackEnergy::PullbackEnergy(const ClosedSurface& source, const ProgressiveMes
 void PullbackEnergy::grown(std::size_t vertices) {
   const double triangles = 2.0 * static_cast<double>(vertices);
   slack_ = 0.02 * 1.5 / std::sqrt(triangles);  // of an equilateral triangle's edge
-  const int m = std::clamp(static_cast<int>(std::ceil(std::sqrt(kSamples / triangles))), 2, 10);
+  const int m =
+      std::clamp(static_cast<int>(std::ceil(std::sqrt(samplesWanted_ / triangles))), 2, 10);
   samples_ = triangleSamples(m);
 }
 

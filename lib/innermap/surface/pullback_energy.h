@@ -17,9 +17,10 @@ namespace innermap {
 // Takayama, "Compatible intrinsic triangulations" (SIGGRAPH 2022).
 class PullbackEnergy : public StarEnergy {
  public:
-  // All must outlive it; `image` is the layout of `mesh`'s vertices on the target's space.
+  // All must outlive it; `image` is the layout of `mesh`'s vertices on the target's space. Summed
+  // at `samples` points of all triangles or more.
   PullbackEnergy(const ClosedSurface& source, const ProgressiveMesh& mesh, const Layout& image,
-                 const TargetMetric& target);
+                 const TargetMetric& target, double samples = 30000);
 
   void grown(std::size_t vertices) override;
   void changed(int triangle) override;
@@ -43,6 +44,7 @@ class PullbackEnergy : public StarEnergy {
   const Layout& image_;
   const TargetMetric& target_;
   Points points_;
+  double samplesWanted_;
   double slack_ = 0;
   std::vector<Vec2> samples_;  // weights of the second and third corner, next to one another
   std::vector<RestTriangle> rest_;

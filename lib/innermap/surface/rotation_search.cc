@@ -9,7 +9,7 @@
 namespace innermap {
 namespace {
 
-constexpr double kNormalWeight = 2;
+constexpr double kNormalWeight = 2, kLandmarkWeight = 10;
 
 Mat3 fromQuaternion(double x, double y, double z, double w) {
   return {{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
@@ -34,7 +34,8 @@ double angleBetween(const Mat3& a, const Mat3& b) {
 }
 
 double costOf(const Mat3& rotation, const std::vector<MapSample>& samples,
-              const TargetMetric& target, const Points* normals) {
+              const TargetMetric& target, const RotationSearchSettings& settings) {
+  const Points* normals = settings.targetNormals;
   double sum = 0;
   for (const MapSample& s : samples) {
     const Vec3 x = rotation * s.x;
@@ -44,11 +45,17 @@ double costOf(const Mat3& rotation, const std::vector<MapSample>& samples,
     sum += stretch.logSquared();
     if (normals) sum += kNormalWeight * (1 - dot(s.normal, (*normals)[where.triangle]));
   }
-  return sum / static_cast<double>(samples.size());
+  sum /= static_cast<double>(samples.size());
+  double missed = 0;
+  for (std::size_t i = 0; i < settings.from.size(); ++i)
+    missed += squaredNorm(rotation * settings.from[i] - settings.to[i]);
+  if (!settings.from.empty())
+    sum += kLandmarkWeight * missed / static_cast<double>(settings.from.size());
+  return sum;
 }
 
 void descend(RotationCandidate& c, const std::vector<MapSample>& samples,
-             const TargetMetric& target, const Points* normals) {
+             const TargetMetric& target, const RotationSearchSettings& settings) {
   for (double angle = 0.12; angle > 0.01;) {
     RotationCandidate best = c;
     for (int axis = 0; axis < 3; ++axis)
@@ -56,7 +63,7 @@ void descend(RotationCandidate& c, const std::vector<MapSample>& samples,
         Vec3 w;
         w[axis] = sign * angle;
         const Mat3 r = product(rotationAbout(w), c.rotation);
-        const double cost = costOf(r, samples, target, normals);
+        const double cost = costOf(r, samples, target, settings);
         if (cost < best.cost) best = {r, cost};
       }
     if (best.cost < c.cost)
@@ -94,13 +101,12 @@ std::vector<RotationCandidate> searchRotations(const std::vector<MapSample>& sam
                                                const TargetMetric& target,
                                                const RotationSearchSettings& settings) {
   std::vector<RotationCandidate> all(settings.rotations);
-  const Points* normals = settings.targetNormals;
   parallelBlocks(
       all.size(), 32,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
           all[i].rotation = superFibonacci(i, all.size());
-          all[i].cost = costOf(all[i].rotation, samples, target, normals);
+          all[i].cost = costOf(all[i].rotation, samples, target, settings);
         }
       },
       settings.progress, "trying rotations");
@@ -112,7 +118,7 @@ std::vector<RotationCandidate> searchRotations(const std::vector<MapSample>& sam
   parallelBlocks(
       all.size(), 1,
       [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) descend(all[i], samples, target, normals);
+        for (std::size_t i = begin; i < end; ++i) descend(all[i], samples, target, settings);
       },
       settings.progress, "turning the best");
   std::stable_sort(all.begin(), all.end(), better);

@@ -20,11 +20,12 @@ struct RotationSearchSettings {
   std::size_t kept = 3;          // most
   double apart = 0.35;           // radians between those kept, at least
   const Points* targetNormals = nullptr;  // unit, #triangles of the target: normals should agree
+  Points from, to;  // unit vectors that should go to one another, of two landmarks each
   Progress* progress = nullptr;
 };
 
 // The best first. Cost: mean of ln^2 s1 + ln^2 s2 of the composed map over the samples, plus with
-// targetNormals how far normals disagree.
+// targetNormals how far normals disagree, plus with landmarks their squared distances.
 std::vector<RotationCandidate> searchRotations(const std::vector<MapSample>& samples,
                                                const TargetMetric& target,
                                                const RotationSearchSettings& settings);
