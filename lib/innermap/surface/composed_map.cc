@@ -31,15 +31,15 @@ FlatTriangle::FlatTriangle(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 bool ComposedMap::derivative(int triangleA, int triangleB, const Vec3& ray, Stretches& out) const {
-  const auto a = cornersOf(a_, triangleA), b = cornersOf(b_, triangleB);
+  const auto a = cornersOf(a_.surface, triangleA), b = cornersOf(b_.surface, triangleB);
   const FlatTriangle flat(a[0], a[1], a[2]);
   if (flat.sliver || FlatTriangle(b[0], b[1], b[2]).sliver) return false;
-  const Locator::Cone &from = onA_.cone(triangleA), &to = onB_.cone(triangleB);
+  const Locator::Cone& to = b_.locator.cone(triangleB);
   const std::array<double, 3> weights = to.weights(ray);
   const double sum = weights[0] + weights[1] + weights[2];
   std::array<Vec3, 2> moved;
   for (int d = 0; d < 2; ++d) {
-    const Vec3 step = mean(from.corner, flat.along[d]);
+    const Vec3 step = a_.ray(triangleA, flat.along[d]);
     std::array<double, 3> change;
     for (int k = 0; k < 3; ++k) change[k] = dot(step, to.side[k]);
     const double total = change[0] + change[1] + change[2];
@@ -50,30 +50,32 @@ bool ComposedMap::derivative(int triangleA, int triangleB, const Vec3& ray, Stre
   return out.s2 > 0 && std::isfinite(out.s1);
 }
 
+Located ComposedMap::find(const LaidOut& on, const Vec3& ray) const {
+  return on.locator.find(on.layout.space == ModelSpace::sphere ? ray / norm(ray) : ray);
+}
+
 ComposedMap::Image ComposedMap::at(int triangle, const std::array<double, 3>& barycentric) const {
-  const Vec3 ray = mean(onA_.cone(triangle).corner, barycentric);
-  const Located where = onB_.find(space_ == ModelSpace::sphere ? ray / norm(ray) : ray);
-  const Vec3 local = onB_.local(ray, where);
+  const Vec3 ray = a_.ray(triangle, barycentric);
+  const Located where = find(b_, ray);
   Image image;
   image.triangle = where.triangle;
-  image.barycentric = onB_.barycentric(ray, where);
-  const auto b = cornersOf(b_, where.triangle);
-  image.position = mean(b.data(), image.barycentric);
-  image.measured = derivative(triangle, where.triangle, local, image.stretches);
+  image.barycentric = b_.locator.barycentric(ray, where);
+  image.position = mean(cornersOf(b_.surface, where.triangle).data(), image.barycentric);
+  image.measured =
+      derivative(triangle, where.triangle, b_.locator.local(ray, where), image.stretches);
   return image;
 }
 
 ComposedMap::Preimage ComposedMap::of(int triangle,
                                       const std::array<double, 3>& barycentric) const {
-  Vec3 ray = mean(onB_.cone(triangle).corner, barycentric);
-  const Located where = onA_.find(space_ == ModelSpace::sphere ? ray / norm(ray) : ray);
-  const std::array<double, 3> onA = onA_.barycentric(ray, where);
-  const auto a = cornersOf(a_, where.triangle);
+  Vec3 ray = b_.ray(triangle, barycentric);
+  const Located where = find(a_, ray);
+  const std::array<double, 3> onA = a_.locator.barycentric(ray, where);
   Preimage preimage;
   preimage.triangle = where.triangle;
-  preimage.position = mean(a.data(), onA);
+  preimage.position = mean(cornersOf(a_.surface, where.triangle).data(), onA);
   // On the sphere rays may have any length; the derivative wants that of A's chord.
-  if (space_ == ModelSpace::sphere) ray = mean(onA_.cone(where.triangle).corner, onA);
+  if (a_.layout.space == ModelSpace::sphere) ray = a_.ray(where.triangle, onA);
   preimage.measured = derivative(where.triangle, triangle, ray, preimage.stretches);
   return preimage;
 }

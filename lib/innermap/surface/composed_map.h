@@ -39,12 +39,25 @@ struct FlatTriangle {
   FlatTriangle(const Vec3& a, const Vec3& b, const Vec3& c);
 };
 
-// Both surfaces, layouts and locators must outlive it. Immutable; safe from any number of threads.
+// A surface with its layout and what finds places in it.
+struct LaidOut {
+  const ClosedSurface& surface;
+  const Layout& layout;
+  const Locator& locator;
+
+  // The ray, or point of the plane, of a place in a triangle.
+  Vec3 ray(int triangle, const std::array<double, 3>& barycentric) const {
+    Vec3 sum;
+    for (int k = 0; k < 3; ++k)
+      sum += barycentric[k] * layout.corner(surface.triangles, triangle, k);
+    return sum;
+  }
+};
+
+// What `a` and `b` refer to must outlive it. Immutable; safe from any number of threads.
 class ComposedMap {
  public:
-  ComposedMap(const ClosedSurface& a, const Locator& onA, const ClosedSurface& b,
-              const Locator& onB, ModelSpace space)
-      : a_(a), b_(b), onA_(onA), onB_(onB), space_(space) {}
+  ComposedMap(const LaidOut& a, const LaidOut& b) : a_(a), b_(b) {}
 
   struct Image {
     int triangle = -1;  // of B
@@ -69,9 +82,9 @@ class ComposedMap {
   // ray: a mean of the corners of A's triangle (weights of sum 1), in the frame of B's.
   bool derivative(int triangleA, int triangleB, const Vec3& ray, Stretches& out) const;
 
-  const ClosedSurface &a_, &b_;
-  const Locator &onA_, &onB_;
-  ModelSpace space_;
+  Located find(const LaidOut& on, const Vec3& ray) const;
+
+  LaidOut a_, b_;
 };
 
 }  // namespace innermap

@@ -140,7 +140,7 @@ class Measurement {
   void measureShell(const ShellCorrespondence& shell, const ClosedSurface& b) {
     const ClosedSurface& a = shell.surface;
     const Locator onA(a.triangles, shell.image), onB(b.triangles, shell.targetLayout);
-    const ComposedMap composed(a, onA, b, onB, shell.image.space);
+    const ComposedMap composed({a, shell.image, onA}, {b, shell.targetLayout, onB});
     const std::vector<double> areas = triangleAreas(a.vertices, a.triangles),
                               imageAreas = triangleAreas(shell.positions, a.triangles),
                               targetAreas = triangleAreas(b.vertices, b.triangles);

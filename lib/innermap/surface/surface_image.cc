@@ -17,7 +17,7 @@ struct ShellMap {
   ShellMap(const ShellCorrespondence& shell, const ClosedSurface& b)
       : onA(shell.surface.triangles, shell.image),
         onB(b.triangles, shell.targetLayout),
-        composed(shell.surface, onA, b, onB, shell.image.space) {}
+        composed({shell.surface, shell.image, onA}, {b, shell.targetLayout, onB}) {}
   ShellMap(const ShellMap&) = delete;
   ShellMap& operator=(const ShellMap&) = delete;
 
