@@ -70,10 +70,11 @@ std::optional<CoarseMap> refineMap(const ClosedSurface& surface, ProgressiveMesh
   if (!out.image.shift.empty()) out.image.shift.resize(surface.triangles.size());
   PullbackEnergy energy(surface, mesh, out.image, target);
   RelaxSettings relax;
-  if (!settings.relax) relax.sweeps = 0;
+  relax.sweeps = settings.relax ? 2 : 0;
+  relax.lastSweeps = settings.relax ? 3 : 0;
+  relax.steps = 1;
   relax.stage = "refining the map";
   relax.progress = settings.progress;
-  relax.lastSweeps = settings.relax ? 8 : 0;
   CoarseToFine fine(mesh, out.image, energy, settings.fixed, relax);
   fine.relaxAll(relax.lastSweeps);
   if (fine.refine(surface.vertices.size()) >= 0) return std::nullopt;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 namespace innermap {
 namespace {
@@ -105,20 +104,23 @@ Located Locator::step(const Located& from, int corner) const {
 
 Located Locator::find(const Vec3& p, const Located& hint) const {
   Located at = hint;
-  // A deterministic sequence: ties and loops of the walk are broken alike in every run.
-  std::uint32_t random = 0x9e3779b9u;
+  // Where a step is to begin looking for a way out: not the same side always, or walks may circle.
+  unsigned turn = 0;
   const int most = 200 + 8 * static_cast<int>(std::sqrt(static_cast<double>(cones_.size())));
   for (int i = 0; i < most; ++i) {
     const std::array<double, 3> w = cones_[at.triangle].weights(local(p, at));
     const double rounding = -1e-14 * (std::abs(w[0]) + std::abs(w[1]) + std::abs(w[2]));
-    random = random * 1664525u + 1013904223u;
-    const int first = static_cast<int>(random >> 16) % 3;
-    int leave = -1;
-    for (int j = 0; j < 3 && leave < 0; ++j) {
-      const int k = (first + j) % 3;
-      if (w[k] < rounding) leave = k;
+    // Most walks are a step or two long: out by the side that is farthest away at first.
+    int leave = w[0] < w[1] ? 0 : 1;
+    if (w[2] < w[leave]) leave = 2;
+    if (w[leave] >= rounding) return at;
+    if (i >= 16) {
+      turn = turn * 1664525u + 1013904223u;
+      for (unsigned j = 0; j < 3; ++j) {
+        const int k = static_cast<int>(((turn >> 16) + j) % 3);
+        if (w[k] < rounding) leave = k;
+      }
     }
-    if (leave < 0) return at;
     at = step(at, leave);
   }
   return search(p, hint);

@@ -20,14 +20,13 @@ struct Located {
 // layout must be valid. Immutable; safe from any number of threads.
 class Locator {
  public:
-  // The cone over a triangle's corners. side[k] is normal to the plane through the edge opposite
-  // corner k: weights of a point are dot(p - corner, side).
+  // The cone over a triangle's corners. side[k] = a x (b - a) for the edge a b opposite corner k,
+  // which rounding leaves exact for short edges too.
   struct Cone {
-    Vec3 corner[3], side[3];
+    Vec3 side[3], corner[3];
 
     std::array<double, 3> weights(const Vec3& p) const {  // barycentric but for a factor
-      return {dot(p - corner[1], side[0]), dot(p - corner[2], side[1]),
-              dot(p - corner[0], side[2])};
+      return {dot(p, side[0]), dot(p, side[1]), dot(p, side[2])};
     }
   };
 

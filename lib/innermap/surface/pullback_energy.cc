@@ -78,14 +78,13 @@ void PullbackEnergy::gather(int v) {
   reach_ /= static_cast<double>(star_.size());
 }
 
-double PullbackEnergy::of(const StarTriangle& t, const Vec3& place) const {
+double PullbackEnergy::of(const StarTriangle& t, const Vec3& place, Located& where) const {
   const Vec3 e = t.a - place, f = t.b - place;
   double sum = 0;
-  Located where;
   const double half = 0.5 / t.area;
   for (const Vec2& s : samples_) {
     const Vec3 x = place + (s.x * e + s.y * f);
-    where = where.triangle < 0 ? target_.locator().find(x) : target_.locator().find(x, where);
+    where = target_.locator().find(x, where);
     const TargetMetric::Plane p = target_.project(x, where, e, f);
     const double det = half * p.det();
     if (!(det > 0)) return kInfinite;
@@ -102,7 +101,8 @@ double PullbackEnergy::at(const Vec3& place) const {
   for (const StarTriangle& t : star_)
     if (!(tripleProduct(place, t.a, t.b) > 0)) return kInfinite;
   double sum = 0;
-  for (const StarTriangle& t : star_) sum += of(t, place);
+  Located where = target_.locator().find(place);
+  for (const StarTriangle& t : star_) sum += of(t, place, where);
   return sum;
 }
 
@@ -140,7 +140,9 @@ Vec3 PullbackEnergy::step(const Vec3& place, double now) const {
 double PullbackEnergy::ofTriangle(int t) const {
   const StarTriangle star = starTriangle(t, 0);
   const Vec3& place = image_.place[mesh_.triangle(t)[0]];
-  return tripleProduct(place, star.a, star.b) > 0 ? of(star, place) : kInfinite;
+  if (!(tripleProduct(place, star.a, star.b) > 0)) return kInfinite;
+  Located where = target_.locator().find(place);
+  return of(star, place, where);
 }
 
 double PullbackEnergy::total() const {

@@ -37,7 +37,8 @@ class PullbackEnergy : public StarEnergy {
     Vec3 a, b;
     double cotFree, cotA, cotB, area;
   };
-  double of(const StarTriangle& t, const Vec3& place) const;
+  // `where`: any place near by, and the last one found.
+  double of(const StarTriangle& t, const Vec3& place, Located& where) const;
   StarTriangle starTriangle(int t, int corner) const;
 
   const ProgressiveMesh& mesh_;
