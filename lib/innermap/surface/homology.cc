@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
-#include <queue>
 #include <utility>
+
+#include "innermap/surface/edge_distance.h"
 
 namespace innermap {
 namespace {
@@ -18,31 +18,9 @@ struct PathTree {
   std::vector<double> distance;
 };
 
-PathTree shortestPaths(const ClosedSurface& surface, const HalfEdges& edges, int root) {
-  const std::size_t count = surface.vertices.size();
-  PathTree tree{std::vector<int>(count, -1),
-                std::vector<double>(count, std::numeric_limits<double>::infinity())};
-  const std::vector<int> outgoing = edges.outgoing(count);
-  using Entry = std::pair<double, int>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  tree.distance[root] = 0;
-  queue.push({0, root});
-  while (!queue.empty()) {
-    const auto [distance, v] = queue.top();
-    queue.pop();
-    if (distance > tree.distance[v]) continue;
-    int h = outgoing[v];
-    do {
-      const int w = edges.head(h);
-      const double d = distance + norm(surface.vertices[w] - surface.vertices[v]);
-      if (d < tree.distance[w]) {
-        tree.distance[w] = d;
-        tree.reachedBy[w] = h;
-        queue.push({d, w});
-      }
-      h = edges.counterclockwise(h);
-    } while (h != outgoing[v]);
-  }
+PathTree shortestPaths(const ClosedSurface& surface, int root) {
+  PathTree tree;
+  tree.distance = EdgeDistance(surface)({root}, &tree.reachedBy);
   return tree;
 }
 
@@ -194,7 +172,7 @@ IntegerMatrix crossingsOf(const HomologyBasis& basis, const HalfEdges& edges) {
 HomologyBasis homologyBasis(const ClosedSurface& surface, const HalfEdges& edges,
                             Progress* progress) {
   throwIfCancelled(progress);
-  const PathTree tree = shortestPaths(surface, edges, 0);
+  const PathTree tree = shortestPaths(surface, 0);
   throwIfCancelled(progress);
   const Cotree cotree = cotreeOf(edges, tree, surface.vertices);
   HomologyBasis basis;

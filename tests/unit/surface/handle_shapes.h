@@ -166,6 +166,18 @@ inline Cells trefoilCells() {
   return out;
 }
 
+// A plate of cells with holes in a row; bars between them are one cell wide and two high.
+inline Cells plateCells(int holes) {
+  Cells cells = block({0, 0, 0}, {4 * holes, 4, 1});
+  for (int i = 0; i < holes; ++i)
+    cells = without(std::move(cells), block({4 * i + 1, 1, 0}, {4 * i + 3, 3, 1}));
+  return cells;
+}
+
+inline ClosedSurface plate(int holes, int fineness = 1) {
+  return boundaryOf(finer(plateCells(holes), fineness), holes);
+}
+
 // A block with a tunnel along the trefoil, which comes up to the top twice.
 inline Cells knottedTunnel() {
   Cells tunnel = trefoilCells();

@@ -13,17 +13,8 @@
 namespace innermap {
 namespace {
 
-using shapes::block;
 using shapes::boundaryOf;
-using shapes::without;
-
-// Plates with holes in a row.
-ClosedSurface plate(int holes) {
-  shapes::Cells cells = block({0, 0, 0}, {4 * holes, 4, 1});
-  for (int i = 0; i < holes; ++i)
-    cells = without(cells, block({4 * i + 1, 1, 0}, {4 * i + 3, 3, 1}));
-  return boundaryOf(cells, holes);
-}
+using shapes::plate;
 
 TEST(HomologyBasis, LoopsAreSimpleAndTheFormsDual) {
   for (const int genus : {0, 1, 2, 5}) {
