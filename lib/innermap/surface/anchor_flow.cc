@@ -9,9 +9,10 @@
 namespace innermap {
 namespace {
 
-constexpr double kReach = 0.6;    // of a velocity around an anchor, radians
-constexpr double kLongest = 0.1;  // step of an anchor
-constexpr int kSteps = 400;
+constexpr double kReach = 0.6;     // of a velocity around an anchor, radians
+constexpr double kLongest = 0.15;  // step of an anchor
+constexpr int kSteps = 300;
+constexpr int kRelaxed = 3;        // steps from one relaxation to the next
 constexpr double kArrived = 1e-7;  // then anchors are set to their targets
 
 // Matern kernel of smoothness 3/2: its fields are differentiable, its matrix well conditioned.
@@ -20,17 +21,22 @@ double kernel(double distance) {
   return (1 + r) * std::exp(-r);
 }
 
-bool isValid(const ProgressiveMesh& mesh, const Layout& layout, const Points& place) {
-  for (int t = 0; t < static_cast<int>(mesh.triangleCount()); ++t) {
-    if (!mesh.alive(t)) continue;
-    Vec3 p[3];
-    for (int k = 0; k < 3; ++k) {
-      p[k] = place[mesh.triangle(t)[k]];
-      if (!layout.shift.empty()) p[k] = layout.moved(p[k], mesh.shift(t, k));
+// Takes vertices one by one as far along their ways as the triangles around them stay positive.
+void advance(const ProgressiveMesh& mesh, Layout& layout, const Points& place) {
+  Ring ring;
+  RingPlaces around;
+  for (int v = 0; v < static_cast<int>(mesh.capacity()); ++v) {
+    if (!mesh.present(v)) continue;
+    mesh.ring(v, ring);
+    ringPlaces(layout, ring, around);
+    const Vec3 from = layout.place[v], way = place[v] - from;
+    for (double share = 1; share > 0.05; share *= 0.6) {
+      const Vec3 to = moveAlong(layout.space, from, share * way);
+      if (!starIsValid(to, around)) continue;
+      layout.place[v] = to;
+      break;
     }
-    if (!(tripleProduct(p[0], p[1], p[2]) > 0)) return false;
   }
-  return true;
 }
 
 // Velocities of all points that interpolate `way` at the anchors.
@@ -65,6 +71,22 @@ Vec3 nearestCopy(const Layout& layout, const Vec3& from, const Vec3& to) {
   return layout.space == ModelSpace::sphere ? to : from + wayTo(layout, from, to);
 }
 
+// Sets the first anchors, which are next to their targets, to them.
+bool arrive(const ProgressiveMesh& mesh, Layout& layout, const std::vector<Anchor>& anchors,
+            std::size_t count) {
+  Ring ring;
+  RingPlaces around;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Anchor& a = anchors[i];
+    mesh.ring(a.vertex, ring);
+    ringPlaces(layout, ring, around);
+    const Vec3 to = nearestCopy(layout, layout.place[a.vertex], a.target);
+    if (!starIsValid(to, around)) return false;
+    layout.place[a.vertex] = to;
+  }
+  return true;
+}
+
 }  // namespace
 
 Vec3 wayTo(const Layout& layout, const Vec3& from, const Vec3& to) {
@@ -90,39 +112,30 @@ Vec3 wayTo(const Layout& layout, const Vec3& from, const Vec3& to) {
 }
 
 int pullAnchors(const ProgressiveMesh& mesh, Layout& layout, const std::vector<Anchor>& anchors,
-                CoarseToFine& relaxer, Progress* progress) {
+                CoarseToFine& relaxer, const FlowSettings& settings) {
   if (anchors.empty()) return -1;
   Points way(anchors.size()), place = layout.place;
-  double stuck = 0;
-  int farthest = 0;
-  for (int i = 0; i < kSteps; ++i) {
-    throwIfCancelled(progress);
-    double longest = 0;
+  double nearest = 1e300;
+  int farthest = 0, stuck = 0;
+  for (int i = 0; i < kSteps && stuck < settings.patience; ++i) {
+    throwIfCancelled(settings.progress);
+    double longest = 0, sum = 0;
+    bool arrived = true;
     for (std::size_t k = 0; k < anchors.size(); ++k) {
       way[k] = wayTo(layout, layout.place[anchors[k].vertex], anchors[k].target);
-      if (norm(way[k]) > longest) {
-        longest = norm(way[k]);
-        farthest = static_cast<int>(k);
-      }
+      const double length = norm(way[k]);
+      arrived = arrived && length < (k < settings.exact ? kArrived : settings.near);
+      sum += length;
+      if (length <= longest) continue;
+      longest = length;
+      farthest = static_cast<int>(k);
     }
-    if (longest < kArrived) {
-      place = layout.place;
-      for (const Anchor& a : anchors)
-        place[a.vertex] = nearestCopy(layout, place[a.vertex], a.target);
-      if (!isValid(mesh, layout, place)) return farthest;
-      layout.place = place;
-      return -1;
-    }
-    bool moved = false;
-    double share = std::min(1.0, kLongest / longest);
-    for (int halving = 0; halving < 8 && !moved; ++halving, share *= 0.5) {
-      flowStep(layout, anchors, way, share, mesh, place);
-      moved = isValid(mesh, layout, place);
-    }
-    if (moved) layout.place = place;
-    stuck = moved ? 0 : stuck + 1;
-    if (stuck > 4) return farthest;
-    relaxer.relaxAll(moved ? 1 : 3);
+    if (arrived && arrive(mesh, layout, anchors, settings.exact)) return -1;
+    stuck = sum < 0.98 * nearest ? 0 : stuck + 1;
+    nearest = std::min(nearest, sum);
+    flowStep(layout, anchors, way, std::min(1.0, kLongest / longest), mesh, place);
+    advance(mesh, layout, place);
+    if (stuck > 0 || i % kRelaxed == 0) relaxer.relaxAll(1);
   }
   return farthest;
 }

@@ -33,7 +33,11 @@ struct CoarseMap {
 
 struct CoarseMapSettings {
   std::vector<Anchor> fixed;  // coarse vertices that must be at their targets
-  std::vector<Anchor> drawn;  // brought to their targets, then set free
+  std::vector<Anchor> drawn;  // brought near their targets, then set free
+  double samples = 2500;      // of the energy
+  int sweeps = 8;             // that lower it
+  double near = 0.01;         // how far `drawn` may stay away, radians
+  int patience = 20;          // FlowSettings
   Progress* progress = nullptr;
 };
 
@@ -42,18 +46,5 @@ struct CoarseMapSettings {
 std::optional<CoarseMap> relaxCoarse(const CoarseSurface& coarse, const Layout& start,
                                      const TargetMetric& target, const CoarseMapSettings& settings,
                                      int* blocked = nullptr);
-
-struct RefineSettings {
-  std::vector<char> fixed;  // #V of the fine surface or empty
-  bool relax = true;        // otherwise vertices return to where their rings let them, no more
-  Progress* progress = nullptr;
-};
-
-// The map of the fine surface, from that of the coarse one: all vertices return, lowering the
-// energy. `mesh` is the fine surface's, coarsened as for coarseSurface(). Empty where rounding
-// leaves no place for some vertex.
-std::optional<CoarseMap> refineMap(const ClosedSurface& surface, ProgressiveMesh mesh,
-                                   const CoarseSurface& coarse, const CoarseMap& start,
-                                   const TargetMetric& target, const RefineSettings& settings);
 
 }  // namespace innermap

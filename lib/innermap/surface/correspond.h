@@ -18,6 +18,9 @@
 
 namespace innermap {
 
+struct Correspondence;
+struct CorrespondSettings;
+
 struct EmbeddingSettings {
   bool closeHoles = false;  // cap the boundary loops of an open mesh; otherwise it is refused
   Progress* progress = nullptr;
@@ -36,6 +39,8 @@ class EmbeddedSurface {
   double seconds() const;  // that laying out took
 
  private:
+  friend Correspondence correspond(const EmbeddedSurface&, const EmbeddedSurface&,
+                                   const CorrespondSettings&);
   struct Implementation;
   std::shared_ptr<const Implementation> implementation_;
 };
@@ -55,14 +60,20 @@ struct CorrespondSettings {
   Progress* progress = nullptr;
 };
 
-// One shell of A on one of B.
+struct CutSurface;
+
+// One shell of A on one of B. Of genus 2 and more both are cut along meridians and capped, and the
+// map is one between those.
 struct ShellCorrespondence {
-  int source = 0, target = 0;          // shells of A and B
-  ClosedSurface surface;               // A's shell, subdivided where asked
-  Layout image;                        // of `surface` on the model space of B's shell
-  Layout targetLayout;                 // of B's shell there
-  std::vector<SurfacePoint> onTarget;  // #vertices of surface: triangle of B's shell
-  Points positions;                    // #vertices of surface, world units
+  int source = 0, target = 0;                   // shells of A and B
+  ClosedSurface surface;                        // A's shell, subdivided where asked
+  Layout image;                                 // of `surface` on the model space of targetSurface
+  ClosedSurface targetSurface;                  // B's shell
+  Layout targetLayout;                          // of it
+  std::vector<SurfacePoint> onTarget;           // #vertices of surface: triangle of targetSurface
+  Points positions;                             // #vertices of surface, world units
+  std::shared_ptr<const CutSurface> targetCut;  // how B's shell was cut; null up to genus 1
+  std::string origin;                           // how the map was found, in words
 };
 
 struct Correspondence {
@@ -76,6 +87,12 @@ struct Correspondence {
   std::vector<std::string> notes;                       // choices worth telling, a line each
   std::vector<std::pair<std::string, double>> seconds;  // by stage
 };
+
+// Addresses in the mesh (target.mesh, of b.surfaces()) of points of a shell's targetSurface; points
+// on a cap go to its rim. #points.
+std::vector<SurfacePoint> onTargetMesh(const ShellCorrespondence& shell,
+                                       const SurfaceShells& target,
+                                       const std::vector<SurfacePoint>& points);
 
 // Throws DataError where the solids' topology differs (naming both), where landmarks contradict one
 // another or the orientation; SettingError; Cancelled. Same result for any number of threads.

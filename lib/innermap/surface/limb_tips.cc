@@ -7,6 +7,7 @@
 
 #include "innermap/core/parallel.h"
 #include "innermap/surface/decimate.h"
+#include "innermap/surface/rotation_search.h"
 #include "innermap/surface/target_metric.h"
 
 namespace innermap {
@@ -14,6 +15,7 @@ namespace {
 
 constexpr std::size_t kMostTips = 8;
 constexpr double kTolerance = 0.35;  // of the logarithm of ratios of distances
+constexpr double kMisfit = 0.6;      // radians, of matched tips after the best rotation
 constexpr double kApart = 0.12;      // of the root of the area: tips nearer than that are one
 
 struct Graph {
@@ -108,14 +110,14 @@ class Matcher {
                                         a_.place[pairs_[n].first]),
                      db = tripleProduct(b_.place[j], b_.place[pairs_[m].second],
                                         b_.place[pairs_[n].second]);
-        if (da * db < 0 && std::min(std::abs(da), std::abs(db)) > 0.15) g -= kTolerance;
+        if (da * db < 0 && std::min(std::abs(da), std::abs(db)) > 0.1) g -= kTolerance;
       }
     return g;
   }
 
   void visit(std::size_t i, double score) {
     if (i == a_.vertices.size()) {
-      if (pairs_.size() >= 2) keep(score);
+      if (pairs_.size() >= 3) keep(score);
       return;
     }
     for (std::size_t j = 0; j < b_.vertices.size(); ++j) {
@@ -205,14 +207,14 @@ LimbTips limbTips(const ClosedSurface& surface, const Layout& layout, std::size_
 std::vector<TipPairs> matchTips(const LimbTips& a, const LimbTips& b, std::size_t most) {
   std::vector<TipPairs> out;
   for (const auto& [score, pairs] : Matcher(a, b).run()) {
-    if (out.size() == most || score <= 0) break;
-    const bool known = std::any_of(out.begin(), out.end(), [&](const TipPairs& other) {
-      std::size_t shared = 0;
-      for (const auto& p : pairs)
-        if (std::find(other.begin(), other.end(), p) != other.end()) ++shared;
-      return shared + 1 >= pairs.size();
-    });
-    if (!known) out.push_back(pairs);
+    if (out.size() == most) break;
+    Points from, to;
+    for (const auto& [i, j] : pairs) {
+      from.push_back(a.place[i]);
+      to.push_back(b.place[j]);
+    }
+    if (rotationMisfit(bestRotation(from, to), from, to) > kMisfit) continue;
+    out.push_back(pairs);
   }
   return out;
 }

@@ -25,9 +25,10 @@ LimbTips limbTips(const ClosedSurface& surface, const Layout& layout, std::size_
 
 using TipPairs = std::vector<std::pair<int, int>>;  // tip of A, tip of B
 
-// The best partial matchings that differ in more than one pair, best first: geodesic distances
-// should agree, and on the sphere the orientation of triples. All are tried (Zhang, Sheffer,
-// Cohen-Or, Zhou, van Kaick, Tagliasacchi, "Deformation-driven shape correspondence", SGP 2008).
+// The best partial matchings of three tips or more, best first: geodesic
+// distances should agree, and on the sphere the orientation of triples. All are tried (Zhang,
+// Sheffer, Cohen-Or, Zhou, van Kaick, Tagliasacchi, "Deformation-driven shape correspondence", SGP
+// 2008).
 std::vector<TipPairs> matchTips(const LimbTips& a, const LimbTips& b, std::size_t most);
 
 }  // namespace innermap

@@ -21,9 +21,9 @@ Locator::Locator(const std::vector<Triangle>& triangles, const Layout& layout)
       neighbours_(neighboursOf(triangles)) {
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     Cone& cone = cones_[t];
-    for (int k = 0; k < 3; ++k) cone.corner[k] = layout.corner(triangles, static_cast<int>(t), k);
     for (int k = 0; k < 3; ++k) {
-      const Vec3 &a = cone.corner[(k + 1) % 3], &b = cone.corner[(k + 2) % 3];
+      const Vec3 a = layout.corner(triangles, static_cast<int>(t), (k + 1) % 3),
+                 b = layout.corner(triangles, static_cast<int>(t), (k + 2) % 3);
       cone.side[k] = cross(a, b - a);
     }
   }

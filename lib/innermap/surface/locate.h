@@ -23,7 +23,7 @@ class Locator {
   // The cone over a triangle's corners. side[k] = a x (b - a) for the edge a b opposite corner k,
   // which rounding leaves exact for short edges too.
   struct Cone {
-    Vec3 side[3], corner[3];
+    Vec3 side[3];
 
     std::array<double, 3> weights(const Vec3& p) const {  // barycentric but for a factor
       return {dot(p, side[0]), dot(p, side[1]), dot(p, side[2])};

@@ -58,11 +58,10 @@ struct Surfaces {
 
 class Measurement {
  public:
-  Measurement(const Correspondence& map, const SurfaceShells& target,
-              const MapQualitySettings& settings)
-      : map_(map), target_(target), settings_(settings) {
+  Measurement(const Correspondence& map, const MapQualitySettings& settings)
+      : map_(map), settings_(settings) {
     for (const ShellCorrespondence& shell : map.shells) {
-      const ClosedSurface& b = target.shells[static_cast<std::size_t>(shell.target)];
+      const ClosedSurface& b = shell.targetSurface;
       from_.add(shell.surface.vertices, shell.surface.triangles);
       image_.add(shell.positions, shell.surface.triangles);
       onto_.add(b.vertices, b.triangles);
@@ -81,7 +80,7 @@ class Measurement {
     double farthest = -1;
     result_.areaRatioLog10 = std::numeric_limits<double>::infinity();
     for (const ShellCorrespondence& shell : map_.shells) {
-      const ClosedSurface& b = target_.shells[static_cast<std::size_t>(shell.target)];
+      const ClosedSurface& b = shell.targetSurface;
       const LayoutQuality image =
           layoutQuality(shell.surface.triangles, shell.surface.vertices, shell.image);
       result_.flips +=
@@ -277,7 +276,6 @@ class Measurement {
   }
 
   const Correspondence& map_;
-  const SurfaceShells& target_;
   const MapQualitySettings& settings_;
   Surfaces from_, image_, onto_;
   double areaA_ = 0, areaB_ = 0, scale_ = 1, diagonal_ = 0;
@@ -289,12 +287,11 @@ class Measurement {
 
 }  // namespace
 
-MapQuality mapQuality(const Correspondence& map, const SurfaceShells& target,
-                      const MapQualitySettings& settings) {
+MapQuality mapQuality(const Correspondence& map, const MapQualitySettings& settings) {
   if (settings.samples < 1 || settings.samples > 100000000)
     throw SettingError("samples", "must be from 1 to 1e8");
   reportProgress(settings.progress, kStage, 0);
-  return Measurement(map, target, settings).run();
+  return Measurement(map, settings).run();
 }
 
 }  // namespace innermap

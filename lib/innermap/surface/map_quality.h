@@ -52,9 +52,7 @@ struct MapQualitySettings {
   Progress* progress = nullptr;
 };
 
-// Of a map onto the surface whose shells are `target` (b.surfaces() of correspond()). Same result
-// for any number of threads. Throws SettingError, Cancelled.
-MapQuality mapQuality(const Correspondence& map, const SurfaceShells& target,
-                      const MapQualitySettings& settings = {});
+// Same result for any number of threads. Throws SettingError, Cancelled.
+MapQuality mapQuality(const Correspondence& map, const MapQualitySettings& settings = {});
 
 }  // namespace innermap

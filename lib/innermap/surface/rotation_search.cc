@@ -97,6 +97,12 @@ Mat3 bestRotation(const Points& a, const Points& b) {
   return fromQuaternion(q[1], q[2], q[3], q[0]);
 }
 
+double rotationMisfit(const Mat3& rotation, const Points& a, const Points& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += squaredNorm(rotation * a[i] - b[i]);
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
 std::vector<RotationCandidate> searchRotations(const std::vector<MapSample>& samples,
                                                const TargetMetric& target,
                                                const RotationSearchSettings& settings) {

@@ -35,4 +35,7 @@ Mat3 rotationAbout(const Vec3& axisTimesAngle);
 // The proper rotation R that minimises sum |R a - b|^2 (Kabsch 1976), by Horn's quaternion.
 Mat3 bestRotation(const Points& a, const Points& b);
 
+// Root mean square of |R a - b|.
+double rotationMisfit(const Mat3& rotation, const Points& a, const Points& b);
+
 }  // namespace innermap

@@ -14,9 +14,12 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kCoarse = 150;   // vertices
 constexpr std::size_t kSamples = 400;  // that rotations are judged by
-constexpr std::size_t kRotations = 6, kMatchings = 8;
+constexpr std::size_t kRotations = 6, kMatchings = 300;
+
+// Vertices of the meshes that starts are tried on: all on the first, the best of them on the
+// second.
+constexpr std::size_t kTiny = 60, kCoarse = 150, kSecondRound = 20;
 
 struct Start {
   Mat3 rotation;
@@ -57,20 +60,14 @@ void landmarkPlaces(const std::vector<Anchor>& landmarks, const Layout& la, Poin
   }
 }
 
-double misfit(const Mat3& rotation, const Points& from, const Points& to) {
-  double sum = 0;
-  for (std::size_t i = 0; i < from.size(); ++i) sum += squaredNorm(rotation * from[i] - to[i]);
-  return std::sqrt(sum / static_cast<double>(from.size()));
-}
-
 // Any landmarks can be met by some map without flips; those of a mirror image only by one that
 // nobody wants.
 void requireOrientation(const Points& from, const Points& to) {
   if (from.size() < 4) return;
   Points mirrored;
   for (const Vec3& p : from) mirrored.push_back(-p);
-  const double proper = misfit(bestRotation(from, to), from, to),
-               improper = misfit(bestRotation(mirrored, to), mirrored, to);
+  const double proper = rotationMisfit(bestRotation(from, to), from, to),
+               improper = rotationMisfit(bestRotation(mirrored, to), mirrored, to);
   if (proper > 0.6 && improper < 0.5 * proper)
     throw DataError(
         "landmarks: they contradict the orientation: a mirror image of the source would fit them; "
@@ -144,21 +141,87 @@ void keepBest(std::vector<CoarseMap>& maps, std::size_t kept) {
   maps = std::move(out);
 }
 
+// Maps on one coarse mesh from each start; empty where the way was blocked.
+class Trial {
+ public:
+  Trial(const Layout& la, const TargetMetric& target, const SphereCandidateSettings& settings,
+        const Points& normals)
+      : la_(la), target_(target), settings_(settings), normals_(normals) {}
+
+  std::vector<std::optional<CoarseMap>> run(const std::vector<Start>& starts,
+                                            const CoarseSurface& coarse,
+                                            const CoarseMapSettings& how) {
+    std::vector<std::optional<CoarseMap>> found(starts.size());
+    std::vector<int> blocked(starts.size(), -1);
+    parallelBlocks(
+        starts.size(), 1,
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) {
+            CoarseMapSettings relax = how;
+            relax.fixed = coarseAnchors(settings_.landmarks, coarse);
+            relax.drawn = coarseAnchors(starts[i].drawn, coarse);
+            relax.progress = settings_.progress;
+            found[i] = relaxCoarse(coarse, rotatedCoarse(coarse, la_, starts[i].rotation), target_,
+                                   relax, &blocked[i]);
+            if (!found[i]) continue;
+            found[i]->origin = starts[i].origin;
+            if (settings_.aligned)
+              found[i]->energy += normalCost(coarse, *found[i], target_, normals_);
+          }
+        },
+        settings_.progress, "trying first maps");
+    for (const int b : blocked) blocked_ = std::max(blocked_, b);
+    return found;
+  }
+
+  int blocked() const { return blocked_; }  // a landmark that was not reached, or -1
+
+ private:
+  const Layout& la_;
+  const TargetMetric& target_;
+  const SphereCandidateSettings& settings_;
+  const Points& normals_;
+  int blocked_ = -1;
+};
+
+CoarseSurface coarsened(const ClosedSurface& a, const Layout& la, ProgressiveMesh& mesh,
+                        const std::vector<char>& keep, std::size_t vertices, Progress* progress) {
+  DecimateSettings settings;
+  settings.vertices = vertices;
+  settings.layout = &la;
+  settings.keep = keep;
+  settings.progress = progress;
+  decimate(mesh, a.vertices, settings);
+  return coarseSurface(a, mesh);
+}
+
+std::vector<Start> bestStarts(const std::vector<Start>& starts,
+                              const std::vector<std::optional<CoarseMap>>& maps) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < starts.size(); ++i)
+    if (maps[i]) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t x, std::size_t y) { return maps[x]->energy < maps[y]->energy; });
+  std::vector<Start> out;
+  for (const std::size_t i : order)
+    if (out.size() < kSecondRound) out.push_back(starts[i]);
+  return out;
+}
+
 }  // namespace
 
 Candidates sphereCandidates(const ClosedSurface& a, const Layout& la, const LimbTips& tipsA,
                             const ClosedSurface& b, const TargetMetric& target,
                             const LimbTips& tipsB, const SphereCandidateSettings& settings) {
+  std::vector<char> keep(a.vertices.size(), 0);
+  for (const int v : tipsA.vertices) keep[v] = 1;
+  for (const Anchor& l : settings.landmarks) keep[l.vertex] = 1;
   Candidates out{ProgressiveMesh(a.vertices.size(), a.triangles), {}, {}};
-  DecimateSettings decimation;
-  decimation.vertices = std::max(kCoarse, 8 * settings.landmarks.size());
-  decimation.layout = &la;
-  decimation.keep.assign(a.vertices.size(), 0);
-  for (const int v : tipsA.vertices) decimation.keep[v] = 1;
-  for (const Anchor& l : settings.landmarks) decimation.keep[l.vertex] = 1;
-  decimation.progress = settings.progress;
-  decimate(out.mesh, a.vertices, decimation);
-  out.coarse = coarseSurface(a, out.mesh);
+  out.coarse = coarsened(a, la, out.mesh, keep, std::max(kCoarse, 8 * settings.landmarks.size()),
+                         settings.progress);
+  ProgressiveMesh tinyMesh = out.mesh;
+  const CoarseSurface tiny = coarsened(
+      a, la, tinyMesh, keep, std::max(kTiny, 4 * settings.landmarks.size()), settings.progress);
 
   const Points normals = settings.aligned ? unitNormals(b) : Points{};
   RotationSearchSettings search;
@@ -167,36 +230,25 @@ Candidates sphereCandidates(const ClosedSurface& a, const Layout& la, const Limb
   landmarkPlaces(settings.landmarks, la, search.from, search.to);
   requireOrientation(search.from, search.to);
   search.progress = settings.progress;
-  const std::vector<Start> starts =
+  std::vector<Start> starts =
       startsOf(searchRotations(sampleSource(a, la, kSamples, settings.seed), target, search), tipsA,
                tipsB, settings.landmarks.size() < 3);
-
-  std::vector<std::optional<CoarseMap>> found(starts.size());
-  std::vector<int> blocked(starts.size(), -1);
-  parallelBlocks(
-      starts.size(), 1,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          CoarseMapSettings relax;
-          relax.fixed = coarseAnchors(settings.landmarks, out.coarse);
-          relax.drawn = coarseAnchors(starts[i].drawn, out.coarse);
-          relax.progress = settings.progress;
-          found[i] = relaxCoarse(out.coarse, rotatedCoarse(out.coarse, la, starts[i].rotation),
-                                 target, relax, &blocked[i]);
-          if (!found[i]) continue;
-          found[i]->origin = starts[i].origin;
-          if (settings.aligned)
-            found[i]->energy += normalCost(out.coarse, *found[i], target, normals);
-        }
-      },
-      settings.progress, "trying first maps");
-  for (std::optional<CoarseMap>& m : found)
+  Trial trial(la, target, settings, normals);
+  if (starts.size() > kSecondRound) {
+    CoarseMapSettings quick;
+    quick.samples = 450;
+    quick.sweeps = 3;
+    quick.near = 0.1;
+    quick.patience = 5;
+    starts = bestStarts(starts, trial.run(starts, tiny, quick));
+  }
+  for (std::optional<CoarseMap>& m : trial.run(starts, out.coarse, {}))
     if (m) out.maps.push_back(std::move(*m));
   if (out.maps.empty() && !settings.landmarks.empty())
     throw DataError(
         fmt::format("landmarks: no map without flips was found that meets number {}; it "
                     "contradicts the others: check it, or leave it out",
-                    1 + *std::max_element(blocked.begin(), blocked.end())));
+                    1 + trial.blocked()));
   keepBest(out.maps, settings.kept);
   return out;
 }

@@ -14,10 +14,11 @@ constexpr char kStage[] = "carrying points over";
 
 // One pair of shells with what asking needs.
 struct ShellMap {
-  ShellMap(const ShellCorrespondence& shell, const ClosedSurface& b)
+  explicit ShellMap(const ShellCorrespondence& shell)
       : onA(shell.surface.triangles, shell.image),
-        onB(b.triangles, shell.targetLayout),
-        composed({shell.surface, shell.image, onA}, {b, shell.targetLayout, onB}) {}
+        onB(shell.targetSurface.triangles, shell.targetLayout),
+        composed({shell.surface, shell.image, onA},
+                 {shell.targetSurface, shell.targetLayout, onB}) {}
   ShellMap(const ShellMap&) = delete;
   ShellMap& operator=(const ShellMap&) = delete;
 
@@ -27,12 +28,11 @@ struct ShellMap {
 
 using ShellMaps = std::vector<std::unique_ptr<ShellMap>>;
 
-ShellMaps mapsOf(const Correspondence& map, const SurfaceShells& target, Progress* progress) {
+ShellMaps mapsOf(const Correspondence& map, Progress* progress) {
   ShellMaps maps;
   for (const ShellCorrespondence& shell : map.shells) {
     throwIfCancelled(progress);
-    maps.push_back(
-        std::make_unique<ShellMap>(shell, target.shells[static_cast<std::size_t>(shell.target)]));
+    maps.push_back(std::make_unique<ShellMap>(shell));
   }
   return maps;
 }
@@ -67,13 +67,15 @@ struct JoinedShells {
 
 SurfaceImages imagesOf(const Points& points, const Correspondence& map, const SurfaceShells& target,
                        Progress* progress) {
-  const ShellMaps maps = mapsOf(map, target, progress);
+  const ShellMaps maps = mapsOf(map, progress);
   JoinedShells shells;
   for (const ShellCorrespondence& shell : map.shells) shells.add(shell.surface);
   const TriangleTree tree(shells.vertices, shells.triangles);
   SurfaceImages result;
   result.positions.resize(points.size());
   result.onTarget.resize(points.size());
+  std::vector<SurfacePoint> onShell(points.size());
+  std::vector<std::size_t> shellOf(points.size());
   std::vector<double> distance(points.size(), 0);
   parallelBlocks(
       points.size(), 256,
@@ -83,25 +85,37 @@ SurfaceImages imagesOf(const Points& points, const Correspondence& map, const Su
           const JoinedShells::Place place = shells.placeOf(closest.address.triangle);
           const ComposedMap::Image image =
               maps[place.shell]->composed.at(place.triangle, closest.address.barycentric);
-          const int shell = map.shells[place.shell].target;
           result.positions[i] = image.position;
-          result.onTarget[i] = {target.meshTriangle[shell][image.triangle], image.barycentric};
+          onShell[i] = {image.triangle, image.barycentric};
+          shellOf[i] = place.shell;
           distance[i] = closest.distance;
         }
       },
       progress, kStage);
+  for (std::size_t s = 0; s < map.shells.size(); ++s) {
+    std::vector<std::size_t> members;
+    std::vector<SurfacePoint> here;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (shellOf[i] != s) continue;
+      members.push_back(i);
+      here.push_back(onShell[i]);
+    }
+    here = onTargetMesh(map.shells[s], target, here);
+    for (std::size_t k = 0; k < members.size(); ++k) result.onTarget[members[k]] = here[k];
+  }
   for (const double d : distance) result.farthest = std::max(result.farthest, d);
   return result;
 }
 
 Points preimagesOf(const std::vector<SurfacePoint>& onTarget, const Correspondence& map,
                    const SurfaceShells& target, Progress* progress) {
-  const ShellMaps maps = mapsOf(map, target, progress);
+  const ShellMaps maps = mapsOf(map, progress);
   JoinedShells shells;
   std::vector<JoinedShells::Place> places(target.mesh.triangles.size(), {0, -1});
   for (std::size_t s = 0; s < map.shells.size(); ++s) {
     const std::size_t b = static_cast<std::size_t>(map.shells[s].target);
-    shells.add(target.shells[b]);
+    shells.add(map.shells[s].targetSurface);
+    if (map.shells[s].targetCut) continue;  // other triangles than the mesh's
     for (std::size_t t = 0; t < target.meshTriangle[b].size(); ++t)
       places[target.meshTriangle[b][t]] = {s, static_cast<int>(t)};
   }
