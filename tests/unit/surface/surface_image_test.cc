@@ -23,8 +23,9 @@ struct Balls {
       shell.source = s;
       shell.target = 1 - s;
       shell.surface = a.shells[static_cast<std::size_t>(s)];
+      shell.targetSurface = b.shells[static_cast<std::size_t>(1 - s)];
       shell.image.place = directions(shell.surface.vertices);
-      shell.targetLayout.place = directions(b.shells[static_cast<std::size_t>(1 - s)].vertices);
+      shell.targetLayout.place = directions(shell.targetSurface.vertices);
       // A cavity's layout is that of the surface turned over, seen in a mirror.
       if (s == 1)
         for (Points* places : {&shell.image.place, &shell.targetLayout.place})
