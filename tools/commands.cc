@@ -3,11 +3,23 @@
 namespace innermap::tool {
 
 std::vector<Command> allCommands() {
-  return {makeMapCommand(),      makeFitCommand(),      makeEvaluateCommand(),
-          makeSequenceCommand(), makeDeformCommand(),   makeTextureCommand(),
-          makePushCommand(),     makePullCommand(),     makeTransferDistanceCommand(),
-          makeCheckCommand(),    makeVoxelizeCommand(), makeSliceCommand(),
-          makeExportCommand(),   makeImportCommand(),   makeInfoCommand(),
+  return {makeMapCommand(),
+          makeCorrespondCommand(),
+          makeSphereCommand(),
+          makeFitCommand(),
+          makeEvaluateCommand(),
+          makeSequenceCommand(),
+          makeDeformCommand(),
+          makeTextureCommand(),
+          makePushCommand(),
+          makePullCommand(),
+          makeTransferDistanceCommand(),
+          makeCheckCommand(),
+          makeVoxelizeCommand(),
+          makeSliceCommand(),
+          makeExportCommand(),
+          makeImportCommand(),
+          makeInfoCommand(),
           makeHelpCommand()};
 }
 

@@ -8,6 +8,8 @@
 namespace innermap::tool {
 
 Command makeMapCommand();
+Command makeCorrespondCommand();
+Command makeSphereCommand();
 Command makeFitCommand();
 Command makeEvaluateCommand();
 Command makeTextureCommand();

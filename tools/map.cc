@@ -5,9 +5,14 @@
 
 #include "boundary_pair.h"
 #include "commands.h"
+#include "correspondence.h"
+#include "correspondence_file.h"
 #include "evaluation.h"
 #include "fitting.h"
 #include "innermap/core/file.h"
+#include "innermap/mesh/read.h"
+#include "innermap/mesh/triangle_tree.h"
+#include "innermap/mesh/write.h"
 #include "innermap/output/exr_slices.h"
 #include "innermap/output/section_image.h"
 #include "innermap/output/slice.h"
@@ -16,8 +21,12 @@
 namespace innermap::tool {
 namespace {
 
+constexpr double kOffTarget =
+    0.01;  // of the diagonal: what half the vertices of --correspond may be
+
 struct MapOptions {
-  std::string source, target, output;
+  std::string source, target, output, correspondence;
+  CorrespondOptions correspond;
   FittingOptions fitting;
   EvaluationOptions evaluation;
   std::string sliceAxis = "z";
@@ -48,20 +57,115 @@ void writePictures(const openvdb::GridPtrVec& grids, const BoundaryPair& pair,
                [&](const std::string& path) { writeSectionImage(path, grids, section); });
 }
 
+// The target that --correspond names, which must lie on TARGET if that is given too.
+Mesh readCorrespondence(const MapOptions& options, const Mesh& source, Context& context) {
+  ReadSettings settings;
+  settings.progress = context.progress();
+  Mesh moved;
+  try {
+    moved = readMeshLike(options.correspondence, source, settings);
+  } catch (const DataError& error) {
+    throw DataError(std::string(error.what()) +
+                    "; where it was made with --subdivide, SOURCE is the .source.ply beside it");
+  }
+  if (options.target.empty()) return moved;
+  const Mesh target = readMesh(options.target, settings);
+  const TriangleTree tree(target.vertices, target.triangles);
+  std::vector<double> distances;
+  for (const Vec3& p : moved.vertices) distances.push_back(tree.closest(p).distance);
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  const double share = *middle / boundingBox(target).diagonal();
+  if (!(share <= kOffTarget))
+    throw DataError(fmt::format(
+        "{}: does not lie on {}, half of its vertices are {:.2g} of the diagonal away or more; "
+        "give the two that belong together",
+        options.correspondence, options.target, share));
+  return moved;
+}
+
+// Both meshes as the files have them; `related` tells whether they have the same connectivity.
+struct Meshes {
+  Mesh source, target;
+  bool related = true;
+};
+
+Meshes readMeshes(const MapOptions& options, Context& context) {
+  if (options.target.empty() && options.correspondence.empty())
+    throw UsageError("TARGET is missing; give it, or --correspond (see 'innermap map --help')");
+  Meshes meshes;
+  context.timed("read", [&] {
+    ReadSettings settings;
+    settings.progress = context.progress();
+    meshes.source = readMesh(options.source, settings);
+    if (!options.correspondence.empty()) {
+      meshes.target = readCorrespondence(options, meshes.source, context);
+      return;
+    }
+    try {
+      meshes.target = readMeshLike(options.target, meshes.source, settings);
+    } catch (const DataError&) {
+      meshes.target = readMesh(options.target, settings);
+      meshes.related = false;
+    }
+  });
+  return meshes;
+}
+
+std::string correspondPlan(const MapOptions& options, const Meshes& meshes) {
+  return fmt::format(
+      "{} and {} differ in connectivity, so the one is laid onto the other first, in about {:.0f} "
+      "s",
+      options.source, options.target,
+      correspondSeconds(meshes.source.vertices.size(), meshes.target.vertices.size(),
+                        options.correspond));
+}
+
+void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
+  const Solid solid = makeSourceSolid(meshes.source, context);
+  const std::size_t vertices = meshes.source.vertices.size();
+  std::vector<std::string> lines;
+  std::uint64_t need = std::max(fittingMemory(options.fitting, vertices),
+                                evaluationMemory(solid, options.evaluation));
+  std::string files = "map.ply, map.vdb, slices.exr, section.png";
+  if (!meshes.related) {
+    lines.push_back(correspondPlan(options, meshes));
+    need = std::max(need,
+                    correspondMemory(vertices, meshes.target.vertices.size(), options.correspond));
+    files += ", correspondence.ply, correspondence.png";
+  }
+  lines.push_back(fittingPlan(options.fitting, vertices));
+  lines.push_back(fmt::format("write {} and report.json to {}", files, options.output));
+  context.plan(lines, need);
+}
+
+// Lays the source onto the target where they are not related, and puts that into the folder.
+BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& folder,
+                      Context& context) {
+  if (meshes.related)
+    return makeBoundaryPair(std::move(meshes.source), std::move(meshes.target), context);
+  context.note(correspondPlan(options, meshes) + "; --correspond takes one made before");
+  const std::string name = meshes.target.name;
+  const MovedMesh moved = correspondMeshes(std::move(meshes.source), std::move(meshes.target),
+                                           options.correspond, options.fitting.seed, context);
+  const Mesh target = moved.target(name);
+  folder.write("correspondence.ply",
+               [&](const std::string& path) { writeCorrespondence(path, target, moved.onTarget); });
+  if (moved.changed)
+    folder.write("correspondence.source.ply",
+                 [&](const std::string& path) { writeMesh(path, moved.source); });
+  folder.write("correspondence.png", moved.drawPicture);
+  return makeBoundaryPair(moved.source, target, context);
+}
+
 void run(const MapOptions& options, Context& context) {
   toleranceOf(options.fitting);  // refuses options that cannot be before anything is read
-  const BoundaryPair pair = readBoundaryPair(options.source, options.target, context);
-  const std::size_t vertices = pair.source.vertices.size();
-  const std::uint64_t fitting = fittingMemory(options.fitting, vertices),
-                      evaluation = evaluationMemory(pair.solid, options.evaluation);
-  if (context.dryRun())
-    return context.plan(
-        {fittingPlan(options.fitting, vertices),
-         "write map.ply, map.vdb, slices.exr, section.png and report.json to " + options.output},
-        std::max(fitting, evaluation));
-  requireFittingMemory(options.fitting, vertices, context);
-  requireEvaluationMemory(pair.solid, options.evaluation, context);
+  Meshes meshes = readMeshes(options, context);
+  if (context.dryRun()) return plan(options, meshes, context);
   PendingFolder folder(options.output);
+  const BoundaryPair pair = makePair(options, std::move(meshes), folder, context);
+  requireFittingMemory(options.fitting, pair.source.vertices.size(), context);
+  requireEvaluationMemory(pair.solid, options.evaluation, context);
   const Fitted fitted = fitMap(pair, options.fitting, context);
   const openvdb::GridPtrVec grids = evaluateGrids(pair, fitted.file, options.evaluation, context);
   context.timed("write", [&] {
@@ -86,12 +190,21 @@ Command makeMapCommand() {
   Command c("map", "Map the inside of a solid onto another: fit, evaluate, slice, report");
   c.description(
       "Writes map.ply (the map itself), map.vdb (its grids), slices.exr, section.png and "
-      "report.json into a folder. SOURCE and TARGET have the same faces and vertex order.");
+      "report.json into a folder. Where SOURCE and TARGET have the same faces and vertex order, "
+      "each vertex goes to its like. Any other TARGET is a shape that SOURCE is laid onto first, "
+      "as "
+      "innermap correspond does; correspondence.ply and correspondence.png then show how.");
   c.positional("SOURCE", &o->source, "mesh of the solid: .obj, .ply, .off or .stl");
-  c.positional("TARGET", &o->target, "the same mesh with its vertices moved");
-  c.option("--output", "FOLDER", &o->output, "where the five files go; made when missing")
+  c.positional("TARGET", &o->target,
+               "the same mesh with its vertices moved, or any other mesh; may be left out with "
+               "--correspond")
+      .optional();
+  c.option("--output", "FOLDER", &o->output, "where the files go; made when missing")
       .shortName("-o")
       .required();
+  c.option("--correspond", "FILE", &o->correspondence,
+           "SOURCE's vertices on TARGET, as innermap correspond or an earlier map wrote them");
+  addCorrespondOptions(c, o->correspond);
   addFittingOptions(c, o->fitting);
   addEvaluationOptions(c, o->evaluation);
   c.option("--slice-axis", "AXIS", &o->sliceAxis, "of slices.exr").choices({"x", "y", "z"});
@@ -105,6 +218,7 @@ Command makeMapCommand() {
       .range(0, 1)
       .defaults("near the middle, where it cuts most");
   c.example("innermap map rest.obj pose.obj -o out");
+  c.example("innermap map cow.obj man.obj -o out");
   c.example("innermap map rest.obj pose.obj -o out --tolerance 3e-4 --resolution 256");
   c.run([o](Context& context) { run(*o, context); });
   return c;

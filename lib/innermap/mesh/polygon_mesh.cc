@@ -21,7 +21,7 @@ std::string listed(const int* corners, int count) {
 [[noreturn]] void differs(const std::string& path, const Mesh& reference, const std::string& what) {
   throw DataError(fmt::format(
       "{}: {} (reference {}); the two meshes must have the same connectivity, others need a "
-      "correspondence first (innermap correspond, which does not exist yet)",
+      "correspondence first (innermap correspond)",
       path, what, reference.name.empty() ? "mesh" : reference.name));
 }
 

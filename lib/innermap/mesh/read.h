@@ -38,7 +38,7 @@ Mesh readMesh(const std::string& path, const ReadSettings& settings = {});
 // takes over the reference's triangulation, so that a polygon is cut alike in all frames.
 // Throws as readMesh; DataError when the number of vertices or any polygon differs, naming the
 // first difference and saying that meshes of other connectivity need a correspondence first
-// (`innermap correspond`, which does not exist yet).
+// (surface/correspond.h).
 Mesh readMeshLike(const std::string& path, const Mesh& reference,
                   const ReadSettings& settings = {});
 

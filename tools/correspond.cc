@@ -1,0 +1,97 @@
+// `innermap correspond`: where each point of one closed surface lies on another.
+#include <fmt/format.h>
+
+#include "commands.h"
+#include "correspondence.h"
+#include "correspondence_file.h"
+#include "innermap/core/memory.h"
+#include "innermap/mesh/read.h"
+#include "innermap/mesh/write.h"
+#include "landmarks.h"
+
+namespace innermap::tool {
+namespace {
+
+struct Options {
+  std::string a, b, output, sourceOutput, picture;
+  CorrespondOptions correspond;
+  std::uint64_t seed = CorrespondSettings().seed;
+};
+
+// The file of A with the triangles of the output, where those are not A's own.
+std::string sourceOutputOf(const Options& options) {
+  if (!options.sourceOutput.empty()) return options.sourceOutput;
+  return options.output.substr(0, options.output.size() - 4) + ".source.ply";
+}
+
+void run(const Options& options, Context& context) {
+  requirePly("--output", options.output);
+  if (!options.sourceOutput.empty()) requirePly("--source-out", options.sourceOutput);
+  context.willWrite(options.output);
+  if (!options.picture.empty()) context.willWrite(options.picture);
+  Mesh a, b;
+  context.timed("read", [&] {
+    ReadSettings settings;
+    settings.progress = context.progress();
+    a = readMesh(options.a, settings);
+    b = readMesh(options.b, settings);
+  });
+  const std::size_t countA = a.vertices.size(), countB = b.vertices.size();
+  if (context.dryRun())
+    return context.plan(
+        {fmt::format("map the {} vertices of {} onto {} ({} vertices), in about {:.0f} s", countA,
+                     options.a, options.b, countB,
+                     correspondSeconds(countA, countB, options.correspond)),
+         "write them to " + options.output},
+        correspondMemory(countA, countB, options.correspond));
+  const MovedMesh moved =
+      correspondMeshes(std::move(a), std::move(b), options.correspond, options.seed, context);
+  context.timed("write", [&] {
+    if (moved.changed) {
+      Mesh source = moved.source;
+      source.colours.clear();
+      writeMesh(sourceOutputOf(options), source);
+    }
+    writeCorrespondence(options.output, moved.target(options.output), moved.onTarget);
+  });
+  if (!options.picture.empty()) moved.drawPicture(options.picture);
+  if (moved.changed)
+    context.note(fmt::format("{} has A with the same {} vertices: give both to innermap map",
+                             sourceOutputOf(options), moved.source.vertices.size()));
+}
+
+}  // namespace
+
+Command makeCorrespondCommand() {
+  auto o = std::make_shared<Options>();
+  Command c("correspond", "Lay the surface of one solid onto that of another, of any connectivity");
+  c.description(
+      std::string(
+          "Writes A with its vertices moved onto B's surface, so that it is a target for map, fit "
+          "and "
+          "the rest, and each vertex's `triangle` of B (counted from 0) and barycentric "
+          "coordinates "
+          "`b0 b1 b2`. The map is one-to-one between the two surfaces, each point of B is reached "
+          "once; the triangles between the moved vertices cut corners where B is finer than A "
+          "(--subdivide). Solids of the same number of handles, with as many shells (cavities). ") +
+      kLandmarkFormat);
+  c.positional("A", &o->a, "mesh of the first solid: .obj, .ply, .off or .stl");
+  c.positional("B", &o->b, "mesh of the second solid");
+  c.option("--output", "FILE", &o->output, "A on B, a .ply file").shortName("-o").required();
+  c.option("--source-out", "FILE", &o->sourceOutput,
+           "A with the same vertices as the output, written when A's triangles were split or its "
+           "touching parts cut apart")
+      .defaults("the output's name with .source.ply");
+  addCorrespondOptions(c, o->correspond);
+  c.option("--seed", "N", &o->seed, "of all random choices").range(0, 1e15);
+  c.option("--picture", "FILE", &o->picture,
+           "a .png with A's coordinates as colours, on A and on B");
+  c.example("innermap correspond cow.obj man.obj -o cow_on_man.ply --picture cow_on_man.png");
+  c.example(
+      "innermap correspond cow.obj man.obj -o out.ply --landmarks pairs.txt --subdivide 0.005");
+  c.example("innermap correspond scan.ply ball.obj -o out.ply --surface-resolution 96");
+  c.run([o](Context& context) { run(*o, context); });
+  return c;
+}
+
+}  // namespace innermap::tool

@@ -1,0 +1,16 @@
+// A's coordinates as colours, on A and on B side by side.
+#pragma once
+
+#include <string>
+
+#include "context.h"
+#include "innermap/surface/correspond.h"
+#include "surface_input.h"
+
+namespace innermap::tool {
+
+// B is coloured point by point by where the map comes from, not vertex by vertex. Throws FileError.
+void writeCorrespondencePicture(const std::string& path, const SurfaceInput& a,
+                                const SurfaceInput& b, const Correspondence& map, Context& context);
+
+}  // namespace innermap::tool
