@@ -20,7 +20,7 @@ class PullbackEnergy : public StarEnergy {
   // All must outlive it; `image` is the layout of `mesh`'s vertices on the target's space. Summed
   // at `samples` points of all triangles or more.
   PullbackEnergy(const ClosedSurface& source, const ProgressiveMesh& mesh, const Layout& image,
-                 const TargetMetric& target, double samples = 30000);
+                 const TargetMetric& target, double samples);
 
   void grown(std::size_t vertices) override;
   void changed(int triangle) override;

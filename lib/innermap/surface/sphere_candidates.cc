@@ -3,54 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <functional>
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/surface/decimate.h"
 #include "innermap/surface/map_samples.h"
 #include "innermap/surface/rotation_search.h"
+#include "innermap/surface/sphere_starts.h"
 
 namespace innermap {
 namespace {
 
 constexpr std::size_t kSamples = 400;  // that rotations are judged by
-constexpr std::size_t kRotations = 6, kMatchings = 300;
+constexpr std::size_t kRotations = 6;
 
 // Vertices of the meshes that starts are tried on: all on the first, the best of them on the
 // second.
-constexpr std::size_t kTiny = 60, kCoarse = 150, kSecondRound = 20;
-
-struct Start {
-  Mat3 rotation;
-  std::vector<Anchor> drawn;  // fine vertices
-  std::string origin;
-};
-
-// Tips that are each other's nearest after the rotation, and not too far.
-TipPairs nearestTips(const LimbTips& a, const LimbTips& b, const Mat3& rotation) {
-  const auto nearest = [](const Vec3& p, const Points& to) {
-    int best = 0;
-    for (int i = 1; i < static_cast<int>(to.size()); ++i)
-      if (squaredNorm(to[i] - p) < squaredNorm(to[best] - p)) best = i;
-    return best;
-  };
-  Points turned;
-  for (const Vec3& p : a.place) turned.push_back(rotation * p);
-  TipPairs out;
-  for (int i = 0; i < static_cast<int>(turned.size()); ++i) {
-    const int j = nearest(turned[i], b.place);
-    if (nearest(b.place[j], turned) == i && norm(turned[i] - b.place[j]) < 0.9)
-      out.push_back({i, j});
-  }
-  return out;
-}
-
-std::vector<Anchor> anchorsOf(const TipPairs& pairs, const LimbTips& a, const LimbTips& b) {
-  std::vector<Anchor> out;
-  for (const auto& [i, j] : pairs) out.push_back({a.vertices[i], b.place[j]});
-  return out;
-}
+constexpr std::size_t kTiny = 60, kCoarse = 150, kSecondRound = 20, kRerun = 10;
 
 void landmarkPlaces(const std::vector<Anchor>& landmarks, const Layout& la, Points& from,
                     Points& to) {
@@ -72,30 +44,6 @@ void requireOrientation(const Points& from, const Points& to) {
     throw DataError(
         "landmarks: they contradict the orientation: a mirror image of the source would fit them; "
         "exchange left and right of one side");
-}
-
-std::vector<Start> startsOf(const std::vector<RotationCandidate>& rotations, const LimbTips& tipsA,
-                            const LimbTips& tipsB, bool useTips) {
-  std::vector<Start> out;
-  for (std::size_t i = 0; i < rotations.size(); ++i) {
-    out.push_back({rotations[i].rotation, {}, fmt::format("rotation {}", i + 1)});
-    if (!useTips) continue;
-    const TipPairs pairs = nearestTips(tipsA, tipsB, rotations[i].rotation);
-    if (pairs.size() >= 2)
-      out.push_back({rotations[i].rotation, anchorsOf(pairs, tipsA, tipsB),
-                     fmt::format("rotation {} with {} limbs drawn together", i + 1, pairs.size())});
-  }
-  if (!useTips) return out;
-  for (const TipPairs& pairs : matchTips(tipsA, tipsB, kMatchings)) {
-    Points from, to;
-    for (const auto& [i, j] : pairs) {
-      from.push_back(tipsA.place[i]);
-      to.push_back(tipsB.place[j]);
-    }
-    out.push_back({bestRotation(from, to), anchorsOf(pairs, tipsA, tipsB),
-                   fmt::format("{} matched limbs", pairs.size())});
-  }
-  return out;
 }
 
 Layout rotatedCoarse(const CoarseSurface& coarse, const Layout& la, const Mat3& rotation) {
@@ -141,47 +89,79 @@ void keepBest(std::vector<CoarseMap>& maps, std::size_t kept) {
   maps = std::move(out);
 }
 
-// Maps on one coarse mesh from each start; empty where the way was blocked.
+// Maps on one coarse mesh; empty where the way was blocked.
 class Trial {
  public:
   Trial(const Layout& la, const TargetMetric& target, const SphereCandidateSettings& settings,
         const Points& normals)
       : la_(la), target_(target), settings_(settings), normals_(normals) {}
 
-  std::vector<std::optional<CoarseMap>> run(const std::vector<Start>& starts,
-                                            const CoarseSurface& coarse,
-                                            const CoarseMapSettings& how) {
-    std::vector<std::optional<CoarseMap>> found(starts.size());
-    std::vector<int> blocked(starts.size(), -1);
-    parallelBlocks(
-        starts.size(), 1,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) {
-            CoarseMapSettings relax = how;
-            relax.fixed = coarseAnchors(settings_.landmarks, coarse);
-            relax.drawn = coarseAnchors(starts[i].drawn, coarse);
-            relax.progress = settings_.progress;
-            found[i] = relaxCoarse(coarse, rotatedCoarse(coarse, la_, starts[i].rotation), target_,
-                                   relax, &blocked[i]);
-            if (!found[i]) continue;
-            found[i]->origin = starts[i].origin;
-            if (settings_.aligned)
-              found[i]->energy += normalCost(coarse, *found[i], target_, normals_);
-          }
-        },
-        settings_.progress, "trying first maps");
-    for (const int b : blocked) blocked_ = std::max(blocked_, b);
+  using Maps = std::vector<std::optional<CoarseMap>>;
+
+  Maps run(const std::vector<MapStart>& starts, const CoarseSurface& coarse,
+           const CoarseMapSettings& how) {
+    Maps found(starts.size());
+    parallel(starts.size(), [&](std::size_t i) {
+      found[i] =
+          relax(rotatedCoarse(coarse, la_, starts[i].rotation), coarse, starts[i].drawn, how);
+      if (found[i]) found[i]->origin = starts[i].origin;
+    });
+    return found;
+  }
+
+  // Maps again, with the limb tips drawn together that have come near one another.
+  Maps rerun(const std::vector<CoarseMap>& maps, const CoarseSurface& coarse, const LimbTips& tipsA,
+             const LimbTips& tipsB) {
+    Maps found(maps.size());
+    parallel(maps.size(), [&](std::size_t i) {
+      Points places;
+      for (const int v : tipsA.vertices) places.push_back(maps[i].image.place[coarse.index[v]]);
+      const TipPairs pairs = nearestTips(places, tipsB);
+      if (pairs.empty()) return;
+      found[i] = relax(maps[i].image, coarse, anchorsOf(pairs, tipsA, tipsB), {});
+      if (found[i])
+        found[i]->origin = fmt::format("{}, then {} limbs", maps[i].origin, pairs.size());
+    });
     return found;
   }
 
   int blocked() const { return blocked_; }  // a landmark that was not reached, or -1
 
  private:
+  void parallel(std::size_t count, const std::function<void(std::size_t)>& body) {
+    parallelBlocks(
+        count, 1,
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) body(i);
+        },
+        settings_.progress, "trying first maps");
+  }
+
+  std::optional<CoarseMap> relax(const Layout& start, const CoarseSurface& coarse,
+                                 const std::vector<Anchor>& drawn, CoarseMapSettings how) {
+    how.fixed = coarseAnchors(settings_.landmarks, coarse);
+    how.drawn = coarseAnchors(drawn, coarse);
+    // A tip that is a landmark already goes where that says.
+    how.drawn.erase(std::remove_if(how.drawn.begin(), how.drawn.end(),
+                                   [&](const Anchor& d) {
+                                     return std::any_of(
+                                         how.fixed.begin(), how.fixed.end(),
+                                         [&](const Anchor& f) { return f.vertex == d.vertex; });
+                                   }),
+                    how.drawn.end());
+    how.progress = settings_.progress;
+    int blocked = -1;
+    std::optional<CoarseMap> out = relaxCoarse(coarse, start, target_, how, &blocked);
+    if (out && settings_.aligned) out->energy += normalCost(coarse, *out, target_, normals_);
+    if (blocked >= 0 && blocked < static_cast<int>(how.fixed.size())) blocked_ = blocked;
+    return out;
+  }
+
   const Layout& la_;
   const TargetMetric& target_;
   const SphereCandidateSettings& settings_;
   const Points& normals_;
-  int blocked_ = -1;
+  std::atomic<int> blocked_{-1};
 };
 
 CoarseSurface coarsened(const ClosedSurface& a, const Layout& la, ProgressiveMesh& mesh,
@@ -195,14 +175,14 @@ CoarseSurface coarsened(const ClosedSurface& a, const Layout& la, ProgressiveMes
   return coarseSurface(a, mesh);
 }
 
-std::vector<Start> bestStarts(const std::vector<Start>& starts,
-                              const std::vector<std::optional<CoarseMap>>& maps) {
+std::vector<MapStart> bestStarts(const std::vector<MapStart>& starts,
+                                 const std::vector<std::optional<CoarseMap>>& maps) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < starts.size(); ++i)
     if (maps[i]) order.push_back(i);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t x, std::size_t y) { return maps[x]->energy < maps[y]->energy; });
-  std::vector<Start> out;
+  std::vector<MapStart> out;
   for (const std::size_t i : order)
     if (out.size() < kSecondRound) out.push_back(starts[i]);
   return out;
@@ -230,9 +210,9 @@ Candidates sphereCandidates(const ClosedSurface& a, const Layout& la, const Limb
   landmarkPlaces(settings.landmarks, la, search.from, search.to);
   requireOrientation(search.from, search.to);
   search.progress = settings.progress;
-  std::vector<Start> starts =
-      startsOf(searchRotations(sampleSource(a, la, kSamples, settings.seed), target, search), tipsA,
-               tipsB, settings.landmarks.size() < 3);
+  std::vector<MapStart> starts =
+      sphereStarts(searchRotations(sampleSource(a, la, kSamples, settings.seed), target, search),
+                   tipsA, tipsB, search.from, search.to);
   Trial trial(la, target, settings, normals);
   if (starts.size() > kSecondRound) {
     CoarseMapSettings quick;
@@ -240,10 +220,16 @@ Candidates sphereCandidates(const ClosedSurface& a, const Layout& la, const Limb
     quick.sweeps = 3;
     quick.near = 0.1;
     quick.patience = 5;
-    starts = bestStarts(starts, trial.run(starts, tiny, quick));
+    std::vector<MapStart> best = bestStarts(starts, trial.run(starts, tiny, quick));
+    if (!best.empty()) starts = std::move(best);
   }
-  for (std::optional<CoarseMap>& m : trial.run(starts, out.coarse, {}))
-    if (m) out.maps.push_back(std::move(*m));
+  const auto take = [&](Trial::Maps maps) {
+    for (std::optional<CoarseMap>& m : maps)
+      if (m) out.maps.push_back(std::move(*m));
+  };
+  take(trial.run(starts, out.coarse, {}));
+  keepBest(out.maps, kRerun);
+  take(trial.rerun(out.maps, out.coarse, tipsA, tipsB));
   if (out.maps.empty() && !settings.landmarks.empty())
     throw DataError(
         fmt::format("landmarks: no map without flips was found that meets number {}; it "
