@@ -35,14 +35,21 @@ void CoarseToFine::relaxAll(int sweeps) {
   energy_.grown(mesh_.vertexCount());
   for (int t = 0; t < static_cast<int>(mesh_.triangleCount()); ++t)
     if (mesh_.alive(t)) energy_.changed(t);
+  // After the first sweep only those are visited around which something moved.
+  std::vector<char> active(mesh_.capacity(), 1), next(mesh_.capacity());
   for (int s = 0; s < sweeps; ++s) {
-    double won = 0;
+    bool moved = false;
+    std::fill(next.begin(), next.end(), 0);
     for (int v = 0; v < static_cast<int>(mesh_.capacity()); ++v) {
-      if (!mesh_.present(v)) continue;
-      won = std::max(won, relax(v, settings_.steps));
       if (v % 512 == 0) throwIfCancelled(settings_.progress);
+      if (!mesh_.present(v) || !active[v]) continue;
+      if (!(relax(v, settings_.steps) > settings_.enough)) continue;
+      moved = true;
+      for (const int t : mesh_.around(v))
+        for (const int w : mesh_.triangle(t)) next[w] = 1;
     }
-    if (won < settings_.enough) break;
+    if (!moved) break;
+    active.swap(next);
   }
 }
 

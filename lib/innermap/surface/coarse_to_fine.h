@@ -36,7 +36,7 @@ struct RelaxSettings {
   int sweeps = 4;        // most, over all vertices at each growth
   int lastSweeps = 12;   // when the mesh is complete
   int steps = 2;         // most, at each vertex of a sweep
-  double enough = 1e-2;  // a sweep in which no star wins a larger share of its energy is the last
+  double enough = 5e-3;  // share of its energy that a star must win for its neighbours to go on
   std::string_view stage = "relaxing";
   Progress* progress = nullptr;
 };

@@ -11,7 +11,7 @@ constexpr double kSamples = 10000;  // of the energy, at least; three times more
 RelaxSettings relaxation(const RefineSettings& settings) {
   RelaxSettings relax;
   relax.sweeps = settings.relax ? 2 : 0;
-  relax.lastSweeps = settings.relax ? 3 : 0;
+  relax.lastSweeps = settings.relax ? 10 : 0;
   relax.steps = 1;
   relax.stage = "refining the map";
   relax.progress = settings.progress;
