@@ -178,14 +178,6 @@ std::string ambiguity(const CutSurface& a, const CutSurface& b, std::vector<Outc
   return {};
 }
 
-Vec3 placeOf(const CutSurface& cut, const Layout& layout, const SurfacePoint& p) {
-  Vec3 sum;
-  for (std::size_t k = 0; k < 3; ++k)
-    sum += p.barycentric[k] *
-           layout.place[cut.surface.triangles[static_cast<std::size_t>(p.triangle)][k]];
-  return sum / std::max(norm(sum), 1e-300);
-}
-
 }  // namespace
 
 CutPair cutAlike(const HandleLoops& a, const HandleLoops& b, const CutAlikeSettings& settings) {
@@ -220,7 +212,8 @@ CutPair cutAlike(const HandleLoops& a, const HandleLoops& b, const CutAlikeSetti
     const std::vector<SurfacePoint> there = onCut(cut, onB);
     // The first copy of a vertex has its own number.
     for (std::size_t i = 0; i < there.size(); ++i)
-      search.landmarks.push_back({out.layoutOfA.place[ofA[i]], placeOf(cut, layout, there[i])});
+      search.landmarks.push_back(
+          {out.layoutOfA.place[ofA[i]], placeOnSphere(cut.surface, layout, there[i])});
     const std::vector<HandleMatch> matches =
         matchHandles(out.a, out.layoutOfA, cut, layout, search);
     for (const HandleMatch& m : matches) outcomes.push_back(outcomeOf(cut, m));

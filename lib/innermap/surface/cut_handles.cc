@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -263,6 +264,14 @@ void splitEdges(CutSurface& cut, Layout& layout, const std::vector<EdgeSplit>& s
       enter(static_cast<int>(triangles.size()) - 1);
     }
   }
+}
+
+Vec3 placeOnSphere(const ClosedSurface& surface, const Layout& layout, const SurfacePoint& point) {
+  Vec3 sum;
+  for (std::size_t k = 0; k < 3; ++k)
+    sum += point.barycentric[k] *
+           layout.place[surface.triangles[static_cast<std::size_t>(point.triangle)][k]];
+  return sum / std::max(norm(sum), 1e-300);
 }
 
 std::vector<SurfacePoint> onCut(const CutSurface& cut, const std::vector<SurfacePoint>& points) {

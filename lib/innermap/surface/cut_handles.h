@@ -63,6 +63,9 @@ struct EdgeSplit {
 // vertices made have consecutive numbers. A valid layout on the sphere stays one.
 void splitEdges(CutSurface& cut, Layout& layout, const std::vector<EdgeSplit>& splits);
 
+// Of a point of a surface laid out on the sphere.
+Vec3 placeOnSphere(const ClosedSurface& surface, const Layout& layout, const SurfacePoint& point);
+
 // Points of the surface before the cut on the cut surface. #points.
 std::vector<SurfacePoint> onCut(const CutSurface& cut, const std::vector<SurfacePoint>& points);
 

@@ -33,14 +33,6 @@ constexpr double kSound = 100;  // energy of maps without crushed triangles; 8 f
 constexpr double kSamples = 4000;       // of the energy, while rims are brought to their places
 constexpr double kFineSamples = 30000;  // and at last
 
-Vec3 placeOf(const CutSurface& cut, const Layout& layout, const SurfacePoint& p) {
-  Vec3 sum;
-  for (std::size_t k = 0; k < 3; ++k)
-    sum += p.barycentric[k] *
-           layout.place[cut.surface.triangles[static_cast<std::size_t>(p.triangle)][k]];
-  return sum / norm(sum);
-}
-
 // Collapses every other vertex of a closed path along it, where the mesh and the layout allow;
 // vertices that must stay do. The path is updated.
 void thinOut(ProgressiveMesh& mesh, const Layout& layout, std::vector<int>& path,
@@ -110,7 +102,9 @@ class HandleMapper {
   }
 
  private:
-  Vec3 onSphere(const SurfacePoint& p) const { return placeOf(pair_.b, pair_.layoutOfB, p); }
+  Vec3 onSphere(const SurfacePoint& p) const {
+    return placeOnSphere(pair_.b.surface, pair_.layoutOfB, p);
+  }
 
   // The match once A's layout lies on B's.
   HandleMatch inPlace() const {
@@ -206,10 +200,7 @@ class HandleMapper {
       pull(mesh);
     }
     refineWith(mesh, 0);
-    if (!std::all_of(anchors_.begin(), anchors_.end(),
-                     [this](const Anchor& a) { return placed_[a.vertex] != 0; }) &&
-        !pull(mesh))
-      fail();
+    if (!arePlaced(anchors_) && !pull(mesh)) fail();
     for (int cycle = 0; cycle < kCycles; ++cycle) {
       // Triangles that were crushed on the way keep one another from growing; coarsened away, they
       // return where there is room.
@@ -223,8 +214,7 @@ class HandleMapper {
       decimate(again, surface.vertices, decimation);
       const double before = energy_;
       refineWith(again, settings_.refine || cycle > 0 ? 12 : 2);
-      if (cycle > 0 && energy_ > 0.9 * before) break;
-      if (energy_ < kSound) break;
+      if (energy_ < kSound || (cycle > 0 && energy_ > 0.9 * before)) break;
     }
   }
 
@@ -312,7 +302,11 @@ class HandleMapper {
       if (mesh.present(a.vertex)) present.push_back(a);
     placed_ = draw(seam_.cut.surface, mesh, seam_.layout, present,
                    mesh.collapses() > 0 ? kCoarseBound : kMostBound);
-    return std::all_of(present.begin(), present.end(),
+    return arePlaced(present);
+  }
+
+  bool arePlaced(const std::vector<Anchor>& anchors) const {
+    return std::all_of(anchors.begin(), anchors.end(),
                        [this](const Anchor& a) { return placed_[a.vertex] != 0; });
   }
 

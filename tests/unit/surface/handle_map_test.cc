@@ -120,6 +120,25 @@ TEST(HandleMap, OfThreeHandles) {
   expectMap(a, b, 12);
 }
 
+TEST(HandleMap, MeetsLandmarks) {
+  const ClosedSurface a = rounded(plate(2, 2), 2), b = rounded(plate(2, 3), 3);
+  const CutPair pair = cutAlike(handleLoops(a), handleLoops(b));
+  const HandleMap free = handleMap(pair);
+  std::vector<char> onRim(a.vertices.size(), 0);
+  for (const CutHandle& handle : pair.a.handles)
+    for (const int v : handle.loop[0]) onRim[v] = 1;
+  HandleMapSettings settings;
+  for (std::size_t v = 11; settings.landmarks.size() < 4; v += 131)
+    if (!onRim[v]) settings.landmarks.push_back({static_cast<int>(v), free.onTarget[v + 1]});
+  const HandleMap map = handleMap(pair, settings);
+  EXPECT_EQ(layoutQuality(map.cut.surface.triangles, map.cut.surface.vertices, map.image).flips,
+            0u);
+  for (const auto& [v, p] : settings.landmarks)
+    EXPECT_LT(norm(pointOn(b, map.onTarget[v]) - pointOn(b, p)), 1e-9);
+  settings.landmarks[0].first = pair.a.handles[0].loop[0][0];
+  EXPECT_THROW(handleMap(pair, settings), DataError);
+}
+
 TEST(HandleMap, CanBeCancelled) {
   const CutPair pair = cutAlike(handleLoops(plate(2)), handleLoops(plate(2, 2)));
   HandleMapSettings settings;
