@@ -1,33 +1,28 @@
-// Internal to surface/: the map between two surfaces with handles, through their cuts.
+// Internal to surface/: surfaces of genus 2 and more, mapped by way of cuts along meridians.
 #pragma once
 
+#include <string>
+#include <utility>
 #include <vector>
 
-#include "innermap/core/progress.h"
-#include "innermap/surface/cut_alike.h"
+#include "innermap/surface/closed_surface.h"
+#include "innermap/surface/cut_handles.h"
 #include "innermap/surface/layout.h"
+#include "innermap/surface/shell_map.h"
 
 namespace innermap {
 
-struct HandleMapSettings {
-  // Vertices of A's uncut surface and points of B's, met exactly.
-  std::vector<std::pair<int, SurfacePoint>> landmarks;
-  bool refine = true;  // lower the energy of the finest map, too
-  Progress* progress = nullptr;
-};
-
 struct HandleMap {
-  CutSurface cut;  // A's, with vertices of B's rims put in
-  Layout image;    // of it on B's cut surface's sphere; rims lie on rims
-  double energy = 0;
-  // For each vertex of A's uncut surface, the point of B's.
-  std::vector<SurfacePoint> onTarget;
+  CutSurface source, target;  // cut and capped, of genus 0
+  Layout image, targetLayout;
+  std::vector<std::pair<int, SurfacePoint>> exact;  // vertices of source that were held: on target
+  std::string origin;
+  std::string note;  // empty, or which landmarks would decide what is nearly a tie
 };
 
-// Coarse to fine with the caps' centres and some points of the rims fixed, then all of the rims.
-// Glued again along the cuts, this is a one-to-one map of the uncut surfaces, as both copies of a
-// rim's vertex go to copies of one point. Throws DataError where no map without flips is found that
-// meets rims and landmarks; Cancelled.
-HandleMap handleMap(const CutPair& pair, const HandleMapSettings& settings = {});
+// landmarks: vertices of A and points of B, both before the cuts. Throws as mapShell().
+HandleMap mapHandles(const HandleLoops& a, const HandleLoops& b,
+                     const std::vector<std::pair<int, SurfacePoint>>& landmarks,
+                     const ShellMapSettings& settings);
 
 }  // namespace innermap

@@ -1,4 +1,4 @@
-#include "innermap/surface/handle_map.h"
+#include "innermap/surface/glued_map.h"
 
 #include <gtest/gtest.h>
 
@@ -49,12 +49,12 @@ double area(const ClosedSurface& surface) {
 
 // Valid, glued along the cuts, and of bounded stretch. Images of A's vertices.
 Points expectMap(const ClosedSurface& a, const ClosedSurface& b, double most,
-                 const HandleMapSettings& settings = {}) {
+                 const GluedMapSettings& settings = {}) {
   const HandleLoops loopsOfA = handleLoops(a), loopsOfB = handleLoops(b);
   CutAlikeSettings alike;
   alike.landmarks = settings.landmarks;
   const CutPair pair = cutAlike(loopsOfA, loopsOfB, alike);
-  const HandleMap map = handleMap(pair, settings);
+  const GluedMap map = gluedMap(pair, settings);
   const LayoutQuality quality =
       layoutQuality(map.cut.surface.triangles, map.cut.surface.vertices, map.image);
   EXPECT_EQ(quality.flips, 0u);
@@ -97,12 +97,12 @@ Points expectMap(const ClosedSurface& a, const ClosedSurface& b, double most,
   return out;
 }
 
-TEST(HandleMap, OntoTheSameShapeIsNearlyIsometric) {
+TEST(GluedMap, OntoTheSameShapeIsNearlyIsometric) {
   const ClosedSurface a = rounded(plate(2, 2), 2), b = rounded(plate(2, 3), 3);
   expectMap(a, b, 3);
 }
 
-TEST(HandleMap, BetweenDifferentShapes) {
+TEST(GluedMap, BetweenDifferentShapes) {
   const ClosedSurface a = rounded(plate(2, 2), 2);
   const ClosedSurface b =
       rounded(boundaryOf(without(block({0, 0, 0}, {10, 4, 4}),
@@ -113,39 +113,39 @@ TEST(HandleMap, BetweenDifferentShapes) {
   expectMap(b, a, 12);
 }
 
-TEST(HandleMap, OfThreeHandles) {
+TEST(GluedMap, OfThreeHandles) {
   const ClosedSurface a = rounded(plate(3, 2), 2);
   const ClosedSurface b =
       rounded(boundaryOf(with(shapes::plateCells(3), block({0, 0, 2}, {2, 0, 6})), 3), 1);
   expectMap(a, b, 12);
 }
 
-TEST(HandleMap, MeetsLandmarks) {
+TEST(GluedMap, MeetsLandmarks) {
   const ClosedSurface a = rounded(plate(2, 2), 2), b = rounded(plate(2, 3), 3);
   const CutPair pair = cutAlike(handleLoops(a), handleLoops(b));
-  const HandleMap free = handleMap(pair);
+  const GluedMap free = gluedMap(pair);
   std::vector<char> onRim(a.vertices.size(), 0);
   for (const CutHandle& handle : pair.a.handles)
     for (const int v : handle.loop[0]) onRim[v] = 1;
-  HandleMapSettings settings;
+  GluedMapSettings settings;
   for (std::size_t v = 11; settings.landmarks.size() < 4; v += 131)
     if (!onRim[v]) settings.landmarks.push_back({static_cast<int>(v), free.onTarget[v + 1]});
-  const HandleMap map = handleMap(pair, settings);
+  const GluedMap map = gluedMap(pair, settings);
   EXPECT_EQ(layoutQuality(map.cut.surface.triangles, map.cut.surface.vertices, map.image).flips,
             0u);
   for (const auto& [v, p] : settings.landmarks)
     EXPECT_LT(norm(pointOn(b, map.onTarget[v]) - pointOn(b, p)), 1e-9);
   settings.landmarks[0].first = pair.a.handles[0].loop[0][0];
-  EXPECT_THROW(handleMap(pair, settings), DataError);
+  EXPECT_THROW(gluedMap(pair, settings), DataError);
 }
 
-TEST(HandleMap, CanBeCancelled) {
+TEST(GluedMap, CanBeCancelled) {
   const CutPair pair = cutAlike(handleLoops(plate(2)), handleLoops(plate(2, 2)));
-  HandleMapSettings settings;
+  GluedMapSettings settings;
   Progress progress;
   progress.cancel();
   settings.progress = &progress;
-  EXPECT_THROW(handleMap(pair, settings), Cancelled);
+  EXPECT_THROW(gluedMap(pair, settings), Cancelled);
 }
 
 }  // namespace
