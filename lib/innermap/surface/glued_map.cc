@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -27,10 +26,9 @@ constexpr double kBeside = 2.5;       // vertices beside rims for each of those 
 // be no room for some.
 constexpr double kBound = 5, kMostBound = 1e6, kCoarseBound = 1e4;
 constexpr int kPatience = 5, kRounds = 300;
-constexpr int kCycles = 3;      // of coarsening and refining, at most
-constexpr double kSound = 100;  // energy of maps without crushed triangles; 8 for isometries
-
-constexpr double kSamples = 4000;       // of the energy, while rims are brought to their places
+constexpr int kCycles = 3;         // of coarsening and refining, at most
+constexpr double kSound = 100;     // energy of maps without crushed triangles; 8 for isometries
+constexpr double kSamples = 4000;  // of the energy, while rims are brought to their places
 constexpr double kFineSamples = 30000;  // and at last
 
 // Collapses every other vertex of a closed path along it, where the mesh and the layout allow;
@@ -91,11 +89,9 @@ class GluedMapper {
     for (const auto& [v, p] : out.exact)
       if (static_cast<std::size_t>(v) < images.size()) images[v] = p;
     std::vector<SurfacePoint> uncut = onUncut(pair_.b, images);
-    std::size_t vertices = 0;
-    while (vertices < pair_.a.vertexOf.size() &&
-           pair_.a.vertexOf[vertices] == static_cast<int>(vertices))
-      ++vertices;
-    uncut.resize(vertices);
+    int vertices = 0;  // before the cut; copies come after them
+    for (const int v : pair_.a.vertexOf) vertices = std::max(vertices, v + 1);
+    uncut.resize(static_cast<std::size_t>(vertices));
     for (const auto& [v, p] : settings_.landmarks) uncut[v] = p;
     out.onTarget = std::move(uncut);
     out.cut = std::move(seam_.cut);
@@ -148,8 +144,7 @@ class GluedMapper {
     CoarseMapSettings relax;
     for (const Anchor& a : fixed) relax.fixed.push_back({coarse.index[a.vertex], a.target});
     relax.progress = settings_.progress;
-    int blocked = -1;
-    std::optional<CoarseMap> map = relaxCoarse(coarse, start, target_, relax, &blocked);
+    std::optional<CoarseMap> map = relaxCoarse(coarse, start, target_, relax);
     if (!map) {
       map.emplace();
       map->image = start;
@@ -241,9 +236,8 @@ class GluedMapper {
     std::vector<char> fixed(seam_.cut.surface.vertices.size(), 0);
     for (const Anchor& a : anchors_) fixed[a.vertex] = 1;
     const HalfEdges edges(seam_.cut.surface.triangles);
-    const auto inCap = [&](int h) {
-      return seam_.cut.triangleOf[static_cast<std::size_t>(h / 3)] < 0;
-    };
+    const std::vector<int>& of = seam_.cut.triangleOf;
+    const auto inCap = [&of](int h) { return of[static_cast<std::size_t>(h / 3)] < 0; };
     std::vector<EdgeSplit> chords;
     for (int h = 0; h < edges.size(); ++h)
       if (edges.edge(h) == h && fixed[edges.tail(h)] && fixed[edges.head(h)] && !inCap(h) &&
@@ -293,8 +287,7 @@ class GluedMapper {
     RelaxSettings relax;
     relax.lastSweeps = 2;
     relax.progress = settings_.progress;
-    CoarseToFine fine(mesh, seam_.layout, energy, placed_, relax);
-    if (fine.refine(vertices) >= 0) fail();
+    if (CoarseToFine(mesh, seam_.layout, energy, placed_, relax).refine(vertices) >= 0) fail();
   }
 
   // Brings all anchors that are present to their places; false when some stay free, as between
@@ -364,8 +357,8 @@ class GluedMapper {
     double left = 0;
     for (const Anchor& a : anchors) {
       Vec3& place = layout.place[a.vertex];
-      const Vec3 way = wayTo(layout, place, a.target);
       if (!(norm(place - a.target) > 0)) continue;
+      const Vec3 way = wayTo(layout, place, a.target);
       energy.gather(a.vertex);
       const double most = std::max(bound, energy.at(place));
       double share = 1;
