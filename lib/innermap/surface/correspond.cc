@@ -8,10 +8,12 @@
 
 #include "innermap/core/error.h"
 #include "innermap/mesh/triangle_tree.h"
-#include "innermap/surface/handle_map.h"
+#include "innermap/surface/cut_alike.h"
+#include "innermap/surface/glued_map.h"
 #include "innermap/surface/locate.h"
 #include "innermap/surface/shell_map.h"
 #include "innermap/surface/shell_pairs.h"
+#include "innermap/surface/subdivide.h"
 
 namespace innermap {
 namespace {
@@ -153,9 +155,8 @@ using Exact = std::vector<std::pair<int, SurfacePoint>>;
 // The images of a shell's vertices, by the map between what was cut, where it was.
 struct MappedShell {
   ShellCorrespondence map;
-  std::vector<int> vertexOf;  // of map.surface: the shell's vertex, -1; empty: the same
-  Exact exact;
-  std::string note;
+  std::vector<SurfacePoint> onShell;  // of the shell's own vertices, where map.surface was cut
+  Exact exact;                        // vertices of map.surface, places on map.targetSurface
 };
 
 class Corresponder {
@@ -174,6 +175,7 @@ class Corresponder {
         handlesB_(handlesB),
         settings_(settings) {
     out_.seconds = {{"embed_source", a.seconds()}, {"embed_target", b.seconds()}};
+    split_ = {a_.mesh, a_.shellVertex, a_.meshTriangle};
   }
 
   Correspondence run() {
@@ -217,16 +219,7 @@ class Corresponder {
       if (l.shell == source) out.exact.push_back({l.vertex, l.onTarget});
     ShellMapSettings how = shellSettings();
     if (a_.shells[source].genus > 1) {
-      HandleMap handles = mapHandles(*handlesA_[source], *handlesB_[target], out.exact, how);
-      out.map.surface = std::move(handles.source.surface);
-      out.map.image = std::move(handles.image);
-      out.map.targetSurface = handles.target.surface;
-      out.map.targetLayout = std::move(handles.targetLayout);
-      out.map.targetCut = std::make_shared<const CutSurface>(std::move(handles.target));
-      out.map.origin = handles.origin;
-      out.vertexOf = std::move(handles.source.vertexOf);
-      out.exact = std::move(handles.exact);
-      out.note = std::move(handles.note);
+      mapHandles(out);
     } else {
       const LaidOutShell &from = *laidOutA_[source], &onto = *laidOutB_[target];
       for (const auto& [vertex, point] : out.exact)
@@ -238,38 +231,87 @@ class Corresponder {
       out.map.targetLayout = onto.layout;
       out.map.origin = map.origin;
     }
-    if (!out.note.empty()) out_.notes.push_back(out.note);
+    subdivideOne(out);
     const Locator locator(out.map.targetSurface.triangles, out.map.targetLayout);
     locateVertices(out.map, out.map.targetSurface, locator, out.exact);
     return out;
   }
 
-  void assemble(std::vector<MappedShell>& mapped) {
-    out_.source = a_.mesh;
-    out_.positions = a_.mesh.vertices;
-    out_.onTarget.resize(a_.mesh.vertices.size());
-    std::vector<std::vector<int>> inMap;  // of each shell's vertices
-    std::vector<std::vector<SurfacePoint>> onMesh;
-    for (const MappedShell& m : mapped) {
-      onMesh.push_back(onTargetMesh(m.map, b_, m.map.onTarget));
-      std::vector<int> index(a_.shells[m.map.source].vertices.size());
-      for (std::size_t v = 0; v < index.size(); ++v) index[v] = static_cast<int>(v);
-      for (std::size_t v = 0; v < m.vertexOf.size(); ++v)
-        if (m.vertexOf[v] >= 0 && m.vertexOf[v] < static_cast<int>(index.size()))
-          index[m.vertexOf[v]] = static_cast<int>(v);
-      inMap.push_back(std::move(index));
+  void mapHandles(MappedShell& out) {
+    CutAlikeSettings cutting;
+    cutting.aligned = settings_.aligned;
+    cutting.landmarks = out.exact;
+    cutting.progress = settings_.progress;
+    CutPair pair = cutAlike(*handlesA_[out.map.source], *handlesB_[out.map.target], cutting);
+    if (!pair.note.empty()) out_.notes.push_back(pair.note);
+    GluedMapSettings how;
+    how.landmarks = std::move(out.exact);
+    how.refine = settings_.refine;
+    how.progress = settings_.progress;
+    GluedMap map = gluedMap(pair, how);
+    out.exact = std::move(map.exact);
+    out.onShell = std::move(map.onTarget);
+    out.map.surface = std::move(map.cut.surface);
+    out.map.image = std::move(map.image);
+    out.map.targetSurface = pair.b.surface;
+    out.map.targetLayout = std::move(pair.layoutOfB);
+    out.map.targetCut = std::make_shared<const CutSurface>(std::move(pair.b));
+    out.map.origin = "cuts along meridians";
+  }
+
+  void subdivideOne(MappedShell& shell) {
+    if (!(settings_.subdivide > 0)) return;
+    if (!shell.onShell.empty()) {
+      out_.notes.push_back(a_.shells[shell.map.source].name +
+                           ": has several handles and was not split; only shells of genus 0 and 1 "
+                           "are");
+      return;
     }
-    std::vector<int> loose, used;
-    for (int v = 0; v < static_cast<int>(a_.shellVertex.size()); ++v) {
-      const ShellVertex sv = a_.shellVertex[v];
+    const double start = now();
+    SubdivideSettings how;
+    how.tolerance = settings_.subdivide;
+    how.progress = settings_.progress;
+    const Subdivided done = subdivide(shell.map, laidOutB_[shell.map.target]->metric, split_, how);
+    if (!done.enough)
+      out_.notes.push_back(fmt::format(
+          "splitting stopped at {} triangles, before the target was followed within {:g} of its "
+          "diagonal",
+          shell.map.surface.triangles.size(), settings_.subdivide));
+    out_.seconds.push_back({"subdivide", now() - start});
+  }
+
+  void assemble(std::vector<MappedShell>& mapped) {
+    if (split_.mesh.triangles.size() > a_.mesh.triangles.size()) {
+      split_.mesh.polygonStart.clear();
+      split_.mesh.polygonCorners.clear();
+    }
+    out_.source = std::move(split_.mesh);
+    out_.positions = out_.source.vertices;
+    out_.onTarget.resize(out_.source.vertices.size());
+    // Of each shell's vertices.
+    std::vector<std::vector<SurfacePoint>> onMesh;
+    std::vector<Points> positions;
+    for (const MappedShell& m : mapped) {
+      if (m.onShell.empty()) {
+        onMesh.push_back(onTargetMesh(m.map, b_, m.map.onTarget));
+        positions.push_back(m.map.positions);
+        continue;
+      }
+      onMesh.push_back(m.onShell);
+      for (SurfacePoint& p : onMesh.back()) p.triangle = b_.meshTriangle[m.map.target][p.triangle];
+      positions.emplace_back();
+      for (const SurfacePoint& p : onMesh.back())
+        positions.back().push_back(positionOf(b_.mesh, p));
+    }
+    std::vector<int> loose;
+    for (int v = 0; v < static_cast<int>(split_.shellVertex.size()); ++v) {
+      const ShellVertex sv = split_.shellVertex[v];
       if (sv.shell < 0) {
         loose.push_back(v);
         continue;
       }
-      used.push_back(v);
-      const auto at = static_cast<std::size_t>(inMap[sv.shell][sv.vertex]);
-      out_.onTarget[v] = onMesh[sv.shell][at];
-      out_.positions[v] = mapped[sv.shell].map.positions[at];
+      out_.onTarget[v] = onMesh[sv.shell][sv.vertex];
+      out_.positions[v] = positions[sv.shell][sv.vertex];
     }
     placeLoose(loose);
     for (MappedShell& m : mapped) out_.shells.push_back(std::move(m.map));
@@ -295,6 +337,7 @@ class Corresponder {
   const std::vector<std::unique_ptr<HandleLoops>>&handlesA_, &handlesB_;
   const CorrespondSettings& settings_;
   std::vector<ShellLandmark> landmarks_;
+  SplitMesh split_;
   Correspondence out_;
 };
 
