@@ -16,7 +16,8 @@
 namespace innermap::tool {
 namespace {
 
-constexpr std::uint64_t kProgram = 64'000'000, kBytesPerVertex = 8000;
+// Measured: up to 10,000 bytes a vertex for small meshes, less for large ones.
+constexpr std::uint64_t kProgram = 64'000'000, kBytesPerVertex = 6000, kPicture = 300'000'000;
 
 // Addresses on the shells' mesh become addresses on the file's.
 std::vector<SurfacePoint> onFile(const SurfaceInput& b, const std::vector<SurfacePoint>& points,
@@ -161,17 +162,18 @@ Mesh MovedMesh::target(const std::string& name) const {
   return mesh;
 }
 
+// Measured on two cores: trying first maps on coarsened surfaces takes about as long for all but
+// small meshes, the rest grows with the number of vertices.
 double correspondSeconds(std::size_t verticesA, std::size_t verticesB,
                          const CorrespondOptions& options) {
-  // Measured: laying out grows a little faster than the number of vertices.
-  const auto layOut = [](std::size_t n) { return 0.12e-3 * static_cast<double>(n); };
-  const double refine = options.noRefine ? 0 : 1.2e-3 * options.candidates;
-  return layOut(verticesA) + layOut(verticesB) + refine * static_cast<double>(verticesA) + 1;
+  const double vertices = static_cast<double>(verticesA + verticesB);
+  const double refine = options.noRefine ? 0 : 3.0 * options.candidates;
+  return 1 + (10 + refine) * vertices / (vertices + 2000) + 0.5e-3 * vertices;
 }
 
 std::uint64_t correspondMemory(std::size_t verticesA, std::size_t verticesB,
                                const CorrespondOptions&) {
-  return layOutMemory(verticesA + verticesB);
+  return layOutMemory(verticesA + verticesB) + kPicture;
 }
 
 std::uint64_t layOutMemory(std::size_t vertices) {
