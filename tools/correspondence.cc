@@ -148,10 +148,10 @@ void addCorrespondOptions(Command& c, CorrespondOptions& o) {
       .range(1, 64);
   c.flag("--no-refine", &o.noRefine, "only the best way to lay A on B, not refined: fast, rough");
   c.option("--subdivide", "T", &o.subdivide,
-           "split A's triangles until they follow B within T (then A itself is written too)")
+           "split A's triangles until they follow B within T, and write A so split too; 0: never")
       .unit("fraction of B's diagonal")
-      .range(1e-5, 1)
-      .defaults("A keeps its triangles");
+      .range(0, 1)
+      .defaults(fmt::format("{:g}", o.subdivide.value_or(0)));
   addSurfaceOptions(c, o.surfaces);
 }
 

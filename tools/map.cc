@@ -204,6 +204,7 @@ Command makeMapCommand() {
       .required();
   c.option("--correspond", "FILE", &o->correspondence,
            "SOURCE's vertices on TARGET, as innermap correspond or an earlier map wrote them");
+  o->correspond.subdivide = kSubdivide;
   addCorrespondOptions(c, o->correspond);
   addFittingOptions(c, o->fitting);
   addEvaluationOptions(c, o->evaluation);
