@@ -21,8 +21,9 @@
 namespace innermap::tool {
 namespace {
 
-constexpr double kOffTarget =
-    0.01;  // of the diagonal: what half the vertices of --correspond may be
+// Fractions of the target's diagonal.
+constexpr double kOffTarget = 0.01;  // what half the vertices of --correspond may be
+constexpr double kSubdivide = 0.005;
 
 struct MapOptions {
   std::string source, target, output, correspondence;
