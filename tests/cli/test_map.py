@@ -191,7 +191,7 @@ def test_bad_input():
     fails(1, "evaluate", "ball.obj", "-o", "a.vdb", says=["ball.obj", "map.ply"])
     fails(1, "fit", "ball.obj", "other.obj", "-o", "map.ply",
           says=["other.obj", "connectivity", "innermap correspond"])
-    fails(2, "map", "ball.obj", says=["TARGET"])
+    fails(2, "map", "ball.obj", "-o", "out", says=["TARGET"])
     fails(2, "map", "ball.obj", "ball.obj", "-o", "out", "--sorces", "4", says=["--sources"])
 
 
