@@ -275,6 +275,18 @@ def test_genus_one():
     fails(1, "sphere", "a.obj", "-o", "no.ply", says=["a.obj", "1 handle"])
 
 
+def test_two_handles_through_isosurfaces():
+    for name, minor, apart, scale in (("a.obj", 0.35, 2.3, 1), ("b.obj", 0.45, 2.5, 1.4)):
+        points, faces = read_obj(torus("torus.obj", 40, 20, 1, minor))
+        place = lambda shift: [(scale * (x + shift), scale * y, scale * z) for x, y, z in points]
+        joined(name, (place(0), faces, False), (place(apart), faces, False))
+    report = corresponded("a.obj", "b.obj", "--surface-resolution", "32")
+    assert report["source"]["genus"] == 2 and report["target"]["genus"] == 2, report
+    check_quality(report["correspondence"], 11, 4)
+    fails(1, "correspond", "a.obj", "torus.obj", "-o", "no.ply", "--surface-resolution", "32",
+          says=["genus 2", "1"])
+
+
 def test_sphere():
     blob("a.obj", 3, (3, 1, 0.5), 0.8)
     done = innermap("sphere", "a.obj", "-o", "out.ply", "--report", "report.json")

@@ -22,7 +22,7 @@ constexpr std::size_t kRotations = 6;
 
 // Vertices of the meshes that starts are tried on: all on the first, the best of them on the
 // second.
-constexpr std::size_t kTiny = 60, kCoarse = 150, kSecondRound = 20, kRerun = 10;
+constexpr std::size_t kTiny = 60, kCoarse = 150, kSecondRound = 14, kRerun = 10;
 
 void landmarkPlaces(const std::vector<Anchor>& landmarks, const Layout& la, Points& from,
                     Points& to) {
@@ -183,8 +183,9 @@ std::vector<MapStart> bestStarts(const std::vector<MapStart>& starts,
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t x, std::size_t y) { return maps[x]->energy < maps[y]->energy; });
   std::vector<MapStart> out;
+  std::size_t kept = 0;
   for (const std::size_t i : order)
-    if (out.size() < kSecondRound) out.push_back(starts[i]);
+    if (starts[i].promising || kept++ < kSecondRound) out.push_back(starts[i]);
   return out;
 }
 

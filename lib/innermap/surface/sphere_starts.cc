@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace innermap {
 namespace {
 
-constexpr std::size_t kMatchings = 300;
+constexpr std::size_t kMatchings = 300, kPromising = 8;
 constexpr double kFar = 0.9;      // between tips that are still drawn together
 constexpr double kMisfit = 0.75;  // of tips and landmarks after the best rotation
 
@@ -14,6 +16,14 @@ int nearest(const Vec3& p, const Points& to) {
   for (int i = 1; i < static_cast<int>(to.size()); ++i)
     if (squaredNorm(to[i] - p) < squaredNorm(to[best] - p)) best = i;
   return best;
+}
+
+// Whether two matchings differ in one pair at most.
+bool alike(const TipPairs& p, const TipPairs& q) {
+  std::size_t shared = 0;
+  for (const auto& pair : p)
+    if (std::find(q.begin(), q.end(), pair) != q.end()) ++shared;
+  return shared + 1 >= std::min(p.size(), q.size());
 }
 
 }  // namespace
@@ -41,14 +51,16 @@ std::vector<MapStart> sphereStarts(const std::vector<RotationCandidate>& rotatio
   std::vector<MapStart> out;
   for (std::size_t i = 0; i < rotations.size(); ++i) {
     const Mat3& rotation = rotations[i].rotation;
-    out.push_back({rotation, {}, fmt::format("rotation {}", i + 1)});
+    out.push_back({rotation, {}, fmt::format("rotation {}", i + 1), false});
     Points turned;
     for (const Vec3& p : tipsA.place) turned.push_back(rotation * p);
     const TipPairs pairs = nearestTips(turned, tipsB);
     if (pairs.size() >= 2)
       out.push_back({rotation, anchorsOf(pairs, tipsA, tipsB),
-                     fmt::format("rotation {} with {} limbs drawn together", i + 1, pairs.size())});
+                     fmt::format("rotation {} with {} limbs drawn together", i + 1, pairs.size()),
+                     false});
   }
+  std::vector<TipPairs> promising;
   for (const TipPairs& pairs : matchTips(tipsA, tipsB, kMatchings)) {
     Points from = landmarksA, to = landmarksB;
     for (const auto& [i, j] : pairs) {
@@ -57,8 +69,12 @@ std::vector<MapStart> sphereStarts(const std::vector<RotationCandidate>& rotatio
     }
     const Mat3 rotation = bestRotation(from, to);
     if (rotationMisfit(rotation, from, to) > kMisfit) continue;
-    out.push_back(
-        {rotation, anchorsOf(pairs, tipsA, tipsB), fmt::format("{} matched limbs", pairs.size())});
+    const bool fresh = promising.size() < kPromising &&
+                       std::none_of(promising.begin(), promising.end(),
+                                    [&](const TipPairs& known) { return alike(known, pairs); });
+    if (fresh) promising.push_back(pairs);
+    out.push_back({rotation, anchorsOf(pairs, tipsA, tipsB),
+                   fmt::format("{} matched limbs", pairs.size()), fresh});
   }
   return out;
 }

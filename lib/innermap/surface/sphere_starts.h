@@ -14,10 +14,12 @@ struct MapStart {
   Mat3 rotation{};            // of A's layout
   std::vector<Anchor> drawn;  // limb tips, by A's vertices, to be brought to B's
   std::string origin;         // in words
+  bool promising = false;     // not to be dropped by a rough trial
 };
 
 // Each rotation as it is and with the tips that are then each other's nearest; and matchings of
-// tips with the rotation that fits them and the landmarks (places in both layouts) best.
+// tips with the rotation that fits them and the landmarks (places in both layouts) best. Promising
+// are the first of the matchings that differ: for bodies of one kind geodesic distances know best.
 std::vector<MapStart> sphereStarts(const std::vector<RotationCandidate>& rotations,
                                    const LimbTips& tipsA, const LimbTips& tipsB,
                                    const Points& landmarksA, const Points& landmarksB);
