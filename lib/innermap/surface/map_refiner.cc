@@ -10,9 +10,10 @@ constexpr double kSamples = 10000;  // of the energy, at least; three times more
 // More sweeps win less than a thousandth of the energy (measured on the pairs of the benchmarks).
 RelaxSettings relaxation(const RefineSettings& settings) {
   RelaxSettings relax;
-  relax.sweeps = settings.relax ? 2 : 0;
+  relax.sweeps = settings.relax ? 4 : 0;
   relax.lastSweeps = settings.relax ? 10 : 0;
   relax.steps = 1;
+  relax.enough = 2e-3;
   relax.stage = "refining the map";
   relax.progress = settings.progress;
   return relax;
@@ -28,7 +29,7 @@ MapRefiner::MapRefiner(const ClosedSurface& surface, const ProgressiveMesh& mesh
       energy_(surface, mesh_, image_, target, kSamples),
       fine_(mesh_, image_, energy_, settings.fixed, relaxation(settings)),
       origin_(start.origin) {
-  fine_.relaxAll(settings.relax ? 3 : 0);
+  fine_.relaxAll(settings.relax ? 15 : 0);
 }
 
 Layout MapRefiner::startImage(const ClosedSurface& surface, const CoarseSurface& coarse,
