@@ -29,7 +29,7 @@ constexpr double kWorstRatio = 17, kOutlier = 10;
 constexpr double kMargin = 0.97;
 constexpr double kErrorAccuracy = 1e-3;  // of the tolerance
 constexpr double kLeastGain = 0.97;      // of the score in kPatience rounds
-constexpr std::size_t kPatience = 2;
+constexpr std::size_t kPatience = 6;
 
 void append(Matrix& a, const Matrix& b) {
   Matrix out(a.rows() + b.rows(), b.columns());
