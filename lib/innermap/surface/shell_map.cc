@@ -86,7 +86,9 @@ ShellMap mapSphere(const LaidOutShell& a, const LaidOutShell& b, const ShellMapS
   SphereCandidateSettings search;
   search.landmarks = settings.landmarks;
   search.aligned = settings.aligned;
-  search.kept = std::max(kTried, static_cast<std::size_t>(settings.candidates));
+  search.thorough = settings.refine;
+  search.kept =
+      settings.refine ? std::max(kTried, static_cast<std::size_t>(settings.candidates)) : 1;
   search.seed = settings.seed;
   search.progress = settings.progress;
   const Candidates candidates =

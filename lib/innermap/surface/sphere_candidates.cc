@@ -214,6 +214,10 @@ Candidates sphereCandidates(const ClosedSurface& a, const Layout& la, const Limb
   std::vector<MapStart> starts =
       sphereStarts(searchRotations(sampleSource(a, la, kSamples, settings.seed), target, search),
                    tipsA, tipsB, search.from, search.to);
+  if (!settings.thorough)
+    starts.erase(std::remove_if(starts.begin(), starts.end(),
+                                [](const MapStart& s) { return !s.promising; }),
+                 starts.end());
   Trial trial(la, target, settings, normals);
   if (starts.size() > kSecondRound) {
     CoarseMapSettings quick;

@@ -13,6 +13,7 @@ namespace innermap {
 struct SphereCandidateSettings {
   std::vector<Anchor> landmarks;  // fine vertices, and unit vectors; kept in the coarse mesh
   bool aligned = false;           // normals should agree
+  bool thorough = true;           // otherwise only rotations and the most promising limbs are tried
   std::size_t kept = 3;
   std::uint64_t seed = 1;
   Progress* progress = nullptr;

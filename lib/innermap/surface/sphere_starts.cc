@@ -7,7 +7,7 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kMatchings = 300, kPromising = 8;
+constexpr std::size_t kMatchings = 300, kPromising = 8, kBestRotations = 3;
 constexpr double kFar = 0.9;      // between tips that are still drawn together
 constexpr double kMisfit = 0.75;  // of tips and landmarks after the best rotation
 
@@ -51,7 +51,7 @@ std::vector<MapStart> sphereStarts(const std::vector<RotationCandidate>& rotatio
   std::vector<MapStart> out;
   for (std::size_t i = 0; i < rotations.size(); ++i) {
     const Mat3& rotation = rotations[i].rotation;
-    out.push_back({rotation, {}, fmt::format("rotation {}", i + 1), false});
+    out.push_back({rotation, {}, fmt::format("rotation {}", i + 1), i < kBestRotations});
     Points turned;
     for (const Vec3& p : tipsA.place) turned.push_back(rotation * p);
     const TipPairs pairs = nearestTips(turned, tipsB);

@@ -19,7 +19,8 @@ struct MapStart {
 
 // Each rotation as it is and with the tips that are then each other's nearest; and matchings of
 // tips with the rotation that fits them and the landmarks (places in both layouts) best. Promising
-// are the first of the matchings that differ: for bodies of one kind geodesic distances know best.
+// are the best rotations and the first of the matchings that differ: for bodies of one kind
+// geodesic distances know best.
 std::vector<MapStart> sphereStarts(const std::vector<RotationCandidate>& rotations,
                                    const LimbTips& tipsA, const LimbTips& tipsB,
                                    const Points& landmarksA, const Points& landmarksB);
