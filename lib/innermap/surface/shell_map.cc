@@ -17,7 +17,7 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kTried = 8;     // candidates that are refined to
+constexpr std::size_t kTried = 10;    // candidates that are refined to
 constexpr std::size_t kMiddle = 600;  // vertices before the best are chosen
 constexpr std::size_t kCoarse = 150;
 

@@ -19,10 +19,12 @@ namespace {
 
 constexpr std::size_t kSamples = 400;  // that rotations are judged by
 constexpr std::size_t kRotations = 6;
+constexpr double kLandmarkWeight = 40;  // of the mean squared distance, radians, in the energy
+constexpr std::size_t kPulled = 24;     // maps that are then pulled onto the landmarks
 
 // Vertices of the meshes that starts are tried on: all on the first, the best of them on the
 // second.
-constexpr std::size_t kTiny = 60, kCoarse = 150, kSecondRound = 14, kRerun = 10;
+constexpr std::size_t kTiny = 60, kCoarse = 150, kSecondRound = 14;
 
 void landmarkPlaces(const std::vector<Anchor>& landmarks, const Layout& la, Points& from,
                     Points& to) {
@@ -98,29 +100,44 @@ class Trial {
 
   using Maps = std::vector<std::optional<CoarseMap>>;
 
+  // From each start. Landmarks are not met yet, but weigh: a good map that comes near them meets
+  // them with less distortion than one that was pulled there from afar.
   Maps run(const std::vector<MapStart>& starts, const CoarseSurface& coarse,
            const CoarseMapSettings& how) {
     Maps found(starts.size());
     parallel(starts.size(), [&](std::size_t i) {
-      found[i] =
-          relax(rotatedCoarse(coarse, la_, starts[i].rotation), coarse, starts[i].drawn, how);
-      if (found[i]) found[i]->origin = starts[i].origin;
+      CoarseMapSettings drawing = how;
+      drawing.drawn = coarseAnchors(starts[i].drawn, coarse);
+      found[i] = relax(rotatedCoarse(coarse, la_, starts[i].rotation), coarse, drawing);
+      if (!found[i]) return;
+      found[i]->origin = starts[i].origin;
+      found[i]->energy += landmarkCost(*found[i], coarse);
     });
     return found;
   }
 
-  // Maps again, with the limb tips drawn together that have come near one another.
+  // Maps again, with the limb tips drawn together that have come near one another, and landmarks
+  // met.
   Maps rerun(const std::vector<CoarseMap>& maps, const CoarseSurface& coarse, const LimbTips& tipsA,
              const LimbTips& tipsB) {
-    Maps found(maps.size());
-    parallel(maps.size(), [&](std::size_t i) {
-      Points places;
-      for (const int v : tipsA.vertices) places.push_back(maps[i].image.place[coarse.index[v]]);
-      const TipPairs pairs = nearestTips(places, tipsB);
-      if (pairs.empty()) return;
-      found[i] = relax(maps[i].image, coarse, anchorsOf(pairs, tipsA, tipsB), {});
-      if (found[i])
-        found[i]->origin = fmt::format("{}, then {} limbs", maps[i].origin, pairs.size());
+    Maps found(2 * maps.size());
+    parallel(found.size(), [&](std::size_t i) {
+      const CoarseMap& from = maps[i / 2];
+      CoarseMapSettings how;
+      how.fixed = coarseAnchors(settings_.landmarks, coarse);
+      std::string origin = from.origin;
+      if (i % 2 == 1) {
+        Points places;
+        for (const int v : tipsA.vertices) places.push_back(from.image.place[coarse.index[v]]);
+        const TipPairs pairs = nearestTips(places, tipsB);
+        if (pairs.empty()) return;
+        how.drawn = coarseAnchors(anchorsOf(pairs, tipsA, tipsB), coarse);
+        origin += fmt::format(", then {} limbs", pairs.size());
+      } else if (how.fixed.empty()) {
+        return;
+      }
+      found[i] = relax(from.image, coarse, how);
+      if (found[i]) found[i]->origin = origin;
     });
     return found;
   }
@@ -138,23 +155,27 @@ class Trial {
   }
 
   std::optional<CoarseMap> relax(const Layout& start, const CoarseSurface& coarse,
-                                 const std::vector<Anchor>& drawn, CoarseMapSettings how) {
-    how.fixed = coarseAnchors(settings_.landmarks, coarse);
-    how.drawn = coarseAnchors(drawn, coarse);
+                                 CoarseMapSettings how) {
     // A tip that is a landmark already goes where that says.
-    how.drawn.erase(std::remove_if(how.drawn.begin(), how.drawn.end(),
-                                   [&](const Anchor& d) {
-                                     return std::any_of(
-                                         how.fixed.begin(), how.fixed.end(),
-                                         [&](const Anchor& f) { return f.vertex == d.vertex; });
-                                   }),
-                    how.drawn.end());
+    const auto isFixed = [&](const Anchor& d) {
+      return std::any_of(how.fixed.begin(), how.fixed.end(),
+                         [&](const Anchor& f) { return f.vertex == d.vertex; });
+    };
+    how.drawn.erase(std::remove_if(how.drawn.begin(), how.drawn.end(), isFixed), how.drawn.end());
     how.progress = settings_.progress;
     int blocked = -1;
     std::optional<CoarseMap> out = relaxCoarse(coarse, start, target_, how, &blocked);
     if (out && settings_.aligned) out->energy += normalCost(coarse, *out, target_, normals_);
     if (blocked >= 0 && blocked < static_cast<int>(how.fixed.size())) blocked_ = blocked;
     return out;
+  }
+
+  double landmarkCost(const CoarseMap& map, const CoarseSurface& coarse) const {
+    double sum = 0;
+    for (const Anchor& l : settings_.landmarks)
+      sum += squaredNorm(map.image.place[coarse.index[l.vertex]] - l.target);
+    const std::size_t count = settings_.landmarks.size();
+    return count > 0 ? kLandmarkWeight * sum / static_cast<double>(count) : 0;
   }
 
   const Layout& la_;
@@ -198,11 +219,11 @@ Candidates sphereCandidates(const ClosedSurface& a, const Layout& la, const Limb
   for (const int v : tipsA.vertices) keep[v] = 1;
   for (const Anchor& l : settings.landmarks) keep[l.vertex] = 1;
   Candidates out{ProgressiveMesh(a.vertices.size(), a.triangles), {}, {}};
-  out.coarse = coarsened(a, la, out.mesh, keep, std::max(kCoarse, 8 * settings.landmarks.size()),
-                         settings.progress);
+  out.coarse =
+      coarsened(a, la, out.mesh, keep, kCoarse + 12 * settings.landmarks.size(), settings.progress);
   ProgressiveMesh tinyMesh = out.mesh;
-  const CoarseSurface tiny = coarsened(
-      a, la, tinyMesh, keep, std::max(kTiny, 4 * settings.landmarks.size()), settings.progress);
+  const CoarseSurface tiny =
+      coarsened(a, la, tinyMesh, keep, kTiny + 4 * settings.landmarks.size(), settings.progress);
 
   const Points normals = settings.aligned ? unitNormals(b) : Points{};
   RotationSearchSettings search;
@@ -233,8 +254,12 @@ Candidates sphereCandidates(const ClosedSurface& a, const Layout& la, const Limb
       if (m) out.maps.push_back(std::move(*m));
   };
   take(trial.run(starts, out.coarse, {}));
-  keepBest(out.maps, kRerun);
-  take(trial.rerun(out.maps, out.coarse, tipsA, tipsB));
+  std::vector<CoarseMap> first = out.maps;
+  if (!settings.landmarks.empty()) {
+    keepBest(first, kPulled);
+    out.maps.clear();
+  }
+  take(trial.rerun(first, out.coarse, tipsA, tipsB));
   if (out.maps.empty() && !settings.landmarks.empty())
     throw DataError(
         fmt::format("landmarks: no map without flips was found that meets number {}; it "
