@@ -12,6 +12,16 @@ double CoarseToFine::relax(int v, int steps) {
   Vec3& q = layout_.place[v];
   double now = energy_.at(q);
   const double start = now;
+  if (energy_.squeezed()) {
+    mesh_.ring(v, starRing_);
+    ringPlaces(layout_, starRing_, starPlaces_);
+    const Vec3 to = kernelCentroid(layout_.space, q, starPlaces_);
+    const double e = energy_.at(to);
+    if (e < now) {
+      q = to;
+      now = e;
+    }
+  }
   for (int i = 0; i < steps; ++i) {
     const Vec3 step = energy_.step(q, now);
     if (!(norm(step) > 1e-14)) break;

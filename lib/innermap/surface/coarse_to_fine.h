@@ -25,6 +25,8 @@ class StarEnergy {
     (void)vertices;
   }  // before all triangles are `changed`
   virtual void gather(int vertex) = 0;
+  // Whether some triangle of the gathered star is so thin that steps get nowhere.
+  virtual bool squeezed() const { return false; }
   // Of the gathered star; infinite where a triangle is not positive.
   virtual double at(const Vec3& place) const = 0;
   // Tangent vector towards lower energy; `now` is at(place).
@@ -68,8 +70,8 @@ class CoarseToFine {
   StarEnergy& energy_;
   std::vector<char> fixed_;
   RelaxSettings settings_;
-  Ring ring_;
-  RingPlaces places_;
+  Ring ring_, starRing_;
+  RingPlaces places_, starPlaces_;
 };
 
 }  // namespace innermap

@@ -10,6 +10,7 @@ namespace innermap {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kThin = 0.01;  // of the star's mean triangle
 
 }  // namespace
 
@@ -76,6 +77,13 @@ void PullbackEnergy::gather(int v) {
     reach_ += norm(star_.back().b - star_.back().a);
   }
   reach_ /= static_cast<double>(star_.size());
+  double least = kInfinite, sum = 0;
+  for (const StarTriangle& t : star_) {
+    const double det = tripleProduct(image_.place[v], t.a, t.b);
+    least = std::min(least, det);
+    sum += det;
+  }
+  squeezed_ = least < kThin * sum / static_cast<double>(star_.size());
 }
 
 double PullbackEnergy::of(const StarTriangle& t, const Vec3& place, Located& where) const {

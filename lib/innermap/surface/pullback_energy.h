@@ -25,6 +25,7 @@ class PullbackEnergy : public StarEnergy {
   void grown(std::size_t vertices) override;
   void changed(int triangle) override;
   void gather(int vertex) override;
+  bool squeezed() const override { return squeezed_; }
   double at(const Vec3& place) const override;
   Vec3 step(const Vec3& place, double now) const override;
 
@@ -50,6 +51,7 @@ class PullbackEnergy : public StarEnergy {
   std::vector<Vec2> samples_;  // weights of the second and third corner, next to one another
   std::vector<RestTriangle> rest_;
   std::vector<StarTriangle> star_;
+  bool squeezed_ = false;
   double reach_ = 0;  // mean distance of the gathered ring
 };
 
