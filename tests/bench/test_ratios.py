@@ -11,7 +11,7 @@ import sys
 import tempfile
 
 MODELS = os.path.join(os.path.dirname(__file__), "..", "..", "..", "shared", "models")
-SECTIONS = ["placing", "sums", "solve", "tolerance", "poisson", "sequence", "transfer", "jobs"]
+SECTIONS = ["placing", "sums", "solve", "tolerance", "poisson", "sequence", "transfer", "correspond", "jobs"]
 
 
 def main():

@@ -20,9 +20,11 @@ struct Section {
   Tables (*run)(const Options&);
 };
 
-constexpr Section kSections[] = {
-    {"placing", placing}, {"sums", sums},         {"solve", solve},       {"tolerance", tolerance},
-    {"poisson", poisson}, {"sequence", sequence}, {"transfer", transfer}, {"jobs", jobs}};
+constexpr Section kSections[] = {{"placing", placing},   {"sums", sums},
+                                 {"solve", solve},       {"tolerance", tolerance},
+                                 {"poisson", poisson},   {"sequence", sequence},
+                                 {"transfer", transfer}, {"correspond", correspond},
+                                 {"jobs", jobs}};
 
 // A folder that goes with the object.
 class Scratch {

@@ -20,13 +20,14 @@ struct Options {
 
 using Tables = std::vector<Json>;
 
-Tables placing(const Options& options);    // time before the fit: reading, checking, sampling
-Tables sums(const Options& options);       // hierarchical beside direct sums
-Tables solve(const Options& options);      // uniform shells; the dense solver and QR beside them
-Tables tolerance(const Options& options);  // sources placed where the error is
-Tables poisson(const Options& options);    // OpenVDB's Poisson solver beside our whole way
-Tables sequence(const Options& options);   // frames after the first
-Tables transfer(const Options& options);   // volumes pushed and pulled
-Tables jobs(const Options& options);       // the program's main job, all files
+Tables placing(const Options& options);     // time before the fit: reading, checking, sampling
+Tables sums(const Options& options);        // hierarchical beside direct sums
+Tables solve(const Options& options);       // uniform shells; the dense solver and QR beside them
+Tables tolerance(const Options& options);   // sources placed where the error is
+Tables poisson(const Options& options);     // OpenVDB's Poisson solver beside our whole way
+Tables sequence(const Options& options);    // frames after the first
+Tables transfer(const Options& options);    // volumes pushed and pulled
+Tables correspond(const Options& options);  // surfaces never related, one onto another
+Tables jobs(const Options& options);        // the program's main job, all files
 
 }  // namespace innermap::bench
