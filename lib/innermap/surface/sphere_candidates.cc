@@ -210,6 +210,25 @@ std::vector<MapStart> bestStarts(const std::vector<MapStart>& starts,
   return out;
 }
 
+std::vector<MapStart> startsFor(const ClosedSurface& a, const Layout& la, const LimbTips& tipsA,
+                                const TargetMetric& target, const LimbTips& tipsB,
+                                const Points& normals, const SphereCandidateSettings& settings) {
+  RotationSearchSettings search;
+  search.kept = kRotations;
+  if (settings.aligned) search.targetNormals = &normals;
+  landmarkPlaces(settings.landmarks, la, search.from, search.to);
+  requireOrientation(search.from, search.to);
+  search.progress = settings.progress;
+  std::vector<MapStart> starts =
+      sphereStarts(searchRotations(sampleSource(a, la, kSamples, settings.seed), target, search),
+                   tipsA, tipsB, search.from, search.to);
+  if (!settings.thorough)
+    starts.erase(std::remove_if(starts.begin(), starts.end(),
+                                [](const MapStart& s) { return !s.promising; }),
+                 starts.end());
+  return starts;
+}
+
 }  // namespace
 
 Candidates sphereCandidates(const ClosedSurface& a, const Layout& la, const LimbTips& tipsA,
@@ -226,19 +245,7 @@ Candidates sphereCandidates(const ClosedSurface& a, const Layout& la, const Limb
       coarsened(a, la, tinyMesh, keep, kTiny + 4 * settings.landmarks.size(), settings.progress);
 
   const Points normals = settings.aligned ? unitNormals(b) : Points{};
-  RotationSearchSettings search;
-  search.kept = kRotations;
-  if (settings.aligned) search.targetNormals = &normals;
-  landmarkPlaces(settings.landmarks, la, search.from, search.to);
-  requireOrientation(search.from, search.to);
-  search.progress = settings.progress;
-  std::vector<MapStart> starts =
-      sphereStarts(searchRotations(sampleSource(a, la, kSamples, settings.seed), target, search),
-                   tipsA, tipsB, search.from, search.to);
-  if (!settings.thorough)
-    starts.erase(std::remove_if(starts.begin(), starts.end(),
-                                [](const MapStart& s) { return !s.promising; }),
-                 starts.end());
+  std::vector<MapStart> starts = startsFor(a, la, tipsA, target, tipsB, normals, settings);
   Trial trial(la, target, settings, normals);
   if (starts.size() > kSecondRound) {
     CoarseMapSettings quick;
@@ -261,10 +268,10 @@ Candidates sphereCandidates(const ClosedSurface& a, const Layout& la, const Limb
   }
   take(trial.rerun(first, out.coarse, tipsA, tipsB));
   if (out.maps.empty() && !settings.landmarks.empty())
-    throw DataError(
-        fmt::format("landmarks: no map without flips was found that meets number {}; it "
-                    "contradicts the others: check it, or leave it out",
-                    1 + trial.blocked()));
+    throw DataError(fmt::format(
+        "landmarks: no map without flips was found that meets {}; check them, or leave some out",
+        trial.blocked() < 0 ? "them all"
+                            : fmt::format("number {} with the others", 1 + trial.blocked())));
   keepBest(out.maps, settings.kept);
   return out;
 }
