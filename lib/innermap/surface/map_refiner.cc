@@ -5,7 +5,8 @@
 namespace innermap {
 namespace {
 
-constexpr double kSamples = 10000;  // of the energy, at least; three times more change it by 0.3%
+constexpr double kSamples =
+    10000;  // of the energy, at least; three times more change it by half a percent
 
 // More sweeps win less than a thousandth of the energy (measured on the pairs of the benchmarks).
 RelaxSettings relaxation(const RefineSettings& settings) {

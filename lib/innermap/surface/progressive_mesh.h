@@ -46,11 +46,9 @@ class ProgressiveMesh {
   void collapse(int v, const RingVertex& w);
 
   std::size_t collapses() const { return splits_.size(); }
-  int lastCollapsed() const { return splits_.back().vertex; }
   int lastInto() const { return splits_.back().into; }
   // Undoes the last collapse; the vertex that returns.
   int split();
-  // Triangles whose corners the last collapse or split changed: of the vertex that left or came.
 
  private:
   struct Split {

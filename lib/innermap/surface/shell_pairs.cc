@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "innermap/core/error.h"
+#include "innermap/surface/target_metric.h"
 
 namespace innermap {
 namespace {
@@ -33,15 +33,6 @@ std::string forms(const SurfaceShells& s) {
   std::string out;
   for (const int r : childrenOf(s, -1)) out += (out.empty() ? "" : ", ") + form(s, r);
   return out;
-}
-
-double areaOf(const ClosedSurface& s) {
-  double area = 0;
-  for (const Triangle& t : s.triangles) {
-    const Vec3& a = s.vertices[t[0]];
-    area += 0.5 * norm(cross(s.vertices[t[1]] - a, s.vertices[t[2]] - a));
-  }
-  return area;
 }
 
 class Pairing {
@@ -73,7 +64,8 @@ class Pairing {
       return norm(boundingBox(a_.shells[i].vertices).center() -
                   boundingBox(b_.shells[j].vertices).center());
     // Large ones to large ones: the sum of the products is largest when both are in order.
-    return -std::sqrt(areaOf(a_.shells[i]) * areaOf(b_.shells[j]));
+    return -1 / (unitAreaScale(a_.shells[i].vertices, a_.shells[i].triangles) *
+                 unitAreaScale(b_.shells[j].vertices, b_.shells[j].triangles));
   }
 
   void match(int parentA, int parentB) {

@@ -11,6 +11,7 @@
 #include "innermap/surface/decimate.h"
 #include "innermap/surface/newton_step.h"
 #include "innermap/surface/rest_triangle.h"
+#include "innermap/surface/target_metric.h"
 
 namespace innermap {
 namespace {
@@ -34,12 +35,7 @@ class SphereEnergy : public StarEnergy {
  public:
   SphereEnergy(const ClosedSurface& surface, const ProgressiveMesh& mesh, const Layout& layout)
       : mesh_(mesh), layout_(layout), points_(surface.vertices), rest_(surface.triangles.size()) {
-    double area = 0;
-    for (const Triangle& t : surface.triangles) {
-      const Vec3& a = points_[t[0]];
-      area += 0.5 * norm(cross(points_[t[1]] - a, points_[t[2]] - a));
-    }
-    const double scale = std::sqrt(kSphereArea / area);
+    const double scale = std::sqrt(kSphereArea) * unitAreaScale(points_, surface.triangles);
     const Vec3 center = boundingBox(points_).center();
     for (Vec3& p : points_) p = scale * (p - center);
   }

@@ -27,7 +27,6 @@ class TargetMetric {
   TargetMetric(const ClosedSurface& surface, const Layout& layout);
 
   const Locator& locator() const { return locator_; }
-  double scale() const { return scale_; }  // from world units
 
   // The projection from rays onto the surface, at x in the triangle found: images of two tangent
   // vectors, in the triangle's plane.
