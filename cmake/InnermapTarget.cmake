@@ -1,7 +1,9 @@
 # Compile options of our own targets; nothing is set globally.
 function(innermap_own_target target)
   target_compile_features(${target} PUBLIC cxx_std_17)
-  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+  # Executables are compiled like libraries, so that all share the precompiled headers.
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE OFF)
+  target_compile_options(${target} PRIVATE -fPIC)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow)
   if(INNERMAP_WARNINGS_AS_ERRORS)
     target_compile_options(${target} PRIVATE -Werror)

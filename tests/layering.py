@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""Checks the layers: which folder of lib/innermap may include which, that solve/ knows no mesh and
-no grid, that headers whose first comment says "Internal to FOLDER/" stay in their folder, and that
-every other header has its unit test.
+"""Checks the layers: which folder of lib/innermap may include which (the DEPENDS in
+lib/CMakeLists.txt), that solve/ knows no mesh and no grid, that headers in a folder's detail/ stay
+in that folder (core/detail serves the whole library), that no file includes itself by way of
+others, and that every other header has its unit test.
 
     layering.py [ROOT]      exit code 1 and one line for each finding
 """
@@ -9,29 +10,32 @@ import os
 import re
 import sys
 
-# Direct dependencies; what those depend on is allowed too, and core to all.
-DIRECT = {
-    "core": [],
-    "mesh": ["core"],
-    "solve": ["core"],
-    "levelset": ["mesh"],
-    "sample": ["levelset", "mesh"],
-    "field": ["solve"],
-    "evaluate": ["field", "levelset"],
-    "surface": ["mesh"],
-    "transfer": ["evaluate", "mesh"],
-    "tetra": ["evaluate", "levelset"],
-    "output": ["core"],
-}
 # Words that must not stand in a folder's sources, comments aside.
 FORBIDDEN = {"solve": r"\bmesh\b|\bMesh\b|openvdb"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.M)
 
 
-def closure(folder):
-    allowed, waiting = {folder, "core"}, [folder]
+def read_edges(root):
+    """Direct dependencies of each folder, from lib/CMakeLists.txt."""
+    with open(os.path.join(root, "lib/CMakeLists.txt"), encoding="utf-8") as file:
+        text = file.read()
+    edges = {}
+    for name, rest in re.findall(r"^innermap_folder\((\w+)([^)]*)\)", text, re.M):
+        words = rest.split()
+        start = words.index("DEPENDS") + 1 if "DEPENDS" in words else len(words)
+        depends = []
+        for word in words[start:]:
+            if word.isupper():
+                break
+            depends.append(word)
+        edges[name] = depends
+    return edges
+
+
+def closure(edges, folder):
+    allowed, waiting = {folder}, [folder]
     while waiting:
-        for other in DIRECT[waiting.pop()]:
+        for other in edges[waiting.pop()]:
             if other not in allowed:
                 allowed.add(other)
                 waiting.append(other)
@@ -42,13 +46,8 @@ def without_comments(text):
     return re.sub(r"//[^\n]*|/\*.*?\*/", "", text, flags=re.S)
 
 
-def is_internal(root, included):
-    path = os.path.join(root, "lib", included)
-    if not os.path.exists(path):
-        return False
-    with open(path, encoding="utf-8") as file:
-        comment = file.read().split("#pragma once")[0].replace("\n// ", " ")
-    return re.search(rf"\b(Internal|Private) to {included.split('/')[1]}/", comment) is not None
+def is_internal(included):
+    return "detail" in included.split("/")[2:-1]
 
 
 def sources(top):
@@ -58,12 +57,12 @@ def sources(top):
                 yield os.path.join(folder, name)
 
 
-def check_folder(root, folder):
+def check_folder(root, folder, edges):
     """Findings of one folder of lib/innermap."""
-    if folder not in DIRECT:
-        yield f"lib/innermap/{folder}: not a folder of the design"
+    if folder not in edges:
+        yield f"lib/innermap/{folder}: not an innermap_folder of lib/CMakeLists.txt"
         return
-    allowed = closure(folder)
+    allowed = closure(edges, folder)
     for path in sources(os.path.join(root, "lib/innermap", folder)):
         here = os.path.relpath(path, root)
         with open(path, encoding="utf-8") as file:
@@ -73,14 +72,14 @@ def check_folder(root, folder):
             if parts[0] != "innermap":
                 if not os.path.dirname(included) and os.path.exists(
                         os.path.join(os.path.dirname(path), included)):
-                    yield f'{here}: include "innermap/{folder}/{included}", by its path'
+                    yield f'{here}: includes "{included}", not by its path from lib/'
                 elif ".." in parts or parts[0] in ("lib", "tools", "tests"):
                     yield f'{here}: includes "{included}", not by its path from lib/'
-            elif len(parts) != 3:
+            elif len(parts) < 3:
                 yield f'{here}: includes "{included}", which is in no folder'
             elif parts[1] not in allowed:
                 yield f"{here}: {folder} must not include {parts[1]} ({included})"
-            elif parts[1] != folder and is_internal(root, included):
+            elif parts[1] not in (folder, "core") and is_internal(included):
                 yield f"{here}: {included} is internal to {parts[1]}"
             elif not os.path.exists(os.path.join(root, "lib", included)):
                 yield f'{here}: includes "{included}", which is not there'
@@ -91,42 +90,79 @@ def check_folder(root, folder):
 
 
 def check_tests(root, folder):
-    """Public headers without tests/unit/<folder>/<header>_test.cc."""
-    top = os.path.join(root, "lib/innermap", folder)
-    for name in sorted(os.listdir(top)):
-        if not name.endswith(".h") or is_internal(root, f"innermap/{folder}/{name}"):
+    """Public headers without tests/unit/<their path>_test.cc."""
+    lib = os.path.join(root, "lib")
+    for path in sources(os.path.join(lib, "innermap", folder)):
+        header = os.path.relpath(path, lib)
+        if not header.endswith(".h") or is_internal(header):
             continue
-        test = f"tests/unit/{folder}/{name[:-2]}_test.cc"
+        test = f"tests/unit/{header[len('innermap/'):-2]}_test.cc"
         path = os.path.join(root, test)
         if not os.path.exists(path):
-            yield f"lib/innermap/{folder}/{name}: no unit test, {test} is missing"
+            yield f"lib/{header}: no unit test, {test} is missing"
             continue
         with open(path, encoding="utf-8") as file:
             text = file.read()
-        if f'"innermap/{folder}/{name}"' not in text:
-            yield f"{test}: does not include innermap/{folder}/{name}"
+        if f'"{header}"' not in text:
+            yield f"{test}: does not include {header}"
         elif not re.search(r"^\s*(TYPED_)?TEST(_[FP])?\(", text, re.M):
             yield f"{test}: has no test"
 
 
-def check_tools(root):
-    for path in sources(os.path.join(root, "tools")):
+def check_outside(root, top):
+    """Programs see public headers only."""
+    for path in sources(os.path.join(root, top)):
         with open(path, encoding="utf-8") as file:
             text = file.read()
         for included in INCLUDE.findall(text):
-            if included.startswith("innermap/") and is_internal(root, included):
+            if included.startswith("innermap/") and is_internal(included):
                 yield f"{os.path.relpath(path, root)}: {included} is internal to its folder"
 
 
+def unit_of(path):
+    """A header and its source are one unit."""
+    return re.sub(r"\.(h|cc)$", "", path)
+
+
+def check_cycles(root):
+    """Units (a header with its source) that include each other, directly or round about."""
+    lib = os.path.join(root, "lib")
+    includes = {}
+    for path in sources(lib):
+        with open(path, encoding="utf-8") as file:
+            units = {unit_of(i) for i in INCLUDE.findall(file.read())}
+        unit = unit_of(os.path.relpath(path, lib))
+        includes.setdefault(unit, set()).update(units - {unit})
+    state, trail = {}, []
+
+    def visit(unit):
+        state[unit] = "open"
+        trail.append(unit)
+        for other in sorted(includes.get(unit, ())):
+            if state.get(other) == "open":
+                yield f"lib/{other}: includes itself: " + " -> ".join(trail[trail.index(other):] + [other])
+            elif other not in state:
+                yield from visit(other)
+        trail.pop()
+        state[unit] = "done"
+
+    for unit in sorted(includes):
+        if unit not in state:
+            yield from visit(unit)
+
+
 def check(root):
-    yield from check_tools(root)
+    edges = read_edges(root)
+    for top in ("tools", "tests/install", "python"):
+        yield from check_outside(root, top)
+    yield from check_cycles(root)
     lib = os.path.join(root, "lib/innermap")
     for folder in sorted(os.listdir(lib)):
         if os.path.isdir(os.path.join(lib, folder)):
-            yield from check_folder(root, folder)
-            if folder in DIRECT:
+            yield from check_folder(root, folder, edges)
+            if folder in edges:
                 yield from check_tests(root, folder)
-        elif folder.endswith((".h", ".cc")):
+        elif folder.endswith(".cc"):
             yield f"lib/innermap/{folder}: in no folder of the design"
 
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "innermap/core/random.h"
+#include "innermap/core/detail/random.h"
 #include "innermap/sample/patch_points.h"
 #include "innermap/sample/source_points.h"
 #include "innermap/sample/surface_samples.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "innermap/core/progress.h"
-#include "innermap/output/report.h"
+#include "innermap/io/report.h"
 
 namespace innermap::tool {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "innermap/output/mesh_picture.h"
+#include "innermap/io/picture/mesh_picture.h"
 #include "innermap/surface/surface_image.h"
 
 namespace innermap::tool {

@@ -12,9 +12,9 @@
 #include "frame_velocity.h"
 #include "innermap/core/content_hash.h"
 #include "innermap/core/file.h"
+#include "innermap/io/vdb/vdb_file.h"
+#include "innermap/io/version.h"
 #include "innermap/levelset/level_set.h"
-#include "innermap/output/vdb_file.h"
-#include "innermap/output/version.h"
 #include "transfer_options.h"
 
 namespace innermap::tool {

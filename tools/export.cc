@@ -5,9 +5,9 @@
 
 #include "commands.h"
 #include "innermap/core/frame_files.h"
-#include "innermap/output/slice.h"
-#include "innermap/output/vdb_file.h"
-#include "innermap/output/volume_texture.h"
+#include "innermap/io/slice.h"
+#include "innermap/io/vdb/vdb_file.h"
+#include "innermap/io/volume/volume_texture.h"
 #include "lists.h"
 #include "volume_options.h"
 

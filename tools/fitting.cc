@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "boundary_samples.h"
-#include "innermap/output/version.h"
+#include "innermap/io/version.h"
 
 namespace innermap::tool {
 namespace {

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include "commands.h"
-#include "innermap/output/slice.h"
-#include "innermap/output/vdb_file.h"
-#include "innermap/output/volume_texture_read.h"
+#include "innermap/io/slice.h"
+#include "innermap/io/vdb/vdb_file.h"
+#include "innermap/io/volume/volume_texture_read.h"
 #include "lists.h"
 #include "volume_options.h"
 

@@ -8,9 +8,9 @@
 #include "commands.h"
 #include "innermap/core/memory.h"
 #include "innermap/field/field_file.h"
+#include "innermap/io/exr/exr_info.h"
+#include "innermap/io/vdb/vdb_file.h"
 #include "innermap/mesh/read.h"
-#include "innermap/output/exr_info.h"
-#include "innermap/output/vdb_file.h"
 
 namespace innermap::tool {
 namespace {

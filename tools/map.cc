@@ -10,12 +10,12 @@
 #include "evaluation.h"
 #include "fitting.h"
 #include "innermap/core/file.h"
+#include "innermap/io/exr/exr_slices.h"
+#include "innermap/io/picture/section_image.h"
+#include "innermap/io/slice.h"
 #include "innermap/mesh/read.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/mesh/write.h"
-#include "innermap/output/exr_slices.h"
-#include "innermap/output/section_image.h"
-#include "innermap/output/slice.h"
 #include "section_place.h"
 
 namespace innermap::tool {

@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include "commands.h"
+#include "innermap/io/vdb/vdb_file.h"
 #include "innermap/levelset/level_set.h"
-#include "innermap/output/vdb_file.h"
 #include "saved_map.h"
 #include "transfer_options.h"
 

@@ -5,7 +5,7 @@
 
 #include "commands.h"
 #include "innermap/evaluate/evaluate_map.h"
-#include "innermap/output/vdb_file.h"
+#include "innermap/io/vdb/vdb_file.h"
 #include "saved_map.h"
 #include "transfer_options.h"
 

@@ -11,9 +11,9 @@
 #include "frame_loop.h"
 #include "frame_solver.h"
 #include "innermap/core/file.h"
+#include "innermap/io/picture/chart.h"
+#include "innermap/io/vdb/vdb_file.h"
 #include "innermap/levelset/level_set.h"
-#include "innermap/output/chart.h"
-#include "innermap/output/vdb_file.h"
 #include "saved_map.h"
 #include "sequence_table.h"
 

@@ -6,8 +6,8 @@
 
 #include "frame_loop.h"
 #include "innermap/field/boundary_error.h"
-#include "innermap/output/chart.h"
-#include "innermap/output/report.h"
+#include "innermap/io/picture/chart.h"
+#include "innermap/io/report.h"
 
 namespace innermap::tool {
 

@@ -1,13 +1,13 @@
 // `innermap slice`: a .vdb file as EXR slices and as a picture of one section.
-#include "innermap/output/slice.h"
+#include "innermap/io/slice.h"
 
 #include <fmt/format.h>
 
 #include "commands.h"
 #include "innermap/core/memory.h"
-#include "innermap/output/exr_slices.h"
-#include "innermap/output/section_image.h"
-#include "innermap/output/vdb_file.h"
+#include "innermap/io/exr/exr_slices.h"
+#include "innermap/io/picture/section_image.h"
+#include "innermap/io/vdb/vdb_file.h"
 #include "lists.h"
 
 namespace innermap::tool {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "context.h"
+#include "innermap/io/picture/image_file.h"
 #include "innermap/mesh/mesh.h"
-#include "innermap/output/image_file.h"
 
 namespace innermap::tool {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "innermap/core/detail/point_grid.h"
 #include "innermap/core/parallel.h"
-#include "innermap/core/point_grid.h"
 #include "innermap/field/boundary_error.h"
 #include "innermap/sample/surface_samples.h"
 

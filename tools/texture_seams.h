@@ -8,7 +8,7 @@
 #include "context.h"
 #include "innermap/levelset/solid.h"
 #include "innermap/mesh/uv_charts.h"
-#include "innermap/transfer/near_segments.h"
+#include "innermap/texture/detail/near_segments.h"
 #include "texture_surface.h"
 
 namespace innermap::tool {

@@ -10,8 +10,8 @@
 #include "innermap/levelset/solid.h"
 #include "innermap/mesh/mesh.h"
 #include "innermap/mesh/uv_charts.h"
-#include "innermap/transfer/input_lookup.h"
-#include "innermap/transfer/texture_grids.h"
+#include "innermap/texture/detail/input_lookup.h"
+#include "innermap/texture/texture_grids.h"
 
 namespace innermap::tool {
 

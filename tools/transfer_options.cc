@@ -7,8 +7,8 @@
 #include <cstdlib>
 
 #include "innermap/core/memory.h"
+#include "innermap/io/vdb/vdb_file.h"
 #include "innermap/levelset/level_set.h"
-#include "innermap/output/vdb_file.h"
 #include "largest.h"
 #include "lists.h"
 

@@ -3,9 +3,9 @@
 
 #include "commands.h"
 #include "innermap/core/memory.h"
+#include "innermap/io/vdb/vdb_file.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/mesh/read.h"
-#include "innermap/output/vdb_file.h"
 
 namespace innermap::tool {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <Eigen/Dense>
 
-#include "innermap/solve/blocked_qr.h"
 #include "innermap/solve/dense_solver.h"
+#include "innermap/solve/detail/blocked_qr.h"
 #include "innermap/solve/kernel_sum.h"
 #include "shapes.h"
 

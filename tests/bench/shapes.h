@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "innermap/core/detail/random.h"
 #include "innermap/core/matrix.h"
-#include "innermap/core/random.h"
 #include "innermap/core/vec3.h"
 #include "innermap/mesh/mesh.h"
 

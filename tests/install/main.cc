@@ -50,8 +50,8 @@ int fit(const char* sourcePath, const char* targetPath) {
   const innermap::HarmonicMap map(
       innermap::HarmonicField(charges, solution.weights, solution.affine));
 
-  const innermap::BoundaryError error = measureBoundaryError(
-      map.field(), fresh.points, fresh.values, boundingBox(target).diagonal());
+  const innermap::BoundaryError error =
+      measureBoundaryError(map.field(), fresh.points, fresh.values, boundingBox(target).diagonal());
   std::printf("boundary error: rms %.2g, 99%% %.2g, largest %.2g of the diagonal\n", error.rms,
               error.p99, error.max);
   return error.rms < 3e-3 ? 0 : 1;

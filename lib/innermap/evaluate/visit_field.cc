@@ -9,7 +9,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
-#include "innermap/evaluate/leaf_plan.h"
+#include "innermap/evaluate/detail/leaf_plan.h"
 
 namespace innermap {
 namespace {

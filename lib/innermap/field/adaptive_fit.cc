@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
+#include "innermap/core/detail/point_grid.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
-#include "innermap/core/point_grid.h"
 #include "innermap/solve/iterative_solver.h"
 
 namespace innermap {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "innermap/core/parallel.h"
-#include "innermap/levelset/grid_volume.h"
+#include "innermap/levelset/detail/grid_volume.h"
 #include "innermap/levelset/level_set.h"
 
 namespace innermap {

@@ -9,7 +9,7 @@
 
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
-#include "innermap/levelset/band.h"
+#include "innermap/levelset/detail/band.h"
 
 namespace innermap {
 namespace {

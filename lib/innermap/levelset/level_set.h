@@ -14,9 +14,9 @@
 namespace innermap {
 
 struct LevelSetSettings {
-  double voxelSize = 0;         // world units; 0 means: resolution decides
-  int resolution = 128;         // voxels along the longest side of the solid's box, in [4, 4096]
-  double halfWidth = 3;         // of the narrow band, voxels, in [2, 100]
+  double voxelSize = 0;  // world units; 0 means: resolution decides
+  int resolution = 128;  // voxels along the longest side of the solid's box, in [4, 4096]
+  double halfWidth = 3;  // of the narrow band, voxels, in [2, 100]
   // Centre of voxel (0, 0, 0), world units, so that several grids have one lattice (the frames of a
   // sequence), at most 1e9 voxels away from the solid; near its lower corner without.
   std::optional<Vec3> origin;

@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "innermap/core/parallel.h"
-#include "innermap/levelset/band.h"
-#include "innermap/levelset/displaced_surface.h"
+#include "innermap/levelset/detail/band.h"
+#include "innermap/levelset/detail/displaced_surface.h"
 
 namespace innermap {
 namespace {

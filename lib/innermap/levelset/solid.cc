@@ -5,8 +5,8 @@
 #include <mutex>
 #include <numeric>
 
-#include "innermap/levelset/exposed_surface.h"
-#include "innermap/levelset/grid_volume.h"
+#include "innermap/levelset/detail/exposed_surface.h"
+#include "innermap/levelset/detail/grid_volume.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/mesh/winding_number.h"
 

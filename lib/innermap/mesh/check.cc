@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <tuple>
 
+#include "innermap/mesh/detail/topology.h"
 #include "innermap/mesh/self_intersection.h"
-#include "innermap/mesh/topology.h"
 
 namespace innermap {
 namespace {

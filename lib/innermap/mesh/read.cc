@@ -10,7 +10,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
-#include "innermap/mesh/polygon_mesh.h"
+#include "innermap/mesh/detail/polygon_mesh.h"
 
 namespace innermap {
 namespace {
@@ -26,7 +26,7 @@ Reader readerOf(const std::string& path) {
   if (equalsIgnoringCase(extension, ".ply")) return readPly;
   if (equalsIgnoringCase(extension, ".off")) return readOff;
   if (equalsIgnoringCase(extension, ".stl")) return readStl;
-  throw FileError(path, (has ? "unknown extension " + quoted(extension) : "has no extension") +
+  throw FileError(path, (has ? "unknown extension " + inQuotes(extension) : "has no extension") +
                             "; meshes are read from .obj, .ply, .off and .stl files");
 }
 

@@ -6,10 +6,10 @@
 #include <numeric>
 
 #include "innermap/core/error.h"
-#include "innermap/mesh/clean_triangles.h"
-#include "innermap/mesh/orientation.h"
-#include "innermap/mesh/shells.h"
-#include "innermap/mesh/topology.h"
+#include "innermap/mesh/detail/clean_triangles.h"
+#include "innermap/mesh/detail/orientation.h"
+#include "innermap/mesh/detail/shells.h"
+#include "innermap/mesh/detail/topology.h"
 
 namespace innermap {
 namespace {

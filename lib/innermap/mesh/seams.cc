@@ -1,6 +1,6 @@
 #include "innermap/mesh/seams.h"
 
-#include "innermap/mesh/topology.h"
+#include "innermap/mesh/detail/topology.h"
 
 namespace innermap {
 

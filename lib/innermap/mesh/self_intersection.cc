@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "innermap/core/parallel.h"
-#include "innermap/mesh/bvh.h"
-#include "innermap/mesh/intersect_triangles.h"
-#include "innermap/mesh/topology.h"
+#include "innermap/mesh/detail/bvh.h"
+#include "innermap/mesh/detail/intersect_triangles.h"
+#include "innermap/mesh/detail/topology.h"
 #include "innermap/mesh/triangle_tree.h"
 
 namespace innermap {

@@ -9,7 +9,7 @@
 #include <queue>
 
 #include "innermap/core/error.h"
-#include "innermap/mesh/topology.h"
+#include "innermap/mesh/detail/topology.h"
 
 namespace innermap {
 namespace {

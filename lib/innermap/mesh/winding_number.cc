@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "innermap/mesh/bvh.h"
+#include "innermap/mesh/detail/bvh.h"
 
 namespace innermap {
 namespace {

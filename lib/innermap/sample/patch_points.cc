@@ -4,10 +4,10 @@
 #include <cmath>
 #include <functional>
 
+#include "innermap/core/detail/point_grid.h"
+#include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
-#include "innermap/core/point_grid.h"
-#include "innermap/core/random.h"
 #include "innermap/levelset/offset_surface.h"
 
 namespace innermap {

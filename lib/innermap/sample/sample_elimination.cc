@@ -2,8 +2,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "innermap/sample/greedy_removal.h"
-#include "innermap/sample/neighbour_grid.h"
+#include "innermap/sample/detail/greedy_removal.h"
+#include "innermap/sample/detail/neighbour_grid.h"
 #include "innermap/sample/surface_samples.h"
 
 namespace innermap {

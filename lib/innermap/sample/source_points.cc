@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "innermap/core/detail/random.h"
 #include "innermap/core/parallel.h"
-#include "innermap/core/random.h"
 #include "innermap/levelset/offset_surface.h"
 #include "innermap/sample/surface_samples.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "innermap/core/detail/random.h"
 #include "innermap/core/parallel.h"
-#include "innermap/core/random.h"
 
 namespace innermap {
 namespace {

@@ -18,7 +18,7 @@
 #include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/solve/affine.h"
-#include "innermap/solve/blocked_qr.h"
+#include "innermap/solve/detail/blocked_qr.h"
 
 namespace innermap {
 

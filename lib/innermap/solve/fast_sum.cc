@@ -4,14 +4,14 @@
 #include <cmath>
 #include <numeric>
 
+#include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
-#include "innermap/core/random.h"
-#include "innermap/solve/charge_tree.h"
-#include "innermap/solve/descent.h"
-#include "innermap/solve/far_field.h"
-#include "innermap/solve/sum_plan.h"
-#include "innermap/solve/sum_reference.h"
+#include "innermap/solve/detail/charge_tree.h"
+#include "innermap/solve/detail/descent.h"
+#include "innermap/solve/detail/far_field.h"
+#include "innermap/solve/detail/sum_plan.h"
+#include "innermap/solve/detail/sum_reference.h"
 
 namespace innermap {
 namespace {

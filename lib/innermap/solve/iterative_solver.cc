@@ -7,7 +7,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
-#include "innermap/solve/directions.h"
+#include "innermap/solve/detail/directions.h"
 #include "innermap/solve/fast_sum.h"
 #include "innermap/solve/sequence_solver.h"
 

@@ -19,8 +19,8 @@
 #include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/solve/affine.h"
-#include "innermap/solve/coarse_solver.h"
-#include "innermap/solve/local_solver.h"
+#include "innermap/solve/detail/coarse_solver.h"
+#include "innermap/solve/detail/local_solver.h"
 
 namespace innermap {
 

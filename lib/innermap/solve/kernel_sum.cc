@@ -4,7 +4,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
-#include "innermap/solve/kernel_simd.h"
+#include "innermap/solve/detail/kernel_simd.h"
 
 namespace innermap {
 namespace {

@@ -5,9 +5,9 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
-#include "innermap/solve/descent.h"
-#include "innermap/solve/dipole_moments.h"
-#include "innermap/solve/sum_plan.h"
+#include "innermap/solve/detail/descent.h"
+#include "innermap/solve/detail/dipole_moments.h"
+#include "innermap/solve/detail/sum_plan.h"
 
 namespace innermap {
 namespace {

@@ -11,7 +11,7 @@
 #include "innermap/core/error.h"
 #include "innermap/mesh/repair.h"
 #include "innermap/mesh/seams.h"
-#include "innermap/surface/nesting.h"
+#include "innermap/surface/detail/topology/nesting.h"
 
 namespace innermap {
 namespace {

@@ -8,12 +8,12 @@
 
 #include "innermap/core/error.h"
 #include "innermap/mesh/triangle_tree.h"
-#include "innermap/surface/cut_alike.h"
-#include "innermap/surface/glued_map.h"
-#include "innermap/surface/locate.h"
-#include "innermap/surface/shell_map.h"
-#include "innermap/surface/shell_pairs.h"
-#include "innermap/surface/subdivide.h"
+#include "innermap/surface/detail/handles/cut_alike.h"
+#include "innermap/surface/detail/handles/glued_map.h"
+#include "innermap/surface/detail/refining/locate.h"
+#include "innermap/surface/detail/refining/shell_map.h"
+#include "innermap/surface/detail/refining/subdivide.h"
+#include "innermap/surface/detail/topology/shell_pairs.h"
 
 namespace innermap {
 namespace {

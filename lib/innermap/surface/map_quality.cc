@@ -10,8 +10,8 @@
 #include "innermap/core/parallel.h"
 #include "innermap/mesh/self_intersection.h"
 #include "innermap/mesh/triangle_tree.h"
-#include "innermap/surface/area_samples.h"
-#include "innermap/surface/composed_map.h"
+#include "innermap/surface/detail/refining/area_samples.h"
+#include "innermap/surface/detail/refining/composed_map.h"
 
 namespace innermap {
 namespace {

@@ -7,11 +7,11 @@
 #include <limits>
 
 #include "innermap/core/error.h"
-#include "innermap/surface/coarse_to_fine.h"
-#include "innermap/surface/decimate.h"
-#include "innermap/surface/newton_step.h"
-#include "innermap/surface/rest_triangle.h"
-#include "innermap/surface/target_metric.h"
+#include "innermap/surface/detail/refining/coarse_to_fine.h"
+#include "innermap/surface/detail/refining/decimate.h"
+#include "innermap/surface/detail/refining/newton_step.h"
+#include "innermap/surface/detail/refining/rest_triangle.h"
+#include "innermap/surface/detail/refining/target_metric.h"
 
 namespace innermap {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "innermap/core/parallel.h"
 #include "innermap/mesh/triangle_tree.h"
-#include "innermap/surface/composed_map.h"
+#include "innermap/surface/detail/refining/composed_map.h"
 
 namespace innermap {
 namespace {

@@ -7,9 +7,9 @@
 #include "innermap/core/memory.h"
 #include "innermap/evaluate/active_region.h"
 #include "innermap/evaluate/evaluate_map.h"
-#include "innermap/transfer/cell_images.h"
-#include "innermap/transfer/leaf_index.h"
-#include "innermap/transfer/newton.h"
+#include "innermap/transfer/detail/cell_images.h"
+#include "innermap/transfer/detail/leaf_index.h"
+#include "innermap/transfer/detail/newton.h"
 
 namespace innermap {
 namespace {

@@ -3,10 +3,10 @@
 #include "innermap/core/error.h"
 #include "innermap/evaluate/active_region.h"
 #include "innermap/evaluate/evaluate_map.h"
-#include "innermap/transfer/carry_output.h"
-#include "innermap/transfer/extended_map.h"
+#include "innermap/transfer/detail/carry_output.h"
+#include "innermap/transfer/detail/extended_map.h"
+#include "innermap/transfer/detail/source_lattice.h"
 #include "innermap/transfer/inverse_map.h"
-#include "innermap/transfer/source_lattice.h"
 
 namespace innermap {
 namespace {

@@ -6,7 +6,7 @@
 #include "innermap/field/field_file.h"
 #include "innermap/mesh/read.h"
 #include "innermap/sample/surface_samples.h"
-#include "innermap/solve/blocked_qr.h"
+#include "innermap/solve/detail/blocked_qr.h"
 #include "innermap/solve/kernel_sum.h"
 #include "pairs.h"
 #include "program.h"

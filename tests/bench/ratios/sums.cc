@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "innermap/core/random.h"
+#include "innermap/core/detail/random.h"
 #include "innermap/evaluate/active_region.h"
 #include "innermap/field/field_file.h"
 #include "innermap/levelset/level_set.h"

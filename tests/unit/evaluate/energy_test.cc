@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "innermap/core/random.h"
+#include "innermap/core/detail/random.h"
 
 namespace innermap {
 namespace {

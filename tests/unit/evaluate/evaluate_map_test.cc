@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
-#include "innermap/core/random.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"
 

@@ -4,8 +4,8 @@
 
 #include <atomic>
 
+#include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
-#include "innermap/core/random.h"
 #include "innermap/evaluate/active_region.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "field/sphere_problem.h"
+#include "innermap/core/detail/point_grid.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
-#include "innermap/core/point_grid.h"
 
 namespace innermap {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "innermap/core/random.h"
+#include "innermap/core/detail/random.h"
 #include "mesh/shapes.h"
 
 namespace innermap {

@@ -4,8 +4,8 @@
 
 #include <functional>
 
+#include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
-#include "innermap/core/random.h"
 #include "mesh/test_meshes.h"
 
 namespace innermap {

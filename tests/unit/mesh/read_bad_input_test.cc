@@ -8,9 +8,9 @@
 #include <fstream>
 #include <iterator>
 
+#include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
-#include "innermap/core/random.h"
 #include "innermap/mesh/read.h"
 #include "innermap/mesh/write.h"
 #include "mesh/test_meshes.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "innermap/core/random.h"
+#include "innermap/core/detail/random.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap::shapes {

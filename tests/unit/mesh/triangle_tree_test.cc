@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "innermap/core/random.h"
+#include "innermap/core/detail/random.h"
 #include "shapes.h"
 
 namespace innermap {

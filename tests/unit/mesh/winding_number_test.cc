@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "innermap/core/random.h"
+#include "innermap/core/detail/random.h"
 #include "shapes.h"
 
 namespace innermap {

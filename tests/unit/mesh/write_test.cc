@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
+#include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
-#include "innermap/core/random.h"
 #include "innermap/mesh/read.h"
 #include "mesh/test_meshes.h"
 

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "innermap/core/detail/random.h"
 #include "innermap/core/parallel.h"
-#include "innermap/core/random.h"
 #include "mesh/shapes.h"
 
 namespace innermap {

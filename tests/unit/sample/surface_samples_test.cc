@@ -5,8 +5,8 @@
 #include <chrono>
 #include <set>
 
+#include "innermap/core/detail/random.h"
 #include "innermap/core/parallel.h"
-#include "innermap/core/random.h"
 #include "mesh/shapes.h"
 
 namespace innermap {

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "innermap/core/random.h"
+#include "innermap/core/detail/random.h"
 #include "innermap/surface/closed_surface.h"
 #include "mesh/shapes.h"
 

@@ -7,7 +7,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
-#include "innermap/surface/locate.h"
+#include "innermap/surface/detail/refining/locate.h"
 #include "mesh/test_meshes.h"
 
 namespace innermap {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
-#include "innermap/core/random.h"
 #include "innermap/mesh/read.h"
 #include "mesh/shapes.h"
 #include "surface/handle_shapes.h"

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "innermap/core/error.h"
-#include "innermap/surface/locate.h"
+#include "innermap/surface/detail/refining/locate.h"
 #include "mesh/test_meshes.h"
 
 namespace innermap {

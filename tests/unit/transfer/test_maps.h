@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "innermap/core/random.h"
+#include "innermap/core/detail/random.h"
 #include "innermap/field/fit.h"
 #include "innermap/field/harmonic_map.h"
 #include "innermap/levelset/level_set.h"

@@ -1,0 +1,61 @@
+#include "innermap/io/exr/detail/exr_stream.h"
+
+#include <OpenEXR/ImfThreading.h>
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <new>
+
+#include "innermap/core/error.h"
+#include "innermap/io/exr/detail/exr_verify.h"
+
+namespace innermap {
+
+void ExrOutputStream::write(const char data[], int count) {
+  throwIfCancelled(progress_);
+  errno = 0;
+  stream_.write(data, count);
+  if (!stream_)
+    throw FileError(path_, fmt::format("cannot be written ({}); free some space",
+                                       errno ? std::strerror(errno) : "write error"));
+}
+
+ExrInputStream::ExrInputStream(const std::string& path, const Progress* progress)
+    : IStream(path.c_str()), buffer_(path, progress), stream_(&buffer_) {
+  // Exceptions of the buffer come through the stream.
+  stream_.exceptions(std::ios::badbit | std::ios::failbit);
+  verifyExr(path, stream_, buffer_.size());
+  stream_.seekg(0);
+}
+
+bool ExrInputStream::read(char data[], int count) {
+  stream_.read(data, count);
+  return static_cast<std::uint64_t>(stream_.tellg()) < buffer_.size();
+}
+
+void withExrErrors(const std::string& path, const std::string& done, const std::string& hint,
+                   const Progress* progress, const std::function<void()>& body) {
+  try {
+    body();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    throwIfCancelled(progress);
+    throw FileError(path, fmt::format("cannot be {} ({}){}", done, error.what(), hint));
+  }
+}
+
+ExrThreads::ExrThreads() : before_(Imf::globalThreadCount()) {
+  const auto allowed =
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  Imf::setGlobalThreadCount(static_cast<int>(std::min<std::size_t>(allowed, 64)));
+}
+
+ExrThreads::~ExrThreads() { Imf::setGlobalThreadCount(before_); }
+
+}  // namespace innermap

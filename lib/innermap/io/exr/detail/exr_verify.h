@@ -1,0 +1,15 @@
+// Walks through the headers of an EXR file and checks every size in them against the file's,
+// because OpenEXR allocates by them before it reads.
+#pragma once
+
+#include <cstdint>
+#include <istream>
+#include <string>
+
+namespace innermap {
+
+// `stream` throws at every access beyond the end. Throws FileError: no EXR file, an attribute
+// longer than the rest of the file, more pixels than its chunks could be listed for.
+void verifyExr(const std::string& path, std::istream& stream, std::uint64_t size);
+
+}  // namespace innermap

@@ -1,0 +1,44 @@
+#include "innermap/io/exr/exr_info.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "innermap/core/error.h"
+
+namespace innermap {
+
+std::vector<ExrPart> readExrInfo(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored))
+    throw FileError(path, "does not exist; give the path of an .exr file");
+  if (!std::ifstream(path))
+    throw FileError(path, std::string("cannot be opened (") + std::strerror(errno) + ")");
+  try {
+    const Imf::MultiPartInputFile file(path.c_str(), 0, /*reconstructChunkOffsetTable=*/false);
+    std::vector<ExrPart> parts;
+    for (int i = 0; i < file.parts(); ++i) {
+      const Imf::Header& header = file.header(i);
+      const Imath::Box2i window = header.dataWindow();
+      ExrPart part;
+      if (header.hasName()) part.name = header.name();
+      part.width = window.max.x - window.min.x + 1;
+      part.height = window.max.y - window.min.y + 1;
+      for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
+        part.channels.push_back(c.name());
+      parts.push_back(std::move(part));
+    }
+    return parts;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw FileError(path, std::string("cannot be read (") + error.what() + ")");
+  }
+}
+
+}  // namespace innermap

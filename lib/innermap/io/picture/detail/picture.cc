@@ -1,0 +1,161 @@
+#include "innermap/io/picture/detail/picture.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "innermap/core/error.h"
+#include "innermap/io/picture/detail/bitmap_font.h"
+
+namespace innermap {
+namespace {
+
+// OpenImageIO searches the whole system for a font when the usual place has none; that takes half
+// a second, so only the usual places are asked.
+const std::string& fontPath() {
+  static const std::string path = [] {
+    for (const char* candidate :
+         {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/TTF/DejaVuSans.ttf",
+          "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
+          "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"}) {
+      std::error_code ignored;
+      if (std::filesystem::is_regular_file(candidate, ignored) &&
+          OIIO::ImageBufAlgo::text_size("0", 16, candidate).defined())
+        return std::string(candidate);
+    }
+    return std::string();
+  }();
+  return path;
+}
+
+int bitmapScale(int size) { return std::max(1, size / 9); }
+
+std::string printable(const std::string& text) {
+  std::string result = text;
+  for (char& c : result)
+    if (static_cast<unsigned char>(c) < 32) c = ' ';
+  return result;
+}
+
+}  // namespace
+
+Rgb rampColour(double t) {
+  static const Rgb stops[] = {{49, 54, 149},   {69, 117, 180},  {116, 173, 209}, {171, 217, 233},
+                              {224, 243, 248}, {255, 255, 191}, {254, 224, 144}, {253, 174, 97},
+                              {244, 109, 67},  {215, 48, 39},   {165, 0, 38}};
+  constexpr int kLast = 10;
+  const double place = std::clamp(t, 0.0, 1.0) * kLast;
+  const int i = std::min(static_cast<int>(place), kLast - 1);
+  const float share = static_cast<float>(place - i);
+  Rgb colour;
+  for (int c = 0; c < 3; ++c)
+    colour[c] = ((1 - share) * stops[i][c] + share * stops[i + 1][c]) / 255.0f;
+  return colour;
+}
+
+Picture::Picture(int width, int height, Rgb background)
+    : width_(width), height_(height), pixels_(static_cast<std::size_t>(width) * height * 3) {
+  fill(0, 0, width, height, background);
+}
+
+void Picture::set(int x, int y, Rgb colour) {
+  if (x < 0 || y < 0 || x >= width_ || y >= height_) return;
+  std::copy(colour.begin(), colour.end(),
+            pixels_.begin() + (static_cast<std::ptrdiff_t>(y) * width_ + x) * 3);
+}
+
+void Picture::blend(int x, int y, Rgb colour, float share) {
+  if (x < 0 || y < 0 || x >= width_ || y >= height_) return;
+  float* pixel = pixels_.data() + (static_cast<std::size_t>(y) * width_ + x) * 3;
+  for (int c = 0; c < 3; ++c) pixel[c] += share * (colour[c] - pixel[c]);
+}
+
+void Picture::fill(int x0, int y0, int x1, int y1, Rgb colour) {
+  for (int y = std::max(0, y0); y < std::min(height_, y1); ++y)
+    for (int x = std::max(0, x0); x < std::min(width_, x1); ++x) set(x, y, colour);
+}
+
+void Picture::frame(int x0, int y0, int x1, int y1, Rgb colour) {
+  fill(x0 - 1, y0 - 1, x1 + 1, y0, colour);
+  fill(x0 - 1, y1, x1 + 1, y1 + 1, colour);
+  fill(x0 - 1, y0, x0, y1, colour);
+  fill(x1, y0, x1 + 1, y1, colour);
+}
+
+void Picture::text(int x, int y, const std::string& text, int size, Rgb colour, Align align) {
+  const std::string line = printable(text);
+  if (align != Align::kLeft) {
+    const int width = textWidth(line, size);
+    x -= align == Align::kRight ? width : width / 2;
+  }
+  if (!fontPath().empty()) {
+    OIIO::ImageBuf buffer(OIIO::ImageSpec(width_, height_, 3, OIIO::TypeDesc::FLOAT),
+                          pixels_.data());
+    if (OIIO::ImageBufAlgo::render_text(buffer, x, y, line, size, fontPath(), colour)) return;
+  }
+  const int scale = bitmapScale(size);
+  for (const char c : line) {
+    const auto& rows = glyph(c);
+    for (int r = 0; r < kGlyphHeight; ++r)
+      for (int k = 0; k < kGlyphWidth; ++k)
+        if (rows[r] >> (kGlyphWidth - 1 - k) & 1)
+          fill(x + k * scale, y + (r - kGlyphHeight) * scale, x + (k + 1) * scale,
+               y + (r - kGlyphHeight + 1) * scale, colour);
+    x += (kGlyphWidth + 1) * scale;
+  }
+}
+
+std::vector<unsigned char> Picture::png() const {
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  OIIO::Filesystem::IOProxy* proxy = &memory;
+  OIIO::ImageSpec spec(width_, height_, 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  std::vector<unsigned char> pixels(pixels_.size());
+  std::transform(pixels_.begin(), pixels_.end(), pixels.begin(), [](float v) {
+    return static_cast<unsigned char>(std::lround(std::clamp(v, 0.0f, 1.0f) * 255));
+  });
+  const std::unique_ptr<OIIO::ImageOutput> output =
+      OIIO::ImageOutput::create("memory.png", &memory);
+  if (!output || !output->open("memory.png", spec) ||
+      !output->write_image(OIIO::TypeDesc::UINT8, pixels.data()) || !output->close())
+    throw Error("the picture cannot be encoded as PNG (" +
+                (output ? output->geterror() : OIIO::geterror()) + ")");
+  return bytes;
+}
+
+int textWidth(const std::string& text, int size) {
+  if (!fontPath().empty()) {
+    const OIIO::ROI roi = OIIO::ImageBufAlgo::text_size(printable(text), size, fontPath());
+    if (roi.defined()) return roi.xend;
+  }
+  return static_cast<int>(text.size()) * (kGlyphWidth + 1) * bitmapScale(size);
+}
+
+std::vector<double> tickValues(double lower, double upper, int count) {
+  const double span = upper - lower;
+  if (!(span > 0) || !std::isfinite(span) || count < 1) return {lower};
+  const double raw = span / count, power = std::pow(10.0, std::floor(std::log10(raw)));
+  const double multiple = raw / power;
+  const double step = power * (multiple < 1.5 ? 1 : multiple < 3.5 ? 2 : multiple < 7.5 ? 5 : 10);
+  std::vector<double> ticks;
+  const double first = std::ceil(lower / step - 1e-9);
+  for (int i = 0; i <= 4 * count; ++i) {
+    const double tick = (first + i) * step;
+    if (tick > upper + 1e-9 * step) break;
+    ticks.push_back(std::abs(tick) < 1e-9 * step ? 0.0 : tick);
+  }
+  return ticks;
+}
+
+std::string shortNumber(double value) { return fmt::format("{:.4g}", value); }
+
+}  // namespace innermap

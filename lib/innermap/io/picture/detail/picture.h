@@ -1,0 +1,53 @@
+// A small RGB canvas with text, for the pictures of results.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace innermap {
+
+using Rgb = std::array<float, 3>;  // sRGB, 0..1
+
+// Blue (0) over pale yellow to red (1), of even lightness steps on both sides: ColorBrewer's
+// RdYlBu (Cynthia Brewer, Apache-2.0) turned round, interpolated.
+Rgb rampColour(double t);
+
+enum class Align { kLeft, kCentre, kRight };
+
+class Picture {
+ public:
+  Picture(int width, int height, Rgb background);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  void set(int x, int y, Rgb colour);                      // outside the picture: nothing
+  void blend(int x, int y, Rgb colour, float share);       // over what is there; share 0..1
+  void fill(int x0, int y0, int x1, int y1, Rgb colour);   // [x0, x1) x [y0, y1)
+  void frame(int x0, int y0, int x1, int y1, Rgb colour);  // one pixel wide, outside the box
+
+  // Text with its baseline at y. DejaVu Sans where it is installed, else a small font of our own.
+  void text(int x, int y, const std::string& text, int size, Rgb colour,
+            Align align = Align::kLeft);
+
+  // PNG, 8 bits. Throws Error when the encoder fails.
+  std::vector<unsigned char> png() const;
+
+ private:
+  int width_, height_;
+  std::vector<float> pixels_;  // #height * #width * 3
+};
+
+// Width of a text in pixels.
+int textWidth(const std::string& text, int size);
+
+// About `count` round numbers in [lower, upper].
+std::vector<double> tickValues(double lower, double upper, int count);
+
+// A number as short as it can be told: 0.25, 12, 3.1e-07.
+std::string shortNumber(double value);
+
+}  // namespace innermap

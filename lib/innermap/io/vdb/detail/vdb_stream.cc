@@ -1,0 +1,93 @@
+#include "innermap/io/vdb/detail/vdb_stream.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+namespace innermap {
+
+PollingOutputBuffer::int_type PollingOutputBuffer::overflow(int_type c) {
+  throwIfCancelled(progress_);
+  if (traits_type::eq_int_type(c, traits_type::eof())) return traits_type::not_eof(c);
+  return to_.sputc(traits_type::to_char_type(c));
+}
+
+std::streamsize PollingOutputBuffer::xsputn(const char* data, std::streamsize count) {
+  throwIfCancelled(progress_);
+  return to_.sputn(data, count);
+}
+
+PollingOutputBuffer::pos_type PollingOutputBuffer::seekoff(off_type offset,
+                                                           std::ios_base::seekdir from,
+                                                           std::ios_base::openmode which) {
+  return to_.pubseekoff(offset, from, which);
+}
+
+PollingOutputBuffer::pos_type PollingOutputBuffer::seekpos(pos_type position,
+                                                           std::ios_base::openmode which) {
+  return to_.pubseekpos(position, which);
+}
+
+CheckedInputBuffer::CheckedInputBuffer(const std::string& path, const Progress* progress)
+    : path_(path), progress_(progress) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status))
+    throw FileError(path, "does not exist; give the path of a .vdb file");
+  if (!std::filesystem::is_regular_file(status))
+    throw FileError(path, "is not a file; give the path of a .vdb file");
+  errno = 0;
+  if (!file_.open(path, std::ios::in | std::ios::binary))
+    throw FileError(path, std::string("cannot be opened (") + std::strerror(errno) +
+                              "); check its permissions");
+  size_ = file_.pubseekoff(0, std::ios::end);
+  file_.pubseekoff(0, std::ios::beg);
+}
+
+void CheckedInputBuffer::fail() const {
+  throw FileError(path_, "is truncated or damaged; write it again");
+}
+
+void CheckedInputBuffer::require(std::streamoff position, std::streamoff count) const {
+  throwIfCancelled(progress_);
+  if (count < 0 || position < 0 || position > size_ || count > size_ - position) fail();
+}
+
+CheckedInputBuffer::int_type CheckedInputBuffer::underflow() {
+  require(position_, 1);
+  return file_.sgetc();
+}
+
+CheckedInputBuffer::int_type CheckedInputBuffer::uflow() {
+  require(position_, 1);
+  ++position_;
+  return file_.sbumpc();
+}
+
+std::streamsize CheckedInputBuffer::xsgetn(char* data, std::streamsize count) {
+  require(position_, count);
+  const std::streamsize got = file_.sgetn(data, count);
+  position_ += got;
+  if (got != count) fail();
+  return got;
+}
+
+CheckedInputBuffer::pos_type CheckedInputBuffer::seekoff(off_type offset,
+                                                         std::ios_base::seekdir from,
+                                                         std::ios_base::openmode) {
+  if (from == std::ios_base::cur && offset == 0) return position_;
+  const std::streamoff base = from == std::ios_base::cur   ? position_
+                              : from == std::ios_base::end ? size_
+                                                           : 0;
+  if (offset > size_ || offset < -size_) fail();
+  require(base + offset, 0);
+  position_ = base + offset;
+  return file_.pubseekoff(position_, std::ios_base::beg, std::ios_base::in);
+}
+
+CheckedInputBuffer::pos_type CheckedInputBuffer::seekpos(pos_type position,
+                                                         std::ios_base::openmode which) {
+  return seekoff(position, std::ios_base::beg, which);
+}
+
+}  // namespace innermap

@@ -1,0 +1,7 @@
+#include "innermap/io/version.h"
+
+namespace innermap {
+
+const char* versionText() { return "0.1.0"; }
+
+}  // namespace innermap

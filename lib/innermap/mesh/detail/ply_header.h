@@ -1,0 +1,43 @@
+// The header of a PLY file.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "innermap/mesh/detail/text_scanner.h"
+
+namespace innermap {
+
+enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
+enum class PlyFormat { kAscii, kLittleEndian, kBigEndian };
+
+std::size_t plySize(PlyType type);  // bytes in a binary file
+
+inline bool isFloat(PlyType type) { return type == PlyType::kFloat32 || type == PlyType::kFloat64; }
+
+struct PlyProperty {
+  std::string name;
+  bool list = false;
+  PlyType countType = PlyType::kUint8;  // of a list
+  PlyType type = PlyType::kFloat32;     // of the value or of the list's items
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+};
+
+struct PlyHeader {
+  PlyFormat format = PlyFormat::kAscii;
+  std::vector<PlyElement> elements;
+  std::size_t bodyOffset = 0;  // bytes
+  std::size_t bodyLine = 0;    // number of the body's first line, for messages
+};
+
+// Throws FileError with the line.
+PlyHeader readPlyHeader(const FileBytes& file);
+
+}  // namespace innermap

@@ -1,7 +1,0 @@
-#include "innermap/output/version.h"
-
-namespace innermap {
-
-const char* versionText() { return "0.1.0"; }
-
-}  // namespace innermap

@@ -1,0 +1,55 @@
+#include "innermap/solve/detail/sum_reference.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace innermap {
+namespace {
+
+constexpr double kGradients = 100;  // their error may be so many times that of the values
+// Where an absolute accuracy allows more: gradients still count.
+constexpr double kLoosest = 1e-3;
+
+double rootMeanSquare(const double* values, std::size_t count) {
+  double sum = 0;
+  for (std::size_t i = 0; i < count; ++i) sum += values[i] * values[i];
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(count, 1)));
+}
+
+// Of the error in consecutive columns to what they hold.
+double ratio(const Matrix& got, const Matrix& exact, std::size_t first, std::size_t columns) {
+  const std::size_t count = columns * exact.rows();
+  std::vector<double> error(count);
+  for (std::size_t i = 0; i < count; ++i) error[i] = got.column(first)[i] - exact.column(first)[i];
+  const double size = rootMeanSquare(error.data(), count);
+  return size > 0 ? size / rootMeanSquare(exact.column(first), count) : 0;
+}
+
+}  // namespace
+
+SumReference::SumReference(FieldSamples exact, const FastSumSettings& settings)
+    : exact_(std::move(exact)), relative_(exact_.values.columns(), settings.accuracy) {
+  for (std::size_t k = 0; k < relative_.size(); ++k) {
+    const double size = rootMeanSquare(exact_.values.column(k), exact_.values.rows());
+    if (size > 0)
+      relative_[k] =
+          std::clamp(settings.absolute / size, relative_[k], std::max(relative_[k], kLoosest));
+  }
+}
+
+double SumReference::accuracy() const {
+  return *std::min_element(relative_.begin(), relative_.end());
+}
+
+double SumReference::excess(const FieldSamples& got) const {
+  double worst = 0;
+  for (std::size_t k = 0; k < relative_.size(); ++k) {
+    worst = std::max(worst, ratio(got.values, exact_.values, k, 1) / relative_[k]);
+    if (!exact_.gradients.empty())
+      worst = std::max(
+          worst, ratio(got.gradients, exact_.gradients, 3 * k, 3) / (kGradients * relative_[k]));
+  }
+  return worst;
+}
+
+}  // namespace innermap

@@ -1,0 +1,176 @@
+#include "innermap/surface/detail/refining/shell_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "innermap/core/error.h"
+#include "innermap/core/parallel.h"
+#include "innermap/surface/detail/refining/decimate.h"
+#include "innermap/surface/detail/refining/map_refiner.h"
+#include "innermap/surface/detail/sphere/sphere_candidates.h"
+#include "innermap/surface/detail/torus/torus_candidates.h"
+#include "innermap/surface/detail/torus/torus_layout.h"
+#include "innermap/surface/sphere_layout.h"
+
+namespace innermap {
+namespace {
+
+constexpr std::size_t kTried = 10;    // candidates that are refined to
+constexpr std::size_t kMiddle = 600;  // vertices before the best are chosen
+constexpr std::size_t kCoarse = 150;
+
+Layout layOut(const ClosedSurface& surface, Progress* progress) {
+  if (surface.genus == 1) return layOutTorus(surface, progress);
+  SphereLayoutSettings settings;
+  settings.progress = progress;
+  return layOutSphere(surface, settings);
+}
+
+using Refiners = std::vector<std::unique_ptr<MapRefiner>>;
+
+// Refines all to so many vertices; those that get stuck are left out, the best come first.
+void refineAll(Refiners& refiners, std::size_t vertices, Progress* progress) {
+  std::vector<double> energy(refiners.size());
+  std::vector<char> good(refiners.size(), 0);
+  parallelBlocks(
+      refiners.size(), 1,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          good[i] = refiners[i]->refineTo(vertices);
+          energy[i] = refiners[i]->energy();
+        }
+      },
+      progress);
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < refiners.size(); ++i)
+    if (good[i]) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t x, std::size_t y) { return energy[x] < energy[y]; });
+  Refiners out;
+  for (const std::size_t i : order) out.push_back(std::move(refiners[i]));
+  refiners = std::move(out);
+}
+
+ShellMap bestOf(Refiners refiners, std::size_t vertices, const std::string& name,
+                const ShellMapSettings& settings) {
+  const std::size_t kept = static_cast<std::size_t>(settings.candidates);
+  if (refiners.size() > kept) {
+    refineAll(refiners, std::min(kMiddle, vertices), settings.progress);
+    if (refiners.size() > kept) refiners.resize(kept);
+  }
+  refineAll(refiners, vertices, settings.progress);
+  if (refiners.empty())
+    throw DataError(name +
+                    ": no map without flips was found; remove slivers from the mesh, or give "
+                    "landmarks");
+  ShellMap out;
+  out.energy = refiners.front()->energy();
+  out.origin = refiners.front()->origin();
+  out.image = refiners.front()->takeImage();
+  return out;
+}
+
+RefineSettings refining(const ClosedSurface& surface, const ShellMapSettings& settings) {
+  RefineSettings out;
+  out.relax = settings.refine;
+  out.progress = settings.progress;
+  if (settings.landmarks.empty()) return out;
+  out.fixed.assign(surface.vertices.size(), 0);
+  for (const Anchor& a : settings.landmarks) out.fixed[a.vertex] = 1;
+  return out;
+}
+
+ShellMap mapSphere(const LaidOutShell& a, const LaidOutShell& b, const ShellMapSettings& settings) {
+  SphereCandidateSettings search;
+  search.landmarks = settings.landmarks;
+  search.aligned = settings.aligned;
+  search.thorough = settings.refine;
+  search.kept =
+      settings.refine ? std::max(kTried, static_cast<std::size_t>(settings.candidates)) : 1;
+  search.seed = settings.seed;
+  search.progress = settings.progress;
+  const Candidates candidates =
+      sphereCandidates(a.surface, a.layout, a.tips, b.surface, b.metric, b.tips, search);
+  const RefineSettings how = refining(a.surface, settings);
+  Refiners refiners;
+  for (const CoarseMap& m : candidates.maps)
+    refiners.push_back(std::make_unique<MapRefiner>(a.surface, candidates.mesh, candidates.coarse,
+                                                    m, b.metric, how));
+  return bestOf(std::move(refiners), a.surface.vertices.size(), a.surface.name, settings);
+}
+
+// Each candidate has frames of its own, so each is coarsened by itself.
+std::unique_ptr<MapRefiner> startTorus(const LaidOutShell& a, const LaidOutShell& b,
+                                       const TorusCandidate& candidate,
+                                       const ShellMapSettings& settings) {
+  ProgressiveMesh mesh(a.surface.vertices.size(), a.surface.triangles, candidate.image.shift);
+  DecimateSettings coarsening;
+  coarsening.vertices = std::max(kCoarse, 8 * settings.landmarks.size());
+  coarsening.layout = &candidate.image;
+  coarsening.keep.assign(a.surface.vertices.size(), 0);
+  for (const Anchor& l : settings.landmarks) coarsening.keep[l.vertex] = 1;
+  coarsening.progress = settings.progress;
+  decimate(mesh, a.surface.vertices, coarsening);
+  const CoarseSurface coarse = coarseSurface(a.surface, mesh);
+  Layout start = candidate.image;
+  start.place.clear();
+  for (const int v : coarse.vertex) start.place.push_back(candidate.image.place[v]);
+  start.shift = coarse.shift;
+  CoarseMapSettings relax;
+  for (const Anchor& l : settings.landmarks)
+    relax.fixed.push_back({coarse.index[l.vertex], l.target});
+  relax.progress = settings.progress;
+  std::optional<CoarseMap> map = relaxCoarse(coarse, start, b.metric, relax);
+  if (!map) return nullptr;
+  map->origin = fmt::format("twist {}{}", candidate.twist, candidate.reversed ? ", reversed" : "");
+  return std::make_unique<MapRefiner>(a.surface, mesh, coarse, *map, b.metric,
+                                      refining(a.surface, settings));
+}
+
+ShellMap mapTorus(const LaidOutShell& a, const LaidOutShell& b, const ShellMapSettings& settings) {
+  TorusSearch search;
+  search.count = std::max(kTried, static_cast<std::size_t>(settings.candidates));
+  search.aligned = settings.aligned;
+  for (const Anchor& l : settings.landmarks)
+    search.landmarks.push_back({a.layout.place[l.vertex], l.target});
+  search.seed = settings.seed;
+  search.progress = settings.progress;
+  const std::vector<TorusCandidate> candidates =
+      torusCandidates(a.surface, a.layout, b.surface, b.layout, search);
+  Refiners all(candidates.size()), refiners;
+  parallelBlocks(
+      candidates.size(), 1,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          all[i] = startTorus(a, b, candidates[i], settings);
+      },
+      settings.progress, "trying first maps");
+  for (std::unique_ptr<MapRefiner>& r : all)
+    if (r) refiners.push_back(std::move(r));
+  if (refiners.empty() && !settings.landmarks.empty())
+    throw DataError(
+        "landmarks: no map without flips was found that meets them all; check them, or leave some "
+        "out");
+  return bestOf(std::move(refiners), a.surface.vertices.size(), a.surface.name, settings);
+}
+
+}  // namespace
+
+LaidOutShell::LaidOutShell(const ClosedSurface& shell, Progress* progress)
+    : LaidOutShell(shell, layOut(shell, progress), progress) {}
+
+LaidOutShell::LaidOutShell(const ClosedSurface& shell, Layout laidOut, Progress* progress)
+    : surface(shell),
+      layout(std::move(laidOut)),
+      metric(surface, layout),
+      tips(layout.space == ModelSpace::sphere ? limbTips(surface, layout, 800, progress)
+                                              : LimbTips{}) {}
+
+ShellMap mapShell(const LaidOutShell& a, const LaidOutShell& b, const ShellMapSettings& settings) {
+  return a.layout.space == ModelSpace::sphere ? mapSphere(a, b, settings)
+                                              : mapTorus(a, b, settings);
+}
+
+}  // namespace innermap

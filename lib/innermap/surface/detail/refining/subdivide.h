@@ -1,0 +1,40 @@
+// A source split until its image follows the target.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "innermap/core/progress.h"
+#include "innermap/surface/closed_surface.h"
+#include "innermap/surface/correspond.h"
+#include "innermap/surface/detail/refining/target_metric.h"
+
+namespace innermap {
+
+// The mesh that a shell's triangles are of, split along with them.
+struct SplitMesh {
+  Mesh mesh;
+  std::vector<ShellVertex> shellVertex;        // #V of mesh
+  std::vector<std::vector<int>> meshTriangle;  // for each shell, each triangle's number in mesh
+};
+
+struct SubdivideSettings {
+  double tolerance = 0.005;         // of the target's diagonal, above 0
+  std::size_t triangles = 4000000;  // most
+  Progress* progress = nullptr;
+};
+
+struct Subdivided {
+  std::size_t added = 0;  // vertices
+  bool enough = true;     // false: the most triangles were reached first
+};
+
+// Splits the longest edges (on the model space) of triangles whose flat images are farther than the
+// tolerance from the target, or that the target's vertices between their corners are farther from,
+// and relaxes around the new vertices. map.surface and map.image grow, split.mesh with them: its
+// own vertices and triangles stay first and keep their numbers. onTarget and positions are left as
+// they were. Throws Cancelled.
+Subdivided subdivide(ShellCorrespondence& map, const TargetMetric& target, SplitMesh& split,
+                     const SubdivideSettings& settings);
+
+}  // namespace innermap

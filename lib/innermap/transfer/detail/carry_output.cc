@@ -1,0 +1,135 @@
+#include "innermap/transfer/detail/carry_output.h"
+
+#include <fmt/format.h>
+
+#include "innermap/core/error.h"
+
+namespace innermap {
+namespace {
+
+template <class Grid>
+bool movePositionsOf(openvdb::GridBase& base,
+                     const std::function<Points(const Points&)>& movePositions) {
+  if (!base.isType<Grid>()) return false;
+  auto& grid = static_cast<Grid&>(base);
+  Points points;
+  for (auto value = grid.cbeginValueOn(); value; ++value) {
+    const auto v = *value;
+    points.push_back(
+        {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])});
+  }
+  const Points moved = movePositions(points);
+  std::size_t i = 0;
+  for (auto value = grid.beginValueOn(); value; ++value, ++i)
+    value.setValue(typename Grid::ValueType(openvdb::Vec3d(moved[i].x, moved[i].y, moved[i].z)));
+  return true;
+}
+
+// Whether an active voxel lies in the solid or within its level set's band.
+
+template <class Grid>
+bool meets(const Grid& grid, const openvdb::FloatGrid& solid, Progress* progress) {
+  auto distances = solid.getConstAccessor();
+  const openvdb::math::Transform &from = grid.transform(), &to = solid.transform();
+  const auto isNear = [&](const openvdb::Vec3d& ijk) {
+    const openvdb::Coord at = to.worldToIndexNodeCentered(from.indexToWorld(ijk));
+    return distances.getValue(at) < solid.background();
+  };
+  std::uint64_t polled = 0;
+  for (auto value = grid.cbeginValueOn(); value; ++value) {
+    if ((++polled & 0xffff) == 0) throwIfCancelled(progress);
+    openvdb::CoordBBox box;
+    value.getBoundingBox(box);
+    if (value.isVoxelValue() ? isNear(box.min().asVec3d()) : [&] {
+          // A tile may hold the solid: it is tried at every fourth voxel.
+          for (int x = box.min().x(); x <= box.max().x(); x += 4)
+            for (int y = box.min().y(); y <= box.max().y(); y += 4)
+              for (int z = box.min().z(); z <= box.max().z(); z += 4)
+                if (isNear(openvdb::Vec3d(x, y, z))) return true;
+          return false;
+        }())
+      return true;
+  }
+  return false;
+}
+
+template <class... Grids>
+bool meetsAny(const openvdb::GridBase& grid, const openvdb::FloatGrid& solid, Progress* progress) {
+  return ((grid.isType<Grids>() && meets(static_cast<const Grids&>(grid), solid, progress)) || ...);
+}
+
+}  // namespace
+
+CarryOutput::CarryOutput(const Carriers& carriers, const openvdb::MaskGrid& region)
+    : carriers_(carriers) {
+  for (const auto& carrier : carriers) outputs_.push_back(carrier->makeOutput(region));
+}
+
+void CarryOutput::carry(const openvdb::Coord& origin, const Site* sites) const {
+  for (std::size_t c = 0; c < carriers_.size(); ++c)
+    carriers_[c]->carry(origin, sites, outputs_[c]);
+}
+
+openvdb::GridPtrVec CarryOutput::finish(const std::function<Points(const Points&)>& movePositions,
+                                        Progress* progress) {
+  std::size_t count = 0;
+  for (const auto& carrier : carriers_) count += carrier->places().size();
+  openvdb::GridPtrVec grids(count);
+  for (std::size_t c = 0; c < carriers_.size(); ++c) {
+    throwIfCancelled(progress);
+    if (openvdb::GridBase* positions = carriers_[c]->positions(outputs_[c]))
+      movePositionsOf<openvdb::Vec3SGrid>(*positions, movePositions) ||
+          movePositionsOf<openvdb::Vec3DGrid>(*positions, movePositions);
+    carriers_[c]->finish(outputs_[c]);
+    for (std::size_t k = 0; k < outputs_[c].size(); ++k)
+      grids[carriers_[c]->places()[k]] = outputs_[c][k];
+  }
+  return grids;
+}
+
+void requireMeeting(const openvdb::GridPtrVec& grids, const openvdb::FloatGrid& solid,
+                    const std::string& solidName, std::vector<std::string>& warnings,
+                    Progress* progress) {
+  std::string apart;
+  std::size_t count = 0;
+  for (const openvdb::GridBase::Ptr& grid : grids) {
+    if (meetsAny<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid, openvdb::Int64Grid,
+                 openvdb::BoolGrid, openvdb::Vec3SGrid, openvdb::Vec3DGrid, openvdb::Vec3IGrid,
+                 openvdb::MaskGrid>(*grid, solid, progress))
+      continue;
+    ++count;
+    apart += (apart.empty() ? "" : ", ") + grid->getName();
+  }
+  if (count == 0) return;
+  if (count == grids.size())
+    throw DataError(
+        fmt::format("volume: none of its grids ({}) has an active "
+                    "voxel in the solid {}; they must be given in "
+                    "the same world space",
+                    apart, solidName));
+  warnings.push_back("no active voxel lies in the solid: " + apart);
+}
+
+void noteOutside(const openvdb::GridPtrVec& grids, const OutsideSettings& outside) {
+  if (!(outside.distance > 0)) return;
+  const std::string text = fmt::format(
+      "extended from the closest boundary point to {} of the diagonal outside, "
+      "{}",
+      outside.distance, outside.fadeTo ? "fading to a rigid motion" : "cut off there");
+  for (const openvdb::GridBase::Ptr& grid : grids)
+    grid->insertMeta("innermap_outside", openvdb::StringMetadata(text));
+}
+
+std::uint64_t outputBytesPerVoxel(const openvdb::GridPtrVec& grids) {
+  std::uint64_t bytes = 0;
+  for (const openvdb::GridBase::Ptr& grid : grids) {
+    const std::string type = grid->valueType();
+    bytes += type == "vec3s" || type == "vec3i" ? 12
+             : type == "vec3d"                  ? 24
+             : type == "bool"                   ? 1
+                                                : 8;
+  }
+  return bytes;
+}
+
+}  // namespace innermap

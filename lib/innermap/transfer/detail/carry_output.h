@@ -1,0 +1,47 @@
+// The grids that a transfer makes, leaf by leaf.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "innermap/core/progress.h"
+#include "innermap/transfer/detail/carrier.h"
+#include "innermap/transfer/outside.h"
+
+namespace innermap {
+
+using Carriers = std::vector<std::unique_ptr<Carrier>>;
+
+class CarryOutput {
+ public:
+  CarryOutput(const Carriers& carriers, const openvdb::MaskGrid& region);
+
+  // For the active voxels of the region's leaf at `origin`, in order. From any thread.
+  void carry(const openvdb::Coord& origin, const Site* sites) const;
+
+  // In the order of the grids given. movePositions: of values that are positions.
+  openvdb::GridPtrVec finish(const std::function<Points(const Points&)>& movePositions,
+                             Progress* progress);
+
+ private:
+  const Carriers& carriers_;
+  std::vector<openvdb::GridPtrVec> outputs_;
+};
+
+// Throws DataError when no grid has an active voxel within `skin` voxels of the solid; warns of
+// single ones that have none.
+void requireMeeting(const openvdb::GridPtrVec& grids, const openvdb::FloatGrid& solid,
+                    const std::string& solidName, std::vector<std::string>& warnings,
+                    Progress* progress);
+
+// Says in the grids' metadata what lies outside the solid.
+void noteOutside(const openvdb::GridPtrVec& grids, const OutsideSettings& outside);
+
+// Bytes that a voxel of the outputs takes.
+std::uint64_t outputBytesPerVoxel(const openvdb::GridPtrVec& grids);
+
+}  // namespace innermap

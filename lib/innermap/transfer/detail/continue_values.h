@@ -1,0 +1,15 @@
+// Values continued beyond a solid, as textures are padded at their borders.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+namespace innermap {
+
+// A copy of `grid` whose inactive voxels outside the solid (or within a voxel of its surface) that
+// are within `layers` voxels of active ones have the mean of their active neighbours (of the
+// nearest for types without means). Voxels deeper inside keep what they hold: there the grid itself
+// ends.
+template <class Grid>
+typename Grid::Ptr continuedBeyond(const Grid& grid, const openvdb::FloatGrid& solid, int layers);
+
+}  // namespace innermap

@@ -1,0 +1,64 @@
+#include "innermap/transfer/detail/field_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "innermap/core/error.h"
+#include "innermap/evaluate/visit_field.h"
+
+namespace innermap {
+namespace {
+
+// The largest value at some boundary points: the unit of the sums' accuracy.
+double sizeOf(const HarmonicField& field, const Solid& solid) {
+  constexpr std::size_t kSamples = 500;
+  const Points& vertices = solid.surface().vertices;
+  const std::size_t count = std::min(kSamples, vertices.size());
+  Points some(count);
+  for (std::size_t i = 0; i < count; ++i) some[i] = vertices[i * vertices.size() / count];
+  std::vector<double> values(count * field.channels());
+  field.evaluate(some.data(), count, values.data(), nullptr);
+  double largest = 0;
+  for (const double v : values) largest = std::max(largest, std::abs(v));
+  return largest > 0 ? largest : 1;
+}
+
+template <class Grid>
+openvdb::GridBase::Ptr filled(const CarriedField& field, const InvertedMap& inverted,
+                              const Matrix& values) {
+  auto grid = Grid::create();
+  grid->setTree(std::make_shared<typename Grid::TreeType>(
+      inverted.region->tree(), openvdb::zeroVal<typename Grid::ValueType>(),
+      openvdb::TopologyCopy()));
+  grid->setTransform(inverted.region->transform().copy());
+  grid->setName(field.name);
+  std::size_t i = 0;
+  for (auto leaf = grid->tree().beginLeaf(); leaf; ++leaf)
+    for (auto voxel = leaf->beginValueOn(); voxel; ++voxel, ++i) {
+      if constexpr (openvdb::VecTraits<typename Grid::ValueType>::IsVec)
+        voxel.setValue(openvdb::Vec3f(openvdb::Vec3d(values(i, 0), values(i, 1), values(i, 2))));
+      else
+        voxel.setValue(static_cast<float>(values(i, 0)));
+    }
+  return grid;
+}
+
+}  // namespace
+
+openvdb::GridBase::Ptr fieldGrid(const CarriedField& field, const Solid& source,
+                                 const SourceLattice& lattice, const InvertedMap& inverted,
+                                 double accuracy, Progress* progress) {
+  if (field.field.channels() != 1 && field.field.channels() != 3)
+    throw DataError("field \"" + field.name + "\": must have one channel or three");
+  const ExtendedSamples found =
+      sampleExtended(field.field, source, *lattice.levelSet, inverted.sources,
+                     {accuracy * sizeOf(field.field, source), {}, progress});
+  if (field.field.channels() == 1)
+    return filled<openvdb::FloatGrid>(field, inverted, found.samples.values);
+  const openvdb::GridBase::Ptr grid =
+      filled<openvdb::Vec3SGrid>(field, inverted, found.samples.values);
+  grid->setVectorType(field.vectorType);
+  return grid;
+}
+
+}  // namespace innermap

@@ -1,0 +1,13 @@
+// A field of the source on the voxels of the target.
+#pragma once
+
+#include "innermap/transfer/inverse_map.h"
+#include "innermap/transfer/push.h"
+
+namespace innermap {
+
+openvdb::GridBase::Ptr fieldGrid(const CarriedField& field, const Solid& source,
+                                 const SourceLattice& lattice, const InvertedMap& inverted,
+                                 double accuracy, Progress* progress);
+
+}  // namespace innermap

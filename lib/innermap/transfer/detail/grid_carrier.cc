@@ -1,0 +1,181 @@
+#include <openvdb/tools/LevelSetRebuild.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "innermap/core/error.h"
+#include "innermap/transfer/detail/carrier.h"
+#include "innermap/transfer/detail/continue_values.h"
+#include "innermap/transfer/detail/sampling.h"
+
+namespace innermap {
+namespace {
+
+// Samplers reach over two voxels at most, and the boundary error over about one more.
+constexpr int kContinuedLayers = 3;
+// In folds the determinant passes through 0; a voxel there is filled from no less of the source
+// than this, or one voxel would hold the mass of all.
+constexpr double kLeastDeterminant = 1e-2;
+
+template <class Grid>
+typename Grid::Ptr emptyLike(const Grid& grid, const openvdb::MaskGrid& region) {
+  typename Grid::Ptr out = grid.copyWithNewTree();
+  out->setTree(std::make_shared<typename Grid::TreeType>(region.tree(), grid.background(),
+                                                         openvdb::TopologyCopy()));
+  out->setTransform(region.transform().copy());
+  return out;
+}
+
+Vec3 movedVector(const Vec3& v, const Mat3& a, openvdb::VecType type) {
+  switch (type) {
+    case openvdb::VEC_COVARIANT:
+      return transposed(inverse(a)) * v;
+    case openvdb::VEC_COVARIANT_NORMALIZE: {
+      const Vec3 moved = transposed(inverse(a)) * v;
+      const double length = norm(moved);
+      return length > 0 ? moved / length : moved;
+    }
+    case openvdb::VEC_CONTRAVARIANT_RELATIVE:
+      return a * v;
+    default:
+      return v;
+  }
+}
+
+template <class Grid>
+class GridCarrier : public Carrier {
+ public:
+  using Value = typename Grid::ValueType;
+  using Leaf = typename Grid::TreeType::LeafNodeType;
+
+  GridCarrier(typename Grid::ConstPtr grid, std::size_t place, Sampling sampling, bool density)
+      : Carrier({place}), grid_(std::move(grid)), sampling_(sampling), density_(density) {}
+
+  openvdb::GridPtrVec makeOutput(const openvdb::MaskGrid& region) const override {
+    typename Grid::Ptr out = emptyLike(*grid_, region);
+    // Sampled at voxel centres, a staggered grid is none any more.
+    if (out->getGridClass() == openvdb::GRID_STAGGERED) out->setGridClass(openvdb::GRID_UNKNOWN);
+    return {out};
+  }
+
+  void carry(const openvdb::Coord& origin, const Site* sites,
+             const openvdb::GridPtrVec& output) const override {
+    const PointwiseSampler<Grid> sampler(*grid_, sampling_);
+    const openvdb::VecType type = grid_->getVectorType();
+    Leaf& leaf = *static_cast<Grid&>(*output[0]).tree().probeLeaf(origin);
+    for (auto voxel = leaf.beginValueOn(); voxel; ++voxel, ++sites)
+      voxel.setValue(moved(sampler.at(sites->at), sites->derivative, type));
+  }
+
+  openvdb::GridBase* positions(const openvdb::GridPtrVec& output) const override {
+    return kIsVector<Value> && grid_->getVectorType() == openvdb::VEC_CONTRAVARIANT_ABSOLUTE
+               ? output[0].get()
+               : nullptr;
+  }
+
+  bool isDensity() const override { return density_; }
+
+  void finish(openvdb::GridPtrVec& output) const override {
+    if constexpr (std::is_floating_point_v<Value>)
+      if (grid_->getGridClass() == openvdb::GRID_LEVEL_SET) output[0] = rebuilt(output[0]);
+  }
+
+ private:
+  Value moved(const Value& value, const Mat3& a, openvdb::VecType type) const {
+    if constexpr (std::is_floating_point_v<Value>) {
+      if (density_)
+        return static_cast<Value>(value / std::max(std::abs(determinant(a)), kLeastDeterminant));
+    } else if constexpr (kIsVector<Value> && !kIsDiscrete<Value>) {
+      const Vec3 v = movedVector({value[0], value[1], value[2]}, a, type);
+      return Value(openvdb::Vec3d(v.x, v.y, v.z));
+    }
+    return value;
+  }
+
+  openvdb::GridBase::Ptr rebuilt(const openvdb::GridBase::Ptr& sampled) const {
+    const auto& in = static_cast<const Grid&>(*sampled);
+    const double width =
+        std::max(3.0, static_cast<double>(grid_->background()) / grid_->voxelSize()[0]);
+    typename Grid::Ptr out = openvdb::tools::levelSetRebuild(in, 0, static_cast<float>(width),
+                                                             static_cast<float>(width));
+    for (auto meta = in.beginMeta(); meta != in.endMeta(); ++meta)
+      out->insertMeta(meta->first, *meta->second);
+    out->setGridClass(openvdb::GRID_LEVEL_SET);
+    return out;
+  }
+
+  typename Grid::ConstPtr grid_;
+  Sampling sampling_;
+  bool density_;
+};
+
+// A mask's values are its active voxels.
+template <>
+class GridCarrier<openvdb::MaskGrid> : public Carrier {
+ public:
+  GridCarrier(openvdb::MaskGrid::ConstPtr grid, std::size_t place, Sampling, bool)
+      : Carrier({place}), grid_(std::move(grid)) {}
+
+  openvdb::GridPtrVec makeOutput(const openvdb::MaskGrid& region) const override {
+    openvdb::MaskGrid::Ptr out = grid_->copyWithNewTree();
+    out->tree().topologyUnion(region.tree());
+    out->setTransform(region.transform().copy());
+    return {out};
+  }
+
+  void carry(const openvdb::Coord& origin, const Site* sites,
+             const openvdb::GridPtrVec& output) const override {
+    auto input = grid_->getConstAccessor();
+    auto& leaf = *static_cast<openvdb::MaskGrid&>(*output[0]).tree().probeLeaf(origin);
+    const auto region = leaf.getValueMask();
+    for (auto voxel = region.beginOn(); voxel; ++voxel, ++sites) {
+      const openvdb::Vec3d p(sites->at.x, sites->at.y, sites->at.z);
+      leaf.setActiveState(voxel.pos(),
+                          input.isValueOn(grid_->transform().worldToIndexNodeCentered(p)));
+    }
+  }
+
+ private:
+  openvdb::MaskGrid::ConstPtr grid_;
+};
+
+bool isAttribute(const openvdb::GridBase& grid, bool density) {
+  return !density && grid.getGridClass() != openvdb::GRID_LEVEL_SET &&
+         grid.getGridClass() != openvdb::GRID_FOG_VOLUME;
+}
+
+template <class Grid>
+std::unique_ptr<Carrier> carrierOf(const openvdb::GridBase::Ptr& grid, std::size_t place,
+                                   Sampling sampling, bool density,
+                                   const openvdb::FloatGrid* solid) {
+  typename Grid::ConstPtr typed = openvdb::gridConstPtrCast<Grid>(grid);
+  if constexpr (!std::is_same_v<Grid, openvdb::MaskGrid>)
+    if (solid && isAttribute(*grid, density))
+      typed = continuedBeyond(*typed, *solid, kContinuedLayers);
+  return std::make_unique<GridCarrier<Grid>>(typed, place, sampling, density);
+}
+
+}  // namespace
+
+std::unique_ptr<Carrier> makeGridCarrier(const openvdb::GridBase::Ptr& grid, std::size_t place,
+                                         Sampling sampling, bool density,
+                                         const openvdb::FloatGrid* solid) {
+  using Make = std::unique_ptr<Carrier> (*)(const openvdb::GridBase::Ptr&, std::size_t, Sampling,
+                                            bool, const openvdb::FloatGrid*);
+  const std::pair<std::string, Make> makers[] = {
+      {openvdb::FloatGrid::gridType(), carrierOf<openvdb::FloatGrid>},
+      {openvdb::DoubleGrid::gridType(), carrierOf<openvdb::DoubleGrid>},
+      {openvdb::Int32Grid::gridType(), carrierOf<openvdb::Int32Grid>},
+      {openvdb::Int64Grid::gridType(), carrierOf<openvdb::Int64Grid>},
+      {openvdb::BoolGrid::gridType(), carrierOf<openvdb::BoolGrid>},
+      {openvdb::Vec3SGrid::gridType(), carrierOf<openvdb::Vec3SGrid>},
+      {openvdb::Vec3DGrid::gridType(), carrierOf<openvdb::Vec3DGrid>},
+      {openvdb::Vec3IGrid::gridType(), carrierOf<openvdb::Vec3IGrid>},
+      {openvdb::MaskGrid::gridType(), carrierOf<openvdb::MaskGrid>}};
+  for (const auto& [type, make] : makers)
+    if (grid->type() == type) return make(grid, place, sampling, density, solid);
+  throw DataError("grid \"" + grid->getName() + "\": has the type " + grid->type() +
+                  ", which cannot be carried; choose others with --grids");
+}
+
+}  // namespace innermap

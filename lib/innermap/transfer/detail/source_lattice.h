@@ -1,0 +1,27 @@
+// The lattice through a source whose images start the inversion of its map.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+
+#include "innermap/core/progress.h"
+#include "innermap/levelset/solid.h"
+#include "innermap/transfer/inverse_map.h"
+#include "innermap/transfer/outside.h"
+
+namespace innermap {
+
+// Through the solid and a skin about it; with `outside`, also where the grids have active voxels
+// within the distance, or anywhere when the map fades to a rigid motion. Throws SettingError,
+// MemoryError, Cancelled.
+SourceLattice makeSourceLattice(const Solid& solid, const OutsideSettings& outside,
+                                const openvdb::GridPtrVec& grids, std::uint64_t maxMemory,
+                                Progress* progress);
+
+// Adds all voxels around the solid up to `distance` (world units) from it to a region on the level
+// set's lattice. Throws MemoryError when it takes more than maxMemory (bytes; 0: no limit).
+void addAround(openvdb::MaskGrid& region, const Solid& solid, double distance,
+               std::uint64_t bytesPerVoxel, std::uint64_t maxMemory, Progress* progress);
+
+}  // namespace innermap

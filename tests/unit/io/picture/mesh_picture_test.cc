@@ -1,0 +1,131 @@
+#include "innermap/io/picture/mesh_picture.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "innermap/core/error.h"
+#include "innermap/core/parallel.h"
+#include "innermap/io/picture/image_file.h"
+#include "io/test_files.h"
+
+namespace innermap {
+namespace {
+
+// A square in the plane z = 0, its left half red and its right half green.
+PictureSurface square(double z = 0) {
+  PictureSurface s;
+  s.label = "square";
+  s.vertices = {{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}};
+  s.triangles = {{0, 1, 2}, {0, 2, 3}};
+  const Points at = s.vertices;
+  const auto triangles = s.triangles;
+  s.colours = [at, triangles](const std::vector<VisiblePoint>& points) {
+    std::vector<Vec3> colours;
+    for (const VisiblePoint& p : points) {
+      double x = 0;
+      for (int k = 0; k < 3; ++k) x += p.barycentric[k] * at[triangles[p.triangle][k]].x;
+      colours.push_back(x < 0 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
+    }
+    return colours;
+  };
+  return s;
+}
+
+MeshPictureSettings frontal(int pixels = 100) {
+  MeshPictureSettings settings;
+  settings.pixels = pixels;
+  settings.from = {{0, 0, 1}};
+  return settings;
+}
+
+Vec3 pixel(const Pixels& p, int x, int y) {
+  const std::size_t i = 3 * (static_cast<std::size_t>(y) * p.width + x);
+  return {p.rgb[i], p.rgb[i + 1], p.rgb[i + 2]};
+}
+
+TEST(MeshPicture, ShowsTheColoursWhereTheyAre) {
+  const test::TemporaryFolder folder;
+  writeMeshPicture(folder.file("a.png"), {square()}, frontal());
+  const Pixels p = readImage(folder.file("a.png")).pixels;
+  EXPECT_EQ(p.width, 148);
+  EXPECT_EQ(p.height, 168);
+  const int y = 44 + 50;
+  EXPECT_GT(pixel(p, 24 + 25, y).x, 0.3);
+  EXPECT_LT(pixel(p, 24 + 25, y).y, 0.01);
+  EXPECT_GT(pixel(p, 24 + 75, y).y, 0.3);
+  EXPECT_LT(pixel(p, 24 + 75, y).x, 0.01);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(pixel(p, 5, y)[c], 1, 1e-6);
+}
+
+TEST(MeshPicture, SeenFromBehindLeftAndRightAreExchanged) {
+  const test::TemporaryFolder folder;
+  MeshPictureSettings settings = frontal();
+  settings.from = {{0, 0, -1}};
+  writeMeshPicture(folder.file("a.png"), {square()}, settings);
+  const Pixels p = readImage(folder.file("a.png")).pixels;
+  EXPECT_GT(pixel(p, 24 + 25, 94).y, 0.3);
+  EXPECT_GT(pixel(p, 24 + 75, 94).x, 0.3);
+}
+
+TEST(MeshPicture, TheNearestTriangleIsSeen) {
+  PictureSurface s = square();
+  const PictureSurface front = square(0.5);
+  for (const Vec3& v : front.vertices) s.vertices.push_back(v);
+  s.triangles.insert(s.triangles.begin(), {{4, 5, 6}, {4, 6, 7}});
+  s.colours = [](const std::vector<VisiblePoint>& points) {
+    std::vector<Vec3> colours;
+    for (const VisiblePoint& p : points)
+      colours.push_back(p.triangle < 2 ? Vec3{0, 0, 1} : Vec3{1, 0, 0});
+    return colours;
+  };
+  const test::TemporaryFolder folder;
+  writeMeshPicture(folder.file("a.png"), {s}, frontal());
+  const Pixels p = readImage(folder.file("a.png")).pixels;
+  EXPECT_GT(pixel(p, 74, 94).z, 0.3);
+  EXPECT_LT(pixel(p, 74, 94).x, 0.01);
+}
+
+TEST(MeshPicture, HasAColumnForEachSurfaceAndARowForEachDirection) {
+  const test::TemporaryFolder folder;
+  MeshPictureSettings settings = frontal();
+  settings.from = {{0, 0, 1}, {0, 0, -1}};
+  settings.caption = "below";
+  writeMeshPicture(folder.file("a.png"), {square(), square()}, settings);
+  const Pixels p = readImage(folder.file("a.png")).pixels;
+  EXPECT_EQ(p.width, 24 + 2 * 124);
+  EXPECT_EQ(p.height, 44 + 2 * 124 + 40);
+  EXPECT_GT(pixel(p, 24 + 124 + 25, 94).x, 0.3);
+  EXPECT_GT(pixel(p, 24 + 124 + 25, 94 + 124).y, 0.3);
+}
+
+TEST(MeshPicture, IsTheSameForAnyNumberOfThreads) {
+  const test::TemporaryFolder folder;
+  writeMeshPicture(folder.file("a.png"), {square()}, frontal());
+  const ThreadLimit limit(1);
+  writeMeshPicture(folder.file("b.png"), {square()}, frontal());
+  EXPECT_EQ(readImage(folder.file("a.png")).pixels.rgb, readImage(folder.file("b.png")).pixels.rgb);
+}
+
+TEST(MeshPicture, RefusesWhatCannotBeShown) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("a.png");
+  EXPECT_THROW(writeMeshPicture(path, {}, frontal()), DataError);
+  PictureSurface empty = square();
+  empty.triangles.clear();
+  EXPECT_THROW(writeMeshPicture(path, {empty}, frontal()), DataError);
+  EXPECT_THROW(writeMeshPicture(path, {square()}, frontal(10)), SettingError);
+  MeshPictureSettings settings = frontal();
+  settings.from = {{0, 0, 0}};
+  EXPECT_THROW(writeMeshPicture(path, {square()}, settings), SettingError);
+  Progress progress;
+  progress.cancel();
+  settings = frontal();
+  settings.progress = &progress;
+  EXPECT_THROW(writeMeshPicture(path, {square()}, settings), Cancelled);
+  EXPECT_FALSE(std::filesystem::exists(path));
+  EXPECT_THROW(writeMeshPicture("/nowhere/a.png", {square()}, frontal()), FileError);
+}
+
+}  // namespace
+}  // namespace innermap

@@ -1,0 +1,338 @@
+#include "innermap/io/volume/volume_texture.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfDoubleAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfMatrixAttribute.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfVecAttribute.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "innermap/core/error.h"
+#include "io/test_files.h"
+
+namespace innermap {
+namespace {
+
+using namespace test;
+using openvdb::Coord;
+
+const openvdb::CoordBBox kBox(Coord(-5, 2, 30), Coord(12, 9, 41));  // 18 x 8 x 12
+
+float scalarAt(const Coord& c) { return float(c.x() + 100 * c.y()) + 0.125f * float(c.z()); }
+
+openvdb::FloatGrid::Ptr scalar(const std::string& name = "jacobian") {
+  openvdb::initialize();
+  return block<openvdb::FloatGrid>(name, kBox, scalarAt, 0.5);
+}
+
+openvdb::Vec3SGrid::Ptr vectors(const std::string& name = "Cd") {
+  openvdb::initialize();
+  return block<openvdb::Vec3SGrid>(
+      name, kBox, [](auto c) { return openvdb::Vec3f(float(c.x()), float(c.y()), float(c.z())); },
+      0.5);
+}
+
+// A part's channel: rows of a width.
+struct Pixels {
+  int width = 0, height = 0;
+  std::vector<float> values;
+  float at(int x, int y) const { return values.at(static_cast<std::size_t>(y * width + x)); }
+};
+
+Pixels pixels(const std::string& path, const std::string& channel, int part = 0) {
+  Imf::MultiPartInputFile file(path.c_str());
+  const Imath::Box2i window = file.header(part).dataWindow();
+  Pixels p{window.max.x + 1, window.max.y + 1, {}};
+  p.values.assign(static_cast<std::size_t>(p.width * p.height), -1);
+  Imf::FrameBuffer buffer;
+  buffer.insert(channel, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(p.values.data()),
+                                    sizeof(float), sizeof(float) * std::size_t(p.width)));
+  Imf::InputPart input(file, part);
+  input.setFrameBuffer(buffer);
+  input.readPixels(0, p.height - 1);
+  return p;
+}
+
+template <class Attribute>
+auto attribute(const Imf::Header& header, const std::string& name) {
+  const auto* found = header.findTypedAttribute<Attribute>(name);
+  EXPECT_TRUE(found) << name;
+  return found ? found->value() : std::decay_t<decltype(found->value())>();
+}
+
+TEST(VolumeTexture, AtlasHasEachVoxelWhereItSays) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.exr");
+  for (const bool up : {false, true}) {
+    VolumeTextureSettings settings;
+    settings.rowsUp = up;
+    const auto r = writeVolumeTexture(path, {scalar()}, settings);
+    EXPECT_EQ(r.resolution, Coord(18, 8, 12));
+    EXPECT_EQ(r.channels, std::vector<std::string>{"Y"});
+    EXPECT_EQ(r.slices, 12);
+    EXPECT_GE(r.tileColumns * r.tileRows, 12);
+    const Pixels p = pixels(path, "Y");
+    ASSERT_EQ(p.width, r.width);
+    ASSERT_EQ(p.height, r.height);
+    EXPECT_EQ(r.width, 18 * r.tileColumns);
+    for (int k = 0; k < 12; ++k)
+      for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 18; ++x) {
+          const Coord c = kBox.min().offsetBy(x, up ? 7 - y : y, k);
+          ASSERT_EQ(p.at(k % r.tileColumns * 18 + x, k / r.tileColumns * 8 + y), scalarAt(c));
+        }
+  }
+  EXPECT_EQ(folder.count(), 1u);
+}
+
+TEST(VolumeTexture, AttributesSayWhatAndWhere) {
+  const TemporaryFolder folder;
+  const auto grid = vectors("v");
+  grid->setVectorType(openvdb::VEC_COVARIANT);
+  const auto fog = scalar("density");
+  fog->setGridClass(openvdb::GRID_FOG_VOLUME);
+  VolumeTextureSettings settings;
+  settings.axis = 1;
+  settings.active = true;
+  const auto r = writeVolumeTexture(folder.file("a.exr"), {fog, grid}, settings);
+  Imf::MultiPartInputFile file(folder.file("a.exr").c_str());
+  const Imf::Header& h = file.header(0);
+  EXPECT_EQ(attribute<Imf::StringAttribute>(h, "volumeLayout"), "atlas");
+  EXPECT_EQ(attribute<Imf::StringAttribute>(h, "volumeAxis"), "y");
+  EXPECT_EQ(attribute<Imf::StringAttribute>(h, "volumeColumnAxis"), "x");
+  EXPECT_EQ(attribute<Imf::StringAttribute>(h, "volumeRowAxis"), "z");
+  EXPECT_EQ(attribute<Imf::StringAttribute>(h, "volumeRowOrder"), "down");
+  EXPECT_EQ(attribute<Imf::StringAttribute>(h, "volumeTileOrder"), "row-major");
+  EXPECT_EQ(attribute<Imf::V2iAttribute>(h, "volumeTiles"), Imath::V2i(r.tileColumns, r.tileRows));
+  EXPECT_EQ(attribute<Imf::V2iAttribute>(h, "volumeTileSize"), Imath::V2i(18, 12));
+  EXPECT_EQ(attribute<Imf::IntAttribute>(h, "volumeSliceCount"), 8);
+  EXPECT_EQ(attribute<Imf::V3iAttribute>(h, "volumeResolution"), Imath::V3i(18, 8, 12));
+  EXPECT_EQ(attribute<Imf::V3iAttribute>(h, "volumeIndexMin"), Imath::V3i(-5, 2, 30));
+  EXPECT_EQ(attribute<Imf::V3iAttribute>(h, "volumeIndexMax"), Imath::V3i(12, 9, 41));
+  const auto near = [](const Imath::V3d& a, const Imath::V3d& b) {
+    EXPECT_LT((a - b).length(), 1e-12) << a << " " << b;
+  };
+  near(attribute<Imf::V3dAttribute>(h, "volumeWorldMin"), {-2.75, 0.75, 14.75});
+  near(attribute<Imf::V3dAttribute>(h, "volumeWorldMax"), {6.25, 4.75, 20.75});
+  near(attribute<Imf::V3dAttribute>(h, "volumeVoxelSize"), {0.5, 0.5, 0.5});
+  near(Imath::V3d(3, 4, 5) * attribute<Imf::M44dAttribute>(h, "indexToWorld"), {1.5, 2, 2.5});
+  const Imath::M44d texture = attribute<Imf::M44dAttribute>(h, "textureToWorld");
+  near(Imath::V3d(0, 0, 0) * texture, {-2.75, 0.75, 14.75});
+  near(Imath::V3d(1, 0.5, 0) * texture, {6.25, 2.75, 14.75});
+  EXPECT_EQ(attribute<Imf::IntAttribute>(h, "gridCount"), 2);
+  EXPECT_EQ(attribute<Imf::StringAttribute>(h, "grid0.name"), "density");
+  EXPECT_EQ(attribute<Imf::StringAttribute>(h, "grid0.class"), "fog volume");
+  EXPECT_EQ(attribute<Imf::StringAttribute>(h, "grid0.channel"), "A");
+  EXPECT_EQ(attribute<Imf::StringAttribute>(h, "grid0.activeChannel"), "density.active");
+  EXPECT_EQ(attribute<Imf::StringAttribute>(h, "grid1.type"), "vec3s");
+  EXPECT_EQ(attribute<Imf::StringAttribute>(h, "grid1.vectorType"), "covariant");
+  EXPECT_EQ(attribute<Imf::StringAttribute>(h, "grid1.channelZ"), "B");
+}
+
+TEST(VolumeTexture, ChannelsAreWhatEnginesLookFor) {
+  const auto names = [](const openvdb::GridPtrVec& grids, VolumeChannels channels) {
+    VolumeTextureSettings settings;
+    settings.channels = channels;
+    return planVolumeTexture("a.exr", grids, settings).channels;
+  };
+  using Names = std::vector<std::string>;
+  const auto a = scalar("a"), b = scalar("b"), c = scalar("c"), d = scalar("d");
+  const auto colour = vectors("Cd"), v = vectors("v");
+  EXPECT_EQ(names({a}, VolumeChannels::kAuto), Names{"Y"});
+  EXPECT_EQ(names({a, b}, VolumeChannels::kAuto), (Names{"R", "G"}));
+  EXPECT_EQ(names({a, b, c, d}, VolumeChannels::kAuto), (Names{"R", "G", "B", "A"}));
+  EXPECT_EQ(names({a, colour}, VolumeChannels::kAuto), (Names{"A", "R", "G", "B"}));
+  EXPECT_EQ(names({colour, v}, VolumeChannels::kAuto),
+            (Names{"Cd.R", "Cd.G", "Cd.B", "v.X", "v.Y", "v.Z"}));
+  EXPECT_EQ(names({a}, VolumeChannels::kLayers), Names{"a.V"});
+  EXPECT_THROW(names({colour, v}, VolumeChannels::kRgba), SettingError);
+}
+
+TEST(VolumeTexture, BoxesGrowToCubesAndPowersOfTwo) {
+  const auto plan = [](VolumeTextureSettings settings) {
+    return planVolumeTexture("a.exr", {scalar()}, settings);
+  };
+  VolumeTextureSettings s;
+  s.pad = 2;
+  EXPECT_EQ(plan(s).resolution, Coord(22, 12, 16));
+  s = {};
+  s.powerOfTwo = true;
+  const auto r = plan(s);
+  EXPECT_EQ(r.resolution, Coord(32, 8, 16));
+  for (const int n : {r.width, r.height, r.tileColumns, r.tileRows}) EXPECT_EQ(n & (n - 1), 0);
+  EXPECT_EQ(r.tileColumns * r.tileRows, 16);
+  s = {};
+  s.cube = true;
+  EXPECT_EQ(plan(s).resolution, Coord(18, 18, 18));
+  s.resolution = 64;
+  const auto cube = plan(s);
+  EXPECT_EQ(cube.resolution, Coord(64, 64, 64));
+  EXPECT_EQ(cube.width, 512);
+  EXPECT_EQ(cube.height, 512);
+  s.cube = false;
+  EXPECT_EQ(plan(s).resolution, Coord(64, 29, 43));
+  // The middle stays where it is.
+  EXPECT_LT((plan(s).worldBox.getCenter() - plan({}).worldBox.getCenter()).length(), 1e-12);
+  EXPECT_LT((cube.worldBox.getCenter() - plan({}).worldBox.getCenter()).length(), 1e-12);
+  s = {};
+  s.tiles = {3, 4};
+  EXPECT_EQ(plan(s).width, 54);
+  s.tiles = {3, 3};
+  EXPECT_THROW(plan(s), SettingError);
+}
+
+TEST(VolumeTexture, BackgroundStandsWhereNothingIsActive) {
+  openvdb::initialize();
+  const TemporaryFolder folder;
+  auto grid = openvdb::FloatGrid::create(7.0f);
+  grid->setName("v");
+  grid->tree().setValue(Coord(0, 0, 0), 1.0f);
+  grid->tree().setValue(Coord(2, 1, 4), 2.0f);
+  VolumeTextureSettings settings;
+  settings.active = true;
+  const auto r = writeVolumeTexture(folder.file("a.exr"), {grid}, settings);
+  const Pixels p = pixels(folder.file("a.exr"), "Y");
+  EXPECT_EQ(p.at(0, 0), 1.0f);
+  EXPECT_EQ(p.at(1, 0), 7.0f);
+  EXPECT_EQ(std::count(p.values.begin(), p.values.end(), 7.0f),
+            std::ptrdiff_t(r.width) * r.height - 2);
+  const Pixels active = pixels(folder.file("a.exr"), "v.active");
+  EXPECT_EQ(std::count(active.values.begin(), active.values.end(), 1.0f), 2);
+}
+
+TEST(VolumeTexture, ResamplingKeepsLinearFunctionsAndMeans) {
+  openvdb::initialize();
+  const TemporaryFolder folder;
+  const auto linear = [](const openvdb::Vec3d& w) { return 2 * w.x() - w.y() + 0.5 * w.z() + 3; };
+  const openvdb::CoordBBox box(Coord(0, 0, 0), Coord(31, 15, 23));
+  auto grid = block<openvdb::DoubleGrid>(
+      "v", box, [&](auto c) { return linear(c.asVec3d() * 0.25); }, 0.25);
+  for (const int n : {16, 20, 48}) {
+    VolumeTextureSettings settings;
+    settings.layout = VolumeLayout::kParts;
+    settings.resolution = n;
+    const auto r = writeVolumeTexture(folder.file("p.exr"), {grid}, settings);
+    EXPECT_EQ(r.resolution.x(), n);
+    Imf::MultiPartInputFile file(folder.file("p.exr").c_str());
+    ASSERT_EQ(file.parts(), r.slices);
+    const Imath::M44d toWorld = attribute<Imf::M44dAttribute>(file.header(0), "indexToWorld");
+    const int k = r.slices / 2;  // away from the boundary
+    const Pixels p = pixels(folder.file("p.exr"), "Y", k);
+    for (int y = 2; y < p.height - 2; ++y)
+      for (int x = 2; x < p.width - 2; ++x) {
+        const Imath::V3d w = Imath::V3d(x, y, k) * toWorld;
+        ASSERT_NEAR(p.at(x, y), linear({w.x, w.y, w.z}), 1e-5);
+      }
+  }
+  // A checkerboard of single voxels at half the resolution is its mean, not one of its colours.
+  auto board = block<openvdb::FloatGrid>("board", box,
+                                         [](auto c) { return float((c.x() + c.y() + c.z()) & 1); });
+  VolumeTextureSettings settings;
+  settings.resolution = 8;
+  writeVolumeTexture(folder.file("b.exr"), {board}, settings);
+  EXPECT_NEAR(pixels(folder.file("b.exr"), "Y").at(3, 2), 0.5, 0.01);
+}
+
+TEST(VolumeTexture, ValuesThatPixelsDoNotHoldAreCounted) {
+  openvdb::initialize();
+  const TemporaryFolder folder;
+  auto grid = block<openvdb::FloatGrid>("v", kBox, [](auto) { return 1.5f; });
+  grid->tree().setValue(Coord(0, 4, 35), 1e6f);
+  grid->tree().setValue(Coord(1, 4, 35), -1e6f);
+  VolumeTextureSettings settings;
+  settings.half = true;
+  EXPECT_EQ(writeVolumeTexture(folder.file("h.exr"), {grid}, settings).clamped, 2u);
+  const Pixels p = pixels(folder.file("h.exr"), "Y");
+  EXPECT_EQ(*std::max_element(p.values.begin(), p.values.end()), 65504.0f);
+  Imf::MultiPartInputFile file(folder.file("h.exr").c_str());
+  EXPECT_EQ(file.header(0).channels().findChannel("Y")->type, Imf::HALF);
+  settings.half = false;
+  EXPECT_EQ(writeVolumeTexture(folder.file("h.exr"), {grid}, settings).clamped, 0u);
+  auto ids = block<openvdb::Int32Grid>("id", kBox, [](auto c) { return 1001 * c.x(); });
+  ids->tree().setValue(Coord(0, 4, 35), (1 << 24) + 1);
+  EXPECT_EQ(writeVolumeTexture(folder.file("i.exr"), {ids}, settings).inexact, 1u);
+  settings.half = true;
+  EXPECT_GT(writeVolumeTexture(folder.file("i.exr"), {ids}, settings).inexact, 1u);
+}
+
+TEST(VolumeTexture, SlicesAreNumberedFiles) {
+  const TemporaryFolder folder;
+  VolumeTextureSettings settings;
+  settings.layout = VolumeLayout::kSlices;
+  auto r = writeVolumeTexture(folder.file("s.##.exr"), {scalar()}, settings);
+  ASSERT_EQ(r.files.size(), 12u);
+  EXPECT_EQ(r.files[7], folder.file("s.07.exr"));
+  EXPECT_EQ(folder.count(), 12u);
+  EXPECT_EQ(pixels(r.files[7], "Y").at(3, 2), scalarAt(kBox.min().offsetBy(3, 2, 7)));
+  r = writeVolumeTexture(folder.file("t.exr"), {scalar()}, settings);
+  EXPECT_EQ(r.files[11], folder.file("t.0011.exr"));
+}
+
+TEST(VolumeTexture, RefusesBeforeItWrites) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.exr");
+  VolumeTextureSettings settings;
+  settings.maxMemory = 100;
+  EXPECT_THROW(writeVolumeTexture(path, {scalar()}, settings), MemoryError);
+  EXPECT_GT(volumeTextureMemory({scalar()}, {}), 18u * 8 * 12 * 4);
+  settings = {};
+  settings.resolution = -1;
+  EXPECT_THROW(writeVolumeTexture(path, {scalar()}, settings), SettingError);
+  EXPECT_THROW(writeVolumeTexture(path, {}, {}), DataError);
+  EXPECT_THROW(writeVolumeTexture(path, {openvdb::FloatGrid::create()}, {}), DataError);
+  EXPECT_THROW(writeVolumeTexture(path, {scalar("a"), scalar("a")},
+                                  [] {
+                                    VolumeTextureSettings s;
+                                    s.channels = VolumeChannels::kLayers;
+                                    return s;
+                                  }()),
+               DataError);
+  auto other = scalar("other");
+  other->setTransform(openvdb::math::Transform::createLinearTransform(2));
+  EXPECT_THROW(writeVolumeTexture(path, {scalar(), other}, {}), DataError);
+  Progress progress;
+  progress.cancel();
+  for (const VolumeLayout layout :
+       {VolumeLayout::kAtlas, VolumeLayout::kSlices, VolumeLayout::kParts}) {
+    settings = {};
+    settings.layout = layout;
+    settings.progress = &progress;
+    EXPECT_THROW(writeVolumeTexture(path, {scalar()}, settings), Cancelled);
+  }
+  EXPECT_EQ(folder.count(), 0u);
+}
+
+TEST(VolumeTexture, NoticesAFullDisk) {
+  signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  for (const VolumeLayout layout :
+       {VolumeLayout::kAtlas, VolumeLayout::kSlices, VolumeLayout::kParts}) {
+    const TemporaryFolder folder;
+    VolumeTextureSettings settings;
+    settings.layout = layout;
+    const auto r = writeVolumeTexture(folder.file("s.exr"), {scalar()}, settings);
+    const auto size = static_cast<rlim_t>(std::filesystem::file_size(r.files.front()));
+    for (const rlim_t limit : {rlim_t(0), size / 2, size - 1}) {
+      SCOPED_TRACE(limit);
+      const rlimit small{limit, before.rlim_max};
+      setrlimit(RLIMIT_FSIZE, &small);
+      EXPECT_THROW(writeVolumeTexture(folder.file("t.exr"), {scalar()}, settings), FileError);
+      setrlimit(RLIMIT_FSIZE, &before);
+      EXPECT_EQ(folder.count(), r.files.size());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace innermap

@@ -1,0 +1,69 @@
+#include "innermap/solve/detail/blocked_qr.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "innermap/core/detail/random.h"
+#include "innermap/core/error.h"
+#include "innermap/core/parallel.h"
+
+namespace innermap {
+namespace {
+
+Matrix randomMatrix(std::size_t rows, std::size_t columns, std::uint64_t seed) {
+  const CounterRandom random(seed, 1);
+  Matrix a(rows, columns);
+  for (std::size_t i = 0; i < rows * columns; ++i) a.data()[i] = 2 * random.uniform(i) - 1;
+  return a;
+}
+
+TEST(BlockedQr, TurnsTheMatrixIntoItsTriangle) {
+  for (const std::size_t columns : {1, 63, 64, 65, 200, 333}) {
+    const std::size_t rows = columns + 117;
+    const Matrix a = randomMatrix(rows, columns, columns);
+    const BlockedQr qr(a);
+    Matrix b = a;
+    qr.applyTransposedQ(b);
+    const Matrix r = qr.upperTriangle();
+    for (std::size_t j = 0; j < columns; ++j)
+      for (std::size_t i = 0; i < rows; ++i)
+        ASSERT_NEAR(b(i, j), i < columns ? r(i, j) : 0, 1e-12) << i << ", " << j;
+  }
+}
+
+TEST(BlockedQr, SameBitsForAnyNumberOfThreads) {
+  const Matrix a = randomMatrix(900, 400, 3), r = BlockedQr(a).upperTriangle();
+  const ThreadLimit one(1);
+  const Matrix single = BlockedQr(a).upperTriangle();
+  EXPECT_TRUE(std::equal(r.data(), r.data() + 160000, single.data()));
+}
+
+TEST(BlockedQr, RefusesWideMatrices) { EXPECT_THROW(BlockedQr(Matrix(3, 4)), SettingError); }
+
+TEST(BlockedQr, CancelStopsIt) {
+  Progress progress;
+  progress.cancel();
+  EXPECT_THROW(BlockedQr(randomMatrix(200, 100, 1), &progress), Cancelled);
+}
+
+TEST(Multiply, EqualsThePlainLoop) {
+  const Matrix a = randomMatrix(31, 17, 1), b = randomMatrix(17, 300, 2);
+  Matrix c(31, 300);
+  multiply(false, 2, a, b, 0, c);
+  Matrix at(17, 31);
+  for (std::size_t i = 0; i < 31; ++i)
+    for (std::size_t j = 0; j < 17; ++j) at(j, i) = a(i, j);
+  Matrix d(31, 300);
+  multiply(true, 2, at, b, 0, d);
+  for (std::size_t i = 0; i < 31; ++i)
+    for (std::size_t j = 0; j < 300; ++j) {
+      double sum = 0;
+      for (std::size_t k = 0; k < 17; ++k) sum += 2 * a(i, k) * b(k, j);
+      ASSERT_NEAR(c(i, j), sum, 1e-13);
+      ASSERT_NEAR(d(i, j), sum, 1e-13);
+    }
+}
+
+}  // namespace
+}  // namespace innermap
