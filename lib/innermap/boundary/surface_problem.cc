@@ -1,0 +1,73 @@
+#include "innermap/boundary/surface_problem.h"
+
+#include "innermap/boundary/detail/problem_samples.h"
+#include "innermap/boundary/detail/streams.h"
+#include "innermap/sample/patch_points.h"
+#include "innermap/sample/surface_samples.h"
+
+namespace innermap {
+namespace {
+
+using Samples = std::vector<SurfacePoint>;
+
+BoundarySamples withValues(const Solid& solid, const SurfaceValues& values,
+                           const Samples& samples) {
+  return {positionsOf(solid, samples), values(samples)};
+}
+
+PatchSettings patchSettings(const PlacementRequest& request, std::uint64_t seed,
+                            Progress* progress) {
+  PatchSettings s;
+  s.spacing = request.spacing;
+  s.reach = request.reach;
+  s.most = request.most;
+  s.seed = seed;
+  s.progress = progress;
+  return s;
+}
+
+}  // namespace
+
+FitProblem surfaceProblem(const Solid& solid, const SurfaceValues& values,
+                          const SurfaceProblemSettings& settings) {
+  return problemOf(solid, values, drawSamples(solid, settings), settings);
+}
+
+AdaptiveProblem adaptiveProblem(const Solid& solid, const SurfaceValues& values, double unit,
+                                const AdaptiveProblemSettings& settings) {
+  Progress* const progress = settings.progress;
+  const auto seed = [first = settings.seed](Stream stream, std::uint64_t index) {
+    return seedOf(first, stream) + (index << 53);  // seeds stay below that
+  };
+  AdaptiveProblem problem;
+  problem.diagonal = solid.diagonal();
+  problem.area = solid.area();
+  problem.unit = unit;
+  problem.draw = [=](std::size_t count, std::uint64_t draw) {
+    SampleSettings sample;
+    sample.seed = seed(Stream::fresh, draw);
+    sample.progress = progress;
+    return withValues(solid, values, randomSamples(solid.surface(), count, sample));
+  };
+  problem.placeSources = [=](const PlacementRequest& request, double distance) {
+    return patchSources(solid, request.marks, distance, request.existing,
+                        patchSettings(request, seed(Stream::sources, request.index), progress));
+  };
+  problem.placeCollocation = [=](const PlacementRequest& request) {
+    return withValues(
+        solid, values,
+        patchSamples(solid, request.marks, request.existing,
+                     patchSettings(request, seed(Stream::collocation, request.index), progress)));
+  };
+  return problem;
+}
+
+BoundarySamples freshSamples(const Solid& solid, const SurfaceValues& values,
+                             const FreshSampleSettings& settings) {
+  SampleSettings sample;
+  sample.seed = seedOf(settings.seed, Stream::fresh);
+  sample.progress = settings.progress;
+  return withValues(solid, values, randomSamples(solid.surface(), settings.count, sample));
+}
+
+}  // namespace innermap
