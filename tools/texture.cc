@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "boundary_samples.h"
 #include "commands.h"
+#include "innermap/boundary/surface_problem.h"
 #include "innermap/core/memory.h"
 #include "innermap/field/boundary_error.h"
 #include "innermap/io/vdb/vdb_file.h"
@@ -23,6 +23,7 @@ constexpr double kBand = 3;             // voxels: the skin of 2 and one more fo
 constexpr double kVoxelsPerCharge = 2;  // along a side: what is finer, the surface itself gives
 constexpr double kFewestCharges = 1000, kMostCharges = 50000;
 constexpr double kPointsPerSource = 3;
+constexpr std::size_t kHeldOut = 1000;
 constexpr int kMostGroups = 16;
 constexpr double kSumAccuracy = 1e-5;  // of colours and texture coordinates
 
@@ -49,7 +50,7 @@ struct Job {
   std::optional<TextureImages> images;
   std::optional<TextureSurface> surface;
   double voxel = 0;
-  PointCounts counts;
+  std::size_t sources = 0, collocation = 0;
 };
 
 LevelSetSettings levelSetSettings(const TextureOptions& options, Context& context) {
@@ -87,11 +88,10 @@ void readInput(Job& job) {
   for (const std::string& note : job.solid->repaired().notes) context.note(o.mesh + ": " + note);
   job.voxel = voxelSizeFor(*job.solid, levelSetSettings(o, context));
   const double side = kVoxelsPerCharge * job.voxel;
-  job.counts.sources = o.sources.value_or(static_cast<std::uint64_t>(
+  job.sources = o.sources.value_or(static_cast<std::uint64_t>(
       std::clamp(std::round(job.solid->area() / (side * side)), kFewestCharges, kMostCharges)));
-  job.counts.collocation =
-      static_cast<std::size_t>(kPointsPerSource * static_cast<double>(job.counts.sources)) + 16;
-  job.counts.heldOut = 1000;
+  job.collocation =
+      static_cast<std::size_t>(kPointsPerSource * static_cast<double>(job.sources)) + 16;
 }
 
 void findCharts(Job& job) {
@@ -126,9 +126,9 @@ std::uint64_t memoryOf(const Job& job) {
                         12 * job.solid->area() / (job.voxel * job.voxel);
   const auto grids =
       static_cast<std::uint64_t>((33.0 + 4.0 * static_cast<double>(channels)) * voxels);
-  const std::uint64_t fit = fitMemory(job.counts.collocation, job.counts.sources,
-                                      job.counts.heldOut, FitSolver::iterative) +
-                            80 * channels * job.counts.collocation;
+  const std::uint64_t fit =
+      fitMemory(job.collocation, job.sources, kHeldOut, FitSolver::iterative) +
+      80 * channels * job.collocation;
   const std::uint64_t image = o.image.empty() ? 0 : textureImageMemory(imageOptions(o), job.mesh);
   return image + std::max(fit, levelSetMemory(*job.solid, settings) + grids);
 }
@@ -172,16 +172,21 @@ std::vector<double> errorsOf(const HarmonicField& field, const BoundarySamples& 
 
 HarmonicField fit(const Job& job) {
   Context& context = job.context;
-  const double apart = spacingOf(job, job.counts.collocation);
-  const ValuesOf values = [&](const std::vector<SurfacePoint>& points) {
+  const double apart = spacingOf(job, job.collocation);
+  const SurfaceValues values = [&](const std::vector<SurfacePoint>& points) {
     return job.surface->values(points, apart);
   };
   FitProblem problem;
   context.timed("sample", [&] {
-    problem = surfaceProblem(*job.solid, values, job.options.seed, job.counts, context);
+    SurfaceProblemSettings sampling;
+    sampling.collocation = job.collocation;
+    sampling.heldOut = kHeldOut;
+    sampling.seed = job.options.seed;
+    sampling.progress = context.progress();
+    problem = surfaceProblem(*job.solid, values, sampling);
   });
   FitSettings settings;
-  settings.sources = job.counts.sources;
+  settings.sources = job.sources;
   settings.solver = FitSolver::iterative;
   settings.interpolation = Interpolation::linear;
   settings.maxMemory = context.maxMemory();
@@ -200,7 +205,10 @@ HarmonicField fit(const Job& job) {
   report.set("solve.channels", static_cast<std::int64_t>(job.surface->channels()));
   report.set("solve.seed", static_cast<std::int64_t>(job.options.seed));
   context.timed("certificate", [&] {
-    const BoundarySamples fresh = freshSamples(*job.solid, values, job.options.seed, context);
+    FreshSampleSettings sampling;
+    sampling.seed = job.options.seed;
+    sampling.progress = context.progress();
+    const BoundarySamples fresh = freshSamples(*job.solid, values, sampling);
     const std::size_t counted = job.options.colours() ? 3 : job.surface->channels();
     const BoundaryError e =
         summarizeErrors(errorsOf(result->field, fresh, counted, context.progress()));
@@ -255,7 +263,7 @@ void describe(const Job& job, const openvdb::GridPtrVec& grids) {
     if (!o.image.empty()) text("innermap_texture_wrap", o.wrap);
     text("innermap_colour_space", "linear");
     grid->insertMeta("innermap_sources",
-                     openvdb::Int64Metadata(static_cast<std::int64_t>(job.counts.sources)));
+                     openvdb::Int64Metadata(static_cast<std::int64_t>(job.sources)));
   }
 }
 
@@ -270,7 +278,7 @@ openvdb::GridPtrVec makeGrids(const Job& job, const HarmonicField& field) {
   std::vector<openvdb::Vec3fGrid::Ptr> continued;
   context.timed("continue", [&] {
     ContinuationSettings settings;
-    settings.spacing = spacingOf(job, job.counts.sources);
+    settings.spacing = spacingOf(job, job.sources);
     settings.accuracy = kSumAccuracy;
     settings.maxMemory = context.maxMemory();
     settings.progress = context.progress();
@@ -318,14 +326,14 @@ void check(const TextureOptions& o) {
 void run(const TextureOptions& options, Context& context) {
   check(options);
   context.willWrite(options.output);
-  Job job{options, context, {}, {}, {}, {}, {}, {}, 0, {}};
+  Job job{options, context, {}, {}, {}, {}, {}, {}, 0, 0, 0};
   readInput(job);
   findCharts(job);
   const std::uint64_t need = memoryOf(job);
   if (context.dryRun())
     return context.plan({fmt::format("continue {} into {} with {} charges and voxels of {:.6g}",
                                      options.image.empty() ? "vertex colours" : options.image,
-                                     options.mesh, job.counts.sources, job.voxel),
+                                     options.mesh, job.sources, job.voxel),
                          "write surface, density, Cd and uv to " + options.output},
                         need);
   requireMemory(

@@ -13,7 +13,7 @@
 #include "innermap/io/vdb/vdb_file.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/transfer/distance_transfer.h"
-#include "saved_map.h"
+#include "map_report.h"
 #include "section_place.h"
 
 namespace innermap::tool {
@@ -47,20 +47,19 @@ Field makeField(const Solid& solid, const TransferDistanceOptions& options, Cont
   return field;
 }
 
-void pullDistance(const FieldFile& file, const BoundaryPair& pair, const Solid& target,
-                  Field& source, Context& context) {
+void pullDistance(const MappedSolid& mapped, const Solid& target, Field& source, Context& context) {
   EvaluateSettings settings;
   settings.jacobian = settings.harmonicEnergy = settings.deformationEnergy = false;
-  settings.targetVolume = pair.targetVolume;
-  settings.accuracy = sumAccuracy(file);
+  settings.targetVolume = mapped.boundary.target.volume;
+  settings.accuracy = sumAccuracy(mapped);
   settings.maxMemory = context.maxMemory();
   settings.progress = context.progress();
   MapGrids grids;
   context.timed("evaluate", [&] {
-    grids = evaluateMap(HarmonicMap(file.field), pair.solid, *source.surface, settings);
+    grids = evaluateMap(mapped.map, mapped.solid(), *source.surface, settings);
   });
   if (grids.interiorVoxels == 0)
-    throw DataError(pair.source.name +
+    throw DataError(mapped.boundary.source.mesh.name +
                     ": is thinner than the voxels everywhere, none has its centre inside; use a "
                     "higher --resolution");
   context.timed("transfer",
@@ -104,15 +103,15 @@ void writeSection(const std::string& path, const std::string& title, const Solid
   writeSectionImage(path, {shown, solidGrid}, section);
 }
 
-void writeVdbs(const Field& source, const Field& target, const FieldFile& file,
+void writeVdbs(const Field& source, const Field& target, const MappedSolid& mapped,
                PendingFolder& folder, Context& context) {
   VdbWriteSettings settings;
   settings.progress = context.progress();
   source.own->setName("source_distance");
   const openvdb::GridPtrVec inSource{source.surface, source.distance, source.own};
   const openvdb::GridPtrVec inTarget{target.surface, target.own};
-  describeMap(inSource, file);
-  describeMap(inTarget, file);
+  describeMap(inSource, mapped);
+  describeMap(inTarget, mapped);
   folder.write("source.vdb",
                [&](const std::string& path) { writeVdb(path, inSource, {}, settings); });
   folder.write("target.vdb",
@@ -146,22 +145,22 @@ std::string fillReport(const Field& source, const Field& target, const NumberPai
 }
 
 void run(const TransferDistanceOptions& options, Context& context) {
-  const FieldFile file = readMap(options.map, context);
-  const BoundaryPair pair = boundaryOf(file, options.map, context);
+  const MappedSolid mapped = readMapFile(options.map, context);
   if (context.dryRun())
     return context.plan(
         {"transfer the target's distance field through " + options.map,
          "write source.vdb, target.vdb, source.png, target.png and report.json to " +
              options.output},
-        evaluationMemory(pair.solid, options.evaluation));
-  requireEvaluationMemory(pair.solid, options.evaluation, context);
+        mapGridMemory(mapped.solid(), mapGridSettings(options.evaluation, context)));
+  requireEvaluationMemory(mapped.solid(), mapGridSettings(options.evaluation, context));
   PendingFolder folder(options.output);
   std::optional<Solid> targetOf;
-  context.timed("solid", [&] { targetOf.emplace(targetSolid(pair, context)); });
+  context.timed("solid",
+                [&] { targetOf.emplace(makeTargetSolid(mapped.boundary, {context.progress()})); });
   const Solid& solid = *targetOf;
   Field target = makeField(solid, options, context);
-  Field source = makeField(pair.solid, options, context);
-  pullDistance(file, pair, solid, source, context);
+  Field source = makeField(mapped.solid(), options, context);
+  pullDistance(mapped, solid, source, context);
   const NumberPair range =
       options.range.value_or(NumberPair{0, interiorValues(*target.own, *target.surface).largest});
   const std::string text = fillReport(source, target, range, context);
@@ -171,10 +170,10 @@ void run(const TransferDistanceOptions& options, Context& context) {
                    options, context);
     });
     folder.write("source.png", [&](const std::string& path) {
-      writeSection(path, "the target's distance, through the map", pair.solid, *source.distance,
+      writeSection(path, "the target's distance, through the map", mapped.solid(), *source.distance,
                    *source.surface, range, options, context);
     });
-    writeVdbs(source, target, file, folder, context);
+    writeVdbs(source, target, mapped, folder, context);
   });
   context.print(text);
   folder.write("report.json",
