@@ -120,6 +120,9 @@ TargetBoundary makeTargetBoundary(const Solid& source, const Mesh& target,
 }
 
 BoundaryPair makeBoundaryPair(Mesh source, Mesh target, const BoundarySettings& settings) {
+  if (source.triangles != target.triangles)
+    throw DataError(target.name + ": has other triangles than " + source.name +
+                    "; lay the one onto the other first (mesh_correspondence.h)");
   SourceBoundary from = makeSourceBoundary(std::move(source), settings);
   StageSeconds seconds = from.seconds;
   const MeshReport checked =
