@@ -112,7 +112,7 @@ class Hierarchy {
 FieldSamples Hierarchy::at(const Points& points) const {
   Points local(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) local[i] = tree_.toLocal(points[i]);
-  const BallTree targets(local, {kLeastBall}, kPointsPerLeaf, 3);
+  const BallTree targets(local, kLeastBall, kPointsPerLeaf, 3);
   const std::size_t channels = tree_.channels();
   FieldSamples out = samplesFor(points.size(), channels, settings_.gradients);
   descend(field_, targets,
@@ -148,7 +148,7 @@ void Hierarchy::onLattice(const LatticeBlocks& lattice, const BlockVisitor& visi
         tree_.toLocal(0.5 * (pointOf(lattice, block, 0) + pointOf(lattice, block, 511))));
   }
   const double spacing = lattice.spacing * tree_.inverseScale();
-  const BallTree targets(centers, {LatticeBlock::radius() * spacing}, 1, 3);
+  const BallTree targets(centers, LatticeBlock::radius() * spacing, 1, 3);
   const LatticeBlock polynomial(field_.basis().harmonics());
   descend(
       field_, targets,

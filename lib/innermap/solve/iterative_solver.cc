@@ -9,7 +9,6 @@
 #include "innermap/core/memory.h"
 #include "innermap/solve/detail/directions.h"
 #include "innermap/solve/fast_sum.h"
-#include "innermap/solve/sequence_solver.h"
 
 namespace innermap {
 namespace {
@@ -19,8 +18,6 @@ constexpr double kLeastGain = 0.03;  // of the residual; less is not worth an it
 // An iteration's gain (in squares of the residual) is taken to be at least this share of the one
 // before.
 constexpr double kLeastShrinkage = 0.04;
-// Channels of a solution that are so nearly multiples of each other count as one.
-constexpr double kAlike = 0.1;
 constexpr double kFinestProduct = 1e-12, kCoarsestProduct = 1e-3;  // relative
 constexpr double kSameSpacing = 1e-6;                              // relative
 
@@ -251,10 +248,8 @@ void IterativeSolver::runLevels(OrthogonalDirections& directions, Matrix& residu
   }
 }
 
-// Until enough(residuals), the rms at the start and after each iteration.
-template <class Enough>
-IterativeSolution IterativeSolver::iterate(const Scaled& values, Matrix& residual, Matrix& x,
-                                           const Enough& enough) const {
+IterativeSolution IterativeSolver::iterate(const Scaled& values, Matrix& residual,
+                                           Matrix& x) const {
   IterativeSolution out;
   OrthogonalDirections directions(collocation_.size(), unknowns());
   out.residuals.push_back(values.size * rms(residual));
@@ -264,7 +259,7 @@ IterativeSolution IterativeSolver::iterate(const Scaled& values, Matrix& residua
     runLevels(directions, residual, x);
     ++out.iterations;
     out.residuals.push_back(values.size * rms(residual));
-  } while (out.iterations < settings_.maxIterations && !enough(out.residuals));
+  } while (out.iterations < settings_.maxIterations && !littleIsLeft(out.residuals));
   unscale(values, residual, x, out);
   return out;
 }
@@ -291,32 +286,7 @@ IterativeSolution IterativeSolver::solve(const Matrix& values,
   const Scaled rhs = scaled(values);
   Matrix residual = rhs.values, x(unknowns(), values.columns());
   if (start) startFrom(*start, rhs, residual, x);
-  return iterate(rhs, residual, x, littleIsLeft);
-}
-
-SequenceSolver::SequenceSolver(IterativeSolver solver) : solver_(std::move(solver)) {}
-
-SequenceSolver::SequenceSolver(SequenceSolver&&) noexcept = default;
-SequenceSolver& SequenceSolver::operator=(SequenceSolver&&) noexcept = default;
-SequenceSolver::~SequenceSolver() = default;
-
-IterativeSolution SequenceSolver::solve(const Matrix& values) {
-  const IterativeSolver::Scaled rhs = solver_.scaled(values);
-  Matrix residual = rhs.values, x(solver_.unknowns(), values.columns());
-  if (solutions_) solutions_->project(0, residual, x);
-  const IterativeSolution out = solver_.iterate(rhs, residual, x, littleIsLeft);
-  keep(rhs.values, residual, std::move(x));
-  return out;
-}
-
-// The solution as directions, whose image is known without a product. That of one frame alone: more
-// of them differ by what they did not resolve, and a combination of them magnifies it.
-void SequenceSolver::keep(Matrix values, const Matrix& residual, Matrix x) {
-  auto directions = std::make_unique<OrthogonalDirections>(values.rows(), x.rows(), kAlike);
-  for (std::size_t i = 0; i < values.rows() * values.columns(); ++i)
-    values.data()[i] -= residual.data()[i];
-  directions->add(std::move(x), std::move(values));
-  solutions_ = std::move(directions);
+  return iterate(rhs, residual, x);
 }
 
 }  // namespace innermap

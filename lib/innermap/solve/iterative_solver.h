@@ -75,7 +75,6 @@ class IterativeSolver {
   std::size_t collocation() const { return collocation_.size(); }
 
  private:
-  friend class SequenceSolver;
   struct Level {
     LocalSolver solver;
     std::vector<std::size_t> sources;  // indices into sources_
@@ -90,9 +89,7 @@ class IterativeSolver {
   void startFrom(const IterativeSolution& start, const Scaled& values, Matrix& residual,
                  Matrix& x) const;
   Matrix scaledStart(const IterativeSolution& start, const Scaled& values) const;
-  template <class Enough>
-  IterativeSolution iterate(const Scaled& values, Matrix& residual, Matrix& x,
-                            const Enough& enough) const;
+  IterativeSolution iterate(const Scaled& values, Matrix& residual, Matrix& x) const;
   void runLevels(OrthogonalDirections& directions, Matrix& residual, Matrix& x) const;
   void takeDirections(const Matrix& weights, const std::vector<std::size_t>& rows,
                       const Points& sources, OrthogonalDirections& directions, Matrix& residual,

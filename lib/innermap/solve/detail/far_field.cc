@@ -39,7 +39,7 @@ void FarField::split(const BallTree::Node& leaf, const Ball& ball, NearCharges& 
   const double reach = ball.radius / settings_.separation, squared = reach * reach;
   for (std::size_t g = 0; g < proxies_.groups(); ++g) {
     const std::size_t stride = 3 + proxies_.width(g);
-    const ChargeSpan span = proxies_.charges()->charges(leaf, g);
+    const ChargeSpan span = proxies_.charges().charges(leaf, g);
     for (std::size_t i = 0; i < span.count; ++i) {
       const double* q = span.first + i * stride;
       const bool isFar = squaredNorm(Vec3{q[0], q[1], q[2]} - ball.center) >= squared;

@@ -58,8 +58,8 @@ class FarField {
                    const std::vector<std::uint32_t>& nodes, std::vector<std::uint32_t>& left,
                    FarFieldWorkspace& work) const;
 
-  // The same for a ball without children and sources that are charges: each of those is expanded or
-  // put into `near`, whose old content goes.
+  // The same for a ball without children: each charge is expanded or put into `near`, whose old
+  // content goes.
   Expansion expandLast(const Ball& ball, const Expansion& parent,
                        const std::vector<std::uint32_t>& nodes, NearCharges& near,
                        FarFieldWorkspace& work) const;
