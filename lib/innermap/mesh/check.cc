@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <tuple>
 
+#include "innermap/core/detail/disjoint_sets.h"
 #include "innermap/mesh/detail/topology.h"
 #include "innermap/mesh/self_intersection.h"
 
@@ -145,7 +146,7 @@ int genusOf(const std::vector<Triangle>& triangles, const std::vector<EdgeUse>& 
 // Volume and genus, with seams joined. The volume is that with the remaining loops capped as repair
 // does, but oriented as in the file.
 void checkSolid(const Mesh& mesh, MeshReport& report) {
-  const std::vector<int> to = joinSeams(mesh.vertices, mesh.triangles, &report.seamEdges);
+  const std::vector<int> to = joinedVertices(mesh.vertices, mesh.triangles, &report.seamEdges);
   const std::vector<Triangle> joined = mapped(mesh.triangles, to);
   const std::vector<EdgeUse> edges = sortedEdges(joined);
   report.genus = genusOf(joined, edges);

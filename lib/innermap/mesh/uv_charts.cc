@@ -8,6 +8,7 @@
 #include <numeric>
 #include <queue>
 
+#include "innermap/core/detail/disjoint_sets.h"
 #include "innermap/core/error.h"
 #include "innermap/mesh/detail/topology.h"
 
@@ -70,7 +71,7 @@ using PairVisitor = std::function<void(const EdgeUse&, const EdgeUse&, bool agre
 
 void forEachUvPair(const Mesh& mesh, const PairVisitor& visit, double* edgeLength = nullptr) {
   const Agreement agree(mesh);
-  const std::vector<int> joined = joinSeams(mesh.vertices, mesh.triangles);
+  const std::vector<int> joined = joinedVertices(mesh.vertices, mesh.triangles);
   const std::vector<EdgeUse> edges = sortedEdges(mapped(mesh.triangles, joined));
   forEachEdge(edges, [&](const EdgeUse* begin, const EdgeUse* end) {
     if (edgeLength) *edgeLength += norm(mesh.vertices[begin->high] - mesh.vertices[begin->low]);
