@@ -93,7 +93,7 @@ void measure(const BoundaryPair& pair, const FitProblem& problem, const FittingO
   context.timed("certificate", [&] {
     const auto error = [&](const Points& points, const Matrix& values) {
       return measureBoundaryError(out.field, points, values, pair.targetDiagonal,
-                                  context.progress());
+                                  {0, context.progress()});
     };
     const BoundarySamples fresh = freshSamples(pair, options, context);
     out.error = error(fresh.points, fresh.values);

@@ -119,7 +119,7 @@ FrameFit FrameSolver::solve(const FrameFile& frame, Context& context) const {
     // By fast sums, to a hundredth of what is measured.
     const double accuracy = std::max(1e-2 * solution.residuals.back(), 1e-12 * boundary.diagonal);
     error = summarizeErrors(boundaryErrors(field, fresh_.points, valuesAt(fresh_, boundary),
-                                           boundary.diagonal, accuracy, context.progress()));
+                                           boundary.diagonal, {accuracy, context.progress()}));
   });
   if (error.max > 0.1)
     context.warning(

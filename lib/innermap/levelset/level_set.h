@@ -56,12 +56,16 @@ struct LevelSetCheck {
 };
 LevelSetCheck checkLevelSet(const openvdb::FloatGrid& levelSet, const Solid& solid);
 
+struct AttributeSettings {
+  Progress* progress = nullptr;
+};
+
 // Attributes of the closest triangle carried onto the active voxels of `levelSet`: "uv" (Vec3f,
 // third component 0) when the mesh has texture coordinates, "Cd" (Vec3f) when it has vertex
 // colours. `mesh` is the mesh that `solid` was made of. Voxels whose closest point lies on a cap
-// take the nearest triangle that has the attribute.
+// take the nearest triangle that has the attribute. Throws DataError for another mesh, Cancelled.
 std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const openvdb::FloatGrid& levelSet,
                                                        const Solid& solid, const Mesh& mesh,
-                                                       Progress* progress = nullptr);
+                                                       const AttributeSettings& settings = {});
 
 }  // namespace innermap

@@ -169,17 +169,17 @@ void checkCrossings(const Mesh& mesh, const CheckSettings& settings, MeshReport&
   };
   // A heap with the last of the listed ones on top: memory stays bounded whatever their number.
   std::vector<Crossing>& listed = report.crossings;
-  forEachSelfIntersection(mesh.vertices, mesh.triangles, settings.progress,
-                          [&](const Crossing& crossing) {
-                            ++report.selfIntersections;
-                            if (listed.size() >= settings.listed) {
-                              if (listed.empty() || !before(crossing, listed.front())) return;
-                              std::pop_heap(listed.begin(), listed.end(), before);
-                              listed.pop_back();
-                            }
-                            listed.push_back(crossing);
-                            std::push_heap(listed.begin(), listed.end(), before);
-                          });
+  const auto visit = [&](const Crossing& crossing) {
+    ++report.selfIntersections;
+    if (listed.size() >= settings.listed) {
+      if (listed.empty() || !before(crossing, listed.front())) return;
+      std::pop_heap(listed.begin(), listed.end(), before);
+      listed.pop_back();
+    }
+    listed.push_back(crossing);
+    std::push_heap(listed.begin(), listed.end(), before);
+  };
+  forEachSelfIntersection(mesh.vertices, mesh.triangles, visit, {settings.progress});
   std::sort(listed.begin(), listed.end(), before);
 }
 

@@ -66,7 +66,7 @@ TEST(LevelSet, BandIsAsWideAsAsked) {
     // The number of voxels in a shell of that width about the unit sphere.
     const double band = width * h;
     const double expected =
-        4.0 / 3 * shapes::kPi * (std::pow(1 + band, 3) - std::pow(1 - band, 3)) / (h * h * h);
+        4.0 / 3 * kPi * (std::pow(1 + band, 3) - std::pow(1 - band, 3)) / (h * h * h);
     EXPECT_NEAR(static_cast<double>(grid->activeVoxelCount()), expected, 0.03 * expected);
   }
 }

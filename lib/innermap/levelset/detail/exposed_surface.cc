@@ -257,7 +257,7 @@ ExposedSurface exposedSurface(const Mesh& mesh, double pieceSize, Progress* prog
   work.pieces.resize(mesh.triangles.size());
 
   throwIfCancelled(progress);
-  const Partners partners = partnersOf(selfIntersections(work.local, mesh.triangles, progress));
+  const Partners partners = partnersOf(selfIntersections(work.local, mesh.triangles, {progress}));
   std::vector<char> cut(mesh.triangles.size(), 0);
   for (const auto& [t, others] : partners) cut[t] = 1;
   classifyPatches(work, cut, progress);
