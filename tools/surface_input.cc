@@ -28,10 +28,11 @@ bool shellsCross(const SurfaceShells& shells, Progress* progress) {
     }
   }
   bool cross = false;
-  forEachSelfIntersection(vertices, triangles, progress, [&](const Crossing& c) {
+  const auto visit = [&](const Crossing& c) {
     cross = cross ||
             shell[static_cast<std::size_t>(c.first)] != shell[static_cast<std::size_t>(c.second)];
-  });
+  };
+  forEachSelfIntersection(vertices, triangles, visit, {progress});
   return cross;
 }
 

@@ -97,10 +97,10 @@ void readInput(Job& job) {
 void findCharts(Job& job) {
   if (job.options.image.empty()) return;
   Context& context = job.context;
-  context.timed("charts", [&] { job.charts = uvCharts(job.mesh, context.progress()); });
+  context.timed("charts", [&] { job.charts = uvCharts(job.mesh, {context.progress()}); });
   if (!job.options.blends()) return;
   context.timed("charts", [&] {
-    job.groups = uvGroups(job.mesh, *job.charts, kMostGroups, context.progress());
+    job.groups = uvGroups(job.mesh, *job.charts, {kMostGroups, context.progress()});
   });
   context.report().set("seams.pieces", static_cast<std::int64_t>(job.groups->pieces));
   context.report().set("seams.groups", static_cast<std::int64_t>(job.groups->count));
@@ -161,7 +161,7 @@ void readTexture(Job& job) {
 // Over the first channels.
 std::vector<double> errorsOf(const HarmonicField& field, const BoundarySamples& samples,
                              std::size_t channels, Progress* progress) {
-  const Matrix found = field.evaluate(samples.points, kSumAccuracy, false, progress).values;
+  const Matrix found = field.evaluate(samples.points, {kSumAccuracy, false, progress}).values;
   std::vector<double> squares(samples.points.size(), 0.0);
   for (std::size_t k = 0; k < channels; ++k)
     for (std::size_t i = 0; i < squares.size(); ++i)

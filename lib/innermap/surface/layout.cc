@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "innermap/core/detail/pi.h"
+
 namespace innermap {
 namespace {
 
@@ -16,7 +18,7 @@ double coveredArea(ModelSpace space, const Vec3& p, const Vec3& q, const Vec3& r
 }
 
 double spaceArea(const Layout& layout) {
-  if (layout.space == ModelSpace::sphere) return 4 * std::acos(-1.0);
+  if (layout.space == ModelSpace::sphere) return 4 * kPi;
   return std::abs(cross(layout.period[0], layout.period[1]).z);
 }
 

@@ -270,8 +270,8 @@ class Measurement {
 
   std::size_t crossingsOf(const Surfaces& surfaces) {
     std::size_t count = 0;
-    forEachSelfIntersection(surfaces.vertices, surfaces.triangles, settings_.progress,
-                            [&](const Crossing&) { ++count; });
+    forEachSelfIntersection(surfaces.vertices, surfaces.triangles,
+                            [&](const Crossing&) { ++count; }, {settings_.progress});
     return count;
   }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/error.h"
 #include "innermap/surface/detail/refining/coarse_to_fine.h"
 #include "innermap/surface/detail/refining/decimate.h"
@@ -16,7 +17,7 @@
 namespace innermap {
 namespace {
 
-const double kSphereArea = 4 * std::acos(-1.0);
+constexpr double kSphereArea = 4 * kPi;
 
 // One triangle of a star: the free vertex's corner, and the others at a and b.
 struct StarTriangle {

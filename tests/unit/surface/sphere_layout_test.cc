@@ -64,7 +64,7 @@ TEST(SphereLayout, AFanOfManyTriangles) {
   ClosedSurface out;
   const int n = 400;
   for (int i = 0; i < n; ++i) {
-    const double a = 2 * shapes::kPi * i / n;
+    const double a = 2 * kPi * i / n;
     out.vertices.push_back({std::cos(a), std::sin(a), 0});
   }
   out.vertices.push_back({0, 0, 1});

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/error.h"
 #include "innermap/surface/detail/refining/decimate.h"
 #include "innermap/surface/detail/refining/progressive_mesh.h"
@@ -17,7 +18,6 @@
 namespace innermap {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kArea = 4 * kPi;      // of the lattice's cell
 constexpr std::size_t kCoarsest = 24;  // vertices: a ring around the hole and one around the tube
 constexpr double kGrowth = 1.5;        // everything is relaxed when the mesh has grown so much
