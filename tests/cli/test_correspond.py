@@ -6,7 +6,7 @@ import os
 import signal
 import struct
 
-from cli import (MODELS, Skip, cube, fails, icosphere, icosphere_arrays, innermap, interrupt,
+from cli import (MODELS, Skip, alone, cube, fails, icosphere, icosphere_arrays, innermap, interrupt,
                  no_leftovers, read_json, run, write_obj)
 
 TYPES = {"double": ("d", 8), "float": ("f", 4), "int": ("i", 4), "uint": ("I", 4), "uchar": ("B", 1)}
@@ -410,6 +410,7 @@ def test_map_lays_one_onto_the_other_by_itself():
     fails(2, "map", "a.obj", "-o", "fourth", says=["TARGET"])
 
 
+@alone
 def test_interrupted():
     icosphere("a.obj", subdivisions=6)
     blob("b.obj", 6, (3, 1, 0.5), 0.8)
@@ -434,5 +435,4 @@ def test_real_models():
     check_on_target(read_ply("out.ply")[0], MODELS / "homer.obj")
 
 
-if __name__ == "__main__":
-    run(globals())
+run(globals())
