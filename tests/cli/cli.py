@@ -8,7 +8,6 @@ Standard library only.
 """
 
 import json
-import math
 import os
 import resource
 import signal
@@ -21,6 +20,9 @@ from pathlib import Path
 
 PROGRAM = os.environ.get("INNERMAP", "innermap")
 ROOT = Path(os.environ.get("INNERMAP_ROOT", Path(__file__).resolve().parents[2]))
+sys.path.append(str(ROOT / "samples"))
+import make_shapes  # pylint: disable=wrong-import-position
+
 MODELS = ROOT.parent / "shared" / "models"
 # For tests that run beside others: threads of each innermap() whose arguments do not say.
 THREADS = os.environ.get("INNERMAP_TEST_THREADS", "")
@@ -122,32 +124,16 @@ def cube(path="cube.obj", size=1.0, origin=(0.0, 0.0, 0.0)):
 
 
 def icosphere_arrays(subdivisions=2, radius=1.0):
-    t = (1 + math.sqrt(5)) / 2
-    vertices = [(-1, t, 0), (1, t, 0), (-1, -t, 0), (1, -t, 0), (0, -1, t), (0, 1, t), (0, -1, -t),
-                (0, 1, -t), (t, 0, -1), (t, 0, 1), (-t, 0, -1), (-t, 0, 1)]
-    faces = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4),
-             (11, 10, 2), (10, 7, 6), (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8),
-             (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1)]
-    for _ in range(subdivisions):
-        middles, finer = {}, []
-
-        def middle(a, b):
-            key = (min(a, b), max(a, b))
-            if key not in middles:
-                middles[key] = len(vertices)
-                vertices.append(tuple((x + y) / 2 for x, y in zip(vertices[a], vertices[b])))
-            return middles[key]
-
-        for a, b, c in faces:
-            ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
-            finer += [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
-        faces = finer
-    scale = [radius / math.sqrt(sum(x * x for x in v)) for v in vertices]
-    return [tuple(s * x for x in v) for s, v in zip(scale, vertices)], faces
+    vertices, faces = make_shapes.sphere(subdivisions)
+    return [tuple(radius * x for x in v) for v in vertices], faces
 
 
 def icosphere(path="ball.obj", subdivisions=2, radius=1.0):
     return write_obj(path, *icosphere_arrays(subdivisions, radius))
+
+
+def torus(path, n=24, m=12, major=1.0, minor=0.4):
+    return write_obj(path, *make_shapes.torus(n, m, major, minor))
 
 
 def read_json(path):
