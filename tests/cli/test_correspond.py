@@ -7,7 +7,7 @@ import signal
 import struct
 
 from cli import (MODELS, Skip, alone, cube, fails, icosphere, icosphere_arrays, innermap, interrupt,
-                 no_leftovers, read_json, run, torus, write_obj)
+                 no_leftovers, read_json, run, slow, torus, write_obj)
 
 TYPES = {"double": ("d", 8), "float": ("f", 4), "int": ("i", 4), "uint": ("I", 4), "uchar": ("B", 1)}
 
@@ -412,6 +412,7 @@ def test_interrupted():
     assert code is None or not os.path.exists("out")
 
 
+@slow
 def test_real_models():
     if not (MODELS / "spot.obj").exists():
         raise Skip(f"no models in {MODELS}")

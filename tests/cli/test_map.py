@@ -7,7 +7,7 @@ import signal
 import subprocess
 
 from cli import (MODELS, Skip, alone, cube, fails, file_size_limit, icosphere, icosphere_arrays,
-                 innermap, interrupt, no_leftovers, read_json, run, write_obj)
+                 innermap, interrupt, no_leftovers, read_json, run, slow, write_obj)
 
 FILES = ["map.ply", "map.vdb", "report.json", "section.png", "slices.exr"]
 
@@ -249,6 +249,7 @@ def test_horse():
     assert report["jacobian"]["folded_fraction"] < 2e-3, report["jacobian"]
 
 
+@slow
 def test_every_model_gets_a_sound_map():
     if not MODELS.exists():
         raise Skip("no ../shared/models")

@@ -6,7 +6,7 @@ import os
 import struct
 
 import cli
-from cli import alone, fails, innermap, interrupt, no_leftovers
+from cli import alone, fails, innermap, interrupt, no_leftovers, slow
 from frames import FIGURES, ball_frames, break_frame, moved, read_energies, rigid, twisted
 
 SMALL = ["--sources", "400", "--resolution", "24", "--quiet"]
@@ -191,6 +191,7 @@ def minima(values):
     return [i for i, v in enumerate(values) if v == min(values[max(0, i - 5):i + 6])]
 
 
+@slow
 def test_the_gallop_has_four_cycles():
     gallop = cli.MODELS / "horse-gallop"
     if not gallop.exists():
