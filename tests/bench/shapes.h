@@ -11,6 +11,9 @@
 
 namespace innermap::bench {
 
+// Of the matrices that are factorized.
+constexpr std::size_t kRows = 2400, kColumns = 800;
+
 inline Points randomPoints(std::size_t count, std::uint64_t seed) {
   const CounterRandom random(seed, 1);
   Points points(count);
