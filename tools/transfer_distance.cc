@@ -1,13 +1,9 @@
 // `innermap transfer-distance`: the target's distance field through the map onto the source.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "commands.h"
 #include "evaluation.h"
 #include "innermap/core/file.h"
-#include "innermap/evaluate/evaluate_map.h"
 #include "innermap/io/picture/section_image.h"
 #include "innermap/io/slice.h"
 #include "innermap/io/vdb/vdb_file.h"
@@ -27,62 +23,17 @@ struct TransferDistanceOptions {
   std::optional<NumberPair> range;
 };
 
-// A solid with its level set and what is known in it.
-struct Field {
-  openvdb::FloatGrid::Ptr surface, distance, own;  // own: of the source, its own distance
-};
-
-Field makeField(const Solid& solid, const TransferDistanceOptions& options, Context& context) {
-  LevelSetSettings settings;
+DistanceTransfer transfer(const MappedSolid& mapped, const Solid& target,
+                          const TransferDistanceOptions& options, Context& context) {
+  DistanceTransferSettings settings;
   settings.resolution = options.evaluation.resolution;
   settings.voxelSize = options.evaluation.voxelSize.value_or(0);
-  settings.maxMemory = context.maxMemory();
-  settings.progress = context.progress();
-  Field field;
-  context.timed("voxelize", [&] { field.surface = makeLevelSet(solid, settings); });
-  DepthSettings depth;
-  depth.maxMemory = context.maxMemory();
-  depth.progress = context.progress();
-  context.timed("distance", [&] { field.own = depthInside(solid, *field.surface, depth); });
-  return field;
-}
-
-void pullDistance(const MappedSolid& mapped, const Solid& target, Field& source, Context& context) {
-  EvaluateSettings settings;
-  settings.jacobian = settings.harmonicEnergy = settings.deformationEnergy = false;
-  settings.targetVolume = mapped.boundary.target.volume;
   settings.accuracy = sumAccuracy(mapped);
   settings.maxMemory = context.maxMemory();
   settings.progress = context.progress();
-  MapGrids grids;
-  context.timed("evaluate", [&] {
-    grids = evaluateMap(mapped.map, mapped.solid(), *source.surface, settings);
-  });
-  if (grids.interiorVoxels == 0)
-    throw DataError(mapped.boundary.source.mesh.name +
-                    ": is thinner than the voxels everywhere, none has its centre inside; use a "
-                    "higher --resolution");
-  context.timed("transfer",
-                [&] { source.distance = depthThrough(*grids.map, target, context.progress()); });
-}
-
-// Of voxels whose centre is inside the solid.
-struct InteriorValues {
-  std::uint64_t voxels = 0, negative = 0;
-  double largest = 0;
-};
-
-InteriorValues interiorValues(const openvdb::FloatGrid& distance,
-                              const openvdb::FloatGrid& surface) {
-  InteriorValues r;
-  const auto inside = surface.getConstAccessor();
-  for (auto v = distance.cbeginValueOn(); v; ++v) {
-    if (!(inside.getValue(v.getCoord()) < 0)) continue;
-    ++r.voxels;
-    r.negative += *v < 0;
-    r.largest = std::max(r.largest, static_cast<double>(*v));
-  }
-  return r;
+  DistanceTransfer made = transferDistance(mapped.map, mapped.solid(), target, settings);
+  addSeconds(context.report().seconds, made.seconds);
+  return made;
 }
 
 void writeSection(const std::string& path, const std::string& title, const Solid& solid,
@@ -103,79 +54,69 @@ void writeSection(const std::string& path, const std::string& title, const Solid
   writeSectionImage(path, {shown, solidGrid}, section);
 }
 
-void writeVdbs(const Field& source, const Field& target, const MappedSolid& mapped,
-               PendingFolder& folder, Context& context) {
+void writeVdbs(const DistanceTransfer& made, const MappedSolid& mapped, PendingFolder& folder,
+               Context& context) {
   VdbWriteSettings settings;
   settings.progress = context.progress();
-  source.own->setName("source_distance");
-  const openvdb::GridPtrVec inSource{source.surface, source.distance, source.own};
-  const openvdb::GridPtrVec inTarget{target.surface, target.own};
-  describeMap(inSource, mapped);
-  describeMap(inTarget, mapped);
-  folder.write("source.vdb",
-               [&](const std::string& path) { writeVdb(path, inSource, {}, settings); });
-  folder.write("target.vdb",
-               [&](const std::string& path) { writeVdb(path, inTarget, {}, settings); });
+  const auto write = [&](const char* name, const openvdb::GridPtrVec& grids) {
+    describeMap(grids, mapped);
+    folder.write(name, [&](const std::string& path) { writeVdb(path, grids, {}, settings); });
+  };
+  write("source.vdb", {made.source.surface, made.through, made.source.depth});
+  write("target.vdb", {made.target.surface, made.target.depth});
 }
 
-std::string fillReport(const Field& source, const Field& target, const NumberPair& range,
-                       Context& context) {
-  const InteriorValues through = interiorValues(*source.distance, *source.surface);
-  const InteriorValues there = interiorValues(*target.own, *target.surface);
-  const InteriorValues own = interiorValues(*source.own, *source.surface);
-  const double outside =
-      static_cast<double>(through.negative) / std::max<double>(1, double(through.voxels));
-  Report& report = context.report();
+void fillReport(const DistanceTransfer& made, const NumberPair& range, Report& report) {
   ReportGrid grid;
-  grid.voxelSize = source.surface->voxelSize()[0];
-  grid.activeVoxels = source.distance->activeVoxelCount();
-  grid.interiorVoxels = through.voxels;
+  grid.voxelSize = made.source.surface->voxelSize()[0];
+  grid.activeVoxels = made.through->activeVoxelCount();
+  grid.interiorVoxels = made.throughFigures.voxels;
   report.grid = grid;
-  report.set("grid.target_voxel_size", target.surface->voxelSize()[0]);
-  report.set("grid.target_interior_voxels", static_cast<std::int64_t>(there.voxels));
-  report.set("distance.largest_in_target", there.largest);
-  report.set("distance.largest_through_map", through.largest);
-  report.set("distance.largest_in_source", own.largest);
-  report.set("distance.outside_fraction", outside);
+  report.set("grid.target_voxel_size", made.target.surface->voxelSize()[0]);
+  report.set("grid.target_interior_voxels", static_cast<std::int64_t>(made.target.figures.voxels));
+  report.set("distance.largest_in_target", made.target.figures.largest);
+  report.set("distance.largest_through_map", made.throughFigures.largest);
+  report.set("distance.largest_in_source", made.source.figures.largest);
+  report.set("distance.outside_fraction", made.outsideFraction);
   report.set("distance.range", std::vector<double>{range.first, range.second});
+}
+
+std::string textOf(const DistanceTransfer& made) {
   return fmt::format(
       "target: {} voxels inside, up to {:.4g} from the surface\n"
       "source: {} voxels inside, up to {:.4g} through the map; {:.3g}% are mapped outside\n",
-      there.voxels, there.largest, through.voxels, through.largest, 100 * outside);
+      made.target.figures.voxels, made.target.figures.largest, made.throughFigures.voxels,
+      made.throughFigures.largest, 100 * made.outsideFraction);
 }
 
 void run(const TransferDistanceOptions& options, Context& context) {
   const MappedSolid mapped = readMapFile(options.map, context);
+  const MapGridSettings grids = mapGridSettings(options.evaluation, context);
   if (context.dryRun())
     return context.plan(
         {"transfer the target's distance field through " + options.map,
          "write source.vdb, target.vdb, source.png, target.png and report.json to " +
              options.output},
-        mapGridMemory(mapped.solid(), mapGridSettings(options.evaluation, context)));
-  requireEvaluationMemory(mapped.solid(), mapGridSettings(options.evaluation, context));
+        mapGridMemory(mapped.solid(), grids));
+  requireEvaluationMemory(mapped.solid(), grids);
   PendingFolder folder(options.output);
-  std::optional<Solid> targetOf;
-  context.timed("solid",
-                [&] { targetOf.emplace(makeTargetSolid(mapped.boundary, {context.progress()})); });
-  const Solid& solid = *targetOf;
-  Field target = makeField(solid, options, context);
-  Field source = makeField(mapped.solid(), options, context);
-  pullDistance(mapped, solid, source, context);
-  const NumberPair range =
-      options.range.value_or(NumberPair{0, interiorValues(*target.own, *target.surface).largest});
-  const std::string text = fillReport(source, target, range, context);
+  std::optional<Solid> target;
+  context.timed("solid", [&] { target.emplace(makeTargetSolid(mapped.boundary, {context.progress()})); });
+  const DistanceTransfer made = transfer(mapped, *target, options, context);
+  const NumberPair range = options.range.value_or(NumberPair{0, made.target.figures.largest});
+  fillReport(made, range, context.report());
   context.timed("write", [&] {
     folder.write("target.png", [&](const std::string& path) {
-      writeSection(path, "distance in the target", solid, *target.own, *target.surface, range,
-                   options, context);
+      writeSection(path, "distance in the target", *target, *made.target.depth,
+                   *made.target.surface, range, options, context);
     });
     folder.write("source.png", [&](const std::string& path) {
-      writeSection(path, "the target's distance, through the map", mapped.solid(), *source.distance,
-                   *source.surface, range, options, context);
+      writeSection(path, "the target's distance, through the map", mapped.solid(), *made.through,
+                   *made.source.surface, range, options, context);
     });
-    writeVdbs(source, target, mapped, folder, context);
+    writeVdbs(made, mapped, folder, context);
   });
-  context.print(text);
+  context.print(textOf(made));
   folder.write("report.json",
                [&](const std::string& path) { writeReport(path, context.finishedReport()); });
   folder.commit();

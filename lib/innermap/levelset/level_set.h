@@ -17,7 +17,9 @@ namespace innermap {
 struct LevelSetSettings {
   double voxelSize = 0;  // world units; 0 means: resolution decides
   int resolution = 128;  // voxels along the longest side of the solid's box, in [4, 4096]
-  double halfWidth = 3;  // of the narrow band, voxels, in [2, 100]
+  // Of the narrow band, voxels, in [2, 100]. Three hold the skin of two voxels that grids of values
+  // have outside, and one more for interpolation.
+  double halfWidth = 3;
   // Centre of voxel (0, 0, 0), world units, so that several grids have one lattice (the frames of a
   // sequence), at most 1e9 voxels away from the solid; near its lower corner without.
   std::optional<Vec3> origin;
@@ -55,6 +57,9 @@ struct LevelSetCheck {
   std::vector<std::string> warnings;  // over 1% volume error, over 0.1% lost surface
 };
 LevelSetCheck checkLevelSet(const openvdb::FloatGrid& levelSet, const Solid& solid);
+
+// Voxels whose centre is inside.
+std::uint64_t interiorVoxels(const openvdb::FloatGrid& levelSet);
 
 struct AttributeSettings {
   Progress* progress = nullptr;

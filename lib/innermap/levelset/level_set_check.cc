@@ -83,4 +83,11 @@ LevelSetCheck checkLevelSet(const FloatGrid& levelSet, const Solid& solid) {
   return check;
 }
 
+std::uint64_t interiorVoxels(const FloatGrid& levelSet) {
+  std::uint64_t count = 0;
+  for (auto it = levelSet.cbeginValueAll(); it; ++it)
+    if (*it < 0) count += it.getVoxelCount();
+  return count;
+}
+
 }  // namespace innermap

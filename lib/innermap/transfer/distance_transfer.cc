@@ -1,12 +1,16 @@
 #include "innermap/transfer/distance_transfer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <vector>
 
+#include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/evaluate/active_region.h"
+#include "innermap/evaluate/evaluate_map.h"
+#include "innermap/levelset/level_set.h"
 
 namespace innermap {
 namespace {
@@ -75,6 +79,23 @@ openvdb::FloatGrid::Ptr leafByLeaf(const Grid& region, const Fill& fill, Progres
 
 Vec3 vec3(const openvdb::Vec3d& v) { return {v.x(), v.y(), v.z()}; }
 
+SolidDepths depthsOf(const Solid& solid, const DistanceTransferSettings& settings,
+                     StageSeconds& seconds) {
+  LevelSetSettings levelSet;
+  levelSet.voxelSize = settings.voxelSize;
+  levelSet.resolution = settings.resolution;
+  levelSet.maxMemory = settings.maxMemory;
+  levelSet.progress = settings.progress;
+  DepthSettings depth;
+  depth.maxMemory = settings.maxMemory;
+  depth.progress = settings.progress;
+  SolidDepths out;
+  timed(seconds, "voxelize", [&] { out.surface = makeLevelSet(solid, levelSet); });
+  timed(seconds, "distance", [&] { out.depth = depthInside(solid, *out.surface, depth); });
+  out.figures = depthFigures(*out.depth, *out.surface);
+  return out;
+}
+
 }  // namespace
 
 openvdb::FloatGrid::Ptr depthInside(const Solid& solid, const openvdb::FloatGrid& levelSet,
@@ -106,6 +127,44 @@ openvdb::FloatGrid::Ptr depthThrough(const openvdb::Vec3fGrid& map, const Solid&
                           static_cast<float>(walk.depthAt(vec3(openvdb::Vec3d(*voxel)))));
       },
       progress);
+}
+
+DepthFigures depthFigures(const openvdb::FloatGrid& distance, const openvdb::FloatGrid& levelSet) {
+  DepthFigures out;
+  const auto inside = levelSet.getConstAccessor();
+  for (auto v = distance.cbeginValueOn(); v; ++v) {
+    if (!(inside.getValue(v.getCoord()) < 0)) continue;
+    ++out.voxels;
+    out.negative += *v < 0;
+    out.largest = std::max(out.largest, static_cast<double>(*v));
+  }
+  return out;
+}
+
+DistanceTransfer transferDistance(const HarmonicMap& map, const Solid& source, const Solid& target,
+                                  const DistanceTransferSettings& settings) {
+  DistanceTransfer out;
+  out.target = depthsOf(target, settings, out.seconds);
+  out.source = depthsOf(source, settings, out.seconds);
+  out.source.depth->setName("source_distance");
+  EvaluateSettings evaluate;
+  evaluate.jacobian = evaluate.harmonicEnergy = evaluate.deformationEnergy = false;
+  evaluate.accuracy = settings.accuracy;
+  evaluate.maxMemory = settings.maxMemory;
+  evaluate.progress = settings.progress;
+  MapGrids grids;
+  timed(out.seconds, "evaluate",
+        [&] { grids = evaluateMap(map, source, *out.source.surface, evaluate); });
+  if (grids.interiorVoxels == 0)
+    throw DataError(
+        "the source is thinner than the voxels everywhere, none has its centre inside; use a "
+        "higher resolution");
+  timed(out.seconds, "transfer",
+        [&] { out.through = depthThrough(*grids.map, target, {settings.progress}); });
+  out.throughFigures = depthFigures(*out.through, *out.source.surface);
+  out.outsideFraction = static_cast<double>(out.throughFigures.negative) /
+                        std::max<double>(1, static_cast<double>(out.throughFigures.voxels));
+  return out;
 }
 
 }  // namespace innermap

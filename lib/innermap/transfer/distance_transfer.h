@@ -8,6 +8,8 @@
 #include <cstdint>
 
 #include "innermap/core/progress.h"
+#include "innermap/core/stage_seconds.h"
+#include "innermap/field/harmonic_map.h"
 #include "innermap/levelset/solid.h"
 
 namespace innermap {
@@ -33,5 +35,43 @@ openvdb::FloatGrid::Ptr depthInside(const Solid& solid, const openvdb::FloatGrid
 // No interpolation. Named "distance", background 0. Throws Cancelled.
 openvdb::FloatGrid::Ptr depthThrough(const openvdb::Vec3fGrid& map, const Solid& target,
                                      Progress* progress = nullptr);
+
+// Of voxels whose centre is inside the solid.
+struct DepthFigures {
+  std::uint64_t voxels = 0, negative = 0;
+  double largest = 0;  // world units
+};
+
+// distance: on active voxels of `levelSet`.
+DepthFigures depthFigures(const openvdb::FloatGrid& distance, const openvdb::FloatGrid& levelSet);
+
+struct DistanceTransferSettings {
+  // Of each of the two solids' grids: as in LevelSetSettings.
+  double voxelSize = 0;         // world units; 0 means: resolution decides
+  int resolution = 128;         // voxels along the longest side, in [4, 4096]
+  double accuracy = 1e-7;       // of the map's sums: as in EvaluateSettings
+  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  Progress* progress = nullptr;
+};
+
+// A solid's level set "surface", how deep its voxels lie in it, and the figures of that.
+struct SolidDepths {
+  openvdb::FloatGrid::Ptr surface, depth;
+  DepthFigures figures;
+};
+
+struct DistanceTransfer {
+  SolidDepths source, target;       // depths: "source_distance" and "distance"
+  openvdb::FloatGrid::Ptr through;  // on the source's voxels, "distance": of their images
+  DepthFigures throughFigures;
+  double outsideFraction = 0;  // of the source's voxels: mapped outside the target
+  StageSeconds seconds;        // voxelize, distance, evaluate, transfer
+};
+
+// Where `map` takes the voxels of `source`, how deep is it in `target`, beside both solids' own
+// depths. Throws DataError for a source thinner than the voxels everywhere, SettingError,
+// MemoryError, Cancelled.
+DistanceTransfer transferDistance(const HarmonicMap& map, const Solid& source, const Solid& target,
+                                  const DistanceTransferSettings& settings = {});
 
 }  // namespace innermap

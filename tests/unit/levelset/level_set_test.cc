@@ -71,6 +71,16 @@ TEST(LevelSet, BandIsAsWideAsAsked) {
   }
 }
 
+TEST(LevelSet, InteriorVoxelsAreCountedInTheBandAndBelow) {
+  for (const double width : {2.0, 20.0}) {  // with and without tiles inside
+    LevelSetSettings settings = resolution(48);
+    settings.halfWidth = width;
+    const FloatGrid::Ptr grid = makeLevelSet(Solid(shapes::icosphere(4)), settings);
+    const double cell = std::pow(grid->voxelSize()[0], 3);
+    EXPECT_NEAR(static_cast<double>(interiorVoxels(*grid)) * cell, 4.0 / 3 * shapes::kPi, 0.03);
+  }
+}
+
 TEST(LevelSet, FacesBetweenVoxelsDoNotLeak) {
   // All faces lie just between two voxels, or on voxel centres.
   for (const int n : {16, 32, 33, 100}) {

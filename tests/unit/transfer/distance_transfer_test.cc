@@ -85,6 +85,41 @@ TEST(DistanceTransfer, ThroughASimilarityDistancesScale) {
     ASSERT_NEAR(*v, 2 * accessor.getValue(v.getCoord()), 2e-5);
 }
 
+TEST(DistanceTransfer, OneCallGivesBothSolidsAndTheFigures) {
+  const Solid source(shapes::box(kLower, kUpper));
+  const Solid target(shapes::box(2 * kLower, 2 * kUpper));
+  DistanceTransferSettings settings;
+  settings.resolution = 40;
+  const Mat3 twice{{{2, 0, 0}, {0, 2, 0}, {0, 0, 2}}};
+  const DistanceTransfer made = transferDistance(affineMap(twice, {}), source, target, settings);
+  EXPECT_EQ(made.source.depth->getName(), "source_distance");
+  EXPECT_EQ(made.target.depth->getName(), "distance");
+  EXPECT_EQ(made.through->getName(), "distance");
+  const double voxel = made.source.surface->voxelSize()[0];
+  EXPECT_NEAR(made.target.surface->voxelSize()[0], 2 * voxel, 1e-9);
+  EXPECT_EQ(made.throughFigures.voxels, made.source.figures.voxels);
+  EXPECT_NEAR(made.source.figures.largest, 0.65, voxel);
+  EXPECT_NEAR(made.throughFigures.largest, 2 * made.source.figures.largest, 1e-5);
+  EXPECT_EQ(made.outsideFraction, 0);
+  ASSERT_EQ(made.seconds.size(), 4u);
+  EXPECT_EQ(made.seconds[3].first, "transfer");
+  // Moved half out of the target.
+  const DistanceTransfer half =
+      transferDistance(affineMap(twice, {2.1, 0, 0}), source, target, settings);
+  EXPECT_NEAR(half.outsideFraction, 0.5, 0.03);
+  EXPECT_EQ(half.throughFigures.negative > 0, true);
+}
+
+TEST(DistanceTransfer, SourcesThinnerThanTheVoxelsAreRefused) {
+  const Solid plate(shapes::box({0, 0, 0.012}, {1, 1, 0.0121}));
+  DistanceTransferSettings settings;
+  settings.resolution = 8;
+  const Mat3 identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  EXPECT_THROW(transferDistance(affineMap(identity, {}), plate, plate, settings), DataError);
+  settings.resolution = 1;
+  EXPECT_THROW(transferDistance(affineMap(identity, {}), plate, plate, settings), SettingError);
+}
+
 TEST(DistanceTransfer, OverlappingTargetsAreTheirUnion) {
   Mesh two = shapes::box({-1, -1, -1}, {0.5, 1, 1});
   const Mesh other = shapes::box({-0.5, -1, -1}, {1, 1, 1});

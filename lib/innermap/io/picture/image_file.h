@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "innermap/core/progress.h"
-#include "innermap/io/picture/detail/image.h"
 
 namespace innermap {
 
@@ -17,6 +16,12 @@ enum class ColourSpace { automatic, linear, srgb };
 // "auto", "linear", "srgb"; throws SettingError for other texts.
 ColourSpace parseColourSpace(const std::string& setting, const std::string& text);
 
+// What stands beyond the image: the image again, its border, its mirror image, or nothing (black).
+enum class Wrap { repeat, clamp, mirror, black };
+
+// "repeat", "clamp", "mirror", "black"; throws SettingError for other texts.
+Wrap parseWrap(const std::string& setting, const std::string& text);
+
 // The inverse of sRGB's transfer function (IEC 61966-2-1), continued linearly beyond 1 and oddly
 // below 0.
 double linearFromSrgb(double encoded);
@@ -25,6 +30,12 @@ struct ImageSettings {
   ColourSpace colourSpace = ColourSpace::automatic;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;
+};
+
+// Linear colours, rows from the top. #height * #width * 3 floats.
+struct Pixels {
+  int width = 0, height = 0;
+  std::vector<float> rgb;
 };
 
 struct ImageFile {

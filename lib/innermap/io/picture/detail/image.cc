@@ -107,14 +107,6 @@ Ellipse ellipseOf(const Vec2& a, const Vec2& b) {
 
 }  // namespace
 
-Wrap parseWrap(const std::string& setting, const std::string& text) {
-  if (text == "repeat") return Wrap::repeat;
-  if (text == "clamp") return Wrap::clamp;
-  if (text == "mirror") return Wrap::mirror;
-  if (text == "black") return Wrap::black;
-  throw SettingError(setting, "'" + text + "' is none of repeat, clamp, mirror, black");
-}
-
 struct Image::Level : Pixels {};
 
 struct Image::Data {

@@ -1,27 +1,13 @@
 // Images that are looked up by texture coordinates, filtered over what a sample stands for.
 #pragma once
 
-#include <cstdint>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
+#include "innermap/io/picture/image_file.h"
 
 namespace innermap {
-
-// What stands beyond the image: the image again, its border, its mirror image, or nothing (black).
-enum class Wrap { repeat, clamp, mirror, black };
-
-// "repeat", "clamp", "mirror", "black"; throws SettingError for other texts.
-Wrap parseWrap(const std::string& setting, const std::string& text);
-
-// Linear colours, rows from the top. #height * #width * 3 floats.
-struct Pixels {
-  int width = 0, height = 0;
-  std::vector<float> rgb;
-};
 
 // An image with its pyramid of halved copies. Immutable; copies share their data; safe from any
 // number of threads.

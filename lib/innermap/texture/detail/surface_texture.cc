@@ -1,10 +1,10 @@
-#include "texture_surface.h"
+#include "innermap/texture/detail/surface_texture.h"
 
 #include <cmath>
 
 #include "innermap/core/error.h"
 
-namespace innermap::tool {
+namespace innermap {
 namespace {
 
 constexpr double kLargestUv = 1e5;
@@ -48,7 +48,7 @@ Axes steps(const Mesh& mesh, int triangle, double length) {
 
 }  // namespace
 
-TextureSurface::TextureSurface(const Solid& solid, const Mesh& mesh, TextureKind kind,
+SurfaceTexture::SurfaceTexture(const Solid& solid, const Mesh& mesh, TextureKind kind,
                                TextureLookup texture, std::optional<UvGroups> groups)
     : solid_(solid),
       mesh_(mesh),
@@ -59,7 +59,7 @@ TextureSurface::TextureSurface(const Solid& solid, const Mesh& mesh, TextureKind
   if (groups_) findCentres();
 }
 
-TextureSurface::TextureSurface(const Solid& solid, const Mesh& mesh, const Decoding& decode)
+SurfaceTexture::SurfaceTexture(const Solid& solid, const Mesh& mesh, const Decoding& decode)
     : solid_(solid),
       mesh_(mesh),
       kind_(TextureKind::colours),
@@ -75,7 +75,7 @@ TextureSurface::TextureSurface(const Solid& solid, const Mesh& mesh, const Decod
   }
 }
 
-void TextureSurface::findCentres() {
+void SurfaceTexture::findCentres() {
   std::vector<double> area(static_cast<std::size_t>(groups_->count), 0.0);
   centres_.assign(area.size(), {});
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
@@ -91,18 +91,18 @@ void TextureSurface::findCentres() {
     if (area[g] > 0) centres_[g] = {centres_[g].x / area[g], centres_[g].y / area[g]};
 }
 
-std::size_t TextureSurface::channels() const {
+std::size_t SurfaceTexture::channels() const {
   if (kind_ == TextureKind::groups) return 3 * centres_.size();
   return kind_ == TextureKind::colours && vertexColours_.empty() ? 6 : 3;
 }
 
-Vec2 TextureSurface::uvAt(const InputPoint& p) const {
+Vec2 SurfaceTexture::uvAt(const InputPoint& p) const {
   const Triangle& c = mesh_.uvTriangles[p.triangle];
   return {p.mean([&](int k) { return mesh_.uvs[c[k]].x; }),
           p.mean([&](int k) { return mesh_.uvs[c[k]].y; })};
 }
 
-Vec3 TextureSurface::colourAt(const InputPoint& p, double spacing) const {
+Vec3 SurfaceTexture::colourAt(const InputPoint& p, double spacing) const {
   if (!vertexColours_.empty()) {
     const Triangle& t = mesh_.triangles[p.triangle];
     return p.mean([&](int k) { return vertexColours_[t[k]]; });
@@ -111,7 +111,7 @@ Vec3 TextureSurface::colourAt(const InputPoint& p, double spacing) const {
   return texture_(uvAt(p), axes.a, axes.b);
 }
 
-void TextureSurface::values(const SurfacePoint& onSurface, double spacing, double* out) const {
+void SurfaceTexture::values(const SurfacePoint& onSurface, double spacing, double* out) const {
   const InputPoint p = lookup_.at(onSurface);
   if (kind_ == TextureKind::groups) {
     std::fill(out, out + channels(), 0.0);
@@ -133,7 +133,7 @@ void TextureSurface::values(const SurfacePoint& onSurface, double spacing, doubl
   out[2] = 0;
 }
 
-Matrix TextureSurface::values(const std::vector<SurfacePoint>& onSurface, double spacing) const {
+Matrix SurfaceTexture::values(const std::vector<SurfacePoint>& onSurface, double spacing) const {
   Matrix all(onSurface.size(), channels());
   std::vector<double> one(channels());
   for (std::size_t i = 0; i < onSurface.size(); ++i) {
@@ -143,15 +143,15 @@ Matrix TextureSurface::values(const std::vector<SurfacePoint>& onSurface, double
   return all;
 }
 
-Vec3 TextureSurface::colour(const SurfacePoint& onSurface, double spacing) const {
+Vec3 SurfaceTexture::colour(const SurfacePoint& onSurface, double spacing) const {
   return colourAt(lookup_.at(onSurface), spacing);
 }
 
-Vec3 TextureSurface::colourOnEdge(int triangle, int corner, double t, double spacing) const {
+Vec3 SurfaceTexture::colourOnEdge(int triangle, int corner, double t, double spacing) const {
   InputPoint p{triangle, {0, 0, 0}};
   p.weights[static_cast<std::size_t>(corner)] = 1 - t;
   p.weights[static_cast<std::size_t>((corner + 1) % 3)] = t;
   return colourAt(p, spacing);
 }
 
-}  // namespace innermap::tool
+}  // namespace innermap

@@ -1,4 +1,4 @@
-#include "innermap/texture/continuation.h"
+#include "innermap/texture/detail/continuation.h"
 
 #include <openvdb/tree/LeafManager.h>
 

@@ -3,17 +3,12 @@
 
 #include <openvdb/openvdb.h>
 
-#include <functional>
 #include <vector>
 
 #include "innermap/core/progress.h"
-#include "innermap/core/vec3.h"
+#include "innermap/texture/texture_lookup.h"
 
 namespace innermap {
-
-// The texture's colour at uv, averaged over about the parallelogram that a and b span about it.
-// Called from many threads.
-using TextureLookup = std::function<Vec3(const Vec2& uv, const Vec2& a, const Vec2& b)>;
 
 // The colour at each active voxel's coordinates (u, v, anything), averaged over what the voxel
 // covers: its neighbours' coordinates tell how much that is, the nearer of the two on each axis, so

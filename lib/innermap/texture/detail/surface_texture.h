@@ -1,4 +1,4 @@
-// What `innermap texture` knows of the surface: its colours and texture coordinates, as boundary
+// What is known of a textured surface: its colours and texture coordinates, as boundary
 // values of a field.
 #pragma once
 
@@ -11,9 +11,9 @@
 #include "innermap/mesh/mesh.h"
 #include "innermap/mesh/uv_charts.h"
 #include "innermap/texture/detail/input_lookup.h"
-#include "innermap/texture/texture_grids.h"
+#include "innermap/texture/texture_lookup.h"
 
-namespace innermap::tool {
+namespace innermap {
 
 // Channels of the field that is continued inwards, three by three:
 //   coordinates  u, v, 0
@@ -22,14 +22,14 @@ namespace innermap::tool {
 enum class TextureKind { coordinates, groups, colours };
 
 // Immutable; safe from any number of threads. Keeps references to the mesh and the solid.
-class TextureSurface {
+class SurfaceTexture {
  public:
   // With texture coordinates and the image to look up.
-  TextureSurface(const Solid& solid, const Mesh& mesh, TextureKind kind, TextureLookup texture,
+  SurfaceTexture(const Solid& solid, const Mesh& mesh, TextureKind kind, TextureLookup texture,
                  std::optional<UvGroups> groups = {});
   // With the mesh's vertex colours.
   using Decoding = std::function<double(double)>;
-  TextureSurface(const Solid& solid, const Mesh& mesh, const Decoding& decode);
+  SurfaceTexture(const Solid& solid, const Mesh& mesh, const Decoding& decode);
 
   std::size_t channels() const;
   std::vector<Vec2> groupCentres() const { return centres_; }
@@ -61,4 +61,4 @@ class TextureSurface {
   InputLookup lookup_;
 };
 
-}  // namespace innermap::tool
+}  // namespace innermap

@@ -1,4 +1,4 @@
-#include "innermap/texture/texture_grids.h"
+#include "innermap/texture/detail/texture_grids.h"
 
 #include <gtest/gtest.h>
 
