@@ -1,10 +1,9 @@
-#include "innermap/surface/surface_image.h"
-
 #include <algorithm>
 #include <memory>
 
 #include "innermap/core/parallel.h"
 #include "innermap/mesh/triangle_tree.h"
+#include "innermap/surface/correspond.h"
 #include "innermap/surface/detail/refining/composed_map.h"
 
 namespace innermap {
@@ -66,8 +65,8 @@ struct JoinedShells {
 }  // namespace
 
 SurfaceImages imagesOf(const Points& points, const Correspondence& map, const SurfaceShells& target,
-                       Progress* progress) {
-  const ShellMaps maps = mapsOf(map, progress);
+                       const SurfaceImageSettings& settings) {
+  const ShellMaps maps = mapsOf(map, settings.progress);
   JoinedShells shells;
   for (const ShellCorrespondence& shell : map.shells) shells.add(shell.surface);
   const TriangleTree tree(shells.vertices, shells.triangles);
@@ -91,7 +90,7 @@ SurfaceImages imagesOf(const Points& points, const Correspondence& map, const Su
           distance[i] = closest.distance;
         }
       },
-      progress, kStage);
+      settings.progress, kStage);
   for (std::size_t s = 0; s < map.shells.size(); ++s) {
     std::vector<std::size_t> members;
     std::vector<SurfacePoint> here;
@@ -108,8 +107,8 @@ SurfaceImages imagesOf(const Points& points, const Correspondence& map, const Su
 }
 
 Points preimagesOf(const std::vector<SurfacePoint>& onTarget, const Correspondence& map,
-                   const SurfaceShells& target, Progress* progress) {
-  const ShellMaps maps = mapsOf(map, progress);
+                   const SurfaceShells& target, const SurfaceImageSettings& settings) {
+  const ShellMaps maps = mapsOf(map, settings.progress);
   JoinedShells shells;
   std::vector<JoinedShells::Place> places(target.mesh.triangles.size(), {0, -1});
   for (std::size_t s = 0; s < map.shells.size(); ++s) {
@@ -134,7 +133,7 @@ Points preimagesOf(const std::vector<SurfacePoint>& onTarget, const Corresponden
           result[i] = maps[place.shell]->composed.of(place.triangle, point.barycentric).position;
         }
       },
-      progress, kStage);
+      settings.progress, kStage);
   return result;
 }
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "innermap/core/detail/random.h"
-#include "innermap/surface/closed_surface.h"
+#include "innermap/surface/layout.h"
 #include "mesh/shapes.h"
 
 namespace innermap::shapes {

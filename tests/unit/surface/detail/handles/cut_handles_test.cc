@@ -7,8 +7,8 @@
 #include "innermap/core/error.h"
 #include "innermap/surface/detail/handles/cut_alike.h"
 #include "innermap/surface/detail/handles/match_handles.h"
+#include "innermap/surface/detail/sphere/sphere_layout.h"
 #include "innermap/surface/detail/topology/half_edges.h"
-#include "innermap/surface/sphere_layout.h"
 #include "surface/handle_shapes.h"
 
 namespace innermap {

@@ -1,4 +1,4 @@
-#include "innermap/surface/sphere_layout.h"
+#include "innermap/surface/detail/sphere/sphere_layout.h"
 
 #include <fmt/format.h>
 
