@@ -2,10 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "innermap/core/detail/stage_seconds.h"
 #include "innermap/levelset/isosurface.h"
 #include "innermap/mesh/repair.h"
@@ -114,23 +110,6 @@ Points placesOf(const LaidOutMesh& laid, std::size_t count) {
   return places;
 }
 
-LayoutQuality qualityOf(const LaidOutMesh& laid) {
-  LayoutQuality total;
-  total.areaRatioLog10 = std::numeric_limits<double>::infinity();
-  double farthest = -1;
-  for (std::size_t s = 0; s < laid.shells().shells.size(); ++s) {
-    const ClosedSurface& shell = laid.shells().shells[s];
-    const LayoutQuality q = layoutQuality(shell.triangles, shell.vertices, laid.embedded.layout(s));
-    total.flips += q.flips;
-    total.areaRatioLog10 = std::min(total.areaRatioLog10, q.areaRatioLog10);
-    if (std::abs(q.degree - 1) > farthest) {
-      farthest = std::abs(q.degree - 1);
-      total.degree = q.degree;
-    }
-  }
-  return total;
-}
-
 }  // namespace
 
 int LaidOutMesh::handles() const {
@@ -141,12 +120,8 @@ int LaidOutMesh::handles() const {
 
 double LaidOutMesh::volume() const {
   double sum = 0;
-  for (const ClosedSurface& shell : shells().shells) {
-    Mesh part;
-    part.vertices = shell.vertices;
-    part.triangles = shell.triangles;
-    sum += signedVolume(part);
-  }
+  for (const ClosedSurface& shell : shells().shells)
+    sum += signedVolume(shell.vertices, shell.triangles);
   return sum;
 }
 
@@ -203,7 +178,11 @@ MeshOnSphere onSphere(const LaidOutMesh& laid) {
   out.mesh.name = laid.mesh.name;
   out.mesh.triangles = own ? laid.mesh.triangles : shells.mesh.triangles;
   out.mesh.vertices = placesOf(laid, own ? laid.mesh.vertices.size() : shells.mesh.vertices.size());
-  out.quality = qualityOf(laid);
+  std::vector<LayoutQuality> qualities;
+  for (std::size_t s = 0; s < shells.shells.size(); ++s)
+    qualities.push_back(layoutQuality(shells.shells[s].triangles, shells.shells[s].vertices,
+                                      laid.embedded.layout(s)));
+  out.quality = together(qualities);
   return out;
 }
 

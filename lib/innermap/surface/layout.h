@@ -70,4 +70,7 @@ struct LayoutQuality {
 LayoutQuality layoutQuality(const std::vector<Triangle>& triangles, const Points& vertices,
                             const Layout& layout);
 
+// Of several shells: all flips, the degree farthest from 1, the least ratio.
+LayoutQuality together(const std::vector<LayoutQuality>& shells);
+
 }  // namespace innermap

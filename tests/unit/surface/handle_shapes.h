@@ -16,6 +16,14 @@ inline ClosedSurface closed(const Mesh& mesh, int genus) {
   return {mesh.name, mesh.vertices, mesh.triangles, genus};
 }
 
+inline Vec3 pointOn(const ClosedSurface& surface, const SurfacePoint& p) {
+  Vec3 out;
+  for (std::size_t k = 0; k < 3; ++k)
+    out += p.barycentric[k] *
+           surface.vertices[surface.triangles[static_cast<std::size_t>(p.triangle)][k]];
+  return out;
+}
+
 inline ClosedSurface turnedInsideOut(ClosedSurface surface) {
   for (Triangle& t : surface.triangles) std::swap(t[1], t[2]);
   return surface;

@@ -8,9 +8,6 @@
 
 namespace innermap {
 
-// Signed, world units cubed.
-double shellVolume(const ClosedSurface& shell);
-
 // #shells: the shell directly around each (the one of least volume that most of it is inside of),
 // or -1.
 std::vector<int> parentShells(const std::vector<ClosedSurface>& shells, Progress* progress);
