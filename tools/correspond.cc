@@ -4,9 +4,8 @@
 #include "commands.h"
 #include "correspondence.h"
 #include "correspondence_picture.h"
-#include "innermap/core/memory.h"
-#include "innermap/mesh/read.h"
 #include "innermap/mesh/write.h"
+#include "mesh_input.h"
 
 namespace innermap::tool {
 namespace {
@@ -28,13 +27,7 @@ void run(const Options& options, Context& context) {
   if (!options.sourceOutput.empty()) requirePly("--source-out", options.sourceOutput);
   context.willWrite(options.output);
   if (!options.picture.empty()) context.willWrite(options.picture);
-  Mesh a, b;
-  context.timed("read", [&] {
-    ReadSettings settings;
-    settings.progress = context.progress();
-    a = readMesh(options.a, settings);
-    b = readMesh(options.b, settings);
-  });
+  Mesh a = readMeshFile(options.a, context), b = readMeshFile(options.b, context);
   const std::size_t countA = a.vertices.size(), countB = b.vertices.size();
   if (context.dryRun())
     return context.plan(

@@ -4,8 +4,8 @@
 #include "commands.h"
 #include "correspondence.h"
 #include "innermap/core/memory.h"
-#include "innermap/mesh/read.h"
 #include "innermap/mesh/write.h"
+#include "mesh_input.h"
 
 namespace innermap::tool {
 namespace {
@@ -18,12 +18,7 @@ struct Options {
 void run(const Options& options, Context& context) {
   requirePly("--output", options.output);
   context.willWrite(options.output);
-  Mesh mesh;
-  context.timed("read", [&] {
-    ReadSettings settings;
-    settings.progress = context.progress();
-    mesh = readMesh(options.mesh, settings);
-  });
+  Mesh mesh = readMeshFile(options.mesh, context);
   const std::size_t vertices = mesh.vertices.size();
   const std::uint64_t need = layOutMemory(vertices);
   if (context.dryRun())
