@@ -232,7 +232,7 @@ class ShellBuilder {
   static bool enclosesSomething(const ClosedSurface& shell) {
     if (shell.vertices.size() < 4) return false;
     const double size = boundingBox(shell.vertices).diagonal();
-    return std::abs(shellVolume(shell)) > kNoVolume * size * size * size;
+    return std::abs(signedVolume(shell.vertices, shell.triangles)) > kNoVolume * size * size * size;
   }
 
   // The first fan of a vertex keeps it, others get one at the end.

@@ -102,5 +102,12 @@ TEST(Mesh, ValidateNamesWhatIsWrong) {
             "accepted");
 }
 
+TEST(Mesh, AreaAndVolumeOfPlainTrianglesAreThoseOfTheMesh) {
+  const Mesh mesh = shapes::transformed(shapes::torus(20, 10), 3, {1, 2, 3});
+  EXPECT_EQ(surfaceArea(mesh.vertices, mesh.triangles), surfaceArea(mesh));
+  EXPECT_EQ(signedVolume(mesh.vertices, mesh.triangles), signedVolume(mesh));
+  EXPECT_GT(surfaceArea(mesh), 0);
+}
+
 }  // namespace
 }  // namespace innermap

@@ -1,4 +1,4 @@
-#include "innermap/surface/sphere_layout.h"
+#include "innermap/surface/detail/sphere/sphere_layout.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "innermap/mesh/read.h"
+#include "innermap/surface/closed_surface.h"
 #include "mesh/shapes.h"
 #include "surface/handle_shapes.h"
 
