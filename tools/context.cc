@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cstdio>
 
 #include "innermap/core/file.h"
 #include "innermap/core/memory.h"
+#include "innermap/core/stage_seconds.h"
 #include "terminal_progress.h"
 
 namespace innermap::tool {
@@ -39,19 +39,7 @@ void Context::willWrite(const std::string& path) const {
 
 void Context::timed(const std::string& stage, const std::function<void()>& body) {
   throwIfCancelled(&progress_);
-  const auto start = std::chrono::steady_clock::now();
-  body();
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  addSeconds(stage, elapsed.count());
-}
-
-void Context::addSeconds(const std::string& stage, double seconds) {
-  for (auto& [name, sum] : report_.seconds)
-    if (name == stage) {
-      sum += seconds;
-      return;
-    }
-  report_.seconds.emplace_back(stage, seconds);
+  innermap::timed(report_.seconds, stage, body);
 }
 
 void Context::say(const std::string& kind, const std::string& text) {

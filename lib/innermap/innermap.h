@@ -13,6 +13,7 @@
 #include "innermap/boundary/fit_map.h"
 #include "innermap/boundary/frame_fitter.h"
 #include "innermap/boundary/mapped_solid.h"
+#include "innermap/boundary/mesh_correspondence.h"
 #include "innermap/boundary/surface_problem.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
