@@ -8,12 +8,12 @@
 #include <map>
 
 #include "commands.h"
+#include "frame_fits.h"
 #include "frame_loop.h"
-#include "frame_velocity.h"
 #include "innermap/core/content_hash.h"
 #include "innermap/core/file.h"
+#include "innermap/core/version.h"
 #include "innermap/io/vdb/vdb_file.h"
-#include "innermap/io/version.h"
 #include "innermap/levelset/level_set.h"
 #include "transfer_options.h"
 
@@ -33,13 +33,13 @@ struct DeformOptions {
 };
 
 // What decides an output beside the frames' files.
-std::string settingsText(const DeformOptions& o) {
+std::string settingsText(const DeformOptions& o, const FrameFitterSettings& fitting) {
   const FrameOptions& f = o.frames;
   const TransferOptions& t = o.transfer;
   const auto number = [](const auto& v) { return v ? fmt::format("{:.17g}", double(*v)) : "-"; };
   return fmt::format("{};{};{};{};{};{};{};{};{};{};{};{:.17g};{};{};{};{};{}", versionText(),
-                     f.sources, collocationOf(f), number(f.distance), f.seed, t.grids, t.sampling,
-                     t.density, t.densities, t.stress, t.strain, t.outside, t.fadeTo,
+                     f.sources, frameCollocation(fitting), number(f.distance), f.seed, t.grids,
+                     t.sampling, t.density, t.densities, t.stress, t.strain, t.outside, t.fadeTo,
                      number(t.resolution), number(t.voxelSize), t.names,
                      o.velocity ? fmt::format("{:.17g}", o.framesPerSecond) : "-");
 }
@@ -51,7 +51,8 @@ class Inputs {
       : frames_(frames), neighbours_(options.velocity), progress_(context.progress()) {
     common_ =
         fmt::format("rest {}, volume {}, settings {:016x}", fingerprintOf(options.rest, progress_),
-                    fingerprintOf(options.volume, progress_), hashOf(settingsText(options)));
+                    fingerprintOf(options.volume, progress_),
+                    hashOf(settingsText(options, frameFitterSettings(options.frames, context))));
   }
 
   std::string of(std::size_t index) const {
@@ -107,8 +108,9 @@ class Deformer {
   Deformer(const DeformOptions& options, const Frames& frames, Context& context)
       : options_(options),
         context_(context),
-        solver_(options.rest, options.frames, context),
-        fits_(solver_, frames, context),
+        fitter_(
+            makeFrameFitter(options.rest, frameFitterSettings(options.frames, context), context)),
+        fits_(fitter_, frames, context),
         frames_(frames),
         grids_(readVolume(options.volume, options.transfer, context)) {
     const NamingScheme scheme = parseNamingScheme("--names", options.transfer.names);
@@ -117,7 +119,7 @@ class Deformer {
         throw DataError(options.volume + ": already has a grid '" + grid->getName() +
                         "'; leave out --velocity or choose the others by --grids");
     chooseLattice();
-    requireTransferMemory(solver_.solid(), grids_, options.transfer, context);
+    requireTransferMemory(fitter_.solid(), grids_, options.transfer, context);
     if (options.transfer.fadeTo != "fitted") pusher_.emplace(makePusher({}));
   }
 
@@ -133,8 +135,7 @@ class Deformer {
     context_.timed("level set", [&] {
       SolidSettings settings;
       settings.progress = context_.progress();
-      const Solid solid(movedMesh(solver_.solid(), fit->boundary, frames_.all[index].path),
-                        settings);
+      const Solid solid(fit->boundary.mesh(fitter_.solid(), frames_.all[index].path), settings);
       target = makeLevelSet(solid, levelSet_);
     });
     PushResult result;
@@ -165,17 +166,17 @@ class Deformer {
         if (levelSet_.voxelSize == 0 || finest < levelSet_.voxelSize) levelSet_.voxelSize = finest;
       }
     }
-    levelSet_.voxelSize = voxelSizeFor(solver_.solid(), levelSet_);
+    levelSet_.voxelSize = voxelSizeFor(fitter_.solid(), levelSet_);
     const openvdb::Vec3d origin =
-        transformFor(solver_.solid(), levelSet_.voxelSize)->indexToWorld(openvdb::Vec3d(0));
+        transformFor(fitter_.solid(), levelSet_.voxelSize)->indexToWorld(openvdb::Vec3d(0));
     levelSet_.origin = Vec3{origin.x(), origin.y(), origin.z()};
   }
 
   VolumePusher makePusher(const Points& moved) const {
     PushSettings settings =
-        pushSettings(options_.transfer, solver_.solid().repaired().mesh.vertices, moved, context_);
+        pushSettings(options_.transfer, fitter_.solid().repaired().mesh.vertices, moved, context_);
     settings.accuracy = kAccuracy;
-    return VolumePusher(solver_.solid(), grids_, settings);
+    return VolumePusher(fitter_.solid(), grids_, settings);
   }
 
   void say(const PushResult& result, std::int64_t frame) const {
@@ -209,7 +210,7 @@ class Deformer {
 
   const DeformOptions& options_;
   Context& context_;
-  const FrameSolver solver_;
+  const FrameFitter fitter_;
   FrameFits fits_;
   const Frames& frames_;
   const openvdb::GridPtrVec grids_;
@@ -285,12 +286,12 @@ Frames framesLeft(const DeformOptions& options, const Frames& frames, const Fram
 void plan(const DeformOptions& options, const Frames& frames, const FramePattern& pattern,
           Context& context) {
   const auto path = [&](std::size_t i) { return pattern.path(frames.all[i].number); };
-  context.plan(
-      {fmt::format("fit {} charges to {} boundary points for {} frames", options.frames.sources,
-                   collocationOf(options.frames), frames.wanted.size()),
-       "carry " + options.volume + " to " + path(frames.wanted.front()) + " to " +
-           path(frames.wanted.back())},
-      frameFittingMemory(options.frames));
+  const FrameFitterSettings settings = frameFitterSettings(options.frames, context);
+  context.plan({fmt::format("fit {} charges to {} boundary points for {} frames", settings.sources,
+                            frameCollocation(settings), frames.wanted.size()),
+                "carry " + options.volume + " to " + path(frames.wanted.front()) + " to " +
+                    path(frames.wanted.back())},
+               frameFitterMemory(settings));
 }
 
 void run(const DeformOptions& options, Context& context) {
@@ -298,7 +299,7 @@ void run(const DeformOptions& options, Context& context) {
   const Frames frames = listFrames(options.frames, options.rest, context);
   check(options, frames);
   if (context.dryRun()) return plan(options, frames, pattern, context);
-  requireFrameMemory(options.frames, 0, context);
+  requireFrameMemory(frameFitterSettings(options.frames, context), 0);
   const PendingFolder folder(pattern.folder());
   std::optional<Inputs> inputs;
   Frames left;

@@ -1,9 +1,7 @@
 // `innermap evaluate`: a saved map on the voxels of its solid.
-#include <fmt/format.h>
-
 #include "commands.h"
 #include "evaluation.h"
-#include "saved_map.h"
+#include "map_report.h"
 
 namespace innermap::tool {
 namespace {
@@ -15,15 +13,18 @@ struct EvaluateOptions {
 
 void run(const EvaluateOptions& options, Context& context) {
   context.willWrite(options.output);
-  const FieldFile file = readMap(options.map, context);
-  const BoundaryPair pair = boundaryOf(file, options.map, context);
-  const std::uint64_t need = evaluationMemory(pair.solid, options.evaluation);
+  const MappedSolid mapped = readMapFile(options.map, context);
+  const MapGridSettings settings = mapGridSettings(options.evaluation, context);
   if (context.dryRun())
-    return context.plan({"evaluate " + options.map, "write grids to " + options.output}, need);
-  requireEvaluationMemory(pair.solid, options.evaluation, context);
-  const openvdb::GridPtrVec grids = evaluateGrids(pair, file, options.evaluation, context);
-  context.timed("write", [&] { writeGrids(options.output, grids, options.evaluation, context); });
-  context.print(evaluationText(context.report()));
+    return context.plan({"evaluate " + options.map, "write grids to " + options.output},
+                        mapGridMemory(mapped.solid(), settings));
+  requireEvaluationMemory(mapped.solid(), settings);
+  const SolidGrids grids = evaluateOnGrid(mapped, settings);
+  tell(grids.notes, grids.warnings, grids.seconds, context);
+  reportGrids(grids, settings.lame, context.report());
+  context.timed("write",
+                [&] { writeGrids(options.output, grids.all(), options.evaluation, context); });
+  context.print(gridsText(grids));
 }
 
 }  // namespace

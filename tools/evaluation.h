@@ -1,16 +1,12 @@
-// A map on the voxels of its solid, as grids with their metadata: what `evaluate` and `map` share.
+// Options that say on which voxels a map is evaluated: what `evaluate`, `map`, `sequence` and
+// `transfer-distance` share.
 #pragma once
 
-#include <openvdb/openvdb.h>
-
-#include <cstdint>
 #include <optional>
 #include <string>
 
-#include "boundary_pair.h"
 #include "command.h"
-#include "innermap/evaluate/evaluate_map.h"
-#include "innermap/field/field_file.h"
+#include "innermap/evaluate/map_grids.h"
 
 namespace innermap::tool {
 
@@ -23,24 +19,13 @@ struct EvaluationOptions {
 
 void addEvaluationOptions(Command& command, EvaluationOptions& options);
 
-// Peak need in bytes, from the solid's volume and area.
-std::uint64_t evaluationMemory(const Solid& solid, const EvaluationOptions& options);
+MapGridSettings mapGridSettings(const EvaluationOptions& options, const Context& context);
 
 // Throws MemoryError, with the highest --resolution that would fit, when the need is over the
 // limit.
-void requireEvaluationMemory(const Solid& solid, const EvaluationOptions& options,
-                             const Context& context);
-
-// Grids surface, density, map, jacobian, harmonic_energy, deformation_energy, with the map's
-// settings, its certificate and the totals in their metadata (prefix innermap_). Fills the report's
-// "energy", "jacobian" and "grid".
-openvdb::GridPtrVec evaluateGrids(const BoundaryPair& pair, const FieldFile& file,
-                                  const EvaluationOptions& options, Context& context);
+void requireEvaluationMemory(const Solid& solid, const MapGridSettings& settings);
 
 void writeGrids(const std::string& path, const openvdb::GridPtrVec& grids,
                 const EvaluationOptions& options, Context& context);
-
-// "harmonic energy ..., folded ..." for the terminal, from the report.
-std::string evaluationText(const Report& report);
 
 }  // namespace innermap::tool

@@ -1,9 +1,8 @@
 // `innermap fit`: two meshes to a map.
-#include <fmt/format.h>
-
-#include "boundary_pair.h"
 #include "commands.h"
-#include "fitting.h"
+#include "fitting_options.h"
+#include "innermap/mesh/read.h"
+#include "map_report.h"
 
 namespace innermap::tool {
 namespace {
@@ -13,20 +12,34 @@ struct FitOptions {
   FittingOptions fitting;
 };
 
+BoundaryPair readPair(const FitOptions& options, Context& context) {
+  Mesh source, target;
+  context.timed("read", [&] {
+    const ReadSettings settings{context.progress()};
+    source = readMesh(options.source, settings);
+    target = readMeshLike(options.target, source, settings);
+  });
+  BoundaryPair pair = makeBoundaryPair(std::move(source), std::move(target), {context.progress()});
+  tell(pair.notes, pair.warnings, pair.seconds, context);
+  reportBoundaries(pair, context.report());
+  return pair;
+}
+
 void run(const FitOptions& options, Context& context) {
-  toleranceOf(options.fitting);  // refuses options that cannot be before anything is read
+  checkFittingOptions(options.fitting);
   context.willWrite(options.output);
-  const BoundaryPair pair = readBoundaryPair(options.source, options.target, context);
-  const std::size_t vertices = pair.source.vertices.size();
-  const std::uint64_t need = fittingMemory(options.fitting, vertices);
+  BoundaryPair pair = readPair(options, context);
+  const FitMapSettings settings =
+      fitMapSettings(options.fitting, pair.source.mesh.vertices.size(), context);
   if (context.dryRun())
-    return context.plan(
-        {fittingPlan(options.fitting, vertices), "write the map to " + options.output}, need);
-  requireFittingMemory(options.fitting, vertices, context);
-  const Fitted fitted = fitMap(pair, options.fitting, context);
-  context.timed("write", [&] { writeField(options.output, fitted.file); });
-  context.print(fmt::format("boundary error: rms {:.2e}, 99% {:.2e}, max {:.2e} of the diagonal\n",
-                            fitted.error.rms, fitted.error.p99, fitted.error.max));
+    return context.plan({fittingPlan(settings), "write the map to " + options.output},
+                        fitMapMemory(settings));
+  requireFittingMemory(settings);
+  const MapFit fit = fitMap(std::move(pair), settings);
+  tell(fit.notes, fit.warnings, fit.seconds, context);
+  reportFit(fit, settings, options.fitting.bestEffort, context);
+  context.timed("write", [&] { writeMap(options.output, fit); });
+  context.print(errorText(fit.error));
 }
 
 }  // namespace

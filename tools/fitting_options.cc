@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "innermap/core/memory.h"
-#include "innermap/field/adaptive_fit.h"
 #include "largest.h"
 
 namespace innermap::tool {
@@ -14,8 +13,6 @@ namespace {
 
 constexpr double kDefaultTolerance = 1e-3;
 constexpr std::size_t kSources = 2000, kFirstSources = 1000;
-constexpr std::size_t kFreshSamples = 20000;
-constexpr double kPointsPerSource = 4, kPointsPerManySources = 3;
 constexpr double kMostSources = 1000000;
 
 std::size_t countOf(double count, const char* option, double least, double most) {
@@ -25,27 +22,46 @@ std::size_t countOf(double count, const char* option, double least, double most)
   return static_cast<std::size_t>(count);
 }
 
-std::uint64_t memoryOf(const PointCounts& counts, FitSolver solver) {
-  constexpr std::uint64_t kProgram = 64'000'000;  // with nothing loaded yet
-  // Blue noise thins five candidates a point; each costs some 100 bytes.
-  return kProgram + fitMemory(counts.collocation, counts.sources, counts.heldOut, solver) +
-         500 * (counts.collocation + counts.sources) + 200 * kFreshSamples;
-}
-
-}  // namespace
-
-FitSolver solverOf(const FittingOptions& options) {
-  if (options.radiusRatio) return FitSolver::dense;  // far from most of the surface
-  return options.solver == "auto"    ? FitSolver::automatic
-         : options.solver == "dense" ? FitSolver::dense
-                                     : FitSolver::iterative;
-}
-
 Interpolation interpolationOf(const FittingOptions& options) {
   return options.interpolation == "linear"   ? Interpolation::linear
          : options.interpolation == "smooth" ? Interpolation::smooth
                                              : Interpolation::automatic;
 }
+
+FitSolver solverOf(const FittingOptions& options) {
+  return options.solver == "auto"    ? FitSolver::automatic
+         : options.solver == "dense" ? FitSolver::dense
+                                     : FitSolver::iterative;
+}
+
+// The tolerance that charges are placed for; nothing where the options place a number of them.
+std::optional<double> toleranceOf(const FittingOptions& o) {
+  const std::pair<bool, const char*> uniform[] = {
+      {o.sources.has_value(), "--sources"},
+      {o.sourceRatio.has_value(), "--source-ratio"},
+      {o.collocation.has_value(), "--collocation"},
+      {o.collocationRatio.has_value(), "--collocation-ratio"},
+      {o.distance.has_value(), "--distance"},
+      {o.radiusRatio.has_value(), "--radius-ratio"},
+      {o.solver != "auto", "--solver"},
+      {o.method != "tikhonov", "--method"},
+      {o.regularization.has_value(), "--regularization"}};
+  if (o.tolerance && !(*o.tolerance >= kSmallestTolerance && *o.tolerance <= 1))
+    throw UsageError(fmt::format(
+        "--tolerance: must lie in 1e-12 to 1 of the target's diagonal, not {:g}; sums in double "
+        "precision hold no less than 1e-12",
+        *o.tolerance));
+  for (const auto& [given, name] : uniform) {
+    if (!given) continue;
+    if (o.tolerance)
+      throw UsageError(
+          fmt::format("--tolerance and {} exclude each other; give one of them", name));
+    return {};
+  }
+  return o.tolerance.value_or(kDefaultTolerance);
+}
+
+}  // namespace
 
 void addFittingOptions(Command& command, FittingOptions& o) {
   command
@@ -112,91 +128,73 @@ void addFittingOptions(Command& command, FittingOptions& o) {
   command.option("--seed", "N", &o.seed, "of all random points").range(0, 1e15);
 }
 
-std::optional<double> toleranceOf(const FittingOptions& o) {
-  const std::pair<bool, const char*> uniform[] = {
-      {o.sources.has_value(), "--sources"},
-      {o.sourceRatio.has_value(), "--source-ratio"},
-      {o.collocation.has_value(), "--collocation"},
-      {o.collocationRatio.has_value(), "--collocation-ratio"},
-      {o.distance.has_value(), "--distance"},
-      {o.radiusRatio.has_value(), "--radius-ratio"},
-      {o.solver != "auto", "--solver"},
-      {o.method != "tikhonov", "--method"},
-      {o.regularization.has_value(), "--regularization"}};
-  if (o.tolerance && !(*o.tolerance >= kSmallestTolerance && *o.tolerance <= 1))
-    throw UsageError(fmt::format(
-        "--tolerance: must lie in 1e-12 to 1 of the target's diagonal, not {:g}; sums in double "
-        "precision hold no less than 1e-12",
-        *o.tolerance));
-  for (const auto& [given, name] : uniform) {
-    if (!given) continue;
-    if (o.tolerance)
-      throw UsageError(
-          fmt::format("--tolerance and {} exclude each other; give one of them", name));
-    return {};
-  }
-  return o.tolerance.value_or(kDefaultTolerance);
-}
+namespace {
 
-PointCounts pointCounts(const FittingOptions& o, std::size_t vertices) {
+ShellSettings shellSettings(const FittingOptions& o, std::size_t vertices) {
   if (o.distance && o.radiusRatio)
     throw UsageError("--distance and --radius-ratio exclude each other; give one of them");
   if (o.collocation && o.collocationRatio)
     throw UsageError("--collocation and --collocation-ratio exclude each other; give one of them");
   const double v = static_cast<double>(vertices);
-  PointCounts counts;
-  counts.sources = o.sourceRatio
-                       ? countOf(std::round(*o.sourceRatio * v), "--source-ratio", 1, kMostSources)
-                       : o.sources.value_or(kSources);
-  const double n = static_cast<double>(counts.sources);
-  const double perSource =
-      counts.sources > kMostDenseSources ? kPointsPerManySources : kPointsPerSource;
-  const double wanted = o.collocation        ? static_cast<double>(*o.collocation)
-                        : o.collocationRatio ? std::round(*o.collocationRatio * v)
-                                             : std::max(perSource * n, 16.0);
-  counts.collocation =
-      countOf(wanted, o.collocationRatio ? "--collocation-ratio" : "--collocation", n + 4, 1e7);
-  counts.heldOut = std::clamp<std::size_t>(counts.sources, 1000, 5000);
-  return counts;
+  ShellSettings shell;
+  shell.sources = o.sourceRatio
+                      ? countOf(std::round(*o.sourceRatio * v), "--source-ratio", 1, kMostSources)
+                      : o.sources.value_or(kSources);
+  if (o.collocation || o.collocationRatio)
+    shell.collocation = countOf(
+        o.collocation ? static_cast<double>(*o.collocation) : std::round(*o.collocationRatio * v),
+        o.collocationRatio ? "--collocation-ratio" : "--collocation",
+        static_cast<double>(shell.sources) + 4, 1e7);
+  shell.distance = o.distance;
+  shell.radiusRatio = o.radiusRatio;
+  shell.solver = solverOf(o);
+  shell.method = o.method == "tsvd" ? Regularization::truncatedSvd : Regularization::tikhonov;
+  shell.regularization = o.regularization;
+  return shell;
 }
 
-std::string fittingPlan(const FittingOptions& options, std::size_t vertices) {
+}  // namespace
+
+FitMapSettings fitMapSettings(const FittingOptions& options, std::size_t vertices,
+                              const Context& context) {
+  FitMapSettings settings;
   if (const auto tolerance = toleranceOf(options))
+    settings.tolerance = *tolerance;
+  else
+    settings.shell = shellSettings(options, vertices);
+  settings.maxSources = options.maxSources;
+  settings.interpolation = interpolationOf(options);
+  settings.seed = options.seed;
+  settings.maxMemory = context.maxMemory();
+  settings.progress = context.progress();
+  return settings;
+}
+
+void checkFittingOptions(const FittingOptions& options) { toleranceOf(options); }
+
+std::string fittingPlan(const FitMapSettings& settings) {
+  if (!settings.shell)
     return fmt::format("fit up to {} charges until 99% of the boundary lies within {:g}",
-                       options.maxSources, *tolerance);
-  const PointCounts counts = pointCounts(options, vertices);
-  return fmt::format("fit {} charges to {} boundary points", counts.sources, counts.collocation);
+                       settings.maxSources, settings.tolerance);
+  return fmt::format("fit {} charges to {} boundary points", settings.shell->sources,
+                     shellCollocation(*settings.shell));
 }
 
-std::uint64_t fittingMemory(const FittingOptions& options, std::size_t vertices) {
-  if (toleranceOf(options)) {
-    PointCounts first;
-    first.sources = kFirstSources;
-    first.collocation = static_cast<std::size_t>(kPointsPerSource) * kFirstSources;
-    first.heldOut = kFirstSources;
-    return memoryOf(first, FitSolver::dense);
-  }
-  return memoryOf(pointCounts(options, vertices), solverOf(options));
-}
-
-void requireFittingMemory(const FittingOptions& options, std::size_t vertices,
-                          const Context& context) {
-  if (toleranceOf(options))
-    return requireMemory("the first level of charges", fittingMemory(options, vertices),
-                         context.maxMemory(), "raise --max-memory");
-  const PointCounts counts = pointCounts(options, vertices);
-  const double points =
-      static_cast<double>(counts.collocation) / static_cast<double>(counts.sources);
+void requireFittingMemory(const FitMapSettings& settings) {
+  if (!settings.shell)
+    return requireMemory("the first level of charges", fitMapMemory(settings), settings.maxMemory,
+                         "raise --max-memory");
+  const double points = static_cast<double>(shellCollocation(*settings.shell)) /
+                        static_cast<double>(settings.shell->sources);
   const auto fits = [&](std::uint64_t sources) {
-    PointCounts c;
-    c.sources = sources;
-    c.collocation = static_cast<std::size_t>(points * static_cast<double>(sources));
-    c.heldOut = counts.heldOut;
-    return memoryOf(c, solverOf(options)) <= context.maxMemory();
+    FitMapSettings fewer = settings;
+    fewer.shell->sources = sources;
+    fewer.shell->collocation = static_cast<std::size_t>(points * static_cast<double>(sources));
+    return fitMapMemory(fewer) <= settings.maxMemory;
   };
-  const std::uint64_t most = largestThat(1, counts.sources, fits);
-  requireMemory(fmt::format("fitting {} sources", counts.sources),
-                memoryOf(counts, solverOf(options)), context.maxMemory(),
+  const std::uint64_t most = largestThat(1, settings.shell->sources, fits);
+  requireMemory(fmt::format("fitting {} sources", settings.shell->sources), fitMapMemory(settings),
+                settings.maxMemory,
                 most > 0 ? fmt::format("use --sources {} or raise --max-memory", most)
                          : "raise --max-memory");
 }

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "command.h"
-#include "innermap/field/fit.h"
+#include "innermap/boundary/fit_map.h"
 
 namespace innermap::tool {
 
@@ -26,27 +26,18 @@ struct FittingOptions {
 
 void addFittingOptions(Command& command, FittingOptions& options);
 
-// The tolerance that the charges are placed for, a fraction of the target's diagonal; nothing where
-// the options place a number of them. Throws UsageError for a tolerance that cannot be and for
-// options that exclude each other.
-std::optional<double> toleranceOf(const FittingOptions& options);
+// What the options mean for a source of so many vertices. Throws UsageError for a tolerance that
+// cannot be and for options that exclude each other.
+FitMapSettings fitMapSettings(const FittingOptions& options, std::size_t vertices,
+                              const Context& context);
 
-// Numbers of points that the options mean for a mesh of so many vertices.
-struct PointCounts {
-  std::size_t sources = 0, collocation = 0, heldOut = 0;
-};
-PointCounts pointCounts(const FittingOptions& options, std::size_t vertices);
-
-FitSolver solverOf(const FittingOptions& options);
-
-// Peak need in bytes; with a tolerance, that of its first level of charges.
-std::uint64_t fittingMemory(const FittingOptions& options, std::size_t vertices);
+// Throws what fitMapSettings throws for any mesh, before one is read.
+void checkFittingOptions(const FittingOptions& options);
 
 // Throws MemoryError, with the largest --sources that would fit, when the need is over the limit.
-void requireFittingMemory(const FittingOptions& options, std::size_t vertices,
-                          const Context& context);
+void requireFittingMemory(const FitMapSettings& settings);
 
 // "fit 2000 charges to 8000 boundary points", for --dry-run.
-std::string fittingPlan(const FittingOptions& options, std::size_t vertices);
+std::string fittingPlan(const FitMapSettings& settings);
 
 }  // namespace innermap::tool

@@ -71,30 +71,26 @@ Frames listFrames(const FrameOptions& options, const std::string& rest, Context&
   return frames;
 }
 
-std::uint64_t collocationOf(const FrameOptions& options) {
-  return options.collocation.value_or(
-      std::max<std::uint64_t>(kPointsPerSource * options.sources, options.sources + 8));
+FrameFitterSettings frameFitterSettings(const FrameOptions& options, const Context& context) {
+  FrameFitterSettings settings;
+  settings.sources = options.sources;
+  settings.collocation = options.collocation.value_or(0);
+  settings.distance = options.distance;
+  settings.seed = options.seed;
+  settings.maxMemory = context.maxMemory();
+  settings.progress = context.progress();
+  return settings;
 }
 
-std::uint64_t frameFittingMemory(const FrameOptions& options) {
-  constexpr std::uint64_t kProgram = 64'000'000;  // with nothing loaded yet
-  const std::uint64_t points = collocationOf(options);
-  const FitSolver solver =
-      options.sources > kMostDenseSources ? FitSolver::iterative : FitSolver::dense;
-  // Blue noise thins five candidates a point; each costs some 100 bytes.
-  return kProgram + fitMemory(points, options.sources, 0, solver) +
-         500 * (points + options.sources);
-}
-
-void requireFrameMemory(const FrameOptions& options, std::uint64_t others, const Context& context) {
+void requireFrameMemory(const FrameFitterSettings& settings, std::uint64_t others) {
   const std::uint64_t most = largestThat(1, kMostSources, [&](std::uint64_t sources) {
-    FrameOptions fewer = options;
+    FrameFitterSettings fewer = settings;
     fewer.sources = sources;
-    fewer.collocation.reset();
-    return frameFittingMemory(fewer) + others <= context.maxMemory();
+    fewer.collocation = 0;
+    return frameFitterMemory(fewer) + others <= settings.maxMemory;
   });
-  requireMemory("a sequence with " + std::to_string(options.sources) + " charges",
-                frameFittingMemory(options) + others, context.maxMemory(),
+  requireMemory("a sequence with " + std::to_string(settings.sources) + " charges",
+                frameFitterMemory(settings) + others, settings.maxMemory,
                 most > 0 ? fmt::format("use --sources {} or raise --max-memory", most)
                          : "use a lower --resolution or raise --max-memory");
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "command.h"
+#include "innermap/boundary/frame_fitter.h"
 #include "innermap/core/frame_files.h"
 
 namespace innermap::tool {
@@ -33,13 +34,10 @@ struct Frames {
 // FileError, SettingError.
 Frames listFrames(const FrameOptions& options, const std::string& rest, Context& context);
 
-std::uint64_t collocationOf(const FrameOptions& options);
-
-// Peak need in bytes of setting up and solving.
-std::uint64_t frameFittingMemory(const FrameOptions& options);
+FrameFitterSettings frameFitterSettings(const FrameOptions& options, const Context& context);
 
 // Throws MemoryError, with the largest --sources that would fit beside `others` bytes, when the
 // need of all together is over the limit.
-void requireFrameMemory(const FrameOptions& options, std::uint64_t others, const Context& context);
+void requireFrameMemory(const FrameFitterSettings& settings, std::uint64_t others);
 
 }  // namespace innermap::tool

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "commands.h"
-#include "innermap/io/version.h"
+#include "innermap/core/version.h"
 
 namespace innermap::tool {
 namespace {

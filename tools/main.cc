@@ -7,7 +7,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/file.h"
 #include "innermap/core/parallel.h"
-#include "innermap/io/version.h"
+#include "innermap/core/version.h"
 #include "signals.h"
 #include "terminal_progress.h"
 

@@ -3,12 +3,11 @@
 
 #include <algorithm>
 
-#include "boundary_pair.h"
 #include "commands.h"
 #include "correspondence.h"
 #include "correspondence_file.h"
 #include "evaluation.h"
-#include "fitting.h"
+#include "fitting_options.h"
 #include "innermap/core/file.h"
 #include "innermap/io/exr/exr_slices.h"
 #include "innermap/io/picture/section_image.h"
@@ -16,6 +15,7 @@
 #include "innermap/mesh/read.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/mesh/write.h"
+#include "map_report.h"
 #include "section_place.h"
 
 namespace innermap::tool {
@@ -36,8 +36,9 @@ struct MapOptions {
   std::optional<double> sectionAt;
 };
 
-void writePictures(const openvdb::GridPtrVec& grids, const BoundaryPair& pair,
-                   PendingFolder& folder, const MapOptions& options, Context& context) {
+void writePictures(const SolidGrids& solidGrids, const Solid& solid, PendingFolder& folder,
+                   const MapOptions& options, Context& context) {
+  const openvdb::GridPtrVec grids = solidGrids.all();
   ExrSliceSettings slices;
   slices.axis = parseAxis("--slice-axis", options.sliceAxis);
   slices.count = static_cast<int>(options.sliceCount);
@@ -46,12 +47,10 @@ void writePictures(const openvdb::GridPtrVec& grids, const BoundaryPair& pair,
   folder.write("slices.exr", [&](const std::string& path) { writeExrSlices(path, grids, slices); });
   SectionSettings section;
   section.grid = options.sectionGrid;
-  section.axis = options.sectionAxis == "auto" ? thinnestAxis(pair.solid)
+  section.axis = options.sectionAxis == "auto" ? thinnestAxis(solid)
                                                : parseAxis("--section-axis", options.sectionAxis);
   section.at =
-      options.sectionAt
-          ? *options.sectionAt
-          : fullLayer(*openvdb::gridConstPtrCast<openvdb::FloatGrid>(grids[1]), section.axis);
+      options.sectionAt ? *options.sectionAt : fullLayer(*solidGrids.density, section.axis);
   section.maxMemory = context.maxMemory();
   section.progress = context.progress();
   folder.write("section.png",
@@ -123,11 +122,15 @@ std::string correspondPlan(const MapOptions& options, const Meshes& meshes) {
 }
 
 void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
-  const Solid solid = makeSourceSolid(meshes.source, context);
+  const SourceBoundary source = makeSourceBoundary(meshes.source, {context.progress()});
+  tell(source.notes, source.warnings, source.seconds, context);
+  reportSource(source, context.report());
   const std::size_t vertices = meshes.source.vertices.size();
+  const FitMapSettings fitting = fitMapSettings(options.fitting, vertices, context);
   std::vector<std::string> lines;
-  std::uint64_t need = std::max(fittingMemory(options.fitting, vertices),
-                                evaluationMemory(solid, options.evaluation));
+  std::uint64_t need =
+      std::max(fitMapMemory(fitting),
+               mapGridMemory(source.solid, mapGridSettings(options.evaluation, context)));
   std::string files = "map.ply, map.vdb, slices.exr, section.png";
   if (!meshes.related) {
     lines.push_back(correspondPlan(options, meshes));
@@ -135,7 +138,7 @@ void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
                     correspondMemory(vertices, meshes.target.vertices.size(), options.correspond));
     files += ", correspondence.ply, correspondence.png";
   }
-  lines.push_back(fittingPlan(options.fitting, vertices));
+  lines.push_back(fittingPlan(fitting));
   lines.push_back(fmt::format("write {} and report.json to {}", files, options.output));
   context.plan(lines, need);
 }
@@ -143,8 +146,9 @@ void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
 // Lays the source onto the target where they are not related, and puts that into the folder.
 BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& folder,
                       Context& context) {
+  const BoundarySettings progress{context.progress()};
   if (meshes.related)
-    return makeBoundaryPair(std::move(meshes.source), std::move(meshes.target), context);
+    return makeBoundaryPair(std::move(meshes.source), std::move(meshes.target), progress);
   context.note(correspondPlan(options, meshes) + "; --correspond takes one made before");
   const std::string name = meshes.target.name;
   const MovedMesh moved = correspondMeshes(std::move(meshes.source), std::move(meshes.target),
@@ -156,29 +160,36 @@ BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& f
     folder.write("correspondence.source.ply",
                  [&](const std::string& path) { writeMesh(path, moved.source); });
   folder.write("correspondence.png", moved.drawPicture);
-  return makeBoundaryPair(moved.source, target, context);
+  return makeBoundaryPair(moved.source, target, progress);
 }
 
 void run(const MapOptions& options, Context& context) {
-  toleranceOf(options.fitting);  // refuses options that cannot be before anything is read
+  checkFittingOptions(options.fitting);
   Meshes meshes = readMeshes(options, context);
   if (context.dryRun()) return plan(options, meshes, context);
   PendingFolder folder(options.output);
-  const BoundaryPair pair = makePair(options, std::move(meshes), folder, context);
-  requireFittingMemory(options.fitting, pair.source.vertices.size(), context);
-  requireEvaluationMemory(pair.solid, options.evaluation, context);
-  const Fitted fitted = fitMap(pair, options.fitting, context);
-  const openvdb::GridPtrVec grids = evaluateGrids(pair, fitted.file, options.evaluation, context);
+  BoundaryPair pair = makePair(options, std::move(meshes), folder, context);
+  tell(pair.notes, pair.warnings, pair.seconds, context);
+  reportBoundaries(pair, context.report());
+  const FitMapSettings fitting =
+      fitMapSettings(options.fitting, pair.source.mesh.vertices.size(), context);
+  const MapGridSettings gridSettings = mapGridSettings(options.evaluation, context);
+  requireFittingMemory(fitting);
+  requireEvaluationMemory(pair.solid(), gridSettings);
+  const MapFit fit = fitMap(std::move(pair), fitting);
+  tell(fit.notes, fit.warnings, fit.seconds, context);
+  reportFit(fit, fitting, options.fitting.bestEffort, context);
+  const SolidGrids grids = evaluateOnGrid(fit, gridSettings);
+  tell(grids.notes, grids.warnings, grids.seconds, context);
+  reportGrids(grids, gridSettings.lame, context.report());
   context.timed("write", [&] {
-    folder.write("map.ply", [&](const std::string& path) { writeField(path, fitted.file); });
+    folder.write("map.ply", [&](const std::string& path) { writeMap(path, fit); });
     folder.write("map.vdb", [&](const std::string& path) {
-      writeGrids(path, grids, options.evaluation, context);
+      writeGrids(path, grids.all(), options.evaluation, context);
     });
-    writePictures(grids, pair, folder, options, context);
+    writePictures(grids, fit.solid(), folder, options, context);
   });
-  context.print(fmt::format("boundary error: rms {:.2e}, 99% {:.2e}, max {:.2e} of the diagonal\n",
-                            fitted.error.rms, fitted.error.p99, fitted.error.max) +
-                evaluationText(context.report()));
+  context.print(errorText(fit.error) + gridsText(grids));
   folder.write("report.json",
                [&](const std::string& path) { writeReport(path, context.finishedReport()); });
   folder.commit();

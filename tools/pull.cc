@@ -4,7 +4,7 @@
 #include "commands.h"
 #include "innermap/io/vdb/vdb_file.h"
 #include "innermap/levelset/level_set.h"
-#include "saved_map.h"
+#include "map_report.h"
 #include "transfer_options.h"
 
 namespace innermap::tool {
@@ -17,36 +17,35 @@ struct PullOptions {
 
 void run(const PullOptions& options, Context& context) {
   context.willWrite(options.output);
-  const FieldFile file = readMap(options.map, context);
-  const BoundaryPair pair = boundaryOf(file, options.map, context);
+  const MappedSolid mapped = readMapFile(options.map, context);
   PullSettings settings;
   settings.carry = carrySettings(options.transfer);
-  settings.outside =
-      outsideSettings(options.transfer, pair.solid.repaired().mesh.vertices, pair.moved);
-  settings.accuracy = sumAccuracy(file);
+  settings.outside = outsideSettings(options.transfer, mapped.solid().repaired().mesh.vertices,
+                                     mapped.boundary.target.moved);
+  settings.accuracy = sumAccuracy(mapped);
   settings.maxMemory = context.maxMemory();
   settings.progress = context.progress();
   const openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
   std::optional<Solid> target;
-  context.timed("solid", [&] { target.emplace(targetSolid(pair, context)); });
+  context.timed("solid",
+                [&] { target.emplace(makeTargetSolid(mapped.boundary, {context.progress()})); });
   if (context.dryRun())
     return context.plan(
         {fmt::format("pull {} grids of {} by {}", grids.size(), options.volume, options.map),
          "write " + options.output},
-        transferMemory(pair.solid, grids, options.transfer));
-  requireTransferMemory(pair.solid, grids, options.transfer, context);
+        transferMemory(mapped.solid(), grids, options.transfer));
+  requireTransferMemory(mapped.solid(), grids, options.transfer, context);
   TransferOptions plain;  // the target's level set is none of the output's
   const openvdb::FloatGrid::Ptr targetLevelSet = outputLevelSet(*target, grids, plain, context);
   settings.targetLevelSet = targetLevelSet.get();
   const openvdb::FloatGrid::Ptr levelSet =
-      outputLevelSet(pair.solid, grids, options.transfer, context);
+      outputLevelSet(mapped.solid(), grids, options.transfer, context);
   PullResult result;
-  context.timed("pull", [&] {
-    result = pullGrids(HarmonicMap(file.field), pair.solid, *levelSet, grids, settings);
-  });
+  context.timed(
+      "pull", [&] { result = pullGrids(mapped.map, mapped.solid(), *levelSet, grids, settings); });
   for (const std::string& warning : result.warnings) context.warning(warning);
   context.report().set("pull.voxels", static_cast<std::int64_t>(result.voxels));
-  describeMap(result.grids, file);
+  describeMap(result.grids, mapped);
   context.timed("write",
                 [&] { writeVolume(options.output, result.grids, options.transfer, context); });
   context.print(fmt::format("pulled {} grids, {} voxels\n", result.grids.size(), result.voxels));

@@ -6,7 +6,7 @@
 #include "commands.h"
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/io/vdb/vdb_file.h"
-#include "saved_map.h"
+#include "map_report.h"
 #include "transfer_options.h"
 
 namespace innermap::tool {
@@ -19,14 +19,14 @@ struct PushOptions {
 
 void run(const PushOptions& options, Context& context) {
   context.willWrite(options.output);
-  const FieldFile file = readMap(options.map, context);
-  const BoundaryPair pair = boundaryOf(file, options.map, context);
-  PushSettings settings =
-      pushSettings(options.transfer, pair.solid.repaired().mesh.vertices, pair.moved, context);
-  settings.accuracy = sumAccuracy(file);
+  const MappedSolid mapped = readMapFile(options.map, context);
+  PushSettings settings = pushSettings(options.transfer, mapped.solid().repaired().mesh.vertices,
+                                       mapped.boundary.target.moved, context);
+  settings.accuracy = sumAccuracy(mapped);
   const openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
   std::optional<Solid> target;
-  context.timed("solid", [&] { target.emplace(targetSolid(pair, context)); });
+  context.timed("solid",
+                [&] { target.emplace(makeTargetSolid(mapped.boundary, {context.progress()})); });
   if (context.dryRun())
     return context.plan(
         {fmt::format("push {} grids of {} by {}", grids.size(), options.volume, options.map),
@@ -37,11 +37,11 @@ void run(const PushOptions& options, Context& context) {
       outputLevelSet(*target, grids, options.transfer, context);
   PushResult result;
   context.timed("push", [&] {
-    const VolumePusher pusher(pair.solid, grids, settings);
-    result = pusher.push(HarmonicMap(file.field), *levelSet);
+    const VolumePusher pusher(mapped.solid(), grids, settings);
+    result = pusher.push(mapped.map, *levelSet);
   });
   reportPush(result, context);
-  describeMap(result.grids, file);
+  describeMap(result.grids, mapped);
   context.timed("write",
                 [&] { writeVolume(options.output, result.grids, options.transfer, context); });
   context.print(pushText(result));

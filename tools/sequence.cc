@@ -8,13 +8,12 @@
 
 #include "commands.h"
 #include "evaluation.h"
+#include "frame_fits.h"
 #include "frame_loop.h"
-#include "frame_solver.h"
 #include "innermap/core/file.h"
 #include "innermap/io/picture/chart.h"
 #include "innermap/io/vdb/vdb_file.h"
 #include "innermap/levelset/level_set.h"
-#include "saved_map.h"
 #include "sequence_table.h"
 
 namespace innermap::tool {
@@ -52,9 +51,9 @@ std::vector<std::string> gridsToWrite(const SequenceOptions& options) {
 // What all frames have in common.
 class Sequence {
  public:
-  Sequence(const SequenceOptions& options, const FrameSolver& solver, Context& context)
+  Sequence(const SequenceOptions& options, const FrameFitter& fitter, Context& context)
       : options_(options),
-        solver_(solver),
+        fitter_(fitter),
         names_(gridsToWrite(options)),
         pattern_("--output", (std::filesystem::path(options.output) / "energy.####.vdb").string()),
         context_(context) {
@@ -65,23 +64,22 @@ class Sequence {
     settings.maxMemory = context.maxMemory();
     settings.progress = context.progress();
     context.timed("voxelize", [&] {
-      surface_ = makeLevelSet(solver.solid(), settings);
+      surface_ = makeLevelSet(fitter.solid(), settings);
       if (wants("density")) density_ = makeFog(*surface_);
-      for (const std::string& warning : checkLevelSet(*surface_, solver.solid()).warnings)
+      for (const std::string& warning : checkLevelSet(*surface_, fitter.solid()).warnings)
         context.warning(warning);
     });
   }
 
   // Solves, measures and, if asked for, writes one frame.
-  SequenceRow run(const FrameFile& frame) const {
-    const FrameFit fit = solver_.solve(frame, context_);
+  SequenceRow run(const FrameFile& frame, const FrameFit& fit) const {
     MapGrids grids;
     context_.timed("evaluate", [&] {
-      grids = evaluateMap(HarmonicMap(fit.field), solver_.solid(), *surface_, settings(fit));
+      grids = evaluateMap(HarmonicMap(fit.field), fitter_.solid(), *surface_, settings(fit));
     });
     if (grids.interiorVoxels == 0)
-      throw SettingError("--resolution",
-                         solver_.rest().name + " is thinner than the voxels everywhere; use more");
+      throw SettingError("--resolution", fitter_.rest().mesh.name +
+                                             " is thinner than the voxels everywhere; use more");
     SequenceRow row;
     row.file = frame;
     row.error = fit.error;
@@ -160,16 +158,16 @@ class Sequence {
   }
 
   const SequenceOptions& options_;
-  const FrameSolver& solver_;
+  const FrameFitter& fitter_;
   const std::vector<std::string> names_;
   const FramePattern pattern_;
   Context& context_;
   openvdb::FloatGrid::Ptr surface_, density_;
 };
 
-std::string planText(const SequenceOptions& options, const Frames& frames) {
+std::string planText(const FrameFitterSettings& settings, const Frames& frames) {
   return fmt::format("fit {} charges to {} boundary points for {} frames, {} to {}",
-                     options.frames.sources, collocationOf(options.frames), frames.wanted.size(),
+                     settings.sources, frameCollocation(settings), frames.wanted.size(),
                      frames.all[frames.wanted.front()].number,
                      frames.all[frames.wanted.back()].number);
 }
@@ -177,22 +175,25 @@ std::string planText(const SequenceOptions& options, const Frames& frames) {
 void run(const SequenceOptions& options, Context& context) {
   gridsToWrite(options);  // refuses names that cannot be before anything is read
   const Frames frames = listFrames(options.frames, options.rest, context);
+  const FrameFitterSettings settings = frameFitterSettings(options.frames, context);
   if (context.dryRun())
-    return context.plan({planText(options, frames),
+    return context.plan({planText(settings, frames),
                          "write energies.csv, energies.png and report.json" +
                              std::string(options.grids ? " and the grids of each frame" : "") +
                              " to " + options.output},
-                        frameFittingMemory(options.frames));
-  requireFrameMemory(options.frames, 0, context);
+                        frameFitterMemory(settings));
+  requireFrameMemory(settings, 0);
   PendingFolder folder(options.output);
-  const FrameSolver solver(options.rest, options.frames, context);
-  requireFrameMemory(options.frames, evaluationMemory(solver.solid(), options.evaluation), context);
-  const Sequence sequence(options, solver, context);
+  const FrameFitter fitter = makeFrameFitter(options.rest, settings, context);
+  requireFrameMemory(settings,
+                     mapGridMemory(fitter.solid(), mapGridSettings(options.evaluation, context)));
+  const Sequence sequence(options, fitter, context);
+  FrameFits fits(fitter, frames, context);
   std::vector<SequenceRow> rows;
   context.print(sequenceHeader());
   std::vector<FrameResult> results =
       runFrames(frames, options.grids, context, [&](std::size_t index) {
-        rows.push_back(sequence.run(frames.all[index]));
+        rows.push_back(sequence.run(frames.all[index], *fits.at(index)));
         context.print(sequenceLine(rows.back()));
       });
   const std::string seconds = secondsText(results, context);
@@ -202,7 +203,7 @@ void run(const SequenceOptions& options, Context& context) {
   context.timed("write", [&] {
     folder.write("energies.csv", [&](const std::string& path) { writeSequenceTable(path, table); });
     folder.write("energies.png", [&](const std::string& path) {
-      writeChart(path, sequenceChart(table, solver.rest().name));
+      writeChart(path, sequenceChart(table, fitter.rest().mesh.name));
     });
   });
   context.print(seconds);

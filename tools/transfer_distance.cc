@@ -3,13 +3,14 @@
 
 #include "commands.h"
 #include "evaluation.h"
+#include "grid_options.h"
 #include "innermap/core/file.h"
 #include "innermap/io/picture/section_image.h"
 #include "innermap/io/slice.h"
 #include "innermap/io/vdb/vdb_file.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/transfer/distance_transfer.h"
-#include "saved_map.h"
+#include "map_report.h"
 #include "section_place.h"
 
 namespace innermap::tool {
@@ -17,22 +18,22 @@ namespace {
 
 struct TransferDistanceOptions {
   std::string map, output;
-  EvaluationOptions evaluation;
+  GridOptions grid;
   std::string sectionAxis = "auto";
   std::optional<double> sectionAt;
   std::optional<NumberPair> range;
 };
 
-DistanceTransfer transfer(const FieldFile& file, const Solid& source, const Solid& target,
+DistanceTransfer transfer(const MappedSolid& mapped, const Solid& target,
                           const TransferDistanceOptions& options, Context& context) {
   DistanceTransferSettings settings;
-  settings.resolution = options.evaluation.resolution;
-  settings.voxelSize = options.evaluation.voxelSize.value_or(0);
-  settings.accuracy = sumAccuracy(file);
+  settings.resolution = options.grid.resolution;
+  settings.voxelSize = options.grid.voxelSize.value_or(0);
+  settings.accuracy = sumAccuracy(mapped);
   settings.maxMemory = context.maxMemory();
   settings.progress = context.progress();
-  DistanceTransfer made = transferDistance(HarmonicMap(file.field), source, target, settings);
-  addSeconds(context.report().seconds, made.seconds);
+  DistanceTransfer made = transferDistance(mapped.map, mapped.solid(), target, settings);
+  tell({}, {}, made.seconds, context);
   return made;
 }
 
@@ -54,12 +55,12 @@ void writeSection(const std::string& path, const std::string& title, const Solid
   writeSectionImage(path, {shown, solidGrid}, section);
 }
 
-void writeVdbs(const DistanceTransfer& made, const FieldFile& file, PendingFolder& folder,
+void writeVdbs(const DistanceTransfer& made, const MappedSolid& mapped, PendingFolder& folder,
                Context& context) {
   VdbWriteSettings settings;
   settings.progress = context.progress();
   const auto write = [&](const char* name, const openvdb::GridPtrVec& grids) {
-    describeMap(grids, file);
+    describeMap(grids, mapped);
     folder.write(name, [&](const std::string& path) { writeVdb(path, grids, {}, settings); });
   };
   write("source.vdb", {made.source.surface, made.through, made.source.depth});
@@ -90,19 +91,23 @@ std::string textOf(const DistanceTransfer& made) {
 }
 
 void run(const TransferDistanceOptions& options, Context& context) {
-  const FieldFile file = readMap(options.map, context);
-  const BoundaryPair pair = boundaryOf(file, options.map, context);
+  const MappedSolid mapped = readMapFile(options.map, context);
+  MapGridSettings grid;
+  grid.resolution = options.grid.resolution;
+  grid.voxelSize = options.grid.voxelSize.value_or(0);
+  grid.maxMemory = context.maxMemory();
   if (context.dryRun())
     return context.plan(
         {"transfer the target's distance field through " + options.map,
          "write source.vdb, target.vdb, source.png, target.png and report.json to " +
              options.output},
-        evaluationMemory(pair.solid, options.evaluation));
-  requireEvaluationMemory(pair.solid, options.evaluation, context);
+        mapGridMemory(mapped.solid(), grid));
+  requireEvaluationMemory(mapped.solid(), grid);
   PendingFolder folder(options.output);
   std::optional<Solid> target;
-  context.timed("solid", [&] { target.emplace(targetSolid(pair, context)); });
-  const DistanceTransfer made = transfer(file, pair.solid, *target, options, context);
+  context.timed("solid",
+                [&] { target.emplace(makeTargetSolid(mapped.boundary, {context.progress()})); });
+  const DistanceTransfer made = transfer(mapped, *target, options, context);
   const NumberPair range = options.range.value_or(NumberPair{0, made.target.figures.largest});
   fillReport(made, range, context.report());
   context.timed("write", [&] {
@@ -111,10 +116,10 @@ void run(const TransferDistanceOptions& options, Context& context) {
                    *made.target.surface, range, options, context);
     });
     folder.write("source.png", [&](const std::string& path) {
-      writeSection(path, "the target's distance, through the map", pair.solid, *made.through,
+      writeSection(path, "the target's distance, through the map", mapped.solid(), *made.through,
                    *made.source.surface, range, options, context);
     });
-    writeVdbs(made, file, folder, context);
+    writeVdbs(made, mapped, folder, context);
   });
   context.print(textOf(made));
   folder.write("report.json",
@@ -137,14 +142,7 @@ Command makeTransferDistanceCommand() {
   c.option("--output", "FOLDER", &o->output, "where the five files go; made when missing")
       .shortName("-o")
       .required();
-  c.option("--resolution", "N", &o->evaluation.resolution,
-           "voxels along the longest side of each solid")
-      .range(4, 4096);
-  c.option("--voxel-size", "L", &o->evaluation.voxelSize,
-           "edge of a voxel, in place of --resolution")
-      .unit("world units")
-      .above(0)
-      .defaults("by --resolution");
+  addGridOptions(c, o->grid, "each solid");
   c.option("--section-axis", "AXIS", &o->sectionAxis, "of the sections; auto: the thinnest")
       .choices({"auto", "x", "y", "z"});
   c.option("--section-at", "T", &o->sectionAt, "place of the sections along their axis")

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "boundary_pair.h"
 #include "command.h"
 #include "innermap/transfer/pull.h"
 #include "innermap/transfer/push.h"

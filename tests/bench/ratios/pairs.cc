@@ -2,11 +2,11 @@
 
 #include <cmath>
 
+#include "innermap/boundary/boundary_pair.h"
+#include "innermap/boundary/surface_problem.h"
 #include "innermap/field/boundary_error.h"
 #include "innermap/mesh/read.h"
-#include "innermap/mesh/repair.h"
 #include "innermap/mesh/write.h"
-#include "innermap/sample/surface_samples.h"
 
 namespace innermap::bench {
 namespace {
@@ -58,22 +58,16 @@ Pair bentAndTwistedPair(const std::string& name, const Options& options) {
 
 FreshError freshError(const HarmonicField& field, const Pair& pair, std::size_t points) {
   const Mesh source = readMesh(pair.source), target = readMeshLike(pair.target, source);
-  const Solid solid(source);
-  SampleSettings sampling;
-  sampling.seed = kFreshSeed;
-  const std::vector<SurfacePoint> samples = randomSamples(solid.surface(), points, sampling);
-  std::vector<SurfacePoint> addresses;
-  for (const SurfacePoint& sample : samples) addresses.push_back(solid.address(sample));
-  Mesh moved = solid.repaired().mesh;
-  moved.vertices = repairedPositions(solid.repaired(), target.vertices);
-  Matrix values(points, 3);
-  for (std::size_t i = 0; i < points; ++i) {
-    const Vec3 p = positionOf(moved, addresses[i]);
-    for (int a = 0; a < 3; ++a) values(i, static_cast<std::size_t>(a)) = p[a];
-  }
-  const Points places = interpolate(solid.surface().vertices, solid.surface().triangles, samples);
+  const BoundaryPair boundary = makeBoundaryPair(source, target);
+  FreshSampleSettings settings;
+  settings.count = points;
+  settings.seed = kFreshSeed;
+  const BoundarySamples fresh = freshSamples(
+      boundary.solid(),
+      [&](const std::vector<SurfacePoint>& samples) { return boundary.targetsOf(samples); },
+      settings);
   const BoundaryError error =
-      measureBoundaryError(field, places, values, boundingBox(moved).diagonal());
+      measureBoundaryError(field, fresh.points, fresh.values, boundary.target.diagonal);
   return {error.rms, error.p99, error.max};
 }
 

@@ -22,7 +22,7 @@
 #include "innermap/core/memory.h"
 #include "innermap/io/exr/detail/exr_stream.h"
 #include "innermap/io/slice.h"
-#include "innermap/io/version.h"
+#include "innermap/core/version.h"
 
 namespace innermap {
 namespace {

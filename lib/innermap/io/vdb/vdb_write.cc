@@ -10,7 +10,7 @@
 #include "innermap/core/file.h"
 #include "innermap/io/vdb/detail/vdb_stream.h"
 #include "innermap/io/vdb/vdb_file.h"
-#include "innermap/io/version.h"
+#include "innermap/core/version.h"
 
 namespace innermap {
 namespace {

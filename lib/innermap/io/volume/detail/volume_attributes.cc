@@ -12,7 +12,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/io/slice.h"
-#include "innermap/io/version.h"
+#include "innermap/core/version.h"
 
 namespace innermap {
 namespace {

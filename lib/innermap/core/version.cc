@@ -1,4 +1,4 @@
-#include "innermap/io/version.h"
+#include "innermap/core/version.h"
 
 namespace innermap {
 

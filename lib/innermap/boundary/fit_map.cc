@@ -1,0 +1,294 @@
+#include "innermap/boundary/fit_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "innermap/boundary/detail/pair_problem.h"
+#include "innermap/boundary/surface_problem.h"
+#include "innermap/core/error.h"
+#include "innermap/core/version.h"
+
+namespace innermap {
+namespace {
+
+constexpr std::size_t kFreshSamples = 20000;
+constexpr double kDoubtful = 0.1;  // of the target's diagonal: no map to be trusted
+// A first fit where a tolerance is asked for: enough to tell smooth deformations from others.
+constexpr std::size_t kFirstSources = 1000, kTrialSources = 200;
+constexpr PointCounts kVertexTrial{kFirstSources, 4 * kFirstSources, kFirstSources};
+
+// What is known of a fit before it becomes a MapFit.
+struct Outcome {
+  HarmonicField field;
+  BoundaryError error;
+  double collocationError = 0;
+  bool smooth = false;
+  std::optional<double> verticesRms;
+  std::optional<ToleranceOutcome> tolerance;
+  MapSolve solve;
+};
+
+// A fit with a number of charges.
+Outcome outcomeOf(const FitResult& fit, const FitProblem& problem, const ShellSettings& shell) {
+  const BoundaryData& data = fit.smooth ? problem.vertices : problem.surface;
+  Outcome out{fit.field, {}, 0, fit.smooth, {}, {}, {}};
+  MapSolve& s = out.solve;
+  s.method = fit.iterative                                  ? "iterative"
+             : shell.method == Regularization::truncatedSvd ? "tsvd"
+                                                            : "tikhonov";
+  s.placement = shell.radiusRatio ? "sphere" : "shell";
+  s.sources = fit.field.sources().size();
+  s.collocation = data.points.size();
+  s.heldOut = data.heldOut.size();
+  s.rank = fit.rank;
+  if (shell.radiusRatio)
+    s.radiusRatio = *shell.radiusRatio;
+  else
+    s.distance = fit.distance;
+  s.regularization = fit.regularization;
+  s.condition = fit.condition;
+  s.weightNorm = fit.weightNorm;
+  s.iterations = fit.iterative ? static_cast<int>(fit.residuals.size()) - 1 : 0;
+  s.residuals = fit.residuals;
+  s.trials = fit.trials;
+  return out;
+}
+
+// A fit to a tolerance.
+Outcome outcomeOf(const AdaptiveResult& fit, double unit) {
+  Outcome out{fit.field, fit.error, 0, false, {}, {}, {}};
+  out.collocationError =
+      std::pow(fit.residuals.back() / unit, 2) * static_cast<double>(fit.collocation);
+  MapSolve& s = out.solve;
+  s.method = s.placement = "adaptive";
+  s.sources = s.rank = fit.field.sources().size();
+  s.collocation = fit.collocation;
+  s.distance = fit.levels.front().distance;
+  s.weightNorm = fit.weightNorm;
+  s.iterations = static_cast<int>(fit.residuals.size()) - 1;
+  s.residuals = fit.residuals;
+  s.levels = fit.levels;
+  s.rounds = fit.rounds;
+  return out;
+}
+
+FitSettings fitSettings(const ShellSettings& shell, const FitMapSettings& settings) {
+  FitSettings fit;
+  fit.sources = shell.sources;
+  fit.solver = shell.solver;
+  fit.interpolation = settings.interpolation;
+  fit.distance = shell.distance;
+  if (shell.radiusRatio) {
+    fit.distance = 1.0;             // plays no part: one fit, nothing to choose
+    fit.solver = FitSolver::dense;  // the sphere is far from most of the surface
+  }
+  fit.method = shell.method;
+  fit.regularization = shell.regularization;
+  fit.maxMemory = settings.maxMemory;
+  fit.progress = settings.progress;
+  return fit;
+}
+
+class MapFitter {
+ public:
+  MapFitter(const BoundaryPair& pair, const FitMapSettings& settings)
+      : pair_(pair), settings_(settings) {}
+
+  StageSeconds seconds;
+
+  Outcome onShell(const ShellSettings& shell) {
+    const FitProblem problem = problemOf(pointCounts(shell));
+    const FitResult fit =
+        timed(seconds, "fit", [&] { return fitField(problem, fitSettings(shell, settings_)); });
+    Outcome out = outcomeOf(fit, problem, shell);
+    measure(problem, out);
+    return out;
+  }
+
+  Outcome within(double tolerance) {
+    std::optional<Outcome> out = tryVertices(tolerance);
+    AdaptiveEnd end = AdaptiveEnd::met;
+    if (!out) {
+      timed(seconds, "fit", [&] {
+        const AdaptiveResult fit = fitToTolerance(problem(), adaptiveSettings(tolerance));
+        end = fit.end;
+        out.emplace(outcomeOf(fit, pair_.target.diagonal));
+      });
+    }
+    out->tolerance = ToleranceOutcome{tolerance, out->error.p99, out->error.p99 <= tolerance, end};
+    return std::move(*out);
+  }
+
+ private:
+  SurfaceValues values() const {
+    return [this](const std::vector<SurfacePoint>& points) { return pair_.targetsOf(points); };
+  }
+
+  AdaptiveProblem problem() const {
+    AdaptiveProblemSettings s;
+    s.seed = settings_.seed;
+    s.progress = settings_.progress;
+    return adaptiveProblem(pair_.solid(), values(), pair_.target.diagonal, s);
+  }
+
+  FitProblem problemOf(const PointCounts& counts) {
+    return timed(seconds, "sample", [&] { return pairProblem(pair_, counts, settings_); });
+  }
+
+  AdaptiveSettings adaptiveSettings(double tolerance) const {
+    AdaptiveSettings s;
+    s.tolerance = tolerance;
+    s.maxSources = settings_.maxSources;
+    s.checkSamples = kFreshSamples;
+    s.maxMemory = settings_.maxMemory;
+    s.progress = settings_.progress;
+    return s;
+  }
+
+  // Where vertices sample a smooth deformation, a fit to them is far more exact, and quick.
+  std::optional<Outcome> tryVertices(double tolerance) {
+    if (settings_.interpolation == Interpolation::linear) return {};
+    const FitProblem problem = problemOf(kVertexTrial);
+    ShellSettings shell;
+    shell.sources = kVertexTrial.sources;
+    FitSettings fitting = fitSettings(shell, settings_);
+    fitting.trialSources = kTrialSources;
+    const std::optional<FitResult> fit =
+        timed(seconds, "fit", [&] { return fitSmooth(problem, fitting); });
+    if (!fit) return {};
+    Outcome out = outcomeOf(*fit, problem, shell);
+    measure(problem, out);
+    if (out.error.p99 > tolerance && settings_.interpolation == Interpolation::automatic) return {};
+    return out;
+  }
+
+  void measure(const FitProblem& problem, Outcome& out) {
+    timed(seconds, "certificate", [&] {
+      const auto error = [&](const Points& points, const Matrix& values) {
+        return measureBoundaryError(out.field, points, values, pair_.target.diagonal,
+                                    settings_.progress);
+      };
+      FreshSampleSettings s;
+      s.count = kFreshSamples;
+      s.seed = settings_.seed;
+      s.progress = settings_.progress;
+      const BoundarySamples fresh = freshSamples(pair_.solid(), values(), s);
+      out.error = error(fresh.points, fresh.values);
+      const BoundaryData& data = out.smooth ? problem.vertices : problem.surface;
+      out.collocationError = error(data.points, data.values).sumOfSquares;
+      if (out.smooth) out.verticesRms = error(data.heldOut, data.heldOutValues).rms;
+    });
+  }
+
+  const BoundaryPair& pair_;
+  const FitMapSettings& settings_;
+};
+
+std::string number(double x) { return fmt::format("{:.9g}", x); }
+
+Settings factsOf(const BoundaryPair& pair, const Outcome& out, std::uint64_t seed) {
+  const auto oneLine = [](std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, '_');
+    return text;
+  };
+  Settings facts{{"version", versionText()},
+                 {"source", oneLine(pair.source.mesh.name)},
+                 {"target", oneLine(pair.targetMesh.name)},
+                 {"method", out.solve.method},
+                 {"interpolation", out.smooth ? "smooth" : "linear"},
+                 {"seed", std::to_string(seed)},
+                 {"regularization", number(out.solve.regularization)},
+                 {"rank", std::to_string(out.solve.rank)},
+                 {"boundary_error_rms", number(out.error.rms)},
+                 {"boundary_error_p99", number(out.error.p99)},
+                 {"boundary_error_max", number(out.error.max)},
+                 {"boundary_error_samples", std::to_string(out.error.samples)},
+                 {"c_error", number(out.collocationError)}};
+  if (out.solve.radiusRatio > 0)
+    facts.emplace_back("radius_ratio", number(out.solve.radiusRatio));
+  else
+    facts.emplace_back("distance", number(out.solve.distance));
+  if (out.tolerance) {
+    facts.emplace_back("tolerance", number(out.tolerance->wanted));
+    facts.emplace_back("tolerance_reached", number(out.tolerance->reached));
+    facts.emplace_back("tolerance_met", out.tolerance->met ? "true" : "false");
+  }
+  return facts;
+}
+
+void warnOfError(MapFit& fit) {
+  if (fit.error.max > kDoubtful)
+    fit.warnings.push_back(
+        fmt::format("the boundary error reaches {:.2g} of the diagonal: this map is not to be "
+                    "trusted; use {}",
+                    fit.error.max, fit.tolerance ? "a smaller tolerance" : "more charges"));
+}
+
+void validate(const FitMapSettings& settings) {
+  if (!settings.shell) {
+    if (!(settings.tolerance >= kSmallestTolerance && settings.tolerance <= 1))
+      throw SettingError("tolerance", fmt::format("must lie in [{:g}, 1], not {:g}",
+                                                  kSmallestTolerance, settings.tolerance));
+    return;
+  }
+  const ShellSettings& shell = *settings.shell;
+  if (shell.distance && shell.radiusRatio)
+    throw SettingError("distance", "goes with a shell, radiusRatio with a sphere; give one");
+  if (shell.collocation > 0 && shell.collocation < shell.sources + 4)
+    throw SettingError("collocation",
+                       fmt::format("must be at least {} for {} charges, not {}", shell.sources + 4,
+                                   shell.sources, shell.collocation));
+}
+
+}  // namespace
+
+std::uint64_t fitMapMemory(const FitMapSettings& settings) {
+  constexpr std::uint64_t kProgram = 64'000'000;  // with nothing loaded yet
+  PointCounts counts{kFirstSources, 4 * kFirstSources, kFirstSources};
+  FitSolver solver = FitSolver::dense;
+  if (settings.shell) {
+    counts = pointCounts(*settings.shell);
+    if (!settings.shell->radiusRatio) solver = settings.shell->solver;
+  }
+  // Blue noise thins five candidates a point; each costs some 100 bytes.
+  return kProgram + fitMemory(counts.collocation, counts.sources, counts.heldOut, solver) +
+         500 * (counts.collocation + counts.sources) + 200 * kFreshSamples;
+}
+
+MapFit fitMap(BoundaryPair boundary, const FitMapSettings& settings) {
+  validate(settings);
+  MapFitter fitter(boundary, settings);
+  Outcome out =
+      settings.shell ? fitter.onShell(*settings.shell) : fitter.within(settings.tolerance);
+  Settings facts = factsOf(boundary, out, settings.seed);
+  MapFit fit{{HarmonicMap(std::move(out.field)), std::move(boundary), std::move(facts)},
+             out.error,
+             out.collocationError,
+             out.smooth,
+             out.verticesRms,
+             out.tolerance,
+             std::move(out.solve),
+             {},
+             {},
+             std::move(fitter.seconds)};
+  warnOfError(fit);
+  return fit;
+}
+
+MapFit fitMap(const Mesh& source, const Mesh& target, const FitMapSettings& settings) {
+  BoundarySettings boundary;
+  boundary.progress = settings.progress;
+  MapFit fit = fitMap(makeBoundaryPair(source, target, boundary), settings);
+  fit.notes.insert(fit.notes.begin(), fit.boundary.notes.begin(), fit.boundary.notes.end());
+  fit.warnings.insert(fit.warnings.begin(), fit.boundary.warnings.begin(),
+                      fit.boundary.warnings.end());
+  StageSeconds seconds = fit.boundary.seconds;
+  addSeconds(seconds, fit.seconds);
+  fit.seconds = std::move(seconds);
+  return fit;
+}
+
+}  // namespace innermap

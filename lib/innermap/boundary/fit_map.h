@@ -1,0 +1,105 @@
+// The main job in one call: from two boundaries to the harmonic map of the inside, with its
+// certificate.
+//
+// Charges are placed just outside the source and their weights solved for, so that the map meets
+// the target at boundary points (the method of fundamental solutions: Li, Guo, Wang, He, Gu and
+// Qin, "Meshless harmonic volumetric mapping using fundamental solution methods", IEEE T-ASE 6(3),
+// 2009). By default charges are added where the error is until 99% of the boundary lies within a
+// tolerance; see field/adaptive_fit.h. FitMapSettings::shell asks for a number of charges on one
+// shell instead, as in the paper; see field/fit.h.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "innermap/boundary/mapped_solid.h"
+#include "innermap/field/adaptive_fit.h"
+#include "innermap/field/boundary_error.h"
+#include "innermap/field/fit.h"
+
+namespace innermap {
+
+// A number of charges, whatever the error.
+struct ShellSettings {
+  std::size_t sources = 2000;  // in [1, 1000000]; dense: at most 20000
+  std::size_t collocation =
+      0;  // boundary points, at least sources + 4; 0: 4 a source (3 above 3000)
+  std::optional<double> distance;     // of the source's diagonal, in [1e-4, 2]; chosen when absent
+  std::optional<double> radiusRatio;  // in (1, 100]: charges on a sphere of that many half
+                                      // diagonals instead; not together with a distance
+  FitSolver solver = FitSolver::automatic;
+  Regularization method = Regularization::tikhonov;
+  std::optional<double> regularization;  // relative, in [0, 1]; chosen when absent
+};
+
+// Boundary points of these settings: `collocation`, or its default.
+std::size_t shellCollocation(const ShellSettings& shell);
+
+struct FitMapSettings {
+  // 99% of the boundary shall lie within it; fraction of the target's diagonal, in
+  // [kSmallestTolerance, 1]. Not used with `shell`.
+  double tolerance = 1e-3;
+  std::size_t maxSources = 100000;  // that the tolerance may take, in [1000, 1000000]
+  std::optional<ShellSettings> shell;
+  Interpolation interpolation = Interpolation::automatic;
+  std::uint64_t seed = 1;       // of all random points, in [0, 1e15]
+  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  Progress* progress = nullptr;
+};
+
+// How the charges were placed and their weights found. Lengths are fractions of the source's
+// diagonal.
+struct MapSolve {
+  std::string method;     // "adaptive", "iterative", or what a dense solve was regularised by:
+                          // "tikhonov", "tsvd"
+  std::string placement;  // "adaptive", "shell", "sphere"
+  std::size_t sources = 0, collocation = 0, heldOut = 0, rank = 0;
+  double distance = 0;                       // of the charges, of the first level; none on a sphere
+  double radiusRatio = 0;                    // of a sphere
+  double regularization = 0, condition = 0;  // of a dense solve
+  double weightNorm = 0;
+  int iterations = 0;
+  std::vector<double> residuals;      // rms at the collocation points, of iterative solves
+  std::vector<DistanceTrial> trials;  // that chose the distance
+  std::vector<AdaptiveLevel> levels;  // of an adaptive placement
+  std::vector<AdaptiveRound> rounds;
+};
+
+struct ToleranceOutcome {
+  double wanted = 0, reached = 0;  // fractions of the target's diagonal
+  bool met = false;
+  // Why no more was reached, when it is not met; `met` then means that Interpolation::smooth fits
+  // the vertices only.
+  AdaptiveEnd end = AdaptiveEnd::met;
+};
+
+struct MapFit : MappedSolid {
+  // The certificate: at 20,000 random boundary points that took no part in the fit. Its largest
+  // value estimates the largest error anywhere inside (maximum principle).
+  BoundaryError error;
+  double collocationError = 0;                // sum of squares at the collocation points (C-Error)
+  bool smooth = false;                        // fitted to the vertices of a smooth deformation
+  std::optional<double> verticesRms;          // then: at vertices that it never saw
+  std::optional<ToleranceOutcome> tolerance;  // none with `shell`
+  MapSolve solve;
+  // Of the fit, a line each; those of its boundaries stand in `boundary`, and here too when fitMap
+  // was given meshes.
+  std::vector<std::string> notes, warnings;
+  StageSeconds seconds;  // "sample", "fit", "certificate"
+};
+
+// Peak need in bytes; with a tolerance, that of its first level of charges.
+std::uint64_t fitMapMemory(const FitMapSettings& settings);
+
+// A tolerance that cannot be met is no error: see MapFit::tolerance. Throws SettingError, DataError
+// (no inside, another connectivity, no room for charges), MemoryError, Cancelled. Deterministic for
+// a seed, whatever the number of threads.
+MapFit fitMap(BoundaryPair boundary, const FitMapSettings& settings = {});
+
+// The same from two meshes of one connectivity (see readMeshLike); others are laid onto one another
+// first, see mesh_correspondence.h.
+MapFit fitMap(const Mesh& source, const Mesh& target, const FitMapSettings& settings = {});
+
+}  // namespace innermap

@@ -1,0 +1,165 @@
+#include "innermap/boundary/frame_fitter.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "innermap/boundary/detail/problem_samples.h"
+#include "innermap/boundary/detail/streams.h"
+#include "innermap/core/error.h"
+#include "innermap/field/fit.h"
+#include "innermap/sample/source_points.h"
+#include "innermap/sample/surface_samples.h"
+
+namespace innermap {
+namespace {
+
+constexpr std::size_t kPointsPerSource = 3;
+constexpr std::size_t kFreshSamples = 20000;
+constexpr double kDistance = 1.25;  // spacings
+constexpr double kFarthest = 4;     // spacings, of charges beyond the first level
+constexpr double kProducts = 1e-6;  // accuracy; a hundredth of what the fits leave
+constexpr double kDoubtful = 0.1;   // of the diagonal: no map to be trusted
+
+SourceLevel shell(const Solid& solid, std::size_t count, double distance, SourceSettings settings) {
+  SourceLevel level;
+  level.spacing = std::sqrt(solid.area() / static_cast<double>(count));
+  const double fraction = std::clamp(distance / solid.diagonal(), 1e-4, 2.0);
+  level.distance = fraction * solid.diagonal();
+  settings.count = count;
+  level.sources = sourceShell(solid, fraction, settings);
+  return level;
+}
+
+// One dense level for few charges, a coarse and a fine one for many.
+std::vector<SourceLevel> levelsOf(const Solid& solid, const FrameFitterSettings& settings) {
+  const auto spacing = [&](std::size_t count) {
+    return std::sqrt(solid.area() / static_cast<double>(count));
+  };
+  const bool many = settings.sources > kMostDenseSources;
+  const double near = settings.distance ? *settings.distance * solid.diagonal()
+                                        : kDistance * spacing(settings.sources);
+  if (many && near > kFarthest * spacing(settings.sources))
+    throw SettingError(
+        "distance",
+        fmt::format("is over 4 spacings of {} charges; use at most {:.3g}, or at most {} sources",
+                    settings.sources, kFarthest * spacing(settings.sources) / solid.diagonal(),
+                    kMostDenseSources));
+  SourceSettings source;
+  source.seed = seedOf(settings.seed, Stream::sources);
+  source.progress = settings.progress;
+  std::vector<SourceLevel> levels;
+  if (many) {
+    const std::size_t coarse = std::clamp<std::size_t>(settings.sources / 8, 300, 2500);
+    levels.push_back(shell(solid, coarse, std::max(near, kDistance * spacing(coarse)), source));
+  }
+  levels.push_back(shell(solid, settings.sources, near, source));
+  return levels;
+}
+
+// Sum of the fits' fields, each times its factor.
+HarmonicField combined(const std::vector<std::pair<const FrameFit*, double>>& fits) {
+  const HarmonicField& first = fits.front().first->field;
+  Matrix weights(first.weights().rows(), first.channels());
+  Affine affine{first.affine().center, Matrix(4, first.channels())};
+  const auto add = [](Matrix& to, const Matrix& from, double factor) {
+    for (std::size_t i = 0; i < to.rows() * to.columns(); ++i)
+      to.data()[i] += factor * from.data()[i];
+  };
+  for (const auto& [fit, factor] : fits) {
+    add(weights, fit->field.weights(), factor);
+    add(affine.coefficients, fit->field.affine().coefficients, factor);
+  }
+  return HarmonicField(first.sources(), std::move(weights), std::move(affine));
+}
+
+}  // namespace
+
+std::size_t frameCollocation(const FrameFitterSettings& settings) {
+  if (settings.collocation > 0) return settings.collocation;
+  return std::max(kPointsPerSource * settings.sources, settings.sources + 8);
+}
+
+std::uint64_t frameFitterMemory(const FrameFitterSettings& settings) {
+  constexpr std::uint64_t kProgram = 64'000'000;  // with nothing loaded yet
+  const std::uint64_t points = frameCollocation(settings);
+  const FitSolver solver =
+      settings.sources > kMostDenseSources ? FitSolver::iterative : FitSolver::dense;
+  // Blue noise thins five candidates a point; each costs some 100 bytes.
+  return kProgram + fitMemory(points, settings.sources, 0, solver) +
+         500 * (points + settings.sources);
+}
+
+FrameFitter::FrameFitter(SourceBoundary rest, const FrameFitterSettings& settings)
+    : rest_(std::move(rest)) {
+  std::vector<SourceLevel> levels = timed(seconds_, "sample", [&] {
+    SampleSettings sample;
+    sample.progress = settings.progress;
+    sample.seed = seedOf(settings.seed, Stream::collocation);
+    collocation_ =
+        samplesAt(blueNoiseSamples(solid().surface(), frameCollocation(settings), sample));
+    sample.seed = seedOf(settings.seed, Stream::fresh);
+    fresh_ = samplesAt(randomSamples(solid().surface(), kFreshSamples, sample));
+    return levelsOf(solid(), settings);
+  });
+  levels_ = levels.size();
+  distance_ = levels.back().distance / solid().diagonal();
+  timed(seconds_, "factor", [&] {
+    IterativeSettings solving;
+    solving.accuracy = kProducts;
+    solving.maxMemory = settings.maxMemory;
+    solving.progress = settings.progress;
+    solver_.emplace(collocation_.points, levels, solving);
+  });
+}
+
+FrameFitter::Samples FrameFitter::samplesAt(std::vector<SurfacePoint> onSurface) const {
+  Samples out;
+  out.points = positionsOf(solid(), onSurface);
+  out.onSurface = std::move(onSurface);
+  return out;
+}
+
+FrameFit FrameFitter::fit(const Mesh& frame, const BoundarySettings& settings) const {
+  TargetBoundary boundary = makeTargetBoundary(solid(), frame, settings);
+  StageSeconds seconds = boundary.seconds;
+  IterativeSolution solution = timed(seconds, "solve", [&] {
+    return solver_->solve(boundary.targetsOf(solid(), collocation_.onSurface));
+  });
+  HarmonicField field(solver_->sources(), std::move(solution.weights), std::move(solution.affine));
+  const BoundaryError error = timed(seconds, "certificate", [&] {
+    // By fast sums, to a hundredth of what is measured.
+    const double accuracy = std::max(1e-2 * solution.residuals.back(), 1e-12 * boundary.diagonal);
+    return summarizeErrors(boundaryErrors(field, fresh_.points,
+                                          boundary.targetsOf(solid(), fresh_.onSurface),
+                                          boundary.diagonal, accuracy, settings.progress));
+  });
+  std::vector<std::string> warnings = boundary.warnings;
+  if (error.max > kDoubtful)
+    warnings.push_back(
+        fmt::format("the boundary error reaches {:.2g} of the diagonal: this map is not to be "
+                    "trusted; use more charges",
+                    error.max));
+  return {std::move(boundary), std::move(field),    error,
+          solution.iterations, std::move(warnings), std::move(seconds)};
+}
+
+HarmonicField velocityAt(const NumberedFit& frame, const std::optional<NumberedFit>& before,
+                         const std::optional<NumberedFit>& after, double framesPerSecond) {
+  const auto seconds = [&](const NumberedFit& from, const NumberedFit& to) {
+    return static_cast<double>(to.number - from.number) / framesPerSecond;
+  };
+  if (!before && !after) throw DataError("a frame has no other to take its velocity from");
+  if (!before || !after) {
+    const NumberedFit& other = before ? *before : *after;
+    const double t = seconds(frame, other);
+    return combined({{other.fit, 1 / t}, {frame.fit, -1 / t}});
+  }
+  const double a = seconds(*before, frame), b = seconds(frame, *after);
+  return combined({{after->fit, a / (b * (a + b))},
+                   {frame.fit, (b - a) / (a * b)},
+                   {before->fit, -b / (a * (a + b))}});
+}
+
+}  // namespace innermap

@@ -1,0 +1,97 @@
+// Maps of one rest pose onto many frames: charges and boundary points are placed and factored once,
+// each frame is a right-hand side.
+//
+// All frames of a fitter have the same charges, so their fields can be combined weight by weight:
+// velocities are such combinations, harmonic fields themselves.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "innermap/boundary/boundary_pair.h"
+#include "innermap/field/boundary_error.h"
+#include "innermap/field/harmonic_field.h"
+#include "innermap/solve/iterative_solver.h"
+
+namespace innermap {
+
+struct FrameFitterSettings {
+  std::size_t sources = 8000;      // charges, the same for all frames, in [1, 1000000]
+  std::size_t collocation = 0;     // boundary points, at least sources + 4; 0: 3 a source
+  std::optional<double> distance;  // of the charges, fraction of the rest pose's diagonal, in
+                                   // [1e-4, 2]; 1.25 spacings of the charges when absent; at most
+                                   // 4 spacings for over kMostDenseSources charges
+  std::uint64_t seed = 1;          // of all random points, in [0, 1e15]
+  std::uint64_t maxMemory = 0;     // bytes; 0 means no limit
+  Progress* progress = nullptr;
+};
+
+// Boundary points of these settings: `collocation`, or its default.
+std::size_t frameCollocation(const FrameFitterSettings& settings);
+
+// Peak need in bytes of setting up and solving.
+std::uint64_t frameFitterMemory(const FrameFitterSettings& settings);
+
+// The map of one frame.
+struct FrameFit {
+  TargetBoundary boundary;
+  HarmonicField field;
+  BoundaryError error;  // at 20,000 fresh points, fractions of the frame's diagonal
+  int iterations = 0;
+  std::vector<std::string> warnings;
+  StageSeconds seconds;  // "solid", "solve", "certificate"
+};
+
+// Immutable once made; safe from any number of threads.
+class FrameFitter {
+ public:
+  // Places charges and points, factors. Throws SettingError, DataError (no room for charges),
+  // MemoryError, Cancelled.
+  FrameFitter(SourceBoundary rest, const FrameFitterSettings& settings = {});
+
+  const SourceBoundary& rest() const { return rest_; }
+  const Solid& solid() const { return rest_.solid; }
+  const Points& sources() const { return solver_->sources(); }
+  std::size_t collocation() const { return collocation_.points.size(); }
+  bool iterative() const { return levels_ > 1; }  // else dense
+  double distance() const { return distance_; }   // of the finest charges, of the diagonal
+  const StageSeconds& seconds() const { return seconds_; }  // "sample", "factor"
+
+  // What a frame gives depends on the rest pose, the settings and the frame alone, not on which
+  // frames came before. frame: of the rest pose's connectivity. Throws DataError for a frame that
+  // cannot be used, as makeTargetBoundary does; Cancelled.
+  FrameFit fit(const Mesh& frame, const BoundarySettings& settings = {}) const;
+
+ private:
+  // Points of the boundary that move with it.
+  struct Samples {
+    Points points;                        // world units of the rest pose
+    std::vector<SurfacePoint> onSurface;  // of solid().surface()
+  };
+  Samples samplesAt(std::vector<SurfacePoint> onSurface) const;
+
+  SourceBoundary rest_;
+  Samples collocation_, fresh_;
+  std::optional<IterativeSolver> solver_;
+  std::size_t levels_ = 0;
+  double distance_ = 0;
+  StageSeconds seconds_;
+};
+
+// A frame's fit and its number in the animation.
+struct NumberedFit {
+  const FrameFit* fit = nullptr;
+  std::int64_t number = 0;
+};
+
+// How the inside moves at a frame, world units of the targets per second, as a field over the rest
+// pose: the derivative of the parabola through the frame and one before and one after it, at their
+// numbers, or, where one of these is missing, of the line to the other. All fits: of one fitter.
+// framesPerSecond: positive. Throws DataError when both are missing.
+HarmonicField velocityAt(const NumberedFit& frame, const std::optional<NumberedFit>& before,
+                         const std::optional<NumberedFit>& after, double framesPerSecond);
+
+}  // namespace innermap

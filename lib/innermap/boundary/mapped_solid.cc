@@ -1,0 +1,63 @@
+#include "innermap/boundary/mapped_solid.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "innermap/core/error.h"
+
+namespace innermap {
+namespace {
+
+constexpr double kFinestSum = 1e-9, kCoarsestSum = 1e-5;
+constexpr double kDefaultSum = 1e-7;  // of a file that states no error: what float grids hold
+
+}  // namespace
+
+void writeMap(const std::string& path, const MappedSolid& mapped) {
+  writeField(path, {mapped.map.field(), mapped.facts, mapped.boundary.source.mesh.vertices,
+                    mapped.boundary.targetMesh.vertices, mapped.boundary.source.mesh.triangles});
+}
+
+MappedSolid readMap(const std::string& path, const BoundarySettings& settings) {
+  StageSeconds seconds;
+  FieldFile file = timed(seconds, "read", [&] { return readField(path); });
+  if (file.field.channels() != 3)
+    throw FileError(path, fmt::format("has {} channels; a map has 3", file.field.channels()));
+  if (file.boundaryTriangles.empty())
+    throw FileError(path, "holds no boundary; write it with innermap fit or map");
+  Mesh source;
+  source.name = path;
+  source.vertices = std::move(file.boundary);
+  source.triangles = std::move(file.boundaryTriangles);
+  Mesh target = source;
+  target.vertices = std::move(file.boundaryTarget);
+  for (const auto& [key, value] : file.settings) {
+    if (key == "source") source.name = value;
+    if (key == "target") target.name = value;
+  }
+  validate(source);
+  validate(target);
+  BoundaryPair pair = makeBoundaryPair(std::move(source), std::move(target), settings);
+  addSeconds(seconds, pair.seconds);
+  pair.seconds = std::move(seconds);
+  return {HarmonicMap(std::move(file.field)), std::move(pair), std::move(file.settings)};
+}
+
+double sumAccuracy(const MappedSolid& mapped) {
+  double error = 0;
+  for (const auto& [key, value] : mapped.facts) {
+    // Fitted to the vertices alone, a map is far more exact than its error on triangles says.
+    if (key == "interpolation" && value == "smooth") return kFinestSum;
+    if (key == "boundary_error_rms") error = std::strtod(value.c_str(), nullptr);
+  }
+  return error > 0 ? sumAccuracy(error) : kDefaultSum;
+}
+
+double sumAccuracy(double boundaryErrorRms) {
+  constexpr double kShare = 0.02;
+  return std::clamp(kShare * boundaryErrorRms, kFinestSum, kCoarsestSum);
+}
+
+}  // namespace innermap

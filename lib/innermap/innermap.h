@@ -1,0 +1,28 @@
+// What most programs need of innermap, in one header. See docs/cpp.md for a tour.
+//
+//   const Mesh rest = readMesh("rest.obj"), pose = readMeshLike("pose.obj", rest);
+//   const MapFit fit = fitMap(rest, pose);            // fit.error is the certificate
+//   writeVdb("map.vdb", evaluateOnGrid(fit).all());
+//
+// Lengths among settings are fractions of the source's bounding-box diagonal unless a name says
+// voxel or world; errors are fractions of the target's. All functions throw exceptions derived from
+// innermap::Error; every settings struct ends with a pointer to a Progress that reports and
+// cancels.
+#pragma once
+
+#include "innermap/boundary/fit_map.h"
+#include "innermap/boundary/frame_fitter.h"
+#include "innermap/boundary/mapped_solid.h"
+#include "innermap/boundary/surface_problem.h"
+#include "innermap/core/error.h"
+#include "innermap/core/parallel.h"
+#include "innermap/core/progress.h"
+#include "innermap/core/version.h"
+#include "innermap/evaluate/map_grids.h"
+#include "innermap/io/vdb/vdb_file.h"
+#include "innermap/levelset/level_set.h"
+#include "innermap/mesh/check.h"
+#include "innermap/mesh/read.h"
+#include "innermap/mesh/write.h"
+#include "innermap/transfer/pull.h"
+#include "innermap/transfer/push.h"

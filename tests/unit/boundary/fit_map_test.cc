@@ -1,0 +1,169 @@
+#include "innermap/boundary/fit_map.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "boundary/test_pairs.h"
+#include "innermap/core/error.h"
+#include "innermap/core/parallel.h"
+
+namespace innermap {
+namespace {
+
+// Of the map against `exact` at points inside, over the target's diagonal.
+double errorInside(const MapFit& fit, const std::function<Vec3(const Vec3&)>& exact) {
+  double largest = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double a = 2.4 * i, z = -0.8 + 1.6 * i / 199, r = 0.5 * (i % 7) / 6.0;
+    const Vec3 p{r * std::cos(a), r * std::sin(a), z * 0.9};
+    largest = std::max(largest, norm(fit.map(p) - exact(p)));
+  }
+  return largest / fit.boundary.target.diagonal;
+}
+
+TEST(FitMap, AffineMapsAreExact) {
+  const Mesh source = ball();
+  const MapFit fit = fitMap(source, moved(source, affineMap));
+  ASSERT_TRUE(fit.tolerance);
+  EXPECT_TRUE(fit.tolerance->met);
+  EXPECT_LT(fit.error.max, 1e-10);
+  EXPECT_LT(errorInside(fit, affineMap), 1e-10);
+}
+
+// The certificate bounds the error inside: against the triangles, hence not below what they cut
+// off of the polynomial.
+TEST(FitMap, CertificateBoundsTheErrorInside) {
+  const Mesh source = ball();
+  const Mesh target = moved(source, harmonicPolynomial);
+  for (const Interpolation interpolation : {Interpolation::linear, Interpolation::automatic}) {
+    FitMapSettings settings;
+    settings.interpolation = interpolation;
+    const MapFit fit = fitMap(source, target, settings);
+    EXPECT_TRUE(fit.tolerance->met);
+    EXPECT_LE(fit.error.p99, settings.tolerance);
+    EXPECT_LT(errorInside(fit, harmonicPolynomial), fit.error.max + 1e-3);
+    EXPECT_EQ(fit.error.samples, 20000u);
+  }
+}
+
+TEST(FitMap, VerticesOfASmoothDeformationAreRecognised) {
+  const Mesh source = ball();
+  const MapFit fit = fitMap(source, moved(source, harmonicPolynomial));
+  EXPECT_TRUE(fit.smooth);
+  ASSERT_TRUE(fit.verticesRms);
+  EXPECT_LT(*fit.verticesRms, 1e-6);
+  EXPECT_LT(errorInside(fit, harmonicPolynomial), 1e-6);
+}
+
+TEST(FitMap, ShellsOfMoreChargesAreMoreExact) {
+  const Mesh source = ball();
+  const Mesh target = moved(source, harmonicPolynomial);
+  FitMapSettings settings;
+  settings.interpolation = Interpolation::linear;
+  settings.shell = ShellSettings{};
+  double last = 1;
+  for (const std::size_t sources : {50, 200, 800}) {
+    settings.shell->sources = sources;
+    const MapFit fit = fitMap(source, target, settings);
+    EXPECT_EQ(fit.solve.sources, sources);
+    EXPECT_EQ(fit.solve.placement, "shell");
+    EXPECT_FALSE(fit.tolerance);
+    EXPECT_LT(fit.error.rms, last);
+    last = fit.error.rms;
+  }
+}
+
+TEST(FitMap, ChargesOnASphere) {
+  FitMapSettings settings;
+  settings.shell = ShellSettings{};
+  settings.shell->sources = 200;
+  settings.shell->radiusRatio = 2;
+  settings.shell->method = Regularization::truncatedSvd;
+  const Mesh source = ball();
+  const MapFit fit = fitMap(source, moved(source, harmonicPolynomial), settings);
+  EXPECT_EQ(fit.solve.placement, "sphere");
+  EXPECT_EQ(fit.solve.method, "tsvd");
+  EXPECT_EQ(fit.solve.radiusRatio, 2);
+  EXPECT_LT(errorInside(fit, harmonicPolynomial), 1e-3);
+}
+
+TEST(FitMap, AToleranceThatCannotBeMetIsSaidNotThrown) {
+  Mesh source = ball(2);
+  Mesh target = source;
+  for (std::size_t v = 0; v < target.vertices.size(); v += 2)
+    target.vertices[v] = 1.3 * target.vertices[v];  // kinks at every edge
+  FitMapSettings settings;
+  settings.tolerance = 1e-6;
+  settings.maxSources = 1000;
+  const MapFit fit = fitMap(source, target, settings);
+  ASSERT_TRUE(fit.tolerance);
+  EXPECT_FALSE(fit.tolerance->met);
+  EXPECT_EQ(fit.tolerance->end, AdaptiveEnd::maxSources);
+  EXPECT_GT(fit.tolerance->reached, 1e-6);
+  EXPECT_NE(std::find(fit.facts.begin(), fit.facts.end(),
+                      std::pair<std::string, std::string>{"tolerance_met", "false"}),
+            fit.facts.end());
+}
+
+TEST(FitMap, SameForAnyNumberOfThreads) {
+  const Mesh source = ball(2);
+  const Mesh target = moved(source, harmonicPolynomial);
+  const auto weights = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return fitMap(source, target).map.field().weights();
+  };
+  const Matrix one = weights(1), three = weights(3);
+  ASSERT_EQ(one.rows(), three.rows());
+  for (std::size_t i = 0; i < one.rows() * one.columns(); ++i)
+    ASSERT_EQ(one.data()[i], three.data()[i]);
+}
+
+TEST(FitMap, TellsOfTheBoundariesWhenGivenMeshes) {
+  Mesh open = ball(2);
+  open.triangles.resize(open.triangles.size() - 4);
+  const MapFit fit = fitMap(open, moved(open, affineMap));
+  EXPECT_FALSE(fit.notes.empty());
+  std::vector<std::string> stages;
+  for (const auto& [stage, seconds] : fit.seconds) stages.push_back(stage);
+  EXPECT_EQ(stages.front(), "check");
+  EXPECT_NE(std::find(stages.begin(), stages.end(), "fit"), stages.end());
+}
+
+TEST(FitMap, RefusesSettingsOutsideTheirRange) {
+  const Mesh source = ball(2);
+  FitMapSettings settings;
+  settings.tolerance = 0;
+  EXPECT_THROW(fitMap(source, source, settings), SettingError);
+  settings = {};
+  settings.shell = ShellSettings{};
+  settings.shell->distance = 0.1;
+  settings.shell->radiusRatio = 2;
+  EXPECT_THROW(fitMap(source, source, settings), SettingError);
+  settings.shell->radiusRatio.reset();
+  settings.shell->sources = 100;
+  settings.shell->collocation = 50;
+  EXPECT_THROW(fitMap(source, source, settings), SettingError);
+}
+
+TEST(FitMap, CountsItsMemory) {
+  FitMapSettings settings;
+  settings.shell = ShellSettings{};
+  const std::uint64_t few = fitMapMemory(settings);
+  settings.shell->sources = 20000;
+  settings.shell->solver = FitSolver::dense;
+  const std::uint64_t many = fitMapMemory(settings);
+  EXPECT_GT(many, 20000u * 80000u * 8u);
+  EXPECT_LT(few, many / 10);
+}
+
+TEST(FitMap, Cancels) {
+  Progress progress;
+  progress.cancel();
+  FitMapSettings settings;
+  settings.progress = &progress;
+  EXPECT_THROW(fitMap(ball(2), ball(2), settings), Cancelled);
+}
+
+}  // namespace
+}  // namespace innermap

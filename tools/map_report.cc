@@ -1,0 +1,206 @@
+#include "map_report.h"
+
+#include <fmt/format.h>
+
+namespace innermap::tool {
+namespace {
+
+ReportMesh reportOf(const Mesh& mesh, const MeshReport& check, int caps, double volume) {
+  ReportMesh out;
+  out.path = mesh.name;
+  out.vertices = check.vertices;
+  out.triangles = check.triangles;
+  out.boundaryLoops = static_cast<int>(check.boundaryLoops.size());
+  out.caps = caps;
+  out.genus = check.genus;
+  out.volume = volume;
+  out.diagonal = check.box.diagonal();
+  return out;
+}
+
+void reportTrials(const MapSolve& solve, Report& report) {
+  if (solve.trials.empty()) return;
+  std::vector<double> distances, errors;
+  for (const DistanceTrial& t : solve.trials) {
+    distances.push_back(t.distance);
+    errors.push_back(t.heldOutRms);
+  }
+  report.set("solve.tried_distances", distances);
+  report.set("solve.tried_errors", errors);
+}
+
+void reportAdaptive(const MapSolve& solve, Report& report) {
+  std::vector<double> distances, sources, roundSources, roundErrors;
+  for (const AdaptiveLevel& l : solve.levels) {
+    distances.push_back(l.distance);
+    sources.push_back(static_cast<double>(l.sources));
+  }
+  for (const AdaptiveRound& r : solve.rounds) {
+    roundSources.push_back(static_cast<double>(r.sources));
+    roundErrors.push_back(r.error.p99);
+  }
+  report.set("solve.level_distances", distances);
+  report.set("solve.level_sources", sources);
+  report.set("solve.round_sources", roundSources);
+  report.set("solve.round_p99", roundErrors);
+}
+
+void reportSolve(const MapSolve& solve, Report& report) {
+  ReportSolve out;
+  out.method = solve.method;
+  out.sources = solve.sources;
+  out.collocation = solve.collocation;
+  out.rank = solve.rank;
+  out.regularization = solve.regularization;
+  out.iterations = solve.iterations;
+  report.solve = out;
+  report.set("solve.placement", solve.placement);
+  if (solve.radiusRatio > 0)
+    report.set("solve.radius_ratio", solve.radiusRatio);
+  else
+    report.set("solve.distance", solve.distance);
+  const bool adaptive = !solve.levels.empty();
+  if (adaptive) reportAdaptive(solve, report);
+  if (adaptive || solve.method == "iterative")
+    report.set("solve.residuals", solve.residuals);
+  else
+    report.set("solve.condition", solve.condition);
+  report.set("solve.weight_norm", solve.weightNorm);
+  if (!adaptive) report.set("solve.held_out", static_cast<std::int64_t>(solve.heldOut));
+  reportTrials(solve, report);
+}
+
+std::string whyEnded(AdaptiveEnd end, const FitMapSettings& settings) {
+  switch (end) {
+    case AdaptiveEnd::maxSources:
+      return fmt::format("--max-sources {} is reached", settings.maxSources);
+    case AdaptiveEnd::maxMemory:
+      return "--max-memory is reached";
+    case AdaptiveEnd::noGain:
+      return "more charges do not help";
+    case AdaptiveEnd::met:
+      break;
+  }
+  return "vertices are all that --interpolation smooth fits";
+}
+
+void reportTolerance(const MapFit& fit, const FitMapSettings& settings, bool bestEffort,
+                     Context& context) {
+  const ToleranceOutcome& tolerance = *fit.tolerance;
+  Report& report = context.report();
+  report.set("tolerance.wanted", tolerance.wanted);
+  report.set("tolerance.reached", tolerance.reached);
+  report.set("tolerance.met", tolerance.met);
+  if (tolerance.met) return;
+  const std::string why = whyEnded(tolerance.end, settings);
+  report.set("tolerance.ended", why);
+  const std::string text = fmt::format(
+      "--tolerance {:g} is not met: 99% of the boundary lies within {:.3g} of the target's "
+      "diagonal, with {} charges; {}",
+      tolerance.wanted, tolerance.reached, fit.solve.sources, why);
+  if (bestEffort)
+    context.warning(text);
+  else
+    context.failAfterwards(text + "; what is written is marked so (--best-effort: exit code 0)");
+}
+
+}  // namespace
+
+void tell(const std::vector<std::string>& notes, const std::vector<std::string>& warnings,
+          const StageSeconds& seconds, Context& context) {
+  for (const std::string& note : notes) context.note(note);
+  for (const std::string& warning : warnings) context.warning(warning);
+  addSeconds(context.report().seconds, seconds);
+}
+
+void reportSource(const SourceBoundary& source, Report& report) {
+  report.source =
+      reportOf(source.mesh, source.check, source.solid.repaired().caps, source.solid.volume());
+  report.set("source.self_intersections",
+             static_cast<std::int64_t>(source.check.selfIntersections));
+}
+
+void reportBoundaries(const BoundaryPair& pair, Report& report) {
+  reportSource(pair.source, report);
+  report.target =
+      reportOf(pair.targetMesh, pair.targetCheck, pair.solid().repaired().caps, pair.target.volume);
+  report.set("target.self_intersections",
+             static_cast<std::int64_t>(pair.targetCheck.selfIntersections));
+}
+
+MappedSolid readMapFile(const std::string& path, Context& context) {
+  throwIfCancelled(context.progress());
+  MappedSolid mapped = readMap(path, {context.progress()});
+  const BoundaryPair& pair = mapped.boundary;
+  tell(pair.notes, pair.warnings, pair.seconds, context);
+  reportBoundaries(pair, context.report());
+  return mapped;
+}
+
+void reportFit(const MapFit& fit, const FitMapSettings& settings, bool bestEffort,
+               Context& context) {
+  Report& report = context.report();
+  if (fit.verticesRms) report.set("boundary_error.vertices_rms", *fit.verticesRms);
+  if (fit.tolerance) reportTolerance(fit, settings, bestEffort, context);
+  reportSolve(fit.solve, report);
+  report.set("solve.interpolation", fit.smooth ? "smooth" : "linear");
+  report.set("solve.seed", static_cast<std::int64_t>(settings.seed));
+  ReportBoundaryError e;
+  e.rms = fit.error.rms;
+  e.p99 = fit.error.p99;
+  e.max = fit.error.max;
+  e.samples = fit.error.samples;
+  e.cError = fit.collocationError;
+  report.boundaryError = e;
+}
+
+void reportFitter(const FrameFitter& fitter, const FrameFitterSettings& settings, Report& report) {
+  ReportSolve solve;
+  solve.method = fitter.iterative() ? "iterative" : "dense";
+  solve.sources = solve.rank = fitter.sources().size();
+  solve.collocation = fitter.collocation();
+  report.solve = solve;
+  report.set("solve.placement", std::string("shell"));
+  report.set("solve.distance", fitter.distance());
+  report.set("solve.seed", static_cast<std::int64_t>(settings.seed));
+}
+
+void reportGrids(const SolidGrids& grids, const LameConstants& lame, Report& report) {
+  const MapGrids& values = grids.values;
+  ReportEnergy energy;
+  energy.harmonic = values.harmonicTotal;
+  energy.deformation = values.deformationTotal;
+  report.energy = energy;
+  report.set("energy.deformation_mean",
+             values.volume > 0 ? values.deformationTotal / values.volume : 0.0);
+  report.set("energy.lame_lambda", lame.lambda);
+  report.set("energy.lame_mu", lame.mu);
+  ReportJacobian jacobian;
+  jacobian.min = values.jacobianMin;
+  jacobian.max = values.jacobianMax;
+  jacobian.foldedFraction = values.foldedFraction;
+  report.jacobian = jacobian;
+  ReportGrid grid;
+  grid.voxelSize = grids.voxelSize;
+  grid.activeVoxels = values.activeVoxels;
+  grid.interiorVoxels = values.interiorVoxels;
+  report.grid = grid;
+  report.set("grid.volume", values.volume);
+}
+
+std::string errorText(const BoundaryError& error) {
+  return fmt::format("boundary error: rms {:.2e}, 99% {:.2e}, max {:.2e} of the diagonal\n",
+                     error.rms, error.p99, error.max);
+}
+
+std::string gridsText(const SolidGrids& grids) {
+  const MapGrids& values = grids.values;
+  return fmt::format(
+      "energy: harmonic {:.6g}, deformation {:.6g}\n"
+      "jacobian: {:.4g} to {:.4g}, folded {:.3g}% of the volume\n"
+      "grid: {} active voxels of {:.6g}\n",
+      values.harmonicTotal, values.deformationTotal, values.jacobianMin, values.jacobianMax,
+      100 * values.foldedFraction, values.activeVoxels, grids.voxelSize);
+}
+
+}  // namespace innermap::tool
