@@ -3,23 +3,25 @@
 (an icosahedron, its triangles cut in four four times) and a torus about the z axis.
 
     samples/make_shapes.py [FOLDER]
+
+Tests make their balls and tori by the functions here.
 """
 import math
 import os
 import sys
 
-LEVELS = 4
-AROUND, ACROSS, MAJOR, MINOR = 90, 36, 1.0, 0.4
 
 
-def sphere():
+def sphere(levels=4):
+    """(vertices, faces) of a unit ball: an icosahedron, each triangle cut in four `levels` times."""
     t = (1 + math.sqrt(5)) / 2
     vertices = [(-1, t, 0), (1, t, 0), (-1, -t, 0), (1, -t, 0), (0, -1, t), (0, 1, t), (0, -1, -t),
                 (0, 1, -t), (t, 0, -1), (t, 0, 1), (-t, 0, -1), (-t, 0, 1)]
     faces = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4),
              (11, 10, 2), (10, 7, 6), (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8),
              (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1)]
-    for _ in range(LEVELS):
+    vertices = [tuple(x / math.sqrt(sum(y * y for y in v)) for x in v) for v in vertices]
+    for _ in range(levels):
         middles, finer = {}, []
 
         def middle(a, b):
@@ -31,7 +33,6 @@ def sphere():
                 vertices.append(tuple(x / length for x in p))
             return middles[key]
 
-        vertices = [tuple(x / math.sqrt(sum(y * y for y in v)) for x in v) for v in vertices]
         for a, b, c in faces:
             ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
             finer += [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
@@ -39,15 +40,15 @@ def sphere():
     return vertices, faces
 
 
-def torus():
+def torus(around=90, across=36, major=1.0, minor=0.4):
     vertices, faces = [], []
-    for i in range(AROUND):
-        for j in range(ACROSS):
-            u, v = 2 * math.pi * i / AROUND, 2 * math.pi * j / ACROSS
-            r = MAJOR + MINOR * math.cos(v)
-            vertices.append((r * math.cos(u), r * math.sin(u), MINOR * math.sin(v)))
-            here, there = i * ACROSS, (i + 1) % AROUND * ACROSS
-            up = (j + 1) % ACROSS
+    for i in range(around):
+        for j in range(across):
+            u, v = 2 * math.pi * i / around, 2 * math.pi * j / across
+            r = major + minor * math.cos(v)
+            vertices.append((r * math.cos(u), r * math.sin(u), minor * math.sin(v)))
+            here, there = i * across, (i + 1) % around * across
+            up = (j + 1) % across
             faces += [(here + j, there + j, there + up), (here + j, there + up, here + up)]
     return vertices, faces
 

@@ -42,12 +42,16 @@ void Context::timed(const std::string& stage, const std::function<void()>& body)
   const auto start = std::chrono::steady_clock::now();
   body();
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  for (auto& [name, seconds] : report_.seconds)
+  addSeconds(stage, elapsed.count());
+}
+
+void Context::addSeconds(const std::string& stage, double seconds) {
+  for (auto& [name, sum] : report_.seconds)
     if (name == stage) {
-      seconds += elapsed.count();
+      sum += seconds;
       return;
     }
-  report_.seconds.emplace_back(stage, elapsed.count());
+  report_.seconds.emplace_back(stage, seconds);
 }
 
 void Context::say(const std::string& kind, const std::string& text) {

@@ -3,11 +3,9 @@
 
 #include "commands.h"
 #include "correspondence.h"
-#include "correspondence_file.h"
-#include "innermap/core/memory.h"
-#include "innermap/mesh/read.h"
+#include "correspondence_picture.h"
 #include "innermap/mesh/write.h"
-#include "landmarks.h"
+#include "mesh_input.h"
 
 namespace innermap::tool {
 namespace {
@@ -15,7 +13,7 @@ namespace {
 struct Options {
   std::string a, b, output, sourceOutput, picture;
   CorrespondOptions correspond;
-  std::uint64_t seed = CorrespondSettings().seed;
+  std::uint64_t seed = MeshCorrespondenceSettings().seed;
 };
 
 // The file of A with the triangles of the output, where those are not A's own.
@@ -29,13 +27,7 @@ void run(const Options& options, Context& context) {
   if (!options.sourceOutput.empty()) requirePly("--source-out", options.sourceOutput);
   context.willWrite(options.output);
   if (!options.picture.empty()) context.willWrite(options.picture);
-  Mesh a, b;
-  context.timed("read", [&] {
-    ReadSettings settings;
-    settings.progress = context.progress();
-    a = readMesh(options.a, settings);
-    b = readMesh(options.b, settings);
-  });
+  Mesh a = readMeshFile(options.a, context), b = readMeshFile(options.b, context);
   const std::size_t countA = a.vertices.size(), countB = b.vertices.size();
   if (context.dryRun())
     return context.plan(
@@ -43,8 +35,8 @@ void run(const Options& options, Context& context) {
                      options.a, options.b, countB,
                      correspondSeconds(countA, countB, options.correspond)),
          "write them to " + options.output},
-        correspondMemory(countA, countB, options.correspond));
-  const MovedMesh moved =
+        correspondMemory(countA, countB));
+  const MeshCorrespondence moved =
       correspondMeshes(std::move(a), std::move(b), options.correspond, options.seed, context);
   context.timed("write", [&] {
     if (moved.changed) {
@@ -52,9 +44,9 @@ void run(const Options& options, Context& context) {
       source.colours.clear();
       writeMesh(sourceOutputOf(options), source);
     }
-    writeCorrespondence(options.output, moved.target(options.output), moved.onTarget);
+    writeCorrespondence(options.output, moved);
   });
-  if (!options.picture.empty()) moved.drawPicture(options.picture);
+  if (!options.picture.empty()) writeCorrespondencePicture(options.picture, moved, context);
   if (moved.changed)
     context.note(fmt::format("{} has A with the same {} vertices: give both to innermap map",
                              sourceOutputOf(options), moved.source.vertices.size()));

@@ -2,73 +2,24 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
-
-#include "correspondence_picture.h"
 #include "innermap/core/memory.h"
-#include "innermap/mesh/triangle_tree.h"
-#include "innermap/surface/map_quality.h"
-#include "innermap/surface/surface_image.h"
-#include "landmarks.h"
 
 namespace innermap::tool {
 namespace {
 
-// Measured: up to 10,000 bytes a vertex for small meshes, less for large ones.
-constexpr std::uint64_t kProgram = 64'000'000, kBytesPerVertex = 6000, kPicture = 300'000'000;
-
-// Addresses on the shells' mesh become addresses on the file's.
-std::vector<SurfacePoint> onFile(const SurfaceInput& b, const std::vector<SurfacePoint>& points,
-                                 const Points& positions) {
-  const std::size_t own = b.mesh.triangles.size();
-  const TriangleTree tree(b.mesh.vertices, b.mesh.triangles);
-  std::vector<SurfacePoint> result = points;
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    SurfacePoint& p = result[i];
-    const std::size_t t = static_cast<std::size_t>(p.triangle);
-    if (!b.ownNumbers() || t >= own)
-      p = tree.closest(positions[i]).address;
-    else if (b.shells().turned[t])
-      std::swap(p.barycentric[1], p.barycentric[2]);
-  }
-  return result;
-}
-
-MovedMesh movedMesh(const SurfaceInput& a, const SurfaceInput& b, const Correspondence& map,
-                    Context& context) {
-  MovedMesh moved;
-  std::vector<SurfacePoint> onTarget;
-  if (a.standIn) {
-    const SurfaceImages images = imagesOf(a.mesh.vertices, map, b.shells(), context.progress());
-    moved.source = a.mesh;
-    moved.positions = images.positions;
-    onTarget = images.onTarget;
-    context.report().set("correspondence.farthest_from_stand_in",
-                         images.farthest / boundingBox(a.mesh).diagonal());
-  } else {
-    moved.changed = map.source.vertices.size() > a.shells().mesh.vertices.size() ||
-                    a.shells().splitVertices > 0;
-    moved.source = moved.changed ? map.source : a.mesh;
-    const auto count = static_cast<std::ptrdiff_t>(moved.source.vertices.size());
-    moved.positions.assign(map.positions.begin(), map.positions.begin() + count);
-    onTarget.assign(map.onTarget.begin(), map.onTarget.begin() + count);
-  }
-  moved.onTarget = onFile(b, onTarget, moved.positions);
-  return moved;
-}
-
-CorrespondSettings settingsOf(const CorrespondOptions& options, std::uint64_t seed,
-                              Context& context) {
-  CorrespondSettings settings;
+MeshCorrespondenceSettings settingsOf(const CorrespondOptions& options) {
+  MeshCorrespondenceSettings settings;
   settings.aligned = options.aligned;
   settings.candidates = options.candidates;
   settings.refine = !options.noRefine;
-  settings.seed = seed;
   settings.subdivide = options.subdivide.value_or(0);
-  settings.progress = context.progress();
   return settings;
+}
+
+template <class Result>
+void tell(const Result& result, Context& context) {
+  for (const std::string& note : result.notes) context.note(note);
+  for (const auto& [stage, seconds] : result.seconds) context.addSeconds(stage, seconds);
 }
 
 void reportQuantiles(Report& report, const std::string& key, const Quantiles& q) {
@@ -77,10 +28,12 @@ void reportQuantiles(Report& report, const std::string& key, const Quantiles& q)
   report.set(key + ".max", q.max);
 }
 
-void reportQuality(const MapQuality& q, Report& report) {
+void reportMap(const MeshCorrespondence& map, Report& report) {
+  const MapQuality& q = map.quality;
   const auto set = [&](const char* key, ReportValue value) {
     report.set(std::string("correspondence.") + key, std::move(value));
   };
+  if (map.farthestFromStandIn) set("farthest_from_stand_in", *map.farthestFromStandIn);
   set("flips", static_cast<std::int64_t>(q.flips));
   set("degree", q.degree);
   set("area_ratio_log10", q.areaRatioLog10);
@@ -96,6 +49,13 @@ void reportQuality(const MapQuality& q, Report& report) {
   reportQuantiles(report, "correspondence.deviation_of_target", q.backDeviation);
   set("image_self_intersections", static_cast<std::int64_t>(q.imageSelfIntersections));
   set("target_self_intersections", static_cast<std::int64_t>(q.targetSelfIntersections));
+  set("landmarks", static_cast<std::int64_t>(map.landmarks));
+  if (map.landmarks > 0) set("landmark_error", map.landmarkError);
+  set("vertices", static_cast<std::int64_t>(map.source.vertices.size()));
+  set("target_vertices", static_cast<std::int64_t>(map.b.mesh.vertices.size()));
+  set("subdivided", map.changed);
+  set("source_isosurface", map.a.standIn);
+  set("target_isosurface", map.b.standIn);
 }
 
 std::string qualityText(const MapQuality& q, ModelSpace space, bool standIn) {
@@ -113,31 +73,17 @@ std::string qualityText(const MapQuality& q, ModelSpace space, bool standIn) {
       q.targetSelfIntersections, standIn ? "(figures of the isosurface that stands in)\n" : "");
 }
 
-void reportLandmarks(const std::vector<Landmark>& landmarks, const SurfaceInput& b,
-                     const Correspondence& map, Report& report) {
-  double farthest = 0;
-  for (const Landmark& landmark : landmarks)
-    farthest = std::max(farthest, norm(map.positions[landmark.vertex] -
-                                       positionOf(b.shells().mesh, landmark.onTarget)));
-  report.set("correspondence.landmarks", static_cast<std::int64_t>(landmarks.size()));
-  if (!landmarks.empty())
-    report.set("correspondence.landmark_error", farthest / boundingBox(b.shells().mesh).diagonal());
-}
-
-void warnOf(const MapQuality& q, const SurfaceInput& b, Context& context) {
-  if (q.flips > 0)
-    context.warning(
-        fmt::format("{} triangles are flipped in the layouts, so the map is not "
-                    "one-to-one there; check the meshes for degenerate parts",
-                    q.flips));
-  if (q.targetSelfIntersections > 0)
-    context.warning(fmt::format(
-        "{} has {} pair{} of triangles that pass through each other; no map onto its inside can "
-        "be one-to-one there (see innermap check)",
-        b.mesh.name, q.targetSelfIntersections, q.targetSelfIntersections == 1 ? "" : "s"));
-}
-
 }  // namespace
+
+void addSurfaceOptions(Command& c, SurfaceOptions& o) {
+  c.flag("--close", &o.close, "close the holes of an open mesh by caps");
+  c.option("--surface-resolution", "N", &o.resolution,
+           "for a mesh that is open, not manifold or made of overlapping parts: the solid's own "
+           "surface, an isosurface at N voxels across, is mapped instead, and its values are "
+           "carried back to the mesh by closest points")
+      .range(8, 2048)
+      .defaults("such a mesh is refused");
+}
 
 void addCorrespondOptions(Command& c, CorrespondOptions& o) {
   c.option("--landmarks", "FILE", &o.landmarks, "pairs of places that are kept exactly");
@@ -155,29 +101,8 @@ void addCorrespondOptions(Command& c, CorrespondOptions& o) {
   addSurfaceOptions(c, o.surfaces);
 }
 
-Mesh MovedMesh::target(const std::string& name) const {
-  Mesh mesh = source;
-  mesh.name = name;
-  mesh.vertices = positions;
-  return mesh;
-}
-
-// Measured on two cores: trying first maps on coarsened surfaces takes about as long for all but
-// small meshes, the rest grows with the number of vertices.
-double correspondSeconds(std::size_t verticesA, std::size_t verticesB,
-                         const CorrespondOptions& options) {
-  const double vertices = static_cast<double>(verticesA + verticesB);
-  const double refine = options.noRefine ? 0 : 3.0 * options.candidates;
-  return 1 + (10 + refine) * vertices / (vertices + 2000) + 0.5e-3 * vertices;
-}
-
-std::uint64_t correspondMemory(std::size_t verticesA, std::size_t verticesB,
-                               const CorrespondOptions&) {
-  return layOutMemory(verticesA + verticesB) + kPicture;
-}
-
-std::uint64_t layOutMemory(std::size_t vertices) {
-  return kProgram + kBytesPerVertex * static_cast<std::uint64_t>(vertices);
+double correspondSeconds(std::size_t a, std::size_t b, const CorrespondOptions& options) {
+  return innermap::correspondSeconds(a, b, settingsOf(options));
 }
 
 void requirePly(const std::string& option, const std::string& path) {
@@ -186,50 +111,55 @@ void requirePly(const std::string& option, const std::string& path) {
     throw UsageError(option + ": '" + path + "' must end in .ply");
 }
 
-MovedMesh correspondMeshes(Mesh meshA, Mesh meshB, const CorrespondOptions& options,
-                           std::uint64_t seed, Context& context) {
-  requireMemory("the correspondence",
-                correspondMemory(meshA.vertices.size(), meshB.vertices.size(), options),
+LaidOutMesh layOut(Mesh mesh, const SurfaceOptions& options, Context& context) {
+  LayOutSettings settings;
+  settings.closeHoles = options.close;
+  settings.standInResolution = options.resolution.value_or(0);
+  settings.maxMemory = context.maxMemory();
+  settings.progress = context.progress();
+  try {
+    LaidOutMesh laid = layOutMesh(std::move(mesh), settings);
+    tell(laid, context);
+    return laid;
+  } catch (const UnfitMesh& error) {
+    throw DataError(std::string(error.what()) +
+                    (error.closingHelps() ? " (--close; --surface-resolution N for larger holes)"
+                                          : " (--surface-resolution N)"));
+  }
+}
+
+ReportMesh reportOf(const LaidOutMesh& laid) {
+  ReportMesh out;
+  out.path = laid.mesh.name;
+  out.vertices = laid.mesh.vertices.size();
+  out.triangles = laid.mesh.triangles.size();
+  out.boundaryLoops = out.caps = laid.shells().caps;
+  out.volume = laid.volume();
+  out.genus = laid.handles();
+  out.diagonal = boundingBox(laid.mesh).diagonal();
+  return out;
+}
+
+MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const CorrespondOptions& options,
+                                    std::uint64_t seed, Context& context) {
+  requireMemory("the correspondence", correspondMemory(a.vertices.size(), b.vertices.size()),
                 context.maxMemory(), "use coarser meshes");
-  std::vector<LandmarkLine> lines;
-  if (!options.landmarks.empty()) lines = readLandmarks(options.landmarks);
-  const auto inputA = std::make_shared<const SurfaceInput>(
-                 embedSurface(std::move(meshA), options.surfaces, context)),
-             inputB = std::make_shared<const SurfaceInput>(
-                 embedSurface(std::move(meshB), options.surfaces, context));
-  const SurfaceInput &a = *inputA, &b = *inputB;
-  CorrespondSettings settings = settingsOf(options, seed, context);
-  if (!lines.empty()) settings.landmarks = placeLandmarks(options.landmarks, lines, a, b, context);
-  Report& report = context.report();
-  report.source = reportOf(a);
-  report.target = reportOf(b);
-  const auto result =
-      std::make_shared<const Correspondence>(correspond(a.embedded, b.embedded, settings));
-  const Correspondence& map = *result;
-  for (const auto& [stage, seconds] : map.seconds) report.seconds.emplace_back(stage, seconds);
-  for (const std::string& note : map.notes) context.note(note);
-  MovedMesh moved;
-  context.timed("carry back", [&] { moved = movedMesh(a, b, map, context); });
-  MapQuality quality;
-  context.timed("measure", [&] {
-    MapQualitySettings measure;
-    measure.progress = context.progress();
-    quality = mapQuality(map, measure);
-  });
-  reportQuality(quality, report);
-  reportLandmarks(settings.landmarks, b, map, report);
-  report.set("correspondence.vertices", static_cast<std::int64_t>(moved.source.vertices.size()));
-  report.set("correspondence.target_vertices", static_cast<std::int64_t>(b.mesh.vertices.size()));
-  report.set("correspondence.subdivided", moved.changed);
-  report.set("correspondence.source_isosurface", a.standIn);
-  report.set("correspondence.target_isosurface", b.standIn);
-  warnOf(quality, b, context);
-  context.print(qualityText(quality, map.shells.front().image.space, a.standIn || b.standIn));
-  moved.drawPicture = [inputA, inputB, result, &context](const std::string& path) {
-    context.timed("picture",
-                  [&] { writeCorrespondencePicture(path, *inputA, *inputB, *result, context); });
-  };
-  return moved;
+  MeshCorrespondenceSettings settings = settingsOf(options);
+  if (!options.landmarks.empty()) settings.landmarks = readLandmarks(options.landmarks);
+  settings.seed = seed;
+  settings.maxMemory = context.maxMemory();
+  settings.progress = context.progress();
+  LaidOutMesh laidA = layOut(std::move(a), options.surfaces, context);
+  LaidOutMesh laidB = layOut(std::move(b), options.surfaces, context);
+  context.report().source = reportOf(laidA);
+  context.report().target = reportOf(laidB);
+  MeshCorrespondence map = innermap::correspondMeshes(std::move(laidA), std::move(laidB), settings);
+  tell(map, context);
+  for (const std::string& warning : map.warnings) context.warning(warning);
+  reportMap(map, context.report());
+  context.print(
+      qualityText(map.quality, map.map.shells.front().image.space, map.a.standIn || map.b.standIn));
+  return map;
 }
 
 }  // namespace innermap::tool

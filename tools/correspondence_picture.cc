@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "innermap/io/picture/mesh_picture.h"
-#include "innermap/surface/surface_image.h"
 
 namespace innermap::tool {
 namespace {
@@ -41,7 +40,7 @@ std::vector<SurfacePoint> addresses(const std::vector<VisiblePoint>& seen) {
   return points;
 }
 
-PictureSurface surfaceOf(const SurfaceInput& input) {
+PictureSurface surfaceOf(const LaidOutMesh& input) {
   PictureSurface surface;
   surface.label = std::filesystem::path(input.mesh.name).filename().string();
   surface.vertices = input.shells().mesh.vertices;
@@ -51,21 +50,22 @@ PictureSurface surfaceOf(const SurfaceInput& input) {
 
 }  // namespace
 
-void writeCorrespondencePicture(const std::string& path, const SurfaceInput& a,
-                                const SurfaceInput& b, const Correspondence& map,
+void writeCorrespondencePicture(const std::string& path, const MeshCorrespondence& map,
                                 Context& context) {
-  const Mesh& meshA = a.shells().mesh;
+  const Mesh& meshA = map.a.shells().mesh;
   const Box3 box = boundingBox(meshA);
-  std::vector<PictureSurface> surfaces{surfaceOf(a), surfaceOf(b)};
+  SurfaceImageSettings back;
+  back.progress = context.progress();
+  std::vector<PictureSurface> surfaces{surfaceOf(map.a), surfaceOf(map.b)};
   surfaces[0].colours = [&](const std::vector<VisiblePoint>& seen) {
     return coloursOf(interpolate(meshA.vertices, meshA.triangles, addresses(seen)), box);
   };
   surfaces[1].colours = [&](const std::vector<VisiblePoint>& seen) {
-    return coloursOf(preimagesOf(addresses(seen), map, b.shells(), context.progress()), box);
+    return coloursOf(preimagesOf(addresses(seen), map.map, map.b.shells(), back), box);
   };
   MeshPictureSettings settings;
   settings.progress = context.progress();
-  writeMeshPicture(path, surfaces, settings);
+  context.timed("picture", [&] { writeMeshPicture(path, surfaces, settings); });
 }
 
 }  // namespace innermap::tool

@@ -4,13 +4,12 @@
 #include <string>
 
 #include "context.h"
-#include "innermap/surface/correspond.h"
-#include "surface_input.h"
+#include "innermap/boundary/mesh_correspondence.h"
 
 namespace innermap::tool {
 
 // B is coloured point by point by where the map comes from, not vertex by vertex. Throws FileError.
-void writeCorrespondencePicture(const std::string& path, const SurfaceInput& a,
-                                const SurfaceInput& b, const Correspondence& map, Context& context);
+void writeCorrespondencePicture(const std::string& path, const MeshCorrespondence& map,
+                                Context& context);
 
 }  // namespace innermap::tool

@@ -49,10 +49,11 @@ class Inputs {
  public:
   Inputs(const DeformOptions& options, const Frames& frames, Context& context)
       : frames_(frames), neighbours_(options.velocity), progress_(context.progress()) {
-    common_ =
-        fmt::format("rest {}, volume {}, settings {:016x}", fingerprintOf(options.rest, progress_),
-                    fingerprintOf(options.volume, progress_),
-                    hashOf(settingsText(options, frameFitterSettings(options.frames, context))));
+    const std::uint64_t settings =
+        hashOf(settingsText(options, frameFitterSettings(options.frames, context)));
+    common_ = fmt::format("rest {}, volume {}, settings {:016x}",
+                          fingerprintOf(options.rest, {progress_}),
+                          fingerprintOf(options.volume, {progress_}), settings);
   }
 
   std::string of(std::size_t index) const {
@@ -65,7 +66,7 @@ class Inputs {
 
  private:
   std::string fingerprint(std::size_t index) const {
-    return fingerprintOf(frames_.all[index].path, progress_);
+    return fingerprintOf(frames_.all[index].path, {progress_});
   }
   // A neighbour that cannot be read plays no part.
   std::string numbered(std::size_t index) const {

@@ -5,7 +5,7 @@
 
 #include "commands.h"
 #include "correspondence.h"
-#include "correspondence_file.h"
+#include "correspondence_picture.h"
 #include "evaluation.h"
 #include "fitting_options.h"
 #include "innermap/core/file.h"
@@ -134,8 +134,7 @@ void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
   std::string files = "map.ply, map.vdb, slices.exr, section.png";
   if (!meshes.related) {
     lines.push_back(correspondPlan(options, meshes));
-    need = std::max(need,
-                    correspondMemory(vertices, meshes.target.vertices.size(), options.correspond));
+    need = std::max(need, correspondMemory(vertices, meshes.target.vertices.size()));
     files += ", correspondence.ply, correspondence.png";
   }
   lines.push_back(fittingPlan(fitting));
@@ -151,15 +150,17 @@ BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& f
     return makeBoundaryPair(std::move(meshes.source), std::move(meshes.target), progress);
   context.note(correspondPlan(options, meshes) + "; --correspond takes one made before");
   const std::string name = meshes.target.name;
-  const MovedMesh moved = correspondMeshes(std::move(meshes.source), std::move(meshes.target),
-                                           options.correspond, options.fitting.seed, context);
+  const MeshCorrespondence moved =
+      correspondMeshes(std::move(meshes.source), std::move(meshes.target), options.correspond,
+                       options.fitting.seed, context);
   const Mesh target = moved.target(name);
   folder.write("correspondence.ply",
-               [&](const std::string& path) { writeCorrespondence(path, target, moved.onTarget); });
+               [&](const std::string& path) { writeCorrespondence(path, moved); });
   if (moved.changed)
     folder.write("correspondence.source.ply",
                  [&](const std::string& path) { writeMesh(path, moved.source); });
-  folder.write("correspondence.png", moved.drawPicture);
+  folder.write("correspondence.png",
+               [&](const std::string& path) { writeCorrespondencePicture(path, moved, context); });
   return makeBoundaryPair(moved.source, target, progress);
 }
 

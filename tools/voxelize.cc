@@ -50,7 +50,7 @@ openvdb::GridPtrVec makeGrids(const VoxelizeOptions& options, const Solid& solid
   if (options.fog) context.timed("fog", [&] { grids.push_back(makeFog(*levelSet)); });
   if (options.attributes)
     context.timed("attributes", [&] {
-      for (const auto& grid : makeAttributeGrids(*levelSet, solid, mesh, context.progress()))
+      for (const auto& grid : makeAttributeGrids(*levelSet, solid, mesh, {context.progress()}))
         grids.push_back(grid);
     });
   context.timed("check", [&] {

@@ -1,4 +1,6 @@
 // Precompiled for all of innermap: what nearly every file includes.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -17,5 +19,3 @@
 #include <string_view>
 #include <utility>
 #include <vector>
-
-#include <fmt/format.h>

@@ -3,12 +3,16 @@
 
 #include <cmath>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/core/matrix.h"
 #include "innermap/core/vec3.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap::bench {
+
+// Of the matrices that are factorized.
+constexpr std::size_t kRows = 2400, kColumns = 800;
 
 inline Points randomPoints(std::size_t count, std::uint64_t seed) {
   const CounterRandom random(seed, 1);
@@ -31,7 +35,7 @@ inline Mesh wavyTorus(int n) {
   mesh.name = "wavy torus";
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
-      const double u = 2 * M_PI * i / n, v = 2 * M_PI * j / n;
+      const double u = 2 * kPi * i / n, v = 2 * kPi * j / n;
       const double minor = 0.35 + 0.05 * std::sin(5 * u) * std::cos(3 * v);
       const double r = 1 + minor * std::cos(v);
       mesh.vertices.push_back(

@@ -1,12 +1,13 @@
 """What the command-line tests share: running innermap, small meshes, checks.
 
-A test is a script with functions named test_*; run(globals()) calls them all, prints what fails and
-ends with exit code 1 if anything did. Each function gets a temporary folder of its own as working
-directory. Standard library only.
+A test is a script with functions named test_*. run(globals()) calls all of them, or those that the
+command line names, prints what fails and ends with exit code 1 if anything did. Each function gets a
+temporary folder of its own as working directory, and is a test of its own for ctest
+(tests/CMakeLists.txt finds them by their "def" lines, and the marks @alone and @slow before these).
+Standard library only.
 """
 
 import json
-import math
 import os
 import resource
 import signal
@@ -19,16 +20,35 @@ from pathlib import Path
 
 PROGRAM = os.environ.get("INNERMAP", "innermap")
 ROOT = Path(os.environ.get("INNERMAP_ROOT", Path(__file__).resolve().parents[2]))
+sys.path.append(str(ROOT / "samples"))
+import make_shapes  # pylint: disable=wrong-import-position
+
 MODELS = ROOT.parent / "shared" / "models"
+# For tests that run beside others: threads of each innermap() whose arguments do not say.
+THREADS = os.environ.get("INNERMAP_TEST_THREADS", "")
 
 
 class Skip(Exception):
     """Raised by a test that cannot run here."""
 
 
+def alone(test):
+    """Marks a test that measures time: ctest runs nothing beside it, and it has all cores."""
+    return test
+
+
+def slow(test):
+    """Marks a test that `tests/run --quick` leaves out."""
+    return test
+
+
 def innermap(*arguments, exit_code=0, **options):
     """Runs innermap; checks the exit code, and that a failure is one line on stderr."""
-    done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
+    command = [PROGRAM, *map(str, arguments)]
+    if THREADS and len(command) > 2 and not command[1].startswith("-") and \
+            command[1] != "help" and "--help" not in command and "--threads" not in command:
+        command[2:2] = ["--threads", THREADS]
+    done = subprocess.run(command, capture_output=True, text=True,
                           timeout=options.pop("timeout", 300), **options)
     said = f"innermap {' '.join(map(str, arguments))}\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
     assert done.returncode == exit_code, f"exit code {done.returncode}, not {exit_code}: {said}"
@@ -104,32 +124,16 @@ def cube(path="cube.obj", size=1.0, origin=(0.0, 0.0, 0.0)):
 
 
 def icosphere_arrays(subdivisions=2, radius=1.0):
-    t = (1 + math.sqrt(5)) / 2
-    vertices = [(-1, t, 0), (1, t, 0), (-1, -t, 0), (1, -t, 0), (0, -1, t), (0, 1, t), (0, -1, -t),
-                (0, 1, -t), (t, 0, -1), (t, 0, 1), (-t, 0, -1), (-t, 0, 1)]
-    faces = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4),
-             (11, 10, 2), (10, 7, 6), (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8),
-             (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1)]
-    for _ in range(subdivisions):
-        middles, finer = {}, []
-
-        def middle(a, b):
-            key = (min(a, b), max(a, b))
-            if key not in middles:
-                middles[key] = len(vertices)
-                vertices.append(tuple((x + y) / 2 for x, y in zip(vertices[a], vertices[b])))
-            return middles[key]
-
-        for a, b, c in faces:
-            ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
-            finer += [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
-        faces = finer
-    scale = [radius / math.sqrt(sum(x * x for x in v)) for v in vertices]
-    return [tuple(s * x for x in v) for s, v in zip(scale, vertices)], faces
+    vertices, faces = make_shapes.sphere(subdivisions)
+    return [tuple(radius * x for x in v) for v in vertices], faces
 
 
 def icosphere(path="ball.obj", subdivisions=2, radius=1.0):
     return write_obj(path, *icosphere_arrays(subdivisions, radius))
+
+
+def torus(path, n=24, m=12, major=1.0, minor=0.4):
+    return write_obj(path, *make_shapes.torus(n, m, major, minor))
 
 
 def read_json(path):
@@ -137,12 +141,22 @@ def read_json(path):
         return json.load(file)
 
 
+def cpu_seconds():
+    """That this process and those it started and saw end have used."""
+    own, ended = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return own.ru_utime + own.ru_stime + ended.ru_utime + ended.ru_stime
+
+
 def run(names):
-    """Runs the test_* functions of a script."""
+    """Runs the test_* functions of a script that the command line names, or all."""
     failed = skipped = 0
-    tests = [(name, test) for name, test in names.items() if name.startswith("test_")]
+    wanted = sys.argv[1:]
+    tests = [(name, test) for name, test in names.items()
+             if name.startswith("test_") and (not wanted or name in wanted)]
+    if len(tests) < len(wanted):
+        sys.exit(f"no such tests: {set(wanted) - set(dict(tests))}")
     for name, test in tests:
-        start, home = time.monotonic(), os.getcwd()
+        start, before, home = time.monotonic(), cpu_seconds(), os.getcwd()
         with tempfile.TemporaryDirectory(prefix="innermap-") as folder:
             os.chdir(folder)
             try:
@@ -156,5 +170,6 @@ def run(names):
                 result = "FAILED\n" + traceback.format_exc()
             finally:
                 os.chdir(home)
-        print(f"{name}: {result} ({time.monotonic() - start:.1f} s)", flush=True)
+        print(f"{name}: {result} ({time.monotonic() - start:.1f} s, "
+              f"{cpu_seconds() - before:.1f} s of CPU)", flush=True)
     sys.exit(1 if failed else 77 if skipped == len(tests) else 0)

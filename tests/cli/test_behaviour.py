@@ -6,7 +6,7 @@ import signal
 import subprocess
 
 import cli
-from cli import cube, fails, file_size_limit, icosphere, innermap, interrupt, no_leftovers
+from cli import alone, cube, fails, file_size_limit, icosphere, innermap, interrupt, no_leftovers
 
 
 def test_quiet_says_nothing_and_progress_is_plain_lines():
@@ -112,6 +112,7 @@ def test_a_failure_keeps_the_file_that_was_there():
         assert file.read() == before
 
 
+@alone
 def test_signals_stop_within_a_second_and_leave_nothing():
     icosphere(subdivisions=6)
     caught = 0

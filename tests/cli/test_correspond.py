@@ -6,8 +6,8 @@ import os
 import signal
 import struct
 
-from cli import (MODELS, Skip, cube, fails, icosphere, icosphere_arrays, innermap, interrupt,
-                 no_leftovers, read_json, run, write_obj)
+from cli import (MODELS, Skip, alone, cube, fails, icosphere, icosphere_arrays, innermap, interrupt,
+                 no_leftovers, read_json, run, slow, torus, write_obj)
 
 TYPES = {"double": ("d", 8), "float": ("f", 4), "int": ("i", 4), "uint": ("I", 4), "uchar": ("B", 1)}
 
@@ -66,19 +66,6 @@ def blob(path, subdivisions=3, factors=(1, 1, 1), bump=0.0, shift=(0, 0, 0)):
         grown = 1 + bump * math.exp(4 * (p[0] - 1)) + 0.5 * bump * math.exp(6 * (p[1] - 1))
         moved.append(tuple(s + grown * f * x for s, f, x in zip(shift, factors, p)))
     return write_obj(path, moved, faces)
-
-
-def torus(path, n=24, m=12, major=1.0, minor=0.4):
-    vertices, faces = [], []
-    for i in range(n):
-        for j in range(m):
-            u, v = 2 * math.pi * i / n, 2 * math.pi * j / m
-            r = major + minor * math.cos(v)
-            vertices.append((r * math.cos(u), r * math.sin(u), minor * math.sin(v)))
-            a, b = i * m + j, (i + 1) % n * m + j
-            c, d = (i + 1) % n * m + (j + 1) % m, i * m + (j + 1) % m
-            faces += [(a, b, c), (a, c, d)]
-    return write_obj(path, vertices, faces)
 
 
 def joined(path, *parts):
@@ -410,6 +397,7 @@ def test_map_lays_one_onto_the_other_by_itself():
     fails(2, "map", "a.obj", "-o", "fourth", says=["TARGET"])
 
 
+@alone
 def test_interrupted():
     icosphere("a.obj", subdivisions=6)
     blob("b.obj", 6, (3, 1, 0.5), 0.8)
@@ -424,6 +412,7 @@ def test_interrupted():
     assert code is None or not os.path.exists("out")
 
 
+@slow
 def test_real_models():
     if not (MODELS / "spot.obj").exists():
         raise Skip(f"no models in {MODELS}")
@@ -434,5 +423,4 @@ def test_real_models():
     check_on_target(read_ply("out.ply")[0], MODELS / "homer.obj")
 
 
-if __name__ == "__main__":
-    run(globals())
+run(globals())

@@ -5,7 +5,7 @@ import os
 import subprocess
 
 import cli
-from cli import fails, innermap, interrupt, no_leftovers
+from cli import alone, fails, innermap, interrupt, no_leftovers
 from frames import ball_frames, break_frame, moved, rigid, twisted
 
 SMALL = ["--sources", "400", "--quiet"]
@@ -246,6 +246,7 @@ def test_a_full_disk_ends_the_run():
     assert os.listdir("out") == ["d.0001.vdb"] and content("out/d.0001.vdb") == whole
 
 
+@alone
 def test_cancelling_keeps_finished_frames():
     ball_frames(twisted, {n: 0.01 * n for n in range(1, 80)}, subdivisions=4)
     volume(64)

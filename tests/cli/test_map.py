@@ -6,8 +6,8 @@ import os
 import signal
 import subprocess
 
-from cli import (MODELS, Skip, cube, fails, file_size_limit, icosphere, icosphere_arrays, innermap,
-                 interrupt, no_leftovers, read_json, run, write_obj)
+from cli import (MODELS, Skip, alone, cube, fails, file_size_limit, icosphere, icosphere_arrays,
+                 innermap, interrupt, no_leftovers, read_json, run, slow, write_obj)
 
 FILES = ["map.ply", "map.vdb", "report.json", "section.png", "slices.exr"]
 
@@ -218,6 +218,7 @@ def test_full_disk_leaves_nothing():
               "64", says=["out/map."], preexec_fn=file_size_limit(size))
 
 
+@alone
 def test_interrupt_leaves_nothing():
     pair(lambda p: (p[0], p[1], p[2] + 0.2 * abs(p[0])), subdivisions=5)
     caught = 0
@@ -248,6 +249,7 @@ def test_horse():
     assert report["jacobian"]["folded_fraction"] < 2e-3, report["jacobian"]
 
 
+@slow
 def test_every_model_gets_a_sound_map():
     if not MODELS.exists():
         raise Skip("no ../shared/models")

@@ -6,7 +6,7 @@ import os
 import struct
 
 import cli
-from cli import fails, innermap, interrupt, no_leftovers
+from cli import alone, fails, innermap, interrupt, no_leftovers, slow
 from frames import FIGURES, ball_frames, break_frame, moved, read_energies, rigid, twisted
 
 SMALL = ["--sources", "400", "--resolution", "24", "--quiet"]
@@ -168,6 +168,7 @@ def test_full_disk_and_folders_that_cannot_be():
     fails(1, "sequence", "rest.obj", "frames", "-o", "rest.obj", *SMALL, says=["rest.obj"])
 
 
+@alone
 def test_cancelling_leaves_whole_files():
     ball_frames(twisted, {n: 0.02 * n for n in range(1, 60)}, subdivisions=4)
     caught = 0
@@ -190,6 +191,7 @@ def minima(values):
     return [i for i, v in enumerate(values) if v == min(values[max(0, i - 5):i + 6])]
 
 
+@slow
 def test_the_gallop_has_four_cycles():
     gallop = cli.MODELS / "horse-gallop"
     if not gallop.exists():

@@ -36,5 +36,4 @@ def test_the_interpolation_asked_for_is_used():
         assert report["solve"]["interpolation"] == name, report["solve"]
 
 
-if __name__ == "__main__":
-    run(globals())
+run(globals())

@@ -14,7 +14,7 @@ import subprocess
 import zlib
 
 import cli
-from cli import MODELS, fails, icosphere_arrays, innermap, no_leftovers
+from cli import MODELS, alone, fails, icosphere_arrays, innermap, no_leftovers
 
 PYTHON = "/usr/bin/python3"  # the system's has pyopenvdb
 
@@ -348,6 +348,7 @@ def test_options_that_make_no_sense():
     no_leftovers("ball.obj", "good.png")
 
 
+@alone
 def test_nothing_is_left_half_written():
     planar_ball()
     write_png("good.png", (64, 64), ramp)

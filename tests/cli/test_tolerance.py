@@ -4,7 +4,7 @@
 import math
 import os
 
-from cli import (MODELS, Skip, error_line, fails, icosphere_arrays, innermap, interrupt,
+from cli import (MODELS, Skip, alone, error_line, fails, icosphere_arrays, innermap, interrupt,
                  no_leftovers, read_json, run, write_obj)
 
 
@@ -133,6 +133,7 @@ def test_dry_run_says_what_would_be_done():
     no_leftovers("ball.obj", "target.obj")
 
 
+@alone
 def test_interrupt_leaves_nothing():
     pair()
     for after in [0.5, 2, 4]:

@@ -6,7 +6,7 @@ import os
 import signal
 import subprocess
 
-from cli import (MODELS, Skip, fails, file_size_limit, icosphere, icosphere_arrays, innermap,
+from cli import (MODELS, Skip, alone, fails, file_size_limit, icosphere, icosphere_arrays, innermap,
                  interrupt, no_leftovers, read_json, run, write_obj)
 
 
@@ -184,6 +184,7 @@ def test_dry_run_writes_nothing():
     assert set(os.listdir(".")) == before
 
 
+@alone
 def test_interrupting_leaves_nothing():
     scene()
     before = set(os.listdir("."))

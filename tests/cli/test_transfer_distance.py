@@ -7,7 +7,8 @@ import struct
 import subprocess
 
 import cli
-from cli import Skip, fails, file_size_limit, icosphere_arrays, innermap, interrupt, write_obj
+from cli import (Skip, alone, fails, file_size_limit, icosphere_arrays, innermap, interrupt,
+                 write_obj)
 
 FILES = {"source.vdb", "target.vdb", "source.png", "target.png", "report.json"}
 
@@ -87,6 +88,7 @@ def test_settings():
           says=["--max-memory"])
 
 
+@alone
 def test_full_disk_and_cancelling_leave_nothing():
     ellipsoid_map()
     fails(1, "transfer-distance", "map.ply", "-o", "out", "--resolution", "48",

@@ -7,7 +7,7 @@ import struct
 import subprocess
 
 import cli
-from cli import Skip, fails, file_size_limit, icosphere, innermap, interrupt, no_leftovers
+from cli import Skip, alone, fails, file_size_limit, icosphere, innermap, interrupt, no_leftovers
 
 PYTHON = "/usr/bin/python3"
 
@@ -232,6 +232,7 @@ def test_full_disk_leaves_nothing():
           preexec_fn=file_size_limit(20000))
 
 
+@alone
 def test_cancelling_leaves_nothing():
     ball_grid(100)
     for layout in ("atlas", "slices"):

@@ -167,8 +167,9 @@ class MapFitter {
   void measure(const FitProblem& problem, Outcome& out) {
     timed(seconds, "certificate", [&] {
       const auto error = [&](const Points& points, const Matrix& values) {
-        return measureBoundaryError(out.field, points, values, pair_.target.diagonal,
-                                    settings_.progress);
+        BoundaryErrorSettings e;
+        e.progress = settings_.progress;
+        return measureBoundaryError(out.field, points, values, pair_.target.diagonal, e);
       };
       FreshSampleSettings s;
       s.count = kFreshSamples;

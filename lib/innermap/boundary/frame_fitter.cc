@@ -129,11 +129,13 @@ FrameFit FrameFitter::fit(const Mesh& frame, const BoundarySettings& settings) c
   });
   HarmonicField field(solver_->sources(), std::move(solution.weights), std::move(solution.affine));
   const BoundaryError error = timed(seconds, "certificate", [&] {
+    BoundaryErrorSettings e;
     // By fast sums, to a hundredth of what is measured.
-    const double accuracy = std::max(1e-2 * solution.residuals.back(), 1e-12 * boundary.diagonal);
+    e.accuracy = std::max(1e-2 * solution.residuals.back(), 1e-12 * boundary.diagonal);
+    e.progress = settings.progress;
     return summarizeErrors(boundaryErrors(field, fresh_.points,
                                           boundary.targetsOf(solid(), fresh_.onSurface),
-                                          boundary.diagonal, accuracy, settings.progress));
+                                          boundary.diagonal, e));
   });
   std::vector<std::string> warnings = boundary.warnings;
   if (error.max > kDoubtful)

@@ -67,12 +67,8 @@ std::uint64_t hashOf(std::string_view bytes) {
   return hash.value();
 }
 
-std::uint64_t hashOfFile(const std::string& path, Progress* progress) {
-  return hashFile(path, progress).value();
-}
-
-std::string fingerprintOf(const std::string& path, Progress* progress) {
-  const Hash hash = hashFile(path, progress);
+std::string fingerprintOf(const std::string& path, const FingerprintSettings& settings) {
+  const Hash hash = hashFile(path, settings.progress);
   return fmt::format("{}-{:016x}", hash.size(), hash.value());
 }
 

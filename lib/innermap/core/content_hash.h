@@ -13,10 +13,12 @@ namespace innermap {
 // (Fowler, Noll, Vo, "The FNV Non-Cryptographic Hash Algorithm", 1991), finished as SplitMix64.
 std::uint64_t hashOf(std::string_view bytes);
 
-// Of a file's content. Throws FileError when it cannot be read, Cancelled.
-std::uint64_t hashOfFile(const std::string& path, Progress* progress = nullptr);
+struct FingerprintSettings {
+  Progress* progress = nullptr;
+};
 
-// "558589-9f86d081884c7d65": the file's size and the hash of its content. Throws as hashOfFile.
-std::string fingerprintOf(const std::string& path, Progress* progress = nullptr);
+// "558589-9f86d081884c7d65": a file's size and the hash of its content. Throws FileError when it
+// cannot be read, Cancelled.
+std::string fingerprintOf(const std::string& path, const FingerprintSettings& settings = {});
 
 }  // namespace innermap

@@ -110,15 +110,15 @@ void visitLeaves(const HarmonicField& field, const Solid& solid, const openvdb::
     firstRow.push_back(onSkin.size());
     for (const LeafPlan::Skin& voxel : plans[l].skin) onSkin.push_back(voxel.at);
   }
-  const FieldSamples skin = field.evaluate(onSkin, settings.accuracy, true, settings.progress);
+  const FieldSamples skin = field.evaluate(onSkin, {settings.accuracy, true, settings.progress});
   field.onLattice(
-      lattice, settings.accuracy, settings.gradients,
+      lattice,
       [&](std::size_t l, const double* values, const double* gradients) {
         LeafBuffer buffer(field.channels());
         visit(begin + l, buffer.gather(leaves.leaf(begin + l).origin(), plans[l], values, gradients,
                                        skin, firstRow[l]));
       },
-      settings.progress, settings.stage);
+      {settings.accuracy, settings.gradients, settings.progress}, settings.stage);
 }
 
 // Sign of a point's distance where the level set tells it for sure, else 0: from a voxel the
@@ -199,7 +199,7 @@ ExtendedSamples sampleExtended(const HarmonicField& field, const Solid& solid,
   out.beyond.resize(points.size());
   Points at(points.size());
   placeOutside(solid, levelSet, points, out, at, settings.progress);
-  out.samples = field.evaluate(at, settings.accuracy, true, settings.progress);
+  out.samples = field.evaluate(at, {settings.accuracy, true, settings.progress});
   Matrix& values = out.samples.values;
   for (std::size_t k = 0; k < field.channels(); ++k)
     for (int a = 0; a < 3; ++a) {

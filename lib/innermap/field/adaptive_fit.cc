@@ -271,14 +271,14 @@ AdaptiveResult AdaptiveFitting::run() {
   const BoundarySamples checks = problem_.draw(settings_.checkSamples, 0);
   const auto errorAtChecks = [&](const HarmonicField& field) {
     return measureBoundaryError(field, checks.points, checks.values, problem_.unit,
-                                settings_.progress);
+                                {0, settings_.progress});
   };
   for (std::uint64_t round = 1;; ++round) {
     solve();
     const BoundarySamples fresh = problem_.draw(kMarkSamples, round);
     const std::vector<double> errors =
         boundaryErrors(*field_, fresh.points, fresh.values, problem_.unit,
-                       kErrorAccuracy * settings_.tolerance * problem_.unit, settings_.progress);
+                       {kErrorAccuracy * settings_.tolerance * problem_.unit, settings_.progress});
     const BoundaryError error = summarizeErrors(errors);
     rounds_.push_back(
         {solver_->sources().size(), collocation_.size(), solution_.iterations, error});

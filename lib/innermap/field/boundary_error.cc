@@ -9,16 +9,17 @@
 namespace innermap {
 
 std::vector<double> boundaryErrors(const HarmonicField& field, const Points& points,
-                                   const Matrix& values, double unit, double accuracy,
-                                   Progress* progress) {
+                                   const Matrix& values, double unit,
+                                   const BoundaryErrorSettings& settings) {
   if (!(unit > 0)) throw SettingError("unit", "must be positive");
   if (values.rows() != points.size() || values.columns() != field.channels())
     throw DataError("boundary error: the values do not fit the points and channels");
   std::vector<double> lengths(points.size());
   if (points.empty()) return lengths;
-  const Matrix got = (accuracy > 0 ? field.evaluate(points, accuracy, false, progress)
-                                   : field.evaluate(points, false, progress))
-                         .values;
+  EvaluateFieldSettings evaluation;
+  evaluation.accuracy = settings.accuracy;
+  evaluation.progress = settings.progress;
+  const Matrix got = field.evaluate(points, evaluation).values;
   for (std::size_t i = 0; i < points.size(); ++i) {
     double square = 0;
     for (std::size_t k = 0; k < values.columns(); ++k) {
@@ -44,8 +45,9 @@ BoundaryError summarizeErrors(std::vector<double> lengths) {
 }
 
 BoundaryError measureBoundaryError(const HarmonicField& field, const Points& points,
-                                   const Matrix& values, double unit, Progress* progress) {
-  return summarizeErrors(boundaryErrors(field, points, values, unit, 0, progress));
+                                   const Matrix& values, double unit,
+                                   const BoundaryErrorSettings& settings) {
+  return summarizeErrors(boundaryErrors(field, points, values, unit, settings));
 }
 
 }  // namespace innermap

@@ -17,12 +17,16 @@ struct BoundaryError {
   std::size_t samples = 0;
 };
 
+struct BoundaryErrorSettings {
+  double accuracy = 0;  // of the field's values, as HarmonicField::evaluate takes it; 0: plain sums
+  Progress* progress = nullptr;
+};
+
 // The Euclidean length of the error over all channels at each point, divided by `unit`. Arguments
-// and errors as below. accuracy: of the field's values, as HarmonicField::evaluate takes it; 0: by
-// plain sums.
+// and errors as below.
 std::vector<double> boundaryErrors(const HarmonicField& field, const Points& points,
-                                   const Matrix& values, double unit, double accuracy = 0,
-                                   Progress* progress = nullptr);
+                                   const Matrix& values, double unit,
+                                   const BoundaryErrorSettings& settings = {});
 
 // Of the lengths at all points.
 BoundaryError summarizeErrors(std::vector<double> lengths);
@@ -30,6 +34,7 @@ BoundaryError summarizeErrors(std::vector<double> lengths);
 // values: #points x #K. unit: usually the target's diagonal; must be positive.
 // Throws DataError when sizes disagree, SettingError for a bad unit.
 BoundaryError measureBoundaryError(const HarmonicField& field, const Points& points,
-                                   const Matrix& values, double unit, Progress* progress = nullptr);
+                                   const Matrix& values, double unit,
+                                   const BoundaryErrorSettings& settings = {});
 
 }  // namespace innermap

@@ -225,9 +225,9 @@ bool Fitting::chooseSmooth() {
   if (!linear.best) return true;
   const HarmonicField field(linear.best->sources, linear.best->solution.weights,
                             linear.best->solution.affine);
-  const double linearRms =
-      measureBoundaryError(field, vertices.heldOut, vertices.heldOutValues, 1, settings_.progress)
-          .rms;
+  const double linearRms = measureBoundaryError(field, vertices.heldOut, vertices.heldOutValues, 1,
+                                                {0, settings_.progress})
+                               .rms;
   return smooth.best->solution.heldOutRms < kSmoothGain * linearRms;
 }
 

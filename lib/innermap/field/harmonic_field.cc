@@ -26,14 +26,16 @@ void addAffine(const Affine& affine, const Points& points, FieldSamples& out) {
     }
 }
 
-FastSumSettings settingsFor(double accuracy, bool gradients, Progress* progress) {
-  if (!(accuracy > 0)) throw SettingError("accuracy", "of a field's values must be positive");
-  FastSumSettings settings;
-  settings.accuracy = 1e-12;
-  settings.absolute = accuracy;
-  settings.gradients = gradients;
-  settings.progress = progress;
-  return settings;
+FastSumSettings sumSettings(const EvaluateFieldSettings& settings) {
+  if (!(settings.accuracy >= 0))
+    throw SettingError("accuracy", "of a field's values must not be negative");
+  FastSumSettings sums;
+  sums.accuracy = 1e-12;
+  sums.absolute = settings.accuracy;
+  sums.gradients = settings.gradients;
+  if (settings.accuracy == 0) sums.method = SumMethod::direct;
+  sums.progress = settings.progress;
+  return sums;
 }
 
 }  // namespace
@@ -68,23 +70,18 @@ void HarmonicField::evaluate(const Vec3* points, std::size_t count, double* valu
   data_->sum.plain().addTo(points, count, values, gradients);
 }
 
-FieldSamples HarmonicField::evaluate(const Points& points, bool gradients,
-                                     Progress* progress) const {
-  FieldSamples out = sumCharges(data_->sum.plain(), points, gradients, progress);
+FieldSamples HarmonicField::evaluate(const Points& points,
+                                     const EvaluateFieldSettings& settings) const {
+  const FastSumSettings sums = sumSettings(settings);
+  FieldSamples out = settings.accuracy > 0 ? data_->sum.at(points, sums)
+                                           : sumCharges(data_->sum.plain(), points,
+                                                        settings.gradients, {settings.progress});
   addAffine(data_->affine, points, out);
   return out;
 }
 
-FieldSamples HarmonicField::evaluate(const Points& points, double accuracy, bool gradients,
-                                     Progress* progress) const {
-  FieldSamples out = data_->sum.at(points, settingsFor(accuracy, gradients, progress));
-  addAffine(data_->affine, points, out);
-  return out;
-}
-
-void HarmonicField::onLattice(const LatticeBlocks& lattice, double accuracy, bool gradients,
-                              const BlockVisitor& visit, Progress* progress,
-                              std::string_view stage) const {
+void HarmonicField::onLattice(const LatticeBlocks& lattice, const BlockVisitor& visit,
+                              const EvaluateFieldSettings& settings, std::string_view stage) const {
   constexpr std::size_t kPoints = 512;
   const Affine& affine = data_->affine;
   const auto withAffine = [&](std::size_t block, const double* values, const double* slopes) {
@@ -104,7 +101,7 @@ void HarmonicField::onLattice(const LatticeBlocks& lattice, double accuracy, boo
     }
     visit(block, sums.data(), slopes ? gradient.data() : nullptr);
   };
-  data_->sum.onLattice(lattice, withAffine, settingsFor(accuracy, gradients, progress), stage);
+  data_->sum.onLattice(lattice, withAffine, sumSettings(settings), stage);
 }
 
 }  // namespace innermap

@@ -19,6 +19,15 @@
 
 namespace innermap {
 
+struct EvaluateFieldSettings {
+  // Root mean square error of each channel's values, at most, in their units; of the charges' part
+  // of the gradients, a hundred times that relative to them. 0: plain sums, whose error is a few
+  // units of rounding times the number of sources. Not negative.
+  double accuracy = 0;
+  bool gradients = false;
+  Progress* progress = nullptr;
+};
+
 // Immutable; copies share their data; safe from any number of threads. World units.
 class HarmonicField {
  public:
@@ -32,22 +41,14 @@ class HarmonicField {
   const Affine& affine() const;
 
   // Values (#points x #K) and, if asked for, gradients (#points x 3 #K; column 3 k + axis) on all
-  // threads. Accuracy: a few units of rounding times the number of sources.
-  FieldSamples evaluate(const Points& points, bool gradients = false,
-                        Progress* progress = nullptr) const;
-
-  // The same by fast sums: root mean square error of each channel at most `accuracy` (units of the
-  // values, positive); of the charges' part of the gradients, a hundred times that relative to
-  // them. Throws as FastSum::at does.
-  FieldSamples evaluate(const Points& points, double accuracy, bool gradients,
-                        Progress* progress = nullptr) const;
+  // threads. Throws SettingError for a negative accuracy, Cancelled; with fast sums as FastSum::at.
+  FieldSamples evaluate(const Points& points, const EvaluateFieldSettings& settings = {}) const;
 
   // The same at the points of a lattice, block by block; see FastSum::onLattice.
-  void onLattice(const LatticeBlocks& lattice, double accuracy, bool gradients,
-                 const BlockVisitor& visit, Progress* progress = nullptr,
-                 std::string_view stage = {}) const;
+  void onLattice(const LatticeBlocks& lattice, const BlockVisitor& visit,
+                 const EvaluateFieldSettings& settings, std::string_view stage = {}) const;
 
-  // The first for a few points on the calling thread: values[k * count + i],
+  // By plain sums for a few points on the calling thread: values[k * count + i],
   // gradients[(3 * k + axis) * count + i]; gradients may be null. Overwrites.
   void evaluate(const Vec3* points, std::size_t count, double* values, double* gradients) const;
 

@@ -116,7 +116,7 @@ void checkFits(const Solid& solid, const Mesh& mesh) {
 
 std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const FloatGrid& levelSet,
                                                        const Solid& solid, const Mesh& mesh,
-                                                       Progress* progress) {
+                                                       const AttributeSettings& settings) {
   checkFits(solid, mesh);
   std::vector<openvdb::GridBase::Ptr> grids;
   const AttributeAt uv = [&](int t, const std::array<double, 3>& w) -> std::optional<Vec3> {
@@ -138,7 +138,7 @@ std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const FloatGrid& levelSet
   };
   const auto add = [&](const AttributeAt& attribute, const char* name) {
     const Carrier carrier(solid, mesh, attribute);
-    if (carrier.any()) grids.push_back(carry(levelSet, carrier, name, progress));
+    if (carrier.any()) grids.push_back(carry(levelSet, carrier, name, settings.progress));
   };
   if (!mesh.uvTriangles.empty()) add(uv, "uv");
   if (!mesh.colours.empty()) add(colour, "Cd");

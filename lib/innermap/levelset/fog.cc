@@ -1,11 +1,11 @@
+#include "innermap/levelset/fog.h"
+
 #include <openvdb/tree/LeafManager.h>
 
 #include <array>
 #include <cmath>
 
 #include "innermap/core/parallel.h"
-#include "innermap/levelset/detail/grid_volume.h"
-#include "innermap/levelset/level_set.h"
 
 namespace innermap {
 namespace {
@@ -112,12 +112,6 @@ double fogVolume(const FloatGrid& fog) {
     sum += double(value.getValue()) * static_cast<double>(value.getVoxelCount());
   }
   return sum * std::pow(fog.voxelSize()[0], 3);
-}
-
-double gridVolume(const Solid& solid, int resolution) {
-  LevelSetSettings settings;
-  settings.resolution = resolution;
-  return fogVolume(*makeFog(*makeLevelSet(solid, settings)));
 }
 
 }  // namespace innermap

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "innermap/core/detail/disjoint_sets.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/levelset/level_set.h"
@@ -216,32 +217,23 @@ class Mesher {
   std::unordered_map<std::array<int, 4>, int, EdgeHash> used_;
 };
 
-int find(std::vector<int>& parent, int i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 // Leaves out small shells and the vertices that nothing uses then.
 void keepLargeShells(Mesh& mesh, double least, Isosurface& result) {
-  std::vector<int> shell(mesh.vertices.size());
-  for (std::size_t v = 0; v < shell.size(); ++v) shell[v] = static_cast<int>(v);
+  DisjointSets sets(mesh.vertices.size());
   for (const Triangle& t : mesh.triangles)
-    for (int k = 1; k < 3; ++k) {
-      const int a = find(shell, t[0]), b = find(shell, t[k]);
-      shell[std::max(a, b)] = std::min(a, b);
-    }
+    for (int k = 1; k < 3; ++k) sets.unite(t[0], t[k]);
+  const std::vector<int> shell = sets.representatives();
   std::vector<double> volume(shell.size(), 0);
   const Vec3 center = boundingBox(mesh.vertices).center();
   for (const Triangle& t : mesh.triangles)
-    volume[find(shell, t[0])] +=
-        dot(mesh.vertices[t[0]] - center,
-            cross(mesh.vertices[t[1]] - center, mesh.vertices[t[2]] - center));
+    volume[shell[t[0]]] += dot(mesh.vertices[t[0]] - center,
+                               cross(mesh.vertices[t[1]] - center, mesh.vertices[t[2]] - center));
   double largest = 0;
   for (const double v : volume) largest = std::max(largest, std::abs(v));
   std::vector<int> number(shell.size(), -1);
   Points kept;
   for (std::size_t v = 0; v < shell.size(); ++v) {
-    const int root = find(shell, static_cast<int>(v));
+    const int root = shell[v];
     const bool large = std::abs(volume[root]) > 0 && std::abs(volume[root]) >= least * largest;
     if (root == static_cast<int>(v)) ++(large ? result.shells : result.leftOut);
     if (!large) continue;

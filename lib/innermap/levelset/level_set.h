@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "innermap/core/progress.h"
+#include "innermap/levelset/fog.h"
 #include "innermap/levelset/solid.h"
 
 namespace innermap {
@@ -48,20 +49,6 @@ openvdb::FloatGrid::Ptr makeLevelSet(const Solid& solid, const LevelSetSettings&
 // Estimate of makeLevelSet's peak need in bytes: an upper bound within a factor of about two.
 std::uint64_t levelSetMemory(const Solid& solid, const LevelSetSettings& settings);
 
-// Fog volume: 1 inside, 0 outside, and the voxel cell's share inside the solid along the surface.
-// Named "density", class fog volume. The sum of the values times the voxel's volume is the solid's
-// volume.
-openvdb::FloatGrid::Ptr makeFog(const openvdb::FloatGrid& levelSet);
-
-// Sum of the values times the voxel's volume, world units cubed.
-double fogVolume(const openvdb::FloatGrid& fog);
-
-// Share of the unit cell about a voxel centre on the negative side of the plane with signed
-// distance `distance` (voxels) and gradient `normal` (unit vector): Scardovelli and Zaleski,
-// "Analytical Relations Connecting Linear Interfaces and Volume Fractions in Rectangular Grids"
-// (J. Comp. Phys. 2000).
-double cellFraction(double distance, const Vec3& normal);
-
 // How well a level set holds its solid.
 struct LevelSetCheck {
   double meshVolume = 0, gridVolume = 0;  // world units cubed
@@ -74,12 +61,16 @@ LevelSetCheck checkLevelSet(const openvdb::FloatGrid& levelSet, const Solid& sol
 // Voxels whose centre is inside.
 std::uint64_t interiorVoxels(const openvdb::FloatGrid& levelSet);
 
+struct AttributeSettings {
+  Progress* progress = nullptr;
+};
+
 // Attributes of the closest triangle carried onto the active voxels of `levelSet`: "uv" (Vec3f,
 // third component 0) when the mesh has texture coordinates, "Cd" (Vec3f) when it has vertex
 // colours. `mesh` is the mesh that `solid` was made of. Voxels whose closest point lies on a cap
-// take the nearest triangle that has the attribute.
+// take the nearest triangle that has the attribute. Throws DataError for another mesh, Cancelled.
 std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const openvdb::FloatGrid& levelSet,
                                                        const Solid& solid, const Mesh& mesh,
-                                                       Progress* progress = nullptr);
+                                                       const AttributeSettings& settings = {});
 
 }  // namespace innermap

@@ -5,8 +5,8 @@
 
 #include <cmath>
 #include <memory>
-#include <numeric>
 
+#include "innermap/core/detail/disjoint_sets.h"
 #include "innermap/core/parallel.h"
 #include "innermap/levelset/detail/band.h"
 #include "innermap/levelset/detail/displaced_surface.h"
@@ -94,7 +94,8 @@ Mesh fromGrid(const Solid& solid, double distance, Progress* progress) {
   const Vec3 origin =
       solid.box().lower - Vec3{reach, reach, reach} - voxelSize * Vec3{0.3717, 0.4142, 0.2929};
   const double width = kBand * voxelSize;
-  const Band band(solid, origin, voxelSize, std::max(0.0, distance - width), distance + width);
+  const Band band(solid.body(), origin, voxelSize, std::max(0.0, distance - width),
+                  distance + width);
   const FloatGrid::Ptr grid = distanceGrid(band, distance, voxelSize, progress);
   throwIfCancelled(progress);
   return isosurface(*grid, origin, voxelSize);
@@ -105,27 +106,21 @@ Mesh fromGrid(const Solid& solid, double distance, Progress* progress) {
 std::vector<char> outsideVertices(const Solid& solid, const Mesh& mesh,
                                   const std::vector<char>& atDistance, double distance,
                                   Progress* progress) {
-  std::vector<int> parent(mesh.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets sets(mesh.vertices.size());
   const double reach = 2 * ((1 - kTolerance) * distance - solid.gap());
   for (const Triangle& t : mesh.triangles) {
     for (int k = 0; k < 3; ++k) {
       const int a = t[k], b = t[(k + 1) % 3];
       if (!atDistance[a] || !atDistance[b]) continue;
-      if (!(norm(mesh.vertices[a] - mesh.vertices[b]) < reach)) continue;
-      const int s = root(a), r = root(b);
-      parent[std::max(s, r)] = std::min(s, r);
+      if (norm(mesh.vertices[a] - mesh.vertices[b]) < reach) sets.unite(a, b);
     }
   }
+  const std::vector<int> root = sets.representatives();
   std::vector<int> roots;
-  for (std::size_t v = 0; v < parent.size(); ++v) {
-    if (atDistance[v] && parent[v] == static_cast<int>(v)) roots.push_back(parent[v]);
+  for (std::size_t v = 0; v < root.size(); ++v) {
+    if (atDistance[v] && root[v] == static_cast<int>(v)) roots.push_back(root[v]);
   }
-  std::vector<char> outside(parent.size(), 0);
+  std::vector<char> outside(root.size(), 0);
   parallelBlocks(
       roots.size(), 64,
       [&](std::size_t begin, std::size_t end) {
@@ -134,8 +129,8 @@ std::vector<char> outsideVertices(const Solid& solid, const Mesh& mesh,
         }
       },
       progress);
-  for (std::size_t v = 0; v < parent.size(); ++v) {
-    if (atDistance[v]) outside[v] = outside[root(static_cast<int>(v))];
+  for (std::size_t v = 0; v < root.size(); ++v) {
+    if (atDistance[v]) outside[v] = outside[root[v]];
   }
   return outside;
 }
@@ -179,6 +174,25 @@ Mesh offsetSurface(const Solid& solid, const OffsetSettings& settings) {
     result.triangles.push_back(kept);
   }
   return result;
+}
+
+double moveToDistance(const Solid& solid, double distance, Vec3& p) {
+  Vec3 best = p;
+  double bestError = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < 8; ++step) {
+    // Most points are near the distance already: a bound makes the search cheaper.
+    Solid::Closest c = solid.closest(p, 1.2 * distance);
+    if (c.onSurface.triangle < 0) c = solid.closest(p, std::numeric_limits<double>::infinity());
+    const double error = std::abs(c.distance - distance);
+    if (error < bestError) {
+      best = p;
+      bestError = error;
+    }
+    if (error <= 1e-9 * distance || !(c.distance > 0)) break;
+    p = c.position + (distance / c.distance) * (p - c.position);
+  }
+  p = best;
+  return bestError;
 }
 
 }  // namespace innermap

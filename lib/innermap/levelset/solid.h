@@ -21,6 +21,8 @@ struct SolidSettings {
   Progress* progress = nullptr;
 };
 
+class SolidBody;
+
 // Immutable; copies share their data; safe from any number of threads.
 class Solid {
  public:
@@ -30,11 +32,8 @@ class Solid {
   const RepairedMesh& repaired() const;
 
   // The exposed surface, oriented outward, as pieces of the repaired mesh's triangles: the whole
-  // repaired mesh where nothing overlaps. Piece t lies in triangle pieceParent()[t] of
-  // repaired().mesh and its corners have the barycentric coordinates pieceCorners()[t] there.
+  // repaired mesh where nothing overlaps.
   const Mesh& surface() const;
-  const std::vector<int>& pieceParent() const;
-  const std::vector<std::array<std::array<double, 3>, 3>>& pieceCorners() const;
 
   // The address on repaired().mesh of a point given on surface(), and so on any target.
   SurfacePoint address(const SurfacePoint& onSurface) const;
@@ -61,6 +60,8 @@ class Solid {
     double distance;
   };
   Closest closest(const Vec3& p, double within) const;
+
+  const SolidBody& body() const;  // for grids of this folder
 
  private:
   struct Implementation;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <tuple>
 
+#include "innermap/core/detail/disjoint_sets.h"
 #include "innermap/mesh/detail/topology.h"
 #include "innermap/mesh/self_intersection.h"
 
@@ -145,7 +146,7 @@ int genusOf(const std::vector<Triangle>& triangles, const std::vector<EdgeUse>& 
 // Volume and genus, with seams joined. The volume is that with the remaining loops capped as repair
 // does, but oriented as in the file.
 void checkSolid(const Mesh& mesh, MeshReport& report) {
-  const std::vector<int> to = joinSeams(mesh.vertices, mesh.triangles, &report.seamEdges);
+  const std::vector<int> to = joinedVertices(mesh.vertices, mesh.triangles, &report.seamEdges);
   const std::vector<Triangle> joined = mapped(mesh.triangles, to);
   const std::vector<EdgeUse> edges = sortedEdges(joined);
   report.genus = genusOf(joined, edges);
@@ -168,17 +169,17 @@ void checkCrossings(const Mesh& mesh, const CheckSettings& settings, MeshReport&
   };
   // A heap with the last of the listed ones on top: memory stays bounded whatever their number.
   std::vector<Crossing>& listed = report.crossings;
-  forEachSelfIntersection(mesh.vertices, mesh.triangles, settings.progress,
-                          [&](const Crossing& crossing) {
-                            ++report.selfIntersections;
-                            if (listed.size() >= settings.listed) {
-                              if (listed.empty() || !before(crossing, listed.front())) return;
-                              std::pop_heap(listed.begin(), listed.end(), before);
-                              listed.pop_back();
-                            }
-                            listed.push_back(crossing);
-                            std::push_heap(listed.begin(), listed.end(), before);
-                          });
+  const auto visit = [&](const Crossing& crossing) {
+    ++report.selfIntersections;
+    if (listed.size() >= settings.listed) {
+      if (listed.empty() || !before(crossing, listed.front())) return;
+      std::pop_heap(listed.begin(), listed.end(), before);
+      listed.pop_back();
+    }
+    listed.push_back(crossing);
+    std::push_heap(listed.begin(), listed.end(), before);
+  };
+  forEachSelfIntersection(mesh.vertices, mesh.triangles, visit, {settings.progress});
   std::sort(listed.begin(), listed.end(), before);
 }
 

@@ -7,17 +7,13 @@
 
 #include "innermap/core/progress.h"
 #include "innermap/mesh/mesh.h"
+#include "innermap/mesh/self_intersection.h"
 
 namespace innermap {
 
 struct BoundaryLoop {
   std::vector<int> vertices;  // in order along the loop
   double length = 0;          // world units
-};
-
-struct Crossing {
-  int first = 0, second = 0;  // triangles that intersect each other
-  Vec3 place;                 // a point near the intersection, world units
 };
 
 // Connectivity is the file's own, by vertex index; only seamEdges, openLoops, volume and genus look

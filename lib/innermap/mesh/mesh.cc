@@ -42,6 +42,14 @@ void validateAttributes(const Mesh& mesh) {
                                   uv, mesh.uvs.size()));
 }
 
+double volumeAbout(const Vec3& centre, const Points& vertices,
+                   const std::vector<Triangle>& triangles) {
+  double volume = 0;
+  for (const Triangle& t : triangles)
+    volume += dot(vertices[t[0]] - centre, cross(vertices[t[1]] - centre, vertices[t[2]] - centre));
+  return volume / 6;
+}
+
 }  // namespace
 
 void validate(const Mesh& mesh) {
@@ -89,21 +97,23 @@ Box3 boundingBox(const Mesh& mesh) {
   return box;
 }
 
-double surfaceArea(const Mesh& mesh) {
+double surfaceArea(const Mesh& mesh) { return surfaceArea(mesh.vertices, mesh.triangles); }
+
+double surfaceArea(const Points& vertices, const std::vector<Triangle>& triangles) {
   double area = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    area += norm(areaVector(mesh, static_cast<int>(t)));
+  for (const Triangle& t : triangles) {
+    const Vec3& a = vertices[t[0]];
+    area += 0.5 * norm(cross(vertices[t[1]] - a, vertices[t[2]] - a));
+  }
   return area;
 }
 
 double signedVolume(const Mesh& mesh) {
-  if (mesh.triangles.empty()) return 0;
-  const Vec3 centre = boundingBox(mesh).center();
-  double volume = 0;
-  for (const Triangle& t : mesh.triangles)
-    volume += dot(mesh.vertices[t[0]] - centre,
-                  cross(mesh.vertices[t[1]] - centre, mesh.vertices[t[2]] - centre));
-  return volume / 6;
+  return volumeAbout(boundingBox(mesh).center(), mesh.vertices, mesh.triangles);
+}
+
+double signedVolume(const Points& vertices, const std::vector<Triangle>& triangles) {
+  return volumeAbout(boundingBox(vertices).center(), vertices, triangles);
 }
 
 }  // namespace innermap

@@ -55,9 +55,11 @@ Vec3 areaVector(const Mesh& mesh, int triangle);
 Box3 boundingBox(const Mesh& mesh);
 
 double surfaceArea(const Mesh& mesh);  // world units squared
+double surfaceArea(const Points& vertices, const std::vector<Triangle>& triangles);
 
 // Signed volume by the divergence theorem, sum of det(a, b, c) / 6 about the box's centre; exact
 // for a closed, outward oriented mesh, positive then. World units cubed.
 double signedVolume(const Mesh& mesh);
+double signedVolume(const Points& vertices, const std::vector<Triangle>& triangles);
 
 }  // namespace innermap

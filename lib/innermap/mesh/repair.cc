@@ -79,7 +79,7 @@ class Repair {
     note(static_cast<std::size_t>(std::count(used.begin(), used.end(), false)),
          "loose vertex ignored", "loose vertices ignored");
     std::size_t seams = 0;
-    const std::vector<int> to = joinSeams(mesh_.vertices, mesh_.triangles, &seams);
+    const std::vector<int> to = joinedVertices(mesh_.vertices, mesh_.triangles, &seams);
     note(seams, "edge closed by joining doubled vertices",
          "edges closed by joining doubled vertices");
     const std::vector<Triangle> joined = mapped(mesh_.triangles, to);

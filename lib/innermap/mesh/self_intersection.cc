@@ -18,8 +18,8 @@ constexpr std::size_t kBatch = 1 << 17, kBlock = 1 << 12;
 }  // namespace
 
 void forEachSelfIntersection(const Points& vertices, const std::vector<Triangle>& triangles,
-                             Progress* progress,
-                             const std::function<void(const Crossing&)>& visit) {
+                             const std::function<void(const Crossing&)>& visit,
+                             const SelfIntersectionSettings& settings) {
   // Scaled by a power of two, which changes no bit of a mantissa: products of far too large or too
   // small coordinates stay in range.
   Box3 box;
@@ -45,7 +45,7 @@ void forEachSelfIntersection(const Points& vertices, const std::vector<Triangle>
               found[begin / kBlock].push_back({pairs[k][0], pairs[k][1], frame.inverse * place});
           }
         },
-        progress);
+        settings.progress);
     for (std::vector<Crossing>& block : found) {
       for (const Crossing& crossing : block) visit(crossing);
       block.clear();
@@ -62,10 +62,11 @@ void forEachSelfIntersection(const Points& vertices, const std::vector<Triangle>
 
 std::vector<Crossing> selfIntersections(const Points& vertices,
                                         const std::vector<Triangle>& triangles,
-                                        Progress* progress) {
+                                        const SelfIntersectionSettings& settings) {
   std::vector<Crossing> crossings;
-  forEachSelfIntersection(vertices, triangles, progress,
-                          [&](const Crossing& crossing) { crossings.push_back(crossing); });
+  forEachSelfIntersection(
+      vertices, triangles, [&](const Crossing& crossing) { crossings.push_back(crossing); },
+      settings);
   std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
     return a.first != b.first ? a.first < b.first : a.second < b.second;
   });

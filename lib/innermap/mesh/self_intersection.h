@@ -5,10 +5,18 @@
 #include <vector>
 
 #include "innermap/core/progress.h"
-#include "innermap/mesh/check.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {
+
+struct Crossing {
+  int first = 0, second = 0;  // triangles that intersect each other
+  Vec3 place;                 // a point near the intersection, world units
+};
+
+struct SelfIntersectionSettings {
+  Progress* progress = nullptr;
+};
 
 // All pairs (first < second, sorted) of triangles that intersect in more than what they share:
 // pairs with a common edge count only when folded flat onto each other (coplanar overlap), pairs
@@ -16,14 +24,15 @@ namespace innermap {
 // Vertices are common when their positions are equal bit by bit. Touching in a point or along an
 // edge without passing through may or may not be counted. Degenerate triangles are left out.
 // Interval overlap method, Moller, "A Fast Triangle-Triangle Intersection Test" (1997), in double
-// precision.
+// precision. Throws Cancelled.
 std::vector<Crossing> selfIntersections(const Points& vertices,
                                         const std::vector<Triangle>& triangles,
-                                        Progress* progress = nullptr);
+                                        const SelfIntersectionSettings& settings = {});
 
 // The same, one at a time in an order that is the same for any number of threads, for meshes whose
 // crossings would not fit in memory.
 void forEachSelfIntersection(const Points& vertices, const std::vector<Triangle>& triangles,
-                             Progress* progress, const std::function<void(const Crossing&)>& visit);
+                             const std::function<void(const Crossing&)>& visit,
+                             const SelfIntersectionSettings& settings = {});
 
 }  // namespace innermap

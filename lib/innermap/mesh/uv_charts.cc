@@ -8,6 +8,7 @@
 #include <numeric>
 #include <queue>
 
+#include "innermap/core/detail/disjoint_sets.h"
 #include "innermap/core/error.h"
 #include "innermap/mesh/detail/topology.h"
 
@@ -70,7 +71,7 @@ using PairVisitor = std::function<void(const EdgeUse&, const EdgeUse&, bool agre
 
 void forEachUvPair(const Mesh& mesh, const PairVisitor& visit, double* edgeLength = nullptr) {
   const Agreement agree(mesh);
-  const std::vector<int> joined = joinSeams(mesh.vertices, mesh.triangles);
+  const std::vector<int> joined = joinedVertices(mesh.vertices, mesh.triangles);
   const std::vector<EdgeUse> edges = sortedEdges(mapped(mesh.triangles, joined));
   forEachEdge(edges, [&](const EdgeUse* begin, const EdgeUse* end) {
     if (edgeLength) *edgeLength += norm(mesh.vertices[begin->high] - mesh.vertices[begin->low]);
@@ -236,7 +237,7 @@ std::vector<int> colouring(const Mesh& mesh, const UvCharts& charts, const std::
 
 }  // namespace
 
-UvCharts uvCharts(const Mesh& mesh, Progress* progress) {
+UvCharts uvCharts(const Mesh& mesh, const UvChartSettings& settings) {
   validate(mesh);
   if (mesh.uvTriangles.empty())
     throw DataError(mesh.name +
@@ -254,7 +255,7 @@ UvCharts uvCharts(const Mesh& mesh, Progress* progress) {
           out.seams.push_back({a.triangle, a.corner, b.triangle, b.corner});
       },
       &out.edgeLength);
-  throwIfCancelled(progress);
+  throwIfCancelled(settings.progress);
   out.chart.assign(count, -1);
   std::vector<int> number(count, -1);
   for (std::size_t t = 0; t < count; ++t) {
@@ -267,10 +268,11 @@ UvCharts uvCharts(const Mesh& mesh, Progress* progress) {
   return out;
 }
 
-UvGroups uvGroups(const Mesh& mesh, const UvCharts& charts, int most, Progress* progress) {
+UvGroups uvGroups(const Mesh& mesh, const UvCharts& charts, const UvGroupSettings& settings) {
+  const int most = settings.most;
   if (most < kFewestGroups || most > kMostGroups)
     throw SettingError("UV groups", "must lie in 2 to 64");
-  Division division(mesh, charts, progress);
+  Division division(mesh, charts, settings.progress);
   division.run();
   UvGroups out;
   out.pieces = division.count;

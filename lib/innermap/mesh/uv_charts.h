@@ -26,13 +26,17 @@ struct UvCharts {
          edgeLength = 0;  // of the seams and of all edges, world units
 };
 
+struct UvChartSettings {
+  Progress* progress = nullptr;
+};
+
 // Coordinates agree when they have the same index or differ by less than a
 // millionth of their extent. Vertices that the file split along a seam count as
 // one. An edge of more than two triangles is a seam between those of its
 // neighbouring uses that differ; a border of the part that has coordinates is
 // none. Throws DataError as validate() does, and when the mesh has no texture
 // coordinates at all; Cancelled.
-UvCharts uvCharts(const Mesh& mesh, Progress* progress = nullptr);
+UvCharts uvCharts(const Mesh& mesh, const UvChartSettings& settings = {});
 
 // Charts in groups, so that one continuous pair of functions may hold the
 // coordinates of a group.
@@ -43,13 +47,17 @@ struct UvGroups {
   double unresolvedLength = 0;  // of seams whose two sides are in one group all the same
 };
 
+struct UvGroupSettings {
+  int most = 16;  // groups, in [2, 64]
+  Progress* progress = nullptr;
+};
+
 // A chart that meets itself along a seam (an unrolled cylinder) is divided:
 // each triangle goes with the side of its seams that is nearer along the chart.
-// Then each piece is a group of its own when there are at most `most`;
+// Then each piece is a group of its own when there are at most
+// settings.most;
 // otherwise pieces that no seam joins share groups (greedy colouring, largest
-// pieces first). `most` in [2, 64]. Same for any number of threads. Throws
-// SettingError, Cancelled.
-UvGroups uvGroups(const Mesh& mesh, const UvCharts& charts, int most = 16,
-                  Progress* progress = nullptr);
+// pieces first). Same for any number of threads. Throws SettingError, Cancelled.
+UvGroups uvGroups(const Mesh& mesh, const UvCharts& charts, const UvGroupSettings& settings = {});
 
 }  // namespace innermap

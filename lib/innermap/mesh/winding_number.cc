@@ -2,12 +2,12 @@
 
 #include <array>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/mesh/detail/bvh.h"
 
 namespace innermap {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 // Clusters farther than this many radii are expanded.
 constexpr double kBeta = 2.1, kRoughBeta = 1.25;
 

@@ -52,12 +52,23 @@ class Buffer {
   fmt::memory_buffer text_;
 };
 
-void writePly(std::ostream& stream, const Mesh& mesh) {
+void writeProperty(Buffer& out, const VertexProperty& property, std::size_t v) {
+  if (const auto* integers = std::get_if<std::vector<std::int32_t>>(&property.values))
+    out.littleEndian(static_cast<std::uint32_t>((*integers)[v]), 4);
+  else
+    out.littleEndian(std::get<std::vector<double>>(property.values)[v]);
+}
+
+void writePlyTo(std::ostream& stream, const Mesh& mesh, const PlyExtras& extras) {
   Buffer out(stream);
   const bool colours = !mesh.colours.empty();
-  out.print("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", mesh.vertices.size());
+  out.print("ply\nformat binary_little_endian 1.0\n");
+  if (!extras.comment.empty()) out.print("comment {}\n", extras.comment);
+  out.print("element vertex {}\n", mesh.vertices.size());
   out.print("property double x\nproperty double y\nproperty double z\n");
   if (colours) out.print("property uchar red\nproperty uchar green\nproperty uchar blue\n");
+  for (const VertexProperty& p : extras.properties)
+    out.print("property {} {}\n", p.values.index() == 0 ? "int" : "double", p.name);
   out.print("element face {}\nproperty list uchar int vertex_indices\nend_header\n",
             mesh.triangles.size());
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
@@ -66,6 +77,7 @@ void writePly(std::ostream& stream, const Mesh& mesh) {
       const double value = std::clamp(static_cast<double>(mesh.colours[v][c]), 0.0, 1.0);
       out.littleEndian(static_cast<std::uint64_t>(std::lround(255 * value)), 1);
     }
+    for (const VertexProperty& p : extras.properties) writeProperty(out, p, v);
   }
   for (const Triangle& t : mesh.triangles) {
     out.littleEndian(3, 1);
@@ -104,7 +116,20 @@ void writeMesh(const std::string& path, const Mesh& mesh) {
   const bool ply = equalsIgnoringCase(extension, ".ply");
   if (!ply && !equalsIgnoringCase(extension, ".obj"))
     throw FileError(path, "meshes are written as .ply or .obj; give one of these extensions");
-  writeWholeFile(path, [&](std::ostream& stream) { (ply ? writePly : writeObj)(stream, mesh); });
+  writeWholeFile(path, [&](std::ostream& stream) {
+    ply ? writePlyTo(stream, mesh, {}) : writeObj(stream, mesh);
+  });
+}
+
+void writePly(const std::string& path, const Mesh& mesh, const PlyExtras& extras) {
+  for (const VertexProperty& p : extras.properties) {
+    const std::size_t count =
+        std::visit([](const auto& values) { return values.size(); }, p.values);
+    if (count != mesh.vertices.size())
+      throw DataError(fmt::format("{}: property '{}' has {} values for {} vertices", path, p.name,
+                                  count, mesh.vertices.size()));
+  }
+  writeWholeFile(path, [&](std::ostream& stream) { writePlyTo(stream, mesh, extras); });
 }
 
 }  // namespace innermap

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/point_grid.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
@@ -114,7 +115,7 @@ std::vector<Candidate> throwDarts(
 }
 
 Vec3 randomDirection(double u, double v) {
-  const double z = 2 * u - 1, r = std::sqrt(1 - z * z), angle = 2 * M_PI * v;
+  const double z = 2 * u - 1, r = std::sqrt(1 - z * z), angle = 2 * kPi * v;
   return {r * std::cos(angle), r * std::sin(angle), z};
 }
 

@@ -4,9 +4,11 @@
 
 #include <cmath>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/core/parallel.h"
 #include "innermap/levelset/offset_surface.h"
+#include "innermap/sample/detail/sample_elimination.h"
 #include "innermap/sample/surface_samples.h"
 
 namespace innermap {
@@ -153,13 +155,13 @@ Points sourceSphere(const Solid& solid, double ratio, const SourceSettings& sett
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
           const double z = 2 * random.uniform(2 * i) - 1;
-          const double angle = 2 * 3.14159265358979323846 * random.uniform(2 * i + 1);
+          const double angle = 2 * kPi * random.uniform(2 * i + 1);
           const double r = std::sqrt(1 - z * z);
           candidates[i] = {r * std::cos(angle), r * std::sin(angle), z};
         }
       },
       settings.progress);
-  const double area = 4 * 3.14159265358979323846;
+  const double area = 4 * kPi;
   const double radius = 0.5 * ratio * solid.diagonal();
   const Vec3 center = solid.box().center();
   Points points;

@@ -5,6 +5,7 @@
 
 #include "innermap/core/detail/random.h"
 #include "innermap/core/parallel.h"
+#include "innermap/sample/detail/sample_elimination.h"
 
 namespace innermap {
 namespace {

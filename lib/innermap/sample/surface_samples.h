@@ -25,9 +25,4 @@ std::vector<SurfacePoint> randomSamples(const Mesh& mesh, std::size_t count,
 std::vector<SurfacePoint> blueNoiseSamples(const Mesh& mesh, std::size_t count,
                                            const SampleSettings& settings = {});
 
-// Weighted sample elimination itself: indices (ascending) of the `count` of `points` that are kept,
-// the points lying on a surface of area `area`.
-std::vector<std::size_t> eliminateSamples(const Points& points, std::size_t count, double area,
-                                          Progress* progress = nullptr);
-
 }  // namespace innermap

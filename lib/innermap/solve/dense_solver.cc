@@ -9,6 +9,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
+#include "innermap/solve/detail/blocked_qr.h"
 #include "innermap/solve/kernel_sum.h"
 
 namespace innermap {
@@ -85,14 +86,46 @@ std::uint64_t denseSolverMemory(std::size_t collocation, std::size_t sources, st
   return 8 * (m * (n + kAffine) + 7 * n * n + 2 * h * n + 64 * n);
 }
 
+class DenseSolver::Factors {
+ public:
+  Factors(const Points& collocation, const Points& sources, const Points& heldOut,
+          const DenseSettings& settings);
+
+  DenseSolution solve(const Matrix& values, Regularization method, const Matrix& heldOutValues,
+                      std::optional<double> regularization) const;
+  const Matrix& singularValues() const { return singularValues_; }
+
+ private:
+  struct Projected;
+  Matrix factor(const Points& points, const Points& sources, const DenseSettings& settings);
+  void decompose(Matrix& r22);
+  void prepareHeldOut(const Points& points, const Points& sources, const DenseSettings& settings);
+  Projected project(const Matrix& values) const;
+  Matrix heldOutResidual(const Projected& rhs, const Matrix& heldOutValues) const;
+  double chooseRegularization(const Projected& rhs, Regularization method, const Matrix& values,
+                              const Matrix& heldOutValues) const;
+
+  Vec3 center_;
+  double scale_ = 1;
+  std::size_t sources_ = 0;
+  BlockedQr qr_;
+  Matrix affineBlock_;      // R11, 4 x 4
+  Matrix coupling_;         // R11^-1 R12, 4 x #sources
+  Matrix leftTransposed_;   // U^T
+  Matrix rightTransposed_;  // V^T
+  Matrix singularValues_;
+  Matrix heldOutAffine_;  // P at the held-out points
+  Matrix heldOutModes_;   // (A - P R11^-1 R12) V at the held-out points
+};
+
 // A right-hand side in the coordinates of the factorization.
-struct DenseSolver::Projected {
+struct DenseSolver::Factors::Projected {
   Matrix affine;  // R11^-1 (Q^T b)_1, 4 x #K
   Matrix modes;   // U^T (Q^T b)_2, #sources x #K
 };
 
-DenseSolver::DenseSolver(const Points& collocation, const Points& sources, const Points& heldOut,
-                         const DenseSettings& settings)
+DenseSolver::Factors::Factors(const Points& collocation, const Points& sources,
+                              const Points& heldOut, const DenseSettings& settings)
     : sources_(sources.size()) {
   const std::size_t m = collocation.size(), n = sources.size(), columns = n + kAffine;
   if (n == 0) throw SettingError("sources", "there are none; use at least 1");
@@ -118,12 +151,12 @@ DenseSolver::DenseSolver(const Points& collocation, const Points& sources, const
 }
 
 // QR of [P A]; keeps what belongs to the affine part and gives R22.
-Matrix DenseSolver::factor(const Points& points, const Points& sources,
-                           const DenseSettings& settings) {
+Matrix DenseSolver::Factors::factor(const Points& points, const Points& sources,
+                                    const DenseSettings& settings) {
   const std::size_t m = points.size(), n = sources.size(), columns = n + kAffine;
   Matrix a(m, columns);
   fillAffine(points, a.data(), m);
-  fillKernelMatrix(points, sources, 1, a.column(kAffine), m, settings.progress);
+  fillKernelMatrix(points, sources, 1, a.column(kAffine), m, {settings.progress});
   qr_ = BlockedQr(std::move(a), settings.progress);
   const Matrix r = qr_.upperTriangle();
   Matrix r22(n, n);
@@ -143,7 +176,7 @@ Matrix DenseSolver::factor(const Points& points, const Points& sources,
 }
 
 // R22 = U S V^T; the storage of R22 then holds U^T.
-void DenseSolver::decompose(Matrix& r22) {
+void DenseSolver::Factors::decompose(Matrix& r22) {
   Matrix u;
   svd(r22, singularValues_, u, rightTransposed_);
   leftTransposed_ = std::move(r22);
@@ -151,13 +184,13 @@ void DenseSolver::decompose(Matrix& r22) {
     for (std::size_t i = 0; i < sources_; ++i) leftTransposed_(j, i) = u(i, j);
 }
 
-void DenseSolver::prepareHeldOut(const Points& points, const Points& sources,
-                                 const DenseSettings& settings) {
+void DenseSolver::Factors::prepareHeldOut(const Points& points, const Points& sources,
+                                          const DenseSettings& settings) {
   const std::size_t n = sources.size();
   heldOutAffine_ = Matrix(points.size(), kAffine);
   fillAffine(points, heldOutAffine_.data(), points.size());
   Matrix kernel(points.size(), n), right(n, n);
-  fillKernelMatrix(points, sources, 1, kernel.data(), points.size(), settings.progress);
+  fillKernelMatrix(points, sources, 1, kernel.data(), points.size(), {settings.progress});
   multiply(false, -1, heldOutAffine_, coupling_, 1, kernel, settings.progress);
   for (std::size_t j = 0; j < n; ++j)
     for (std::size_t i = 0; i < n; ++i) right(i, j) = rightTransposed_(j, i);
@@ -165,7 +198,7 @@ void DenseSolver::prepareHeldOut(const Points& points, const Points& sources,
   multiply(false, 1, kernel, right, 0, heldOutModes_, settings.progress);
 }
 
-DenseSolver::Projected DenseSolver::project(const Matrix& values) const {
+DenseSolver::Factors::Projected DenseSolver::Factors::project(const Matrix& values) const {
   Matrix c = values;
   qr_.applyTransposedQ(c);
   Projected out{Matrix(kAffine, values.columns()), Matrix(sources_, values.columns())};
@@ -180,14 +213,16 @@ DenseSolver::Projected DenseSolver::project(const Matrix& values) const {
 }
 
 // What the charges have to explain at the held-out points.
-Matrix DenseSolver::heldOutResidual(const Projected& rhs, const Matrix& heldOutValues) const {
+Matrix DenseSolver::Factors::heldOutResidual(const Projected& rhs,
+                                             const Matrix& heldOutValues) const {
   Matrix residual = heldOutValues;
   multiply(false, -1, heldOutAffine_, rhs.affine, 1, residual);
   return residual;
 }
 
-double DenseSolver::chooseRegularization(const Projected& rhs, Regularization method,
-                                         const Matrix& values, const Matrix& heldOutValues) const {
+double DenseSolver::Factors::chooseRegularization(const Projected& rhs, Regularization method,
+                                                  const Matrix& values,
+                                                  const Matrix& heldOutValues) const {
   constexpr int kCandidates = 66;  // 1, then 10^(-k/4) down to 1e-16
   const std::size_t channels = values.columns();
   const double largest = singularValues_(0, 0);
@@ -222,9 +257,9 @@ double DenseSolver::chooseRegularization(const Projected& rhs, Regularization me
   return candidates.back();
 }
 
-DenseSolution DenseSolver::solve(const Matrix& values, Regularization method,
-                                 const Matrix& heldOutValues,
-                                 std::optional<double> regularization) const {
+DenseSolution DenseSolver::Factors::solve(const Matrix& values, Regularization method,
+                                          const Matrix& heldOutValues,
+                                          std::optional<double> regularization) const {
   if (regularization && !(*regularization >= 0 && *regularization <= 1))
     throw SettingError("regularization", "must lie in [0, 1]");
   if (!regularization && (heldOutModes_.empty() || heldOutValues.empty()))
@@ -273,5 +308,17 @@ DenseSolution DenseSolver::solve(const Matrix& values, Regularization method,
   out.weights = std::move(weights);
   return out;
 }
+
+DenseSolver::DenseSolver(const Points& collocation, const Points& sources, const Points& heldOut,
+                         const DenseSettings& settings)
+    : factors_(std::make_shared<const Factors>(collocation, sources, heldOut, settings)) {}
+
+DenseSolution DenseSolver::solve(const Matrix& values, Regularization method,
+                                 const Matrix& heldOutValues,
+                                 std::optional<double> regularization) const {
+  return factors_->solve(values, method, heldOutValues, regularization);
+}
+
+const Matrix& DenseSolver::singularValues() const { return factors_->singularValues(); }
 
 }  // namespace innermap

@@ -12,13 +12,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "innermap/core/matrix.h"
 #include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/solve/affine.h"
-#include "innermap/solve/detail/blocked_qr.h"
 
 namespace innermap {
 
@@ -40,7 +40,7 @@ struct DenseSolution {
   double heldOutRms = 0;      // in the values' units; 0 when there were no held-out points
 };
 
-// Immutable after construction; solve() may be called from several threads.
+// Immutable; copies share their data; safe from any number of threads.
 class DenseSolver {
  public:
   // collocation: at least #sources + 4 points; heldOut: points that choose the regularisation, may
@@ -56,29 +56,11 @@ class DenseSolver {
   DenseSolution solve(const Matrix& values, Regularization method, const Matrix& heldOutValues,
                       std::optional<double> regularization = {}) const;
 
-  const Matrix& singularValues() const { return singularValues_; }  // #sources x 1, decreasing
+  const Matrix& singularValues() const;  // #sources x 1, decreasing
 
  private:
-  struct Projected;
-  Matrix factor(const Points& points, const Points& sources, const DenseSettings& settings);
-  void decompose(Matrix& r22);
-  void prepareHeldOut(const Points& points, const Points& sources, const DenseSettings& settings);
-  Projected project(const Matrix& values) const;
-  Matrix heldOutResidual(const Projected& rhs, const Matrix& heldOutValues) const;
-  double chooseRegularization(const Projected& rhs, Regularization method, const Matrix& values,
-                              const Matrix& heldOutValues) const;
-
-  Vec3 center_;
-  double scale_ = 1;
-  std::size_t sources_ = 0;
-  BlockedQr qr_;
-  Matrix affineBlock_;      // R11, 4 x 4
-  Matrix coupling_;         // R11^-1 R12, 4 x #sources
-  Matrix leftTransposed_;   // U^T
-  Matrix rightTransposed_;  // V^T
-  Matrix singularValues_;
-  Matrix heldOutAffine_;  // P at the held-out points
-  Matrix heldOutModes_;   // (A - P R11^-1 R12) V at the held-out points
+  class Factors;
+  std::shared_ptr<const Factors> factors_;
 };
 
 // Peak need of a DenseSolver in bytes.

@@ -32,6 +32,11 @@ void check(const FastSumSettings& settings) {
   if (!(settings.absolute >= 0)) throw SettingError("accuracy", "of sums must not be negative");
 }
 
+bool useHierarchy(const SumSize& size, SumMethod method) {
+  return method == SumMethod::cheapest ? hierarchyIsCheaper(size)
+                                       : method == SumMethod::hierarchical;
+}
+
 FieldSamples samplesFor(std::size_t points, std::size_t channels, bool gradients) {
   FieldSamples out;
   out.values = Matrix(points, channels);
@@ -92,7 +97,7 @@ namespace {
 // One try at a given order.
 class Hierarchy {
  public:
-  Hierarchy(const ChargeTree& tree, const FarFieldSettings& plan, const FastSumSettings& settings)
+  Hierarchy(const ChargeTree& tree, const FarFieldPlan& plan, const FastSumSettings& settings)
       : tree_(tree),
         settings_(settings),
         proxies_(tree, ExpansionBasis::get(plan.order), settings.progress),
@@ -112,7 +117,7 @@ class Hierarchy {
 FieldSamples Hierarchy::at(const Points& points) const {
   Points local(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) local[i] = tree_.toLocal(points[i]);
-  const BallTree targets(local, {kLeastBall}, kPointsPerLeaf, 3);
+  const BallTree targets(local, kLeastBall, kPointsPerLeaf, 3);
   const std::size_t channels = tree_.channels();
   FieldSamples out = samplesFor(points.size(), channels, settings_.gradients);
   descend(field_, targets,
@@ -148,7 +153,7 @@ void Hierarchy::onLattice(const LatticeBlocks& lattice, const BlockVisitor& visi
         tree_.toLocal(0.5 * (pointOf(lattice, block, 0) + pointOf(lattice, block, 511))));
   }
   const double spacing = lattice.spacing * tree_.inverseScale();
-  const BallTree targets(centers, {LatticeBlock::radius() * spacing}, 1, 3);
+  const BallTree targets(centers, LatticeBlock::radius() * spacing, 1, 3);
   const LatticeBlock polynomial(field_.basis().harmonics());
   descend(
       field_, targets,
@@ -167,7 +172,7 @@ std::unique_ptr<const Hierarchy> firstAccurate(const ChargeTree& tree,
                                                const SumReference& reference,
                                                const FastSumSettings& settings,
                                                const Sample& sample) {
-  FarFieldSettings plan = planFor(reference.accuracy());
+  FarFieldPlan plan = planFor(reference.accuracy());
   while (plan.order <= ExpansionBasis::kMostOrder) {
     auto hierarchy = std::make_unique<const Hierarchy>(tree, plan, settings);
     const double excess = reference.excess(sample(*hierarchy));
@@ -200,7 +205,7 @@ FieldSamples directAt(const Charges& charges, const LatticeBlocks& lattice,
   Points points;
   for (const Block& b : lattice.blocks)
     for (const std::uint16_t place : placesOf(b)) points.push_back(pointOf(lattice, b, place));
-  return sumCharges(charges, points, settings.gradients, settings.progress);
+  return sumCharges(charges, points, settings.gradients, {settings.progress});
 }
 
 // The wanted points of all blocks, in the order of directAt.
@@ -258,13 +263,13 @@ FieldSamples FastSum::at(const Points& points, const FastSumSettings& settings) 
     if (!isFinite(points[i]))
       throw DataError("sums: point " + std::to_string(i) + " is not finite");
   const auto plain = [&](const Points& some) {
-    return sumCharges(data_->direct, some, settings.gradients, settings.progress);
+    return sumCharges(data_->direct, some, settings.gradients, {settings.progress});
   };
   if (count() == 0 || channels() == 0 || points.empty()) return plain(points);
   const std::vector<std::size_t> sample = evenly(kSampled, points.size());
   Points some;
   for (const std::size_t i : sample) some.push_back(points[i]);
-  const SumReference reference(plain(some), settings);
+  const SumReference reference(plain(some), settings.accuracy, settings.absolute);
   const SumSize size{count(), points.size(), kPointsPerLeaf, planFor(reference.accuracy()).order,
                      settings.gradients};
   if (!useHierarchy(size, settings.method)) return plain(points);
@@ -290,7 +295,8 @@ void FastSum::onLattice(const LatticeBlocks& lattice, const BlockVisitor& visit,
   std::unique_ptr<const Hierarchy> hierarchy;
   if (count() > 0 && channels() > 0) {
     const LatticeBlocks some = someOf(lattice);
-    const SumReference reference(directAt(data_->direct, some, settings), settings);
+    const SumReference reference(directAt(data_->direct, some, settings), settings.accuracy,
+                                 settings.absolute);
     const SumSize size{count(), wantedPoints(lattice), LatticeBlock::kPoints,
                        planFor(reference.accuracy()).order, settings.gradients};
     if (useHierarchy(size, settings.method))

@@ -7,9 +7,10 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
+#include "innermap/solve/detail/coarse_solver.h"
 #include "innermap/solve/detail/directions.h"
+#include "innermap/solve/detail/local_solver.h"
 #include "innermap/solve/fast_sum.h"
-#include "innermap/solve/sequence_solver.h"
 
 namespace innermap {
 namespace {
@@ -19,8 +20,6 @@ constexpr double kLeastGain = 0.03;  // of the residual; less is not worth an it
 // An iteration's gain (in squares of the residual) is taken to be at least this share of the one
 // before.
 constexpr double kLeastShrinkage = 0.04;
-// Channels of a solution that are so nearly multiples of each other count as one.
-constexpr double kAlike = 0.1;
 constexpr double kFinestProduct = 1e-12, kCoarsestProduct = 1e-3;  // relative
 constexpr double kSameSpacing = 1e-6;                              // relative
 
@@ -64,15 +63,65 @@ std::uint64_t iterativeSolverMemory(std::size_t collocation, std::size_t sources
          static_cast<std::uint64_t>(directions);
 }
 
+class IterativeSolver::Levels {
+ public:
+  Levels(const Points& collocation, const std::vector<SourceLevel>& levels,
+         const IterativeSettings& settings);
+
+  void add(const Points& collocation, const std::vector<SourceLevel>& levels);
+  IterativeSolution solve(const Matrix& values, const IterativeSolution* start) const;
+
+  const Points& sources() const { return sources_; }
+  std::size_t collocation() const { return collocation_.size(); }
+
+ private:
+  struct Level {
+    LocalSolver solver;
+    std::vector<std::size_t> sources;  // indices into sources_
+  };
+  struct Scaled;
+
+  void check(const Points& collocation, const std::vector<SourceLevel>& levels, bool first) const;
+  void addPoints(const Points& collocation);
+  std::vector<std::size_t> addSources(const Points& sources);
+  void addLevel(const SourceLevel& level);
+  Scaled scaled(const Matrix& values) const;
+  void startFrom(const IterativeSolution& start, const Scaled& values, Matrix& residual,
+                 Matrix& x) const;
+  Matrix scaledStart(const IterativeSolution& start, const Scaled& values) const;
+  IterativeSolution iterate(const Scaled& values, Matrix& residual, Matrix& x) const;
+  void runLevels(OrthogonalDirections& directions, Matrix& residual, Matrix& x) const;
+  void takeDirections(const Matrix& weights, const std::vector<std::size_t>& rows,
+                      const Points& sources, OrthogonalDirections& directions, Matrix& residual,
+                      Matrix& x) const;
+  void unscale(const Scaled& values, const Matrix& residual, const Matrix& x,
+               IterativeSolution& out) const;
+  Matrix image(const Matrix& weights, const Points& sources, const Points& points,
+               double accuracy) const;
+  Points normalised(const Points& points) const;
+  std::size_t unknowns() const { return CoarseSolver::kAffine + sources_.size(); }
+
+  IterativeSettings settings_;
+  Vec3 center_;
+  double scale_ = 1;
+  Points collocation_;    // normalised
+  Points sources_;        // world units
+  Points coarseSources_;  // normalised
+  std::vector<std::size_t>
+      coarseRows_;  // of the affine part and the first level among the unknowns
+  CoarseSolver coarse_;
+  std::vector<Level> levels_;  // beyond the first, of falling spacing
+};
+
 // Values centred and divided by `size`: the local solves are in single precision.
-struct IterativeSolver::Scaled {
+struct IterativeSolver::Levels::Scaled {
   Matrix values;
   std::vector<double> middle;  // of each channel
   double size = 0;             // of the widest channel
 };
 
-IterativeSolver::IterativeSolver(const Points& collocation, const std::vector<SourceLevel>& levels,
-                                 const IterativeSettings& settings)
+IterativeSolver::Levels::Levels(const Points& collocation, const std::vector<SourceLevel>& levels,
+                                const IterativeSettings& settings)
     : settings_(settings) {
   check(collocation, levels, true);
   const Box3 box = boundingBox(collocation);
@@ -87,14 +136,15 @@ IterativeSolver::IterativeSolver(const Points& collocation, const std::vector<So
   for (std::size_t l = 1; l < levels.size(); ++l) addLevel(levels[l]);
 }
 
-void IterativeSolver::add(const Points& collocation, const std::vector<SourceLevel>& levels) {
+void IterativeSolver::Levels::add(const Points& collocation,
+                                  const std::vector<SourceLevel>& levels) {
   check(collocation, levels, false);
   addPoints(collocation);
   for (const SourceLevel& level : levels) addLevel(level);
 }
 
-void IterativeSolver::check(const Points& collocation, const std::vector<SourceLevel>& levels,
-                            bool first) const {
+void IterativeSolver::Levels::check(const Points& collocation,
+                                    const std::vector<SourceLevel>& levels, bool first) const {
   if (first && levels.empty())
     throw SettingError("sources", "there are none; use at least one level of them");
   if (!(settings_.accuracy >= kFinestProduct && settings_.accuracy <= kCoarsestProduct))
@@ -117,25 +167,25 @@ void IterativeSolver::check(const Points& collocation, const std::vector<SourceL
                 "use fewer sources (memory grows in proportion)");
 }
 
-Points IterativeSolver::normalised(const Points& points) const {
+Points IterativeSolver::Levels::normalised(const Points& points) const {
   Points out(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) out[i] = (points[i] - center_) / scale_;
   return out;
 }
 
-void IterativeSolver::addPoints(const Points& collocation) {
+void IterativeSolver::Levels::addPoints(const Points& collocation) {
   const Points points = normalised(collocation);
   collocation_.insert(collocation_.end(), points.begin(), points.end());
 }
 
-std::vector<std::size_t> IterativeSolver::addSources(const Points& sources) {
+std::vector<std::size_t> IterativeSolver::Levels::addSources(const Points& sources) {
   std::vector<std::size_t> indices(sources.size());
   std::iota(indices.begin(), indices.end(), sources_.size());
   sources_.insert(sources_.end(), sources.begin(), sources.end());
   return indices;
 }
 
-void IterativeSolver::addLevel(const SourceLevel& level) {
+void IterativeSolver::Levels::addLevel(const SourceLevel& level) {
   const double spacing = level.spacing / scale_;
   auto at = std::find_if(levels_.begin(), levels_.end(), [&](const Level& l) {
     return l.solver.spacing() <= spacing * (1 + kSameSpacing);
@@ -147,7 +197,7 @@ void IterativeSolver::addLevel(const SourceLevel& level) {
   at->sources.insert(at->sources.end(), added.begin(), added.end());
 }
 
-IterativeSolver::Scaled IterativeSolver::scaled(const Matrix& values) const {
+IterativeSolver::Levels::Scaled IterativeSolver::Levels::scaled(const Matrix& values) const {
   if (values.rows() != collocation_.size())
     throw DataError("solve: the values do not fit the collocation points");
   Scaled out{values, std::vector<double>(values.columns(), 0.0), 0};
@@ -165,7 +215,8 @@ IterativeSolver::Scaled IterativeSolver::scaled(const Matrix& values) const {
 }
 
 // An earlier solution as unknowns for the scaled values.
-Matrix IterativeSolver::scaledStart(const IterativeSolution& start, const Scaled& values) const {
+Matrix IterativeSolver::Levels::scaledStart(const IterativeSolution& start,
+                                            const Scaled& values) const {
   const std::size_t channels = values.values.columns();
   if (start.weights.rows() > sources_.size() || start.residual.rows() > collocation_.size() ||
       start.residual.columns() != channels || start.weights.columns() != channels ||
@@ -189,8 +240,8 @@ Matrix IterativeSolver::scaledStart(const IterativeSolution& start, const Scaled
 }
 
 // Back to world units.
-void IterativeSolver::unscale(const Scaled& values, const Matrix& residual, const Matrix& x,
-                              IterativeSolution& out) const {
+void IterativeSolver::Levels::unscale(const Scaled& values, const Matrix& residual, const Matrix& x,
+                                      IterativeSolution& out) const {
   out.residual = residual;
   for (std::size_t i = 0; i < residual.rows() * residual.columns(); ++i)
     out.residual.data()[i] *= values.size;
@@ -210,8 +261,8 @@ void IterativeSolver::unscale(const Scaled& values, const Matrix& residual, cons
 }
 
 // What the charges' weights give at the points, to a relative accuracy; all in normalised units.
-Matrix IterativeSolver::image(const Matrix& weights, const Points& sources, const Points& points,
-                              double accuracy) const {
+Matrix IterativeSolver::Levels::image(const Matrix& weights, const Points& sources,
+                                      const Points& points, double accuracy) const {
   FastSumSettings s;
   s.accuracy = std::clamp(accuracy, kFinestProduct, kCoarsestProduct);
   s.progress = settings_.progress;
@@ -220,9 +271,11 @@ Matrix IterativeSolver::image(const Matrix& weights, const Points& sources, cons
 
 // Adds `weights`, those of the unknowns `rows`, as directions, and follows them. `rows` starts with
 // the affine part when there are four more of them than of sources.
-void IterativeSolver::takeDirections(const Matrix& weights, const std::vector<std::size_t>& rows,
-                                     const Points& sources, OrthogonalDirections& directions,
-                                     Matrix& residual, Matrix& x) const {
+void IterativeSolver::Levels::takeDirections(const Matrix& weights,
+                                             const std::vector<std::size_t>& rows,
+                                             const Points& sources,
+                                             OrthogonalDirections& directions, Matrix& residual,
+                                             Matrix& x) const {
   const std::size_t affine = rows.size() - sources.size();
   Matrix images =
       image(rowsOf(weights, affine), sources, collocation_, settings_.accuracy / rms(residual));
@@ -239,8 +292,8 @@ void IterativeSolver::takeDirections(const Matrix& weights, const std::vector<st
   directions.project(first, residual, x);
 }
 
-void IterativeSolver::runLevels(OrthogonalDirections& directions, Matrix& residual,
-                                Matrix& x) const {
+void IterativeSolver::Levels::runLevels(OrthogonalDirections& directions, Matrix& residual,
+                                        Matrix& x) const {
   takeDirections(coarse_.correction(residual), coarseRows_, coarseSources_, directions, residual,
                  x);
   for (const Level& level : levels_) {
@@ -251,10 +304,8 @@ void IterativeSolver::runLevels(OrthogonalDirections& directions, Matrix& residu
   }
 }
 
-// Until enough(residuals), the rms at the start and after each iteration.
-template <class Enough>
-IterativeSolution IterativeSolver::iterate(const Scaled& values, Matrix& residual, Matrix& x,
-                                           const Enough& enough) const {
+IterativeSolution IterativeSolver::Levels::iterate(const Scaled& values, Matrix& residual,
+                                                   Matrix& x) const {
   IterativeSolution out;
   OrthogonalDirections directions(collocation_.size(), unknowns());
   out.residuals.push_back(values.size * rms(residual));
@@ -264,14 +315,14 @@ IterativeSolution IterativeSolver::iterate(const Scaled& values, Matrix& residua
     runLevels(directions, residual, x);
     ++out.iterations;
     out.residuals.push_back(values.size * rms(residual));
-  } while (out.iterations < settings_.maxIterations && !enough(out.residuals));
+  } while (out.iterations < settings_.maxIterations && !littleIsLeft(out.residuals));
   unscale(values, residual, x, out);
   return out;
 }
 
 // The unknowns of an earlier solution, and its residual: known where it was solved for.
-void IterativeSolver::startFrom(const IterativeSolution& start, const Scaled& values,
-                                Matrix& residual, Matrix& x) const {
+void IterativeSolver::Levels::startFrom(const IterativeSolution& start, const Scaled& values,
+                                        Matrix& residual, Matrix& x) const {
   x = scaledStart(start, values);
   const std::size_t known = start.residual.rows();
   const Points fresh(collocation_.begin() + static_cast<std::ptrdiff_t>(known), collocation_.end());
@@ -286,37 +337,31 @@ void IterativeSolver::startFrom(const IterativeSolution& start, const Scaled& va
   }
 }
 
-IterativeSolution IterativeSolver::solve(const Matrix& values,
-                                         const IterativeSolution* start) const {
+IterativeSolution IterativeSolver::Levels::solve(const Matrix& values,
+                                                 const IterativeSolution* start) const {
   const Scaled rhs = scaled(values);
   Matrix residual = rhs.values, x(unknowns(), values.columns());
   if (start) startFrom(*start, rhs, residual, x);
-  return iterate(rhs, residual, x, littleIsLeft);
+  return iterate(rhs, residual, x);
 }
 
-SequenceSolver::SequenceSolver(IterativeSolver solver) : solver_(std::move(solver)) {}
+IterativeSolver::IterativeSolver(const Points& collocation, const std::vector<SourceLevel>& levels,
+                                 const IterativeSettings& settings)
+    : levels_(std::make_unique<Levels>(collocation, levels, settings)) {}
+IterativeSolver::IterativeSolver(IterativeSolver&&) noexcept = default;
+IterativeSolver& IterativeSolver::operator=(IterativeSolver&&) noexcept = default;
+IterativeSolver::~IterativeSolver() = default;
 
-SequenceSolver::SequenceSolver(SequenceSolver&&) noexcept = default;
-SequenceSolver& SequenceSolver::operator=(SequenceSolver&&) noexcept = default;
-SequenceSolver::~SequenceSolver() = default;
-
-IterativeSolution SequenceSolver::solve(const Matrix& values) {
-  const IterativeSolver::Scaled rhs = solver_.scaled(values);
-  Matrix residual = rhs.values, x(solver_.unknowns(), values.columns());
-  if (solutions_) solutions_->project(0, residual, x);
-  const IterativeSolution out = solver_.iterate(rhs, residual, x, littleIsLeft);
-  keep(rhs.values, residual, std::move(x));
-  return out;
+void IterativeSolver::add(const Points& collocation, const std::vector<SourceLevel>& levels) {
+  levels_->add(collocation, levels);
 }
 
-// The solution as directions, whose image is known without a product. That of one frame alone: more
-// of them differ by what they did not resolve, and a combination of them magnifies it.
-void SequenceSolver::keep(Matrix values, const Matrix& residual, Matrix x) {
-  auto directions = std::make_unique<OrthogonalDirections>(values.rows(), x.rows(), kAlike);
-  for (std::size_t i = 0; i < values.rows() * values.columns(); ++i)
-    values.data()[i] -= residual.data()[i];
-  directions->add(std::move(x), std::move(values));
-  solutions_ = std::move(directions);
+IterativeSolution IterativeSolver::solve(const Matrix& values,
+                                         const IterativeSolution* start) const {
+  return levels_->solve(values, start);
 }
+
+const Points& IterativeSolver::sources() const { return levels_->sources(); }
+std::size_t IterativeSolver::collocation() const { return levels_->collocation(); }
 
 }  // namespace innermap

@@ -13,14 +13,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "innermap/core/matrix.h"
 #include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/solve/affine.h"
-#include "innermap/solve/detail/coarse_solver.h"
-#include "innermap/solve/detail/local_solver.h"
 
 namespace innermap {
 
@@ -48,8 +47,6 @@ struct IterativeSolution {
   Matrix residual;                // values less field at the collocation points, #collocation x #K
 };
 
-class OrthogonalDirections;
-
 // What is built serves any number of right-hand sides; const functions may be called from several
 // threads.
 class IterativeSolver {
@@ -59,6 +56,9 @@ class IterativeSolver {
   // SettingError, MemoryError (before allocating), Cancelled.
   IterativeSolver(const Points& collocation, const std::vector<SourceLevel>& levels,
                   const IterativeSettings& settings = {});
+  IterativeSolver(IterativeSolver&&) noexcept;
+  IterativeSolver& operator=(IterativeSolver&&) noexcept;
+  ~IterativeSolver();
 
   // More points, and more charges beyond the first level: a level of the same spacing as one that
   // is there (to 1e-6 of it) joins it. Only the new charges' clusters are factored. Points and
@@ -71,49 +71,12 @@ class IterativeSolver {
   // the sizes do not fit.
   IterativeSolution solve(const Matrix& values, const IterativeSolution* start = nullptr) const;
 
-  const Points& sources() const { return sources_; }  // all levels', world units
-  std::size_t collocation() const { return collocation_.size(); }
+  const Points& sources() const;  // all levels', world units
+  std::size_t collocation() const;
 
  private:
-  friend class SequenceSolver;
-  struct Level {
-    LocalSolver solver;
-    std::vector<std::size_t> sources;  // indices into sources_
-  };
-  struct Scaled;
-
-  void check(const Points& collocation, const std::vector<SourceLevel>& levels, bool first) const;
-  void addPoints(const Points& collocation);
-  std::vector<std::size_t> addSources(const Points& sources);
-  void addLevel(const SourceLevel& level);
-  Scaled scaled(const Matrix& values) const;
-  void startFrom(const IterativeSolution& start, const Scaled& values, Matrix& residual,
-                 Matrix& x) const;
-  Matrix scaledStart(const IterativeSolution& start, const Scaled& values) const;
-  template <class Enough>
-  IterativeSolution iterate(const Scaled& values, Matrix& residual, Matrix& x,
-                            const Enough& enough) const;
-  void runLevels(OrthogonalDirections& directions, Matrix& residual, Matrix& x) const;
-  void takeDirections(const Matrix& weights, const std::vector<std::size_t>& rows,
-                      const Points& sources, OrthogonalDirections& directions, Matrix& residual,
-                      Matrix& x) const;
-  void unscale(const Scaled& values, const Matrix& residual, const Matrix& x,
-               IterativeSolution& out) const;
-  Matrix image(const Matrix& weights, const Points& sources, const Points& points,
-               double accuracy) const;
-  Points normalised(const Points& points) const;
-  std::size_t unknowns() const { return CoarseSolver::kAffine + sources_.size(); }
-
-  IterativeSettings settings_;
-  Vec3 center_;
-  double scale_ = 1;
-  Points collocation_;    // normalised
-  Points sources_;        // world units
-  Points coarseSources_;  // normalised
-  std::vector<std::size_t>
-      coarseRows_;  // of the affine part and the first level among the unknowns
-  CoarseSolver coarse_;
-  std::vector<Level> levels_;  // beyond the first, of falling spacing
+  class Levels;
+  std::unique_ptr<Levels> levels_;
 };
 
 // Estimate of the peak need in bytes; coarse: sources of the first level, sources: of the others.

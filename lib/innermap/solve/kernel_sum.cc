@@ -83,7 +83,7 @@ void Charges::addTo(const Vec3* points, std::size_t count, double* values,
 }
 
 FieldSamples sumCharges(const Charges& charges, const Points& points, bool gradients,
-                        Progress* progress) {
+                        const KernelSumSettings& settings) {
   const std::size_t n = points.size(), channels = charges.channels();
   FieldSamples out;
   out.values = Matrix(n, channels);
@@ -100,12 +100,12 @@ FieldSamples sumCharges(const Charges& charges, const Points& points, bool gradi
         for (std::size_t k = 0; gradients && k < 3 * channels; ++k)
           std::copy_n(slopes.data() + k * size, size, out.gradients.column(k) + begin);
       },
-      progress);
+      settings.progress);
   return out;
 }
 
 void fillKernelMatrix(const Points& points, const Points& sources, double scale, double* out,
-                      std::size_t rowStride, Progress* progress) {
+                      std::size_t rowStride, const KernelSumSettings& settings) {
   if (points.empty() || sources.empty()) return;
   const TargetBlock targets(points.data(), points.size(), Vec3{}, 1);
   parallelBlocks(
@@ -115,7 +115,7 @@ void fillKernelMatrix(const Points& points, const Points& sources, double scale,
           simd::kernelColumn(targets.x.data(), targets.y.data(), targets.z.data(), points.size(),
                              sources[j].x, sources[j].y, sources[j].z, scale, out + j * rowStride);
       },
-      progress, "filling the kernel matrix");
+      settings.progress, "filling the kernel matrix");
 }
 
 const char* instructionSet() { return simd::targetName(); }

@@ -49,14 +49,18 @@ struct FieldSamples {
   Matrix gradients;  // #points x 3 #K, columns 3 k + axis; empty when not asked for
 };
 
-// Sums at many points, on all threads; the same values for any number of them.
+struct KernelSumSettings {
+  Progress* progress = nullptr;
+};
+
+// Sums at many points, on all threads; the same values for any number of them. Throws Cancelled.
 FieldSamples sumCharges(const Charges& charges, const Points& points, bool gradients,
-                        Progress* progress = nullptr);
+                        const KernelSumSettings& settings = {});
 
 // Fills `column`-major block: out[j * rowStride + i] = scale / |points[i] - sources[j]|.
-// #points x #sources. On all threads.
+// #points x #sources. On all threads. Throws Cancelled.
 void fillKernelMatrix(const Points& points, const Points& sources, double scale, double* out,
-                      std::size_t rowStride, Progress* progress = nullptr);
+                      std::size_t rowStride, const KernelSumSettings& settings = {});
 
 // The instruction set in use ("AVX3_ZEN4", say), for reports.
 const char* instructionSet();

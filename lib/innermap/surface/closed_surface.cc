@@ -1,16 +1,15 @@
 #include "innermap/surface/closed_surface.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
+#include "innermap/core/detail/disjoint_sets.h"
 #include "innermap/core/error.h"
+#include "innermap/mesh/connectivity.h"
 #include "innermap/mesh/repair.h"
-#include "innermap/mesh/seams.h"
 #include "innermap/surface/detail/topology/nesting.h"
 
 namespace innermap {
@@ -20,48 +19,6 @@ constexpr double kNoVolume = 1e-9;  // of the diagonal cubed
 constexpr std::size_t kNamedEdges = 5;
 
 std::string nameOf(const Mesh& mesh) { return mesh.name.empty() ? "mesh" : mesh.name; }
-
-// A side of a triangle, from corner side % 3 of triangle side / 3 to the next.
-struct Side {
-  int low, high;  // vertices
-  int side;
-  bool forward;  // from low to high
-};
-
-// All sides, sorted so that those of one edge are neighbours.
-std::vector<Side> sortedSides(const std::vector<Triangle>& triangles) {
-  std::vector<Side> sides(3 * triangles.size());
-  for (std::size_t s = 0; s < sides.size(); ++s) {
-    const int a = triangles[s / 3][s % 3], b = triangles[s / 3][(s + 1) % 3];
-    sides[s] = {std::min(a, b), std::max(a, b), static_cast<int>(s), a < b};
-  }
-  tbb::parallel_sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    if (a.low != b.low) return a.low < b.low;
-    return a.high != b.high ? a.high < b.high : a.side < b.side;
-  });
-  return sides;
-}
-
-template <typename Visit>
-void forEachEdge(const std::vector<Side>& sides, const Visit& visit) {
-  for (std::size_t i = 0, j = 0; i < sides.size(); i = j) {
-    for (j = i + 1;
-         j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high;)
-      ++j;
-    visit(sides[i], i, j - i);
-  }
-}
-
-int find(std::vector<int>& parent, int i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
-void unite(std::vector<int>& parent, int i, int j) {
-  i = find(parent, i);
-  j = find(parent, j);
-  parent[std::max(i, j)] = std::min(i, j);
-}
 
 // The first few edges by their vertices, "12-15, 15-20 and 3 more".
 std::string named(const std::vector<std::array<int, 2>>& edges) {
@@ -132,13 +89,12 @@ class ShellBuilder {
     std::vector<Triangle> own;
     for (std::size_t t = 0; t < joined_.size(); ++t)
       if (repaired_.parent[t] >= 0) own.push_back(joined_[t]);
-    const std::vector<Side> sides = sortedSides(own);
     std::vector<std::array<int, 2>> crowded, oneSided;
-    forEachEdge(sides, [&](const Side& first, std::size_t at, std::size_t count) {
-      if (count > 2)
-        crowded.push_back({first.low, first.high});
-      else if (count == 2 && sides[at].forward == sides[at + 1].forward)
-        oneSided.push_back({first.low, first.high});
+    forEachEdge(sortedEdges(own), [&](const EdgeUse* begin, const EdgeUse* end) {
+      if (end - begin > 2)
+        crowded.push_back({begin->low, begin->high});
+      else if (end - begin == 2 && begin[0].forward == begin[1].forward)
+        oneSided.push_back({begin->low, begin->high});
     });
     if (!crowded.empty())
       throw DataError(fmt::format(
@@ -193,25 +149,20 @@ class ShellBuilder {
   // Corners 3 t + k that are one vertex: those that edges of two triangles lead to. Parts of the
   // surface: triangles that such edges join.
   void findFans() {
-    corner_.resize(3 * joined_.size());
-    std::iota(corner_.begin(), corner_.end(), 0);
-    part_.resize(joined_.size());
-    std::iota(part_.begin(), part_.end(), 0);
-    const std::vector<Side> sides = sortedSides(joined_);
-    forEachEdge(sides, [&](const Side&, std::size_t at, std::size_t count) {
-      if (count != 2 || sides[at].forward == sides[at + 1].forward)
+    DisjointSets corners(3 * joined_.size()), parts(joined_.size());
+    forEachEdge(sortedEdges(joined_), [&](const EdgeUse* begin, const EdgeUse* end) {
+      if (end - begin != 2 || begin[0].forward == begin[1].forward)
         throw DataError(
             fmt::format("{}: caps do not close it, they meet other triangles at the "
                         "edge {}-{}; close the mesh by hand",
-                        nameOf(mesh_), sides[at].low, sides[at].high));
-      const int s = sides[at].side, o = sides[at + 1].side;
-      unite(corner_, s, next(o));
-      unite(corner_, next(s), o);
-      unite(part_, s / 3, o / 3);
+                        nameOf(mesh_), begin->low, begin->high));
+      const int s = begin[0].side(), o = begin[1].side();
+      corners.unite(s, next(o));
+      corners.unite(next(s), o);
+      parts.unite(begin[0].triangle, begin[1].triangle);
     });
-    for (std::size_t c = 0; c < corner_.size(); ++c)
-      corner_[c] = find(corner_, static_cast<int>(c));
-    for (std::size_t t = 0; t < part_.size(); ++t) part_[t] = find(part_, static_cast<int>(t));
+    corner_ = corners.representatives();
+    part_ = parts.representatives();
   }
 
   static int next(int side) { return side - side % 3 + (side + 1) % 3; }
@@ -281,7 +232,7 @@ class ShellBuilder {
   static bool enclosesSomething(const ClosedSurface& shell) {
     if (shell.vertices.size() < 4) return false;
     const double size = boundingBox(shell.vertices).diagonal();
-    return std::abs(shellVolume(shell)) > kNoVolume * size * size * size;
+    return std::abs(signedVolume(shell.vertices, shell.triangles)) > kNoVolume * size * size * size;
   }
 
   // The first fan of a vertex keeps it, others get one at the end.

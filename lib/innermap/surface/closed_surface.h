@@ -7,16 +7,9 @@
 
 #include "innermap/core/progress.h"
 #include "innermap/mesh/mesh.h"
+#include "innermap/surface/layout.h"
 
 namespace innermap {
-
-struct ClosedSurface {
-  std::string name;                 // what error messages should call it
-  Points vertices;                  // #V, world units; each is used by some triangle
-  std::vector<Triangle> triangles;  // #T; each edge has two, running opposite ways; outward of the
-                                    // solid (so a cavity's shell has a negative volume)
-  int genus = 0;                    // handles: #V - #E + #T = 2 - 2 genus
-};
 
 // A vertex of one of several shells.
 struct ShellVertex {

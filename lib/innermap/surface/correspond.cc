@@ -271,7 +271,10 @@ class Corresponder {
     SubdivideSettings how;
     how.tolerance = settings_.subdivide;
     how.progress = settings_.progress;
-    const Subdivided done = subdivide(shell.map, laidOutB_[shell.map.target]->metric, split_, how);
+    ShellCorrespondence& map = shell.map;
+    const Subdivided done =
+        subdivide({map.source, map.surface, map.image, map.targetSurface, map.targetLayout},
+                  laidOutB_[map.target]->metric, split_, how);
     if (!done.enough)
       out_.notes.push_back(fmt::format(
           "splitting stopped at {} triangles, before the target was followed within {:g} of its "

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "innermap/core/detail/pi.h"
+
 namespace innermap {
 namespace {
 
@@ -16,7 +18,7 @@ double coveredArea(ModelSpace space, const Vec3& p, const Vec3& q, const Vec3& r
 }
 
 double spaceArea(const Layout& layout) {
-  if (layout.space == ModelSpace::sphere) return 4 * std::acos(-1.0);
+  if (layout.space == ModelSpace::sphere) return 4 * kPi;
   return std::abs(cross(layout.period[0], layout.period[1]).z);
 }
 
@@ -25,12 +27,12 @@ double spaceArea(const Layout& layout) {
 LayoutQuality layoutQuality(const std::vector<Triangle>& triangles, const Points& vertices,
                             const Layout& layout) {
   LayoutQuality quality;
-  double total = 0, covered = 0;
+  const double total = surfaceArea(vertices, triangles);
+  double covered = 0;
   const auto restArea = [&](const Triangle& t) {
     const Vec3& a = vertices[t[0]];
     return 0.5 * norm(cross(vertices[t[1]] - a, vertices[t[2]] - a));
   };
-  for (const Triangle& t : triangles) total += restArea(t);
   const double space = spaceArea(layout);
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -48,6 +50,21 @@ LayoutQuality layoutQuality(const std::vector<Triangle>& triangles, const Points
   quality.degree = covered / space;
   quality.areaRatioLog10 = std::log10(least);
   return quality;
+}
+
+LayoutQuality together(const std::vector<LayoutQuality>& shells) {
+  LayoutQuality all;
+  all.areaRatioLog10 = std::numeric_limits<double>::infinity();
+  double farthest = -1;
+  for (const LayoutQuality& q : shells) {
+    all.flips += q.flips;
+    all.areaRatioLog10 = std::min(all.areaRatioLog10, q.areaRatioLog10);
+    if (std::abs(q.degree - 1) > farthest) {
+      farthest = std::abs(q.degree - 1);
+      all.degree = q.degree;
+    }
+  }
+  return all;
 }
 
 }  // namespace innermap

@@ -1,15 +1,24 @@
-// A closed surface laid out on a model space: the unit sphere, or the plane modulo a lattice (the
-// flat torus). One description serves both: points are rays from the origin, triangles are cones
-// over three rays, and on the torus all points have z = 1, where rays are plane points.
+// A closed surface, and how it is laid out on a model space: the unit sphere, or the plane modulo a
+// lattice (the flat torus). One description serves both: points are rays from the origin, triangles
+// are cones over three rays, and on the torus all points have z = 1, where rays are plane points.
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "innermap/core/vec3.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {
+
+struct ClosedSurface {
+  std::string name;                 // what error messages should call it
+  Points vertices;                  // #V, world units; each is used by some triangle
+  std::vector<Triangle> triangles;  // #T; each edge has two, running opposite ways; outward of the
+                                    // solid (so a cavity's shell has a negative volume)
+  int genus = 0;                    // handles: #V - #E + #T = 2 - 2 genus
+};
 
 enum class ModelSpace { sphere, torus };
 
@@ -60,5 +69,8 @@ struct LayoutQuality {
 
 LayoutQuality layoutQuality(const std::vector<Triangle>& triangles, const Points& vertices,
                             const Layout& layout);
+
+// Of several shells: all flips, the degree farthest from 1, the least ratio.
+LayoutQuality together(const std::vector<LayoutQuality>& shells);
 
 }  // namespace innermap

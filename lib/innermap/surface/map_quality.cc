@@ -12,6 +12,7 @@
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/surface/detail/refining/area_samples.h"
 #include "innermap/surface/detail/refining/composed_map.h"
+#include "innermap/surface/detail/refining/joined_shells.h"
 
 namespace innermap {
 namespace {
@@ -44,18 +45,6 @@ Quantiles quantilesOf(std::vector<Weighted>& values) {
   return result;
 }
 
-// Several shells as one list of triangles.
-struct Surfaces {
-  Points vertices;
-  std::vector<Triangle> triangles;
-
-  void add(const Points& points, const std::vector<Triangle>& list) {
-    const int first = static_cast<int>(vertices.size());
-    vertices.insert(vertices.end(), points.begin(), points.end());
-    for (const auto& [a, b, c] : list) triangles.push_back({a + first, b + first, c + first});
-  }
-};
-
 class Measurement {
  public:
   Measurement(const Correspondence& map, const MapQualitySettings& settings)
@@ -66,7 +55,7 @@ class Measurement {
       image_.add(shell.positions, shell.surface.triangles);
       onto_.add(b.vertices, b.triangles);
     }
-    const auto sum = [](const Surfaces& s) {
+    const auto sum = [](const JoinedShells& s) {
       const std::vector<double> areas = triangleAreas(s.vertices, s.triangles);
       return std::accumulate(areas.begin(), areas.end(), 0.0);
     };
@@ -77,21 +66,17 @@ class Measurement {
   }
 
   MapQuality run() {
-    double farthest = -1;
-    result_.areaRatioLog10 = std::numeric_limits<double>::infinity();
+    std::vector<LayoutQuality> images;
     for (const ShellCorrespondence& shell : map_.shells) {
       const ClosedSurface& b = shell.targetSurface;
-      const LayoutQuality image =
-          layoutQuality(shell.surface.triangles, shell.surface.vertices, shell.image);
-      result_.flips +=
-          image.flips + layoutQuality(b.triangles, b.vertices, shell.targetLayout).flips;
-      result_.areaRatioLog10 = std::min(result_.areaRatioLog10, image.areaRatioLog10);
-      if (std::abs(image.degree - 1) > farthest) {
-        farthest = std::abs(image.degree - 1);
-        result_.degree = image.degree;
-      }
+      images.push_back(layoutQuality(shell.surface.triangles, shell.surface.vertices, shell.image));
+      result_.flips += layoutQuality(b.triangles, b.vertices, shell.targetLayout).flips;
       measureShell(shell, b);
     }
+    const LayoutQuality image = together(images);
+    result_.flips += image.flips;
+    result_.degree = image.degree;
+    result_.areaRatioLog10 = image.areaRatioLog10;
     result_.energyForward = energy_[0] / std::max(weight_[0], 1e-300);
     result_.energyBackward = energy_[1] / std::max(weight_[1], 1e-300);
     result_.unmeasured =
@@ -242,7 +227,7 @@ class Measurement {
   }
 
   // Samples in the triangles, and their corners and the middles of their edges without weight.
-  Quantiles deviationOf(const Surfaces& of, const Surfaces& from) {
+  Quantiles deviationOf(const JoinedShells& of, const JoinedShells& from) {
     const TriangleTree tree(from.vertices, from.triangles);
     ClosedSurface surface;
     surface.vertices = of.vertices;
@@ -268,16 +253,16 @@ class Measurement {
     return quantilesOf(distances);
   }
 
-  std::size_t crossingsOf(const Surfaces& surfaces) {
+  std::size_t crossingsOf(const JoinedShells& surfaces) {
     std::size_t count = 0;
-    forEachSelfIntersection(surfaces.vertices, surfaces.triangles, settings_.progress,
-                            [&](const Crossing&) { ++count; });
+    forEachSelfIntersection(surfaces.vertices, surfaces.triangles,
+                            [&](const Crossing&) { ++count; }, {settings_.progress});
     return count;
   }
 
   const Correspondence& map_;
   const MapQualitySettings& settings_;
-  Surfaces from_, image_, onto_;
+  JoinedShells from_, image_, onto_;
   double areaA_ = 0, areaB_ = 0, scale_ = 1, diagonal_ = 0;
   std::array<double, 2> energy_{}, weight_{};
   double missed_ = 0;

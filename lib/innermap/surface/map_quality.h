@@ -4,7 +4,6 @@
 #include <cstddef>
 
 #include "innermap/core/progress.h"
-#include "innermap/surface/closed_surface.h"
 #include "innermap/surface/correspond.h"
 
 namespace innermap {

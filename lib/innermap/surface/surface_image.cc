@@ -1,11 +1,11 @@
-#include "innermap/surface/surface_image.h"
-
 #include <algorithm>
 #include <memory>
 
 #include "innermap/core/parallel.h"
 #include "innermap/mesh/triangle_tree.h"
+#include "innermap/surface/correspond.h"
 #include "innermap/surface/detail/refining/composed_map.h"
+#include "innermap/surface/detail/refining/joined_shells.h"
 
 namespace innermap {
 namespace {
@@ -37,39 +37,14 @@ ShellMaps mapsOf(const Correspondence& map, Progress* progress) {
   return maps;
 }
 
-// Several shells as one list of triangles.
-struct JoinedShells {
-  Points vertices;
-  std::vector<Triangle> triangles;
-  std::vector<std::size_t> first;  // triangle of each shell
-
-  void add(const ClosedSurface& shell) {
-    const int offset = static_cast<int>(vertices.size());
-    vertices.insert(vertices.end(), shell.vertices.begin(), shell.vertices.end());
-    first.push_back(triangles.size());
-    for (const auto& [i, j, k] : shell.triangles)
-      triangles.push_back({i + offset, j + offset, k + offset});
-  }
-
-  struct Place {
-    std::size_t shell;
-    int triangle;
-  };
-  Place placeOf(int triangle) const {
-    const std::size_t t = static_cast<std::size_t>(triangle);
-    const std::size_t s = static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), t) -
-                                                   first.begin() - 1);
-    return {s, static_cast<int>(t - first[s])};
-  }
-};
-
 }  // namespace
 
 SurfaceImages imagesOf(const Points& points, const Correspondence& map, const SurfaceShells& target,
-                       Progress* progress) {
-  const ShellMaps maps = mapsOf(map, progress);
+                       const SurfaceImageSettings& settings) {
+  const ShellMaps maps = mapsOf(map, settings.progress);
   JoinedShells shells;
-  for (const ShellCorrespondence& shell : map.shells) shells.add(shell.surface);
+  for (const ShellCorrespondence& shell : map.shells)
+    shells.add(shell.surface.vertices, shell.surface.triangles);
   const TriangleTree tree(shells.vertices, shells.triangles);
   SurfaceImages result;
   result.positions.resize(points.size());
@@ -91,7 +66,7 @@ SurfaceImages imagesOf(const Points& points, const Correspondence& map, const Su
           distance[i] = closest.distance;
         }
       },
-      progress, kStage);
+      settings.progress, kStage);
   for (std::size_t s = 0; s < map.shells.size(); ++s) {
     std::vector<std::size_t> members;
     std::vector<SurfacePoint> here;
@@ -108,13 +83,13 @@ SurfaceImages imagesOf(const Points& points, const Correspondence& map, const Su
 }
 
 Points preimagesOf(const std::vector<SurfacePoint>& onTarget, const Correspondence& map,
-                   const SurfaceShells& target, Progress* progress) {
-  const ShellMaps maps = mapsOf(map, progress);
+                   const SurfaceShells& target, const SurfaceImageSettings& settings) {
+  const ShellMaps maps = mapsOf(map, settings.progress);
   JoinedShells shells;
   std::vector<JoinedShells::Place> places(target.mesh.triangles.size(), {0, -1});
   for (std::size_t s = 0; s < map.shells.size(); ++s) {
     const std::size_t b = static_cast<std::size_t>(map.shells[s].target);
-    shells.add(map.shells[s].targetSurface);
+    shells.add(map.shells[s].targetSurface.vertices, map.shells[s].targetSurface.triangles);
     if (map.shells[s].targetCut) continue;  // other triangles than the mesh's
     for (std::size_t t = 0; t < target.meshTriangle[b].size(); ++t)
       places[target.meshTriangle[b][t]] = {s, static_cast<int>(t)};
@@ -134,7 +109,7 @@ Points preimagesOf(const std::vector<SurfacePoint>& onTarget, const Corresponden
           result[i] = maps[place.shell]->composed.of(place.triangle, point.barycentric).position;
         }
       },
-      progress, kStage);
+      settings.progress, kStage);
   return result;
 }
 

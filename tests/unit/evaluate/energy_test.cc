@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/random.h"
 
 namespace innermap {
@@ -23,7 +24,7 @@ Mat3 product(const Mat3& a, const Mat3& b) {
 }
 
 TEST(Energy, RotationsCostNothing) {
-  for (const double angle : {0.0, 0.3, 2.0, M_PI}) {
+  for (const double angle : {0.0, 0.3, 2.0, kPi}) {
     EXPECT_NEAR(deformationEnergyDensity(rotation(angle)), 0, 1e-30);
     EXPECT_NEAR(harmonicEnergyDensity(rotation(angle)), 3, 1e-14);
   }

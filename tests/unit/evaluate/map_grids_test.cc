@@ -29,7 +29,8 @@ TEST(MapGrids, HoldTheMapAndItsTotals) {
   EXPECT_NEAR(grids.values.jacobianMin, det, 1e-5 * det);
   EXPECT_NEAR(grids.values.jacobianMax, det, 1e-5 * det);
   EXPECT_EQ(grids.values.foldedFraction, 0);
-  const openvdb::Coord origin(0, 0, 0);
+  const openvdb::Coord origin =
+      grids.surface->transform().worldToIndexNodeCentered(openvdb::Vec3d(0));
   const openvdb::Vec3d centre = grids.surface->indexToWorld(origin);
   const openvdb::Vec3f mapped = grids.values.map->tree().getValue(origin);
   EXPECT_LT(norm(Vec3{mapped.x(), mapped.y(), mapped.z()} -

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "field/sphere_problem.h"
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/point_grid.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
@@ -32,7 +33,7 @@ Points darts(const PlacementRequest& request, double radius) {
   PointGrid taken(request.existing, request.spacing * kDiagonal),
       marks(request.marks, 2 * request.reach * kDiagonal);
   Points out;
-  const double area = 4 * M_PI / std::pow(request.spacing * kDiagonal, 2);
+  const double area = 4 * kPi / std::pow(request.spacing * kDiagonal, 2);
   for (const Vec3& p : onSphere(static_cast<std::size_t>(12 * area) + 50, 100 + request.index)) {
     const Vec3 q = radius * p;
     if (!request.marks.empty() && !marks.anyNearer(p, request.reach * kDiagonal) &&
@@ -52,7 +53,7 @@ struct Ball {
 
   Ball() {
     problem.diagonal = problem.unit = kDiagonal;
-    problem.area = 4 * M_PI;
+    problem.area = 4 * kPi;
     problem.draw = [](std::size_t count, std::uint64_t draw) {
       const Points points = onSphere(count, 7 + draw);
       return BoundarySamples{points, kinkedValues(points)};

@@ -30,7 +30,7 @@ TEST(BoundaryError, LengthsByFastSumsAreAsAsked) {
   const Points points = testing::spherePoints(500, 1);
   const Matrix values(500, 3);
   const std::vector<double> exact = boundaryErrors(f, points, values, 2),
-                            fast = boundaryErrors(f, points, values, 2, 1e-6);
+                            fast = boundaryErrors(f, points, values, 2, {1e-6});
   const Matrix got = f.evaluate(points).values;
   for (std::size_t i = 0; i < 500; ++i) {
     const double length = std::hypot(got(i, 0), got(i, 1), got(i, 2)) / 2;

@@ -13,6 +13,12 @@
 namespace innermap {
 namespace {
 
+EvaluateFieldSettings withGradients() {
+  EvaluateFieldSettings settings;
+  settings.gradients = true;
+  return settings;
+}
+
 class FieldFileTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -46,8 +52,8 @@ TEST_F(FieldFileTest, ReadsBackTheSameBits) {
   writeField(path_, before);
   const FieldFile after = readField(path_);
   const Points points = testing::randomPoints(200, 3);
-  const FieldSamples a = before.field.evaluate(points, true),
-                     b = after.field.evaluate(points, true);
+  const FieldSamples a = before.field.evaluate(points, withGradients()),
+                     b = after.field.evaluate(points, withGradients());
   EXPECT_EQ(0, std::memcmp(a.values.data(), b.values.data(), 600 * sizeof(double)));
   EXPECT_EQ(0, std::memcmp(a.gradients.data(), b.gradients.data(), 1800 * sizeof(double)));
   EXPECT_EQ(after.settings, before.settings);

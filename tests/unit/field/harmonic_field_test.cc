@@ -8,11 +8,17 @@
 namespace innermap {
 namespace {
 
+EvaluateFieldSettings withGradients() {
+  EvaluateFieldSettings settings;
+  settings.gradients = true;
+  return settings;
+}
+
 // Central differences of second order: the error falls by 4 when the step halves.
 TEST(HarmonicField, GradientIsTheSlopeOfTheValues) {
   const HarmonicField f = testing::someField();
   const Points points = testing::randomPoints(20, 9);
-  const FieldSamples exact = f.evaluate(points, true);
+  const FieldSamples exact = f.evaluate(points, withGradients());
   double error[2] = {0, 0};
   for (int level = 0; level < 2; ++level) {
     const double h = 1e-2 / (1 << level);
@@ -44,7 +50,7 @@ TEST(HarmonicField, MeanOverASphereIsTheValueAtItsCentre) {
 TEST(HarmonicField, OneThreadAndAllThreadsAgree) {
   const HarmonicField f = testing::someField();
   const Points points = testing::randomPoints(100, 4);
-  const FieldSamples all = f.evaluate(points, true);
+  const FieldSamples all = f.evaluate(points, withGradients());
   std::vector<double> values(300), gradients(900);
   f.evaluate(points.data(), 100, values.data(), gradients.data());
   for (std::size_t i = 0; i < 300; ++i) EXPECT_DOUBLE_EQ(values[i], all.values.data()[i]);

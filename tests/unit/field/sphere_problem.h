@@ -1,6 +1,7 @@
 // A unit ball with a harmonic function on its boundary, for the tests of field/.
 #pragma once
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/field/fit.h"
 #include "solve/points.h"
 
@@ -25,7 +26,7 @@ inline FitProblem ballProblem(std::size_t collocation) {
   p.surface.values = harmonicMapValues(p.surface.points);
   p.surface.heldOutValues = harmonicMapValues(p.surface.heldOut);
   p.diagonal = std::sqrt(12.0);
-  p.area = 4 * M_PI;
+  p.area = 4 * kPi;
   p.placeSources = [](std::size_t count, double distance) {
     return spherePoints(count, 1 + distance * std::sqrt(12.0), 1);
   };

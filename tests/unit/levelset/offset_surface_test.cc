@@ -25,9 +25,8 @@ TEST(OffsetSurface, OfABallIsABall) {
     expectAtDistance(solid, mesh, distance);
     const double r = 1 + distance;
     // Chords of triangles of 1/8 of the radius at most lose well under 2%.
-    EXPECT_NEAR(surfaceArea(mesh), 4 * shapes::kPi * r * r, 0.03 * 4 * shapes::kPi * r * r);
-    EXPECT_NEAR(signedVolume(mesh), 4.0 / 3 * shapes::kPi * r * r * r,
-                0.03 * 4.0 / 3 * shapes::kPi * r * r * r);
+    EXPECT_NEAR(surfaceArea(mesh), 4 * kPi * r * r, 0.03 * 4 * kPi * r * r);
+    EXPECT_NEAR(signedVolume(mesh), 4.0 / 3 * kPi * r * r * r, 0.03 * 4.0 / 3 * kPi * r * r * r);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "mesh/test_meshes.h"
@@ -31,7 +32,7 @@ TEST(Mesh, VolumeIsPreciseFarFromTheOrigin) {
 
 TEST(Mesh, SphereVolumeConvergesAtSecondOrder) {
   double error[2];
-  for (int k = 0; k < 2; ++k) error[k] = 4 * M_PI / 3 - signedVolume(icosphere(3 + k));
+  for (int k = 0; k < 2; ++k) error[k] = 4 * kPi / 3 - signedVolume(icosphere(3 + k));
   EXPECT_NEAR(error[0] / error[1], 4, 0.1);
 }
 
@@ -99,6 +100,13 @@ TEST(Mesh, ValidateNamesWhatIsWrong) {
               m.polygonCorners = {0, 1, 9};
             }),
             "accepted");
+}
+
+TEST(Mesh, AreaAndVolumeOfPlainTrianglesAreThoseOfTheMesh) {
+  const Mesh mesh = shapes::transformed(shapes::torus(20, 10), 3, {1, 2, 3});
+  EXPECT_EQ(surfaceArea(mesh.vertices, mesh.triangles), surfaceArea(mesh));
+  EXPECT_EQ(signedVolume(mesh.vertices, mesh.triangles), signedVolume(mesh));
+  EXPECT_GT(surfaceArea(mesh), 0);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "innermap/mesh/read.h"
@@ -185,7 +186,7 @@ TEST(Repair, AMoebiusStripIsCutAndHasNoInsideOrAWholeOne) {
   constexpr int kCount = 30;
   for (int i = 0; i < kCount; ++i)
     for (const double s : {-0.3, 0.3}) {
-      const double a = 2 * M_PI * i / kCount, r = 1 + s * std::cos(a / 2);
+      const double a = 2 * kPi * i / kCount, r = 1 + s * std::cos(a / 2);
       mesh.vertices.push_back({r * std::cos(a), r * std::sin(a), s * std::sin(a / 2)});
     }
   for (int i = 0; i < kCount; ++i) {

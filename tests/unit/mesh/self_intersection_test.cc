@@ -5,8 +5,10 @@
 #include <chrono>
 #include <set>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/core/parallel.h"
+#include "innermap/mesh/check.h"
 #include "mesh/test_meshes.h"
 
 namespace innermap {
@@ -135,7 +137,7 @@ TEST(SelfIntersection, DoesNotDependOnScaleOrThreads) {
   const auto placesWith = [&](int threads) {
     const ThreadLimit limit(threads);
     std::vector<double> places;
-    forEachSelfIntersection(mesh.vertices, mesh.triangles, nullptr,
+    forEachSelfIntersection(mesh.vertices, mesh.triangles,
                             [&](const Crossing& c) { places.push_back(c.place.x); });
     return places;
   };
@@ -147,7 +149,7 @@ TEST(SelfIntersection, CountsManyWithoutKeepingThemAndCanBeCancelled) {
   Mesh mesh;
   const CounterRandom random(1, 1);
   for (int i = 0; i < 3000; ++i) {
-    const double angle = M_PI * i / 3000, r = 1 + random.uniform(i);
+    const double angle = kPi * i / 3000, r = 1 + random.uniform(i);
     const Vec3 d{r * std::cos(angle), r * std::sin(angle), 0};
     mesh.vertices.insert(mesh.vertices.end(), {d + Vec3{0, 0, 0.1}, -1.0 * d, Vec3{0, 0, r}});
     mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
@@ -158,7 +160,7 @@ TEST(SelfIntersection, CountsManyWithoutKeepingThemAndCanBeCancelled) {
   EXPECT_EQ(report.crossings[0].first, 0);
   Progress progress;
   progress.cancel();
-  EXPECT_THROW(selfIntersections(mesh.vertices, mesh.triangles, &progress), Cancelled);
+  EXPECT_THROW(selfIntersections(mesh.vertices, mesh.triangles, {&progress}), Cancelled);
 }
 
 }  // namespace

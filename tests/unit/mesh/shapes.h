@@ -4,12 +4,11 @@
 #include <cmath>
 #include <map>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap::shapes {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Regular icosahedron with each triangle cut in four `levels` times, vertices on the sphere.
 inline Mesh icosphere(int levels, double radius = 1, Vec3 center = {}) {

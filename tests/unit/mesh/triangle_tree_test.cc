@@ -97,7 +97,7 @@ TEST(TriangleTree, LowestIndexWinsAmongEquals) {
   mesh.vertices.push_back({0, 0, 1});
   const int n = 64;
   for (int i = 0; i < n; ++i) {
-    const double u = 2 * shapes::kPi * i / n;
+    const double u = 2 * kPi * i / n;
     mesh.vertices.push_back({std::cos(u), std::sin(u), 0});
   }
   for (int i = 0; i < n; ++i) mesh.triangles.push_back({0, 1 + (i + 17) % n, 1 + (i + 18) % n});

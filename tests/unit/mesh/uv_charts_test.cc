@@ -12,8 +12,6 @@
 namespace innermap {
 namespace {
 
-constexpr double kPi = shapes::kPi;
-
 // An open tube of n quads around and m along, unrolled: u runs around from 0 to 1 and jumps back.
 Mesh tube(int n, int m, double height = 1, double uMost = 1) {
   Mesh mesh;
@@ -58,6 +56,12 @@ void expectResolved(const Mesh& mesh, const UvCharts& charts, const UvGroups& gr
     EXPECT_EQ(groups.group[t] < 0, charts.chart[t] < 0);
     EXPECT_LT(groups.group[t], groups.count);
   }
+}
+
+UvGroupSettings atMost(int groups) {
+  UvGroupSettings settings;
+  settings.most = groups;
+  return settings;
 }
 
 TEST(UvCharts, ATubeIsOneChartThatMeetsItselfAlongItsHeight) {
@@ -112,11 +116,11 @@ TEST(UvCharts, SidesOfABoxAreChartsAndThreeGroupsAreEnough) {
   const UvGroups all = uvGroups(mesh, charts);
   EXPECT_EQ(all.count, 6);
   expectResolved(mesh, charts, all);
-  const UvGroups few = uvGroups(mesh, charts, 4);
+  const UvGroups few = uvGroups(mesh, charts, atMost(4));
   EXPECT_EQ(few.pieces, 6);
   EXPECT_EQ(few.count, 3);
   expectResolved(mesh, charts, few);
-  const UvGroups two = uvGroups(mesh, charts, 2);
+  const UvGroups two = uvGroups(mesh, charts, atMost(2));
   EXPECT_EQ(two.count, 2);
   EXPECT_GT(two.unresolvedLength, 0);
 }
@@ -150,7 +154,7 @@ TEST(UvCharts, TrianglesWithoutCoordinatesAreInNoChart) {
   mesh.uvTriangles.clear();
   mesh.uvs.clear();
   EXPECT_THROW(uvCharts(mesh), DataError);
-  EXPECT_THROW(uvGroups(unwrappedBox(), uvCharts(unwrappedBox()), 1), SettingError);
+  EXPECT_THROW(uvGroups(unwrappedBox(), uvCharts(unwrappedBox()), atMost(1)), SettingError);
 }
 
 // Random cuts of a sphere: whatever they are, groups resolve them.
@@ -179,7 +183,7 @@ TEST(UvCharts, RandomCutsAreResolved) {
 TEST(UvCharts, CanBeCancelled) {
   Progress progress;
   progress.cancel();
-  EXPECT_THROW(uvCharts(tube(12, 4), &progress), Cancelled);
+  EXPECT_THROW(uvCharts(tube(12, 4), {&progress}), Cancelled);
 }
 
 }  // namespace

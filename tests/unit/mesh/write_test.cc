@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
@@ -68,6 +71,39 @@ TEST(Write, RefusesOtherExtensionsAndPlaces) {
   EXPECT_THROW(writeMesh("a", testing::cube()), FileError);
   EXPECT_THROW(writeMesh(folder.file("none/a.ply"), testing::cube()), FileError);
   EXPECT_FALSE(std::filesystem::exists(folder.file("a.stl")));
+}
+
+TEST(Write, PlyHasFurtherPropertiesOfTheVertices) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("extra.ply");
+  const Mesh mesh = testing::cube();
+  PlyExtras extras;
+  extras.comment = "two properties";
+  std::vector<std::int32_t> integers;
+  std::vector<double> numbers;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    integers.push_back(static_cast<std::int32_t>(v) - 3);
+    numbers.push_back(0.1 * static_cast<double>(v));
+  }
+  extras.properties = {{"where", integers}, {"much", numbers}};
+  writePly(path, mesh, extras);
+  expectSamePositions(readMesh(path), mesh);
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_NE(bytes.find("1.0\ncomment two properties\nelement vertex 8\n"), std::string::npos);
+  EXPECT_NE(bytes.find("property int where\nproperty double much\nelement face"),
+            std::string::npos);
+  const std::size_t row = 3 * 8 + 4 + 8, body = bytes.find("end_header\n") + 11;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    std::int32_t integer;
+    double number;
+    std::memcpy(&integer, &bytes[body + v * row + 24], 4);
+    std::memcpy(&number, &bytes[body + v * row + 28], 8);
+    EXPECT_EQ(integer, integers[v]);
+    EXPECT_EQ(number, numbers[v]);
+  }
+  extras.properties[1].values = std::vector<double>{1, 2};
+  EXPECT_THROW(writePly(path, mesh, extras), DataError);
 }
 
 }  // namespace

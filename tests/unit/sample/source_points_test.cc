@@ -48,7 +48,7 @@ TEST(SourceShell, IsBlueNoise) {
   const std::size_t n = 1500;
   const Points points = sourceShell(solid, 0.05, sources(n));
   const double r = 1 + 0.05 * solid.diagonal();
-  const double largest = 2 * std::sqrt(4 * shapes::kPi * r * r / (2 * std::sqrt(3.0) * n));
+  const double largest = 2 * std::sqrt(4 * kPi * r * r / (2 * std::sqrt(3.0) * n));
   EXPECT_GT(leastDistance(points), 0.58 * largest);
 }
 
@@ -104,7 +104,7 @@ TEST(SourceSphere, IsBlueNoiseOnTheSphere) {
       EXPECT_NEAR(norm(p - solid.box().center()), r, 1e-9 * r);
       EXPECT_FALSE(solid.inside(p));
     }
-    const double largest = 2 * std::sqrt(4 * shapes::kPi * r * r / (2 * std::sqrt(3.0) * n));
+    const double largest = 2 * std::sqrt(4 * kPi * r * r / (2 * std::sqrt(3.0) * n));
     EXPECT_GT(leastDistance(points), 0.6 * largest);
   }
   for (const double ratio : {1.0, 0.0, -2.0, 101.0, std::nan("")}) {

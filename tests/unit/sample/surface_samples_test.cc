@@ -7,6 +7,7 @@
 
 #include "innermap/core/detail/random.h"
 #include "innermap/core/parallel.h"
+#include "innermap/sample/detail/sample_elimination.h"
 #include "mesh/shapes.h"
 
 namespace innermap {

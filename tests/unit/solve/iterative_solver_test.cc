@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
@@ -15,9 +16,9 @@ namespace {
 using testing::spherePoints;
 
 struct Problem {
-  double spacing = std::sqrt(4 * M_PI / 1200), distance = 1.25 * spacing;
+  double spacing = std::sqrt(4 * kPi / 1200), distance = 1.25 * spacing;
   Points collocation = spherePoints(3600, 1), fresh = spherePoints(4000, 1, 0.4);
-  SourceLevel coarse{spherePoints(150, 1.4, 2), std::sqrt(4 * M_PI / 150), 0.4},
+  SourceLevel coarse{spherePoints(150, 1.4, 2), std::sqrt(4 * kPi / 150), 0.4},
       fine{spherePoints(1200, 1 + distance, 1), spacing, distance};
 
   IterativeSolver solver(const IterativeSettings& s = {}) const {
@@ -114,7 +115,7 @@ TEST(IterativeSolver, ReachesTheDenseResidualOnSmallProblems) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const CounterRandom random(seed, 9);
     const std::size_t count = 40 + random.bits(0) % 200;
-    const double h = std::sqrt(4 * M_PI / static_cast<double>(count));
+    const double h = std::sqrt(4 * kPi / static_cast<double>(count));
     const Points collocation = spherePoints(4 * count, 1, random.uniform(1)),
                  fine = spherePoints(count, 1 + 1.25 * h, random.uniform(2)),
                  coarse = spherePoints(count / 4, 1 + 2.5 * h);

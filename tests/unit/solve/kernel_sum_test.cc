@@ -96,7 +96,7 @@ TEST(KernelSum, RefusesWrongSizesAndNan) {
 TEST(KernelSum, CancelStopsIt) {
   Progress progress;
   progress.cancel();
-  EXPECT_THROW(sumCharges(Charges(Points(1), Matrix(1, 1)), Points(10), false, &progress),
+  EXPECT_THROW(sumCharges(Charges(Points(1), Matrix(1, 1)), Points(10), false, {&progress}),
                Cancelled);
 }
 

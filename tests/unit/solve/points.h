@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/core/matrix.h"
 #include "innermap/core/vec3.h"
@@ -29,7 +30,7 @@ inline Matrix randomWeights(std::size_t rows, std::size_t columns, std::uint64_t
 // Fibonacci lattice on the sphere of the given radius about the origin.
 inline Points spherePoints(std::size_t count, double radius, double turn = 0) {
   Points points(count);
-  const double golden = M_PI * (3 - std::sqrt(5.0));
+  const double golden = kPi * (3 - std::sqrt(5.0));
   for (std::size_t i = 0; i < count; ++i) {
     const double z = 1 - (2 * i + 1.0) / count, r = std::sqrt(1 - z * z);
     const double angle = golden * i + turn;

@@ -142,7 +142,7 @@ TEST(ClosedSurfaces, OneSidedSurfacesAreRefused) {
   Mesh mesh;
   mesh.name = "strip";
   for (int i = 0; i < 5; ++i) {
-    const double a = 2 * shapes::kPi * i / 5, h = a / 2;
+    const double a = 2 * kPi * i / 5, h = a / 2;
     for (const double side : {-0.3, 0.3}) {
       const double r = 1 + side * std::cos(h);
       mesh.vertices.push_back({r * std::cos(a), r * std::sin(a), side * std::sin(h)});

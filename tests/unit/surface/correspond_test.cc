@@ -79,7 +79,7 @@ TEST(Correspond, ABodyOntoItselfInAnotherMesh) {
 }
 
 TEST(Correspond, SameForAnyNumberOfThreads) {
-  const Mesh a = limbs(3), b = shapes::icosphere(3);
+  const Mesh a = limbs(2), b = shapes::icosphere(3);
   const auto run = [&](int threads) {
     const ThreadLimit limit(threads);
     return correspond(EmbeddedSurface(a), EmbeddedSurface(b)).positions;

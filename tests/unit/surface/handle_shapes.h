@@ -7,13 +7,21 @@
 #include <set>
 
 #include "innermap/core/detail/random.h"
-#include "innermap/surface/closed_surface.h"
+#include "innermap/surface/layout.h"
 #include "mesh/shapes.h"
 
 namespace innermap::shapes {
 
 inline ClosedSurface closed(const Mesh& mesh, int genus) {
   return {mesh.name, mesh.vertices, mesh.triangles, genus};
+}
+
+inline Vec3 pointOn(const ClosedSurface& surface, const SurfacePoint& p) {
+  Vec3 out;
+  for (std::size_t k = 0; k < 3; ++k)
+    out += p.barycentric[k] *
+           surface.vertices[surface.triangles[static_cast<std::size_t>(p.triangle)][k]];
+  return out;
 }
 
 inline ClosedSurface turnedInsideOut(ClosedSurface surface) {

@@ -63,5 +63,20 @@ TEST(Layout, TripleProductsOfThinConesKeepTheirSign) {
   EXPECT_NEAR(tripleProduct(p, q, r), 1e-18 * p.z, 1e-24);
 }
 
+TEST(LayoutQuality, OfSeveralShellsIsTheWorst) {
+  LayoutQuality good, turned, thin;
+  good.degree = 1;
+  turned.degree = -1;
+  turned.flips = 3;
+  turned.areaRatioLog10 = -1;
+  thin.degree = 1;
+  thin.flips = 2;
+  thin.areaRatioLog10 = -4;
+  const LayoutQuality all = together({good, turned, thin});
+  EXPECT_EQ(all.flips, 5u);
+  EXPECT_EQ(all.degree, -1);
+  EXPECT_EQ(all.areaRatioLog10, -4);
+}
+
 }  // namespace
 }  // namespace innermap

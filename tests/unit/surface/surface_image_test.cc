@@ -1,8 +1,7 @@
-#include "innermap/surface/surface_image.h"
-
 #include <gtest/gtest.h>
 
 #include "innermap/core/error.h"
+#include "innermap/surface/correspond.h"
 #include "innermap/surface/detail/refining/locate.h"
 #include "mesh/test_meshes.h"
 
@@ -86,8 +85,10 @@ TEST(ImagesOf, CanBeCancelled) {
   const Balls balls;
   Progress progress;
   progress.cancel();
-  EXPECT_THROW(preimagesOf({{0, {1, 0, 0}}}, balls.map, balls.b, &progress), Cancelled);
-  EXPECT_THROW(imagesOf({{1, 0, 0}}, balls.map, balls.b, &progress), Cancelled);
+  SurfaceImageSettings settings;
+  settings.progress = &progress;
+  EXPECT_THROW(preimagesOf({{0, {1, 0, 0}}}, balls.map, balls.b, settings), Cancelled);
+  EXPECT_THROW(imagesOf({{1, 0, 0}}, balls.map, balls.b, settings), Cancelled);
 }
 
 }  // namespace

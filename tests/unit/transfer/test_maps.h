@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/field/fit.h"
 #include "innermap/field/harmonic_map.h"
@@ -67,7 +68,7 @@ HarmonicMap fittedMap(const Function& function) {
   problem.surface.values = valuesAt(problem.surface.points);
   problem.surface.heldOutValues = valuesAt(problem.surface.heldOut);
   problem.diagonal = 2 * std::sqrt(3.0);
-  problem.area = 4 * 3.141592653589793;
+  problem.area = 4 * kPi;
   problem.placeSources = [](std::size_t count, double distance) {
     return spherePoints(count, 1 + distance * 2 * std::sqrt(3.0));
   };

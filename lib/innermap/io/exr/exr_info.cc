@@ -24,7 +24,7 @@ std::vector<ExrPart> readExrInfo(const std::string& path) {
     std::vector<ExrPart> parts;
     for (int i = 0; i < file.parts(); ++i) {
       const Imf::Header& header = file.header(i);
-      const Imath::Box2i window = header.dataWindow();
+      const Imath::Box2i& window = header.dataWindow();
       ExrPart part;
       if (header.hasName()) part.name = header.name();
       part.width = window.max.x - window.min.x + 1;

@@ -25,8 +25,8 @@ struct Band::Level {
   std::vector<Coord> corners;
 };
 
-Band::Band(const Solid& solid, const Vec3& origin, double voxelSize, double lower, double upper)
-    : solid_(solid), origin_(origin), voxelSize_(voxelSize), lower_(lower), upper_(upper) {}
+Band::Band(const SolidBody& body, const Vec3& origin, double voxelSize, double lower, double upper)
+    : body_(body), origin_(origin), voxelSize_(voxelSize), lower_(lower), upper_(upper) {}
 
 Vec3 Band::position(const Coord& voxel) const {
   return origin_ + voxelSize_ * Vec3{double(voxel[0]), double(voxel[1]), double(voxel[2])};
@@ -36,12 +36,12 @@ bool Band::mayTouch(const Coord& corner, int size) const {
   const double half = 0.5 * (size - 1) * voxelSize_;
   const Vec3 center = position(corner) + Vec3{half, half, half};
   const double radius = (blockRadius(size) + kSlack) * voxelSize_;
-  const Solid::Closest found = solid_.closest(center, upper_ + radius);
-  return found.onSurface.triangle >= 0 && found.distance + radius >= lower_;
+  const ClosestPoint found = body_.closest(center, upper_ + radius);
+  return found.address.triangle >= 0 && found.distance + radius >= lower_;
 }
 
 Band::Level Band::firstLevel() const {
-  const Box3& box = solid_.box();
+  const Box3& box = body_.box();
   Coord lower, upper;
   int extent = 1;
   for (int a = 0; a < 3; ++a) {
@@ -113,8 +113,8 @@ void Band::fill(const Coord& leaf, const Coord& corner, int size, double bound,
   const double radius = blockRadius(size) * voxelSize_;
   const double slack = kSlack * voxelSize_;
   const double within = std::min(bound, upper_ + radius) + slack;
-  const Solid::Closest found = solid_.closest(center, within);
-  const bool far = found.onSurface.triangle < 0;
+  const ClosestPoint found = body_.closest(center, within);
+  const bool far = found.address.triangle < 0;
   const Coord at = corner - leaf;
   if (size == 1) {
     values[at[0] << 6 | at[1] << 3 | at[2]] = far ? kInfinity : found.distance;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "innermap/core/progress.h"
-#include "innermap/levelset/solid.h"
+#include "innermap/levelset/detail/solid_body.h"
 
 namespace innermap {
 
@@ -18,7 +18,8 @@ class Band {
   static constexpr int kLeaf = 8;  // voxels along a side of a leaf
   static constexpr int kLeafVoxels = kLeaf * kLeaf * kLeaf;
 
-  Band(const Solid& solid, const Vec3& origin, double voxelSize, double lower, double upper);
+  // Keeps a reference to the body.
+  Band(const SolidBody& body, const Vec3& origin, double voxelSize, double lower, double upper);
 
   // Origins of the leaves (multiples of 8) that may have voxels in the band, in a fixed order.
   std::vector<openvdb::Coord> leaves(Progress* progress) const;
@@ -40,7 +41,7 @@ class Band {
   void fill(const openvdb::Coord& leaf, const openvdb::Coord& corner, int size, double bound,
             double* values) const;
 
-  Solid solid_;
+  const SolidBody& body_;
   Vec3 origin_;
   double voxelSize_, lower_, upper_;
 };

@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <unordered_map>
 
-#include "innermap/levelset/offset_surface.h"
-
 namespace innermap {
 namespace {
 
@@ -114,25 +112,6 @@ Mesh displacedSurface(const Solid& solid, double distance, double edge, Progress
   const Points normals = vertexNormals(mesh.vertices, mesh.triangles, own);
   for (std::size_t v = 0; v < normals.size(); ++v) mesh.vertices[v] += distance * normals[v];
   return mesh;
-}
-
-double moveToDistance(const Solid& solid, double distance, Vec3& p) {
-  Vec3 best = p;
-  double bestError = std::numeric_limits<double>::infinity();
-  for (int step = 0; step < 8; ++step) {
-    // Most points are near the distance already: a bound makes the search cheaper.
-    Solid::Closest c = solid.closest(p, 1.2 * distance);
-    if (c.onSurface.triangle < 0) c = solid.closest(p, std::numeric_limits<double>::infinity());
-    const double error = std::abs(c.distance - distance);
-    if (error < bestError) {
-      best = p;
-      bestError = error;
-    }
-    if (error <= 1e-9 * distance || !(c.distance > 0)) break;
-    p = c.position + (distance / c.distance) * (p - c.position);
-  }
-  p = best;
-  return bestError;
 }
 
 }  // namespace innermap

@@ -6,8 +6,9 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "innermap/core/detail/disjoint_sets.h"
 #include "innermap/core/parallel.h"
-#include "innermap/levelset/detail/piece_splitting.h"
+#include "innermap/mesh/connectivity.h"
 #include "innermap/mesh/self_intersection.h"
 #include "innermap/mesh/winding_number.h"
 
@@ -17,63 +18,28 @@ namespace {
 constexpr std::size_t kMaxPieces = 1'500'000;
 
 // Patches: sets of triangles that are connected over edges of exactly two triangles and that
-// nothing cuts. The winding number is constant along either side of a patch.
-class Patches {
- public:
-  Patches(const std::vector<Triangle>& triangles, const std::vector<char>& cut)
-      : patch_(triangles.size()) {
-    std::iota(patch_.begin(), patch_.end(), 0);
-    struct Edge {
-      std::uint64_t key;
-      int triangle;
-    };
-    std::vector<Edge> edges;
-    edges.reserve(3 * triangles.size());
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      for (int k = 0; k < 3; ++k) {
-        const auto [a, b] = std::minmax(triangles[t][k], triangles[t][(k + 1) % 3]);
-        edges.push_back({static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b),
-                         static_cast<int>(t)});
-      }
+// nothing cuts. The winding number is constant along either side of a patch. In ascending order of
+// their first triangle.
+std::vector<std::vector<int>> patchesOf(const std::vector<Triangle>& triangles,
+                                        const std::vector<char>& cut) {
+  DisjointSets sets(triangles.size());
+  forEachEdge(sortedEdges(triangles), [&](const EdgeUse* begin, const EdgeUse* end) {
+    if (end - begin == 2 && !cut[begin[0].triangle] && !cut[begin[1].triangle])
+      sets.unite(begin[0].triangle, begin[1].triangle);
+  });
+  std::vector<std::vector<int>> patches;
+  std::vector<int> slot(triangles.size(), -1);  // of a patch, by its first triangle
+  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
+    if (cut[t]) continue;
+    int& s = slot[sets.find(t)];
+    if (s < 0) {
+      s = static_cast<int>(patches.size());
+      patches.emplace_back();
     }
-    std::sort(edges.begin(), edges.end(), [](const Edge& x, const Edge& y) {
-      return x.key < y.key || (x.key == y.key && x.triangle < y.triangle);
-    });
-    for (std::size_t begin = 0, end; begin < edges.size(); begin = end) {
-      end = begin + 1;
-      while (end < edges.size() && edges[end].key == edges[begin].key) ++end;
-      if (end - begin != 2) continue;
-      const int s = edges[begin].triangle, t = edges[begin + 1].triangle;
-      if (!cut[s] && !cut[t]) unite(s, t);
-    }
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      if (!cut[t]) members_[root(static_cast<int>(t))].push_back(static_cast<int>(t));
-    }
+    patches[s].push_back(t);
   }
-
-  // In ascending order of their first triangle.
-  std::vector<std::vector<int>> take() {
-    std::vector<std::vector<int>> result;
-    for (auto& [first, members] : members_) result.push_back(std::move(members));
-    std::sort(result.begin(), result.end(),
-              [](const auto& x, const auto& y) { return x.front() < y.front(); });
-    return result;
-  }
-
- private:
-  int root(int t) {
-    while (patch_[t] != t) t = patch_[t] = patch_[patch_[t]];
-    return t;
-  }
-  void unite(int s, int t) {
-    s = root(s);
-    t = root(t);
-    patch_[std::max(s, t)] = std::min(s, t);
-  }
-
-  std::vector<int> patch_;
-  std::unordered_map<int, std::vector<int>> members_;
-};
+  return patches;
+}
 
 struct Work {
   const Mesh& mesh;
@@ -90,7 +56,7 @@ std::array<Vec3, 3> cornersOf(const Work& work, int t) {
 }
 
 void classifyPatches(Work& work, const std::vector<char>& cut, Progress* progress) {
-  const auto patches = Patches(work.mesh.triangles, cut).take();
+  const std::vector<std::vector<int>> patches = patchesOf(work.mesh.triangles, cut);
   std::vector<char> mixed(patches.size(), 0);
   const auto sideOf = [&](int t) {
     return classify(work.winding, cornersOf(work, t), work.diagonal);
@@ -291,7 +257,7 @@ ExposedSurface exposedSurface(const Mesh& mesh, double pieceSize, Progress* prog
   work.pieces.resize(mesh.triangles.size());
 
   throwIfCancelled(progress);
-  const Partners partners = partnersOf(selfIntersections(work.local, mesh.triangles, progress));
+  const Partners partners = partnersOf(selfIntersections(work.local, mesh.triangles, {progress}));
   std::vector<char> cut(mesh.triangles.size(), 0);
   for (const auto& [t, others] : partners) cut[t] = 1;
   classifyPatches(work, cut, progress);

@@ -2,15 +2,13 @@
 // half, and which are buried in other parts or doubled. What Solid is made with.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "innermap/core/progress.h"
+#include "innermap/levelset/detail/piece_splitting.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {
-
-using PieceCorners = std::array<std::array<double, 3>, 3>;  // barycentric, on the parent
 
 struct ExposedSurface {
   bool whole = true;  // all of the mesh is exposed: the rest is empty
@@ -24,8 +22,5 @@ struct ExposedSurface {
 // `mesh` has whole winding numbers, as repair() makes them. pieceSize is a fraction of the
 // diagonal. Throws DataError when nothing is exposed; Cancelled.
 ExposedSurface exposedSurface(const Mesh& mesh, double pieceSize, Progress* progress);
-
-// Whether two triangles have a point in common, up to `tolerance` (separating axes).
-bool trianglesTouch(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double tolerance);
 
 }  // namespace innermap

@@ -4,11 +4,13 @@
 #include <array>
 #include <vector>
 
+#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
-#include "innermap/levelset/detail/exposed_surface.h"
 #include "innermap/mesh/winding_number.h"
 
 namespace innermap {
+
+using PieceCorners = std::array<std::array<double, 3>, 3>;  // barycentric, on the parent
 
 // What lies on the two sides of a piece of surface.
 struct Side {

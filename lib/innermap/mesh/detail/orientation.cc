@@ -4,6 +4,8 @@
 #include <array>
 #include <numeric>
 
+#include "innermap/core/detail/disjoint_sets.h"
+
 namespace innermap {
 namespace {
 

@@ -11,12 +11,12 @@ namespace {
 
 bool findType(std::string_view name, PlyType& type) {
   static const std::pair<const char*, PlyType> kNames[] = {
-      {"char", PlyType::kInt8},      {"int8", PlyType::kInt8},       {"uchar", PlyType::kUint8},
-      {"uint8", PlyType::kUint8},    {"short", PlyType::kInt16},     {"int16", PlyType::kInt16},
-      {"ushort", PlyType::kUint16},  {"uint16", PlyType::kUint16},   {"int", PlyType::kInt32},
-      {"int32", PlyType::kInt32},    {"uint", PlyType::kUint32},     {"uint32", PlyType::kUint32},
-      {"float", PlyType::kFloat32},  {"float32", PlyType::kFloat32}, {"double", PlyType::kFloat64},
-      {"float64", PlyType::kFloat64}};
+      {"char", PlyType::int8},      {"int8", PlyType::int8},       {"uchar", PlyType::uint8},
+      {"uint8", PlyType::uint8},    {"short", PlyType::int16},     {"int16", PlyType::int16},
+      {"ushort", PlyType::uint16},  {"uint16", PlyType::uint16},   {"int", PlyType::int32},
+      {"int32", PlyType::int32},    {"uint", PlyType::uint32},     {"uint32", PlyType::uint32},
+      {"float", PlyType::float32},  {"float32", PlyType::float32}, {"double", PlyType::float64},
+      {"float64", PlyType::float64}};
   for (const auto& [known, value] : kNames)
     if (name == known) {
       type = value;
@@ -76,11 +76,11 @@ class HeaderReader {
   void format() {
     if (words_.size() < 2) fail("the format is missing");
     if (words_[1] == "ascii")
-      header_.format = PlyFormat::kAscii;
+      header_.format = PlyFormat::ascii;
     else if (words_[1] == "binary_little_endian")
-      header_.format = PlyFormat::kLittleEndian;
+      header_.format = PlyFormat::littleEndian;
     else if (words_[1] == "binary_big_endian")
-      header_.format = PlyFormat::kBigEndian;
+      header_.format = PlyFormat::bigEndian;
     else
       fail("unknown format " + inQuotes(words_[1]));
     hasFormat_ = true;
@@ -130,13 +130,13 @@ class HeaderReader {
 
 std::size_t plySize(PlyType type) {
   switch (type) {
-    case PlyType::kInt8:
-    case PlyType::kUint8:
+    case PlyType::int8:
+    case PlyType::uint8:
       return 1;
-    case PlyType::kInt16:
-    case PlyType::kUint16:
+    case PlyType::int16:
+    case PlyType::uint16:
       return 2;
-    case PlyType::kFloat64:
+    case PlyType::float64:
       return 8;
     default:
       return 4;

@@ -10,18 +10,18 @@
 
 namespace innermap {
 
-enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
-enum class PlyFormat { kAscii, kLittleEndian, kBigEndian };
+enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+enum class PlyFormat { ascii, littleEndian, bigEndian };
 
 std::size_t plySize(PlyType type);  // bytes in a binary file
 
-inline bool isFloat(PlyType type) { return type == PlyType::kFloat32 || type == PlyType::kFloat64; }
+inline bool isFloat(PlyType type) { return type == PlyType::float32 || type == PlyType::float64; }
 
 struct PlyProperty {
   std::string name;
   bool list = false;
-  PlyType countType = PlyType::kUint8;  // of a list
-  PlyType type = PlyType::kFloat32;     // of the value or of the list's items
+  PlyType countType = PlyType::uint8;  // of a list
+  PlyType type = PlyType::float32;     // of the value or of the list's items
 };
 
 struct PlyElement {
@@ -31,7 +31,7 @@ struct PlyElement {
 };
 
 struct PlyHeader {
-  PlyFormat format = PlyFormat::kAscii;
+  PlyFormat format = PlyFormat::ascii;
   std::vector<PlyElement> elements;
   std::size_t bodyOffset = 0;  // bytes
   std::size_t bodyLine = 0;    // number of the body's first line, for messages

@@ -19,7 +19,7 @@ const char kTruncated[] = "the file is cut short or its header promises too much
 class BinaryBody {
  public:
   BinaryBody(const FileBytes& file, const PlyHeader& header)
-      : file_(file), position_(header.bodyOffset), big_(header.format == PlyFormat::kBigEndian) {}
+      : file_(file), position_(header.bodyOffset), big_(header.format == PlyFormat::bigEndian) {}
 
   std::size_t remaining() const { return file_.bytes.size() - position_; }
   static std::size_t leastBytes(PlyType type) { return plySize(type); }
@@ -36,21 +36,21 @@ class BinaryBody {
 
   double value(PlyType type) {
     switch (type) {
-      case PlyType::kInt8:
+      case PlyType::int8:
         return as<std::int8_t>();
-      case PlyType::kUint8:
+      case PlyType::uint8:
         return as<std::uint8_t>();
-      case PlyType::kInt16:
+      case PlyType::int16:
         return as<std::int16_t>();
-      case PlyType::kUint16:
+      case PlyType::uint16:
         return as<std::uint16_t>();
-      case PlyType::kInt32:
+      case PlyType::int32:
         return as<std::int32_t>();
-      case PlyType::kUint32:
+      case PlyType::uint32:
         return as<std::uint32_t>();
-      case PlyType::kFloat32:
+      case PlyType::float32:
         return as<float>();
-      case PlyType::kFloat64:
+      case PlyType::float64:
         return as<double>();
     }
     return 0;
@@ -146,7 +146,7 @@ Role roleOf(const PlyProperty& property) {
 
 double colourScale(PlyType type) {
   if (isFloat(type)) return 1;
-  return type == PlyType::kInt16 || type == PlyType::kUint16 ? 1 / 65535.0 : 1 / 255.0;
+  return type == PlyType::int16 || type == PlyType::uint16 ? 1 / 65535.0 : 1 / 255.0;
 }
 
 template <class Body>
@@ -352,8 +352,7 @@ class PlyReader {
 
 PolygonMesh readPly(const FileBytes& file, Progress* progress) {
   const PlyHeader header = readPlyHeader(file);
-  if (header.format == PlyFormat::kAscii)
-    return PlyReader<AsciiBody>(file, header, progress).read();
+  if (header.format == PlyFormat::ascii) return PlyReader<AsciiBody>(file, header, progress).read();
   return PlyReader<BinaryBody>(file, header, progress).read();
 }
 

@@ -4,13 +4,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/mesh/detail/topology.h"
 #include "innermap/mesh/winding_number.h"
 
 namespace innermap {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 Box3 boxOf(const ClosedShells& shells) {
   Box3 box;

@@ -44,19 +44,14 @@ void halve(std::vector<Item>& items, Range range, std::size_t leafSize, int time
 }
 
 template <typename Item>
-BallTree::Node makeNode(const std::vector<Item>& items, const std::vector<double>& radii,
-                        Range range, std::uint32_t depth) {
+BallTree::Node makeNode(const std::vector<Item>& items, double reach, Range range,
+                        std::uint32_t depth) {
   BallTree::Node node;
   node.ball.center = boxOf(items, range).center();
   double squared = 0;
-  for (std::uint32_t i = range.first; i < range.second; ++i) {
-    const double distance = squaredNorm(items[i].position - node.ball.center);
-    if (radii.size() == 1)
-      squared = std::max(squared, distance);
-    else
-      node.ball.radius = std::max(node.ball.radius, std::sqrt(distance) + radii[items[i].index]);
-  }
-  if (radii.size() == 1) node.ball.radius = std::sqrt(squared) + radii[0];
+  for (std::uint32_t i = range.first; i < range.second; ++i)
+    squared = std::max(squared, squaredNorm(items[i].position - node.ball.center));
+  node.ball.radius = std::sqrt(squared) + reach;
   node.begin = range.first;
   node.end = range.second;
   node.depth = depth;
@@ -66,13 +61,12 @@ BallTree::Node makeNode(const std::vector<Item>& items, const std::vector<double
 }  // namespace
 
 // Level by level: the nodes of one are split side by side.
-BallTree::BallTree(const Points& points, const std::vector<double>& radii, std::size_t leafSize,
-                   int halvings) {
+BallTree::BallTree(const Points& points, double reach, std::size_t leafSize, int halvings) {
   const auto count = static_cast<std::uint32_t>(points.size());
   if (count == 0) return;
   std::vector<Item> items(count);
   for (std::uint32_t i = 0; i < count; ++i) items[i] = {points[i], i};
-  nodes_.push_back(makeNode(items, radii, {0, count}, 0));
+  nodes_.push_back(makeNode(items, reach, {0, count}, 0));
   for (std::size_t begin = 0; begin < nodes_.size();) {
     const std::size_t end = nodes_.size();
     std::vector<std::vector<Node>> children(end - begin);
@@ -85,7 +79,7 @@ BallTree::BallTree(const Points& points, const std::vector<double>& radii, std::
                        parts.clear();
                        halve(items, {node.begin, node.end}, leafSize, halvings, parts);
                        for (const Range& part : parts)
-                         children[n].push_back(makeNode(items, radii, part, node.depth + 1));
+                         children[n].push_back(makeNode(items, reach, part, node.depth + 1));
                      }
                    });
     for (std::size_t n = 0; n < children.size(); ++n) {

@@ -17,7 +17,7 @@ struct Ball {
 class BallTree {
  public:
   struct Node {
-    Ball ball;                         // about all of its points, each with its own radius
+    Ball ball;                         // about all of its points
     std::uint32_t begin = 0, end = 0;  // of order()
     std::uint32_t firstChild = 0, children = 0;
     std::uint32_t depth = 0;
@@ -25,12 +25,11 @@ class BallTree {
     std::size_t count() const { return end - begin; }
   };
 
-  // radii: how far what the points stand for reaches, one for all or one each. leafSize: most
-  // points of a leaf, >= 1. halvings: of a node before it has children (1: two of them, 3: eight),
+  // reach: radius of what a point stands for, >= 0. leafSize: most points of a leaf, >= 1.
+  // halvings: of a node before it has children (1: two of them, 3: eight),
   // >= 1. Points must be finite and fewer than 2^31. Children stand behind their parents.
   // Deterministic.
-  BallTree(const Points& points, const std::vector<double>& radii, std::size_t leafSize,
-           int halvings);
+  BallTree(const Points& points, double reach, std::size_t leafSize, int halvings);
 
   bool empty() const { return nodes_.empty(); }
   const std::vector<Node>& nodes() const { return nodes_; }

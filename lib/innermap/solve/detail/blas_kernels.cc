@@ -5,11 +5,13 @@
 #include <initializer_list>
 
 // Absent from OpenBLAS built for one processor, and from other libraries.
+// NOLINTBEGIN(readability-identifier-naming): not ours.
 extern "C" {
 __attribute__((weak)) char* openblas_get_corename();
 __attribute__((weak)) void gotoblas_dynamic_init();
 __attribute__((weak)) void gotoblas_dynamic_quit();
 }
+// NOLINTEND(readability-identifier-naming)
 
 namespace innermap {
 namespace {

@@ -30,7 +30,7 @@ ChargeTree::ChargeTree(const Points& sources, const Matrix& weights)
     : center_(sources.empty() ? Vec3{} : boundingBox(sources).center()),
       inverseScale_(inverseOf(boundingBox(sources).diagonal())),
       channels_(weights.columns()),
-      balls_(localPoints(sources, center_, inverseScale_), {kLeastRadius}, kLeafSize, 1) {
+      balls_(localPoints(sources, center_, inverseScale_), kLeastRadius, kLeafSize, 1) {
   if (weights.rows() != sources.size())
     throw DataError("charges: " + std::to_string(sources.size()) + " sources but " +
                     std::to_string(weights.rows()) + " rows of weights; give one row a source");

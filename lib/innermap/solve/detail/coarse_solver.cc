@@ -52,7 +52,7 @@ CoarseSolver::CoarseSolver(const Points& collocation, const Points& sources, std
     a(i, 0) = 1;
     for (int k = 0; k < 3; ++k) a(i, static_cast<std::size_t>(1 + k)) = seen[i][k];
   }
-  fillKernelMatrix(seen, sources, 1, a.column(kAffine), a.rows(), progress);
+  fillKernelMatrix(seen, sources, 1, a.column(kAffine), a.rows(), {progress});
   const double lambda = kLambda * std::sqrt(meanSquaredNorm(a, kAffine, rows));
   for (std::size_t j = 0; j < count; ++j) a(rows + j, kAffine + j) = lambda;
   qr_ = BlockedQr(std::move(a), progress);

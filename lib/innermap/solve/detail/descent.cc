@@ -15,11 +15,10 @@ struct Subtree {
   std::shared_ptr<const std::vector<std::uint32_t>> nodes;  // of charges not yet expanded
 };
 
-// Shared by both ways down: `atLeaf(node, parent, nodes, work)`.
-template <typename AtLeaf>
 class Descent {
  public:
-  Descent(const FarField& field, const BallTree& targets, const AtLeaf& atLeaf, Progress* progress)
+  Descent(const FarField& field, const BallTree& targets, const LeafVisitor& atLeaf,
+          Progress* progress)
       : field_(field), nodes_(targets.nodes()), atLeaf_(atLeaf), progress_(progress) {}
 
   void run(std::string_view stage) {
@@ -69,7 +68,7 @@ class Descent {
     const BallTree::Node& node = nodes_[n];
     if (node.leaf()) {
       throwIfCancelled(progress_);
-      atLeaf_(node, parent, nodes, work);
+      atLeaf_(node, field_.expandLast(node.ball, parent, nodes, work.near, work.farField), work);
       return;
     }
     std::vector<std::uint32_t> left;
@@ -80,36 +79,15 @@ class Descent {
 
   const FarField& field_;
   const std::vector<BallTree::Node>& nodes_;
-  const AtLeaf& atLeaf_;
+  const LeafVisitor& atLeaf_;
   Progress* progress_;
 };
-
-template <typename AtLeaf>
-void run(const FarField& field, const BallTree& targets, const AtLeaf& atLeaf, Progress* progress,
-         std::string_view stage) {
-  if (!targets.empty()) Descent<AtLeaf>(field, targets, atLeaf, progress).run(stage);
-}
 
 }  // namespace
 
 void descend(const FarField& field, const BallTree& targets, const LeafVisitor& visit,
              Progress* progress, std::string_view stage) {
-  const auto atLeaf = [&](const BallTree::Node& node, const Expansion& parent,
-                          const std::vector<std::uint32_t>& nodes, DescentWorkspace& work) {
-    visit(node, field.expandLast(node.ball, parent, nodes, work.near, work.farField), work);
-  };
-  run(field, targets, atLeaf, progress, stage);
-}
-
-void descendToNodes(const FarField& field, const BallTree& targets, const LeafNodeVisitor& visit,
-                    Progress* progress) {
-  const auto atLeaf = [&](const BallTree::Node& node, const Expansion& parent,
-                          const std::vector<std::uint32_t>& nodes, DescentWorkspace& work) {
-    std::vector<std::uint32_t> left;
-    const Expansion expansion = field.expand(node.ball, parent, nodes, left, work.farField);
-    visit(node, expansion, left, work.sums);
-  };
-  run(field, targets, atLeaf, progress, {});
+  if (!targets.empty()) Descent(field, targets, visit, progress).run(stage);
 }
 
 }  // namespace innermap

@@ -24,10 +24,4 @@ using LeafVisitor = std::function<void(const BallTree::Node& leaf, const Expansi
 void descend(const FarField& field, const BallTree& targets, const LeafVisitor& visit,
              Progress* progress, std::string_view stage);
 
-// The same where sources are no charges: with the nodes that a leaf's expansion left.
-using LeafNodeVisitor = std::function<void(const BallTree::Node& leaf, const Expansion& expansion,
-                                           const std::vector<std::uint32_t>& left, LeafSums& sums)>;
-void descendToNodes(const FarField& field, const BallTree& targets, const LeafNodeVisitor& visit,
-                    Progress* progress);
-
 }  // namespace innermap

@@ -13,6 +13,7 @@ namespace innermap {
 namespace {
 
 constexpr double kLittleGain = 3e-3, kLargeChange = 0.3;
+constexpr double kDependent = 1e-8;  // share of a column's length that is left
 constexpr std::size_t kRows = 4096;
 
 double dot(const double* a, const double* b, std::size_t n) {
@@ -75,7 +76,7 @@ bool OrthogonalDirections::normalise(Block& block, std::size_t column) const {
       addScaled(z, -part, block.directions.column(i), unknowns_);
     }
   const double length = std::sqrt(dot(q, q, images_));
-  const bool kept = length > dependent_ * before;
+  const bool kept = length > kDependent * before;
   const double factor = kept ? 1 / length : 0;
   cblas_dscal(static_cast<int>(images_), factor, q, 1);
   cblas_dscal(static_cast<int>(unknowns_), factor, z, 1);
@@ -93,7 +94,7 @@ void OrthogonalDirections::add(Matrix directions, Matrix images, Progress* progr
     for (const Block& old : blocks_) removeParts(old, fresh, progress);
   for (std::size_t c = 0; c < columns; ++c) {
     double* q = fresh.images.column(c);
-    const bool dependent = !(std::sqrt(dot(q, q, images_)) > dependent_ * before[c]);
+    const bool dependent = !(std::sqrt(dot(q, q, images_)) > kDependent * before[c]);
     if (dependent) std::fill_n(q, images_, 0.0);
     if (!normalise(fresh, c)) continue;
     const double* z = fresh.directions.column(c);

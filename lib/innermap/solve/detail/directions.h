@@ -10,9 +10,8 @@ namespace innermap {
 
 class OrthogonalDirections {
  public:
-  // dependent: columns of whose length no more than this share is left are left out, in (0, 1).
-  OrthogonalDirections(std::size_t images, std::size_t unknowns, double dependent = 1e-8)
-      : images_(images), unknowns_(unknowns), dependent_(dependent) {}
+  OrthogonalDirections(std::size_t images, std::size_t unknowns)
+      : images_(images), unknowns_(unknowns) {}
 
   // Adds the columns of `directions` (#unknowns x n) and of their `images` (#images x n), made
   // orthonormal to all that are there (Gram-Schmidt, twice); columns that depend on those are left
@@ -40,7 +39,6 @@ class OrthogonalDirections {
   bool normalise(Block& block, std::size_t column) const;
 
   std::size_t images_, unknowns_;
-  double dependent_;
   std::vector<Block> blocks_;
   std::vector<Column> column_;
 };

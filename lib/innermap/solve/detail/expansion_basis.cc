@@ -7,6 +7,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/error.h"
 #include "innermap/solve/detail/blocked_qr.h"
 #include "innermap/solve/detail/expansion_simd.h"
@@ -20,7 +21,7 @@ constexpr double kPointsPer = 1.05;  // function, at least
 std::size_t roundUp(std::size_t n) { return (n + simd::kRows - 1) / simd::kRows * simd::kRows; }
 
 Points fibonacciSphere(std::size_t count) {
-  const double golden = 3.14159265358979323846 * (3 - std::sqrt(5.0));
+  const double golden = kPi * (3 - std::sqrt(5.0));
   Points out(count);
   for (std::size_t i = 0; i < count; ++i) {
     const double at = static_cast<double>(i) + 0.5;

@@ -8,6 +8,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace innermap::simd {
 namespace HWY_NAMESPACE {
+// NOLINTBEGIN(readability-identifier-naming): named like the functions of Highway.
 
 namespace hn = hwy::HWY_NAMESPACE;
 #if HWY_TARGET == HWY_SCALAR
@@ -81,6 +82,7 @@ void MultiplyThree(const double* HWY_RESTRICT a, std::size_t rows, std::size_t c
   }
 }
 
+// NOLINTEND(readability-identifier-naming)
 }  // namespace HWY_NAMESPACE
 }  // namespace innermap::simd
 HWY_AFTER_NAMESPACE();

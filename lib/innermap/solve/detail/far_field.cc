@@ -20,8 +20,8 @@ void append(const ChargeSpan& span, std::size_t stride, const Vec3& center,
 
 }  // namespace
 
-FarField::FarField(const Proxies& proxies, const FarFieldSettings& settings)
-    : proxies_(proxies), settings_(settings), basis_(proxies.basis()) {
+FarField::FarField(const Proxies& proxies, const FarFieldPlan& plan)
+    : proxies_(proxies), plan_(plan), basis_(proxies.basis()) {
   const std::size_t size = simd::padded(basis_->pointCount());
   x_.resize(size);
   y_.resize(size);
@@ -36,10 +36,10 @@ FarField::FarField(const Proxies& proxies, const FarFieldSettings& settings)
 // Charges of a leaf one by one.
 void FarField::split(const BallTree::Node& leaf, const Ball& ball, NearCharges& near,
                      NearCharges& far) const {
-  const double reach = ball.radius / settings_.separation, squared = reach * reach;
+  const double reach = ball.radius / plan_.separation, squared = reach * reach;
   for (std::size_t g = 0; g < proxies_.groups(); ++g) {
     const std::size_t stride = 3 + proxies_.width(g);
-    const ChargeSpan span = proxies_.charges()->charges(leaf, g);
+    const ChargeSpan span = proxies_.charges().charges(leaf, g);
     for (std::size_t i = 0; i < span.count; ++i) {
       const double* q = span.first + i * stride;
       const bool isFar = squaredNorm(Vec3{q[0], q[1], q[2]} - ball.center) >= squared;
@@ -53,7 +53,7 @@ void FarField::gather(const Ball& ball, const std::vector<std::uint32_t>& nodes,
                       std::vector<std::uint32_t>* left, NearCharges* near,
                       FarFieldWorkspace& work) const {
   const auto& all = proxies_.balls().nodes();
-  const double reach = ball.radius / settings_.separation;
+  const double reach = ball.radius / plan_.separation;
   work.far.resize(proxies_.groups());
   for (auto& f : work.far) f.clear();
   work.stack = nodes;
@@ -64,7 +64,7 @@ void FarField::gather(const Ball& ball, const std::vector<std::uint32_t>& nodes,
     const double distance = norm(node.ball.center - ball.center);
     const bool far = distance - node.ball.radius >= reach,
                together = !proxies_.has(n) ||
-                          node.ball.radius <= settings_.separation * (distance - ball.radius);
+                          node.ball.radius <= plan_.separation * (distance - ball.radius);
     if (far && together) {
       for (std::size_t g = 0; g < proxies_.groups(); ++g)
         append(proxies_.standIn(n, g), 3 + proxies_.width(g), ball.center, work.far[g]);
@@ -116,7 +116,7 @@ Expansion FarField::expansionOf(const Ball& ball, const Expansion& parent,
     const std::size_t width = proxies_.width(g), stride = 3 + width;
     simd::sumCharges(work.far[g].data(), work.far[g].size() / stride, static_cast<int>(width),
                      work.x.data(), work.y.data(), work.z.data(), count, count,
-                     work.values.data() + 3 * count * g, nullptr, settings_.rounding);
+                     work.values.data() + 3 * count * g, nullptr, plan_.rounding);
   }
   if (!parent.coefficients.empty()) addParent(ball, parent, work);
   out.coefficients.assign(block * groups, 0.0);

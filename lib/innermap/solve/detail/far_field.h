@@ -37,7 +37,7 @@ struct FarFieldWorkspace {
   std::vector<double> values, harmonics, x, y, z;
 };
 
-struct FarFieldSettings {
+struct FarFieldPlan {
   int order = 8;            // of the polynomials, in [0, ExpansionBasis::kMostOrder]
   double separation = 0.5;  // largest ratio of a ball's radius to the distance it is seen from
   simd::Rounding rounding = simd::Rounding::full;
@@ -45,12 +45,12 @@ struct FarFieldSettings {
 
 class FarField {
  public:
-  // The basis must be that of settings.order.
-  FarField(const Proxies& proxies, const FarFieldSettings& settings);
+  // The basis must be that of plan.order.
+  FarField(const Proxies& proxies, const FarFieldPlan& plan);
 
   const Proxies& sources() const { return proxies_; }
   const ExpansionBasis& basis() const { return *basis_; }
-  simd::Rounding rounding() const { return settings_.rounding; }
+  simd::Rounding rounding() const { return plan_.rounding; }
 
   // The expansion in `ball` of its parent's and of those of `nodes` that are far from it. Adds the
   // others to `left`; none of them is larger than the ball unless it is a leaf.
@@ -58,8 +58,8 @@ class FarField {
                    const std::vector<std::uint32_t>& nodes, std::vector<std::uint32_t>& left,
                    FarFieldWorkspace& work) const;
 
-  // The same for a ball without children and sources that are charges: each of those is expanded or
-  // put into `near`, whose old content goes.
+  // The same for a ball without children: each charge is expanded or put into `near`, whose old
+  // content goes.
   Expansion expandLast(const Ball& ball, const Expansion& parent,
                        const std::vector<std::uint32_t>& nodes, NearCharges& near,
                        FarFieldWorkspace& work) const;
@@ -73,7 +73,7 @@ class FarField {
   void addParent(const Ball& ball, const Expansion& parent, FarFieldWorkspace& work) const;
 
   const Proxies& proxies_;
-  FarFieldSettings settings_;
+  FarFieldPlan plan_;
   std::shared_ptr<const ExpansionBasis> basis_;
   std::vector<double> x_, y_, z_;  // check points, padded
 };

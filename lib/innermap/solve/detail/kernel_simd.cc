@@ -11,6 +11,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace innermap::simd {
 namespace HWY_NAMESPACE {
+// NOLINTBEGIN(readability-identifier-naming): named like the functions of Highway.
 
 namespace hn = hwy::HWY_NAMESPACE;
 #if HWY_TARGET == HWY_SCALAR
@@ -245,6 +246,7 @@ void KernelColumn(const double* x, const double* y, const double* z, std::size_t
 
 const char* TargetName() { return hwy::TargetName(HWY_TARGET); }
 
+// NOLINTEND(readability-identifier-naming)
 }  // namespace HWY_NAMESPACE
 }  // namespace innermap::simd
 HWY_AFTER_NAMESPACE();

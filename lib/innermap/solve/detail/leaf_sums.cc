@@ -44,22 +44,16 @@ void LeafSums::atPoints(const FarField& field, const Points& points, const std::
                         bool gradients) {
   start(simd::padded(count), near.size(), gradients);
   setPoints(points, order, count, expansion.ball.center);
-  addPolynomial(field, expansion, field.sources().charges()->inverseScale());
+  addPolynomial(field, expansion);
   addNear(field, near, expansion.ball.radius);
 }
 
-void LeafSums::polynomialAt(const FarField& field, const Points& points, const std::uint32_t* order,
-                            std::size_t count, const Expansion& expansion) {
-  start(simd::padded(count), field.sources().groups(), false);
-  setPoints(points, order, count, expansion.ball.center);
-  addPolynomial(field, expansion, 1);
-}
-
-void LeafSums::addPolynomial(const FarField& field, const Expansion& expansion, double slopeScale) {
+void LeafSums::addPolynomial(const FarField& field, const Expansion& expansion) {
   if (expansion.coefficients.empty()) return;
   const ExpansionBasis& basis = field.basis();
   const std::size_t functions = basis.harmonics().count(), padding = basis.paddedCount();
-  const double inverse = 1 / expansion.ball.radius, slope = inverse * slopeScale;
+  const double inverse = 1 / expansion.ball.radius,
+               slope = inverse * field.sources().charges().inverseScale();
   scaledX_ = x_;
   scaledY_ = y_;
   scaledZ_ = z_;
@@ -89,7 +83,7 @@ void LeafSums::addPolynomial(const FarField& field, const Expansion& expansion, 
 
 void LeafSums::addNear(const FarField& field, const NearCharges& near, double radius) {
   const std::size_t count = places_.size(), stride = x_.size();
-  const double slope = field.sources().charges()->inverseScale();
+  const double slope = field.sources().charges().inverseScale();
   if (none(near)) return;
   sums_.resize(3 * stride);
   slopes_.resize(gradients_.empty() ? 0 : 9 * stride);
@@ -121,7 +115,7 @@ void LeafSums::atBlock(const FarField& field, const LatticeBlock& polynomial,
   start(kPoints, near.size(), gradients);
   for (std::size_t g = 0; g < near.size() && !expansion.coefficients.empty(); ++g)
     polynomial.evaluate(expansion.coefficients.data() + 3 * padding * g, padding,
-                        field.sources().charges()->inverseScale() / expansion.ball.radius,
+                        field.sources().charges().inverseScale() / expansion.ball.radius,
                         values_.data() + 3 * kPoints * g,
                         gradients ? gradients_.data() + 9 * kPoints * g : nullptr);
   if (none(near)) return;

@@ -18,10 +18,6 @@ class LeafSums {
                 std::size_t count, const Expansion& expansion, const NearCharges& near,
                 bool gradients);
 
-  // The expansion alone, in local units.
-  void polynomialAt(const FarField& field, const Points& points, const std::uint32_t* order,
-                    std::size_t count, const Expansion& expansion);
-
   // At a block whose points are `spacing` apart, in the units of the charges; what was not wanted
   // lacks the near charges.
   void atBlock(const FarField& field, const LatticeBlock& polynomial,
@@ -38,7 +34,7 @@ class LeafSums {
   void setTargets(std::size_t count);
   void setPoints(const Points& points, const std::uint32_t* order, std::size_t count,
                  const Vec3& center);
-  void addPolynomial(const FarField& field, const Expansion& expansion, double slopeScale);
+  void addPolynomial(const FarField& field, const Expansion& expansion);
   // Adds near charges at the targets to the places of theirs. radius: of their ball.
   void addNear(const FarField& field, const NearCharges& near, double radius);
 

@@ -10,30 +10,18 @@ namespace innermap {
 
 Proxies::Proxies(const ChargeTree& charges, std::shared_ptr<const ExpansionBasis> basis,
                  Progress* progress)
-    : balls_(charges.balls()),
-      charges_(&charges),
+    : charges_(charges),
       basis_(std::move(basis)),
-      slot_(balls_.nodes().size(), kNone),
+      slot_(balls().nodes().size(), kNone),
       packed_(charges.groups()) {
   for (std::size_t n = 0; n < slot_.size(); ++n)
-    if (balls_.nodes()[n].count() > basis_->pointCount()) slot_[n] = slots_++;
-  build({}, progress);
-}
-
-Proxies::Proxies(const BallTree& balls, std::shared_ptr<const ExpansionBasis> basis,
-                 const Content& content, Progress* progress)
-    : balls_(balls),
-      charges_(nullptr),
-      basis_(std::move(basis)),
-      slot_(balls_.nodes().size()),
-      packed_(1) {
-  for (std::uint32_t& slot : slot_) slot = slots_++;
-  build(content, progress);
+    if (balls().nodes()[n].count() > basis_->pointCount()) slot_[n] = slots_++;
+  build(progress);
 }
 
 // From the deepest level up.
-void Proxies::build(const Content& content, Progress* progress) {
-  const auto& nodes = balls_.nodes();
+void Proxies::build(Progress* progress) {
+  const auto& nodes = balls().nodes();
   std::vector<std::size_t> levels;  // first node of each depth: nodes stand by depth
   for (std::size_t n = 0; n < nodes.size(); ++n)
     if (nodes[n].depth == levels.size()) levels.push_back(n);
@@ -46,7 +34,7 @@ void Proxies::build(const Content& content, Progress* progress) {
         levels[level + 1] - levels[level], 4,
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t n = levels[level] + begin; n < levels[level] + end; ++n)
-            for (std::size_t g = 0; has(n) && g < packed_.size(); ++g) buildNode(n, g, content);
+            for (std::size_t g = 0; has(n) && g < packed_.size(); ++g) buildNode(n, g);
         },
         progress);
 }
@@ -57,7 +45,7 @@ ChargeSpan Proxies::of(std::size_t node, std::size_t group) const {
 }
 
 ChargeSpan Proxies::standIn(std::size_t node, std::size_t group) const {
-  return has(node) ? of(node, group) : charges_->charges(balls_.nodes()[node], group);
+  return has(node) ? of(node, group) : charges_.charges(balls().nodes()[node], group);
 }
 
 void Proxies::addMoments(const ChargeSpan& part, const Ball& ball, std::size_t width,
@@ -79,18 +67,14 @@ void Proxies::addMoments(const ChargeSpan& part, const Ball& ball, std::size_t w
               static_cast<int>(basis_->paddedCount()));
 }
 
-void Proxies::buildNode(std::size_t node, std::size_t group, const Content& content) {
-  const BallTree::Node& parent = balls_.nodes()[node];
+void Proxies::buildNode(std::size_t node, std::size_t group) {
+  const BallTree::Node& parent = balls().nodes()[node];
   const std::size_t channels = width(group), stride = 3 + channels, count = basis_->pointCount();
   std::vector<double> moments(3 * basis_->paddedCount(), 0.0), weights(3 * count, 0.0);
   for (std::size_t c = 0; c < parent.children; ++c)
     addMoments(standIn(parent.firstChild + c, group), parent.ball, channels, moments.data());
-  if (parent.leaf()) {
-    if (content)
-      content(parent, moments.data());
-    else
-      addMoments(charges_->charges(parent, group), parent.ball, channels, moments.data());
-  }
+  if (parent.leaf())
+    addMoments(charges_.charges(parent, group), parent.ball, channels, moments.data());
   basis_->proxyWeights(moments.data(), weights.data());
   double* out = packed_[group].data() + slot_[node] * count * stride;
   for (std::size_t i = 0; i < count; ++i, out += stride) {

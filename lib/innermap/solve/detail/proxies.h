@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -21,18 +20,11 @@ class Proxies {
   Proxies(const ChargeTree& charges, std::shared_ptr<const ExpansionBasis> basis,
           Progress* progress);
 
-  // For all nodes of a tree of anything with a harmonic far field, in one channel: `content` adds
-  // the moments of a leaf, sums of weight times N_nm((position - centre) / radius). Called from
-  // many threads.
-  using Content = std::function<void(const BallTree::Node& leaf, double* moments)>;
-  Proxies(const BallTree& balls, std::shared_ptr<const ExpansionBasis> basis,
-          const Content& content, Progress* progress);
-
-  const BallTree& balls() const { return balls_; }
+  const BallTree& balls() const { return charges_.balls(); }
   const std::shared_ptr<const ExpansionBasis>& basis() const { return basis_; }
   std::size_t groups() const { return packed_.size(); }
-  std::size_t width(std::size_t group) const { return charges_ ? charges_->width(group) : 1; }
-  const ChargeTree* charges() const { return charges_; }  // null when there are none
+  std::size_t width(std::size_t group) const { return charges_.width(group); }
+  const ChargeTree& charges() const { return charges_; }
 
   bool has(std::size_t node) const { return slot_[node] != kNone; }
   // The node's proxies, or its charges when it has none.
@@ -40,14 +32,13 @@ class Proxies {
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
-  void build(const Content& content, Progress* progress);
-  void buildNode(std::size_t node, std::size_t group, const Content& content);
+  void build(Progress* progress);
+  void buildNode(std::size_t node, std::size_t group);
   void addMoments(const ChargeSpan& part, const Ball& ball, std::size_t width,
                   double* moments) const;
   ChargeSpan of(std::size_t node, std::size_t group) const;
 
-  const BallTree& balls_;
-  const ChargeTree* charges_;
+  const ChargeTree& charges_;
   std::shared_ptr<const ExpansionBasis> basis_;
   std::vector<std::uint32_t> slot_;
   std::uint32_t slots_ = 0;

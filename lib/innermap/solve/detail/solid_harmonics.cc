@@ -96,8 +96,4 @@ void SolidHarmonics::derivative(int axis, const double* coefficients, double* ou
   for (const Term& t : derivative_[axis]) out[t.to] += t.factor * coefficients[t.from];
 }
 
-void SolidHarmonics::addAdjointDerivative(int axis, const double* moments, double* out) const {
-  for (const Term& t : derivative_[axis]) out[t.from] += t.factor * moments[t.to];
-}
-
 }  // namespace innermap

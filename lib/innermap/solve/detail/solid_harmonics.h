@@ -34,10 +34,6 @@ class SolidHarmonics {
   // Coefficients of the derivative along `axis` of the polynomial with these ones.
   void derivative(int axis, const double* coefficients, double* out) const;
 
-  // The adjoint: adds to out[c] what the derivative of function c is in terms of `moments`, sums
-  // over functions.
-  void addAdjointDerivative(int axis, const double* moments, double* out) const;
-
   // Bit a is set when function c is odd along axis a.
   int parity(std::size_t c) const { return parity_[c]; }
 

@@ -19,10 +19,10 @@ constexpr double kNear = 150;         // charges
 // The error is about kError * separation^(order + 1) for charges about a body's surface, random or
 // fitted (tests/bench). High orders are dear: their translations cost the fourth power, while near
 // charges grow with the inverse square of the separation. So both go with the accuracy.
-FarFieldSettings planFor(double accuracy) {
+FarFieldPlan planFor(double accuracy) {
   constexpr double kError = 0.02;
   constexpr int kLeastOrder = 5;
-  FarFieldSettings plan;
+  FarFieldPlan plan;
   const double digits = -std::log10(accuracy);
   plan.separation = std::clamp(0.5 - 0.05 * (digits - 4), 0.3, 0.5);
   const double order = std::log(accuracy / kError) / std::log(plan.separation) - 1;
@@ -35,15 +35,14 @@ FarFieldSettings planFor(double accuracy) {
 }
 
 // Rounding may be what was missing, too.
-FarFieldSettings raised(FarFieldSettings plan, double excess) {
+FarFieldPlan raised(FarFieldPlan plan, double excess) {
   const double missing = std::log(1.5 * excess) / -std::log(plan.separation);
   plan.order += std::isfinite(missing) ? std::clamp(static_cast<int>(std::ceil(missing)), 1, 8) : 8;
   plan.rounding = simd::Rounding::full;
   return plan;
 }
 
-bool useHierarchy(const SumSize& size, SumMethod method) {
-  if (method != SumMethod::cheapest) return method == SumMethod::hierarchical;
+bool hierarchyIsCheaper(const SumSize& size) {
   const double charges = static_cast<double>(size.charges),
                points = static_cast<double>(size.points),
                leaves = points / static_cast<double>(size.pointsPerLeaf) + 1,

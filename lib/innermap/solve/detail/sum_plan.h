@@ -4,15 +4,14 @@
 #include <cstddef>
 
 #include "innermap/solve/detail/far_field.h"
-#include "innermap/solve/fast_sum.h"
 
 namespace innermap {
 
 // For sums with this relative accuracy, in [1e-12, 0.1].
-FarFieldSettings planFor(double accuracy);
+FarFieldPlan planFor(double accuracy);
 
 // After the error was `excess` times what is allowed; the order may pass the highest there is.
-FarFieldSettings raised(FarFieldSettings plan, double excess);
+FarFieldPlan raised(FarFieldPlan plan, double excess);
 
 struct SumSize {
   std::size_t charges = 0, points = 0;
@@ -21,7 +20,7 @@ struct SumSize {
   bool gradients = false;
 };
 
-// Whether a hierarchy takes less time, or is asked for.
-bool useHierarchy(const SumSize& size, SumMethod method);
+// Whether a hierarchy takes less time than plain sums.
+bool hierarchyIsCheaper(const SumSize& size);
 
 }  // namespace innermap

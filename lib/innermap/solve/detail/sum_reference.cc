@@ -27,13 +27,12 @@ double ratio(const Matrix& got, const Matrix& exact, std::size_t first, std::siz
 
 }  // namespace
 
-SumReference::SumReference(FieldSamples exact, const FastSumSettings& settings)
-    : exact_(std::move(exact)), relative_(exact_.values.columns(), settings.accuracy) {
+SumReference::SumReference(FieldSamples exact, double accuracy, double absolute)
+    : exact_(std::move(exact)), relative_(exact_.values.columns(), accuracy) {
   for (std::size_t k = 0; k < relative_.size(); ++k) {
     const double size = rootMeanSquare(exact_.values.column(k), exact_.values.rows());
     if (size > 0)
-      relative_[k] =
-          std::clamp(settings.absolute / size, relative_[k], std::max(relative_[k], kLoosest));
+      relative_[k] = std::clamp(absolute / size, relative_[k], std::max(relative_[k], kLoosest));
   }
 }
 

@@ -3,13 +3,14 @@
 
 #include <vector>
 
-#include "innermap/solve/fast_sum.h"
+#include "innermap/solve/kernel_sum.h"
 
 namespace innermap {
 
 class SumReference {
  public:
-  SumReference(FieldSamples exact, const FastSumSettings& settings);
+  // accuracy, absolute: as in FastSumSettings.
+  SumReference(FieldSamples exact, double accuracy, double absolute);
 
   // The relative accuracy that all channels need.
   double accuracy() const;

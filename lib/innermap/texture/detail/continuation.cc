@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/evaluate/active_region.h"
@@ -17,7 +18,6 @@ using openvdb::Vec3fGrid;
 using Leaf = openvdb::Vec3STree::LeafNodeType;
 using Leaves = openvdb::tree::LeafManager<const openvdb::MaskTree>;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kReach = 1.5;                 // spacings; 1% of the rest is left there
 constexpr double kExactDepth = 1;              // voxels: what interpolation at the surface sees
 constexpr std::size_t kLeavesTogether = 2048;  // bounds the memory for points
@@ -153,7 +153,7 @@ class Continuation {
       }
     Matrix fitted;
     if (!points.empty())
-      fitted = field_.evaluate(points, settings_.accuracy, false, settings_.progress).values;
+      fitted = field_.evaluate(points, {settings_.accuracy, false, settings_.progress}).values;
     parallelBlocks(
         near.size(), 8,
         [&](std::size_t first, std::size_t last) {

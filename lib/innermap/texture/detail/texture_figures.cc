@@ -98,9 +98,10 @@ ColourErrors colourErrors(const Solid& solid, const std::vector<Segment>& seams,
   parallelBlocks(
       points.size(), 256,
       [&](std::size_t begin, std::size_t end) {
+        const auto access = colour.getConstAccessor();  // the sampler keeps a pointer to it
         const openvdb::tools::GridSampler<openvdb::Vec3fGrid::ConstAccessor,
                                           openvdb::tools::BoxSampler>
-            sampler(colour.getConstAccessor(), colour.transform());
+            sampler(access, colour.transform());
         for (std::size_t i = begin; i < end; ++i) {
           const Vec3 p = positionOf(solid.surface(), points[i]);
           const openvdb::Vec3f c = sampler.wsSample(openvdb::Vec3d(p.x, p.y, p.z));

@@ -18,8 +18,9 @@ std::vector<openvdb::Coord> nextLayer(const Grid& grid, const openvdb::FloatGrid
   openvdb::tools::dilateActiveValues(ring, 1, openvdb::tools::NN_FACE_EDGE_VERTEX,
                                      openvdb::tools::PRESERVE_TILES);
   ring.topologyDifference(grid.tree());
-  openvdb::tools::GridSampler<openvdb::FloatGrid::ConstAccessor, openvdb::tools::BoxSampler>
-      distance(solid.getConstAccessor(), solid.transform());
+  const auto access = solid.getConstAccessor();  // the sampler keeps a pointer to it
+  const openvdb::tools::GridSampler<openvdb::FloatGrid::ConstAccessor, openvdb::tools::BoxSampler>
+      distance(access, solid.transform());
   const double within = grid.voxelSize()[0];
   std::vector<openvdb::Coord> out;
   for (auto leaf = ring.cbeginLeaf(); leaf; ++leaf)

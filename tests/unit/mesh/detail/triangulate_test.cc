@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/random.h"
 
 namespace innermap {
@@ -51,7 +52,7 @@ TEST(Triangulate, RandomConcavePolygons) {
     Points v;
     double area = 0;
     for (int k = 0; k < count; ++k) {
-      const double angle = 2 * M_PI * k / count, r = 0.2 + random.uniform(k);
+      const double angle = 2 * kPi * k / count, r = 0.2 + random.uniform(k);
       v.push_back({r * std::cos(angle), r * std::sin(angle), 0.01 * random.uniform(1000 + k)});
     }
     for (int k = 0; k < count; ++k) area += cross(v[k], v[(k + 1) % count]).z;
@@ -73,7 +74,7 @@ TEST(Triangulate, RandomConcavePolygons) {
 TEST(Triangulate, StarAndFlatPolygonsFallBackToTheFan) {
   Points star;
   for (int k = 0; k < 5; ++k)
-    star.push_back({std::cos(4 * M_PI * k / 5), std::sin(4 * M_PI * k / 5), 0});
+    star.push_back({std::cos(4 * kPi * k / 5), std::sin(4 * kPi * k / 5), 0});
   EXPECT_EQ(cut(star, {0, 1, 2, 3, 4}).size(), 3u);
   const Points flat{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
   EXPECT_EQ(cut(flat, {0, 1, 2, 3}), (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/error.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"
@@ -105,7 +106,7 @@ TEST(Continuation, WhatTheFieldMissesFallsOffInwards) {
     } else if (depth >= 1 + 1.5 * 3) {
       EXPECT_LT(norm(rest), 1e-5);
     } else {
-      EXPECT_NEAR(norm(rest) / norm(missed), std::exp(-3.14159265 * (depth - 1) / 3), 0.01);
+      EXPECT_NEAR(norm(rest) / norm(missed), std::exp(-kPi * (depth - 1) / 3), 0.01);
     }
   }
 }

@@ -9,10 +9,10 @@
 #include <numeric>
 
 #include "innermap/surface/detail/refining/target_metric.h"
+#include "innermap/surface/detail/sphere/sphere_layout.h"
 #include "innermap/surface/detail/topology/edge_distance.h"
 #include "innermap/surface/detail/topology/half_edges.h"
 #include "innermap/surface/detail/topology/homology.h"
-#include "innermap/surface/sphere_layout.h"
 
 namespace innermap {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "innermap/surface/closed_surface.h"
+#include "innermap/surface/layout.h"
 
 namespace innermap {
 

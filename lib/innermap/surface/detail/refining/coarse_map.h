@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "innermap/core/progress.h"
-#include "innermap/surface/closed_surface.h"
 #include "innermap/surface/detail/refining/anchor_flow.h"
 #include "innermap/surface/detail/refining/progressive_mesh.h"
 #include "innermap/surface/detail/refining/target_metric.h"

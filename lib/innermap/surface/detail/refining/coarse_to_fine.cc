@@ -45,10 +45,12 @@ void CoarseToFine::relaxAll(int sweeps) {
   energy_.grown(mesh_.vertexCount());
   for (int t = 0; t < static_cast<int>(mesh_.triangleCount()); ++t)
     if (mesh_.alive(t)) energy_.changed(t);
-  // After the first sweep only those are visited around which something moved.
+  // After the first sweep only those are visited around which something moved, or all that the
+  // energy changed for.
   std::vector<char> active(mesh_.capacity(), 1), next(mesh_.capacity());
   for (int s = 0; s < sweeps; ++s) {
     bool moved = false;
+    if (energy_.sweeps()) std::fill(active.begin(), active.end(), 1);
     std::fill(next.begin(), next.end(), 0);
     for (int v = 0; v < static_cast<int>(mesh_.capacity()); ++v) {
       if (v % 512 == 0) throwIfCancelled(settings_.progress);

@@ -24,6 +24,9 @@ class StarEnergy {
   virtual void grown(std::size_t vertices) {
     (void)vertices;
   }  // before all triangles are `changed`
+  // Before each sweep over the vertices; whether the energy changed all over, so that all are
+  // visited.
+  virtual bool sweeps() { return false; }
   virtual void gather(int vertex) = 0;
   // Whether some triangle of the gathered star is so thin that steps get nowhere.
   virtual bool squeezed() const { return false; }

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "innermap/surface/closed_surface.h"
 #include "innermap/surface/detail/refining/locate.h"
 #include "innermap/surface/layout.h"
 

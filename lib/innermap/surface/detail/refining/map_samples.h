@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "innermap/core/vec3.h"
-#include "innermap/surface/closed_surface.h"
 #include "innermap/surface/detail/refining/target_metric.h"
 #include "innermap/surface/layout.h"
 

@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "innermap/surface/closed_surface.h"
 #include "innermap/surface/detail/refining/coarse_to_fine.h"
 #include "innermap/surface/detail/refining/rest_triangle.h"
 #include "innermap/surface/detail/refining/target_metric.h"
+#include "innermap/surface/layout.h"
 
 namespace innermap {
 

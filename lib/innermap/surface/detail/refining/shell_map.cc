@@ -10,9 +10,9 @@
 #include "innermap/surface/detail/refining/decimate.h"
 #include "innermap/surface/detail/refining/map_refiner.h"
 #include "innermap/surface/detail/sphere/sphere_candidates.h"
+#include "innermap/surface/detail/sphere/sphere_layout.h"
 #include "innermap/surface/detail/torus/torus_candidates.h"
 #include "innermap/surface/detail/torus/torus_layout.h"
-#include "innermap/surface/sphere_layout.h"
 
 namespace innermap {
 namespace {

@@ -40,16 +40,16 @@ class Midpoints {
 
 class Subdivision {
  public:
-  Subdivision(ShellCorrespondence& map, const TargetMetric& target, SplitMesh& split,
+  Subdivision(const SplitShell& shell, const TargetMetric& target, SplitMesh& split,
               const SubdivideSettings& settings)
-      : map_(map),
-        surface_(map.surface),
-        image_(map.image),
+      : shell_(shell),
+        surface_(shell.surface),
+        image_(shell.image),
         target_(target),
         split_(split),
         settings_(settings),
-        tree_(map.targetSurface.vertices, map.targetSurface.triangles),
-        limit_(kMargin * settings.tolerance * boundingBox(map.targetSurface.vertices).diagonal()) {}
+        tree_(shell.target.vertices, shell.target.triangles),
+        limit_(kMargin * settings.tolerance * boundingBox(shell.target.vertices).diagonal()) {}
 
   Subdivided run() {
     Subdivided out;
@@ -79,9 +79,9 @@ class Subdivision {
   Vec3 onTarget(const Locator& locator, const Vec3& ray) const {
     const Located where = locator.find(ray);
     const std::array<double, 3> w = locator.barycentric(ray, where);
-    const Triangle& t = map_.targetSurface.triangles[where.triangle];
+    const Triangle& t = shell_.target.triangles[where.triangle];
     Vec3 p;
-    for (int k = 0; k < 3; ++k) p += w[k] * map_.targetSurface.vertices[t[k]];
+    for (int k = 0; k < 3; ++k) p += w[k] * shell_.target.vertices[t[k]];
     return p;
   }
 
@@ -119,13 +119,13 @@ class Subdivision {
   // Triangles that the target's vertices between their corners are too far from.
   void markMissed(std::vector<char>& marked) const {
     const Locator locator(surface_.triangles, image_);
-    const Points& vertices = map_.targetSurface.vertices;
+    const Points& vertices = shell_.target.vertices;
     std::vector<int> missed(vertices.size(), -1);
     parallelBlocks(
         vertices.size(), 256,
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t v = begin; v < end; ++v) {
-            const int t = locator.find(map_.targetLayout.place[v]).triangle;
+            const int t = locator.find(shell_.targetLayout.place[v]).triangle;
             const Triangle& tri = surface_.triangles[t];
             const TriangleTree own({positions_[tri[0]], positions_[tri[1]], positions_[tri[2]]},
                                    {Triangle{0, 1, 2}});
@@ -204,7 +204,7 @@ class Subdivision {
 
   void splitMeshTriangle(int t, int from, int to, int middle) {
     Mesh& mesh = split_.mesh;
-    std::vector<int>& numbers = split_.meshTriangle[map_.source];
+    std::vector<int>& numbers = split_.meshTriangle[shell_.number];
     const int m = numbers[t];
     const auto cornerAt = [&](int vertex) {
       int c = 0;
@@ -221,7 +221,7 @@ class Subdivision {
           colour[c] = 0.5f * (mesh.colours[vi][c] + mesh.colours[vj][c]);
         mesh.colours.push_back(colour);
       }
-      split_.shellVertex.push_back({map_.source, middle});
+      split_.shellVertex.push_back({shell_.number, middle});
       return static_cast<int>(mesh.vertices.size()) - 1;
     });
     numbers.push_back(static_cast<int>(mesh.triangles.size()));
@@ -259,7 +259,7 @@ class Subdivision {
     return look;
   }
 
-  ShellCorrespondence& map_;
+  const SplitShell shell_;
   ClosedSurface& surface_;
   Layout& image_;
   const TargetMetric& target_;
@@ -274,9 +274,9 @@ class Subdivision {
 
 }  // namespace
 
-Subdivided subdivide(ShellCorrespondence& map, const TargetMetric& target, SplitMesh& split,
+Subdivided subdivide(const SplitShell& shell, const TargetMetric& target, SplitMesh& split,
                      const SubdivideSettings& settings) {
-  return Subdivision(map, target, split, settings).run();
+  return Subdivision(shell, target, split, settings).run();
 }
 
 }  // namespace innermap

@@ -6,7 +6,6 @@
 
 #include "innermap/core/progress.h"
 #include "innermap/surface/closed_surface.h"
-#include "innermap/surface/correspond.h"
 #include "innermap/surface/detail/refining/target_metric.h"
 
 namespace innermap {
@@ -16,6 +15,15 @@ struct SplitMesh {
   Mesh mesh;
   std::vector<ShellVertex> shellVertex;        // #V of mesh
   std::vector<std::vector<int>> meshTriangle;  // for each shell, each triangle's number in mesh
+};
+
+// A shell of the mesh and where it lies.
+struct SplitShell {
+  int number = 0;          // in SplitMesh::meshTriangle
+  ClosedSurface& surface;  // grows
+  Layout& image;           // of it, on the model space of the target; grows
+  const ClosedSurface& target;
+  const Layout& targetLayout;
 };
 
 struct SubdivideSettings {
@@ -31,10 +39,9 @@ struct Subdivided {
 
 // Splits the longest edges (on the model space) of triangles whose flat images are farther than the
 // tolerance from the target, or that the target's vertices between their corners are farther from,
-// and relaxes around the new vertices. map.surface and map.image grow, split.mesh with them: its
-// own vertices and triangles stay first and keep their numbers. onTarget and positions are left as
-// they were. Throws Cancelled.
-Subdivided subdivide(ShellCorrespondence& map, const TargetMetric& target, SplitMesh& split,
+// and relaxes around the new vertices. split.mesh grows with the shell: its own vertices and
+// triangles stay first and keep their numbers. Throws Cancelled.
+Subdivided subdivide(const SplitShell& shell, const TargetMetric& target, SplitMesh& split,
                      const SubdivideSettings& settings);
 
 }  // namespace innermap

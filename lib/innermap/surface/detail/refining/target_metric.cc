@@ -14,12 +14,7 @@ double Stretch::logSquared() const {
 }
 
 double unitAreaScale(const Points& vertices, const std::vector<Triangle>& triangles) {
-  double area = 0;
-  for (const Triangle& t : triangles) {
-    const Vec3& a = vertices[t[0]];
-    area += 0.5 * norm(cross(vertices[t[1]] - a, vertices[t[2]] - a));
-  }
-  return 1 / std::sqrt(area);
+  return 1 / std::sqrt(surfaceArea(vertices, triangles));
 }
 
 TargetMetric::TargetMetric(const ClosedSurface& surface, const Layout& layout)

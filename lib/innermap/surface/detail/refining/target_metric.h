@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "innermap/core/vec3.h"
-#include "innermap/surface/closed_surface.h"
 #include "innermap/surface/detail/refining/locate.h"
 #include "innermap/surface/layout.h"
 

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "innermap/core/progress.h"
-#include "innermap/surface/closed_surface.h"
 #include "innermap/surface/layout.h"
 
 namespace innermap {

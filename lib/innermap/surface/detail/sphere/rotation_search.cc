@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/parallel.h"
 
 namespace innermap {
@@ -20,7 +21,7 @@ Mat3 fromQuaternion(double x, double y, double z, double w) {
 Mat3 superFibonacci(std::size_t i, std::size_t n) {
   const double phi = std::sqrt(2.0), psi = 1.533751168755204288118041;
   const double s = static_cast<double>(i) + 0.5, t = s / static_cast<double>(n);
-  const double d = 2 * std::acos(-1.0) * s;
+  const double d = 2 * kPi * s;
   const double r = std::sqrt(t), q = std::sqrt(1 - t);
   return fromQuaternion(r * std::sin(d / phi), r * std::cos(d / phi), q * std::sin(d / psi),
                         q * std::cos(d / psi));

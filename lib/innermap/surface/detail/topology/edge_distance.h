@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "innermap/surface/closed_surface.h"
 #include "innermap/surface/detail/topology/half_edges.h"
+#include "innermap/surface/layout.h"
 
 namespace innermap {
 

@@ -1,28 +1,23 @@
 #include "innermap/surface/detail/topology/half_edges.h"
 
 #include <algorithm>
-#include <array>
 
 #include "innermap/core/error.h"
+#include "innermap/mesh/connectivity.h"
 
 namespace innermap {
 
 HalfEdges::HalfEdges(const std::vector<Triangle>& triangles)
     : triangles_(&triangles), opposite_(3 * triangles.size(), -1) {
-  std::vector<std::array<int, 3>> sides;  // low vertex, high vertex, half-edge
-  sides.reserve(opposite_.size());
-  for (int h = 0; h < size(); ++h)
-    sides.push_back({std::min(tail(h), head(h)), std::max(tail(h), head(h)), h});
-  std::sort(sides.begin(), sides.end());
-  for (std::size_t i = 0; i < sides.size(); i += 2) {
-    const auto same = [&](std::size_t j) {
-      return j < sides.size() && sides[j][0] == sides[i][0] && sides[j][1] == sides[i][1];
-    };
-    if (!same(i + 1) || same(i + 2) || tail(sides[i][2]) != head(sides[i + 1][2]))
-      throw DataError("an edge of the surface does not have two triangles, one running each way");
-    opposite_[sides[i][2]] = sides[i + 1][2];
-    opposite_[sides[i + 1][2]] = sides[i][2];
-  }
+  bool closed = std::none_of(triangles.begin(), triangles.end(), hasRepeatedVertex);
+  forEachEdge(sortedEdges(triangles), [&](const EdgeUse* begin, const EdgeUse* end) {
+    closed = closed && end - begin == 2 && begin[0].forward != begin[1].forward;
+    if (!closed) return;
+    opposite_[begin[0].side()] = begin[1].side();
+    opposite_[begin[1].side()] = begin[0].side();
+  });
+  if (!closed)
+    throw DataError("an edge of the surface does not have two triangles, one running each way");
 }
 
 std::vector<int> HalfEdges::outgoing(std::size_t vertices) const {

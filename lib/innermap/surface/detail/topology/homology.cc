@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
+#include "innermap/core/detail/disjoint_sets.h"
 #include "innermap/surface/detail/topology/edge_distance.h"
 
 namespace innermap {
@@ -65,22 +65,14 @@ Cotree cotreeOf(const HalfEdges& edges, const PathTree& tree, const Points& vert
     return a.first > b.first || (a.first == b.first && a.second < b.second);
   });
   const int triangles = edges.size() / 3;
-  std::vector<int> parent(static_cast<std::size_t>(triangles));  // of disjoint sets of triangles
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto rootOf = [&parent](int t) {
-    while (parent[t] != t) t = parent[t] = parent[parent[t]];
-    return t;
-  };
+  DisjointSets sets(static_cast<std::size_t>(triangles));
   Cotree out;
   std::vector<char> inCotree(edges.size(), 0);
   for (const auto& [length, h] : rest) {
-    const int s = rootOf(h / 3), t = rootOf(edges.opposite(h) / 3);
-    if (s == t) {
-      out.chords.push_back(h);
-    } else {
-      parent[std::max(s, t)] = std::min(s, t);
+    if (sets.unite(h / 3, edges.opposite(h) / 3))
       inCotree[h] = inCotree[edges.opposite(h)] = 1;
-    }
+    else
+      out.chords.push_back(h);
   }
   std::reverse(out.chords.begin(), out.chords.end());
   out.entered.assign(triangles, -1);

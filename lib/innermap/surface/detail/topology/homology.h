@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "innermap/core/progress.h"
-#include "innermap/surface/closed_surface.h"
 #include "innermap/surface/detail/topology/half_edges.h"
+#include "innermap/surface/layout.h"
 
 namespace innermap {
 

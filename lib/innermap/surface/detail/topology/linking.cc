@@ -4,12 +4,11 @@
 #include <cmath>
 #include <complex>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/parallel.h"
 
 namespace innermap {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // As a complex number, half the solid angle of the cone over three vectors is its argument (Van
 // Oosterom and Strackee 1983).

@@ -39,15 +39,6 @@ bool contains(const Box3& outer, const Box3& inner) {
 
 }  // namespace
 
-double shellVolume(const ClosedSurface& shell) {
-  const Vec3 center = boundingBox(shell.vertices).center();
-  double sum = 0;
-  for (const auto& [a, b, c] : shell.triangles)
-    sum += dot(shell.vertices[a] - center,
-               cross(shell.vertices[b] - center, shell.vertices[c] - center));
-  return sum / 6;
-}
-
 std::vector<int> parentShells(const std::vector<ClosedSurface>& shells, Progress* progress) {
   const std::size_t count = shells.size();
   std::vector<int> parent(count, -1);
@@ -57,7 +48,7 @@ std::vector<int> parentShells(const std::vector<ClosedSurface>& shells, Progress
   std::vector<Points> probes;
   for (const ClosedSurface& shell : shells) {
     boxes.push_back(boundingBox(shell.vertices));
-    volumes.push_back(std::abs(shellVolume(shell)));
+    volumes.push_back(std::abs(signedVolume(shell.vertices, shell.triangles)));
     probes.push_back(probesOf(shell));
   }
   // Outermost first: the last that contains a shell is the one directly around it.

@@ -4,12 +4,9 @@
 #include <vector>
 
 #include "innermap/core/progress.h"
-#include "innermap/surface/closed_surface.h"
+#include "innermap/surface/layout.h"
 
 namespace innermap {
-
-// Signed, world units cubed.
-double shellVolume(const ClosedSurface& shell);
 
 // #shells: the shell directly around each (the one of least volume that most of it is inside of),
 // or -1.

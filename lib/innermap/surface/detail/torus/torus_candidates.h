@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "innermap/core/progress.h"
-#include "innermap/surface/closed_surface.h"
 #include "innermap/surface/layout.h"
 
 namespace innermap {

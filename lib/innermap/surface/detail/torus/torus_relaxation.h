@@ -2,7 +2,6 @@
 #pragma once
 
 #include "innermap/core/progress.h"
-#include "innermap/surface/closed_surface.h"
 #include "innermap/surface/layout.h"
 
 namespace innermap {

@@ -7,8 +7,8 @@
 #include "innermap/core/error.h"
 #include "innermap/surface/detail/handles/cut_alike.h"
 #include "innermap/surface/detail/handles/match_handles.h"
+#include "innermap/surface/detail/sphere/sphere_layout.h"
 #include "innermap/surface/detail/topology/half_edges.h"
-#include "innermap/surface/sphere_layout.h"
 #include "surface/handle_shapes.h"
 
 namespace innermap {
@@ -17,6 +17,7 @@ namespace {
 using shapes::block;
 using shapes::boundaryOf;
 using shapes::plate;
+using shapes::pointOn;
 using shapes::with;
 using shapes::without;
 
@@ -25,14 +26,6 @@ double lengthOf(const Points& vertices, const std::vector<int>& loop) {
   for (std::size_t i = 0; i < loop.size(); ++i)
     length += norm(vertices[loop[(i + 1) % loop.size()]] - vertices[loop[i]]);
   return length;
-}
-
-Vec3 pointOn(const ClosedSurface& surface, const SurfacePoint& p) {
-  Vec3 out;
-  for (std::size_t k = 0; k < 3; ++k)
-    out += p.barycentric[k] *
-           surface.vertices[surface.triangles[static_cast<std::size_t>(p.triangle)][k]];
-  return out;
 }
 
 // A sphere whose triangles lie where those of `surface` do, but for the caps.

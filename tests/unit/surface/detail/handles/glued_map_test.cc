@@ -12,6 +12,7 @@ namespace {
 using shapes::block;
 using shapes::boundaryOf;
 using shapes::plate;
+using shapes::pointOn;
 using shapes::with;
 using shapes::without;
 
@@ -29,22 +30,6 @@ ClosedSurface rounded(ClosedSurface surface, int steps) {
       surface.vertices[v] = 0.5 * (surface.vertices[v] + sum[v] / count[v]);
   }
   return surface;
-}
-
-Vec3 pointOn(const ClosedSurface& surface, const SurfacePoint& p) {
-  Vec3 out;
-  for (std::size_t k = 0; k < 3; ++k)
-    out += p.barycentric[k] *
-           surface.vertices[surface.triangles[static_cast<std::size_t>(p.triangle)][k]];
-  return out;
-}
-
-double area(const ClosedSurface& surface) {
-  double sum = 0;
-  for (const auto& [a, b, c] : surface.triangles)
-    sum += 0.5 * norm(cross(surface.vertices[b] - surface.vertices[a],
-                            surface.vertices[c] - surface.vertices[a]));
-  return sum;
 }
 
 // Valid, glued along the cuts, and of bounded stretch. Images of A's vertices.
@@ -89,7 +74,8 @@ Points expectMap(const ClosedSurface& a, const ClosedSurface& b, double most,
   }
   Points out;
   for (const SurfacePoint& p : map.onTarget) out.push_back(pointOn(b, p));
-  const double scale = std::sqrt(area(a) / area(b));
+  const double scale =
+      std::sqrt(surfaceArea(a.vertices, a.triangles) / surfaceArea(b.vertices, b.triangles));
   for (const Triangle& t : a.triangles)
     for (int k = 0; k < 3; ++k)
       EXPECT_LT(scale * norm(out[t[k]] - out[t[(k + 1) % 3]]),

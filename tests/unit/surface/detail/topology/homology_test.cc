@@ -99,7 +99,7 @@ TEST(BoundingClasses, HalfOfAllOnEitherSide) {
 TEST(IsKnotted, TellsKnotsFromTangledLoops) {
   Points loop, knot, eight;
   for (int i = 0; i < 200; ++i) {
-    const double s = i / 200.0, u = 2 * shapes::kPi * s;
+    const double s = i / 200.0, u = 2 * kPi * s;
     // Winds seven times around a circle's tube and once along it: not knotted.
     const double r = 2 + std::cos(7 * u);
     loop.push_back({r * std::cos(u), r * std::sin(u), std::sin(7 * u)});

@@ -23,7 +23,7 @@ Layout laidOut(const ClosedSurface& surface) {
   EXPECT_NEAR(quality.degree, 1, 1e-9);
   EXPECT_EQ(layout.space, ModelSpace::torus);
   EXPECT_EQ(layout.period[0].y, 0.0);
-  EXPECT_NEAR(cross(layout.period[0], layout.period[1]).z, 4 * shapes::kPi, 1e-9);
+  EXPECT_NEAR(cross(layout.period[0], layout.period[1]).z, 4 * kPi, 1e-9);
   EXPECT_LE(std::abs(layout.period[1].x), 0.5000001 * layout.period[0].x);
   for (const Vec3& p : layout.place) EXPECT_EQ(p.z, 1.0);
   return layout;
@@ -158,7 +158,7 @@ TEST(MeridianCurve, ClosesAfterOneMeridian) {
     length += norm(curve[(i + 1) % curve.size()] - curve[i]);
     EXPECT_NEAR(std::hypot(std::hypot(curve[i].x, curve[i].y) - 1, curve[i].z), 0.35, 0.01);
   }
-  EXPECT_NEAR(length, 2 * shapes::kPi * 0.35, 0.1);
+  EXPECT_NEAR(length, 2 * kPi * 0.35, 0.1);
 }
 
 TEST(TorusLayoutModels, RockerArm) {

@@ -1,4 +1,4 @@
-#include "landmarks.h"
+#include "innermap/boundary/landmarks.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "innermap/core/error.h"
 #include "innermap/mesh/triangle_tree.h"
 
-namespace innermap::tool {
+namespace innermap {
 namespace {
 
 constexpr double kOnSurface = 1e-3, kFarVertex = 0.02, kSamePlace = 1e-9;  // of the diagonal
@@ -98,11 +98,20 @@ class LineReader {
   bool pointsOnly_ = false;
 };
 
+std::string whereIs(const LandmarkList& list, std::size_t pair) {
+  const std::size_t line = list.pairs[pair].line;
+  return line > 0 ? fmt::format("line {}", line) : fmt::format("pair {}", pair + 1);
+}
+
+[[noreturn]] void failAt(const LandmarkList& list, std::size_t pair, const std::string& what) {
+  throw FileError(list.name, whereIs(list, pair) + ": " + what);
+}
+
 // A surface's shells to find places on.
 class Finder {
  public:
-  Finder(const std::string& path, const SurfaceInput& input)
-      : path_(path),
+  Finder(const LandmarkList& list, const LaidOutMesh& input)
+      : list_(list),
         input_(input),
         diagonal_(boundingBox(input.mesh).diagonal()),
         file_(input.mesh.vertices, input.mesh.triangles),
@@ -112,34 +121,34 @@ class Finder {
   double diagonal() const { return diagonal_; }
 
   // World position; throws when it is not on the surface.
-  Vec3 positionOf(const LandmarkPlace& place, std::size_t line) const {
+  Vec3 positionOf(const LandmarkPlace& place, std::size_t pair) const {
     const Mesh& mesh = input_.mesh;
     if (place.vertex) {
       if (*place.vertex >= static_cast<int>(mesh.vertices.size()))
-        fail(path_, line,
-             fmt::format("there is no vertex {} in {}, which has {}, counted from 0", *place.vertex,
-                         mesh.name, mesh.vertices.size()));
+        failAt(list_, pair,
+               fmt::format("there is no vertex {} in {}, which has {}, counted from 0",
+                           *place.vertex, mesh.name, mesh.vertices.size()));
       if (input_.ownNumbers() && input_.shells().shellVertex[*place.vertex].shell < 0)
-        fail(path_, line,
-             fmt::format("vertex {} of {} belongs to no closed part", *place.vertex, mesh.name));
-      requireOnShells(mesh.vertices[*place.vertex], line);
+        failAt(list_, pair,
+               fmt::format("vertex {} of {} belongs to no closed part", *place.vertex, mesh.name));
+      requireOnShells(mesh.vertices[*place.vertex], pair);
       return mesh.vertices[*place.vertex];
     }
     const double distance = file_.closest(place.point).distance / diagonal_;
     if (!(distance <= kOnSurface))
-      fail(path_, line,
-           fmt::format("the point ({:.6g}, {:.6g}, {:.6g}) is {:.2g} of the diagonal away from {}; "
-                       "at most {} is taken for the surface",
-                       place.point.x, place.point.y, place.point.z, distance, mesh.name,
-                       kOnSurface));
-    requireOnShells(place.point, line);
+      failAt(list_, pair,
+             fmt::format(
+                 "the point ({:.6g}, {:.6g}, {:.6g}) is {:.2g} of the diagonal away from {}; "
+                 "at most {} is taken for the surface",
+                 place.point.x, place.point.y, place.point.z, distance, mesh.name, kOnSurface));
+    requireOnShells(place.point, pair);
     return place.point;
   }
 
   // Vertex of shells().mesh.
-  int vertexAt(const LandmarkPlace& place, std::size_t line, double& distance) const {
+  int vertexAt(const LandmarkPlace& place, std::size_t pair, double& distance) const {
     distance = 0;
-    const Vec3 p = positionOf(place, line);
+    const Vec3 p = positionOf(place, pair);
     if (place.vertex && input_.ownNumbers()) return *place.vertex;
     const SurfaceShells& shells = input_.shells();
     int best = -1;
@@ -155,8 +164,8 @@ class Finder {
     return best;
   }
 
-  SurfacePoint pointAt(const LandmarkPlace& place, std::size_t line) const {
-    const Vec3 p = positionOf(place, line);
+  SurfacePoint pointAt(const LandmarkPlace& place, std::size_t pair) const {
+    const Vec3 p = positionOf(place, pair);
     if (place.vertex && input_.ownNumbers())
       for (const int t : inShells_)
         for (int k = 0; k < 3; ++k)
@@ -184,27 +193,27 @@ class Finder {
   }
 
   // What lies inside the solid, or in a part that was left out, has no image.
-  void requireOnShells(const Vec3& p, std::size_t line) const {
+  void requireOnShells(const Vec3& p, std::size_t pair) const {
     if (input_.ownNumbers()) return;
     const double distance = shells_.closest(p).distance;
     if (distance > 3 * input_.voxelSize)
-      fail(path_, line,
-           fmt::format("is {:.2g} of the diagonal away from the surface that is mapped instead of "
-                       "{}; choose a place on the outside",
-                       distance / diagonal_, input_.mesh.name));
+      failAt(
+          list_, pair,
+          fmt::format("is {:.2g} of the diagonal away from the surface that is mapped instead of "
+                      "{}; choose a place on the outside",
+                      distance / diagonal_, input_.mesh.name));
   }
 
-  const std::string& path_;
-  const SurfaceInput& input_;
+  const LandmarkList& list_;
+  const LaidOutMesh& input_;
   double diagonal_;
   TriangleTree file_;
   std::vector<int> inShells_;  // triangles of shells().mesh
   TriangleTree shells_;
 };
 
-void requireDistinct(const std::string& path, const std::vector<LandmarkLine>& lines,
-                     const std::vector<Landmark>& landmarks, const SurfaceInput& a,
-                     const SurfaceInput& b, double diagonalB) {
+void requireDistinct(const LandmarkList& list, const std::vector<Landmark>& landmarks,
+                     const LaidOutMesh& a, const LaidOutMesh& b, double diagonalB) {
   std::map<std::array<int, 2>, std::size_t> onA;
   std::map<std::array<long long, 3>, std::size_t> onB;
   const double cell = kSamePlace * diagonalB;
@@ -213,16 +222,16 @@ void requireDistinct(const std::string& path, const std::vector<LandmarkLine>& l
     const ShellVertex v = a.shells().shellVertex[landmarks[i].vertex];
     const auto [first, isNew] = onA.try_emplace({v.shell, v.vertex}, i);
     if (!isNew)
-      fail(path, lines[i].line,
-           fmt::format("its place on {} is vertex {}, like that of line {}; leave one out",
-                       a.mesh.name, landmarks[i].vertex, lines[first->second].line));
+      failAt(list, i,
+             fmt::format("its place on {} is vertex {}, like that of {}; leave one out",
+                         a.mesh.name, landmarks[i].vertex, whereIs(list, first->second)));
     const Vec3 p = (positionOf(b.shells().mesh, landmarks[i].onTarget) - origin) / cell;
     const auto [same, isOther] =
         onB.try_emplace({std::llround(p.x), std::llround(p.y), std::llround(p.z)}, i);
     if (!isOther)
-      fail(path, lines[i].line,
-           fmt::format("its place on {} is that of line {}; leave one out", b.mesh.name,
-                       lines[same->second].line));
+      failAt(list, i,
+             fmt::format("its place on {} is that of {}; leave one out", b.mesh.name,
+                         whereIs(list, same->second)));
   }
 }
 
@@ -235,10 +244,11 @@ const char kLandmarkFormat[] =
     "Commas may stand between the numbers, # starts a comment. A point on A is taken as the "
     "nearest vertex.";
 
-std::vector<LandmarkLine> readLandmarks(const std::string& path) {
+LandmarkList readLandmarks(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw FileError(path, "cannot be opened; check the name and its permissions");
-  std::vector<LandmarkLine> lines;
+  LandmarkList list;
+  list.name = path;
   std::string text;
   for (std::size_t number = 1; std::getline(file, text); ++number) {
     if (text.size() > kLongestLine || number > kMostLines)
@@ -246,47 +256,42 @@ std::vector<LandmarkLine> readLandmarks(const std::string& path) {
     std::vector<std::string> tokens = tokensOf(text);
     if (tokens.empty()) continue;
     LineReader reader(path, number, std::move(tokens));
-    LandmarkLine line;
-    line.line = number;
-    line.onA = reader.next();
-    line.onB = reader.next();
-    lines.push_back(line);
+    LandmarkPair pair;
+    pair.line = number;
+    pair.onA = reader.next();
+    pair.onB = reader.next();
+    list.pairs.push_back(pair);
   }
-  if (lines.empty()) throw FileError(path, "has no landmarks; give a pair of places a line");
-  return lines;
+  if (list.pairs.empty()) throw FileError(path, "has no landmarks; give a pair of places a line");
+  return list;
 }
 
-std::vector<Landmark> placeLandmarks(const std::string& path,
-                                     const std::vector<LandmarkLine>& lines, const SurfaceInput& a,
-                                     const SurfaceInput& b, Context& context) {
-  const Finder onA(path, a), onB(path, b);
-  std::vector<Landmark> landmarks;
+PlacedLandmarks placeLandmarks(const LandmarkList& list, const LaidOutMesh& a,
+                               const LaidOutMesh& b) {
+  const Finder onA(list, a), onB(list, b);
+  PlacedLandmarks placed;
   double farthest = 0;
-  std::size_t farthestLine = 0, moved = 0;
-  for (const LandmarkLine& line : lines) {
+  std::size_t farthestPair = 0, moved = 0;
+  for (std::size_t i = 0; i < list.pairs.size(); ++i) {
     double distance = 0;
     Landmark landmark;
-    landmark.vertex = onA.vertexAt(line.onA, line.line, distance);
-    landmark.onTarget = onB.pointAt(line.onB, line.line);
-    landmarks.push_back(landmark);
+    landmark.vertex = onA.vertexAt(list.pairs[i].onA, i, distance);
+    landmark.onTarget = onB.pointAt(list.pairs[i].onB, i);
+    placed.landmarks.push_back(landmark);
     if (distance > 1e-9) ++moved;
     if (distance > farthest) {
       farthest = distance;
-      farthestLine = line.line;
+      farthestPair = i;
     }
   }
-  requireDistinct(path, lines, landmarks, a, b, onB.diagonal());
-  if (moved > 0) {
-    const std::string text = fmt::format(
-        "{}: {} taken as the nearest vertex of {}, {:.2g} of the diagonal away at most (line {})",
-        path, moved == 1 ? "1 point is" : fmt::format("{} points are", moved), a.mesh.name,
-        farthest, farthestLine);
-    if (farthest > kFarVertex)
-      context.warning(text);
-    else
-      context.note(text);
-  }
-  return landmarks;
+  requireDistinct(list, placed.landmarks, a, b, onB.diagonal());
+  if (moved > 0)
+    placed.note = fmt::format(
+        "{}: {} taken as the nearest vertex of {}, {:.2g} of the diagonal away at most ({})",
+        list.name, moved == 1 ? "1 point is" : fmt::format("{} points are", moved), a.mesh.name,
+        farthest, whereIs(list, farthestPair));
+  placed.far = farthest > kFarVertex;
+  return placed;
 }
 
-}  // namespace innermap::tool
+}  // namespace innermap

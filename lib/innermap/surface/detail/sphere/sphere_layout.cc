@@ -1,36 +1,24 @@
-#include "innermap/surface/sphere_layout.h"
+#include "innermap/surface/detail/sphere/sphere_layout.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/error.h"
 #include "innermap/surface/detail/refining/coarse_to_fine.h"
 #include "innermap/surface/detail/refining/decimate.h"
 #include "innermap/surface/detail/refining/newton_step.h"
 #include "innermap/surface/detail/refining/rest_triangle.h"
+#include "innermap/surface/detail/refining/star_stretch.h"
 #include "innermap/surface/detail/refining/target_metric.h"
 
 namespace innermap {
 namespace {
 
-const double kSphereArea = 4 * std::acos(-1.0);
+constexpr double kSphereArea = 4 * kPi;
 
-// One triangle of a star: the free vertex's corner, and the others at a and b.
-struct StarTriangle {
-  Vec3 a, b;
-  double cotFree, cotA, cotB;  // halves
-  double fourAreaSquared;
-
-  double dirichlet(const Vec3& q) const {
-    return cotA * squaredNorm(q - b) + cotB * squaredNorm(q - a) + cotFree * squaredNorm(a - b);
-  }
-};
-
-// Sum of area |J|^2 (1 + 1 / d^2), d = tripleProduct over twice the rest area: the symmetric
-// Dirichlet energy, but for the determinant of unit vectors in the place of the chord's area.
 class SphereEnergy : public StarEnergy {
  public:
   SphereEnergy(const ClosedSurface& surface, const ProgressiveMesh& mesh, const Layout& layout)
@@ -61,15 +49,7 @@ class SphereEnergy : public StarEnergy {
     }
   }
 
-  double at(const Vec3& q) const override {
-    double sum = 0;
-    for (const StarTriangle& t : star_) {
-      const double det = tripleProduct(q, t.a, t.b);
-      if (!(det > 0)) return std::numeric_limits<double>::infinity();
-      sum += t.dirichlet(q) * (1 + t.fourAreaSquared / (det * det));
-    }
-    return sum;
-  }
+  double at(const Vec3& q) const override { return stretchEnergy(star_, q); }
 
   Vec3 step(const Vec3& q, double) const override {
     Vec3 gradient;

@@ -1,10 +1,11 @@
+#include "innermap/sample/detail/sample_elimination.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "innermap/sample/detail/greedy_removal.h"
 #include "innermap/sample/detail/neighbour_grid.h"
-#include "innermap/sample/surface_samples.h"
 
 namespace innermap {
 namespace {

@@ -1,4 +1,4 @@
-#include "innermap/surface/sphere_layout.h"
+#include "innermap/surface/detail/sphere/sphere_layout.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "innermap/mesh/read.h"
+#include "innermap/surface/closed_surface.h"
 #include "mesh/shapes.h"
 #include "surface/handle_shapes.h"
 
@@ -64,7 +65,7 @@ TEST(SphereLayout, AFanOfManyTriangles) {
   ClosedSurface out;
   const int n = 400;
   for (int i = 0; i < n; ++i) {
-    const double a = 2 * shapes::kPi * i / n;
+    const double a = 2 * kPi * i / n;
     out.vertices.push_back({std::cos(a), std::sin(a), 0});
   }
   out.vertices.push_back({0, 0, 1});

@@ -1,0 +1,177 @@
+#include "innermap/boundary/mesh_correspondence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "innermap/core/detail/stage_seconds.h"
+#include "innermap/core/memory.h"
+#include "innermap/mesh/triangle_tree.h"
+#include "innermap/mesh/write.h"
+
+namespace innermap {
+namespace {
+
+constexpr std::uint64_t kPicture = 300'000'000;  // bytes
+
+void requireCorrespondMemory(const Mesh& a, const Mesh& b,
+                             const MeshCorrespondenceSettings& settings) {
+  requireMemory("the correspondence", correspondMemory(a.vertices.size(), b.vertices.size()),
+                settings.maxMemory, "use coarser meshes");
+}
+
+// Addresses on the shells' mesh become addresses on the mesh as given.
+std::vector<SurfacePoint> onGiven(const LaidOutMesh& b, const std::vector<SurfacePoint>& points,
+                                  const Points& positions) {
+  const std::size_t own = b.mesh.triangles.size();
+  const TriangleTree tree(b.mesh.vertices, b.mesh.triangles);
+  std::vector<SurfacePoint> result = points;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    SurfacePoint& p = result[i];
+    const std::size_t t = static_cast<std::size_t>(p.triangle);
+    if (!b.ownNumbers() || t >= own)
+      p = tree.closest(positions[i]).address;
+    else if (b.shells().turned[t])
+      std::swap(p.barycentric[1], p.barycentric[2]);
+  }
+  return result;
+}
+
+// Fills source, changed, positions, onTarget, farthestFromStandIn.
+void carryBack(MeshCorrespondence& out, Progress* progress) {
+  const LaidOutMesh &a = out.a, &b = out.b;
+  std::vector<SurfacePoint> onTarget;
+  if (a.standIn) {
+    SurfaceImageSettings settings;
+    settings.progress = progress;
+    const SurfaceImages images = imagesOf(a.mesh.vertices, out.map, b.shells(), settings);
+    out.source = a.mesh;
+    out.positions = images.positions;
+    onTarget = images.onTarget;
+    out.farthestFromStandIn = images.farthest / boundingBox(a.mesh).diagonal();
+  } else {
+    const Correspondence& map = out.map;
+    out.changed = map.source.vertices.size() > a.shells().mesh.vertices.size() ||
+                  a.shells().splitVertices > 0;
+    out.source = out.changed ? map.source : a.mesh;
+    const auto count = static_cast<std::ptrdiff_t>(out.source.vertices.size());
+    out.positions.assign(map.positions.begin(), map.positions.begin() + count);
+    onTarget.assign(map.onTarget.begin(), map.onTarget.begin() + count);
+  }
+  out.onTarget = onGiven(b, onTarget, out.positions);
+}
+
+CorrespondSettings settingsOf(const MeshCorrespondenceSettings& settings) {
+  CorrespondSettings out;
+  out.aligned = settings.aligned;
+  out.candidates = settings.candidates;
+  out.refine = settings.refine;
+  out.seed = settings.seed;
+  out.subdivide = settings.subdivide;
+  out.progress = settings.progress;
+  return out;
+}
+
+double landmarkErrorOf(const MeshCorrespondence& out, const std::vector<Landmark>& landmarks) {
+  const Mesh& target = out.b.shells().mesh;
+  double farthest = 0;
+  for (const Landmark& landmark : landmarks)
+    farthest = std::max(
+        farthest, norm(out.map.positions[landmark.vertex] - positionOf(target, landmark.onTarget)));
+  return farthest / boundingBox(target).diagonal();
+}
+
+void warnOf(MeshCorrespondence& out) {
+  const MapQuality& q = out.quality;
+  if (q.flips > 0)
+    out.warnings.push_back(
+        fmt::format("{} triangles are flipped in the layouts, so the map is not one-to-one there; "
+                    "check the meshes for degenerate parts",
+                    q.flips));
+  if (q.targetSelfIntersections > 0)
+    out.warnings.push_back(fmt::format(
+        "{} has {} pair{} of triangles that pass through each other; no map onto its inside can "
+        "be one-to-one there (see innermap check)",
+        out.b.mesh.name, q.targetSelfIntersections, q.targetSelfIntersections == 1 ? "" : "s"));
+}
+
+}  // namespace
+
+Mesh MeshCorrespondence::target(const std::string& name) const {
+  Mesh mesh = source;
+  mesh.name = name;
+  mesh.vertices = positions;
+  return mesh;
+}
+
+MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const MeshCorrespondenceSettings& settings) {
+  requireCorrespondMemory(a, b, settings);
+  LayOutSettings surfaces;
+  surfaces.closeHoles = settings.closeHoles;
+  surfaces.standInResolution = settings.standInResolution;
+  surfaces.maxMemory = settings.maxMemory;
+  surfaces.progress = settings.progress;
+  LaidOutMesh laidA = layOutMesh(std::move(a), surfaces);
+  LaidOutMesh laidB = layOutMesh(std::move(b), surfaces);
+  return correspondMeshes(std::move(laidA), std::move(laidB), settings);
+}
+
+MeshCorrespondence correspondMeshes(LaidOutMesh a, LaidOutMesh b,
+                                    const MeshCorrespondenceSettings& settings) {
+  requireCorrespondMemory(a.mesh, b.mesh, settings);
+  MeshCorrespondence out(std::move(a), std::move(b));
+  CorrespondSettings how = settingsOf(settings);
+  if (!settings.landmarks.pairs.empty()) {
+    PlacedLandmarks placed = placeLandmarks(settings.landmarks, out.a, out.b);
+    if (!placed.note.empty()) (placed.far ? out.warnings : out.notes).push_back(placed.note);
+    how.landmarks = std::move(placed.landmarks);
+  }
+  out.map = correspond(out.a.embedded, out.b.embedded, how);
+  for (const auto& [stage, seconds] : out.map.seconds) addSeconds(out.seconds, stage, seconds);
+  out.notes.insert(out.notes.end(), out.map.notes.begin(), out.map.notes.end());
+  timedStage(out.seconds, "carry back", settings.progress,
+             [&] { carryBack(out, settings.progress); });
+  MapQualitySettings measure;
+  measure.progress = settings.progress;
+  out.quality = timedStage(out.seconds, "measure", settings.progress,
+                           [&] { return mapQuality(out.map, measure); });
+  out.landmarks = how.landmarks.size();
+  out.landmarkError = landmarkErrorOf(out, how.landmarks);
+  warnOf(out);
+  return out;
+}
+
+std::uint64_t correspondMemory(std::size_t verticesA, std::size_t verticesB) {
+  return layOutMemory(verticesA + verticesB) + kPicture;
+}
+
+// Measured on two cores: trying first maps on coarsened surfaces takes about as long for all but
+// small meshes, the rest grows with the number of vertices.
+double correspondSeconds(std::size_t verticesA, std::size_t verticesB,
+                         const MeshCorrespondenceSettings& settings) {
+  const double vertices = static_cast<double>(verticesA + verticesB);
+  const double refine = settings.refine ? 3.0 * settings.candidates : 0;
+  return 1 + (10 + refine) * vertices / (vertices + 2000) + 0.5e-3 * vertices;
+}
+
+void writeCorrespondence(const std::string& path, const MeshCorrespondence& map) {
+  Mesh moved;
+  moved.name = path;
+  moved.vertices = map.positions;
+  moved.triangles = map.source.triangles;
+  std::vector<std::int32_t> triangles;
+  std::array<std::vector<double>, 3> weights;
+  for (const SurfacePoint& p : map.onTarget) {
+    triangles.push_back(p.triangle);
+    for (std::size_t k = 0; k < 3; ++k) weights[k].push_back(p.barycentric[k]);
+  }
+  PlyExtras extras;
+  extras.comment = "triangle, b0, b1, b2: place of the vertex on the other mesh";
+  extras.properties.push_back({"triangle", std::move(triangles)});
+  for (std::size_t k = 0; k < 3; ++k)
+    extras.properties.push_back({fmt::format("b{}", k), std::move(weights[k])});
+  writePly(path, moved, extras);
+}
+
+}  // namespace innermap

@@ -1,0 +1,88 @@
+// One mesh on another that was never related to it: from two files' meshes to a target with the
+// first one's vertices.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "innermap/boundary/laid_out_mesh.h"
+#include "innermap/boundary/landmarks.h"
+#include "innermap/core/progress.h"
+#include "innermap/mesh/mesh.h"
+#include "innermap/surface/correspond.h"
+#include "innermap/surface/map_quality.h"
+
+namespace innermap {
+
+struct MeshCorrespondenceSettings {
+  bool closeHoles = false;    // as in LayOutSettings, for both meshes
+  int standInResolution = 0;  // as in LayOutSettings, for both meshes
+  LandmarkList landmarks;     // kept exactly
+  bool aligned = false;       // the two stand in the same pose: prefer agreeing normals and places
+  int candidates = 3;    // ways to lay A on B that are refined, in [1, 64]; the one of least energy
+                         // is taken
+  bool refine = true;    // false: fast, rough
+  double subdivide = 0;  // split A until it follows B within this fraction of B's diagonal, in
+                         // [0, 1); 0: never
+  std::uint64_t seed = 1;       // of all random choices
+  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  Progress* progress = nullptr;
+};
+
+struct MeshCorrespondence {
+  MeshCorrespondence(LaidOutMesh first, LaidOutMesh second)
+      : a(std::move(first)), b(std::move(second)) {}
+
+  // A as given, or with its triangles split or its touching parts cut apart. Its vertices stay
+  // first, in order.
+  Mesh source;
+  bool changed = false;                // source is not as given
+  Points positions;                    // #vertices of source, on B, world units
+  std::vector<SurfacePoint> onTarget;  // of each, triangle of b.mesh. On a cap, or where a stand-in
+                                       // was mapped, the closest point of the mesh
+
+  LaidOutMesh a, b;
+  Correspondence map;  // between the shells of a and b
+  MapQuality quality;  // of map: of stand-ins, where there are any
+
+  std::size_t landmarks = 0;
+  double landmarkError = 0;  // greatest distance of a landmark from its place on B, fraction of
+                             // B's diagonal
+  // Where a stand-in was mapped instead of A: A's vertex farthest from it, fraction of A's
+  // diagonal.
+  std::optional<double> farthestFromStandIn;
+
+  std::vector<std::string> notes;     // choices worth telling, a line each; beside a.notes, b.notes
+  std::vector<std::string> warnings;  // what makes the result doubtful
+  std::vector<std::pair<std::string, double>> seconds;  // by stage; beside a.seconds, b.seconds
+
+  // source with its vertices on B.
+  Mesh target(const std::string& name) const;
+};
+
+// Lays both out, maps A onto B (surface/correspond.h), carries that back to the meshes as given and
+// measures it. Throws what layOutMesh(), placeLandmarks() and correspond() throw; MemoryError
+// before anything is done; SettingError, Cancelled. Same result for any number of threads.
+MeshCorrespondence correspondMeshes(Mesh a, Mesh b,
+                                    const MeshCorrespondenceSettings& settings = {});
+
+// For meshes that are laid out: closeHoles and standInResolution do not count.
+MeshCorrespondence correspondMeshes(LaidOutMesh a, LaidOutMesh b,
+                                    const MeshCorrespondenceSettings& settings = {});
+
+// Bytes, for meshes of so many vertices: about what is needed, with a picture of both.
+std::uint64_t correspondMemory(std::size_t verticesA, std::size_t verticesB);
+
+// Seconds that it would take on two cores, roughly.
+double correspondSeconds(std::size_t verticesA, std::size_t verticesB,
+                         const MeshCorrespondenceSettings& settings = {});
+
+// PLY, binary little endian: vertices x y z (double), `triangle` (int, of B, counted from 0) and
+// `b0 b1 b2` (double, barycentric coordinates there); source's triangles. The file appears whole or
+// not at all. Throws FileError.
+void writeCorrespondence(const std::string& path, const MeshCorrespondence& map);
+
+}  // namespace innermap

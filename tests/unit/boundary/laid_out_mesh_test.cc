@@ -1,0 +1,123 @@
+#include "innermap/boundary/laid_out_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include "boundary/blobs.h"
+#include "mesh/test_meshes.h"
+
+namespace innermap {
+namespace {
+
+using shapes::blob;
+using shapes::opened;
+using shapes::overlapping;
+
+bool anyHas(const std::vector<std::string>& lines, const std::string& word) {
+  for (const std::string& line : lines)
+    if (line.find(word) != std::string::npos) return true;
+  return false;
+}
+
+// The message of UnfitMesh, and whether closing would help.
+std::pair<std::string, bool> refusalOf(const Mesh& mesh, const LayOutSettings& settings = {}) {
+  try {
+    layOutMesh(mesh, settings);
+  } catch (const UnfitMesh& error) {
+    return {error.what(), error.closingHelps()};
+  }
+  return {"", false};
+}
+
+TEST(LayOutMesh, TakesACleanMeshAsItIs) {
+  const Mesh mesh = blob("a.obj", 2, 0.5);
+  const LaidOutMesh laid = layOutMesh(mesh);
+  EXPECT_FALSE(laid.standIn);
+  EXPECT_TRUE(laid.ownNumbers());
+  EXPECT_EQ(laid.handles(), 0);
+  EXPECT_NEAR(laid.volume(), signedVolume(mesh), 1e-12);
+  EXPECT_EQ(laid.mesh.vertices.size(), mesh.vertices.size());
+  ASSERT_EQ(laid.seconds.size(), 2u);
+  EXPECT_EQ(laid.seconds[0].first, "check");
+  EXPECT_EQ(laid.seconds[1].first, "lay out");
+  LayOutSettings settings;
+  settings.standInResolution = 16;
+  const LaidOutMesh same = layOutMesh(mesh, settings);
+  EXPECT_FALSE(same.standIn);
+  EXPECT_TRUE(anyHas(same.notes, "as it is"));
+}
+
+TEST(LayOutMesh, RefusesAnOpenMeshUnlessItIsToBeClosed) {
+  const Mesh open = opened(blob("open.obj", 2, 0.5), 6);
+  const auto [message, closingHelps] = refusalOf(open);
+  EXPECT_EQ(message.find("open.obj: is open"), 0u) << message;
+  EXPECT_TRUE(closingHelps);
+  LayOutSettings settings;
+  settings.closeHoles = true;
+  const LaidOutMesh laid = layOutMesh(open, settings);
+  EXPECT_FALSE(laid.standIn);
+  EXPECT_GT(laid.shells().caps, 0);
+  EXPECT_TRUE(anyHas(laid.notes, "open.obj: ")) << "what was capped";
+}
+
+TEST(LayOutMesh, PutsAnIsosurfaceForPartsThatOverlap) {
+  const Mesh mesh = overlapping("two.obj");
+  const auto [message, closingHelps] = refusalOf(mesh);
+  EXPECT_NE(message.find("two.obj: has parts that overlap"), std::string::npos) << message;
+  EXPECT_FALSE(closingHelps);
+  LayOutSettings settings;
+  settings.standInResolution = 20;
+  const LaidOutMesh laid = layOutMesh(mesh, settings);
+  EXPECT_TRUE(laid.standIn);
+  EXPECT_FALSE(laid.ownNumbers());
+  EXPECT_GT(laid.voxelSize, 0);
+  EXPECT_EQ(laid.handles(), 0);
+  EXPECT_EQ(laid.shells().shells.size(), 1u);
+  EXPECT_EQ(laid.mesh.vertices.size(), mesh.vertices.size());
+  EXPECT_LT(laid.volume(), signedVolume(mesh)) << "what is in both balls counts once";
+  ASSERT_EQ(laid.notes.size(), 2u);
+  EXPECT_NE(laid.notes[1].find("20 voxels across, genus 0"), std::string::npos) << laid.notes[1];
+}
+
+TEST(LayOutMesh, RefusesSettingsOutOfRange) {
+  LayOutSettings settings;
+  for (const int bad : {-1, 7, 2049}) {
+    settings.standInResolution = bad;
+    EXPECT_THROW(layOutMesh(blob("a.obj", 1, 0.5), settings), SettingError) << bad;
+  }
+}
+
+TEST(LayOutMesh, CanBeCancelled) {
+  Progress progress;
+  progress.cancel();
+  LayOutSettings settings;
+  settings.progress = &progress;
+  EXPECT_THROW(layOutMesh(blob("a.obj", 1, 0.5), settings), Cancelled);
+}
+
+TEST(OnSphere, KeepsTheMeshAndFlipsNothing) {
+  Mesh mesh = blob("a.obj", 2, 0.8, {2, 1, 0.7});
+  mesh.vertices.push_back({0, 0, 0});  // loose
+  const MeshOnSphere sphere = onSphere(layOutMesh(mesh));
+  EXPECT_EQ(sphere.mesh.triangles, mesh.triangles);
+  ASSERT_EQ(sphere.mesh.vertices.size(), mesh.vertices.size());
+  for (const Vec3& p : sphere.mesh.vertices) EXPECT_NEAR(norm(p), 1, 1e-12);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    EXPECT_GT(
+        tripleProduct(sphere.mesh.vertices[a], sphere.mesh.vertices[b], sphere.mesh.vertices[c]),
+        0);
+  }
+  EXPECT_EQ(sphere.quality.flips, 0u);
+  EXPECT_NEAR(sphere.quality.degree, 1, 1e-9);
+}
+
+TEST(OnSphere, RefusesHandles) {
+  const LaidOutMesh laid = layOutMesh(shapes::torus(12, 8));
+  EXPECT_EQ(laid.handles(), 1);
+  EXPECT_THROW(onSphere(laid), DataError);
+}
+
+TEST(LayOutMemory, GrowsWithTheVertices) { EXPECT_GT(layOutMemory(20000), layOutMemory(10000)); }
+
+}  // namespace
+}  // namespace innermap
