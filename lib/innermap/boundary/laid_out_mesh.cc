@@ -33,13 +33,11 @@ bool shellsCross(const SurfaceShells& shells, Progress* progress) {
   bool cross = false;
   SelfIntersectionSettings settings;
   settings.progress = progress;
-  forEachSelfIntersection(
-      vertices, triangles,
-      [&](const Crossing& c) {
-        cross = cross || shell[static_cast<std::size_t>(c.first)] !=
-                             shell[static_cast<std::size_t>(c.second)];
-      },
-      settings);
+  const auto visit = [&](const Crossing& c) {
+    cross = cross ||
+            shell[static_cast<std::size_t>(c.first)] != shell[static_cast<std::size_t>(c.second)];
+  };
+  forEachSelfIntersection(vertices, triangles, visit, settings);
   return cross;
 }
 
