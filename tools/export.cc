@@ -29,9 +29,9 @@ VolumeTextureSettings settingsOf(const ExportOptions& options, Context& context)
   s.layout = parseVolumeLayout("--layout", options.layout);
   s.axis = parseAxis("--axis", options.axis);
   s.rowsUp = options.rows == "up";
-  s.channels = options.channels == "rgba"     ? VolumeChannels::kRgba
-               : options.channels == "layers" ? VolumeChannels::kLayers
-                                              : VolumeChannels::kAuto;
+  s.channels = options.channels == "rgba"     ? VolumeChannels::rgba
+               : options.channels == "layers" ? VolumeChannels::layers
+                                              : VolumeChannels::automatic;
   s.half = options.half;
   s.active = options.active;
   s.pad = options.pad;
@@ -95,7 +95,7 @@ void fillReport(const VolumeTextureResult& r, const ExportOptions& options, Cont
 
 void run(const ExportOptions& options, Context& context) {
   const VolumeTextureSettings settings = settingsOf(options, context);
-  context.willWrite(settings.layout == VolumeLayout::kSlices
+  context.willWrite(settings.layout == VolumeLayout::slices
                         ? FramePattern("--output", options.output).path(0)
                         : options.output);
   VdbReadSettings read;
@@ -104,7 +104,7 @@ void run(const ExportOptions& options, Context& context) {
   read.progress = context.progress();
   if (context.dryRun()) {
     std::uint64_t need = 0;
-    for (const VdbGridInfo& grid : readVdbInfo(options.file, context.progress()).grids)
+    for (const VdbGridInfo& grid : readVdbInfo(options.file, {context.progress()}).grids)
       if (read.names.empty() ||
           std::find(read.names.begin(), read.names.end(), grid.name) != read.names.end())
         need += grid.memory;

@@ -4,7 +4,7 @@
 #include "commands.h"
 #include "innermap/io/slice.h"
 #include "innermap/io/vdb/vdb_file.h"
-#include "innermap/io/volume/volume_texture_read.h"
+#include "innermap/io/volume/volume_texture.h"
 #include "lists.h"
 #include "volume_options.h"
 

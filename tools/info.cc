@@ -73,7 +73,7 @@ std::string gridText(const VdbGridInfo& g, bool metadata) {
 }
 
 void vdbInfo(const InfoOptions& options, Context& context) {
-  const VdbInfo info = readVdbInfo(options.file, context.progress());
+  const VdbInfo info = readVdbInfo(options.file, {context.progress()});
   std::string text = fmt::format("{}: OpenVDB {}, {} grid{}\n", options.file, info.version,
                                  info.grids.size(), info.grids.size() == 1 ? "" : "s");
   text += metadataText(info.metadata, "  ");

@@ -24,10 +24,10 @@ struct SliceOptions {
 };
 
 Component componentOf(const std::string& text) {
-  return text == "x"   ? Component::kX
-         : text == "y" ? Component::kY
-         : text == "z" ? Component::kZ
-                       : Component::kLength;
+  return text == "x"   ? Component::x
+         : text == "y" ? Component::y
+         : text == "z" ? Component::z
+                       : Component::length;
 }
 
 ExrSliceSettings exrSettings(const SliceOptions& options, Context& context) {
@@ -99,7 +99,7 @@ void run(const SliceOptions& options, Context& context) {
         "see 'innermap slice --help'");
   for (const std::string* path : {&options.output, &options.section})
     if (!path->empty()) context.willWrite(*path);
-  const VdbInfo info = readVdbInfo(options.file, context.progress());
+  const VdbInfo info = readVdbInfo(options.file, {context.progress()});
   VdbReadSettings read;
   read.names = namesToRead(options, info);
   read.maxMemory = context.maxMemory();

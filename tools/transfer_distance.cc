@@ -64,7 +64,7 @@ void pullDistance(const FieldFile& file, const BoundaryPair& pair, const Solid& 
                     ": is thinner than the voxels everywhere, none has its centre inside; use a "
                     "higher --resolution");
   context.timed("transfer",
-                [&] { source.distance = depthThrough(*grids.map, target, context.progress()); });
+                [&] { source.distance = depthThrough(*grids.map, target, {context.progress()}); });
 }
 
 // Of voxels whose centre is inside the solid.

@@ -119,11 +119,13 @@ typename Grid::Ptr gridLike(const openvdb::MaskGrid& region, const char* name) {
 
 MapGrids Evaluation::run() {
   constexpr std::uint64_t kMaskBytes = 1;
-  const std::uint64_t bytes = kMaskBytes + (settings_.map ? 12 : 0) + (settings_.jacobian ? 4 : 0) +
-                              (settings_.harmonicEnergy ? 4 : 0) +
-                              (settings_.deformationEnergy ? 4 : 0);
-  const openvdb::MaskGrid::Ptr region =
-      activeRegion(levelSet_, settings_.skin, bytes, settings_.maxMemory, settings_.progress);
+  RegionSettings where;
+  where.skin = settings_.skin;
+  where.maxMemory = settings_.maxMemory;
+  where.progress = settings_.progress;
+  where.bytesPerVoxel = kMaskBytes + (settings_.map ? 12 : 0) + (settings_.jacobian ? 4 : 0) +
+                        (settings_.harmonicEnergy ? 4 : 0) + (settings_.deformationEnergy ? 4 : 0);
+  const openvdb::MaskGrid::Ptr region = activeRegion(levelSet_, where);
   MapGrids out;
   if (settings_.map) {
     out.map = gridLike<openvdb::Vec3fGrid>(*region, "map");

@@ -10,8 +10,12 @@
 // (Marsden and Hughes, "Mathematical Foundations of Elasticity", 1983, section 1.3.)
 #pragma once
 
+#include <openvdb/Types.h>
+
 #include <string>
 #include <vector>
+
+#include "innermap/field/harmonic_field.h"
 
 namespace innermap {
 
@@ -26,6 +30,13 @@ struct CarrySettings {
   // Symmetric tensors by their common name: six float grids NAME.xx, .yy, .zz, .xy, .yz, .xz, or
   // three Vec3 grids NAME.x, .y, .z, the rows.
   std::vector<std::string> stresses, strains;
+};
+
+// A harmonic field on the source that is written on the target's voxels: at q its value at p.
+struct CarriedField {
+  std::string name;
+  HarmonicField field;  // one channel: a float grid, three: Vec3f
+  openvdb::VecType vectorType = openvdb::VEC_INVARIANT;
 };
 
 }  // namespace innermap

@@ -70,8 +70,12 @@ class Inversion {
 
 void Inversion::chooseRegion(const openvdb::FloatGrid& targetLevelSet,
                              const LatticeImages& images) {
-  solid_ = activeRegion(targetLevelSet, settings_.skin, kVoxelBytes, settings_.maxMemory,
-                        settings_.progress);
+  RegionSettings region;
+  region.skin = settings_.skin;
+  region.bytesPerVoxel = kVoxelBytes;
+  region.maxMemory = settings_.maxMemory;
+  region.progress = settings_.progress;
+  solid_ = activeRegion(targetLevelSet, region);
   region_ = solid_;
   if (!(settings_.outside.distance > 0)) return;
   const std::uint64_t most =

@@ -15,7 +15,7 @@ using namespace test;
 SourceLattice latticeOf(const Solid& solid, int resolution) {
   SourceLattice out;
   out.levelSet = levelSetOf(solid, resolution);
-  out.region = activeRegion(*out.levelSet, 2, 1, 0);
+  out.region = activeRegion(*out.levelSet);
   return out;
 }
 

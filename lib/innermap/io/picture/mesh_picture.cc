@@ -246,7 +246,7 @@ void writeMeshPicture(const std::string& path, const std::vector<PictureSurface>
       drawView(surfaces[s], View(settings.from[static_cast<std::size_t>(r)]), x,
                kTitle + r * (height + kMargin), widths[s], height, settings.progress, picture);
     }
-    picture.text(x + widths[s] / 2, 32, surfaces[s].label, 20, kInk, Align::kCentre);
+    picture.text(x + widths[s] / 2, 32, surfaces[s].label, 20, kInk, Align::centre);
     x += widths[s] + kMargin;
   }
   if (!settings.caption.empty())

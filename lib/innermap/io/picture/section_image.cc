@@ -47,6 +47,22 @@ openvdb::GridBase::Ptr gridToShow(const openvdb::GridPtrVec& grids, const std::s
   return grids.front();
 }
 
+std::optional<int> componentOf(const SectionSettings& s) {
+  if (s.component == Component::length) return std::nullopt;
+  return static_cast<int>(s.component);
+}
+
+double layerFor(const SliceFrame& frame, const SectionSettings& s) {
+  const int lower = frame.box.min()[frame.axis], upper = frame.box.max()[frame.axis];
+  if (!s.position) return std::clamp(lower + s.at * (upper - lower), double(lower), double(upper));
+  const double layer = frame.layerAt(*s.position);
+  if (!(layer >= lower - 0.5 && layer <= upper + 0.5))
+    throw SettingError("position",
+                       fmt::format("{:g} is outside the grids; give a coordinate from {:g} to {:g}",
+                                   *s.position, frame.position(lower), frame.position(upper)));
+  return std::clamp(layer, double(lower), double(upper));
+}
+
 void chooseRange(const SectionCut& cut, const SectionSettings& s, SectionResult& result) {
   const std::vector<float> values = valuesInside(cut);
   if (values.empty())
@@ -207,7 +223,7 @@ void drawText(const SectionCut& cut, const Layout& l, const SectionResult& r,
                            axisName(f.rowAxis), f.columns(), f.rows(),
                            shortNumber(f.transform->voxelSize()[f.columnAxis])),
                14, kFaint);
-  picture.text(picture.width() - kMargin, bottom, "innermap", 14, kFaint, Align::kRight);
+  picture.text(picture.width() - kMargin, bottom, "innermap", 14, kFaint, Align::right);
   picture.frame(kMargin, kTitle, l.barX - kBarGap, picture.height() - kFooter - kMargin,
                 {0.8f, 0.8f, 0.82f});
 }
@@ -246,7 +262,8 @@ SectionResult writeSectionImage(const std::string& path, const openvdb::GridPtrV
                 frame.rows() * frame.columns() * 12 * sizeof(float) +
                     std::uint64_t(layout.totalWidth) * layout.totalHeight * 16,
                 settings.maxMemory, "cut along another axis or ask for fewer pixels");
-  const SectionCut cut = cutThrough(grid, needed, frame, settings);
+  const SectionCut cut = cutThrough(grid, needed, frame, layerFor(frame, settings),
+                                    {componentOf(settings), settings.colour});
 
   SectionResult result;
   result.grid = grid->getName();

@@ -164,7 +164,12 @@ SourceLattice makeSourceLattice(const Solid& solid, const OutsideSettings& outsi
   settings.maxMemory = maxMemory;
   settings.progress = progress;
   out.levelSet = makeLevelSet(solid, settings);
-  out.region = activeRegion(*out.levelSet, kSkin, kVoxelBytes, maxMemory, progress);
+  RegionSettings inside;
+  inside.skin = kSkin;
+  inside.bytesPerVoxel = kVoxelBytes;
+  inside.maxMemory = maxMemory;
+  inside.progress = progress;
+  out.region = activeRegion(*out.levelSet, inside);
   if (!(outside.distance > 0)) return out;
   const double voxel = out.levelSet->voxelSize()[0];
   const std::uint64_t most = maxMemory ? maxMemory / kVoxelBytes : ~std::uint64_t{0};

@@ -91,9 +91,9 @@ void Picture::frame(int x0, int y0, int x1, int y1, Rgb colour) {
 
 void Picture::text(int x, int y, const std::string& text, int size, Rgb colour, Align align) {
   const std::string line = printable(text);
-  if (align != Align::kLeft) {
+  if (align != Align::left) {
     const int width = textWidth(line, size);
-    x -= align == Align::kRight ? width : width / 2;
+    x -= align == Align::right ? width : width / 2;
   }
   if (!fontPath().empty()) {
     OIIO::ImageBuf buffer(OIIO::ImageSpec(width_, height_, 3, OIIO::TypeDesc::FLOAT),

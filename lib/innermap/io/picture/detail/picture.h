@@ -15,7 +15,7 @@ using Rgb = std::array<float, 3>;  // sRGB, 0..1
 // RdYlBu (Cynthia Brewer, Apache-2.0) turned round, interpolated.
 Rgb rampColour(double t);
 
-enum class Align { kLeft, kCentre, kRight };
+enum class Align { left, centre, right };
 
 class Picture {
  public:
@@ -30,8 +30,7 @@ class Picture {
   void frame(int x0, int y0, int x1, int y1, Rgb colour);  // one pixel wide, outside the box
 
   // Text with its baseline at y. DejaVu Sans where it is installed, else a small font of our own.
-  void text(int x, int y, const std::string& text, int size, Rgb colour,
-            Align align = Align::kLeft);
+  void text(int x, int y, const std::string& text, int size, Rgb colour, Align align = Align::left);
 
   // PNG, 8 bits. Throws Error when the encoder fails.
   std::vector<unsigned char> png() const;
