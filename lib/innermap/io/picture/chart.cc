@@ -8,7 +8,6 @@
 #include <ostream>
 
 #include "innermap/core/error.h"
-#include "innermap/core/file.h"
 #include "innermap/io/picture/detail/picture.h"
 #include "innermap/io/picture/detail/stroke.h"
 
@@ -178,11 +177,7 @@ Picture draw(const Chart& chart) {
 
 void writeChart(const std::string& path, const Chart& chart) {
   check(chart);
-  const std::vector<unsigned char> bytes = draw(chart).png();
-  writeWholeFile(path, [&](std::ostream& file) {
-    file.write(reinterpret_cast<const char*>(bytes.data()),
-               static_cast<std::streamsize>(bytes.size()));
-  });
+  draw(chart).write(path);
 }
 
 }  // namespace innermap

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "innermap/core/error.h"
-#include "innermap/core/file.h"
 #include "innermap/core/parallel.h"
 #include "innermap/io/picture/detail/picture.h"
 
@@ -251,11 +250,7 @@ void writeMeshPicture(const std::string& path, const std::vector<PictureSurface>
   }
   if (!settings.caption.empty())
     picture.text(kMargin, picture.height() - 16, settings.caption, 15, kInk);
-  const std::vector<unsigned char> png = picture.png();
-  writeWholeFile(path, [&](std::ostream& stream) {
-    stream.write(reinterpret_cast<const char*>(png.data()),
-                 static_cast<std::streamsize>(png.size()));
-  });
+  picture.write(path);
 }
 
 }  // namespace innermap

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "innermap/core/error.h"
-#include "innermap/core/file.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
 #include "innermap/io/picture/detail/picture.h"
@@ -277,11 +276,7 @@ SectionResult writeSectionImage(const std::string& path, const openvdb::GridPtrV
                kOutside);
   drawSection(cut, layout, result, settings.progress, picture);
   if (!settings.colour) drawBar(layout, result, picture);
-  const std::vector<unsigned char> bytes = picture.png();
-  writeWholeFile(path, [&](std::ostream& file) {
-    file.write(reinterpret_cast<const char*>(bytes.data()),
-               static_cast<std::streamsize>(bytes.size()));
-  });
+  picture.write(path);
   return result;
 }
 
