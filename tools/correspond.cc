@@ -27,8 +27,8 @@ std::string sourceOutputOf(const Options& options) {
 void run(const Options& options, Context& context) {
   requirePly("--output", options.output);
   if (!options.sourceOutput.empty()) requirePly("--source-out", options.sourceOutput);
-  context.willWrite(options.output);
-  if (!options.picture.empty()) context.willWrite(options.picture);
+  context.output(options.output);
+  if (!options.picture.empty()) context.output(options.picture);
   Mesh a, b;
   context.timed("read", [&] {
     ReadSettings settings;

@@ -14,7 +14,7 @@ struct EvaluateOptions {
 };
 
 void run(const EvaluateOptions& options, Context& context) {
-  context.willWrite(options.output);
+  context.output(options.output);
   const FieldFile file = readMap(options.map, context);
   const BoundaryPair pair = boundaryOf(file, options.map, context);
   const std::uint64_t need = evaluationMemory(pair.solid, options.evaluation);

@@ -15,7 +15,7 @@ struct FitOptions {
 
 void run(const FitOptions& options, Context& context) {
   toleranceOf(options.fitting);  // refuses options that cannot be before anything is read
-  context.willWrite(options.output);
+  context.output(options.output);
   const BoundaryPair pair = readBoundaryPair(options.source, options.target, context);
   const std::size_t vertices = pair.source.vertices.size();
   const std::uint64_t need = fittingMemory(options.fitting, vertices);

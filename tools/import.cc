@@ -52,7 +52,7 @@ std::string summary(const VolumeTextureContents& contents, const ImportOptions& 
 
 void run(const ImportOptions& options, Context& context) {
   const VolumeTextureReadSettings settings = settingsOf(options, context);
-  context.willWrite(options.output);
+  context.output(options.output);
   if (context.dryRun()) {
     const VolumeTextureNeed need = volumeTextureReadNeed(options.file, settings);
     return context.plan(

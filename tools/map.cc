@@ -16,7 +16,6 @@
 #include "innermap/mesh/read.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/mesh/write.h"
-#include "section_place.h"
 
 namespace innermap::tool {
 namespace {
@@ -46,7 +45,7 @@ void writePictures(const openvdb::GridPtrVec& grids, const BoundaryPair& pair,
   folder.write("slices.exr", [&](const std::string& path) { writeExrSlices(path, grids, slices); });
   SectionSettings section;
   section.grid = options.sectionGrid;
-  section.axis = options.sectionAxis == "auto" ? thinnestAxis(pair.solid)
+  section.axis = options.sectionAxis == "auto" ? thinnestAxis(pair.solid.box().extent())
                                                : parseAxis("--section-axis", options.sectionAxis);
   section.at =
       options.sectionAt
@@ -163,7 +162,8 @@ void run(const MapOptions& options, Context& context) {
   toleranceOf(options.fitting);  // refuses options that cannot be before anything is read
   Meshes meshes = readMeshes(options, context);
   if (context.dryRun()) return plan(options, meshes, context);
-  PendingFolder folder(options.output);
+  PendingFolder folder = context.outputFolder(options.output);
+  context.notePictures();
   const BoundaryPair pair = makePair(options, std::move(meshes), folder, context);
   requireFittingMemory(options.fitting, pair.source.vertices.size(), context);
   requireEvaluationMemory(pair.solid, options.evaluation, context);

@@ -16,7 +16,7 @@ struct PullOptions {
 };
 
 void run(const PullOptions& options, Context& context) {
-  context.willWrite(options.output);
+  context.output(options.output);
   const FieldFile file = readMap(options.map, context);
   const BoundaryPair pair = boundaryOf(file, options.map, context);
   PullSettings settings;

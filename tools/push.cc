@@ -18,7 +18,7 @@ struct PushOptions {
 };
 
 void run(const PushOptions& options, Context& context) {
-  context.willWrite(options.output);
+  context.output(options.output);
   const FieldFile file = readMap(options.map, context);
   const BoundaryPair pair = boundaryOf(file, options.map, context);
   PushSettings settings =

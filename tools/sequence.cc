@@ -184,7 +184,8 @@ void run(const SequenceOptions& options, Context& context) {
                              " to " + options.output},
                         frameFittingMemory(options.frames));
   requireFrameMemory(options.frames, 0, context);
-  PendingFolder folder(options.output);
+  PendingFolder folder = context.outputFolder(options.output);
+  context.notePictures();
   const FrameSolver solver(options.rest, options.frames, context);
   requireFrameMemory(options.frames, evaluationMemory(solver.solid(), options.evaluation), context);
   const Sequence sequence(options, solver, context);

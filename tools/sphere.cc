@@ -86,7 +86,7 @@ LayoutQuality qualityOf(const SurfaceInput& input) {
 
 void run(const Options& options, Context& context) {
   requirePly("--output", options.output);
-  context.willWrite(options.output);
+  context.output(options.output);
   Mesh mesh;
   context.timed("read", [&] {
     ReadSettings settings;

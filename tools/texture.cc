@@ -317,7 +317,7 @@ void check(const TextureOptions& o) {
 
 void run(const TextureOptions& options, Context& context) {
   check(options);
-  context.willWrite(options.output);
+  context.output(options.output);
   Job job{options, context, {}, {}, {}, {}, {}, {}, 0, {}};
   readInput(job);
   findCharts(job);

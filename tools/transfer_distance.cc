@@ -14,7 +14,6 @@
 #include "innermap/levelset/level_set.h"
 #include "innermap/transfer/distance_transfer.h"
 #include "saved_map.h"
-#include "section_place.h"
 
 namespace innermap::tool {
 namespace {
@@ -95,7 +94,7 @@ void writeSection(const std::string& path, const std::string& title, const Solid
   const openvdb::GridBase::Ptr solidGrid = surface.deepCopyGrid();
   SectionSettings section;
   section.grid = title;
-  section.axis = options.sectionAxis == "auto" ? thinnestAxis(solid)
+  section.axis = options.sectionAxis == "auto" ? thinnestAxis(solid.box().extent())
                                                : parseAxis("--section-axis", options.sectionAxis);
   section.at = options.sectionAt ? *options.sectionAt : fullLayer(*makeFog(surface), section.axis);
   section.range = range;
@@ -155,7 +154,8 @@ void run(const TransferDistanceOptions& options, Context& context) {
              options.output},
         evaluationMemory(pair.solid, options.evaluation));
   requireEvaluationMemory(pair.solid, options.evaluation, context);
-  PendingFolder folder(options.output);
+  PendingFolder folder = context.outputFolder(options.output);
+  context.notePictures();
   std::optional<Solid> targetOf;
   context.timed("solid", [&] { targetOf.emplace(targetSolid(pair, context)); });
   const Solid& solid = *targetOf;

@@ -78,7 +78,7 @@ openvdb::GridPtrVec makeGrids(const VoxelizeOptions& options, const Solid& solid
 }
 
 void run(const VoxelizeOptions& options, Context& context) {
-  context.willWrite(options.output);
+  context.output(options.output);
   Mesh mesh;
   context.timed("read", [&] {
     ReadSettings settings;

@@ -79,4 +79,11 @@ struct VdbInfoSettings {
 // Without reading voxels; throws as readVdb does.
 VdbInfo readVdbInfo(const std::string& path, const VdbInfoSettings& settings = {});
 
+// What the file at `path` holds, for a terminal: a few lines a grid, with all its metadata or only
+// innermap's own.
+std::string describe(const VdbInfo& info, const std::string& path, bool metadata = false);
+
+// Bytes that reading the grids of these names takes; empty means all.
+std::uint64_t readMemory(const VdbInfo& info, const std::vector<std::string>& names = {});
+
 }  // namespace innermap

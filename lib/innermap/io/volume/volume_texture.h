@@ -75,6 +75,15 @@ struct VolumeTextureResult {
 VolumeTextureResult writeVolumeTexture(const std::string& path, const openvdb::GridPtrVec& grids,
                                        const VolumeTextureSettings& settings = {});
 
+// For a terminal: two lines that say what was written.
+std::string describe(const VolumeTextureResult& result, const std::string& path,
+                     const VolumeTextureSettings& settings);
+
+// What makes the texture doubtful: values that do not fit the pixels, pictures beyond 16,384 pixels
+// a side, which engines do not take.
+std::vector<std::string> warningsOf(const VolumeTextureResult& result, const std::string& path,
+                                    const VolumeTextureSettings& settings);
+
 // What writeVolumeTexture would write: its result but for the counts. Throws as that does.
 VolumeTextureResult planVolumeTexture(const std::string& path, const openvdb::GridPtrVec& grids,
                                       const VolumeTextureSettings& settings = {});

@@ -190,6 +190,10 @@ TEST(VdbFileInfo, TellsWithoutReading) {
   const openvdb::GridPtrVec grids = everyType();
   writeVdb(folder.file("a.vdb"), grids);
   const VdbInfo info = readVdbInfo(folder.file("a.vdb"));
+  EXPECT_EQ(readMemory(info, {info.grids[0].name}), info.grids[0].memory);
+  EXPECT_GT(readMemory(info), info.grids[0].memory);
+  EXPECT_EQ(describe(info, "a.vdb").substr(0, 14), "a.vdb: OpenVDB");
+  EXPECT_GT(describe(info, "a.vdb", true).size(), describe(info, "a.vdb").size());
   ASSERT_EQ(info.grids.size(), grids.size());
   EXPECT_EQ(info.grids[0].name, "surface");
   EXPECT_EQ(info.grids[0].type, "float");

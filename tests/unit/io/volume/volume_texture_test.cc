@@ -334,5 +334,27 @@ TEST(VolumeTexture, NoticesAFullDisk) {
   }
 }
 
+TEST(VolumeTexture, IsDescribedAndDoubted) {
+  VolumeTextureResult r;
+  r.width = 20000;
+  r.height = r.tileWidth = r.tileHeight = 8;
+  r.slices = 4;
+  r.channels = {"R", "G"};
+  r.clamped = 3;
+  VolumeTextureSettings settings;
+  settings.half = true;
+  const std::string text = describe(r, "a.exr", settings);
+  EXPECT_NE(text.find("a.exr: 1 x 1 tiles of 8 x 8, 20000 x 8 pixels\n4 slices along z"),
+            std::string::npos)
+      << text;
+  const std::vector<std::string> warnings = warningsOf(r, "a.exr", settings);
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_NE(warnings[0].find("3 values"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[1].find("--resolution"), std::string::npos) << warnings[1];
+  r.width = 8;
+  r.clamped = 0;
+  EXPECT_TRUE(warningsOf(r, "a.exr", settings).empty());
+}
+
 }  // namespace
 }  // namespace innermap
