@@ -105,7 +105,7 @@ void fillReport(const SolidTexture& made, const TextureOptions& options, Report&
 
 void run(const TextureOptions& o, Context& context) {
   const SolidTextureSettings settings = settingsOf(o, context);
-  context.willWrite(o.output);
+  context.output(o.output);
   const SolidTexturePlan plan = planSolidTexture(readMeshFile(o.mesh, context), settings);
   tell(plan.notes, plan.warnings, plan.seconds, context);
   if (o.blends()) {

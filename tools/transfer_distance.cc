@@ -11,7 +11,6 @@
 #include "innermap/levelset/level_set.h"
 #include "innermap/transfer/distance_transfer.h"
 #include "map_report.h"
-#include "section_place.h"
 
 namespace innermap::tool {
 namespace {
@@ -46,7 +45,7 @@ void writeSection(const std::string& path, const std::string& title, const Solid
   const openvdb::GridBase::Ptr solidGrid = surface.deepCopyGrid();
   SectionSettings section;
   section.grid = title;
-  section.axis = options.sectionAxis == "auto" ? thinnestAxis(solid)
+  section.axis = options.sectionAxis == "auto" ? thinnestAxis(solid.box().extent())
                                                : parseAxis("--section-axis", options.sectionAxis);
   section.at = options.sectionAt ? *options.sectionAt : fullLayer(*makeFog(surface), section.axis);
   section.range = range;
@@ -103,7 +102,8 @@ void run(const TransferDistanceOptions& options, Context& context) {
              options.output},
         mapGridMemory(mapped.solid(), grid));
   requireEvaluationMemory(mapped.solid(), grid);
-  PendingFolder folder(options.output);
+  PendingFolder folder = context.outputFolder(options.output);
+  context.notePictures();
   std::optional<Solid> target;
   context.timed("solid",
                 [&] { target.emplace(makeTargetSolid(mapped.boundary, {context.progress()})); });

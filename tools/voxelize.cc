@@ -67,7 +67,7 @@ openvdb::GridPtrVec makeGrids(const VoxelizeOptions& options, const Solid& solid
 }
 
 void run(const VoxelizeOptions& options, Context& context) {
-  context.willWrite(options.output);
+  context.output(options.output);
   const Mesh mesh = readMeshFile(options.mesh, context);
   std::optional<Solid> solid;
   SolidSettings repairing;
