@@ -1,4 +1,4 @@
-// `innermap help`, and the texts of --help and of the README's reference.
+// `innermap help`, and the texts of --help and of docs/commands.md.
 #include <fmt/format.h>
 
 #include "commands.h"
@@ -156,7 +156,7 @@ Command makeHelpCommand() {
   auto o = std::make_shared<HelpOptions>();
   Command c("help", "Show the help of a command, or the commands");
   c.positional("COMMAND", &o->command, "the command to explain").optional();
-  c.flag("--markdown", &o->markdown, "the reference of all commands, as the README has it");
+  c.flag("--markdown", &o->markdown, "the reference of all commands, as docs/commands.md has it");
   c.example("innermap help voxelize");
   c.run([o](Context& context) { run(*o, context); });
   return c;
