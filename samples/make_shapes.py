@@ -12,32 +12,37 @@ import sys
 
 
 
-def sphere(levels=4):
-    """(vertices, faces) of a unit ball: an icosahedron, each triangle cut in four `levels` times."""
+def unit(v):
+    length = math.sqrt(sum(x * x for x in v))
+    return tuple(x / length for x in v)
+
+
+def sphere(levels=4, evenly=True):
+    """(vertices, faces) of a unit ball: an icosahedron, each triangle cut in four `levels` times.
+    Evenly: vertices go onto the sphere after each cut, else after the last."""
     t = (1 + math.sqrt(5)) / 2
     vertices = [(-1, t, 0), (1, t, 0), (-1, -t, 0), (1, -t, 0), (0, -1, t), (0, 1, t), (0, -1, -t),
                 (0, 1, -t), (t, 0, -1), (t, 0, 1), (-t, 0, -1), (-t, 0, 1)]
     faces = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4),
              (11, 10, 2), (10, 7, 6), (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8),
              (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1)]
-    vertices = [tuple(x / math.sqrt(sum(y * y for y in v)) for x in v) for v in vertices]
+    vertices = [unit(v) for v in vertices]
     for _ in range(levels):
         middles, finer = {}, []
 
         def middle(a, b):
             key = (min(a, b), max(a, b))
             if key not in middles:
-                p = [x + y for x, y in zip(vertices[a], vertices[b])]
-                length = math.sqrt(sum(x * x for x in p))
                 middles[key] = len(vertices)
-                vertices.append(tuple(x / length for x in p))
+                p = tuple((x + y) / 2 for x, y in zip(vertices[a], vertices[b]))
+                vertices.append(unit(p) if evenly else p)
             return middles[key]
 
         for a, b, c in faces:
             ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
             finer += [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
         faces = finer
-    return vertices, faces
+    return [unit(v) for v in vertices], faces
 
 
 def torus(around=90, across=36, major=1.0, minor=0.4):

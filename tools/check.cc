@@ -7,7 +7,7 @@
 
 #include "commands.h"
 #include "innermap/core/memory.h"
-#include "innermap/mesh/read.h"
+#include "mesh_input.h"
 
 namespace innermap::tool {
 namespace {
@@ -23,28 +23,25 @@ struct CheckOptions {
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 Json vector(const Vec3& v) { return {number(v.x), number(v.y), number(v.z)}; }
 
-Json crossingsJson(const MeshReport& r) {
-  Json list = Json::array();
-  for (const Crossing& c : r.crossings)
-    list.push_back({{"triangles", {c.first, c.second}}, {"place", vector(c.place)}});
-  return list;
+template <class List, class Entry>
+Json array(const List& list, const Entry& entry) {
+  Json out = Json::array();
+  for (const auto& item : list) out.push_back(entry(item));
+  return out;
 }
 
-Json loopsJson(const MeshReport& r) {
-  Json list = Json::array();
-  for (const BoundaryLoop& loop : r.boundaryLoops)
-    list.push_back({{"edges", loop.vertices.size()},
-                    {"length", number(loop.length)},
-                    {"first_vertex", loop.vertices.empty() ? -1 : loop.vertices.front()}});
-  return list;
+Json crossingJson(const Crossing& c) {
+  return {{"triangles", {c.first, c.second}}, {"place", vector(c.place)}};
 }
 
-Json findingsJson(const std::vector<Finding>& found) {
-  Json list = Json::array();
-  for (const Finding& f : found)
-    list.push_back(
-        {{"name", f.name}, {"count", f.count}, {"what", f.what}, {"meaning", f.meaning}});
-  return list;
+Json loopJson(const BoundaryLoop& loop) {
+  return {{"edges", loop.vertices.size()},
+          {"length", number(loop.length)},
+          {"first_vertex", loop.vertices.empty() ? -1 : loop.vertices.front()}};
+}
+
+Json findingJson(const Finding& f) {
+  return {{"name", f.name}, {"count", f.count}, {"what", f.what}, {"meaning", f.meaning}};
 }
 
 Json checkJson(const std::string& path, const MeshReport& r, const std::vector<Finding>& found) {
@@ -60,7 +57,7 @@ Json checkJson(const std::string& path, const MeshReport& r, const std::vector<F
           {"volume", number(r.volume)},
           {"diagonal", number(r.box.diagonal())},
           {"box", {{"lower", vector(r.box.lower)}, {"upper", vector(r.box.upper)}}},
-          {"boundary_loops", loopsJson(r)},
+          {"boundary_loops", array(r.boundaryLoops, loopJson)},
           {"non_manifold_edges", r.nonManifoldEdges.size()},
           {"non_manifold_vertices", r.nonManifoldVertices.size()},
           {"duplicate_triangles", r.duplicateTriangles.size()},
@@ -69,8 +66,8 @@ Json checkJson(const std::string& path, const MeshReport& r, const std::vector<F
           {"inconsistent_edges", r.inconsistentEdges},
           {"loose_vertices", r.looseVertices.size()},
           {"self_intersections", r.selfIntersections},
-          {"crossings", crossingsJson(r)},
-          {"findings", findingsJson(found)}};
+          {"crossings", array(r.crossings, crossingJson)},
+          {"findings", array(found, findingJson)}};
 }
 
 std::string checkText(const std::string& path, const MeshReport& r,
@@ -114,26 +111,18 @@ void fillReport(const std::string& path, const MeshReport& r, const std::vector<
 }
 
 void run(const CheckOptions& options, Context& context) {
-  Mesh mesh;
-  context.timed("read", [&] {
-    ReadSettings settings;
-    settings.progress = context.progress();
-    mesh = readMesh(options.mesh, settings);
-  });
-  // Edges, fans and the tree of boxes; measured at about 300 bytes a triangle.
-  const std::uint64_t need = 400 * mesh.triangles.size() + 200 * mesh.vertices.size();
+  const Mesh mesh = readMeshFile(options.mesh, context);
+  const std::uint64_t need = checkMemory(mesh);
   if (context.dryRun())
     return context.plan(
         {"check " + options.mesh + fmt::format(" ({} triangles)", mesh.triangles.size())}, need);
   requireMemory("checking " + options.mesh, need, context.maxMemory(),
                 "raise --max-memory or simplify the mesh");
+  CheckSettings settings;
+  settings.listed = options.listed;
+  settings.progress = context.progress();
   MeshReport report;
-  context.timed("check", [&] {
-    CheckSettings settings;
-    settings.listed = options.listed;
-    settings.progress = context.progress();
-    report = checkMesh(mesh, settings);
-  });
+  context.timed("check", [&] { report = checkMesh(mesh, settings); });
   const std::vector<Finding> found = findings(report);
   fillReport(options.mesh, report, found, context.report());
   context.print(options.json ? checkJson(options.mesh, report, found)

@@ -15,7 +15,7 @@
 //       };
 //
 //       void run(const FitOptions& options, Context& context) {
-//         context.willWrite(options.output);        // refuses early what cannot be written
+//         context.output(options.output);        // refuses early what cannot be written
 //         Mesh mesh;
 //         context.timed("read", [&] { mesh = readMesh(options.source, {context.progress()}); });
 //         const std::uint64_t need = ...;

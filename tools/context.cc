@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cstdio>
+#include <filesystem>
 
-#include "innermap/core/file.h"
 #include "innermap/core/memory.h"
+#include "innermap/core/stage_seconds.h"
+#include "innermap/io/picture/label_font.h"
 #include "terminal_progress.h"
 
 namespace innermap::tool {
@@ -33,25 +34,24 @@ void Context::plan(const std::vector<std::string>& lines, std::uint64_t bytes) {
   report_.set("memory_needed_bytes", static_cast<std::int64_t>(bytes));
 }
 
-void Context::willWrite(const std::string& path) const {
-  if (!dryRun()) requireWritable(path);
+void Context::output(const std::string& path) {
+  if (dryRun()) return;
+  requireWritable(path);
+  if (std::filesystem::path(path).extension() == ".png") notePictures();
+}
+
+PendingFolder Context::outputFolder(const std::string& path) { return PendingFolder(path); }
+
+void Context::notePictures() {
+  if (labelFont().empty())
+    note(
+        "no font is installed, so pictures have no labels; install DejaVu Sans (on Debian the "
+        "package fonts-dejavu-core)");
 }
 
 void Context::timed(const std::string& stage, const std::function<void()>& body) {
   throwIfCancelled(&progress_);
-  const auto start = std::chrono::steady_clock::now();
-  body();
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  addSeconds(stage, elapsed.count());
-}
-
-void Context::addSeconds(const std::string& stage, double seconds) {
-  for (auto& [name, sum] : report_.seconds)
-    if (name == stage) {
-      sum += seconds;
-      return;
-    }
-  report_.seconds.emplace_back(stage, seconds);
+  innermap::timed(report_.seconds, stage, body);
 }
 
 void Context::say(const std::string& kind, const std::string& text) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "innermap/core/file.h"
 #include "innermap/core/progress.h"
 #include "innermap/io/report.h"
 
@@ -46,14 +47,17 @@ class Context {
   // whether it is over the limit), on stdout.
   void plan(const std::vector<std::string>& lines, std::uint64_t bytes);
 
-  // Throws FileError unless a file can be created at `path`; does nothing in a dry run.
-  void willWrite(const std::string& path) const;
+  // All that a command writes passes here, before it reads or computes anything. Throws FileError
+  // unless a file can be created at `path`; does nothing in a dry run.
+  void output(const std::string& path);
+  // The same for a folder of files that appear together; not for dry runs.
+  PendingFolder outputFolder(const std::string& path);
+  // Says so when pictures will have no labels for lack of a font; output() does for .png files.
+  void notePictures();
 
   // Runs `body` and adds its wall time to the report's "seconds" under `stage`.
   void timed(const std::string& stage, const std::function<void()>& body);
 
-  // Adds to "seconds" what the library measured itself.
-  void addSeconds(const std::string& stage, double seconds);
 
   // One line each on stderr (nothing with --quiet), and in the report.
   void note(const std::string& text);     // what was repaired or chosen

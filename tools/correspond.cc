@@ -25,8 +25,8 @@ std::string sourceOutputOf(const Options& options) {
 void run(const Options& options, Context& context) {
   requirePly("--output", options.output);
   if (!options.sourceOutput.empty()) requirePly("--source-out", options.sourceOutput);
-  context.willWrite(options.output);
-  if (!options.picture.empty()) context.willWrite(options.picture);
+  context.output(options.output);
+  if (!options.picture.empty()) context.output(options.picture);
   Mesh a = readMeshFile(options.a, context), b = readMeshFile(options.b, context);
   const std::size_t countA = a.vertices.size(), countB = b.vertices.size();
   if (context.dryRun())

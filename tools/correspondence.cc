@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "innermap/core/stage_seconds.h"
 #include "innermap/core/memory.h"
 
 namespace innermap::tool {
@@ -19,7 +20,7 @@ MeshCorrespondenceSettings settingsOf(const CorrespondOptions& options) {
 template <class Result>
 void tell(const Result& result, Context& context) {
   for (const std::string& note : result.notes) context.note(note);
-  for (const auto& [stage, seconds] : result.seconds) context.addSeconds(stage, seconds);
+  addSeconds(context.report().seconds, result.seconds);
 }
 
 void reportQuantiles(Report& report, const std::string& key, const Quantiles& q) {

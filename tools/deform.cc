@@ -183,8 +183,6 @@ class Deformer {
   void say(const PushResult& result, std::int64_t frame) const {
     for (const std::string& warning : result.warnings)
       context_.warning(fmt::format("frame {}: {}", frame, warning));
-    const std::string doubt = inversionWarning(result.statistics);
-    if (!doubt.empty()) context_.warning(fmt::format("frame {}: {}", frame, doubt));
   }
 
   void write(std::size_t index, const std::string& path, const std::string& inputs,
@@ -222,7 +220,7 @@ class Deformer {
 std::string lineOf(const FrameFile& frame, const DeformRow& row, double seconds) {
   const InverseStatistics& s = row.statistics;
   return fmt::format("{:>8} {:>10} {:>10.4f} {:>10.2e} {:>10.2e} {:>9.3g}\n", frame.number,
-                     s.voxels, 100 * invertedInside(s), row.error.rms, row.error.p99, seconds);
+                     s.voxels, 100 * s.invertedInside(), row.error.rms, row.error.p99, seconds);
 }
 
 std::string header() {
@@ -240,7 +238,7 @@ void fillReport(const std::map<std::size_t, DeformRow>& rows, const Frames& fram
       return row == rows.end() ? std::nan("") : static_cast<double>(of(row->second));
     };
     voxels.push_back(value([](const DeformRow& r) { return r.statistics.voxels; }));
-    inverted.push_back(value([](const DeformRow& r) { return invertedInside(r.statistics); }));
+    inverted.push_back(value([](const DeformRow& r) { return r.statistics.invertedInside(); }));
     rms.push_back(value([](const DeformRow& r) { return r.error.rms; }));
     p99.push_back(value([](const DeformRow& r) { return r.error.p99; }));
     most.push_back(value([](const DeformRow& r) { return r.error.max; }));
@@ -301,7 +299,7 @@ void run(const DeformOptions& options, Context& context) {
   check(options, frames);
   if (context.dryRun()) return plan(options, frames, pattern, context);
   requireFrameMemory(frameFitterSettings(options.frames, context), 0);
-  const PendingFolder folder(pattern.folder());
+  const PendingFolder folder = context.outputFolder(pattern.folder());
   std::optional<Inputs> inputs;
   Frames left;
   context.timed("compare", [&] {

@@ -12,7 +12,7 @@ struct EvaluateOptions {
 };
 
 void run(const EvaluateOptions& options, Context& context) {
-  context.willWrite(options.output);
+  context.output(options.output);
   const MappedSolid mapped = readMapFile(options.map, context);
   const MapGridSettings settings = mapGridSettings(options.evaluation, context);
   if (context.dryRun())

@@ -1,8 +1,6 @@
 // `innermap export`: grids as volume textures in EXR files.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "commands.h"
 #include "innermap/core/frame_files.h"
 #include "innermap/io/slice.h"
@@ -13,8 +11,6 @@
 
 namespace innermap::tool {
 namespace {
-
-constexpr int kLargestForEngines = 16384;  // pixels
 
 struct ExportOptions {
   std::string file, output, layout = "atlas", grids, axis = "z", rows = "down", channels = "auto",
@@ -29,9 +25,9 @@ VolumeTextureSettings settingsOf(const ExportOptions& options, Context& context)
   s.layout = parseVolumeLayout("--layout", options.layout);
   s.axis = parseAxis("--axis", options.axis);
   s.rowsUp = options.rows == "up";
-  s.channels = options.channels == "rgba"     ? VolumeChannels::kRgba
-               : options.channels == "layers" ? VolumeChannels::kLayers
-                                              : VolumeChannels::kAuto;
+  s.channels = options.channels == "rgba"     ? VolumeChannels::rgba
+               : options.channels == "layers" ? VolumeChannels::layers
+                                              : VolumeChannels::automatic;
   s.half = options.half;
   s.active = options.active;
   s.pad = options.pad;
@@ -42,38 +38,6 @@ VolumeTextureSettings settingsOf(const ExportOptions& options, Context& context)
   s.maxMemory = context.maxMemory();
   s.progress = context.progress();
   return s;
-}
-
-std::string summary(const VolumeTextureResult& r, const ExportOptions& options) {
-  std::string text;
-  if (options.layout == "atlas")
-    text = fmt::format("{}: {} x {} tiles of {} x {}, {} x {} pixels", options.output,
-                       r.tileColumns, r.tileRows, r.tileWidth, r.tileHeight, r.width, r.height);
-  else if (options.layout == "parts")
-    text =
-        fmt::format("{}: {} parts of {} x {} pixels", options.output, r.slices, r.width, r.height);
-  else
-    text = fmt::format("{} to {}: {} x {} pixels each", r.files.front(), r.files.back(), r.width,
-                       r.height);
-  return text + fmt::format("\n{} slices along {}, {} x {} x {} voxels, channels {}\n", r.slices,
-                            options.axis, r.resolution.x(), r.resolution.y(), r.resolution.z(),
-                            fmt::join(r.channels, ", "));
-}
-
-void warnOf(const VolumeTextureResult& r, const ExportOptions& options, Context& context) {
-  if (r.clamped > 0)
-    context.warning(fmt::format("{}: {} values do not fit the pixels and were clamped{}",
-                                options.output, r.clamped,
-                                options.half ? "; leave out --half" : ""));
-  if (r.inexact > 0)
-    context.warning(fmt::format("{}: {} whole numbers were rounded: the pixels do not have them{}",
-                                options.output, r.inexact,
-                                options.half ? "; leave out --half" : ""));
-  if (std::max(r.width, r.height) > kLargestForEngines)
-    context.warning(
-        fmt::format("{}: {} x {} pixels; engines take {} a side, use a lower "
-                    "--resolution",
-                    options.output, r.width, r.height, kLargestForEngines));
 }
 
 void fillReport(const VolumeTextureResult& r, const ExportOptions& options, Context& context) {
@@ -95,19 +59,16 @@ void fillReport(const VolumeTextureResult& r, const ExportOptions& options, Cont
 
 void run(const ExportOptions& options, Context& context) {
   const VolumeTextureSettings settings = settingsOf(options, context);
-  context.willWrite(settings.layout == VolumeLayout::kSlices
-                        ? FramePattern("--output", options.output).path(0)
-                        : options.output);
+  context.output(settings.layout == VolumeLayout::slices
+                     ? FramePattern("--output", options.output).path(0)
+                     : options.output);
   VdbReadSettings read;
   read.names = commaList(options.grids);
   read.maxMemory = context.maxMemory();
   read.progress = context.progress();
   if (context.dryRun()) {
-    std::uint64_t need = 0;
-    for (const VdbGridInfo& grid : readVdbInfo(options.file, context.progress()).grids)
-      if (read.names.empty() ||
-          std::find(read.names.begin(), read.names.end(), grid.name) != read.names.end())
-        need += grid.memory;
+    const std::uint64_t need =
+        readMemory(readVdbInfo(options.file, {context.progress()}), read.names);
     return context.plan({fmt::format("write {} as a volume texture ({}) to {}", options.file,
                                      options.layout, options.output)},
                         need);
@@ -116,9 +77,10 @@ void run(const ExportOptions& options, Context& context) {
   context.timed("read", [&] { grids = readVdb(options.file, read).grids; });
   VolumeTextureResult result;
   context.timed("write", [&] { result = writeVolumeTexture(options.output, grids, settings); });
-  warnOf(result, options, context);
+  for (const std::string& warning : warningsOf(result, options.output, settings))
+    context.warning(warning);
   fillReport(result, options, context);
-  context.print(summary(result, options));
+  context.print(describe(result, options.output, settings));
 }
 
 void addShapeOptions(Command& c, ExportOptions& o) {

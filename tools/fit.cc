@@ -27,7 +27,7 @@ BoundaryPair readPair(const FitOptions& options, Context& context) {
 
 void run(const FitOptions& options, Context& context) {
   checkFittingOptions(options.fitting);
-  context.willWrite(options.output);
+  context.output(options.output);
   BoundaryPair pair = readPair(options, context);
   const FitMapSettings settings =
       fitMapSettings(options.fitting, pair.source.mesh.vertices.size(), context);

@@ -22,29 +22,21 @@ void addGridOptions(Command& c, GridOptions& o, const std::string& of) {
       .defaults("by --resolution");
 }
 
-LevelSetSettings levelSetSettings(const GridOptions& options) {
+LevelSetSettings levelSetSettings(const GridOptions& options, const Context& context) {
   LevelSetSettings settings;
   settings.resolution = options.resolution;
   settings.voxelSize = options.voxelSize.value_or(0);
-  return settings;
-}
-
-LevelSetSettings levelSetSettings(const GridOptions& options, const Context& context) {
-  LevelSetSettings settings = levelSetSettings(options);
   settings.maxMemory = context.maxMemory();
   settings.progress = context.progress();
   return settings;
 }
 
-void requireGridMemory(const std::string& doing, const GridOptions& options,
-                       const std::function<std::uint64_t(const GridOptions&)>& need,
-                       const Context& context) {
+void requireGridMemory(const std::string& doing, std::uint64_t bytes, std::uint64_t limit,
+                       const std::function<std::uint64_t(int resolution)>& needAt) {
   const std::uint64_t most = largestThat(kLeast, kMost, [&](std::uint64_t resolution) {
-    GridOptions coarser;
-    coarser.resolution = static_cast<int>(resolution);
-    return need(coarser) <= context.maxMemory();
+    return needAt(static_cast<int>(resolution)) <= limit;
   });
-  requireMemory(doing, need(options), context.maxMemory(),
+  requireMemory(doing, bytes, limit,
                 most > 0 ? fmt::format("use --resolution {} or raise --max-memory", most)
                          : "raise --max-memory");
 }

@@ -24,14 +24,11 @@ void addGridOptions(Command& command, GridOptions& options, const std::string& o
 
 // With the limit on memory and the progress of the context.
 LevelSetSettings levelSetSettings(const GridOptions& options, const Context& context);
-// Without, to ask what would be needed.
-LevelSetSettings levelSetSettings(const GridOptions& options);
 
-// Throws MemoryError when need(options) bytes are over the limit, with the highest --resolution
-// that would fit. doing: "evaluating the map on a grid".
-void requireGridMemory(const std::string& doing, const GridOptions& options,
-                       const std::function<std::uint64_t(const GridOptions&)>& need,
-                       const Context& context);
+// Throws MemoryError when `bytes` are over the limit, with the highest --resolution that would fit.
+// doing: "evaluating the map on a grid". needAt: the bytes at a resolution.
+void requireGridMemory(const std::string& doing, std::uint64_t bytes, std::uint64_t limit,
+                       const std::function<std::uint64_t(int resolution)>& needAt);
 
 void addNamesOption(Command& command, std::string& names);
 

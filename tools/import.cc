@@ -4,7 +4,7 @@
 #include "commands.h"
 #include "innermap/io/slice.h"
 #include "innermap/io/vdb/vdb_file.h"
-#include "innermap/io/volume/volume_texture_read.h"
+#include "innermap/io/volume/volume_texture.h"
 #include "lists.h"
 #include "volume_options.h"
 
@@ -52,7 +52,7 @@ std::string summary(const VolumeTextureContents& contents, const ImportOptions& 
 
 void run(const ImportOptions& options, Context& context) {
   const VolumeTextureReadSettings settings = settingsOf(options, context);
-  context.willWrite(options.output);
+  context.output(options.output);
   if (context.dryRun()) {
     const VolumeTextureNeed need = volumeTextureReadNeed(options.file, settings);
     return context.plan(

@@ -30,7 +30,7 @@ const Command& find(const std::vector<Command>& commands, const std::string& nam
 
 void execute(const Command& command, const CommonOptions& common, TerminalProgress& progress) {
   Context context(common, progress);
-  if (!common.report.empty()) context.willWrite(common.report);
+  if (!common.report.empty()) context.output(common.report);
   const ThreadLimit threads(common.threads);
   context.report().command = command.name();
   command.execute(context);

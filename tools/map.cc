@@ -16,7 +16,6 @@
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/mesh/write.h"
 #include "map_report.h"
-#include "section_place.h"
 
 namespace innermap::tool {
 namespace {
@@ -47,7 +46,7 @@ void writePictures(const SolidGrids& solidGrids, const Solid& solid, PendingFold
   folder.write("slices.exr", [&](const std::string& path) { writeExrSlices(path, grids, slices); });
   SectionSettings section;
   section.grid = options.sectionGrid;
-  section.axis = options.sectionAxis == "auto" ? thinnestAxis(solid)
+  section.axis = options.sectionAxis == "auto" ? thinnestAxis(solid.box().extent())
                                                : parseAxis("--section-axis", options.sectionAxis);
   section.at =
       options.sectionAt ? *options.sectionAt : fullLayer(*solidGrids.density, section.axis);
@@ -168,7 +167,8 @@ void run(const MapOptions& options, Context& context) {
   checkFittingOptions(options.fitting);
   Meshes meshes = readMeshes(options, context);
   if (context.dryRun()) return plan(options, meshes, context);
-  PendingFolder folder(options.output);
+  PendingFolder folder = context.outputFolder(options.output);
+  context.notePictures();
   BoundaryPair pair = makePair(options, std::move(meshes), folder, context);
   tell(pair.notes, pair.warnings, pair.seconds, context);
   reportBoundaries(pair, context.report());

@@ -16,7 +16,7 @@ struct PullOptions {
 };
 
 void run(const PullOptions& options, Context& context) {
-  context.willWrite(options.output);
+  context.output(options.output);
   const MappedSolid mapped = readMapFile(options.map, context);
   PullSettings settings;
   settings.carry = carrySettings(options.transfer);

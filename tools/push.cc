@@ -18,7 +18,7 @@ struct PushOptions {
 };
 
 void run(const PushOptions& options, Context& context) {
-  context.willWrite(options.output);
+  context.output(options.output);
   const MappedSolid mapped = readMapFile(options.map, context);
   PushSettings settings = pushSettings(options.transfer, mapped.solid().repaired().mesh.vertices,
                                        mapped.boundary.target.moved, context);

@@ -183,7 +183,8 @@ void run(const SequenceOptions& options, Context& context) {
                              " to " + options.output},
                         frameFitterMemory(settings));
   requireFrameMemory(settings, 0);
-  PendingFolder folder(options.output);
+  PendingFolder folder = context.outputFolder(options.output);
+  context.notePictures();
   const FrameFitter fitter = makeFrameFitter(options.rest, settings, context);
   requireFrameMemory(settings,
                      mapGridMemory(fitter.solid(), mapGridSettings(options.evaluation, context)));

@@ -24,10 +24,10 @@ struct SliceOptions {
 };
 
 Component componentOf(const std::string& text) {
-  return text == "x"   ? Component::kX
-         : text == "y" ? Component::kY
-         : text == "z" ? Component::kZ
-                       : Component::kLength;
+  return text == "x"   ? Component::x
+         : text == "y" ? Component::y
+         : text == "z" ? Component::z
+                       : Component::length;
 }
 
 ExrSliceSettings exrSettings(const SliceOptions& options, Context& context) {
@@ -98,22 +98,20 @@ void run(const SliceOptions& options, Context& context) {
         "give --output for EXR slices, --section for a picture, or both; "
         "see 'innermap slice --help'");
   for (const std::string* path : {&options.output, &options.section})
-    if (!path->empty()) context.willWrite(*path);
-  const VdbInfo info = readVdbInfo(options.file, context.progress());
+    if (!path->empty()) context.output(*path);
+  const VdbInfo info = readVdbInfo(options.file, {context.progress()});
   VdbReadSettings read;
   read.names = namesToRead(options, info);
   read.maxMemory = context.maxMemory();
   read.progress = context.progress();
   if (context.dryRun()) {
-    std::uint64_t need = 0;
-    for (const VdbGridInfo& grid : info.grids) need += grid.memory;
     std::vector<std::string> lines;
     if (!options.output.empty())
       lines.push_back(fmt::format("cut {} into {} slices along {} to {}", options.file,
                                   options.count, options.axis, options.output));
     if (!options.section.empty())
       lines.push_back("draw a section of " + options.file + " to " + options.section);
-    return context.plan(lines, need);
+    return context.plan(lines, readMemory(info));
   }
   openvdb::GridPtrVec grids;
   context.timed("read", [&] { grids = readVdb(options.file, read).grids; });

@@ -17,7 +17,7 @@ struct Options {
 
 void run(const Options& options, Context& context) {
   requirePly("--output", options.output);
-  context.willWrite(options.output);
+  context.output(options.output);
   Mesh mesh = readMeshFile(options.mesh, context);
   const std::size_t vertices = mesh.vertices.size();
   const std::uint64_t need = layOutMemory(vertices);

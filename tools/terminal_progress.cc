@@ -24,19 +24,19 @@ int terminalWidth() {
 }  // namespace
 
 TerminalProgress::Style TerminalProgress::styleFor(bool quiet) {
-  if (quiet) return Style::kNone;
+  if (quiet) return Style::none;
   const char* terminal = std::getenv("TERM");
   const bool dumb = !terminal || std::string_view(terminal) == "dumb";
-  return isatty(STDERR_FILENO) && !dumb ? Style::kBar : Style::kLines;
+  return isatty(STDERR_FILENO) && !dumb ? Style::bar : Style::lines;
 }
 
 void TerminalProgress::report(std::string_view stage, double fraction) {
-  if (style_ == Style::kNone) return;
+  if (style_ == Style::none) return;
   // Whoever comes while another thread writes has nothing new to say.
   std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
   if (!lock) return;
   const double share = std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0;
-  if (style_ == Style::kBar)
+  if (style_ == Style::bar)
     drawBar(stage, share);
   else
     writeLine(stage, share);

@@ -12,9 +12,9 @@ namespace innermap::tool {
 
 class TerminalProgress : public Progress {
  public:
-  enum class Style { kNone, kLines, kBar };
+  enum class Style { none, lines, bar };
 
-  // kBar when stderr is a terminal that can move its cursor.
+  // bar when stderr is a terminal that can move its cursor.
   static Style styleFor(bool quiet);
 
   explicit TerminalProgress(Style style) : style_(style) {}

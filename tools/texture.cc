@@ -6,6 +6,7 @@
 #include "innermap/core/memory.h"
 #include "innermap/io/picture/texture_images.h"
 #include "innermap/texture/solid_texture.h"
+#include "map_report.h"
 #include "mesh_input.h"
 
 namespace innermap::tool {
@@ -41,14 +42,6 @@ SolidTextureSettings settingsOf(const TextureOptions& o, const Context& context)
   s.maxMemory = context.maxMemory();
   s.progress = context.progress();
   return s;
-}
-
-// Of a plan or a result.
-template <class Made>
-void tell(const Made& made, Context& context) {
-  for (const std::string& note : made.notes) context.note(note);
-  for (const std::string& warning : made.warnings) context.warning(warning);
-  addSeconds(context.report().seconds, made.seconds);
 }
 
 TextureImages readImages(const TextureOptions& o, const std::vector<UdimTile>& tiles,
@@ -112,9 +105,9 @@ void fillReport(const SolidTexture& made, const TextureOptions& options, Report&
 
 void run(const TextureOptions& o, Context& context) {
   const SolidTextureSettings settings = settingsOf(o, context);
-  context.willWrite(o.output);
+  context.output(o.output);
   const SolidTexturePlan plan = planSolidTexture(readMeshFile(o.mesh, context), settings);
-  tell(plan, context);
+  tell(plan.notes, plan.warnings, plan.seconds, context);
   if (o.blends()) {
     context.report().set("seams.pieces", static_cast<std::int64_t>(plan.pieces));
     context.report().set("seams.groups", static_cast<std::int64_t>(plan.groups));
@@ -138,7 +131,7 @@ void run(const TextureOptions& o, Context& context) {
     lookup = [images = readImages(o, tiles, context)](
                  const Vec2& uv, const Vec2& a, const Vec2& b) { return images.at(uv, a, b); };
   const SolidTexture made = makeSolidTexture(plan, lookup);
-  tell(made, context);
+  tell(made.notes, made.warnings, made.seconds, context);
   fillReport(made, o, context.report());
   const openvdb::GridPtrVec grids = made.grids();
   for (const openvdb::GridBase::Ptr& grid : grids) {

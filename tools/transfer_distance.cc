@@ -3,6 +3,7 @@
 
 #include "commands.h"
 #include "evaluation.h"
+#include "grid_options.h"
 #include "innermap/core/file.h"
 #include "innermap/io/picture/section_image.h"
 #include "innermap/io/slice.h"
@@ -10,14 +11,13 @@
 #include "innermap/levelset/level_set.h"
 #include "innermap/transfer/distance_transfer.h"
 #include "map_report.h"
-#include "section_place.h"
 
 namespace innermap::tool {
 namespace {
 
 struct TransferDistanceOptions {
   std::string map, output;
-  EvaluationOptions evaluation;
+  GridOptions grid;
   std::string sectionAxis = "auto";
   std::optional<double> sectionAt;
   std::optional<NumberPair> range;
@@ -26,13 +26,13 @@ struct TransferDistanceOptions {
 DistanceTransfer transfer(const MappedSolid& mapped, const Solid& target,
                           const TransferDistanceOptions& options, Context& context) {
   DistanceTransferSettings settings;
-  settings.resolution = options.evaluation.resolution;
-  settings.voxelSize = options.evaluation.voxelSize.value_or(0);
+  settings.resolution = options.grid.resolution;
+  settings.voxelSize = options.grid.voxelSize.value_or(0);
   settings.accuracy = sumAccuracy(mapped);
   settings.maxMemory = context.maxMemory();
   settings.progress = context.progress();
   DistanceTransfer made = transferDistance(mapped.map, mapped.solid(), target, settings);
-  addSeconds(context.report().seconds, made.seconds);
+  tell({}, {}, made.seconds, context);
   return made;
 }
 
@@ -45,7 +45,7 @@ void writeSection(const std::string& path, const std::string& title, const Solid
   const openvdb::GridBase::Ptr solidGrid = surface.deepCopyGrid();
   SectionSettings section;
   section.grid = title;
-  section.axis = options.sectionAxis == "auto" ? thinnestAxis(solid)
+  section.axis = options.sectionAxis == "auto" ? thinnestAxis(solid.box().extent())
                                                : parseAxis("--section-axis", options.sectionAxis);
   section.at = options.sectionAt ? *options.sectionAt : fullLayer(*makeFog(surface), section.axis);
   section.range = range;
@@ -91,17 +91,22 @@ std::string textOf(const DistanceTransfer& made) {
 
 void run(const TransferDistanceOptions& options, Context& context) {
   const MappedSolid mapped = readMapFile(options.map, context);
-  const MapGridSettings grids = mapGridSettings(options.evaluation, context);
+  MapGridSettings grid;
+  grid.resolution = options.grid.resolution;
+  grid.voxelSize = options.grid.voxelSize.value_or(0);
+  grid.maxMemory = context.maxMemory();
   if (context.dryRun())
     return context.plan(
         {"transfer the target's distance field through " + options.map,
          "write source.vdb, target.vdb, source.png, target.png and report.json to " +
              options.output},
-        mapGridMemory(mapped.solid(), grids));
-  requireEvaluationMemory(mapped.solid(), grids);
-  PendingFolder folder(options.output);
+        mapGridMemory(mapped.solid(), grid));
+  requireEvaluationMemory(mapped.solid(), grid);
+  PendingFolder folder = context.outputFolder(options.output);
+  context.notePictures();
   std::optional<Solid> target;
-  context.timed("solid", [&] { target.emplace(makeTargetSolid(mapped.boundary, {context.progress()})); });
+  context.timed("solid",
+                [&] { target.emplace(makeTargetSolid(mapped.boundary, {context.progress()})); });
   const DistanceTransfer made = transfer(mapped, *target, options, context);
   const NumberPair range = options.range.value_or(NumberPair{0, made.target.figures.largest});
   fillReport(made, range, context.report());
@@ -137,14 +142,7 @@ Command makeTransferDistanceCommand() {
   c.option("--output", "FOLDER", &o->output, "where the five files go; made when missing")
       .shortName("-o")
       .required();
-  c.option("--resolution", "N", &o->evaluation.resolution,
-           "voxels along the longest side of each solid")
-      .range(4, 4096);
-  c.option("--voxel-size", "L", &o->evaluation.voxelSize,
-           "edge of a voxel, in place of --resolution")
-      .unit("world units")
-      .above(0)
-      .defaults("by --resolution");
+  addGridOptions(c, o->grid, "each solid");
   c.option("--section-axis", "AXIS", &o->sectionAxis, "of the sections; auto: the thinnest")
       .choices({"auto", "x", "y", "z"});
   c.option("--section-at", "T", &o->sectionAt, "place of the sections along their axis")

@@ -36,30 +36,11 @@ RigidMotion parseMotion(const std::string& text) {
     for (std::size_t c = 0; c < 3; ++c) motion.rotation[r][c] = numbers[4 * r + c];
     motion.translation[static_cast<int>(r)] = numbers[4 * r + 3];
   }
-  const Mat3 gram = product(motion.rotation, transposed(motion.rotation));
-  double off = std::abs(determinant(motion.rotation) - 1);
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) off = std::max(off, std::abs(gram[r][c] - (r == c ? 1 : 0)));
-  constexpr double kRounding = 1e-4;  // numbers are written with a few digits
-  if (off > kRounding)
+  if (!isRigid(motion))
     throw UsageError(
         "--fade-to: the matrix is no rotation; rows must be orthonormal and "
         "right-handed");
   return motion;
-}
-
-double invertedShare(std::uint64_t voxels, std::uint64_t failed) {
-  return voxels ? 1 - static_cast<double>(failed) / static_cast<double>(voxels) : 1;
-}
-
-double finestVoxel(const openvdb::GridPtrVec& grids) {
-  double finest = 0;
-  for (const openvdb::GridBase::Ptr& grid : grids) {
-    const openvdb::Vec3d size = grid->voxelSize();
-    const double smallest = std::min({size.x(), size.y(), size.z()});
-    if (finest == 0 || smallest < finest) finest = smallest;
-  }
-  return finest;
 }
 
 LevelSetSettings levelSetSettings(const openvdb::GridPtrVec& grids, const TransferOptions& options,
@@ -161,24 +142,9 @@ openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& o
 
 std::uint64_t transferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
                              const TransferOptions& options) {
-  const LevelSetSettings settings = levelSetSettings(grids, options, nullptr);
-  const double voxel = voxelSizeFor(solid, settings);
-  // Sources and Jacobians of the inverse and its starts, 100 bytes a voxel; leaves of 8^3 voxels
-  // are allocated whole, along the surface some 6 voxels to either side. Around it, the space is
-  // taken as full.
-  const double margin = 2 * options.outside * solid.diagonal();
-  const Vec3 extent = solid.box().extent();
-  double volume = solid.volume();
-  if (margin > 0) volume = (extent.x + margin) * (extent.y + margin) * (extent.z + margin);
-  const double voxels = volume / std::pow(voxel, 3) + 12 * solid.area() / (voxel * voxel);
-  std::uint64_t bytesPerVoxel = 100, inputs = 0;
-  for (const openvdb::GridBase::Ptr& grid : grids) {
-    bytesPerVoxel += grid->valueType() == "vec3d" ? 24 : 12;
-    inputs += 2 * grid->memUsage();
-  }
-  constexpr std::uint64_t kLattice = 150'000'000;
-  return levelSetMemory(solid, settings) + inputs + kLattice +
-         static_cast<std::uint64_t>(static_cast<double>(bytesPerVoxel) * voxels);
+  OutsideSettings outside;
+  outside.distance = options.outside;
+  return carryMemory(solid, grids, levelSetSettings(grids, options, nullptr), outside);
 }
 
 void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
@@ -211,20 +177,6 @@ void writeVolume(const std::string& path, const openvdb::GridPtrVec& grids,
   writeVdb(path, grids, {}, settings);
 }
 
-double invertedInside(const InverseStatistics& s) {
-  return invertedShare(s.inside, s.failedInside);
-}
-
-std::string inversionWarning(const InverseStatistics& s) {
-  constexpr double kMany = 0.005;
-  if (s.failedAt.empty() || 1 - invertedInside(s) <= kMany) return {};
-  const Vec3& at = s.failedAt.front();
-  return fmt::format(
-      "{:.3g}% of the voxels inside come from nowhere in the source, the first near ({:.6g}, "
-      "{:.6g}, {:.6g}); they have the values of their neighbours",
-      100 * (1 - invertedInside(s)), at.x, at.y, at.z);
-}
-
 void reportPush(const PushResult& result, Context& context) {
   const InverseStatistics& s = result.statistics;
   Report& report = context.report();
@@ -237,9 +189,8 @@ void reportPush(const PushResult& result, Context& context) {
   count("not_inverted", s.failed);
   count("not_inverted_inside", s.failedInside);
   // The map itself ends at the surface: its inverse is judged inside.
-  report.set("inverse.inverted_fraction", invertedInside(s));
-  report.set("inverse.inverted_fraction_outside",
-             invertedShare(s.voxels - s.inside, s.failed - s.failedInside));
+  report.set("inverse.inverted_fraction", s.invertedInside());
+  report.set("inverse.inverted_fraction_outside", s.invertedOutside());
   report.set("inverse.largest_residual_voxels", s.largestResidual);
   if (s.failedInside > 0) {
     const Vec3 &a = s.failedBox.lower, &b = s.failedBox.upper;
@@ -254,15 +205,13 @@ void reportPush(const PushResult& result, Context& context) {
     report.set("mass." + mass.name + "_after", mass.after);
   }
   for (const std::string& warning : result.warnings) context.warning(warning);
-  const std::string doubt = inversionWarning(s);
-  if (!doubt.empty()) context.warning(doubt);
 }
 
 std::string pushText(const PushResult& result) {
   const InverseStatistics& s = result.statistics;
   std::string text = fmt::format(
       "inverse: {} voxels inside, {:.4f}% inverted, {} not; {} outside the surface, {} not\n",
-      s.inside, 100 * invertedInside(s), s.failedInside, s.voxels - s.inside,
+      s.inside, 100 * s.invertedInside(), s.failedInside, s.voxels - s.inside,
       s.failed - s.failedInside);
   for (const CarriedMass& mass : result.masses)
     text +=

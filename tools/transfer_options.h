@@ -1,8 +1,6 @@
 // Options that say which grids are carried and how: what `pull`, `push` and `deform` share.
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include <optional>
 #include <string>
 #include <vector>
@@ -59,13 +57,7 @@ openvdb::FloatGrid::Ptr outputLevelSet(const Solid& solid, const openvdb::GridPt
 void writeVolume(const std::string& path, const openvdb::GridPtrVec& grids,
                  const TransferOptions& options, Context& context);
 
-// Share of the voxels inside the target that were inverted.
-double invertedInside(const InverseStatistics& statistics);
-
-// What to warn of when over 0.5% of the voxels inside are not inverted, else nothing.
-std::string inversionWarning(const InverseStatistics& statistics);
-
-// Fills the report's "inverse" and "mass"; warns of voxels that are not inverted.
+// Fills the report's "inverse" and "mass"; passes on the warnings.
 void reportPush(const PushResult& result, Context& context);
 
 // One line each for the terminal.

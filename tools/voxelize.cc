@@ -2,37 +2,26 @@
 #include <fmt/format.h>
 
 #include "commands.h"
+#include "grid_options.h"
 #include "innermap/core/memory.h"
-#include "innermap/io/vdb/vdb_file.h"
 #include "innermap/levelset/level_set.h"
-#include "innermap/mesh/read.h"
+#include "map_report.h"
+#include "mesh_input.h"
 
 namespace innermap::tool {
 namespace {
 
 struct VoxelizeOptions {
   std::string mesh, output, names = "innermap";
-  std::optional<double> voxelSize;
-  int resolution = LevelSetSettings().resolution;
+  GridOptions grid;
   double halfWidth = LevelSetSettings().halfWidth;
   bool fog = false, attributes = false;
 };
 
-LevelSetSettings settingsFor(const VoxelizeOptions& options, Context& context) {
-  LevelSetSettings s;
-  s.voxelSize = options.voxelSize.value_or(0);
-  s.resolution = options.resolution;
-  s.halfWidth = options.halfWidth;
-  s.maxMemory = context.maxMemory();
-  s.progress = context.progress();
-  return s;
-}
-
 std::uint64_t memoryFor(const VoxelizeOptions& options, const Solid& solid, const Mesh& mesh,
                         const LevelSetSettings& settings) {
-  const std::uint64_t band = levelSetMemory(solid, settings);
   const int vectors = options.attributes ? !mesh.uvs.empty() + !mesh.colours.empty() : 0;
-  return band * (1 + options.fog + 3 * vectors);
+  return levelSetMemory(solid, settings) * (1 + options.fog + 3 * vectors);
 }
 
 void fillReport(const openvdb::FloatGrid& levelSet, const Solid& solid, const Mesh& mesh,
@@ -49,8 +38,7 @@ void fillReport(const openvdb::FloatGrid& levelSet, const Solid& solid, const Me
   ReportGrid g;
   g.voxelSize = levelSet.voxelSize().x();
   g.activeVoxels = levelSet.activeVoxelCount();
-  for (auto it = levelSet.cbeginValueAll(); it; ++it)
-    if (*it < 0) g.interiorVoxels += it.getVoxelCount();
+  g.interiorVoxels = interiorVoxels(levelSet);
   report.grid = g;
 }
 
@@ -67,35 +55,30 @@ openvdb::GridPtrVec makeGrids(const VoxelizeOptions& options, const Solid& solid
     });
   context.timed("check", [&] {
     const LevelSetCheck check = checkLevelSet(*levelSet, solid);
-    for (const std::string& warning : check.warnings) context.warning(warning);
-    context.report().set("level_set.mesh_volume", check.meshVolume);
-    context.report().set("level_set.grid_volume", check.gridVolume);
-    context.report().set("level_set.volume_error", check.volumeError);
-    context.report().set("level_set.lost_surface", check.lostSurface);
+    tell({}, check.warnings, {}, context);
+    Report& report = context.report();
+    report.set("level_set.mesh_volume", check.meshVolume);
+    report.set("level_set.grid_volume", check.gridVolume);
+    report.set("level_set.volume_error", check.volumeError);
+    report.set("level_set.lost_surface", check.lostSurface);
   });
   fillReport(*levelSet, solid, mesh, context.report());
   return grids;
 }
 
 void run(const VoxelizeOptions& options, Context& context) {
-  context.willWrite(options.output);
-  Mesh mesh;
-  context.timed("read", [&] {
-    ReadSettings settings;
-    settings.progress = context.progress();
-    mesh = readMesh(options.mesh, settings);
-  });
+  context.output(options.output);
+  const Mesh mesh = readMeshFile(options.mesh, context);
   std::optional<Solid> solid;
-  context.timed("solid", [&] {
-    SolidSettings settings;
-    settings.progress = context.progress();
-    solid.emplace(mesh, settings);
-  });
+  SolidSettings repairing;
+  repairing.progress = context.progress();
+  context.timed("solid", [&] { solid.emplace(mesh, repairing); });
   for (const std::string& note : solid->repaired().notes) context.note(options.mesh + ": " + note);
   if (options.attributes && mesh.uvs.empty() && mesh.colours.empty())
     context.warning(options.mesh +
                     " has neither texture coordinates nor vertex colours to carry over");
-  const LevelSetSettings settings = settingsFor(options, context);
+  LevelSetSettings settings = levelSetSettings(options.grid, context);
+  settings.halfWidth = options.halfWidth;
   const double voxelSize = voxelSizeFor(*solid, settings);
   const std::uint64_t need = memoryFor(options, *solid, mesh, settings);
   if (context.dryRun())
@@ -105,14 +88,9 @@ void run(const VoxelizeOptions& options, Context& context) {
   requireMemory("voxelizing " + options.mesh, need, context.maxMemory(),
                 fmt::format("use a --voxel-size above {:.3g}", 1.5 * voxelSize));
   const openvdb::GridPtrVec grids = makeGrids(options, *solid, mesh, settings, context);
-  context.timed("write", [&] {
-    VdbWriteSettings write;
-    write.names = parseNamingScheme("--names", options.names);
-    write.progress = context.progress();
-    openvdb::MetaMap metadata;
-    metadata.insertMeta("innermap_source", openvdb::StringMetadata(options.mesh));
-    writeVdb(options.output, grids, metadata, write);
-  });
+  openvdb::MetaMap metadata;
+  metadata.insertMeta("innermap_source", openvdb::StringMetadata(options.mesh));
+  writeGridFile(options.output, grids, options.names, context, metadata);
 }
 
 }  // namespace
@@ -126,11 +104,12 @@ Command makeVoxelizeCommand() {
       "and surface.");
   c.positional("MESH", &o->mesh, "mesh file: .obj, .ply, .off or .stl");
   c.option("--output", "FILE", &o->output, "the .vdb file to write").shortName("-o").required();
-  c.option("--voxel-size", "LENGTH", &o->voxelSize, "edge of a voxel")
+  c.option("--voxel-size", "LENGTH", &o->grid.voxelSize, "edge of a voxel")
       .unit("world units")
       .above(0)
       .defaults("from --resolution");
-  c.option("--resolution", "N", &o->resolution, "voxels along the longest side of the mesh's box")
+  c.option("--resolution", "N", &o->grid.resolution,
+           "voxels along the longest side of the mesh's box")
       .range(4, 4096);
   c.option("--half-width", "W", &o->halfWidth, "width of the band on each side of the surface")
       .unit("voxels")

@@ -124,7 +124,7 @@ def cube(path="cube.obj", size=1.0, origin=(0.0, 0.0, 0.0)):
 
 
 def icosphere_arrays(subdivisions=2, radius=1.0):
-    vertices, faces = make_shapes.sphere(subdivisions)
+    vertices, faces = make_shapes.sphere(subdivisions, evenly=False)
     return [tuple(radius * x for x in v) for v in vertices], faces
 
 

@@ -133,9 +133,8 @@ FrameFit FrameFitter::fit(const Mesh& frame, const BoundarySettings& settings) c
     // By fast sums, to a hundredth of what is measured.
     e.accuracy = std::max(1e-2 * solution.residuals.back(), 1e-12 * boundary.diagonal);
     e.progress = settings.progress;
-    return summarizeErrors(boundaryErrors(field, fresh_.points,
-                                          boundary.targetsOf(solid(), fresh_.onSurface),
-                                          boundary.diagonal, e));
+    return summarizeErrors(boundaryErrors(
+        field, fresh_.points, boundary.targetsOf(solid(), fresh_.onSurface), boundary.diagonal, e));
   });
   std::vector<std::string> warnings = boundary.warnings;
   if (error.max > kDoubtful)

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "innermap/core/detail/stage_seconds.h"
+#include "innermap/core/stage_seconds.h"
 #include "innermap/levelset/isosurface.h"
 #include "innermap/mesh/repair.h"
 #include "innermap/mesh/self_intersection.h"
@@ -31,10 +31,13 @@ bool shellsCross(const SurfaceShells& shells, Progress* progress) {
     }
   }
   bool cross = false;
-  forEachSelfIntersection(vertices, triangles, progress, [&](const Crossing& c) {
+  SelfIntersectionSettings settings;
+  settings.progress = progress;
+  const auto visit = [&](const Crossing& c) {
     cross = cross ||
             shell[static_cast<std::size_t>(c.first)] != shell[static_cast<std::size_t>(c.second)];
-  });
+  };
+  forEachSelfIntersection(vertices, triangles, visit, settings);
   return cross;
 }
 
@@ -133,10 +136,10 @@ LaidOutMesh layOutMesh(Mesh mesh, const LayOutSettings& settings) {
     EmbeddingSettings how;
     how.closeHoles = close;
     how.progress = progress;
-    return timedStage(seconds, "lay out", progress, [&] { return EmbeddedSurface(surface, how); });
+    return timed(seconds, "lay out", [&] { return EmbeddedSurface(surface, how); });
   };
-  const std::string why = timedStage(seconds, "check", progress,
-                                     [&] { return obstacle(mesh, settings.closeHoles, progress); });
+  const std::string why =
+      timed(seconds, "check", [&] { return obstacle(mesh, settings.closeHoles, progress); });
   if (why.empty()) {
     const EmbeddedSurface embedded = embed(mesh, settings.closeHoles);
     LaidOutMesh laid(std::move(mesh), embedded);
@@ -150,7 +153,7 @@ LaidOutMesh layOutMesh(Mesh mesh, const LayOutSettings& settings) {
   if (!settings.standInResolution)
     throw UnfitMesh(why, !settings.closeHoles && obstacle(mesh, true, progress).empty());
   const Isosurface standIn =
-      timedStage(seconds, "isosurface", progress, [&] { return standInFor(mesh, settings); });
+      timed(seconds, "isosurface", [&] { return standInFor(mesh, settings); });
   const EmbeddedSurface embedded = embed(standIn.mesh, false);
   LaidOutMesh laid(std::move(mesh), embedded);
   laid.standIn = true;

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 
-#include "innermap/core/detail/stage_seconds.h"
 #include "innermap/core/memory.h"
+#include "innermap/core/stage_seconds.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/mesh/write.h"
 
@@ -130,12 +130,10 @@ MeshCorrespondence correspondMeshes(LaidOutMesh a, LaidOutMesh b,
   out.map = correspond(out.a.embedded, out.b.embedded, how);
   for (const auto& [stage, seconds] : out.map.seconds) addSeconds(out.seconds, stage, seconds);
   out.notes.insert(out.notes.end(), out.map.notes.begin(), out.map.notes.end());
-  timedStage(out.seconds, "carry back", settings.progress,
-             [&] { carryBack(out, settings.progress); });
+  timed(out.seconds, "carry back", [&] { carryBack(out, settings.progress); });
   MapQualitySettings measure;
   measure.progress = settings.progress;
-  out.quality = timedStage(out.seconds, "measure", settings.progress,
-                           [&] { return mapQuality(out.map, measure); });
+  out.quality = timed(out.seconds, "measure", [&] { return mapQuality(out.map, measure); });
   out.landmarks = how.landmarks.size();
   out.landmarkError = landmarkErrorOf(out, how.landmarks);
   warnOf(out);

@@ -6,6 +6,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/evaluate/active_region.h"
+#include "innermap/evaluate/topology.h"
 #include "innermap/evaluate/visit_field.h"
 
 namespace innermap {
@@ -107,33 +108,30 @@ LeafTotals Evaluation::store(const LeafValues& values, const MapGrids& out) cons
   return totals;
 }
 
-template <class Grid>
-typename Grid::Ptr gridLike(const openvdb::MaskGrid& region, const char* name) {
-  auto grid = Grid::create();
-  grid->setTree(std::make_shared<typename Grid::TreeType>(
-      region.tree(), typename Grid::ValueType(0), openvdb::TopologyCopy()));
-  grid->setTransform(region.transform().copy());
+template <class GridPtr>
+GridPtr named(GridPtr grid, const char* name) {
   grid->setName(name);
   return grid;
 }
 
 MapGrids Evaluation::run() {
   constexpr std::uint64_t kMaskBytes = 1;
-  const std::uint64_t bytes = kMaskBytes + (settings_.map ? 12 : 0) + (settings_.jacobian ? 4 : 0) +
-                              (settings_.harmonicEnergy ? 4 : 0) +
-                              (settings_.deformationEnergy ? 4 : 0);
-  const openvdb::MaskGrid::Ptr region =
-      activeRegion(levelSet_, settings_.skin, bytes, settings_.maxMemory, settings_.progress);
+  RegionSettings where;
+  where.skin = settings_.skin;
+  where.maxMemory = settings_.maxMemory;
+  where.progress = settings_.progress;
+  where.bytesPerVoxel = kMaskBytes + (settings_.map ? 12 : 0) + (settings_.jacobian ? 4 : 0) +
+                        (settings_.harmonicEnergy ? 4 : 0) + (settings_.deformationEnergy ? 4 : 0);
+  const openvdb::MaskGrid::Ptr region = activeRegion(levelSet_, where);
   MapGrids out;
   if (settings_.map) {
-    out.map = gridLike<openvdb::Vec3fGrid>(*region, "map");
+    out.map = named(vectorGridOn(*region), "map");
     out.map->setVectorType(openvdb::VEC_INVARIANT);
   }
-  if (settings_.jacobian) out.jacobian = gridLike<openvdb::FloatGrid>(*region, "jacobian");
-  if (settings_.harmonicEnergy)
-    out.harmonicEnergy = gridLike<openvdb::FloatGrid>(*region, "harmonic_energy");
+  if (settings_.jacobian) out.jacobian = named(floatGridOn(*region), "jacobian");
+  if (settings_.harmonicEnergy) out.harmonicEnergy = named(floatGridOn(*region), "harmonic_energy");
   if (settings_.deformationEnergy)
-    out.deformationEnergy = gridLike<openvdb::FloatGrid>(*region, "deformation_energy");
+    out.deformationEnergy = named(floatGridOn(*region), "deformation_energy");
 
   std::vector<LeafTotals> totals(region->tree().leafCount());
   visitField(map_.field(), solid_, levelSet_, *region,

@@ -43,6 +43,13 @@ SliceFrame sliceFrame(const openvdb::GridPtrVec& grids, int axis);
 // parts); all of them when there are not so many.
 std::vector<int> sliceLayers(const SliceFrame& frame, int count);
 
+// The axis along which a box of this extent is thinnest: a cut across it shows most.
+int thinnestAxis(const Vec3& extent);
+
+// The fraction along the axis of the layer nearest the middle that cuts nearly as much of the solid
+// as any does. density: a fog volume with active voxels.
+double fullLayer(const openvdb::FloatGrid& density, int axis);
+
 struct SliceChannel {
   std::string name;           // "jacobian.V", "map.X", "Cd.R"
   std::vector<float> values;  // #rows * #columns, row by row

@@ -1,6 +1,7 @@
 // What is wrong with a mesh, and what each finding means for a map.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,9 @@ struct CheckSettings {
 
 // Throws Cancelled; DataError as validate().
 MeshReport checkMesh(const Mesh& mesh, const CheckSettings& settings = {});
+
+// Peak need in bytes of checkMesh, an upper bound.
+std::uint64_t checkMemory(const Mesh& mesh);
 
 struct Finding {
   std::string name;  // "boundary_loops"

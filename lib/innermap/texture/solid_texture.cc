@@ -86,9 +86,12 @@ std::uint64_t memoryOf(const SolidTexturePlan& plan) {
 
 void findCharts(SolidTexturePlan::Parts& parts, SolidTexturePlan& plan) {
   Progress* const progress = parts.settings.progress;
-  parts.charts = uvCharts(parts.mesh, progress);
+  parts.charts = uvCharts(parts.mesh, {progress});
   if (parts.settings.seams != TextureSeams::blend) return;
-  parts.groups = uvGroups(parts.mesh, *parts.charts, kMostGroups, progress);
+  UvGroupSettings grouping;
+  grouping.most = kMostGroups;
+  grouping.progress = progress;
+  parts.groups = uvGroups(parts.mesh, *parts.charts, grouping);
   plan.pieces = parts.groups->pieces;
   plan.groups = parts.groups->count;
   if (parts.groups->unresolvedLength > 0)
@@ -177,8 +180,10 @@ class Maker {
     fresh.seed = settings_.seed;
     fresh.progress = settings_.progress;
     const BoundarySamples samples = freshSamples(solid_, values, fresh);
-    const Matrix found =
-        field.evaluate(samples.points, kSumAccuracy, false, settings_.progress).values;
+    EvaluateFieldSettings sums;
+    sums.accuracy = kSumAccuracy;
+    sums.progress = settings_.progress;
+    const Matrix found = field.evaluate(samples.points, sums).values;
     const std::size_t counted =
         settings_.mode == TextureMode::coordinates ? surface_.channels() : 3;
     std::vector<double> errors(samples.points.size(), 0.0);

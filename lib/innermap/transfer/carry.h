@@ -10,8 +10,16 @@
 // (Marsden and Hughes, "Mathematical Foundations of Elasticity", 1983, section 1.3.)
 #pragma once
 
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
 #include <string>
 #include <vector>
+
+#include "innermap/field/harmonic_field.h"
+#include "innermap/levelset/level_set.h"
+#include "innermap/levelset/solid.h"
+#include "innermap/transfer/outside.h"
 
 namespace innermap {
 
@@ -26,6 +34,21 @@ struct CarrySettings {
   // Symmetric tensors by their common name: six float grids NAME.xx, .yy, .zz, .xy, .yz, .xz, or
   // three Vec3 grids NAME.x, .y, .z, the rows.
   std::vector<std::string> stresses, strains;
+};
+
+// The least edge of a voxel of the grids, world units: what the output has unless told otherwise.
+double finestVoxel(const openvdb::GridPtrVec& grids);
+
+// Estimate of the peak need, in bytes, of pushing or pulling the grids to the voxels of a solid,
+// those of makeLevelSet(solid, output). Only the distance of `outside` counts.
+std::uint64_t carryMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
+                          const LevelSetSettings& output, const OutsideSettings& outside = {});
+
+// A harmonic field on the source that is written on the target's voxels: at q its value at p.
+struct CarriedField {
+  std::string name;
+  HarmonicField field;  // one channel: a float grid, three: Vec3f
+  openvdb::VecType vectorType = openvdb::VEC_INVARIANT;
 };
 
 }  // namespace innermap

@@ -100,8 +100,12 @@ SolidDepths depthsOf(const Solid& solid, const DistanceTransferSettings& setting
 
 openvdb::FloatGrid::Ptr depthInside(const Solid& solid, const openvdb::FloatGrid& levelSet,
                                     const DepthSettings& settings) {
-  const openvdb::MaskGrid::Ptr region =
-      activeRegion(levelSet, settings.skin, sizeof(float), settings.maxMemory, settings.progress);
+  RegionSettings where;
+  where.skin = settings.skin;
+  where.bytesPerVoxel = sizeof(float);
+  where.maxMemory = settings.maxMemory;
+  where.progress = settings.progress;
+  const openvdb::MaskGrid::Ptr region = activeRegion(levelSet, where);
   return leafByLeaf(
       *region,
       [&](const auto& from, FloatLeaf& leaf) {
@@ -117,7 +121,7 @@ openvdb::FloatGrid::Ptr depthInside(const Solid& solid, const openvdb::FloatGrid
 }
 
 openvdb::FloatGrid::Ptr depthThrough(const openvdb::Vec3fGrid& map, const Solid& target,
-                                     Progress* progress) {
+                                     const DepthThroughSettings& settings) {
   return leafByLeaf(
       map,
       [&](const auto& from, FloatLeaf& leaf) {
@@ -126,7 +130,7 @@ openvdb::FloatGrid::Ptr depthThrough(const openvdb::Vec3fGrid& map, const Solid&
           leaf.setValueOn(voxel.pos(),
                           static_cast<float>(walk.depthAt(vec3(openvdb::Vec3d(*voxel)))));
       },
-      progress);
+      settings.progress);
 }
 
 DepthFigures depthFigures(const openvdb::FloatGrid& distance, const openvdb::FloatGrid& levelSet) {

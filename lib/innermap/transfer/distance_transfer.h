@@ -30,11 +30,15 @@ struct DepthSettings {
 openvdb::FloatGrid::Ptr depthInside(const Solid& solid, const openvdb::FloatGrid& levelSet,
                                     const DepthSettings& settings = {});
 
+struct DepthThroughSettings {
+  Progress* progress = nullptr;
+};
+
 // map: at each active voxel a position in the target's space, world units, as MapGrids::map has
 // them. The result has the map's transform and active voxels: how deep its value lies in `target`.
 // No interpolation. Named "distance", background 0. Throws Cancelled.
 openvdb::FloatGrid::Ptr depthThrough(const openvdb::Vec3fGrid& map, const Solid& target,
-                                     Progress* progress = nullptr);
+                                     const DepthThroughSettings& settings = {});
 
 // Of voxels whose centre is inside the solid.
 struct DepthFigures {

@@ -1,5 +1,7 @@
 #include "innermap/transfer/inverse_map.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -70,8 +72,12 @@ class Inversion {
 
 void Inversion::chooseRegion(const openvdb::FloatGrid& targetLevelSet,
                              const LatticeImages& images) {
-  solid_ = activeRegion(targetLevelSet, settings_.skin, kVoxelBytes, settings_.maxMemory,
-                        settings_.progress);
+  RegionSettings region;
+  region.skin = settings_.skin;
+  region.bytesPerVoxel = kVoxelBytes;
+  region.maxMemory = settings_.maxMemory;
+  region.progress = settings_.progress;
+  solid_ = activeRegion(targetLevelSet, region);
   region_ = solid_;
   if (!(settings_.outside.distance > 0)) return;
   const std::uint64_t most =
@@ -202,7 +208,27 @@ InvertedMap Inversion::run(const openvdb::FloatGrid& targetLevelSet) {
   return out;
 }
 
+double shareInverted(std::uint64_t voxels, std::uint64_t failed) {
+  return voxels ? 1 - static_cast<double>(failed) / static_cast<double>(voxels) : 1;
+}
+
 }  // namespace
+
+double InverseStatistics::invertedInside() const { return shareInverted(inside, failedInside); }
+
+double InverseStatistics::invertedOutside() const {
+  return shareInverted(voxels - inside, failed - failedInside);
+}
+
+std::string InverseStatistics::warning() const {
+  constexpr double kMany = 0.005;
+  if (failedAt.empty() || 1 - invertedInside() <= kMany) return {};
+  const Vec3& at = failedAt.front();
+  return fmt::format(
+      "{:.3g}% of the voxels inside come from nowhere in the source, the first near ({:.6g}, "
+      "{:.6g}, {:.6g}); they have the values of their neighbours",
+      100 * (1 - invertedInside()), at.x, at.y, at.z);
+}
 
 InvertedMap invertMap(const HarmonicMap& map, const Solid& source, const SourceLattice& lattice,
                       const openvdb::FloatGrid& targetLevelSet, const InverseSettings& settings) {

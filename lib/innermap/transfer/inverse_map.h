@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "innermap/core/progress.h"
@@ -32,6 +33,11 @@ struct InverseStatistics {
   double largestResidual = 0;                  // of those inverted, target voxels
   Box3 failedBox;                              // world units of the target
   Points failedAt;                             // the first of them, at most 16
+
+  double invertedInside() const;  // share of the voxels inside; 1 when there are none
+  double invertedOutside() const;
+  // What to warn of when over 0.5% of the voxels inside are not inverted, else nothing.
+  std::string warning() const;
 };
 
 // For the voxels of `region` in the order of its leaves and of the voxels in them; voxels of leaf l

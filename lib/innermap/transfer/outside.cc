@@ -2,6 +2,9 @@
 
 #include <lapacke.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "innermap/core/error.h"
 
 namespace innermap {
@@ -22,6 +25,14 @@ Mat3 rotationOf(double w, double x, double y, double z) {
 }  // namespace
 
 Vec3 RigidMotion::operator()(const Vec3& p) const { return rotation * p + translation; }
+
+bool isRigid(const RigidMotion& motion, double tolerance) {
+  const Mat3 gram = product(motion.rotation, transposed(motion.rotation));
+  double off = std::abs(determinant(motion.rotation) - 1);
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) off = std::max(off, std::abs(gram[r][c] - (r == c ? 1 : 0)));
+  return off <= tolerance;
+}
 
 RigidMotion bestRigidMotion(const Points& from, const Points& to) {
   if (from.size() != to.size() || from.size() < 3)

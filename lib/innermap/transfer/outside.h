@@ -19,6 +19,10 @@ struct RigidMotion {
   Vec3 operator()(const Vec3& p) const;
 };
 
+// Whether its matrix is a rotation, by entries within the tolerance (numbers are written with a few
+// digits).
+bool isRigid(const RigidMotion& motion, double tolerance = 1e-4);
+
 // The rigid motion that moves `from` onto `to` best by least squares; same number of points, not
 // all in one line. Horn, "Closed-form solution of absolute orientation using unit quaternions" (J.
 // Opt. Soc. Am. A, 1987). Throws DataError when there are fewer than three pairs.

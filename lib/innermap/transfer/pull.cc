@@ -31,9 +31,12 @@ class Pull {
 
 // Of the source's solid, and what is around it as far as the map is extended.
 openvdb::MaskGrid::Ptr Pull::region(const openvdb::GridPtrVec& grids) const {
-  openvdb::MaskGrid::Ptr region =
-      activeRegion(map_.levelSet(), settings_.skin, outputBytesPerVoxel(grids), settings_.maxMemory,
-                   settings_.progress);
+  RegionSettings inside;
+  inside.skin = settings_.skin;
+  inside.bytesPerVoxel = outputBytesPerVoxel(grids);
+  inside.maxMemory = settings_.maxMemory;
+  inside.progress = settings_.progress;
+  openvdb::MaskGrid::Ptr region = activeRegion(map_.levelSet(), inside);
   if (!(settings_.outside.distance > 0)) return region;
   addAround(*region, map_.solid(), map_.reach(), outputBytesPerVoxel(grids) + 16,
             settings_.maxMemory, settings_.progress);

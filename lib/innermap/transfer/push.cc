@@ -101,6 +101,8 @@ PushResult VolumePusher::push(const HarmonicMap& map, const openvdb::FloatGrid& 
   PushResult out;
   out.statistics = inverted.statistics;
   out.warnings = d.warnings;
+  const std::string doubt = inverted.statistics.warning();
+  if (!doubt.empty()) out.warnings.push_back(doubt);
   out.grids = d.carry(map, inverted);
   for (const auto& carrier : d.carriers)
     if (carrier->isDensity()) {

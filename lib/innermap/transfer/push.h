@@ -32,13 +32,6 @@ struct PushSettings {
   Progress* progress = nullptr;
 };
 
-// A harmonic field on the source that is written on the target's voxels: at q its value at p.
-struct CarriedField {
-  std::string name;
-  HarmonicField field;  // one channel: a float grid, three: Vec3f
-  openvdb::VecType vectorType = openvdb::VEC_INVARIANT;
-};
-
 // Sum of a density's active values times the voxel's volume, in the source and in the target.
 struct CarriedMass {
   std::string name;

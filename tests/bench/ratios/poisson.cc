@@ -203,7 +203,9 @@ Tables poisson(const Options& options) {
     LevelSetSettings levels;
     levels.resolution = across;
     const auto levelSet = makeLevelSet(solid, levels);
-    const auto interior = activeRegion(*levelSet, 0, 1, 0);
+    RegionSettings withoutSkin;
+    withoutSkin.skin = 0;
+    const auto interior = activeRegion(*levelSet, withoutSkin);
     const Setting setting{solid, *levelSet, *interior, Known(solid)};
     const std::size_t voxels = interior->activeVoxelCount();
     double fitSeconds = 0;

@@ -92,7 +92,9 @@ Voxels interiorVoxels(const Solid& solid, int across) {
   LevelSetSettings settings;
   settings.resolution = across;
   const auto levelSet = makeLevelSet(solid, settings);
-  const auto region = activeRegion(*levelSet, 0, 1, 0);
+  RegionSettings withoutSkin;
+  withoutSkin.skin = 0;
+  const auto region = activeRegion(*levelSet, withoutSkin);
   Voxels out;
   const openvdb::Vec3d origin = region->transform().indexToWorld(openvdb::Vec3d(0));
   out.lattice.origin = {origin.x(), origin.y(), origin.z()};

@@ -18,7 +18,7 @@ openvdb::FloatGrid::Ptr ball(int resolution) {
 TEST(ActiveRegion, HoldsTheInsideAndTheSkin) {
   const auto grid = ball(48);
   const double voxel = grid->voxelSize()[0];
-  const auto region = activeRegion(*grid, 2, 1, 0);
+  const auto region = activeRegion(*grid);
   auto mask = region->getConstAccessor();
   auto distance = grid->getConstAccessor();
   const openvdb::CoordBBox box = openvdb::CoordBBox(openvdb::Coord(-8), openvdb::Coord(56));
@@ -29,8 +29,13 @@ TEST(ActiveRegion, HoldsTheInsideAndTheSkin) {
 
 TEST(ActiveRegion, RefusesASkinBeyondTheBandAndTooMuchMemory) {
   const auto grid = ball(32);
-  EXPECT_THROW(activeRegion(*grid, 5, 1, 0), SettingError);
-  EXPECT_THROW(activeRegion(*grid, 2, 100, 100000), MemoryError);
+  RegionSettings wide;
+  wide.skin = 5;
+  EXPECT_THROW(activeRegion(*grid, wide), SettingError);
+  RegionSettings large;
+  large.bytesPerVoxel = 100;
+  large.maxMemory = 100000;
+  EXPECT_THROW(activeRegion(*grid, large), MemoryError);
 }
 
 }  // namespace

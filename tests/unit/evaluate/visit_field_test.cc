@@ -34,7 +34,7 @@ struct Scene {
     LevelSetSettings settings;
     settings.resolution = 24;
     levelSet = makeLevelSet(solid, settings);
-    region = activeRegion(*levelSet, 2, 1, 0);
+    region = activeRegion(*levelSet);
   }
 };
 

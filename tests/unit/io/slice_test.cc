@@ -132,5 +132,16 @@ TEST(Slice, RefusesWhatCannotBeSliced) {
   EXPECT_EQ(parseAxis("--axis", "Y"), 1);
 }
 
+TEST(Section, IsCutWhereMostOfTheSolidIs) {
+  EXPECT_EQ(thinnestAxis({3, 1, 2}), 1);
+  EXPECT_EQ(thinnestAxis({1, 1, 1}), 0);
+  auto density = openvdb::FloatGrid::create();
+  density->fill({{0, 0, 0}, {9, 9, 9}}, 0.1f);
+  density->fill({{0, 0, 2}, {9, 9, 2}}, 1.0f);
+  EXPECT_DOUBLE_EQ(fullLayer(*density, 2), 0.25);
+  density->fill({{0, 0, 6}, {9, 9, 6}}, 0.95f);  // nearly as much, and nearer the middle
+  EXPECT_DOUBLE_EQ(fullLayer(*density, 2), 0.65);
+}
+
 }  // namespace
 }  // namespace innermap

@@ -1,4 +1,4 @@
-// Temporary files and small grids for the tests of output/.
+// Temporary files and small grids for the tests of io/.
 #pragma once
 
 #include <openvdb/openvdb.h>

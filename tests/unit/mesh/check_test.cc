@@ -216,5 +216,11 @@ TEST(CheckModels, WhatIsKnownOfThem) {
   EXPECT_EQ(checkMesh(readMesh(folder + "/horse-poses/pose-01.obj")).selfIntersections, 59u);
 }
 
+TEST(Check, MemoryGrowsWithTheMesh) {
+  EXPECT_EQ(checkMemory(Mesh()), 0u);
+  const Mesh ball = shapes::icosphere(3);
+  EXPECT_GT(checkMemory(ball), 300 * ball.triangles.size());
+}
+
 }  // namespace
 }  // namespace innermap

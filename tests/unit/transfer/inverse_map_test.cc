@@ -15,7 +15,7 @@ using namespace test;
 SourceLattice latticeOf(const Solid& solid, int resolution) {
   SourceLattice out;
   out.levelSet = levelSetOf(solid, resolution);
-  out.region = activeRegion(*out.levelSet, 2, 1, 0);
+  out.region = activeRegion(*out.levelSet);
   return out;
 }
 
@@ -190,6 +190,23 @@ TEST(InverseMap, RefusesBadSettingsAndObeysCancel) {
   settings = {};
   settings.maxMemory = 1000;
   EXPECT_THROW(invert(chargedMap(), ball(), 16, settings), MemoryError);
+}
+
+TEST(InverseStatistics, SaysSharesAndWarnsOfMany) {
+  InverseStatistics s;
+  EXPECT_EQ(s.invertedInside(), 1);
+  s.voxels = 300;
+  s.inside = 200;
+  s.failed = 51;
+  s.failedInside = 1;
+  s.failedAt = {{1, 2, 3}};
+  EXPECT_DOUBLE_EQ(s.invertedInside(), 0.995);
+  EXPECT_DOUBLE_EQ(s.invertedOutside(), 0.5);
+  s.failedInside = 4;
+  EXPECT_NE(s.warning().find("2% of the voxels inside"), std::string::npos) << s.warning();
+  EXPECT_NE(s.warning().find("(1, 2, 3)"), std::string::npos) << s.warning();
+  s.inside = 10000;
+  EXPECT_EQ(s.warning(), "");
 }
 
 }  // namespace

@@ -39,5 +39,16 @@ TEST(Outside, RefusesTooFewPoints) {
   EXPECT_THROW(bestRigidMotion(Points(3), Points(4)), DataError);
 }
 
+TEST(RigidMotion, IsToldFromOthers) {
+  RigidMotion motion;
+  EXPECT_TRUE(isRigid(motion));
+  motion.rotation = {{{0, -1, 0}, {1, 0, 0}, {0, 0, 1.00001}}};
+  EXPECT_TRUE(isRigid(motion));
+  motion.rotation[2][2] = -1;  // a reflection
+  EXPECT_FALSE(isRigid(motion));
+  motion.rotation[2][2] = 1.1;
+  EXPECT_FALSE(isRigid(motion));
+}
+
 }  // namespace
 }  // namespace innermap

@@ -3,6 +3,7 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
+#include <fmt/format.h>
 
 #include <cerrno>
 #include <cstring>
@@ -39,6 +40,15 @@ std::vector<ExrPart> readExrInfo(const std::string& path) {
   } catch (const std::exception& error) {
     throw FileError(path, std::string("cannot be read (") + error.what() + ")");
   }
+}
+
+std::string describe(const std::vector<ExrPart>& parts, const std::string& path) {
+  std::string text =
+      fmt::format("{}: EXR, {} part{}\n", path, parts.size(), parts.size() == 1 ? "" : "s");
+  for (const ExrPart& part : parts)
+    text += fmt::format("  {}{}{} x {}: {}\n", part.name, part.name.empty() ? "" : ": ", part.width,
+                        part.height, fmt::join(part.channels, ", "));
+  return text;
 }
 
 }  // namespace innermap

@@ -15,4 +15,7 @@ struct ExrPart {
 // Throws FileError.
 std::vector<ExrPart> readExrInfo(const std::string& path);
 
+// For a terminal, a line a part.
+std::string describe(const std::vector<ExrPart>& parts, const std::string& path);
+
 }  // namespace innermap

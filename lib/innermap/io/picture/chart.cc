@@ -8,7 +8,6 @@
 #include <ostream>
 
 #include "innermap/core/error.h"
-#include "innermap/core/file.h"
 #include "innermap/io/picture/detail/picture.h"
 #include "innermap/io/picture/detail/stroke.h"
 
@@ -75,7 +74,7 @@ void drawGrid(const Chart& chart, const Frame& f, bool last, Picture& picture) {
   for (const double tick : tickValues(f.y.lower, f.y.upper, lines)) {
     const int y = static_cast<int>(std::floor(f.place(f.x.lower, tick).y));
     picture.fill(f.x0, y, f.x1, y + 1, kGrid);
-    picture.text(f.x0 - 10, y + 5, shortNumber(tick), 15, kFaint, Align::kRight);
+    picture.text(f.x0 - 10, y + 5, shortNumber(tick), 15, kFaint, Align::right);
   }
   const bool whole = wholeNumbers(chart.x);
   for (const double tick : tickValues(f.x.lower, f.x.upper, std::max(2, (f.x1 - f.x0) / 90))) {
@@ -86,7 +85,7 @@ void drawGrid(const Chart& chart, const Frame& f, bool last, Picture& picture) {
     picture.fill(x, f.y1, x + 1, f.y1 + 6, kInk);
     // Frame numbers are told in full, however long they are.
     picture.text(x, f.y1 + 24, whole ? fmt::format("{:.0f}", tick) : shortNumber(tick), 15, kFaint,
-                 Align::kCentre);
+                 Align::centre);
   }
   picture.frame(f.x0, f.y0, f.x1, f.y1, kFrame);
 }
@@ -116,7 +115,7 @@ void drawLegend(const ChartPanel& panel, const Frame& f, std::size_t firstColour
   int x = f.x1;
   for (std::size_t s = panel.series.size(); s-- > 0;) {
     const int y = f.y0 - 14;
-    picture.text(x, y, panel.series[s].name, 15, kInk, Align::kRight);
+    picture.text(x, y, panel.series[s].name, 15, kInk, Align::right);
     x -= textWidth(panel.series[s].name, 15) + 10;
     const PicturePoint from{x - 26.0, y - 5.0}, to{x - 2.0, y - 5.0};
     const Rgb colour = kColours[(firstColour + s) % kColourCount];
@@ -169,9 +168,8 @@ Picture draw(const Chart& chart) {
       drawSeries(chart, f, series, kColours[colour++ % kColourCount], picture);
   }
   const int bottom = picture.height() - 16;
-  picture.text((kLabels + chart.width - kRight) / 2, bottom, chart.xLabel, 16, kInk,
-               Align::kCentre);
-  picture.text(chart.width - kMargin, bottom, "innermap", 14, kFaint, Align::kRight);
+  picture.text((kLabels + chart.width - kRight) / 2, bottom, chart.xLabel, 16, kInk, Align::centre);
+  picture.text(chart.width - kMargin, bottom, "innermap", 14, kFaint, Align::right);
   return picture;
 }
 
@@ -179,11 +177,7 @@ Picture draw(const Chart& chart) {
 
 void writeChart(const std::string& path, const Chart& chart) {
   check(chart);
-  const std::vector<unsigned char> bytes = draw(chart).png();
-  writeWholeFile(path, [&](std::ostream& file) {
-    file.write(reinterpret_cast<const char*>(bytes.data()),
-               static_cast<std::streamsize>(bytes.size()));
-  });
+  draw(chart).write(path);
 }
 
 }  // namespace innermap

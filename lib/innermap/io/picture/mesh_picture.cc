@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "innermap/core/error.h"
-#include "innermap/core/file.h"
 #include "innermap/core/parallel.h"
 #include "innermap/io/picture/detail/picture.h"
 
@@ -246,16 +245,12 @@ void writeMeshPicture(const std::string& path, const std::vector<PictureSurface>
       drawView(surfaces[s], View(settings.from[static_cast<std::size_t>(r)]), x,
                kTitle + r * (height + kMargin), widths[s], height, settings.progress, picture);
     }
-    picture.text(x + widths[s] / 2, 32, surfaces[s].label, 20, kInk, Align::kCentre);
+    picture.text(x + widths[s] / 2, 32, surfaces[s].label, 20, kInk, Align::centre);
     x += widths[s] + kMargin;
   }
   if (!settings.caption.empty())
     picture.text(kMargin, picture.height() - 16, settings.caption, 15, kInk);
-  const std::vector<unsigned char> png = picture.png();
-  writeWholeFile(path, [&](std::ostream& stream) {
-    stream.write(reinterpret_cast<const char*>(png.data()),
-                 static_cast<std::streamsize>(png.size()));
-  });
+  picture.write(path);
 }
 
 }  // namespace innermap

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "innermap/core/error.h"
-#include "innermap/core/file.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
 #include "innermap/io/picture/detail/picture.h"
@@ -45,6 +44,22 @@ openvdb::GridBase::Ptr gridToShow(const openvdb::GridPtrVec& grids, const std::s
        {"jacobian", "deformation_energy", "harmonic_energy", "map", "density", "surface"})
     if (const auto grid = gridNamed(grids, name)) return grid;
   return grids.front();
+}
+
+std::optional<int> componentOf(const SectionSettings& s) {
+  if (s.component == Component::length) return std::nullopt;
+  return static_cast<int>(s.component);
+}
+
+double layerFor(const SliceFrame& frame, const SectionSettings& s) {
+  const int lower = frame.box.min()[frame.axis], upper = frame.box.max()[frame.axis];
+  if (!s.position) return std::clamp(lower + s.at * (upper - lower), double(lower), double(upper));
+  const double layer = frame.layerAt(*s.position);
+  if (!(layer >= lower - 0.5 && layer <= upper + 0.5))
+    throw SettingError("position",
+                       fmt::format("{:g} is outside the grids; give a coordinate from {:g} to {:g}",
+                                   *s.position, frame.position(lower), frame.position(upper)));
+  return std::clamp(layer, double(lower), double(upper));
 }
 
 void chooseRange(const SectionCut& cut, const SectionSettings& s, SectionResult& result) {
@@ -207,7 +222,7 @@ void drawText(const SectionCut& cut, const Layout& l, const SectionResult& r,
                            axisName(f.rowAxis), f.columns(), f.rows(),
                            shortNumber(f.transform->voxelSize()[f.columnAxis])),
                14, kFaint);
-  picture.text(picture.width() - kMargin, bottom, "innermap", 14, kFaint, Align::kRight);
+  picture.text(picture.width() - kMargin, bottom, "innermap", 14, kFaint, Align::right);
   picture.frame(kMargin, kTitle, l.barX - kBarGap, picture.height() - kFooter - kMargin,
                 {0.8f, 0.8f, 0.82f});
 }
@@ -246,7 +261,8 @@ SectionResult writeSectionImage(const std::string& path, const openvdb::GridPtrV
                 frame.rows() * frame.columns() * 12 * sizeof(float) +
                     std::uint64_t(layout.totalWidth) * layout.totalHeight * 16,
                 settings.maxMemory, "cut along another axis or ask for fewer pixels");
-  const SectionCut cut = cutThrough(grid, needed, frame, settings);
+  const SectionCut cut = cutThrough(grid, needed, frame, layerFor(frame, settings),
+                                    {componentOf(settings), settings.colour});
 
   SectionResult result;
   result.grid = grid->getName();
@@ -260,11 +276,7 @@ SectionResult writeSectionImage(const std::string& path, const openvdb::GridPtrV
                kOutside);
   drawSection(cut, layout, result, settings.progress, picture);
   if (!settings.colour) drawBar(layout, result, picture);
-  const std::vector<unsigned char> bytes = picture.png();
-  writeWholeFile(path, [&](std::ostream& file) {
-    file.write(reinterpret_cast<const char*>(bytes.data()),
-               static_cast<std::streamsize>(bytes.size()));
-  });
+  picture.write(path);
   return result;
 }
 

@@ -13,12 +13,12 @@
 
 namespace innermap {
 
-enum class Component { kX = 0, kY = 1, kZ = 2, kLength = 3 };  // of vector grids
+enum class Component { x = 0, y = 1, z = 2, length = 3 };  // of vector grids
 
 struct SectionSettings {
   std::string grid;  // name of the grid to show; empty: the first of jacobian, deformation_energy,
                      // harmonic_energy, map, density, surface that is there, else the first grid
-  Component component = Component::kLength;  // ignored for scalar grids
+  Component component = Component::length;  // ignored for scalar grids
   // A vector grid's values as linear red, green and blue, without a colour bar; by default of `Cd`
   // or `color`. The range is what is black and white, [0, 1] when unset.
   bool colour = false;

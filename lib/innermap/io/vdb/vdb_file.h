@@ -15,7 +15,7 @@ namespace innermap {
 // harmonic_energy, deformation_energy, Cd, uv, velocity) are those of Houdini or Blender wherever
 // those have one: the colour is `color` in Blender and Cycles and `Cd` otherwise, the velocity `v`
 // in Houdini and `velocity` otherwise.
-enum class NamingScheme { kInnermap, kBlender, kHoudini };
+enum class NamingScheme { innermap, blender, houdini };
 
 // "innermap", "blender", "houdini"; throws SettingError for other texts.
 NamingScheme parseNamingScheme(const std::string& setting, const std::string& text);
@@ -23,11 +23,11 @@ NamingScheme parseNamingScheme(const std::string& setting, const std::string& te
 // The name that the scheme has for one of innermap's own; other names stay.
 std::string gridName(const std::string& own, NamingScheme scheme);
 
-enum class VdbCompression { kNone, kZip, kBlosc };  // OpenVDB drops kZip for level sets and fog
+enum class VdbCompression { none, zip, blosc };  // OpenVDB drops zip for level sets and fog
 
 struct VdbWriteSettings {
-  NamingScheme names = NamingScheme::kInnermap;
-  VdbCompression compression = VdbCompression::kBlosc;  // beside the active mask's compression
+  NamingScheme names = NamingScheme::innermap;
+  VdbCompression compression = VdbCompression::blosc;  // beside the active mask's compression
   Progress* progress = nullptr;
 };
 
@@ -72,6 +72,18 @@ struct VdbInfo {
   std::string version;  // "10.0/224"
 };
 
-VdbInfo readVdbInfo(const std::string& path, Progress* progress = nullptr);
+struct VdbInfoSettings {
+  Progress* progress = nullptr;
+};
+
+// Without reading voxels; throws as readVdb does.
+VdbInfo readVdbInfo(const std::string& path, const VdbInfoSettings& settings = {});
+
+// What the file at `path` holds, for a terminal: a few lines a grid, with all its metadata or only
+// innermap's own.
+std::string describe(const VdbInfo& info, const std::string& path, bool metadata = false);
+
+// Bytes that reading the grids of these names takes; empty means all.
+std::uint64_t readMemory(const VdbInfo& info, const std::vector<std::string>& names = {});
 
 }  // namespace innermap

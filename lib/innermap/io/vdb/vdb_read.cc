@@ -171,9 +171,9 @@ VdbContents readVdb(const std::string& path, const VdbReadSettings& settings) {
   });
 }
 
-VdbInfo readVdbInfo(const std::string& path, Progress* progress) {
+VdbInfo readVdbInfo(const std::string& path, const VdbInfoSettings& settings) {
   return translating(path, [&] {
-    InputArchive archive(path, progress);
+    InputArchive archive(path, settings.progress);
     VdbInfo info;
     info.metadata = archive.metadata();
     info.version = archive.version();

@@ -20,8 +20,8 @@ class OutputArchive : public openvdb::io::Archive {
  public:
   explicit OutputArchive(VdbCompression compression) {
     std::uint32_t flags = openvdb::io::COMPRESS_ACTIVE_MASK;
-    if (compression == VdbCompression::kZip) flags |= openvdb::io::COMPRESS_ZIP;
-    if (compression == VdbCompression::kBlosc)
+    if (compression == VdbCompression::zip) flags |= openvdb::io::COMPRESS_ZIP;
+    if (compression == VdbCompression::blosc)
       flags |= hasBloscCompression() ? openvdb::io::COMPRESS_BLOSC : openvdb::io::COMPRESS_ZIP;
     setCompression(flags);
     setInstancingEnabled(false);
@@ -61,15 +61,15 @@ openvdb::GridCPtrVec named(const std::string& path, const openvdb::GridPtrVec& g
 }  // namespace
 
 NamingScheme parseNamingScheme(const std::string& setting, const std::string& text) {
-  if (text == "innermap") return NamingScheme::kInnermap;
-  if (text == "blender") return NamingScheme::kBlender;
-  if (text == "houdini") return NamingScheme::kHoudini;
+  if (text == "innermap") return NamingScheme::innermap;
+  if (text == "blender") return NamingScheme::blender;
+  if (text == "houdini") return NamingScheme::houdini;
   throw SettingError(setting, "'" + text + "' is not one of innermap, blender, houdini");
 }
 
 std::string gridName(const std::string& own, NamingScheme scheme) {
-  if (scheme == NamingScheme::kBlender && own == "Cd") return "color";
-  if (scheme == NamingScheme::kHoudini && own == "velocity") return "v";
+  if (scheme == NamingScheme::blender && own == "Cd") return "color";
+  if (scheme == NamingScheme::houdini && own == "velocity") return "v";
   return own;
 }
 

@@ -1,5 +1,5 @@
 // Grids as volume textures: dense boxes of voxels in EXR files, for engines and renderers that read
-// no OpenVDB. volume_texture_read.h reads them back.
+// no OpenVDB; and back into grids, atlases, slices and parts of other programs too.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -12,28 +12,29 @@
 #include <vector>
 
 #include "innermap/core/progress.h"
+#include "innermap/core/vec3.h"
 
 namespace innermap {
 
-// kAtlas: all slices as tiles of one picture, row-major from the top left, first slice first.
-// kSlices: a file a slice. kParts: one file, a part a slice.
-enum class VolumeLayout { kAtlas, kSlices, kParts };
+// atlas: all slices as tiles of one picture, row-major from the top left, first slice first.
+// slices: a file a slice. parts: one file, a part a slice.
+enum class VolumeLayout { atlas, slices, parts };
 
 // "atlas", "slices", "parts"; throws SettingError for other texts.
 VolumeLayout parseVolumeLayout(const std::string& setting, const std::string& text);
 std::string volumeLayoutName(VolumeLayout layout);
 
-// kAuto: as kRgba where the channels are four at most, else as kLayers.
-// kRgba: one scalar is Y (grey); two are R, G; three or a vector R, G, B; a vector and a scalar, in
+// automatic: as rgba where the channels are four at most, else as layers.
+// rgba: one scalar is Y (grey); two are R, G; three or a vector R, G, B; a vector and a scalar, in
 //        any order, R, G, B and A; else scalars are R, G, B, A in order.
-// kLayers: those of slice.h: density.V, map.X, Cd.R.
-enum class VolumeChannels { kAuto, kRgba, kLayers };
+// layers: those of slice.h: density.V, map.X, Cd.R.
+enum class VolumeChannels { automatic, rgba, layers };
 
 struct VolumeTextureSettings {
-  VolumeLayout layout = VolumeLayout::kAtlas;
+  VolumeLayout layout = VolumeLayout::atlas;
   int axis = 2;         // across the slices: 0, 1, 2 for x, y, z; columns and rows as in slice.h
   bool rowsUp = false;  // whether the first row of a slice has the largest index, not the least
-  VolumeChannels channels = VolumeChannels::kAuto;
+  VolumeChannels channels = VolumeChannels::automatic;
   bool half = false;    // half floats: 3 digits, values clamped to 65,504
   bool active = false;  // also NAME.active for each grid: 1 where a voxel is active
   int pad = 0;          // voxels of the grids about their active box, in [0, 4096]
@@ -66,13 +67,22 @@ struct VolumeTextureResult {
 // Scanline files, ZIP compression (lossless), one data window. The attributes of each part (see
 // volume_attributes.h) tell layout, tiles, order, box, matrices and what the grids are.
 //
-// kSlices: `path` has the number's place as #### or %04d in its last component, else .0000 is put
+// slices: `path` has the number's place as #### or %04d in its last component, else .0000 is put
 // before the extension; numbers start at 0. All files appear whole or none does.
 //
 // Throws DataError (no grids, no active voxel, different transforms, a type without numbers, too
 // many voxels), SettingError, MemoryError (before allocating), FileError, Cancelled.
 VolumeTextureResult writeVolumeTexture(const std::string& path, const openvdb::GridPtrVec& grids,
                                        const VolumeTextureSettings& settings = {});
+
+// For a terminal: two lines that say what was written.
+std::string describe(const VolumeTextureResult& result, const std::string& path,
+                     const VolumeTextureSettings& settings);
+
+// What makes the texture doubtful: values that do not fit the pixels, pictures beyond 16,384 pixels
+// a side, which engines do not take.
+std::vector<std::string> warningsOf(const VolumeTextureResult& result, const std::string& path,
+                                    const VolumeTextureSettings& settings);
 
 // What writeVolumeTexture would write: its result but for the counts. Throws as that does.
 VolumeTextureResult planVolumeTexture(const std::string& path, const openvdb::GridPtrVec& grids,
@@ -81,5 +91,52 @@ VolumeTextureResult planVolumeTexture(const std::string& path, const openvdb::Gr
 // Peak need of writeVolumeTexture beside the grids, bytes.
 std::uint64_t volumeTextureMemory(const openvdb::GridPtrVec& grids,
                                   const VolumeTextureSettings& settings = {});
+
+// What the file's attributes do not say, or what counts in their place. The messages of errors call
+// the settings by the options of `innermap import`: --tiles, --voxel-size and so on.
+struct VolumeTextureReadSettings {
+  // Of a file that says what its grids are: those to read, empty for all. Else the names of its
+  // grids: one for each (R, G, B together and X, Y, Z of one layer are a vector, others scalars),
+  // vectors before scalars, or one for each channel in the file's order.
+  std::vector<std::string> names;
+  std::optional<VolumeLayout> layout;
+  std::optional<std::pair<int, int>> tiles;  // columns and rows of an atlas
+  std::optional<int> slices;                 // without, all tiles
+  std::optional<int> axis;                   // across the slices, 0, 1, 2; without, z
+  std::optional<bool> rowsUp;                // see VolumeTextureSettings; without, false
+  std::optional<double> voxelSize;           // world units
+  Vec3 lowerCorner;                      // world position of the box's least corner, with voxelSize
+  std::optional<double> background;      // of all grids
+  std::optional<std::string> gridClass;  // "level set", "fog volume", "unknown", ...
+  std::uint64_t maxMemory = 0;           // bytes; 0 means no limit
+  Progress* progress = nullptr;
+};
+
+struct VolumeTextureContents {
+  openvdb::GridPtrVec grids;
+  VolumeLayout layout = VolumeLayout::atlas;
+  openvdb::Coord resolution;  // of the dense box
+  std::size_t notFinite = 0;  // values that are infinite or no numbers
+};
+
+// `path`: an atlas or a file of parts; for slices a pattern (#### or %04d) or any of the files.
+// Grids have the type, name, class, background, vector type and transform that the attributes say.
+// A voxel is active where NAME.active says so or, without that channel, where its value is not the
+// background as the pixel type holds that; in level sets, not plus or minus that. What is not
+// active has the background exactly; uniform blocks of 8^3 voxels become tiles.
+//
+// Files are not trusted. Throws FileError for what cannot be read, for a missing attribute (naming
+// the option that gives it) and for attributes that contradict one another or the pixels;
+// MemoryError before allocating; SettingError; Cancelled.
+VolumeTextureContents readVolumeTexture(const std::string& path,
+                                        const VolumeTextureReadSettings& settings = {});
+
+// What readVolumeTexture would read, without reading pixels. Throws as that does.
+struct VolumeTextureNeed {
+  openvdb::Coord resolution;
+  std::uint64_t memory = 0;  // bytes, when all voxels are active; less when few are
+};
+VolumeTextureNeed volumeTextureReadNeed(const std::string& path,
+                                        const VolumeTextureReadSettings& settings = {});
 
 }  // namespace innermap

@@ -1,5 +1,3 @@
-#include "innermap/io/volume/volume_texture_read.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include "innermap/io/exr/detail/exr_stream.h"
 #include "innermap/io/volume/detail/volume_builder.h"
 #include "innermap/io/volume/detail/volume_source.h"
+#include "innermap/io/volume/volume_texture.h"
 
 namespace innermap {
 namespace {

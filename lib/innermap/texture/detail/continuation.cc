@@ -52,8 +52,12 @@ class Continuation {
 
   std::vector<Vec3fGrid::Ptr> run() {
     const std::size_t count = field_.channels() / 3;
-    const openvdb::MaskGrid::Ptr region = activeRegion(levelSet_, settings_.skin, 1 + 12 * count,
-                                                       settings_.maxMemory, settings_.progress);
+    RegionSettings where;
+    where.skin = settings_.skin;
+    where.bytesPerVoxel = 1 + 12 * count;
+    where.maxMemory = settings_.maxMemory;
+    where.progress = settings_.progress;
+    const openvdb::MaskGrid::Ptr region = activeRegion(levelSet_, where);
     for (std::size_t g = 0; g < count; ++g) grids_.push_back(gridOn(*region));
     evaluate(settings_.spacing > 0 ? *insideOf(*region) : *region);
     const Leaves leaves(region->tree());

@@ -3,32 +3,33 @@
 #include <fmt/format.h>
 
 #include "innermap/core/error.h"
+#include "innermap/evaluate/topology.h"
 
 namespace innermap {
 namespace {
 
+// Outputs have no active tiles.
 template <class Grid>
 bool movePositionsOf(openvdb::GridBase& base,
                      const std::function<Points(const Points&)>& movePositions) {
   if (!base.isType<Grid>()) return false;
   auto& grid = static_cast<Grid&>(base);
   Points points;
-  for (auto value = grid.cbeginValueOn(); value; ++value) {
-    const auto v = *value;
-    points.push_back(
-        {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])});
-  }
+  for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
+    for (auto value = leaf->cbeginValueOn(); value; ++value) {
+      const openvdb::Vec3d v(*value);
+      points.push_back({v.x(), v.y(), v.z()});
+    }
   const Points moved = movePositions(points);
   std::size_t i = 0;
-  for (auto value = grid.beginValueOn(); value; ++value, ++i)
-    value.setValue(typename Grid::ValueType(openvdb::Vec3d(moved[i].x, moved[i].y, moved[i].z)));
+  for (auto leaf = grid.tree().beginLeaf(); leaf; ++leaf)
+    for (auto value = leaf->beginValueOn(); value; ++value, ++i)
+      value.setValue(typename Grid::ValueType(openvdb::Vec3d(moved[i].x, moved[i].y, moved[i].z)));
   return true;
 }
 
 // Whether an active voxel lies in the solid or within its level set's band.
-
-template <class Grid>
-bool meets(const Grid& grid, const openvdb::FloatGrid& solid, Progress* progress) {
+bool meets(const openvdb::GridBase& grid, const openvdb::FloatGrid& solid, Progress* progress) {
   auto distances = solid.getConstAccessor();
   const openvdb::math::Transform &from = grid.transform(), &to = solid.transform();
   const auto isNear = [&](const openvdb::Vec3d& ijk) {
@@ -36,7 +37,8 @@ bool meets(const Grid& grid, const openvdb::FloatGrid& solid, Progress* progress
     return distances.getValue(at) < solid.background();
   };
   std::uint64_t polled = 0;
-  for (auto value = grid.cbeginValueOn(); value; ++value) {
+  const openvdb::MaskTree active = activeTopology(grid);
+  for (auto value = active.cbeginValueOn(); value; ++value) {
     if ((++polled & 0xffff) == 0) throwIfCancelled(progress);
     openvdb::CoordBBox box;
     value.getBoundingBox(box);
@@ -51,11 +53,6 @@ bool meets(const Grid& grid, const openvdb::FloatGrid& solid, Progress* progress
       return true;
   }
   return false;
-}
-
-template <class... Grids>
-bool meetsAny(const openvdb::GridBase& grid, const openvdb::FloatGrid& solid, Progress* progress) {
-  return ((grid.isType<Grids>() && meets(static_cast<const Grids&>(grid), solid, progress)) || ...);
 }
 
 }  // namespace
@@ -93,10 +90,7 @@ void requireMeeting(const openvdb::GridPtrVec& grids, const openvdb::FloatGrid& 
   std::string apart;
   std::size_t count = 0;
   for (const openvdb::GridBase::Ptr& grid : grids) {
-    if (meetsAny<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid, openvdb::Int64Grid,
-                 openvdb::BoolGrid, openvdb::Vec3SGrid, openvdb::Vec3DGrid, openvdb::Vec3IGrid,
-                 openvdb::MaskGrid>(*grid, solid, progress))
-      continue;
+    if (meets(*grid, solid, progress)) continue;
     ++count;
     apart += (apart.empty() ? "" : ", ") + grid->getName();
   }

@@ -5,6 +5,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/evaluate/topology.h"
 #include "innermap/transfer/detail/leaf_index.h"
 
 namespace innermap {
@@ -229,12 +230,8 @@ class LeafRaster {
 LatticeImages imagesOf(const ExtendedMap& map, const openvdb::MaskGrid& region,
                        const openvdb::math::Transform& target, Progress* progress) {
   LatticeImages out;
-  out.images = openvdb::Vec3SGrid::create();
-  out.images->setTree(std::make_shared<openvdb::Vec3STree>(region.tree(), openvdb::Vec3f(0),
-                                                           openvdb::TopologyCopy()));
-  out.outside = openvdb::FloatGrid::create();
-  out.outside->setTree(
-      std::make_shared<openvdb::FloatTree>(region.tree(), 0.f, openvdb::TopologyCopy()));
+  out.images = vectorGridOn(region);
+  out.outside = floatGridOn(region);
   std::vector<std::array<std::uint64_t, 2>> turned(region.tree().leafCount());
   map.visit(
       region,

@@ -3,119 +3,122 @@
 #include <openvdb/tools/Interpolation.h>
 #include <openvdb/tools/Morphology.h>
 
+#include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "innermap/core/parallel.h"
+#include "innermap/evaluate/topology.h"
 
 namespace innermap {
 namespace {
 
-// Voxels one layer around the active ones that are not inside the solid.
-template <class Grid>
-std::vector<openvdb::Coord> nextLayer(const Grid& grid, const openvdb::FloatGrid& solid) {
-  openvdb::MaskTree ring;
-  ring.topologyUnion(grid.tree());
-  openvdb::tools::dilateActiveValues(ring, 1, openvdb::tools::NN_FACE_EDGE_VERTEX,
-                                     openvdb::tools::PRESERVE_TILES);
-  ring.topologyDifference(grid.tree());
+constexpr int kNeighbours = 27;  // and the voxel itself
+
+openvdb::Coord neighbour(const openvdb::Coord& ijk, int n) {
+  return ijk.offsetBy(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1);
+}
+
+struct NewVoxel {
+  openvdb::Coord at;
+  std::uint32_t active = 0;  // bit n: its neighbour n is
+};
+using Layer = std::vector<NewVoxel>;
+
+using MaskReader = openvdb::tree::ValueAccessor<const openvdb::MaskTree, false>;
+
+std::uint32_t activeAround(const MaskReader& at, const openvdb::Coord& ijk) {
+  std::uint32_t bits = 0;
+  for (int n = 0; n < kNeighbours; ++n)
+    if (at.isValueOn(neighbour(ijk, n))) bits |= std::uint32_t{1} << n;
+  return bits;
+}
+
+// Layer by layer, the voxels around the active ones that are not inside the solid.
+std::vector<Layer> layersAround(const openvdb::GridBase& grid, const openvdb::FloatGrid& solid,
+                                int layers) {
   const auto access = solid.getConstAccessor();  // the sampler keeps a pointer to it
   const openvdb::tools::GridSampler<openvdb::FloatGrid::ConstAccessor, openvdb::tools::BoxSampler>
       distance(access, solid.transform());
   const double within = grid.voxelSize()[0];
-  std::vector<openvdb::Coord> out;
-  for (auto leaf = ring.cbeginLeaf(); leaf; ++leaf)
-    for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel) {
-      const openvdb::Coord ijk = voxel.getCoord();
-      if (distance.wsSample(grid.transform().indexToWorld(ijk)) > -within) out.push_back(ijk);
-    }
+  openvdb::MaskTree active = activeTopology(grid);
+  std::vector<Layer> out(static_cast<std::size_t>(layers));
+  for (Layer& layer : out) {
+    openvdb::MaskTree ring(active);
+    openvdb::tools::dilateActiveValues(ring, 1, openvdb::tools::NN_FACE_EDGE_VERTEX,
+                                       openvdb::tools::PRESERVE_TILES);
+    ring.topologyDifference(active);
+    for (auto leaf = ring.cbeginLeaf(); leaf; ++leaf)
+      for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel) {
+        const openvdb::Coord ijk = voxel.getCoord();
+        if (distance.wsSample(grid.transform().indexToWorld(ijk)) > -within)
+          layer.push_back({ijk, 0});
+      }
+    parallelBlocks(layer.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      const MaskReader at(active);
+      for (std::size_t i = begin; i < end; ++i) layer[i].active = activeAround(at, layer[i].at);
+    });
+    for (const NewVoxel& voxel : layer) active.setValueOn(voxel.at);
+  }
   return out;
 }
 
 template <class Value>
-struct Mean {
-  Value sum = openvdb::zeroVal<Value>();
-  int count = 0;
-  void add(const Value& value) {
-    sum += value;
-    ++count;
-  }
-  Value value() const { return sum * (1.0 / count); }
-};
+constexpr bool kHasMean = std::is_floating_point_v<typename openvdb::VecTraits<Value>::ElementType>;
 
-template <class Value>
-struct First {
-  Value first = openvdb::zeroVal<Value>();
+// The mean of the active neighbours.
+template <class Accessor, class Value = typename Accessor::ValueType>
+Value meanAround(const Accessor& tree, const NewVoxel& voxel) {
+  using Sum = std::conditional_t<openvdb::VecTraits<Value>::IsVec, openvdb::Vec3d, double>;
+  Sum sum = openvdb::zeroVal<Sum>();
   int count = 0;
-  void add(const Value& value) {
-    if (count++ == 0) first = value;
+  for (int n = 0; n < kNeighbours; ++n) {
+    if (!(voxel.active >> n & 1)) continue;
+    sum += Sum(tree.getValue(neighbour(voxel.at, n)));
+    ++count;
   }
-  Value value() const { return first; }
-};
+  if constexpr (std::is_same_v<Value, Sum>)
+    return sum * (1.0 / count);
+  else
+    return Value(sum / count);
+}
 
-template <>
-struct Mean<std::int32_t> : First<std::int32_t> {};
-template <>
-struct Mean<std::int64_t> : First<std::int64_t> {};
-template <>
-struct Mean<bool> : First<bool> {};
-template <>
-struct Mean<openvdb::Vec3i> : First<openvdb::Vec3i> {};
-template <>
-struct Mean<float> {
-  double sum = 0;
-  int count = 0;
-  void add(float value) {
-    sum += value;
-    ++count;
+template <class Tree>
+std::vector<typename Tree::ValueType> valuesFor(const Tree& tree, const Layer& layer) {
+  using Value = typename Tree::ValueType;
+  std::vector<Value> values(layer.size());
+  if constexpr (kHasMean<Value>) {
+    parallelBlocks(layer.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      const openvdb::tree::ValueAccessor<const Tree, false> at(tree);
+      for (std::size_t i = begin; i < end; ++i) values[i] = meanAround(at, layer[i]);
+    });
+  } else {
+    for (std::size_t i = 0; i < layer.size(); ++i) {
+      int first = 0;
+      while (!(layer[i].active >> first & 1)) ++first;
+      values[i] = tree.getValue(neighbour(layer[i].at, first));
+    }
   }
-  float value() const { return static_cast<float>(sum / count); }
-};
-template <>
-struct Mean<openvdb::Vec3f> {
-  openvdb::Vec3d sum{0, 0, 0};
-  int count = 0;
-  void add(const openvdb::Vec3f& value) {
-    sum += value;
-    ++count;
+  return values;
+}
+
+template <class Tree>
+void fill(Tree& tree, const std::vector<Layer>& layers) {
+  for (const Layer& layer : layers) {
+    const std::vector<typename Tree::ValueType> values = valuesFor(tree, layer);
+    for (std::size_t i = 0; i < layer.size(); ++i) tree.setValueOn(layer[i].at, values[i]);
   }
-  openvdb::Vec3f value() const { return openvdb::Vec3f(sum / count); }
-};
+}
 
 }  // namespace
 
-template <class Grid>
-typename Grid::Ptr continuedBeyond(const Grid& grid, const openvdb::FloatGrid& solid, int layers) {
-  typename Grid::Ptr out = grid.deepCopy();
-  for (int layer = 0; layer < layers; ++layer) {
-    const std::vector<openvdb::Coord> voxels = nextLayer(*out, solid);
-    std::vector<typename Grid::ValueType> values(voxels.size());
-    parallelBlocks(voxels.size(), 1024, [&](std::size_t begin, std::size_t end) {
-      auto around = static_cast<const Grid&>(*out).getConstAccessor();
-      for (std::size_t i = begin; i < end; ++i) {
-        Mean<typename Grid::ValueType> mean;
-        typename Grid::ValueType value;
-        for (int n = 0; n < 27; ++n)
-          if (around.probeValue(voxels[i].offsetBy(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1), value))
-            mean.add(value);
-        values[i] = mean.value();
-      }
-    });
-    auto write = out->getAccessor();
-    for (std::size_t i = 0; i < voxels.size(); ++i) write.setValueOn(voxels[i], values[i]);
-  }
+openvdb::GridBase::Ptr continuedBeyond(const openvdb::GridBase& grid,
+                                       const openvdb::FloatGrid& solid, int layers) {
+  const openvdb::GridBase::Ptr out = grid.deepCopyGrid();
+  const std::vector<Layer> around = layersAround(grid, solid, layers);
+  out->apply<GridTypes::Remove<openvdb::MaskGrid>>(
+      [&](auto& typed) { fill(typed.tree(), around); });
   return out;
 }
-
-#define INNERMAP_CONTINUED(Grid) \
-  template Grid::Ptr continuedBeyond<Grid>(const Grid&, const openvdb::FloatGrid&, int)
-INNERMAP_CONTINUED(openvdb::FloatGrid);
-INNERMAP_CONTINUED(openvdb::DoubleGrid);
-INNERMAP_CONTINUED(openvdb::Int32Grid);
-INNERMAP_CONTINUED(openvdb::Int64Grid);
-INNERMAP_CONTINUED(openvdb::BoolGrid);
-INNERMAP_CONTINUED(openvdb::Vec3SGrid);
-INNERMAP_CONTINUED(openvdb::Vec3DGrid);
-INNERMAP_CONTINUED(openvdb::Vec3IGrid);
-#undef INNERMAP_CONTINUED
 
 }  // namespace innermap

@@ -5,11 +5,11 @@
 
 namespace innermap {
 
-// A copy of `grid` whose inactive voxels outside the solid (or within a voxel of its surface) that
-// are within `layers` voxels of active ones have the mean of their active neighbours (of the
-// nearest for types without means). Voxels deeper inside keep what they hold: there the grid itself
-// ends.
-template <class Grid>
-typename Grid::Ptr continuedBeyond(const Grid& grid, const openvdb::FloatGrid& solid, int layers);
+// A copy of `grid`, of one of GridTypes but masks, whose inactive voxels outside the solid (or
+// within a voxel of its surface) that are within `layers` voxels of active ones have the mean of
+// their active neighbours (of the nearest for types without means). Voxels deeper inside keep what
+// they hold: there the grid itself ends.
+openvdb::GridBase::Ptr continuedBeyond(const openvdb::GridBase& grid,
+                                       const openvdb::FloatGrid& solid, int layers);
 
 }  // namespace innermap

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "innermap/core/error.h"
+#include "innermap/evaluate/topology.h"
 #include "innermap/evaluate/visit_field.h"
 
 namespace innermap {
@@ -23,23 +24,13 @@ double sizeOf(const HarmonicField& field, const Solid& solid) {
   return largest > 0 ? largest : 1;
 }
 
-template <class Grid>
-openvdb::GridBase::Ptr filled(const CarriedField& field, const InvertedMap& inverted,
-                              const Matrix& values) {
-  auto grid = Grid::create();
-  grid->setTree(std::make_shared<typename Grid::TreeType>(
-      inverted.region->tree(), openvdb::zeroVal<typename Grid::ValueType>(),
-      openvdb::TopologyCopy()));
-  grid->setTransform(inverted.region->transform().copy());
-  grid->setName(field.name);
+template <class Grid, class ValueOf>
+openvdb::GridBase::Ptr filled(const std::shared_ptr<Grid>& grid, const std::string& name,
+                              const ValueOf& valueOf) {
+  grid->setName(name);
   std::size_t i = 0;
   for (auto leaf = grid->tree().beginLeaf(); leaf; ++leaf)
-    for (auto voxel = leaf->beginValueOn(); voxel; ++voxel, ++i) {
-      if constexpr (openvdb::VecTraits<typename Grid::ValueType>::IsVec)
-        voxel.setValue(openvdb::Vec3f(openvdb::Vec3d(values(i, 0), values(i, 1), values(i, 2))));
-      else
-        voxel.setValue(static_cast<float>(values(i, 0)));
-    }
+    for (auto voxel = leaf->beginValueOn(); voxel; ++voxel, ++i) voxel.setValue(valueOf(i));
   return grid;
 }
 
@@ -53,10 +44,13 @@ openvdb::GridBase::Ptr fieldGrid(const CarriedField& field, const Solid& source,
   const ExtendedSamples found =
       sampleExtended(field.field, source, *lattice.levelSet, inverted.sources,
                      {accuracy * sizeOf(field.field, source), {}, progress});
+  const Matrix& v = found.samples.values;
   if (field.field.channels() == 1)
-    return filled<openvdb::FloatGrid>(field, inverted, found.samples.values);
-  const openvdb::GridBase::Ptr grid =
-      filled<openvdb::Vec3SGrid>(field, inverted, found.samples.values);
+    return filled(floatGridOn(*inverted.region), field.name,
+                  [&](std::size_t i) { return static_cast<float>(v(i, 0)); });
+  const openvdb::GridBase::Ptr grid = filled(
+      vectorGridOn(*inverted.region), field.name,
+      [&](std::size_t i) { return openvdb::Vec3f(openvdb::Vec3d(v(i, 0), v(i, 1), v(i, 2))); });
   grid->setVectorType(field.vectorType);
   return grid;
 }

@@ -1,8 +1,8 @@
 // A field of the source on the voxels of the target.
 #pragma once
 
+#include "innermap/transfer/carry.h"
 #include "innermap/transfer/inverse_map.h"
-#include "innermap/transfer/push.h"
 
 namespace innermap {
 

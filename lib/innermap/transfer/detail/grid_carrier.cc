@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "innermap/core/error.h"
+#include "innermap/evaluate/topology.h"
 #include "innermap/transfer/detail/carrier.h"
 #include "innermap/transfer/detail/continue_values.h"
 #include "innermap/transfer/detail/sampling.h"
@@ -16,15 +17,6 @@ constexpr int kContinuedLayers = 3;
 // In folds the determinant passes through 0; a voxel there is filled from no less of the source
 // than this, or one voxel would hold the mass of all.
 constexpr double kLeastDeterminant = 1e-2;
-
-template <class Grid>
-typename Grid::Ptr emptyLike(const Grid& grid, const openvdb::MaskGrid& region) {
-  typename Grid::Ptr out = grid.copyWithNewTree();
-  out->setTree(std::make_shared<typename Grid::TreeType>(region.tree(), grid.background(),
-                                                         openvdb::TopologyCopy()));
-  out->setTransform(region.transform().copy());
-  return out;
-}
 
 Vec3 movedVector(const Vec3& v, const Mat3& a, openvdb::VecType type) {
   switch (type) {
@@ -52,7 +44,7 @@ class GridCarrier : public Carrier {
       : Carrier({place}), grid_(std::move(grid)), sampling_(sampling), density_(density) {}
 
   openvdb::GridPtrVec makeOutput(const openvdb::MaskGrid& region) const override {
-    typename Grid::Ptr out = emptyLike(*grid_, region);
+    const openvdb::GridBase::Ptr out = emptyLike(*grid_, region);
     // Sampled at voxel centres, a staggered grid is none any more.
     if (out->getGridClass() == openvdb::GRID_STAGGERED) out->setGridClass(openvdb::GRID_UNKNOWN);
     return {out};
@@ -117,10 +109,7 @@ class GridCarrier<openvdb::MaskGrid> : public Carrier {
       : Carrier({place}), grid_(std::move(grid)) {}
 
   openvdb::GridPtrVec makeOutput(const openvdb::MaskGrid& region) const override {
-    openvdb::MaskGrid::Ptr out = grid_->copyWithNewTree();
-    out->tree().topologyUnion(region.tree());
-    out->setTransform(region.transform().copy());
-    return {out};
+    return {emptyLike(*grid_, region)};
   }
 
   void carry(const openvdb::Coord& origin, const Site* sites,
@@ -151,7 +140,7 @@ std::unique_ptr<Carrier> carrierOf(const openvdb::GridBase::Ptr& grid, std::size
   typename Grid::ConstPtr typed = openvdb::gridConstPtrCast<Grid>(grid);
   if constexpr (!std::is_same_v<Grid, openvdb::MaskGrid>)
     if (solid && isAttribute(*grid, density))
-      typed = continuedBeyond(*typed, *solid, kContinuedLayers);
+      typed = openvdb::gridPtrCast<Grid>(continuedBeyond(*grid, *solid, kContinuedLayers));
   return std::make_unique<GridCarrier<Grid>>(typed, place, sampling, density);
 }
 

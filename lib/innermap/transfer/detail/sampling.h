@@ -26,7 +26,7 @@ class PointwiseSampler {
   using Value = typename Grid::ValueType;
 
   PointwiseSampler(const Grid& grid, Sampling sampling)
-      : accessor_(grid.getConstAccessor()),
+      : accessor_(grid.tree()),
         transform_(grid.transform()),
         background_(grid.background()),
         sampling_(kIsDiscrete<Value> ? Sampling::nearest : sampling),
@@ -63,7 +63,8 @@ class PointwiseSampler {
     return Sampler::sample(accessor_, ijk);
   }
 
-  typename Grid::ConstAccessor accessor_;
+  // Not registered with the tree, which stays as it is; the registry compiles for seconds.
+  openvdb::tree::ValueAccessor<const typename Grid::TreeType, false> accessor_;
   const openvdb::math::Transform& transform_;
   Value background_;
   Sampling sampling_;

@@ -11,6 +11,7 @@
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
 #include "innermap/evaluate/active_region.h"
+#include "innermap/evaluate/topology.h"
 #include "innermap/levelset/level_set.h"
 
 namespace innermap {
@@ -58,12 +59,7 @@ openvdb::MaskTree around(const openvdb::GridPtrVec& grids, const openvdb::math::
                          std::uint64_t most, Progress* progress) {
   openvdb::MaskTree mask;
   for (const openvdb::GridBase::Ptr& grid : grids) {
-    openvdb::MaskGrid active;
-    if (!grid->apply<openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
-                                       openvdb::Int64Grid, openvdb::BoolGrid, openvdb::Vec3SGrid,
-                                       openvdb::Vec3DGrid, openvdb::Vec3IGrid, openvdb::MaskGrid>>(
-            [&](const auto& typed) { active.tree().topologyUnion(typed.tree()); }))
-      continue;
+    const openvdb::MaskTree active = activeTopology(*grid);
     const auto add = [&](const openvdb::CoordBBox& box) {
       throwIfCancelled(progress);
       mask.fill(onLattice(box, grid->transform(), lattice), true, true);
@@ -73,12 +69,12 @@ openvdb::MaskTree around(const openvdb::GridPtrVec& grids, const openvdb::math::
             "voxels; lower --outside, cut the "
             "volume off or raise --max-memory");
     };
-    for (auto leaf = active.tree().cbeginLeaf(); leaf; ++leaf) {
+    for (auto leaf = active.cbeginLeaf(); leaf; ++leaf) {
       openvdb::CoordBBox box;
       leaf->evalActiveBoundingBox(box, false);
       if (!box.empty()) add(leaf->getNodeBoundingBox());
     }
-    for (auto tile = active.tree().cbeginValueOn(); tile; ++tile) {
+    for (auto tile = active.cbeginValueOn(); tile; ++tile) {
       if (tile.isVoxelValue()) continue;
       openvdb::CoordBBox box;
       tile.getBoundingBox(box);
@@ -164,7 +160,12 @@ SourceLattice makeSourceLattice(const Solid& solid, const OutsideSettings& outsi
   settings.maxMemory = maxMemory;
   settings.progress = progress;
   out.levelSet = makeLevelSet(solid, settings);
-  out.region = activeRegion(*out.levelSet, kSkin, kVoxelBytes, maxMemory, progress);
+  RegionSettings inside;
+  inside.skin = kSkin;
+  inside.bytesPerVoxel = kVoxelBytes;
+  inside.maxMemory = maxMemory;
+  inside.progress = progress;
+  out.region = activeRegion(*out.levelSet, inside);
   if (!(outside.distance > 0)) return out;
   const double voxel = out.levelSet->voxelSize()[0];
   const std::uint64_t most = maxMemory ? maxMemory / kVoxelBytes : ~std::uint64_t{0};

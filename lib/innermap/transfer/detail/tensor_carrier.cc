@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "innermap/core/error.h"
+#include "innermap/evaluate/topology.h"
 #include "innermap/transfer/detail/carrier.h"
 #include "innermap/transfer/detail/continue_values.h"
 #include "innermap/transfer/detail/sampling.h"
@@ -42,13 +43,7 @@ class TensorCarrier : public Carrier {
 
   openvdb::GridPtrVec makeOutput(const openvdb::MaskGrid& region) const override {
     openvdb::GridPtrVec out;
-    for (const auto& part : parts_) {
-      typename Grid::Ptr grid = part->copyWithNewTree();
-      grid->setTree(std::make_shared<typename Grid::TreeType>(region.tree(), part->background(),
-                                                              openvdb::TopologyCopy()));
-      grid->setTransform(region.transform().copy());
-      out.push_back(grid);
-    }
+    for (const auto& part : parts_) out.push_back(emptyLike(*part, region));
     return out;
   }
 
@@ -104,7 +99,9 @@ std::unique_ptr<Carrier> carrierOf(const openvdb::GridPtrVec& parts,
     if (!grid)
       throw DataError("grid \"" + part->getName() + "\": is of another type (" + part->type() +
                       ") than the other parts of its tensor, " + Grid::gridType());
-    typed.push_back(solid ? continuedBeyond(*grid, *solid, kContinuedLayers) : grid);
+    typed.push_back(
+        solid ? openvdb::gridPtrCast<Grid>(continuedBeyond(*grid, *solid, kContinuedLayers))
+              : grid);
   }
   return std::make_unique<TensorCarrier<Grid>>(std::move(typed), std::move(places), stress,
                                                sampling);

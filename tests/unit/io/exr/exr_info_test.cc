@@ -16,6 +16,9 @@ TEST(ExrInfo, BadFilesAreFileErrors) {
       "v", openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(9)), [](auto) { return 1.0f; });
   writeExrSlices(folder.file("s.exr"), {grid}, {});
   EXPECT_EQ(readExrInfo(folder.file("s.exr")).size(), 10u);
+  const std::string text = describe(readExrInfo(folder.file("s.exr")), "s.exr");
+  EXPECT_EQ(text.substr(0, text.find('\n')), "s.exr: EXR, 10 parts");
+  EXPECT_NE(text.find("10 x 10: mask.V, v.V"), std::string::npos) << text;
   const std::string whole = test::contents(folder.file("s.exr"));
   EXPECT_THROW(readExrInfo(folder.file("missing.exr")), FileError);
   for (const std::size_t length : {0, 3, 8, 40, 200}) {

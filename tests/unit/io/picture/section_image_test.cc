@@ -99,10 +99,10 @@ TEST(SectionImage, ConstantsVectorsAndNaNsWork) {
   EXPECT_LT(r.lower, r.upper);
   const auto map = block<openvdb::Vec3SGrid>(
       "map", box, [](auto c) { return openvdb::Vec3f(3 * c.x(), 4 * c.x(), c.z()); });
-  settings.component = Component::kY;
+  settings.component = Component::y;
   r = writeSectionImage(folder.file("m.png"), {map}, settings);
   EXPECT_EQ(r.most, 36);
-  settings.component = Component::kLength;
+  settings.component = Component::length;
   settings.at = 0;
   r = writeSectionImage(folder.file("m.png"), {map}, settings);
   EXPECT_EQ(r.most, 45);

@@ -117,9 +117,9 @@ TEST_P(VdbFile, ReadsWhatOpenVdbWrites) {
   const openvdb::GridPtrVec grids = everyType();
   openvdb::io::File file(folder.file("a.vdb"));
   file.setCompression(openvdb::io::COMPRESS_ACTIVE_MASK |
-                      (GetParam() == VdbCompression::kZip     ? openvdb::io::COMPRESS_ZIP
-                       : GetParam() == VdbCompression::kBlosc ? openvdb::io::COMPRESS_BLOSC
-                                                              : openvdb::io::COMPRESS_NONE));
+                      (GetParam() == VdbCompression::zip     ? openvdb::io::COMPRESS_ZIP
+                       : GetParam() == VdbCompression::blosc ? openvdb::io::COMPRESS_BLOSC
+                                                             : openvdb::io::COMPRESS_NONE));
   openvdb::GridPtrVec written = grids;
   written.push_back(grids[1]->copyGrid());  // shares its tree: an instance
   written.back()->setName("twin");
@@ -132,8 +132,8 @@ TEST_P(VdbFile, ReadsWhatOpenVdbWrites) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Compressions, VdbFile,
-                         ::testing::Values(VdbCompression::kNone, VdbCompression::kZip,
-                                           VdbCompression::kBlosc));
+                         ::testing::Values(VdbCompression::none, VdbCompression::zip,
+                                           VdbCompression::blosc));
 
 TEST(VdbFileNames, ReadsOnlyWhatIsAskedFor) {
   const TemporaryFolder folder;
@@ -161,15 +161,15 @@ TEST(VdbFileNames, RenamesForBlenderAndLeavesTheGridsAlone) {
   const auto colour =
       block<openvdb::Vec3SGrid>("Cd", kBox, [](auto) { return openvdb::Vec3f(1, 0, 0); });
   VdbWriteSettings settings;
-  settings.names = NamingScheme::kBlender;
+  settings.names = NamingScheme::blender;
   writeVdb(folder.file("a.vdb"), {colour}, {}, settings);
   EXPECT_EQ(colour->getName(), "Cd");
   EXPECT_EQ(readVdb(folder.file("a.vdb")).grids[0]->getName(), "color");
-  EXPECT_EQ(gridName("map", NamingScheme::kBlender), "map");
-  EXPECT_EQ(gridName("Cd", NamingScheme::kHoudini), "Cd");
-  EXPECT_EQ(gridName("velocity", NamingScheme::kHoudini), "v");
-  EXPECT_EQ(gridName("velocity", NamingScheme::kBlender), "velocity");
-  EXPECT_EQ(parseNamingScheme("--names", "houdini"), NamingScheme::kHoudini);
+  EXPECT_EQ(gridName("map", NamingScheme::blender), "map");
+  EXPECT_EQ(gridName("Cd", NamingScheme::houdini), "Cd");
+  EXPECT_EQ(gridName("velocity", NamingScheme::houdini), "v");
+  EXPECT_EQ(gridName("velocity", NamingScheme::blender), "velocity");
+  EXPECT_EQ(parseNamingScheme("--names", "houdini"), NamingScheme::houdini);
   EXPECT_THROW(parseNamingScheme("--names", "maya"), SettingError);
 }
 
@@ -190,6 +190,10 @@ TEST(VdbFileInfo, TellsWithoutReading) {
   const openvdb::GridPtrVec grids = everyType();
   writeVdb(folder.file("a.vdb"), grids);
   const VdbInfo info = readVdbInfo(folder.file("a.vdb"));
+  EXPECT_EQ(readMemory(info, {info.grids[0].name}), info.grids[0].memory);
+  EXPECT_GT(readMemory(info), info.grids[0].memory);
+  EXPECT_EQ(describe(info, "a.vdb").substr(0, 14), "a.vdb: OpenVDB");
+  EXPECT_GT(describe(info, "a.vdb", true).size(), describe(info, "a.vdb").size());
   ASSERT_EQ(info.grids.size(), grids.size());
   EXPECT_EQ(info.grids[0].name, "surface");
   EXPECT_EQ(info.grids[0].type, "float");
@@ -286,7 +290,7 @@ TEST(VdbFileDamage, FlippedBytesNeverCrash) {
   const TemporaryFolder folder;
   openvdb::GridPtrVec grids = everyType();
   for (const VdbCompression compression :
-       {VdbCompression::kNone, VdbCompression::kZip, VdbCompression::kBlosc}) {
+       {VdbCompression::none, VdbCompression::zip, VdbCompression::blosc}) {
     VdbWriteSettings settings;
     settings.compression = compression;
     writeVdb(folder.file("a.vdb"), grids, {}, settings);

@@ -1,5 +1,3 @@
-#include "innermap/io/volume/volume_texture_read.h"
-
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
@@ -16,6 +14,7 @@
 #include <limits>
 
 #include "innermap/core/error.h"
+#include "innermap/io/volume/volume_texture.h"
 #include "io/test_files.h"
 
 namespace innermap {
@@ -113,8 +112,7 @@ void expectSameGrids(const openvdb::GridPtrVec& a, const openvdb::GridPtrVec& b)
 
 TEST(VolumeTextureRead, EveryTypeComesBackFromEveryLayout) {
   const openvdb::GridPtrVec grids = oneOfEachType();
-  for (const VolumeLayout layout :
-       {VolumeLayout::kAtlas, VolumeLayout::kSlices, VolumeLayout::kParts})
+  for (const VolumeLayout layout : {VolumeLayout::atlas, VolumeLayout::slices, VolumeLayout::parts})
     for (const int axis : {0, 1, 2}) {
       SCOPED_TRACE(volumeLayoutName(layout) + " " + std::to_string(axis));
       const TemporaryFolder folder;
@@ -135,7 +133,7 @@ TEST(VolumeTextureRead, EveryTypeComesBackFromEveryLayout) {
 TEST(VolumeTextureRead, AnyFileOfTheSlicesOrTheirPatternServes) {
   const TemporaryFolder folder;
   VolumeTextureSettings settings;
-  settings.layout = VolumeLayout::kSlices;
+  settings.layout = VolumeLayout::slices;
   const auto r = writeVolumeTexture(folder.file("v2.%03d.exr"), {scalar()}, settings);
   for (const std::string& path : {r.files[0], r.files[5], folder.file("v2.###.exr")})
     expectSameGrids({scalar()}, readVolumeTexture(path).grids);
@@ -345,7 +343,7 @@ TEST(VolumeTextureRead, GridsAreChosenByName) {
 TEST(VolumeTextureRead, TruncatedAndDamagedFilesAreRefused) {
   const TemporaryFolder folder;
   const std::string bad = folder.file("b.exr");
-  for (const VolumeLayout layout : {VolumeLayout::kAtlas, VolumeLayout::kParts}) {
+  for (const VolumeLayout layout : {VolumeLayout::atlas, VolumeLayout::parts}) {
     VolumeTextureSettings settings;
     settings.layout = layout;
     writeVolumeTexture(folder.file("a.exr"), {scalar()}, settings);

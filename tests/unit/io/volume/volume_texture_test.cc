@@ -148,14 +148,14 @@ TEST(VolumeTexture, ChannelsAreWhatEnginesLookFor) {
   using Names = std::vector<std::string>;
   const auto a = scalar("a"), b = scalar("b"), c = scalar("c"), d = scalar("d");
   const auto colour = vectors("Cd"), v = vectors("v");
-  EXPECT_EQ(names({a}, VolumeChannels::kAuto), Names{"Y"});
-  EXPECT_EQ(names({a, b}, VolumeChannels::kAuto), (Names{"R", "G"}));
-  EXPECT_EQ(names({a, b, c, d}, VolumeChannels::kAuto), (Names{"R", "G", "B", "A"}));
-  EXPECT_EQ(names({a, colour}, VolumeChannels::kAuto), (Names{"A", "R", "G", "B"}));
-  EXPECT_EQ(names({colour, v}, VolumeChannels::kAuto),
+  EXPECT_EQ(names({a}, VolumeChannels::automatic), Names{"Y"});
+  EXPECT_EQ(names({a, b}, VolumeChannels::automatic), (Names{"R", "G"}));
+  EXPECT_EQ(names({a, b, c, d}, VolumeChannels::automatic), (Names{"R", "G", "B", "A"}));
+  EXPECT_EQ(names({a, colour}, VolumeChannels::automatic), (Names{"A", "R", "G", "B"}));
+  EXPECT_EQ(names({colour, v}, VolumeChannels::automatic),
             (Names{"Cd.R", "Cd.G", "Cd.B", "v.X", "v.Y", "v.Z"}));
-  EXPECT_EQ(names({a}, VolumeChannels::kLayers), Names{"a.V"});
-  EXPECT_THROW(names({colour, v}, VolumeChannels::kRgba), SettingError);
+  EXPECT_EQ(names({a}, VolumeChannels::layers), Names{"a.V"});
+  EXPECT_THROW(names({colour, v}, VolumeChannels::rgba), SettingError);
 }
 
 TEST(VolumeTexture, BoxesGrowToCubesAndPowersOfTwo) {
@@ -219,7 +219,7 @@ TEST(VolumeTexture, ResamplingKeepsLinearFunctionsAndMeans) {
       "v", box, [&](auto c) { return linear(c.asVec3d() * 0.25); }, 0.25);
   for (const int n : {16, 20, 48}) {
     VolumeTextureSettings settings;
-    settings.layout = VolumeLayout::kParts;
+    settings.layout = VolumeLayout::parts;
     settings.resolution = n;
     const auto r = writeVolumeTexture(folder.file("p.exr"), {grid}, settings);
     EXPECT_EQ(r.resolution.x(), n);
@@ -268,7 +268,7 @@ TEST(VolumeTexture, ValuesThatPixelsDoNotHoldAreCounted) {
 TEST(VolumeTexture, SlicesAreNumberedFiles) {
   const TemporaryFolder folder;
   VolumeTextureSettings settings;
-  settings.layout = VolumeLayout::kSlices;
+  settings.layout = VolumeLayout::slices;
   auto r = writeVolumeTexture(folder.file("s.##.exr"), {scalar()}, settings);
   ASSERT_EQ(r.files.size(), 12u);
   EXPECT_EQ(r.files[7], folder.file("s.07.exr"));
@@ -293,7 +293,7 @@ TEST(VolumeTexture, RefusesBeforeItWrites) {
   EXPECT_THROW(writeVolumeTexture(path, {scalar("a"), scalar("a")},
                                   [] {
                                     VolumeTextureSettings s;
-                                    s.channels = VolumeChannels::kLayers;
+                                    s.channels = VolumeChannels::layers;
                                     return s;
                                   }()),
                DataError);
@@ -303,7 +303,7 @@ TEST(VolumeTexture, RefusesBeforeItWrites) {
   Progress progress;
   progress.cancel();
   for (const VolumeLayout layout :
-       {VolumeLayout::kAtlas, VolumeLayout::kSlices, VolumeLayout::kParts}) {
+       {VolumeLayout::atlas, VolumeLayout::slices, VolumeLayout::parts}) {
     settings = {};
     settings.layout = layout;
     settings.progress = &progress;
@@ -317,7 +317,7 @@ TEST(VolumeTexture, NoticesAFullDisk) {
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
   for (const VolumeLayout layout :
-       {VolumeLayout::kAtlas, VolumeLayout::kSlices, VolumeLayout::kParts}) {
+       {VolumeLayout::atlas, VolumeLayout::slices, VolumeLayout::parts}) {
     const TemporaryFolder folder;
     VolumeTextureSettings settings;
     settings.layout = layout;
@@ -332,6 +332,28 @@ TEST(VolumeTexture, NoticesAFullDisk) {
       EXPECT_EQ(folder.count(), r.files.size());
     }
   }
+}
+
+TEST(VolumeTexture, IsDescribedAndDoubted) {
+  VolumeTextureResult r;
+  r.width = 20000;
+  r.height = r.tileWidth = r.tileHeight = 8;
+  r.slices = 4;
+  r.channels = {"R", "G"};
+  r.clamped = 3;
+  VolumeTextureSettings settings;
+  settings.half = true;
+  const std::string text = describe(r, "a.exr", settings);
+  EXPECT_NE(text.find("a.exr: 1 x 1 tiles of 8 x 8, 20000 x 8 pixels\n4 slices along z"),
+            std::string::npos)
+      << text;
+  const std::vector<std::string> warnings = warningsOf(r, "a.exr", settings);
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_NE(warnings[0].find("3 values"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[1].find("--resolution"), std::string::npos) << warnings[1];
+  r.width = 8;
+  r.clamped = 0;
+  EXPECT_TRUE(warningsOf(r, "a.exr", settings).empty());
 }
 
 }  // namespace

@@ -8,34 +8,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 
 #include "innermap/core/error.h"
-#include "innermap/io/picture/detail/bitmap_font.h"
+#include "innermap/core/file.h"
+#include "innermap/io/picture/label_font.h"
 
 namespace innermap {
 namespace {
-
-// OpenImageIO searches the whole system for a font when the usual place has none; that takes half
-// a second, so only the usual places are asked.
-const std::string& fontPath() {
-  static const std::string path = [] {
-    for (const char* candidate :
-         {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/TTF/DejaVuSans.ttf",
-          "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
-          "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"}) {
-      std::error_code ignored;
-      if (std::filesystem::is_regular_file(candidate, ignored) &&
-          OIIO::ImageBufAlgo::text_size("0", 16, candidate).defined())
-        return std::string(candidate);
-    }
-    return std::string();
-  }();
-  return path;
-}
-
-int bitmapScale(int size) { return std::max(1, size / 9); }
 
 std::string printable(const std::string& text) {
   std::string result = text;
@@ -90,29 +70,17 @@ void Picture::frame(int x0, int y0, int x1, int y1, Rgb colour) {
 }
 
 void Picture::text(int x, int y, const std::string& text, int size, Rgb colour, Align align) {
+  if (labelFont().empty()) return;
   const std::string line = printable(text);
-  if (align != Align::kLeft) {
+  if (align != Align::left) {
     const int width = textWidth(line, size);
-    x -= align == Align::kRight ? width : width / 2;
+    x -= align == Align::right ? width : width / 2;
   }
-  if (!fontPath().empty()) {
-    OIIO::ImageBuf buffer(OIIO::ImageSpec(width_, height_, 3, OIIO::TypeDesc::FLOAT),
-                          pixels_.data());
-    if (OIIO::ImageBufAlgo::render_text(buffer, x, y, line, size, fontPath(), colour)) return;
-  }
-  const int scale = bitmapScale(size);
-  for (const char c : line) {
-    const auto& rows = glyph(c);
-    for (int r = 0; r < kGlyphHeight; ++r)
-      for (int k = 0; k < kGlyphWidth; ++k)
-        if (rows[r] >> (kGlyphWidth - 1 - k) & 1)
-          fill(x + k * scale, y + (r - kGlyphHeight) * scale, x + (k + 1) * scale,
-               y + (r - kGlyphHeight + 1) * scale, colour);
-    x += (kGlyphWidth + 1) * scale;
-  }
+  OIIO::ImageBuf buffer(OIIO::ImageSpec(width_, height_, 3, OIIO::TypeDesc::FLOAT), pixels_.data());
+  OIIO::ImageBufAlgo::render_text(buffer, x, y, line, size, labelFont(), colour);
 }
 
-std::vector<unsigned char> Picture::png() const {
+void Picture::write(const std::string& path) const {
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
   OIIO::Filesystem::IOProxy* proxy = &memory;
@@ -127,17 +95,20 @@ std::vector<unsigned char> Picture::png() const {
       OIIO::ImageOutput::create("memory.png", &memory);
   if (!output || !output->open("memory.png", spec) ||
       !output->write_image(OIIO::TypeDesc::UINT8, pixels.data()) || !output->close())
-    throw Error("the picture cannot be encoded as PNG (" +
-                (output ? output->geterror() : OIIO::geterror()) + ")");
-  return bytes;
+    throw FileError(path, "the picture cannot be encoded as PNG (" +
+                              (output ? output->geterror() : OIIO::geterror()) + ")");
+  writeWholeFile(path, [&](std::ostream& file) {
+    file.write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+  });
 }
 
 int textWidth(const std::string& text, int size) {
-  if (!fontPath().empty()) {
-    const OIIO::ROI roi = OIIO::ImageBufAlgo::text_size(printable(text), size, fontPath());
+  if (!labelFont().empty()) {
+    const OIIO::ROI roi = OIIO::ImageBufAlgo::text_size(printable(text), size, labelFont());
     if (roi.defined()) return roi.xend;
   }
-  return static_cast<int>(text.size()) * (kGlyphWidth + 1) * bitmapScale(size);
+  return static_cast<int>(text.size()) * size * 3 / 5;
 }
 
 std::vector<double> tickValues(double lower, double upper, int count) {

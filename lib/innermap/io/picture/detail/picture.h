@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <ostream>
 #include <string>
 #include <vector>
 
@@ -15,7 +14,7 @@ using Rgb = std::array<float, 3>;  // sRGB, 0..1
 // RdYlBu (Cynthia Brewer, Apache-2.0) turned round, interpolated.
 Rgb rampColour(double t);
 
-enum class Align { kLeft, kCentre, kRight };
+enum class Align { left, centre, right };
 
 class Picture {
  public:
@@ -29,19 +28,18 @@ class Picture {
   void fill(int x0, int y0, int x1, int y1, Rgb colour);   // [x0, x1) x [y0, y1)
   void frame(int x0, int y0, int x1, int y1, Rgb colour);  // one pixel wide, outside the box
 
-  // Text with its baseline at y. DejaVu Sans where it is installed, else a small font of our own.
-  void text(int x, int y, const std::string& text, int size, Rgb colour,
-            Align align = Align::kLeft);
+  // Text with its baseline at y; nothing where no font is installed (see labelFont).
+  void text(int x, int y, const std::string& text, int size, Rgb colour, Align align = Align::left);
 
-  // PNG, 8 bits. Throws Error when the encoder fails.
-  std::vector<unsigned char> png() const;
+  // Writes a PNG, 8 bits; it appears whole or not at all. Throws FileError.
+  void write(const std::string& path) const;
 
  private:
   int width_, height_;
   std::vector<float> pixels_;  // #height * #width * 3
 };
 
-// Width of a text in pixels.
+// Width of a text in pixels; about that when no font is installed.
 int textWidth(const std::string& text, int size);
 
 // About `count` round numbers in [lower, upper].

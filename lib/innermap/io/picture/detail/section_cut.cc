@@ -1,26 +1,21 @@
 #include "innermap/io/picture/detail/section_cut.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-
-#include "innermap/core/error.h"
 
 namespace innermap {
 namespace {
 
 // One channel of the layer: a scalar, a component, the length; or all three of a colour.
 std::vector<std::vector<float>> channelsOf(const openvdb::GridBase& grid, const SliceFrame& frame,
-                                           int layer, Component component, bool colour) {
+                                           int layer, const SectionPart& part) {
   std::vector<SliceChannel> slices = sliceGrid(grid, frame, layer);
   std::vector<std::vector<float>> out;
-  if (slices.size() == 1 || colour) {
+  if (slices.size() == 1 || part.colour) {
     for (SliceChannel& slice : slices) out.push_back(std::move(slice.values));
     return out;
   }
-  if (component != Component::kLength)
-    return {std::move(slices[static_cast<std::size_t>(component)].values)};
+  if (part.component) return {std::move(slices[static_cast<std::size_t>(*part.component)].values)};
   std::vector<float> lengths(slices[0].values.size());
   for (std::size_t i = 0; i < lengths.size(); ++i)
     lengths[i] = std::hypot(slices[0].values[i], slices[1].values[i], slices[2].values[i]);
@@ -29,7 +24,7 @@ std::vector<std::vector<float>> channelsOf(const openvdb::GridBase& grid, const 
 
 // The grid at a layer that may lie between two: both, weighted where active.
 SectionField fieldAt(const openvdb::GridBase::Ptr& grid, const SliceFrame& frame, double layer,
-                     Component component, bool colour = false) {
+                     const SectionPart& part = {}) {
   const int below = static_cast<int>(std::floor(layer));
   const float share = static_cast<float>(layer - below);
   const bool everywhere = grid->getGridClass() == openvdb::GRID_LEVEL_SET;
@@ -39,7 +34,7 @@ SectionField fieldAt(const openvdb::GridBase::Ptr& grid, const SliceFrame& frame
   for (int k = 0; k < 2; ++k) {
     const float weight = k == 0 ? 1 - share : share;
     if (weight == 0) continue;
-    const auto channels = channelsOf(*grid, frame, below + k, component, colour);
+    const auto channels = channelsOf(*grid, frame, below + k, part);
     field.channels.resize(channels.size(), std::vector<float>(size, 0.0f));
     const std::vector<float> mask =
         everywhere ? std::vector<float>(size, 1.0f) : sliceMask({grid}, frame, below + k);
@@ -57,27 +52,16 @@ SectionField fieldAt(const openvdb::GridBase::Ptr& grid, const SliceFrame& frame
 std::vector<float> insideAt(const openvdb::GridPtrVec& grids, const SectionCut& cut) {
   if (const auto surface = gridNamed(grids, "surface")) {
     const double voxel = cut.frame.transform->voxelSize().x();
-    SectionField f = fieldAt(surface, cut.frame, cut.layer, Component::kLength);
+    SectionField f = fieldAt(surface, cut.frame, cut.layer);
     for (float& v : f.channels[0]) v = static_cast<float>(-v / voxel);
     return std::move(f.channels[0]);
   }
   if (const auto density = gridNamed(grids, "density")) {
-    SectionField f = fieldAt(density, cut.frame, cut.layer, Component::kLength);
+    SectionField f = fieldAt(density, cut.frame, cut.layer);
     for (float& v : f.channels[0]) v -= 0.5f;
     return std::move(f.channels[0]);
   }
   return {};
-}
-
-double layerFor(const SliceFrame& frame, const SectionSettings& s) {
-  const int lower = frame.box.min()[frame.axis], upper = frame.box.max()[frame.axis];
-  if (!s.position) return std::clamp(lower + s.at * (upper - lower), double(lower), double(upper));
-  const double layer = frame.layerAt(*s.position);
-  if (!(layer >= lower - 0.5 && layer <= upper + 0.5))
-    throw SettingError("position",
-                       fmt::format("{:g} is outside the grids; give a coordinate from {:g} to {:g}",
-                                   *s.position, frame.position(lower), frame.position(upper)));
-  return std::clamp(layer, double(lower), double(upper));
 }
 
 }  // namespace
@@ -89,11 +73,11 @@ openvdb::GridBase::Ptr gridNamed(const openvdb::GridPtrVec& grids, const std::st
 }
 
 SectionCut cutThrough(const openvdb::GridBase::Ptr& grid, const openvdb::GridPtrVec& needed,
-                      const SliceFrame& frame, const SectionSettings& settings) {
+                      const SliceFrame& frame, double layer, const SectionPart& part) {
   SectionCut cut;
   cut.frame = frame;
-  cut.layer = layerFor(frame, settings);
-  cut.shown = fieldAt(grid, frame, cut.layer, settings.component, settings.colour);
+  cut.layer = layer;
+  cut.shown = fieldAt(grid, frame, layer, part);
   cut.inside = insideAt(needed, cut);
   return cut;
 }

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/io/picture/section_image.h"
 #include "innermap/io/slice.h"
 
 namespace innermap {
@@ -28,10 +27,17 @@ struct SectionCut {
   std::vector<float> inside;  // positive inside the solid; empty: the weights tell
 };
 
-// The cut that the settings mean through `grid`; `needed` holds it and the solid's grids. Throws
-// SettingError for a position beyond the grids.
+// What of a vector grid is shown: a component (0, 1, 2), its length when unset, or all three as a
+// colour. Scalars are shown as they are.
+struct SectionPart {
+  std::optional<int> component;
+  bool colour = false;
+};
+
+// The cut at a layer, which may lie between two, through `grid`; `needed` holds it and the solid's
+// grids.
 SectionCut cutThrough(const openvdb::GridBase::Ptr& grid, const openvdb::GridPtrVec& needed,
-                      const SliceFrame& frame, const SectionSettings& settings);
+                      const SliceFrame& frame, double layer, const SectionPart& part);
 
 // Finite values inside the solid, ascending; of a colour, of all its channels.
 std::vector<float> valuesInside(const SectionCut& cut);

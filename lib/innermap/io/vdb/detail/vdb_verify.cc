@@ -19,12 +19,12 @@ constexpr std::uint32_t kZip = 1, kActiveMask = 2, kBlosc = 4;
 constexpr std::int64_t kMagic = 0x56444220;
 constexpr std::uint32_t kMostGrids = 10000;
 
-enum class LeafKind { kValues, kBool, kMask };
+enum class LeafKind { values, truth, mask };
 
 struct ValueType {
   std::uint64_t size = 0;      // of a value in memory and in the file
   std::uint64_t halfSize = 0;  // in the file when saved as half floats
-  LeafKind leaf = LeafKind::kValues;
+  LeafKind leaf = LeafKind::values;
 };
 
 std::optional<ValueType> valueTypeOf(const std::string& gridType) {
@@ -32,8 +32,8 @@ std::optional<ValueType> valueTypeOf(const std::string& gridType) {
                                                          {"double", {8, 2}},
                                                          {"int32", {4, 4}},
                                                          {"int64", {8, 8}},
-                                                         {"bool", {1, 1, LeafKind::kBool}},
-                                                         {"mask", {1, 1, LeafKind::kMask}},
+                                                         {"bool", {1, 1, LeafKind::truth}},
+                                                         {"mask", {1, 1, LeafKind::mask}},
                                                          {"vec3s", {12, 6}},
                                                          {"vec3d", {24, 6}},
                                                          {"vec3i", {12, 12}}};
@@ -272,15 +272,15 @@ class Verifier {
   void leafTopology(const Origin& origin) {
     skip(64);
     ++leaves_;
-    memory_ += (type_.leaf == LeafKind::kValues ? 512 * type_.size : 64) + 144;
-    if (type_.leaf != LeafKind::kValues) origins_.push_back(origin);
+    memory_ += (type_.leaf == LeafKind::values ? 512 * type_.size : 64) + 144;
+    if (type_.leaf != LeafKind::values) origins_.push_back(origin);
   }
 
   void leafBuffer(std::uint64_t leaf) {
     const Mask<512> values = mask<512>();
-    if (type_.leaf == LeafKind::kValues) return compressedValues<512>(values);
+    if (type_.leaf == LeafKind::values) return compressedValues<512>(values);
     if (read<Origin>() != origins_[leaf]) damaged("a leaf node has a wrong place");
-    if (type_.leaf == LeafKind::kBool) skip(64);
+    if (type_.leaf == LeafKind::truth) skip(64);
   }
 
   template <std::size_t N>

@@ -25,7 +25,7 @@ void checkSettings(const VolumeTextureSettings& s) {
     throw SettingError("resolution", "is out of range; give a number of voxels from 1 to 8192");
   if (s.tiles && (s.tiles->first < 1 || s.tiles->second < 1))
     throw SettingError("tiles", "must be 1 at least in each direction");
-  if (s.tiles && s.layout != VolumeLayout::kAtlas)
+  if (s.tiles && s.layout != VolumeLayout::atlas)
     throw SettingError("tiles", "is for the layout atlas");
 }
 
@@ -94,7 +94,7 @@ void placeLattice(const SliceFrame& frame, const VolumeTextureSettings& s, Volum
 }
 
 void placeTiles(const VolumeTextureSettings& s, VolumeLattice& lattice) {
-  if (s.layout != VolumeLayout::kAtlas) return;
+  if (s.layout != VolumeLayout::atlas) return;
   const int slices = lattice.slices();
   std::tie(lattice.tileColumns, lattice.tileRows) =
       s.tiles ? *s.tiles : nearSquareTiles(lattice.width(), lattice.height(), slices);
@@ -156,11 +156,11 @@ void nameAsColours(std::vector<VolumeGrid>& grids) {
 void nameChannels(const VolumeTextureSettings& s, std::vector<VolumeGrid>& grids) {
   std::size_t components = 0;
   for (const VolumeGrid& grid : grids) components += grid.channels.size();
-  if (s.channels == VolumeChannels::kRgba && components > 4)
+  if (s.channels == VolumeChannels::rgba && components > 4)
     throw SettingError("channels", fmt::format("the grids have {} components, which do not fit "
                                                "R, G, B, A; choose fewer grids or layers",
                                                components));
-  if (s.channels != VolumeChannels::kLayers && components <= 4) nameAsColours(grids);
+  if (s.channels != VolumeChannels::layers && components <= 4) nameAsColours(grids);
   if (s.active)
     for (VolumeGrid& grid : grids) grid.activeChannel = grid.name + ".active";
 }

@@ -63,7 +63,7 @@ VolumeSource::VolumeSource(const std::string& path, const VolumeTextureReadSetti
   openFirst(path);
   const VolumeAttributes attributes = readVolumeAttributes(reader_->path(), reader_->header(0));
   fixLayout(attributes);
-  if (layout_ == VolumeLayout::kSlices) findFiles(path, attributes);
+  if (layout_ == VolumeLayout::slices) findFiles(path, attributes);
   fixTiles(attributes);
   fixPlace(attributes);
   fixGrids(attributes);
@@ -92,14 +92,14 @@ void VolumeSource::fixLayout(const VolumeAttributes& a) {
   else if (a.layout)
     layout_ = layoutOf(reader_->path(), *a.layout);
   else if (patternGiven_)
-    layout_ = VolumeLayout::kSlices;
+    layout_ = VolumeLayout::slices;
   else
-    layout_ = reader_->parts() > 1 ? VolumeLayout::kParts : VolumeLayout::kAtlas;
-  if (patternGiven_ && layout_ != VolumeLayout::kSlices)
+    layout_ = reader_->parts() > 1 ? VolumeLayout::parts : VolumeLayout::atlas;
+  if (patternGiven_ && layout_ != VolumeLayout::slices)
     throw FileError(reader_->path(), fmt::format("is of the layout {}, not a file of slices; give "
                                                  "its own path",
                                                  volumeLayoutName(layout_)));
-  if (layout_ != VolumeLayout::kParts && reader_->parts() != 1)
+  if (layout_ != VolumeLayout::parts && reader_->parts() != 1)
     throw FileError(reader_->path(),
                     fmt::format("has {} parts, where {} have one; give --layout parts",
                                 reader_->parts(), volumeLayoutName(layout_)));
@@ -135,17 +135,17 @@ int VolumeSource::countFiles() const {
 }
 
 int VolumeSource::fixCount(const VolumeAttributes& a) const {
-  const int places = layout_ == VolumeLayout::kAtlas   ? lattice_.tileColumns * lattice_.tileRows
-                     : layout_ == VolumeLayout::kParts ? reader_->parts()
-                                                       : countFiles();
+  const int places = layout_ == VolumeLayout::atlas   ? lattice_.tileColumns * lattice_.tileRows
+                     : layout_ == VolumeLayout::parts ? reader_->parts()
+                                                      : countFiles();
   const int count = settings_.slices.value_or(a.sliceCount.value_or(places));
   const char* what = settings_.slices ? "--slices" : "attribute 'volumeSliceCount'";
   if (count < 1 || count > places)
     throw FileError(reader_->path(),
                     fmt::format("{} is {}, but there are {} {}", what, count, places,
-                                layout_ == VolumeLayout::kAtlas   ? "tiles"
-                                : layout_ == VolumeLayout::kParts ? "parts"
-                                                                  : "files numbered in a row"));
+                                layout_ == VolumeLayout::atlas   ? "tiles"
+                                : layout_ == VolumeLayout::parts ? "parts"
+                                                                 : "files numbered in a row"));
   if (count > kLongestSide)
     throw FileError(reader_->path(),
                     fmt::format("has {} slices; at most {} are read", count, kLongestSide));
@@ -157,7 +157,7 @@ void VolumeSource::fixTiles(const VolumeAttributes& a) {
   lattice_.setAxis(settings_.axis.value_or(a.axis.value_or(2)));
   lattice_.rowsUp = settings_.rowsUp.value_or(a.rowsUp.value_or(false));
   const int width = reader_->width(0), height = reader_->height(0);
-  if (layout_ == VolumeLayout::kAtlas) {
+  if (layout_ == VolumeLayout::atlas) {
     if (!settings_.tiles && !a.tiles)
       throw FileError(path,
                       "has no attribute 'volumeTiles'; give --tiles COLUMNSxROWS (or, for "
@@ -277,7 +277,7 @@ bool VolumeSource::half(const VolumeGrid& grid) const {
 }
 
 std::uint64_t VolumeSource::memory() const {
-  const std::uint64_t row = layout_ == VolumeLayout::kAtlas
+  const std::uint64_t row = layout_ == VolumeLayout::atlas
                                 ? std::uint64_t(reader_->width(0)) *
                                       std::uint64_t(lattice_.height()) * channels_.size() * 4
                                 : 0;
@@ -287,8 +287,8 @@ std::uint64_t VolumeSource::memory() const {
 void VolumeSource::checkSlice(int slice, int part) const {
   const std::string& path = reader_->path();
   const auto fail = [&](const std::string& what) {
-    throw FileError(
-        path, layout_ == VolumeLayout::kParts ? fmt::format("part {}: {}", part, what) : what);
+    throw FileError(path,
+                    layout_ == VolumeLayout::parts ? fmt::format("part {}: {}", part, what) : what);
   };
   if (reader_->width(part) != lattice_.width() || reader_->height(part) != lattice_.height())
     fail(fmt::format("has {} x {} pixels where the first slice has {} x {}", reader_->width(part),
@@ -307,11 +307,11 @@ void VolumeSource::checkSlice(int slice, int part) const {
 
 void VolumeSource::read(int slice, const std::vector<float*>& outputs) {
   throwIfCancelled(settings_.progress);
-  if (layout_ == VolumeLayout::kAtlas) return readTile(slice, outputs);
-  if (layout_ == VolumeLayout::kSlices && slice > 0)
+  if (layout_ == VolumeLayout::atlas) return readTile(slice, outputs);
+  if (layout_ == VolumeLayout::slices && slice > 0)
     reader_ = std::make_unique<ExrReader>(files_->path(std::int64_t(firstFile_) + slice),
                                           settings_.progress);
-  const int part = layout_ == VolumeLayout::kParts ? slice : 0;
+  const int part = layout_ == VolumeLayout::parts ? slice : 0;
   checkSlice(slice, part);
   reader_->read(part, 0, lattice_.height(), channels_, outputs);
 }

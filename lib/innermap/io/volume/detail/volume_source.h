@@ -11,7 +11,7 @@
 #include "innermap/io/exr/detail/exr_reader.h"
 #include "innermap/io/volume/detail/volume_attributes.h"
 #include "innermap/io/volume/detail/volume_lattice.h"
-#include "innermap/io/volume/volume_texture_read.h"
+#include "innermap/io/volume/volume_texture.h"
 
 namespace innermap {
 
@@ -47,7 +47,7 @@ class VolumeSource {
   int countFiles() const;
 
   const VolumeTextureReadSettings& settings_;
-  VolumeLayout layout_ = VolumeLayout::kAtlas;
+  VolumeLayout layout_ = VolumeLayout::atlas;
   VolumeLattice lattice_;
   std::vector<VolumeGrid> grids_;
   std::vector<std::string> channels_;

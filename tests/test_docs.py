@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Checks the pages (*.md, but in build folders): every relative link and picture is there, with its
-heading where the link names one; every picture has a text in its place; README.md is short.
+heading where the link names one; every picture has a text in its place; README.md is short; README.md
+and CONTRIBUTING.md are there, and to all others some page links.
 
-    docs_links.py [ROOT]      exit code 1 and one line for each finding
+    test_docs.py [ROOT]      exit code 1 and one line for each finding
 """
 import re
 import sys
@@ -30,27 +31,35 @@ def anchors(text):
 
 
 def findings(root):
+    linked = {root / "README.md"}
+    for name in ["README.md", "CONTRIBUTING.md"]:
+        if not (root / name).exists():
+            yield f"{name}: is not there"
     for page in pages(root):
         text = page.read_text(encoding="utf-8")
-        name = page.relative_to(root)
-        if str(name) == "README.md" and text.count("\n") > README_LINES:
-            yield f"README.md: {text.count(chr(10))} lines, over {README_LINES}"
+        name, lines = page.relative_to(root), text.count("\n")
+        if str(name) == "README.md" and lines > README_LINES:
+            yield f"README.md: {lines} lines, over {README_LINES}"
         for picture, words, target in LINK.findall(re.sub(r"`[^`\n]*`", "", CODE.sub("", text))):
             if picture and not words.strip():
                 yield f"{name}: the picture {target} has no text in its place"
             if re.match(r"[a-z]+:", target):
                 continue
             path, _, anchor = target.partition("#")
-            file = page.parent / path if path else page
+            file = (page.parent / path).resolve() if path else page
+            linked.add(file)
             if not file.exists():
                 yield f"{name}: {target} is not there"
             elif anchor and file.suffix == ".md" and anchor not in anchors(
                     file.read_text(encoding="utf-8")):
                 yield f"{name}: {target}: no heading of that name"
+    for page in pages(root):
+        if page not in linked:
+            yield f"{page.relative_to(root)}: no page links to it"
 
 
 def main():
-    root = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parents[1]
+    root = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parents[1]).resolve()
     found = list(findings(root))
     print("\n".join(found) if found else f"{len(list(pages(root)))} pages are in order")
     return 1 if found else 0

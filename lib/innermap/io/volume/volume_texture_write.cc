@@ -1,5 +1,3 @@
-#include "innermap/io/volume/volume_texture.h"
-
 #include <Imath/half.h>
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -23,6 +21,7 @@
 #include "innermap/io/exr/detail/exr_stream.h"
 #include "innermap/io/slice.h"
 #include "innermap/io/volume/detail/volume_plan.h"
+#include "innermap/io/volume/volume_texture.h"
 
 namespace innermap {
 namespace {
@@ -170,14 +169,14 @@ void withStream(const std::string& path, Progress* progress,
 void writeAtlas(const std::string& path, const VolumePlan& plan, StripeWriter& writer,
                 Progress* progress) {
   withStream(path, progress, [&](Imf::OStream& stream) {
-    Imf::OutputFile output(stream, headerFor(plan, VolumeLayout::kAtlas));
+    Imf::OutputFile output(stream, headerFor(plan, VolumeLayout::atlas));
     writer.write(output, 0);
   });
 }
 
 void writeParts(const std::string& path, const VolumePlan& plan, StripeWriter& writer,
                 Progress* progress) {
-  const Imf::Header common = headerFor(plan, VolumeLayout::kParts);
+  const Imf::Header common = headerFor(plan, VolumeLayout::parts);
   std::vector<Imf::Header> headers;
   for (int i = 0; i < plan.lattice.slices(); ++i)
     headers.push_back(sliceHeader(common, plan.lattice, i));
@@ -192,7 +191,7 @@ void writeParts(const std::string& path, const VolumePlan& plan, StripeWriter& w
 
 void writeSliceFiles(const std::vector<std::string>& paths, const VolumePlan& plan,
                      StripeWriter& writer, Progress* progress) {
-  const Imf::Header common = headerFor(plan, VolumeLayout::kSlices);
+  const Imf::Header common = headerFor(plan, VolumeLayout::slices);
   const std::filesystem::path parent = std::filesystem::path(paths.front()).parent_path();
   PendingFolder folder(parent.empty() ? "." : parent.string());
   for (int i = 0; i < plan.lattice.slices(); ++i) {
@@ -211,7 +210,7 @@ void writeSliceFiles(const std::vector<std::string>& paths, const VolumePlan& pl
 VolumeTextureResult resultOf(const std::string& path, const VolumePlan& plan, VolumeLayout layout) {
   VolumeTextureResult r;
   r.files = {path};
-  if (layout == VolumeLayout::kSlices) {
+  if (layout == VolumeLayout::slices) {
     r.files.clear();
     const FramePattern numbered("output", path);
     for (int i = 0; i < plan.lattice.slices(); ++i) r.files.push_back(numbered.path(i));
@@ -234,23 +233,22 @@ std::uint64_t memoryFor(const VolumePlan& plan, VolumeLayout layout) {
   const std::uint64_t rows = static_cast<std::uint64_t>(std::min(plan.height(), kStripe));
   const std::uint64_t bytes = std::uint64_t(plan.width()) * rows * plan.channels.size() * 4;
   const std::uint64_t headers =
-      layout == VolumeLayout::kParts ? std::uint64_t(plan.lattice.slices()) * 16384 : 0;
+      layout == VolumeLayout::parts ? std::uint64_t(plan.lattice.slices()) * 16384 : 0;
   return 4 * bytes + headers;
 }
 
 }  // namespace
 
 VolumeLayout parseVolumeLayout(const std::string& setting, const std::string& text) {
-  for (const VolumeLayout layout :
-       {VolumeLayout::kAtlas, VolumeLayout::kSlices, VolumeLayout::kParts})
+  for (const VolumeLayout layout : {VolumeLayout::atlas, VolumeLayout::slices, VolumeLayout::parts})
     if (text == volumeLayoutName(layout)) return layout;
   throw SettingError(setting, "'" + text + "' is not one of atlas, slices, parts");
 }
 
 std::string volumeLayoutName(VolumeLayout layout) {
-  return layout == VolumeLayout::kAtlas    ? "atlas"
-         : layout == VolumeLayout::kSlices ? "slices"
-                                           : "parts";
+  return layout == VolumeLayout::atlas    ? "atlas"
+         : layout == VolumeLayout::slices ? "slices"
+                                          : "parts";
 }
 
 std::uint64_t volumeTextureMemory(const openvdb::GridPtrVec& grids,
@@ -272,9 +270,9 @@ VolumeTextureResult writeVolumeTexture(const std::string& path, const openvdb::G
   reportProgress(settings.progress, "writing the volume texture", 0);
   const ExrThreads threads;
   StripeWriter writer(plan, settings.progress);
-  if (settings.layout == VolumeLayout::kAtlas)
+  if (settings.layout == VolumeLayout::atlas)
     writeAtlas(path, plan, writer, settings.progress);
-  else if (settings.layout == VolumeLayout::kParts)
+  else if (settings.layout == VolumeLayout::parts)
     writeParts(path, plan, writer, settings.progress);
   else
     writeSliceFiles(result.files, plan, writer, settings.progress);
