@@ -1,76 +1,68 @@
-"""Renders volumes side by side with Blender's Cycles:
+#!/usr/bin/python3
+"""Draws a volume, seen from above (against the z axis, y up):
 
-    blender -b --factory-startup -noaudio --python-exit-code 3 --python samples/render_volume.py \\
-        -- OUT.png FILE.vdb...
+    render_volume.py FILE.vdb OUT.png
 
-Density from the grid `density`, colour from `color`; the y axis points up.
+Density from the grid `density`, colour (linear) from `color`, a pixel a voxel: layer by layer from the
+nearest to the farthest, each with the light that falls on it by the slope of the density.
 """
-import math
-import os
 import sys
 
-import bpy
-from mathutils import Vector
+import numpy as np
+import OpenImageIO as oiio
+import pyopenvdb as vdb
 
-out, *files = sys.argv[sys.argv.index("--") + 1:]
-
-
-def node_tree():
-    material = bpy.data.materials.new("volume")
-    material.use_nodes = True
-    nodes, links = material.node_tree.nodes, material.node_tree.links
-    nodes.clear()
-    output = nodes.new("ShaderNodeOutputMaterial")
-    volume = nodes.new("ShaderNodeVolumePrincipled")
-    volume.inputs["Density"].default_value = 60
-    volume.inputs["Density Attribute"].default_value = "density"
-    volume.inputs["Color Attribute"].default_value = "color"
-    links.new(volume.outputs["Volume"], output.inputs["Volume"])
-    return material
+EXTINCTION = 170.0                        # where the density is 1, per world unit
+LIGHT = np.array([-0.45, 0.5, 0.74])      # towards it
+AMBIENT = 0.5
+PAPER = np.array([0.032, 0.045, 0.075])   # behind the volumes, linear
+MARGIN = 26                               # pixels
 
 
-bpy.ops.wm.read_factory_settings(use_empty=True)
-scene = bpy.context.scene
-material = node_tree()
-offset, size = 0.0, 0.0
-for path in files:
-    bpy.ops.object.volume_import(filepath=os.path.abspath(path))
-    volume = bpy.context.object
-    volume.data.grids.load()
-    corners = [Vector(c) for c in volume.bound_box]
-    low = [min(c[a] for c in corners) for a in range(3)]
-    high = [max(c[a] for c in corners) for a in range(3)]
-    width = high[2] - low[2]
-    # World y up, seen along -x: z of the file runs to the left.
-    volume.rotation_euler = (math.pi / 2, 0, -math.pi / 2)
-    volume.location = (offset + width / 2 + (low[2] + high[2]) / 2, 0, -(low[1] + high[1]) / 2)
-    volume.data.materials.append(material)
-    offset += 1.1 * width
-    size = max(size, high[1] - low[1])
+def dense(path, name, channels, low, shape):
+    values = np.zeros(shape + ([channels] if channels > 1 else []), np.float32)
+    vdb.read(path, name).copyToArray(values, ijk=low)
+    return values
 
-camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
-camera.data.type = "ORTHO"
-camera.data.ortho_scale = 1.02 * max(offset, size)
-camera.location = (offset / 2 - 0.05, -10, 0)
-camera.rotation_euler = (math.pi / 2, 0, 0)
-scene.collection.objects.link(camera)
-scene.camera = camera
-sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
-sun.data.energy = 6
-sun.rotation_euler = (0.9, 0.2, 0.5)
-scene.collection.objects.link(sun)
-world = bpy.data.worlds.new("world")
-world.use_nodes = True
-world.node_tree.nodes["Background"].inputs[0].default_value = (0.6, 0.65, 0.7, 1)
-scene.world = world
-scene.render.engine = "CYCLES"
-scene.cycles.device = "CPU"
-scene.cycles.samples = 96
-scene.cycles.use_denoising = False
-scene.cycles.volume_bounces = 2
-scene.cycles.seed = 1
-scene.render.resolution_x = 720
-scene.render.resolution_y = max(200, int(720 * size * 1.1 / max(offset, size)))
-scene.view_settings.view_transform = "Standard"
-scene.render.filepath = os.path.abspath(out)
-bpy.ops.render.render(write_still=True)
+
+def smooth(values):
+    """The mean of each voxel and its neighbours along the three axes."""
+    for axis in range(3):
+        values = (values + np.roll(values, 1, axis) + np.roll(values, -1, axis)) / 3
+    return values
+
+
+def drawn(path):
+    """The picture of one file, linear, rows from the top: (height, width, 3)."""
+    grid = vdb.read(path, "density")
+    low, high = grid.evalActiveVoxelBoundingBox()
+    shape = [b - a + 1 for a, b in zip(low, high)]
+    density = dense(path, "density", 1, low, shape)
+    colour = dense(path, "color", 3, low, shape)
+    slope = np.stack(np.gradient(smooth(smooth(np.minimum(density, 1)))), -1)
+    length = np.linalg.norm(slope, axis=-1)
+    facing = -(slope @ LIGHT) / np.linalg.norm(LIGHT) / np.maximum(length, 1e-6)
+    light = AMBIENT + (1 - AMBIENT) * np.where(length > 1e-4, np.clip(facing, -0.6, 1), 0.3)
+    step = EXTINCTION * grid.transform.voxelSize()[2]
+    seen, through = np.zeros(shape[:2] + [3]), np.ones(shape[:2])
+    for k in range(shape[2] - 1, -1, -1):
+        opacity = 1 - np.exp(-step * density[:, :, k])
+        seen += (through * opacity * light[:, :, k])[..., None] * colour[:, :, k]
+        through *= 1 - opacity
+    seen += through[..., None] * PAPER
+    return np.transpose(seen, (1, 0, 2))[::-1]
+
+
+def main():
+    path, out = sys.argv[1:]
+    linear = np.pad(drawn(path) - PAPER, ((MARGIN, MARGIN), (MARGIN, MARGIN), (0, 0))) + PAPER
+    srgb = np.where(linear <= 0.0031308, 12.92 * linear,
+                    1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055)
+    picture = oiio.ImageBuf(oiio.ImageSpec(linear.shape[1], linear.shape[0], 3, "uint8"))
+    picture.set_pixels(oiio.ROI(), np.ascontiguousarray(np.clip(srgb, 0, 1), np.float32))
+    if not picture.write(out):
+        sys.exit(picture.geterror())
+
+
+if __name__ == "__main__":
+    main()

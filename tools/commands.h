@@ -31,6 +31,6 @@ std::vector<Command> allCommands();
 // Of innermap::tool's own; the commands' texts come from their tables.
 std::string generalHelp();
 std::string commandHelp(const Command& command);
-std::string markdownHelp();  // the README's command reference
+std::string markdownHelp();  // docs/commands.md
 
 }  // namespace innermap::tool

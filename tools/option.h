@@ -1,4 +1,4 @@
-// One option or argument of a command: all that parsing, help and the README say of it.
+// One option or argument of a command: all that parsing, help and docs/commands.md say of it.
 #pragma once
 
 #include <cstdint>
