@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "innermap/core/error.h"
 #include "innermap/mesh/read.h"
 #include "map_report.h"
 
@@ -19,10 +20,14 @@ FrameFitter makeFrameFitter(const std::string& rest, const FrameFitterSettings& 
   SourceBoundary source = makeSourceBoundary(std::move(mesh), {context.progress()});
   tell(source.notes, source.warnings, source.seconds, context);
   reportSource(source, context.report());
-  FrameFitter fitter(std::move(source), settings);
-  tell({}, {}, fitter.seconds(), context);
-  reportFitter(fitter, settings, context.report());
-  return fitter;
+  try {
+    FrameFitter fitter(std::move(source), settings);
+    tell({}, {}, fitter.seconds(), context);
+    reportFitter(fitter, settings, context.report());
+    return fitter;
+  } catch (const SettingError& error) {  // options are called as the settings are
+    throw DataError(std::string("--") + error.what());
+  }
 }
 
 std::shared_ptr<const FrameFit> FrameFits::fit(std::size_t index) const {

@@ -34,7 +34,7 @@ TEST(TextureImages, OneImageIsLookedUpWithItsWrap) {
   EXPECT_EQ(repeated.height(), 4);
   EXPECT_EQ(repeated.count(), 1u);
   EXPECT_EQ(repeated.channels(), "R,G,B");
-  EXPECT_EQ(repeated.colourSpace(), "sRGB");
+  EXPECT_EQ(repeated.colourSpace(), "Rec. 709");  // that of PPM
   TextureImageSettings settings;
   settings.wrap = Wrap::black;
   expectColour(TextureImages(path, {}, settings).at({7.5, 0.5}, {}, {}), {0, 0, 0});
