@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Checks the layers: which folder of lib/innermap may include which (the DEPENDS in
-lib/CMakeLists.txt), that solve/ knows no mesh and no grid, that headers in a folder's detail/ stay
-in that folder (core/detail serves the whole library), that no file includes itself by way of
-others, and that every other header has its unit test.
+lib/CMakeLists.txt), that solve/ knows no mesh and no grid, that programs include no
+header of a detail/ (those serve the library alone and are not installed), that no file includes
+itself by way of others, and that every public header has its unit test.
 
     layering.py [ROOT]      exit code 1 and one line for each finding
 """
@@ -79,8 +79,6 @@ def check_folder(root, folder, edges):
                 yield f'{here}: includes "{included}", which is in no folder'
             elif parts[1] not in allowed:
                 yield f"{here}: {folder} must not include {parts[1]} ({included})"
-            elif parts[1] not in (folder, "core") and is_internal(included):
-                yield f"{here}: {included} is internal to {parts[1]}"
             elif not os.path.exists(os.path.join(root, "lib", included)):
                 yield f'{here}: includes "{included}", which is not there'
         forbidden = FORBIDDEN.get(folder)

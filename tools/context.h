@@ -58,7 +58,6 @@ class Context {
   // Runs `body` and adds its wall time to the report's "seconds" under `stage`.
   void timed(const std::string& stage, const std::function<void()>& body);
 
-
   // One line each on stderr (nothing with --quiet), and in the report.
   void note(const std::string& text);     // what was repaired or chosen
   void warning(const std::string& text);  // what makes the result doubtful

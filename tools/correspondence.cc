@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "innermap/core/stage_seconds.h"
 #include "innermap/core/memory.h"
+#include "innermap/core/stage_seconds.h"
 
 namespace innermap::tool {
 namespace {

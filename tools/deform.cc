@@ -10,7 +10,6 @@
 #include "commands.h"
 #include "frame_fits.h"
 #include "frame_loop.h"
-#include "innermap/core/content_hash.h"
 #include "innermap/core/file.h"
 #include "innermap/core/version.h"
 #include "innermap/io/vdb/vdb_file.h"

@@ -7,7 +7,7 @@
 
 #include "commands.h"
 #include "innermap/field/field_file.h"
-#include "innermap/io/exr/exr_info.h"
+#include "innermap/io/exr/exr_slices.h"
 #include "innermap/io/vdb/vdb_file.h"
 #include "innermap/mesh/read.h"
 

@@ -14,10 +14,19 @@ namespace innermap {
 namespace {
 
 constexpr std::size_t kFreshSamples = 20000;
+constexpr double kPointsPerSource = 4, kPointsPerManySources = 3;
 constexpr double kDoubtful = 0.1;  // of the target's diagonal: no map to be trusted
 // A first fit where a tolerance is asked for: enough to tell smooth deformations from others.
 constexpr std::size_t kFirstSources = 1000, kTrialSources = 200;
 constexpr PointCounts kVertexTrial{kFirstSources, 4 * kFirstSources, kFirstSources};
+
+PointCounts pointCounts(const ShellSettings& shell) {
+  PointCounts counts;
+  counts.sources = shell.sources;
+  counts.collocation = shellCollocation(shell);
+  counts.heldOut = std::clamp<std::size_t>(counts.sources, 1000, 5000);
+  return counts;
+}
 
 // What is known of a fit before it becomes a MapFit.
 struct Outcome {
@@ -134,7 +143,13 @@ class MapFitter {
   }
 
   FitProblem problemOf(const PointCounts& counts) {
-    return timed(seconds, "sample", [&] { return pairProblem(pair_, counts, settings_); });
+    PairProblemSettings s;
+    s.counts = counts;
+    s.vertices = settings_.interpolation != Interpolation::linear;
+    if (settings_.shell) s.radiusRatio = settings_.shell->radiusRatio;
+    s.seed = settings_.seed;
+    s.progress = settings_.progress;
+    return timed(seconds, "sample", [&] { return pairProblem(pair_, s); });
   }
 
   AdaptiveSettings adaptiveSettings(double tolerance) const {
@@ -245,6 +260,13 @@ void validate(const FitMapSettings& settings) {
 }
 
 }  // namespace
+
+std::size_t shellCollocation(const ShellSettings& shell) {
+  if (shell.collocation > 0) return shell.collocation;
+  const double perSource =
+      shell.sources > kMostDenseSources ? kPointsPerManySources : kPointsPerSource;
+  return static_cast<std::size_t>(std::max(perSource * static_cast<double>(shell.sources), 16.0));
+}
 
 std::uint64_t fitMapMemory(const FitMapSettings& settings) {
   constexpr std::uint64_t kProgram = 64'000'000;  // with nothing loaded yet

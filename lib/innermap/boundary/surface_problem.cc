@@ -2,7 +2,7 @@
 
 #include "innermap/boundary/detail/problem_samples.h"
 #include "innermap/boundary/detail/streams.h"
-#include "innermap/sample/patch_points.h"
+#include "innermap/sample/detail/patch_points.h"
 #include "innermap/sample/surface_samples.h"
 
 namespace innermap {
@@ -30,7 +30,11 @@ PatchSettings patchSettings(const PlacementRequest& request, std::uint64_t seed,
 
 FitProblem surfaceProblem(const Solid& solid, const SurfaceValues& values,
                           const SurfaceProblemSettings& settings) {
-  return problemOf(solid, values, drawSamples(solid, settings), settings);
+  PointCounts counts;
+  counts.collocation = settings.collocation;
+  counts.heldOut = settings.heldOut;
+  const ProblemSamples samples = drawSamples(solid, counts, settings.seed, settings.progress);
+  return problemOf(solid, values, samples, settings.seed, settings.progress);
 }
 
 AdaptiveProblem adaptiveProblem(const Solid& solid, const SurfaceValues& values, double unit,

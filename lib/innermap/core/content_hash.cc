@@ -1,11 +1,10 @@
-#include "innermap/core/content_hash.h"
-
 #include <fmt/format.h>
 
 #include <fstream>
 #include <vector>
 
 #include "innermap/core/error.h"
+#include "innermap/core/file.h"
 
 namespace innermap {
 namespace {

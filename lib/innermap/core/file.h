@@ -1,11 +1,15 @@
 // Files appear whole or not at all.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <iosfwd>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
+
+#include "innermap/core/progress.h"
 
 namespace innermap {
 
@@ -66,5 +70,18 @@ void requireWritable(const std::string& path);
 
 // Creates the folder and its parents when missing; true when it was. Throws FileError.
 bool makeFolder(const std::string& path);
+
+// 64 bits, the same on every machine: FNV-1a over words of eight bytes with a shift after each
+// (Fowler, Noll, Vo, "The FNV Non-Cryptographic Hash Algorithm", 1991), finished as SplitMix64.
+std::uint64_t hashOf(std::string_view bytes);
+
+struct FingerprintSettings {
+  Progress* progress = nullptr;
+};
+
+// Tells whether a file is still the one that a result was made from; not cryptographic.
+// "558589-9f86d081884c7d65": its size and the hash of its content. Throws FileError when it cannot
+// be read, Cancelled.
+std::string fingerprintOf(const std::string& path, const FingerprintSettings& settings = {});
 
 }  // namespace innermap

@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "innermap/core/error.h"
-#include "innermap/evaluate/active_region.h"
-#include "innermap/evaluate/topology.h"
-#include "innermap/evaluate/visit_field.h"
+#include "innermap/evaluate/detail/active_region.h"
+#include "innermap/evaluate/detail/topology.h"
+#include "innermap/evaluate/detail/visit_field.h"
 
 namespace innermap {
 namespace {

@@ -10,7 +10,6 @@
 namespace innermap {
 namespace {
 
-
 LevelSetSettings levelSetSettings(const MapGridSettings& settings) {
   LevelSetSettings out;
   out.resolution = settings.resolution;

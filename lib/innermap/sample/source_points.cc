@@ -7,7 +7,7 @@
 #include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/core/parallel.h"
-#include "innermap/levelset/offset_surface.h"
+#include "innermap/levelset/detail/offset_surface.h"
 #include "innermap/sample/detail/sample_elimination.h"
 #include "innermap/sample/surface_samples.h"
 

@@ -8,7 +8,7 @@
 
 #include "innermap/core/detail/disjoint_sets.h"
 #include "innermap/core/error.h"
-#include "innermap/mesh/connectivity.h"
+#include "innermap/mesh/detail/connectivity.h"
 #include "innermap/mesh/repair.h"
 #include "innermap/surface/detail/topology/nesting.h"
 

@@ -8,7 +8,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
-#include "innermap/evaluate/active_region.h"
+#include "innermap/evaluate/detail/active_region.h"
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/levelset/level_set.h"
 

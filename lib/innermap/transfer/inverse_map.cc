@@ -7,7 +7,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
-#include "innermap/evaluate/active_region.h"
+#include "innermap/evaluate/detail/active_region.h"
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/transfer/detail/cell_images.h"
 #include "innermap/transfer/detail/leaf_index.h"

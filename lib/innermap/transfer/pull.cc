@@ -1,7 +1,7 @@
 #include "innermap/transfer/pull.h"
 
 #include "innermap/core/error.h"
-#include "innermap/evaluate/active_region.h"
+#include "innermap/evaluate/detail/active_region.h"
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/transfer/detail/carry_output.h"
 #include "innermap/transfer/detail/extended_map.h"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "innermap/evaluate/active_region.h"
+#include "innermap/evaluate/detail/active_region.h"
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/field/fit.h"
 #include "innermap/levelset/level_set.h"

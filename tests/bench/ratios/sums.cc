@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "innermap/core/detail/random.h"
-#include "innermap/evaluate/active_region.h"
+#include "innermap/evaluate/detail/active_region.h"
 #include "innermap/field/field_file.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/mesh/read.h"

@@ -1,5 +1,3 @@
-#include "innermap/core/content_hash.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,6 +7,7 @@
 #include <set>
 
 #include "innermap/core/error.h"
+#include "innermap/core/file.h"
 
 namespace innermap {
 namespace {

@@ -77,7 +77,7 @@ TEST(LevelSet, InteriorVoxelsAreCountedInTheBandAndBelow) {
     settings.halfWidth = width;
     const FloatGrid::Ptr grid = makeLevelSet(Solid(shapes::icosphere(4)), settings);
     const double cell = std::pow(grid->voxelSize()[0], 3);
-    EXPECT_NEAR(static_cast<double>(interiorVoxels(*grid)) * cell, 4.0 / 3 * shapes::kPi, 0.03);
+    EXPECT_NEAR(static_cast<double>(interiorVoxels(*grid)) * cell, 4.0 / 3 * kPi, 0.03);
   }
 }
 

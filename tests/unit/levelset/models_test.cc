@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
+#include "innermap/levelset/detail/offset_surface.h"
 #include "innermap/levelset/level_set.h"
-#include "innermap/levelset/offset_surface.h"
 #include "innermap/mesh/read.h"
 
 namespace innermap {

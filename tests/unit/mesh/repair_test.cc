@@ -7,8 +7,8 @@
 #include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
+#include "innermap/mesh/detail/winding_number.h"
 #include "innermap/mesh/read.h"
-#include "innermap/mesh/winding_number.h"
 #include "mesh/test_meshes.h"
 
 namespace innermap {

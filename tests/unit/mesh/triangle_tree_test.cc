@@ -5,7 +5,7 @@
 #include <set>
 
 #include "innermap/core/detail/random.h"
-#include "shapes.h"
+#include "mesh/shapes.h"
 
 namespace innermap {
 namespace {

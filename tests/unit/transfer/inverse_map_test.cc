@@ -4,7 +4,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
-#include "innermap/evaluate/active_region.h"
+#include "innermap/evaluate/detail/active_region.h"
 #include "transfer/test_maps.h"
 
 namespace innermap {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "innermap/boundary/detail/problem_samples.h"
 #include "innermap/boundary/detail/streams.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/sample/source_points.h"
@@ -10,7 +9,6 @@
 namespace innermap {
 namespace {
 
-constexpr double kPointsPerSource = 4, kPointsPerManySources = 3;
 constexpr double kTouching = 1e-9;  // of the diagonal
 
 using Samples = std::vector<SurfacePoint>;
@@ -67,40 +65,21 @@ BoundaryData vertexData(const BoundaryPair& pair, std::uint64_t seed, const Poin
 
 }  // namespace
 
-std::size_t shellCollocation(const ShellSettings& shell) {
-  if (shell.collocation > 0) return shell.collocation;
-  const double perSource =
-      shell.sources > kMostDenseSources ? kPointsPerManySources : kPointsPerSource;
-  return static_cast<std::size_t>(std::max(perSource * static_cast<double>(shell.sources), 16.0));
-}
-
-PointCounts pointCounts(const ShellSettings& shell) {
-  PointCounts counts;
-  counts.sources = shell.sources;
-  counts.collocation = shellCollocation(shell);
-  counts.heldOut = std::clamp<std::size_t>(counts.sources, 1000, 5000);
-  return counts;
-}
-
-FitProblem pairProblem(const BoundaryPair& pair, const PointCounts& counts,
-                       const FitMapSettings& settings) {
+FitProblem pairProblem(const BoundaryPair& pair, const PairProblemSettings& settings) {
   const Solid& solid = pair.solid();
-  SurfaceProblemSettings surface;
-  surface.collocation = counts.collocation;
-  surface.heldOut = counts.heldOut;
-  surface.seed = settings.seed;
-  surface.progress = settings.progress;
-  const ProblemSamples samples = drawSamples(solid, surface);
+  const ProblemSamples samples =
+      drawSamples(solid, settings.counts, settings.seed, settings.progress);
   FitProblem problem = problemOf(
-      solid, [&pair](const Samples& points) { return pair.targetsOf(points); }, samples, surface);
-  if (settings.interpolation != Interpolation::linear)
-    problem.vertices = vertexData(pair, settings.seed, counts, samples.collocation);
-  if (settings.shell && settings.shell->radiusRatio) {
+      solid, [&pair](const Samples& points) { return pair.targetsOf(points); }, samples,
+      settings.seed, settings.progress);
+  if (settings.vertices)
+    problem.vertices = vertexData(pair, settings.seed, settings.counts, samples.collocation);
+  if (settings.radiusRatio) {
     SourceSettings source;
     source.seed = seedOf(settings.seed, Stream::sources);
     source.progress = settings.progress;
-    problem.placeSources = [solid, ratio = *settings.shell->radiusRatio, source](std::size_t count,
-                                                                                 double) mutable {
+    problem.placeSources = [solid, ratio = *settings.radiusRatio, source](std::size_t count,
+                                                                          double) mutable {
       source.count = count;
       return sourceSphere(solid, ratio, source);
     };

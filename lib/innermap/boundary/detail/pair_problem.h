@@ -1,18 +1,23 @@
 // The points that a pair's map is fitted to on a shell or sphere of charges.
 #pragma once
 
-#include "innermap/boundary/fit_map.h"
+#include <cstdint>
+#include <optional>
+
+#include "innermap/boundary/boundary_pair.h"
+#include "innermap/boundary/detail/problem_samples.h"
 
 namespace innermap {
 
-struct PointCounts {
-  std::size_t sources = 0, collocation = 0, heldOut = 0;
+struct PairProblemSettings {
+  PointCounts counts;
+  bool vertices = true;               // the mesh's own vertices too
+  std::optional<double> radiusRatio;  // charges on a sphere of that many half diagonals
+  std::uint64_t seed = 1;
+  Progress* progress = nullptr;
 };
 
-PointCounts pointCounts(const ShellSettings& shell);
-
-// With the mesh's own vertices too unless `interpolation` is linear. Holds a reference to the pair.
-FitProblem pairProblem(const BoundaryPair& pair, const PointCounts& counts,
-                       const FitMapSettings& settings);
+// Holds a reference to the pair.
+FitProblem pairProblem(const BoundaryPair& pair, const PairProblemSettings& settings);
 
 }  // namespace innermap

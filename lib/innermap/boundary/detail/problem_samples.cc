@@ -10,27 +10,29 @@ Points positionsOf(const Solid& solid, const std::vector<SurfacePoint>& onSurfac
   return interpolate(solid.surface().vertices, solid.surface().triangles, onSurface);
 }
 
-ProblemSamples drawSamples(const Solid& solid, const SurfaceProblemSettings& settings) {
+ProblemSamples drawSamples(const Solid& solid, const PointCounts& counts, std::uint64_t seed,
+                           Progress* progress) {
   SampleSettings sample;
-  sample.progress = settings.progress;
-  sample.seed = seedOf(settings.seed, Stream::collocation);
+  sample.progress = progress;
+  sample.seed = seedOf(seed, Stream::collocation);
   ProblemSamples out;
-  out.collocation = blueNoiseSamples(solid.surface(), settings.collocation, sample);
-  sample.seed = seedOf(settings.seed, Stream::heldOut);
-  out.heldOut = randomSamples(solid.surface(), settings.heldOut, sample);
+  out.collocation = blueNoiseSamples(solid.surface(), counts.collocation, sample);
+  sample.seed = seedOf(seed, Stream::heldOut);
+  out.heldOut = randomSamples(solid.surface(), counts.heldOut, sample);
   return out;
 }
 
-FitProblem problemOf(const Solid& solid, const SurfaceValues& values, const ProblemSamples& samples,
-                     const SurfaceProblemSettings& settings) {
+FitProblem problemOf(const Solid& solid,
+                     const std::function<Matrix(const std::vector<SurfacePoint>&)>& values,
+                     const ProblemSamples& samples, std::uint64_t seed, Progress* progress) {
   FitProblem problem;
   problem.surface = {positionsOf(solid, samples.collocation), positionsOf(solid, samples.heldOut),
                      values(samples.collocation), values(samples.heldOut)};
   problem.diagonal = solid.diagonal();
   problem.area = solid.area();
   SourceSettings source;
-  source.seed = seedOf(settings.seed, Stream::sources);
-  source.progress = settings.progress;
+  source.seed = seedOf(seed, Stream::sources);
+  source.progress = progress;
   problem.placeSources = [solid, source](std::size_t count, double distance) mutable {
     source.count = count;
     return sourceShell(solid, distance, source);

@@ -1,9 +1,14 @@
 // The points of a surface problem, as places on the surface.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <vector>
 
-#include "innermap/boundary/surface_problem.h"
+#include "innermap/core/matrix.h"
+#include "innermap/core/progress.h"
+#include "innermap/field/fit.h"
+#include "innermap/levelset/solid.h"
 
 namespace innermap {
 
@@ -11,10 +16,17 @@ struct ProblemSamples {
   std::vector<SurfacePoint> collocation, heldOut;  // on solid.surface()
 };
 
-ProblemSamples drawSamples(const Solid& solid, const SurfaceProblemSettings& settings);
+struct PointCounts {
+  std::size_t sources = 0, collocation = 0, heldOut = 0;
+};
 
-FitProblem problemOf(const Solid& solid, const SurfaceValues& values, const ProblemSamples& samples,
-                     const SurfaceProblemSettings& settings);
+ProblemSamples drawSamples(const Solid& solid, const PointCounts& counts, std::uint64_t seed,
+                           Progress* progress);
+
+// values: as SurfaceValues in surface_problem.h.
+FitProblem problemOf(const Solid& solid,
+                     const std::function<Matrix(const std::vector<SurfacePoint>&)>& values,
+                     const ProblemSamples& samples, std::uint64_t seed, Progress* progress);
 
 Points positionsOf(const Solid& solid, const std::vector<SurfacePoint>& onSurface);
 

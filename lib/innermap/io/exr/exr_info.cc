@@ -1,5 +1,3 @@
-#include "innermap/io/exr/exr_info.h"
-
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
@@ -11,6 +9,7 @@
 #include <fstream>
 
 #include "innermap/core/error.h"
+#include "innermap/io/exr/exr_slices.h"
 
 namespace innermap {
 

@@ -20,9 +20,9 @@
 #include "innermap/core/error.h"
 #include "innermap/core/file.h"
 #include "innermap/core/memory.h"
+#include "innermap/core/version.h"
 #include "innermap/io/exr/detail/exr_stream.h"
 #include "innermap/io/slice.h"
-#include "innermap/core/version.h"
 
 namespace innermap {
 namespace {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "innermap/core/progress.h"
 
@@ -41,5 +42,18 @@ ExrSliceResult writeExrSlices(const std::string& path, const openvdb::GridPtrVec
 
 // Peak need of writeExrSlices beside the grids, bytes.
 std::uint64_t exrSliceMemory(const openvdb::GridPtrVec& grids, const ExrSliceSettings& settings);
+
+// What an EXR file says of one of its parts, without its pixels.
+struct ExrPart {
+  std::string name;
+  int width = 0, height = 0;
+  std::vector<std::string> channels;
+};
+
+// Throws FileError.
+std::vector<ExrPart> readExrInfo(const std::string& path);
+
+// For a terminal, a line a part.
+std::string describe(const std::vector<ExrPart>& parts, const std::string& path);
 
 }  // namespace innermap

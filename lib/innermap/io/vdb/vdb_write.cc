@@ -8,9 +8,9 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/file.h"
+#include "innermap/core/version.h"
 #include "innermap/io/vdb/detail/vdb_stream.h"
 #include "innermap/io/vdb/vdb_file.h"
-#include "innermap/core/version.h"
 
 namespace innermap {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "innermap/core/detail/disjoint_sets.h"
 #include "innermap/core/parallel.h"
-#include "innermap/mesh/connectivity.h"
+#include "innermap/mesh/detail/connectivity.h"
+#include "innermap/mesh/detail/winding_number.h"
 #include "innermap/mesh/self_intersection.h"
-#include "innermap/mesh/winding_number.h"
 
 namespace innermap {
 namespace {

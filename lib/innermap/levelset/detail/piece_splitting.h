@@ -6,7 +6,7 @@
 
 #include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
-#include "innermap/mesh/winding_number.h"
+#include "innermap/mesh/detail/winding_number.h"
 
 namespace innermap {
 

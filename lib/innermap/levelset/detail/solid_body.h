@@ -3,10 +3,10 @@
 
 #include "innermap/core/vec3.h"
 #include "innermap/levelset/detail/exposed_surface.h"
+#include "innermap/mesh/detail/winding_number.h"
 #include "innermap/mesh/mesh.h"
 #include "innermap/mesh/repair.h"
 #include "innermap/mesh/triangle_tree.h"
-#include "innermap/mesh/winding_number.h"
 
 namespace innermap {
 

@@ -6,7 +6,7 @@
 
 #include "innermap/core/detail/pi.h"
 #include "innermap/mesh/detail/topology.h"
-#include "innermap/mesh/winding_number.h"
+#include "innermap/mesh/detail/winding_number.h"
 
 namespace innermap {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "innermap/core/vec3.h"
-#include "innermap/mesh/connectivity.h"
+#include "innermap/mesh/detail/connectivity.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {

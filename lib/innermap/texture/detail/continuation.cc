@@ -8,8 +8,8 @@
 #include "innermap/core/detail/pi.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
-#include "innermap/evaluate/active_region.h"
-#include "innermap/evaluate/visit_field.h"
+#include "innermap/evaluate/detail/active_region.h"
+#include "innermap/evaluate/detail/visit_field.h"
 
 namespace innermap {
 namespace {

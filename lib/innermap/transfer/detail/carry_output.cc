@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "innermap/core/error.h"
-#include "innermap/evaluate/topology.h"
+#include "innermap/evaluate/detail/topology.h"
 
 namespace innermap {
 namespace {

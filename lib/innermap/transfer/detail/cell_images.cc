@@ -5,7 +5,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
-#include "innermap/evaluate/topology.h"
+#include "innermap/evaluate/detail/topology.h"
 #include "innermap/transfer/detail/leaf_index.h"
 
 namespace innermap {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "innermap/core/parallel.h"
-#include "innermap/evaluate/topology.h"
+#include "innermap/evaluate/detail/topology.h"
 
 namespace innermap {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "innermap/core/progress.h"
-#include "innermap/evaluate/visit_field.h"
+#include "innermap/evaluate/detail/visit_field.h"
 #include "innermap/field/harmonic_map.h"
 #include "innermap/levelset/solid.h"
 #include "innermap/transfer/outside.h"

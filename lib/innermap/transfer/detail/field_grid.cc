@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "innermap/core/error.h"
-#include "innermap/evaluate/topology.h"
-#include "innermap/evaluate/visit_field.h"
+#include "innermap/evaluate/detail/topology.h"
+#include "innermap/evaluate/detail/visit_field.h"
 
 namespace innermap {
 namespace {

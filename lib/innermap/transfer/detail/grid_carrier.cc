@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "innermap/core/error.h"
-#include "innermap/evaluate/topology.h"
+#include "innermap/evaluate/detail/topology.h"
 #include "innermap/transfer/detail/carrier.h"
 #include "innermap/transfer/detail/continue_values.h"
 #include "innermap/transfer/detail/sampling.h"

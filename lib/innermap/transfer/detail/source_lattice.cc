@@ -10,8 +10,8 @@
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
-#include "innermap/evaluate/active_region.h"
-#include "innermap/evaluate/topology.h"
+#include "innermap/evaluate/detail/active_region.h"
+#include "innermap/evaluate/detail/topology.h"
 #include "innermap/levelset/level_set.h"
 
 namespace innermap {

@@ -1,4 +1,3 @@
-#include "innermap/io/exr/exr_info.h"
 
 #include <gtest/gtest.h>
 

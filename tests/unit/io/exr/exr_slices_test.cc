@@ -14,7 +14,6 @@
 #include <sys/resource.h>
 
 #include "innermap/core/error.h"
-#include "innermap/io/exr/exr_info.h"
 #include "innermap/io/slice.h"
 #include "io/test_files.h"
 

@@ -11,8 +11,8 @@
 #include <cmath>
 
 #include "innermap/core/error.h"
-#include "innermap/io/slice.h"
 #include "innermap/core/version.h"
+#include "innermap/io/slice.h"
 
 namespace innermap {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "innermap/core/error.h"
-#include "innermap/mesh/connectivity.h"
+#include "innermap/mesh/detail/connectivity.h"
 
 namespace innermap {
 

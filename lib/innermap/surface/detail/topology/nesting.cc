@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "innermap/mesh/winding_number.h"
+#include "innermap/mesh/detail/winding_number.h"
 
 namespace innermap {
 namespace {

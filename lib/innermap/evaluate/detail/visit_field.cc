@@ -1,4 +1,4 @@
-#include "innermap/evaluate/visit_field.h"
+#include "innermap/evaluate/detail/visit_field.h"
 
 #include <openvdb/tree/LeafManager.h>
 

@@ -1,4 +1,4 @@
-#include "innermap/sample/patch_points.h"
+#include "innermap/sample/detail/patch_points.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "innermap/evaluate/topology.h"
+#include "innermap/evaluate/detail/topology.h"
 
 #include <memory>
 #include <vector>

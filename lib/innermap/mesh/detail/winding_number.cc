@@ -1,4 +1,4 @@
-#include "innermap/mesh/winding_number.h"
+#include "innermap/mesh/detail/winding_number.h"
 
 #include <array>
 

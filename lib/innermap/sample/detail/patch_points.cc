@@ -1,4 +1,4 @@
-#include "innermap/sample/patch_points.h"
+#include "innermap/sample/detail/patch_points.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
-#include "innermap/levelset/offset_surface.h"
+#include "innermap/levelset/detail/offset_surface.h"
 
 namespace innermap {
 namespace {

@@ -1,4 +1,4 @@
-#include "innermap/mesh/connectivity.h"
+#include "innermap/mesh/detail/connectivity.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "innermap/evaluate/visit_field.h"
+#include "innermap/evaluate/detail/visit_field.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
-#include "innermap/evaluate/active_region.h"
+#include "innermap/evaluate/detail/active_region.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"
 

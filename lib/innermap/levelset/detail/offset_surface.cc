@@ -1,4 +1,4 @@
-#include "innermap/levelset/offset_surface.h"
+#include "innermap/levelset/detail/offset_surface.h"
 
 #include <openvdb/tools/SignedFloodFill.h>
 #include <openvdb/tools/VolumeToMesh.h>

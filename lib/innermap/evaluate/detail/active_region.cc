@@ -1,4 +1,4 @@
-#include "innermap/evaluate/active_region.h"
+#include "innermap/evaluate/detail/active_region.h"
 
 #include <cmath>
 #include <memory>

@@ -1,9 +1,9 @@
-#include "innermap/mesh/winding_number.h"
+#include "innermap/mesh/detail/winding_number.h"
 
 #include <gtest/gtest.h>
 
 #include "innermap/core/detail/random.h"
-#include "shapes.h"
+#include "mesh/shapes.h"
 
 namespace innermap {
 namespace {
