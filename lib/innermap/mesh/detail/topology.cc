@@ -1,6 +1,7 @@
 #include "innermap/mesh/detail/topology.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace innermap {
 namespace {
