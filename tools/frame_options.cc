@@ -11,7 +11,7 @@
 namespace innermap::tool {
 namespace {
 
-constexpr std::uint64_t kPointsPerSource = 3, kMostSources = 1000000;
+constexpr std::uint64_t kMostSources = 1000000;
 
 bool isSameFile(const std::string& a, const std::string& b) {
   std::error_code ignored;

@@ -55,20 +55,6 @@ TEST(MapGrids, VoxelSizeStandsInForTheResolution) {
   EXPECT_DOUBLE_EQ(evaluateOnGrid(affineFit(), settings).voxelSize, 0.2);
 }
 
-TEST(MapGrids, WhatIsThinnerThanTheVoxelsIsRefused) {
-  Mesh plate = shapes::box({0, 0, 0}, {1, 1, 1e-3});
-  plate.name = "plate";
-  const MapFit fit = fitMap(plate, plate);
-  MapGridSettings settings;
-  settings.resolution = 4;
-  try {
-    const SolidGrids grids = evaluateOnGrid(fit, settings);
-    EXPECT_GT(grids.values.interiorVoxels, 0u);  // a row of centres may happen to be inside
-  } catch (const DataError& error) {
-    EXPECT_NE(std::string(error.what()).find("thinner than the voxels"), std::string::npos);
-  }
-}
-
 TEST(MapGrids, CountTheirMemory) {
   const Solid solid(ball(2));
   MapGridSettings settings;
