@@ -7,7 +7,8 @@
 
 #include "commands.h"
 #include "innermap/core/memory.h"
-#include "mesh_input.h"
+#include "inputs.h"
+#include "map_report.h"
 
 namespace innermap::tool {
 namespace {
@@ -17,7 +18,7 @@ using Json = nlohmann::ordered_json;
 struct CheckOptions {
   std::string mesh;
   bool json = false;
-  std::uint64_t listed = CheckSettings().listed;
+  CheckSettings check;
 };
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -95,19 +96,12 @@ std::string checkText(const std::string& path, const MeshReport& r,
   return text;
 }
 
-void fillReport(const std::string& path, const MeshReport& r, const std::vector<Finding>& found,
+void fillReport(const Mesh& mesh, const MeshReport& r, const std::vector<Finding>& found,
                 Report& report) {
-  ReportMesh mesh;
-  mesh.path = path;
-  mesh.vertices = r.vertices;
-  mesh.triangles = r.triangles;
-  mesh.boundaryLoops = static_cast<int>(r.boundaryLoops.size());
-  mesh.genus = r.genus;
-  mesh.volume = r.volume;
-  mesh.diagonal = r.box.diagonal();
-  report.source = mesh;
-  for (const Finding& f : found)
-    report.set("findings." + f.name, static_cast<std::int64_t>(f.count));
+  report.source = reportOf(mesh, r.volume);
+  report.source->boundaryLoops = static_cast<int>(r.boundaryLoops.size());
+  report.source->genus = r.genus;
+  for (const Finding& f : found) report.set("findings." + f.name, f.count);
 }
 
 void run(const CheckOptions& options, Context& context) {
@@ -118,13 +112,10 @@ void run(const CheckOptions& options, Context& context) {
         {"check " + options.mesh + fmt::format(" ({} triangles)", mesh.triangles.size())}, need);
   requireMemory("checking " + options.mesh, need, context.maxMemory(),
                 "raise --max-memory or simplify the mesh");
-  CheckSettings settings;
-  settings.listed = options.listed;
-  settings.progress = context.progress();
-  MeshReport report;
-  context.timed("check", [&] { report = checkMesh(mesh, settings); });
+  const MeshReport report =
+      context.timed("check", [&] { return checkMesh(mesh, context.settings(options.check)); });
   const std::vector<Finding> found = findings(report);
-  fillReport(options.mesh, report, found, context.report());
+  fillReport(mesh, report, found, context.report());
   context.print(options.json ? checkJson(options.mesh, report, found)
                                        .dump(2, ' ', false, Json::error_handler_t::replace) +
                                    "\n"
@@ -142,7 +133,7 @@ Command makeCheckCommand() {
       "Findings are no failure: the exit code is 0.");
   c.positional("MESH", &o->mesh, "mesh file: .obj, .ply, .off or .stl");
   c.flag("--json", &o->json, "machine-readable findings on stdout");
-  c.option("--listed", "N", &o->listed, "self-intersections that are placed; all are counted")
+  c.option("--listed", "N", &o->check.listed, "self-intersections that are placed; all are counted")
       .range(0, 1e6);
   c.example("innermap check horse.obj");
   c.example("innermap check horse.obj --json > findings.json");

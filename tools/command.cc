@@ -12,16 +12,12 @@ namespace {
 // The bound variable's value before parsing, as the help shows it.
 std::string defaultOf(const Target& target) {
   struct Visitor {
-    std::string operator()(const bool*) const { return ""; }
     std::string operator()(const int* v) const { return fmt::format("{}", *v); }
     std::string operator()(const std::uint64_t* v) const { return fmt::format("{}", *v); }
     std::string operator()(const double* v) const { return fmt::format("{:.6g}", *v); }
     std::string operator()(const std::string* v) const { return *v; }
-    std::string operator()(const std::optional<int>*) const { return ""; }
-    std::string operator()(const std::optional<std::uint64_t>*) const { return ""; }
-    std::string operator()(const std::optional<double>*) const { return ""; }
-    std::string operator()(const std::optional<NumberPair>*) const { return ""; }
-    std::string operator()(const std::vector<std::string>*) const { return ""; }
+    std::string operator()(const std::function<void(const std::string&)>&) const { return ""; }
+    std::string operator()(const void*) const { return ""; }  // flags, lists, what may be absent
   };
   return std::visit(Visitor{}, target);
 }

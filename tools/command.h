@@ -1,51 +1,11 @@
 // The framework of innermap's subcommands.
 //
-// How to add a command, say `fit`:
-//
-//  1. Write tools/fit.cc:
-//
-//       #include "commands.h"
-//
-//       namespace innermap::tool {
-//       namespace {
-//       struct FitOptions {              // defaults live here (or in the library's settings)
-//         std::string source, target, output;
-//         std::size_t sources = 2000;
-//         std::optional<double> distance;
-//       };
-//
-//       void run(const FitOptions& options, Context& context) {
-//         context.output(options.output);        // refuses early what cannot be written
-//         Mesh mesh;
-//         context.timed("read", [&] { mesh = readMesh(options.source, {context.progress()}); });
-//         const std::uint64_t need = ...;
-//         if (context.dryRun()) return context.plan({"fit ... to " + options.output}, need);
-//         requireMemory("the fit", need, context.maxMemory(), "lower --sources to ...");
-//         ...
-//         context.report().solve = ...;             // --report F is written by the framework
-//       }
-//       }  // namespace
-//
-//       Command makeFitCommand() {
-//         auto o = std::make_shared<FitOptions>();
-//         Command c("fit", "Fit a harmonic map to two meshes and save it");
-//         c.positional("SOURCE", &o->source, "the solid's mesh");
-//         c.option("--output", "FILE", &o->output, "the map's file").shortName("-o").required();
-//         c.option("--sources", "N", &o->sources, "number of charges").range(1, 1e7);
-//         c.option("--distance", "D", &o->distance, "of the charges from the surface")
-//             .unit("fraction of the diagonal").above(0).atMost(2).defaults("chosen by error");
-//         c.example("innermap fit rest.obj pose.obj -o map.ply");
-//         c.run([o](Context& context) { run(*o, context); });
-//         return c;
-//       }
-//       }  // namespace innermap::tool
-//
-//  2. Declare makeFitCommand in commands.h and add it to the list in commands.cc.
-//
-// --help, the README's reference, did-you-mean, range checks and the common options (--threads,
-// --max-memory, --dry-run, --report, --quiet, --help) come by themselves. Throw innermap's errors;
-// they become one line on stderr and exit code 1 (UsageError: 2, Cancelled: 130). Pass
-// context.progress() to all settings.
+// To add one, write tools/NAME.cc after the shortest there is, tools/evaluate.cc, and list its
+// make function in commands.h and commands.cc. --help, docs/commands.md, did-you-mean, range checks
+// and the common options (--threads, --max-memory, --dry-run, --report, --quiet, --help) come by
+// themselves. Throw innermap's errors; they become one line on stderr and exit code 1 (UsageError:
+// 2, Cancelled: 130). Give the library context.settings(...), which hold the limit on memory and
+// the progress.
 #pragma once
 
 #include <functional>
@@ -84,6 +44,23 @@ class Command {
   OptionBuilder positional(const std::string& name, Target target, const std::string& help);
   OptionBuilder option(const std::string& name, const std::string& placeholder, Target target,
                        const std::string& help);
+  // One of the values by its name; the default is what *target is.
+  template <class Value>
+  OptionBuilder choice(const std::string& name, const std::string& placeholder, Value* target,
+                       const std::vector<std::pair<std::string, Value>>& values,
+                       const std::string& help) {
+    std::vector<std::string> names;
+    std::string chosen;
+    for (const auto& [text, value] : values) {
+      names.push_back(text);
+      if (value == *target && chosen.empty()) chosen = text;
+    }
+    const auto take = [=](const std::string& text) {
+      for (const auto& [known, value] : values)
+        if (known == text) *target = value;
+    };
+    return option(name, placeholder, take, help).choices(names).defaults(chosen);
+  }
   OptionBuilder flag(const std::string& name, bool* target, const std::string& help);
 
   void description(std::string text) { description_ = std::move(text); }  // beyond the summary

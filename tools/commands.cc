@@ -23,4 +23,16 @@ std::vector<Command> allCommands() {
           makeHelpCommand()};
 }
 
+Command findCommand(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Command& c : allCommands()) {
+    if (c.name() == name) return c;
+    names.push_back(c.name());
+  }
+  const bool option = name.compare(0, 1, "-") == 0;
+  throw UsageError(std::string("unknown ") + (option ? "option" : "command") + " '" + name + "'" +
+                   didYouMean(name, names) + (option ? "; options stand after the command" : "") +
+                   "; see 'innermap --help'");
+}
+
 }  // namespace innermap::tool

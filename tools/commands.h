@@ -28,6 +28,9 @@ Command makeHelpCommand();
 
 std::vector<Command> allCommands();
 
+// Throws UsageError with the nearest name.
+Command findCommand(const std::string& name);
+
 // Of innermap::tool's own; the commands' texts come from their tables.
 std::string generalHelp();
 std::string commandHelp(const Command& command);

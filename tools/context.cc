@@ -6,7 +6,6 @@
 #include <filesystem>
 
 #include "innermap/core/memory.h"
-#include "innermap/core/stage_seconds.h"
 #include "innermap/io/picture/label_font.h"
 #include "terminal_progress.h"
 
@@ -31,7 +30,7 @@ void Context::plan(const std::vector<std::string>& lines, std::uint64_t bytes) {
                     formatBytes(maxMemory_),
                     bytes > maxMemory_ ? ", so this would be refused" : ""));
   report_.set("dry_run", true);
-  report_.set("memory_needed_bytes", static_cast<std::int64_t>(bytes));
+  report_.set("memory_needed_bytes", bytes);
 }
 
 void Context::output(const std::string& path) {
@@ -47,11 +46,6 @@ void Context::notePictures() {
     note(
         "no font is installed, so pictures have no labels; install DejaVu Sans (on Debian the "
         "package fonts-dejavu-core)");
-}
-
-void Context::timed(const std::string& stage, const std::function<void()>& body) {
-  throwIfCancelled(&progress_);
-  innermap::timed(report_.seconds, stage, body);
 }
 
 void Context::say(const std::string& kind, const std::string& text) {
@@ -78,6 +72,12 @@ void Context::print(const std::string& text) {
 const Report& Context::finishedReport() {
   report_.peakMemory = peakMemory();
   return report_;
+}
+
+void Context::finish(PendingFolder& folder) {
+  folder.write("report.json",
+               [&](const std::string& path) { writeReport(path, finishedReport()); });
+  folder.commit();
 }
 
 }  // namespace innermap::tool

@@ -2,13 +2,15 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "innermap/core/file.h"
 #include "innermap/core/progress.h"
+#include "innermap/core/stage_seconds.h"
 #include "innermap/io/report.h"
 
 namespace innermap::tool {
@@ -42,6 +44,14 @@ class Context {
   // Bytes: --max-memory, or 80% of the machine's.
   std::uint64_t maxMemory() const { return maxMemory_; }
 
+  // The settings of the library with the limit on memory, where they have one, and the progress.
+  template <class Settings>
+  Settings settings(Settings given = {}) const {
+    if constexpr (HasMaxMemory<Settings>::value) given.maxMemory = maxMemory_;
+    given.progress = progress();
+    return given;
+  }
+
   bool dryRun() const { return options_.dryRun; }
   // What --dry-run says: a line for each thing that would be done, and the peak need in bytes (also
   // whether it is over the limit), on stdout.
@@ -55,12 +65,24 @@ class Context {
   // Says so when pictures will have no labels for lack of a font; output() does for .png files.
   void notePictures();
 
-  // Runs `body` and adds its wall time to the report's "seconds" under `stage`.
-  void timed(const std::string& stage, const std::function<void()>& body);
+  // What `body` returns; adds its wall time to the report's "seconds" under `stage`.
+  template <class Body>
+  decltype(auto) timed(const std::string& stage, Body&& body) {
+    throwIfCancelled(progress());
+    return innermap::timed(report_.seconds, stage, std::forward<Body>(body));
+  }
 
   // One line each on stderr (nothing with --quiet), and in the report.
   void note(const std::string& text);     // what was repaired or chosen
   void warning(const std::string& text);  // what makes the result doubtful
+
+  // Both, and the seconds, of a result of the library.
+  template <class Result>
+  void tell(const Result& result) {
+    for (const std::string& text : result.notes) note(text);
+    for (const std::string& text : result.warnings) warning(text);
+    addSeconds(report_.seconds, result.seconds);
+  }
 
   // The command goes on and writes its files, and its report; then the program ends with this line
   // on stderr and exit code 1.
@@ -72,10 +94,17 @@ class Context {
 
   // Sections that the command fills; the framework writes it to --report F afterwards.
   Report& report() { return report_; }
-  // With peak memory as it now stands; for a command that writes a report file of its own.
+  // With peak memory as it now stands.
   const Report& finishedReport();
+  // Adds report.json and puts the files in place.
+  void finish(PendingFolder& folder);
 
  private:
+  template <class Settings, class = void>
+  struct HasMaxMemory : std::false_type {};
+  template <class Settings>
+  struct HasMaxMemory<Settings, std::void_t<decltype(Settings::maxMemory)>> : std::true_type {};
+
   void say(const std::string& kind, const std::string& text);
 
   const CommonOptions& options_;

@@ -3,9 +3,9 @@
 
 #include "commands.h"
 #include "correspondence.h"
-#include "correspondence_picture.h"
+#include "innermap/io/picture/mesh_picture.h"
 #include "innermap/mesh/write.h"
-#include "mesh_input.h"
+#include "inputs.h"
 
 namespace innermap::tool {
 namespace {
@@ -13,7 +13,6 @@ namespace {
 struct Options {
   std::string a, b, output, sourceOutput, picture;
   CorrespondOptions correspond;
-  std::uint64_t seed = MeshCorrespondenceSettings().seed;
 };
 
 // The file of A with the triangles of the output, where those are not A's own.
@@ -31,13 +30,14 @@ void run(const Options& options, Context& context) {
   const std::size_t countA = a.vertices.size(), countB = b.vertices.size();
   if (context.dryRun())
     return context.plan(
-        {fmt::format("map the {} vertices of {} onto {} ({} vertices), in about {:.0f} s", countA,
-                     options.a, options.b, countB,
-                     correspondSeconds(countA, countB, options.correspond)),
+        {fmt::format(
+             "map the {} vertices of {} onto {} ({} vertices), in about {:.0f} s", countA,
+             options.a, options.b, countB,
+             correspondSeconds(countA, countB, correspondSettings(options.correspond, context))),
          "write them to " + options.output},
         correspondMemory(countA, countB));
   const MeshCorrespondence moved =
-      correspondMeshes(std::move(a), std::move(b), options.correspond, options.seed, context);
+      correspondMeshes(std::move(a), std::move(b), options.correspond, context);
   context.timed("write", [&] {
     if (moved.changed) {
       Mesh source = moved.source;
@@ -46,7 +46,10 @@ void run(const Options& options, Context& context) {
     }
     writeCorrespondence(options.output, moved);
   });
-  if (!options.picture.empty()) writeCorrespondencePicture(options.picture, moved, context);
+  if (!options.picture.empty())
+    context.timed("picture", [&] {
+      writeCorrespondencePicture(options.picture, moved, context.settings<MeshPictureSettings>());
+    });
   if (moved.changed)
     context.note(fmt::format("{} has A with the same {} vertices: give both to innermap map",
                              sourceOutputOf(options), moved.source.vertices.size()));
@@ -75,7 +78,7 @@ Command makeCorrespondCommand() {
            "touching parts cut apart")
       .defaults("the output's name with .source.ply");
   addCorrespondOptions(c, o->correspond);
-  c.option("--seed", "N", &o->seed, "of all random choices").range(0, 1e15);
+  c.option("--seed", "N", &o->correspond.map.seed, "of all random choices").range(0, 1e15);
   c.option("--picture", "FILE", &o->picture,
            "a .png with A's coordinates as colours, on A and on B");
   c.example("innermap correspond cow.obj man.obj -o cow_on_man.ply --picture cow_on_man.png");

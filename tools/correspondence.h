@@ -9,31 +9,25 @@
 
 namespace innermap::tool {
 
-// What is done with meshes that are no clean closed surfaces.
-struct SurfaceOptions {
-  bool close = false;
-  std::optional<int> resolution;  // of the isosurface that stands in for such a mesh
-};
-
 struct CorrespondOptions {
-  SurfaceOptions surfaces;
+  LayOutSettings surfaces;
+  MeshCorrespondenceSettings map;
   std::string landmarks;
-  bool aligned = false, noRefine = false;
-  int candidates = MeshCorrespondenceSettings().candidates;
-  std::optional<double> subdivide;
+  bool noRefine = false;
 };
 
-void addSurfaceOptions(Command& command, SurfaceOptions& options);
+void addSurfaceOptions(Command& command, LayOutSettings& options);
 void addCorrespondOptions(Command& command, CorrespondOptions& options);
 
-// Expected time of laying one of `a` vertices on one of `b`.
-double correspondSeconds(std::size_t a, std::size_t b, const CorrespondOptions& options);
+// The landmarks are not read yet.
+MeshCorrespondenceSettings correspondSettings(const CorrespondOptions& options,
+                                              const Context& context);
 
 // Throws UsageError unless `path`, the value of `option`, ends in .ply.
 void requirePly(const std::string& option, const std::string& path);
 
 // Lays the mesh out and tells: notes, seconds. DataErrors name the options that would help.
-LaidOutMesh layOut(Mesh mesh, const SurfaceOptions& options, Context& context);
+LaidOutMesh layOut(Mesh mesh, const LayOutSettings& options, Context& context);
 
 // For the report.
 ReportMesh reportOf(const LaidOutMesh& mesh);
@@ -41,6 +35,6 @@ ReportMesh reportOf(const LaidOutMesh& mesh);
 // Maps A onto B and tells: notes, the report's "correspondence" and "seconds", a text for the
 // terminal.
 MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const CorrespondOptions& options,
-                                    std::uint64_t seed, Context& context);
+                                    Context& context);
 
 }  // namespace innermap::tool

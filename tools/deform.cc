@@ -2,24 +2,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <map>
 
 #include "commands.h"
-#include "frame_fits.h"
 #include "frame_loop.h"
-#include "innermap/core/file.h"
 #include "innermap/core/version.h"
 #include "innermap/io/vdb/vdb_file.h"
-#include "innermap/levelset/level_set.h"
+#include "inputs.h"
 #include "transfer_options.h"
 
 namespace innermap::tool {
 namespace {
 
-constexpr double kBand = 3;         // voxels: the skin of 2 and one more for interpolation
 constexpr double kAccuracy = 1e-6;  // of sums of charges; well below what the fits leave
 constexpr char kInputs[] = "innermap_inputs";
 
@@ -32,28 +28,28 @@ struct DeformOptions {
 };
 
 // What decides an output beside the frames' files.
-std::string settingsText(const DeformOptions& o, const FrameFitterSettings& fitting) {
-  const FrameOptions& f = o.frames;
+std::string settingsText(const DeformOptions& o) {
+  const FrameFitterSettings& f = o.frames.fitting;
   const TransferOptions& t = o.transfer;
   const auto number = [](const auto& v) { return v ? fmt::format("{:.17g}", double(*v)) : "-"; };
   return fmt::format("{};{};{};{};{};{};{};{};{};{};{};{:.17g};{};{};{};{};{}", versionText(),
-                     f.sources, frameCollocation(fitting), number(f.distance), f.seed, t.grids,
-                     t.sampling, t.density, t.densities, t.stress, t.strain, t.outside, t.fadeTo,
-                     number(t.resolution), number(t.voxelSize), t.names,
+                     f.sources, frameCollocation(f), number(f.distance), f.seed, t.grids,
+                     static_cast<int>(t.carry.sampling), t.carry.allDensities, t.densities,
+                     t.stress, t.strain, t.outside, t.fadeTo, number(t.grid.resolution),
+                     number(t.grid.voxelSize), static_cast<int>(t.names),
                      o.velocity ? fmt::format("{:.17g}", o.framesPerSecond) : "-");
 }
 
 // Tells which inputs and settings an output was made from.
 class Inputs {
  public:
-  Inputs(const DeformOptions& options, const Frames& frames, Context& context)
-      : frames_(frames), neighbours_(options.velocity), progress_(context.progress()) {
-    const std::uint64_t settings =
-        hashOf(settingsText(options, frameFitterSettings(options.frames, context)));
-    common_ = fmt::format("rest {}, volume {}, settings {:016x}",
-                          fingerprintOf(options.rest, {progress_}),
-                          fingerprintOf(options.volume, {progress_}), settings);
-  }
+  Inputs(const DeformOptions& options, const Frames& frames, const Context& context)
+      : frames_(frames),
+        neighbours_(options.velocity),
+        settings_(context.settings<FingerprintSettings>()),
+        common_(fmt::format(
+            "rest {}, volume {}, settings {:016x}", fingerprintOf(options.rest, settings_),
+            fingerprintOf(options.volume, settings_), hashOf(settingsText(options)))) {}
 
   std::string of(std::size_t index) const {
     std::string text = common_ + ", frame " + fingerprint(index);
@@ -65,21 +61,19 @@ class Inputs {
 
  private:
   std::string fingerprint(std::size_t index) const {
-    return fingerprintOf(frames_.all[index].path, {progress_});
+    return fingerprintOf(frames_.all[index].path, settings_);
   }
   // A neighbour that cannot be read plays no part.
-  std::string numbered(std::size_t index) const {
-    try {
-      return fmt::format("{} {}", frames_.all[index].number, fingerprint(index));
-    } catch (const FileError&) {
-      return "none";
-    }
+  std::string numbered(std::size_t index) const try {
+    return fmt::format("{} {}", frames_.all[index].number, fingerprint(index));
+  } catch (const FileError&) {
+    return "none";
   }
 
   const Frames& frames_;
   const bool neighbours_;
-  Progress* progress_;
-  std::string common_;
+  const FingerprintSettings settings_;
+  const std::string common_;
 };
 
 // Whether a whole file made from these inputs is there.
@@ -108,112 +102,63 @@ class Deformer {
   Deformer(const DeformOptions& options, const Frames& frames, Context& context)
       : options_(options),
         context_(context),
-        fitter_(
-            makeFrameFitter(options.rest, frameFitterSettings(options.frames, context), context)),
-        fits_(fitter_, frames, context),
         frames_(frames),
+        fitter_(makeFrameFitter(options.rest, context.settings(options.frames.fitting), context)),
+        fits_(makeFrameFits(fitter_, frames, context)),
         grids_(readVolume(options.volume, options.transfer, context)) {
-    const NamingScheme scheme = parseNamingScheme("--names", options.transfer.names);
-    for (const openvdb::GridBase::Ptr& grid : grids_)
-      if (options.velocity && gridName(grid->getName(), scheme) == gridName("velocity", scheme))
-        throw DataError(options.volume + ": already has a grid '" + grid->getName() +
-                        "'; leave out --velocity or choose the others by --grids");
-    chooseLattice();
+    requireNoVelocity();
     requireTransferMemory(fitter_.solid(), grids_, options.transfer, context);
-    if (options.transfer.fadeTo != "fitted") pusher_.emplace(makePusher({}));
+    FramePushSettings settings;
+    settings.push = context.settings<PushSettings>();
+    settings.push.carry = carrySettings(options.transfer);
+    settings.push.accuracy = kAccuracy;
+    settings.fadeToFitted = options.transfer.fadeTo == "fitted";
+    if (!settings.fadeToFitted) settings.push.outside = outsideSettings(options.transfer, {}, {});
+    settings.push.outside.distance = options.transfer.outside;
+    settings.output = outputSettings(grids_, options.transfer.grid, context);
+    pusher_.emplace(fitter_, grids_, settings);
   }
 
-  double voxelSize() const { return levelSet_.voxelSize; }
+  double voxelSize() const { return pusher_->voxelSize(); }
 
   DeformRow run(std::size_t index, const std::string& path, const std::string& inputs) {
+    const FrameFile& frame = frames_.all[index];
     const std::shared_ptr<const FrameFit> fit = fits_.at(index);
     std::vector<CarriedField> fields;
     if (options_.velocity)
       fields.push_back({"velocity", fits_.velocity(index, options_.framesPerSecond),
                         openvdb::VEC_CONTRAVARIANT_RELATIVE});
-    openvdb::FloatGrid::Ptr target;
-    context_.timed("level set", [&] {
-      SolidSettings settings;
-      settings.progress = context_.progress();
-      const Solid solid(fit->boundary.mesh(fitter_.solid(), frames_.all[index].path), settings);
-      target = makeLevelSet(solid, levelSet_);
-    });
-    PushResult result;
-    context_.timed("push", [&] {
-      const VolumePusher pusher = pusher_ ? *pusher_ : makePusher(fit->boundary.moved);
-      result = pusher.push(HarmonicMap(fit->field), *target, fields);
-    });
-    say(result, frames_.all[index].number);
-    write(index, path, inputs, *fit, result);
+    const auto [result, seconds] = pusher_->push({fit.get(), frame.number}, fields);
+    addSeconds(context_.report().seconds, seconds);
+    for (const std::string& warning : result.warnings)
+      context_.warning(fmt::format("frame {}: {}", frame.number, warning));
+    if (options_.velocity)
+      for (const openvdb::GridBase::Ptr& grid : result.grids)
+        grid->insertMeta("innermap_frames_per_second",
+                         openvdb::DoubleMetadata(options_.framesPerSecond));
+    openvdb::MetaMap file;
+    file.insertMeta(kInputs, openvdb::StringMetadata(inputs));
+    writeFrame(frame,
+               [&] { writeGridFile(path, result.grids, options_.transfer.names, context_, file); });
     return {result.statistics, fit->error};
   }
 
  private:
-  // All frames have the voxels and the lattice that the rest pose would have.
-  void chooseLattice() {
-    const TransferOptions& t = options_.transfer;
-    levelSet_.halfWidth = kBand;
-    levelSet_.maxMemory = context_.maxMemory();
-    levelSet_.progress = context_.progress();
-    if (t.voxelSize) {
-      levelSet_.voxelSize = *t.voxelSize;
-    } else if (t.resolution) {
-      levelSet_.resolution = *t.resolution;
-    } else {
-      for (const openvdb::GridBase::Ptr& grid : grids_) {
-        const openvdb::Vec3d v = grid->voxelSize();
-        const double finest = std::min({v.x(), v.y(), v.z()});
-        if (levelSet_.voxelSize == 0 || finest < levelSet_.voxelSize) levelSet_.voxelSize = finest;
-      }
-    }
-    levelSet_.voxelSize = voxelSizeFor(fitter_.solid(), levelSet_);
-    const openvdb::Vec3d origin =
-        transformFor(fitter_.solid(), levelSet_.voxelSize)->indexToWorld(openvdb::Vec3d(0));
-    levelSet_.origin = Vec3{origin.x(), origin.y(), origin.z()};
-  }
-
-  VolumePusher makePusher(const Points& moved) const {
-    PushSettings settings =
-        pushSettings(options_.transfer, fitter_.solid().repaired().mesh.vertices, moved, context_);
-    settings.accuracy = kAccuracy;
-    return VolumePusher(fitter_.solid(), grids_, settings);
-  }
-
-  void say(const PushResult& result, std::int64_t frame) const {
-    for (const std::string& warning : result.warnings)
-      context_.warning(fmt::format("frame {}: {}", frame, warning));
-  }
-
-  void write(std::size_t index, const std::string& path, const std::string& inputs,
-             const FrameFit& fit, const PushResult& result) const {
-    const FrameFile& frame = frames_.all[index];
-    for (const openvdb::GridBase::Ptr& grid : result.grids) {
-      const auto number = [&grid](const char* key, double value) {
-        grid->insertMeta(std::string("innermap_") + key, openvdb::DoubleMetadata(value));
-      };
-      grid->insertMeta("innermap_frame", openvdb::Int64Metadata(frame.number));
-      number("boundary_error_rms", fit.error.rms);
-      number("boundary_error_p99", fit.error.p99);
-      number("boundary_error_max", fit.error.max);
-      if (options_.velocity) number("frames_per_second", options_.framesPerSecond);
-    }
-    openvdb::MetaMap file;
-    file.insertMeta(kInputs, openvdb::StringMetadata(inputs));
-    VdbWriteSettings settings;
-    settings.names = parseNamingScheme("--names", options_.transfer.names);
-    settings.progress = context_.progress();
-    context_.timed(
-        "write", [&] { writeFrame(frame, [&] { writeVdb(path, result.grids, file, settings); }); });
+  void requireNoVelocity() const {
+    const NamingScheme scheme = options_.transfer.names;
+    for (const openvdb::GridBase::Ptr& grid : grids_)
+      if (options_.velocity && gridName(grid->getName(), scheme) == gridName("velocity", scheme))
+        throw DataError(options_.volume + ": already has a grid '" + grid->getName() +
+                        "'; leave out --velocity or choose the others by --grids");
   }
 
   const DeformOptions& options_;
   Context& context_;
+  const Frames& frames_;
   const FrameFitter fitter_;
   FrameFits fits_;
-  const Frames& frames_;
   const openvdb::GridPtrVec grids_;
-  LevelSetSettings levelSet_;
-  std::optional<VolumePusher> pusher_;
+  std::optional<FramePusher> pusher_;
 };
 
 std::string lineOf(const FrameFile& frame, const DeformRow& row, double seconds) {
@@ -230,23 +175,17 @@ std::string header() {
 // Figures of the frames that were made now; those of others are missing.
 void fillReport(const std::map<std::size_t, DeformRow>& rows, const Frames& frames,
                 Report& report) {
-  std::vector<double> voxels, inverted, rms, p99, most;
-  for (const std::size_t index : frames.wanted) {
-    const auto row = rows.find(index);
-    const auto value = [&](auto of) {
+  const auto set = [&](const char* key, auto of) {
+    report.setColumn(std::string("frames.") + key, frames.wanted, [&](std::size_t index) {
+      const auto row = rows.find(index);
       return row == rows.end() ? std::nan("") : static_cast<double>(of(row->second));
-    };
-    voxels.push_back(value([](const DeformRow& r) { return r.statistics.voxels; }));
-    inverted.push_back(value([](const DeformRow& r) { return r.statistics.invertedInside(); }));
-    rms.push_back(value([](const DeformRow& r) { return r.error.rms; }));
-    p99.push_back(value([](const DeformRow& r) { return r.error.p99; }));
-    most.push_back(value([](const DeformRow& r) { return r.error.max; }));
-  }
-  report.set("frames.voxels", voxels);
-  report.set("frames.inverted_fraction", inverted);
-  report.set("frames.boundary_rms", rms);
-  report.set("frames.boundary_p99", p99);
-  report.set("frames.boundary_max", most);
+    });
+  };
+  set("voxels", [](const DeformRow& r) { return r.statistics.voxels; });
+  set("inverted_fraction", [](const DeformRow& r) { return r.statistics.invertedInside(); });
+  set("boundary_rms", [](const DeformRow& r) { return r.error.rms; });
+  set("boundary_p99", [](const DeformRow& r) { return r.error.p99; });
+  set("boundary_max", [](const DeformRow& r) { return r.error.max; });
 }
 
 void check(const DeformOptions& options, const Frames& frames) {
@@ -274,7 +213,7 @@ Frames framesLeft(const DeformOptions& options, const Frames& frames, const Fram
     if (toDo) left.wanted.push_back(index);
   }
   const std::size_t finished = frames.wanted.size() - left.wanted.size();
-  context.report().set("frames.finished_before", static_cast<std::int64_t>(finished));
+  context.report().set("frames.finished_before", finished);
   if (finished > 0)
     context.note(fmt::format("{} of {} frames are finished already; --force makes them again",
                              finished, frames.wanted.size()));
@@ -284,11 +223,10 @@ Frames framesLeft(const DeformOptions& options, const Frames& frames, const Fram
 void plan(const DeformOptions& options, const Frames& frames, const FramePattern& pattern,
           Context& context) {
   const auto path = [&](std::size_t i) { return pattern.path(frames.all[i].number); };
-  const FrameFitterSettings settings = frameFitterSettings(options.frames, context);
-  context.plan({fmt::format("fit {} charges to {} boundary points for {} frames", settings.sources,
-                            frameCollocation(settings), frames.wanted.size()),
-                "carry " + options.volume + " to " + path(frames.wanted.front()) + " to " +
-                    path(frames.wanted.back())},
+  const FrameFitterSettings settings = context.settings(options.frames.fitting);
+  context.plan({framesPlan(settings, frames), "carry " + options.volume + " to " +
+                                                  path(frames.wanted.front()) + " to " +
+                                                  path(frames.wanted.back())},
                frameFitterMemory(settings));
 }
 
@@ -297,7 +235,7 @@ void run(const DeformOptions& options, Context& context) {
   const Frames frames = listFrames(options.frames, options.rest, context);
   check(options, frames);
   if (context.dryRun()) return plan(options, frames, pattern, context);
-  requireFrameMemory(frameFitterSettings(options.frames, context), 0);
+  requireFrameMemory(context.settings(options.frames.fitting), 0);
   const PendingFolder folder = context.outputFolder(pattern.folder());
   std::optional<Inputs> inputs;
   Frames left;
@@ -310,12 +248,12 @@ void run(const DeformOptions& options, Context& context) {
   std::map<std::size_t, DeformRow> rows;
   context.print(header());
   const auto results = runFrames(left, true, context, [&](std::size_t index) {
-    const auto start = std::chrono::steady_clock::now();
     const FrameFile& frame = frames.all[index];
-    const DeformRow row = deformer.run(index, pattern.path(frame.number), inputs->of(index));
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    context.print(lineOf(frame, row, elapsed.count()));
-    rows[index] = row;
+    StageSeconds seconds;
+    rows[index] = timed(seconds, "frame", [&] {
+      return deformer.run(index, pattern.path(frame.number), inputs->of(index));
+    });
+    context.print(lineOf(frame, rows[index], seconds.front().second));
   });
   context.report().set("grid.voxel_size", deformer.voxelSize());
   fillReport(rows, left, context.report());

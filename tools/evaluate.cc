@@ -1,6 +1,7 @@
 // `innermap evaluate`: a saved map on the voxels of its solid.
 #include "commands.h"
-#include "evaluation.h"
+#include "grid_options.h"
+#include "inputs.h"
 #include "map_report.h"
 
 namespace innermap::tool {
@@ -18,13 +19,10 @@ void run(const EvaluateOptions& options, Context& context) {
   if (context.dryRun())
     return context.plan({"evaluate " + options.map, "write grids to " + options.output},
                         mapGridMemory(mapped.solid(), settings));
-  requireEvaluationMemory(mapped.solid(), settings);
+  requireEvaluationMemory(mapped.solid(), options.evaluation.grid, context);
   const SolidGrids grids = evaluateOnGrid(mapped, settings);
-  tell(grids.notes, grids.warnings, grids.seconds, context);
-  reportGrids(grids, settings.lame, context.report());
-  context.timed("write",
-                [&] { writeGrids(options.output, grids.all(), options.evaluation, context); });
-  context.print(gridsText(grids));
+  reportGrids(grids, settings.lame, context);
+  writeGridFile(options.output, grids.all(), options.evaluation.names, context);
 }
 
 }  // namespace

@@ -6,55 +6,37 @@
 #include "innermap/io/slice.h"
 #include "innermap/io/vdb/vdb_file.h"
 #include "innermap/io/volume/volume_texture.h"
+#include "inputs.h"
 #include "lists.h"
-#include "volume_options.h"
 
 namespace innermap::tool {
 namespace {
 
 struct ExportOptions {
-  std::string file, output, layout = "atlas", grids, axis = "z", rows = "down", channels = "auto",
-                            tiles;
-  std::optional<int> resolution;
-  int pad = 0;
-  bool half = false, powerOfTwo = false, cube = false, active = false;
+  std::string file, output, grids, tiles;
+  VolumeTextureSettings texture;
 };
 
 VolumeTextureSettings settingsOf(const ExportOptions& options, Context& context) {
-  VolumeTextureSettings s;
-  s.layout = parseVolumeLayout("--layout", options.layout);
-  s.axis = parseAxis("--axis", options.axis);
-  s.rowsUp = options.rows == "up";
-  s.channels = options.channels == "rgba"     ? VolumeChannels::rgba
-               : options.channels == "layers" ? VolumeChannels::layers
-                                              : VolumeChannels::automatic;
-  s.half = options.half;
-  s.active = options.active;
-  s.pad = options.pad;
-  s.cube = options.cube;
-  s.resolution = options.resolution.value_or(0);
-  s.powerOfTwo = options.powerOfTwo;
+  auto s = context.settings(options.texture);
   if (!options.tiles.empty()) s.tiles = parseTiles("--tiles", options.tiles);
-  s.maxMemory = context.maxMemory();
-  s.progress = context.progress();
   return s;
 }
 
 void fillReport(const VolumeTextureResult& r, const ExportOptions& options, Context& context) {
   Report& report = context.report();
-  const auto number = [](int n) { return static_cast<std::int64_t>(n); };
-  report.set("texture.layout", options.layout);
-  report.set("texture.files", number(static_cast<int>(r.files.size())));
-  report.set("texture.width", number(r.width));
-  report.set("texture.height", number(r.height));
+  report.set("texture.layout", volumeLayoutName(options.texture.layout));
+  report.set("texture.files", r.files.size());
+  report.set("texture.width", r.width);
+  report.set("texture.height", r.height);
   report.set("texture.tiles", std::vector<double>{double(r.tileColumns), double(r.tileRows)});
-  report.set("texture.slices", number(r.slices));
+  report.set("texture.slices", r.slices);
   report.set("texture.resolution",
              std::vector<double>{double(r.resolution.x()), double(r.resolution.y()),
                                  double(r.resolution.z())});
   report.set("texture.channels", r.channels);
-  report.set("texture.clamped", static_cast<std::int64_t>(r.clamped));
-  report.set("texture.rounded", static_cast<std::int64_t>(r.inexact));
+  report.set("texture.clamped", r.clamped);
+  report.set("texture.rounded", r.inexact);
 }
 
 void run(const ExportOptions& options, Context& context) {
@@ -62,21 +44,17 @@ void run(const ExportOptions& options, Context& context) {
   context.output(settings.layout == VolumeLayout::slices
                      ? FramePattern("--output", options.output).path(0)
                      : options.output);
-  VdbReadSettings read;
-  read.names = commaList(options.grids);
-  read.maxMemory = context.maxMemory();
-  read.progress = context.progress();
+  const std::vector<std::string> names = commaList(options.grids);
   if (context.dryRun()) {
     const std::uint64_t need =
-        readMemory(readVdbInfo(options.file, {context.progress()}), read.names);
+        readMemory(readVdbInfo(options.file, context.settings<VdbInfoSettings>()), names);
     return context.plan({fmt::format("write {} as a volume texture ({}) to {}", options.file,
-                                     options.layout, options.output)},
+                                     volumeLayoutName(settings.layout), options.output)},
                         need);
   }
-  openvdb::GridPtrVec grids;
-  context.timed("read", [&] { grids = readVdb(options.file, read).grids; });
-  VolumeTextureResult result;
-  context.timed("write", [&] { result = writeVolumeTexture(options.output, grids, settings); });
+  const openvdb::GridPtrVec grids = readGridFile(options.file, names, context);
+  const VolumeTextureResult result =
+      context.timed("write", [&] { return writeVolumeTexture(options.output, grids, settings); });
   for (const std::string& warning : warningsOf(result, options.output, settings))
     context.warning(warning);
   fillReport(result, options, context);
@@ -84,13 +62,13 @@ void run(const ExportOptions& options, Context& context) {
 }
 
 void addShapeOptions(Command& c, ExportOptions& o) {
-  c.option("--resolution", "N", &o.resolution,
+  c.option("--resolution", "N", &o.texture.resolution,
            "resample to N voxels along the longest side: linear, the mean where voxels grow")
       .range(1, 8192)
       .defaults("the grids' own voxels");
-  c.option("--pad", "N", &o.pad, "voxels about the active box").range(0, 4096);
-  c.flag("--cube", &o.cube, "widen the box to a cube");
-  c.flag("--power-of-two", &o.powerOfTwo,
+  c.option("--pad", "N", &o.texture.pad, "voxels about the active box").range(0, 4096);
+  c.flag("--cube", &o.texture.cube, "widen the box to a cube");
+  c.flag("--power-of-two", &o.texture.powerOfTwo,
          "widen the box so that the slices' number and sides and the picture's are powers of two");
   c.option("--tiles", "CxR", &o.tiles, "columns and rows of the atlas, such as 8x8")
       .defaults("near a square");
@@ -114,21 +92,25 @@ Command makeExportCommand() {
            "extension")
       .shortName("-o")
       .required();
-  c.option("--layout", "NAME", &o->layout,
-           "atlas: one picture of tiles; slices: a file each; parts: one multi-part file")
-      .choices({"atlas", "slices", "parts"});
+  c.choice("--layout", "NAME", &o->texture.layout,
+           {{"atlas", VolumeLayout::atlas},
+            {"slices", VolumeLayout::slices},
+            {"parts", VolumeLayout::parts}},
+           "atlas: one picture of tiles; slices: a file each; parts: one multi-part file");
   c.option("--grid", "LIST", &o->grids, "grids to write, with commas between").defaults("all");
-  c.flag("--half", &o->half, "half floats: half the size, three digits");
-  c.option("--channels", "NAMES", &o->channels,
-           "rgba: Y or R, G, B, A; layers: by the grids' names; auto: rgba where four are enough")
-      .choices({"auto", "rgba", "layers"});
+  c.flag("--half", &o->texture.half, "half floats: half the size, three digits");
+  c.choice("--channels", "NAMES", &o->texture.channels,
+           {{"auto", VolumeChannels::automatic},
+            {"rgba", VolumeChannels::rgba},
+            {"layers", VolumeChannels::layers}},
+           "rgba: Y or R, G, B, A; layers: by the grids' names; auto: rgba where four are enough");
   addShapeOptions(c, *o);
-  c.option("--axis", "AXIS", &o->axis, "direction across the slices").choices({"x", "y", "z"});
-  c.option("--rows", "ORDER", &o->rows,
+  c.choice("--axis", "AXIS", &o->texture.axis, {{"x", 0}, {"y", 1}, {"z", 2}},
+           "direction across the slices");
+  c.choice("--rows", "ORDER", &o->texture.rowsUp, {{"down", false}, {"up", true}},
            "down: a slice's first row has the least index (Direct3D, Unreal); up: the largest "
-           "(OpenGL, Unity)")
-      .choices({"down", "up"});
-  c.flag("--active", &o->active, "also NAME.active: 1 where a voxel is active");
+           "(OpenGL, Unity)");
+  c.flag("--active", &o->texture.active, "also NAME.active: 1 where a voxel is active");
   c.example("innermap export smoke.vdb -o smoke.exr --grid density --resolution 64 --cube --half");
   c.example("innermap export map.vdb -o 'slices/map.####.exr' --layout slices --grid map,density");
   c.run([o](Context& context) { run(*o, context); });

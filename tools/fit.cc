@@ -2,6 +2,7 @@
 #include "commands.h"
 #include "fitting_options.h"
 #include "innermap/mesh/read.h"
+#include "inputs.h"
 #include "map_report.h"
 
 namespace innermap::tool {
@@ -13,15 +14,13 @@ struct FitOptions {
 };
 
 BoundaryPair readPair(const FitOptions& options, Context& context) {
-  Mesh source, target;
-  context.timed("read", [&] {
-    const ReadSettings settings{context.progress()};
-    source = readMesh(options.source, settings);
-    target = readMeshLike(options.target, source, settings);
+  Mesh source = readMeshFile(options.source, context);
+  Mesh target = context.timed("read", [&] {
+    return readMeshLike(options.target, source, context.settings<ReadSettings>());
   });
-  BoundaryPair pair = makeBoundaryPair(std::move(source), std::move(target), {context.progress()});
-  tell(pair.notes, pair.warnings, pair.seconds, context);
-  reportBoundaries(pair, context.report());
+  BoundaryPair pair =
+      makeBoundaryPair(std::move(source), std::move(target), context.settings<BoundarySettings>());
+  reportBoundaries(pair, context);
   return pair;
 }
 
@@ -36,10 +35,8 @@ void run(const FitOptions& options, Context& context) {
                         fitMapMemory(settings));
   requireFittingMemory(settings);
   const MapFit fit = fitMap(std::move(pair), settings);
-  tell(fit.notes, fit.warnings, fit.seconds, context);
   reportFit(fit, settings, options.fitting.bestEffort, context);
   context.timed("write", [&] { writeMap(options.output, fit); });
-  context.print(errorText(fit.error));
 }
 
 }  // namespace

@@ -6,13 +6,12 @@
 #include <cmath>
 
 #include "innermap/core/memory.h"
-#include "largest.h"
+#include "memory_limit.h"
 
 namespace innermap::tool {
 namespace {
 
-constexpr double kDefaultTolerance = 1e-3;
-constexpr std::size_t kSources = 2000, kFirstSources = 1000;
+constexpr std::size_t kFirstSources = 1000;
 constexpr double kMostSources = 1000000;
 
 std::size_t countOf(double count, const char* option, double least, double most) {
@@ -22,18 +21,6 @@ std::size_t countOf(double count, const char* option, double least, double most)
   return static_cast<std::size_t>(count);
 }
 
-Interpolation interpolationOf(const FittingOptions& options) {
-  return options.interpolation == "linear"   ? Interpolation::linear
-         : options.interpolation == "smooth" ? Interpolation::smooth
-                                             : Interpolation::automatic;
-}
-
-FitSolver solverOf(const FittingOptions& options) {
-  return options.solver == "auto"    ? FitSolver::automatic
-         : options.solver == "dense" ? FitSolver::dense
-                                     : FitSolver::iterative;
-}
-
 // The tolerance that charges are placed for; nothing where the options place a number of them.
 std::optional<double> toleranceOf(const FittingOptions& o) {
   const std::pair<bool, const char*> uniform[] = {
@@ -41,11 +28,11 @@ std::optional<double> toleranceOf(const FittingOptions& o) {
       {o.sourceRatio.has_value(), "--source-ratio"},
       {o.collocation.has_value(), "--collocation"},
       {o.collocationRatio.has_value(), "--collocation-ratio"},
-      {o.distance.has_value(), "--distance"},
-      {o.radiusRatio.has_value(), "--radius-ratio"},
-      {o.solver != "auto", "--solver"},
-      {o.method != "tikhonov", "--method"},
-      {o.regularization.has_value(), "--regularization"}};
+      {o.shell.distance.has_value(), "--distance"},
+      {o.shell.radiusRatio.has_value(), "--radius-ratio"},
+      {o.shell.solver != FitSolver::automatic, "--solver"},
+      {o.shell.method != Regularization::tikhonov, "--method"},
+      {o.shell.regularization.has_value(), "--regularization"}};
   if (o.tolerance && !(*o.tolerance >= kSmallestTolerance && *o.tolerance <= 1))
     throw UsageError(fmt::format(
         "--tolerance: must lie in 1e-12 to 1 of the target's diagonal, not {:g}; sums in double "
@@ -58,7 +45,7 @@ std::optional<double> toleranceOf(const FittingOptions& o) {
           fmt::format("--tolerance and {} exclude each other; give one of them", name));
     return {};
   }
-  return o.tolerance.value_or(kDefaultTolerance);
+  return o.tolerance.value_or(o.fit.tolerance);
 }
 
 }  // namespace
@@ -72,13 +59,13 @@ void addFittingOptions(Command& command, FittingOptions& o) {
       .defaults("0.001");
   command.flag("--best-effort", &o.bestEffort,
                "exit code 0 also when the tolerance cannot be met; files are written either way");
-  command.option("--max-sources", "N", &o.maxSources, "charges that --tolerance may take")
+  command.option("--max-sources", "N", &o.fit.maxSources, "charges that --tolerance may take")
       .range(kFirstSources, kMostSources);
   command
       .option("--sources", "N", &o.sources,
               "number of charges on one shell, in place of --tolerance")
       .range(1, kMostSources)
-      .defaults(fmt::format("{} when other options ask for such a shell", kSources));
+      .defaults(fmt::format("{} when other options ask for such a shell", o.shell.sources));
   command.option("--collocation", "N", &o.collocation, "boundary points that the map is fitted to")
       .range(8, 1e7)
       .defaults("4 a source; 3 a source above 3000");
@@ -93,63 +80,58 @@ void addFittingOptions(Command& command, FittingOptions& o) {
               "--collocation")
       .above(0)
       .atMost(1000);
-  command.option("--distance", "D", &o.distance, "of the charges from the surface (O-Distance)")
+  command
+      .option("--distance", "D", &o.shell.distance, "of the charges from the surface (O-Distance)")
       .unit("fraction of the source's diagonal")
       .range(1e-4, 2)
       .defaults("chosen by held-out error");
   command
-      .option("--radius-ratio", "R", &o.radiusRatio,
+      .option("--radius-ratio", "R", &o.shell.radiusRatio,
               "charges on a sphere, in place of a shell: its radius as a multiple of half the "
               "diagonal (R-Ratio)")
       .above(1)
       .atMost(100);
+  command.choice("--solver", "NAME", &o.shell.solver,
+                 {{"auto", FitSolver::automatic},
+                  {"dense", FitSolver::dense},
+                  {"iterative", FitSolver::iterative}},
+                 "dense: all at once, for up to some 3000 charges; iterative: for many; auto: by "
+                 "their number");
+  command.choice("--interpolation", "NAME", &o.fit.interpolation,
+                 {{"auto", Interpolation::automatic},
+                  {"linear", Interpolation::linear},
+                  {"smooth", Interpolation::smooth}},
+                 "what the target is between vertices: linear, as its triangles; smooth, when "
+                 "vertices sample a smooth deformation; auto: by the error at held-out vertices");
+  command.choice("--method", "NAME", &o.shell.method,
+                 {{"tikhonov", Regularization::tikhonov}, {"tsvd", Regularization::truncatedSvd}},
+                 "regularisation: Tikhonov's, or truncation of singular values (the paper's)");
   command
-      .option(
-          "--solver", "NAME", &o.solver,
-          "dense: all at once, for up to some 3000 charges; iterative: for many; auto: by their "
-          "number")
-      .choices({"auto", "dense", "iterative"});
-  command
-      .option(
-          "--interpolation", "NAME", &o.interpolation,
-          "what the target is between vertices: linear, as its triangles; smooth, when vertices "
-          "sample a smooth deformation; auto: by the error at held-out vertices")
-      .choices({"auto", "linear", "smooth"});
-  command
-      .option("--method", "NAME", &o.method,
-              "regularisation: Tikhonov's, or truncation of singular values (the paper's)")
-      .choices({"tikhonov", "tsvd"});
-  command
-      .option("--regularization", "T", &o.regularization,
+      .option("--regularization", "T", &o.shell.regularization,
               "threshold of singular values, or Tikhonov's lambda")
       .unit("fraction of the largest singular value")
       .range(0, 1)
       .defaults("chosen by held-out error");
-  command.option("--seed", "N", &o.seed, "of all random points").range(0, 1e15);
+  command.option("--seed", "N", &o.fit.seed, "of all random points").range(0, 1e15);
 }
 
 namespace {
 
 ShellSettings shellSettings(const FittingOptions& o, std::size_t vertices) {
-  if (o.distance && o.radiusRatio)
+  if (o.shell.distance && o.shell.radiusRatio)
     throw UsageError("--distance and --radius-ratio exclude each other; give one of them");
   if (o.collocation && o.collocationRatio)
     throw UsageError("--collocation and --collocation-ratio exclude each other; give one of them");
   const double v = static_cast<double>(vertices);
-  ShellSettings shell;
+  ShellSettings shell = o.shell;
   shell.sources = o.sourceRatio
                       ? countOf(std::round(*o.sourceRatio * v), "--source-ratio", 1, kMostSources)
-                      : o.sources.value_or(kSources);
+                      : o.sources.value_or(shell.sources);
   if (o.collocation || o.collocationRatio)
     shell.collocation = countOf(
         o.collocation ? static_cast<double>(*o.collocation) : std::round(*o.collocationRatio * v),
         o.collocationRatio ? "--collocation-ratio" : "--collocation",
         static_cast<double>(shell.sources) + 4, 1e7);
-  shell.distance = o.distance;
-  shell.radiusRatio = o.radiusRatio;
-  shell.solver = solverOf(o);
-  shell.method = o.method == "tsvd" ? Regularization::truncatedSvd : Regularization::tikhonov;
-  shell.regularization = o.regularization;
   return shell;
 }
 
@@ -157,16 +139,11 @@ ShellSettings shellSettings(const FittingOptions& o, std::size_t vertices) {
 
 FitMapSettings fitMapSettings(const FittingOptions& options, std::size_t vertices,
                               const Context& context) {
-  FitMapSettings settings;
+  auto settings = context.settings(options.fit);
   if (const auto tolerance = toleranceOf(options))
     settings.tolerance = *tolerance;
   else
     settings.shell = shellSettings(options, vertices);
-  settings.maxSources = options.maxSources;
-  settings.interpolation = interpolationOf(options);
-  settings.seed = options.seed;
-  settings.maxMemory = context.maxMemory();
-  settings.progress = context.progress();
   return settings;
 }
 
@@ -186,17 +163,15 @@ void requireFittingMemory(const FitMapSettings& settings) {
                          "raise --max-memory");
   const double points = static_cast<double>(shellCollocation(*settings.shell)) /
                         static_cast<double>(settings.shell->sources);
-  const auto fits = [&](std::uint64_t sources) {
+  const auto need = [&](std::uint64_t sources) {
     FitMapSettings fewer = settings;
     fewer.shell->sources = sources;
     fewer.shell->collocation = static_cast<std::size_t>(points * static_cast<double>(sources));
-    return fitMapMemory(fewer) <= settings.maxMemory;
+    return fitMapMemory(fewer);
   };
-  const std::uint64_t most = largestThat(1, settings.shell->sources, fits);
-  requireMemory(fmt::format("fitting {} sources", settings.shell->sources), fitMapMemory(settings),
-                settings.maxMemory,
-                most > 0 ? fmt::format("use --sources {} or raise --max-memory", most)
-                         : "raise --max-memory");
+  requireMemoryFor(fmt::format("fitting {} sources", settings.shell->sources),
+                   fitMapMemory(settings), settings.maxMemory,
+                   {"--sources", 1, settings.shell->sources, need});
 }
 
 }  // namespace innermap::tool

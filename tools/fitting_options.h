@@ -11,17 +11,12 @@
 namespace innermap::tool {
 
 struct FittingOptions {
+  FitMapSettings fit;
+  ShellSettings shell;
   std::optional<double> tolerance;
   bool bestEffort = false;
-  std::uint64_t maxSources = 100000;
   std::optional<std::uint64_t> sources, collocation;
   std::optional<double> sourceRatio, collocationRatio;  // per vertex of the source mesh
-  std::optional<double> distance, radiusRatio;
-  std::string solver = "auto";
-  std::string interpolation = "auto";
-  std::string method = "tikhonov";
-  std::optional<double> regularization;
-  std::uint64_t seed = 1;
 };
 
 void addFittingOptions(Command& command, FittingOptions& options);

@@ -11,20 +11,17 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 void report(const std::vector<FrameResult>& results, Context& context) {
-  std::vector<double> numbers, seconds;
   std::vector<std::string> files, failures;
   for (const FrameResult& r : results) {
-    numbers.push_back(static_cast<double>(r.file.number));
-    seconds.push_back(r.seconds);
     files.push_back(r.file.path);
     if (!r.error.empty()) failures.push_back(fmt::format("{}: {}", r.file.number, r.error));
   }
   Report& report = context.report();
-  report.set("frames.count", static_cast<std::int64_t>(results.size()));
+  report.set("frames.count", results.size());
   report.set("frames.broken", failures);
-  report.set("frames.number", numbers);
+  report.setColumn("frames.number", results, [](const FrameResult& r) { return r.file.number; });
   report.set("frames.file", files);
-  report.set("frames.seconds", seconds);
+  report.setColumn("frames.seconds", results, [](const FrameResult& r) { return r.seconds; });
 }
 
 void sayBroken(const std::vector<FrameResult>& results, Context& context) {

@@ -5,8 +5,10 @@
 #include <filesystem>
 
 #include "innermap/core/memory.h"
-#include "innermap/field/fit.h"
-#include "largest.h"
+#include "innermap/mesh/read.h"
+#include "inputs.h"
+#include "map_report.h"
+#include "memory_limit.h"
 
 namespace innermap::tool {
 namespace {
@@ -35,16 +37,18 @@ void addFrameArgument(Command& command, FrameOptions& o) {
 void addFrameOptions(Command& command, FrameOptions& o) {
   command.option("--frames", "LIST", &o.ranges, "which frames: 12, 1-48, 1-48x2 (every second)")
       .defaults("all");
-  command.option("--sources", "N", &o.sources, "number of charges, the same for all frames")
+  command.option("--sources", "N", &o.fitting.sources, "number of charges, the same for all frames")
       .range(1, static_cast<double>(kMostSources));
-  command.option("--collocation", "N", &o.collocation, "boundary points that frames are fitted to")
+  command
+      .option("--collocation", "N", &o.fitting.collocation,
+              "boundary points that frames are fitted to")
       .range(8, 1e7)
       .defaults("3 a source");
-  command.option("--distance", "D", &o.distance, "of the charges from the surface")
+  command.option("--distance", "D", &o.fitting.distance, "of the charges from the surface")
       .unit("fraction of the rest pose's diagonal")
       .range(1e-4, 2)
       .defaults("1.25 spacings of the charges");
-  command.option("--seed", "N", &o.seed, "of all random points").range(0, 1e15);
+  command.option("--seed", "N", &o.fitting.seed, "of all random points").range(0, 1e15);
 }
 
 Frames listFrames(const FrameOptions& options, const std::string& rest, Context& context) {
@@ -71,28 +75,51 @@ Frames listFrames(const FrameOptions& options, const std::string& rest, Context&
   return frames;
 }
 
-FrameFitterSettings frameFitterSettings(const FrameOptions& options, const Context& context) {
-  FrameFitterSettings settings;
-  settings.sources = options.sources;
-  settings.collocation = options.collocation.value_or(0);
-  settings.distance = options.distance;
-  settings.seed = options.seed;
-  settings.maxMemory = context.maxMemory();
-  settings.progress = context.progress();
-  return settings;
+FrameFitter makeFrameFitter(const std::string& rest, const FrameFitterSettings& settings,
+                            Context& context) {
+  SourceBoundary source =
+      makeSourceBoundary(readMeshFile(rest, context), context.settings<BoundarySettings>());
+  reportSource(source, context);
+  FrameFitter fitter(std::move(source), settings);
+  addSeconds(context.report().seconds, fitter.seconds());
+  reportFitter(fitter, settings, context.report());
+  return fitter;
+}
+
+FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context& context) {
+  std::vector<std::int64_t> numbers;
+  for (const FrameFile& frame : frames.all) numbers.push_back(frame.number);
+  return {std::move(numbers), [&](std::size_t index) {
+            const FrameFile& frame = frames.all[index];
+            const Mesh mesh = context.timed("read", [&] {
+              return readMeshLike(frame.path, fitter.rest().mesh, context.settings<ReadSettings>());
+            });
+            FrameFit fit = fitter.fit(mesh, context.settings<BoundarySettings>());
+            addSeconds(context.report().seconds, fit.seconds);
+            for (const std::string& warning : fit.warnings)
+              context.warning(fmt::format("frame {}: {}", frame.number, warning));
+            return fit;
+          }};
+}
+
+std::string framesPlan(const FrameFitterSettings& settings, const Frames& frames) {
+  return fmt::format("fit {} charges to {} boundary points for {} frames, {} to {}",
+                     settings.sources, frameCollocation(settings), frames.wanted.size(),
+                     frames.all[frames.wanted.front()].number,
+                     frames.all[frames.wanted.back()].number);
 }
 
 void requireFrameMemory(const FrameFitterSettings& settings, std::uint64_t others) {
-  const std::uint64_t most = largestThat(1, kMostSources, [&](std::uint64_t sources) {
+  const auto need = [&](std::uint64_t sources) {
     FrameFitterSettings fewer = settings;
     fewer.sources = sources;
     fewer.collocation = 0;
-    return frameFitterMemory(fewer) + others <= settings.maxMemory;
-  });
-  requireMemory("a sequence with " + std::to_string(settings.sources) + " charges",
-                frameFitterMemory(settings) + others, settings.maxMemory,
-                most > 0 ? fmt::format("use --sources {} or raise --max-memory", most)
-                         : "use a lower --resolution or raise --max-memory");
+    return frameFitterMemory(fewer) + others;
+  };
+  requireMemoryFor(fmt::format("a sequence with {} charges", settings.sources),
+                   frameFitterMemory(settings) + others, settings.maxMemory,
+                   {"--sources", 1, kMostSources, need},
+                   "use a lower --resolution or raise --max-memory");
 }
 
 }  // namespace innermap::tool

@@ -15,10 +15,7 @@ namespace innermap::tool {
 struct FrameOptions {
   std::vector<std::string> files;
   std::string ranges;
-  std::uint64_t sources = 8000;
-  std::optional<std::uint64_t> collocation;
-  std::optional<double> distance;  // fraction of the rest's diagonal
-  std::uint64_t seed = 1;
+  FrameFitterSettings fitting;
 };
 
 // The argument FRAMES, which must be the last one.
@@ -34,7 +31,16 @@ struct Frames {
 // FileError, SettingError.
 Frames listFrames(const FrameOptions& options, const std::string& rest, Context& context);
 
-FrameFitterSettings frameFitterSettings(const FrameOptions& options, const Context& context);
+// Reads the rest pose and makes its fitter; tells of both, and fills the report's "source" and
+// "solve".
+FrameFitter makeFrameFitter(const std::string& rest, const FrameFitterSettings& settings,
+                            Context& context);
+
+// Reads and fits frames.all as they are asked for. All three must outlive the result.
+FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context& context);
+
+// "fit 8000 charges to 24000 boundary points for 48 frames, 1 to 48", for --dry-run.
+std::string framesPlan(const FrameFitterSettings& settings, const Frames& frames);
 
 // Throws MemoryError, with the largest --sources that would fit beside `others` bytes, when the
 // need of all together is over the limit.

@@ -3,8 +3,7 @@
 #include <fmt/format.h>
 
 #include "innermap/core/memory.h"
-#include "innermap/io/vdb/vdb_file.h"
-#include "largest.h"
+#include "memory_limit.h"
 
 namespace innermap::tool {
 namespace {
@@ -13,45 +12,61 @@ constexpr int kLeast = 4, kMost = 4096;  // voxels along the longest side
 
 }  // namespace
 
-void addGridOptions(Command& c, GridOptions& o, const std::string& of) {
+void addGridOptions(Command& c, GridOptions& o, const std::string& of,
+                    const std::string& defaults) {
   c.option("--resolution", "N", &o.resolution, "voxels along the longest side of " + of)
-      .range(kLeast, kMost);
+      .range(kLeast, kMost)
+      .defaults(defaults);
   c.option("--voxel-size", "L", &o.voxelSize, "edge of a voxel, in place of --resolution")
       .unit("world units")
       .above(0)
       .defaults("by --resolution");
 }
 
-LevelSetSettings levelSetSettings(const GridOptions& options, const Context& context) {
-  LevelSetSettings settings;
-  settings.resolution = options.resolution;
-  settings.voxelSize = options.voxelSize.value_or(0);
-  settings.maxMemory = context.maxMemory();
-  settings.progress = context.progress();
-  return settings;
+void requireGridMemory(const std::string& doing, const GridOptions& options, const Context& context,
+                       const std::function<std::uint64_t(const GridOptions&)>& need) {
+  const auto needAt = [&](std::uint64_t resolution) {
+    GridOptions other;
+    other.resolution = static_cast<int>(resolution);
+    return need(other);
+  };
+  requireMemoryFor(doing, need(options), context.maxMemory(),
+                   {"--resolution", kLeast, kMost, needAt});
 }
 
-void requireGridMemory(const std::string& doing, std::uint64_t bytes, std::uint64_t limit,
-                       const std::function<std::uint64_t(int resolution)>& needAt) {
-  const std::uint64_t most = largestThat(kLeast, kMost, [&](std::uint64_t resolution) {
-    return needAt(static_cast<int>(resolution)) <= limit;
-  });
-  requireMemory(doing, bytes, limit,
-                most > 0 ? fmt::format("use --resolution {} or raise --max-memory", most)
-                         : "raise --max-memory");
-}
-
-void addNamesOption(Command& command, std::string& names) {
-  command.option("--names", "SCHEME", &names, "what the grids are called in the file")
-      .choices({"innermap", "blender", "houdini"});
+void addNamesOption(Command& command, NamingScheme& names) {
+  command.choice("--names", "SCHEME", &names,
+                 {{"innermap", NamingScheme::innermap},
+                  {"blender", NamingScheme::blender},
+                  {"houdini", NamingScheme::houdini}},
+                 "what the grids are called in the file");
 }
 
 void writeGridFile(const std::string& path, const openvdb::GridPtrVec& grids,
-                   const std::string& names, Context& context, const openvdb::MetaMap& metadata) {
-  VdbWriteSettings settings;
-  settings.names = parseNamingScheme("--names", names);
-  settings.progress = context.progress();
+                   const NamingScheme& names, Context& context, const openvdb::MetaMap& metadata) {
+  auto settings = context.settings<VdbWriteSettings>();
+  settings.names = names;
   context.timed("write", [&] { writeVdb(path, grids, metadata, settings); });
+}
+
+void addEvaluationOptions(Command& c, EvaluationOptions& o) {
+  addGridOptions(c, o.grid);
+  c.option("--lame-lambda", "X", &o.lame.lambda, "first elastic constant").range(0, 1e12);
+  c.option("--lame-mu", "X", &o.lame.mu, "second elastic constant (shear)").range(0, 1e12);
+  addNamesOption(c, o.names);
+}
+
+MapGridSettings mapGridSettings(const EvaluationOptions& options, const Context& context) {
+  auto settings = gridSettings<MapGridSettings>(options.grid, context);
+  settings.lame = options.lame;
+  return settings;
+}
+
+void requireEvaluationMemory(const Solid& solid, const GridOptions& options,
+                             const Context& context) {
+  requireGridMemory("evaluating the map on a grid", options, context, [&](const GridOptions& o) {
+    return mapGridMemory(solid, gridSettings<MapGridSettings>(o, context));
+  });
 }
 
 }  // namespace innermap::tool

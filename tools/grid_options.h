@@ -1,5 +1,4 @@
-// --resolution, --voxel-size and --names: how fine the grids that a command writes are, and what
-// they are called.
+// Options that say how fine the grids that a command writes are, and what they are called.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -10,31 +9,53 @@
 #include <string>
 
 #include "command.h"
+#include "innermap/evaluate/map_grids.h"
+#include "innermap/io/vdb/vdb_file.h"
 #include "innermap/levelset/level_set.h"
 
 namespace innermap::tool {
 
 struct GridOptions {
-  int resolution = LevelSetSettings().resolution;
+  std::optional<int> resolution;  // without: the library's
   std::optional<double> voxelSize;
 };
 
 // of: what --resolution is along the longest side of.
-void addGridOptions(Command& command, GridOptions& options, const std::string& of = "the solid");
+void addGridOptions(Command& command, GridOptions& options, const std::string& of = "the solid",
+                    const std::string& defaults = fmt::format("{}", LevelSetSettings().resolution));
 
-// With the limit on memory and the progress of the context.
-LevelSetSettings levelSetSettings(const GridOptions& options, const Context& context);
+// Settings of the library that have a resolution and a voxel size.
+template <class Settings>
+Settings gridSettings(const GridOptions& options, const Context& context, Settings settings = {}) {
+  settings = context.settings(settings);
+  settings.resolution = options.resolution.value_or(settings.resolution);
+  settings.voxelSize = options.voxelSize.value_or(0);
+  return settings;
+}
 
-// Throws MemoryError when `bytes` are over the limit, with the highest --resolution that would fit.
-// doing: "evaluating the map on a grid". needAt: the bytes at a resolution.
-void requireGridMemory(const std::string& doing, std::uint64_t bytes, std::uint64_t limit,
-                       const std::function<std::uint64_t(int resolution)>& needAt);
+// Throws MemoryError, with the highest --resolution that would fit, when the need is over the
+// limit. doing: "evaluating the map on a grid". need: bytes.
+void requireGridMemory(const std::string& doing, const GridOptions& options, const Context& context,
+                       const std::function<std::uint64_t(const GridOptions&)>& need);
 
-void addNamesOption(Command& command, std::string& names);
+void addNamesOption(Command& command, NamingScheme& names);
 
-// names: what --names gave.
 void writeGridFile(const std::string& path, const openvdb::GridPtrVec& grids,
-                   const std::string& names, Context& context,
+                   const NamingScheme& names, Context& context,
                    const openvdb::MetaMap& metadata = {});
+
+// What `evaluate`, `map` and `sequence` share.
+struct EvaluationOptions {
+  GridOptions grid;
+  LameConstants lame;
+  NamingScheme names = NamingScheme::innermap;
+};
+
+void addEvaluationOptions(Command& command, EvaluationOptions& options);
+
+MapGridSettings mapGridSettings(const EvaluationOptions& options, const Context& context);
+
+void requireEvaluationMemory(const Solid& solid, const GridOptions& options,
+                             const Context& context);
 
 }  // namespace innermap::tool

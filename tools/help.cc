@@ -96,14 +96,8 @@ struct HelpOptions {
 
 void run(const HelpOptions& options, Context& context) {
   if (options.markdown) return context.print(markdownHelp());
-  if (options.command.empty()) return context.print(generalHelp());
-  std::vector<std::string> names;
-  for (const Command& c : allCommands()) {
-    if (c.name() == options.command) return context.print(commandHelp(c));
-    names.push_back(c.name());
-  }
-  throw UsageError("unknown command '" + options.command + "'" +
-                   didYouMean(options.command, names) + "; see 'innermap --help'");
+  context.print(options.command.empty() ? generalHelp()
+                                        : commandHelp(findCommand(options.command)));
 }
 
 }  // namespace

@@ -2,41 +2,29 @@
 #include <fmt/format.h>
 
 #include "commands.h"
+#include "grid_options.h"
 #include "innermap/io/slice.h"
-#include "innermap/io/vdb/vdb_file.h"
 #include "innermap/io/volume/volume_texture.h"
 #include "lists.h"
-#include "volume_options.h"
 
 namespace innermap::tool {
 namespace {
 
 struct ImportOptions {
-  std::string file, output, layout, grids, tiles, axis, rows, lowerCorner, gridClass;
-  std::optional<int> slices;
-  std::optional<double> voxelSize, background;
+  std::string file, output, grids, tiles, lowerCorner;
+  VolumeTextureReadSettings texture;
 };
 
 VolumeTextureReadSettings settingsOf(const ImportOptions& options, Context& context) {
-  VolumeTextureReadSettings s;
+  auto s = context.settings(options.texture);
   s.names = commaList(options.grids);
-  if (!options.layout.empty()) s.layout = parseVolumeLayout("--layout", options.layout);
   if (!options.tiles.empty()) s.tiles = parseTiles("--tiles", options.tiles);
-  s.slices = options.slices;
-  if (!options.axis.empty()) s.axis = parseAxis("--axis", options.axis);
-  if (!options.rows.empty()) s.rowsUp = options.rows == "up";
-  s.voxelSize = options.voxelSize;
   if (!options.lowerCorner.empty()) {
     if (!s.voxelSize) throw UsageError("--lower-corner: has a meaning with --voxel-size only");
-    s.lowerCorner = parsePoint("--lower-corner", options.lowerCorner);
+    const std::vector<double> corner =
+        parseNumbers("--lower-corner", options.lowerCorner, 3, "three numbers X,Y,Z");
+    s.lowerCorner = Vec3{corner[0], corner[1], corner[2]};
   }
-  s.background = options.background;
-  if (!options.gridClass.empty())
-    s.gridClass = options.gridClass == "level-set" ? "level set"
-                  : options.gridClass == "fog"     ? "fog volume"
-                                                   : "unknown";
-  s.maxMemory = context.maxMemory();
-  s.progress = context.progress();
   return s;
 }
 
@@ -61,16 +49,12 @@ void run(const ImportOptions& options, Context& context) {
          "write grids to " + options.output},
         need.memory);
   }
-  VolumeTextureContents contents;
-  context.timed("read", [&] { contents = readVolumeTexture(options.file, settings); });
+  const VolumeTextureContents contents =
+      context.timed("read", [&] { return readVolumeTexture(options.file, settings); });
   if (contents.notFinite > 0)
     context.warning(
         fmt::format("{}: {} values are infinite or no numbers", options.file, contents.notFinite));
-  context.timed("write", [&] {
-    VdbWriteSettings write;
-    write.progress = context.progress();
-    writeVdb(options.output, contents.grids, {}, write);
-  });
+  writeGridFile(options.output, contents.grids, NamingScheme::innermap, context);
   std::uint64_t active = 0;
   std::vector<std::string> names;
   for (const auto& grid : contents.grids) {
@@ -83,8 +67,8 @@ void run(const ImportOptions& options, Context& context) {
              std::vector<double>{double(contents.resolution.x()), double(contents.resolution.y()),
                                  double(contents.resolution.z())});
   report.set("texture.grids", names);
-  report.set("texture.active_voxels", static_cast<std::int64_t>(active));
-  report.set("texture.not_finite", static_cast<std::int64_t>(contents.notFinite));
+  report.set("texture.active_voxels", active);
+  report.set("texture.not_finite", contents.notFinite);
   context.print(summary(contents, options));
 }
 
@@ -105,32 +89,36 @@ Command makeImportCommand() {
            "grids to read, with commas between; of a file that does not say what its channels are, "
            "their names: R, G, B together and X, Y, Z are a vector")
       .defaults("all");
-  c.option("--layout", "NAME", &o->layout, "what the pictures are")
-      .choices({"atlas", "slices", "parts"})
+  c.choice("--layout", "NAME", &o->texture.layout,
+           {{"atlas", VolumeLayout::atlas},
+            {"slices", VolumeLayout::slices},
+            {"parts", VolumeLayout::parts}},
+           "what the pictures are")
       .defaults("from the file");
   c.option("--tiles", "CxR", &o->tiles, "columns and rows of an atlas, such as 8x8")
       .defaults("from the file");
-  c.option("--slices", "N", &o->slices, "slices, when fewer than tiles, parts or files")
+  c.option("--slices", "N", &o->texture.slices, "slices, when fewer than tiles, parts or files")
       .range(1, 65536)
       .defaults("from the file, else all");
-  c.option("--voxel-size", "L", &o->voxelSize, "edge of a voxel, in place of the file's matrix")
+  c.option("--voxel-size", "L", &o->texture.voxelSize,
+           "edge of a voxel, in place of the file's matrix")
       .unit("world units")
       .above(0)
       .defaults("from the file");
   c.option("--lower-corner", "X,Y,Z", &o->lowerCorner, "least corner of the box, with --voxel-size")
       .unit("world units")
       .defaults("0,0,0");
-  c.option("--axis", "AXIS", &o->axis, "direction across the slices")
-      .choices({"x", "y", "z"})
+  c.choice("--axis", "AXIS", &o->texture.axis, {{"x", 0}, {"y", 1}, {"z", 2}},
+           "direction across the slices")
       .defaults("from the file, else z");
-  c.option("--rows", "ORDER", &o->rows,
+  c.choice("--rows", "ORDER", &o->texture.rowsUp, {{"down", false}, {"up", true}},
            "down: a slice's first row has the least index; up: the largest")
-      .choices({"down", "up"})
       .defaults("from the file, else down");
-  c.option("--background", "V", &o->background, "value of what is not active")
+  c.option("--background", "V", &o->texture.background, "value of what is not active")
       .defaults("from the file, else 0");
-  c.option("--class", "NAME", &o->gridClass, "class of the grids")
-      .choices({"level-set", "fog", "unknown"})
+  c.choice("--class", "NAME", &o->texture.gridClass,
+           {{"level-set", "level set"}, {"fog", "fog volume"}, {"unknown", "unknown"}},
+           "class of the grids")
       .defaults("from the file, else unknown");
   c.example("innermap import smoke.exr -o smoke.vdb");
   c.example(

@@ -9,7 +9,7 @@
 #include "innermap/field/field_file.h"
 #include "innermap/io/exr/exr_slices.h"
 #include "innermap/io/vdb/vdb_file.h"
-#include "innermap/mesh/read.h"
+#include "inputs.h"
 
 namespace innermap::tool {
 namespace {
@@ -26,14 +26,12 @@ std::string extension(const std::string& path) {
 }
 
 void vdbInfo(const InfoOptions& options, Context& context) {
-  const VdbInfo info = readVdbInfo(options.file, {context.progress()});
+  const VdbInfo info = readVdbInfo(options.file, context.settings<VdbInfoSettings>());
   context.print(describe(info, options.file, options.metadata));
 }
 
 void meshInfo(const InfoOptions& options, Context& context) {
-  ReadSettings settings;
-  settings.progress = context.progress();
-  const Mesh mesh = readMesh(options.file, settings);
+  const Mesh mesh = readMeshFile(options.file, context);
   const Box3 box = boundingBox(mesh);
   const Vec3 size = box.extent();
   std::string text = fmt::format("{}: mesh, {} vertices, {} triangles", options.file,

@@ -1,21 +1,20 @@
 // Lists as options take them.
 #pragma once
 
-#include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace innermap::tool {
 
 // The parts of "a,b,c"; empty ones do not count.
-inline std::vector<std::string> commaList(const std::string& list) {
-  std::vector<std::string> parts;
-  for (std::size_t from = 0; from < list.size();) {
-    const std::size_t comma = std::min(list.find(',', from), list.size());
-    if (comma > from) parts.push_back(list.substr(from, comma - from));
-    from = comma + 1;
-  }
-  return parts;
-}
+std::vector<std::string> commaList(const std::string& list);
+
+// "X,Y,Z": so many finite numbers. Throws UsageError: `option`: 'text' is not `what`.
+std::vector<double> parseNumbers(const std::string& option, const std::string& text,
+                                 std::size_t count, const std::string& what);
+
+// "8x8": columns and rows, each from 1 to 65536. Throws UsageError naming `option`.
+std::pair<int, int> parseTiles(const std::string& option, const std::string& text);
 
 }  // namespace innermap::tool

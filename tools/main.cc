@@ -1,4 +1,5 @@
 // The innermap program: finds the command, parses its options, turns errors into exit codes.
+#include <cctype>
 #include <cstdio>
 #include <cstring>
 #include <new>
@@ -16,18 +17,6 @@ namespace {
 
 enum ExitCode { kDone = 0, kFailed = 1, kUsage = 2, kCancelled = 130 };
 
-const Command& find(const std::vector<Command>& commands, const std::string& name) {
-  std::vector<std::string> names;
-  for (const Command& c : commands) {
-    if (c.name() == name) return c;
-    names.push_back(c.name());
-  }
-  const char* const what = name[0] == '-' ? "option" : "command";
-  throw UsageError(std::string("unknown ") + what + " '" + name + "'" + didYouMean(name, names) +
-                   (name[0] == '-' ? "; options stand after the command" : "") +
-                   "; see 'innermap --help'");
-}
-
 void execute(const Command& command, const CommonOptions& common, TerminalProgress& progress) {
   Context context(common, progress);
   if (!common.report.empty()) context.output(common.report);
@@ -38,6 +27,23 @@ void execute(const Command& command, const CommonOptions& common, TerminalProgre
   if (!common.report.empty() && !common.dryRun)
     writeReport(common.report, context.finishedReport());
   if (!context.failure().empty()) throw DataError(context.failure());
+}
+
+// The library's name of a setting becomes that of the option which gave it: "voxel size: ..." reads
+// "--voxel-size: ...".
+std::string inOptions(const Command& command, const std::string& error) {
+  const auto letters = [](const std::string& text) {
+    std::string out;
+    for (const char c : text)
+      if (std::isalnum(static_cast<unsigned char>(c)))
+        out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return out;
+  };
+  const std::size_t colon = error.find(": ");
+  for (const Option& o : command.options())
+    if (!o.isPositional() && letters(o.name) == letters(error.substr(0, colon)))
+      return o.name + error.substr(colon);
+  return error;
 }
 
 void runCommand(const std::vector<std::string>& arguments) {
@@ -51,8 +57,7 @@ void runCommand(const std::vector<std::string>& arguments) {
     std::fputs(generalHelp().c_str(), stdout);
     return;
   }
-  const std::vector<Command> commands = allCommands();
-  const Command& command = find(commands, first);
+  const Command command = findCommand(first);
   CommonOptions common;
   parseArguments(command, common, {arguments.begin() + 1, arguments.end()});
   if (common.help) {
@@ -64,6 +69,9 @@ void runCommand(const std::vector<std::string>& arguments) {
   handleSignals(progress);
   try {
     execute(command, common, progress);
+  } catch (const SettingError& error) {
+    progress.clear();
+    throw Error(inOptions(command, error.what()));
   } catch (...) {
     progress.clear();
     throw;

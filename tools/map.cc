@@ -5,82 +5,41 @@
 
 #include "commands.h"
 #include "correspondence.h"
-#include "correspondence_picture.h"
-#include "evaluation.h"
 #include "fitting_options.h"
-#include "innermap/core/file.h"
+#include "grid_options.h"
 #include "innermap/io/exr/exr_slices.h"
-#include "innermap/io/picture/section_image.h"
-#include "innermap/io/slice.h"
+#include "innermap/io/picture/mesh_picture.h"
 #include "innermap/mesh/read.h"
-#include "innermap/mesh/triangle_tree.h"
 #include "innermap/mesh/write.h"
+#include "inputs.h"
 #include "map_report.h"
+#include "section_options.h"
 
 namespace innermap::tool {
 namespace {
 
-// Fractions of the target's diagonal.
-constexpr double kOffTarget = 0.01;  // what half the vertices of --correspond may be
-constexpr double kSubdivide = 0.005;
+constexpr double kSubdivide = 0.005;  // of the target's diagonal
 
 struct MapOptions {
   std::string source, target, output, correspondence;
   CorrespondOptions correspond;
   FittingOptions fitting;
   EvaluationOptions evaluation;
-  std::string sliceAxis = "z";
-  std::uint64_t sliceCount = 16;
-  std::string sectionGrid = "deformation_energy", sectionAxis = "auto";
-  std::optional<double> sectionAt;
+  ExrSliceSettings slices;
+  std::string sectionGrid = "deformation_energy";
+  SectionOptions section;
 };
 
 void writePictures(const SolidGrids& solidGrids, const Solid& solid, PendingFolder& folder,
                    const MapOptions& options, Context& context) {
   const openvdb::GridPtrVec grids = solidGrids.all();
-  ExrSliceSettings slices;
-  slices.axis = parseAxis("--slice-axis", options.sliceAxis);
-  slices.count = static_cast<int>(options.sliceCount);
-  slices.maxMemory = context.maxMemory();
-  slices.progress = context.progress();
-  folder.write("slices.exr", [&](const std::string& path) { writeExrSlices(path, grids, slices); });
-  SectionSettings section;
+  folder.write("slices.exr", [&](const std::string& path) {
+    writeExrSlices(path, grids, context.settings(options.slices));
+  });
+  SectionSettings section = sectionSettings(options.section, solid, *solidGrids.density, context);
   section.grid = options.sectionGrid;
-  section.axis = options.sectionAxis == "auto" ? thinnestAxis(solid.box().extent())
-                                               : parseAxis("--section-axis", options.sectionAxis);
-  section.at =
-      options.sectionAt ? *options.sectionAt : fullLayer(*solidGrids.density, section.axis);
-  section.maxMemory = context.maxMemory();
-  section.progress = context.progress();
   folder.write("section.png",
                [&](const std::string& path) { writeSectionImage(path, grids, section); });
-}
-
-// The target that --correspond names, which must lie on TARGET if that is given too.
-Mesh readCorrespondence(const MapOptions& options, const Mesh& source, Context& context) {
-  ReadSettings settings;
-  settings.progress = context.progress();
-  Mesh moved;
-  try {
-    moved = readMeshLike(options.correspondence, source, settings);
-  } catch (const DataError& error) {
-    throw DataError(std::string(error.what()) +
-                    "; where it was made with --subdivide, SOURCE is the .source.ply beside it");
-  }
-  if (options.target.empty()) return moved;
-  const Mesh target = readMesh(options.target, settings);
-  const TriangleTree tree(target.vertices, target.triangles);
-  std::vector<double> distances;
-  for (const Vec3& p : moved.vertices) distances.push_back(tree.closest(p).distance);
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  const double share = *middle / boundingBox(target).diagonal();
-  if (!(share <= kOffTarget))
-    throw DataError(fmt::format(
-        "{}: does not lie on {}, half of its vertices are {:.2g} of the diagonal away or more; "
-        "give the two that belong together",
-        options.correspondence, options.target, share));
-  return moved;
 }
 
 // Both meshes as the files have them; `related` tells whether they have the same connectivity.
@@ -92,38 +51,41 @@ struct Meshes {
 Meshes readMeshes(const MapOptions& options, Context& context) {
   if (options.target.empty() && options.correspondence.empty())
     throw UsageError("TARGET is missing; give it, or --correspond (see 'innermap map --help')");
+  const auto settings = context.settings<ReadSettings>();
   Meshes meshes;
-  context.timed("read", [&] {
-    ReadSettings settings;
-    settings.progress = context.progress();
-    meshes.source = readMesh(options.source, settings);
-    if (!options.correspondence.empty()) {
-      meshes.target = readCorrespondence(options, meshes.source, context);
-      return;
-    }
-    try {
-      meshes.target = readMeshLike(options.target, meshes.source, settings);
-    } catch (const DataError&) {
-      meshes.target = readMesh(options.target, settings);
-      meshes.related = false;
-    }
-  });
+  meshes.source = readMeshFile(options.source, context);
+  if (!options.correspondence.empty()) {
+    meshes.target = context.timed("read", [&] {
+      return readCorrespondence(options.correspondence, meshes.source, settings);
+    });
+    if (!options.target.empty())
+      requireOnTarget(meshes.target, readMeshFile(options.target, context));
+    return meshes;
+  }
+  try {
+    meshes.target = context.timed(
+        "read", [&] { return readMeshLike(options.target, meshes.source, settings); });
+  } catch (const DataError&) {
+    meshes.target = readMeshFile(options.target, context);
+    meshes.related = false;
+  }
   return meshes;
 }
 
-std::string correspondPlan(const MapOptions& options, const Meshes& meshes) {
+std::string correspondPlan(const MapOptions& options, const Meshes& meshes,
+                           const Context& context) {
   return fmt::format(
       "{} and {} differ in connectivity, so the one is laid onto the other first, in about {:.0f} "
       "s",
       options.source, options.target,
       correspondSeconds(meshes.source.vertices.size(), meshes.target.vertices.size(),
-                        options.correspond));
+                        correspondSettings(options.correspond, context)));
 }
 
 void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
-  const SourceBoundary source = makeSourceBoundary(meshes.source, {context.progress()});
-  tell(source.notes, source.warnings, source.seconds, context);
-  reportSource(source, context.report());
+  const SourceBoundary source =
+      makeSourceBoundary(meshes.source, context.settings<BoundarySettings>());
+  reportSource(source, context);
   const std::size_t vertices = meshes.source.vertices.size();
   const FitMapSettings fitting = fitMapSettings(options.fitting, vertices, context);
   std::vector<std::string> lines;
@@ -132,7 +94,7 @@ void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
                mapGridMemory(source.solid, mapGridSettings(options.evaluation, context)));
   std::string files = "map.ply, map.vdb, slices.exr, section.png";
   if (!meshes.related) {
-    lines.push_back(correspondPlan(options, meshes));
+    lines.push_back(correspondPlan(options, meshes, context));
     need = std::max(need, correspondMemory(vertices, meshes.target.vertices.size()));
     files += ", correspondence.ply, correspondence.png";
   }
@@ -144,22 +106,26 @@ void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
 // Lays the source onto the target where they are not related, and puts that into the folder.
 BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& folder,
                       Context& context) {
-  const BoundarySettings progress{context.progress()};
+  const auto progress = context.settings<BoundarySettings>();
   if (meshes.related)
     return makeBoundaryPair(std::move(meshes.source), std::move(meshes.target), progress);
-  context.note(correspondPlan(options, meshes) + "; --correspond takes one made before");
+  context.note(correspondPlan(options, meshes, context) + "; --correspond takes one made before");
   const std::string name = meshes.target.name;
+  CorrespondOptions correspond = options.correspond;
+  correspond.map.seed = options.fitting.fit.seed;
   const MeshCorrespondence moved =
-      correspondMeshes(std::move(meshes.source), std::move(meshes.target), options.correspond,
-                       options.fitting.seed, context);
+      correspondMeshes(std::move(meshes.source), std::move(meshes.target), correspond, context);
   const Mesh target = moved.target(name);
   folder.write("correspondence.ply",
                [&](const std::string& path) { writeCorrespondence(path, moved); });
   if (moved.changed)
     folder.write("correspondence.source.ply",
                  [&](const std::string& path) { writeMesh(path, moved.source); });
-  folder.write("correspondence.png",
-               [&](const std::string& path) { writeCorrespondencePicture(path, moved, context); });
+  context.timed("picture", [&] {
+    folder.write("correspondence.png", [&](const std::string& path) {
+      writeCorrespondencePicture(path, moved, context.settings<MeshPictureSettings>());
+    });
+  });
   return makeBoundaryPair(moved.source, target, progress);
 }
 
@@ -170,30 +136,23 @@ void run(const MapOptions& options, Context& context) {
   PendingFolder folder = context.outputFolder(options.output);
   context.notePictures();
   BoundaryPair pair = makePair(options, std::move(meshes), folder, context);
-  tell(pair.notes, pair.warnings, pair.seconds, context);
-  reportBoundaries(pair, context.report());
+  reportBoundaries(pair, context);
   const FitMapSettings fitting =
       fitMapSettings(options.fitting, pair.source.mesh.vertices.size(), context);
-  const MapGridSettings gridSettings = mapGridSettings(options.evaluation, context);
   requireFittingMemory(fitting);
-  requireEvaluationMemory(pair.solid(), gridSettings);
+  requireEvaluationMemory(pair.solid(), options.evaluation.grid, context);
   const MapFit fit = fitMap(std::move(pair), fitting);
-  tell(fit.notes, fit.warnings, fit.seconds, context);
   reportFit(fit, fitting, options.fitting.bestEffort, context);
-  const SolidGrids grids = evaluateOnGrid(fit, gridSettings);
-  tell(grids.notes, grids.warnings, grids.seconds, context);
-  reportGrids(grids, gridSettings.lame, context.report());
+  const SolidGrids grids = evaluateOnGrid(fit, mapGridSettings(options.evaluation, context));
+  reportGrids(grids, options.evaluation.lame, context);
+  folder.write("map.vdb", [&](const std::string& path) {
+    writeGridFile(path, grids.all(), options.evaluation.names, context);
+  });
   context.timed("write", [&] {
     folder.write("map.ply", [&](const std::string& path) { writeMap(path, fit); });
-    folder.write("map.vdb", [&](const std::string& path) {
-      writeGrids(path, grids.all(), options.evaluation, context);
-    });
     writePictures(grids, fit.solid(), folder, options, context);
   });
-  context.print(errorText(fit.error) + gridsText(grids));
-  folder.write("report.json",
-               [&](const std::string& path) { writeReport(path, context.finishedReport()); });
-  folder.commit();
+  context.finish(folder);
 }
 
 }  // namespace
@@ -217,20 +176,16 @@ Command makeMapCommand() {
       .required();
   c.option("--correspond", "FILE", &o->correspondence,
            "SOURCE's vertices on TARGET, as innermap correspond or an earlier map wrote them");
-  o->correspond.subdivide = kSubdivide;
+  o->correspond.map.subdivide = kSubdivide;
   addCorrespondOptions(c, o->correspond);
   addFittingOptions(c, o->fitting);
   addEvaluationOptions(c, o->evaluation);
-  c.option("--slice-axis", "AXIS", &o->sliceAxis, "of slices.exr").choices({"x", "y", "z"});
-  c.option("--slice-count", "N", &o->sliceCount, "parts of slices.exr").range(1, 4096);
+  c.choice("--slice-axis", "AXIS", &o->slices.axis, {{"x", 0}, {"y", 1}, {"z", 2}},
+           "of slices.exr");
+  c.option("--slice-count", "N", &o->slices.count, "parts of slices.exr").range(1, 4096);
   c.option("--section-grid", "NAME", &o->sectionGrid, "grid shown in section.png")
-      .choices({"surface", "density", "map", "jacobian", "harmonic_energy", "deformation_energy"});
-  c.option("--section-axis", "AXIS", &o->sectionAxis, "of section.png; auto: the thinnest")
-      .choices({"auto", "x", "y", "z"});
-  c.option("--section-at", "T", &o->sectionAt, "place of the section along its axis")
-      .unit("fraction of the box")
-      .range(0, 1)
-      .defaults("near the middle, where it cuts most");
+      .choices(mapGridNames());
+  addSectionOptions(c, o->section);
   c.example("innermap map rest.obj pose.obj -o out");
   c.example("innermap map cow.obj man.obj -o out");
   c.example("innermap map rest.obj pose.obj -o out --tolerance 3e-4 --resolution 256");

@@ -6,43 +6,26 @@ namespace innermap::tool {
 namespace {
 
 ReportMesh reportOf(const Mesh& mesh, const MeshReport& check, int caps, double volume) {
-  ReportMesh out;
-  out.path = mesh.name;
-  out.vertices = check.vertices;
-  out.triangles = check.triangles;
+  ReportMesh out = innermap::tool::reportOf(mesh, volume);
   out.boundaryLoops = static_cast<int>(check.boundaryLoops.size());
   out.caps = caps;
   out.genus = check.genus;
-  out.volume = volume;
-  out.diagonal = check.box.diagonal();
   return out;
 }
 
-void reportTrials(const MapSolve& solve, Report& report) {
-  if (solve.trials.empty()) return;
-  std::vector<double> distances, errors;
-  for (const DistanceTrial& t : solve.trials) {
-    distances.push_back(t.distance);
-    errors.push_back(t.heldOutRms);
-  }
-  report.set("solve.tried_distances", distances);
-  report.set("solve.tried_errors", errors);
+void fillSource(const SourceBoundary& source, Report& report) {
+  report.source =
+      reportOf(source.mesh, source.check, source.solid.repaired().caps, source.solid.volume());
+  report.set("source.self_intersections", source.check.selfIntersections);
 }
 
 void reportAdaptive(const MapSolve& solve, Report& report) {
-  std::vector<double> distances, sources, roundSources, roundErrors;
-  for (const AdaptiveLevel& l : solve.levels) {
-    distances.push_back(l.distance);
-    sources.push_back(static_cast<double>(l.sources));
-  }
-  for (const AdaptiveRound& r : solve.rounds) {
-    roundSources.push_back(static_cast<double>(r.sources));
-    roundErrors.push_back(r.error.p99);
-  }
-  report.set("solve.level_distances", distances);
-  report.set("solve.level_sources", sources);
-  report.set("solve.round_sources", roundSources);
-  report.set("solve.round_p99", roundErrors);
+  const auto& levels = solve.levels;
+  const auto& rounds = solve.rounds;
+  report.setColumn("solve.level_distances", levels, [](const auto& l) { return l.distance; });
+  report.setColumn("solve.level_sources", levels, [](const auto& l) { return l.sources; });
+  report.setColumn("solve.round_sources", rounds, [](const auto& r) { return r.sources; });
+  report.setColumn("solve.round_p99", rounds, [](const auto& r) { return r.error.p99; });
 }
 
 void reportSolve(const MapSolve& solve, Report& report) {
@@ -66,8 +49,10 @@ void reportSolve(const MapSolve& solve, Report& report) {
   else
     report.set("solve.condition", solve.condition);
   report.set("solve.weight_norm", solve.weightNorm);
-  if (!adaptive) report.set("solve.held_out", static_cast<std::int64_t>(solve.heldOut));
-  reportTrials(solve, report);
+  if (!adaptive) report.set("solve.held_out", solve.heldOut);
+  if (solve.trials.empty()) return;
+  report.setColumn("solve.tried_distances", solve.trials, [](auto& t) { return t.distance; });
+  report.setColumn("solve.tried_errors", solve.trials, [](auto& t) { return t.heldOutRms; });
 }
 
 std::string whyEnded(AdaptiveEnd end, const FitMapSettings& settings) {
@@ -106,45 +91,39 @@ void reportTolerance(const MapFit& fit, const FitMapSettings& settings, bool bes
 
 }  // namespace
 
-void tell(const std::vector<std::string>& notes, const std::vector<std::string>& warnings,
-          const StageSeconds& seconds, Context& context) {
-  for (const std::string& note : notes) context.note(note);
-  for (const std::string& warning : warnings) context.warning(warning);
-  addSeconds(context.report().seconds, seconds);
+ReportMesh reportOf(const Mesh& mesh, double volume) {
+  ReportMesh out;
+  out.path = mesh.name;
+  out.vertices = mesh.vertices.size();
+  out.triangles = mesh.triangles.size();
+  out.volume = volume;
+  out.diagonal = boundingBox(mesh).diagonal();
+  return out;
 }
 
-void reportSource(const SourceBoundary& source, Report& report) {
-  report.source =
-      reportOf(source.mesh, source.check, source.solid.repaired().caps, source.solid.volume());
-  report.set("source.self_intersections",
-             static_cast<std::int64_t>(source.check.selfIntersections));
+void reportSource(const SourceBoundary& source, Context& context) {
+  context.tell(source);
+  fillSource(source, context.report());
 }
 
-void reportBoundaries(const BoundaryPair& pair, Report& report) {
-  reportSource(pair.source, report);
+void reportBoundaries(const BoundaryPair& pair, Context& context) {
+  context.tell(pair);
+  Report& report = context.report();
+  fillSource(pair.source, report);
   report.target =
       reportOf(pair.targetMesh, pair.targetCheck, pair.solid().repaired().caps, pair.target.volume);
-  report.set("target.self_intersections",
-             static_cast<std::int64_t>(pair.targetCheck.selfIntersections));
-}
-
-MappedSolid readMapFile(const std::string& path, Context& context) {
-  throwIfCancelled(context.progress());
-  MappedSolid mapped = readMap(path, {context.progress()});
-  const BoundaryPair& pair = mapped.boundary;
-  tell(pair.notes, pair.warnings, pair.seconds, context);
-  reportBoundaries(pair, context.report());
-  return mapped;
+  report.set("target.self_intersections", pair.targetCheck.selfIntersections);
 }
 
 void reportFit(const MapFit& fit, const FitMapSettings& settings, bool bestEffort,
                Context& context) {
+  context.tell(fit);
   Report& report = context.report();
   if (fit.verticesRms) report.set("boundary_error.vertices_rms", *fit.verticesRms);
   if (fit.tolerance) reportTolerance(fit, settings, bestEffort, context);
   reportSolve(fit.solve, report);
   report.set("solve.interpolation", fit.smooth ? "smooth" : "linear");
-  report.set("solve.seed", static_cast<std::int64_t>(settings.seed));
+  report.set("solve.seed", settings.seed);
   ReportBoundaryError e;
   e.rms = fit.error.rms;
   e.p99 = fit.error.p99;
@@ -152,6 +131,8 @@ void reportFit(const MapFit& fit, const FitMapSettings& settings, bool bestEffor
   e.samples = fit.error.samples;
   e.cError = fit.collocationError;
   report.boundaryError = e;
+  context.print(fmt::format("boundary error: rms {:.2e}, 99% {:.2e}, max {:.2e} of the diagonal\n",
+                            e.rms, e.p99, e.max));
 }
 
 void reportFitter(const FrameFitter& fitter, const FrameFitterSettings& settings, Report& report) {
@@ -162,10 +143,12 @@ void reportFitter(const FrameFitter& fitter, const FrameFitterSettings& settings
   report.solve = solve;
   report.set("solve.placement", std::string("shell"));
   report.set("solve.distance", fitter.distance());
-  report.set("solve.seed", static_cast<std::int64_t>(settings.seed));
+  report.set("solve.seed", settings.seed);
 }
 
-void reportGrids(const SolidGrids& grids, const LameConstants& lame, Report& report) {
+void reportGrids(const SolidGrids& grids, const LameConstants& lame, Context& context) {
+  context.tell(grids);
+  Report& report = context.report();
   const MapGrids& values = grids.values;
   ReportEnergy energy;
   energy.harmonic = values.harmonicTotal;
@@ -186,21 +169,12 @@ void reportGrids(const SolidGrids& grids, const LameConstants& lame, Report& rep
   grid.interiorVoxels = values.interiorVoxels;
   report.grid = grid;
   report.set("grid.volume", values.volume);
-}
-
-std::string errorText(const BoundaryError& error) {
-  return fmt::format("boundary error: rms {:.2e}, 99% {:.2e}, max {:.2e} of the diagonal\n",
-                     error.rms, error.p99, error.max);
-}
-
-std::string gridsText(const SolidGrids& grids) {
-  const MapGrids& values = grids.values;
-  return fmt::format(
+  context.print(fmt::format(
       "energy: harmonic {:.6g}, deformation {:.6g}\n"
       "jacobian: {:.4g} to {:.4g}, folded {:.3g}% of the volume\n"
       "grid: {} active voxels of {:.6g}\n",
       values.harmonicTotal, values.deformationTotal, values.jacobianMin, values.jacobianMax,
-      100 * values.foldedFraction, values.activeVoxels, grids.voxelSize);
+      100 * values.foldedFraction, values.activeVoxels, grids.voxelSize));
 }
 
 }  // namespace innermap::tool

@@ -10,30 +10,22 @@
 
 namespace innermap::tool {
 
-// Notes, warnings and seconds of a result.
-void tell(const std::vector<std::string>& notes, const std::vector<std::string>& warnings,
-          const StageSeconds& seconds, Context& context);
+// What reports say of any mesh; handles, loops and caps are not known.
+ReportMesh reportOf(const Mesh& mesh, double volume);
 
-// The report's "source" and, of a pair, "target".
-void reportSource(const SourceBoundary& source, Report& report);
-void reportBoundaries(const BoundaryPair& pair, Report& report);
+// Notes, warnings and seconds, and the report's "source" and, of a pair, "target".
+void reportSource(const SourceBoundary& source, Context& context);
+void reportBoundaries(const BoundaryPair& pair, Context& context);
 
-// A map from its file; what is known of its boundaries is told.
-MappedSolid readMapFile(const std::string& path, Context& context);
-
-// The report's "solve", "boundary_error" and "tolerance". A tolerance that is not met is a warning
-// with `bestEffort`, else the context's failure.
+// The same and "solve", "boundary_error" and "tolerance"; a line for the terminal. A tolerance that
+// is not met is a warning with `bestEffort`, else the context's failure.
 void reportFit(const MapFit& fit, const FitMapSettings& settings, bool bestEffort,
                Context& context);
 
 // "solve" of a sequence.
 void reportFitter(const FrameFitter& fitter, const FrameFitterSettings& settings, Report& report);
 
-// "energy", "jacobian" and "grid".
-void reportGrids(const SolidGrids& grids, const LameConstants& lame, Report& report);
-
-// Lines for the terminal.
-std::string errorText(const BoundaryError& error);
-std::string gridsText(const SolidGrids& grids);
+// The same and "energy", "jacobian" and "grid"; three lines for the terminal.
+void reportGrids(const SolidGrids& grids, const LameConstants& lame, Context& context);
 
 }  // namespace innermap::tool

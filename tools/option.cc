@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "command.h"
+#include "lists.h"
 
 namespace innermap::tool {
 namespace {
@@ -41,12 +42,9 @@ T parseNumber(const Option& option, const std::string& text, const char* what) {
 }
 
 NumberPair parsePair(const Option& option, const std::string& text) {
-  const std::size_t comma = text.find(',');
-  if (comma == std::string::npos)
-    throw UsageError(option.name + ": '" + text + "' is not two numbers with a comma between");
-  const char* const what = "two numbers with a comma between";
-  return {parseNumber<double>(option, text.substr(0, comma), what),
-          parseNumber<double>(option, text.substr(comma + 1), what)};
+  const std::vector<double> pair =
+      parseNumbers(option.name, text, 2, "two numbers with a comma between");
+  return {pair[0], pair[1]};
 }
 
 // A negative count is a number, but out of range: the message should say so.
@@ -74,6 +72,28 @@ std::string parseText(const Option& option, const std::string& text) {
   return text;
 }
 
+// Puts what the text says where an option's value goes.
+struct Taker {
+  const Option& option;
+  const std::string& text;
+  void operator()(bool* to) const { *to = true; }
+  void operator()(int* to) const { *to = parseNumber<int>(option, text, "a whole number"); }
+  void operator()(std::uint64_t* to) const { *to = parseCount(option, text); }
+  void operator()(double* to) const { *to = parseNumber<double>(option, text, "a number"); }
+  void operator()(std::string* to) const { *to = parseText(option, text); }
+  void operator()(const std::function<void(const std::string&)>& to) const {
+    to(parseText(option, text));
+  }
+  void operator()(NumberPair* to) const { *to = parsePair(option, text); }
+  void operator()(std::vector<std::string>* to) const { to->push_back(parseText(option, text)); }
+  template <class Value>
+  void operator()(std::optional<Value>* to) const {
+    Value value{};
+    (*this)(&value);
+    *to = value;
+  }
+};
+
 }  // namespace
 
 std::string rangeText(const Option& option) {
@@ -88,25 +108,7 @@ std::string rangeText(const Option& option) {
 }
 
 void parseInto(const Option& option, const std::string& text) {
-  struct Visitor {
-    const Option& option;
-    const std::string& text;
-    void operator()(bool* to) const { *to = true; }
-    void operator()(int* to) const { *to = parseNumber<int>(option, text, "a whole number"); }
-    void operator()(std::uint64_t* to) const { *to = parseCount(option, text); }
-    void operator()(double* to) const { *to = parseNumber<double>(option, text, "a number"); }
-    void operator()(std::string* to) const { *to = parseText(option, text); }
-    void operator()(std::optional<int>* to) const {
-      *to = parseNumber<int>(option, text, "a whole number");
-    }
-    void operator()(std::optional<std::uint64_t>* to) const { *to = parseCount(option, text); }
-    void operator()(std::optional<double>* to) const {
-      *to = parseNumber<double>(option, text, "a number");
-    }
-    void operator()(std::optional<NumberPair>* to) const { *to = parsePair(option, text); }
-    void operator()(std::vector<std::string>* to) const { to->push_back(parseText(option, text)); }
-  };
-  std::visit(Visitor{option, text}, option.target);
+  std::visit(Taker{option, text}, option.target);
 }
 
 }  // namespace innermap::tool

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -16,9 +17,10 @@ using NumberPair = std::pair<double, double>;
 
 // Where the value goes. std::uint64_t serves std::size_t too. A list is for the last positional
 // argument alone, which then takes all that follow.
-using Target = std::variant<bool*, int*, std::uint64_t*, double*, std::string*, std::optional<int>*,
-                            std::optional<std::uint64_t>*, std::optional<double>*,
-                            std::optional<NumberPair>*, std::vector<std::string>*>;
+using Target =
+    std::variant<bool*, int*, std::uint64_t*, double*, std::string*, std::optional<int>*,
+                 std::optional<std::uint64_t>*, std::optional<double>*, std::optional<NumberPair>*,
+                 std::vector<std::string>*, std::function<void(const std::string&)>>;
 
 struct Option {
   std::string name;         // "--voxel-size"; a positional argument's is in capitals: "MESH"

@@ -108,17 +108,17 @@ Chart sequenceChart(const std::vector<SequenceRow>& rows, const std::string& res
 void fillReport(const std::vector<SequenceRow>& rows, Report& report) {
   for (const Column& column : kColumns)
     report.set(std::string("energies.") + column.name, values(rows, column.value));
-  ReportBoundaryError worst;
+  BoundaryError worst;
   for (const SequenceRow& r : rows) {
     worst.rms = std::max(worst.rms, r.error.rms);
     worst.p99 = std::max(worst.p99, r.error.p99);
     worst.max = std::max(worst.max, r.error.max);
-    worst.samples = std::max<std::uint64_t>(worst.samples, r.error.samples);
+    worst.samples = std::max(worst.samples, r.error.samples);
   }
   report.set("worst_boundary_error.rms", worst.rms);
   report.set("worst_boundary_error.p99", worst.p99);
   report.set("worst_boundary_error.max", worst.max);
-  report.set("worst_boundary_error.samples", static_cast<std::int64_t>(worst.samples));
+  report.set("worst_boundary_error.samples", worst.samples);
 }
 
 std::string sequenceHeader() {

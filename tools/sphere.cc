@@ -5,14 +5,14 @@
 #include "correspondence.h"
 #include "innermap/core/memory.h"
 #include "innermap/mesh/write.h"
-#include "mesh_input.h"
+#include "inputs.h"
 
 namespace innermap::tool {
 namespace {
 
 struct Options {
   std::string mesh, output;
-  SurfaceOptions surface;
+  LayOutSettings surface;
 };
 
 void run(const Options& options, Context& context) {
@@ -32,10 +32,10 @@ void run(const Options& options, Context& context) {
   const MeshOnSphere sphere = onSphere(laid);
   const LayoutQuality& quality = sphere.quality;
   Report& report = context.report();
-  report.set("sphere.flips", static_cast<std::int64_t>(quality.flips));
+  report.set("sphere.flips", quality.flips);
   report.set("sphere.degree", quality.degree);
   report.set("sphere.area_ratio_log10", quality.areaRatioLog10);
-  report.set("sphere.shells", static_cast<std::int64_t>(laid.shells().shells.size()));
+  report.set("sphere.shells", laid.shells().shells.size());
   context.timed("write", [&] { writeMesh(options.output, sphere.mesh); });
   context.print(fmt::format(
       "on the sphere: {} flip{}, degree {:.9f}, least area 10^{:.2f} of its share\n", quality.flips,

@@ -6,64 +6,54 @@
 #include "innermap/core/memory.h"
 #include "innermap/io/picture/texture_images.h"
 #include "innermap/texture/solid_texture.h"
-#include "map_report.h"
-#include "mesh_input.h"
+#include "inputs.h"
 
 namespace innermap::tool {
 namespace {
 
-struct TextureOptions {
-  std::string mesh, image, output, mode = "uv", seams = "keep", colourSpace = "auto",
-                                   wrap = "repeat", names = "innermap";
-  std::optional<std::uint64_t> sources;
-  GridOptions grid;
-  std::uint64_t seed = 1;
+const std::vector<std::pair<std::string, Wrap>> kWraps{{"repeat", Wrap::repeat},
+                                                       {"clamp", Wrap::clamp},
+                                                       {"mirror", Wrap::mirror},
+                                                       {"black", Wrap::black}};
 
-  bool blends() const { return seams == "blend"; }
+struct TextureOptions {
+  std::string mesh, image, output;
+  NamingScheme names = NamingScheme::innermap;
+  GridOptions grid;
+  SolidTextureSettings texture;
+  TextureImageSettings images;
+
+  bool blends() const { return texture.seams == TextureSeams::blend; }
 };
 
 SolidTextureSettings settingsOf(const TextureOptions& o, const Context& context) {
   if (o.blends() && o.image.empty())
     throw UsageError("--seams blend needs an IMAGE: vertex colours have no seams");
-  if (o.blends() && o.mode != "uv")
+  if (o.blends() && o.texture.mode != TextureMode::coordinates)
     throw UsageError(
         "--seams blend is for --mode uv: colours continued by --mode colour show no seams; leave "
         "one of the two out");
-  SolidTextureSettings s;
-  s.mode = o.image.empty()  ? TextureMode::vertexColours
-           : o.mode == "uv" ? TextureMode::coordinates
-                            : TextureMode::imageColours;
-  s.seams = o.blends() ? TextureSeams::blend : TextureSeams::keep;
-  s.resolution = o.grid.resolution;
-  s.voxelSize = o.grid.voxelSize.value_or(0);
-  s.sources = o.sources.value_or(0);
-  if (o.colourSpace == "srgb") s.decode = linearFromSrgb;
-  s.seed = o.seed;
-  s.maxMemory = context.maxMemory();
-  s.progress = context.progress();
+  auto s = gridSettings(o.grid, context, o.texture);
+  if (o.image.empty()) s.mode = TextureMode::vertexColours;
+  if (o.images.colourSpace == ColourSpace::srgb) s.decode = linearFromSrgb;
   return s;
 }
 
 TextureImages readImages(const TextureOptions& o, const std::vector<UdimTile>& tiles,
                          Context& context) {
-  TextureImageSettings settings;
-  settings.colourSpace = parseColourSpace("--colour-space", o.colourSpace);
-  settings.wrap = parseWrap("--wrap", o.wrap);
-  settings.maxMemory = context.maxMemory();
-  settings.progress = context.progress();
-  std::optional<TextureImages> images;
-  context.timed("image", [&] { images.emplace(o.image, tiles, settings); });
-  for (const std::string& note : images->notes()) context.note(note);
+  TextureImages images = context.timed(
+      "image", [&] { return TextureImages(o.image, tiles, context.settings(o.images)); });
+  for (const std::string& note : images.notes()) context.note(note);
   Report& report = context.report();
   report.set("texture.image", o.image);
-  if (images->count() > 0) {
-    report.set("texture.colour_space", images->colourSpace());
-    report.set("texture.channels", images->channels());
-    report.set("texture.width", static_cast<std::int64_t>(images->width()));
-    report.set("texture.height", static_cast<std::int64_t>(images->height()));
+  if (images.count() > 0) {
+    report.set("texture.colour_space", images.colourSpace());
+    report.set("texture.channels", images.channels());
+    report.set("texture.width", images.width());
+    report.set("texture.height", images.height());
   }
-  if (isTiled(o.image)) report.set("texture.tiles", static_cast<std::int64_t>(images->count()));
-  return *images;
+  if (isTiled(o.image)) report.set("texture.tiles", images.count());
+  return images;
 }
 
 void report(const std::string& key, const BoundaryError& error, Report& report) {
@@ -82,12 +72,12 @@ void fillReport(const SolidTexture& made, const TextureOptions& options, Report&
   r.solve = solve;
   r.set("solve.distance", made.fit.distance);
   r.set("solve.residuals", made.fit.residuals);
-  r.set("solve.channels", static_cast<std::int64_t>(made.fit.channels));
-  r.set("solve.seed", static_cast<std::int64_t>(options.seed));
+  r.set("solve.channels", made.fit.channels);
+  r.set("solve.seed", options.texture.seed);
   report("surface.fit_error", made.fit.error, r);
   if (const auto& seams = made.seams) {
-    r.set("seams.charts", static_cast<std::int64_t>(seams->charts));
-    r.set("seams.edges", static_cast<std::int64_t>(seams->edges));
+    r.set("seams.charts", seams->charts);
+    r.set("seams.edges", seams->edges);
     r.set("seams.length", seams->length);
     r.set("seams.length_share", seams->lengthShare);
     r.set("seams.voxel_share", seams->voxelShare);
@@ -107,10 +97,10 @@ void run(const TextureOptions& o, Context& context) {
   const SolidTextureSettings settings = settingsOf(o, context);
   context.output(o.output);
   const SolidTexturePlan plan = planSolidTexture(readMeshFile(o.mesh, context), settings);
-  tell(plan.notes, plan.warnings, plan.seconds, context);
+  context.tell(plan);
   if (o.blends()) {
-    context.report().set("seams.pieces", static_cast<std::int64_t>(plan.pieces));
-    context.report().set("seams.groups", static_cast<std::int64_t>(plan.groups));
+    context.report().set("seams.pieces", plan.pieces);
+    context.report().set("seams.groups", plan.groups);
   }
   const std::string image = o.image.empty() ? "vertex colours" : o.image;
   std::vector<UdimTile> tiles;
@@ -131,13 +121,14 @@ void run(const TextureOptions& o, Context& context) {
     lookup = [images = readImages(o, tiles, context)](
                  const Vec2& uv, const Vec2& a, const Vec2& b) { return images.at(uv, a, b); };
   const SolidTexture made = makeSolidTexture(plan, lookup);
-  tell(made.notes, made.warnings, made.seconds, context);
+  context.tell(made);
   fillReport(made, o, context.report());
   const openvdb::GridPtrVec grids = made.grids();
   for (const openvdb::GridBase::Ptr& grid : grids) {
     grid->insertMeta("innermap_texture", openvdb::StringMetadata(image));
-    if (!o.image.empty())
-      grid->insertMeta("innermap_texture_wrap", openvdb::StringMetadata(o.wrap));
+    for (const auto& [name, wrap] : kWraps)
+      if (wrap == o.images.wrap && !o.image.empty())
+        grid->insertMeta("innermap_texture_wrap", openvdb::StringMetadata(name));
   }
   writeGridFile(o.output, grids, o.names, context);
 }
@@ -157,25 +148,29 @@ Command makeTextureCommand() {
                "the texture, in any format of OpenImageIO; with <UDIM> in its name, a set of tiles")
       .optional();
   c.option("--output", "FILE", &o->output, "the .vdb file to write").shortName("-o").required();
-  c.option("--mode", "MODE", &o->mode,
+  c.choice("--mode", "MODE", &o->texture.mode,
+           {{"uv", TextureMode::coordinates},
+            {"colour", TextureMode::imageColours},
+            {"color", TextureMode::imageColours}},
            "uv: the texture coordinates are continued and the image is looked up at each voxel's; "
-           "colour: the colours themselves are")
-      .choices({"uv", "colour", "color"});
-  c.option("--seams", "WAY", &o->seams,
-           "with --mode uv. keep: the coordinates are continued as they are and sweep through the "
-           "image below a seam; blend: those of each chart for themselves, and their colours mixed")
-      .choices({"keep", "blend"});
-  c.option("--colour-space", "SPACE", &o->colourSpace,
+           "colour: the colours themselves are");
+  c.choice(
+      "--seams", "WAY", &o->texture.seams,
+      {{"keep", TextureSeams::keep}, {"blend", TextureSeams::blend}},
+      "with --mode uv. keep: the coordinates are continued as they are and sweep through the "
+      "image below a seam; blend: those of each chart for themselves, and their colours mixed");
+  c.choice("--colour-space", "SPACE", &o->images.colourSpace,
+           {{"auto", ColourSpace::automatic},
+            {"linear", ColourSpace::linear},
+            {"srgb", ColourSpace::srgb}},
            "of the image; auto: as the file says, else sRGB for 8 bits and linear for more; vertex "
-           "colours are linear unless srgb is given")
-      .choices({"auto", "linear", "srgb"});
-  c.option("--wrap", "WAY", &o->wrap, "what stands beyond the image's borders")
-      .choices({"repeat", "clamp", "mirror", "black"});
+           "colours are linear unless srgb is given");
+  c.choice("--wrap", "WAY", &o->images.wrap, kWraps, "what stands beyond the image's borders");
   addGridOptions(c, o->grid);
-  c.option("--sources", "N", &o->sources, "number of charges")
+  c.option("--sources", "N", &o->texture.sources, "number of charges")
       .range(100, 1e6)
       .defaults("one every two voxels of the surface, 1000 to 50000");
-  c.option("--seed", "N", &o->seed, "of all random points").range(0, 1e15);
+  c.option("--seed", "N", &o->texture.seed, "of all random points").range(0, 1e15);
   addNamesOption(c, o->names);
   c.example("innermap texture spot.obj spot_texture.png -o spot.vdb --mode colour");
   c.example("innermap texture spot.obj 'spot.<UDIM>.exr' -o spot.vdb --seams blend");

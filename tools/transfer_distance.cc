@@ -2,15 +2,10 @@
 #include <fmt/format.h>
 
 #include "commands.h"
-#include "evaluation.h"
 #include "grid_options.h"
-#include "innermap/core/file.h"
-#include "innermap/io/picture/section_image.h"
-#include "innermap/io/slice.h"
-#include "innermap/io/vdb/vdb_file.h"
-#include "innermap/levelset/level_set.h"
 #include "innermap/transfer/distance_transfer.h"
-#include "map_report.h"
+#include "inputs.h"
+#include "section_options.h"
 
 namespace innermap::tool {
 namespace {
@@ -18,23 +13,9 @@ namespace {
 struct TransferDistanceOptions {
   std::string map, output;
   GridOptions grid;
-  std::string sectionAxis = "auto";
-  std::optional<double> sectionAt;
+  SectionOptions section;
   std::optional<NumberPair> range;
 };
-
-DistanceTransfer transfer(const MappedSolid& mapped, const Solid& target,
-                          const TransferDistanceOptions& options, Context& context) {
-  DistanceTransferSettings settings;
-  settings.resolution = options.grid.resolution;
-  settings.voxelSize = options.grid.voxelSize.value_or(0);
-  settings.accuracy = sumAccuracy(mapped);
-  settings.maxMemory = context.maxMemory();
-  settings.progress = context.progress();
-  DistanceTransfer made = transferDistance(mapped.map, mapped.solid(), target, settings);
-  tell({}, {}, made.seconds, context);
-  return made;
-}
 
 void writeSection(const std::string& path, const std::string& title, const Solid& solid,
                   const openvdb::FloatGrid& distance, const openvdb::FloatGrid& surface,
@@ -43,24 +24,19 @@ void writeSection(const std::string& path, const std::string& title, const Solid
   const openvdb::GridBase::Ptr shown = distance.deepCopyGrid();
   shown->setName(title);
   const openvdb::GridBase::Ptr solidGrid = surface.deepCopyGrid();
-  SectionSettings section;
+  SectionSettings section = sectionSettings(options.section, solid, *makeFog(surface), context);
   section.grid = title;
-  section.axis = options.sectionAxis == "auto" ? thinnestAxis(solid.box().extent())
-                                               : parseAxis("--section-axis", options.sectionAxis);
-  section.at = options.sectionAt ? *options.sectionAt : fullLayer(*makeFog(surface), section.axis);
   section.range = range;
-  section.maxMemory = context.maxMemory();
-  section.progress = context.progress();
   writeSectionImage(path, {shown, solidGrid}, section);
 }
 
 void writeVdbs(const DistanceTransfer& made, const MappedSolid& mapped, PendingFolder& folder,
                Context& context) {
-  VdbWriteSettings settings;
-  settings.progress = context.progress();
   const auto write = [&](const char* name, const openvdb::GridPtrVec& grids) {
     describeMap(grids, mapped);
-    folder.write(name, [&](const std::string& path) { writeVdb(path, grids, {}, settings); });
+    folder.write(name, [&](const std::string& path) {
+      writeGridFile(path, grids, NamingScheme::innermap, context);
+    });
   };
   write("source.vdb", {made.source.surface, made.through, made.source.depth});
   write("target.vdb", {made.target.surface, made.target.depth});
@@ -73,7 +49,7 @@ void fillReport(const DistanceTransfer& made, const NumberPair& range, Report& r
   grid.interiorVoxels = made.throughFigures.voxels;
   report.grid = grid;
   report.set("grid.target_voxel_size", made.target.surface->voxelSize()[0]);
-  report.set("grid.target_interior_voxels", static_cast<std::int64_t>(made.target.figures.voxels));
+  report.set("grid.target_interior_voxels", made.target.figures.voxels);
   report.set("distance.largest_in_target", made.target.figures.largest);
   report.set("distance.largest_through_map", made.throughFigures.largest);
   report.set("distance.largest_in_source", made.source.figures.largest);
@@ -91,40 +67,35 @@ std::string textOf(const DistanceTransfer& made) {
 
 void run(const TransferDistanceOptions& options, Context& context) {
   const MappedSolid mapped = readMapFile(options.map, context);
-  MapGridSettings grid;
-  grid.resolution = options.grid.resolution;
-  grid.voxelSize = options.grid.voxelSize.value_or(0);
-  grid.maxMemory = context.maxMemory();
   if (context.dryRun())
     return context.plan(
         {"transfer the target's distance field through " + options.map,
          "write source.vdb, target.vdb, source.png, target.png and report.json to " +
              options.output},
-        mapGridMemory(mapped.solid(), grid));
-  requireEvaluationMemory(mapped.solid(), grid);
+        mapGridMemory(mapped.solid(), gridSettings<MapGridSettings>(options.grid, context)));
+  requireEvaluationMemory(mapped.solid(), options.grid, context);
   PendingFolder folder = context.outputFolder(options.output);
   context.notePictures();
-  std::optional<Solid> target;
-  context.timed("solid",
-                [&] { target.emplace(makeTargetSolid(mapped.boundary, {context.progress()})); });
-  const DistanceTransfer made = transfer(mapped, *target, options, context);
+  const Solid target = targetSolid(mapped, context);
+  auto settings = gridSettings<DistanceTransferSettings>(options.grid, context);
+  settings.accuracy = sumAccuracy(mapped);
+  const DistanceTransfer made = transferDistance(mapped.map, mapped.solid(), target, settings);
+  addSeconds(context.report().seconds, made.seconds);
   const NumberPair range = options.range.value_or(NumberPair{0, made.target.figures.largest});
   fillReport(made, range, context.report());
   context.timed("write", [&] {
     folder.write("target.png", [&](const std::string& path) {
-      writeSection(path, "distance in the target", *target, *made.target.depth,
-                   *made.target.surface, range, options, context);
+      writeSection(path, "distance in the target", target, *made.target.depth, *made.target.surface,
+                   range, options, context);
     });
     folder.write("source.png", [&](const std::string& path) {
       writeSection(path, "the target's distance, through the map", mapped.solid(), *made.through,
                    *made.source.surface, range, options, context);
     });
-    writeVdbs(made, mapped, folder, context);
   });
+  writeVdbs(made, mapped, folder, context);
   context.print(textOf(made));
-  folder.write("report.json",
-               [&](const std::string& path) { writeReport(path, context.finishedReport()); });
-  folder.commit();
+  context.finish(folder);
 }
 
 }  // namespace
@@ -143,12 +114,7 @@ Command makeTransferDistanceCommand() {
       .shortName("-o")
       .required();
   addGridOptions(c, o->grid, "each solid");
-  c.option("--section-axis", "AXIS", &o->sectionAxis, "of the sections; auto: the thinnest")
-      .choices({"auto", "x", "y", "z"});
-  c.option("--section-at", "T", &o->sectionAt, "place of the sections along their axis")
-      .unit("fraction of the box")
-      .range(0, 1)
-      .defaults("near the middle, where they cut most");
+  addSectionOptions(c, o->section);
   c.option("--range", "LO,HI", &o->range, "distances that are blue and red")
       .defaults("0 to the largest in the target");
   c.example("innermap transfer-distance map.ply -o distance --resolution 256");

@@ -5,16 +5,17 @@
 #include "grid_options.h"
 #include "innermap/core/memory.h"
 #include "innermap/levelset/level_set.h"
+#include "inputs.h"
 #include "map_report.h"
-#include "mesh_input.h"
 
 namespace innermap::tool {
 namespace {
 
 struct VoxelizeOptions {
-  std::string mesh, output, names = "innermap";
+  std::string mesh, output;
+  NamingScheme names = NamingScheme::innermap;
   GridOptions grid;
-  double halfWidth = LevelSetSettings().halfWidth;
+  LevelSetSettings levelSet;
   bool fog = false, attributes = false;
 };
 
@@ -26,15 +27,8 @@ std::uint64_t memoryFor(const VoxelizeOptions& options, const Solid& solid, cons
 
 void fillReport(const openvdb::FloatGrid& levelSet, const Solid& solid, const Mesh& mesh,
                 Report& report) {
-  ReportMesh m;
-  m.path = mesh.name;
-  m.vertices = mesh.vertices.size();
-  m.triangles = mesh.triangles.size();
-  m.caps = solid.repaired().caps;
-  m.boundaryLoops = m.caps;
-  m.volume = solid.volume();
-  m.diagonal = solid.diagonal();
-  report.source = m;
+  report.source = reportOf(mesh, solid.volume());
+  report.source->caps = report.source->boundaryLoops = solid.repaired().caps;
   ReportGrid g;
   g.voxelSize = levelSet.voxelSize().x();
   g.activeVoxels = levelSet.activeVoxelCount();
@@ -44,18 +38,19 @@ void fillReport(const openvdb::FloatGrid& levelSet, const Solid& solid, const Me
 
 openvdb::GridPtrVec makeGrids(const VoxelizeOptions& options, const Solid& solid, const Mesh& mesh,
                               const LevelSetSettings& settings, Context& context) {
-  openvdb::FloatGrid::Ptr levelSet;
-  context.timed("level set", [&] { levelSet = makeLevelSet(solid, settings); });
+  const openvdb::FloatGrid::Ptr levelSet =
+      context.timed("level set", [&] { return makeLevelSet(solid, settings); });
   openvdb::GridPtrVec grids = {levelSet};
   if (options.fog) context.timed("fog", [&] { grids.push_back(makeFog(*levelSet)); });
   if (options.attributes)
     context.timed("attributes", [&] {
-      for (const auto& grid : makeAttributeGrids(*levelSet, solid, mesh, {context.progress()}))
+      for (const auto& grid :
+           makeAttributeGrids(*levelSet, solid, mesh, context.settings<AttributeSettings>()))
         grids.push_back(grid);
     });
   context.timed("check", [&] {
     const LevelSetCheck check = checkLevelSet(*levelSet, solid);
-    tell({}, check.warnings, {}, context);
+    for (const std::string& warning : check.warnings) context.warning(warning);
     Report& report = context.report();
     report.set("level_set.mesh_volume", check.meshVolume);
     report.set("level_set.grid_volume", check.gridVolume);
@@ -69,25 +64,22 @@ openvdb::GridPtrVec makeGrids(const VoxelizeOptions& options, const Solid& solid
 void run(const VoxelizeOptions& options, Context& context) {
   context.output(options.output);
   const Mesh mesh = readMeshFile(options.mesh, context);
-  std::optional<Solid> solid;
-  SolidSettings repairing;
-  repairing.progress = context.progress();
-  context.timed("solid", [&] { solid.emplace(mesh, repairing); });
-  for (const std::string& note : solid->repaired().notes) context.note(options.mesh + ": " + note);
+  const Solid solid =
+      context.timed("solid", [&] { return Solid(mesh, context.settings<SolidSettings>()); });
+  for (const std::string& note : solid.repaired().notes) context.note(options.mesh + ": " + note);
   if (options.attributes && mesh.uvs.empty() && mesh.colours.empty())
     context.warning(options.mesh +
                     " has neither texture coordinates nor vertex colours to carry over");
-  LevelSetSettings settings = levelSetSettings(options.grid, context);
-  settings.halfWidth = options.halfWidth;
-  const double voxelSize = voxelSizeFor(*solid, settings);
-  const std::uint64_t need = memoryFor(options, *solid, mesh, settings);
+  const auto settings = gridSettings(options.grid, context, options.levelSet);
+  const double voxelSize = voxelSizeFor(solid, settings);
+  const std::uint64_t need = memoryFor(options, solid, mesh, settings);
   if (context.dryRun())
     return context.plan({fmt::format("voxelize {} with voxels of {:.6g} to {}", options.mesh,
                                      voxelSize, options.output)},
                         need);
   requireMemory("voxelizing " + options.mesh, need, context.maxMemory(),
                 fmt::format("use a --voxel-size above {:.3g}", 1.5 * voxelSize));
-  const openvdb::GridPtrVec grids = makeGrids(options, *solid, mesh, settings, context);
+  const openvdb::GridPtrVec grids = makeGrids(options, solid, mesh, settings, context);
   openvdb::MetaMap metadata;
   metadata.insertMeta("innermap_source", openvdb::StringMetadata(options.mesh));
   writeGridFile(options.output, grids, options.names, context, metadata);
@@ -104,21 +96,15 @@ Command makeVoxelizeCommand() {
       "and surface.");
   c.positional("MESH", &o->mesh, "mesh file: .obj, .ply, .off or .stl");
   c.option("--output", "FILE", &o->output, "the .vdb file to write").shortName("-o").required();
-  c.option("--voxel-size", "LENGTH", &o->grid.voxelSize, "edge of a voxel")
-      .unit("world units")
-      .above(0)
-      .defaults("from --resolution");
-  c.option("--resolution", "N", &o->grid.resolution,
-           "voxels along the longest side of the mesh's box")
-      .range(4, 4096);
-  c.option("--half-width", "W", &o->halfWidth, "width of the band on each side of the surface")
+  addGridOptions(c, o->grid, "the mesh's box");
+  c.option("--half-width", "W", &o->levelSet.halfWidth,
+           "width of the band on each side of the surface")
       .unit("voxels")
       .range(2, 100);
   c.flag("--fog", &o->fog, "also write `density`: 1 inside, 0 outside, shares along the surface");
   c.flag("--attributes", &o->attributes,
          "also carry texture coordinates (`uv`) and vertex colours (`Cd`) onto the band");
-  c.option("--names", "SCHEME", &o->names, "grid names as the given program expects them")
-      .choices({"innermap", "blender", "houdini"});
+  addNamesOption(c, o->names);
   c.example("innermap voxelize bunny.obj -o bunny.vdb --resolution 256 --fog");
   c.run([o](Context& context) { run(*o, context); });
   return c;

@@ -15,7 +15,6 @@ namespace {
 
 constexpr std::size_t kFreshSamples = 20000;
 constexpr double kPointsPerSource = 4, kPointsPerManySources = 3;
-constexpr double kDoubtful = 0.1;  // of the target's diagonal: no map to be trusted
 // A first fit where a tolerance is asked for: enough to tell smooth deformations from others.
 constexpr std::size_t kFirstSources = 1000, kTrialSources = 200;
 constexpr PointCounts kVertexTrial{kFirstSources, 4 * kFirstSources, kFirstSources};
@@ -236,7 +235,7 @@ Settings factsOf(const BoundaryPair& pair, const Outcome& out, std::uint64_t see
 }
 
 void warnOfError(MapFit& fit) {
-  if (fit.error.max > kDoubtful)
+  if (fit.error.max > kDoubtfulError)
     fit.warnings.push_back(
         fmt::format("the boundary error reaches {:.2g} of the diagonal: this map is not to be "
                     "trusted; use {}",

@@ -20,7 +20,7 @@ constexpr std::size_t kFreshSamples = 20000;
 constexpr double kDistance = 1.25;  // spacings
 constexpr double kFarthest = 4;     // spacings, of charges beyond the first level
 constexpr double kProducts = 1e-6;  // accuracy; a hundredth of what the fits leave
-constexpr double kDoubtful = 0.1;   // of the diagonal: no map to be trusted
+constexpr std::size_t kKept = 3;    // frames before the one asked for
 
 SourceLevel shell(const Solid& solid, std::size_t count, double distance, SourceSettings settings) {
   SourceLevel level;
@@ -137,7 +137,7 @@ FrameFit FrameFitter::fit(const Mesh& frame, const BoundarySettings& settings) c
         field, fresh_.points, boundary.targetsOf(solid(), fresh_.onSurface), boundary.diagonal, e));
   });
   std::vector<std::string> warnings = boundary.warnings;
-  if (error.max > kDoubtful)
+  if (error.max > kDoubtfulError)
     warnings.push_back(
         fmt::format("the boundary error reaches {:.2g} of the diagonal: this map is not to be "
                     "trusted; use more charges",
@@ -161,6 +161,45 @@ HarmonicField velocityAt(const NumberedFit& frame, const std::optional<NumberedF
   return combined({{after->fit, a / (b * (a + b))},
                    {frame.fit, (b - a) / (a * b)},
                    {before->fit, -b / (a * (a + b))}});
+}
+
+FrameFits::FrameFits(std::vector<std::int64_t> numbers, std::function<FrameFit(std::size_t)> make)
+    : numbers_(std::move(numbers)), make_(std::move(make)) {}
+
+std::shared_ptr<const FrameFit> FrameFits::at(std::size_t index) {
+  while (!kept_.empty() && kept_.begin()->first + kKept < index) kept_.erase(kept_.begin());
+  const auto known = kept_.find(index);
+  if (known != kept_.end() && known->second) return known->second;
+  kept_[index] = nullptr;
+  return kept_[index] = std::make_shared<const FrameFit>(make_(index));
+}
+
+std::shared_ptr<const FrameFit> FrameFits::tryAt(std::size_t index) {
+  const auto known = kept_.find(index);
+  if (known != kept_.end()) return known->second;
+  std::shared_ptr<const FrameFit> fit;
+  try {
+    fit = std::make_shared<const FrameFit>(make_(index));
+  } catch (const FileError&) {
+  } catch (const DataError&) {
+  }
+  return kept_[index] = fit;
+}
+
+std::optional<NumberedFit> FrameFits::neighbour(std::size_t index, int step) {
+  const auto count = static_cast<std::ptrdiff_t>(numbers_.size());
+  for (std::ptrdiff_t i = static_cast<std::ptrdiff_t>(index) + step; i >= 0 && i < count;
+       i += step) {
+    const auto place = static_cast<std::size_t>(i);
+    if (const auto fit = tryAt(place)) return NumberedFit{fit.get(), numbers_[place]};
+  }
+  return {};
+}
+
+HarmonicField FrameFits::velocity(std::size_t index, double framesPerSecond) {
+  const std::shared_ptr<const FrameFit> here = at(index);
+  return velocityAt({here.get(), numbers_[index]}, neighbour(index, -1), neighbour(index, 1),
+                    framesPerSecond);
 }
 
 }  // namespace innermap

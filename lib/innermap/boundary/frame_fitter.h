@@ -6,6 +6,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -93,5 +96,29 @@ struct NumberedFit {
 // framesPerSecond: positive. Throws DataError when both are missing.
 HarmonicField velocityAt(const NumberedFit& frame, const std::optional<NumberedFit>& before,
                          const std::optional<NumberedFit>& after, double framesPerSecond);
+
+// The fits of an animation's frames as they are asked for, in ascending order: each is made once,
+// and kept while velocities may need it.
+class FrameFits {
+ public:
+  // numbers: of the frames, ascending. make: the fit of the frame at a place in `numbers`; throws
+  // FileError or DataError for a frame that cannot be used. All fits: of one fitter.
+  FrameFits(std::vector<std::int64_t> numbers, std::function<FrameFit(std::size_t)> make);
+
+  // Throws what `make` throws.
+  std::shared_ptr<const FrameFit> at(std::size_t index);
+
+  // velocityAt this frame, from the nearest before and after it that can be used. Throws DataError
+  // when there is neither, what `make` throws for this one.
+  HarmonicField velocity(std::size_t index, double framesPerSecond);
+
+ private:
+  std::shared_ptr<const FrameFit> tryAt(std::size_t index);  // none for a broken frame
+  std::optional<NumberedFit> neighbour(std::size_t index, int step);
+
+  std::vector<std::int64_t> numbers_;
+  std::function<FrameFit(std::size_t)> make_;
+  std::map<std::size_t, std::shared_ptr<const FrameFit>> kept_;  // null: broken
+};
 
 }  // namespace innermap

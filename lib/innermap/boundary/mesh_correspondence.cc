@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/stage_seconds.h"
 #include "innermap/mesh/triangle_tree.h"
@@ -14,6 +15,7 @@ namespace innermap {
 namespace {
 
 constexpr std::uint64_t kPicture = 300'000'000;  // bytes
+constexpr double kOffTarget = 0.01;              // of the target's diagonal
 
 void requireCorrespondMemory(const Mesh& a, const Mesh& b,
                              const MeshCorrespondenceSettings& settings) {
@@ -170,6 +172,29 @@ void writeCorrespondence(const std::string& path, const MeshCorrespondence& map)
   for (std::size_t k = 0; k < 3; ++k)
     extras.properties.push_back({fmt::format("b{}", k), std::move(weights[k])});
   writePly(path, moved, extras);
+}
+
+Mesh readCorrespondence(const std::string& path, const Mesh& source, const ReadSettings& settings) {
+  try {
+    return readMeshLike(path, source, settings);
+  } catch (const DataError& error) {
+    throw DataError(std::string(error.what()) +
+                    "; where triangles were split for it, the source is the .source.ply beside it");
+  }
+}
+
+void requireOnTarget(const Mesh& moved, const Mesh& target) {
+  const TriangleTree tree(target.vertices, target.triangles);
+  std::vector<double> distances;
+  for (const Vec3& p : moved.vertices) distances.push_back(tree.closest(p).distance);
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  const double share = *middle / boundingBox(target).diagonal();
+  if (!(share <= kOffTarget))
+    throw DataError(fmt::format(
+        "{}: does not lie on {}, half of its vertices are {:.2g} of the diagonal away or more; "
+        "give the two that belong together",
+        moved.name, target.name, share));
 }
 
 }  // namespace innermap

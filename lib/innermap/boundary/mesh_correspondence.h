@@ -12,6 +12,7 @@
 #include "innermap/boundary/landmarks.h"
 #include "innermap/core/progress.h"
 #include "innermap/mesh/mesh.h"
+#include "innermap/mesh/read.h"
 #include "innermap/surface/correspond.h"
 #include "innermap/surface/map_quality.h"
 
@@ -84,5 +85,14 @@ double correspondSeconds(std::size_t verticesA, std::size_t verticesB,
 // `b0 b1 b2` (double, barycentric coordinates there); source's triangles. The file appears whole or
 // not at all. Throws FileError.
 void writeCorrespondence(const std::string& path, const MeshCorrespondence& map);
+
+// Where that file, or any mesh of its connectivity, puts the vertices of `source`. Throws as
+// readMeshLike does.
+Mesh readCorrespondence(const std::string& path, const Mesh& source,
+                        const ReadSettings& settings = {});
+
+// Throws DataError when half of the vertices of `moved` are farther from `target` than a hundredth
+// of its diagonal: the two do not belong together.
+void requireOnTarget(const Mesh& moved, const Mesh& target);
 
 }  // namespace innermap

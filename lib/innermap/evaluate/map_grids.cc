@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <utility>
 
 #include "innermap/core/error.h"
 #include "innermap/levelset/level_set.h"
@@ -19,31 +22,31 @@ LevelSetSettings levelSetSettings(const MapGridSettings& settings) {
   return out;
 }
 
-EvaluateSettings evaluateSettings(const MappedSolid& mapped, const MapGridSettings& settings) {
+EvaluateSettings evaluateSettings(double targetVolume, double accuracy,
+                                  const MapGridSettings& settings) {
   EvaluateSettings out;
   out.lame = settings.lame;
-  out.targetVolume = mapped.boundary.target.volume;
-  out.accuracy = sumAccuracy(mapped);
+  out.targetVolume = targetVolume;
+  out.accuracy = accuracy;
   out.maxMemory = settings.maxMemory;
   out.progress = settings.progress;
   return out;
 }
 
-void describe(const SolidGrids& grids, const MappedSolid& mapped, const LameConstants& lame) {
-  const openvdb::GridPtrVec all = grids.all();
-  describeMap(all, mapped);
-  for (const openvdb::GridBase::Ptr& grid : all) {
-    const auto number = [&grid](const char* key, double value) {
+using Figures = std::initializer_list<std::pair<const char*, double>>;
+
+void insert(const openvdb::GridPtrVec& grids, const Figures& figures) {
+  for (const openvdb::GridBase::Ptr& grid : grids)
+    for (const auto& [key, value] : figures)
       grid->insertMeta(std::string("innermap_") + key, openvdb::DoubleMetadata(value));
-    };
-    number("harmonic_energy_total", grids.values.harmonicTotal);
-    number("deformation_energy_total", grids.values.deformationTotal);
-    number("jacobian_min", grids.values.jacobianMin);
-    number("jacobian_max", grids.values.jacobianMax);
-    number("folded_fraction", grids.values.foldedFraction);
-    number("lame_lambda", lame.lambda);
-    number("lame_mu", lame.mu);
-  }
+}
+
+void insertTotals(const openvdb::GridPtrVec& grids, const MapGrids& values) {
+  insert(grids, {{"harmonic_energy_total", values.harmonicTotal},
+                 {"deformation_energy_total", values.deformationTotal},
+                 {"jacobian_min", values.jacobianMin},
+                 {"jacobian_max", values.jacobianMax},
+                 {"folded_fraction", values.foldedFraction}});
 }
 
 }  // namespace
@@ -61,7 +64,7 @@ SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& sett
   if (!(settings.voxelSize > 0) && voxelSizeFor(solid, levelSet) == kSmallestVoxel)
     out.notes.push_back(
         fmt::format("the voxels are {} world units, the smallest that OpenVDB can hold, "
-                    "not as small as --resolution asks for; scale the meshes up for more",
+                    "not as small as the resolution asks for; scale the meshes up for more",
                     kSmallestVoxel));
   timed(out.seconds, "voxelize", [&] {
     out.surface = makeLevelSet(solid, levelSet);
@@ -69,14 +72,16 @@ SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& sett
     out.warnings = checkLevelSet(*out.surface, solid).warnings;
   });
   timed(out.seconds, "evaluate", [&] {
-    out.values = evaluateMap(mapped.map, solid, *out.surface, evaluateSettings(mapped, settings));
+    out.values =
+        evaluateMap(mapped.map, solid, *out.surface,
+                    evaluateSettings(mapped.boundary.target.volume, sumAccuracy(mapped), settings));
   });
-  if (out.values.interiorVoxels == 0)
-    throw DataError(mapped.boundary.source.mesh.name +
-                    ": is thinner than the voxels everywhere, none has its centre inside; use a "
-                    "higher --resolution");
+  requireInterior(out.values.interiorVoxels, mapped.boundary.source.mesh.name);
   out.voxelSize = out.surface->voxelSize()[0];
-  describe(out, mapped, settings.lame);
+  const openvdb::GridPtrVec all = out.all();
+  describeMap(all, mapped);
+  insertTotals(all, out.values);
+  insert(all, {{"lame_lambda", settings.lame.lambda}, {"lame_mu", settings.lame.mu}});
   return out;
 }
 
@@ -93,6 +98,62 @@ void describeMap(const openvdb::GridPtrVec& grids, const MappedSolid& mapped) {
   for (const openvdb::GridBase::Ptr& grid : grids)
     for (const auto& [key, value] : mapped.facts)
       grid->insertMeta("innermap_" + key, openvdb::StringMetadata(value));
+}
+
+FrameEvaluator::FrameEvaluator(const FrameFitter& fitter, std::vector<std::string> names,
+                               const MapGridSettings& settings)
+    : fitter_(fitter), names_(std::move(names)), settings_(settings) {
+  for (const std::string& name : names_)
+    if (std::find(mapGridNames().begin(), mapGridNames().end(), name) == mapGridNames().end())
+      throw SettingError(
+          "grids", fmt::format("'{}' is not one of {}", name, fmt::join(mapGridNames(), ", ")));
+  timed(seconds_, "voxelize", [&] {
+    surface_ = makeLevelSet(fitter.solid(), levelSetSettings(settings));
+    if (wants("density")) density_ = makeFog(*surface_);
+    warnings_ = checkLevelSet(*surface_, fitter.solid()).warnings;
+  });
+  requireInterior(interiorVoxels(*surface_), fitter.rest().mesh.name);
+}
+
+bool FrameEvaluator::wants(const char* name) const {
+  return std::find(names_.begin(), names_.end(), name) != names_.end();
+}
+
+MapGrids FrameEvaluator::evaluate(const FrameFit& fit) const {
+  EvaluateSettings evaluate =
+      evaluateSettings(fit.boundary.volume, sumAccuracy(fit.error.rms), settings_);
+  evaluate.map = wants("map");
+  evaluate.jacobian = wants("jacobian");
+  evaluate.harmonicEnergy = wants("harmonic_energy");
+  evaluate.deformationEnergy = wants("deformation_energy");
+  return evaluateMap(HarmonicMap(fit.field), fitter_.solid(), *surface_, evaluate);
+}
+
+openvdb::GridPtrVec FrameEvaluator::grids(const NumberedFit& frame, const MapGrids& values) const {
+  openvdb::GridPtrVec all = values.all(), out;
+  all.push_back(surface_);
+  if (density_) all.push_back(density_);
+  for (const std::string& name : names_)
+    for (const openvdb::GridBase::Ptr& grid : all)
+      if (grid->getName() == name) out.push_back(grid->copyGrid());  // the voxels are shared
+  describeFrame(out, frame);
+  insertTotals(out, values);
+  return out;
+}
+
+const std::vector<std::string>& mapGridNames() {
+  static const std::vector<std::string> names{"surface",  "density",         "map",
+                                              "jacobian", "harmonic_energy", "deformation_energy"};
+  return names;
+}
+
+void describeFrame(const openvdb::GridPtrVec& grids, const NumberedFit& frame) {
+  for (const openvdb::GridBase::Ptr& grid : grids)
+    grid->insertMeta("innermap_frame", openvdb::Int64Metadata(frame.number));
+  const BoundaryError& error = frame.fit->error;
+  insert(grids, {{"boundary_error_rms", error.rms},
+                 {"boundary_error_p99", error.p99},
+                 {"boundary_error_max", error.max}});
 }
 
 }  // namespace innermap

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "innermap/boundary/frame_fitter.h"
 #include "innermap/boundary/mapped_solid.h"
 #include "innermap/core/stage_seconds.h"
 #include "innermap/evaluate/energy.h"
@@ -30,8 +31,7 @@ struct SolidGrids {
   std::vector<std::string> notes, warnings;
   StageSeconds seconds;  // "voxelize", "evaluate"
 
-  // surface, density, map, jacobian, harmonic_energy, deformation_energy.
-  openvdb::GridPtrVec all() const;
+  openvdb::GridPtrVec all() const;  // as mapGridNames()
 };
 
 // Metadata (prefix innermap_): the map's facts, harmonic_energy_total, deformation_energy_total,
@@ -40,10 +40,47 @@ struct SolidGrids {
 // number of threads.
 SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& settings = {});
 
+// The maps of a sequence's frames on the voxels of its rest pose.
+class FrameEvaluator {
+ public:
+  // names: grids to be had beside the totals, of mapGridNames(). fitter: must outlive it. Throws
+  // SettingError, MemoryError, DataError (thinner than the voxels everywhere), Cancelled.
+  explicit FrameEvaluator(const FrameFitter& fitter, std::vector<std::string> names = {},
+                          const MapGridSettings& settings = {});
+
+  double voxelSize() const { return surface_->voxelSize()[0]; }  // world units
+  const std::vector<std::string>& warnings() const { return warnings_; }
+  const StageSeconds& seconds() const { return seconds_; }  // "voxelize"
+
+  // fit: of the fitter. Throws MemoryError, Cancelled. The same for any number of threads.
+  MapGrids evaluate(const FrameFit& fit) const;
+
+  // The grids of these names, in their order, with the frame's facts (describeFrame) and the totals
+  // of evaluateOnGrid in their metadata. values: of that frame.
+  openvdb::GridPtrVec grids(const NumberedFit& frame, const MapGrids& values) const;
+
+ private:
+  bool wants(const char* name) const;
+
+  const FrameFitter& fitter_;
+  std::vector<std::string> names_;
+  MapGridSettings settings_;
+  openvdb::FloatGrid::Ptr surface_, density_;
+  std::vector<std::string> warnings_;
+  StageSeconds seconds_;
+};
+
+// surface, density, map, jacobian, harmonic_energy, deformation_energy.
+const std::vector<std::string>& mapGridNames();
+
 // Peak need in bytes, from the solid's volume and area.
 std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings);
 
 // The map's facts as metadata of grids made with it (prefix innermap_).
 void describeMap(const openvdb::GridPtrVec& grids, const MappedSolid& mapped);
+
+// The same of grids made with the map of an animation's frame: frame (its number),
+// boundary_error_rms, boundary_error_p99, boundary_error_max.
+void describeFrame(const openvdb::GridPtrVec& grids, const NumberedFit& frame);
 
 }  // namespace innermap

@@ -17,6 +17,9 @@ struct BoundaryError {
   std::size_t samples = 0;
 };
 
+// Fraction of the target's diagonal: a map whose error reaches it is not to be trusted.
+constexpr double kDoubtfulError = 0.1;
+
 struct BoundaryErrorSettings {
   double accuracy = 0;  // of the field's values, as HarmonicField::evaluate takes it; 0: plain sums
   Progress* progress = nullptr;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -64,6 +65,18 @@ struct Report {
   // Later values of the same key win.
   std::vector<std::pair<std::string, ReportValue>> extra;
   void set(std::string key, ReportValue value);
+  template <class Count,
+            std::enable_if_t<std::is_integral_v<Count> && !std::is_same_v<Count, bool>, int> = 0>
+  void set(std::string key, Count value) {
+    set(std::move(key), ReportValue(static_cast<std::int64_t>(value)));
+  }
+  // of(entry) of each entry of the list; numbers that are missing: NaN.
+  template <class List, class Of>
+  void setColumn(std::string key, const List& list, const Of& of) {
+    std::vector<double> column;
+    for (const auto& entry : list) column.push_back(static_cast<double>(of(entry)));
+    set(std::move(key), std::move(column));
+  }
 };
 
 // The report as indented JSON, keys in the order above; numbers that are not finite become null,

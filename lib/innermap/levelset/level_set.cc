@@ -75,6 +75,12 @@ openvdb::math::Transform::Ptr transformFor(const Solid& solid, double voxelSize)
   return latticeTransform(latticeOrigin(solid.box(), voxelSize), voxelSize);
 }
 
+LevelSetSettings onLatticeOf(const Solid& solid, LevelSetSettings settings) {
+  settings.voxelSize = voxelSizeFor(solid, settings);
+  if (!settings.origin) settings.origin = latticeOrigin(solid.box(), settings.voxelSize);
+  return settings;
+}
+
 std::uint64_t levelSetMemory(const Solid& solid, const LevelSetSettings& settings) {
   checkHalfWidth(settings);
   const double h = voxelSizeFor(solid, settings);

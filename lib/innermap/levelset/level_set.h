@@ -40,6 +40,10 @@ double voxelSizeFor(const Solid& solid, const LevelSetSettings& settings);
 // (coordinates stay small however far away the solid is). Voxel centres are at whole indices.
 openvdb::math::Transform::Ptr transformFor(const Solid& solid, double voxelSize);
 
+// Settings with which other solids get the voxels and the lattice that these give this one: those
+// of a sequence's frames from its rest pose, say. Throws as voxelSizeFor.
+LevelSetSettings onLatticeOf(const Solid& solid, LevelSetSettings settings);
+
 // Signed distance (negative inside), class level set, named "surface". Within the band the distance
 // is exact (double precision, rounded to float); beyond it the constants +-halfWidth * voxelSize.
 // Sign by winding number, so right for open, dirty and multi-component meshes.
@@ -60,6 +64,9 @@ LevelSetCheck checkLevelSet(const openvdb::FloatGrid& levelSet, const Solid& sol
 
 // Voxels whose centre is inside.
 std::uint64_t interiorVoxels(const openvdb::FloatGrid& levelSet);
+
+// Throws DataError, saying what `name` is and what helps, when there is none.
+void requireInterior(std::uint64_t interiorVoxels, const std::string& name);
 
 struct AttributeSettings {
   Progress* progress = nullptr;

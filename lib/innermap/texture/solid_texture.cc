@@ -200,10 +200,7 @@ class Maker {
     out_.density = makeFog(*out_.surface);
     out_.warnings = checkLevelSet(*out_.surface, solid_).warnings;
     out_.interiorVoxels = interiorVoxels(*out_.surface);
-    if (out_.interiorVoxels == 0)
-      throw DataError(parts_.mesh.name +
-                      ": is thinner than the voxels everywhere, none has its centre inside; use a "
-                      "higher resolution");
+    requireInterior(out_.interiorVoxels, parts_.mesh.name);
   }
 
   std::vector<openvdb::Vec3fGrid::Ptr> continueField(const HarmonicField& field) const {

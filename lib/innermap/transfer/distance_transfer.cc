@@ -159,10 +159,7 @@ DistanceTransfer transferDistance(const HarmonicMap& map, const Solid& source, c
   MapGrids grids;
   timed(out.seconds, "evaluate",
         [&] { grids = evaluateMap(map, source, *out.source.surface, evaluate); });
-  if (grids.interiorVoxels == 0)
-    throw DataError(
-        "the source is thinner than the voxels everywhere, none has its centre inside; use a "
-        "higher resolution");
+  requireInterior(grids.interiorVoxels, "the source");
   timed(out.seconds, "transfer",
         [&] { out.through = depthThrough(*grids.map, target, {settings.progress}); });
   out.throughFigures = depthFigures(*out.through, *out.source.surface);

@@ -1,9 +1,12 @@
 #include "innermap/transfer/push.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "innermap/core/parallel.h"
 #include "innermap/evaluate/evaluate_map.h"
+#include "innermap/evaluate/map_grids.h"
 #include "innermap/transfer/detail/carry_output.h"
 #include "innermap/transfer/detail/extended_map.h"
 #include "innermap/transfer/detail/field_grid.h"
@@ -114,6 +117,38 @@ PushResult VolumePusher::push(const HarmonicMap& map, const openvdb::FloatGrid& 
     out.grids.push_back(
         fieldGrid(field, d.source, d.lattice, inverted, d.settings.accuracy, d.settings.progress));
   noteOutside(out.grids, d.settings.outside);
+  return out;
+}
+
+FramePusher::FramePusher(const FrameFitter& fitter, const openvdb::GridPtrVec& grids,
+                         const FramePushSettings& settings)
+    : fitter_(fitter), grids_(grids), settings_(settings) {
+  settings_.output = onLatticeOf(fitter.solid(), settings.output);
+  if (!settings.fadeToFitted) pusher_.emplace(pusherFor({}));
+}
+
+VolumePusher FramePusher::pusherFor(const Points& moved) const {
+  PushSettings push = settings_.push;
+  if (settings_.fadeToFitted)
+    push.outside.fadeTo = bestRigidMotion(fitter_.solid().repaired().mesh.vertices, moved);
+  return VolumePusher(fitter_.solid(), grids_, push);
+}
+
+FramePush FramePusher::push(const NumberedFit& frame,
+                            const std::vector<CarriedField>& fields) const {
+  const FrameFit& fit = *frame.fit;
+  FramePush out;
+  const openvdb::FloatGrid::Ptr target = timed(out.seconds, "level set", [&] {
+    SolidSettings solid;
+    solid.progress = settings_.push.progress;
+    const std::string name = fmt::format("frame {}", frame.number);
+    return makeLevelSet(Solid(fit.boundary.mesh(fitter_.solid(), name), solid), settings_.output);
+  });
+  out.result = timed(out.seconds, "push", [&] {
+    const VolumePusher pusher = pusher_ ? *pusher_ : pusherFor(fit.boundary.moved);
+    return pusher.push(HarmonicMap(fit.field), *target, fields);
+  });
+  describeFrame(out.result.grids, frame);
   return out;
 }
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "innermap/boundary/frame_fitter.h"
 #include "innermap/core/progress.h"
 #include "innermap/field/harmonic_map.h"
 #include "innermap/levelset/solid.h"
@@ -65,6 +66,40 @@ class VolumePusher {
  private:
   struct Data;
   std::shared_ptr<const Data> data_;
+};
+
+struct FramePushSettings {
+  PushSettings push;
+  bool fadeToFitted = false;  // what lies outside fades to the best rigid motion of each frame
+  LevelSetSettings output;    // of the rest pose: all frames get its voxels and its lattice
+};
+
+struct FramePush {
+  PushResult result;
+  StageSeconds seconds;  // "level set", "push"
+};
+
+// Grids that live in a rest pose, carried through the frames of an animation. What a frame gives
+// does not depend on the others.
+class FramePusher {
+ public:
+  // fitter: must outlive it. Throws as VolumePusher.
+  FramePusher(const FrameFitter& fitter, const openvdb::GridPtrVec& grids,
+              const FramePushSettings& settings = {});
+
+  double voxelSize() const { return settings_.output.voxelSize; }  // of the outputs, world units
+
+  // fit: of the fitter. The grids have the frame's facts in their metadata, see describeFrame.
+  // Throws as VolumePusher::push, DataError for a frame that bounds no solid.
+  FramePush push(const NumberedFit& fit, const std::vector<CarriedField>& fields = {}) const;
+
+ private:
+  VolumePusher pusherFor(const Points& moved) const;
+
+  const FrameFitter& fitter_;
+  openvdb::GridPtrVec grids_;
+  FramePushSettings settings_;
+  std::optional<VolumePusher> pusher_;  // none where each frame needs its own
 };
 
 }  // namespace innermap

@@ -84,6 +84,43 @@ TEST_F(Velocity, IsTheLineToOneNeighbour) {
 
 TEST_F(Velocity, NeedsANeighbour) { EXPECT_THROW(velocityAt({&here, 2}, {}, {}, 24), DataError); }
 
+// Frames 1 to 5 at times of a quarter of that, the third of them broken.
+class Fits : public testing::Test {
+ protected:
+  const Mesh rest = ball(2);
+  const FrameFitter fitter{makeSourceBoundary(rest), few()};
+  std::vector<std::size_t> made;
+  FrameFits fits{{1, 2, 3, 4, 5}, [this](std::size_t index) {
+                   made.push_back(index);
+                   if (index == 2) throw FileError("frame.3.obj", "cannot be read");
+                   return fitter.fit(frame(rest, 0.25 * static_cast<double>(index + 1)));
+                 }};
+};
+
+TEST_F(Fits, AreMadeOnceWhileVelocitiesNeedThem) {
+  for (const std::size_t index : {0, 1}) {
+    fits.at(index);
+    fits.velocity(index, 24);
+  }
+  EXPECT_EQ(made, (std::vector<std::size_t>{0, 1, 2, 3}));
+  EXPECT_THROW(fits.at(2), FileError);
+}
+
+// Frames 2 and 4, as 3 is broken: two thirds of a second about frame 3 at three frames a second.
+TEST_F(Fits, VelocitiesPassOverBrokenFrames) {
+  const HarmonicField field = fits.velocity(3, 3);
+  const auto second = fits.at(1), fourth = fits.at(3), fifth = fits.at(4);
+  const HarmonicField expected =
+      velocityAt({fourth.get(), 4}, NumberedFit{second.get(), 2}, NumberedFit{fifth.get(), 5}, 3);
+  const Vec3 p{0.1, -0.3, 0.2};
+  EXPECT_LT(norm(HarmonicMap(field)(p) - HarmonicMap(expected)(p)), 1e-12);
+}
+
+TEST_F(Fits, OneFrameHasNoVelocity) {
+  FrameFits alone({7}, [this](std::size_t) { return fitter.fit(rest); });
+  EXPECT_THROW(alone.velocity(0, 24), DataError);
+}
+
 TEST(FrameFitter, RefusesFramesOfOtherConnectivityAndFarCharges) {
   const FrameFitter fitter(makeSourceBoundary(ball(2)), few());
   EXPECT_THROW(fitter.fit(ball(3)), DataError);

@@ -200,5 +200,15 @@ TEST(WriteCorrespondence, HasPlacesAndAddresses) {
   EXPECT_EQ(triangle, map.onTarget[0].triangle);
 }
 
+TEST(ReadCorrespondence, KnowsWhatBelongsTogether) {
+  const TemporaryFolder folder;
+  writeCorrespondence(folder.file("on.ply"), plain());
+  const Mesh moved = readCorrespondence(folder.file("on.ply"), kA);
+  EXPECT_EQ(moved.triangles, kA.triangles);
+  EXPECT_NO_THROW(requireOnTarget(moved, kB));
+  EXPECT_THROW(requireOnTarget(moved, kA), DataError);
+  EXPECT_THROW(readCorrespondence(folder.file("on.ply"), blob("finer.obj", 2, 0.8)), DataError);
+}
+
 }  // namespace
 }  // namespace innermap

@@ -7,6 +7,7 @@
 #include "boundary/test_pairs.h"
 #include "innermap/boundary/fit_map.h"
 #include "innermap/core/error.h"
+#include "innermap/levelset/level_set.h"
 
 namespace innermap {
 namespace {
@@ -63,6 +64,55 @@ TEST(MapGrids, CountTheirMemory) {
   EXPECT_GT(mapGridMemory(solid, settings), 10 * coarse);
   settings.maxMemory = 1000;
   EXPECT_THROW(evaluateOnGrid(affineFit(), settings), MemoryError);
+}
+
+// A plate between two layers of voxel centres, wherever the lattice begins: ten would fit between.
+TEST(MapGrids, SolidsThinnerThanTheVoxelsAreRefused) {
+  const Mesh plate = shapes::box({0, 0, 0}, {1, 1, 1e-3});
+  FitMapSettings fitting;
+  fitting.shell = ShellSettings{};
+  fitting.shell->sources = 50;
+  const MapFit fit = fitMap(plate, moved(plate, affineMap), fitting);
+  MapGridSettings settings;
+  settings.voxelSize = 0.1;
+  const Solid& solid = fit.solid();
+  const double layer = transformFor(solid, settings.voxelSize)->worldToIndex({0.5, 0.5, 0}).z();
+  ASSERT_NE(std::floor(layer), layer);
+  EXPECT_THROW(evaluateOnGrid(fit, settings), DataError);
+}
+
+class Frames : public testing::Test {
+ protected:
+  static FrameFitterSettings few() {
+    FrameFitterSettings settings;
+    settings.sources = 300;
+    return settings;
+  }
+  static MapGridSettings coarse() {
+    MapGridSettings settings;
+    settings.resolution = 20;
+    return settings;
+  }
+  const Mesh rest = ball(2);
+  const FrameFitter fitter{makeSourceBoundary(rest), few()};
+  const FrameFit fit = fitter.fit(moved(rest, affineMap));
+};
+
+TEST_F(Frames, AreEvaluatedOnTheGridOfTheirRestPose) {
+  const FrameEvaluator evaluator(fitter, {"jacobian", "surface"}, coarse());
+  const MapGrids values = evaluator.evaluate(fit);
+  const double det = determinant(HarmonicMap(fit.field).jacobian({0, 0, 0}));
+  EXPECT_NEAR(values.jacobianMin, det, 1e-3 * det);
+  const openvdb::GridPtrVec grids = evaluator.grids({&fit, 12}, values);
+  ASSERT_EQ(grids.size(), 2u);
+  EXPECT_EQ(grids[0]->getName(), "jacobian");
+  EXPECT_EQ(grids[1]->getName(), "surface");
+  for (const auto& grid : grids) {
+    EXPECT_EQ(grid->metaValue<std::int64_t>("innermap_frame"), 12);
+    EXPECT_EQ(grid->metaValue<double>("innermap_boundary_error_rms"), fit.error.rms);
+    EXPECT_EQ(grid->metaValue<double>("innermap_jacobian_min"), values.jacobianMin);
+  }
+  EXPECT_THROW(FrameEvaluator(fitter, {"depth"}, coarse()), SettingError);
 }
 
 }  // namespace

@@ -77,7 +77,11 @@ TEST(Report, FurtherKeysGoIntoSections) {
   r.set("new.section.deep", true);
   r.set("new.section.names", std::vector<std::string>{"a", "b"});
   r.set("solve.distance", 0.06);
+  r.set("new.count", std::size_t(7));
+  r.setColumn("new.squares", std::vector<int>{2, 3}, [](int n) { return n * n; });
   const Json j = Json::parse(reportJson(r));
+  EXPECT_EQ(j["new"]["count"], 7);
+  EXPECT_EQ(j["new"]["squares"], Json({4.0, 9.0}));
   EXPECT_EQ(j["solve"]["distance"], 0.06);
   EXPECT_EQ(j["solve"]["sources"], 100);
   EXPECT_EQ(j["new"]["section"]["deep"], true);

@@ -161,6 +161,14 @@ TEST(LevelSet, OneLatticeForSeveralSolids) {
   EXPECT_THROW(makeLevelSet(Solid(shapes::icosphere(2)), settings), SettingError);
 }
 
+TEST(LevelSet, LatticeOfAnother) {
+  const Solid ball(shapes::icosphere(3)), larger(shapes::icosphere(3, 2, {0.3, 7, 0}));
+  const auto own = makeLevelSet(ball, resolution(20));
+  const LevelSetSettings settings = onLatticeOf(ball, resolution(20));
+  EXPECT_EQ(makeLevelSet(ball, settings)->transform(), own->transform());
+  EXPECT_EQ(makeLevelSet(larger, settings)->transform(), own->transform());
+}
+
 TEST(LevelSet, SettingsOutOfRange) {
   const Solid solid(shapes::icosphere(2));
   const auto with = [&](auto change) {

@@ -266,6 +266,57 @@ TEST(Push, WhatLiesAroundComesAlong) {
   EXPECT_GT(corner, 500u);
 }
 
+// A rest pose, and a frame turned and shifted from it.
+class FramePushes : public testing::Test {
+ protected:
+  static FrameFitterSettings few() {
+    FrameFitterSettings settings;
+    settings.sources = 200;
+    return settings;
+  }
+  const HarmonicMap motion = affineMap(rotation(0.4, 0.2), {3, 0, 1});
+  const FrameFitter fitter{makeSourceBoundary(ball()), few()};
+  const FrameFit fit = fitter.fit(moved(ball(), motion));
+  const openvdb::FloatGrid::Ptr grid = sampledScalar(*levelSetOf(fitter.solid(), 24), "s");
+
+  FramePushSettings settings() const {
+    FramePushSettings out;
+    out.output.resolution = 24;
+    return out;
+  }
+};
+
+TEST_F(FramePushes, IsThePushOnTheRestPosesLattice) {
+  const FramePusher pusher(fitter, {grid}, settings());
+  const auto made = pusher.push({&fit, 5});
+  const openvdb::GridBase& out = *made.result.grids[0];
+  EXPECT_EQ(out.metaValue<std::int64_t>("innermap_frame"), 5);
+  EXPECT_DOUBLE_EQ(out.voxelSize()[0], pusher.voxelSize());
+  EXPECT_EQ(out.transform(), levelSetOf(fitter.solid(), 24)->transform());
+  const Solid target(moved(ball(), motion));
+  const auto levelSet = makeLevelSet(target, onLatticeOf(fitter.solid(), settings().output));
+  const PushResult plain =
+      VolumePusher(fitter.solid(), {grid}).push(HarmonicMap(fit.field), *levelSet);
+  EXPECT_EQ(out.activeVoxelCount(), plain.grids[0]->activeVoxelCount());
+}
+
+TEST_F(FramePushes, FadesToEachFramesOwnMotion) {
+  FramePushSettings fading = settings();
+  fading.push.outside.distance = 0.1;
+  fading.fadeToFitted = true;
+  auto around = sampledScalar(*levelSetOf(Solid(shapes::box({-2, -2, -2}, {2, 2, 2})), 40), "s");
+  const auto made = FramePusher(fitter, {around}, fading).push({&fit, 1});
+  const auto& out = static_cast<const openvdb::FloatGrid&>(*made.result.grids[0]);
+  const Mat3 back = inverse(rotation(0.4, 0.2));
+  double error = 0;
+  for (auto v = out.cbeginValueOn(); v; ++v) {
+    const Vec3 p = back * (toVec3(out.transform().indexToWorld(v.getCoord())) - Vec3{3, 0, 1});
+    if (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < 1.9)
+      error = std::max(error, std::abs(*v - smooth(p)));
+  }
+  EXPECT_LT(error, 0.05);
+}
+
 TEST(Push, SaysWhatIsNotThere) {
   const Solid source(ball());
   auto far = sampledScalar(*levelSetOf(source, 16), "far");

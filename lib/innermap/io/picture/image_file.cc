@@ -199,21 +199,6 @@ class Placing {
 
 }  // namespace
 
-ColourSpace parseColourSpace(const std::string& setting, const std::string& text) {
-  if (text == "auto") return ColourSpace::automatic;
-  if (text == "linear") return ColourSpace::linear;
-  if (text == "srgb") return ColourSpace::srgb;
-  throw SettingError(setting, "'" + text + "' is none of auto, linear, srgb");
-}
-
-Wrap parseWrap(const std::string& setting, const std::string& text) {
-  if (text == "repeat") return Wrap::repeat;
-  if (text == "clamp") return Wrap::clamp;
-  if (text == "mirror") return Wrap::mirror;
-  if (text == "black") return Wrap::black;
-  throw SettingError(setting, "'" + text + "' is none of repeat, clamp, mirror, black");
-}
-
 double linearFromSrgb(double v) {
   if (v < 0) return -linearFromSrgb(-v);
   return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);

@@ -13,14 +13,8 @@ namespace innermap {
 // gamma), else integers of 8 bits as sRGB and all others as linear.
 enum class ColourSpace { automatic, linear, srgb };
 
-// "auto", "linear", "srgb"; throws SettingError for other texts.
-ColourSpace parseColourSpace(const std::string& setting, const std::string& text);
-
 // What stands beyond the image: the image again, its border, its mirror image, or nothing (black).
 enum class Wrap { repeat, clamp, mirror, black };
-
-// "repeat", "clamp", "mirror", "black"; throws SettingError for other texts.
-Wrap parseWrap(const std::string& setting, const std::string& text);
 
 // The inverse of sRGB's transfer function (IEC 61966-2-1), continued linearly beyond 1 and oddly
 // below 0.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "innermap/boundary/mesh_correspondence.h"
 #include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 
@@ -39,5 +40,11 @@ struct MeshPictureSettings {
 // when there is nothing to show; Cancelled. The file appears whole or not at all.
 void writeMeshPicture(const std::string& path, const std::vector<PictureSurface>& surfaces,
                       const MeshPictureSettings& settings = {});
+
+// A's coordinates as colours, with a chequered pattern in which stretch shows, on A and on B side
+// by side. B is coloured point by point by where the map comes from, not vertex by vertex. Throws
+// as writeMeshPicture.
+void writeCorrespondencePicture(const std::string& path, const MeshCorrespondence& map,
+                                const MeshPictureSettings& settings = {});
 
 }  // namespace innermap

@@ -17,9 +17,6 @@ namespace innermap {
 // in Houdini and `velocity` otherwise.
 enum class NamingScheme { innermap, blender, houdini };
 
-// "innermap", "blender", "houdini"; throws SettingError for other texts.
-NamingScheme parseNamingScheme(const std::string& setting, const std::string& text);
-
 // The name that the scheme has for one of innermap's own; other names stay.
 std::string gridName(const std::string& own, NamingScheme scheme);
 

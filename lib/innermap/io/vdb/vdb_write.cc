@@ -60,13 +60,6 @@ openvdb::GridCPtrVec named(const std::string& path, const openvdb::GridPtrVec& g
 
 }  // namespace
 
-NamingScheme parseNamingScheme(const std::string& setting, const std::string& text) {
-  if (text == "innermap") return NamingScheme::innermap;
-  if (text == "blender") return NamingScheme::blender;
-  if (text == "houdini") return NamingScheme::houdini;
-  throw SettingError(setting, "'" + text + "' is not one of innermap, blender, houdini");
-}
-
 std::string gridName(const std::string& own, NamingScheme scheme) {
   if (scheme == NamingScheme::blender && own == "Cd") return "color";
   if (scheme == NamingScheme::houdini && own == "velocity") return "v";

@@ -198,8 +198,6 @@ TEST(ImageFile, MemoryAndCancelling) {
   settings = {};
   settings.progress = &progress;
   EXPECT_THROW(readImage(folder.file("a.png"), settings), Cancelled);
-  EXPECT_EQ(parseColourSpace("--colour-space", "srgb"), ColourSpace::srgb);
-  EXPECT_THROW(parseColourSpace("--colour-space", "aces"), SettingError);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "innermap/core/parallel.h"
 #include "innermap/io/picture/image_file.h"
 #include "io/test_files.h"
+#include "mesh/shapes.h"
 
 namespace innermap {
 namespace {
@@ -125,6 +126,30 @@ TEST(MeshPicture, RefusesWhatCannotBeShown) {
   EXPECT_THROW(writeMeshPicture(path, {square()}, settings), Cancelled);
   EXPECT_FALSE(std::filesystem::exists(path));
   EXPECT_THROW(writeMeshPicture("/nowhere/a.png", {square()}, frontal()), FileError);
+}
+
+// Corresponding points have one colour: a ball on itself looks alike on both sides.
+TEST(CorrespondencePicture, ShowsPlacesByColour) {
+  Mesh ball = shapes::icosphere(2);
+  for (Vec3& p : ball.vertices) p = {1.3 * p.x, p.y * (1 + 0.3 * p.x), 0.8 * p.z};
+  ball.name = "ball.obj";
+  MeshCorrespondenceSettings aligned;
+  aligned.aligned = true;
+  aligned.candidates = 1;
+  const MeshCorrespondence map = correspondMeshes(ball, ball, aligned);
+  const test::TemporaryFolder folder;
+  writeCorrespondencePicture(folder.file("a.png"), map, frontal(200));
+  const Pixels p = readImage(folder.file("a.png")).pixels;
+  const int half = (p.width - 24) / 2;  // one margin before, one between, one after
+  double difference = 0;
+  int compared = 0, coloured = 0;
+  for (int y = p.height / 3; y < 2 * p.height / 3; ++y)
+    for (int x = half / 3; x < 2 * half / 3; ++x, ++compared) {
+      difference += norm(pixel(p, x, y) - pixel(p, x + half, y));
+      coloured += norm(pixel(p, x, y) - pixel(p, half / 2, y)) > 0.02;
+    }
+  EXPECT_GT(coloured, compared / 2);
+  EXPECT_LT(difference / compared, 0.02);
 }
 
 }  // namespace

@@ -169,8 +169,6 @@ TEST(VdbFileNames, RenamesForBlenderAndLeavesTheGridsAlone) {
   EXPECT_EQ(gridName("Cd", NamingScheme::houdini), "Cd");
   EXPECT_EQ(gridName("velocity", NamingScheme::houdini), "v");
   EXPECT_EQ(gridName("velocity", NamingScheme::blender), "velocity");
-  EXPECT_EQ(parseNamingScheme("--names", "houdini"), NamingScheme::houdini);
-  EXPECT_THROW(parseNamingScheme("--names", "maya"), SettingError);
 }
 
 TEST(VdbFileNames, RefusesNamesThatProgramsConfuse) {

@@ -64,8 +64,6 @@ TEST(Image, WrapsAsAsked) {
   EXPECT_NEAR(corner(Wrap::repeat, 0, top), 0.5, 1e-6);
   EXPECT_NEAR(corner(Wrap::clamp, 0, top), 1, 1e-6);
   EXPECT_NEAR(corner(Wrap::black, 0, top), 0.5, 1e-6);
-  EXPECT_EQ(parseWrap("--wrap", "mirror"), Wrap::mirror);
-  EXPECT_THROW(parseWrap("--wrap", "tile"), SettingError);
 }
 
 // The mean does not change, whatever the size: each halving is weighted by area.

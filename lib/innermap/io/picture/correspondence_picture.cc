@@ -1,12 +1,11 @@
-#include "correspondence_picture.h"
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
+#include "innermap/boundary/mesh_correspondence.h"
 #include "innermap/io/picture/mesh_picture.h"
 
-namespace innermap::tool {
+namespace innermap {
 namespace {
 
 constexpr double kCells = 14;  // of the pattern, along the longest side of A's box
@@ -51,11 +50,11 @@ PictureSurface surfaceOf(const LaidOutMesh& input) {
 }  // namespace
 
 void writeCorrespondencePicture(const std::string& path, const MeshCorrespondence& map,
-                                Context& context) {
+                                const MeshPictureSettings& settings) {
   const Mesh& meshA = map.a.shells().mesh;
   const Box3 box = boundingBox(meshA);
   SurfaceImageSettings back;
-  back.progress = context.progress();
+  back.progress = settings.progress;
   std::vector<PictureSurface> surfaces{surfaceOf(map.a), surfaceOf(map.b)};
   surfaces[0].colours = [&](const std::vector<VisiblePoint>& seen) {
     return coloursOf(interpolate(meshA.vertices, meshA.triangles, addresses(seen)), box);
@@ -63,9 +62,7 @@ void writeCorrespondencePicture(const std::string& path, const MeshCorrespondenc
   surfaces[1].colours = [&](const std::vector<VisiblePoint>& seen) {
     return coloursOf(preimagesOf(addresses(seen), map.map, map.b.shells(), back), box);
   };
-  MeshPictureSettings settings;
-  settings.progress = context.progress();
-  context.timed("picture", [&] { writeMeshPicture(path, surfaces, settings); });
+  writeMeshPicture(path, surfaces, settings);
 }
 
-}  // namespace innermap::tool
+}  // namespace innermap

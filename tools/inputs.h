@@ -1,0 +1,28 @@
+// The files that commands read, timed as "read".
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <string>
+#include <vector>
+
+#include "context.h"
+#include "innermap/boundary/mapped_solid.h"
+#include "innermap/mesh/mesh.h"
+
+namespace innermap::tool {
+
+// Throws as innermap::readMesh does.
+Mesh readMeshFile(const std::string& path, Context& context);
+
+// The grids of these names, or all. Throws as innermap::readVdb does.
+openvdb::GridPtrVec readGridFile(const std::string& path, const std::vector<std::string>& names,
+                                 Context& context);
+
+// A map; what is known of its boundaries is told and goes into the report.
+MappedSolid readMapFile(const std::string& path, Context& context);
+
+// The solid that the map's target bounds.
+Solid targetSolid(const MappedSolid& mapped, Context& context);
+
+}  // namespace innermap::tool

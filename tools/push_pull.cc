@@ -1,0 +1,125 @@
+// `innermap push` and `innermap pull`: grids carried through a map, and back.
+#include <fmt/format.h>
+
+#include "commands.h"
+#include "inputs.h"
+#include "transfer_options.h"
+
+namespace innermap::tool {
+namespace {
+
+enum class Way { push, pull };
+
+struct CarryOptions {
+  std::string map, volume, output;
+  TransferOptions transfer;
+};
+
+// What both read.
+struct Job {
+  MappedSolid mapped;
+  Solid target;
+  OutsideSettings outside;
+  openvdb::GridPtrVec grids;
+};
+
+Job read(const CarryOptions& options, Context& context) {
+  MappedSolid mapped = readMapFile(options.map, context);
+  OutsideSettings outside = outsideSettings(
+      options.transfer, mapped.solid().repaired().mesh.vertices, mapped.boundary.target.moved);
+  openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
+  Solid target = targetSolid(mapped, context);
+  return {std::move(mapped), std::move(target), std::move(outside), std::move(grids)};
+}
+
+openvdb::GridPtrVec push(const Job& job, const TransferOptions& options, Context& context) {
+  auto settings = context.settings<PushSettings>();
+  settings.carry = carrySettings(options);
+  settings.outside = job.outside;
+  settings.accuracy = sumAccuracy(job.mapped);
+  const openvdb::FloatGrid::Ptr levelSet = outputLevelSet(job.target, job.grids, options, context);
+  const PushResult result = context.timed("push", [&] {
+    return VolumePusher(job.mapped.solid(), job.grids, settings).push(job.mapped.map, *levelSet);
+  });
+  reportPush(result, context);
+  context.print(pushText(result));
+  return result.grids;
+}
+
+openvdb::GridPtrVec pull(const Job& job, const TransferOptions& options, Context& context) {
+  auto settings = context.settings<PullSettings>();
+  settings.carry = carrySettings(options);
+  settings.outside = job.outside;
+  settings.accuracy = sumAccuracy(job.mapped);
+  const TransferOptions plain;  // the target's level set is none of the output's
+  const openvdb::FloatGrid::Ptr target = outputLevelSet(job.target, job.grids, plain, context);
+  settings.targetLevelSet = target.get();
+  const Solid& source = job.mapped.solid();
+  const openvdb::FloatGrid::Ptr levelSet = outputLevelSet(source, job.grids, options, context);
+  const PullResult result = context.timed(
+      "pull", [&] { return pullGrids(job.mapped.map, source, *levelSet, job.grids, settings); });
+  for (const std::string& warning : result.warnings) context.warning(warning);
+  context.report().set("pull.voxels", result.voxels);
+  context.print(fmt::format("pulled {} grids, {} voxels\n", result.grids.size(), result.voxels));
+  return result.grids;
+}
+
+void run(Way way, const CarryOptions& options, Context& context) {
+  context.output(options.output);
+  const Job job = read(options, context);
+  const Solid& solid = way == Way::push ? job.target : job.mapped.solid();
+  if (context.dryRun())
+    return context.plan({fmt::format("{} {} grids of {} by {}", way == Way::push ? "push" : "pull",
+                                     job.grids.size(), options.volume, options.map),
+                         "write " + options.output},
+                        transferMemory(solid, job.grids, options.transfer, context));
+  requireTransferMemory(solid, job.grids, options.transfer, context);
+  const openvdb::GridPtrVec grids =
+      (way == Way::push ? push : pull)(job, options.transfer, context);
+  describeMap(grids, job.mapped);
+  writeGridFile(options.output, grids, options.transfer.names, context);
+}
+
+// inputSpace: where the grids live.
+Command makeCarryCommand(Way way, const std::string& name, const std::string& summary,
+                         const std::string& inputSpace) {
+  auto o = std::make_shared<CarryOptions>();
+  Command c(name, summary);
+  c.positional("MAP", &o->map, "a map.ply written by fit or map");
+  c.positional("VOLUME", &o->volume,
+               "the grids, a .vdb file in the " + inputSpace + "'s world space");
+  c.option("--output", "FILE", &o->output, "the .vdb file to write").shortName("-o").required();
+  addTransferOptions(c, o->transfer);
+  c.run([o, way](Context& context) { run(way, *o, context); });
+  return c;
+}
+
+}  // namespace
+
+Command makePushCommand() {
+  Command c = makeCarryCommand(
+      Way::push, "push", "Carry grids that live in a map's source solid to its target", "source");
+  c.description(
+      "For each voxel of the target the point of the source that the map brings there is found, by "
+      "Newton's method, and the grids are sampled at it. Scalars keep their values, or with "
+      "--density their mass; vectors move by their vector type (invariant, covariant, "
+      "contravariant); level sets become distances again. Output voxels are active inside the "
+      "target and in a skin of two voxels.");
+  c.example("innermap push map.ply smoke.vdb -o posed.vdb --grids density --density");
+  c.example("innermap push map.ply fem.vdb -o posed.vdb --stress stress --resolution 256");
+  c.example("innermap push map.ply mist.vdb -o posed.vdb --outside 0.1 --fade-to fitted");
+  return c;
+}
+
+Command makePullCommand() {
+  Command c = makeCarryCommand(Way::pull, "pull",
+                               "Bring grids that live in a map's target back to its source solid",
+                               "target");
+  c.description(
+      "Each voxel p of the source gets the grids' values at f(p), where the map brings it. "
+      "Everything else is as with push, the other way round.");
+  c.example("innermap pull map.ply posed.vdb -o rest.vdb");
+  return c;
+}
+
+}  // namespace innermap::tool

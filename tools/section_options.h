@@ -1,0 +1,26 @@
+// Where the pictures that `map` and `transfer-distance` draw cut the solid.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <optional>
+#include <string>
+
+#include "command.h"
+#include "innermap/io/picture/section_image.h"
+#include "innermap/levelset/solid.h"
+
+namespace innermap::tool {
+
+struct SectionOptions {
+  std::optional<int> axis;  // without: where the solid is thinnest
+  std::optional<double> at;
+};
+
+void addSectionOptions(Command& command, SectionOptions& options);
+
+// density: fog of the solid's inside.
+SectionSettings sectionSettings(const SectionOptions& options, const Solid& solid,
+                                const openvdb::FloatGrid& density, const Context& context);
+
+}  // namespace innermap::tool
