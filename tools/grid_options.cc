@@ -17,7 +17,7 @@ void addGridOptions(Command& c, GridOptions& o, const std::string& of,
   c.option("--resolution", "N", &o.resolution, "voxels along the longest side of " + of)
       .range(kLeast, kMost)
       .defaults(defaults);
-  c.option("--voxel-size", "L", &o.voxelSize, "edge of a voxel, in place of --resolution")
+  c.option("--voxel-size", "LENGTH", &o.voxelSize, "edge of a voxel, in place of --resolution")
       .unit("world units")
       .above(0)
       .defaults("by --resolution");

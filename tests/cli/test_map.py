@@ -208,7 +208,7 @@ def test_thinner_than_a_voxel():
     vertices, faces = icosphere_arrays(3)
     write_obj("plate.obj", [(x, y, 0.002 * z) for x, y, z in vertices], faces)
     fails(1, "map", "plate.obj", "plate.obj", "-o", "out", "--resolution", "32",
-          says=["plate.obj", "--resolution"])
+          says=["plate.obj", "higher resolution"])
 
 
 def test_full_disk_leaves_nothing():

@@ -291,7 +291,7 @@ TEST_F(FramePushes, IsThePushOnTheRestPosesLattice) {
   const auto made = pusher.push({&fit, 5});
   const openvdb::GridBase& out = *made.result.grids[0];
   EXPECT_EQ(out.metaValue<std::int64_t>("innermap_frame"), 5);
-  EXPECT_DOUBLE_EQ(out.voxelSize()[0], pusher.voxelSize());
+  EXPECT_NEAR(out.voxelSize()[0], pusher.voxelSize(), 1e-12);
   EXPECT_EQ(out.transform(), levelSetOf(fitter.solid(), 24)->transform());
   const Solid target(moved(ball(), motion));
   const auto levelSet = makeLevelSet(target, onLatticeOf(fitter.solid(), settings().output));
