@@ -54,7 +54,7 @@ void mapInfo(const InfoOptions& options, Context& context) {
       "{}: harmonic field, {} channel{}, {} charges, boundary of {} vertices and {} triangles\n",
       options.file, file.field.channels(), file.field.channels() == 1 ? "" : "s",
       file.field.sources().size(), file.boundary.size(), file.boundaryTriangles.size());
-  for (const auto& [key, value] : file.settings) text += fmt::format("    {}: {}\n", key, value);
+  for (const auto& [key, value] : file.facts) text += fmt::format("    {}: {}\n", key, value);
   context.print(text);
 }
 

@@ -203,25 +203,25 @@ class MapFitter {
 
 std::string number(double x) { return fmt::format("{:.9g}", x); }
 
-Settings factsOf(const BoundaryPair& pair, const Outcome& out, std::uint64_t seed) {
+Facts factsOf(const BoundaryPair& pair, const Outcome& out, std::uint64_t seed) {
   const auto oneLine = [](std::string text) {
     std::replace_if(
         text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, '_');
     return text;
   };
-  Settings facts{{"version", versionText()},
-                 {"source", oneLine(pair.source.mesh.name)},
-                 {"target", oneLine(pair.targetMesh.name)},
-                 {"method", out.solve.method},
-                 {"interpolation", out.smooth ? "smooth" : "linear"},
-                 {"seed", std::to_string(seed)},
-                 {"regularization", number(out.solve.regularization)},
-                 {"rank", std::to_string(out.solve.rank)},
-                 {"boundary_error_rms", number(out.error.rms)},
-                 {"boundary_error_p99", number(out.error.p99)},
-                 {"boundary_error_max", number(out.error.max)},
-                 {"boundary_error_samples", std::to_string(out.error.samples)},
-                 {"c_error", number(out.collocationError)}};
+  Facts facts{{"version", versionText()},
+              {"source", oneLine(pair.source.mesh.name)},
+              {"target", oneLine(pair.targetMesh.name)},
+              {"method", out.solve.method},
+              {"interpolation", out.smooth ? "smooth" : "linear"},
+              {"seed", std::to_string(seed)},
+              {"regularization", number(out.solve.regularization)},
+              {"rank", std::to_string(out.solve.rank)},
+              {"boundary_error_rms", number(out.error.rms)},
+              {"boundary_error_p99", number(out.error.p99)},
+              {"boundary_error_max", number(out.error.max)},
+              {"boundary_error_samples", std::to_string(out.error.samples)},
+              {"c_error", number(out.collocationError)}};
   if (out.solve.radiusRatio > 0)
     facts.emplace_back("radius_ratio", number(out.solve.radiusRatio));
   else
@@ -285,7 +285,7 @@ MapFit fitMap(BoundaryPair boundary, const FitMapSettings& settings) {
   MapFitter fitter(boundary, settings);
   Outcome out =
       settings.shell ? fitter.onShell(*settings.shell) : fitter.within(settings.tolerance);
-  Settings facts = factsOf(boundary, out, settings.seed);
+  Facts facts = factsOf(boundary, out, settings.seed);
   MapFit fit{{HarmonicMap(std::move(out.field)), std::move(boundary), std::move(facts)},
              out.error,
              out.collocationError,

@@ -33,7 +33,7 @@ MappedSolid readMap(const std::string& path, const BoundarySettings& settings) {
   source.triangles = std::move(file.boundaryTriangles);
   Mesh target = source;
   target.vertices = std::move(file.boundaryTarget);
-  for (const auto& [key, value] : file.settings) {
+  for (const auto& [key, value] : file.facts) {
     if (key == "source") source.name = value;
     if (key == "target") target.name = value;
   }
@@ -42,7 +42,7 @@ MappedSolid readMap(const std::string& path, const BoundarySettings& settings) {
   BoundaryPair pair = makeBoundaryPair(std::move(source), std::move(target), settings);
   addSeconds(seconds, pair.seconds);
   pair.seconds = std::move(seconds);
-  return {HarmonicMap(std::move(file.field)), std::move(pair), std::move(file.settings)};
+  return {HarmonicMap(std::move(file.field)), std::move(pair), std::move(file.facts)};
 }
 
 double sumAccuracy(const MappedSolid& mapped) {

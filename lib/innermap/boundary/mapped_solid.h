@@ -17,7 +17,7 @@ struct MappedSolid {
   // interpolation, seed, regularization, rank, boundary_error_rms, boundary_error_p99,
   // boundary_error_max, boundary_error_samples, c_error, and distance, radius_ratio, tolerance,
   // tolerance_reached, tolerance_met where they apply.
-  Settings facts;
+  Facts facts;
 
   const Solid& solid() const { return boundary.solid(); }
 };

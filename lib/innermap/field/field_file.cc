@@ -33,7 +33,7 @@ void writeHeader(std::ostream& out, const FieldFile& file) {
                      affine.center.y, affine.center.z);
   for (std::size_t k = 0; k < file.field.channels(); ++k)
     out << "comment affine_" << k << ' ' << coefficients(affine, k) << '\n';
-  for (const auto& [key, value] : file.settings) out << "comment " << key << ' ' << value << '\n';
+  for (const auto& [key, value] : file.facts) out << "comment " << key << ' ' << value << '\n';
   out << "element vertex " << file.field.sources().size()
       << "\nproperty double x\nproperty double y\nproperty double z\n";
   for (std::size_t k = 0; k < file.field.channels(); ++k) out << "property double w" << k << '\n';
@@ -48,8 +48,8 @@ void put(std::ostream& out, const void* data, std::size_t size) {
   out.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
 }
 
-void checkSettings(const Settings& settings) {
-  for (const auto& [key, value] : settings)
+void checkFacts(const Facts& facts) {
+  for (const auto& [key, value] : facts)
     if (key.empty() ||
         key.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos ||
         value.find_first_of("\r\n") != std::string::npos)
@@ -59,7 +59,7 @@ void checkSettings(const Settings& settings) {
 struct Header {
   Affine affine;
   std::vector<std::array<double, 4>> affineRows;
-  Settings settings;
+  Facts facts;
   std::uint64_t sources = 0, vertices = 0, faces = 0;
   std::size_t channels = 0;
 };
@@ -133,7 +133,7 @@ class HeaderReader {
       if (header_.affineRows.size() >= kMostChannels) fail("has too many channels");
       header_.affineRows.push_back(row);
     } else {
-      header_.settings.emplace_back(key, value);
+      header_.facts.emplace_back(key, value);
     }
   }
 
@@ -174,7 +174,7 @@ void readBoundary(const HeaderReader& reader, std::istream& in, const Header& he
 }  // namespace
 
 void writeField(const std::string& path, const FieldFile& file) {
-  checkSettings(file.settings);
+  checkFacts(file.facts);
   if (file.boundary.size() != file.boundaryTarget.size())
     throw DataError("field file: boundary and target have different numbers of vertices");
   writeWholeFile(path, [&](std::ostream& out) {
@@ -234,7 +234,7 @@ FieldFile readField(const std::string& path) {
     for (std::size_t r = 0; r < 4; ++r) affine.coefficients(r, k) = header.affineRows[k][r];
   try {
     FieldFile out{HarmonicField(std::move(sources), std::move(weights), std::move(affine)),
-                  header.settings,
+                  header.facts,
                   {},
                   {},
                   {}};

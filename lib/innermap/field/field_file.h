@@ -20,11 +20,11 @@
 
 namespace innermap {
 
-using Settings = std::vector<std::pair<std::string, std::string>>;
+using Facts = std::vector<std::pair<std::string, std::string>>;
 
 struct FieldFile {
   HarmonicField field;
-  Settings settings;                // keys of [a-z0-9_]; values without line breaks
+  Facts facts;                      // keys of [a-z0-9_]; values without line breaks
   Points boundary, boundaryTarget;  // same size, or both empty
   std::vector<std::array<int, 3>> boundaryTriangles;
 };

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "innermap/core/error.h"
+#include "innermap/core/stage_seconds.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/surface/detail/handles/cut_alike.h"
 #include "innermap/surface/detail/handles/glued_map.h"
@@ -17,10 +17,6 @@
 
 namespace innermap {
 namespace {
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // A landmark by shells.
 struct ShellLandmark {
@@ -115,19 +111,21 @@ struct EmbeddedSurface::Implementation {
 };
 
 EmbeddedSurface::EmbeddedSurface(const Mesh& mesh, const EmbeddingSettings& settings) {
-  const double start = now();
   auto out = std::make_shared<Implementation>();
-  ClosedSurfaceSettings closing;
-  closing.closeHoles = settings.closeHoles;
-  closing.progress = settings.progress;
-  out->surfaces = closedSurfaces(mesh, closing);
-  for (const ClosedSurface& s : out->surfaces.shells) {
-    out->laidOut.push_back(s.genus > 1 ? nullptr
-                                       : std::make_unique<LaidOutShell>(s, settings.progress));
-    out->handles.push_back(
-        s.genus > 1 ? std::make_unique<HandleLoops>(handleLoops(s, settings.progress)) : nullptr);
-  }
-  out->seconds = now() - start;
+  StageSeconds seconds;
+  timed(seconds, "layout", [&] {
+    ClosedSurfaceSettings closing;
+    closing.closeHoles = settings.closeHoles;
+    closing.progress = settings.progress;
+    out->surfaces = closedSurfaces(mesh, closing);
+    for (const ClosedSurface& s : out->surfaces.shells) {
+      out->laidOut.push_back(s.genus > 1 ? nullptr
+                                         : std::make_unique<LaidOutShell>(s, settings.progress));
+      out->handles.push_back(
+          s.genus > 1 ? std::make_unique<HandleLoops>(handleLoops(s, settings.progress)) : nullptr);
+    }
+  });
+  out->seconds = seconds.front().second;
   implementation_ = std::move(out);
 }
 
@@ -191,11 +189,11 @@ class Corresponder {
             "landmarks: number {} connects shells that cannot be mapped onto one another together "
             "with the others; see innermap check for the shells",
             i + 1));
-    const double start = now();
     std::vector<MappedShell> mapped;
-    for (int s = 0; s < static_cast<int>(a_.shells.size()); ++s)
-      mapped.push_back(mapOne(s, target[s]));
-    out_.seconds.push_back({"map", now() - start});
+    timed(out_.seconds, "map", [&] {
+      for (int s = 0; s < static_cast<int>(a_.shells.size()); ++s)
+        mapped.push_back(mapOne(s, target[s]));
+    });
     assemble(mapped);
     return std::move(out_);
   }
@@ -267,20 +265,19 @@ class Corresponder {
                            "are");
       return;
     }
-    const double start = now();
     SubdivideSettings how;
     how.tolerance = settings_.subdivide;
     how.progress = settings_.progress;
     ShellCorrespondence& map = shell.map;
-    const Subdivided done =
-        subdivide({map.source, map.surface, map.image, map.targetSurface, map.targetLayout},
-                  laidOutB_[map.target]->metric, split_, how);
+    const Subdivided done = timed(out_.seconds, "subdivide", [&] {
+      return subdivide({map.source, map.surface, map.image, map.targetSurface, map.targetLayout},
+                       laidOutB_[map.target]->metric, split_, how);
+    });
     if (!done.enough)
       out_.notes.push_back(fmt::format(
           "splitting stopped at {} triangles, before the target was followed within {:g} of its "
           "diagonal",
           shell.map.surface.triangles.size(), settings_.subdivide));
-    out_.seconds.push_back({"subdivide", now() - start});
   }
 
   void assemble(std::vector<MappedShell>& mapped) {

@@ -56,7 +56,7 @@ TEST_F(FieldFileTest, ReadsBackTheSameBits) {
                      b = after.field.evaluate(points, withGradients());
   EXPECT_EQ(0, std::memcmp(a.values.data(), b.values.data(), 600 * sizeof(double)));
   EXPECT_EQ(0, std::memcmp(a.gradients.data(), b.gradients.data(), 1800 * sizeof(double)));
-  EXPECT_EQ(after.settings, before.settings);
+  EXPECT_EQ(after.facts, before.facts);
   EXPECT_EQ(after.boundaryTriangles, before.boundaryTriangles);
   EXPECT_EQ(after.boundary[4].z, before.boundary[4].z);
   EXPECT_EQ(after.boundaryTarget[0].x, before.boundaryTarget[0].x);
@@ -109,7 +109,7 @@ TEST_F(FieldFileTest, CorruptBytesNeverCrash) {
 TEST_F(FieldFileTest, MissingFolderAndBadSettingsAreRefused) {
   EXPECT_THROW(writeField((folder_ / "no" / "map.ply").string(), sample()), FileError);
   FieldFile bad = sample();
-  bad.settings.emplace_back("x", "two\nlines");
+  bad.facts.emplace_back("x", "two\nlines");
   EXPECT_THROW(writeField(path_, bad), DataError);
   EXPECT_FALSE(std::filesystem::exists(path_));
   EXPECT_THROW(readField(path_), FileError);
