@@ -9,7 +9,10 @@ function(innermap_own_target target)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
   if(INNERMAP_SANITIZE)
-    target_compile_options(${target} PRIVATE -fsanitize=${INNERMAP_SANITIZE} -fno-omit-frame-pointer)
+    # A finding of the undefined-behaviour sanitizer traps; the address sanitizer says where
+    # (ASAN_OPTIONS=handle_sigill=1). Code that words each finding takes twice as long to compile.
+    target_compile_options(${target} PRIVATE -fsanitize=${INNERMAP_SANITIZE}
+      -fsanitize-undefined-trap-on-error -fno-omit-frame-pointer)
     target_link_options(${target} PRIVATE -fsanitize=${INNERMAP_SANITIZE})
   endif()
 endfunction()

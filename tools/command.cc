@@ -118,7 +118,7 @@ OptionBuilder Command::positional(const std::string& name, Target target, const 
   o.placeholder = name;
   o.help = help;
   o.required = true;
-  o.target = target;
+  o.target = std::move(target);
   options_.push_back(std::move(o));
   return {options_, options_.size() - 1};
 }
@@ -129,7 +129,7 @@ OptionBuilder Command::option(const std::string& name, const std::string& placeh
   o.name = name;
   o.placeholder = placeholder;
   o.help = help;
-  o.target = target;
+  o.target = std::move(target);
   addOption(options_, std::move(o));
   return {options_, options_.size() - 1};
 }
