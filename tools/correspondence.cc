@@ -44,6 +44,21 @@ void reportMap(const MeshCorrespondence& map, Report& report) {
   set("target_isosurface", map.b.standIn);
 }
 
+// First maps of the shells that the inside chose between, best first.
+void reportConsidered(const MeshCorrespondence& map, Report& report) {
+  std::vector<std::string> origins;
+  std::vector<ConsideredMap> all;
+  for (const ShellCorrespondence& shell : map.map.shells)
+    for (const ConsideredMap& m : shell.considered) {
+      origins.push_back(m.origin);
+      all.push_back(m);
+    }
+  if (all.empty()) return;
+  report.set("correspondence.considered.origin", origins);
+  report.setColumn("correspondence.considered.energy", all, [](auto& m) { return m.energy; });
+  report.setColumn("correspondence.considered.score", all, [](auto& m) { return m.score; });
+}
+
 std::string qualityText(const MapQuality& q, ModelSpace space, bool standIn) {
   return fmt::format(
       "on the {}: {} flip{}, degree {:.9f}\n"
@@ -76,7 +91,8 @@ void addCorrespondOptions(Command& c, CorrespondOptions& o) {
   c.flag("--aligned", &o.map.aligned,
          "the two stand in the same pose and orientation: prefer agreeing normals and places");
   c.option("--candidates", "N", &o.map.candidates,
-           "ways to lay A on B that are refined; the one of least energy is taken")
+           "ways to lay A on B that are refined: those whose coarse harmonic maps of the inside "
+           "stretch and fold it least; of them the one that does so least is taken")
       .range(1, 64);
   c.flag("--no-refine", &o.noRefine, "only the best way to lay A on B, not refined: fast, rough");
   c.option("--subdivide", "T", &o.map.subdivide,
@@ -132,6 +148,7 @@ MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const CorrespondOptions& opt
   MeshCorrespondence map = innermap::correspondMeshes(std::move(laidA), std::move(laidB), settings);
   context.tell(map);
   reportMap(map, context.report());
+  reportConsidered(map, context.report());
   context.print(
       qualityText(map.quality, map.map.shells.front().image.space, map.a.standIn || map.b.standIn));
   return map;

@@ -56,7 +56,7 @@ void addFittingOptions(Command& command, FittingOptions& o) {
               "charges are placed where the error is until 99% of the boundary lies within T; not "
               "with the options that place a number of them")
       .unit("fraction of the target's diagonal; from 1e-12 to 1")
-      .defaults("0.001");
+      .defaults("0.001; 0.002 where one mesh is laid onto the other first");
   command.flag("--best-effort", &o.bestEffort,
                "exit code 0 also when the tolerance cannot be met; files are written either way");
   command.option("--max-sources", "N", &o.fit.maxSources, "charges that --tolerance may take")
@@ -103,6 +103,15 @@ void addFittingOptions(Command& command, FittingOptions& o) {
                   {"smooth", Interpolation::smooth}},
                  "what the target is between vertices: linear, as its triangles; smooth, when "
                  "vertices sample a smooth deformation; auto: by the error at held-out vertices");
+  command.choice(
+      "--one-to-one", "WHEN", &o.fit.oneToOne,
+      {{"auto", OneToOne::automatic}, {"on", OneToOne::on}, {"off", OneToOne::off}},
+      fmt::format("go in steps through intermediate shapes where one harmonic map folds; "
+                  "auto: where it folds over {:g}% of the inside or takes over {:g}% of "
+                  "it out of the target; on: until nothing that is checked folds, else "
+                  "exit code 1; off: one harmonic map",
+                  100 * kManyFolds, 100 * kManyOutside));
+  command.option("--max-steps", "N", &o.fit.maxSteps, "steps at most").range(1, 256);
   command.choice("--method", "NAME", &o.shell.method,
                  {{"tikhonov", Regularization::tikhonov}, {"tsvd", Regularization::truncatedSvd}},
                  "regularisation: Tikhonov's, or truncation of singular values (the paper's)");

@@ -50,10 +50,13 @@ void meshInfo(const InfoOptions& options, Context& context) {
 
 void mapInfo(const InfoOptions& options, Context& context) {
   const FieldFile file = readField(options.file);
+  std::size_t sources = 0;
+  for (const HarmonicField& step : file.steps) sources += step.sources().size();
+  const std::size_t channels = file.steps.front().channels(), steps = file.steps.size();
   std::string text = fmt::format(
-      "{}: harmonic field, {} channel{}, {} charges, boundary of {} vertices and {} triangles\n",
-      options.file, file.field.channels(), file.field.channels() == 1 ? "" : "s",
-      file.field.sources().size(), file.boundary.size(), file.boundaryTriangles.size());
+      "{}: {}, {} channel{}, {} charges, boundary of {} vertices and {} triangles\n", options.file,
+      steps == 1 ? "harmonic field" : fmt::format("map in {} harmonic steps", steps), channels,
+      channels == 1 ? "" : "s", sources, file.boundary.size(), file.boundaryTriangles.size());
   for (const auto& [key, value] : file.facts) text += fmt::format("    {}: {}\n", key, value);
   context.print(text);
 }

@@ -18,7 +18,9 @@
 namespace innermap::tool {
 namespace {
 
-constexpr double kSubdivide = 0.005;  // of the target's diagonal
+// Fractions of the target's diagonal.
+constexpr double kSubdivide = 0.005;
+constexpr double kStrangers = 2e-3;  // the tolerance between solids that were never related
 
 struct MapOptions {
   std::string source, target, output, correspondence;
@@ -82,12 +84,19 @@ std::string correspondPlan(const MapOptions& options, const Meshes& meshes,
                         correspondSettings(options.correspond, context)));
 }
 
+// Surfaces that were laid on one another follow each other within some thousandths anyway.
+FittingOptions fittingFor(const MapOptions& options, const Meshes& meshes) {
+  FittingOptions out = options.fitting;
+  if (!meshes.related || !options.correspondence.empty()) out.fit.tolerance = kStrangers;
+  return out;
+}
+
 void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
   const SourceBoundary source =
       makeSourceBoundary(meshes.source, context.settings<BoundarySettings>());
   reportSource(source, context);
   const std::size_t vertices = meshes.source.vertices.size();
-  const FitMapSettings fitting = fitMapSettings(options.fitting, vertices, context);
+  const FitMapSettings fitting = fitMapSettings(fittingFor(options, meshes), vertices, context);
   std::vector<std::string> lines;
   std::uint64_t need =
       std::max(fitMapMemory(fitting),
@@ -133,12 +142,13 @@ void run(const MapOptions& options, Context& context) {
   checkFittingOptions(options.fitting);
   Meshes meshes = readMeshes(options, context);
   if (context.dryRun()) return plan(options, meshes, context);
+  const FittingOptions fitOptions = fittingFor(options, meshes);
   PendingFolder folder = context.outputFolder(options.output);
   context.notePictures();
   BoundaryPair pair = makePair(options, std::move(meshes), folder, context);
   reportBoundaries(pair, context);
   const FitMapSettings fitting =
-      fitMapSettings(options.fitting, pair.source.mesh.vertices.size(), context);
+      fitMapSettings(fitOptions, pair.source.mesh.vertices.size(), context);
   requireFittingMemory(fitting);
   requireEvaluationMemory(pair.solid(), options.evaluation.grid, context);
   const MapFit fit = fitMap(std::move(pair), fitting);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace innermap::tool {
 namespace {
 
@@ -40,7 +42,7 @@ void reportSolve(const MapSolve& solve, Report& report) {
   report.set("solve.placement", solve.placement);
   if (solve.radiusRatio > 0)
     report.set("solve.radius_ratio", solve.radiusRatio);
-  else
+  else if (solve.distance > 0)
     report.set("solve.distance", solve.distance);
   const bool adaptive = !solve.levels.empty();
   if (adaptive) reportAdaptive(solve, report);
@@ -67,6 +69,34 @@ std::string whyEnded(AdaptiveEnd end, const FitMapSettings& settings) {
       break;
   }
   return "vertices are all that --interpolation smooth fits";
+}
+
+void reportSteps(const MapFit& fit, OneToOne wanted, Context& context) {
+  const InsideFigures& inside = fit.inside;
+  if (inside.samples == 0) return;
+  Report& report = context.report();
+  report.set("inside.samples", inside.samples);
+  report.set("inside.folded", inside.folded);
+  report.set("inside.outside", inside.outside);
+  std::vector<double> places;
+  for (const Vec3& p : inside.foldedAt) places.insert(places.end(), {p.x, p.y, p.z});
+  report.set("inside.folded_at", places);
+  const auto& steps = fit.steps;
+  report.set("steps.count", std::max<std::size_t>(1, steps.size()));
+  if (!steps.empty()) {
+    report.setColumn("steps.from", steps, [](const MapStep& s) { return s.from; });
+    report.setColumn("steps.to", steps, [](const MapStep& s) { return s.to; });
+    report.setColumn("steps.sources", steps, [](const MapStep& s) { return s.sources; });
+    report.setColumn("steps.p99", steps, [](const MapStep& s) { return s.error; });
+    report.setColumn("steps.folded", steps, [](const MapStep& s) { return s.folded; });
+  }
+  if (wanted != OneToOne::on || inside.folded == 0) return;
+  const Vec3& first = inside.foldedAt.front();
+  context.failAfterwards(fmt::format(
+      "--one-to-one on is not met: {:.2g}% of the inside is folded after {} step{}, first near "
+      "({:.4g}, {:.4g}, {:.4g}); more places are in the report, or use more --max-steps",
+      100 * inside.folded, std::max<std::size_t>(1, steps.size()), steps.size() > 1 ? "s" : "",
+      first.x, first.y, first.z));
 }
 
 void reportTolerance(const MapFit& fit, const FitMapSettings& settings, bool bestEffort,
@@ -121,6 +151,7 @@ void reportFit(const MapFit& fit, const FitMapSettings& settings, bool bestEffor
   Report& report = context.report();
   if (fit.verticesRms) report.set("boundary_error.vertices_rms", *fit.verticesRms);
   if (fit.tolerance) reportTolerance(fit, settings, bestEffort, context);
+  reportSteps(fit, settings.oneToOne, context);
   reportSolve(fit.solve, report);
   report.set("solve.interpolation", fit.smooth ? "smooth" : "linear");
   report.set("solve.seed", settings.seed);

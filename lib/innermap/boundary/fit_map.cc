@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "innermap/boundary/detail/inside_check.h"
 #include "innermap/boundary/detail/pair_problem.h"
+#include "innermap/boundary/detail/step_fit.h"
 #include "innermap/boundary/surface_problem.h"
 #include "innermap/core/error.h"
 #include "innermap/core/version.h"
@@ -17,6 +19,13 @@ constexpr std::size_t kFreshSamples = 20000;
 constexpr double kPointsPerSource = 4, kPointsPerManySources = 3;
 // A first fit where a tolerance is asked for: enough to tell smooth deformations from others.
 constexpr std::size_t kFirstSources = 1000, kTrialSources = 200;
+constexpr std::size_t kInside = 20000, kPlaces = 16;
+constexpr std::size_t kPlanSources = 600;  // of the coarse fits that plan steps
+// The errors of steps add up: a share of the tolerance that mostly holds the whole, and how much
+// less is tried where it does not.
+constexpr double kStepShare = 1.0 / 3, kLess = 0.8;
+constexpr int kTries = 2;
+constexpr double kSumAccuracy = 1e-7;  // of the target's diagonal, of what is checked inside
 constexpr PointCounts kVertexTrial{kFirstSources, 4 * kFirstSources, kFirstSources};
 
 PointCounts pointCounts(const ShellSettings& shell) {
@@ -29,19 +38,21 @@ PointCounts pointCounts(const ShellSettings& shell) {
 
 // What is known of a fit before it becomes a MapFit.
 struct Outcome {
-  HarmonicField field;
+  ComposedMap map;
   BoundaryError error;
   double collocationError = 0;
   bool smooth = false;
   std::optional<double> verticesRms;
   std::optional<ToleranceOutcome> tolerance;
   MapSolve solve;
+  InsideFigures inside;
+  std::vector<MapStep> steps;
 };
 
 // A fit with a number of charges.
 Outcome outcomeOf(const FitResult& fit, const FitProblem& problem, const ShellSettings& shell) {
   const BoundaryData& data = fit.smooth ? problem.vertices : problem.surface;
-  Outcome out{fit.field, {}, 0, fit.smooth, {}, {}, {}};
+  Outcome out{HarmonicMap(fit.field), {}, 0, fit.smooth, {}, {}, {}, {}, {}};
   MapSolve& s = out.solve;
   s.method = fit.iterative                                  ? "iterative"
              : shell.method == Regularization::truncatedSvd ? "tsvd"
@@ -66,7 +77,7 @@ Outcome outcomeOf(const FitResult& fit, const FitProblem& problem, const ShellSe
 
 // A fit to a tolerance.
 Outcome outcomeOf(const AdaptiveResult& fit, double unit) {
-  Outcome out{fit.field, fit.error, 0, false, {}, {}, {}};
+  Outcome out{HarmonicMap(fit.field), fit.error, 0, false, {}, {}, {}, {}, {}};
   out.collocationError =
       std::pow(fit.residuals.back() / unit, 2) * static_cast<double>(fit.collocation);
   MapSolve& s = out.solve;
@@ -105,6 +116,7 @@ class MapFitter {
       : pair_(pair), settings_(settings) {}
 
   StageSeconds seconds;
+  InsideFigures single;  // of one harmonic map
 
   Outcome onShell(const ShellSettings& shell) {
     const FitProblem problem = problemOf(pointCounts(shell));
@@ -127,6 +139,29 @@ class MapFitter {
     }
     out->tolerance = ToleranceOutcome{tolerance, out->error.p99, out->error.p99 <= tolerance, end};
     return std::move(*out);
+  }
+
+  // Counts folds, and goes in steps where there are too many.
+  void check(Outcome& out) {
+    if (settings_.oneToOne == OneToOne::off) return;
+    timed(seconds, "inside", [&] {
+      inside_ = pointsInside(pair_.solid(), kInside, settings_.progress);
+      single = out.inside = figuresOf(out);
+    });
+    // Onto a target that is turned inside out somewhere no map is one-to-one.
+    if (settings_.shell || !(pair_.target.volume > 0)) return;
+    const bool on = settings_.oneToOne == OneToOne::on;
+    if (out.inside.folded <= (on ? 0 : kManyFolds) && out.inside.outside <= kManyOutside) return;
+    double share = kStepShare;
+    for (int i = 0; i < kTries; ++i) {
+      Outcome steps = inSteps(share * settings_.tolerance);
+      const double reached = steps.error.p99 / settings_.tolerance;
+      const bool better = steps.inside.folded < out.inside.folded ||
+                          (i > 0 && steps.inside.folded <= out.inside.folded);
+      if (better) out = std::move(steps);
+      if (!better || reached <= 1) return;
+      share *= kLess / reached;
+    }
   }
 
  private:
@@ -161,6 +196,77 @@ class MapFitter {
     return s;
   }
 
+  InsideFigures figuresOf(const Outcome& out) const {
+    MappedPoints here{inside_, {}};
+    for (const HarmonicMap& step : out.map.steps())
+      here = mapPoints(step, here, kSumAccuracy * pair_.target.diagonal, settings_.progress);
+    InsideFigures figures;
+    figures.samples = inside_.size();
+    figures.folded = foldedShare(here.determinants);
+    for (std::size_t i = 0; i < inside_.size() && figures.foldedAt.size() < kPlaces; ++i)
+      if (!(here.determinants[i] > 0)) figures.foldedAt.push_back(inside_[i]);
+    figures.outside = outside(here.points, out.error.max * pair_.target.diagonal);
+    return figures;
+  }
+
+  double outside(const Points& images, double slack) const {
+    BoundarySettings boundary;
+    boundary.progress = settings_.progress;
+    try {
+      return outsideShare(images, makeTargetSolid(pair_, boundary), slack, settings_.progress);
+    } catch (const DataError&) {  // a target that bounds nothing, which makeTargetBoundary told of
+      return 0;
+    }
+  }
+
+  Outcome inSteps(double stepTolerance) {
+    StepFitSettings s;
+    s.fit = [&](const Mesh& from, const Mesh& to, bool coarse) {
+      FitMapSettings one = settings_;
+      one.interpolation = Interpolation::linear;
+      one.oneToOne = OneToOne::off;
+      one.tolerance = stepTolerance;
+      if (coarse) one.shell = ShellSettings{};
+      if (coarse) one.shell->sources = kPlanSources;
+      const MapFit fit = fitMap(from, to, one);
+      const bool met = !fit.tolerance || fit.tolerance->met;
+      return FittedStep{fit.map.steps().front(), fit.boundary.target.diagonal, fit.error.p99,
+                        met ? AdaptiveEnd::met : fit.tolerance->end};
+    };
+    s.maxSteps = settings_.maxSteps;
+    s.progress = settings_.progress;
+    StepFit fit = fitInSteps(pair_, inside_, s);
+    addSeconds(seconds, fit.seconds);
+    Outcome out{std::move(fit.map), {}, 0, false, {}, {}, {}, {}, std::move(fit.steps)};
+    out.solve.method = out.solve.placement = "steps";
+    out.solve.sources = out.solve.rank = out.map.sources();
+    timed(seconds, "certificate", [&] { out.error = freshError(out.map); });
+    timed(seconds, "inside", [&] { out.inside = figuresOf(out); });
+    out.tolerance =
+        ToleranceOutcome{settings_.tolerance, out.error.p99, out.error.p99 <= settings_.tolerance,
+                         fit.end == AdaptiveEnd::met ? AdaptiveEnd::noGain : fit.end};
+    return out;
+  }
+
+  BoundaryError freshError(const ComposedMap& map) const {
+    FreshSampleSettings s;
+    s.count = kFreshSamples;
+    s.seed = settings_.seed;
+    s.progress = settings_.progress;
+    const BoundarySamples fresh = freshSamples(pair_.solid(), values(), s);
+    EvaluateFieldSettings sums;
+    sums.accuracy = kSumAccuracy * pair_.target.diagonal;
+    sums.progress = settings_.progress;
+    const Matrix images = map.evaluate(fresh.points, sums).values;
+    std::vector<double> lengths;
+    for (std::size_t i = 0; i < images.rows(); ++i)
+      lengths.push_back(
+          norm(Vec3{images(i, 0) - fresh.values(i, 0), images(i, 1) - fresh.values(i, 1),
+                    images(i, 2) - fresh.values(i, 2)}) /
+          pair_.target.diagonal);
+    return summarizeErrors(std::move(lengths));
+  }
+
   // Where vertices sample a smooth deformation, a fit to them is far more exact, and quick.
   std::optional<Outcome> tryVertices(double tolerance) {
     if (settings_.interpolation == Interpolation::linear) return {};
@@ -183,7 +289,8 @@ class MapFitter {
       const auto error = [&](const Points& points, const Matrix& values) {
         BoundaryErrorSettings e;
         e.progress = settings_.progress;
-        return measureBoundaryError(out.field, points, values, pair_.target.diagonal, e);
+        return measureBoundaryError(out.map.steps().front().field(), points, values,
+                                    pair_.target.diagonal, e);
       };
       FreshSampleSettings s;
       s.count = kFreshSamples;
@@ -199,6 +306,7 @@ class MapFitter {
 
   const BoundaryPair& pair_;
   const FitMapSettings& settings_;
+  Points inside_;
 };
 
 std::string number(double x) { return fmt::format("{:.9g}", x); }
@@ -226,12 +334,23 @@ Facts factsOf(const BoundaryPair& pair, const Outcome& out, std::uint64_t seed) 
     facts.emplace_back("radius_ratio", number(out.solve.radiusRatio));
   else
     facts.emplace_back("distance", number(out.solve.distance));
+  if (!out.steps.empty()) facts.emplace_back("steps", std::to_string(out.steps.size()));
+  if (out.inside.samples > 0) facts.emplace_back("folded", number(out.inside.folded));
   if (out.tolerance) {
     facts.emplace_back("tolerance", number(out.tolerance->wanted));
     facts.emplace_back("tolerance_reached", number(out.tolerance->reached));
     facts.emplace_back("tolerance_met", out.tolerance->met ? "true" : "false");
   }
   return facts;
+}
+
+void noteSteps(MapFit& fit, const InsideFigures& single) {
+  if (fit.steps.empty()) return;
+  fit.notes.push_back(fmt::format(
+      "one harmonic map folds {:.2g}% of the inside and takes {:.2g}% of it out of the target; in "
+      "{} steps {:.2g}% is folded and {:.2g}% outside",
+      100 * single.folded, 100 * single.outside, fit.steps.size(), 100 * fit.inside.folded,
+      100 * fit.inside.outside));
 }
 
 void warnOfError(MapFit& fit) {
@@ -243,6 +362,11 @@ void warnOfError(MapFit& fit) {
 }
 
 void validate(const FitMapSettings& settings) {
+  if (settings.maxSteps < 1 || settings.maxSteps > 256)
+    throw SettingError("maxSteps", "must lie in [1, 256]");
+  if (settings.shell && settings.oneToOne == OneToOne::on)
+    throw SettingError("oneToOne",
+                       "steps are fitted to a tolerance; leave out the number of charges");
   if (!settings.shell) {
     if (!(settings.tolerance >= kSmallestTolerance && settings.tolerance <= 1))
       throw SettingError("tolerance", fmt::format("must lie in [{:g}, 1], not {:g}",
@@ -285,17 +409,21 @@ MapFit fitMap(BoundaryPair boundary, const FitMapSettings& settings) {
   MapFitter fitter(boundary, settings);
   Outcome out =
       settings.shell ? fitter.onShell(*settings.shell) : fitter.within(settings.tolerance);
+  fitter.check(out);
   Facts facts = factsOf(boundary, out, settings.seed);
-  MapFit fit{{HarmonicMap(std::move(out.field)), std::move(boundary), std::move(facts)},
+  MapFit fit{{std::move(out.map), std::move(boundary), std::move(facts)},
              out.error,
              out.collocationError,
              out.smooth,
              out.verticesRms,
              out.tolerance,
              std::move(out.solve),
+             std::move(out.inside),
+             std::move(out.steps),
              {},
              {},
              std::move(fitter.seconds)};
+  noteSteps(fit, fitter.single);
   warnOfError(fit);
   return fit;
 }

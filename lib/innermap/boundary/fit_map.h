@@ -7,6 +7,9 @@
 // 2009). By default charges are added where the error is until 99% of the boundary lies within a
 // tolerance; see field/adaptive_fit.h. FitMapSettings::shell asks for a number of charges on one
 // shell instead, as in the paper; see field/fit.h.
+//
+// In space one harmonic map may fold, and between unrelated solids most do. Such a map is made in
+// steps through intermediate shapes, each harmonic; see ComposedMap.
 #pragma once
 
 #include <cstdint>
@@ -37,6 +40,13 @@ struct ShellSettings {
 // Boundary points of these settings: `collocation`, or its default.
 std::size_t shellCollocation(const ShellSettings& shell);
 
+// What is done about folds. automatic: steps, where one harmonic map folds more than kManyFolds of
+// the inside or takes more than kManyOutside of it out of the target. on: steps until no point that
+// is checked is folded. off: one harmonic map.
+enum class OneToOne { automatic, on, off };
+
+constexpr double kManyFolds = 1e-3, kManyOutside = 1e-2;
+
 struct FitMapSettings {
   // 99% of the boundary shall lie within it; fraction of the target's diagonal, in
   // [kSmallestTolerance, 1]. Not used with `shell`.
@@ -44,8 +54,10 @@ struct FitMapSettings {
   std::size_t maxSources = 100000;  // that the tolerance may take, in [1000, 1000000]
   std::optional<ShellSettings> shell;
   Interpolation interpolation = Interpolation::automatic;
-  std::uint64_t seed = 1;       // of all random points, in [0, 1e15]
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  OneToOne oneToOne = OneToOne::automatic;  // with `shell` folds are counted, no more
+  int maxSteps = 16;                        // in [1, 256]
+  std::uint64_t seed = 1;                   // of all random points, in [0, 1e15]
+  std::uint64_t maxMemory = 0;              // bytes; 0 means no limit
   Progress* progress = nullptr;
 };
 
@@ -75,6 +87,14 @@ struct ToleranceOutcome {
   AdaptiveEnd end = AdaptiveEnd::met;
 };
 
+// What the map does to points inside the source.
+struct InsideFigures {
+  std::size_t samples = 0;  // of a lattice through the inside
+  double folded = 0;        // share of them where the Jacobian determinant is not above 0
+  double outside = 0;       // share whose image is farther out of the target than the largest error
+  Points foldedAt;          // the first of them, at most 16, world units of the source
+};
+
 struct MapFit : MappedSolid {
   // The certificate: at 20,000 random boundary points that took no part in the fit. Its largest
   // value estimates the largest error anywhere inside (maximum principle).
@@ -84,10 +104,12 @@ struct MapFit : MappedSolid {
   std::optional<double> verticesRms;          // then: at vertices that it never saw
   std::optional<ToleranceOutcome> tolerance;  // none with `shell`
   MapSolve solve;
+  InsideFigures inside;
+  std::vector<MapStep> steps;  // none of a single harmonic map
   // Of the fit, a line each; those of its boundaries stand in `boundary`, and here too when fitMap
   // was given meshes.
   std::vector<std::string> notes, warnings;
-  StageSeconds seconds;  // "sample", "fit", "certificate"
+  StageSeconds seconds;  // "sample", "fit", "certificate", "inside", "plan", "steps"
 };
 
 // Peak need in bytes; with a tolerance, that of its first level of charges.

@@ -16,15 +16,21 @@ constexpr double kDefaultSum = 1e-7;  // of a file that states no error: what fl
 }  // namespace
 
 void writeMap(const std::string& path, const MappedSolid& mapped) {
-  writeField(path, {mapped.map.field(), mapped.facts, mapped.boundary.source.mesh.vertices,
-                    mapped.boundary.targetMesh.vertices, mapped.boundary.source.mesh.triangles});
+  FieldFile file;
+  for (const HarmonicMap& step : mapped.map.steps()) file.steps.push_back(step.field());
+  file.facts = mapped.facts;
+  file.boundary = mapped.boundary.source.mesh.vertices;
+  file.boundaryTarget = mapped.boundary.targetMesh.vertices;
+  file.boundaryTriangles = mapped.boundary.source.mesh.triangles;
+  writeField(path, file);
 }
 
 MappedSolid readMap(const std::string& path, const BoundarySettings& settings) {
   StageSeconds seconds;
   FieldFile file = timed(seconds, "read", [&] { return readField(path); });
-  if (file.field.channels() != 3)
-    throw FileError(path, fmt::format("has {} channels; a map has 3", file.field.channels()));
+  if (file.steps.front().channels() != 3)
+    throw FileError(path,
+                    fmt::format("has {} channels; a map has 3", file.steps.front().channels()));
   if (file.boundaryTriangles.empty())
     throw FileError(path, "holds no boundary; write it with innermap fit or map");
   Mesh source;
@@ -42,7 +48,9 @@ MappedSolid readMap(const std::string& path, const BoundarySettings& settings) {
   BoundaryPair pair = makeBoundaryPair(std::move(source), std::move(target), settings);
   addSeconds(seconds, pair.seconds);
   pair.seconds = std::move(seconds);
-  return {HarmonicMap(std::move(file.field)), std::move(pair), std::move(file.facts)};
+  std::vector<HarmonicMap> steps;
+  for (HarmonicField& step : file.steps) steps.emplace_back(std::move(step));
+  return {ComposedMap(std::move(steps)), std::move(pair), std::move(file.facts)};
 }
 
 double sumAccuracy(const MappedSolid& mapped) {

@@ -11,7 +11,7 @@
 namespace innermap {
 
 struct MappedSolid {
-  HarmonicMap map;
+  ComposedMap map;
   BoundaryPair boundary;
   // How the map was made and how good it is, as its file says it: version, source, target, method,
   // interpolation, seed, regularization, rank, boundary_error_rms, boundary_error_p99,
@@ -20,6 +20,14 @@ struct MappedSolid {
   Facts facts;
 
   const Solid& solid() const { return boundary.solid(); }
+};
+
+// One step of a map in steps.
+struct MapStep {
+  double from = 0, to = 0;  // the part of the way that it goes, in [0, 1]
+  std::size_t sources = 0;
+  double error = 0;   // its own, at 99% of its boundary, fraction of its target's diagonal
+  double folded = 0;  // share of the points inside that it folds
 };
 
 // The map's file: one PLY, see field_file.h. Throws FileError when it cannot be written; it appears

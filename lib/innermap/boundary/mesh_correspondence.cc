@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "innermap/boundary/detail/volume_judge.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/stage_seconds.h"
@@ -64,11 +65,34 @@ void carryBack(MeshCorrespondence& out, Progress* progress) {
   out.onTarget = onGiven(b, onTarget, out.positions);
 }
 
+// By the inside, where the shells have one.
+std::shared_ptr<const MapJudge> judgeOf(const ClosedSurface& a, const ClosedSurface& b,
+                                        Progress* progress) {
+  const auto volume = [](const ClosedSurface& s) {
+    Mesh mesh;
+    mesh.vertices = s.vertices;
+    mesh.triangles = s.triangles;
+    return signedVolume(mesh);
+  };
+  if (!(volume(a) > 0 && volume(b) > 0)) return nullptr;
+  try {
+    const auto judge = std::make_shared<const VolumeJudge>(a, volume(b), progress);
+    return std::make_shared<const MapJudge>(
+        MapJudge{judge->at(), [judge](const Points& images) { return judge->score(images); }});
+  } catch (const DataError&) {  // too thin for charges: the surfaces' energy must do
+    return nullptr;
+  }
+}
+
 CorrespondSettings settingsOf(const MeshCorrespondenceSettings& settings) {
   CorrespondSettings out;
   out.aligned = settings.aligned;
   out.candidates = settings.candidates;
   out.refine = settings.refine;
+  if (settings.byInside)
+    out.judge = [progress = settings.progress](const ClosedSurface& a, const ClosedSurface& b) {
+      return judgeOf(a, b, progress);
+    };
   out.seed = settings.seed;
   out.subdivide = settings.subdivide;
   out.progress = settings.progress;

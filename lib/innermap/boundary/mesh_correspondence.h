@@ -23,12 +23,13 @@ struct MeshCorrespondenceSettings {
   int standInResolution = 0;  // as in LayOutSettings, for both meshes
   LandmarkList landmarks;     // kept exactly
   bool aligned = false;       // the two stand in the same pose: prefer agreeing normals and places
-  int candidates = 3;    // ways to lay A on B that are refined, in [1, 64]; the one of least energy
-                         // is taken
-  bool refine = true;    // false: fast, rough
-  double subdivide = 0;  // split A until it follows B within this fraction of B's diagonal, in
-                         // [0, 1); 0: never
-  std::uint64_t seed = 1;       // of all random choices
+  int candidates = 3;         // ways to lay A on B that are refined, in [1, 64]
+  bool byInside = true;       // choose by a coarse harmonic map of the inside; otherwise, and where
+                              // there is none, by the surfaces' energy
+  bool refine = true;         // false: fast, rough
+  double subdivide = 0;       // split A until it follows B within this fraction of B's diagonal, in
+                              // [0, 1); 0: never
+  std::uint64_t seed = 1;     // of all random choices
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;
 };

@@ -49,7 +49,7 @@ struct LeafOutput {
 
 class Evaluation {
  public:
-  Evaluation(const HarmonicMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
+  Evaluation(const ComposedMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
              const EvaluateSettings& settings)
       : map_(map), solid_(solid), levelSet_(levelSet), settings_(settings) {
     voxel_ = levelSet.voxelSize()[0];
@@ -65,7 +65,7 @@ class Evaluation {
   void store(const Mat3& j, const Vec3& position, double share, std::size_t offset,
              const LeafOutput& out, LeafTotals& totals) const;
 
-  const HarmonicMap& map_;
+  const ComposedMap& map_;
   const Solid& solid_;
   const openvdb::FloatGrid& levelSet_;
   const EvaluateSettings& settings_;
@@ -134,7 +134,7 @@ MapGrids Evaluation::run() {
     out.deformationEnergy = named(floatGridOn(*region), "deformation_energy");
 
   std::vector<LeafTotals> totals(region->tree().leafCount());
-  visitField(map_.field(), solid_, levelSet_, *region,
+  visitField(map_, solid_, levelSet_, *region,
              [&](std::size_t leaf, const LeafValues& values) { totals[leaf] = store(values, out); },
              {accuracy_, "evaluating the map", settings_.progress});
   LeafTotals sum;
@@ -162,7 +162,7 @@ std::vector<openvdb::GridBase::Ptr> MapGrids::all() const {
   return grids;
 }
 
-double targetExtent(const HarmonicMap& map, const Solid& solid) {
+double targetExtent(const ComposedMap& map, const Solid& solid) {
   constexpr std::size_t kSamples = 500;
   const Points& vertices = solid.surface().vertices;
   const std::size_t count = std::min(kSamples, vertices.size());
@@ -173,7 +173,7 @@ double targetExtent(const HarmonicMap& map, const Solid& solid) {
   return extent > 0 ? extent : 1;
 }
 
-MapGrids evaluateMap(const HarmonicMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
+MapGrids evaluateMap(const ComposedMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
                      const EvaluateSettings& settings) {
   if (!(settings.lame.lambda >= 0) || !(settings.lame.mu >= 0))
     throw SettingError("Lame constants", "must not be negative");

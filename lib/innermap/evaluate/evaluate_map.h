@@ -48,11 +48,11 @@ struct MapGrids {
 
 // Diagonal of the box of the boundary's image, at some hundred points, world units; 1 where that is
 // 0. The unit of EvaluateSettings::accuracy.
-double targetExtent(const HarmonicMap& map, const Solid& solid);
+double targetExtent(const ComposedMap& map, const Solid& solid);
 
 // levelSet: of the same solid, half-width at least the skin. Throws SettingError, MemoryError,
 // Cancelled. Deterministic for any number of threads.
-MapGrids evaluateMap(const HarmonicMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
+MapGrids evaluateMap(const ComposedMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
                      const EvaluateSettings& settings = {});
 
 }  // namespace innermap

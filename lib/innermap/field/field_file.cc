@@ -17,7 +17,7 @@ namespace innermap {
 namespace {
 
 constexpr std::size_t kLongestHeader = 1 << 20;
-constexpr std::size_t kMostChannels = 4096;
+constexpr std::size_t kMostChannels = 4096, kMostSteps = 4096;
 constexpr std::size_t kFaceBytes = 1 + 3 * sizeof(std::int32_t);
 
 std::string coefficients(const Affine& affine, std::size_t channel) {
@@ -26,17 +26,31 @@ std::string coefficients(const Affine& affine, std::size_t channel) {
                      c(3, channel));
 }
 
-void writeHeader(std::ostream& out, const FieldFile& file) {
-  const Affine& affine = file.field.affine();
-  out << "ply\nformat binary_little_endian 1.0\ncomment innermap field 1\n";
+void writeAffine(std::ostream& out, const HarmonicField& field) {
+  const Affine& affine = field.affine();
   out << fmt::format("comment affine_center {:.17g} {:.17g} {:.17g}\n", affine.center.x,
                      affine.center.y, affine.center.z);
-  for (std::size_t k = 0; k < file.field.channels(); ++k)
+  for (std::size_t k = 0; k < field.channels(); ++k)
     out << "comment affine_" << k << ' ' << coefficients(affine, k) << '\n';
+}
+
+void writeHeader(std::ostream& out, const FieldFile& file) {
+  const bool several = file.steps.size() > 1;
+  out << "ply\nformat binary_little_endian 1.0\ncomment innermap field " << (several ? 2 : 1)
+      << '\n';
+  std::size_t sources = 0;
+  std::string counts;
+  for (const HarmonicField& step : file.steps) {
+    writeAffine(out, step);
+    sources += step.sources().size();
+    counts += fmt::format(" {}", step.sources().size());
+  }
+  if (several) out << "comment step_sources" << counts << '\n';
   for (const auto& [key, value] : file.facts) out << "comment " << key << ' ' << value << '\n';
-  out << "element vertex " << file.field.sources().size()
+  out << "element vertex " << sources
       << "\nproperty double x\nproperty double y\nproperty double z\n";
-  for (std::size_t k = 0; k < file.field.channels(); ++k) out << "property double w" << k << '\n';
+  for (std::size_t k = 0; k < file.steps.front().channels(); ++k)
+    out << "property double w" << k << '\n';
   out << "element boundary_vertex " << file.boundary.size() << '\n';
   for (const char* name : {"x", "y", "z", "tx", "ty", "tz"})
     out << "property double " << name << '\n';
@@ -48,6 +62,16 @@ void put(std::ostream& out, const void* data, std::size_t size) {
   out.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
 }
 
+void putCharges(std::ostream& out, const HarmonicField& field) {
+  const Matrix& w = field.weights();
+  std::vector<double> row(3 + w.columns());
+  for (std::size_t j = 0; j < w.rows(); ++j) {
+    for (int a = 0; a < 3; ++a) row[a] = field.sources()[j][a];
+    for (std::size_t k = 0; k < w.columns(); ++k) row[3 + k] = w(j, k);
+    put(out, row.data(), row.size() * sizeof(double));
+  }
+}
+
 void checkFacts(const Facts& facts) {
   for (const auto& [key, value] : facts)
     if (key.empty() ||
@@ -56,9 +80,14 @@ void checkFacts(const Facts& facts) {
       throw DataError("field file: setting '" + key + "' cannot stand on one comment line");
 }
 
+struct AffineRows {
+  Vec3 center;
+  std::vector<std::array<double, 4>> rows;  // a channel each
+};
+
 struct Header {
-  Affine affine;
-  std::vector<std::array<double, 4>> affineRows;
+  std::vector<AffineRows> affine;          // of each step
+  std::vector<std::uint64_t> stepSources;  // of each step; empty: all are the only one's
   Facts facts;
   std::uint64_t sources = 0, vertices = 0, faces = 0;
   std::size_t channels = 0;
@@ -71,8 +100,10 @@ class HeaderReader {
   Header read() {
     expect("ply");
     expect("format binary_little_endian 1.0");
-    expect("comment innermap field 1");
     std::string line = next();
+    if (line != "comment innermap field 1" && line != "comment innermap field 2")
+      fail("expected 'comment innermap field 1' or 2");
+    line = next();
     for (; line.rfind("comment ", 0) == 0; line = next()) comment(line.substr(8));
     header_.sources = count(line, "element vertex ");
     for (const char* name : {"x", "y", "z"}) expect(std::string("property double ") + name);
@@ -85,8 +116,7 @@ class HeaderReader {
     header_.faces = count(next(), "element boundary_face ");
     expect("property list uchar int vertex_indices");
     expect("end_header");
-    if (header_.channels == 0 || header_.affineRows.size() != header_.channels)
-      fail("lacks its weights or its affine part");
+    checkSteps();
     return header_;
   }
 
@@ -118,6 +148,21 @@ class HeaderReader {
     return std::stoull(digits);
   }
 
+  void checkSteps() {
+    if (header_.channels == 0 || header_.affine.empty())
+      fail("lacks its weights or its affine part");
+    for (const AffineRows& affine : header_.affine)
+      if (affine.rows.size() != header_.channels) fail("lacks its weights or its affine part");
+    if (header_.stepSources.empty()) header_.stepSources = {header_.sources};
+    std::uint64_t sum = 0;
+    for (const std::uint64_t n : header_.stepSources) {
+      if (n > header_.sources - sum) fail("its steps do not add up");
+      sum += n;
+    }
+    if (sum != header_.sources || header_.stepSources.size() != header_.affine.size())
+      fail("its steps do not add up");
+  }
+
   void comment(const std::string& text) {
     const std::size_t space = text.find(' ');
     const std::string key = text.substr(0, space);
@@ -125,13 +170,18 @@ class HeaderReader {
     std::istringstream numbers(value);
     numbers.imbue(std::locale::classic());
     if (key == "affine_center") {
-      Vec3& c = header_.affine.center;
+      if (header_.affine.size() >= kMostSteps) fail("has too many steps");
+      Vec3& c = header_.affine.emplace_back().center;
       if (!(numbers >> c.x >> c.y >> c.z)) fail("bad affine_center");
-    } else if (key == "affine_" + std::to_string(header_.affineRows.size())) {
+    } else if (!header_.affine.empty() &&
+               key == "affine_" + std::to_string(header_.affine.back().rows.size())) {
       std::array<double, 4> row{};
       if (!(numbers >> row[0] >> row[1] >> row[2] >> row[3])) fail("bad " + key);
-      if (header_.affineRows.size() >= kMostChannels) fail("has too many channels");
-      header_.affineRows.push_back(row);
+      if (header_.affine.back().rows.size() >= kMostChannels) fail("has too many channels");
+      header_.affine.back().rows.push_back(row);
+    } else if (key == "step_sources") {
+      for (std::uint64_t n = 0; header_.stepSources.size() < kMostSteps && numbers >> n;)
+        header_.stepSources.push_back(n);
     } else {
       header_.facts.emplace_back(key, value);
     }
@@ -149,6 +199,25 @@ std::vector<T> take(const HeaderReader& reader, std::istream& in, std::size_t co
   in.read(reinterpret_cast<char*>(data.data()), static_cast<std::streamsize>(count * sizeof(T)));
   if (!in) reader.fail("the data end early");
   return data;
+}
+
+HarmonicField readStep(const HeaderReader& reader, std::istream& in, const Header& header,
+                       std::size_t step) {
+  const std::uint64_t count = header.stepSources[step];
+  Matrix weights(count, header.channels);
+  Points sources(count);
+  const std::vector<double> rows = take<double>(reader, in, count * (3 + header.channels));
+  for (std::size_t j = 0; j < count; ++j) {
+    const double* row = rows.data() + j * (3 + header.channels);
+    sources[j] = {row[0], row[1], row[2]};
+    for (std::size_t k = 0; k < header.channels; ++k) weights(j, k) = row[3 + k];
+  }
+  Affine affine;
+  affine.center = header.affine[step].center;
+  affine.coefficients = Matrix(4, header.channels);
+  for (std::size_t k = 0; k < header.channels; ++k)
+    for (std::size_t r = 0; r < 4; ++r) affine.coefficients(r, k) = header.affine[step].rows[k][r];
+  return HarmonicField(std::move(sources), std::move(weights), std::move(affine));
 }
 
 void readBoundary(const HeaderReader& reader, std::istream& in, const Header& header,
@@ -177,15 +246,13 @@ void writeField(const std::string& path, const FieldFile& file) {
   checkFacts(file.facts);
   if (file.boundary.size() != file.boundaryTarget.size())
     throw DataError("field file: boundary and target have different numbers of vertices");
+  if (file.steps.empty()) throw DataError("field file: has no field");
+  for (const HarmonicField& step : file.steps)
+    if (step.channels() != file.steps.front().channels())
+      throw DataError("field file: its steps have different numbers of channels");
   writeWholeFile(path, [&](std::ostream& out) {
     writeHeader(out, file);
-    const Matrix& w = file.field.weights();
-    std::vector<double> row(3 + w.columns());
-    for (std::size_t j = 0; j < w.rows(); ++j) {
-      for (int a = 0; a < 3; ++a) row[a] = file.field.sources()[j][a];
-      for (std::size_t k = 0; k < w.columns(); ++k) row[3 + k] = w(j, k);
-      put(out, row.data(), row.size() * sizeof(double));
-    }
+    for (const HarmonicField& step : file.steps) putCharges(out, step);
     for (std::size_t i = 0; i < file.boundary.size(); ++i) {
       const Vec3 &p = file.boundary[i], &t = file.boundaryTarget[i];
       const double both[6] = {p.x, p.y, p.z, t.x, t.y, t.z};
@@ -220,24 +287,11 @@ FieldFile readField(const std::string& path) {
   if (start + need != size)
     reader.fail(
         fmt::format("the header promises {} bytes of data, the file has {}", need, size - start));
-  Matrix weights(header.sources, header.channels);
-  Points sources(header.sources);
-  const std::vector<double> rows = take<double>(reader, in, header.sources * (3 + header.channels));
-  for (std::size_t j = 0; j < header.sources; ++j) {
-    const double* row = rows.data() + j * (3 + header.channels);
-    sources[j] = {row[0], row[1], row[2]};
-    for (std::size_t k = 0; k < header.channels; ++k) weights(j, k) = row[3 + k];
-  }
-  Affine affine = header.affine;
-  affine.coefficients = Matrix(4, header.channels);
-  for (std::size_t k = 0; k < header.channels; ++k)
-    for (std::size_t r = 0; r < 4; ++r) affine.coefficients(r, k) = header.affineRows[k][r];
   try {
-    FieldFile out{HarmonicField(std::move(sources), std::move(weights), std::move(affine)),
-                  header.facts,
-                  {},
-                  {},
-                  {}};
+    FieldFile out;
+    for (std::size_t step = 0; step < header.affine.size(); ++step)
+      out.steps.push_back(readStep(reader, in, header, step));
+    out.facts = header.facts;
     readBoundary(reader, in, header, out);
     return out;
   } catch (const DataError& bad) {

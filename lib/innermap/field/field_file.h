@@ -2,6 +2,8 @@
 //
 //   comment innermap field 1
 //   comment affine_center ..., comment affine_K ...: the affine part, 17 digits
+//   comment step_sources N1 N2 ...: of a map in steps (then "field 2"), how many of the vertices,
+//     in order, are each step's; every step has an affine part, in order
 //   comment KEY VALUE: settings and results of the fit
 //   element vertex N: double x y z (sources), double w0 ... wK-1 (weights)
 //   element boundary_vertex V: double x y z, double tx ty tz (source mesh and its target)
@@ -23,9 +25,10 @@ namespace innermap {
 using Facts = std::vector<std::pair<std::string, std::string>>;
 
 struct FieldFile {
-  HarmonicField field;
-  Facts facts;                      // keys of [a-z0-9_]; values without line breaks
-  Points boundary, boundaryTarget;  // same size, or both empty
+  std::vector<HarmonicField> steps;  // one, unless it is a map composed of several; of each the
+                                     // same channels
+  Facts facts;                       // keys of [a-z0-9_]; values without line breaks
+  Points boundary, boundaryTarget;   // same size, or both empty
   std::vector<std::array<int, 3>> boundaryTriangles;
 };
 

@@ -222,12 +222,15 @@ class Corresponder {
       const LaidOutShell &from = *laidOutA_[source], &onto = *laidOutB_[target];
       for (const auto& [vertex, point] : out.exact)
         how.landmarks.push_back({vertex, placeOf(point, onto.surface.triangles, onto.layout)});
+      const auto judge = settings_.judge ? settings_.judge(from.surface, onto.surface) : nullptr;
+      how.judge = judge.get();
       ShellMap map = mapShell(from, onto, how);
       out.map.surface = from.surface;
       out.map.image = std::move(map.image);
       out.map.targetSurface = onto.surface;
       out.map.targetLayout = onto.layout;
       out.map.origin = map.origin;
+      out.map.considered = std::move(map.considered);
     }
     subdivideOne(out);
     const Locator locator(out.map.targetSurface.triangles, out.map.targetLayout);

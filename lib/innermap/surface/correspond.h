@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -50,11 +51,16 @@ struct Landmark {
   SurfacePoint onTarget;  // of B's mesh
 };
 
+// A judge for maps of one shell onto another, or null: then by their energy.
+using JudgeMaker =
+    std::function<std::shared_ptr<const MapJudge>(const ClosedSurface& a, const ClosedSurface& b)>;
+
 struct CorrespondSettings {
   std::vector<Landmark> landmarks;  // met to rounding
   bool aligned = false;  // the two stand in the same pose: prefer agreeing normals and places
   int candidates = 3;    // that are refined, in [1, 64]; the one of least energy is taken
   bool refine = true;
+  JudgeMaker judge;  // chooses among first maps and among those refined; none: the least energy
   std::uint64_t seed = 1;
   double subdivide = 0;  // split A until it follows B within this share of B's diagonal; 0: never
   Progress* progress = nullptr;
@@ -74,6 +80,7 @@ struct ShellCorrespondence {
   Points positions;                             // #vertices of surface, world units
   std::shared_ptr<const CutSurface> targetCut;  // how B's shell was cut; null up to genus 1
   std::string origin;                           // how the map was found, in words
+  std::vector<ConsideredMap> considered;        // with a judge: first maps, best first
 };
 
 struct Correspondence {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -72,5 +73,18 @@ LayoutQuality layoutQuality(const std::vector<Triangle>& triangles, const Points
 
 // Of several shells: all flips, the degree farthest from 1, the least ratio.
 LayoutQuality together(const std::vector<LayoutQuality>& shells);
+
+// Judges maps of a shell by more than the two surfaces: by the inside, say.
+struct MapJudge {
+  std::vector<SurfacePoint> at;                       // of A's shell
+  std::function<double(const Points& images)> score;  // of `at`, world units on B; less is better
+};
+
+// A map that was considered.
+struct ConsideredMap {
+  std::string origin;  // how it was found, in words
+  double energy = 0;   // of a coarse surface, both ways
+  double score = 0;    // the judge's
+};
 
 }  // namespace innermap

@@ -11,8 +11,8 @@
 #include "innermap/mesh/self_intersection.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/surface/detail/refining/area_samples.h"
-#include "innermap/surface/detail/refining/composed_map.h"
 #include "innermap/surface/detail/refining/joined_shells.h"
+#include "innermap/surface/detail/refining/layout_map.h"
 
 namespace innermap {
 namespace {
@@ -124,7 +124,7 @@ class Measurement {
   void measureShell(const ShellCorrespondence& shell, const ClosedSurface& b) {
     const ClosedSurface& a = shell.surface;
     const Locator onA(a.triangles, shell.image), onB(b.triangles, shell.targetLayout);
-    const ComposedMap composed({a, shell.image, onA}, {b, shell.targetLayout, onB});
+    const LayoutMap composed({a, shell.image, onA}, {b, shell.targetLayout, onB});
     const std::vector<double> areas = triangleAreas(a.vertices, a.triangles),
                               imageAreas = triangleAreas(shell.positions, a.triangles),
                               targetAreas = triangleAreas(b.vertices, b.triangles);
@@ -140,11 +140,11 @@ class Measurement {
     return std::accumulate(values.begin(), values.end(), 0.0);
   }
 
-  void measureForward(const ComposedMap& composed, const std::vector<AreaSample>& samples) {
+  void measureForward(const LayoutMap& composed, const std::vector<AreaSample>& samples) {
     std::vector<Stretches> found(samples.size());
     std::vector<char> measured(samples.size(), 0);
     parallel(samples.size(), [&](std::size_t i) {
-      const ComposedMap::Image image = composed.at(samples[i].triangle, samples[i].barycentric);
+      const LayoutMap::Image image = composed.at(samples[i].triangle, samples[i].barycentric);
       measured[i] = image.measured;
       found[i] = scaled(image.stretches);
     });
@@ -153,11 +153,11 @@ class Measurement {
       if (measured[i]) stretch_.push_back({found[i].worst(), samples[i].area});
   }
 
-  void measureBackward(const ComposedMap& composed, const std::vector<AreaSample>& samples) {
+  void measureBackward(const LayoutMap& composed, const std::vector<AreaSample>& samples) {
     std::vector<Stretches> found(samples.size());
     std::vector<char> measured(samples.size(), 0);
     parallel(samples.size(), [&](std::size_t i) {
-      const ComposedMap::Preimage from = composed.of(samples[i].triangle, samples[i].barycentric);
+      const LayoutMap::Preimage from = composed.of(samples[i].triangle, samples[i].barycentric);
       measured[i] = from.measured;
       found[i] = scaled(from.stretches);
     });
@@ -177,7 +177,7 @@ class Measurement {
   }
 
   // Of B's triangles between the places on A that their corners come from.
-  std::vector<double> preimageAreas(const ComposedMap& composed, const ClosedSurface& b) {
+  std::vector<double> preimageAreas(const LayoutMap& composed, const ClosedSurface& b) {
     std::vector<std::array<int, 2>> use(b.vertices.size());  // a triangle and corner of each vertex
     for (std::size_t t = 0; t < b.triangles.size(); ++t)
       for (int k = 0; k < 3; ++k) use[b.triangles[t][k]] = {static_cast<int>(t), k};
@@ -190,7 +190,7 @@ class Measurement {
     return triangleAreas(from, b.triangles);
   }
 
-  void measureTriangles(const ShellCorrespondence& shell, const ComposedMap& composed,
+  void measureTriangles(const ShellCorrespondence& shell, const LayoutMap& composed,
                         const ClosedSurface& b) {
     const ClosedSurface& a = shell.surface;
     std::vector<Weighted> stretch(a.triangles.size(), {0, 0});

@@ -4,8 +4,8 @@
 #include "innermap/core/parallel.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/surface/correspond.h"
-#include "innermap/surface/detail/refining/composed_map.h"
 #include "innermap/surface/detail/refining/joined_shells.h"
+#include "innermap/surface/detail/refining/layout_map.h"
 
 namespace innermap {
 namespace {
@@ -23,7 +23,7 @@ struct ShellMap {
   ShellMap& operator=(const ShellMap&) = delete;
 
   Locator onA, onB;
-  ComposedMap composed;
+  LayoutMap composed;
 };
 
 using ShellMaps = std::vector<std::unique_ptr<ShellMap>>;
@@ -58,7 +58,7 @@ SurfaceImages imagesOf(const Points& points, const Correspondence& map, const Su
         for (std::size_t i = begin; i < end; ++i) {
           const ClosestPoint closest = tree.closest(points[i]);
           const JoinedShells::Place place = shells.placeOf(closest.address.triangle);
-          const ComposedMap::Image image =
+          const LayoutMap::Image image =
               maps[place.shell]->composed.at(place.triangle, closest.address.barycentric);
           result.positions[i] = image.position;
           onShell[i] = {image.triangle, image.barycentric};

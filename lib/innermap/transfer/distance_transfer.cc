@@ -145,7 +145,7 @@ DepthFigures depthFigures(const openvdb::FloatGrid& distance, const openvdb::Flo
   return out;
 }
 
-DistanceTransfer transferDistance(const HarmonicMap& map, const Solid& source, const Solid& target,
+DistanceTransfer transferDistance(const ComposedMap& map, const Solid& source, const Solid& target,
                                   const DistanceTransferSettings& settings) {
   DistanceTransfer out;
   out.target = depthsOf(target, settings, out.seconds);

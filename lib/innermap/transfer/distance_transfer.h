@@ -75,7 +75,7 @@ struct DistanceTransfer {
 // Where `map` takes the voxels of `source`, how deep is it in `target`, beside both solids' own
 // depths. Throws DataError for a source thinner than the voxels everywhere, SettingError,
 // MemoryError, Cancelled.
-DistanceTransfer transferDistance(const HarmonicMap& map, const Solid& source, const Solid& target,
+DistanceTransfer transferDistance(const ComposedMap& map, const Solid& source, const Solid& target,
                                   const DistanceTransferSettings& settings = {});
 
 }  // namespace innermap

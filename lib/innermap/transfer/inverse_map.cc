@@ -36,7 +36,7 @@ Vec3 toVec3(const openvdb::Vec3d& v) { return {v.x(), v.y(), v.z()}; }
 
 class Inversion {
  public:
-  Inversion(const HarmonicMap& map, const Solid& source, const SourceLattice& lattice,
+  Inversion(const ComposedMap& map, const Solid& source, const SourceLattice& lattice,
             const openvdb::math::Transform& target, const InverseSettings& settings)
       : settings_(settings),
         lattice_(lattice),
@@ -230,13 +230,13 @@ std::string InverseStatistics::warning() const {
       100 * (1 - invertedInside()), at.x, at.y, at.z);
 }
 
-InvertedMap invertMap(const HarmonicMap& map, const Solid& source, const SourceLattice& lattice,
+InvertedMap invertMap(const ComposedMap& map, const Solid& source, const SourceLattice& lattice,
                       const openvdb::FloatGrid& targetLevelSet, const InverseSettings& settings) {
   check(settings);
   return Inversion(map, source, lattice, targetLevelSet.transform(), settings).run(targetLevelSet);
 }
 
-Points invertAt(const HarmonicMap& map, const Solid& source, const SourceLattice& lattice,
+Points invertAt(const ComposedMap& map, const Solid& source, const SourceLattice& lattice,
                 const InvertedMap& inverted, const Points& targets,
                 const InverseSettings& settings) {
   check(settings);

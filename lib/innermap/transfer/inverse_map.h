@@ -64,13 +64,13 @@ struct SourceLattice {
 // is extended as transfer/outside.h says, so voxels along the boundary, which the map meets but for
 // its boundary error, have sources just outside. Same result for any number of threads. Throws
 // SettingError, DataError (nothing of the target is inverted), MemoryError, Cancelled.
-InvertedMap invertMap(const HarmonicMap& map, const Solid& source, const SourceLattice& lattice,
+InvertedMap invertMap(const ComposedMap& map, const Solid& source, const SourceLattice& lattice,
                       const openvdb::FloatGrid& targetLevelSet,
                       const InverseSettings& settings = {});
 
 // The same at any points of the target, world units; points that are in no voxel of `inverted` stay
 // as they are. #points.
-Points invertAt(const HarmonicMap& map, const Solid& source, const SourceLattice& lattice,
+Points invertAt(const ComposedMap& map, const Solid& source, const SourceLattice& lattice,
                 const InvertedMap& inverted, const Points& targets,
                 const InverseSettings& settings = {});
 

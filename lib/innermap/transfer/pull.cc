@@ -13,7 +13,7 @@ namespace {
 
 class Pull {
  public:
-  Pull(const HarmonicMap& map, const Solid& source, const openvdb::FloatGrid& levelSet,
+  Pull(const ComposedMap& map, const Solid& source, const openvdb::FloatGrid& levelSet,
        const PullSettings& settings)
       : settings_(settings),
         map_(map, source, levelSet, settings.outside,
@@ -86,7 +86,7 @@ PullResult Pull::run(const openvdb::GridPtrVec& grids) {
 
 }  // namespace
 
-PullResult pullGrids(const HarmonicMap& map, const Solid& source,
+PullResult pullGrids(const ComposedMap& map, const Solid& source,
                      const openvdb::FloatGrid& levelSet, const openvdb::GridPtrVec& grids,
                      const PullSettings& settings) {
   if (!(settings.accuracy >= 1e-12 && settings.accuracy <= 1e-3))

@@ -39,7 +39,7 @@ struct PullResult {
 // where the signed distance is at most the skin (with outside settings: the outside distance).
 // Names, classes, backgrounds, vector types and metadata stay; level sets are rebuilt as distances.
 // Throws as VolumePusher does.
-PullResult pullGrids(const HarmonicMap& map, const Solid& source,
+PullResult pullGrids(const ComposedMap& map, const Solid& source,
                      const openvdb::FloatGrid& levelSet, const openvdb::GridPtrVec& grids,
                      const PullSettings& settings = {});
 

@@ -47,7 +47,7 @@ struct VolumePusher::Data {
   Carriers carriers;
   std::vector<std::string> warnings;
 
-  openvdb::GridPtrVec carry(const HarmonicMap& map, const InvertedMap& inverted) const;
+  openvdb::GridPtrVec carry(const ComposedMap& map, const InvertedMap& inverted) const;
 };
 
 VolumePusher::VolumePusher(const Solid& source, const openvdb::GridPtrVec& grids,
@@ -63,7 +63,7 @@ VolumePusher::VolumePusher(const Solid& source, const openvdb::GridPtrVec& grids
   data_ = std::move(data);
 }
 
-openvdb::GridPtrVec VolumePusher::Data::carry(const HarmonicMap& map,
+openvdb::GridPtrVec VolumePusher::Data::carry(const ComposedMap& map,
                                               const InvertedMap& inverted) const {
   CarryOutput output(carriers, *inverted.region);
   std::vector<openvdb::Coord> origins;
@@ -96,7 +96,7 @@ openvdb::GridPtrVec VolumePusher::Data::carry(const HarmonicMap& map,
       settings.progress);
 }
 
-PushResult VolumePusher::push(const HarmonicMap& map, const openvdb::FloatGrid& targetLevelSet,
+PushResult VolumePusher::push(const ComposedMap& map, const openvdb::FloatGrid& targetLevelSet,
                               const std::vector<CarriedField>& fields) const {
   const Data& d = *data_;
   const InvertedMap inverted =

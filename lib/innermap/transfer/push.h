@@ -60,7 +60,7 @@ class VolumePusher {
   // are active where the target's signed distance is at most the skin. Level sets are rebuilt as
   // distances. With outside settings, also where the volume around the source comes to. Throws as
   // invertMap does. Same result for any number of threads.
-  PushResult push(const HarmonicMap& map, const openvdb::FloatGrid& targetLevelSet,
+  PushResult push(const ComposedMap& map, const openvdb::FloatGrid& targetLevelSet,
                   const std::vector<CarriedField>& fields = {}) const;
 
  private:

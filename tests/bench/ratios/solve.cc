@@ -36,7 +36,7 @@ Solved run(const Pair& pair, const Case& c, const Options& options) {
                   std::to_string(c.sources), "--collocation", std::to_string(c.points), "--solver",
                   c.solver, "--interpolation", "linear"},
                  options);
-  const HarmonicField field = readField(file).field;
+  const HarmonicField field = readField(file).steps.front();
   const FreshError error = freshError(field, pair, kFresh);
   Solved out;
   out.seconds = secondsToWeights(done.report);

@@ -51,7 +51,7 @@ Sources fittedSources(const Pair& pair, std::size_t count, const Options& option
   runProgram({"fit", pair.source, pair.target, "-o", file, "--sources", std::to_string(count),
               "--collocation", std::to_string(2 * count)},
              options);
-  const HarmonicField field = readField(file).field;
+  const HarmonicField field = readField(file).steps.front();
   return {"fitted weights", field.sources(), field.weights()};
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "boundary/test_pairs.h"
@@ -67,6 +68,65 @@ TEST(FitMap, VerticesOfASmoothDeformationAreRecognised) {
   EXPECT_LT(errorInside(fit, harmonicPolynomial), 1e-6);
 }
 
+// A ball pushed in deeply: one harmonic map folds there.
+Vec3 dented(const Vec3& p) {
+  const double angle = std::acos(std::clamp(p.z / norm(p), -1.0, 1.0));
+  return p - Vec3{0, 0, 0.85 * std::exp(-angle * angle / 0.36)};
+}
+
+TEST(FitMap, GoesInStepsWhereOneMapFolds) {
+  const Mesh source = ball(4), target = moved(source, dented);
+  FitMapSettings settings;
+  settings.tolerance = 2e-3;
+  settings.oneToOne = OneToOne::off;
+  const MapFit single = fitMap(source, target, settings);
+  EXPECT_EQ(single.map.steps().size(), 1u);
+  EXPECT_EQ(single.inside.samples, 0u);
+  settings.oneToOne = OneToOne::automatic;
+  const MapFit steps = fitMap(source, target, settings);
+  EXPECT_GE(steps.map.steps().size(), 2u);
+  EXPECT_EQ(steps.steps.size(), steps.map.steps().size());
+  EXPECT_EQ(steps.inside.folded, 0);
+  EXPECT_LT(steps.inside.outside, 1e-3);
+  EXPECT_TRUE(steps.tolerance->met);
+  EXPECT_LE(steps.error.p99, settings.tolerance);
+  // The single map turns points over, on the axis below the dent.
+  const auto least = [](const MapFit& fit) {
+    double det = 1;
+    for (double z = 0; z < 0.97; z += 0.01)
+      det = std::min(det, determinant(fit.map.jacobian({0.01, 0.01, z})));
+    return det;
+  };
+  EXPECT_LT(least(single), 0);
+  EXPECT_GT(least(steps), 0);
+}
+
+// The certificate of the whole: against the map's own values at boundary points.
+TEST(FitMap, StepsAreCertifiedEndToEnd) {
+  const Mesh source = ball(4), target = moved(source, dented);
+  FitMapSettings settings;
+  settings.tolerance = 4e-3;
+  settings.oneToOne = OneToOne::on;
+  const MapFit fit = fitMap(source, target, settings);
+  double farthest = 0;
+  for (std::size_t v = 0; v < source.vertices.size(); ++v)
+    farthest = std::max(farthest, norm(fit.map(source.vertices[v]) - target.vertices[v]));
+  // Vertices are boundary points like any: nearly none is farther than the farthest sample.
+  EXPECT_LT(farthest / fit.boundary.target.diagonal, 2 * fit.error.max);
+}
+
+TEST(FitMap, OneStepIsEnoughForGentleMaps) {
+  const Mesh source = ball();
+  const MapFit fit = fitMap(source, moved(source, harmonicPolynomial));
+  EXPECT_TRUE(fit.steps.empty());
+  EXPECT_EQ(fit.inside.folded, 0);
+  EXPECT_GT(fit.inside.samples, 15000u);
+  FitMapSettings shell;
+  shell.shell = ShellSettings{};
+  shell.oneToOne = OneToOne::on;
+  EXPECT_THROW(fitMap(source, source, shell), SettingError);
+}
+
 TEST(FitMap, ShellsOfMoreChargesAreMoreExact) {
   const Mesh source = ball();
   const Mesh target = moved(source, harmonicPolynomial);
@@ -122,7 +182,7 @@ TEST(FitMap, SameForAnyNumberOfThreads) {
   const Mesh target = moved(source, harmonicPolynomial);
   const auto weights = [&](int threads) {
     const ThreadLimit limit(threads);
-    return fitMap(source, target).map.field().weights();
+    return fitMap(source, target).map.steps().front().field().weights();
   };
   const Matrix one = weights(1), three = weights(3);
   ASSERT_EQ(one.rows(), three.rows());

@@ -42,10 +42,10 @@ TEST_F(MapFile, GivesTheSameMapAndBoundaries) {
 TEST_F(MapFile, RefusesAFieldThatIsNoMap) {
   const Mesh source = ball(1);
   const HarmonicField one({{3, 0, 0}}, Matrix(1, 1), Affine{{}, Matrix(4, 1)});
-  writeField(path("one.ply"), {one, {}, source.vertices, source.vertices, source.triangles});
+  writeField(path("one.ply"), {{one}, {}, source.vertices, source.vertices, source.triangles});
   EXPECT_THROW(readMap(path("one.ply")), FileError);
   const HarmonicField three({{3, 0, 0}}, Matrix(1, 3), Affine{{}, Matrix(4, 3)});
-  writeField(path("bare.ply"), {three, {}, {}, {}, {}});
+  writeField(path("bare.ply"), {{three}, {}, {}, {}, {}});
   EXPECT_THROW(readMap(path("bare.ply")), FileError);
   EXPECT_THROW(readMap(path("missing.ply")), FileError);
 }
@@ -57,7 +57,7 @@ TEST_F(MapFile, RefusesIndicesThatAreNotThere) {
   triangles[5][1] = 4000;
   EXPECT_THROW(
       {
-        writeField(path("map.ply"), {three, {}, source.vertices, source.vertices, triangles});
+        writeField(path("map.ply"), {{three}, {}, source.vertices, source.vertices, triangles});
         readMap(path("map.ply"));
       },
       Error);

@@ -30,7 +30,8 @@ class FieldFileTest : public ::testing::Test {
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
   FieldFile sample() const {
-    FieldFile f{testing::someField(), {{"method", "tikhonov"}, {"note", "two words"}}, {}, {}, {}};
+    FieldFile f{
+        {testing::someField()}, {{"method", "tikhonov"}, {"note", "two words"}}, {}, {}, {}};
     f.boundary = testing::randomPoints(5, 1);
     f.boundaryTarget = testing::randomPoints(5, 2);
     f.boundaryTriangles = {{0, 1, 2}, {2, 3, 4}};
@@ -52,14 +53,43 @@ TEST_F(FieldFileTest, ReadsBackTheSameBits) {
   writeField(path_, before);
   const FieldFile after = readField(path_);
   const Points points = testing::randomPoints(200, 3);
-  const FieldSamples a = before.field.evaluate(points, withGradients()),
-                     b = after.field.evaluate(points, withGradients());
+  const FieldSamples a = before.steps[0].evaluate(points, withGradients()),
+                     b = after.steps[0].evaluate(points, withGradients());
   EXPECT_EQ(0, std::memcmp(a.values.data(), b.values.data(), 600 * sizeof(double)));
   EXPECT_EQ(0, std::memcmp(a.gradients.data(), b.gradients.data(), 1800 * sizeof(double)));
   EXPECT_EQ(after.facts, before.facts);
   EXPECT_EQ(after.boundaryTriangles, before.boundaryTriangles);
   EXPECT_EQ(after.boundary[4].z, before.boundary[4].z);
   EXPECT_EQ(after.boundaryTarget[0].x, before.boundaryTarget[0].x);
+}
+
+TEST_F(FieldFileTest, StepsComeBackInOrder) {
+  FieldFile before = sample();
+  Affine affine;
+  affine.coefficients = Matrix(4, 3);
+  before.steps.push_back(HarmonicField({{1, 2, 3}}, Matrix(1, 3), affine));
+  before.steps.push_back(before.steps[0]);
+  writeField(path_, before);
+  const FieldFile after = readField(path_);
+  ASSERT_EQ(after.steps.size(), 3u);
+  EXPECT_EQ(after.steps[1].sources()[0].z, 3);
+  EXPECT_EQ(after.facts, before.facts);
+  const Points points = testing::randomPoints(20, 3);
+  for (const std::size_t step : {0, 2}) {
+    const Matrix a = before.steps[step].evaluate(points).values,
+                 b = after.steps[step].evaluate(points).values;
+    EXPECT_EQ(0, std::memcmp(a.data(), b.data(), 60 * sizeof(double)));
+  }
+  const std::string good = contents();
+  const std::size_t counts = good.find("step_sources 30 1 30");
+  ASSERT_NE(counts, std::string::npos);
+  for (const char* lie : {"step_sources 30 2 30", "step_sources 61 0   ", "step_sources 30 31  "}) {
+    std::string bad = good;
+    write(bad.replace(counts, 20, lie));
+    EXPECT_THROW(readField(path_), FileError) << lie;
+  }
+  before.steps[1] = HarmonicField({}, Matrix(0, 2), Affine{{}, Matrix(4, 2)});
+  EXPECT_THROW(writeField(path_, before), DataError);
 }
 
 TEST_F(FieldFileTest, IsToldFromOtherFiles) {

@@ -34,8 +34,10 @@ class LeafBuffer {
     gradients_.reserve(3 * kLeafPoints * channels);
   }
 
-  LeafValues gather(const openvdb::Coord& origin, const LeafPlan& plan, const double* values,
-                    const double* gradients, const FieldSamples& skin, std::size_t firstRow) {
+  void gather(const openvdb::Coord& origin, const LeafPlan& plan, const double* values,
+              const double* gradients, const FieldSamples& skin, std::size_t firstRow) {
+    origin_ = origin;
+    hasGradients_ = gradients != nullptr;
     auto cut = plan.cut.begin();
     auto outside = plan.skin.begin();
     for (std::size_t i = 0; i < kLeafPoints; ++i) {
@@ -48,9 +50,30 @@ class LeafBuffer {
         ++outside;
       }
     }
-    return {origin,          offsets_.size(), channels_,
+  }
+
+  LeafValues leaf() const {
+    return {origin_,         offsets_.size(), channels_,
             offsets_.data(), shares_.data(),  beyond_.data(),
-            inside_.data(),  values_.data(),  gradients ? gradients_.data() : nullptr};
+            inside_.data(),  values_.data(),  hasGradients_ ? gradients_.data() : nullptr};
+  }
+
+  std::size_t insideCount() const {
+    return static_cast<std::size_t>(std::count(inside_.begin(), inside_.end(), 1));
+  }
+
+  // Calls `exchange` with each value and gradient of the voxels inside, and its place in `samples`,
+  // whose rows from `row` on are theirs.
+  template <class Exchange>
+  void forInside(FieldSamples& samples, std::size_t row, const Exchange& exchange) {
+    for (std::size_t i = 0; i < inside_.size(); ++i) {
+      if (!inside_[i]) continue;
+      for (std::size_t k = 0; k < channels_; ++k)
+        exchange(values_[channels_ * i + k], samples.values(row, k));
+      for (std::size_t k = 0; hasGradients_ && k < 3 * channels_; ++k)
+        exchange(gradients_[3 * channels_ * i + k], samples.gradients(row, k));
+      ++row;
+    }
   }
 
  private:
@@ -80,15 +103,39 @@ class LeafBuffer {
   }
 
   std::size_t channels_;
+  openvdb::Coord origin_;
+  bool hasGradients_ = false;
   std::vector<std::uint16_t> offsets_;
   std::vector<std::uint8_t> inside_;
   std::vector<double> shares_, values_, gradients_;
   Points beyond_;
 };
 
-void visitLeaves(const HarmonicField& field, const Solid& solid, const openvdb::FloatGrid& levelSet,
-                 const Leaves& leaves, std::size_t begin, std::size_t end, const LeafVisitor& visit,
-                 const VisitSettings& settings) {
+// The values that the first step gave to the voxels inside become those of the whole map.
+void finishInside(const ComposedMap& map, std::vector<LeafBuffer>& buffers,
+                  const EvaluateFieldSettings& settings) {
+  std::vector<std::size_t> first{0};
+  for (const LeafBuffer& b : buffers) first.push_back(first.back() + b.insideCount());
+  FieldSamples all;
+  all.values = Matrix(first.back(), 3);
+  if (settings.gradients) all.gradients = Matrix(first.back(), 9);
+  const auto exchange = [&](const auto& how) {
+    parallelBlocks(
+        buffers.size(), 16,
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t l = begin; l < end; ++l) buffers[l].forInside(all, first[l], how);
+        },
+        settings.progress);
+  };
+  exchange([](double& voxel, double& row) { row = voxel; });
+  map.finish(all, settings);
+  exchange([](double& voxel, double& row) { voxel = row; });
+}
+
+// `field` is the first step of `map`, where there is one.
+void visitLeaves(const HarmonicField& field, const ComposedMap* map, const Solid& solid,
+                 const openvdb::FloatGrid& levelSet, const Leaves& leaves, std::size_t begin,
+                 std::size_t end, const LeafVisitor& visit, const VisitSettings& settings) {
   const std::size_t count = end - begin;
   std::vector<LeafPlan> plans(count);
   parallelBlocks(
@@ -110,15 +157,37 @@ void visitLeaves(const HarmonicField& field, const Solid& solid, const openvdb::
     firstRow.push_back(onSkin.size());
     for (const LeafPlan::Skin& voxel : plans[l].skin) onSkin.push_back(voxel.at);
   }
-  const FieldSamples skin = field.evaluate(onSkin, {settings.accuracy, true, settings.progress});
+  const EvaluateFieldSettings all{settings.accuracy, true, settings.progress},
+      wanted{settings.accuracy, settings.gradients, settings.progress};
+  FieldSamples skin = field.evaluate(onSkin, all);
+  const auto gather = [&](LeafBuffer& buffer, std::size_t l, const double* values,
+                          const double* gradients) {
+    buffer.gather(leaves.leaf(begin + l).origin(), plans[l], values, gradients, skin, firstRow[l]);
+  };
+  if (!map || map->steps().size() == 1)
+    return field.onLattice(
+        lattice,
+        [&](std::size_t l, const double* values, const double* gradients) {
+          LeafBuffer buffer(field.channels());
+          gather(buffer, l, values, gradients);
+          visit(begin + l, buffer.leaf());
+        },
+        wanted, settings.stage);
+  map->finish(skin, all);
+  std::vector<LeafBuffer> buffers(count, LeafBuffer(field.channels()));
   field.onLattice(
       lattice,
       [&](std::size_t l, const double* values, const double* gradients) {
-        LeafBuffer buffer(field.channels());
-        visit(begin + l, buffer.gather(leaves.leaf(begin + l).origin(), plans[l], values, gradients,
-                                       skin, firstRow[l]));
+        gather(buffers[l], l, values, gradients);
       },
-      {settings.accuracy, settings.gradients, settings.progress}, settings.stage);
+      wanted, settings.stage);
+  finishInside(*map, buffers, wanted);
+  parallelBlocks(
+      count, 1,
+      [&](std::size_t first, std::size_t last) {
+        for (std::size_t l = first; l < last; ++l) visit(begin + l, buffers[l].leaf());
+      },
+      settings.progress);
 }
 
 // Sign of a point's distance where the level set tells it for sure, else 0: from a voxel the
@@ -178,36 +247,62 @@ void requireAccuracy(const VisitSettings& settings) {
   if (!(settings.accuracy > 0)) throw SettingError("accuracy", "of the sums must be above 0");
 }
 
-}  // namespace
-
-void visitField(const HarmonicField& field, const Solid& solid, const openvdb::FloatGrid& levelSet,
-                const openvdb::MaskGrid& region, const LeafVisitor& visit,
-                const VisitSettings& settings) {
+void visitAll(const HarmonicField& field, const ComposedMap* map, const Solid& solid,
+              const openvdb::FloatGrid& levelSet, const openvdb::MaskGrid& region,
+              const LeafVisitor& visit, const VisitSettings& settings) {
   requireAccuracy(settings);
   requireSameLattice(levelSet, region);
   const Leaves leaves(region.tree());
   for (std::size_t begin = 0; begin < leaves.leafCount(); begin += kLeavesTogether)
-    visitLeaves(field, solid, levelSet, leaves, begin,
+    visitLeaves(field, map, solid, levelSet, leaves, begin,
                 std::min(begin + kLeavesTogether, leaves.leafCount()), visit, settings);
 }
 
-ExtendedSamples sampleExtended(const HarmonicField& field, const Solid& solid,
-                               const openvdb::FloatGrid& levelSet, const Points& points,
-                               const VisitSettings& settings) {
+// f: a field or a map.
+template <class Function>
+ExtendedSamples extendedSamples(const Function& f, const Solid& solid,
+                                const openvdb::FloatGrid& levelSet, const Points& points,
+                                const VisitSettings& settings) {
   requireAccuracy(settings);
   ExtendedSamples out;
   out.beyond.resize(points.size());
   Points at(points.size());
   placeOutside(solid, levelSet, points, out, at, settings.progress);
-  out.samples = field.evaluate(at, {settings.accuracy, true, settings.progress});
+  out.samples = f.evaluate(at, {settings.accuracy, true, settings.progress});
   Matrix& values = out.samples.values;
-  for (std::size_t k = 0; k < field.channels(); ++k)
+  for (std::size_t k = 0; k < values.columns(); ++k)
     for (int a = 0; a < 3; ++a) {
       const double* gradient = out.samples.gradients.column(3 * k + static_cast<std::size_t>(a));
       for (std::size_t i = 0; i < points.size(); ++i)
         values(i, k) += gradient[i] * out.beyond[i][a];
     }
   return out;
+}
+
+}  // namespace
+
+void visitField(const HarmonicField& field, const Solid& solid, const openvdb::FloatGrid& levelSet,
+                const openvdb::MaskGrid& region, const LeafVisitor& visit,
+                const VisitSettings& settings) {
+  visitAll(field, nullptr, solid, levelSet, region, visit, settings);
+}
+
+void visitField(const ComposedMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
+                const openvdb::MaskGrid& region, const LeafVisitor& visit,
+                const VisitSettings& settings) {
+  visitAll(map.steps().front().field(), &map, solid, levelSet, region, visit, settings);
+}
+
+ExtendedSamples sampleExtended(const HarmonicField& field, const Solid& solid,
+                               const openvdb::FloatGrid& levelSet, const Points& points,
+                               const VisitSettings& settings) {
+  return extendedSamples(field, solid, levelSet, points, settings);
+}
+
+ExtendedSamples sampleExtended(const ComposedMap& map, const Solid& solid,
+                               const openvdb::FloatGrid& levelSet, const Points& points,
+                               const VisitSettings& settings) {
+  return extendedSamples(map, solid, levelSet, points, settings);
 }
 
 }  // namespace innermap

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "innermap/core/progress.h"
-#include "innermap/field/harmonic_field.h"
+#include "innermap/field/harmonic_map.h"
 #include "innermap/levelset/solid.h"
 
 namespace innermap {
@@ -47,6 +47,12 @@ void visitField(const HarmonicField& field, const Solid& solid, const openvdb::F
                 const openvdb::MaskGrid& region, const LeafVisitor& visit,
                 const VisitSettings& settings);
 
+// The same of a map: three channels. The first of its steps is summed on the lattice, the others at
+// points.
+void visitField(const ComposedMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
+                const openvdb::MaskGrid& region, const LeafVisitor& visit,
+                const VisitSettings& settings);
+
 // The same at any points, world units: values #points x K, gradients #points x 3 K. beyond: as
 // above, #points. levelSet only tells which points are near the surface.
 struct ExtendedSamples {
@@ -54,6 +60,9 @@ struct ExtendedSamples {
   Points beyond;
 };
 ExtendedSamples sampleExtended(const HarmonicField& field, const Solid& solid,
+                               const openvdb::FloatGrid& levelSet, const Points& points,
+                               const VisitSettings& settings);
+ExtendedSamples sampleExtended(const ComposedMap& map, const Solid& solid,
                                const openvdb::FloatGrid& levelSet, const Points& points,
                                const VisitSettings& settings);
 

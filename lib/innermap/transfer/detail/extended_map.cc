@@ -51,7 +51,7 @@ std::vector<MapSample> ExtendedMap::at(const Points& points, Progress* progress)
 
 std::vector<MapSample> ExtendedMap::nearAt(const Points& points, Progress* progress) const {
   const ExtendedSamples extended =
-      sampleExtended(map_.field(), solid_, levelSet_, points, {accuracy_, {}, progress});
+      sampleExtended(map_, solid_, levelSet_, points, {accuracy_, {}, progress});
   std::vector<MapSample> out(points.size());
   constexpr std::size_t kBlock = 4096;
   parallelBlocks(
@@ -72,7 +72,7 @@ std::vector<MapSample> ExtendedMap::nearAt(const Points& points, Progress* progr
 
 void ExtendedMap::visit(const openvdb::MaskGrid& region, const Visitor& visit,
                         std::string_view stage, Progress* progress) const {
-  visitField(map_.field(), solid_, levelSet_, region,
+  visitField(map_, solid_, levelSet_, region,
              [&](std::size_t leaf, const LeafValues& values) {
                std::vector<MapSample> samples(values.count);
                for (std::size_t i = 0; i < values.count; ++i) {

@@ -26,7 +26,7 @@ struct MapSample {
 class ExtendedMap {
  public:
   // accuracy: of the sums, world units of the target.
-  ExtendedMap(const HarmonicMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
+  ExtendedMap(const ComposedMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
               const OutsideSettings& outside, double accuracy)
       : map_(map), solid_(solid), levelSet_(levelSet), outside_(outside), accuracy_(accuracy) {}
 
@@ -38,7 +38,7 @@ class ExtendedMap {
   void visit(const openvdb::MaskGrid& region, const Visitor& visit, std::string_view stage,
              Progress* progress) const;
 
-  const HarmonicMap& map() const { return map_; }
+  const ComposedMap& map() const { return map_; }
   const Solid& solid() const { return solid_; }
   const openvdb::FloatGrid& levelSet() const { return levelSet_; }
   double accuracy() const { return accuracy_; }
@@ -52,7 +52,7 @@ class ExtendedMap {
   std::vector<MapSample> nearAt(const Points& points, Progress* progress) const;
   void fade(const Vec3& p, const Vec3& beyond, MapSample& sample) const;
 
-  const HarmonicMap& map_;
+  const ComposedMap map_;  // by value: often made of one harmonic map for the call
   const Solid& solid_;
   const openvdb::FloatGrid& levelSet_;
   const OutsideSettings& outside_;

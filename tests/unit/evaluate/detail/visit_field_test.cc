@@ -38,6 +38,41 @@ struct Scene {
   }
 };
 
+// A map in two steps: values and gradients are those of its evaluation at points, outside too.
+TEST(VisitField, MapsInSteps) {
+  const Scene scene;
+  Affine affine;
+  affine.coefficients = Matrix(4, 3);
+  for (std::size_t k = 0; k < 3; ++k) affine.coefficients(1 + k, k) = 1;
+  Matrix weights(1, 3);
+  weights(0, 1) = 0.2;
+  const HarmonicMap step(HarmonicField({{0, 0, 1.6}}, weights, affine));
+  const ComposedMap map({step, step});
+  std::atomic<std::size_t> visited{0};
+  std::vector<double> error(scene.region->tree().leafCount(), 0);
+  visitField(map, scene.solid, *scene.levelSet, *scene.region,
+             [&](std::size_t leaf, const LeafValues& v) {
+               for (std::size_t i = 0; i < v.count; ++i) {
+                 const openvdb::Coord ijk =
+                     v.origin + openvdb::MaskTree::LeafNodeType::offsetToLocalCoord(v.offset[i]);
+                 const openvdb::Vec3d w = scene.levelSet->transform().indexToWorld(ijk);
+                 const Vec3 at = Vec3{w.x(), w.y(), w.z()} - v.beyond[i];
+                 const Mat3 j = map.jacobian(at);
+                 const Vec3 wanted = map(at) + j * v.beyond[i];
+                 for (int r = 0; r < 3; ++r) {
+                   error[leaf] = std::max(error[leaf], std::abs(v.values[3 * i + r] - wanted[r]));
+                   for (int a = 0; a < 3; ++a)
+                     error[leaf] = std::max(
+                         error[leaf], 1e-2 * std::abs(v.gradients[9 * i + 3 * r + a] - j[r][a]));
+                 }
+                 ++visited;
+               }
+             },
+             {1e-9, {}, nullptr});
+  EXPECT_EQ(visited, scene.region->activeVoxelCount());
+  EXPECT_LT(*std::max_element(error.begin(), error.end()), 1e-7);
+}
+
 TEST(VisitField, ValuesInsideAndBeyond) {
   const Scene scene;
   const HarmonicField field = twoChannels();

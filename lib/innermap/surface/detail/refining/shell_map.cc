@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <memory>
+#include <numeric>
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/surface/detail/refining/decimate.h"
+#include "innermap/surface/detail/refining/layout_map.h"
 #include "innermap/surface/detail/refining/map_refiner.h"
 #include "innermap/surface/detail/sphere/sphere_candidates.h"
 #include "innermap/surface/detail/sphere/sphere_layout.h"
@@ -18,6 +21,7 @@ namespace innermap {
 namespace {
 
 constexpr std::size_t kTried = 10;    // candidates that are refined to
+constexpr std::size_t kJudged = 40;   // first maps that a judge hears
 constexpr std::size_t kMiddle = 600;  // vertices before the best are chosen
 constexpr std::size_t kCoarse = 150;
 
@@ -53,8 +57,87 @@ void refineAll(Refiners& refiners, std::size_t vertices, Progress* progress) {
   refiners = std::move(out);
 }
 
-ShellMap bestOf(Refiners refiners, std::size_t vertices, const std::string& name,
+// Images of a judge's points by a layout of A's shell on B's model space.
+Points imagesOf(const std::vector<SurfacePoint>& points, const ClosedSurface& surface,
+                const Layout& image, const LaidOutShell& b, const Locator& onB) {
+  const Locator none(surface.triangles, image);
+  const LayoutMap map({surface, image, none}, {b.surface, b.layout, onB});
+  Points out;
+  for (const SurfacePoint& p : points) out.push_back(map.at(p.triangle, p.barycentric).position);
+  return out;
+}
+
+// The judge's points on the coarse surface, by A's own layout.
+std::vector<SurfacePoint> onCoarse(const std::vector<SurfacePoint>& points, const LaidOutShell& a,
+                                   const CoarseSurface& coarse) {
+  Layout own = a.layout;
+  own.place.clear();
+  for (const int v : coarse.vertex) own.place.push_back(a.layout.place[v]);
+  const Locator locator(coarse.surface.triangles, own);
+  std::vector<SurfacePoint> out;
+  for (const SurfacePoint& p : points) {
+    Vec3 ray;
+    for (int k = 0; k < 3; ++k)
+      ray += p.barycentric[k] * a.layout.corner(a.surface.triangles, p.triangle, k);
+    ray = ray / norm(ray);
+    const Located where = locator.find(ray);
+    out.push_back({where.triangle, locator.barycentric(ray, where)});
+  }
+  return out;
+}
+
+// Orders first maps by the judge's score.
+std::vector<ConsideredMap> judged(Candidates& candidates, const LaidOutShell& a,
+                                  const LaidOutShell& b, const ShellMapSettings& settings) {
+  const std::vector<SurfacePoint> points = onCoarse(settings.judge->at, a, candidates.coarse);
+  const Locator onB(b.surface.triangles, b.layout);
+  std::vector<double> score(candidates.maps.size());
+  parallelBlocks(
+      score.size(), 1,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          score[i] = settings.judge->score(
+              imagesOf(points, candidates.coarse.surface, candidates.maps[i].image, b, onB));
+      },
+      settings.progress, "judging first maps");
+  std::vector<std::size_t> order(score.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t x, std::size_t y) { return score[x] < score[y]; });
+  std::vector<ConsideredMap> out;
+  std::vector<CoarseMap> maps;
+  for (const std::size_t i : order) {
+    out.push_back({candidates.maps[i].origin, candidates.maps[i].energy, score[i]});
+    maps.push_back(std::move(candidates.maps[i]));
+  }
+  candidates.maps = std::move(maps);
+  return out;
+}
+
+// Of refined maps the one that the judge likes best.
+ShellMap choose(const Refiners& refiners, const LaidOutShell& a, const LaidOutShell& b,
                 const ShellMapSettings& settings) {
+  const Locator onB(b.surface.triangles, b.layout);
+  ShellMap best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& refiner : refiners) {
+    ShellMap map;
+    map.energy = refiner->energy();
+    map.origin = refiner->origin();
+    map.image = refiner->takeImage();
+    if (!settings.judge) return map;  // the least energy comes first
+    const double score =
+        settings.judge->score(imagesOf(settings.judge->at, a.surface, map.image, b, onB));
+    if (!(score < least)) continue;
+    least = score;
+    best = std::move(map);
+  }
+  return best;
+}
+
+ShellMap bestOf(Refiners refiners, const LaidOutShell& a, const LaidOutShell& b,
+                const ShellMapSettings& settings) {
+  const std::size_t vertices = a.surface.vertices.size();
   const std::size_t kept = static_cast<std::size_t>(settings.candidates);
   if (refiners.size() > kept) {
     refineAll(refiners, std::min(kMiddle, vertices), settings.progress);
@@ -62,14 +145,10 @@ ShellMap bestOf(Refiners refiners, std::size_t vertices, const std::string& name
   }
   refineAll(refiners, vertices, settings.progress);
   if (refiners.empty())
-    throw DataError(name +
+    throw DataError(a.surface.name +
                     ": no map without flips was found; remove slivers from the mesh, or give "
                     "landmarks");
-  ShellMap out;
-  out.energy = refiners.front()->energy();
-  out.origin = refiners.front()->origin();
-  out.image = refiners.front()->takeImage();
-  return out;
+  return choose(refiners, a, b, settings);
 }
 
 RefineSettings refining(const ClosedSurface& surface, const ShellMapSettings& settings) {
@@ -87,18 +166,27 @@ ShellMap mapSphere(const LaidOutShell& a, const LaidOutShell& b, const ShellMapS
   search.landmarks = settings.landmarks;
   search.aligned = settings.aligned;
   search.thorough = settings.refine;
-  search.kept =
-      settings.refine ? std::max(kTried, static_cast<std::size_t>(settings.candidates)) : 1;
+  search.kept = settings.judge    ? kJudged
+                : settings.refine ? std::max(kTried, static_cast<std::size_t>(settings.candidates))
+                                  : 1;
   search.seed = settings.seed;
   search.progress = settings.progress;
-  const Candidates candidates =
+  Candidates candidates =
       sphereCandidates(a.surface, a.layout, a.tips, b.surface, b.metric, b.tips, search);
+  std::vector<ConsideredMap> considered;
+  if (settings.judge) {
+    considered = judged(candidates, a, b, settings);
+    const std::size_t best = settings.refine ? static_cast<std::size_t>(settings.candidates) : 1;
+    if (candidates.maps.size() > best) candidates.maps.resize(best);
+  }
   const RefineSettings how = refining(a.surface, settings);
   Refiners refiners;
   for (const CoarseMap& m : candidates.maps)
     refiners.push_back(std::make_unique<MapRefiner>(a.surface, candidates.mesh, candidates.coarse,
                                                     m, b.metric, how));
-  return bestOf(std::move(refiners), a.surface.vertices.size(), a.surface.name, settings);
+  ShellMap out = bestOf(std::move(refiners), a, b, settings);
+  out.considered = std::move(considered);
+  return out;
 }
 
 // Each candidate has frames of its own, so each is coarsened by itself.
@@ -153,7 +241,7 @@ ShellMap mapTorus(const LaidOutShell& a, const LaidOutShell& b, const ShellMapSe
     throw DataError(
         "landmarks: no map without flips was found that meets them all; check them, or leave some "
         "out");
-  return bestOf(std::move(refiners), a.surface.vertices.size(), a.surface.name, settings);
+  return bestOf(std::move(refiners), a, b, settings);
 }
 
 }  // namespace

@@ -33,6 +33,7 @@ struct ShellMapSettings {
   bool aligned = false;
   int candidates = 3;  // that are refined to the end
   bool refine = true;
+  const MapJudge* judge = nullptr;  // none: the least energy decides
   std::uint64_t seed = 1;
   Progress* progress = nullptr;
 };
@@ -41,6 +42,7 @@ struct ShellMap {
   Layout image;        // of A on B's model space
   double energy = 0;   // both ways, 8 for an isometry
   std::string origin;  // of the candidate that became it
+  std::vector<ConsideredMap> considered;
 };
 
 // Throws DataError where no map without flips was found (landmarks that contradict one another),

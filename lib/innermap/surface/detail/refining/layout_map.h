@@ -54,9 +54,9 @@ struct LaidOut {
 };
 
 // What `a` and `b` refer to must outlive it. Immutable; safe from any number of threads.
-class ComposedMap {
+class LayoutMap {
  public:
-  ComposedMap(const LaidOut& a, const LaidOut& b) : a_(a), b_(b) {}
+  LayoutMap(const LaidOut& a, const LaidOut& b) : a_(a), b_(b) {}
 
   struct Image {
     int triangle = -1;  // of B

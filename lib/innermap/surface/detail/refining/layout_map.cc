@@ -1,4 +1,4 @@
-#include "innermap/surface/detail/refining/composed_map.h"
+#include "innermap/surface/detail/refining/layout_map.h"
 
 #include <algorithm>
 
@@ -30,7 +30,7 @@ FlatTriangle::FlatTriangle(const Vec3& a, const Vec3& b, const Vec3& c) {
   along[1] = {(x / length - 1) / y, -x / (length * y), 1 / y};
 }
 
-bool ComposedMap::derivative(int triangleA, int triangleB, const Vec3& ray, Stretches& out) const {
+bool LayoutMap::derivative(int triangleA, int triangleB, const Vec3& ray, Stretches& out) const {
   const auto a = cornersOf(a_.surface, triangleA), b = cornersOf(b_.surface, triangleB);
   const FlatTriangle flat(a[0], a[1], a[2]);
   if (flat.sliver || FlatTriangle(b[0], b[1], b[2]).sliver) return false;
@@ -50,11 +50,11 @@ bool ComposedMap::derivative(int triangleA, int triangleB, const Vec3& ray, Stre
   return out.s2 > 0 && std::isfinite(out.s1);
 }
 
-Located ComposedMap::find(const LaidOut& on, const Vec3& ray) const {
+Located LayoutMap::find(const LaidOut& on, const Vec3& ray) const {
   return on.locator.find(on.layout.space == ModelSpace::sphere ? ray / norm(ray) : ray);
 }
 
-ComposedMap::Image ComposedMap::at(int triangle, const std::array<double, 3>& barycentric) const {
+LayoutMap::Image LayoutMap::at(int triangle, const std::array<double, 3>& barycentric) const {
   const Vec3 ray = a_.ray(triangle, barycentric);
   const Located where = find(b_, ray);
   Image image;
@@ -66,8 +66,7 @@ ComposedMap::Image ComposedMap::at(int triangle, const std::array<double, 3>& ba
   return image;
 }
 
-ComposedMap::Preimage ComposedMap::of(int triangle,
-                                      const std::array<double, 3>& barycentric) const {
+LayoutMap::Preimage LayoutMap::of(int triangle, const std::array<double, 3>& barycentric) const {
   Vec3 ray = b_.ray(triangle, barycentric);
   const Located where = find(a_, ray);
   const std::array<double, 3> onA = a_.locator.barycentric(ray, where);

@@ -1,0 +1,50 @@
+// Shapes between a surface and its image, for maps that go there in steps.
+//
+// Each triangle's deformation is parted into a rotation and a stretch; the rotation goes by its
+// angle, the stretch linearly, and the vertices follow by least squares over the edges: Xu, Zhang,
+// Wang and Bao, "Poisson shape interpolation" (SPM 2005), with the triangle frames of Sumner and
+// Popovic, "Deformation transfer for triangle meshes" (SIGGRAPH 2004). What the whole surface
+// turns, moves and grows is left out of the way, and put back at its end.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "innermap/field/harmonic_field.h"
+#include "innermap/mesh/mesh.h"
+
+namespace innermap {
+
+// p -> scale rotation p + translation.
+struct Similarity {
+  double scale = 1;
+  Mat3 rotation{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  Vec3 translation;
+
+  Vec3 operator()(const Vec3& p) const { return scale * (rotation * p) + translation; }
+};
+
+class ShapePath {
+ public:
+  // from, to: positions of the vertices of `triangles`. growth: the cube root of the volumes'
+  // ratio, above 0. Vertices in no triangle go straight.
+  ShapePath(const Points& from, const Points& to, const std::vector<Triangle>& triangles,
+            double growth);
+  ~ShapePath();
+  ShapePath(ShapePath&&) noexcept;
+
+  // t in [0, 1]. At 0 `from`; at 1 `to`, turned, moved and scaled to lie as `from` does.
+  Points at(double t) const;
+
+  // From at(1) to `to`.
+  const Similarity& rest() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<const Implementation> implementation_;
+};
+
+// The field p -> motion(field(p)). Three channels.
+HarmonicField movedBy(const Similarity& motion, const HarmonicField& field);
+
+}  // namespace innermap

@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""--one-to-one: maps in steps, where one harmonic map folds."""
+
+import math
+import os
+
+from cli import fails, icosphere_arrays, innermap, no_leftovers, read_json, run, write_obj
+
+
+def dented(p):
+    """A ball pushed in deeply; one harmonic map folds there."""
+    angle = math.acos(max(-1.0, min(1.0, p[2])))
+    return (p[0], p[1], p[2] - 0.85 * math.exp(-(angle / 0.6) ** 2))
+
+
+def pair():
+    vertices, faces = icosphere_arrays(4)
+    write_obj("ball.obj", vertices, faces)
+    write_obj("dented.obj", [dented(p) for p in vertices], faces)
+
+
+def mapped(*options, **others):
+    innermap("map", "ball.obj", "dented.obj", "-o", "out", "--quiet", "--resolution", "48",
+             "--tolerance", "0.002", *options, **others)
+    return read_json("out/report.json")
+
+
+def test_steps_where_one_map_folds():
+    pair()
+    report = mapped("--one-to-one", "off")
+    assert report["jacobian"]["folded_fraction"] > 0.005, report["jacobian"]
+    assert "inside" not in report and "steps" not in report
+    report = mapped()
+    assert report["steps"]["count"] > 1 and report["steps"]["to"][-1] == 1, report["steps"]
+    assert report["inside"]["folded"] == 0 and report["inside"]["folded_at"] == [], report["inside"]
+    assert report["jacobian"]["folded_fraction"] < 1e-4, report["jacobian"]
+    assert report["tolerance"]["met"], report["tolerance"]
+    assert any("one harmonic map folds" in note for note in report["notes"]), report["notes"]
+
+
+def test_what_takes_maps_takes_steps():
+    pair()
+    mapped()
+    assert "harmonic steps" in innermap("info", "out/map.ply").stdout
+    innermap("evaluate", "out/map.ply", "-o", "again.vdb", "--resolution", "48", "--quiet",
+             "--report", "again.json")
+    first, again = read_json("out/report.json"), read_json("again.json")
+    for section in ("energy", "jacobian", "grid"):
+        assert first[section] == again[section], (first[section], again[section])
+    innermap("voxelize", "ball.obj", "-o", "ball.vdb", "--resolution", "48", "--fog", "--quiet")
+    innermap("push", "out/map.ply", "ball.vdb", "-o", "there.vdb", "--densities", "density",
+             "--report", "push.json", "--quiet")
+    push = read_json("push.json")
+    assert push["inverse"]["inverted_fraction"] > 0.998, push["inverse"]
+    # Below the dent volumes shrink three hundredfold, within a few of these voxels.
+    mass = push["mass"]
+    assert abs(mass["density_after"] / mass["density_before"] - 1) < 0.03, mass
+    innermap("pull", "out/map.ply", "there.vdb", "-o", "back.vdb", "--quiet")
+    innermap("transfer-distance", "out/map.ply", "-o", "distance", "--resolution", "32", "--quiet")
+    assert read_json("distance/report.json")["distance"]["outside_fraction"] < 0.01
+
+
+def test_what_cannot_be_one_to_one_is_said():
+    pair()
+    done = innermap("map", "ball.obj", "dented.obj", "-o", "out", "--quiet", "--resolution", "32",
+                    "--one-to-one", "on", "--max-steps", "1", exit_code=1)
+    assert "--one-to-one on is not met" in done.stderr, done.stderr
+    assert len(read_json("out/report.json")["inside"]["folded_at"]) >= 3
+    assert os.path.exists("out/map.vdb")
+    fails(1, "fit", "ball.obj", "dented.obj", "-o", "m.ply", "--one-to-one", "on", "--sources",
+          "300", says=["--one-to-one"])
+    no_leftovers("ball.obj", "dented.obj", "out")
+
+
+run(globals())
