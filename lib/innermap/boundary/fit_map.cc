@@ -25,6 +25,7 @@ constexpr std::size_t kPlanSources = 600;  // of the coarse fits that plan steps
 // less is tried where it does not.
 constexpr double kStepShare = 1.0 / 3, kLess = 0.8;
 constexpr int kTries = 2;
+constexpr double kWorthIt = 0.2;       // of the folds may be left
 constexpr double kSumAccuracy = 1e-7;  // of the target's diagonal, of what is checked inside
 constexpr PointCounts kVertexTrial{kFirstSources, 4 * kFirstSources, kFirstSources};
 
@@ -156,8 +157,10 @@ class MapFitter {
     for (int i = 0; i < kTries; ++i) {
       Outcome steps = inSteps(share * settings_.tolerance);
       const double reached = steps.error.p99 / settings_.tolerance;
-      const bool better = steps.inside.folded < out.inside.folded ||
-                          (i > 0 && steps.inside.folded <= out.inside.folded);
+      // Steps lose some of a map's smoothness beside the surface: they must be worth it.
+      const double enough = i > 0 ? out.inside.folded : kWorthIt * out.inside.folded;
+      const bool better =
+          on ? steps.inside.folded <= out.inside.folded : steps.inside.folded <= enough;
       if (better) out = std::move(steps);
       if (!better || reached <= 1) return;
       share *= kLess / reached;

@@ -45,7 +45,7 @@ std::size_t shellCollocation(const ShellSettings& shell);
 // is checked is folded. off: one harmonic map.
 enum class OneToOne { automatic, on, off };
 
-constexpr double kManyFolds = 1e-3, kManyOutside = 1e-2;
+constexpr double kManyFolds = 5e-3, kManyOutside = 1e-2;
 
 struct FitMapSettings {
   // 99% of the boundary shall lie within it; fraction of the target's diagonal, in
