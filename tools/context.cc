@@ -18,8 +18,6 @@ Context::Context(const CommonOptions& options, TerminalProgress& progress)
   if (maxMemory_ == 0) throw SettingError("--max-memory", "must be above 0; write for example 4GB");
 }
 
-Context::~Context() = default;
-
 Progress* Context::progress() const { return &progress_; }
 
 void Context::setPart(const std::string& part) { progress_.setPart(part); }

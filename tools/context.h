@@ -31,7 +31,6 @@ struct CommonOptions {
 class Context {
  public:
   Context(const CommonOptions& options, TerminalProgress& progress);
-  ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 

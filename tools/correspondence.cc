@@ -44,19 +44,14 @@ void reportMap(const MeshCorrespondence& map, Report& report) {
   set("target_isosurface", map.b.standIn);
 }
 
-// First maps of the shells that the inside chose between, best first.
-void reportConsidered(const MeshCorrespondence& map, Report& report) {
+// First maps of the first shell, which the inside chose between, best first.
+void reportConsidered(const std::vector<ConsideredMap>& maps, Report& report) {
+  if (maps.empty()) return;
   std::vector<std::string> origins;
-  std::vector<ConsideredMap> all;
-  for (const ShellCorrespondence& shell : map.map.shells)
-    for (const ConsideredMap& m : shell.considered) {
-      origins.push_back(m.origin);
-      all.push_back(m);
-    }
-  if (all.empty()) return;
+  for (const ConsideredMap& m : maps) origins.push_back(m.origin);
   report.set("correspondence.considered.origin", origins);
-  report.setColumn("correspondence.considered.energy", all, [](auto& m) { return m.energy; });
-  report.setColumn("correspondence.considered.score", all, [](auto& m) { return m.score; });
+  report.setColumn("correspondence.considered.energy", maps, [](auto& m) { return m.energy; });
+  report.setColumn("correspondence.considered.score", maps, [](auto& m) { return m.score; });
 }
 
 std::string qualityText(const MapQuality& q, ModelSpace space, bool standIn) {
@@ -148,7 +143,7 @@ MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const CorrespondOptions& opt
   MeshCorrespondence map = innermap::correspondMeshes(std::move(laidA), std::move(laidB), settings);
   context.tell(map);
   reportMap(map, context.report());
-  reportConsidered(map, context.report());
+  reportConsidered(map.map.shells.front().considered, context.report());
   context.print(
       qualityText(map.quality, map.map.shells.front().image.space, map.a.standIn || map.b.standIn));
   return map;

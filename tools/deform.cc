@@ -167,11 +167,6 @@ std::string lineOf(const FrameFile& frame, const DeformRow& row, double seconds)
                      s.voxels, 100 * s.invertedInside(), row.error.rms, row.error.p99, seconds);
 }
 
-std::string header() {
-  return fmt::format("{:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "frame", "voxels", "inverted %",
-                     "error rms", "error 99%", "seconds");
-}
-
 // Figures of the frames that were made now; those of others are missing.
 void fillReport(const std::map<std::size_t, DeformRow>& rows, const Frames& frames,
                 Report& report) {
@@ -246,7 +241,8 @@ void run(const DeformOptions& options, Context& context) {
   if (left.wanted.empty()) return;
   Deformer deformer(options, left, context);
   std::map<std::size_t, DeformRow> rows;
-  context.print(header());
+  context.print(fmt::format("{:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "frame", "voxels",
+                            "inverted %", "error rms", "error 99%", "seconds"));
   const auto results = runFrames(left, true, context, [&](std::size_t index) {
     const FrameFile& frame = frames.all[index];
     StageSeconds seconds;

@@ -13,7 +13,9 @@ struct FitOptions {
   FittingOptions fitting;
 };
 
-BoundaryPair readPair(const FitOptions& options, Context& context) {
+void run(const FitOptions& options, Context& context) {
+  checkFittingOptions(options.fitting);
+  context.output(options.output);
   Mesh source = readMeshFile(options.source, context);
   Mesh target = context.timed("read", [&] {
     return readMeshLike(options.target, source, context.settings<ReadSettings>());
@@ -21,13 +23,6 @@ BoundaryPair readPair(const FitOptions& options, Context& context) {
   BoundaryPair pair =
       makeBoundaryPair(std::move(source), std::move(target), context.settings<BoundarySettings>());
   reportBoundaries(pair, context);
-  return pair;
-}
-
-void run(const FitOptions& options, Context& context) {
-  checkFittingOptions(options.fitting);
-  context.output(options.output);
-  BoundaryPair pair = readPair(options, context);
   const FitMapSettings settings =
       fitMapSettings(options.fitting, pair.source.mesh.vertices.size(), context);
   if (context.dryRun())

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "innermap/core/memory.h"
-#include "memory_limit.h"
 
 namespace innermap::tool {
 namespace {
@@ -180,7 +179,7 @@ void requireFittingMemory(const FitMapSettings& settings) {
   };
   requireMemoryFor(fmt::format("fitting {} sources", settings.shell->sources),
                    fitMapMemory(settings), settings.maxMemory,
-                   {"--sources", 1, settings.shell->sources, need});
+                   {"--sources", 1, settings.shell->sources, need}, "raise --max-memory");
 }
 
 }  // namespace innermap::tool

@@ -8,7 +8,6 @@
 #include "innermap/mesh/read.h"
 #include "inputs.h"
 #include "map_report.h"
-#include "memory_limit.h"
 
 namespace innermap::tool {
 namespace {

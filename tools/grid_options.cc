@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "innermap/core/memory.h"
-#include "memory_limit.h"
 
 namespace innermap::tool {
 namespace {
@@ -31,7 +30,7 @@ void requireGridMemory(const std::string& doing, const GridOptions& options, con
     return need(other);
   };
   requireMemoryFor(doing, need(options), context.maxMemory(),
-                   {"--resolution", kLeast, kMost, needAt});
+                   {"--resolution", kLeast, kMost, needAt}, "raise --max-memory");
 }
 
 void addNamesOption(Command& command, NamingScheme& names) {

@@ -84,19 +84,17 @@ void reportSteps(const MapFit& fit, OneToOne wanted, Context& context) {
   const auto& steps = fit.steps;
   report.set("steps.count", std::max<std::size_t>(1, steps.size()));
   if (!steps.empty()) {
-    report.setColumn("steps.from", steps, [](const MapStep& s) { return s.from; });
     report.setColumn("steps.to", steps, [](const MapStep& s) { return s.to; });
     report.setColumn("steps.sources", steps, [](const MapStep& s) { return s.sources; });
     report.setColumn("steps.p99", steps, [](const MapStep& s) { return s.error; });
     report.setColumn("steps.folded", steps, [](const MapStep& s) { return s.folded; });
   }
   if (wanted != OneToOne::on || inside.folded == 0) return;
-  const Vec3& first = inside.foldedAt.front();
+  const Vec3& p = inside.foldedAt.front();
   context.failAfterwards(fmt::format(
-      "--one-to-one on is not met: {:.2g}% of the inside is folded after {} step{}, first near "
-      "({:.4g}, {:.4g}, {:.4g}); more places are in the report, or use more --max-steps",
-      100 * inside.folded, std::max<std::size_t>(1, steps.size()), steps.size() > 1 ? "s" : "",
-      first.x, first.y, first.z));
+      "--one-to-one on is not met: {:.2g}% of the inside is folded, first near ({:.4g}, {:.4g}, "
+      "{:.4g}); the report has more places; use more --max-steps",
+      100 * inside.folded, p.x, p.y, p.z));
 }
 
 void reportTolerance(const MapFit& fit, const FitMapSettings& settings, bool bestEffort,

@@ -77,4 +77,19 @@ std::uint64_t parseBytes(const std::string& setting, const std::string& text) {
   return static_cast<std::uint64_t>(bytes);
 }
 
+void requireMemoryFor(const std::string& doing, std::uint64_t bytes, std::uint64_t limit,
+                      const SizeOption& size, const std::string& otherwise) {
+  std::uint64_t lower = size.least, upper = size.most;
+  while (lower < upper) {
+    const std::uint64_t middle = lower + (upper - lower + 1) / 2;
+    if (size.need(middle) <= limit)
+      lower = middle;
+    else
+      upper = middle - 1;
+  }
+  const bool fits = size.need(lower) <= limit;
+  requireMemory(doing, bytes, limit,
+                fits ? fmt::format("use {} {} or {}", size.setting, lower, otherwise) : otherwise);
+}
+
 }  // namespace innermap

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 namespace innermap {
@@ -10,6 +11,18 @@ namespace innermap {
 // `what`, the need, the limit, and ends with `advice`: settings that would fit.
 void requireMemory(const std::string& what, std::uint64_t bytes, std::uint64_t limit,
                    const std::string& advice);
+
+// A whole number that a setting gives, and the bytes that it needs: more for more.
+struct SizeOption {
+  std::string setting;  // as messages call it
+  std::uint64_t least = 1, most = 1;
+  std::function<std::uint64_t(std::uint64_t)> need;
+};
+
+// Throws MemoryError when `bytes` are over `limit`, with the largest size that would fit, or
+// `otherwise` (what else would help). doing: "fitting 2000 charges".
+void requireMemoryFor(const std::string& doing, std::uint64_t bytes, std::uint64_t limit,
+                      const SizeOption& size, const std::string& otherwise);
 
 // Physical memory of the machine, or of the control group the process runs in, in bytes.
 std::uint64_t availableMemory();

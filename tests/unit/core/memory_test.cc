@@ -49,5 +49,22 @@ TEST(Memory, PeakGrowsWithUse) {
   EXPECT_GE(availableMemory(), peakMemory());
 }
 
+TEST(Memory, SaysWhatSizeWouldFit) {
+  const SizeOption size{"points", 1, 1000, [](std::uint64_t n) { return 10 * n; }};
+  EXPECT_NO_THROW(requireMemoryFor("this", 400, 500, size, "wait"));
+  try {
+    requireMemoryFor("this", 600, 505, size, "wait");
+    FAIL();
+  } catch (const MemoryError& error) {
+    EXPECT_NE(std::string(error.what()).find("use points 50 or wait"), std::string::npos);
+  }
+  try {
+    requireMemoryFor("this", 600, 5, size, "wait");
+    FAIL();
+  } catch (const MemoryError& error) {
+    EXPECT_EQ(std::string(error.what()).find("points 1 "), std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace innermap
