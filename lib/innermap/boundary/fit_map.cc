@@ -228,7 +228,7 @@ class MapFitter {
       FitMapSettings one = settings_;
       one.interpolation = Interpolation::linear;
       one.oneToOne = OneToOne::off;
-      one.tolerance = stepTolerance;
+      one.tolerance = std::max(stepTolerance, kSmallestTolerance);
       if (coarse) one.shell = ShellSettings{};
       if (coarse) one.shell->sources = kPlanSources;
       const MapFit fit = fitMap(from, to, one);

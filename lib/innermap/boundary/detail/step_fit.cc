@@ -96,7 +96,7 @@ class StepFitter {
       const double end = ends.back();
       Fitted step = fitOne(at, end, now, coarse);
       const bool more = static_cast<int>(done.size() + ends.size()) < settings_.maxSteps;
-      if (step.record.folded > settings_.folded && more && (end - at) / 2 >= shortest) {
+      if (step.record.folded > 0 && more && (end - at) / 2 >= shortest) {
         ends.push_back(0.5 * (at + end));
         continue;
       }

@@ -23,7 +23,6 @@ struct FittedStep {
 struct StepFitSettings {
   // Of a step between two shapes of the same triangles. coarse: quick, for planning.
   std::function<FittedStep(const Mesh& from, const Mesh& to, bool coarse)> fit;
-  double folded = 0;  // share of a step's points that may be folded
   int maxSteps = 16;
   Progress* progress = nullptr;
 };
@@ -35,7 +34,7 @@ struct StepFit {
   StageSeconds seconds;                // "plan", "steps"
 };
 
-// The way is halved until, at a coarse fit, no step folds more than allowed, or there are maxSteps;
+// The way is halved until, at a coarse fit, no step folds any point, or there are maxSteps;
 // then each is fitted, and halved again where it folds. inside: points of the source. Throws what
 // settings.fit throws.
 StepFit fitInSteps(const BoundaryPair& pair, const Points& inside, const StepFitSettings& settings);

@@ -128,7 +128,7 @@ ShellMap choose(const Refiners& refiners, const LaidOutShell& a, const LaidOutSh
     if (!settings.judge) return map;  // the least energy comes first
     const double score =
         settings.judge->score(imagesOf(settings.judge->at, a.surface, map.image, b, onB));
-    if (!(score < least)) continue;
+    if (!best.image.place.empty() && !(score < least)) continue;
     least = score;
     best = std::move(map);
   }
