@@ -27,3 +27,9 @@ if(NOT TARGET innermap_lapacke)
   set_target_properties(innermap_lapacke PROPERTIES
     INTERFACE_LINK_LIBRARIES "${INNERMAP_LAPACKE};${INNERMAP_OPENBLAS}")
 endif()
+
+if(NOT TARGET innermap_lbfgs)
+  find_library(INNERMAP_LBFGS lbfgs REQUIRED)
+  add_library(innermap_lbfgs INTERFACE IMPORTED)
+  set_target_properties(innermap_lbfgs PROPERTIES INTERFACE_LINK_LIBRARIES "${INNERMAP_LBFGS}")
+endif()

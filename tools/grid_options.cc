@@ -52,12 +52,17 @@ void addEvaluationOptions(Command& c, EvaluationOptions& o) {
   addGridOptions(c, o.grid);
   c.option("--lame-lambda", "X", &o.lame.lambda, "first elastic constant").range(0, 1e12);
   c.option("--lame-mu", "X", &o.lame.mu, "second elastic constant (shear)").range(0, 1e12);
+  c.choice("--repair", "WHEN", &o.repair,
+           {{"auto", RepairFolds::automatic}, {"on", RepairFolds::on}, {"off", RepairFolds::off}},
+           "take folds out of the grids, where `repaired` says how far voxels were moved; auto: "
+           "those that maps in steps leave");
   addNamesOption(c, o.names);
 }
 
 MapGridSettings mapGridSettings(const EvaluationOptions& options, const Context& context) {
   auto settings = gridSettings<MapGridSettings>(options.grid, context);
   settings.lame = options.lame;
+  settings.repair = options.repair;
   return settings;
 }
 

@@ -48,6 +48,7 @@ void writeGridFile(const std::string& path, const openvdb::GridPtrVec& grids,
 struct EvaluationOptions {
   GridOptions grid;
   LameConstants lame;
+  RepairFolds repair = RepairFolds::automatic;
   NamingScheme names = NamingScheme::innermap;
 };
 

@@ -198,6 +198,11 @@ void reportGrids(const SolidGrids& grids, const LameConstants& lame, Context& co
   grid.interiorVoxels = values.interiorVoxels;
   report.grid = grid;
   report.set("grid.volume", values.volume);
+  if (values.repaired) {
+    report.set("repair.folded_voxels", values.foldedVoxels);
+    report.set("repair.left", values.foldedVoxelsLeft);
+    report.set("repair.farthest", values.repairedFarthest);
+  }
   context.print(fmt::format(
       "energy: harmonic {:.6g}, deformation {:.6g}\n"
       "jacobian: {:.4g} to {:.4g}, folded {:.3g}% of the volume\n"

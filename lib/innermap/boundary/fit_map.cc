@@ -15,17 +15,13 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kFreshSamples = 20000;
 constexpr double kPointsPerSource = 4, kPointsPerManySources = 3;
 // A first fit where a tolerance is asked for: enough to tell smooth deformations from others.
 constexpr std::size_t kFirstSources = 1000, kTrialSources = 200;
 constexpr std::size_t kInside = 20000, kPlaces = 16;
-constexpr std::size_t kPlanSources = 600;  // of the coarse fits that plan steps
-// The errors of steps add up: a share of the tolerance that mostly holds the whole, and how much
-// less is tried where it does not.
-constexpr double kStepShare = 1.0 / 3, kLess = 0.8;
-constexpr int kTries = 2;
-constexpr double kWorthIt = 0.2;       // of the folds may be left
+// Single points beside the surface fold where charges are near them; smaller steps do not cure that.
+constexpr double kFewFolds = 4e-4;
+constexpr double kWorthIt = 0.2;       // of one map's folds may be left by steps
 constexpr double kSumAccuracy = 1e-7;  // of the target's diagonal, of what is checked inside
 constexpr PointCounts kVertexTrial{kFirstSources, 4 * kFirstSources, kFirstSources};
 
@@ -153,18 +149,8 @@ class MapFitter {
     if (settings_.shell || !(pair_.target.volume > 0)) return;
     const bool on = settings_.oneToOne == OneToOne::on;
     if (out.inside.folded <= (on ? 0 : kManyFolds) && out.inside.outside <= kManyOutside) return;
-    double share = kStepShare;
-    for (int i = 0; i < kTries; ++i) {
-      Outcome steps = inSteps(share * settings_.tolerance);
-      const double reached = steps.error.p99 / settings_.tolerance;
-      // Steps lose some of a map's smoothness beside the surface: they must be worth it.
-      const double enough = i > 0 ? out.inside.folded : kWorthIt * out.inside.folded;
-      const bool better =
-          on ? steps.inside.folded <= out.inside.folded : steps.inside.folded <= enough;
-      if (better) out = std::move(steps);
-      if (!better || reached <= 1) return;
-      share *= kLess / reached;
-    }
+    Outcome steps = inSteps();
+    if (steps.inside.folded <= (on ? 1 : kWorthIt) * out.inside.folded) out = std::move(steps);
   }
 
  private:
@@ -222,52 +208,24 @@ class MapFitter {
     }
   }
 
-  Outcome inSteps(double stepTolerance) {
+  Outcome inSteps() {
     StepFitSettings s;
-    s.fit = [&](const Mesh& from, const Mesh& to, bool coarse) {
-      FitMapSettings one = settings_;
-      one.interpolation = Interpolation::linear;
-      one.oneToOne = OneToOne::off;
-      one.tolerance = std::max(stepTolerance, kSmallestTolerance);
-      if (coarse) one.shell = ShellSettings{};
-      if (coarse) one.shell->sources = kPlanSources;
-      const MapFit fit = fitMap(from, to, one);
-      const bool met = !fit.tolerance || fit.tolerance->met;
-      return FittedStep{fit.map.steps().front(), fit.boundary.target.diagonal, fit.error.p99,
-                        met ? AdaptiveEnd::met : fit.tolerance->end};
-    };
+    s.tolerance = settings_.tolerance;
+    s.folds = settings_.oneToOne == OneToOne::on ? 0 : kFewFolds;
     s.maxSteps = settings_.maxSteps;
+    s.maxSources = settings_.maxSources;
+    s.seed = settings_.seed;
+    s.maxMemory = settings_.maxMemory;
     s.progress = settings_.progress;
-    StepFit fit = fitInSteps(pair_, inside_, s);
-    addSeconds(seconds, fit.seconds);
-    Outcome out{std::move(fit.map), {}, 0, false, {}, {}, {}, {}, std::move(fit.steps)};
+    StepFit fit = timed(seconds, "steps", [&] { return fitInSteps(pair_, inside_, s); });
+    Outcome out{std::move(fit.map), fit.error, 0, false, {}, {}, {}, {}, std::move(fit.steps)};
     out.solve.method = out.solve.placement = "steps";
     out.solve.sources = out.solve.rank = out.map.sources();
-    timed(seconds, "certificate", [&] { out.error = freshError(out.map); });
     timed(seconds, "inside", [&] { out.inside = figuresOf(out); });
     out.tolerance =
         ToleranceOutcome{settings_.tolerance, out.error.p99, out.error.p99 <= settings_.tolerance,
                          fit.end == AdaptiveEnd::met ? AdaptiveEnd::noGain : fit.end};
     return out;
-  }
-
-  BoundaryError freshError(const ComposedMap& map) const {
-    FreshSampleSettings s;
-    s.count = kFreshSamples;
-    s.seed = settings_.seed;
-    s.progress = settings_.progress;
-    const BoundarySamples fresh = freshSamples(pair_.solid(), values(), s);
-    EvaluateFieldSettings sums;
-    sums.accuracy = kSumAccuracy * pair_.target.diagonal;
-    sums.progress = settings_.progress;
-    const Matrix images = map.evaluate(fresh.points, sums).values;
-    std::vector<double> lengths;
-    for (std::size_t i = 0; i < images.rows(); ++i)
-      lengths.push_back(
-          norm(Vec3{images(i, 0) - fresh.values(i, 0), images(i, 1) - fresh.values(i, 1),
-                    images(i, 2) - fresh.values(i, 2)}) /
-          pair_.target.diagonal);
-    return summarizeErrors(std::move(lengths));
   }
 
   // Where vertices sample a smooth deformation, a fit to them is far more exact, and quick.

@@ -109,7 +109,7 @@ struct MapFit : MappedSolid {
   // Of the fit, a line each; those of its boundaries stand in `boundary`, and here too when fitMap
   // was given meshes.
   std::vector<std::string> notes, warnings;
-  StageSeconds seconds;  // "sample", "fit", "certificate", "inside", "plan", "steps"
+  StageSeconds seconds;  // "sample", "fit", "certificate", "inside", "steps"
 };
 
 // Peak need in bytes; with a tolerance, that of its first level of charges.

@@ -7,6 +7,7 @@
 
 #include "innermap/boundary/detail/problem_samples.h"
 #include "innermap/boundary/detail/streams.h"
+#include "innermap/boundary/surface_problem.h"
 #include "innermap/core/error.h"
 #include "innermap/field/fit.h"
 #include "innermap/sample/source_points.h"
@@ -16,7 +17,6 @@ namespace innermap {
 namespace {
 
 constexpr std::size_t kPointsPerSource = 3;
-constexpr std::size_t kFreshSamples = 20000;
 constexpr double kDistance = 1.25;  // spacings
 constexpr double kFarthest = 4;     // spacings, of charges beyond the first level
 constexpr double kProducts = 1e-6;  // accuracy; a hundredth of what the fits leave

@@ -41,7 +41,7 @@ AdaptiveProblem adaptiveProblem(const Solid& solid, const SurfaceValues& values,
                                 const AdaptiveProblemSettings& settings) {
   Progress* const progress = settings.progress;
   const auto seed = [first = settings.seed](Stream stream, std::uint64_t index) {
-    return seedOf(first, stream) + (index << 53);  // seeds stay below that
+    return seedOf(first, stream, index);
   };
   AdaptiveProblem problem;
   problem.diagonal = solid.diagonal();

@@ -38,8 +38,11 @@ struct AdaptiveProblemSettings {
 AdaptiveProblem adaptiveProblem(const Solid& solid, const SurfaceValues& values, double unit,
                                 const AdaptiveProblemSettings& settings = {});
 
+// Of the certificate.
+constexpr std::size_t kFreshSamples = 20000;
+
 struct FreshSampleSettings {
-  std::size_t count = 20000;
+  std::size_t count = kFreshSamples;
   std::uint64_t seed = 1;  // that of the fit: no point of its problem is among these
   Progress* progress = nullptr;
 };

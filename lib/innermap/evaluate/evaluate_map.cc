@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "innermap/core/error.h"
 #include "innermap/evaluate/detail/active_region.h"
+#include "innermap/evaluate/detail/fold_repair.h"
 #include "innermap/evaluate/detail/topology.h"
 #include "innermap/evaluate/detail/visit_field.h"
 
@@ -20,7 +22,7 @@ using Vec3Leaf = openvdb::Vec3STree::LeafNodeType;
 struct LeafTotals {
   double harmonic = 0, deformation = 0, volume = 0, folded = 0;
   double jacobianMin = std::numeric_limits<double>::infinity(), jacobianMax = -jacobianMin;
-  std::uint64_t active = 0, interior = 0;
+  std::uint64_t active = 0, interior = 0, foldedVoxels = 0;
 
   void add(const LeafTotals& t) {
     harmonic += t.harmonic;
@@ -29,6 +31,7 @@ struct LeafTotals {
     folded += t.folded;
     active += t.active;
     interior += t.interior;
+    foldedVoxels += t.foldedVoxels;
     jacobianMin = std::min(jacobianMin, t.jacobianMin);
     jacobianMax = std::max(jacobianMax, t.jacobianMax);
   }
@@ -61,6 +64,8 @@ class Evaluation {
   MapGrids run();
 
  private:
+  void repair(const openvdb::MaskGrid& region, std::vector<LeafTotals>& totals,
+              MapGrids& out) const;
   LeafTotals store(const LeafValues& values, const MapGrids& out) const;
   void store(const Mat3& j, const Vec3& position, double share, std::size_t offset,
              const LeafOutput& out, LeafTotals& totals) const;
@@ -102,6 +107,7 @@ LeafTotals Evaluation::store(const LeafValues& values, const MapGrids& out) cons
     if (!values.inside[i]) continue;
     const double det = determinant(j);
     ++totals.interior;
+    if (!(det > 0)) ++totals.foldedVoxels;
     totals.jacobianMin = std::min(totals.jacobianMin, det);
     totals.jacobianMax = std::max(totals.jacobianMax, det);
   }
@@ -114,21 +120,82 @@ GridPtr named(GridPtr grid, const char* name) {
   return grid;
 }
 
+// The values of a leaf with those of repaired voxels in their places.
+class RepairedLeaf {
+ public:
+  RepairedLeaf(const LeafValues& leaf, const FoldRepair& repair)
+      : leaf_(leaf),
+        values_(leaf.values, leaf.values + 3 * leaf.count),
+        gradients_(leaf.gradients, leaf.gradients + 9 * leaf.count) {
+    for (std::size_t i = 0; i < leaf.count; ++i) {
+      const auto local = openvdb::MaskTree::LeafNodeType::offsetToLocalCoord(leaf.offset[i]);
+      const auto found = repair.voxels.find(leaf.origin + local);
+      if (found == repair.voxels.end()) continue;
+      for (std::size_t r = 0; r < 3; ++r) {
+        values_[3 * i + r] = found->second.position[static_cast<int>(r)];
+        for (std::size_t a = 0; a < 3; ++a)
+          gradients_[9 * i + 3 * r + a] = found->second.jacobian[r][a];
+      }
+    }
+    leaf_.values = values_.data();
+    leaf_.gradients = gradients_.data();
+  }
+
+  const LeafValues& leaf() const { return leaf_; }
+
+ private:
+  LeafValues leaf_;
+  std::vector<double> values_, gradients_;
+};
+
+// The leaves are evaluated once more where a voxel was moved: the grids hold floats.
+void Evaluation::repair(const openvdb::MaskGrid& region, std::vector<LeafTotals>& totals,
+                        MapGrids& out) const {
+  FoldRepairSettings s;
+  s.growth = std::pow(unitVolumeScale_, -0.5);
+  s.progress = settings_.progress;
+  const FoldRepair repair = repairFolds(*out.map, *out.jacobian, levelSet_, s);
+  out.repairedFarthest = repair.farthest;
+  out.repaired = named(openvdb::FloatGrid::create(), "repaired");
+  out.repaired->setTransform(region.transform().copy());
+  auto ways = out.repaired->getAccessor();
+  std::map<openvdb::Coord, std::size_t> numbers;
+  for (auto leaf = region.tree().cbeginLeaf(); leaf; ++leaf)
+    numbers.emplace(leaf->origin(), numbers.size());
+  const openvdb::MaskGrid::Ptr again = openvdb::MaskGrid::create();
+  again->setTransform(region.transform().copy());
+  const auto before = out.map->getConstAccessor();
+  for (const auto& [at, voxel] : repair.voxels) {
+    const openvdb::Vec3f p = before.getValue(at);
+    ways.setValue(at, static_cast<float>(norm(voxel.position - Vec3{p.x(), p.y(), p.z()})));
+    again->tree().touchLeaf(at)->topologyUnion(*region.tree().probeConstLeaf(at));
+  }
+  std::vector<openvdb::Coord> origins;
+  for (auto leaf = again->tree().cbeginLeaf(); leaf; ++leaf) origins.push_back(leaf->origin());
+  visitField(map_, solid_, levelSet_, *again,
+             [&](std::size_t leaf, const LeafValues& values) {
+               totals[numbers.at(origins[leaf])] = store(RepairedLeaf(values, repair).leaf(), out);
+             },
+             {accuracy_, "repairing folds", settings_.progress});
+}
+
 MapGrids Evaluation::run() {
   constexpr std::uint64_t kMaskBytes = 1;
+  const bool wantsMap = settings_.map || settings_.repair,
+             wantsJacobian = settings_.jacobian || settings_.repair;
   RegionSettings where;
   where.skin = settings_.skin;
   where.maxMemory = settings_.maxMemory;
   where.progress = settings_.progress;
-  where.bytesPerVoxel = kMaskBytes + (settings_.map ? 12 : 0) + (settings_.jacobian ? 4 : 0) +
+  where.bytesPerVoxel = kMaskBytes + (wantsMap ? 12 : 0) + (wantsJacobian ? 4 : 0) +
                         (settings_.harmonicEnergy ? 4 : 0) + (settings_.deformationEnergy ? 4 : 0);
   const openvdb::MaskGrid::Ptr region = activeRegion(levelSet_, where);
   MapGrids out;
-  if (settings_.map) {
+  if (wantsMap) {
     out.map = named(vectorGridOn(*region), "map");
     out.map->setVectorType(openvdb::VEC_INVARIANT);
   }
-  if (settings_.jacobian) out.jacobian = named(floatGridOn(*region), "jacobian");
+  if (wantsJacobian) out.jacobian = named(floatGridOn(*region), "jacobian");
   if (settings_.harmonicEnergy) out.harmonicEnergy = named(floatGridOn(*region), "harmonic_energy");
   if (settings_.deformationEnergy)
     out.deformationEnergy = named(floatGridOn(*region), "deformation_energy");
@@ -137,6 +204,10 @@ MapGrids Evaluation::run() {
   visitField(map_, solid_, levelSet_, *region,
              [&](std::size_t leaf, const LeafValues& values) { totals[leaf] = store(values, out); },
              {accuracy_, "evaluating the map", settings_.progress});
+  for (const LeafTotals& t : totals) out.foldedVoxels += t.foldedVoxels;
+  if (settings_.repair && out.foldedVoxels > 0) repair(*region, totals, out);
+  if (!settings_.map) out.map.reset();
+  if (!settings_.jacobian) out.jacobian.reset();
   LeafTotals sum;
   for (const LeafTotals& t : totals) sum.add(t);
   const double cell = voxel_ * voxel_ * voxel_;
@@ -146,6 +217,7 @@ MapGrids Evaluation::run() {
   out.foldedFraction = sum.volume > 0 ? sum.folded / sum.volume : 0;
   out.jacobianMin = sum.interior ? sum.jacobianMin : 0;
   out.jacobianMax = sum.interior ? sum.jacobianMax : 0;
+  out.foldedVoxelsLeft = sum.foldedVoxels;
   out.activeVoxels = sum.active;
   out.interiorVoxels = sum.interior;
   return out;
@@ -157,7 +229,8 @@ std::vector<openvdb::GridBase::Ptr> MapGrids::all() const {
   std::vector<openvdb::GridBase::Ptr> grids;
   for (const openvdb::GridBase::Ptr& grid :
        {openvdb::GridBase::Ptr(map), openvdb::GridBase::Ptr(jacobian),
-        openvdb::GridBase::Ptr(harmonicEnergy), openvdb::GridBase::Ptr(deformationEnergy)})
+        openvdb::GridBase::Ptr(harmonicEnergy), openvdb::GridBase::Ptr(deformationEnergy),
+        openvdb::GridBase::Ptr(repaired)})
     if (grid) grids.push_back(grid);
   return grids;
 }

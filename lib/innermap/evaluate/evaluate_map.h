@@ -17,7 +17,10 @@ struct EvaluateSettings {
   bool map = true, jacobian = true, harmonicEnergy = true, deformationEnergy = true;
   LameConstants lame;
   double targetVolume = 0;  // world units cubed; scales the harmonic energy; 0: as the source's
-  double skin = 2;          // active voxels outside the surface, in [0, 3]
+  // Folds are repaired: about each the map is replaced by one that is linear between voxels and
+  // folds nowhere, where there are few and one is found; see MapGrids::repaired.
+  bool repair = false;
+  double skin = 2;  // active voxels outside the surface, in [0, 3]
   // Of the sums of charges: root mean square error of positions as a fraction of the target's
   // extent, in [1e-12, 1e-3]. The default is what float grids hold.
   double accuracy = 1e-7;
@@ -34,6 +37,9 @@ struct MapGrids {
   openvdb::FloatGrid::Ptr jacobian;           // det of the map's gradient
   openvdb::FloatGrid::Ptr harmonicEnergy;     // density, both solids scaled to unit volume
   openvdb::FloatGrid::Ptr deformationEnergy;  // density psi
+  // Where voxels were moved to repair folds, the way of each, world units of the target; no grid
+  // where there were none. The Jacobian of such a voxel is the mean of the tetrahedra about it.
+  openvdb::FloatGrid::Ptr repaired;
 
   // Integrals over the solid; cells along the surface count by their share inside.
   double harmonicTotal = 0;     // both solids scaled to unit volume: 3 for a rigid motion
@@ -42,6 +48,9 @@ struct MapGrids {
   double jacobianMin = 0, jacobianMax = 0;  // over voxels whose centre is inside
   double foldedFraction = 0;                // share of the volume with det J <= 0
   std::uint64_t activeVoxels = 0, interiorVoxels = 0;
+  std::uint64_t foldedVoxels = 0;      // whose centre is inside; before repair
+  std::uint64_t foldedVoxelsLeft = 0;  // after it
+  double repairedFarthest = 0;         // greatest value of `repaired`
 
   std::vector<openvdb::GridBase::Ptr> all() const;  // those that were asked for
 };

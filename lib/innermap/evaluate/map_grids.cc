@@ -22,10 +22,12 @@ LevelSetSettings levelSetSettings(const MapGridSettings& settings) {
   return out;
 }
 
-EvaluateSettings evaluateSettings(double targetVolume, double accuracy,
+EvaluateSettings evaluateSettings(double targetVolume, double accuracy, std::size_t steps,
                                   const MapGridSettings& settings) {
   EvaluateSettings out;
   out.lame = settings.lame;
+  out.repair = settings.repair == RepairFolds::on ||
+               (settings.repair == RepairFolds::automatic && steps > 1);
   out.targetVolume = targetVolume;
   out.accuracy = accuracy;
   out.maxMemory = settings.maxMemory;
@@ -47,6 +49,7 @@ void insertTotals(const openvdb::GridPtrVec& grids, const MapGrids& values) {
                  {"jacobian_min", values.jacobianMin},
                  {"jacobian_max", values.jacobianMax},
                  {"folded_fraction", values.foldedFraction}});
+  if (values.repaired) insert(grids, {{"repaired_farthest", values.repairedFarthest}});
 }
 
 }  // namespace
@@ -72,9 +75,9 @@ SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& sett
     out.warnings = checkLevelSet(*out.surface, solid).warnings;
   });
   timed(out.seconds, "evaluate", [&] {
-    out.values =
-        evaluateMap(mapped.map, solid, *out.surface,
-                    evaluateSettings(mapped.boundary.target.volume, sumAccuracy(mapped), settings));
+    out.values = evaluateMap(mapped.map, solid, *out.surface,
+                             evaluateSettings(mapped.boundary.target.volume, sumAccuracy(mapped),
+                                              mapped.map.steps().size(), settings));
   });
   requireInterior(out.values.interiorVoxels, mapped.boundary.source.mesh.name);
   out.voxelSize = out.surface->voxelSize()[0];
@@ -121,7 +124,7 @@ bool FrameEvaluator::wants(const char* name) const {
 
 MapGrids FrameEvaluator::evaluate(const FrameFit& fit) const {
   EvaluateSettings evaluate =
-      evaluateSettings(fit.boundary.volume, sumAccuracy(fit.error.rms), settings_);
+      evaluateSettings(fit.boundary.volume, sumAccuracy(fit.error.rms), 1, settings_);
   evaluate.map = wants("map");
   evaluate.jacobian = wants("jacobian");
   evaluate.harmonicEnergy = wants("harmonic_energy");

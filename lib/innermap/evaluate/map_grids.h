@@ -16,10 +16,14 @@
 
 namespace innermap {
 
+// Whether folds are repaired (EvaluateSettings::repair). automatic: those of maps in steps.
+enum class RepairFolds { automatic, on, off };
+
 struct MapGridSettings {
   int resolution = 128;  // voxels along the longest side of the solid, in [4, 4096]
   double voxelSize = 0;  // world units; above 0: in place of the resolution
   LameConstants lame;
+  RepairFolds repair = RepairFolds::automatic;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;
 };
@@ -31,7 +35,7 @@ struct SolidGrids {
   std::vector<std::string> notes, warnings;
   StageSeconds seconds;  // "voxelize", "evaluate"
 
-  openvdb::GridPtrVec all() const;  // as mapGridNames()
+  openvdb::GridPtrVec all() const;  // as mapGridNames(), and `repaired` where there is one
 };
 
 // Metadata (prefix innermap_): the map's facts, harmonic_energy_total, deformation_energy_total,

@@ -28,8 +28,7 @@ constexpr double kWorstRatio = 17, kOutlier = 10;
 // Of the tolerance; other points than those that were looked at differ a little.
 constexpr double kMargin = 0.97;
 constexpr double kErrorAccuracy = 1e-3;  // of the tolerance
-constexpr double kLeastGain = 0.97;      // of the score in kPatience rounds
-constexpr std::size_t kPatience = 6;
+constexpr double kLeastGain = 0.97;      // of the score in the rounds of patience
 
 void append(Matrix& a, const Matrix& b) {
   Matrix out(a.rows() + b.rows(), b.columns());
@@ -256,10 +255,11 @@ void AdaptiveFitting::keepIfBest() {
 
 // Whether one of the last rounds was better than all before.
 bool AdaptiveFitting::gains() const {
-  if (rounds_.size() <= kPatience) return true;
+  const auto patience = static_cast<std::size_t>(std::max(settings_.patience, 1));
+  if (rounds_.size() <= patience) return true;
   double best[2] = {score(rounds_.front().error), score(rounds_.back().error)};
   for (std::size_t r = 0; r < rounds_.size(); ++r) {
-    double& part = best[r + kPatience < rounds_.size() ? 0 : 1];
+    double& part = best[r + patience < rounds_.size() ? 0 : 1];
     part = std::min(part, score(rounds_[r].error));
   }
   return best[1] < kLeastGain * best[0];
@@ -273,6 +273,7 @@ AdaptiveResult AdaptiveFitting::run() {
     return measureBoundaryError(field, checks.points, checks.values, problem_.unit,
                                 {0, settings_.progress});
   };
+  int outliers = 0;
   for (std::uint64_t round = 1;; ++round) {
     solve();
     const BoundarySamples fresh = problem_.draw(kMarkSamples, round);
@@ -287,6 +288,7 @@ AdaptiveResult AdaptiveFitting::run() {
       const BoundaryError other = errorAtChecks(*field_);
       if (other.p99 <= kMargin * settings_.tolerance && isTame(other)) break;
     }
+    if (error.p99 <= kMargin * settings_.tolerance && ++outliers > settings_.outlierRounds) break;
     if (!gains()) {
       end_ = AdaptiveEnd::noGain;
       break;

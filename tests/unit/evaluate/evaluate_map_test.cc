@@ -213,6 +213,61 @@ TEST(EvaluateMap, SameBitsForAnyNumberOfThreads) {
     ASSERT_EQ(*v, single.map->tree().getValue(v.getCoord()));
 }
 
+// A charge just outside a face of the cube pushes it in until it folds.
+HarmonicMap foldedMap() {
+  Affine affine;
+  affine.coefficients = Matrix(4, 3);
+  for (int r = 0; r < 3; ++r) affine.coefficients(1 + r, r) = 1;
+  const Vec3 normal = turned({0, 0, 1});
+  Matrix weights(1, 3);
+  for (int r = 0; r < 3; ++r) weights(0, r) = -0.127 * normal[r];
+  return HarmonicMap(HarmonicField({1.3 * normal}, weights, affine));
+}
+
+TEST(EvaluateMap, FoldsAreRepairedAndNothingElse) {
+  const Solid solid(cube());
+  EvaluateSettings settings;
+  const MapGrids folded = evaluate(foldedMap(), solid, 64, settings);
+  ASSERT_GT(folded.foldedVoxels, 10u);
+  EXPECT_EQ(folded.foldedVoxelsLeft, folded.foldedVoxels);
+  EXPECT_LT(folded.jacobianMin, 0);
+  EXPECT_FALSE(folded.repaired);
+  settings.repair = true;
+  const MapGrids grids = evaluate(foldedMap(), solid, 64, settings);
+  EXPECT_EQ(grids.foldedVoxels, folded.foldedVoxels);
+  EXPECT_EQ(grids.foldedVoxelsLeft, 0u);
+  EXPECT_GT(grids.jacobianMin, 0);
+  ASSERT_TRUE(grids.repaired);
+  EXPECT_EQ(grids.all().size(), folded.all().size() + 1);
+  double farthest = 0;
+  for (auto v = grids.map->cbeginValueOn(); v; ++v) {
+    const openvdb::Coord at = v.getCoord();
+    const double way = (*v - folded.map->tree().getValue(at)).length();
+    if (grids.repaired->tree().isValueOn(at))
+      EXPECT_NEAR(grids.repaired->tree().getValue(at), way, 1e-5);
+    else
+      EXPECT_EQ(way, 0);
+    farthest = std::max(farthest, way);
+  }
+  EXPECT_NEAR(grids.repairedFarthest, farthest, 1e-5);
+  // The cap that folds is shallower than a tenth of the cube, and so is what is done about it.
+  EXPECT_LT(farthest, 0.2);
+  EXPECT_LT(static_cast<double>(grids.repaired->activeVoxelCount()),
+            0.05 * static_cast<double>(grids.interiorVoxels));
+}
+
+TEST(EvaluateMap, NoRepairWithoutFoldsNorForTheCallersGridsAlone) {
+  const Solid solid(cube());
+  EvaluateSettings settings;
+  settings.repair = true;
+  EXPECT_FALSE(evaluate(chargedMap(), solid, 40, settings).repaired);
+  settings.map = settings.jacobian = false;
+  const MapGrids grids = evaluate(foldedMap(), solid, 64, settings);
+  EXPECT_FALSE(grids.map);
+  EXPECT_FALSE(grids.jacobian);
+  EXPECT_EQ(grids.foldedVoxelsLeft, 0u);
+}
+
 TEST(EvaluateMap, RefusesBadSettingsAndStopsWhenCancelled) {
   const Solid solid(cube());
   const auto surface = levelSet(solid, 16);

@@ -2,135 +2,138 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <utility>
 
+#include "innermap/boundary/detail/carried_boundary.h"
+#include "innermap/boundary/detail/inside_check.h"
 #include "innermap/boundary/detail/shape_path.h"
 
 namespace innermap {
 namespace {
 
-constexpr std::size_t kPlanPoints = 3000;
-constexpr int kFirstSteps = 2;
-constexpr int kDeepest = 5;            // halvings of one of the first steps
-constexpr double kSumAccuracy = 1e-7;  // of the target's diagonal: where points go, and their folds
+constexpr double kShortest = 1.0 / 128;  // of the way, of a step that is halved no more
+// Before a step is fitted: charges on the first level alone, whose folds are few or none where
+// those of the fit are none.
+constexpr double kCoarse = 1;
+// Of what is left of the tolerance for the way that is left: errors of steps add up, but do not all
+// point the same way. The last step has to do with what is left.
+constexpr double kShare = 1.3, kLastShare = 1, kLeastShare = 0.1;
+constexpr double kOfTolerance = 0.97;  // is given to the steps
+constexpr int kOutlierRounds = 3, kPatience = 3;
+// Of the target's diagonal. Sums, and where points inside go; the mesh about an intermediate shape.
+constexpr double kSumAccuracy = 1e-7, kChord = 1e-3;
 
-// One step that was fitted.
-struct Fitted {
+struct Step {
   MapStep record;
-  AdaptiveEnd end = AdaptiveEnd::met;
-  std::optional<HarmonicMap> map;
-  MappedPoints mapped;  // what was inside, at its end
+  AdaptiveResult fit;
+  HarmonicMap map;
+  MappedPoints inside;  // at its end
 };
+
+double growthOf(const BoundaryPair& pair) {
+  const double volume = pair.target.volume;
+  return volume > 0 ? std::cbrt(volume / pair.solid().volume())
+                    : pair.target.diagonal / pair.solid().diagonal();
+}
 
 class StepFitter {
  public:
-  StepFitter(const BoundaryPair& pair, const StepFitSettings& settings)
+  StepFitter(const BoundaryPair& pair, const Points& inside, const StepFitSettings& settings)
       : settings_(settings),
-        mesh_(pair.solid().repaired().mesh),
-        path_(mesh_.vertices, pair.target.moved, mesh_.triangles, growthOf(pair)) {}
+        vertices_(pair.solid().repaired().mesh.vertices),
+        path_(vertices_, pair.target.moved, pair.solid().repaired().mesh.triangles, growthOf(pair)),
+        unit_(boundingBox(path_.at(1)).diagonal()),
+        boundary_(pair.solid(), carrySettings()),
+        inside_{inside, {}} {}
 
-  // Ends of the steps that coarse fits need, 0 left out.
-  std::vector<double> plan(const Points& inside) {
-    Points some;
-    for (std::size_t i = 0; i < inside.size();
-         i += std::max<std::size_t>(1, inside.size() / kPlanPoints))
-      some.push_back(inside[i]);
-    return endsOf(walk(evenly(std::min(kFirstSteps, settings_.maxSteps)), some, true));
-  }
-
-  std::vector<Fitted> fit(const std::vector<double>& ends, const Points& inside) {
-    return walk(ends, inside, false);
-  }
-
-  HarmonicMap finished(const HarmonicMap& last) const {
-    return HarmonicMap(movedBy(path_.rest(), last.field()));
-  }
-
- private:
-  static double growthOf(const BoundaryPair& pair) {
-    const double volume = pair.target.volume;
-    return volume > 0 ? std::cbrt(volume / pair.solid().volume())
-                      : pair.target.diagonal / pair.solid().diagonal();
-  }
-
-  static std::vector<double> evenly(int steps) {
-    std::vector<double> ends;
-    for (int i = 1; i <= steps; ++i) ends.push_back(static_cast<double>(i) / steps);
-    return ends;
-  }
-
-  static std::vector<double> endsOf(const std::vector<Fitted>& steps) {
-    std::vector<double> ends;
-    for (const Fitted& s : steps) ends.push_back(s.record.to);
-    return ends;
-  }
-
-  Mesh shapeAt(double t) const {
-    Mesh out;
-    out.name = "an intermediate shape";
-    out.vertices = path_.at(t);
-    out.triangles = mesh_.triangles;
-    return out;
-  }
-
-  Fitted fitOne(double from, double to, const MappedPoints& before, bool coarse) const {
-    FittedStep step = settings_.fit(shapeAt(from), shapeAt(to), coarse);
-    Fitted out;
-    out.mapped =
-        mapPoints(step.map, {before.points, {}}, kSumAccuracy * step.diagonal, settings_.progress);
-    out.record = {from, to, step.map.field().sources().size(), step.error,
-                  foldedShare(out.mapped.determinants)};
-    out.end = step.end;
-    out.map = std::move(step.map);
-    return out;
-  }
-
-  // From 0 through the ends; a step that folds is halved, while there may be more of them.
-  std::vector<Fitted> walk(std::vector<double> ends, const Points& inside, bool coarse) const {
-    std::reverse(ends.begin(), ends.end());  // the next one last
-    const double shortest = ends.empty() ? 0 : std::ldexp(1.0 / kFirstSteps, -kDeepest);
-    std::vector<Fitted> done;
-    MappedPoints now{inside, {}};
-    double at = 0;
+  StepFit fit() {
+    std::vector<double> ends{1, 0.5};  // the next one last
     while (!ends.empty()) {
       const double end = ends.back();
-      Fitted step = fitOne(at, end, now, coarse);
-      const bool more = static_cast<int>(done.size() + ends.size()) < settings_.maxSteps;
-      if (step.record.folded > 0 && more && (end - at) / 2 >= shortest) {
-        ends.push_back(0.5 * (at + end));
+      const bool may = static_cast<int>(records_.size() + ends.size()) < settings_.maxSteps &&
+                       (end - at_) / 2 >= kShortest;
+      if (may && fitStep(end, kCoarse).record.folded > folded_) {
+        ends.push_back((at_ + end) / 2);
+        continue;
+      }
+      Step step = fitStep(end, toleranceUntil(end));
+      const double allowed = folded_ + std::max(0.0, settings_.folds - folded_) / 2;
+      if (may && step.record.folded > allowed) {
+        ends.push_back((at_ + end) / 2);
         continue;
       }
       ends.pop_back();
-      at = end;
-      now = step.mapped;
-      done.push_back(std::move(step));
+      take(std::move(step), ends.empty());
     }
-    return done;
+    std::vector<HarmonicMap> steps = boundary_.steps();
+    steps.back() = HarmonicMap(movedBy(path_.rest(), steps.back().field()));
+    return {ComposedMap(std::move(steps)), std::move(records_), error_, end_};
+  }
+
+ private:
+  CarrySettings carrySettings() const {
+    CarrySettings s;
+    s.accuracy = std::min(kSumAccuracy, 1e-3 * settings_.tolerance) * unit_;
+    s.chord = std::min(kChord, settings_.tolerance) * unit_;
+    s.seed = settings_.seed;
+    s.progress = settings_.progress;
+    return s;
+  }
+
+  double toleranceUntil(double end) const {
+    const double part = (end - at_) / (1 - at_);
+    const double left = kOfTolerance * settings_.tolerance - error_.p99;
+    const double tolerance = (end < 1 ? kShare : kLastShare) * part * left;
+    return std::max({tolerance, kLeastShare * part * settings_.tolerance, kSmallestTolerance});
+  }
+
+  Step fitStep(double to, double tolerance) {
+    const Points now = path_.at(at_);
+    Points ways = path_.at(to);
+    for (std::size_t v = 0; v < ways.size(); ++v) ways[v] = ways[v] - now[v];
+    AdaptiveSettings s;
+    s.tolerance = tolerance;
+    s.maxSources = settings_.maxSources;
+    s.outlierRounds = kOutlierRounds;
+    s.patience = kPatience;
+    s.maxMemory = settings_.maxMemory;
+    s.progress = settings_.progress;
+    AdaptiveResult fit = fitToTolerance(boundary_.problem(ways, unit_), s);
+    HarmonicMap map(fit.field);
+    MappedPoints inside = mapPoints(map, inside_, kSumAccuracy * unit_, settings_.progress);
+    const MapStep record{at_, to, fit.field.sources().size(), fit.error.p99,
+                         foldedShare(inside.determinants)};
+    return {record, std::move(fit), std::move(map), std::move(inside)};
+  }
+
+  void take(Step step, bool last) {
+    if (end_ == AdaptiveEnd::met) end_ = step.fit.end;
+    at_ = step.record.to;
+    folded_ = step.record.folded;
+    records_.push_back(step.record);
+    inside_ = std::move(step.inside);
+    boundary_.advance(step.map, last);
+    error_ = boundary_.errorFrom(path_.at(at_), unit_);
   }
 
   const StepFitSettings& settings_;
-  const Mesh& mesh_;
+  const Points& vertices_;
   const ShapePath path_;
+  const double unit_;
+  CarriedBoundary boundary_;
+  MappedPoints inside_;
+  std::vector<MapStep> records_;
+  double at_ = 0;      // of the way
+  double folded_ = 0;  // share of the points inside, so far
+  BoundaryError error_;
+  AdaptiveEnd end_ = AdaptiveEnd::met;
 };
 
 }  // namespace
 
 StepFit fitInSteps(const BoundaryPair& pair, const Points& inside,
                    const StepFitSettings& settings) {
-  StageSeconds seconds;
-  StepFitter fitter(pair, settings);
-  const std::vector<double> ends = timed(seconds, "plan", [&] { return fitter.plan(inside); });
-  std::vector<Fitted> steps = timed(seconds, "steps", [&] { return fitter.fit(ends, inside); });
-  std::vector<HarmonicMap> maps;
-  std::vector<MapStep> records;
-  AdaptiveEnd end = AdaptiveEnd::met;
-  for (const Fitted& s : steps) {
-    if (end == AdaptiveEnd::met) end = s.end;
-    maps.push_back(*s.map);
-    records.push_back(s.record);
-  }
-  maps.back() = fitter.finished(maps.back());
-  return {ComposedMap(std::move(maps)), std::move(records), end, std::move(seconds)};
+  return StepFitter(pair, inside, settings).fit();
 }
 
 }  // namespace innermap

@@ -1,42 +1,38 @@
 // A map in steps: through intermediate shapes, each step a harmonic map of the present one.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "innermap/boundary/boundary_pair.h"
-#include "innermap/boundary/detail/inside_check.h"
 #include "innermap/boundary/mapped_solid.h"
 #include "innermap/field/adaptive_fit.h"
 #include "innermap/field/harmonic_map.h"
 
 namespace innermap {
 
-// The fit of one step.
-struct FittedStep {
-  HarmonicMap map;
-  double diagonal = 0;                 // of its target, world units
-  double error = 0;                    // at 99% of its boundary, fraction of that
-  AdaptiveEnd end = AdaptiveEnd::met;  // why its tolerance was not met
-};
-
 struct StepFitSettings {
-  // Of a step between two shapes of the same triangles. coarse: quick, for planning.
-  std::function<FittedStep(const Mesh& from, const Mesh& to, bool coarse)> fit;
+  double tolerance = 2e-3;  // of the whole; fraction of the target's diagonal
+  double folds = 0;         // share of the points inside that may be folded in the end, in [0, 1]
   int maxSteps = 16;
+  std::size_t maxSources = 100000;  // of one step
+  std::uint64_t seed = 1;
+  std::uint64_t maxMemory = 0;
   Progress* progress = nullptr;
 };
 
 struct StepFit {
   ComposedMap map;
   std::vector<MapStep> steps;
-  AdaptiveEnd end = AdaptiveEnd::met;  // of the first step that did not reach its tolerance
-  StageSeconds seconds;                // "plan", "steps"
+  BoundaryError error;  // of the whole: that of the last step, which ends on the target
+  AdaptiveEnd end = AdaptiveEnd::met;  // why the last step did not reach the tolerance
 };
 
-// The way is halved until, at a coarse fit, no step folds any point, or there are maxSteps;
-// then each is fitted, and halved again where it folds. inside: points of the source. Throws what
-// settings.fit throws.
+// Each step starts from where the steps before it take the boundary, not from the shape that they
+// were to reach: so nothing is ever outside the solid that a step is fitted on, errors do not add
+// up, and the last step's error is that of the whole. A step that folds points inside is halved
+// while there are fewer than maxSteps: any of them at a coarse fit, more than half of those that
+// are left of `folds` in the end. inside: points of the source. Throws DataError, MemoryError,
+// Cancelled.
 StepFit fitInSteps(const BoundaryPair& pair, const Points& inside, const StepFitSettings& settings);
 
 }  // namespace innermap

@@ -17,4 +17,9 @@ inline std::uint64_t seedOf(std::uint64_t seed, Stream stream) {
   return 4 * seed + static_cast<std::uint64_t>(stream);
 }
 
+// Another one for each index; seeds stay below 2^53.
+inline std::uint64_t seedOf(std::uint64_t seed, Stream stream, std::uint64_t index) {
+  return seedOf(seed, stream) + (index << 53);
+}
+
 }  // namespace innermap

@@ -1,0 +1,140 @@
+#include "innermap/boundary/detail/carried_boundary.h"
+
+#include <algorithm>
+
+#include "innermap/boundary/boundary_pair.h"
+#include "innermap/boundary/detail/streams.h"
+#include "innermap/sample/surface_samples.h"
+
+namespace innermap {
+namespace {
+
+// A mesh about an intermediate shape has at most so many triangles more than the source, or so
+// many times as many.
+constexpr double kPieces = 1.0 / 256;
+constexpr std::size_t kMoreTriangles = 100000, kTimesTriangles = 4;
+
+// At places on solid.surface(), from values at the vertices that the solid was made of.
+Matrix interpolated(const Points& vertices, const Solid& solid,
+                    const std::vector<SurfacePoint>& places) {
+  TargetBoundary values;
+  values.moved = vertices.size() == solid.repaired().mesh.vertices.size()
+                     ? vertices
+                     : repairedPositions(solid.repaired(), vertices);
+  return values.targetsOf(solid, places);
+}
+
+Points pointsOf(const Matrix& m) {
+  Points out(m.rows());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = {m(i, 0), m(i, 1), m(i, 2)};
+  return out;
+}
+
+}  // namespace
+
+CarriedBoundary::CarriedBoundary(const Solid& source, const CarrySettings& settings)
+    : source_(source),
+      settings_(settings),
+      surface_(source.repaired().mesh),
+      vertices_(source.repaired().mesh.vertices),
+      solid_(source) {}
+
+Points CarriedBoundary::carried(Points points, std::size_t firstStep) const {
+  EvaluateFieldSettings sums;
+  sums.accuracy = settings_.accuracy;
+  sums.progress = settings_.progress;
+  for (std::size_t s = firstStep; s < steps_.size(); ++s)
+    points = pointsOf(steps_[s].field().evaluate(points, sums).values);
+  return points;
+}
+
+Points CarriedBoundary::onSource(const Points& vertices,
+                                 const std::vector<SurfacePoint>& places) const {
+  return interpolate(vertices, source_.repaired().mesh.triangles, places);
+}
+
+void CarriedBoundary::advance(const HarmonicMap& step, bool last) {
+  steps_.push_back(step);
+  if (last) return;
+  vertices_ = carried(std::move(vertices_), steps_.size() - 1);
+  const Mesh& mesh = source_.repaired().mesh;
+  refine(
+      surface_, vertices_,
+      [&](const std::vector<SurfacePoint>& places) {
+        return carried(onSource(mesh.vertices, places), 0);
+      },
+      settings_.chord,
+      std::max(kTimesTriangles * mesh.triangles.size(), mesh.triangles.size() + kMoreTriangles));
+  Mesh now;
+  now.name = "an intermediate shape";
+  now.vertices = vertices_;
+  now.triangles = surface_.triangles;
+  SolidSettings solid;
+  solid.pieceSize = kPieces;
+  solid.progress = settings_.progress;
+  solid_ = Solid(now, solid);
+}
+
+AdaptiveProblem CarriedBoundary::problem(const Points& ways, double unit) const {
+  AdaptiveProblemSettings s;
+  s.seed = settings_.seed;
+  s.progress = settings_.progress;
+  // Columns: the point of the source, and its way.
+  const auto values =
+      [solid = solid_, from = surface_.positions,
+       way = onSource(ways, surface_.vertices)](const std::vector<SurfacePoint>& places) {
+        const Matrix a = interpolated(from, solid, places), b = interpolated(way, solid, places);
+        Matrix out(places.size(), 6);
+        for (std::size_t k = 0; k < 3; ++k) {
+          std::copy_n(a.column(k), places.size(), out.column(k));
+          std::copy_n(b.column(k), places.size(), out.column(k + 3));
+        }
+        return out;
+      };
+  AdaptiveProblem out = adaptiveProblem(solid_, values, unit, s);
+  const auto carry = [this](const BoundarySamples& samples) {
+    Points from(samples.points.size()), way(from.size());
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      from[i] = {samples.values(i, 0), samples.values(i, 1), samples.values(i, 2)};
+      way[i] = {samples.values(i, 3), samples.values(i, 4), samples.values(i, 5)};
+    }
+    Points now = carried(std::move(from), 0);
+    Matrix to(now.size(), 3);
+    for (std::size_t i = 0; i < now.size(); ++i)
+      for (int k = 0; k < 3; ++k) to(i, static_cast<std::size_t>(k)) = now[i][k] + way[i][k];
+    return BoundarySamples{std::move(now), std::move(to)};
+  };
+  out.placeCollocation = [carry, place = out.placeCollocation](const PlacementRequest& request) {
+    return carry(place(request));
+  };
+  out.draw = [carry, draw = out.draw](std::size_t count, std::uint64_t index) {
+    return carry(draw(count, index));
+  };
+  return out;
+}
+
+BoundaryError CarriedBoundary::errorFrom(const Points& shape, double unit) {
+  const Mesh& mesh = source_.repaired().mesh;
+  if (fresh_.empty()) {
+    FreshSampleSettings s;
+    s.seed = settings_.seed;
+    s.progress = settings_.progress;
+    const BoundarySamples fresh = freshSamples(
+        source_,
+        [this](const std::vector<SurfacePoint>& places) {
+          for (const SurfacePoint& p : places) freshPlaces_.push_back(source_.address(p));
+          return Matrix(places.size(), 1);
+        },
+        s);
+    fresh_ = fresh.points;
+  }
+  fresh_ = carried(std::move(fresh_), freshSteps_);
+  freshSteps_ = steps_.size();
+  const Points wanted = interpolate(shape, mesh.triangles, freshPlaces_);
+  std::vector<double> lengths;
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    lengths.push_back(norm(fresh_[i] - wanted[i]) / unit);
+  return summarizeErrors(std::move(lengths));
+}
+
+}  // namespace innermap

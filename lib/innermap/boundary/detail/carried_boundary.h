@@ -1,0 +1,56 @@
+// A solid's boundary where the steps of a map have carried it so far: what the next step starts
+// from. Its points are exact images, not points of a mesh between the images of vertices.
+#pragma once
+
+#include <vector>
+
+#include "innermap/boundary/detail/refined_surface.h"
+#include "innermap/boundary/surface_problem.h"
+#include "innermap/field/harmonic_map.h"
+#include "innermap/levelset/solid.h"
+
+namespace innermap {
+
+struct CarrySettings {
+  double accuracy = 1e-7;  // of the sums, world units
+  double chord = 1e-3;     // of the mesh about the present solid, world units; see refine
+  std::uint64_t seed = 1;
+  Progress* progress = nullptr;
+};
+
+class CarriedBoundary {
+ public:
+  CarriedBoundary(const Solid& source, const CarrySettings& settings);
+
+  const std::vector<HarmonicMap>& steps() const { return steps_; }
+
+  // One step further; after the last one there is no problem any more. Throws DataError when what
+  // is left has no inside, Cancelled.
+  void advance(const HarmonicMap& step, bool last);
+
+  // To be fitted: each point of the boundary that is not buried in other parts now goes from where
+  // it is by its way. ways: of the
+  // vertices of source.repaired().mesh, linear between them. unit: what errors are fractions of.
+  // Holds a reference to this.
+  AdaptiveProblem problem(const Points& ways, double unit) const;
+
+  // Distances from where `shape`, positions of those vertices, has them: at the points of
+  // freshSamples, fractions of the unit.
+  BoundaryError errorFrom(const Points& shape, double unit);
+
+ private:
+  Points carried(Points points, std::size_t firstStep) const;
+  Points onSource(const Points& vertices, const std::vector<SurfacePoint>& places) const;
+
+  const Solid& source_;
+  const CarrySettings settings_;
+  std::vector<HarmonicMap> steps_;
+  RefinedSurface surface_;
+  Points vertices_;                        // of surface_, now
+  Solid solid_;                            // that these bound
+  std::vector<SurfacePoint> freshPlaces_;  // on the source's repaired mesh
+  Points fresh_;                           // where they are after so many steps
+  std::size_t freshSteps_ = 0;
+};
+
+}  // namespace innermap

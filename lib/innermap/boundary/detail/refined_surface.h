@@ -1,0 +1,40 @@
+// A triangulated surface split where a map bends it, so that straight edges between the images of
+// its vertices lie near the image of the surface.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "innermap/mesh/mesh.h"
+
+namespace innermap {
+
+struct RefinedSurface {
+  // Not split yet: vertices and triangles of the mesh.
+  explicit RefinedSurface(const Mesh& mesh);
+
+  std::vector<SurfacePoint> vertices;  // where each stands on the mesh
+  Points positions;                    // of these, there
+  std::vector<Triangle> triangles;
+  // Of each of the triangles: that of the mesh which it is a part of, and the barycentric
+  // coordinates of its corners there.
+  struct Part {
+    int triangle = 0;
+    std::array<std::array<double, 3>, 3> corners{};
+  };
+  std::vector<Part> parts;
+};
+
+using PlacesToPoints = std::function<Points(const std::vector<SurfacePoint>&)>;
+
+// Splits edges at their middle where the image of one is farther than `chord` from the straight
+// line between the images of its ends, and the triangles beside them (by their longest edges, which
+// keeps angles from shrinking: Rivara, "Algorithms for refining triangular grids", 1984); again, as
+// long as there are any and no more than `most` triangles. Edges that are shorter than `chord` on
+// the mesh stay whole: what is bent there is torn. images: of the vertices, in and out; imagesOf:
+// of places on the mesh. chord in the units of both.
+void refine(RefinedSurface& surface, Points& images, const PlacesToPoints& imagesOf, double chord,
+            std::size_t most);
+
+}  // namespace innermap

@@ -1,0 +1,279 @@
+#include "innermap/evaluate/detail/fold_repair.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <unordered_map>
+#include <vector>
+
+#include "innermap/core/parallel.h"
+#include "innermap/evaluate/detail/untangle.h"
+
+namespace innermap {
+namespace {
+
+using openvdb::Coord;
+
+constexpr std::array<int, 3> kRings{2, 4, 8};
+// Folded voxels near one another that are repaired: more of them are no blemish beside a surface
+// but a map that folds, and would take minutes.
+constexpr std::size_t kMost = 300;
+
+// A cube in six tetrahedra about its diagonal (Kuhn): its corners by the bits x, y, z of their
+// numbers, in an order that makes the volumes positive.
+constexpr std::array<std::array<int, 4>, 6> kCube{
+    {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}}};
+
+Coord cornerOf(const Coord& cube, int bits) {
+  return cube.offsetBy(bits & 1, bits >> 1 & 1, bits >> 2 & 1);
+}
+
+Mat3 restOf(const std::array<int, 4>& tet) {
+  Mat3 edges{};
+  for (std::size_t e = 0; e < 3; ++e)
+    for (std::size_t r = 0; r < 3; ++r) edges[r][e] = (tet[e + 1] >> r & 1) - (tet[0] >> r & 1);
+  return inverse(edges);
+}
+
+// Voxels that are near one another: those whose cells, so many voxels wide, touch.
+std::vector<std::vector<Coord>> clustersOf(const std::vector<Coord>& voxels, int width) {
+  const auto cellOf = [width](const Coord& c) {
+    const auto down = [width](int x) { return x >= 0 ? x / width : -((width - 1 - x) / width); };
+    return Coord(down(c.x()), down(c.y()), down(c.z()));
+  };
+  std::map<Coord, std::vector<Coord>> cells;
+  for (const Coord& c : voxels) cells[cellOf(c)].push_back(c);
+  std::vector<std::vector<Coord>> out;
+  while (!cells.empty()) {
+    std::vector<Coord> cluster, open{cells.begin()->first};
+    while (!open.empty()) {
+      const Coord at = open.back();
+      open.pop_back();
+      const auto found = cells.find(at);
+      if (found == cells.end()) continue;
+      cluster.insert(cluster.end(), found->second.begin(), found->second.end());
+      cells.erase(found);
+      for (int n = 0; n < 27; ++n) open.push_back(at.offsetBy(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1));
+    }
+    out.push_back(std::move(cluster));
+  }
+  return out;
+}
+
+using Positions = std::unordered_map<Coord, Vec3, CoordHash>;
+
+// The voxels inside the solid with their images, some of them moved.
+class Voxels {
+ public:
+  Voxels(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet, const Positions& moved)
+      : map_(map.getConstAccessor()), distance_(levelSet.getConstAccessor()), moved_(moved) {}
+
+  bool inside(const Coord& c) const { return distance_.getValue(c) < 0 && map_.isValueOn(c); }
+
+  // World units of the target.
+  Vec3 original(const Coord& c) const {
+    const openvdb::Vec3f p = map_.getValue(c);
+    return {p.x(), p.y(), p.z()};
+  }
+
+  Vec3 now(const Coord& c) const {
+    const auto found = moved_.find(c);
+    return found == moved_.end() ? original(c) : found->second;
+  }
+
+  // Calls `add` with the corners of each tetrahedron of a cube whose corners are all inside.
+  template <class Add>
+  void forTets(const Coord& cube, const Add& add) const {
+    std::array<bool, 8> in;
+    for (int bits = 0; bits < 8; ++bits)
+      in[static_cast<std::size_t>(bits)] = inside(cornerOf(cube, bits));
+    for (std::size_t k = 0; k < kCube.size(); ++k) {
+      std::array<Coord, 4> corners;
+      bool all = true;
+      for (std::size_t i = 0; i < 4; ++i) {
+        all = all && in[static_cast<std::size_t>(kCube[k][i])];
+        corners[i] = cornerOf(cube, kCube[k][i]);
+      }
+      if (all) add(k, corners);
+    }
+  }
+
+ private:
+  openvdb::Vec3fGrid::ConstAccessor map_;
+  openvdb::FloatGrid::ConstAccessor distance_;
+  const Positions& moved_;
+};
+
+// The cubes that have the voxel as a corner.
+template <class Visit>
+void forCubesAround(const Coord& c, const Visit& visit) {
+  for (int bits = 0; bits < 8; ++bits)
+    visit(c.offsetBy(-(bits & 1), -(bits >> 1 & 1), -(bits >> 2 & 1)));
+}
+
+const std::array<Mat3, 6>& rests() {
+  static const std::array<Mat3, 6> all = [] {
+    std::array<Mat3, 6> out;
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] = restOf(kCube[k]);
+    return out;
+  }();
+  return all;
+}
+
+// The tetrahedra that have a voxel that may move: one that is near one of the folded.
+class Patch {
+ public:
+  // unit: a voxel's size where the map takes it, world units.
+  Patch(const Voxels& voxels, const std::vector<Coord>& folded, int rings, double unit)
+      : voxels_(voxels), unit_(unit) {
+    for (const Coord& c : folded)
+      for (int x = -rings; x <= rings; ++x)
+        for (int y = -rings; y <= rings; ++y)
+          for (int z = -rings; z <= rings; ++z)
+            if (const Coord at = c.offsetBy(x, y, z); voxels.inside(at)) number(at);
+    const std::size_t free = coords_.size();
+    std::set<Coord> cubes;
+    for (const Coord& c : coords_)
+      forCubesAround(c, [&](const Coord& cube) { cubes.insert(cube); });
+    for (const Coord& cube : cubes)
+      voxels.forTets(cube, [&](std::size_t k, const std::array<Coord, 4>& corners) {
+        addTet(corners, rests()[k], free);
+      });
+    tets_.free.assign(coords_.size(), 0);
+    std::fill_n(tets_.free.begin(), free, 1);
+  }
+
+  // Whether no tetrahedron is left inside out.
+  bool repair(Progress* progress) { return untangle(tets_, progress) > 0; }
+
+  void collect(Positions& to) const {
+    for (std::size_t v = 0; v < coords_.size(); ++v)
+      if (tets_.free[v]) to[coords_[v]] = unit_ * tets_.vertices[v];
+  }
+
+ private:
+  int number(const Coord& c) {
+    const auto [at, fresh] = numbers_.try_emplace(c, static_cast<int>(coords_.size()));
+    if (fresh) {
+      coords_.push_back(c);
+      tets_.vertices.push_back((1 / unit_) * voxels_.now(c));
+    }
+    return at->second;
+  }
+
+  void addTet(const std::array<Coord, 4>& corners, const Mat3& rest, std::size_t free) {
+    const bool moves = std::any_of(corners.begin(), corners.end(), [&](const Coord& c) {
+      const auto found = numbers_.find(c);
+      return found != numbers_.end() && static_cast<std::size_t>(found->second) < free;
+    });
+    if (!moves) return;
+    std::array<int, 4> tet;
+    for (std::size_t i = 0; i < 4; ++i) tet[i] = number(corners[i]);
+    tets_.tets.push_back(tet);
+    tets_.rest.push_back(rest);
+  }
+
+  const Voxels& voxels_;
+  double unit_;
+  TetPatch tets_;
+  std::unordered_map<Coord, int, CoordHash> numbers_;
+  std::vector<Coord> coords_;
+};
+
+// The affine map nearest to those of the voxels about one, by least squares: for one that is in no
+// tetrahedron. Not finite where they lie in a plane.
+Mat3 affineAt(const Voxels& voxels, const Coord& at, double spacing) {
+  constexpr int kReach = 2;
+  const Vec3 here = voxels.now(at);
+  Mat3 products{}, squares{};
+  for (int x = -kReach; x <= kReach; ++x)
+    for (int y = -kReach; y <= kReach; ++y)
+      for (int z = -kReach; z <= kReach; ++z) {
+        const Coord c = at.offsetBy(x, y, z);
+        if (!voxels.inside(c)) continue;
+        const Vec3 way{spacing * x, spacing * y, spacing * z}, image = voxels.now(c) - here;
+        for (int r = 0; r < 3; ++r)
+          for (int a = 0; a < 3; ++a) {
+            products[static_cast<std::size_t>(r)][static_cast<std::size_t>(a)] += image[r] * way[a];
+            squares[static_cast<std::size_t>(r)][static_cast<std::size_t>(a)] += way[r] * way[a];
+          }
+      }
+  return product(products, inverse(squares));
+}
+
+// The mean of the tetrahedra about a voxel; where that is folded, though none of them is, the
+// largest. spacing: of the voxels, world units.
+Mat3 jacobianAt(const Voxels& voxels, const Coord& at, double spacing) {
+  std::vector<Mat3> all;
+  forCubesAround(at, [&](const Coord& cube) {
+    voxels.forTets(cube, [&](std::size_t k, const std::array<Coord, 4>& corners) {
+      if (std::find(corners.begin(), corners.end(), at) == corners.end()) return;
+      TetPatch one;
+      for (const Coord& c : corners) one.vertices.push_back((1 / spacing) * voxels.now(c));
+      one.tets = {{0, 1, 2, 3}};
+      one.rest = {rests()[k]};
+      all.push_back(jacobianOf(one, 0));
+    });
+  });
+  if (all.empty()) return affineAt(voxels, at, spacing);
+  Mat3 mean{}, largest{};
+  for (const Mat3& j : all) {
+    if (determinant(j) > determinant(largest)) largest = j;
+    for (std::size_t r = 0; r < 3; ++r)
+      for (std::size_t c = 0; c < 3; ++c) mean[r][c] += j[r][c] / static_cast<double>(all.size());
+  }
+  return determinant(mean) > 0 ? mean : largest;
+}
+
+// Repairs clusters side by side, each moving voxels that no other one looks at; the voxels of those
+// where that failed.
+std::vector<Coord> repairWith(int rings, const std::vector<Coord>& folded,
+                              const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
+                              const FoldRepairSettings& settings, Positions& moved) {
+  const auto clusters = clustersOf(folded, 2 * rings + 2);
+  std::vector<Positions> parts(clusters.size());
+  std::vector<char> done(clusters.size(), 0);
+  parallelBlocks(
+      clusters.size(), 1,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t c = begin; c < end; ++c) {
+          if (clusters[c].size() > kMost) continue;
+          const Voxels voxels(map, levelSet, moved);
+          Patch patch(voxels, clusters[c], rings, settings.growth * levelSet.voxelSize()[0]);
+          done[c] = patch.repair(settings.progress);
+          patch.collect(parts[c]);
+        }
+      },
+      settings.progress);
+  std::vector<Coord> left;
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    for (const auto& [at, position] : parts[c]) moved[at] = position;
+    if (!done[c]) left.insert(left.end(), clusters[c].begin(), clusters[c].end());
+  }
+  return left;
+}
+
+}  // namespace
+
+FoldRepair repairFolds(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& jacobian,
+                       const openvdb::FloatGrid& levelSet, const FoldRepairSettings& settings) {
+  Positions moved;
+  const Voxels voxels(map, levelSet, moved);
+  std::vector<Coord> folded;
+  for (auto voxel = jacobian.cbeginValueOn(); voxel; ++voxel)
+    if (!(*voxel > 0) && voxels.inside(voxel.getCoord())) folded.push_back(voxel.getCoord());
+  std::vector<Coord> left = folded;
+  for (const int rings : kRings)
+    if (!left.empty()) left = repairWith(rings, left, map, levelSet, settings, moved);
+  FoldRepair out;
+  for (const auto& [at, position] : moved) {
+    const Mat3 j = jacobianAt(voxels, at, levelSet.voxelSize()[0]);
+    if (!(determinant(j) > 0)) continue;
+    out.farthest = std::max(out.farthest, norm(position - voxels.original(at)));
+    out.voxels[at] = {position, j};
+  }
+  return out;
+}
+
+}  // namespace innermap

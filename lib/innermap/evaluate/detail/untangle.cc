@@ -1,0 +1,168 @@
+#include "innermap/evaluate/detail/untangle.h"
+
+#include <lbfgs.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+namespace innermap {
+namespace {
+
+constexpr double kTheta = 0.5;  // share of the volumes' part of the energy
+constexpr int kRounds = 20, kStepsARound = 50, kPairs = 8;
+constexpr double kLeastGain = 1e-2;  // of a round; below it no more is to be had
+constexpr double kSmallest = 1e-9;   // regularisation of patches without folds
+
+struct LbfgsFree {
+  void operator()(lbfgsfloatval_t* p) const { lbfgs_free(p); }
+};
+
+// Derivative of the determinant.
+Mat3 cofactors(const Mat3& m) {
+  Mat3 out;
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
+      out[r][c] = m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1];
+    }
+  return out;
+}
+
+// The determinant, made positive.
+double lifted(double det, double eps) { return 0.5 * (det + std::hypot(det, eps)); }
+
+class Energy {
+ public:
+  Energy(TetPatch& patch, Progress* progress) : patch_(patch), progress_(progress) {
+    for (std::size_t v = 0; v < patch.vertices.size(); ++v)
+      if (patch.free[v]) unknowns_.push_back(static_cast<int>(v));
+  }
+
+  std::size_t size() const { return 3 * unknowns_.size(); }
+
+  void read(lbfgsfloatval_t* x) const {
+    for (std::size_t u = 0; u < unknowns_.size(); ++u)
+      for (int k = 0; k < 3; ++k) x[3 * u + k] = patch_.vertices[unknowns_[u]][k];
+  }
+
+  void write(const lbfgsfloatval_t* x) {
+    for (std::size_t u = 0; u < unknowns_.size(); ++u)
+      for (int k = 0; k < 3; ++k) patch_.vertices[unknowns_[u]][k] = x[3 * u + k];
+  }
+
+  double leastDeterminant() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t t = 0; t < patch_.tets.size(); ++t)
+      least = std::min(least, determinant(jacobianOf(patch_, t)));
+    return least;
+  }
+
+  // gradient: of all vertices; may be null.
+  double at(double eps, Points* gradient) const {
+    double sum = 0;
+    if (gradient) gradient->assign(patch_.vertices.size(), {});
+    for (std::size_t t = 0; t < patch_.tets.size(); ++t) sum += of(t, eps, gradient);
+    return sum;
+  }
+
+  // One round at a fixed eps.
+  void minimise(double eps, lbfgsfloatval_t* x) {
+    eps_ = eps;
+    lbfgs_parameter_t settings;
+    lbfgs_parameter_init(&settings);
+    settings.m = kPairs;
+    settings.max_iterations = kStepsARound;
+    settings.epsilon = 1e-6;
+    // What it returns says no more than x does: the round ended by its steps, or no line search
+    // gained anything.
+    lbfgs(static_cast<int>(size()), x, nullptr, &evaluate, &keepOn, this, &settings);
+    write(x);
+    throwIfCancelled(progress_);
+  }
+
+ private:
+  double of(std::size_t t, double eps, Points* gradient) const {
+    const Mat3 j = jacobianOf(patch_, t);
+    const double det = determinant(j), chi = lifted(det, eps);
+    double squares = 0;
+    for (const auto& row : j)
+      for (const double x : row) squares += x * x;
+    const double shape = std::pow(chi, -2.0 / 3), size = (1 + det * det) / chi;
+    if (gradient) {
+      const double slope = 0.5 * (1 + det / std::hypot(det, eps));
+      const double byDet =
+          -2.0 / 3 * squares * shape / chi * slope + kTheta * (2 * det / chi - size / chi * slope);
+      Mat3 byJ = cofactors(j);
+      for (std::size_t r = 0; r < 3; ++r)
+        for (std::size_t c = 0; c < 3; ++c) byJ[r][c] = byDet * byJ[r][c] + 2 * shape * j[r][c];
+      const Mat3 byEdges = product(byJ, transposed(patch_.rest[t]));
+      for (int e = 0; e < 3; ++e) {
+        const auto column = static_cast<std::size_t>(e);
+        const Vec3 g{byEdges[0][column], byEdges[1][column], byEdges[2][column]};
+        (*gradient)[patch_.tets[t][column + 1]] += g;
+        (*gradient)[patch_.tets[t][0]] += -1.0 * g;
+      }
+    }
+    return squares * shape + kTheta * size;
+  }
+
+  static lbfgsfloatval_t evaluate(void* self, const lbfgsfloatval_t* x, lbfgsfloatval_t* g, int,
+                                  lbfgsfloatval_t) {
+    Energy& energy = *static_cast<Energy*>(self);
+    energy.write(x);
+    const double value = energy.at(energy.eps_, &energy.gradient_);
+    for (std::size_t u = 0; u < energy.unknowns_.size(); ++u)
+      for (int k = 0; k < 3; ++k) g[3 * u + k] = energy.gradient_[energy.unknowns_[u]][k];
+    return value;
+  }
+
+  // No exception may pass through the optimiser, which is C.
+  static int keepOn(void* self, const lbfgsfloatval_t*, const lbfgsfloatval_t*, lbfgsfloatval_t,
+                    lbfgsfloatval_t, lbfgsfloatval_t, lbfgsfloatval_t, int, int, int) {
+    const Progress* progress = static_cast<Energy*>(self)->progress_;
+    return progress && progress->cancelled() ? 1 : 0;
+  }
+
+  TetPatch& patch_;
+  Progress* progress_;
+  std::vector<int> unknowns_;
+  double eps_ = 1;
+  Points gradient_;
+};
+
+}  // namespace
+
+Mat3 jacobianOf(const TetPatch& patch, std::size_t tet) {
+  const std::array<int, 4>& t = patch.tets[tet];
+  Mat3 edges;
+  for (std::size_t e = 0; e < 3; ++e) {
+    const Vec3 edge = patch.vertices[t[e + 1]] - patch.vertices[t[0]];
+    for (std::size_t r = 0; r < 3; ++r) edges[r][e] = edge[static_cast<int>(r)];
+  }
+  return product(edges, patch.rest[tet]);
+}
+
+double untangle(TetPatch& patch, Progress* progress) {
+  Energy energy(patch, progress);
+  double least = energy.leastDeterminant();
+  if (energy.size() == 0) return least;
+  const std::unique_ptr<lbfgsfloatval_t, LbfgsFree> x(
+      lbfgs_malloc(static_cast<int>(energy.size())));
+  if (!x) throw std::bad_alloc();
+  energy.read(x.get());
+  double eps = 1;
+  for (int round = 0; round < kRounds; ++round) {
+    const double before = energy.at(eps, nullptr);
+    energy.minimise(eps, x.get());
+    const double gain = 1 - energy.at(eps, nullptr) / before;
+    least = energy.leastDeterminant();
+    if (least > 0 && gain < kLeastGain) break;
+    const double mu = (1 - std::max(gain, 0.1)) * lifted(least, eps);
+    eps = least < mu ? 2 * std::sqrt(mu * (mu - least)) : kSmallest;
+  }
+  return least;
+}
+
+}  // namespace innermap
