@@ -60,6 +60,32 @@ def test_what_takes_maps_takes_steps():
     assert read_json("distance/report.json")["distance"]["outside_fraction"] < 0.01
 
 
+def bumps():
+    """A ball with a sharp dent: its single map folds a few voxels about it, beside the surface."""
+    vertices, faces = icosphere_arrays(4)
+    write_obj("ball.obj", vertices, faces)
+    write_obj("dented.obj", [(p[0], p[1], p[2] - 0.3 * math.exp(-(math.acos(
+        max(-1.0, min(1.0, p[2]))) / 0.22) ** 2)) for p in vertices], faces)
+
+
+def test_folds_of_a_few_voxels_are_repaired():
+    bumps()
+    innermap("map", "ball.obj", "dented.obj", "-o", "out", "--quiet", "--resolution", "64",
+             "--tolerance", "0.004", "--one-to-one", "off", "--best-effort")
+    before = read_json("out/report.json")
+    assert "repair" not in before and before["jacobian"]["min"] < 0, before["jacobian"]
+    for when in ("on", "auto"):
+        innermap("evaluate", "out/map.ply", "-o", f"{when}.vdb", "--resolution", "64", "--quiet",
+                 "--repair", when, "--report", f"{when}.json")
+    after, single = read_json("on.json"), read_json("auto.json")
+    assert after["repair"]["folded_voxels"] > 0 and after["repair"]["left"] == 0, after["repair"]
+    assert after["jacobian"]["min"] > 0, after["jacobian"]
+    assert 0 < after["repair"]["farthest"] < 0.3, after["repair"]
+    assert "repair" not in single and single["jacobian"] == before["jacobian"], single
+    assert "repaired" in innermap("info", "on.vdb").stdout
+    assert "repaired" not in innermap("info", "auto.vdb").stdout
+
+
 def test_what_cannot_be_one_to_one_is_said():
     pair()
     done = innermap("map", "ball.obj", "dented.obj", "-o", "out", "--quiet", "--resolution", "32",

@@ -19,7 +19,8 @@ constexpr double kPointsPerSource = 4, kPointsPerManySources = 3;
 // A first fit where a tolerance is asked for: enough to tell smooth deformations from others.
 constexpr std::size_t kFirstSources = 1000, kTrialSources = 200;
 constexpr std::size_t kInside = 20000, kPlaces = 16;
-// Single points beside the surface fold where charges are near them; smaller steps do not cure that.
+// Single points beside the surface fold where charges are near them; smaller steps do not cure
+// that.
 constexpr double kFewFolds = 4e-4;
 constexpr double kWorthIt = 0.2;       // of one map's folds may be left by steps
 constexpr double kSumAccuracy = 1e-7;  // of the target's diagonal, of what is checked inside

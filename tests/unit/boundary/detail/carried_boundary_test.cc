@@ -24,9 +24,7 @@ class Carried : public ::testing::Test {
  protected:
   Carried() : solid(shapes::icosphere(3)) { settings.chord = 1e-3; }
 
-  Points ways(const Vec3& way) const {
-    return Points(solid.repaired().mesh.vertices.size(), way);
-  }
+  Points ways(const Vec3& way) const { return Points(solid.repaired().mesh.vertices.size(), way); }
 
   Solid solid;
   CarrySettings settings;

@@ -74,8 +74,8 @@ TEST(Refine, CoversTheMeshWithoutGaps) {
   for (std::size_t t = 0; t < r.surface.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k) {
       const RefinedSurface::Part& part = r.surface.parts[t];
-      const Vec3 at = interpolate(r.mesh.vertices, r.mesh.triangles,
-                                  {{part.triangle, part.corners[k]}})[0];
+      const Vec3 at =
+          interpolate(r.mesh.vertices, r.mesh.triangles, {{part.triangle, part.corners[k]}})[0];
       EXPECT_LT(norm(at - r.surface.positions[r.surface.triangles[t][k]]), 1e-12);
     }
 }

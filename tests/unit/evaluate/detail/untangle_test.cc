@@ -36,8 +36,7 @@ TetPatch lattice() {
         for (const auto& tet : kTets) {
           std::array<int, 4> corners{};
           for (std::size_t i = 0; i < 4; ++i)
-            corners[i] =
-                vertexAt(x + (tet[i] & 1), y + (tet[i] >> 1 & 1), z + (tet[i] >> 2 & 1));
+            corners[i] = vertexAt(x + (tet[i] & 1), y + (tet[i] >> 1 & 1), z + (tet[i] >> 2 & 1));
           Mat3 edges{};
           for (std::size_t e = 0; e < 3; ++e)
             for (std::size_t r = 0; r < 3; ++r)
