@@ -11,7 +11,9 @@
 namespace innermap {
 namespace {
 
-constexpr double kShortest = 1.0 / 128;  // of the way, of a step that is halved no more
+// Of the way: halves that are made where a coarse fit folds, and where only the full one does,
+// whose folds beside the surface smaller steps cure more seldom.
+constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32;
 // Before a step is fitted: charges on the first level alone, whose folds are few or none where
 // those of the fit are none.
 constexpr double kCoarse = 1;
@@ -47,18 +49,19 @@ class StepFitter {
         inside_{inside, {}} {}
 
   StepFit fit() {
-    std::vector<double> ends{1, 0.5};  // the next one last
+    std::vector<double> ends{1};  // the next one last
+    if (settings_.maxSteps > 1) ends.push_back(0.5);
     while (!ends.empty()) {
       const double end = ends.back();
-      const bool may = static_cast<int>(records_.size() + ends.size()) < settings_.maxSteps &&
-                       (end - at_) / 2 >= kShortest;
-      if (may && fitStep(end, kCoarse).record.folded > folded_) {
+      const bool may = static_cast<int>(records_.size() + ends.size()) < settings_.maxSteps;
+      const double half = (end - at_) / 2;
+      if (may && half >= kShortest && fitStep(end, kCoarse).record.folded > folded_) {
         ends.push_back((at_ + end) / 2);
         continue;
       }
       Step step = fitStep(end, toleranceUntil(end));
       const double allowed = folded_ + std::max(0.0, settings_.folds - folded_) / 2;
-      if (may && step.record.folded > allowed) {
+      if (may && half >= kShortestFitted && step.record.folded > allowed) {
         ends.push_back((at_ + end) / 2);
         continue;
       }
