@@ -107,8 +107,22 @@ AdaptiveProblem CarriedBoundary::problem(const Points& ways, double unit) const 
   out.placeCollocation = [carry, place = out.placeCollocation](const PlacementRequest& request) {
     return carry(place(request));
   };
-  out.draw = [carry, draw = out.draw](std::size_t count, std::uint64_t index) {
-    return carry(draw(count, index));
+  // Uniform by the source's area, as the certificate is.
+  out.draw = [this, carry, ways](std::size_t count, std::uint64_t index) {
+    SampleSettings sample;
+    sample.seed = seedOf(settings_.seed, Stream::fresh, index);
+    sample.progress = settings_.progress;
+    std::vector<SurfacePoint> places = randomSamples(source_.surface(), count, sample);
+    for (SurfacePoint& p : places) p = source_.address(p);
+    const Points from = onSource(source_.repaired().mesh.vertices, places),
+                 way = onSource(ways, places);
+    BoundarySamples samples{from, Matrix(count, 6)};
+    for (std::size_t i = 0; i < count; ++i)
+      for (int k = 0; k < 3; ++k) {
+        samples.values(i, static_cast<std::size_t>(k)) = from[i][k];
+        samples.values(i, static_cast<std::size_t>(k) + 3) = way[i][k];
+      }
+    return carry(samples);
   };
   return out;
 }
