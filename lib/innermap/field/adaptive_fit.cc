@@ -93,6 +93,7 @@ void AdaptiveFitting::check() const {
   if (settings_.maxSources < settings_.firstSources || settings_.maxSources > 1000000)
     throw SettingError("max sources",
                        "must lie in " + std::to_string(settings_.firstSources) + " to 1000000");
+  if (settings_.patience < 1) throw SettingError("patience", "must be at least 1");
   if (!(problem_.diagonal > 0) || !(problem_.area > 0) || !(problem_.unit > 0))
     throw DataError("fit: the boundary has no extent");
 }
@@ -255,7 +256,7 @@ void AdaptiveFitting::keepIfBest() {
 
 // Whether one of the last rounds was better than all before.
 bool AdaptiveFitting::gains() const {
-  const auto patience = static_cast<std::size_t>(std::max(settings_.patience, 1));
+  const auto patience = static_cast<std::size_t>(settings_.patience);
   if (rounds_.size() <= patience) return true;
   double best[2] = {score(rounds_.front().error), score(rounds_.back().error)};
   for (std::size_t r = 0; r < rounds_.size(); ++r) {

@@ -9,9 +9,10 @@
 namespace innermap {
 namespace {
 
+// Where an intermediate shape crosses itself its exposed surface need not be known finely.
+constexpr double kPieces = 1.0 / 256;
 // A mesh about an intermediate shape has at most so many triangles more than the source, or so
 // many times as many.
-constexpr double kPieces = 1.0 / 256;
 constexpr std::size_t kMoreTriangles = 100000, kTimesTriangles = 4;
 
 // At places on solid.surface(), from values at the vertices that the solid was made of.
@@ -51,6 +52,15 @@ Points CarriedBoundary::carried(Points points, std::size_t firstStep) const {
 Points CarriedBoundary::onSource(const Points& vertices,
                                  const std::vector<SurfacePoint>& places) const {
   return interpolate(vertices, source_.repaired().mesh.triangles, places);
+}
+
+std::vector<SurfacePoint> CarriedBoundary::placesOf(std::size_t count, std::uint64_t draw) const {
+  SampleSettings sample;
+  sample.seed = seedOf(settings_.seed, Stream::fresh, draw);
+  sample.progress = settings_.progress;
+  std::vector<SurfacePoint> places = randomSamples(source_.surface(), count, sample);
+  for (SurfacePoint& p : places) p = source_.address(p);
+  return places;
 }
 
 void CarriedBoundary::advance(const HarmonicMap& step, bool last) {
@@ -109,11 +119,7 @@ AdaptiveProblem CarriedBoundary::problem(const Points& ways, double unit) const 
   };
   // Uniform by the source's area, as the certificate is.
   out.draw = [this, carry, ways](std::size_t count, std::uint64_t index) {
-    SampleSettings sample;
-    sample.seed = seedOf(settings_.seed, Stream::fresh, index);
-    sample.progress = settings_.progress;
-    std::vector<SurfacePoint> places = randomSamples(source_.surface(), count, sample);
-    for (SurfacePoint& p : places) p = source_.address(p);
+    const std::vector<SurfacePoint> places = placesOf(count, index);
     const Points from = onSource(source_.repaired().mesh.vertices, places),
                  way = onSource(ways, places);
     BoundarySamples samples{from, Matrix(count, 6)};
@@ -130,17 +136,8 @@ AdaptiveProblem CarriedBoundary::problem(const Points& ways, double unit) const 
 BoundaryError CarriedBoundary::errorFrom(const Points& shape, double unit) {
   const Mesh& mesh = source_.repaired().mesh;
   if (fresh_.empty()) {
-    FreshSampleSettings s;
-    s.seed = settings_.seed;
-    s.progress = settings_.progress;
-    const BoundarySamples fresh = freshSamples(
-        source_,
-        [this](const std::vector<SurfacePoint>& places) {
-          for (const SurfacePoint& p : places) freshPlaces_.push_back(source_.address(p));
-          return Matrix(places.size(), 1);
-        },
-        s);
-    fresh_ = fresh.points;
+    freshPlaces_ = placesOf(kFreshSamples, 0);
+    fresh_ = onSource(mesh.vertices, freshPlaces_);
   }
   fresh_ = carried(std::move(fresh_), freshSteps_);
   freshSteps_ = steps_.size();

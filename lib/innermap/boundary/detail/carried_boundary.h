@@ -28,10 +28,9 @@ class CarriedBoundary {
   // is left has no inside, Cancelled.
   void advance(const HarmonicMap& step, bool last);
 
-  // To be fitted: each point of the boundary that is not buried in other parts now goes from where
-  // it is by its way. ways: of the
-  // vertices of source.repaired().mesh, linear between them. unit: what errors are fractions of.
-  // Holds a reference to this.
+  // Each point of the boundary goes from where it is by its way: fitted where it is not buried in
+  // other parts now, measured everywhere. ways: of the vertices of source.repaired().mesh, linear
+  // between them. unit: what errors are fractions of. Holds a reference to this.
   AdaptiveProblem problem(const Points& ways, double unit) const;
 
   // Distances from where `shape`, positions of those vertices, has them: at the points of
@@ -40,6 +39,9 @@ class CarriedBoundary {
 
  private:
   Points carried(Points points, std::size_t firstStep) const;
+  // Random places on the source's repaired mesh, uniform by its area; those of draw 0 are
+  // freshSamples'.
+  std::vector<SurfacePoint> placesOf(std::size_t count, std::uint64_t draw) const;
   Points onSource(const Points& vertices, const std::vector<SurfacePoint>& places) const;
 
   const Solid& source_;

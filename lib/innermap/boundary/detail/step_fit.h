@@ -23,13 +23,13 @@ struct StepFitSettings {
 struct StepFit {
   ComposedMap map;
   std::vector<MapStep> steps;
-  BoundaryError error;  // of the whole: that of the last step, which ends on the target
-  AdaptiveEnd end = AdaptiveEnd::met;  // why the last step did not reach the tolerance
+  BoundaryError error;                 // of the whole, end to end
+  AdaptiveEnd end = AdaptiveEnd::met;  // of the first step that did not reach its tolerance
 };
 
 // Each step starts from where the steps before it take the boundary, not from the shape that they
-// were to reach: so nothing is ever outside the solid that a step is fitted on, errors do not add
-// up, and the last step's error is that of the whole. A step that folds points inside is halved
+// were to reach: so nothing is ever outside the solid that a step is fitted on, and an error is
+// handed on as it is, not magnified. A step that folds points inside is halved
 // while there are fewer than maxSteps: any of them at a coarse fit, more than half of those that
 // are left of `folds` in the end. inside: points of the source. Throws DataError, MemoryError,
 // Cancelled.
