@@ -55,7 +55,7 @@ void addEvaluationOptions(Command& c, EvaluationOptions& o) {
   c.choice("--repair", "WHEN", &o.repair,
            {{"auto", RepairFolds::automatic}, {"on", RepairFolds::on}, {"off", RepairFolds::off}},
            "take folds out of the grids, where `repaired` says how far voxels were moved; auto: "
-           "those that maps in steps leave");
+           "where at most 0.5% of the voxels is folded");
   addNamesOption(c, o.names);
 }
 

@@ -66,6 +66,7 @@ std::string whyEnded(AdaptiveEnd end, const FitMapSettings& settings) {
     case AdaptiveEnd::noGain:
       return "more charges do not help";
     case AdaptiveEnd::met:
+    case AdaptiveEnd::stopped:
       break;
   }
   return "vertices are all that --interpolation smooth fits";

@@ -22,6 +22,9 @@ constexpr std::size_t kInside = 20000, kPlaces = 16;
 // Single points beside the surface fold where charges are near them; smaller steps do not cure
 // that.
 constexpr double kFewFolds = 4e-4;
+// What a thousand charges fold is near what the whole fit does, where that is so much: no need to
+// go on to it.
+constexpr double kHopelessFolds = 2 * kManyFolds;
 constexpr double kWorthIt = 0.2;       // of one map's folds may be left by steps
 constexpr double kSumAccuracy = 1e-7;  // of the target's diagonal, of what is checked inside
 constexpr PointCounts kVertexTrial{kFirstSources, 4 * kFirstSources, kFirstSources};
@@ -114,7 +117,9 @@ class MapFitter {
       : pair_(pair), settings_(settings) {}
 
   StageSeconds seconds;
-  InsideFigures single;  // of one harmonic map
+  // Of one harmonic map, when there are steps instead.
+  double singleFolded = 0;
+  std::size_t singleSources = 0;
 
   Outcome onShell(const ShellSettings& shell) {
     const FitProblem problem = problemOf(pointCounts(shell));
@@ -125,12 +130,18 @@ class MapFitter {
     return out;
   }
 
-  Outcome within(double tolerance) {
+  // mayStop: with the first charges, if these leave no doubt that steps are needed.
+  Outcome within(double tolerance, bool mayStop = true) {
     std::optional<Outcome> out = tryVertices(tolerance);
     AdaptiveEnd end = AdaptiveEnd::met;
     if (!out) {
+      AdaptiveSettings settings = adaptiveSettings(tolerance);
+      if (mayStop && mayTakeSteps())
+        settings.goOn = [this](const HarmonicField& field) {
+          return foldedShare(insideOf(HarmonicMap(field)).determinants) <= kHopelessFolds;
+        };
       timed(seconds, "fit", [&] {
-        const AdaptiveResult fit = fitToTolerance(problem(), adaptiveSettings(tolerance));
+        const AdaptiveResult fit = fitToTolerance(problem(), settings);
         end = fit.end;
         out.emplace(outcomeOf(fit, pair_.target.diagonal));
       });
@@ -142,19 +153,39 @@ class MapFitter {
   // Counts folds, and goes in steps where there are too many.
   void check(Outcome& out) {
     if (settings_.oneToOne == OneToOne::off) return;
-    timed(seconds, "inside", [&] {
-      inside_ = pointsInside(pair_.solid(), kInside, settings_.progress);
-      single = out.inside = figuresOf(out);
-    });
-    // Onto a target that is turned inside out somewhere no map is one-to-one.
-    if (settings_.shell || !(pair_.target.volume > 0)) return;
+    timed(seconds, "inside", [&] { out.inside = figuresOf(out); });
+    if (!mayTakeSteps()) return;
     const bool on = settings_.oneToOne == OneToOne::on;
     if (out.inside.folded <= (on ? 0 : kManyFolds) && out.inside.outside <= kManyOutside) return;
+    singleFolded = out.inside.folded;
+    singleSources = out.solve.sources;
     Outcome steps = inSteps();
-    if (steps.inside.folded <= (on ? 1 : kWorthIt) * out.inside.folded) out = std::move(steps);
+    if (steps.inside.folded <= (on ? 1 : kWorthIt) * singleFolded) {
+      out = std::move(steps);
+    } else if (out.tolerance->end == AdaptiveEnd::stopped) {
+      out = within(settings_.tolerance, false);
+      timed(seconds, "inside", [&] { out.inside = figuresOf(out); });
+    }
   }
 
  private:
+  // Onto a target that is turned inside out somewhere no map is one-to-one.
+  bool mayTakeSteps() const {
+    return settings_.oneToOne != OneToOne::off && !settings_.shell && pair_.target.volume > 0;
+  }
+
+  const Points& inside() {
+    if (inside_.empty()) inside_ = pointsInside(pair_.solid(), kInside, settings_.progress);
+    return inside_;
+  }
+
+  MappedPoints insideOf(const ComposedMap& map) {
+    MappedPoints here{inside(), {}};
+    for (const HarmonicMap& step : map.steps())
+      here = mapPoints(step, here, kSumAccuracy * pair_.target.diagonal, settings_.progress);
+    return here;
+  }
+
   SurfaceValues values() const {
     return [this](const std::vector<SurfacePoint>& points) { return pair_.targetsOf(points); };
   }
@@ -186,10 +217,8 @@ class MapFitter {
     return s;
   }
 
-  InsideFigures figuresOf(const Outcome& out) const {
-    MappedPoints here{inside_, {}};
-    for (const HarmonicMap& step : out.map.steps())
-      here = mapPoints(step, here, kSumAccuracy * pair_.target.diagonal, settings_.progress);
+  InsideFigures figuresOf(const Outcome& out) {
+    const MappedPoints here = insideOf(out.map);
     InsideFigures figures;
     figures.samples = inside_.size();
     figures.folded = foldedShare(here.determinants);
@@ -218,7 +247,7 @@ class MapFitter {
     s.seed = settings_.seed;
     s.maxMemory = settings_.maxMemory;
     s.progress = settings_.progress;
-    StepFit fit = timed(seconds, "steps", [&] { return fitInSteps(pair_, inside_, s); });
+    StepFit fit = timed(seconds, "steps", [&] { return fitInSteps(pair_, inside(), s); });
     Outcome out{std::move(fit.map), fit.error, 0, false, {}, {}, {}, {}, std::move(fit.steps)};
     out.solve.method = out.solve.placement = "steps";
     out.solve.sources = out.solve.rank = out.map.sources();
@@ -306,12 +335,12 @@ Facts factsOf(const BoundaryPair& pair, const Outcome& out, std::uint64_t seed) 
   return facts;
 }
 
-void noteSteps(MapFit& fit, const InsideFigures& single) {
+void noteSteps(MapFit& fit, double singleFolded, std::size_t singleSources) {
   if (fit.steps.empty()) return;
   fit.notes.push_back(fmt::format(
-      "one harmonic map folds {:.2g}% of the inside and takes {:.2g}% of it out of the target; in "
-      "{} steps {:.2g}% is folded and {:.2g}% outside",
-      100 * single.folded, 100 * single.outside, fit.steps.size(), 100 * fit.inside.folded,
+      "one harmonic map, of {} charges, folds {:.2g}% of the inside; in {} steps {:.2g}% is folded "
+      "and {:.2g}% taken out of the target",
+      singleSources, 100 * singleFolded, fit.steps.size(), 100 * fit.inside.folded,
       100 * fit.inside.outside));
 }
 
@@ -385,7 +414,7 @@ MapFit fitMap(BoundaryPair boundary, const FitMapSettings& settings) {
              {},
              {},
              std::move(fitter.seconds)};
-  noteSteps(fit, fitter.single);
+  noteSteps(fit, fitter.singleFolded, fitter.singleSources);
   warnOfError(fit);
   return fit;
 }

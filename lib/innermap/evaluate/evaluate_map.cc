@@ -181,8 +181,8 @@ void Evaluation::repair(const openvdb::MaskGrid& region, std::vector<LeafTotals>
 
 MapGrids Evaluation::run() {
   constexpr std::uint64_t kMaskBytes = 1;
-  const bool wantsMap = settings_.map || settings_.repair,
-             wantsJacobian = settings_.jacobian || settings_.repair;
+  const bool mayRepair = settings_.repairUpTo > 0;
+  const bool wantsMap = settings_.map || mayRepair, wantsJacobian = settings_.jacobian || mayRepair;
   RegionSettings where;
   where.skin = settings_.skin;
   where.maxMemory = settings_.maxMemory;
@@ -204,8 +204,14 @@ MapGrids Evaluation::run() {
   visitField(map_, solid_, levelSet_, *region,
              [&](std::size_t leaf, const LeafValues& values) { totals[leaf] = store(values, out); },
              {accuracy_, "evaluating the map", settings_.progress});
-  for (const LeafTotals& t : totals) out.foldedVoxels += t.foldedVoxels;
-  if (settings_.repair && out.foldedVoxels > 0) repair(*region, totals, out);
+  std::uint64_t interior = 0;
+  for (const LeafTotals& t : totals) {
+    out.foldedVoxels += t.foldedVoxels;
+    interior += t.interior;
+  }
+  const double most = settings_.repairUpTo * static_cast<double>(interior);
+  if (out.foldedVoxels > 0 && static_cast<double>(out.foldedVoxels) <= most)
+    repair(*region, totals, out);
   if (!settings_.map) out.map.reset();
   if (!settings_.jacobian) out.jacobian.reset();
   LeafTotals sum;

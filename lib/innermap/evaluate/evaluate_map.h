@@ -17,9 +17,10 @@ struct EvaluateSettings {
   bool map = true, jacobian = true, harmonicEnergy = true, deformationEnergy = true;
   LameConstants lame;
   double targetVolume = 0;  // world units cubed; scales the harmonic energy; 0: as the source's
-  // Folds are repaired: about each the map is replaced by one that is linear between voxels and
-  // folds nowhere, where there are few and one is found; see MapGrids::repaired.
-  bool repair = false;
+  // Folds are repaired where at most this share of the voxels inside is folded, in [0, 1]: about
+  // each the map is replaced by one that is linear between voxels and folds nowhere, if one is
+  // found; see MapGrids::repaired. 0: never.
+  double repairUpTo = 0;
   double skin = 2;  // active voxels outside the surface, in [0, 3]
   // Of the sums of charges: root mean square error of positions as a fraction of the target's
   // extent, in [1e-12, 1e-3]. The default is what float grids hold.

@@ -22,12 +22,13 @@ LevelSetSettings levelSetSettings(const MapGridSettings& settings) {
   return out;
 }
 
-EvaluateSettings evaluateSettings(double targetVolume, double accuracy, std::size_t steps,
+EvaluateSettings evaluateSettings(double targetVolume, double accuracy,
                                   const MapGridSettings& settings) {
   EvaluateSettings out;
   out.lame = settings.lame;
-  out.repair = settings.repair == RepairFolds::on ||
-               (settings.repair == RepairFolds::automatic && steps > 1);
+  out.repairUpTo = settings.repair == RepairFolds::on          ? 1
+                   : settings.repair == RepairFolds::automatic ? kRepairedFolds
+                                                               : 0;
   out.targetVolume = targetVolume;
   out.accuracy = accuracy;
   out.maxMemory = settings.maxMemory;
@@ -75,9 +76,9 @@ SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& sett
     out.warnings = checkLevelSet(*out.surface, solid).warnings;
   });
   timed(out.seconds, "evaluate", [&] {
-    out.values = evaluateMap(mapped.map, solid, *out.surface,
-                             evaluateSettings(mapped.boundary.target.volume, sumAccuracy(mapped),
-                                              mapped.map.steps().size(), settings));
+    out.values =
+        evaluateMap(mapped.map, solid, *out.surface,
+                    evaluateSettings(mapped.boundary.target.volume, sumAccuracy(mapped), settings));
   });
   requireInterior(out.values.interiorVoxels, mapped.boundary.source.mesh.name);
   out.voxelSize = out.surface->voxelSize()[0];
@@ -124,7 +125,8 @@ bool FrameEvaluator::wants(const char* name) const {
 
 MapGrids FrameEvaluator::evaluate(const FrameFit& fit) const {
   EvaluateSettings evaluate =
-      evaluateSettings(fit.boundary.volume, sumAccuracy(fit.error.rms), 1, settings_);
+      evaluateSettings(fit.boundary.volume, sumAccuracy(fit.error.rms), settings_);
+  if (settings_.repair != RepairFolds::on) evaluate.repairUpTo = 0;
   evaluate.map = wants("map");
   evaluate.jacobian = wants("jacobian");
   evaluate.harmonicEnergy = wants("harmonic_energy");

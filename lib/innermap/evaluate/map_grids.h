@@ -16,8 +16,10 @@
 
 namespace innermap {
 
-// Whether folds are repaired (EvaluateSettings::repair). automatic: those of maps in steps.
+// Whether folds are repaired (EvaluateSettings::repairUpTo). automatic: where at most
+// kRepairedFolds of the voxels inside is folded, and not in sequences.
 enum class RepairFolds { automatic, on, off };
+constexpr double kRepairedFolds = 5e-3;
 
 struct MapGridSettings {
   int resolution = 128;  // voxels along the longest side of the solid, in [4, 4096]

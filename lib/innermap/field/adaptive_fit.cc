@@ -285,6 +285,10 @@ AdaptiveResult AdaptiveFitting::run() {
     rounds_.push_back(
         {solver_->sources().size(), collocation_.size(), solution_.iterations, error});
     keepIfBest();
+    if (round == 1 && settings_.goOn && !settings_.goOn(*field_)) {
+      end_ = AdaptiveEnd::stopped;
+      break;
+    }
     if (error.p99 <= kMargin * settings_.tolerance && isTame(error)) {
       const BoundaryError other = errorAtChecks(*field_);
       if (other.p99 <= kMargin * settings_.tolerance && isTame(other)) break;
@@ -298,7 +302,8 @@ AdaptiveResult AdaptiveFitting::run() {
   }
   AdaptiveResult out = std::move(*best_);
   out.error = errorAtChecks(out.field);
-  out.end = out.error.p99 <= settings_.tolerance ? AdaptiveEnd::met : end_;
+  const bool met = end_ != AdaptiveEnd::stopped && out.error.p99 <= settings_.tolerance;
+  out.end = met ? AdaptiveEnd::met : end_;
   out.rounds = std::move(rounds_);
   return out;
 }

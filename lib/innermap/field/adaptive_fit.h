@@ -59,14 +59,17 @@ struct AdaptiveSettings {
   std::size_t firstSources = 1000;  // about; of the first level, in [10, 5000]
   std::size_t maxSources = 100000;  // in [firstSources, 1000000]
   std::size_t checkSamples = 20000;
-  int patience = 6;             // rounds that may gain less than 3% in all, at least 1
-  int outlierRounds = 100;      // at most, once the tolerance holds, for errors that stand out
+  int patience = 6;         // rounds that may gain less than 3% in all, at least 1
+  int outlierRounds = 100;  // at most, once the tolerance holds, for errors that stand out
+  // Asked with the field of the first level alone, if given: where the answer is no the fit ends
+  // there (AdaptiveEnd::stopped).
+  std::function<bool(const HarmonicField& field)> goOn;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;
 };
 
 // Why an adaptive fit ended.
-enum class AdaptiveEnd { met, maxSources, maxMemory, noGain };
+enum class AdaptiveEnd { met, maxSources, maxMemory, noGain, stopped };
 
 struct AdaptiveRound {
   std::size_t sources = 0, collocation = 0;

@@ -232,7 +232,7 @@ TEST(EvaluateMap, FoldsAreRepairedAndNothingElse) {
   EXPECT_EQ(folded.foldedVoxelsLeft, folded.foldedVoxels);
   EXPECT_LT(folded.jacobianMin, 0);
   EXPECT_FALSE(folded.repaired);
-  settings.repair = true;
+  settings.repairUpTo = 1;
   const MapGrids grids = evaluate(foldedMap(), solid, 64, settings);
   EXPECT_EQ(grids.foldedVoxels, folded.foldedVoxels);
   EXPECT_EQ(grids.foldedVoxelsLeft, 0u);
@@ -259,7 +259,7 @@ TEST(EvaluateMap, FoldsAreRepairedAndNothingElse) {
 TEST(EvaluateMap, NoRepairWithoutFoldsNorForTheCallersGridsAlone) {
   const Solid solid(cube());
   EvaluateSettings settings;
-  settings.repair = true;
+  settings.repairUpTo = 1;
   EXPECT_FALSE(evaluate(chargedMap(), solid, 40, settings).repaired);
   settings.map = settings.jacobian = false;
   const MapGrids grids = evaluate(foldedMap(), solid, 64, settings);

@@ -14,9 +14,6 @@ namespace {
 // Of the way: halves that are made where a coarse fit folds, and where only the full one does,
 // whose folds beside the surface smaller steps cure more seldom.
 constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32;
-// Before a step is fitted: charges on the first level alone, whose folds are few or none where
-// those of the fit are none.
-constexpr double kCoarse = 1;
 // Of what is left of the tolerance for the way that is left: errors of steps add up, but do not all
 // point the same way. The last step has to do with what is left.
 constexpr double kShare = 1.3, kLastShare = 1, kLeastShare = 0.1;
@@ -55,13 +52,9 @@ class StepFitter {
       const double end = ends.back();
       const bool may = static_cast<int>(records_.size() + ends.size()) < settings_.maxSteps;
       const double half = (end - at_) / 2;
-      if (may && half >= kShortest && fitStep(end, kCoarse).record.folded > folded_) {
-        ends.push_back((at_ + end) / 2);
-        continue;
-      }
-      Step step = fitStep(end, toleranceUntil(end));
-      const double allowed = folded_ + std::max(0.0, settings_.folds - folded_) / 2;
-      if (may && half >= kShortestFitted && step.record.folded > allowed) {
+      Step step = fitStep(end, may && half >= kShortest);
+      if (step.fit.end == AdaptiveEnd::stopped ||
+          (may && half >= kShortestFitted && step.record.folded > allowed())) {
         ends.push_back((at_ + end) / 2);
         continue;
       }
@@ -83,6 +76,9 @@ class StepFitter {
     return s;
   }
 
+  // Share of the points inside that may be folded after a step.
+  double allowed() const { return folded_ + std::max(0.0, settings_.folds - folded_) / 2; }
+
   double toleranceUntil(double end) const {
     const double part = (end - at_) / (1 - at_);
     const double left = kOfTolerance * settings_.tolerance - error_.p99;
@@ -90,23 +86,33 @@ class StepFitter {
     return std::max({tolerance, kLeastShare * part * settings_.tolerance, kSmallestTolerance});
   }
 
-  Step fitStep(double to, double tolerance) {
+  // mayStop: where the first level of charges folds points that are not folded yet. Folds of that
+  // level are few or none where those of the whole fit are none.
+  Step fitStep(double to, bool mayStop) {
     const Points now = path_.at(at_);
     Points ways = path_.at(to);
     for (std::size_t v = 0; v < ways.size(); ++v) ways[v] = ways[v] - now[v];
     AdaptiveSettings s;
-    s.tolerance = tolerance;
+    s.tolerance = toleranceUntil(to);
     s.maxSources = settings_.maxSources;
     s.outlierRounds = kOutlierRounds;
     s.patience = kPatience;
+    if (mayStop)
+      s.goOn = [this](const HarmonicField& field) {
+        return foldedShare(insideAfter(HarmonicMap(field)).determinants) <= allowed();
+      };
     s.maxMemory = settings_.maxMemory;
     s.progress = settings_.progress;
     AdaptiveResult fit = fitToTolerance(boundary_.problem(ways, unit_), s);
     HarmonicMap map(fit.field);
-    MappedPoints inside = mapPoints(map, inside_, kSumAccuracy * unit_, settings_.progress);
+    MappedPoints inside = insideAfter(map);
     const MapStep record{at_, to, fit.field.sources().size(), fit.error.p99,
                          foldedShare(inside.determinants)};
     return {record, std::move(fit), std::move(map), std::move(inside)};
+  }
+
+  MappedPoints insideAfter(const HarmonicMap& step) const {
+    return mapPoints(step, inside_, kSumAccuracy * unit_, settings_.progress);
   }
 
   void take(Step step, bool last) {

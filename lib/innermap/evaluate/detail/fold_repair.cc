@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <unordered_map>
 #include <vector>
@@ -16,6 +18,7 @@ namespace {
 using openvdb::Coord;
 
 constexpr std::array<int, 3> kRings{2, 4, 8};
+constexpr std::array<int, 4> kReaches{1, 2, 3, 4};  // of what a voxel in no tetrahedron follows
 // Folded voxels near one another that are repaired: more of them are no blemish beside a surface
 // but a map that folds, and would take minutes.
 constexpr std::size_t kMost = 300;
@@ -181,30 +184,45 @@ class Patch {
   std::vector<Coord> coords_;
 };
 
-// The affine map nearest to those of the voxels about one, by least squares: for one that is in no
-// tetrahedron. Not finite where they lie in a plane.
-Mat3 affineAt(const Voxels& voxels, const Coord& at, double spacing) {
-  constexpr int kReach = 2;
-  const Vec3 here = voxels.now(at);
-  Mat3 products{}, squares{};
-  for (int x = -kReach; x <= kReach; ++x)
-    for (int y = -kReach; y <= kReach; ++y)
-      for (int z = -kReach; z <= kReach; ++z) {
-        const Coord c = at.offsetBy(x, y, z);
-        if (!voxels.inside(c)) continue;
-        const Vec3 way{spacing * x, spacing * y, spacing * z}, image = voxels.now(c) - here;
-        for (int r = 0; r < 3; ++r)
-          for (int a = 0; a < 3; ++a) {
-            products[static_cast<std::size_t>(r)][static_cast<std::size_t>(a)] += image[r] * way[a];
-            squares[static_cast<std::size_t>(r)][static_cast<std::size_t>(a)] += way[r] * way[a];
-          }
-      }
-  return product(products, inverse(squares));
+// For a voxel that is in no tetrahedron: where the affine map nearest to the images of those about
+// it takes it, by least squares. As few of them as give one that is not folded; none where no
+// neighbourhood does.
+std::optional<RepairedVoxel> followedAt(const Voxels& voxels, const Coord& at, double spacing) {
+  for (const int reach : kReaches) {
+    std::vector<Vec3> from, to;
+    for (int x = -reach; x <= reach; ++x)
+      for (int y = -reach; y <= reach; ++y)
+        for (int z = -reach; z <= reach; ++z) {
+          const Coord c = at.offsetBy(x, y, z);
+          if (c == at || !voxels.inside(c)) continue;
+          from.push_back({spacing * x, spacing * y, spacing * z});
+          to.push_back(voxels.now(c));
+        }
+    if (from.size() < 4) continue;
+    Vec3 fromMean, toMean;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      fromMean += (1 / static_cast<double>(from.size())) * from[i];
+      toMean += (1 / static_cast<double>(from.size())) * to[i];
+    }
+    Mat3 products{}, squares{};
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      const Vec3 way = from[i] - fromMean, image = to[i] - toMean;
+      for (std::size_t r = 0; r < 3; ++r)
+        for (std::size_t c = 0; c < 3; ++c) {
+          products[r][c] += image[static_cast<int>(r)] * way[static_cast<int>(c)];
+          squares[r][c] += way[static_cast<int>(r)] * way[static_cast<int>(c)];
+        }
+    }
+    const Mat3 j = product(products, inverse(squares));
+    if (const double det = determinant(j); det > 0 && std::isfinite(det))
+      return RepairedVoxel{toMean - j * fromMean, j};
+  }
+  return {};
 }
 
-// The mean of the tetrahedra about a voxel; where that is folded, though none of them is, the
-// largest. spacing: of the voxels, world units.
-Mat3 jacobianAt(const Voxels& voxels, const Coord& at, double spacing) {
+// Where the voxel is now, with the mean of the tetrahedra about it; where that is folded, though
+// none of them is, the largest. spacing: of the voxels, world units. None where all are folded.
+std::optional<RepairedVoxel> repairedAt(const Voxels& voxels, const Coord& at, double spacing) {
   std::vector<Mat3> all;
   forCubesAround(at, [&](const Coord& cube) {
     voxels.forTets(cube, [&](std::size_t k, const std::array<Coord, 4>& corners) {
@@ -216,14 +234,16 @@ Mat3 jacobianAt(const Voxels& voxels, const Coord& at, double spacing) {
       all.push_back(jacobianOf(one, 0));
     });
   });
-  if (all.empty()) return affineAt(voxels, at, spacing);
+  if (all.empty()) return followedAt(voxels, at, spacing);
   Mat3 mean{}, largest{};
   for (const Mat3& j : all) {
     if (determinant(j) > determinant(largest)) largest = j;
     for (std::size_t r = 0; r < 3; ++r)
       for (std::size_t c = 0; c < 3; ++c) mean[r][c] += j[r][c] / static_cast<double>(all.size());
   }
-  return determinant(mean) > 0 ? mean : largest;
+  const Mat3& j = determinant(mean) > 0 ? mean : largest;
+  if (!(determinant(j) > 0)) return {};
+  return RepairedVoxel{voxels.now(at), j};
 }
 
 // Repairs clusters side by side, each moving voxels that no other one looks at; the voxels of those
@@ -267,11 +287,12 @@ FoldRepair repairFolds(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& 
   for (const int rings : kRings)
     if (!left.empty()) left = repairWith(rings, left, map, levelSet, settings, moved);
   FoldRepair out;
-  for (const auto& [at, position] : moved) {
-    const Mat3 j = jacobianAt(voxels, at, levelSet.voxelSize()[0]);
-    if (!(determinant(j) > 0)) continue;
-    out.farthest = std::max(out.farthest, norm(position - voxels.original(at)));
-    out.voxels[at] = {position, j};
+  for (const auto& entry : moved) {
+    const Coord& at = entry.first;
+    const auto repaired = repairedAt(voxels, at, levelSet.voxelSize()[0]);
+    if (!repaired) continue;
+    out.farthest = std::max(out.farthest, norm(repaired->position - voxels.original(at)));
+    out.voxels[at] = *repaired;
   }
   return out;
 }
