@@ -18,7 +18,7 @@ constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32;
 // point the same way. The last step has to do with what is left.
 constexpr double kShare = 1.3, kLastShare = 1, kLeastShare = 0.1;
 constexpr double kOfTolerance = 0.95;  // is given to the steps
-constexpr int kOutlierRounds = 3, kPatience = 3;
+constexpr int kOutlierRounds = 3, kPatience = 1;
 // Of the target's diagonal. Sums, and where points inside go; the mesh about an intermediate shape.
 constexpr double kSumAccuracy = 1e-7, kChord = 1e-3;
 

@@ -24,6 +24,9 @@ constexpr std::size_t kTried = 10;    // candidates that are refined to
 constexpr std::size_t kJudged = 40;   // first maps that a judge hears
 constexpr std::size_t kMiddle = 600;  // vertices before the best are chosen
 constexpr std::size_t kCoarse = 150;
+// Of B, while first maps are looked for: these have triangles far larger, and finding places among
+// B's own is most of the work.
+constexpr std::size_t kCoarseTarget = 1500;
 
 Layout layOut(const ClosedSurface& surface, Progress* progress) {
   if (surface.genus == 1) return layOutTorus(surface, progress);
@@ -161,6 +164,33 @@ RefineSettings refining(const ClosedSurface& surface, const ShellMapSettings& se
   return out;
 }
 
+// B with fewer vertices, each where B's layout has it.
+struct CoarseTarget {
+  explicit CoarseTarget(const LaidOutShell& b, Progress* progress)
+      : shape(coarsened(b, progress)), metric(shape.surface, layoutOf(b, shape)) {}
+
+  static CoarseSurface coarsened(const LaidOutShell& b, Progress* progress) {
+    ProgressiveMesh mesh(b.surface.vertices.size(), b.surface.triangles);
+    DecimateSettings settings;
+    settings.vertices = kCoarseTarget;
+    settings.layout = &b.layout;
+    settings.keep.assign(b.surface.vertices.size(), 0);
+    for (const int v : b.tips.vertices) settings.keep[v] = 1;
+    settings.progress = progress;
+    decimate(mesh, b.surface.vertices, settings);
+    return coarseSurface(b.surface, mesh);
+  }
+
+  static Layout layoutOf(const LaidOutShell& b, const CoarseSurface& shape) {
+    Layout out;
+    for (const int v : shape.vertex) out.place.push_back(b.layout.place[v]);
+    return out;
+  }
+
+  const CoarseSurface shape;
+  const TargetMetric metric;
+};
+
 ShellMap mapSphere(const LaidOutShell& a, const LaidOutShell& b, const ShellMapSettings& settings) {
   SphereCandidateSettings search;
   search.landmarks = settings.landmarks;
@@ -171,8 +201,9 @@ ShellMap mapSphere(const LaidOutShell& a, const LaidOutShell& b, const ShellMapS
                                   : 1;
   search.seed = settings.seed;
   search.progress = settings.progress;
-  Candidates candidates =
-      sphereCandidates(a.surface, a.layout, a.tips, b.surface, b.metric, b.tips, search);
+  const CoarseTarget target(b, settings.progress);
+  Candidates candidates = sphereCandidates(a.surface, a.layout, a.tips, target.shape.surface,
+                                           target.metric, b.tips, search);
   std::vector<ConsideredMap> considered;
   if (settings.judge) {
     considered = judged(candidates, a, b, settings);
