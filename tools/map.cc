@@ -32,16 +32,21 @@ struct MapOptions {
   SectionOptions section;
 };
 
-void writePictures(const SolidGrids& solidGrids, const Solid& solid, PendingFolder& folder,
+void writePictures(const SolidGrids& solidGrids, const MapFit& fit, PendingFolder& folder,
                    const MapOptions& options, Context& context) {
   const openvdb::GridPtrVec grids = solidGrids.all();
   folder.write("slices.exr", [&](const std::string& path) {
     writeExrSlices(path, grids, context.settings(options.slices));
   });
-  SectionSettings section = sectionSettings(options.section, solid, *solidGrids.density, context);
+  SectionSettings section =
+      sectionSettings(options.section, fit.solid(), *solidGrids.density, context);
   section.grid = options.sectionGrid;
   folder.write("section.png",
                [&](const std::string& path) { writeSectionImage(path, grids, section); });
+  if (fit.steps.empty()) return;
+  folder.write("steps.png", [&](const std::string& path) {
+    writeStepsPicture(path, fit, context.settings<MeshPictureSettings>());
+  });
 }
 
 // Both meshes as the files have them; `related` tells whether they have the same connectivity.
@@ -160,7 +165,7 @@ void run(const MapOptions& options, Context& context) {
   });
   context.timed("write", [&] {
     folder.write("map.ply", [&](const std::string& path) { writeMap(path, fit); });
-    writePictures(grids, fit.solid(), folder, options, context);
+    writePictures(grids, fit, folder, options, context);
   });
   context.finish(folder);
 }
@@ -174,8 +179,8 @@ Command makeMapCommand() {
       "Writes map.ply (the map itself), map.vdb (its grids), slices.exr, section.png and "
       "report.json into a folder. Where SOURCE and TARGET have the same faces and vertex order, "
       "each vertex goes to its like. Any other TARGET is a shape that SOURCE is laid onto first, "
-      "as "
-      "innermap correspond does; correspondence.ply and correspondence.png then show how.");
+      "as innermap correspond does; correspondence.ply and correspondence.png then show how. The "
+      "shapes that a map in steps goes through are shown by steps.png.");
   c.positional("SOURCE", &o->source, "mesh of the solid: .obj, .ply, .off or .stl");
   c.positional("TARGET", &o->target,
                "the same mesh with its vertices moved, or any other mesh; may be left out with "

@@ -19,6 +19,13 @@
 
 namespace innermap {
 
+// A matrix of three columns as points: #rows.
+inline Points pointsOf(const Matrix& m) {
+  Points out(m.rows());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = {m(i, 0), m(i, 1), m(i, 2)};
+  return out;
+}
+
 struct EvaluateFieldSettings {
   // Root mean square error of each channel's values, at most, in their units; of the charges' part
   // of the gradients, a hundred times that relative to them. 0: plain sums, whose error is a few

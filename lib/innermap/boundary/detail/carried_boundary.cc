@@ -25,12 +25,6 @@ Matrix interpolated(const Points& vertices, const Solid& solid,
   return values.targetsOf(solid, places);
 }
 
-Points pointsOf(const Matrix& m) {
-  Points out(m.rows());
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = {m(i, 0), m(i, 1), m(i, 2)};
-  return out;
-}
-
 }  // namespace
 
 CarriedBoundary::CarriedBoundary(const Solid& source, const CarrySettings& settings)

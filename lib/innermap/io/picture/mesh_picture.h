@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "innermap/boundary/mapped_solid.h"
 #include "innermap/boundary/mesh_correspondence.h"
 #include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
@@ -46,5 +47,10 @@ void writeMeshPicture(const std::string& path, const std::vector<PictureSurface>
 // as writeMeshPicture.
 void writeCorrespondencePicture(const std::string& path, const MeshCorrespondence& map,
                                 const MeshPictureSettings& settings = {});
+
+// A solid's surface as the steps of its map carry it, side by side, at most seven of them, with the
+// source's coordinates as colours. Throws as writeMeshPicture.
+void writeStepsPicture(const std::string& path, const MappedSolid& mapped,
+                       const MeshPictureSettings& settings = {});
 
 }  // namespace innermap

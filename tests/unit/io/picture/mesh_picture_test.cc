@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "innermap/boundary/boundary_pair.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/io/picture/image_file.h"
@@ -150,6 +151,41 @@ TEST(CorrespondencePicture, ShowsPlacesByColour) {
     }
   EXPECT_GT(coloured, compared / 2);
   EXPECT_LT(difference / compared, 0.02);
+}
+
+// A cube that each step moves by a little.
+MappedSolid inSteps(int steps) {
+  Affine affine;
+  affine.coefficients = Matrix(4, 3);
+  affine.coefficients(0, 0) = 0.1;
+  for (std::size_t r = 0; r < 3; ++r) affine.coefficients(1 + r, r) = 1;
+  const HarmonicMap step(HarmonicField({}, Matrix(0, 3), affine));
+  const Mesh cube = shapes::box({-1, -1, -1}, {1, 1, 1});
+  return {ComposedMap(std::vector<HarmonicMap>(static_cast<std::size_t>(steps), step)),
+          makeBoundaryPair(cube, cube),
+          {}};
+}
+
+TEST(StepsPicture, ShowsSourceAndStepsSideBySideButNoMoreThanSeven) {
+  const test::TemporaryFolder folder;
+  const auto widthOf = [&](int steps) {
+    writeStepsPicture(folder.file("a.png"), inSteps(steps), frontal());
+    return readImage(folder.file("a.png")).pixels.width;
+  };
+  const int two = widthOf(1), seven = widthOf(6);
+  EXPECT_GT(seven, 2 * two);
+  EXPECT_EQ(widthOf(20), seven);
+}
+
+TEST(StepsPicture, ColoursSayWhereThePointsComeFrom) {
+  const test::TemporaryFolder folder;
+  writeStepsPicture(folder.file("a.png"), inSteps(1), frontal());
+  const Pixels p = readImage(folder.file("a.png")).pixels;
+  const int y = 44 + 50, half = p.width / 2;
+  for (int x = 24 + 10; x < half - 24 - 10; x += 7) {
+    const Vec3 source = pixel(p, x, y), moved = pixel(p, x + half - 12, y);
+    EXPECT_LT(norm(source - moved), 0.1) << x;
+  }
 }
 
 }  // namespace
