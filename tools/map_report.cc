@@ -71,6 +71,12 @@ std::string whyEnded(AdaptiveEnd end, const FitMapSettings& settings) {
   return "vertices are all that --interpolation smooth fits";
 }
 
+std::vector<double> coordinates(const Points& points) {
+  std::vector<double> out;
+  for (const Vec3& p : points) out.insert(out.end(), {p.x, p.y, p.z});
+  return out;
+}
+
 void reportSteps(const MapFit& fit, OneToOne wanted, Context& context) {
   const InsideFigures& inside = fit.inside;
   if (inside.samples == 0) return;
@@ -78,9 +84,7 @@ void reportSteps(const MapFit& fit, OneToOne wanted, Context& context) {
   report.set("inside.samples", inside.samples);
   report.set("inside.folded", inside.folded);
   report.set("inside.outside", inside.outside);
-  std::vector<double> places;
-  for (const Vec3& p : inside.foldedAt) places.insert(places.end(), {p.x, p.y, p.z});
-  report.set("inside.folded_at", places);
+  report.set("inside.folded_at", coordinates(inside.foldedAt));
   const auto& steps = fit.steps;
   report.set("steps.count", std::max<std::size_t>(1, steps.size()));
   if (!steps.empty()) {
@@ -175,6 +179,16 @@ void reportFitter(const FrameFitter& fitter, const FrameFitterSettings& settings
   report.set("solve.seed", settings.seed);
 }
 
+void reportInjectivity(const Injectivity& known, Context& context) {
+  Report& report = context.report();
+  report.set("one_to_one.statement", injectivityStatement(known));
+  for (const auto& [name, value] : injectivityFigures(known))
+    std::visit([&, key = "one_to_one." + name](auto v) { report.set(key, v); }, value);
+  report.set("one_to_one.source_crossings_at", coordinates(known.source.places));
+  report.set("one_to_one.target_crossings_at", coordinates(known.target.places));
+  context.print(injectivityLine(known) + "\n");
+}
+
 void reportGrids(const SolidGrids& grids, const LameConstants& lame, Context& context) {
   context.tell(grids);
   Report& report = context.report();
@@ -209,6 +223,7 @@ void reportGrids(const SolidGrids& grids, const LameConstants& lame, Context& co
       "grid: {} active voxels of {:.6g}\n",
       values.harmonicTotal, values.deformationTotal, values.jacobianMin, values.jacobianMax,
       100 * values.foldedFraction, values.activeVoxels, grids.voxelSize));
+  reportInjectivity(grids.injectivity, context);
 }
 
 }  // namespace innermap::tool

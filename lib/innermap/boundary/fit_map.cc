@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "innermap/boundary/detail/boundary_check.h"
 #include "innermap/boundary/detail/inside_check.h"
 #include "innermap/boundary/detail/pair_problem.h"
 #include "innermap/boundary/detail/step_fit.h"
@@ -154,6 +155,27 @@ class MapFitter {
     if (steps.inside.folded <= (on ? 1 : kWorthIt) * out.inside.folded) out = std::move(steps);
   }
 
+  // After check().
+  Injectivity injectivityOf(const Outcome& out) {
+    Injectivity known;
+    known.source = selfIntersectionFigures(pair_.source.check);
+    known.target = selfIntersectionFigures(pair_.targetCheck);
+    if (settings_.oneToOne == OneToOne::off) return known;
+    BoundaryCheckSettings s;
+    s.error = out.error.max * pair_.target.diagonal;
+    s.accuracy = kSumAccuracy * pair_.target.diagonal;
+    s.seed = settings_.seed;
+    s.progress = settings_.progress;
+    timed(seconds, "inside", [&] {
+      known.inside = out.inside.determinants;
+      known.outside = out.inside.outside;
+      known.boundary = boundaryDeterminants(out.map, pair_, s);
+      known.boundaryError = out.error.max;
+      known.degree = boundaryDegree(out.map, pair_, s);
+    });
+    return known;
+  }
+
  private:
   SurfaceValues values() const {
     return [this](const std::vector<SurfacePoint>& points) { return pair_.targetsOf(points); };
@@ -187,15 +209,16 @@ class MapFitter {
   }
 
   InsideFigures figuresOf(const Outcome& out) const {
-    MappedPoints here{inside_, {}};
-    for (const HarmonicMap& step : out.map.steps())
-      here = mapPoints(step, here, kSumAccuracy * pair_.target.diagonal, settings_.progress);
+    const double slack = out.error.max * pair_.target.diagonal;
+    const MappedPoints here =
+        mapPoints(out.map, inside_, kSumAccuracy * pair_.target.diagonal, settings_.progress);
     InsideFigures figures;
     figures.samples = inside_.size();
     figures.folded = foldedShare(here.determinants);
+    figures.determinants = determinantsOf(here, TargetOverlap(pair_, slack));
     for (std::size_t i = 0; i < inside_.size() && figures.foldedAt.size() < kPlaces; ++i)
       if (!(here.determinants[i] > 0)) figures.foldedAt.push_back(inside_[i]);
-    figures.outside = outside(here.points, out.error.max * pair_.target.diagonal);
+    figures.outside = outside(here.points, slack);
     return figures;
   }
 
@@ -372,8 +395,11 @@ MapFit fitMap(BoundaryPair boundary, const FitMapSettings& settings) {
   Outcome out =
       settings.shell ? fitter.onShell(*settings.shell) : fitter.within(settings.tolerance);
   fitter.check(out);
+  Injectivity known = fitter.injectivityOf(out);
   Facts facts = factsOf(boundary, out, settings.seed);
-  MapFit fit{{std::move(out.map), std::move(boundary), std::move(facts)},
+  const Facts checked = injectivityFacts(known);
+  facts.insert(facts.end(), checked.begin(), checked.end());
+  MapFit fit{{std::move(out.map), std::move(boundary), std::move(facts), std::move(known)},
              out.error,
              out.collocationError,
              out.smooth,

@@ -93,6 +93,7 @@ struct InsideFigures {
   double folded = 0;        // share of them where the Jacobian determinant is not above 0
   double outside = 0;       // share whose image is farther out of the target than the largest error
   Points foldedAt;          // the first of them, at most 16, world units of the source
+  DeterminantFigures determinants;  // of them
 };
 
 struct MapFit : MappedSolid {

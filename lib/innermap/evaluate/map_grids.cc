@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "innermap/core/error.h"
+#include "innermap/evaluate/detail/cell_check.h"
 #include "innermap/levelset/level_set.h"
 
 namespace innermap {
@@ -52,6 +53,36 @@ void insertTotals(const openvdb::GridPtrVec& grids, const MapGrids& values) {
   if (values.repaired) insert(grids, {{"repaired_farthest", values.repairedFarthest}});
 }
 
+// What voxels and the cells between them tell, beside what is known of the map.
+Injectivity injectivityOf(const MappedSolid& mapped, const SolidGrids& grids, Progress* progress) {
+  const MapGrids& values = grids.values;
+  const double error = mapped.injectivity.boundaryError * mapped.boundary.target.diagonal;
+  const TargetOverlap overlap(mapped.boundary, error);
+  Injectivity out = mapped.injectivity;
+  out.voxels.checked = values.interiorVoxels;
+  out.voxels.least = values.jacobianMin;
+  out.voxels.folded = values.foldedVoxelsLeft;
+  out.repaired = values.foldedVoxels - values.foldedVoxelsLeft;
+  const auto distance = grids.surface->getConstAccessor();
+  const auto position = values.map->getConstAccessor();
+  if (out.voxels.folded > 0)
+    for (auto voxel = values.jacobian->cbeginValueOn(); voxel; ++voxel) {
+      if (*voxel > 0 || !(distance.getValue(voxel.getCoord()) < 0)) continue;
+      const openvdb::Vec3f p = position.getValue(voxel.getCoord());
+      if (overlap.at({p.x(), p.y(), p.z()})) ++out.voxels.foldedAtOverlap;
+    }
+  out.cells = checkCells(*values.map, *grids.surface, overlap, progress);
+  out.cells.share = static_cast<double>(out.cells.checked) / 6 * std::pow(grids.voxelSize, 3) /
+                    mapped.solid().volume();
+  return out;
+}
+
+void insertText(const openvdb::GridPtrVec& grids, const Facts& facts) {
+  for (const openvdb::GridBase::Ptr& grid : grids)
+    for (const auto& [key, value] : facts)
+      grid->insertMeta("innermap_" + key, openvdb::StringMetadata(value));
+}
+
 }  // namespace
 
 openvdb::GridPtrVec SolidGrids::all() const {
@@ -81,8 +112,12 @@ SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& sett
   });
   requireInterior(out.values.interiorVoxels, mapped.boundary.source.mesh.name);
   out.voxelSize = out.surface->voxelSize()[0];
+  out.injectivity =
+      timed(out.seconds, "cells", [&] { return injectivityOf(mapped, out, settings.progress); });
   const openvdb::GridPtrVec all = out.all();
   describeMap(all, mapped);
+  insertText(all, injectivityFacts(out.injectivity));
+  insertText(all, {{"one_to_one", injectivityStatement(out.injectivity)}});
   insertTotals(all, out.values);
   insert(all, {{"lame_lambda", settings.lame.lambda}, {"lame_mu", settings.lame.mu}});
   return out;
@@ -98,9 +133,7 @@ std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings)
 }
 
 void describeMap(const openvdb::GridPtrVec& grids, const MappedSolid& mapped) {
-  for (const openvdb::GridBase::Ptr& grid : grids)
-    for (const auto& [key, value] : mapped.facts)
-      grid->insertMeta("innermap_" + key, openvdb::StringMetadata(value));
+  insertText(grids, mapped.facts);
 }
 
 FrameEvaluator::FrameEvaluator(const FrameFitter& fitter, std::vector<std::string> names,

@@ -32,16 +32,18 @@ struct SolidGrids {
   openvdb::FloatGrid::Ptr surface, density;  // level set, and fog of the inside
   MapGrids values;                           // with their totals
   double voxelSize = 0;                      // world units
+  Injectivity injectivity;                   // of the map, with what voxels and cells tell
   std::vector<std::string> notes, warnings;
-  StageSeconds seconds;  // "voxelize", "evaluate"
+  StageSeconds seconds;  // "voxelize", "evaluate", "cells"
 
   openvdb::GridPtrVec all() const;  // as mapGridNames(), and `repaired` where there is one
 };
 
 // Metadata (prefix innermap_): the map's facts, harmonic_energy_total, deformation_energy_total,
-// jacobian_min, jacobian_max, folded_fraction, lame_lambda, lame_mu. Throws SettingError,
-// MemoryError, DataError (thinner than the voxels everywhere), Cancelled. Deterministic for any
-// number of threads.
+// jacobian_min, jacobian_max, folded_fraction, lame_lambda, lame_mu; one_to_one, which is
+// injectivityStatement, and what of injectivityFigures the voxels add to the facts (prefix
+// one_to_one_). Throws SettingError, MemoryError, DataError (thinner than the voxels everywhere),
+// Cancelled. Deterministic for any number of threads.
 SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& settings = {});
 
 // The maps of a sequence's frames on the voxels of its rest pose.

@@ -2,14 +2,21 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "innermap/boundary/boundary_pair.h"
+#include "innermap/boundary/detail/target_overlap.h"
+#include "innermap/boundary/injectivity.h"
 #include "innermap/field/harmonic_map.h"
 
 namespace innermap {
 
-// Points of a cubic lattice that lie inside the solid, about so many, in a fixed order. Throws
-// Cancelled.
+// Points of a cubic lattice in the box of which `wanted` is true, in a fixed order. step: world
+// units. wanted: may be called from any thread. Throws Cancelled.
+Points latticePoints(const Box3& box, double step, const std::function<bool(const Vec3&)>& wanted,
+                     Progress* progress = nullptr);
+
+// Those that lie inside the solid, about so many. Throws Cancelled.
 Points pointsInside(const Solid& solid, std::size_t count, Progress* progress = nullptr);
 
 // Images and Jacobian determinants of points.
@@ -22,6 +29,13 @@ struct MappedPoints {
 // accuracy: of the sums, world units. Throws Cancelled.
 MappedPoints mapPoints(const HarmonicMap& step, const MappedPoints& before, double accuracy,
                        Progress* progress = nullptr);
+
+// Through all steps.
+MappedPoints mapPoints(const ComposedMap& map, Points points, double accuracy,
+                       Progress* progress = nullptr);
+
+// Those of the whole way. Throws Cancelled.
+DeterminantFigures determinantsOf(const MappedPoints& mapped, const TargetOverlap& overlap);
 
 // Share of the points whose determinant is not above 0.
 double foldedShare(const std::vector<double>& determinants);

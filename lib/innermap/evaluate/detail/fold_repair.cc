@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "innermap/core/parallel.h"
+#include "innermap/evaluate/detail/kuhn_cells.h"
 #include "innermap/evaluate/detail/untangle.h"
 
 namespace innermap {
@@ -19,15 +20,6 @@ constexpr std::array<int, 3> kRings{2, 4, 8};
 // Folded voxels near one another that are repaired: more of them are no blemish beside a surface
 // but a map that folds, and would take minutes.
 constexpr std::size_t kMost = 300;
-
-// A cube in six tetrahedra about its diagonal (Kuhn): its corners by the bits x, y, z of their
-// numbers, in an order that makes the volumes positive.
-constexpr std::array<std::array<int, 4>, 6> kCube{
-    {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}}};
-
-Coord cornerOf(const Coord& cube, int bits) {
-  return cube.offsetBy(bits & 1, bits >> 1 & 1, bits >> 2 & 1);
-}
 
 Mat3 restOf(const std::array<int, 4>& tet) {
   Mat3 edges{};
@@ -85,18 +77,8 @@ class Voxels {
   // Calls `add` with the corners of each tetrahedron of a cube whose corners are all inside.
   template <class Add>
   void forTets(const Coord& cube, const Add& add) const {
-    std::array<bool, 8> in;
-    for (int bits = 0; bits < 8; ++bits)
-      in[static_cast<std::size_t>(bits)] = inside(cornerOf(cube, bits));
-    for (std::size_t k = 0; k < kCube.size(); ++k) {
-      std::array<Coord, 4> corners;
-      bool all = true;
-      for (std::size_t i = 0; i < 4; ++i) {
-        all = all && in[static_cast<std::size_t>(kCube[k][i])];
-        corners[i] = cornerOf(cube, kCube[k][i]);
-      }
-      if (all) add(k, corners);
-    }
+    forKuhnCells(
+        cube, [&](const Coord& c) { return inside(c); }, add);
   }
 
  private:
@@ -115,7 +97,7 @@ void forCubesAround(const Coord& c, const Visit& visit) {
 const std::array<Mat3, 6>& rests() {
   static const std::array<Mat3, 6> all = [] {
     std::array<Mat3, 6> out;
-    for (std::size_t k = 0; k < out.size(); ++k) out[k] = restOf(kCube[k]);
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] = restOf(kKuhnCells[k]);
     return out;
   }();
   return all;
@@ -137,9 +119,8 @@ class Patch {
     for (const Coord& c : coords_)
       forCubesAround(c, [&](const Coord& cube) { cubes.insert(cube); });
     for (const Coord& cube : cubes)
-      voxels.forTets(cube, [&](std::size_t k, const std::array<Coord, 4>& corners) {
-        addTet(corners, rests()[k], free);
-      });
+      voxels.forTets(
+          cube, [&](std::size_t k, const KuhnCell& corners) { addTet(corners, rests()[k], free); });
     tets_.free.assign(coords_.size(), 0);
     std::fill_n(tets_.free.begin(), free, 1);
   }
@@ -162,7 +143,7 @@ class Patch {
     return at->second;
   }
 
-  void addTet(const std::array<Coord, 4>& corners, const Mat3& rest, std::size_t free) {
+  void addTet(const KuhnCell& corners, const Mat3& rest, std::size_t free) {
     const bool moves = std::any_of(corners.begin(), corners.end(), [&](const Coord& c) {
       const auto found = numbers_.find(c);
       return found != numbers_.end() && static_cast<std::size_t>(found->second) < free;
@@ -207,7 +188,7 @@ Mat3 affineAt(const Voxels& voxels, const Coord& at, double spacing) {
 Mat3 jacobianAt(const Voxels& voxels, const Coord& at, double spacing) {
   std::vector<Mat3> all;
   forCubesAround(at, [&](const Coord& cube) {
-    voxels.forTets(cube, [&](std::size_t k, const std::array<Coord, 4>& corners) {
+    voxels.forTets(cube, [&](std::size_t k, const KuhnCell& corners) {
       if (std::find(corners.begin(), corners.end(), at) == corners.end()) return;
       TetPatch one;
       for (const Coord& c : corners) one.vertices.push_back((1 / spacing) * voxels.now(c));

@@ -1,0 +1,207 @@
+#include "innermap/evaluate/detail/cell_check.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "innermap/core/parallel.h"
+#include "innermap/evaluate/detail/fold_repair.h"
+#include "innermap/evaluate/detail/kuhn_cells.h"
+#include "innermap/mesh/detail/winding_number.h"
+#include "innermap/mesh/self_intersection.h"
+
+namespace innermap {
+namespace {
+
+using openvdb::Coord;
+using MapLeaf = openvdb::Vec3STree::LeafNodeType;
+
+constexpr std::size_t kLeaves = 8;    // that a thread takes at a time
+constexpr double kJustInside = 1e-3;  // of the way from a face to the corner across
+
+// A face of one cell only, outward, and the corner of that cell which is not on it.
+struct OuterFace {
+  std::array<Coord, 3> corners;
+  Coord across;
+};
+
+// Of one leaf.
+struct LeafCells {
+  DeterminantFigures determinants;
+  std::vector<OuterFace> faces;
+
+  void add(const LeafCells& other) {
+    const DeterminantFigures& d = other.determinants;
+    if (d.checked == 0) return;
+    DeterminantFigures& sum = determinants;
+    sum.least = sum.checked == 0 ? d.least : std::min(sum.least, d.least);
+    sum.checked += d.checked;
+    sum.folded += d.folded;
+    sum.foldedAtOverlap += d.foldedAtOverlap;
+    faces.insert(faces.end(), other.faces.begin(), other.faces.end());
+  }
+};
+
+// Reads what one thread looks at.
+class Cells {
+ public:
+  Cells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
+        const TargetOverlap& overlap)
+      : map_(map.getConstAccessor()),
+        distance_(levelSet.getConstAccessor()),
+        overlap_(overlap),
+        volume_(std::pow(levelSet.voxelSize()[0], 3)) {}
+
+  LeafCells of(const MapLeaf& leaf) const {
+    LeafCells out;
+    for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
+      const Coord cube = voxel.getCoord();
+      if (!inside(cube)) continue;  // all cells of a cube have its lowest corner
+      forKuhnCells(
+          cube, [&](const Coord& c) { return inside(c); },
+          [&](std::size_t, const KuhnCell& cell) { addCell(cell, out); });
+    }
+    return out;
+  }
+
+ private:
+  bool inside(const Coord& c) const { return distance_.getValue(c) < 0 && map_.isValueOn(c); }
+
+  Vec3 image(const Coord& c) const {
+    const openvdb::Vec3f p = map_.getValue(c);
+    return {p.x(), p.y(), p.z()};
+  }
+
+  void addCell(const KuhnCell& cell, LeafCells& out) const {
+    const Vec3 p = image(cell[0]), a = image(cell[1]) - p, b = image(cell[2]) - p,
+               c = image(cell[3]) - p;
+    const double determinant = dot(cross(a, b), c) / volume_;
+    out.determinants.add(determinant, !(determinant > 0) && overlap_.at(p + (a + b + c) / 4));
+    addOuterFaces(cell, out.faces);
+  }
+
+  // The cell beyond a face has the other three corners and, for the one across, the sum of its
+  // neighbours along the cell's path from the lowest corner to the highest, less itself.
+  void addOuterFaces(const KuhnCell& cell, std::vector<OuterFace>& out) const {
+    constexpr std::array<std::array<std::size_t, 3>, 4> kFaces{
+        {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+    std::array<std::size_t, 4> path{0, 1, 2, 3};
+    if (cell[2] < cell[1]) std::swap(path[1], path[2]);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Coord across = cell[path[i]];
+      const Coord beyond = cell[path[(i + 3) % 4]] + cell[path[(i + 1) % 4]] - across;
+      if (inside(beyond)) continue;
+      const auto& face = kFaces[path[i]];
+      out.push_back({{cell[face[0]], cell[face[1]], cell[face[2]]}, across});
+    }
+  }
+
+  openvdb::Vec3fGrid::ConstAccessor map_;
+  openvdb::FloatGrid::ConstAccessor distance_;
+  const TargetOverlap& overlap_;
+  double volume_;
+};
+
+LeafCells allCells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
+                   const TargetOverlap& overlap, Progress* progress) {
+  std::vector<const MapLeaf*> leaves;
+  for (auto leaf = map.tree().cbeginLeaf(); leaf; ++leaf) leaves.push_back(&*leaf);
+  std::vector<LeafCells> parts(leaves.size());
+  parallelBlocks(
+      leaves.size(), kLeaves,
+      [&](std::size_t begin, std::size_t end) {
+        const Cells cells(map, levelSet, overlap);
+        for (std::size_t i = begin; i < end; ++i) parts[i] = cells.of(*leaves[i]);
+      },
+      progress, "checking cells");
+  LeafCells out;
+  for (const LeafCells& part : parts) out.add(part);
+  return out;
+}
+
+// The image of the cells' boundary.
+struct OuterImage {
+  Points vertices, across;  // across: of each triangle
+  std::vector<Triangle> triangles;
+
+  OuterImage(const std::vector<OuterFace>& faces, const openvdb::Vec3fGrid& map) {
+    const auto values = map.getConstAccessor();
+    const auto image = [&](const Coord& c) {
+      const openvdb::Vec3f p = values.getValue(c);
+      return Vec3{p.x(), p.y(), p.z()};
+    };
+    std::unordered_map<Coord, int, CoordHash> numbers;
+    for (const OuterFace& face : faces) {
+      Triangle t;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto [at, fresh] =
+            numbers.try_emplace(face.corners[k], static_cast<int>(vertices.size()));
+        if (fresh) vertices.push_back(image(face.corners[k]));
+        t[k] = at->second;
+      }
+      triangles.push_back(t);
+      across.push_back(image(face.across));
+    }
+  }
+
+  // One triangle of each part that hangs together by edges of two triangles.
+  std::vector<std::size_t> partRepresentatives() const {
+    std::vector<std::pair<std::uint64_t, std::size_t>> edges;  // by their ends, of a triangle
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      for (std::size_t e = 0; e < 3; ++e) {
+        const auto [a, b] = std::minmax(triangles[t][e], triangles[t][(e + 1) % 3]);
+        edges.emplace_back((static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint64_t>(b),
+                           t);
+      }
+    std::sort(edges.begin(), edges.end());
+    std::vector<std::size_t> parent(triangles.size());
+    std::iota(parent.begin(), parent.end(), 0);
+    const auto root = [&](std::size_t t) {
+      while (parent[t] != t) t = parent[t] = parent[parent[t]];
+      return t;
+    };
+    for (std::size_t i = 0; i < edges.size();) {
+      std::size_t end = i + 1;
+      while (end < edges.size() && edges[end].first == edges[i].first) ++end;
+      if (end == i + 2) parent[root(edges[i].second)] = root(edges[i + 1].second);
+      i = end;
+    }
+    std::vector<std::size_t> out;
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      if (root(t) == t) out.push_back(t);
+    return out;
+  }
+};
+
+std::size_t overlapsOf(const OuterImage& image, Progress* progress) {
+  std::size_t out = 0;
+  forEachSelfIntersection(image.vertices, image.triangles, [&](const Crossing&) { ++out; },
+                          {progress});
+  const WindingNumber winding(image.vertices, image.triangles);
+  for (const std::size_t t : image.partRepresentatives()) {
+    const Triangle& corners = image.triangles[t];
+    const Vec3 middle =
+        (image.vertices[corners[0]] + image.vertices[corners[1]] + image.vertices[corners[2]]) / 3;
+    if (std::lround(winding.at(middle + kJustInside * (image.across[t] - middle))) != 1) ++out;
+  }
+  return out;
+}
+
+}  // namespace
+
+CellFigures checkCells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
+                       const TargetOverlap& overlap, Progress* progress) {
+  const LeafCells cells = allCells(map, levelSet, overlap, progress);
+  CellFigures out;
+  static_cast<DeterminantFigures&>(out) = cells.determinants;
+  if (out.checked > 0 && out.folded == 0)
+    out.overlaps = overlapsOf(OuterImage(cells.faces, map), progress);
+  return out;
+}
+
+}  // namespace innermap
