@@ -9,8 +9,8 @@
 namespace innermap {
 namespace {
 
-constexpr double kNoVolume = 1e-9;  // of the diagonal cubed
-constexpr double kFlat = 1e-9;      // of the diagonal
+constexpr double kNoVolume = 1e-9;     // of the diagonal cubed
+constexpr double kFlat = 1e-9;         // of the diagonal
 constexpr std::size_t kListed = 4096;  // crossings that are placed
 
 MeshReport check(const Mesh& mesh, Progress* progress) {

@@ -145,6 +145,7 @@ class MapFitter {
     if (settings_.oneToOne == OneToOne::off) return;
     timed(seconds, "inside", [&] {
       inside_ = pointsInside(pair_.solid(), kInside, settings_.progress);
+      target_.emplace(pair_);
       single = out.inside = figuresOf(out);
     });
     // Onto a target that is turned inside out somewhere no map is one-to-one.
@@ -169,9 +170,9 @@ class MapFitter {
     timed(seconds, "inside", [&] {
       known.inside = out.inside.determinants;
       known.outside = out.inside.outside;
-      known.boundary = boundaryDeterminants(out.map, pair_, s);
+      known.boundary = boundaryDeterminants(out.map, pair_, *target_, s);
       known.boundaryError = out.error.max;
-      known.degree = boundaryDegree(out.map, pair_, s);
+      known.degree = boundaryDegree(out.map, pair_, *target_, s);
     });
     return known;
   }
@@ -215,21 +216,11 @@ class MapFitter {
     InsideFigures figures;
     figures.samples = inside_.size();
     figures.folded = foldedShare(here.determinants);
-    figures.determinants = determinantsOf(here, TargetOverlap(pair_, slack));
+    figures.determinants = determinantsOf(here, *target_, slack);
     for (std::size_t i = 0; i < inside_.size() && figures.foldedAt.size() < kPlaces; ++i)
       if (!(here.determinants[i] > 0)) figures.foldedAt.push_back(inside_[i]);
-    figures.outside = outside(here.points, slack);
+    figures.outside = outsideShare(here.points, *target_, slack, settings_.progress);
     return figures;
-  }
-
-  double outside(const Points& images, double slack) const {
-    BoundarySettings boundary;
-    boundary.progress = settings_.progress;
-    try {
-      return outsideShare(images, makeTargetSolid(pair_, boundary), slack, settings_.progress);
-    } catch (const DataError&) {  // a target that bounds nothing, which makeTargetBoundary told of
-      return 0;
-    }
   }
 
   Outcome inSteps() {
@@ -292,6 +283,7 @@ class MapFitter {
   const BoundaryPair& pair_;
   const FitMapSettings& settings_;
   Points inside_;
+  std::optional<TargetShape> target_;
 };
 
 std::string number(double x) { return fmt::format("{:.9g}", x); }

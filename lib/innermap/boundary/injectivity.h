@@ -35,7 +35,8 @@ namespace innermap {
 struct DeterminantFigures {
   std::size_t checked = 0;  // points or cells; none: nothing is known of them
   std::size_t folded = 0;   // of these: not above 0
-  // Of these: their image is where the target runs through itself; see TargetOverlap.
+  // Of these: their image is where the target runs through itself; within a hundredth of its
+  // diagonal, or where its surface winds otherwise than once or not at all.
   std::size_t foldedAtOverlap = 0;
   double least = 0;
 

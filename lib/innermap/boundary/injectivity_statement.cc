@@ -114,9 +114,18 @@ std::string surfaces(const Injectivity& known) {
   return out;
 }
 
-bool folds(const Injectivity& known) {
-  return known.inside.folded + known.boundary.folded + known.voxels.folded > 0;
+std::size_t foldedPoints(const Injectivity& known) {
+  return known.inside.folded + known.boundary.folded + known.voxels.folded;
 }
+
+// Turned over everywhere, as by a mirror: nowhere folded.
+bool mirrors(const Injectivity& known) {
+  const std::size_t folded = foldedPoints(known);
+  return folded > 0 &&
+         folded == known.inside.checked + known.boundary.checked + known.voxels.checked;
+}
+
+bool folds(const Injectivity& known) { return foldedPoints(known) > 0 && !mirrors(known); }
 
 bool windsOtherwise(const DegreeFigures& degree) { return degree.least < 0 || degree.greatest > 1; }
 
@@ -135,6 +144,9 @@ std::string conclusion(const Injectivity& known) {
   if (notOneToOne(known)) return out;
   if (known.inside.checked == 0 && known.voxels.checked == 0)
     return "Whether the map is one-to-one is not known. ";
+  if (mirrors(known))
+    return "The map mirrors the solid, as its target is inside out; nothing that was checked rules "
+           "out that it is one-to-one. ";
   if (degree.checked == 0 || degree.least != 1)
     return "Nothing that was checked rules out that the map is one-to-one; nothing proves it. ";
   return "Where det J > 0 everywhere inside, as many points go to a place as the image of the "

@@ -57,7 +57,7 @@ void insertTotals(const openvdb::GridPtrVec& grids, const MapGrids& values) {
 Injectivity injectivityOf(const MappedSolid& mapped, const SolidGrids& grids, Progress* progress) {
   const MapGrids& values = grids.values;
   const double error = mapped.injectivity.boundaryError * mapped.boundary.target.diagonal;
-  const TargetOverlap overlap(mapped.boundary, error);
+  const TargetShape target(mapped.boundary);
   Injectivity out = mapped.injectivity;
   out.voxels.checked = values.interiorVoxels;
   out.voxels.least = values.jacobianMin;
@@ -69,9 +69,9 @@ Injectivity injectivityOf(const MappedSolid& mapped, const SolidGrids& grids, Pr
     for (auto voxel = values.jacobian->cbeginValueOn(); voxel; ++voxel) {
       if (*voxel > 0 || !(distance.getValue(voxel.getCoord()) < 0)) continue;
       const openvdb::Vec3f p = position.getValue(voxel.getCoord());
-      if (overlap.at({p.x(), p.y(), p.z()})) ++out.voxels.foldedAtOverlap;
+      if (target.runsThroughItself({p.x(), p.y(), p.z()}, error)) ++out.voxels.foldedAtOverlap;
     }
-  out.cells = checkCells(*values.map, *grids.surface, overlap, progress);
+  out.cells = checkCells(*values.map, *grids.surface, target, error, progress);
   out.cells.share = static_cast<double>(out.cells.checked) / 6 * std::pow(grids.voxelSize, 3) /
                     mapped.solid().volume();
   return out;

@@ -43,6 +43,7 @@ WindingNumber imageOf(const ComposedMap& map, const Mesh& surface,
 }  // namespace
 
 DeterminantFigures boundaryDeterminants(const ComposedMap& map, const BoundaryPair& pair,
+                                        const TargetShape& target,
                                         const BoundaryCheckSettings& settings) {
   SampleSettings sample;
   sample.seed = seedOf(settings.seed, Stream::fresh);
@@ -52,29 +53,24 @@ DeterminantFigures boundaryDeterminants(const ComposedMap& map, const BoundaryPa
                                   interpolate(surface.vertices, surface.triangles,
                                               randomSamples(surface, kBoundary, sample)),
                                   settings.accuracy, settings.progress),
-                        TargetOverlap(pair, settings.error));
+                        target, settings.error);
 }
 
 DegreeFigures boundaryDegree(const ComposedMap& map, const BoundaryPair& pair,
-                             const BoundaryCheckSettings& settings) {
-  const Mesh& surface = pair.solid().surface();
-  const Points targets = targetSurface(pair);
-  const WindingNumber image = imageOf(map, surface, settings), target(targets, surface.triangles);
-  const TriangleTree tree(targets, surface.triangles);
-  const Box3 box = boundingBox(targets);
-  const double volume = std::max(pair.target.volume, kThinnest * std::pow(box.diagonal(), 3));
+                             const TargetShape& target, const BoundaryCheckSettings& settings) {
+  const WindingNumber image = imageOf(map, pair.solid().surface(), settings);
+  const Box3 box = boundingBox(pair.target.mesh(pair.solid(), ""));
+  const double volume = std::max(target.volume(), kThinnest * std::pow(box.diagonal(), 3));
   const Points deep = latticePoints(
       box, std::cbrt(volume / kInTarget),
-      [&](const Vec3& p) {
-        return target.at(p) > 0.5 && tree.closest(p, settings.error).address.triangle < 0;
-      },
+      [&](const Vec3& p) { return target.inside(p) && !target.near(p, settings.error); },
       settings.progress);
   std::vector<int> windings(deep.size());
   parallelBlocks(
       deep.size(), 64,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-          windings[i] = static_cast<int>(std::lround(image.at(deep[i])));
+          windings[i] = target.orientation() * static_cast<int>(std::lround(image.at(deep[i])));
       },
       settings.progress);
   DegreeFigures out;

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "innermap/boundary/detail/target_overlap.h"
+#include "innermap/boundary/detail/target_shape.h"
 #include "innermap/boundary/injectivity.h"
 #include "innermap/field/harmonic_map.h"
 
@@ -20,12 +20,14 @@ struct BoundaryCheckSettings {
 // At 10,000 of the points that the boundary's error is measured at. Charges stand outside, so the
 // derivative there is that of the inside. Throws Cancelled.
 DeterminantFigures boundaryDeterminants(const ComposedMap& map, const BoundaryPair& pair,
+                                        const TargetShape& target,
                                         const BoundaryCheckSettings& settings);
 
 // The image: triangles between the images of the vertices of the solid's surface, which is split
 // where there are few and the map bends them by more than the error. About the points of a lattice
-// of some 2,000 inside the target that are deeper than the error. Throws Cancelled.
+// of some 2,000 inside the target that are deeper than the error; about a target that is inside out
+// winding is counted the other way round. Throws Cancelled.
 DegreeFigures boundaryDegree(const ComposedMap& map, const BoundaryPair& pair,
-                             const BoundaryCheckSettings& settings);
+                             const TargetShape& target, const BoundaryCheckSettings& settings);
 
 }  // namespace innermap

@@ -69,11 +69,12 @@ MappedPoints mapPoints(const ComposedMap& map, Points points, double accuracy, P
   return here;
 }
 
-DeterminantFigures determinantsOf(const MappedPoints& mapped, const TargetOverlap& overlap) {
+DeterminantFigures determinantsOf(const MappedPoints& mapped, const TargetShape& target,
+                                  double error) {
   DeterminantFigures out;
   for (std::size_t i = 0; i < mapped.points.size(); ++i) {
     const double determinant = mapped.determinants[i];
-    out.add(determinant, !(determinant > 0) && overlap.at(mapped.points[i]));
+    out.add(determinant, !(determinant > 0) && target.runsThroughItself(mapped.points[i], error));
   }
   return out;
 }
@@ -85,14 +86,15 @@ double foldedShare(const std::vector<double>& determinants) {
   return static_cast<double>(folded) / static_cast<double>(determinants.size());
 }
 
-double outsideShare(const Points& points, const Solid& solid, double slack, Progress* progress) {
-  if (points.empty()) return 0;
+double outsideShare(const Points& points, const TargetShape& target, double slack,
+                    Progress* progress) {
+  if (points.empty() || !(target.volume() > 0)) return 0;
   std::vector<char> outside(points.size(), 0);
   parallelBlocks(
       points.size(), 256,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-          outside[i] = !solid.inside(points[i]) && solid.distance(points[i]) > slack;
+          outside[i] = !target.inside(points[i]) && !target.near(points[i], slack);
       },
       progress);
   return static_cast<double>(std::count(outside.begin(), outside.end(), 1)) /

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "innermap/boundary/boundary_pair.h"
-#include "innermap/boundary/detail/target_overlap.h"
+#include "innermap/boundary/detail/target_shape.h"
 #include "innermap/boundary/injectivity.h"
 #include "innermap/field/harmonic_map.h"
 
@@ -34,15 +34,16 @@ MappedPoints mapPoints(const HarmonicMap& step, const MappedPoints& before, doub
 MappedPoints mapPoints(const ComposedMap& map, Points points, double accuracy,
                        Progress* progress = nullptr);
 
-// Those of the whole way. Throws Cancelled.
-DeterminantFigures determinantsOf(const MappedPoints& mapped, const TargetOverlap& overlap);
+// Those of the whole way. error: the boundary's largest, world units.
+DeterminantFigures determinantsOf(const MappedPoints& mapped, const TargetShape& target,
+                                  double error);
 
 // Share of the points whose determinant is not above 0.
 double foldedShare(const std::vector<double>& determinants);
 
-// Share of the points that are outside the solid by more than `slack`, world units. Throws
-// Cancelled.
-double outsideShare(const Points& points, const Solid& solid, double slack,
+// Share of the points that are outside the target by more than `slack`, world units; 0 of a target
+// that bounds nothing. Throws Cancelled.
+double outsideShare(const Points& points, const TargetShape& target, double slack,
                     Progress* progress = nullptr);
 
 }  // namespace innermap

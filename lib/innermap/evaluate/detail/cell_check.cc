@@ -51,10 +51,11 @@ struct LeafCells {
 class Cells {
  public:
   Cells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
-        const TargetOverlap& overlap)
+        const TargetShape& target, double error)
       : map_(map.getConstAccessor()),
         distance_(levelSet.getConstAccessor()),
-        overlap_(overlap),
+        target_(target),
+        error_(error),
         volume_(std::pow(levelSet.voxelSize()[0], 3)) {}
 
   LeafCells of(const MapLeaf& leaf) const {
@@ -81,7 +82,8 @@ class Cells {
     const Vec3 p = image(cell[0]), a = image(cell[1]) - p, b = image(cell[2]) - p,
                c = image(cell[3]) - p;
     const double determinant = dot(cross(a, b), c) / volume_;
-    out.determinants.add(determinant, !(determinant > 0) && overlap_.at(p + (a + b + c) / 4));
+    out.determinants.add(
+        determinant, !(determinant > 0) && target_.runsThroughItself(p + (a + b + c) / 4, error_));
     addOuterFaces(cell, out.faces);
   }
 
@@ -103,19 +105,20 @@ class Cells {
 
   openvdb::Vec3fGrid::ConstAccessor map_;
   openvdb::FloatGrid::ConstAccessor distance_;
-  const TargetOverlap& overlap_;
+  const TargetShape& target_;
+  double error_;
   double volume_;
 };
 
 LeafCells allCells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
-                   const TargetOverlap& overlap, Progress* progress) {
+                   const TargetShape& target, double error, Progress* progress) {
   std::vector<const MapLeaf*> leaves;
   for (auto leaf = map.tree().cbeginLeaf(); leaf; ++leaf) leaves.push_back(&*leaf);
   std::vector<LeafCells> parts(leaves.size());
   parallelBlocks(
       leaves.size(), kLeaves,
       [&](std::size_t begin, std::size_t end) {
-        const Cells cells(map, levelSet, overlap);
+        const Cells cells(map, levelSet, target, error);
         for (std::size_t i = begin; i < end; ++i) parts[i] = cells.of(*leaves[i]);
       },
       progress, "checking cells");
@@ -195,8 +198,8 @@ std::size_t overlapsOf(const OuterImage& image, Progress* progress) {
 }  // namespace
 
 CellFigures checkCells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
-                       const TargetOverlap& overlap, Progress* progress) {
-  const LeafCells cells = allCells(map, levelSet, overlap, progress);
+                       const TargetShape& target, double error, Progress* progress) {
+  const LeafCells cells = allCells(map, levelSet, target, error, progress);
   CellFigures out;
   static_cast<DeterminantFigures&>(out) = cells.determinants;
   if (out.checked > 0 && out.folded == 0)

@@ -3,7 +3,7 @@
 
 #include <openvdb/openvdb.h>
 
-#include "innermap/boundary/detail/target_overlap.h"
+#include "innermap/boundary/detail/target_shape.h"
 #include "innermap/boundary/injectivity.h"
 
 namespace innermap {
@@ -15,6 +15,6 @@ namespace innermap {
 // winds once about what lies just inside each of its parts, bounds cells that do not overlap.
 // Double precision. Throws Cancelled.
 CellFigures checkCells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
-                       const TargetOverlap& overlap, Progress* progress = nullptr);
+                       const TargetShape& target, double error, Progress* progress = nullptr);
 
 }  // namespace innermap
