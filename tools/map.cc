@@ -174,8 +174,7 @@ Command makeMapCommand() {
       "Writes map.ply (the map itself), map.vdb (its grids), slices.exr, section.png and "
       "report.json into a folder. Where SOURCE and TARGET have the same faces and vertex order, "
       "each vertex goes to its like. Any other TARGET is a shape that SOURCE is laid onto first, "
-      "as "
-      "innermap correspond does; correspondence.ply and correspondence.png then show how.");
+      "as innermap correspond does; correspondence.ply and correspondence.png then show how.");
   c.positional("SOURCE", &o->source, "mesh of the solid: .obj, .ply, .off or .stl");
   c.positional("TARGET", &o->target,
                "the same mesh with its vertices moved, or any other mesh; may be left out with "

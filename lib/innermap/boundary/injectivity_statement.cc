@@ -149,10 +149,13 @@ std::string conclusion(const Injectivity& known) {
            "out that it is one-to-one. ";
   if (degree.checked == 0 || degree.least != 1)
     return "Nothing that was checked rules out that the map is one-to-one; nothing proves it. ";
-  return "Where det J > 0 everywhere inside, as many points go to a place as the image of the "
-         "boundary winds about it: then exactly one goes to each of those that were checked, and "
-         "to all that can be joined to them without coming nearer to the target's surface than "
-         "that. That det J > 0 between the points that were checked is not proved. ";
+  return fmt::format(
+      "Where det J > 0 everywhere inside, as many points go to a place as the image of the "
+      "boundary "
+      "winds about it: then exactly one goes to each of those {} points, and to all that can be "
+      "joined to them without coming nearer to the target's surface than that. That det J > 0 "
+      "between the points that were checked is not proved. ",
+      degree.checked);
 }
 
 std::string cells(const CellFigures& cells) {

@@ -77,10 +77,9 @@ Injectivity injectivityOf(const MappedSolid& mapped, const SolidGrids& grids, Pr
   return out;
 }
 
-void insertText(const openvdb::GridPtrVec& grids, const Facts& facts) {
+void insertStatement(const openvdb::GridPtrVec& grids, const Injectivity& known) {
   for (const openvdb::GridBase::Ptr& grid : grids)
-    for (const auto& [key, value] : facts)
-      grid->insertMeta("innermap_" + key, openvdb::StringMetadata(value));
+    grid->insertMeta("innermap_one_to_one", openvdb::StringMetadata(injectivityStatement(known)));
 }
 
 }  // namespace
@@ -116,8 +115,7 @@ SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& sett
       timed(out.seconds, "cells", [&] { return injectivityOf(mapped, out, settings.progress); });
   const openvdb::GridPtrVec all = out.all();
   describeMap(all, mapped);
-  insertText(all, injectivityFacts(out.injectivity));
-  insertText(all, {{"one_to_one", injectivityStatement(out.injectivity)}});
+  insertStatement(all, out.injectivity);
   insertTotals(all, out.values);
   insert(all, {{"lame_lambda", settings.lame.lambda}, {"lame_mu", settings.lame.mu}});
   return out;
@@ -133,7 +131,12 @@ std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings)
 }
 
 void describeMap(const openvdb::GridPtrVec& grids, const MappedSolid& mapped) {
-  insertText(grids, mapped.facts);
+  const Facts figures = injectivityFacts(mapped.injectivity);  // the statement says them
+  for (const openvdb::GridBase::Ptr& grid : grids)
+    for (const auto& fact : mapped.facts)
+      if (std::find(figures.begin(), figures.end(), fact) == figures.end())
+        grid->insertMeta("innermap_" + fact.first, openvdb::StringMetadata(fact.second));
+  insertStatement(grids, mapped.injectivity);
 }
 
 FrameEvaluator::FrameEvaluator(const FrameFitter& fitter, std::vector<std::string> names,

@@ -40,10 +40,9 @@ struct SolidGrids {
 };
 
 // Metadata (prefix innermap_): the map's facts, harmonic_energy_total, deformation_energy_total,
-// jacobian_min, jacobian_max, folded_fraction, lame_lambda, lame_mu; one_to_one, which is
-// injectivityStatement, and what of injectivityFigures the voxels add to the facts (prefix
-// one_to_one_). Throws SettingError, MemoryError, DataError (thinner than the voxels everywhere),
-// Cancelled. Deterministic for any number of threads.
+// jacobian_min, jacobian_max, folded_fraction, lame_lambda, lame_mu; one_to_one, which is what
+// injectivityStatement says. Throws SettingError, MemoryError, DataError (thinner than the voxels
+// everywhere), Cancelled. Deterministic for any number of threads.
 SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& settings = {});
 
 // The maps of a sequence's frames on the voxels of its rest pose.
@@ -82,7 +81,8 @@ const std::vector<std::string>& mapGridNames();
 // Peak need in bytes, from the solid's volume and area.
 std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings);
 
-// The map's facts as metadata of grids made with it (prefix innermap_).
+// The map's facts as metadata of grids made with it (prefix innermap_); of its injectivity the
+// statement, one_to_one.
 void describeMap(const openvdb::GridPtrVec& grids, const MappedSolid& mapped);
 
 // The same of grids made with the map of an animation's frame: frame (its number),

@@ -115,6 +115,24 @@ TEST(FitMap, StepsAreCertifiedEndToEnd) {
   EXPECT_LT(farthest / fit.boundary.target.diagonal, 2 * fit.error.max);
 }
 
+TEST(FitMap, SaysWhatItKnowsOfOneToOne) {
+  const Mesh source = ball();
+  FitMapSettings settings;
+  const Injectivity known = fitMap(source, moved(source, harmonicPolynomial), settings).injectivity;
+  // The determinant of harmonicPolynomial is about 1 + 0.2 x, and 0.796 at x = -1.
+  EXPECT_NEAR(known.inside.least, 0.81, 0.02);
+  EXPECT_NEAR(known.boundary.least, 0.795, 0.01);
+  EXPECT_LT(known.boundary.least, known.inside.least);
+  EXPECT_EQ(known.inside.folded + known.boundary.folded, 0u);
+  EXPECT_EQ(known.degree.least, 1);
+  EXPECT_EQ(known.degree.greatest, 1);
+  EXPECT_GT(known.degree.checked, 1500u);
+  EXPECT_EQ(known.cells.checked, 0u);
+  EXPECT_FALSE(notOneToOne(known));
+  settings.oneToOne = OneToOne::off;
+  EXPECT_EQ(fitMap(source, source, settings).injectivity.inside.checked, 0u);
+}
+
 TEST(FitMap, OneStepIsEnoughForGentleMaps) {
   const Mesh source = ball();
   const MapFit fit = fitMap(source, moved(source, harmonicPolynomial));

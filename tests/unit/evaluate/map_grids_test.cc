@@ -50,6 +50,44 @@ TEST(MapGrids, CarryTheFactsInTheirMetadata) {
   }
 }
 
+TEST(MapGrids, SayWhatVoxelsAndCellsTellOfOneToOne) {
+  const MapFit fit = affineFit();
+  MapGridSettings settings;
+  settings.resolution = 24;
+  const SolidGrids grids = evaluateOnGrid(fit, settings);
+  const Injectivity& known = grids.injectivity;
+  EXPECT_EQ(known.inside.checked, fit.injectivity.inside.checked);
+  EXPECT_EQ(known.voxels.checked, grids.values.interiorVoxels);
+  EXPECT_EQ(known.voxels.least, grids.values.jacobianMin);
+  const double det = determinant(fit.map.jacobian({0, 0, 0}));
+  EXPECT_NEAR(known.cells.least, det, 1e-3 * det);
+  EXPECT_EQ(known.cells.folded, 0u);
+  EXPECT_EQ(known.cells.overlaps, 0u);
+  // All but about a voxel along the surface: a fifth of a ball that is 24 across.
+  EXPECT_GT(known.cells.share, 0.75);
+  EXPECT_LT(known.cells.share, 0.95);
+  const std::string statement = injectivityStatement(known);
+  for (const auto& grid : grids.all())
+    EXPECT_EQ(grid->metaValue<std::string>("innermap_one_to_one"), statement);
+}
+
+// Two balls that come to lie in one another: the lens that they share is covered twice, by cells of
+// which none is turned over.
+TEST(MapGrids, CellsThatOverlapAreTold) {
+  FitMapSettings fitting;
+  fitting.tolerance = 5e-3;
+  const MapFit fit = fitMap(twoBalls(1.5), twoBalls(0.5), fitting);
+  EXPECT_EQ(fit.injectivity.degree.greatest, 2);
+  EXPECT_GT(fit.injectivity.target.pairs, 0u);
+  MapGridSettings settings;
+  settings.resolution = 32;
+  const Injectivity known = evaluateOnGrid(fit, settings).injectivity;
+  EXPECT_EQ(known.cells.folded, 0u);
+  EXPECT_GT(known.cells.overlaps, 0u);
+  EXPECT_TRUE(notOneToOne(known));
+  EXPECT_NE(injectivityStatement(known).find("winds up to 2 times"), std::string::npos);
+}
+
 TEST(MapGrids, VoxelSizeStandsInForTheResolution) {
   MapGridSettings settings;
   settings.voxelSize = 0.2;
