@@ -39,7 +39,7 @@ void visitFigures(Known& known, const Visit& visit) {
   const bool cells = known.cells.checked > 0;
   visitDeterminants("cells", known.cells, visit);
   visit("cells_share", known.cells.share, cells);
-  visit("cells_overlaps", known.cells.overlaps, cells && known.cells.folded == 0);
+  visit("cells_overlaps", known.cells.overlaps, known.cells.overlaps >= 0);
 }
 
 }  // namespace
@@ -50,6 +50,14 @@ void DeterminantFigures::add(double determinant, bool atOverlap) {
   if (determinant > 0) return;
   ++folded;
   if (atOverlap) ++foldedAtOverlap;
+}
+
+void DeterminantFigures::add(const DeterminantFigures& others) {
+  if (others.checked == 0) return;
+  least = checked == 0 ? others.least : std::min(least, others.least);
+  checked += others.checked;
+  folded += others.folded;
+  foldedAtOverlap += others.foldedAtOverlap;
 }
 
 std::vector<InjectivityFigure> injectivityFigures(const Injectivity& known) {

@@ -41,6 +41,7 @@ struct DeterminantFigures {
   double least = 0;
 
   void add(double determinant, bool atOverlap = false);
+  void add(const DeterminantFigures& others);
 };
 
 // How often the image of the boundary winds about points of a lattice in the target that are
@@ -55,9 +56,9 @@ struct DegreeFigures {
 struct CellFigures : DeterminantFigures {
   double share = 0;  // of the solid's volume that they fill, in [0, 1]
   // Places where their boundary's image runs through itself (pairs of triangles) or has cells on
-  // its inside that it does not wind about just once. Known where no cell is folded; none then:
-  // this map is one-to-one, as checked for the whole of it.
-  std::size_t overlaps = 0;
+  // its inside that it does not wind about just once; -1: not known, as where a cell is folded.
+  // None: this map is one-to-one, as checked for the whole of it.
+  std::int64_t overlaps = -1;
 };
 
 struct SelfIntersectionFigures {

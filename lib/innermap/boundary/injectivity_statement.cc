@@ -159,7 +159,7 @@ std::string conclusion(const Injectivity& known) {
 }
 
 std::string cells(const CellFigures& cells) {
-  if (cells.checked == 0 || cells.folded > 0) return "";
+  if (cells.checked == 0 || cells.folded > 0 || cells.overlaps < 0) return "";
   const std::string what =
       fmt::format("The map that is linear on the {} cells, {} of the solid, is ", cells.checked,
                   percent(cells.share));

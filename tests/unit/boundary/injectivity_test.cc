@@ -23,6 +23,7 @@ Injectivity sound() {
   known.voxels = figures(5000, 0, 0.5);
   static_cast<DeterminantFigures&>(known.cells) = figures(24000, 0, 0.75);
   known.cells.share = 0.9;
+  known.cells.overlaps = 0;
   known.degree = {1500, 1, 1};
   known.boundaryError = 0.003;
   return known;
@@ -96,6 +97,8 @@ TEST(Injectivity, FoldedCellsAreNotFoldsOfTheMap) {
   known.cells.overlaps = 2;
   EXPECT_TRUE(says(known, "it covers itself at 2 places of its boundary."));
   EXPECT_FALSE(says(known, kWhole));
+  known.cells.overlaps = -1;
+  EXPECT_FALSE(says(known, "The map that is linear"));
 }
 
 TEST(Injectivity, ABoundaryThatWindsTwiceIsNotThatOfAOneToOneMap) {
@@ -181,6 +184,15 @@ TEST(Injectivity, DeterminantsAreCounted) {
   EXPECT_EQ(out.folded, 2u);
   EXPECT_EQ(out.foldedAtOverlap, 1u);
   EXPECT_EQ(out.least, -1);
+  DeterminantFigures sum;
+  sum.add(DeterminantFigures{});
+  EXPECT_EQ(sum.checked, 0u);
+  sum.add(figures(10, 1, 5));
+  sum.add(out);
+  EXPECT_EQ(sum.checked, 14u);
+  EXPECT_EQ(sum.folded, 3u);
+  EXPECT_EQ(sum.foldedAtOverlap, 1u);
+  EXPECT_EQ(sum.least, -1);
 }
 
 TEST(Injectivity, FactsGiveTheFiguresBack) {

@@ -62,7 +62,7 @@ TEST(MapGrids, SayWhatVoxelsAndCellsTellOfOneToOne) {
   const double det = determinant(fit.map.jacobian({0, 0, 0}));
   EXPECT_NEAR(known.cells.least, det, 1e-3 * det);
   EXPECT_EQ(known.cells.folded, 0u);
-  EXPECT_EQ(known.cells.overlaps, 0u);
+  EXPECT_EQ(known.cells.overlaps, 0);
   // All but about a voxel along the surface: a fifth of a ball that is 24 across.
   EXPECT_GT(known.cells.share, 0.75);
   EXPECT_LT(known.cells.share, 0.95);
@@ -83,7 +83,7 @@ TEST(MapGrids, CellsThatOverlapAreTold) {
   settings.resolution = 32;
   const Injectivity known = evaluateOnGrid(fit, settings).injectivity;
   EXPECT_EQ(known.cells.folded, 0u);
-  EXPECT_GT(known.cells.overlaps, 0u);
+  EXPECT_GT(known.cells.overlaps, 0);
   EXPECT_TRUE(notOneToOne(known));
   EXPECT_NE(injectivityStatement(known).find("winds up to 2 times"), std::string::npos);
 }

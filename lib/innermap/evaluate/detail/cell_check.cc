@@ -21,7 +21,9 @@ namespace {
 using openvdb::Coord;
 using MapLeaf = openvdb::Vec3STree::LeafNodeType;
 
-constexpr std::size_t kLeaves = 8;    // that a thread takes at a time
+constexpr std::size_t kLeaves = 8;  // that a thread takes at a time
+// Faces beyond which overlaps are not looked for: they would take seconds, and half a gigabyte.
+constexpr std::size_t kMostFaces = 500000;
 constexpr double kJustInside = 1e-3;  // of the way from a face to the corner across
 
 // A face of one cell only, outward, and the corner of that cell which is not on it.
@@ -34,17 +36,12 @@ struct OuterFace {
 struct LeafCells {
   DeterminantFigures determinants;
   std::vector<OuterFace> faces;
+};
 
-  void add(const LeafCells& other) {
-    const DeterminantFigures& d = other.determinants;
-    if (d.checked == 0) return;
-    DeterminantFigures& sum = determinants;
-    sum.least = sum.checked == 0 ? d.least : std::min(sum.least, d.least);
-    sum.checked += d.checked;
-    sum.folded += d.folded;
-    sum.foldedAtOverlap += d.foldedAtOverlap;
-    faces.insert(faces.end(), other.faces.begin(), other.faces.end());
-  }
+// Of the cube's corners.
+struct Cube {
+  std::array<bool, 8> inside{};
+  std::array<Vec3, 8> images;
 };
 
 // Reads what one thread looks at.
@@ -60,47 +57,58 @@ class Cells {
 
   LeafCells of(const MapLeaf& leaf) const {
     LeafCells out;
-    for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
-      const Coord cube = voxel.getCoord();
-      if (!inside(cube)) continue;  // all cells of a cube have its lowest corner
-      forKuhnCells(
-          cube, [&](const Coord& c) { return inside(c); },
-          [&](std::size_t, const KuhnCell& cell) { addCell(cell, out); });
-    }
+    for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) addCube(voxel.getCoord(), out);
     return out;
   }
 
  private:
   bool inside(const Coord& c) const { return distance_.getValue(c) < 0 && map_.isValueOn(c); }
 
-  Vec3 image(const Coord& c) const {
-    const openvdb::Vec3f p = map_.getValue(c);
-    return {p.x(), p.y(), p.z()};
+  void addCube(const Coord& at, LeafCells& out) const {
+    if (!inside(at) || !inside(cornerOf(at, 7))) return;  // all cells have these corners
+    Cube cube;
+    for (int bits = 0; bits < 8; ++bits) {
+      const Coord c = cornerOf(at, bits);
+      const auto k = static_cast<std::size_t>(bits);
+      cube.inside[k] = inside(c);
+      const openvdb::Vec3f p = map_.getValue(c);
+      cube.images[k] = {p.x(), p.y(), p.z()};
+    }
+    for (const KuhnCell& cell : kKuhnCells)
+      if (cube.inside[static_cast<std::size_t>(cell[1])] &&
+          cube.inside[static_cast<std::size_t>(cell[2])])
+        addCell(at, cube, cell, out);
   }
 
-  void addCell(const KuhnCell& cell, LeafCells& out) const {
-    const Vec3 p = image(cell[0]), a = image(cell[1]) - p, b = image(cell[2]) - p,
-               c = image(cell[3]) - p;
+  void addCell(const Coord& at, const Cube& cube, const KuhnCell& cell, LeafCells& out) const {
+    const auto image = [&](std::size_t i) {
+      return cube.images[static_cast<std::size_t>(cell[i])];
+    };
+    const Vec3 p = image(0), a = image(1) - p, b = image(2) - p, c = image(3) - p;
     const double determinant = dot(cross(a, b), c) / volume_;
     out.determinants.add(
         determinant, !(determinant > 0) && target_.runsThroughItself(p + (a + b + c) / 4, error_));
-    addOuterFaces(cell, out.faces);
+    addOuterFaces(at, cube, cell, out.faces);
   }
 
   // The cell beyond a face has the other three corners and, for the one across, the sum of its
-  // neighbours along the cell's path from the lowest corner to the highest, less itself.
-  void addOuterFaces(const KuhnCell& cell, std::vector<OuterFace>& out) const {
+  // neighbours along the cell's path from the lowest corner to the highest, less itself: for the
+  // two in the middle a corner of the cube.
+  void addOuterFaces(const Coord& at, const Cube& cube, const KuhnCell& cell,
+                     std::vector<OuterFace>& out) const {
     constexpr std::array<std::array<std::size_t, 3>, 4> kFaces{
         {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-    std::array<std::size_t, 4> path{0, 1, 2, 3};
-    if (cell[2] < cell[1]) std::swap(path[1], path[2]);
-    for (std::size_t i = 0; i < 4; ++i) {
-      const Coord across = cell[path[i]];
-      const Coord beyond = cell[path[(i + 3) % 4]] + cell[path[(i + 1) % 4]] - across;
-      if (inside(beyond)) continue;
-      const auto& face = kFaces[path[i]];
-      out.push_back({{cell[face[0]], cell[face[1]], cell[face[2]]}, across});
-    }
+    const std::size_t low = cell[1] < cell[2] ? 1 : 2, high = 3 - low;
+    const Coord first = cornerOf({}, cell[low]), last = Coord(1) - cornerOf({}, cell[high]);
+    const auto corner = [&](std::size_t i) { return cornerOf(at, cell[i]); };
+    const auto add = [&](std::size_t across) {
+      const auto& face = kFaces[across];
+      out.push_back({{corner(face[0]), corner(face[1]), corner(face[2])}, corner(across)});
+    };
+    if (!inside(corner(3) + first)) add(0);
+    if (!cube.inside[static_cast<std::size_t>(cell[high] - cell[low])]) add(low);
+    if (!cube.inside[static_cast<std::size_t>(cell[low] + 7 - cell[high])]) add(high);
+    if (!inside(at - last)) add(3);
   }
 
   openvdb::Vec3fGrid::ConstAccessor map_;
@@ -110,46 +118,47 @@ class Cells {
   double volume_;
 };
 
-LeafCells allCells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
-                   const TargetShape& target, double error, Progress* progress) {
+std::vector<LeafCells> allCells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
+                                const TargetShape& target, double error, Progress* progress) {
   std::vector<const MapLeaf*> leaves;
   for (auto leaf = map.tree().cbeginLeaf(); leaf; ++leaf) leaves.push_back(&*leaf);
-  std::vector<LeafCells> parts(leaves.size());
+  std::vector<LeafCells> out(leaves.size());
   parallelBlocks(
       leaves.size(), kLeaves,
       [&](std::size_t begin, std::size_t end) {
         const Cells cells(map, levelSet, target, error);
-        for (std::size_t i = begin; i < end; ++i) parts[i] = cells.of(*leaves[i]);
+        for (std::size_t i = begin; i < end; ++i) out[i] = cells.of(*leaves[i]);
       },
       progress, "checking cells");
-  LeafCells out;
-  for (const LeafCells& part : parts) out.add(part);
   return out;
 }
 
 // The image of the cells' boundary.
 struct OuterImage {
-  Points vertices, across;  // across: of each triangle
+  Points vertices;
   std::vector<Triangle> triangles;
+  std::vector<Vec3> across;  // of each triangle, the corner of its cell that is not on it
 
-  OuterImage(const std::vector<OuterFace>& faces, const openvdb::Vec3fGrid& map) {
+  // Takes the faces away from the leaves.
+  OuterImage(std::vector<LeafCells>& leaves, const openvdb::Vec3fGrid& map) {
     const auto values = map.getConstAccessor();
     const auto image = [&](const Coord& c) {
       const openvdb::Vec3f p = values.getValue(c);
       return Vec3{p.x(), p.y(), p.z()};
     };
     std::unordered_map<Coord, int, CoordHash> numbers;
-    for (const OuterFace& face : faces) {
-      Triangle t;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto [at, fresh] =
-            numbers.try_emplace(face.corners[k], static_cast<int>(vertices.size()));
-        if (fresh) vertices.push_back(image(face.corners[k]));
-        t[k] = at->second;
+    for (LeafCells& leaf : leaves)
+      for (const OuterFace& face : std::exchange(leaf.faces, {})) {
+        Triangle t;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const auto [at, fresh] =
+              numbers.try_emplace(face.corners[k], static_cast<int>(vertices.size()));
+          if (fresh) vertices.push_back(image(face.corners[k]));
+          t[k] = at->second;
+        }
+        triangles.push_back(t);
+        across.push_back(image(face.across));
       }
-      triangles.push_back(t);
-      across.push_back(image(face.across));
-    }
   }
 
   // One triangle of each part that hangs together by edges of two triangles.
@@ -181,8 +190,8 @@ struct OuterImage {
   }
 };
 
-std::size_t overlapsOf(const OuterImage& image, Progress* progress) {
-  std::size_t out = 0;
+std::int64_t overlapsOf(const OuterImage& image, Progress* progress) {
+  std::int64_t out = 0;
   forEachSelfIntersection(image.vertices, image.triangles, [&](const Crossing&) { ++out; },
                           {progress});
   const WindingNumber winding(image.vertices, image.triangles);
@@ -199,11 +208,15 @@ std::size_t overlapsOf(const OuterImage& image, Progress* progress) {
 
 CellFigures checkCells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
                        const TargetShape& target, double error, Progress* progress) {
-  const LeafCells cells = allCells(map, levelSet, target, error, progress);
+  std::vector<LeafCells> leaves = allCells(map, levelSet, target, error, progress);
   CellFigures out;
-  static_cast<DeterminantFigures&>(out) = cells.determinants;
-  if (out.checked > 0 && out.folded == 0)
-    out.overlaps = overlapsOf(OuterImage(cells.faces, map), progress);
+  std::size_t faces = 0;
+  for (const LeafCells& leaf : leaves) {
+    out.add(leaf.determinants);
+    faces += leaf.faces.size();
+  }
+  if (out.checked > 0 && out.folded == 0 && faces <= kMostFaces)
+    out.overlaps = overlapsOf(OuterImage(leaves, map), progress);
   return out;
 }
 

@@ -77,8 +77,18 @@ class Voxels {
   // Calls `add` with the corners of each tetrahedron of a cube whose corners are all inside.
   template <class Add>
   void forTets(const Coord& cube, const Add& add) const {
-    forKuhnCells(
-        cube, [&](const Coord& c) { return inside(c); }, add);
+    std::array<bool, 8> in;
+    for (int bits = 0; bits < 8; ++bits)
+      in[static_cast<std::size_t>(bits)] = inside(cornerOf(cube, bits));
+    for (std::size_t k = 0; k < kKuhnCells.size(); ++k) {
+      std::array<Coord, 4> corners;
+      bool all = true;
+      for (std::size_t i = 0; i < 4; ++i) {
+        all = all && in[static_cast<std::size_t>(kKuhnCells[k][i])];
+        corners[i] = cornerOf(cube, kKuhnCells[k][i]);
+      }
+      if (all) add(k, corners);
+    }
   }
 
  private:
@@ -119,8 +129,9 @@ class Patch {
     for (const Coord& c : coords_)
       forCubesAround(c, [&](const Coord& cube) { cubes.insert(cube); });
     for (const Coord& cube : cubes)
-      voxels.forTets(
-          cube, [&](std::size_t k, const KuhnCell& corners) { addTet(corners, rests()[k], free); });
+      voxels.forTets(cube, [&](std::size_t k, const std::array<Coord, 4>& corners) {
+        addTet(corners, rests()[k], free);
+      });
     tets_.free.assign(coords_.size(), 0);
     std::fill_n(tets_.free.begin(), free, 1);
   }
@@ -143,7 +154,7 @@ class Patch {
     return at->second;
   }
 
-  void addTet(const KuhnCell& corners, const Mat3& rest, std::size_t free) {
+  void addTet(const std::array<Coord, 4>& corners, const Mat3& rest, std::size_t free) {
     const bool moves = std::any_of(corners.begin(), corners.end(), [&](const Coord& c) {
       const auto found = numbers_.find(c);
       return found != numbers_.end() && static_cast<std::size_t>(found->second) < free;
@@ -188,7 +199,7 @@ Mat3 affineAt(const Voxels& voxels, const Coord& at, double spacing) {
 Mat3 jacobianAt(const Voxels& voxels, const Coord& at, double spacing) {
   std::vector<Mat3> all;
   forCubesAround(at, [&](const Coord& cube) {
-    voxels.forTets(cube, [&](std::size_t k, const KuhnCell& corners) {
+    voxels.forTets(cube, [&](std::size_t k, const std::array<Coord, 4>& corners) {
       if (std::find(corners.begin(), corners.end(), at) == corners.end()) return;
       TetPatch one;
       for (const Coord& c : corners) one.vertices.push_back((1 / spacing) * voxels.now(c));
