@@ -11,6 +11,7 @@
 #include "innermap/boundary/detail/step_fit.h"
 #include "innermap/boundary/surface_problem.h"
 #include "innermap/core/error.h"
+#include "innermap/core/memory.h"
 #include "innermap/core/version.h"
 
 namespace innermap {
@@ -116,6 +117,7 @@ class MapFitter {
 
   StageSeconds seconds;
   InsideFigures single;  // of one harmonic map
+  std::vector<std::string> warnings;
 
   Outcome onShell(const ShellSettings& shell) {
     const FitProblem problem = problemOf(pointCounts(shell));
@@ -152,6 +154,14 @@ class MapFitter {
     if (settings_.shell || !(pair_.target.volume > 0)) return;
     const bool on = settings_.oneToOne == OneToOne::on;
     if (out.inside.folded <= (on ? 0 : kManyFolds) && out.inside.outside <= kManyOutside) return;
+    if (settings_.maxMemory > 0 && peakMemory() + kStepsMemory > settings_.maxMemory) {
+      warnings.push_back(fmt::format(
+          "one harmonic map folds {:.2g}% of the inside; going in steps may need about {}, more "
+          "than the limit of {}, so that is left",
+          100 * out.inside.folded, formatBytes(peakMemory() + kStepsMemory),
+          formatBytes(settings_.maxMemory)));
+      return;
+    }
     Outcome steps = inSteps();
     if (steps.inside.folded <= (on ? 1 : kWorthIt) * out.inside.folded) out = std::move(steps);
   }
@@ -401,7 +411,7 @@ MapFit fitMap(BoundaryPair boundary, const FitMapSettings& settings) {
              std::move(out.inside),
              std::move(out.steps),
              {},
-             {},
+             std::move(fitter.warnings),
              std::move(fitter.seconds)};
   noteSteps(fit, fitter.single);
   warnOfError(fit);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "innermap/core/error.h"
+#include "innermap/core/memory.h"
 #include "innermap/evaluate/detail/cell_check.h"
 #include "innermap/levelset/level_set.h"
 
@@ -121,13 +122,23 @@ SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& sett
   return out;
 }
 
-std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings) {
-  const LevelSetSettings levelSet = levelSetSettings(settings);
-  const double voxel = voxelSizeFor(solid, levelSet);
+std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings,
+                            std::size_t steps) {
   // Leaves of 8^3 voxels are allocated whole: along the surface they reach about 6 voxels to either
   // side. 25 bytes a voxel of values, 8 of fog and masks.
-  const double voxels = solid.volume() / std::pow(voxel, 3) + 12 * solid.area() / (voxel * voxel);
-  return levelSetMemory(solid, levelSet) + static_cast<std::uint64_t>(33 * voxels);
+  constexpr double kReach = 12, kVoxel = 33, kLeaf = 512;
+  // Measured, bytes: what the first of several steps gives, for as many leaves as are evaluated
+  // together (visit_field.cc); the boundary of the cells, a voxel of the surface, and at most
+  // (cell_check.cc); anything else.
+  constexpr double kBetweenSteps = 200e3, kTogether = 1024, kFace = 1400, kMostFaces = 350e6,
+                   kOther = 25e6;
+  const LevelSetSettings levelSet = levelSetSettings(settings);
+  const double voxel = voxelSizeFor(solid, levelSet), area = solid.area() / (voxel * voxel);
+  const double voxels = solid.volume() / std::pow(voxel, 3) + kReach * area;
+  const double between = steps > 1 ? kBetweenSteps * std::min(kTogether, voxels / kLeaf) : 0;
+  const double work = std::max(between, std::min(kMostFaces, kFace * area));
+  return peakMemory() + levelSetMemory(solid, levelSet) +
+         static_cast<std::uint64_t>(kVoxel * voxels + work + kOther);
 }
 
 void describeMap(const openvdb::GridPtrVec& grids, const MappedSolid& mapped) {

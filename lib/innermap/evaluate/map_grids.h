@@ -78,8 +78,10 @@ class FrameEvaluator {
 // surface, density, map, jacobian, harmonic_energy, deformation_energy.
 const std::vector<std::string>& mapGridNames();
 
-// Peak need in bytes, from the solid's volume and area.
-std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings);
+// Peak need of the process in bytes: what it has had already, and what evaluating a map of so many
+// steps takes, from the solid's volume and area. Throws Cancelled.
+std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings,
+                            std::size_t steps = 1);
 
 // The map's facts as metadata of grids made with it (prefix innermap_); of its injectivity the
 // statement, one_to_one.

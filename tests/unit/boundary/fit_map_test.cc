@@ -101,6 +101,20 @@ TEST(FitMap, GoesInStepsWhereOneMapFolds) {
   EXPECT_GT(least(steps), 0);
 }
 
+TEST(FitMap, StepsThatDoNotFitAreLeft) {
+  const Mesh source = ball(4);
+  FitMapSettings settings;
+  settings.tolerance = 1e-2;
+  settings.maxMemory = kStepsMemory;
+  const MapFit fit = fitMap(source, moved(source, dented), settings);
+  EXPECT_EQ(fit.map.steps().size(), 1u);
+  EXPECT_GT(fit.inside.folded, kManyFolds);
+  const bool said = std::any_of(fit.warnings.begin(), fit.warnings.end(), [](const auto& warning) {
+    return warning.find("going in steps may need") != std::string::npos;
+  });
+  EXPECT_TRUE(said);
+}
+
 // The certificate of the whole: against the map's own values at boundary points.
 TEST(FitMap, StepsAreCertifiedEndToEnd) {
   const Mesh source = ball(4), target = moved(source, dented);
