@@ -379,7 +379,6 @@ std::size_t shellCollocation(const ShellSettings& shell) {
 }
 
 std::uint64_t fitMapMemory(const FitMapSettings& settings) {
-  constexpr std::uint64_t kProgram = 64'000'000;  // with nothing loaded yet
   PointCounts counts{kFirstSources, 4 * kFirstSources, kFirstSources};
   FitSolver solver = FitSolver::dense;
   if (settings.shell) {
@@ -387,7 +386,7 @@ std::uint64_t fitMapMemory(const FitMapSettings& settings) {
     if (!settings.shell->radiusRatio) solver = settings.shell->solver;
   }
   // Blue noise thins five candidates a point; each costs some 100 bytes.
-  return kProgram + fitMemory(counts.collocation, counts.sources, counts.heldOut, solver) +
+  return peakMemory() + fitMemory(counts.collocation, counts.sources, counts.heldOut, solver) +
          500 * (counts.collocation + counts.sources) + 200 * kFreshSamples;
 }
 

@@ -113,9 +113,10 @@ struct MapFit : MappedSolid {
   StageSeconds seconds;  // "sample", "fit", "certificate", "inside", "steps"
 };
 
-// Peak need in bytes; with a tolerance, that of its first level of charges. How many follow, and
-// whether the map goes in steps, is not known beforehand: charges are added while they fit
-// maxMemory, and where steps do not fit the single map is kept.
+// Peak need of the process in bytes: what it has had already, and what the fit takes; with a
+// tolerance, what its first level of charges does. How many follow, and whether the map goes in
+// steps, is not known beforehand: charges are added while they fit maxMemory, and where steps do
+// not fit the single map is kept.
 std::uint64_t fitMapMemory(const FitMapSettings& settings);
 
 // What maps in steps take beside that in bytes: the most that was measured between unrelated solids
