@@ -8,6 +8,7 @@
 
 #include "boundary/test_pairs.h"
 #include "innermap/boundary/detail/inside_check.h"
+#include "innermap/boundary/detail/streams.h"
 #include "innermap/boundary/surface_problem.h"
 #include "innermap/core/parallel.h"
 #include "innermap/sample/surface_samples.h"
@@ -111,6 +112,31 @@ TEST(StepFit, ErrorsElsewhereAreThoseOfTheCertificate) {
     EXPECT_LT(beyond(fit.error.max), 8);
     EXPECT_LE(fit.error.p99, c.tolerance);
   }
+}
+
+// Errors are fractions of the target's diagonal however it is turned: its box changes with that,
+// and steps are fitted to a shape that lies as the source does.
+TEST(StepFit, TheUnitIsTheTargetsDiagonal) {
+  const Mesh source = moved(ball(3), [](const Vec3& p) {  // nearly a cube
+    return p / std::pow(std::pow(p.x, 6) + std::pow(p.y, 6) + std::pow(p.z, 6), 1.0 / 6);
+  });
+  const BoundaryPair pair =
+      makeBoundaryPair(source, moved(source, [](const Vec3& p) {
+                         const Vec3 q{p.x + 0.2 * p.y * p.y, p.y, p.z};
+                         return Vec3{q.x - q.y, q.x + q.y, std::sqrt(2) * q.z};
+                       }));
+  const StepFit fit = fitted(pair, 5e-3);
+  SampleSettings certificate;
+  certificate.seed = seedOf(StepFitSettings{}.seed, Stream::fresh);
+  const std::vector<SurfacePoint> places =
+      randomSamples(pair.solid().surface(), kFreshSamples, certificate);
+  const Points targets = interpolate(pair.target.moved, source.triangles, places);
+  const BoundaryError again =
+      summarizeErrors(errorsAt(fit, pair, interpolate(source.vertices, source.triangles, places),
+                               [&](std::size_t i) { return targets[i]; }));
+  EXPECT_NEAR(again.p99, fit.error.p99, 1e-3 * again.p99);
+  EXPECT_NEAR(again.rms, fit.error.rms, 1e-3 * again.rms);
+  EXPECT_NEAR(again.max, fit.error.max, 1e-3 * again.max);
 }
 
 // What the composed map should be is not known of a bend, but a fit ten times as exact is nearer to
