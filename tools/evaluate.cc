@@ -18,8 +18,9 @@ void run(const EvaluateOptions& options, Context& context) {
   const MapGridSettings settings = mapGridSettings(options.evaluation, context);
   if (context.dryRun())
     return context.plan({"evaluate " + options.map, "write grids to " + options.output},
-                        mapGridMemory(mapped.solid(), settings));
-  requireEvaluationMemory(mapped.solid(), options.evaluation.grid, context);
+                        mapGridMemory(mapped.solid(), settings, mapped.map.steps().size()));
+  requireEvaluationMemory(mapped.solid(), options.evaluation.grid, context,
+                          mapped.map.steps().size());
   const SolidGrids grids = evaluateOnGrid(mapped, settings);
   reportGrids(grids, settings.lame, context);
   writeGridFile(options.output, grids.all(), options.evaluation.names, context);
@@ -32,8 +33,8 @@ Command makeEvaluateCommand() {
   Command c("evaluate", "Evaluate a saved map on the voxels of its solid");
   c.description(
       "Writes the grids surface, density, map, jacobian, harmonic_energy and deformation_energy; "
-      "values are active inside and in a skin of two voxels. Energies' totals, the least Jacobian "
-      "and the folded share of the volume stand in the grids' metadata and the report.");
+      "values are active inside and in a skin of two voxels. Energies' totals, the least Jacobian, "
+      "the folded share and what is known of one-to-one stand in the metadata and the report.");
   c.positional("MAP", &o->map, "a map.ply written by fit or map");
   c.option("--output", "FILE", &o->output, "the grids, a .vdb file").shortName("-o").required();
   addEvaluationOptions(c, o->evaluation);

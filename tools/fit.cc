@@ -31,6 +31,7 @@ void run(const FitOptions& options, Context& context) {
   requireFittingMemory(settings);
   const MapFit fit = fitMap(std::move(pair), settings);
   reportFit(fit, settings, options.fitting.bestEffort, context);
+  reportInjectivity(fit.injectivity, context);
   context.timed("write", [&] { writeMap(options.output, fit); });
 }
 

@@ -47,6 +47,24 @@ std::optional<double> toleranceOf(const FittingOptions& o) {
   return o.tolerance.value_or(o.fit.tolerance);
 }
 
+ShellSettings shellSettings(const FittingOptions& o, std::size_t vertices) {
+  if (o.shell.distance && o.shell.radiusRatio)
+    throw UsageError("--distance and --radius-ratio exclude each other; give one of them");
+  if (o.collocation && o.collocationRatio)
+    throw UsageError("--collocation and --collocation-ratio exclude each other; give one of them");
+  const double v = static_cast<double>(vertices);
+  ShellSettings shell = o.shell;
+  shell.sources = o.sourceRatio
+                      ? countOf(std::round(*o.sourceRatio * v), "--source-ratio", 1, kMostSources)
+                      : o.sources.value_or(shell.sources);
+  if (o.collocation || o.collocationRatio)
+    shell.collocation = countOf(
+        o.collocation ? static_cast<double>(*o.collocation) : std::round(*o.collocationRatio * v),
+        o.collocationRatio ? "--collocation-ratio" : "--collocation",
+        static_cast<double>(shell.sources) + 4, 1e7);
+  return shell;
+}
+
 }  // namespace
 
 void addFittingOptions(Command& command, FittingOptions& o) {
@@ -122,28 +140,6 @@ void addFittingOptions(Command& command, FittingOptions& o) {
       .defaults("chosen by held-out error");
   command.option("--seed", "N", &o.fit.seed, "of all random points").range(0, 1e15);
 }
-
-namespace {
-
-ShellSettings shellSettings(const FittingOptions& o, std::size_t vertices) {
-  if (o.shell.distance && o.shell.radiusRatio)
-    throw UsageError("--distance and --radius-ratio exclude each other; give one of them");
-  if (o.collocation && o.collocationRatio)
-    throw UsageError("--collocation and --collocation-ratio exclude each other; give one of them");
-  const double v = static_cast<double>(vertices);
-  ShellSettings shell = o.shell;
-  shell.sources = o.sourceRatio
-                      ? countOf(std::round(*o.sourceRatio * v), "--source-ratio", 1, kMostSources)
-                      : o.sources.value_or(shell.sources);
-  if (o.collocation || o.collocationRatio)
-    shell.collocation = countOf(
-        o.collocation ? static_cast<double>(*o.collocation) : std::round(*o.collocationRatio * v),
-        o.collocationRatio ? "--collocation-ratio" : "--collocation",
-        static_cast<double>(shell.sources) + 4, 1e7);
-  return shell;
-}
-
-}  // namespace
 
 FitMapSettings fitMapSettings(const FittingOptions& options, std::size_t vertices,
                               const Context& context) {

@@ -66,10 +66,10 @@ MapGridSettings mapGridSettings(const EvaluationOptions& options, const Context&
   return settings;
 }
 
-void requireEvaluationMemory(const Solid& solid, const GridOptions& options,
-                             const Context& context) {
+void requireEvaluationMemory(const Solid& solid, const GridOptions& options, const Context& context,
+                             std::size_t steps) {
   requireGridMemory("evaluating the map on a grid", options, context, [&](const GridOptions& o) {
-    return mapGridMemory(solid, gridSettings<MapGridSettings>(o, context));
+    return mapGridMemory(solid, gridSettings<MapGridSettings>(o, context), steps);
   });
 }
 

@@ -25,11 +25,6 @@ std::string extension(const std::string& path) {
   return e;
 }
 
-void vdbInfo(const InfoOptions& options, Context& context) {
-  const VdbInfo info = readVdbInfo(options.file, context.settings<VdbInfoSettings>());
-  context.print(describe(info, options.file, options.metadata));
-}
-
 void meshInfo(const InfoOptions& options, Context& context) {
   const Mesh mesh = readMeshFile(options.file, context);
   const Box3 box = boundingBox(mesh);
@@ -61,15 +56,13 @@ void mapInfo(const InfoOptions& options, Context& context) {
   context.print(text);
 }
 
-void exrInfo(const InfoOptions& options, Context& context) {
-  context.print(describe(readExrInfo(options.file), options.file));
-}
-
 void run(const InfoOptions& options, Context& context) {
   if (context.dryRun()) return context.plan({"describe " + options.file}, 0);
   const std::string e = extension(options.file);
-  if (e == ".vdb") return vdbInfo(options, context);
-  if (e == ".exr") return exrInfo(options, context);
+  if (e == ".vdb")
+    return context.print(describe(readVdbInfo(options.file, context.settings<VdbInfoSettings>()),
+                                  options.file, options.metadata));
+  if (e == ".exr") return context.print(describe(readExrInfo(options.file), options.file));
   if (isFieldFile(options.file)) return mapInfo(options, context);
   meshInfo(options, context);
 }

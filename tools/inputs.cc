@@ -1,7 +1,5 @@
 #include "inputs.h"
 
-#include <optional>
-
 #include "innermap/io/vdb/vdb_file.h"
 #include "innermap/mesh/read.h"
 #include "map_report.h"

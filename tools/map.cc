@@ -89,23 +89,27 @@ std::string correspondPlan(const MapOptions& options, const Meshes& meshes,
                         correspondSettings(options.correspond, context)));
 }
 
+bool laidOn(const MapOptions& options, const Meshes& meshes) {
+  return !meshes.related || !options.correspondence.empty();
+}
+
 // Surfaces that were laid on one another follow each other within some thousandths anyway.
 FittingOptions fittingFor(const MapOptions& options, const Meshes& meshes) {
   FittingOptions out = options.fitting;
-  if (!meshes.related || !options.correspondence.empty()) out.fit.tolerance = kStrangers;
+  if (laidOn(options, meshes)) out.fit.tolerance = kStrangers;
   return out;
 }
 
 void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
-  const SourceBoundary source =
-      makeSourceBoundary(meshes.source, context.settings<BoundarySettings>());
+  const auto source = makeSourceBoundary(meshes.source, context.settings<BoundarySettings>());
   reportSource(source, context);
   const std::size_t vertices = meshes.source.vertices.size();
   const FitMapSettings fitting = fitMapSettings(fittingFor(options, meshes), vertices, context);
   std::vector<std::string> lines;
-  std::uint64_t need =
-      std::max(fitMapMemory(fitting),
-               mapGridMemory(source.solid, mapGridSettings(options.evaluation, context)));
+  const bool steps = laidOn(options, meshes) && fitting.oneToOne != OneToOne::off;
+  std::uint64_t need = std::max(
+      fitMapMemory(fitting) + (steps ? kStepsMemory : 0),
+      mapGridMemory(source.solid, mapGridSettings(options.evaluation, context), steps ? 2 : 1));
   std::string files = "map.ply, map.vdb, slices.exr, section.png";
   if (!meshes.related) {
     lines.push_back(correspondPlan(options, meshes, context));

@@ -31,14 +31,8 @@ void reportAdaptive(const MapSolve& solve, Report& report) {
 }
 
 void reportSolve(const MapSolve& solve, Report& report) {
-  ReportSolve out;
-  out.method = solve.method;
-  out.sources = solve.sources;
-  out.collocation = solve.collocation;
-  out.rank = solve.rank;
-  out.regularization = solve.regularization;
-  out.iterations = solve.iterations;
-  report.solve = out;
+  report.solve = ReportSolve{solve.method, solve.sources,        solve.collocation,
+                             solve.rank,   solve.regularization, solve.iterations};
   report.set("solve.placement", solve.placement);
   if (solve.radiusRatio > 0)
     report.set("solve.radius_ratio", solve.radiusRatio);
@@ -72,16 +66,22 @@ std::string whyEnded(AdaptiveEnd end, const FitMapSettings& settings) {
   return "vertices are all that --interpolation smooth fits";
 }
 
+std::vector<double> coordinates(const Points& points) {
+  std::vector<double> out;
+  for (const Vec3& p : points) out.insert(out.end(), {p.x, p.y, p.z});
+  return out;
+}
+
 void reportSteps(const MapFit& fit, OneToOne wanted, Context& context) {
   const InsideFigures& inside = fit.inside;
   if (inside.samples == 0) return;
   Report& report = context.report();
   report.set("inside.samples", inside.samples);
   report.set("inside.folded", inside.folded);
+  report.set("inside.folded_at_overlap", static_cast<double>(inside.determinants.foldedAtOverlap) /
+                                             static_cast<double>(inside.samples));
   report.set("inside.outside", inside.outside);
-  std::vector<double> places;
-  for (const Vec3& p : inside.foldedAt) places.insert(places.end(), {p.x, p.y, p.z});
-  report.set("inside.folded_at", places);
+  report.set("inside.folded_at", coordinates(inside.foldedAt));
   const auto& steps = fit.steps;
   report.set("steps.count", std::max<std::size_t>(1, steps.size()));
   if (!steps.empty()) {
@@ -154,50 +154,42 @@ void reportFit(const MapFit& fit, const FitMapSettings& settings, bool bestEffor
   reportSolve(fit.solve, report);
   report.set("solve.interpolation", fit.smooth ? "smooth" : "linear");
   report.set("solve.seed", settings.seed);
-  ReportBoundaryError e;
-  e.rms = fit.error.rms;
-  e.p99 = fit.error.p99;
-  e.max = fit.error.max;
-  e.samples = fit.error.samples;
-  e.cError = fit.collocationError;
-  report.boundaryError = e;
+  const BoundaryError& e = fit.error;
+  report.boundaryError = ReportBoundaryError{e.rms, e.p99, e.max, e.samples, fit.collocationError};
   context.print(fmt::format("boundary error: rms {:.2e}, 99% {:.2e}, max {:.2e} of the diagonal\n",
                             e.rms, e.p99, e.max));
 }
 
 void reportFitter(const FrameFitter& fitter, const FrameFitterSettings& settings, Report& report) {
-  ReportSolve solve;
-  solve.method = fitter.iterative() ? "iterative" : "dense";
-  solve.sources = solve.rank = fitter.sources().size();
-  solve.collocation = fitter.collocation();
-  report.solve = solve;
+  const std::size_t sources = fitter.sources().size();
+  report.solve = ReportSolve{fitter.iterative() ? "iterative" : "dense", sources,
+                             fitter.collocation(), sources};
   report.set("solve.placement", std::string("shell"));
   report.set("solve.distance", fitter.distance());
   report.set("solve.seed", settings.seed);
+}
+
+void reportInjectivity(const Injectivity& known, Context& context) {
+  Report& report = context.report();
+  report.set("one_to_one.statement", injectivityStatement(known));
+  for (const auto& [name, value] : injectivityFigures(known))
+    std::visit([&, key = "one_to_one." + name](auto v) { report.set(key, v); }, value);
+  report.set("one_to_one.source_crossings_at", coordinates(known.source.places));
+  report.set("one_to_one.target_crossings_at", coordinates(known.target.places));
+  context.print(injectivityLine(known) + "\n");
 }
 
 void reportGrids(const SolidGrids& grids, const LameConstants& lame, Context& context) {
   context.tell(grids);
   Report& report = context.report();
   const MapGrids& values = grids.values;
-  ReportEnergy energy;
-  energy.harmonic = values.harmonicTotal;
-  energy.deformation = values.deformationTotal;
-  report.energy = energy;
+  report.energy = ReportEnergy{values.harmonicTotal, values.deformationTotal};
   report.set("energy.deformation_mean",
              values.volume > 0 ? values.deformationTotal / values.volume : 0.0);
   report.set("energy.lame_lambda", lame.lambda);
   report.set("energy.lame_mu", lame.mu);
-  ReportJacobian jacobian;
-  jacobian.min = values.jacobianMin;
-  jacobian.max = values.jacobianMax;
-  jacobian.foldedFraction = values.foldedFraction;
-  report.jacobian = jacobian;
-  ReportGrid grid;
-  grid.voxelSize = grids.voxelSize;
-  grid.activeVoxels = values.activeVoxels;
-  grid.interiorVoxels = values.interiorVoxels;
-  report.grid = grid;
+  report.jacobian = ReportJacobian{values.jacobianMin, values.jacobianMax, values.foldedFraction};
+  report.grid = ReportGrid{grids.voxelSize, values.activeVoxels, values.interiorVoxels};
   report.set("grid.volume", values.volume);
   if (values.repaired) {
     report.set("repair.folded_voxels", values.foldedVoxels);
@@ -210,6 +202,7 @@ void reportGrids(const SolidGrids& grids, const LameConstants& lame, Context& co
       "grid: {} active voxels of {:.6g}\n",
       values.harmonicTotal, values.deformationTotal, values.jacobianMin, values.jacobianMax,
       100 * values.foldedFraction, values.activeVoxels, grids.voxelSize));
+  reportInjectivity(grids.injectivity, context);
 }
 
 }  // namespace innermap::tool

@@ -25,7 +25,10 @@ void reportFit(const MapFit& fit, const FitMapSettings& settings, bool bestEffor
 // "solve" of a sequence.
 void reportFitter(const FrameFitter& fitter, const FrameFitterSettings& settings, Report& report);
 
-// The same and "energy", "jacobian" and "grid"; three lines for the terminal.
+// "one_to_one"; a line for the terminal.
+void reportInjectivity(const Injectivity& known, Context& context);
+
+// Notes, warnings and seconds, "energy", "jacobian", "grid" and "one_to_one"; four lines.
 void reportGrids(const SolidGrids& grids, const LameConstants& lame, Context& context);
 
 }  // namespace innermap::tool

@@ -38,6 +38,51 @@ def test_steps_where_one_map_folds():
     assert any("one harmonic map folds" in note for note in report["notes"]), report["notes"]
 
 
+def test_the_statement_stands_in_report_and_grids():
+    pair()
+    done = innermap("map", "ball.obj", "dented.obj", "-o", "out", "--quiet", "--resolution", "48",
+                    "--tolerance", "0.002")
+    report = read_json("out/report.json")
+    known = report["one_to_one"]
+    assert known["statement"].startswith("det J "), known
+    assert known["inside_checked"] == report["inside"]["samples"], known
+    assert known["voxels_checked"] == report["grid"]["interior_voxels"], known
+    assert known["boundary_checked"] == 10000 and known["cells_checked"] > 0, known
+    assert known["degree_least"] == known["degree_greatest"] == 1, known
+    assert known["source_crossings_at"] == known["target_crossings_at"] == [], known
+    assert "one-to-one" in done.stdout, done.stdout
+    assert known["statement"] in innermap("info", "out/map.vdb", "--metadata").stdout
+    # A saved map knows what was checked when it was fitted.
+    innermap("evaluate", "out/map.ply", "-o", "again.vdb", "--resolution", "48", "--quiet",
+             "--report", "again.json")
+    assert read_json("again.json")["one_to_one"] == known
+    fit = innermap("fit", "ball.obj", "dented.obj", "-o", "m.ply", "--quiet", "--tolerance", "0.002",
+                   "--report", "fit.json")
+    alone = read_json("fit.json")["one_to_one"]
+    assert "one-to-one" in fit.stdout and "voxels_checked" not in alone, alone
+    assert alone["inside_least"] == known["inside_least"], alone
+
+
+def test_a_target_that_runs_through_itself_is_told_apart():
+    """A ball whose poles have passed through one another."""
+    vertices, faces = icosphere_arrays(4)
+    write_obj("ball.obj", vertices, faces)
+    write_obj("through.obj", [(p[0], p[1], p[2] - 1.6 * math.copysign(
+        math.exp(-(math.acos(min(1.0, abs(p[2]))) / 0.4) ** 2), p[2])) for p in vertices], faces)
+    innermap("map", "ball.obj", "through.obj", "-o", "out", "--quiet", "--resolution", "32",
+             "--best-effort", "--max-steps", "2")
+    report = read_json("out/report.json")
+    known = report["one_to_one"]
+    assert report["target"]["self_intersections"] > 0
+    assert len(known["target_crossings_at"]) == 3 * 16, known
+    assert "runs through itself" in known["statement"], known
+    assert "No continuous map that meets this target" in known["statement"], known
+    assert "So the map is not one-to-one" in known["statement"], known
+    assert 0 < known["inside_folded_at_overlap"] <= known["inside_folded"], known
+    share = known["inside_folded_at_overlap"] / known["inside_checked"]
+    assert abs(report["inside"]["folded_at_overlap"] - share) < 1e-12, report["inside"]
+
+
 def test_what_takes_maps_takes_steps():
     pair()
     mapped()

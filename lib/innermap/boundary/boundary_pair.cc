@@ -9,12 +9,13 @@
 namespace innermap {
 namespace {
 
-constexpr double kNoVolume = 1e-9;  // of the diagonal cubed
-constexpr double kFlat = 1e-9;      // of the diagonal
+constexpr double kNoVolume = 1e-9;     // of the diagonal cubed
+constexpr double kFlat = 1e-9;         // of the diagonal
+constexpr std::size_t kListed = 4096;  // crossings that are placed
 
 MeshReport check(const Mesh& mesh, Progress* progress) {
   CheckSettings settings;
-  settings.listed = 1;
+  settings.listed = kListed;
   settings.progress = progress;
   return checkMesh(mesh, settings);
 }

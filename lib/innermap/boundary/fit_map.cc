@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "innermap/boundary/detail/boundary_check.h"
 #include "innermap/boundary/detail/inside_check.h"
 #include "innermap/boundary/detail/pair_problem.h"
 #include "innermap/boundary/detail/step_fit.h"
 #include "innermap/boundary/surface_problem.h"
 #include "innermap/core/error.h"
+#include "innermap/core/memory.h"
 #include "innermap/core/version.h"
 
 namespace innermap {
@@ -120,6 +122,7 @@ class MapFitter {
   // Of one harmonic map, when there are steps instead.
   double singleFolded = 0;
   std::size_t singleSources = 0;
+  std::vector<std::string> warnings;
 
   Outcome onShell(const ShellSettings& shell) {
     const FitProblem problem = problemOf(pointCounts(shell));
@@ -153,19 +156,42 @@ class MapFitter {
   // Counts folds, and goes in steps where there are too many.
   void check(Outcome& out) {
     if (settings_.oneToOne == OneToOne::off) return;
-    timed(seconds, "inside", [&] { out.inside = figuresOf(out); });
+    timed(seconds, "inside", [&] {
+      target_.emplace(pair_);
+      out.inside = figuresOf(out);
+    });
     if (!mayTakeSteps()) return;
     const bool on = settings_.oneToOne == OneToOne::on;
     if (out.inside.folded <= (on ? 0 : kManyFolds) && out.inside.outside <= kManyOutside) return;
     singleFolded = out.inside.folded;
     singleSources = out.solve.sources;
+    if (!roomForSteps()) return finishSingle(out);
     Outcome steps = inSteps();
-    if (steps.inside.folded <= (on ? 1 : kWorthIt) * singleFolded) {
+    if (steps.inside.folded <= (on ? 1 : kWorthIt) * singleFolded)
       out = std::move(steps);
-    } else if (out.tolerance->end == AdaptiveEnd::stopped) {
-      out = within(settings_.tolerance, false);
-      timed(seconds, "inside", [&] { out.inside = figuresOf(out); });
-    }
+    else
+      finishSingle(out);
+  }
+
+  // After check().
+  Injectivity injectivityOf(const Outcome& out) {
+    Injectivity known;
+    known.source = selfIntersectionFigures(pair_.source.check);
+    known.target = selfIntersectionFigures(pair_.targetCheck);
+    if (settings_.oneToOne == OneToOne::off) return known;
+    BoundaryCheckSettings s;
+    s.error = out.error.max * pair_.target.diagonal;
+    s.accuracy = kSumAccuracy * pair_.target.diagonal;
+    s.seed = settings_.seed;
+    s.progress = settings_.progress;
+    timed(seconds, "inside", [&] {
+      known.inside = out.inside.determinants;
+      known.outside = out.inside.outside;
+      known.boundary = boundaryDeterminants(out.map, pair_, *target_, s);
+      known.boundaryError = out.error.max;
+      known.degree = boundaryDegree(out.map, pair_, *target_, s);
+    });
+    return known;
   }
 
  private:
@@ -180,10 +206,24 @@ class MapFitter {
   }
 
   MappedPoints insideOf(const ComposedMap& map) {
-    MappedPoints here{inside(), {}};
-    for (const HarmonicMap& step : map.steps())
-      here = mapPoints(step, here, kSumAccuracy * pair_.target.diagonal, settings_.progress);
-    return here;
+    return mapPoints(map, inside(), kSumAccuracy * pair_.target.diagonal, settings_.progress);
+  }
+
+  bool roomForSteps() {
+    const std::uint64_t need = peakMemory() + kStepsMemory;
+    if (settings_.maxMemory == 0 || need <= settings_.maxMemory) return true;
+    warnings.push_back(
+        fmt::format("one harmonic map folds {:.2g}% of the inside; going in steps may need about "
+                    "{}, more than the limit of {}, so that is left",
+                    100 * singleFolded, formatBytes(need), formatBytes(settings_.maxMemory)));
+    return false;
+  }
+
+  // Where the fit ended with its first charges, for steps that are not taken.
+  void finishSingle(Outcome& out) {
+    if (out.tolerance->end != AdaptiveEnd::stopped) return;
+    out = within(settings_.tolerance, false);
+    timed(seconds, "inside", [&] { out.inside = figuresOf(out); });
   }
 
   SurfaceValues values() const {
@@ -218,24 +258,16 @@ class MapFitter {
   }
 
   InsideFigures figuresOf(const Outcome& out) {
+    const double slack = out.error.max * pair_.target.diagonal;
     const MappedPoints here = insideOf(out.map);
     InsideFigures figures;
     figures.samples = inside_.size();
     figures.folded = foldedShare(here.determinants);
+    figures.determinants = determinantsOf(here, *target_, slack);
     for (std::size_t i = 0; i < inside_.size() && figures.foldedAt.size() < kPlaces; ++i)
       if (!(here.determinants[i] > 0)) figures.foldedAt.push_back(inside_[i]);
-    figures.outside = outside(here.points, out.error.max * pair_.target.diagonal);
+    figures.outside = outsideShare(here.points, *target_, slack, settings_.progress);
     return figures;
-  }
-
-  double outside(const Points& images, double slack) const {
-    BoundarySettings boundary;
-    boundary.progress = settings_.progress;
-    try {
-      return outsideShare(images, makeTargetSolid(pair_, boundary), slack, settings_.progress);
-    } catch (const DataError&) {  // a target that bounds nothing, which makeTargetBoundary told of
-      return 0;
-    }
   }
 
   Outcome inSteps() {
@@ -298,6 +330,7 @@ class MapFitter {
   const BoundaryPair& pair_;
   const FitMapSettings& settings_;
   Points inside_;
+  std::optional<TargetShape> target_;
 };
 
 std::string number(double x) { return fmt::format("{:.9g}", x); }
@@ -383,7 +416,6 @@ std::size_t shellCollocation(const ShellSettings& shell) {
 }
 
 std::uint64_t fitMapMemory(const FitMapSettings& settings) {
-  constexpr std::uint64_t kProgram = 64'000'000;  // with nothing loaded yet
   PointCounts counts{kFirstSources, 4 * kFirstSources, kFirstSources};
   FitSolver solver = FitSolver::dense;
   if (settings.shell) {
@@ -391,7 +423,7 @@ std::uint64_t fitMapMemory(const FitMapSettings& settings) {
     if (!settings.shell->radiusRatio) solver = settings.shell->solver;
   }
   // Blue noise thins five candidates a point; each costs some 100 bytes.
-  return kProgram + fitMemory(counts.collocation, counts.sources, counts.heldOut, solver) +
+  return peakMemory() + fitMemory(counts.collocation, counts.sources, counts.heldOut, solver) +
          500 * (counts.collocation + counts.sources) + 200 * kFreshSamples;
 }
 
@@ -401,8 +433,11 @@ MapFit fitMap(BoundaryPair boundary, const FitMapSettings& settings) {
   Outcome out =
       settings.shell ? fitter.onShell(*settings.shell) : fitter.within(settings.tolerance);
   fitter.check(out);
+  Injectivity known = fitter.injectivityOf(out);
   Facts facts = factsOf(boundary, out, settings.seed);
-  MapFit fit{{std::move(out.map), std::move(boundary), std::move(facts)},
+  const Facts checked = injectivityFacts(known);
+  facts.insert(facts.end(), checked.begin(), checked.end());
+  MapFit fit{{std::move(out.map), std::move(boundary), std::move(facts), std::move(known)},
              out.error,
              out.collocationError,
              out.smooth,
@@ -412,7 +447,7 @@ MapFit fitMap(BoundaryPair boundary, const FitMapSettings& settings) {
              std::move(out.inside),
              std::move(out.steps),
              {},
-             {},
+             std::move(fitter.warnings),
              std::move(fitter.seconds)};
   noteSteps(fit, fitter.singleFolded, fitter.singleSources);
   warnOfError(fit);

@@ -93,6 +93,7 @@ struct InsideFigures {
   double folded = 0;        // share of them where the Jacobian determinant is not above 0
   double outside = 0;       // share whose image is farther out of the target than the largest error
   Points foldedAt;          // the first of them, at most 16, world units of the source
+  DeterminantFigures determinants;  // of them
 };
 
 struct MapFit : MappedSolid {
@@ -112,8 +113,15 @@ struct MapFit : MappedSolid {
   StageSeconds seconds;  // "sample", "fit", "certificate", "inside", "steps"
 };
 
-// Peak need in bytes; with a tolerance, that of its first level of charges.
+// Peak need of the process in bytes: what it has had already, and what the fit takes; with a
+// tolerance, what its first level of charges does. How many follow, and whether the map goes in
+// steps, is not known beforehand: charges are added while they fit maxMemory, and where steps do
+// not fit the single map is kept.
 std::uint64_t fitMapMemory(const FitMapSettings& settings);
+
+// What maps in steps take beside that in bytes: the most that was measured between unrelated solids
+// of some 10,000 triangles, where 0.3e9 is as common.
+constexpr std::uint64_t kStepsMemory = 700'000'000;
 
 // A tolerance that cannot be met is no error: see MapFit::tolerance. Throws SettingError, DataError
 // (no inside, another connectivity, no room for charges), MemoryError, Cancelled. Deterministic for

@@ -50,7 +50,11 @@ MappedSolid readMap(const std::string& path, const BoundarySettings& settings) {
   pair.seconds = std::move(seconds);
   std::vector<HarmonicMap> steps;
   for (HarmonicField& step : file.steps) steps.emplace_back(std::move(step));
-  return {ComposedMap(std::move(steps)), std::move(pair), std::move(file.facts)};
+  Injectivity known;
+  known.source = selfIntersectionFigures(pair.source.check);
+  known.target = selfIntersectionFigures(pair.targetCheck);
+  readInjectivity(file.facts, known);
+  return {ComposedMap(std::move(steps)), std::move(pair), std::move(file.facts), std::move(known)};
 }
 
 double sumAccuracy(const MappedSolid& mapped) {

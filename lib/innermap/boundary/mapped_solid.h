@@ -5,6 +5,7 @@
 #include <string>
 
 #include "innermap/boundary/boundary_pair.h"
+#include "innermap/boundary/injectivity.h"
 #include "innermap/field/field_file.h"
 #include "innermap/field/harmonic_map.h"
 
@@ -16,8 +17,10 @@ struct MappedSolid {
   // How the map was made and how good it is, as its file says it: version, source, target, method,
   // interpolation, seed, regularization, rank, boundary_error_rms, boundary_error_p99,
   // boundary_error_max, boundary_error_samples, c_error, and distance, radius_ratio, tolerance,
-  // tolerance_reached, tolerance_met where they apply.
+  // tolerance_reached, tolerance_met where they apply; those of injectivityFacts.
   Facts facts;
+  // As far as points tell; what grids tell, evaluateOnGrid adds.
+  Injectivity injectivity;
 
   const Solid& solid() const { return boundary.solid(); }
 };

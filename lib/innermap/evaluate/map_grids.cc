@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "innermap/core/error.h"
+#include "innermap/core/memory.h"
+#include "innermap/evaluate/detail/cell_check.h"
 #include "innermap/levelset/level_set.h"
 
 namespace innermap {
@@ -53,6 +55,35 @@ void insertTotals(const openvdb::GridPtrVec& grids, const MapGrids& values) {
   if (values.repaired) insert(grids, {{"repaired_farthest", values.repairedFarthest}});
 }
 
+// What voxels and the cells between them tell, beside what is known of the map.
+Injectivity injectivityOf(const MappedSolid& mapped, const SolidGrids& grids, Progress* progress) {
+  const MapGrids& values = grids.values;
+  const double error = mapped.injectivity.boundaryError * mapped.boundary.target.diagonal;
+  const TargetShape target(mapped.boundary);
+  Injectivity out = mapped.injectivity;
+  out.voxels.checked = values.interiorVoxels;
+  out.voxels.least = values.jacobianMin;
+  out.voxels.folded = values.foldedVoxelsLeft;
+  out.repaired = values.foldedVoxels - values.foldedVoxelsLeft;
+  const auto distance = grids.surface->getConstAccessor();
+  const auto position = values.map->getConstAccessor();
+  if (out.voxels.folded > 0)
+    for (auto voxel = values.jacobian->cbeginValueOn(); voxel; ++voxel) {
+      if (*voxel > 0 || !(distance.getValue(voxel.getCoord()) < 0)) continue;
+      const openvdb::Vec3f p = position.getValue(voxel.getCoord());
+      if (target.runsThroughItself({p.x(), p.y(), p.z()}, error)) ++out.voxels.foldedAtOverlap;
+    }
+  out.cells = checkCells(*values.map, *grids.surface, target, error, progress);
+  out.cells.share = static_cast<double>(out.cells.checked) / 6 * std::pow(grids.voxelSize, 3) /
+                    mapped.solid().volume();
+  return out;
+}
+
+void insertStatement(const openvdb::GridPtrVec& grids, const Injectivity& known) {
+  for (const openvdb::GridBase::Ptr& grid : grids)
+    grid->insertMeta("innermap_one_to_one", openvdb::StringMetadata(injectivityStatement(known)));
+}
+
 }  // namespace
 
 openvdb::GridPtrVec SolidGrids::all() const {
@@ -82,26 +113,42 @@ SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& sett
   });
   requireInterior(out.values.interiorVoxels, mapped.boundary.source.mesh.name);
   out.voxelSize = out.surface->voxelSize()[0];
+  out.injectivity =
+      timed(out.seconds, "cells", [&] { return injectivityOf(mapped, out, settings.progress); });
   const openvdb::GridPtrVec all = out.all();
   describeMap(all, mapped);
+  insertStatement(all, out.injectivity);
   insertTotals(all, out.values);
   insert(all, {{"lame_lambda", settings.lame.lambda}, {"lame_mu", settings.lame.mu}});
   return out;
 }
 
-std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings) {
-  const LevelSetSettings levelSet = levelSetSettings(settings);
-  const double voxel = voxelSizeFor(solid, levelSet);
+std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings,
+                            std::size_t steps) {
   // Leaves of 8^3 voxels are allocated whole: along the surface they reach about 6 voxels to either
   // side. 25 bytes a voxel of values, 8 of fog and masks.
-  const double voxels = solid.volume() / std::pow(voxel, 3) + 12 * solid.area() / (voxel * voxel);
-  return levelSetMemory(solid, levelSet) + static_cast<std::uint64_t>(33 * voxels);
+  constexpr double kReach = 12, kVoxel = 33, kLeaf = 512;
+  // Measured, bytes: what the first of several steps gives, for as many leaves as are evaluated
+  // together (visit_field.cc); the boundary of the cells, a voxel of the surface, and at most
+  // (cell_check.cc); anything else.
+  constexpr double kBetweenSteps = 200e3, kTogether = 1024, kFace = 1400, kMostFaces = 350e6,
+                   kOther = 25e6;
+  const LevelSetSettings levelSet = levelSetSettings(settings);
+  const double voxel = voxelSizeFor(solid, levelSet), area = solid.area() / (voxel * voxel);
+  const double voxels = solid.volume() / std::pow(voxel, 3) + kReach * area;
+  const double between = steps > 1 ? kBetweenSteps * std::min(kTogether, voxels / kLeaf) : 0;
+  const double work = std::max(between, std::min(kMostFaces, kFace * area));
+  return peakMemory() + levelSetMemory(solid, levelSet) +
+         static_cast<std::uint64_t>(kVoxel * voxels + work + kOther);
 }
 
 void describeMap(const openvdb::GridPtrVec& grids, const MappedSolid& mapped) {
+  const Facts figures = injectivityFacts(mapped.injectivity);  // the statement says them
   for (const openvdb::GridBase::Ptr& grid : grids)
-    for (const auto& [key, value] : mapped.facts)
-      grid->insertMeta("innermap_" + key, openvdb::StringMetadata(value));
+    for (const auto& fact : mapped.facts)
+      if (std::find(figures.begin(), figures.end(), fact) == figures.end())
+        grid->insertMeta("innermap_" + fact.first, openvdb::StringMetadata(fact.second));
+  insertStatement(grids, mapped.injectivity);
 }
 
 FrameEvaluator::FrameEvaluator(const FrameFitter& fitter, std::vector<std::string> names,

@@ -34,16 +34,17 @@ struct SolidGrids {
   openvdb::FloatGrid::Ptr surface, density;  // level set, and fog of the inside
   MapGrids values;                           // with their totals
   double voxelSize = 0;                      // world units
+  Injectivity injectivity;                   // of the map, with what voxels and cells tell
   std::vector<std::string> notes, warnings;
-  StageSeconds seconds;  // "voxelize", "evaluate"
+  StageSeconds seconds;  // "voxelize", "evaluate", "cells"
 
   openvdb::GridPtrVec all() const;  // as mapGridNames(), and `repaired` where there is one
 };
 
 // Metadata (prefix innermap_): the map's facts, harmonic_energy_total, deformation_energy_total,
-// jacobian_min, jacobian_max, folded_fraction, lame_lambda, lame_mu. Throws SettingError,
-// MemoryError, DataError (thinner than the voxels everywhere), Cancelled. Deterministic for any
-// number of threads.
+// jacobian_min, jacobian_max, folded_fraction, lame_lambda, lame_mu; one_to_one, which is what
+// injectivityStatement says. Throws SettingError, MemoryError, DataError (thinner than the voxels
+// everywhere), Cancelled. Deterministic for any number of threads.
 SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& settings = {});
 
 // The maps of a sequence's frames on the voxels of its rest pose.
@@ -79,10 +80,13 @@ class FrameEvaluator {
 // surface, density, map, jacobian, harmonic_energy, deformation_energy.
 const std::vector<std::string>& mapGridNames();
 
-// Peak need in bytes, from the solid's volume and area.
-std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings);
+// Peak need of the process in bytes: what it has had already, and what evaluating a map of so many
+// steps takes, from the solid's volume and area. Throws Cancelled.
+std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings,
+                            std::size_t steps = 1);
 
-// The map's facts as metadata of grids made with it (prefix innermap_).
+// The map's facts as metadata of grids made with it (prefix innermap_); of its injectivity the
+// statement, one_to_one.
 void describeMap(const openvdb::GridPtrVec& grids, const MappedSolid& mapped);
 
 // The same of grids made with the map of an animation's frame: frame (its number),

@@ -101,6 +101,20 @@ TEST(FitMap, GoesInStepsWhereOneMapFolds) {
   EXPECT_GT(least(steps), 0);
 }
 
+TEST(FitMap, StepsThatDoNotFitAreLeft) {
+  const Mesh source = ball(4);
+  FitMapSettings settings;
+  settings.tolerance = 1e-2;
+  settings.maxMemory = kStepsMemory;
+  const MapFit fit = fitMap(source, moved(source, dented), settings);
+  EXPECT_EQ(fit.map.steps().size(), 1u);
+  EXPECT_GT(fit.inside.folded, kManyFolds);
+  const bool said = std::any_of(fit.warnings.begin(), fit.warnings.end(), [](const auto& warning) {
+    return warning.find("going in steps may need") != std::string::npos;
+  });
+  EXPECT_TRUE(said);
+}
+
 // The certificate of the whole: against the map's own values at boundary points.
 TEST(FitMap, StepsAreCertifiedEndToEnd) {
   const Mesh source = ball(4), target = moved(source, dented);
@@ -113,6 +127,24 @@ TEST(FitMap, StepsAreCertifiedEndToEnd) {
     farthest = std::max(farthest, norm(fit.map(source.vertices[v]) - target.vertices[v]));
   // Vertices are boundary points like any: nearly none is farther than the farthest sample.
   EXPECT_LT(farthest / fit.boundary.target.diagonal, 2 * fit.error.max);
+}
+
+TEST(FitMap, SaysWhatItKnowsOfOneToOne) {
+  const Mesh source = ball();
+  FitMapSettings settings;
+  const Injectivity known = fitMap(source, moved(source, harmonicPolynomial), settings).injectivity;
+  // The determinant of harmonicPolynomial is about 1 + 0.2 x, and 0.796 at x = -1.
+  EXPECT_NEAR(known.inside.least, 0.81, 0.02);
+  EXPECT_NEAR(known.boundary.least, 0.795, 0.01);
+  EXPECT_LT(known.boundary.least, known.inside.least);
+  EXPECT_EQ(known.inside.folded + known.boundary.folded, 0u);
+  EXPECT_EQ(known.degree.least, 1);
+  EXPECT_EQ(known.degree.greatest, 1);
+  EXPECT_GT(known.degree.checked, 1500u);
+  EXPECT_EQ(known.cells.checked, 0u);
+  EXPECT_FALSE(notOneToOne(known));
+  settings.oneToOne = OneToOne::off;
+  EXPECT_EQ(fitMap(source, source, settings).injectivity.inside.checked, 0u);
 }
 
 TEST(FitMap, OneStepIsEnoughForGentleMaps) {

@@ -21,6 +21,15 @@ inline Mesh ball(int levels = 3) {
   return mesh;
 }
 
+// Of radius 1, their middles `apart` to either side of the origin along x: one mesh whatever that
+// is, which runs through itself below 1.
+inline Mesh twoBalls(double apart) {
+  Mesh mesh = shapes::joined(shapes::icosphere(3, 1, {-apart, 0, 0}),
+                             shapes::icosphere(3, 1, {apart, 0, 0}));
+  mesh.name = "two balls";
+  return mesh;
+}
+
 inline Vec3 affineMap(const Vec3& p) {
   return {2 * p.x + 0.5 * p.y + 1, p.y - 0.25 * p.z, 1.5 * p.z + 0.125 * p.x - 2};
 }

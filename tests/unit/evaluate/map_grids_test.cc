@@ -7,6 +7,7 @@
 #include "boundary/test_pairs.h"
 #include "innermap/boundary/fit_map.h"
 #include "innermap/core/error.h"
+#include "innermap/core/memory.h"
 #include "innermap/levelset/level_set.h"
 
 namespace innermap {
@@ -50,6 +51,44 @@ TEST(MapGrids, CarryTheFactsInTheirMetadata) {
   }
 }
 
+TEST(MapGrids, SayWhatVoxelsAndCellsTellOfOneToOne) {
+  const MapFit fit = affineFit();
+  MapGridSettings settings;
+  settings.resolution = 24;
+  const SolidGrids grids = evaluateOnGrid(fit, settings);
+  const Injectivity& known = grids.injectivity;
+  EXPECT_EQ(known.inside.checked, fit.injectivity.inside.checked);
+  EXPECT_EQ(known.voxels.checked, grids.values.interiorVoxels);
+  EXPECT_EQ(known.voxels.least, grids.values.jacobianMin);
+  const double det = determinant(fit.map.jacobian({0, 0, 0}));
+  EXPECT_NEAR(known.cells.least, det, 1e-3 * det);
+  EXPECT_EQ(known.cells.folded, 0u);
+  EXPECT_EQ(known.cells.overlaps, 0);
+  // All but about a voxel along the surface: a fifth of a ball that is 24 across.
+  EXPECT_GT(known.cells.share, 0.75);
+  EXPECT_LT(known.cells.share, 0.95);
+  const std::string statement = injectivityStatement(known);
+  for (const auto& grid : grids.all())
+    EXPECT_EQ(grid->metaValue<std::string>("innermap_one_to_one"), statement);
+}
+
+// Two balls that come to lie in one another: the lens that they share is covered twice, by cells of
+// which none is turned over.
+TEST(MapGrids, CellsThatOverlapAreTold) {
+  FitMapSettings fitting;
+  fitting.tolerance = 5e-3;
+  const MapFit fit = fitMap(twoBalls(1.5), twoBalls(0.5), fitting);
+  EXPECT_EQ(fit.injectivity.degree.greatest, 2);
+  EXPECT_GT(fit.injectivity.target.pairs, 0u);
+  MapGridSettings settings;
+  settings.resolution = 32;
+  const Injectivity known = evaluateOnGrid(fit, settings).injectivity;
+  EXPECT_EQ(known.cells.folded, 0u);
+  EXPECT_GT(known.cells.overlaps, 0);
+  EXPECT_TRUE(notOneToOne(known));
+  EXPECT_NE(injectivityStatement(known).find("winds up to 2 times"), std::string::npos);
+}
+
 TEST(MapGrids, VoxelSizeStandsInForTheResolution) {
   MapGridSettings settings;
   settings.voxelSize = 0.2;
@@ -59,9 +98,15 @@ TEST(MapGrids, VoxelSizeStandsInForTheResolution) {
 TEST(MapGrids, CountTheirMemory) {
   const Solid solid(ball(2));
   MapGridSettings settings;
-  const std::uint64_t coarse = mapGridMemory(solid, settings);
+  // Of the process so far, which may grow at any time but here does not by much.
+  const auto beside = [&](std::size_t steps) {
+    return static_cast<double>(mapGridMemory(solid, settings, steps)) -
+           static_cast<double>(peakMemory());
+  };
+  const double coarse = beside(1);
+  EXPECT_GT(beside(5), coarse + 50e6);
   settings.resolution = 512;
-  EXPECT_GT(mapGridMemory(solid, settings), 10 * coarse);
+  EXPECT_GT(beside(1), 10 * coarse);
   settings.maxMemory = 1000;
   EXPECT_THROW(evaluateOnGrid(affineFit(), settings), MemoryError);
 }

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "innermap/core/parallel.h"
 
 namespace innermap {
 
-Points pointsInside(const Solid& solid, std::size_t count, Progress* progress) {
-  const Box3& box = solid.box();
-  const double step = std::cbrt(std::max(solid.volume(), 1e-9 * std::pow(solid.diagonal(), 3)) /
-                                static_cast<double>(count));
+Points latticePoints(const Box3& box, double step, const std::function<bool(const Vec3&)>& wanted,
+                     Progress* progress) {
   const auto cells = [&](int axis) {
     return static_cast<std::size_t>(std::ceil(box.extent()[axis] / step));
   };
@@ -25,7 +24,7 @@ Points pointsInside(const Solid& solid, std::size_t count, Progress* progress) {
             const Vec3 p =
                 box.lower + step * Vec3{static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5,
                                         static_cast<double>(k) + 0.5};
-            if (solid.inside(p)) columns[c].push_back(p);
+            if (wanted(p)) columns[c].push_back(p);
           }
         }
       },
@@ -33,6 +32,13 @@ Points pointsInside(const Solid& solid, std::size_t count, Progress* progress) {
   Points out;
   for (const Points& column : columns) out.insert(out.end(), column.begin(), column.end());
   return out;
+}
+
+Points pointsInside(const Solid& solid, std::size_t count, Progress* progress) {
+  const double volume = std::max(solid.volume(), 1e-9 * std::pow(solid.diagonal(), 3));
+  return latticePoints(
+      solid.box(), std::cbrt(volume / static_cast<double>(count)),
+      [&](const Vec3& p) { return solid.inside(p); }, progress);
 }
 
 MappedPoints mapPoints(const HarmonicMap& step, const MappedPoints& before, double accuracy,
@@ -57,6 +63,22 @@ MappedPoints mapPoints(const HarmonicMap& step, const MappedPoints& before, doub
   return out;
 }
 
+MappedPoints mapPoints(const ComposedMap& map, Points points, double accuracy, Progress* progress) {
+  MappedPoints here{std::move(points), {}};
+  for (const HarmonicMap& step : map.steps()) here = mapPoints(step, here, accuracy, progress);
+  return here;
+}
+
+DeterminantFigures determinantsOf(const MappedPoints& mapped, const TargetShape& target,
+                                  double error) {
+  DeterminantFigures out;
+  for (std::size_t i = 0; i < mapped.points.size(); ++i) {
+    const double determinant = mapped.determinants[i];
+    out.add(determinant, !(determinant > 0) && target.runsThroughItself(mapped.points[i], error));
+  }
+  return out;
+}
+
 double foldedShare(const std::vector<double>& determinants) {
   if (determinants.empty()) return 0;
   const auto folded =
@@ -64,14 +86,15 @@ double foldedShare(const std::vector<double>& determinants) {
   return static_cast<double>(folded) / static_cast<double>(determinants.size());
 }
 
-double outsideShare(const Points& points, const Solid& solid, double slack, Progress* progress) {
-  if (points.empty()) return 0;
+double outsideShare(const Points& points, const TargetShape& target, double slack,
+                    Progress* progress) {
+  if (points.empty() || !(target.volume() > 0)) return 0;
   std::vector<char> outside(points.size(), 0);
   parallelBlocks(
       points.size(), 256,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-          outside[i] = !solid.inside(points[i]) && solid.distance(points[i]) > slack;
+          outside[i] = !target.inside(points[i]) && !target.near(points[i], slack);
       },
       progress);
   return static_cast<double>(std::count(outside.begin(), outside.end(), 1)) /

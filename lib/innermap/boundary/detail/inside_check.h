@@ -2,14 +2,21 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "innermap/boundary/boundary_pair.h"
+#include "innermap/boundary/detail/target_shape.h"
+#include "innermap/boundary/injectivity.h"
 #include "innermap/field/harmonic_map.h"
 
 namespace innermap {
 
-// Points of a cubic lattice that lie inside the solid, about so many, in a fixed order. Throws
-// Cancelled.
+// Points of a cubic lattice in the box of which `wanted` is true, in a fixed order. step: world
+// units. wanted: may be called from any thread. Throws Cancelled.
+Points latticePoints(const Box3& box, double step, const std::function<bool(const Vec3&)>& wanted,
+                     Progress* progress = nullptr);
+
+// Those that lie inside the solid, about so many. Throws Cancelled.
 Points pointsInside(const Solid& solid, std::size_t count, Progress* progress = nullptr);
 
 // Images and Jacobian determinants of points.
@@ -23,12 +30,20 @@ struct MappedPoints {
 MappedPoints mapPoints(const HarmonicMap& step, const MappedPoints& before, double accuracy,
                        Progress* progress = nullptr);
 
+// Through all steps.
+MappedPoints mapPoints(const ComposedMap& map, Points points, double accuracy,
+                       Progress* progress = nullptr);
+
+// Those of the whole way. error: the boundary's largest, world units.
+DeterminantFigures determinantsOf(const MappedPoints& mapped, const TargetShape& target,
+                                  double error);
+
 // Share of the points whose determinant is not above 0.
 double foldedShare(const std::vector<double>& determinants);
 
-// Share of the points that are outside the solid by more than `slack`, world units. Throws
-// Cancelled.
-double outsideShare(const Points& points, const Solid& solid, double slack,
+// Share of the points that are outside the target by more than `slack`, world units; 0 of a target
+// that bounds nothing. Throws Cancelled.
+double outsideShare(const Points& points, const TargetShape& target, double slack,
                     Progress* progress = nullptr);
 
 }  // namespace innermap

@@ -41,7 +41,7 @@ class StepFitter {
       : settings_(settings),
         vertices_(pair.solid().repaired().mesh.vertices),
         path_(vertices_, pair.target.moved, pair.solid().repaired().mesh.triangles, growthOf(pair)),
-        unit_(boundingBox(path_.at(1)).diagonal()),
+        unit_(pair.target.diagonal / path_.rest().scale),
         boundary_(pair.solid(), carrySettings()),
         inside_{inside, {}} {}
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "innermap/core/parallel.h"
+#include "innermap/evaluate/detail/kuhn_cells.h"
 #include "innermap/evaluate/detail/untangle.h"
 
 namespace innermap {
@@ -22,15 +23,6 @@ constexpr std::array<int, 4> kReaches{1, 2, 3, 4};  // of what a voxel in no tet
 // Folded voxels near one another that are repaired: more of them are no blemish beside a surface
 // but a map that folds, and would take minutes.
 constexpr std::size_t kMost = 300;
-
-// A cube in six tetrahedra about its diagonal (Kuhn): its corners by the bits x, y, z of their
-// numbers, in an order that makes the volumes positive.
-constexpr std::array<std::array<int, 4>, 6> kCube{
-    {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}}};
-
-Coord cornerOf(const Coord& cube, int bits) {
-  return cube.offsetBy(bits & 1, bits >> 1 & 1, bits >> 2 & 1);
-}
 
 Mat3 restOf(const std::array<int, 4>& tet) {
   Mat3 edges{};
@@ -91,12 +83,12 @@ class Voxels {
     std::array<bool, 8> in;
     for (int bits = 0; bits < 8; ++bits)
       in[static_cast<std::size_t>(bits)] = inside(cornerOf(cube, bits));
-    for (std::size_t k = 0; k < kCube.size(); ++k) {
+    for (std::size_t k = 0; k < kKuhnCells.size(); ++k) {
       std::array<Coord, 4> corners;
       bool all = true;
       for (std::size_t i = 0; i < 4; ++i) {
-        all = all && in[static_cast<std::size_t>(kCube[k][i])];
-        corners[i] = cornerOf(cube, kCube[k][i]);
+        all = all && in[static_cast<std::size_t>(kKuhnCells[k][i])];
+        corners[i] = cornerOf(cube, kKuhnCells[k][i]);
       }
       if (all) add(k, corners);
     }
@@ -118,7 +110,7 @@ void forCubesAround(const Coord& c, const Visit& visit) {
 const std::array<Mat3, 6>& rests() {
   static const std::array<Mat3, 6> all = [] {
     std::array<Mat3, 6> out;
-    for (std::size_t k = 0; k < out.size(); ++k) out[k] = restOf(kCube[k]);
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] = restOf(kKuhnCells[k]);
     return out;
   }();
   return all;

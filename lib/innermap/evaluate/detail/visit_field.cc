@@ -14,8 +14,9 @@
 namespace innermap {
 namespace {
 
-// Leaves that are planned and summed together: bounds the memory for what is not visited yet.
-constexpr std::size_t kLeavesTogether = 4096;
+// Leaves that are planned and summed together: bounds the memory for what is not visited yet, which
+// of maps in steps is all that the first one gives.
+constexpr std::size_t kLeavesTogether = 4096, kLeavesTogetherInSteps = 1024;
 constexpr std::size_t kLeafPoints = 512;
 
 using Leaves = openvdb::tree::LeafManager<const openvdb::MaskTree>;
@@ -253,9 +254,11 @@ void visitAll(const HarmonicField& field, const ComposedMap* map, const Solid& s
   requireAccuracy(settings);
   requireSameLattice(levelSet, region);
   const Leaves leaves(region.tree());
-  for (std::size_t begin = 0; begin < leaves.leafCount(); begin += kLeavesTogether)
+  const std::size_t together =
+      map && map->steps().size() > 1 ? kLeavesTogetherInSteps : kLeavesTogether;
+  for (std::size_t begin = 0; begin < leaves.leafCount(); begin += together)
     visitLeaves(field, map, solid, levelSet, leaves, begin,
-                std::min(begin + kLeavesTogether, leaves.leafCount()), visit, settings);
+                std::min(begin + together, leaves.leafCount()), visit, settings);
 }
 
 // f: a field or a map.

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "mesh/shapes.h"
+#include <algorithm>
+
+#include "boundary/test_pairs.h"
+#include "innermap/boundary/detail/inside_check.h"
 
 namespace innermap {
 namespace {
@@ -61,6 +64,57 @@ TEST_F(Carried, LaterOnesAreOfTheImage) {
     EXPECT_LT(solid.distance(source), 1e-6);
     EXPECT_NEAR(samples.values(i, 2), samples.points[i].z + 1, 1e-12);
   }
+}
+
+// Steps whose boundary values are those of harmonic polynomials: what they compose to is known
+// inside. With the error e of the whole and e1, e2 of what the steps before the last leave, the
+// maximum principle in each step's own solid bounds the error inside by e + 2 L (e1 + e2), L the
+// polynomials' Lipschitz constants together; and ways are linear between vertices, which cuts off
+// an eighth of the squared edge times the largest second derivative, three times.
+TEST_F(Carried, KnownHarmonicStepsCompose) {
+  constexpr double kTolerance = 1e-3, kLipschitz = 1.4 * 1.4, kSecond = 0.25;
+  const Mesh source = shapes::icosphere(5);
+  double edge = 0;
+  for (const Triangle& t : source.triangles)
+    edge = std::max(edge, norm(source.vertices[t[0]] - source.vertices[t[1]]));
+  const double chord = 3 * edge * edge / 8 * kSecond * kLipschitz;
+  const std::vector<Vec3 (*)(const Vec3&)> maps{
+      harmonicPolynomial,
+      [](const Vec3& p) {
+        return Vec3{p.x + 0.1 * p.y * p.z, p.y - 0.08 * (p.x * p.x - p.z * p.z), 1.1 * p.z};
+      },
+      [](const Vec3& p) {
+        return Vec3{p.x - 0.1 * p.z, p.y + 0.1 * p.x * p.y, p.z + 0.06 * (p.y * p.y - p.x * p.x)};
+      }};
+  const Solid round(source);
+  CarriedBoundary boundary(round, settings);
+  Points shape = source.vertices;
+  double before = 0;
+  BoundaryError error;
+  for (std::size_t s = 0; s < maps.size(); ++s) {
+    before += error.max;
+    Points ways;
+    for (Vec3& p : shape) {
+      ways.push_back(maps[s](p) - p);
+      p = maps[s](p);
+    }
+    AdaptiveSettings fitting;
+    fitting.tolerance = kTolerance;
+    const AdaptiveResult fit = fitToTolerance(boundary.problem(ways, 1), fitting);
+    boundary.advance(HarmonicMap(fit.field), s + 1 == maps.size());
+    error = boundary.errorFrom(shape, 1);
+  }
+  std::vector<double> errors;
+  const ComposedMap map(boundary.steps());
+  for (const Vec3& p : pointsInside(round, 3000)) {
+    Vec3 exact = p;
+    for (const auto& step : maps) exact = step(exact);
+    errors.push_back(norm(map(p) - exact));
+  }
+  std::sort(errors.begin(), errors.end());
+  EXPECT_LE(error.p99, 2 * kTolerance);
+  EXPECT_LT(errors[errors.size() * 99 / 100], error.max + chord);
+  EXPECT_LT(errors.back(), error.max + 2 * kLipschitz * before + chord);
 }
 
 TEST_F(Carried, ErrorsAreThoseOfTheWholeWay) {

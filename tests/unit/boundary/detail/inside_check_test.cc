@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mesh/shapes.h"
+#include "boundary/test_pairs.h"
 
 namespace innermap {
 namespace {
@@ -41,11 +41,23 @@ TEST(InsideCheck, DeterminantsMultiply) {
   EXPECT_EQ(foldedShare({1, -1, 0, 2}), 0.5);
 }
 
+TEST(InsideCheck, FoldsAreCounted) {
+  const Mesh mesh = ball(2);
+  const TargetShape target(makeBoundaryPair(mesh, mesh));
+  const DeterminantFigures found =
+      determinantsOf({{{0, 0, 0}, {0.5, 0, 0}, {0, 0.5, 0}}, {2, -0.5, 0}}, target, 0);
+  EXPECT_EQ(found.checked, 3u);
+  EXPECT_EQ(found.folded, 2u);
+  EXPECT_EQ(found.foldedAtOverlap, 0u);
+  EXPECT_EQ(found.least, -0.5);
+}
+
 TEST(InsideCheck, OutsideIsBeyondTheSlack) {
-  const Solid ball(shapes::icosphere(4));
+  const Mesh mesh = ball(4);
+  const TargetShape target(makeBoundaryPair(mesh, mesh));
   const Points points{{0, 0, 0}, {0, 0, 1.05}, {0, 0, 1.5}, {3, 0, 0}};
-  EXPECT_EQ(outsideShare(points, ball, 0), 0.75);
-  EXPECT_EQ(outsideShare(points, ball, 0.1), 0.5);
+  EXPECT_EQ(outsideShare(points, target, 0), 0.75);
+  EXPECT_EQ(outsideShare(points, target, 0.1), 0.5);
 }
 
 }  // namespace

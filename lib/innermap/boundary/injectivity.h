@@ -1,0 +1,104 @@
+// What is known of a map's being one-to-one, and what follows from that, in words.
+//
+// Let f be continuously differentiable on the closure of a bounded domain. Its degree about a point
+// y off the image of the boundary is the winding number of that image about y, and the number of
+// points that f takes to y, each counted with the sign of det J (degree theory; Deimling,
+// "Nonlinear Functional Analysis", 1985, chapter 1). So
+//
+// - where det J > 0 everywhere inside, as many points go to y as the image of the boundary winds
+//   about it, and f is one-to-one inside when that winds about no point more than once: Ball,
+//   "Global invertibility of Sobolev functions and the interpenetration of matter", Proc. Roy. Soc.
+//   Edinburgh 88A, 1981, where boundary values are those of a one-to-one map; Meisters and Olech,
+//   "Locally one-to-one mappings and a classical theorem on schlicht functions", Duke Math. J. 30,
+//   1963;
+// - a one-to-one map of a connected solid has the same degree, 1 or -1, about all points that it
+//   reaches, and det J nowhere changes its sign: a fold, and a boundary that winds otherwise than
+//   once or not at all about some point, rule it out;
+// - moving the boundary by less than the distance of y from it does not change how often it winds
+//   about y. An image of the boundary that is within e of the target's surface winds about points
+//   farther than e from that as the target does.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "innermap/field/field_file.h"
+#include "innermap/mesh/check.h"
+
+namespace innermap {
+
+// Determinants of the map's derivative, world units of the target over those of the source, cubed.
+struct DeterminantFigures {
+  std::size_t checked = 0;  // points or cells; none: nothing is known of them
+  std::size_t folded = 0;   // of these: not above 0
+  // Of these: their image is where the target runs through itself; within a hundredth of its
+  // diagonal, or where its surface winds otherwise than once or not at all.
+  std::size_t foldedAtOverlap = 0;
+  double least = 0;
+
+  void add(double determinant, bool atOverlap = false);
+  void add(const DeterminantFigures& others);
+};
+
+// How often the image of the boundary winds about points of a lattice in the target that are
+// farther from its surface than the boundary's error.
+struct DegreeFigures {
+  std::size_t checked = 0;  // points; none: no point lies so deep
+  int least = 0, greatest = 0;
+};
+
+// The map that is linear on the tetrahedra between neighbouring voxels: six in each cube of eight
+// voxel centres (Kuhn's), where all corners are inside.
+struct CellFigures : DeterminantFigures {
+  double share = 0;  // of the solid's volume that they fill, in [0, 1]
+  // Places where their boundary's image runs through itself (pairs of triangles) or has cells on
+  // its inside that it does not wind about just once; -1: not known, as where a cell is folded.
+  // None: this map is one-to-one, as checked for the whole of it.
+  std::int64_t overlaps = -1;
+};
+
+struct SelfIntersectionFigures {
+  std::size_t pairs = 0;  // of triangles
+  Points places;          // the first of them, at most 16, world units
+};
+
+struct Injectivity {
+  DeterminantFigures inside;    // points of a lattice
+  DeterminantFigures boundary;  // random points of it, uniform by area
+  DeterminantFigures voxels;    // with their centre inside; of a grid, when there is one
+  CellFigures cells;            // of that grid
+  std::size_t repaired = 0;     // of the voxels: that were folded before
+  double outside = 0;           // share of `inside` farther out of the target than boundaryError
+  DegreeFigures degree;
+  double boundaryError = 0;  // the largest, fraction of the target's diagonal
+  SelfIntersectionFigures source, target;
+};
+
+// Whether something that was found rules out that the map is one-to-one: a fold at one of the
+// points or voxels, or a boundary that winds about some point otherwise than once or not at all.
+// What the target does to maps that meet it exactly is not asked.
+bool notOneToOne(const Injectivity& known);
+
+// What was checked, what was found and what follows, no more than that: plain English, one line.
+std::string injectivityStatement(const Injectivity& known);
+
+// The short of it, for terminals: "no fold at 20033 points inside, ...".
+std::string injectivityLine(const Injectivity& known);
+
+// The figures that are known, by name: "inside_checked", "inside_folded", "boundary_least", ...
+using InjectivityFigure = std::pair<std::string, std::variant<std::int64_t, double>>;
+std::vector<InjectivityFigure> injectivityFigures(const Injectivity& known);
+
+// The same as facts of a map's file, `one_to_one_` before each name, and back; what facts do not
+// say stays as it is in `known`.
+Facts injectivityFacts(const Injectivity& known);
+void readInjectivity(const Facts& facts, Injectivity& known);
+
+// The self-intersections of a mesh that was checked.
+SelfIntersectionFigures selfIntersectionFigures(const MeshReport& check);
+
+}  // namespace innermap
