@@ -17,8 +17,11 @@ constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32;
 // Of what is left of the tolerance for the way that is left: errors of steps add up, but do not all
 // point the same way. The last step has to do with what is left.
 constexpr double kShare = 1.3, kLastShare = 1, kLeastShare = 0.1;
+// Of the folds that are left: after a step, and after its first charges.
+constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
 constexpr double kOfTolerance = 0.95;  // is given to the steps
 constexpr int kOutlierRounds = 3, kPatience = 1;
+constexpr int kLastPatience = 3;  // what the last step does not reach is missed
 // Of the target's diagonal. Sums, and where points inside go; the mesh about an intermediate shape.
 constexpr double kSumAccuracy = 1e-7, kChord = 1e-3;
 
@@ -54,7 +57,7 @@ class StepFitter {
       const double half = (end - at_) / 2;
       Step step = fitStep(end, may && half >= kShortest);
       if (step.fit.end == AdaptiveEnd::stopped ||
-          (may && half >= kShortestFitted && step.record.folded > allowed())) {
+          (may && half >= kShortestFitted && step.record.folded > allowed(kFoldShare))) {
         ends.push_back((at_ + end) / 2);
         continue;
       }
@@ -76,8 +79,11 @@ class StepFitter {
     return s;
   }
 
-  // Share of the points inside that may be folded after a step.
-  double allowed() const { return folded_ + std::max(0.0, settings_.folds - folded_) / 2; }
+  // Share of the points inside that may be folded after a step, if that gets so much of what is
+  // left.
+  double allowed(double share) const {
+    return folded_ + share * std::max(0.0, settings_.folds - folded_);
+  }
 
   double toleranceUntil(double end) const {
     const double part = (end - at_) / (1 - at_);
@@ -96,10 +102,11 @@ class StepFitter {
     s.tolerance = toleranceUntil(to);
     s.maxSources = settings_.maxSources;
     s.outlierRounds = kOutlierRounds;
-    s.patience = kPatience;
+    s.patience = to < 1 ? kPatience : kLastPatience;
     if (mayStop)
       s.goOn = [this](const HarmonicField& field) {
-        return foldedShare(insideAfter(HarmonicMap(field)).determinants) <= allowed();
+        return foldedShare(insideAfter(HarmonicMap(field)).determinants) <=
+               allowed(kCoarseFoldShare);
       };
     s.maxMemory = settings_.maxMemory;
     s.progress = settings_.progress;
