@@ -139,6 +139,11 @@ void reportPush(const PushResult& result, Context& context) {
   for (const CarriedMass& mass : result.masses) {
     report.set("mass." + mass.name + "_before", mass.before);
     report.set("mass." + mass.name + "_after", mass.after);
+    report.set("mass." + mass.name + "_left", mass.left);
+    report.set("densities." + mass.name + "_largest_ratio", mass.largestRatio);
+    report.set("densities." + mass.name + "_largest_compression", mass.largestCompression);
+    report.set("densities." + mass.name + "_cells", mass.cells);
+    report.set("densities." + mass.name + "_folded_cells", mass.foldedCells);
   }
   for (const std::string& warning : result.warnings) context.warning(warning);
 }

@@ -23,15 +23,6 @@ constexpr double kLongestStep = 4;  // voxels of the source's lattice
 // Of a voxel of the region while it is inverted.
 constexpr std::uint64_t kVoxelBytes = sizeof(Vec3) + sizeof(std::array<float, 9>) + 24;
 
-void check(const InverseSettings& s) {
-  if (!(s.tolerance >= 1e-6 && s.tolerance <= kInverted))
-    throw SettingError("tolerance", "of the inverse must lie in [1e-6, 0.01] voxels");
-  if (!(s.outside.distance >= 0 && s.outside.distance <= 1))
-    throw SettingError("outside", "must lie in [0, 1] of the diagonal");
-  if (!(s.accuracy >= 1e-12 && s.accuracy <= 1e-3))
-    throw SettingError("accuracy", "must lie in [1e-12, 1e-3] of the target's extent");
-}
-
 Vec3 toVec3(const openvdb::Vec3d& v) { return {v.x(), v.y(), v.z()}; }
 
 class Inversion {
@@ -214,6 +205,15 @@ double shareInverted(std::uint64_t voxels, std::uint64_t failed) {
 
 }  // namespace
 
+void requireInRange(const InverseSettings& s) {
+  if (!(s.tolerance >= 1e-6 && s.tolerance <= kInverted))
+    throw SettingError("tolerance", "of the inverse must lie in [1e-6, 0.01] voxels");
+  if (!(s.outside.distance >= 0 && s.outside.distance <= 1))
+    throw SettingError("outside", "must lie in [0, 1] of the diagonal");
+  if (!(s.accuracy >= 1e-12 && s.accuracy <= 1e-3))
+    throw SettingError("accuracy", "must lie in [1e-12, 1e-3] of the target's extent");
+}
+
 double InverseStatistics::invertedInside() const { return shareInverted(inside, failedInside); }
 
 double InverseStatistics::invertedOutside() const {
@@ -232,14 +232,14 @@ std::string InverseStatistics::warning() const {
 
 InvertedMap invertMap(const ComposedMap& map, const Solid& source, const SourceLattice& lattice,
                       const openvdb::FloatGrid& targetLevelSet, const InverseSettings& settings) {
-  check(settings);
+  requireInRange(settings);
   return Inversion(map, source, lattice, targetLevelSet.transform(), settings).run(targetLevelSet);
 }
 
 Points invertAt(const ComposedMap& map, const Solid& source, const SourceLattice& lattice,
                 const InvertedMap& inverted, const Points& targets,
                 const InverseSettings& settings) {
-  check(settings);
+  requireInRange(settings);
   const openvdb::math::Transform& target = inverted.region->transform();
   const LeafIndex leaves(inverted.region->tree());
   Points out = targets, wanted, sources;

@@ -24,6 +24,9 @@ struct InverseSettings {
   Progress* progress = nullptr;
 };
 
+// Throws SettingError for a number out of its range.
+void requireInRange(const InverseSettings& settings);
+
 struct InverseStatistics {
   std::uint64_t voxels = 0;     // of the region
   std::uint64_t inverted = 0;   // with a residual of at most 0.01 voxel
