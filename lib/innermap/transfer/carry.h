@@ -40,9 +40,11 @@ struct CarrySettings {
 double finestVoxel(const openvdb::GridPtrVec& grids);
 
 // Estimate of the peak need, in bytes, of pushing or pulling the grids to the voxels of a solid,
-// those of makeLevelSet(solid, output). Only the distance of `outside` counts.
+// those of makeLevelSet(solid, output). Only the distance of `outside` counts; of `carry`, which
+// grids are densities.
 std::uint64_t carryMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                          const LevelSetSettings& output, const OutsideSettings& outside = {});
+                          const LevelSetSettings& output, const OutsideSettings& outside = {},
+                          const CarrySettings& carry = {});
 
 // A harmonic field on the source that is written on the target's voxels: at q its value at p.
 struct CarriedField {

@@ -155,10 +155,12 @@ PushResult VolumePusher::push(const ComposedMap& map, const openvdb::FloatGrid& 
   openvdb::MaskGrid::Ptr region;
   if (d.sampled.empty() && fields.empty()) {
     region = d.regionOf(targetLevelSet);
+    out.statistics.voxels = region->activeVoxelCount();
   } else {
     const InvertedMap inverted =
         invertMap(map, d.source, d.lattice, targetLevelSet, inverseSettings(d.settings));
     region = inverted.region;
+    out.inverted = true;
     out.statistics = inverted.statistics;
     const std::string doubt = inverted.statistics.warning();
     if (!doubt.empty()) out.warnings.push_back(doubt);

@@ -19,7 +19,8 @@ using Leaf = openvdb::MaskTree::LeafNodeType;
 using MaskReader = openvdb::tree::ValueAccessor<const openvdb::MaskTree, false>;
 
 constexpr char kStage[] = "carrying the densities";
-constexpr std::size_t kTogether = 256;  // leaves of cells
+constexpr std::size_t kTogether = 256;         // leaves of cells
+constexpr std::uint64_t kParts = 100'000'000;  // bytes of what is summed by itself, about
 // An edge that is so many times as long as the derivative at its ends says lies across a jump: its
 // ends belong to parts of the solid that touch in the source and do not in the target.
 constexpr double kTorn = 2;
@@ -69,7 +70,8 @@ class DensityCarry {
         deposit_(voxelVolume(source.grid->transform()) / std::pow(settings.parts, 3),
                  voxelVolume(region.transform())) {
     requireMemory("carrying the density \"" + source.grid->getName() + "\"",
-                  nodes_.memory() + kDensityBytesPerVoxel * 512 * region.tree().leafCount(),
+                  CellNodes::memory(nodes_.size()) + kParts +
+                      sizeof(VoxelSums::LeafSums) * region.tree().leafCount(),
                   settings.maxMemory, "use larger voxels, or cut the volume off around the solid");
   }
 
@@ -218,6 +220,14 @@ void write(const VoxelSums& sums, double voxelVolume, Grid& grid) {
 }
 
 }  // namespace
+
+std::uint64_t densityMemory(std::uint64_t sourceVoxels, double targetVoxels) {
+  // Cells are at most half as many again as the target's voxels, where they are finer than those of
+  // the source; along the surface they have more corners than there are cells.
+  const double nodes = 1.4 * std::max(static_cast<double>(sourceVoxels), 1.5 * targetVoxels);
+  return kParts + CellNodes::memory(static_cast<std::size_t>(nodes)) +
+         static_cast<std::uint64_t>(targetVoxels) * sizeof(VoxelSums::Sum);
+}
 
 openvdb::GridBase::Ptr carryDensity(const DensityVoxels& source, const ExtendedMap& map,
                                     const openvdb::MaskGrid& region, CarriedMass& figures,

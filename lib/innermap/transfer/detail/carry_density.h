@@ -27,7 +27,7 @@ openvdb::GridBase::Ptr carryDensity(const DensityVoxels& source, const ExtendedM
                                     const openvdb::MaskGrid& region, CarriedMass& figures,
                                     const CarryDensitySettings& settings);
 
-// Bytes for each cell of the source and each voxel of the target.
-constexpr std::uint64_t kDensityBytesPerCell = 28, kDensityBytesPerVoxel = 16;
+// Estimate of its peak need in bytes, for so many voxels of the source and of the target.
+std::uint64_t densityMemory(std::uint64_t sourceVoxels, double targetVoxels);
 
 }  // namespace innermap

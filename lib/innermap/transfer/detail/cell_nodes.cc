@@ -113,10 +113,10 @@ CellNodes::CellNodes(const openvdb::MaskTree& voxels, const openvdb::math::Trans
   }
 }
 
-std::uint64_t CellNodes::memory() const {
+std::uint64_t CellNodes::memory(std::size_t nodes) {
   // Samples of one batch: the map's values and derivatives, twice, and where they are taken.
   constexpr std::uint64_t kSample = 2 * sizeof(MapSample) + 3 * sizeof(Vec3);
-  return size() * (sizeof(Vec3) + sizeof(float)) + std::min(size(), kTogether) * kSample;
+  return nodes * (sizeof(Vec3) + sizeof(float)) + std::min(nodes, kTogether) * kSample;
 }
 
 openvdb::Coord CellNodes::voxelOf(const Coord& cell) const {

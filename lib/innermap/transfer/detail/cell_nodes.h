@@ -37,8 +37,8 @@ class CellNodes {
   openvdb::Coord voxelOf(const openvdb::Coord& cell) const;
   Vec3 worldOf(const openvdb::Vec3d& node) const;
 
-  // Bytes that map() allocates.
-  std::uint64_t memory() const;
+  // Bytes that map() allocates for so many nodes.
+  static std::uint64_t memory(std::size_t nodes);
 
   // Finds the images: in the target's index space, shifted by half a voxel so that voxel (i, j, k)
   // spans [i, i + 1] and so on.
