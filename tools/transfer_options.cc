@@ -36,7 +36,8 @@ void addTransferOptions(Command& c, TransferOptions& o) {
             {"quadratic", Sampling::quadratic}},
            "between voxels; whole numbers are always taken from the nearest");
   c.flag("--density", &o.carry.allDensities,
-         "scalars are densities: divided by the change of volume, so that mass is kept");
+         "scalars are densities: divided by the change of volume; where they are pushed, their mass "
+         "is kept exactly");
   c.option("--densities", "LIST", &o.densities, "only these scalars are densities")
       .defaults("none");
   c.option("--stress", "LIST", &o.stress,
