@@ -101,7 +101,8 @@ Command makePushCommand() {
       Way::push, "push", "Carry grids that live in a map's source solid to its target", "source");
   c.description(
       "For each voxel of the target the point of the source that the map brings there is found, by "
-      "Newton's method, and the grids are sampled at it. Scalars keep their values; vectors move by their vector type (invariant, covariant, "
+      "Newton's method, and the grids are sampled at it. Scalars keep their values; vectors move "
+      "by their vector type (invariant, covariant, "
       "contravariant); level sets become distances again. Densities (--density) are not sampled: "
       "what each voxel of the source holds is put where the map brings it, so that no mass is "
       "lost. Output voxels are active inside the target and in a skin of two voxels.");

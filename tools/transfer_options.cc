@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "innermap/transfer/carry_memory.h"
 #include "inputs.h"
 #include "lists.h"
 
@@ -35,9 +36,10 @@ void addTransferOptions(Command& c, TransferOptions& o) {
             {"linear", Sampling::linear},
             {"quadratic", Sampling::quadratic}},
            "between voxels; whole numbers are always taken from the nearest");
-  c.flag("--density", &o.carry.allDensities,
-         "scalars are densities: divided by the change of volume; where they are pushed, their mass "
-         "is kept exactly");
+  c.flag(
+      "--density", &o.carry.allDensities,
+      "scalars are densities: divided by the change of volume; where they are pushed, their mass "
+      "is kept exactly");
   c.option("--densities", "LIST", &o.densities, "only these scalars are densities")
       .defaults("none");
   c.option("--stress", "LIST", &o.stress,

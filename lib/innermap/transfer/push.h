@@ -27,6 +27,7 @@
 #include "innermap/boundary/frame_fitter.h"
 #include "innermap/core/progress.h"
 #include "innermap/field/harmonic_map.h"
+#include "innermap/levelset/level_set.h"
 #include "innermap/levelset/solid.h"
 #include "innermap/transfer/carry.h"
 #include "innermap/transfer/inverse_map.h"
@@ -42,22 +43,6 @@ struct PushSettings {
   double accuracy = 1e-7;       // of the sums of charges, as EvaluateSettings::accuracy
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;
-};
-
-// What became of a density, world units: sums of values times the voxel's volume.
-struct CarriedMass {
-  std::string name;
-  // Of the voxels that are carried: those whose centre is in the solid (of fog volumes, whose
-  // values at the surface are shares, those that touch it), with outside settings also those
-  // around it. And of all active voxels of the target.
-  double before = 0, after = 0;
-  double left = 0;  // of all other active voxels of the source
-  // The most volume of the source in any voxel of the target, by the volume of that: no density of
-  // the target is larger than the source's largest times this.
-  double largestRatio = 0;
-  // The same of the tetrahedra by themselves: the volume of one by that of its image.
-  double largestCompression = 0;
-  std::uint64_t cells = 0, foldedCells = 0;  // of the source; turned inside out at least in part
 };
 
 struct PushResult {

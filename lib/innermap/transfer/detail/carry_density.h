@@ -7,9 +7,9 @@
 #include <cstdint>
 
 #include "innermap/core/progress.h"
+#include "innermap/transfer/carry.h"
 #include "innermap/transfer/detail/density_voxels.h"
 #include "innermap/transfer/detail/extended_map.h"
-#include "innermap/transfer/push.h"
 
 namespace innermap {
 
