@@ -101,10 +101,11 @@ Command makePushCommand() {
       Way::push, "push", "Carry grids that live in a map's source solid to its target", "source");
   c.description(
       "For each voxel of the target the point of the source that the map brings there is found, by "
-      "Newton's method, and the grids are sampled at it. Scalars keep their values, or with "
-      "--density their mass; vectors move by their vector type (invariant, covariant, "
-      "contravariant); level sets become distances again. Output voxels are active inside the "
-      "target and in a skin of two voxels.");
+      "Newton's method, and the grids are sampled at it. Scalars keep their values; vectors move "
+      "by their vector type (invariant, covariant, "
+      "contravariant); level sets become distances again. Densities (--density) are not sampled: "
+      "what each voxel of the source holds is put where the map brings it, so that no mass is "
+      "lost. Output voxels are active inside the target and in a skin of two voxels.");
   c.example("innermap push map.ply smoke.vdb -o posed.vdb --grids density --density");
   c.example("innermap push map.ply fem.vdb -o posed.vdb --stress stress --resolution 256");
   c.example("innermap push map.ply mist.vdb -o posed.vdb --outside 0.1 --fade-to fitted");

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "innermap/transfer/carry_memory.h"
 #include "inputs.h"
 #include "lists.h"
 
@@ -35,8 +36,10 @@ void addTransferOptions(Command& c, TransferOptions& o) {
             {"linear", Sampling::linear},
             {"quadratic", Sampling::quadratic}},
            "between voxels; whole numbers are always taken from the nearest");
-  c.flag("--density", &o.carry.allDensities,
-         "scalars are densities: divided by the change of volume, so that mass is kept");
+  c.flag(
+      "--density", &o.carry.allDensities,
+      "scalars are densities: divided by the change of volume; where they are pushed, their mass "
+      "is kept exactly");
   c.option("--densities", "LIST", &o.densities, "only these scalars are densities")
       .defaults("none");
   c.option("--stress", "LIST", &o.stress,
@@ -97,7 +100,8 @@ std::uint64_t transferMemory(const Solid& solid, const openvdb::GridPtrVec& grid
                              const TransferOptions& options, const Context& context) {
   OutsideSettings outside;
   outside.distance = options.outside;
-  return carryMemory(solid, grids, outputSettings(grids, options.grid, context), outside);
+  return carryMemory(solid, grids, outputSettings(grids, options.grid, context), outside,
+                     carrySettings(options));
 }
 
 void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
@@ -116,9 +120,9 @@ openvdb::FloatGrid::Ptr outputLevelSet(const Solid& solid, const openvdb::GridPt
   });
 }
 
-void reportPush(const PushResult& result, Context& context) {
-  const InverseStatistics& s = result.statistics;
-  Report& report = context.report();
+namespace {
+
+void reportInverse(const InverseStatistics& s, Report& report) {
   report.set("inverse.voxels", s.voxels);
   report.set("inverse.inside", s.inside);
   report.set("inverse.uncovered", s.uncovered);
@@ -136,23 +140,38 @@ void reportPush(const PushResult& result, Context& context) {
     for (const Vec3& p : s.failedAt) places.insert(places.end(), {p.x, p.y, p.z});
     report.set("inverse.not_inverted_at", places);
   }
+}
+
+}  // namespace
+
+void reportPush(const PushResult& result, Context& context) {
+  Report& report = context.report();
+  if (result.inverted) reportInverse(result.statistics, report);
   for (const CarriedMass& mass : result.masses) {
     report.set("mass." + mass.name + "_before", mass.before);
     report.set("mass." + mass.name + "_after", mass.after);
+    report.set("mass." + mass.name + "_left", mass.left);
+    report.set("densities." + mass.name + "_largest_ratio", mass.largestRatio);
+    report.set("densities." + mass.name + "_largest_compression", mass.largestCompression);
+    report.set("densities." + mass.name + "_cells", mass.cells);
+    report.set("densities." + mass.name + "_folded_cells", mass.foldedCells);
   }
   for (const std::string& warning : result.warnings) context.warning(warning);
 }
 
 std::string pushText(const PushResult& result) {
   const InverseStatistics& s = result.statistics;
-  std::string text = fmt::format(
-      "inverse: {} voxels inside, {:.4f}% inverted, {} not; {} outside the surface, {} not\n",
-      s.inside, 100 * s.invertedInside(), s.failedInside, s.voxels - s.inside,
-      s.failed - s.failedInside);
+  std::string text;
+  if (result.inverted)
+    text = fmt::format(
+        "inverse: {} voxels inside, {:.4f}% inverted, {} not; {} outside the surface, {} not\n",
+        s.inside, 100 * s.invertedInside(), s.failedInside, s.voxels - s.inside,
+        s.failed - s.failedInside);
   for (const CarriedMass& mass : result.masses)
-    text +=
-        fmt::format("mass of {}: {:.6g} before, {:.6g} after ({:+.3f}%)\n", mass.name, mass.before,
-                    mass.after, mass.before != 0 ? 100 * (mass.after / mass.before - 1) : 0.0);
+    text += fmt::format(
+        "mass of {}: {:.6g} before, {:.6g} after ({:+.3f}%); densities grow at most {:.4g} times\n",
+        mass.name, mass.before, mass.after,
+        mass.before != 0 ? 100 * (mass.after / mass.before - 1) : 0.0, mass.largestRatio);
   return text;
 }
 

@@ -45,7 +45,7 @@ LevelSetSettings outputSettings(const openvdb::GridPtrVec& grids, const GridOpti
 openvdb::FloatGrid::Ptr outputLevelSet(const Solid& solid, const openvdb::GridPtrVec& grids,
                                        const TransferOptions& options, Context& context);
 
-// Fills the report's "inverse" and "mass"; passes on the warnings.
+// Fills the report's "inverse", "mass" and "densities"; passes on the warnings.
 void reportPush(const PushResult& result, Context& context);
 
 // One line each for the terminal.

@@ -27,5 +27,6 @@
 #include "innermap/mesh/read.h"
 #include "innermap/mesh/write.h"
 #include "innermap/texture/solid_texture.h"
+#include "innermap/transfer/carry_memory.h"
 #include "innermap/transfer/pull.h"
 #include "innermap/transfer/push.h"

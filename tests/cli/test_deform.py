@@ -77,7 +77,7 @@ for path in ["rest.vdb", "out/d.0001.vdb", "out/d.0002.vdb", "out/d.0003.vdb"]:
 """)
     masses, sizes = [float(x) for x in sums[0::5]], {float(x) for x in sums[1::5]}
     for mass in masses[1:]:
-        assert abs(mass / masses[0] - 1) < 0.005, masses
+        assert abs(mass / masses[0] - 1) < 1e-3, masses
     assert len(sizes) == 1, sizes
     # One lattice for all frames.
     assert sums[7:10] == sums[12:15] == sums[17:20], sums

@@ -98,8 +98,11 @@ def test_what_takes_maps_takes_steps():
     push = read_json("push.json")
     assert push["inverse"]["inverted_fraction"] > 0.998, push["inverse"]
     # Below the dent volumes shrink three hundredfold, within a few of these voxels.
-    mass = push["mass"]
-    assert abs(mass["density_after"] / mass["density_before"] - 1) < 0.03, mass
+    mass, densities = push["mass"], push["densities"]
+    assert abs(mass["density_after"] / mass["density_before"] - 1) < 1e-3, mass
+    assert mass["density_left"] < 1e-6 * mass["density_before"], mass
+    assert 2 < densities["density_largest_ratio"] < 300, densities
+    assert densities["density_folded_cells"] < 1e-3 * densities["density_cells"], densities
     innermap("pull", "out/map.ply", "there.vdb", "-o", "back.vdb", "--quiet")
     innermap("transfer-distance", "out/map.ply", "-o", "distance", "--resolution", "32", "--quiet")
     assert read_json("distance/report.json")["distance"]["outside_fraction"] < 0.01

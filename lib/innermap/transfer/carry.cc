@@ -1,7 +1,6 @@
 #include "innermap/transfer/carry.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace innermap {
 
@@ -13,27 +12,6 @@ double finestVoxel(const openvdb::GridPtrVec& grids) {
     if (finest == 0 || smallest < finest) finest = smallest;
   }
   return finest;
-}
-
-std::uint64_t carryMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                          const LevelSetSettings& output, const OutsideSettings& outside) {
-  const double voxel = voxelSizeFor(solid, output);
-  // Sources and Jacobians of the inverse and its starts, 100 bytes a voxel; leaves of 8^3 voxels
-  // are allocated whole, along the surface some 6 voxels to either side. Around it, the space is
-  // taken as full.
-  const double margin = 2 * outside.distance * solid.diagonal();
-  const Vec3 extent = solid.box().extent();
-  double volume = solid.volume();
-  if (margin > 0) volume = (extent.x + margin) * (extent.y + margin) * (extent.z + margin);
-  const double voxels = volume / std::pow(voxel, 3) + 12 * solid.area() / (voxel * voxel);
-  std::uint64_t bytesPerVoxel = 100, inputs = 0;
-  for (const openvdb::GridBase::Ptr& grid : grids) {
-    bytesPerVoxel += grid->valueType() == "vec3d" ? 24 : 12;
-    inputs += 2 * grid->memUsage();
-  }
-  constexpr std::uint64_t kLattice = 150'000'000;
-  return levelSetMemory(solid, output) + inputs + kLattice +
-         static_cast<std::uint64_t>(static_cast<double>(bytesPerVoxel) * voxels);
 }
 
 }  // namespace innermap

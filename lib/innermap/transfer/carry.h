@@ -17,9 +17,6 @@
 #include <vector>
 
 #include "innermap/field/harmonic_field.h"
-#include "innermap/levelset/level_set.h"
-#include "innermap/levelset/solid.h"
-#include "innermap/transfer/outside.h"
 
 namespace innermap {
 
@@ -39,10 +36,21 @@ struct CarrySettings {
 // The least edge of a voxel of the grids, world units: what the output has unless told otherwise.
 double finestVoxel(const openvdb::GridPtrVec& grids);
 
-// Estimate of the peak need, in bytes, of pushing or pulling the grids to the voxels of a solid,
-// those of makeLevelSet(solid, output). Only the distance of `outside` counts.
-std::uint64_t carryMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                          const LevelSetSettings& output, const OutsideSettings& outside = {});
+// What became of a density, world units: sums of values times the voxel's volume.
+struct CarriedMass {
+  std::string name;
+  // Of the voxels that are carried: those whose centre is in the solid (of fog volumes, whose
+  // values at the surface are shares, those that touch it), with outside settings also those
+  // around it. And of all active voxels of the target.
+  double before = 0, after = 0;
+  double left = 0;  // of all other active voxels of the source
+  // The most volume of the source in any voxel of the target, by the volume of that: no density of
+  // the target is larger than the source's largest times this.
+  double largestRatio = 0;
+  // The same of the tetrahedra by themselves: the volume of one by that of its image.
+  double largestCompression = 0;
+  std::uint64_t cells = 0, foldedCells = 0;  // of the source; turned inside out at least in part
+};
 
 // A harmonic field on the source that is written on the target's voxels: at q its value at p.
 struct CarriedField {

@@ -12,6 +12,7 @@
 #include "innermap/transfer/detail/cell_images.h"
 #include "innermap/transfer/detail/leaf_index.h"
 #include "innermap/transfer/detail/newton.h"
+#include "innermap/transfer/detail/step_by_step.h"
 
 namespace innermap {
 namespace {
@@ -19,20 +20,32 @@ namespace {
 constexpr double kInverted = 0.01;                       // target voxels
 constexpr std::size_t kTogether = std::size_t{1} << 18;  // points of one Newton iteration
 constexpr std::size_t kListed = 16;
+constexpr int kRounds = 3;  // of starts from neighbours
+// Where more voxels are not inverted the map folds, and there is nothing to be found.
+constexpr std::size_t kMostStepByStep = 2000;
 constexpr double kLongestStep = 4;  // voxels of the source's lattice
 // Of a voxel of the region while it is inverted.
 constexpr std::uint64_t kVoxelBytes = sizeof(Vec3) + sizeof(std::array<float, 9>) + 24;
 
-void check(const InverseSettings& s) {
-  if (!(s.tolerance >= 1e-6 && s.tolerance <= kInverted))
-    throw SettingError("tolerance", "of the inverse must lie in [1e-6, 0.01] voxels");
-  if (!(s.outside.distance >= 0 && s.outside.distance <= 1))
-    throw SettingError("outside", "must lie in [0, 1] of the diagonal");
-  if (!(s.accuracy >= 1e-12 && s.accuracy <= 1e-3))
-    throw SettingError("accuracy", "must lie in [1e-12, 1e-3] of the target's extent");
-}
-
 Vec3 toVec3(const openvdb::Vec3d& v) { return {v.x(), v.y(), v.z()}; }
+
+// Voxels that are inverted together.
+struct Batch {
+  Points targets, sources;
+  std::vector<LeafPlace> places;
+  std::vector<std::size_t> index;  // among all voxels
+
+  void add(const Vec3& target, const Vec3& start, LeafPlace place, std::size_t i) {
+    targets.push_back(target);
+    sources.push_back(start);
+    places.push_back(place);
+    index.push_back(i);
+  }
+};
+
+LeafPlace placeOf(std::size_t leaf, openvdb::Index offset) {
+  return {static_cast<std::uint32_t>(leaf), static_cast<std::uint16_t>(offset)};
+}
 
 class Inversion {
  public:
@@ -53,11 +66,13 @@ class Inversion {
   void chooseRegion(const openvdb::FloatGrid& targetLevelSet, const LatticeImages& images);
   void dropUncovered(std::vector<LeafStarts>& starts);
   void number(InvertedMap& out) const;
-  void invert(const openvdb::FloatGrid& targetLevelSet, const std::vector<LeafStarts>& starts,
-              InvertedMap& out);
-  void record(std::size_t i, const Vec3& target, bool inside, const NewtonResult& found,
-              std::size_t n, InvertedMap& out);
-  void fillFailures(InvertedMap& out);
+  void invert(const std::vector<LeafStarts>& starts, InvertedMap& out);
+  std::size_t invertFailures(const LeafIndex& leaves, const openvdb::FloatGrid& targetLevelSet,
+                             bool stepByStep, InvertedMap& out);
+  std::size_t solve(Batch& batch, InvertedMap& out);
+  void fillFailures(const LeafIndex& leaves, InvertedMap& out) const;
+  void count(const LeafIndex& leaves, const openvdb::FloatGrid& targetLevelSet,
+             InverseStatistics& s) const;
   bool wanted(const openvdb::Coord& ijk) const { return solid_->tree().isValueOn(ijk); }
 
   const InverseSettings& settings_;
@@ -115,28 +130,7 @@ NewtonResult Inversion::solve(const Points& targets, Points& sources) const {
   return solveNewton(map_, targets, sources, newton);
 }
 
-void Inversion::record(std::size_t i, const Vec3& target, bool inside, const NewtonResult& found,
-                       std::size_t n, InvertedMap& out) {
-  InverseStatistics& s = out.statistics;
-  const double residual = found.residuals[n] / voxel_;
-  s.inside += inside;
-  for (std::size_t k = 0; k < 9; ++k)
-    out.jacobians[i][k] = static_cast<float>(found.at[n].jacobian[k / 3][k % 3]);
-  if (residual <= kInverted) {
-    ++s.inverted;
-    s.largestResidual = std::max(s.largestResidual, residual);
-    return;
-  }
-  ++s.failed;
-  if (!inside) return;
-  ++s.failedInside;
-  s.failedBox.add(target);
-  if (s.failedAt.size() < kListed) s.failedAt.push_back(target);
-}
-
-void Inversion::invert(const openvdb::FloatGrid& targetLevelSet,
-                       const std::vector<LeafStarts>& starts, InvertedMap& out) {
-  auto distance = targetLevelSet.getConstAccessor();
+void Inversion::invert(const std::vector<LeafStarts>& starts, InvertedMap& out) {
   out.sources.resize(out.first.back());
   out.jacobians.resize(out.first.back());
   good_.assign(starts.size(), {});
@@ -144,41 +138,42 @@ void Inversion::invert(const openvdb::FloatGrid& targetLevelSet,
   const LeafIndex leaves(region_->tree());
   std::size_t l = 0;
   while (l < leaves.size()) {
-    const std::size_t begin = l;
-    Points targets, sources;
-    std::vector<LeafPlace> places;
-    std::vector<char> inside;
-    for (; l < leaves.size() && targets.size() < kTogether; ++l)
-      for (auto voxel = leaves[l].cbeginValueOn(); voxel; ++voxel) {
-        const openvdb::Index i = voxel.pos();
-        targets.push_back(toVec3(target_.indexToWorld(voxel.getCoord())));
-        sources.push_back(toVec3(source.indexToWorld(openvdb::Vec3d(starts[l].source[i]))));
-        places.push_back({static_cast<std::uint32_t>(l), static_cast<std::uint16_t>(i)});
-        inside.push_back(distance.getValue(voxel.getCoord()) < 0);
-        if (!starts[l].covered[i]) ++out.statistics.uncovered;
+    Batch batch;
+    for (; l < leaves.size() && batch.targets.size() < kTogether; ++l) {
+      std::size_t i = out.first[l];
+      for (auto voxel = leaves[l].cbeginValueOn(); voxel; ++voxel, ++i) {
+        const openvdb::Vec3d start(starts[l].source[voxel.pos()]);
+        batch.add(toVec3(target_.indexToWorld(voxel.getCoord())),
+                  toVec3(source.indexToWorld(start)), placeOf(l, voxel.pos()), i);
+        if (!starts[l].covered[voxel.pos()]) ++out.statistics.uncovered;
       }
-    const NewtonResult found = solve(targets, sources);
-    for (std::size_t n = 0; n < targets.size(); ++n) {
-      const std::size_t i = out.first[begin] + n;
-      out.sources[i] = sources[n];
-      record(i, targets[n], inside[n] != 0, found, n, out);
-      good_[places[n].leaf].set(places[n].offset, found.residuals[n] <= kInverted * voxel_);
     }
+    solve(batch, out);
     reportProgress(settings_.progress, "inverting the map",
                    static_cast<double>(l) / static_cast<double>(leaves.size()));
   }
-  out.statistics.voxels = out.sources.size();
+}
+
+// The number that is inverted.
+std::size_t Inversion::solve(Batch& batch, InvertedMap& out) {
+  const NewtonResult found = solve(batch.targets, batch.sources);
+  std::size_t inverted = 0;
+  for (std::size_t n = 0; n < batch.targets.size(); ++n) {
+    const std::size_t i = batch.index[n];
+    out.sources[i] = batch.sources[n];
+    for (std::size_t k = 0; k < 9; ++k)
+      out.jacobians[i][k] = static_cast<float>(found.at[n].jacobian[k / 3][k % 3]);
+    const double residual = found.residuals[n] / voxel_;
+    if (!(residual <= kInverted)) continue;
+    out.statistics.largestResidual = std::max(out.statistics.largestResidual, residual);
+    good_[batch.places[n].leaf].set(batch.places[n].offset);
+    ++inverted;
+  }
+  return inverted;
 }
 
 // A voxel that is not inverted becomes its nearest inverted neighbour's copy.
-void Inversion::fillFailures(InvertedMap& out) {
-  if (out.statistics.failed == 0) return;
-  if (out.statistics.inverted == 0)
-    throw DataError(
-        "inverse: not one voxel of the target comes from the "
-        "source; the map does not reach it, or "
-        "the target lies elsewhere than the map's own");
-  const LeafIndex leaves(region_->tree());
+void Inversion::fillFailures(const LeafIndex& leaves, InvertedMap& out) const {
   std::vector<std::vector<std::uint16_t>> rank(leaves.size());
   const auto indexOf = [&](LeafPlace p) {
     std::vector<std::uint16_t>& r = rank[p.leaf];
@@ -189,10 +184,57 @@ void Inversion::fillFailures(InvertedMap& out) {
     }
     return out.first[p.leaf] + r[p.offset];
   };
-  spreadToNeighbours(leaves, good_, [&](LeafPlace from, LeafPlace to) {
+  std::vector<std::bitset<512>> has = good_;
+  spreadToNeighbours(leaves, has, [&](LeafPlace from, LeafPlace to) {
     out.sources[indexOf(to)] = out.sources[indexOf(from)];
     out.jacobians[indexOf(to)] = out.jacobians[indexOf(from)];
   });
+}
+
+// Voxels inside once more, from the sources of inverted neighbours or what is found step by step
+// from these: the number that is inverted by that. (Those outside mostly have no source: the map
+// ends at the surface.)
+std::size_t Inversion::invertFailures(const LeafIndex& leaves,
+                                      const openvdb::FloatGrid& targetLevelSet, bool stepByStep,
+                                      InvertedMap& out) {
+  auto distance = targetLevelSet.getConstAccessor();
+  Batch batch;
+  for (std::size_t l = 0; l < leaves.size(); ++l) {
+    std::size_t i = out.first[l];
+    for (auto voxel = leaves[l].cbeginValueOn(); voxel; ++voxel, ++i)
+      if (!good_[l][voxel.pos()] && distance.getValue(voxel.getCoord()) < 0)
+        batch.add(toVec3(target_.indexToWorld(voxel.getCoord())), out.sources[i],
+                  placeOf(l, voxel.pos()), i);
+  }
+  if (stepByStep) {
+    if (batch.targets.size() > kMostStepByStep) return 0;
+    batch.sources = invertStepByStep(map_.map(), batch.targets, batch.sources,
+                                     {settings_.tolerance * voxel_, settings_.progress});
+  }
+  const std::size_t inverted = solve(batch, out);
+  fillFailures(leaves, out);
+  return inverted;
+}
+
+void Inversion::count(const LeafIndex& leaves, const openvdb::FloatGrid& targetLevelSet,
+                      InverseStatistics& s) const {
+  auto distance = targetLevelSet.getConstAccessor();
+  for (std::size_t l = 0; l < leaves.size(); ++l)
+    for (auto voxel = leaves[l].cbeginValueOn(); voxel; ++voxel) {
+      const bool inside = distance.getValue(voxel.getCoord()) < 0;
+      ++s.voxels;
+      s.inside += inside;
+      if (good_[l][voxel.pos()]) {
+        ++s.inverted;
+        continue;
+      }
+      ++s.failed;
+      if (!inside) continue;
+      ++s.failedInside;
+      const Vec3 target = toVec3(target_.indexToWorld(voxel.getCoord()));
+      s.failedBox.add(target);
+      if (s.failedAt.size() < kListed) s.failedAt.push_back(target);
+    }
 }
 
 InvertedMap Inversion::run(const openvdb::FloatGrid& targetLevelSet) {
@@ -203,8 +245,20 @@ InvertedMap Inversion::run(const openvdb::FloatGrid& targetLevelSet) {
   spreadStarts(*region_, starts);
   InvertedMap out;
   number(out);
-  invert(targetLevelSet, starts, out);
-  fillFailures(out);
+  invert(starts, out);
+  const LeafIndex leaves(region_->tree());
+  fillFailures(leaves, out);
+  const auto again = [&](bool stepByStep) {
+    return invertFailures(leaves, targetLevelSet, stepByStep, out) > 0;
+  };
+  for (int round = 0; round < kRounds && again(false); ++round) continue;
+  if (map_.map().steps().size() > 1)
+    for (int round = 0; round < kRounds && again(true); ++round) continue;
+  count(leaves, targetLevelSet, out.statistics);
+  if (out.statistics.voxels > 0 && out.statistics.inverted == 0)
+    throw DataError(
+        "inverse: not one voxel of the target comes from the source; the map does not reach it, or "
+        "the target lies elsewhere than the map's own");
   return out;
 }
 
@@ -213,6 +267,15 @@ double shareInverted(std::uint64_t voxels, std::uint64_t failed) {
 }
 
 }  // namespace
+
+void requireInRange(const InverseSettings& s) {
+  if (!(s.tolerance >= 1e-6 && s.tolerance <= kInverted))
+    throw SettingError("tolerance", "of the inverse must lie in [1e-6, 0.01] voxels");
+  if (!(s.outside.distance >= 0 && s.outside.distance <= 1))
+    throw SettingError("outside", "must lie in [0, 1] of the diagonal");
+  if (!(s.accuracy >= 1e-12 && s.accuracy <= 1e-3))
+    throw SettingError("accuracy", "must lie in [1e-12, 1e-3] of the target's extent");
+}
 
 double InverseStatistics::invertedInside() const { return shareInverted(inside, failedInside); }
 
@@ -232,14 +295,14 @@ std::string InverseStatistics::warning() const {
 
 InvertedMap invertMap(const ComposedMap& map, const Solid& source, const SourceLattice& lattice,
                       const openvdb::FloatGrid& targetLevelSet, const InverseSettings& settings) {
-  check(settings);
+  requireInRange(settings);
   return Inversion(map, source, lattice, targetLevelSet.transform(), settings).run(targetLevelSet);
 }
 
 Points invertAt(const ComposedMap& map, const Solid& source, const SourceLattice& lattice,
                 const InvertedMap& inverted, const Points& targets,
                 const InverseSettings& settings) {
-  check(settings);
+  requireInRange(settings);
   const openvdb::math::Transform& target = inverted.region->transform();
   const LeafIndex leaves(inverted.region->tree());
   Points out = targets, wanted, sources;

@@ -24,6 +24,9 @@ struct InverseSettings {
   Progress* progress = nullptr;
 };
 
+// Throws SettingError for a number out of its range.
+void requireInRange(const InverseSettings& settings);
+
 struct InverseStatistics {
   std::uint64_t voxels = 0;     // of the region
   std::uint64_t inverted = 0;   // with a residual of at most 0.01 voxel
@@ -59,11 +62,13 @@ struct SourceLattice {
 // For each voxel of the target (those of targetLevelSet whose distance is at most the skin; with
 // settings.outside also those around it that come from the lattice) the point p with f(p) = q:
 // cells of the lattice are mapped, voxels in their images start with second-order accuracy, and
-// Newton steps with the analytic Jacobian do the rest, halved while they do not help. A voxel that
-// is not inverted has the source and Jacobian of the nearest one that is. Outside the solid the map
-// is extended as transfer/outside.h says, so voxels along the boundary, which the map meets but for
-// its boundary error, have sources just outside. Same result for any number of threads. Throws
-// SettingError, DataError (nothing of the target is inverted), MemoryError, Cancelled.
+// Newton steps with the analytic Jacobian do the rest, halved while they do not help. Voxels inside
+// that these do not invert start again from the sources of their neighbours, and, where the map has
+// steps, from what inverting these one after the other finds. A voxel that is not inverted has the
+// source and Jacobian of the nearest one that is. Outside the solid the map is extended as
+// transfer/outside.h says, so voxels along the boundary, which the map meets but for its boundary
+// error, have sources just outside. Same result for any number of threads. Throws SettingError,
+// DataError (nothing of the target is inverted), MemoryError, Cancelled.
 InvertedMap invertMap(const ComposedMap& map, const Solid& source, const SourceLattice& lattice,
                       const openvdb::FloatGrid& targetLevelSet,
                       const InverseSettings& settings = {});

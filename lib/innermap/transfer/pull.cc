@@ -77,8 +77,9 @@ PullResult Pull::run(const openvdb::GridPtrVec& grids) {
         output.carry(leaf.origin, sites.data());
       },
       "pulling the grids", settings_.progress);
-  out.grids =
-      output.finish([&](const Points& points) { return movedBack(points); }, settings_.progress);
+  out.grids.resize(grids.size());
+  output.finish([&](const Points& points) { return movedBack(points); }, out.grids,
+                settings_.progress);
   noteOutside(out.grids, settings_.outside);
   out.voxels = active->activeVoxelCount();
   return out;

@@ -2,12 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "innermap/core/parallel.h"
+#include "innermap/evaluate/detail/active_region.h"
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/evaluate/map_grids.h"
+#include "innermap/transfer/detail/carry_density.h"
 #include "innermap/transfer/detail/carry_output.h"
+#include "innermap/transfer/detail/density_voxels.h"
 #include "innermap/transfer/detail/extended_map.h"
 #include "innermap/transfer/detail/field_grid.h"
 #include "innermap/transfer/detail/source_lattice.h"
@@ -26,15 +31,18 @@ InverseSettings inverseSettings(const PushSettings& s) {
   return out;
 }
 
-double massOf(const openvdb::GridBase& grid) {
-  const auto sum = [](const auto& typed) {
-    double total = 0;
-    for (auto value = typed.cbeginValueOn(); value; ++value)
-      total += static_cast<double>(*value) * static_cast<double>(value.getVoxelCount());
-    return total * std::abs(typed.transform().baseMap()->determinant());
-  };
-  if (grid.isType<openvdb::FloatGrid>()) return sum(static_cast<const openvdb::FloatGrid&>(grid));
-  return sum(static_cast<const openvdb::DoubleGrid&>(grid));
+// Cells along the edge of a density's voxels, so that their images are about as fine as the
+// target's voxels.
+int partsOf(const openvdb::GridBase& density, const Solid& source,
+            const openvdb::FloatGrid& target) {
+  constexpr double kLarger = 0.75;  // than the target's voxels, at most
+  constexpr int kMost = 32;
+  const openvdb::Vec3d voxel = density.voxelSize();
+  const double to = target.voxelSize()[0];
+  const double volume = static_cast<double>(interiorVoxels(target)) * std::pow(to, 3);
+  const double grown = std::cbrt(volume / source.volume());
+  const double ratio = std::max({voxel.x(), voxel.y(), voxel.z()}) * grown / to;
+  return std::clamp(static_cast<int>(ratio + 1 - kLarger), 1, kMost);
 }
 
 }  // namespace
@@ -44,28 +52,57 @@ struct VolumePusher::Data {
   openvdb::GridPtrVec grids;
   PushSettings settings;
   SourceLattice lattice;
-  Carriers carriers;
+  Carriers sampled;
+  std::vector<std::pair<std::size_t, DensityVoxels>> densities;  // by place among the grids
   std::vector<std::string> warnings;
 
-  openvdb::GridPtrVec carry(const ComposedMap& map, const InvertedMap& inverted) const;
+  openvdb::MaskGrid::Ptr regionOf(const openvdb::FloatGrid& target) const;
+  ExtendedMap extended(const ComposedMap& map) const;
+  void carrySampled(const ComposedMap& map, const InvertedMap& inverted,
+                    openvdb::GridPtrVec& out) const;
+  void carryDensities(const ComposedMap& map, const openvdb::FloatGrid& target,
+                      const openvdb::MaskGrid& region, PushResult& out) const;
 };
 
 VolumePusher::VolumePusher(const Solid& source, const openvdb::GridPtrVec& grids,
                            const PushSettings& settings) {
-  auto data = std::make_shared<Data>(Data{source, grids, settings, {}, {}, {}});
+  requireInRange(inverseSettings(settings));
+  auto data = std::make_shared<Data>(Data{source, grids, settings, {}, {}, {}, {}});
   data->lattice =
       makeSourceLattice(source, settings.outside, grids, settings.maxMemory, settings.progress);
+  const openvdb::FloatGrid& levelSet = *data->lattice.levelSet;
   if (!grids.empty() && !(settings.outside.distance > 0))
-    requireMeeting(grids, *data->lattice.levelSet, source.surface().name, data->warnings,
-                   settings.progress);
-  data->carriers =
-      makeCarriers(grids, settings.carry, data->lattice.levelSet.get(), settings.progress);
+    requireMeeting(grids, levelSet, source.surface().name, data->warnings, settings.progress);
+  for (auto& carrier : makeCarriers(grids, settings.carry, &levelSet, settings.progress)) {
+    if (carrier->isDensity()) {
+      const std::size_t place = carrier->places().front();
+      data->densities.emplace_back(
+          place, densityVoxels(grids[place], source, levelSet, settings.outside, settings.maxMemory,
+                               settings.progress));
+    } else {
+      data->sampled.push_back(std::move(carrier));
+    }
+  }
   data_ = std::move(data);
 }
 
-openvdb::GridPtrVec VolumePusher::Data::carry(const ComposedMap& map,
-                                              const InvertedMap& inverted) const {
-  CarryOutput output(carriers, *inverted.region);
+openvdb::MaskGrid::Ptr VolumePusher::Data::regionOf(const openvdb::FloatGrid& target) const {
+  RegionSettings region;
+  region.skin = settings.skin;
+  region.bytesPerVoxel = outputBytesPerVoxel(grids);
+  region.maxMemory = settings.maxMemory;
+  region.progress = settings.progress;
+  return activeRegion(target, region);
+}
+
+ExtendedMap VolumePusher::Data::extended(const ComposedMap& map) const {
+  return {map, source, *lattice.levelSet, settings.outside,
+          settings.accuracy * targetExtent(map, source)};
+}
+
+void VolumePusher::Data::carrySampled(const ComposedMap& map, const InvertedMap& inverted,
+                                      openvdb::GridPtrVec& out) const {
+  CarryOutput output(sampled, *inverted.region);
   std::vector<openvdb::Coord> origins;
   for (auto leaf = inverted.region->tree().cbeginLeaf(); leaf; ++leaf)
     origins.push_back(leaf->origin());
@@ -85,37 +122,54 @@ openvdb::GridPtrVec VolumePusher::Data::carry(const ComposedMap& map,
         }
       },
       settings.progress, "carrying the grids");
-  const ExtendedMap extended(map, source, *lattice.levelSet, settings.outside,
-                             settings.accuracy * targetExtent(map, source));
-  return output.finish(
+  output.finish(
       [&](const Points& points) {
-        Points out;
-        for (const MapSample& s : extended.at(points, settings.progress)) out.push_back(s.image);
-        return out;
+        Points images;
+        for (const MapSample& s : extended(map).at(points, settings.progress))
+          images.push_back(s.image);
+        return images;
       },
-      settings.progress);
+      out, settings.progress);
+}
+
+void VolumePusher::Data::carryDensities(const ComposedMap& map, const openvdb::FloatGrid& target,
+                                        const openvdb::MaskGrid& region, PushResult& out) const {
+  const ExtendedMap extendedMap = extended(map);
+  for (const auto& [place, voxels] : densities) {
+    CarryDensitySettings carry;
+    carry.parts = partsOf(*voxels.grid, source, target);
+    carry.constant = settings.carry.sampling == Sampling::nearest;
+    carry.maxMemory = settings.maxMemory;
+    carry.progress = settings.progress;
+    out.masses.emplace_back();
+    out.grids[place] = carryDensity(voxels, extendedMap, region, out.masses.back(), carry);
+  }
 }
 
 PushResult VolumePusher::push(const ComposedMap& map, const openvdb::FloatGrid& targetLevelSet,
                               const std::vector<CarriedField>& fields) const {
   const Data& d = *data_;
-  const InvertedMap inverted =
-      invertMap(map, d.source, d.lattice, targetLevelSet, inverseSettings(d.settings));
   PushResult out;
-  out.statistics = inverted.statistics;
   out.warnings = d.warnings;
-  const std::string doubt = inverted.statistics.warning();
-  if (!doubt.empty()) out.warnings.push_back(doubt);
-  out.grids = d.carry(map, inverted);
-  for (const auto& carrier : d.carriers)
-    if (carrier->isDensity()) {
-      const std::size_t place = carrier->places().front();
-      out.masses.push_back(
-          {d.grids[place]->getName(), massOf(*d.grids[place]), massOf(*out.grids[place])});
-    }
-  for (const CarriedField& field : fields)
-    out.grids.push_back(
-        fieldGrid(field, d.source, d.lattice, inverted, d.settings.accuracy, d.settings.progress));
+  out.grids.resize(d.grids.size());
+  openvdb::MaskGrid::Ptr region;
+  if (d.sampled.empty() && fields.empty()) {
+    region = d.regionOf(targetLevelSet);
+    out.statistics.voxels = region->activeVoxelCount();
+  } else {
+    const InvertedMap inverted =
+        invertMap(map, d.source, d.lattice, targetLevelSet, inverseSettings(d.settings));
+    region = inverted.region;
+    out.inverted = true;
+    out.statistics = inverted.statistics;
+    const std::string doubt = inverted.statistics.warning();
+    if (!doubt.empty()) out.warnings.push_back(doubt);
+    d.carrySampled(map, inverted, out.grids);
+    for (const CarriedField& field : fields)
+      out.grids.push_back(fieldGrid(field, d.source, d.lattice, inverted, d.settings.accuracy,
+                                    d.settings.progress));
+  }
+  d.carryDensities(map, targetLevelSet, *region, out);
   noteOutside(out.grids, d.settings.outside);
   return out;
 }

@@ -3,6 +3,17 @@
 // For each voxel q of the target the point p with f(p) = q is found: cells of a lattice through the
 // source are mapped, those whose image holds q give the start, Newton steps with the analytic
 // Jacobian do the rest. The grids are sampled at p.
+//
+// Densities are not sampled, or what the map crushes below a voxel would be lost, but remapped so
+// that their mass is kept whatever the map does. Their voxels, or parts of them where the target's
+// are finer, are cut into six tetrahedra each, whose corners are mapped; the image of each is cut
+// along the target's voxels, which get what their parts hold (Powell and Abel, "An exact general
+// remeshing scheme applied to physically conservative voxelization", J. Comput. Phys. 297, 2015).
+// Within a voxel of the source a density is linear, with limited slopes (Dukowicz and Kodis,
+// "Accurate conservative remapping (rezoning) for arbitrary Lagrangian-Eulerian computations", SIAM
+// J. Sci. Stat. Comput. 8, 1987), constant with Sampling::nearest. So a voxel of the target has the
+// mean over it; a density does not change where nothing moves. Parts of the solid that touch within
+// a voxel of the source go each their own way.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -16,6 +27,7 @@
 #include "innermap/boundary/frame_fitter.h"
 #include "innermap/core/progress.h"
 #include "innermap/field/harmonic_map.h"
+#include "innermap/levelset/level_set.h"
 #include "innermap/levelset/solid.h"
 #include "innermap/transfer/carry.h"
 #include "innermap/transfer/inverse_map.h"
@@ -33,14 +45,11 @@ struct PushSettings {
   Progress* progress = nullptr;
 };
 
-// Sum of a density's active values times the voxel's volume, in the source and in the target.
-struct CarriedMass {
-  std::string name;
-  double before = 0, after = 0;
-};
-
 struct PushResult {
   openvdb::GridPtrVec grids;  // in the order given, then the fields
+  // Of the inverse, which is taken where there is something to sample: other grids than densities,
+  // or fields. Without, the number of voxels alone.
+  bool inverted = false;
   InverseStatistics statistics;
   std::vector<CarriedMass> masses;  // of grids carried as densities
   std::vector<std::string> warnings;
@@ -58,8 +67,9 @@ class VolumePusher {
   // targetLevelSet: of the target, class level set, half-width at least the skin; its transform is
   // that of the output. Output grids keep name, class, background, vector type and metadata; they
   // are active where the target's signed distance is at most the skin. Level sets are rebuilt as
-  // distances. With outside settings, also where the volume around the source comes to. Throws as
-  // invertMap does. Same result for any number of threads.
+  // distances. With outside settings, also where the volume around the source comes to. Densities
+  // are active also where mass of theirs comes to beyond that. Throws as invertMap does. Same
+  // result for any number of threads.
   PushResult push(const ComposedMap& map, const openvdb::FloatGrid& targetLevelSet,
                   const std::vector<CarriedField>& fields = {}) const;
 

@@ -102,6 +102,20 @@ TEST(InverseMap, FoldsAreCountedAndFilled) {
   for (const Vec3& p : inverted.sources) ASSERT_TRUE(isFinite(p));
 }
 
+// Half of the lattice cut away: from its edge Newton's steps do not reach the far end, but from the
+// neighbours that they did reach they do.
+TEST(InverseMap, WhatIsNotInvertedStartsAgainFromItsNeighbours) {
+  const HarmonicMap map = chargedMap();
+  const Solid source(ball()), target(moved(ball(), map));
+  SourceLattice half = latticeOf(source, 128);
+  for (auto leaf = half.region->tree().beginLeaf(); leaf; ++leaf)
+    for (auto voxel = leaf->beginValueOn(); voxel; ++voxel)
+      if (half.region->indexToWorld(voxel.getCoord()).x() > -0.2) leaf->setValueOff(voxel.pos());
+  const InvertedMap inverted = invertMap(map, source, half, *levelSetOf(target, 32));
+  EXPECT_GT(inverted.statistics.uncovered, inverted.statistics.voxels / 2);
+  EXPECT_EQ(inverted.statistics.failedInside, 0u);
+}
+
 // A hole in the cover: voxels whose source is cut out of the lattice have their neighbours' source.
 TEST(InverseMap, VoxelsFromNowhereHaveTheirNeighboursSource) {
   const Solid source(ball());

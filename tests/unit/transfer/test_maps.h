@@ -15,6 +15,17 @@
 
 namespace innermap::test {
 
+// Uniform numbers in [0, 1), one after the other.
+class Draws {
+ public:
+  explicit Draws(std::uint64_t seed) : random_(seed, 0) {}
+  double operator()() { return random_.uniform(next_++); }
+
+ private:
+  CounterRandom random_;
+  std::uint64_t next_ = 0;
+};
+
 inline HarmonicMap affineMap(const Mat3& m, const Vec3& shift) {
   Affine affine;
   affine.coefficients = Matrix(4, 3);

@@ -3,12 +3,11 @@
 #include <openvdb/tree/LeafManager.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
+#include <utility>
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/evaluate/detail/extended_places.h"
 #include "innermap/evaluate/detail/leaf_plan.h"
 
 namespace innermap {
@@ -191,59 +190,6 @@ void visitLeaves(const HarmonicField& field, const ComposedMap* map, const Solid
       settings.progress);
 }
 
-// Sign of a point's distance where the level set tells it for sure, else 0: from a voxel the
-// distance changes by no more than the way from there.
-int sureSign(const openvdb::FloatGrid::ConstAccessor& distances,
-             const openvdb::math::Transform& transform, double voxel, const Vec3& p) {
-  constexpr double kRounding = 1e-5;  // of floats, voxels
-  constexpr double kFar = 1e8;        // beyond any level set
-  const openvdb::Vec3d ijk = transform.worldToIndex(openvdb::Vec3d(p.x, p.y, p.z));
-  if (!(std::abs(ijk.x()) < kFar && std::abs(ijk.y()) < kFar && std::abs(ijk.z()) < kFar)) return 1;
-  const openvdb::Coord base = openvdb::Coord::floor(ijk);
-  for (int c = 0; c < 8; ++c) {
-    const openvdb::Coord corner = base.offsetBy(c >> 2, c >> 1 & 1, c & 1);
-    const double way = (ijk - corner.asVec3d()).length() + kRounding,
-                 distance = distances.getValue(corner) / voxel;
-    if (distance > way) return 1;
-    if (distance < -way) return -1;
-  }
-  return 0;
-}
-
-// Whether a point near the surface is inside. By the side of the triangle that its closest point
-// lies in; at edges and corners, where that may mislead, by the winding number.
-bool isInside(const Solid& solid, const Vec3& p, const Solid::Closest& closest) {
-  constexpr double kWithin = 1e-6;
-  const std::array<double, 3>& w = closest.onSurface.barycentric;
-  if (closest.distance > 0 && std::min({w[0], w[1], w[2]}) > kWithin)
-    return dot(p - closest.position, areaVector(solid.surface(), closest.onSurface.triangle)) < 0;
-  return solid.inside(p);
-}
-
-// Whether points are inside, and the closest boundary points of those that are not.
-void placeOutside(const Solid& solid, const openvdb::FloatGrid& levelSet, const Points& points,
-                  ExtendedSamples& out, Points& at, Progress* progress) {
-  constexpr std::size_t kBlock = 256;
-  const double voxel = levelSet.voxelSize()[0];
-  parallelBlocks(
-      points.size(), kBlock,
-      [&](std::size_t begin, std::size_t end) {
-        const auto distances = levelSet.getConstAccessor();
-        for (std::size_t i = begin; i < end; ++i) {
-          const Vec3& p = points[i];
-          if (!isFinite(p)) throw DataError("points: a coordinate is not finite");
-          at[i] = p;
-          const int sign = sureSign(distances, levelSet.transform(), voxel, p);
-          if (sign < 0) continue;
-          const Solid::Closest closest = solid.closest(p, std::numeric_limits<double>::infinity());
-          if (sign == 0 && isInside(solid, p, closest)) continue;
-          at[i] = closest.position;
-          out.beyond[i] = p - at[i];
-        }
-      },
-      progress);
-}
-
 void requireAccuracy(const VisitSettings& settings) {
   if (!(settings.accuracy > 0)) throw SettingError("accuracy", "of the sums must be above 0");
 }
@@ -267,11 +213,10 @@ ExtendedSamples extendedSamples(const Function& f, const Solid& solid,
                                 const openvdb::FloatGrid& levelSet, const Points& points,
                                 const VisitSettings& settings) {
   requireAccuracy(settings);
+  ExtendedPlaces places = placeExtended(solid, levelSet, points, settings.progress);
   ExtendedSamples out;
-  out.beyond.resize(points.size());
-  Points at(points.size());
-  placeOutside(solid, levelSet, points, out, at, settings.progress);
-  out.samples = f.evaluate(at, {settings.accuracy, true, settings.progress});
+  out.beyond = std::move(places.beyond);
+  out.samples = f.evaluate(places.at, {settings.accuracy, true, settings.progress});
   Matrix& values = out.samples.values;
   for (std::size_t k = 0; k < values.columns(); ++k)
     for (int a = 0; a < 3; ++a) {

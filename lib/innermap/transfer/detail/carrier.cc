@@ -63,6 +63,12 @@ void requireDensities(const openvdb::GridPtrVec& grids, const CarrySettings& set
 
 }  // namespace
 
+bool isDensity(const openvdb::GridBase& grid, const CarrySettings& settings) {
+  return isListed(settings.densities, grid.getName()) ||
+         (settings.allDensities && isScalar(grid) &&
+          grid.getGridClass() != openvdb::GRID_LEVEL_SET);
+}
+
 std::vector<std::unique_ptr<Carrier>> makeCarriers(const openvdb::GridPtrVec& grids,
                                                    const CarrySettings& settings,
                                                    const openvdb::FloatGrid* solid,
@@ -85,11 +91,8 @@ std::vector<std::unique_ptr<Carrier>> makeCarriers(const openvdb::GridPtrVec& gr
   for (std::size_t i = 0; i < grids.size(); ++i) {
     throwIfCancelled(progress);
     if (taken[i]) continue;
-    const openvdb::GridBase& grid = *grids[i];
-    const bool density =
-        isListed(settings.densities, grid.getName()) ||
-        (settings.allDensities && isScalar(grid) && grid.getGridClass() != openvdb::GRID_LEVEL_SET);
-    out.push_back(makeGridCarrier(grids[i], i, settings.sampling, density, solid));
+    out.push_back(
+        makeGridCarrier(grids[i], i, settings.sampling, isDensity(*grids[i], settings), solid));
   }
   return out;
 }

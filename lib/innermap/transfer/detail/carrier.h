@@ -62,6 +62,9 @@ std::vector<std::unique_ptr<Carrier>> makeCarriers(const openvdb::GridPtrVec& gr
                                                    const openvdb::FloatGrid* solid,
                                                    Progress* progress);
 
+// Whether the settings make a density of a grid: scalars of a float or double grid that fill space.
+bool isDensity(const openvdb::GridBase& grid, const CarrySettings& settings);
+
 // In grid_carrier.cc: one grid. solid: as above.
 std::unique_ptr<Carrier> makeGridCarrier(const openvdb::GridBase::Ptr& grid, std::size_t place,
                                          Sampling sampling, bool density,

@@ -67,11 +67,8 @@ void CarryOutput::carry(const openvdb::Coord& origin, const Site* sites) const {
     carriers_[c]->carry(origin, sites, outputs_[c]);
 }
 
-openvdb::GridPtrVec CarryOutput::finish(const std::function<Points(const Points&)>& movePositions,
-                                        Progress* progress) {
-  std::size_t count = 0;
-  for (const auto& carrier : carriers_) count += carrier->places().size();
-  openvdb::GridPtrVec grids(count);
+void CarryOutput::finish(const std::function<Points(const Points&)>& movePositions,
+                         openvdb::GridPtrVec& grids, Progress* progress) {
   for (std::size_t c = 0; c < carriers_.size(); ++c) {
     throwIfCancelled(progress);
     if (openvdb::GridBase* positions = carriers_[c]->positions(outputs_[c]))
@@ -81,7 +78,6 @@ openvdb::GridPtrVec CarryOutput::finish(const std::function<Points(const Points&
     for (std::size_t k = 0; k < outputs_[c].size(); ++k)
       grids[carriers_[c]->places()[k]] = outputs_[c][k];
   }
-  return grids;
 }
 
 void requireMeeting(const openvdb::GridPtrVec& grids, const openvdb::FloatGrid& solid,

@@ -23,9 +23,9 @@ class CarryOutput {
   // For the active voxels of the region's leaf at `origin`, in order. From any thread.
   void carry(const openvdb::Coord& origin, const Site* sites) const;
 
-  // In the order of the grids given. movePositions: of values that are positions.
-  openvdb::GridPtrVec finish(const std::function<Points(const Points&)>& movePositions,
-                             Progress* progress);
+  // Each at its place in `grids`. movePositions: of values that are positions.
+  void finish(const std::function<Points(const Points&)>& movePositions, openvdb::GridPtrVec& grids,
+              Progress* progress);
 
  private:
   const Carriers& carriers_;

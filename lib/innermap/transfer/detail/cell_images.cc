@@ -6,6 +6,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/evaluate/detail/topology.h"
+#include "innermap/transfer/detail/kuhn.h"
 #include "innermap/transfer/detail/leaf_index.h"
 
 namespace innermap {
@@ -15,19 +16,6 @@ constexpr int kSide = 9;  // corners of the cells of one leaf
 // A cell that is stretched over more voxels than this starts nothing: it lies across a jump.
 constexpr int kWidestImage = 64;
 constexpr double kLeafDepth = 1e-6;  // barycentric coordinates: neighbours share their faces
-
-// Corners along the path from corner 0 to corner 7 that steps through the axes in each order; an
-// odd order gives a tetrahedron that is turned the other way.
-struct KuhnTetrahedron {
-  std::array<int, 4> corner;
-  bool odd;
-};
-constexpr std::array<KuhnTetrahedron, 6> kTetrahedra{{{{0, 4, 6, 7}, false},
-                                                      {{0, 4, 5, 7}, true},
-                                                      {{0, 2, 3, 7}, false},
-                                                      {{0, 2, 6, 7}, true},
-                                                      {{0, 1, 5, 7}, false},
-                                                      {{0, 1, 3, 7}, true}}};
 
 struct Corner {
   openvdb::Vec3f image;
@@ -161,8 +149,8 @@ class LeafRaster {
       std::array<const Corner*, 4> corners;
       std::array<openvdb::Vec3f, 4> sources;
       for (std::size_t k = 0; k < 4; ++k) {
-        const int c = t.corner[k];
-        corners[k] = cell[static_cast<std::size_t>(c)];
+        const std::size_t c = t.corner[k];
+        corners[k] = cell[c];
         sources[k] = at + openvdb::Vec3f(static_cast<float>(c >> 2), static_cast<float>(c >> 1 & 1),
                                          static_cast<float>(c & 1));
       }

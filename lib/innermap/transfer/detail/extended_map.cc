@@ -49,6 +49,14 @@ std::vector<MapSample> ExtendedMap::at(const Points& points, Progress* progress)
   return out;
 }
 
+Points ExtendedMap::imagesInside(const Points& points, Progress* progress) const {
+  const FieldSamples samples = map_.evaluate(points, {accuracy_, false, progress});
+  Points out(points.size());
+  for (std::size_t i = 0; i < out.size(); ++i)
+    for (int r = 0; r < 3; ++r) out[i][r] = samples.values(i, r);
+  return out;
+}
+
 std::vector<MapSample> ExtendedMap::nearAt(const Points& points, Progress* progress) const {
   const ExtendedSamples extended =
       sampleExtended(map_, solid_, levelSet_, points, {accuracy_, {}, progress});

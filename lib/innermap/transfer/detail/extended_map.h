@@ -32,6 +32,9 @@ class ExtendedMap {
 
   std::vector<MapSample> at(const Points& points, Progress* progress) const;
 
+  // Images of points that are inside the solid.
+  Points imagesInside(const Points& points, Progress* progress) const;
+
   // The same at lattice voxels; sample i of `samples` is that of the i-th active voxel of a leaf.
   using Visitor = std::function<void(std::size_t leaf, const LeafValues& values,
                                      const std::vector<MapSample>& samples)>;

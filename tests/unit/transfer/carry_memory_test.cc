@@ -1,0 +1,34 @@
+#include "innermap/transfer/carry_memory.h"
+
+#include <gtest/gtest.h>
+
+#include "transfer/test_maps.h"
+
+namespace innermap {
+namespace {
+
+using namespace test;
+
+TEST(CarryMemory, GrowsWithVoxelsGridsAndWhatIsAround) {
+  auto grid = openvdb::FloatGrid::create();
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(0.5));
+  auto finer = openvdb::DoubleGrid::create();
+  finer->setTransform(openvdb::math::Transform::createLinearTransform(0.125));
+  EXPECT_DOUBLE_EQ(finestVoxel({grid, finer}), 0.125);
+  EXPECT_EQ(finestVoxel({}), 0);
+  const Solid solid(ball());
+  LevelSetSettings coarse, fine;
+  coarse.resolution = 64;
+  fine.resolution = 256;
+  OutsideSettings outside;
+  outside.distance = 0.5;
+  EXPECT_LT(carryMemory(solid, {grid}, coarse), carryMemory(solid, {grid}, fine));
+  EXPECT_LT(carryMemory(solid, {grid}, fine), carryMemory(solid, {grid, finer}, fine));
+  EXPECT_LT(carryMemory(solid, {grid}, fine), carryMemory(solid, {grid}, fine, outside));
+  CarrySettings densities;
+  densities.allDensities = true;
+  EXPECT_LT(carryMemory(solid, {grid}, fine), carryMemory(solid, {grid}, fine, {}, densities));
+}
+
+}  // namespace
+}  // namespace innermap
