@@ -73,7 +73,7 @@ PullResult Pull::run(const openvdb::GridPtrVec& grids) {
       *active,
       [&](std::size_t, const LeafValues& leaf, const std::vector<MapSample>& samples) {
         std::vector<Site> sites;
-        for (const MapSample& s : samples) sites.push_back({s.image, inverse(s.jacobian)});
+        for (const MapSample& s : samples) sites.push_back({s.image, s.image, inverse(s.jacobian)});
         output.carry(leaf.origin, sites.data());
       },
       "pulling the grids", settings_.progress);

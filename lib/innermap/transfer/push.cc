@@ -1,9 +1,11 @@
 #include "innermap/transfer/push.h"
 
 #include <fmt/format.h>
+#include <openvdb/tools/Interpolation.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "innermap/core/parallel.h"
@@ -58,6 +60,7 @@ struct VolumePusher::Data {
 
   openvdb::MaskGrid::Ptr regionOf(const openvdb::FloatGrid& target) const;
   ExtendedMap extended(const ComposedMap& map) const;
+  Vec3 inSolid(const Vec3& p) const;
   void carrySampled(const ComposedMap& map, const InvertedMap& inverted,
                     openvdb::GridPtrVec& out) const;
   void carryDensities(const ComposedMap& map, const openvdb::FloatGrid& target,
@@ -100,6 +103,17 @@ ExtendedMap VolumePusher::Data::extended(const ComposedMap& map) const {
           settings.accuracy * targetExtent(map, source)};
 }
 
+// Where the map crushes the source, the target's boundary error is many of the source's voxels,
+// more than attributes are continued by.
+Vec3 VolumePusher::Data::inSolid(const Vec3& p) const {
+  if (settings.outside.distance > 0) return p;
+  const openvdb::FloatGrid& levelSet = *lattice.levelSet;
+  const openvdb::Vec3d ijk = levelSet.transform().worldToIndex({p.x, p.y, p.z});
+  const double voxel = levelSet.voxelSize()[0];
+  if (openvdb::tools::BoxSampler::sample(levelSet.tree(), ijk) < voxel) return p;
+  return source.closest(p, std::numeric_limits<double>::infinity()).position;
+}
+
 void VolumePusher::Data::carrySampled(const ComposedMap& map, const InvertedMap& inverted,
                                       openvdb::GridPtrVec& out) const {
   CarryOutput output(sampled, *inverted.region);
@@ -113,7 +127,7 @@ void VolumePusher::Data::carrySampled(const ComposedMap& map, const InvertedMap&
         for (std::size_t l = begin; l < end; ++l) {
           sites.clear();
           for (std::size_t i = inverted.first[l]; i < inverted.first[l + 1]; ++i) {
-            Site site{inverted.sources[i], {}};
+            Site site{inverted.sources[i], inSolid(inverted.sources[i]), {}};
             for (std::size_t k = 0; k < 9; ++k)
               site.derivative[k / 3][k % 3] = static_cast<double>(inverted.jacobians[i][k]);
             sites.push_back(site);

@@ -19,7 +19,7 @@ constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32;
 constexpr double kShare = 1.3, kLastShare = 1, kLeastShare = 0.1;
 // Of the folds that are left: after a step, and after its first charges.
 constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
-constexpr double kOfTolerance = 0.95;  // is given to the steps
+constexpr double kOfTolerance = 0.9;  // is given to the steps
 constexpr int kOutlierRounds = 3, kPatience = 1;
 constexpr int kLastPatience = 3;  // what the last step does not reach is missed
 // Of the target's diagonal. Sums, and where points inside go; the mesh about an intermediate shape.

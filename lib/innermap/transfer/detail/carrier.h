@@ -18,7 +18,8 @@ namespace innermap {
 // Where a voxel's value comes from, and the derivative of where things go with respect to where
 // they were.
 struct Site {
-  Vec3 at;  // world units of the input
+  Vec3 at;      // world units of the input
+  Vec3 inside;  // for attributes of a solid: that place, or where it is far outside the surface
   Mat3 derivative;
 };
 

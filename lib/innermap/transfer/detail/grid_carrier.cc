@@ -34,6 +34,11 @@ Vec3 movedVector(const Vec3& v, const Mat3& a, openvdb::VecType type) {
   }
 }
 
+bool isAttribute(const openvdb::GridBase& grid, bool density) {
+  return !density && grid.getGridClass() != openvdb::GRID_LEVEL_SET &&
+         grid.getGridClass() != openvdb::GRID_FOG_VOLUME;
+}
+
 template <class Grid>
 class GridCarrier : public Carrier {
  public:
@@ -41,7 +46,11 @@ class GridCarrier : public Carrier {
   using Leaf = typename Grid::TreeType::LeafNodeType;
 
   GridCarrier(typename Grid::ConstPtr grid, std::size_t place, Sampling sampling, bool density)
-      : Carrier({place}), grid_(std::move(grid)), sampling_(sampling), density_(density) {}
+      : Carrier({place}),
+        grid_(std::move(grid)),
+        sampling_(sampling),
+        density_(density),
+        attribute_(isAttribute(*grid_, density)) {}
 
   openvdb::GridPtrVec makeOutput(const openvdb::MaskGrid& region) const override {
     const openvdb::GridBase::Ptr out = emptyLike(*grid_, region);
@@ -56,7 +65,8 @@ class GridCarrier : public Carrier {
     const openvdb::VecType type = grid_->getVectorType();
     Leaf& leaf = *static_cast<Grid&>(*output[0]).tree().probeLeaf(origin);
     for (auto voxel = leaf.beginValueOn(); voxel; ++voxel, ++sites)
-      voxel.setValue(moved(sampler.at(sites->at), sites->derivative, type));
+      voxel.setValue(
+          moved(sampler.at(attribute_ ? sites->inside : sites->at), sites->derivative, type));
   }
 
   openvdb::GridBase* positions(const openvdb::GridPtrVec& output) const override {
@@ -98,7 +108,7 @@ class GridCarrier : public Carrier {
 
   typename Grid::ConstPtr grid_;
   Sampling sampling_;
-  bool density_;
+  bool density_, attribute_;
 };
 
 // A mask's values are its active voxels.
@@ -127,11 +137,6 @@ class GridCarrier<openvdb::MaskGrid> : public Carrier {
  private:
   openvdb::MaskGrid::ConstPtr grid_;
 };
-
-bool isAttribute(const openvdb::GridBase& grid, bool density) {
-  return !density && grid.getGridClass() != openvdb::GRID_LEVEL_SET &&
-         grid.getGridClass() != openvdb::GRID_FOG_VOLUME;
-}
 
 template <class Grid>
 std::unique_ptr<Carrier> carrierOf(const openvdb::GridBase::Ptr& grid, std::size_t place,

@@ -57,7 +57,8 @@ class TensorCarrier : public Carrier {
     }
     for (auto voxel = leaves[0]->cbeginValueOn(); voxel; ++voxel, ++sites) {
       Mat3 tensor;
-      for (std::size_t k = 0; k < parts_.size(); ++k) read(samplers[k].at(sites->at), k, tensor);
+      for (std::size_t k = 0; k < parts_.size(); ++k)
+        read(samplers[k].at(sites->inside), k, tensor);
       tensor = movedTensor(tensor, sites->derivative, stress_);
       for (std::size_t k = 0; k < parts_.size(); ++k)
         leaves[k]->setValueOnly(voxel.pos(), part(tensor, k));
