@@ -63,6 +63,24 @@ TEST(Push, RigidMotionsAndScalings) {
   }
 }
 
+// A target that the map misses by more of the source's voxels than attributes are continued by.
+TEST(Push, AttributesDoNotMeetTheBackgroundWhereTheTargetIsMissed) {
+  Mat3 crushed{}, larger{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    crushed[k][k] = 0.1;
+    larger[k][k] = 0.12;
+  }
+  const Solid source(ball()), target(moved(ball(), affineMap(larger, {})));
+  const auto from = levelSetOf(source, 40), to = levelSetOf(target, 40);
+  const auto grid = sampledScalar(*from, "s");
+  for (auto value = openvdb::gridPtrCast<openvdb::FloatGrid>(grid)->beginValueOn(); value; ++value)
+    value.setValue(5);
+  const PushResult out = VolumePusher(source, {grid}).push(affineMap(crushed, {}), *to);
+  forInside<openvdb::FloatGrid>(*out.grids[0], *to, [&](const Vec3& q, float value) {
+    ASSERT_NEAR(value, 5, 1e-5) << "at radius " << norm(q);
+  });
+}
+
 // Maps whose inside has a closed form: the harmonic twist and bend (to first order the twist and
 // bend of engineers) and a polynomial. Each by its own formulas, not the fitted map's.
 struct ClosedForm {
