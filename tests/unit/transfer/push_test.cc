@@ -68,7 +68,7 @@ TEST(Push, AttributesDoNotMeetTheBackgroundWhereTheTargetIsMissed) {
   Mat3 crushed{}, larger{};
   for (std::size_t k = 0; k < 3; ++k) {
     crushed[k][k] = 0.1;
-    larger[k][k] = 0.12;
+    larger[k][k] = 0.16;
   }
   const Solid source(ball()), target(moved(ball(), affineMap(larger, {})));
   const auto from = levelSetOf(source, 40), to = levelSetOf(target, 40);
