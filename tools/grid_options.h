@@ -1,6 +1,7 @@
 // Options that say how fine the grids that a command writes are, and what they are called.
 #pragma once
 
+#include <fmt/format.h>
 #include <openvdb/openvdb.h>
 
 #include <cstdint>
