@@ -155,6 +155,7 @@ void Evaluation::repair(const openvdb::MaskGrid& region, std::vector<LeafTotals>
   s.growth = std::pow(unitVolumeScale_, -0.5);
   s.progress = settings_.progress;
   const FoldRepair repair = repairFolds(*out.map, *out.jacobian, levelSet_, s);
+  if (repair.voxels.empty() && out.foldedVoxels == 0) return;
   out.repairedFarthest = repair.farthest;
   out.repaired = named(openvdb::FloatGrid::create(), "repaired");
   out.repaired->setTransform(region.transform().copy());
@@ -210,7 +211,7 @@ MapGrids Evaluation::run() {
     interior += t.interior;
   }
   const double most = settings_.repairUpTo * static_cast<double>(interior);
-  if (out.foldedVoxels > 0 && static_cast<double>(out.foldedVoxels) <= most)
+  if (mayRepair && static_cast<double>(out.foldedVoxels) <= most)
     repair(*region, totals, out);
   if (!settings_.map) out.map.reset();
   if (!settings_.jacobian) out.jacobian.reset();

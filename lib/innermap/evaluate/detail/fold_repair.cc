@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -20,9 +21,10 @@ using openvdb::Coord;
 
 constexpr std::array<int, 3> kRings{2, 4, 8};
 constexpr std::array<int, 4> kReaches{1, 2, 3, 4};  // of what a voxel in no tetrahedron follows
-// Folded voxels near one another that are repaired: more of them are no blemish beside a surface
-// but a map that folds, and would take minutes.
-constexpr std::size_t kMost = 300;
+// Folded voxels near one another that are repaired, and voxels that move for that: more of them
+// are no blemish beside a surface but a map that folds, and would take minutes.
+constexpr std::size_t kMost = 3000, kMostMoved = 6000;
+constexpr std::size_t kLeaves = 8;  // that a thread takes at a time
 
 Mat3 restOf(const std::array<int, 4>& tet) {
   Mat3 edges{};
@@ -127,17 +129,19 @@ class Patch {
         for (int y = -rings; y <= rings; ++y)
           for (int z = -rings; z <= rings; ++z)
             if (const Coord at = c.offsetBy(x, y, z); voxels.inside(at)) number(at);
-    const std::size_t free = coords_.size();
+    moving_ = coords_.size();
     std::set<Coord> cubes;
     for (const Coord& c : coords_)
       forCubesAround(c, [&](const Coord& cube) { cubes.insert(cube); });
     for (const Coord& cube : cubes)
       voxels.forTets(cube, [&](std::size_t k, const std::array<Coord, 4>& corners) {
-        addTet(corners, rests()[k], free);
+        addTet(corners, rests()[k]);
       });
     tets_.free.assign(coords_.size(), 0);
-    std::fill_n(tets_.free.begin(), free, 1);
+    std::fill_n(tets_.free.begin(), moving_, 1);
   }
+
+  std::size_t moving() const { return moving_; }
 
   // Whether no tetrahedron is left inside out.
   bool repair(Progress* progress) { return untangle(tets_, progress) > 0; }
@@ -157,10 +161,10 @@ class Patch {
     return at->second;
   }
 
-  void addTet(const std::array<Coord, 4>& corners, const Mat3& rest, std::size_t free) {
+  void addTet(const std::array<Coord, 4>& corners, const Mat3& rest) {
     const bool moves = std::any_of(corners.begin(), corners.end(), [&](const Coord& c) {
       const auto found = numbers_.find(c);
-      return found != numbers_.end() && static_cast<std::size_t>(found->second) < free;
+      return found != numbers_.end() && static_cast<std::size_t>(found->second) < moving_;
     });
     if (!moves) return;
     std::array<int, 4> tet;
@@ -171,6 +175,7 @@ class Patch {
 
   const Voxels& voxels_;
   double unit_;
+  std::size_t moving_ = 0;  // the first of the vertices
   TetPatch tets_;
   std::unordered_map<Coord, int, CoordHash> numbers_;
   std::vector<Coord> coords_;
@@ -253,6 +258,7 @@ std::vector<Coord> repairWith(int rings, const std::vector<Coord>& folded,
           if (clusters[c].size() > kMost) continue;
           const Voxels voxels(map, levelSet, moved);
           Patch patch(voxels, clusters[c], rings, settings.growth * levelSet.voxelSize()[0]);
+          if (patch.moving() > kMostMoved) continue;
           done[c] = patch.repair(settings.progress);
           patch.collect(parts[c]);
         }
@@ -266,18 +272,56 @@ std::vector<Coord> repairWith(int rings, const std::vector<Coord>& folded,
   return left;
 }
 
+// Voxels inside whose Jacobian is not above 0, and the corners of cells that are inside out; each
+// once, in order.
+std::vector<Coord> foldedVoxels(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& jacobian,
+                                const openvdb::FloatGrid& levelSet, Progress* progress) {
+  std::vector<const openvdb::Vec3STree::LeafNodeType*> leaves;
+  for (auto leaf = map.tree().cbeginLeaf(); leaf; ++leaf) leaves.push_back(&*leaf);
+  std::vector<std::vector<Coord>> parts(leaves.size());
+  parallelBlocks(
+      leaves.size(), kLeaves,
+      [&](std::size_t begin, std::size_t end) {
+        const Positions none;
+        const Voxels voxels(map, levelSet, none);
+        auto determinants = jacobian.getConstAccessor();
+        for (std::size_t l = begin; l < end; ++l)
+          for (auto voxel = leaves[l]->cbeginValueOn(); voxel; ++voxel) {
+            const Coord at = voxel.getCoord();
+            if (!voxels.inside(at)) continue;
+            if (!(determinants.getValue(at) > 0)) parts[l].push_back(at);
+            voxels.forTets(at, [&](std::size_t, const std::array<Coord, 4>& corners) {
+              const Vec3 p = voxels.original(corners[0]);
+              const auto edge = [&](std::size_t i) { return voxels.original(corners[i]) - p; };
+              if (!(dot(cross(edge(1), edge(2)), edge(3)) > 0))
+                parts[l].insert(parts[l].end(), corners.begin(), corners.end());
+            });
+          }
+      },
+      progress);
+  std::set<Coord> all;
+  for (const std::vector<Coord>& part : parts) all.insert(part.begin(), part.end());
+  return {all.begin(), all.end()};
+}
+
 }  // namespace
 
 FoldRepair repairFolds(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& jacobian,
                        const openvdb::FloatGrid& levelSet, const FoldRepairSettings& settings) {
   Positions moved;
   const Voxels voxels(map, levelSet, moved);
-  std::vector<Coord> folded;
-  for (auto voxel = jacobian.cbeginValueOn(); voxel; ++voxel)
-    if (!(*voxel > 0) && voxels.inside(voxel.getCoord())) folded.push_back(voxel.getCoord());
-  std::vector<Coord> left = folded;
-  for (const int rings : kRings)
-    if (!left.empty()) left = repairWith(rings, left, map, levelSet, settings, moved);
+  const auto repair = [&](std::vector<Coord> seeds) {
+    for (const int rings : kRings)
+      if (!seeds.empty()) seeds = repairWith(rings, seeds, map, levelSet, settings, moved);
+    return seeds;
+  };
+  const std::vector<Coord> left = repair(foldedVoxels(map, jacobian, levelSet, settings.progress));
+  // Where cells that are inside out are too many, there may be few voxels that are.
+  std::vector<Coord> worst;
+  auto determinants = jacobian.getConstAccessor();
+  std::copy_if(left.begin(), left.end(), std::back_inserter(worst),
+               [&](const Coord& at) { return !(determinants.getValue(at) > 0); });
+  if (worst.size() < left.size()) repair(worst);
   FoldRepair out;
   for (const auto& entry : moved) {
     const Coord& at = entry.first;

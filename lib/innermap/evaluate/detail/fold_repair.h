@@ -30,11 +30,12 @@ struct FoldRepairSettings {
   Progress* progress = nullptr;
 };
 
-// map, jacobian: of evaluateMap, with the level set of the solid. Folded voxels inside that are
-// near each other are repaired together with those 2 voxels about them, the ones farther away
-// staying where they are; where that does not do, 4 and then 8; over 300 together are left. One
-// in a part too thin for tetrahedra follows those about it. The skin outside stays as it is. Throws
-// Cancelled. The same for any number of threads.
+// map, jacobian: of evaluateMap, with the level set of the solid. Folded voxels inside, and corners
+// of cells between voxels that are inside out (kuhn_cells.h), that are near each other are repaired
+// together with the voxels 2 about them, those farther away staying where they are; where that does
+// not do, 4 and then 8. Over 6,000 that would move together are left, but for folded voxels alone.
+// One in a part too thin for tetrahedra follows those about it. The skin outside stays as it is.
+// Throws Cancelled. The same for any number of threads.
 FoldRepair repairFolds(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& jacobian,
                        const openvdb::FloatGrid& levelSet, const FoldRepairSettings& settings);
 

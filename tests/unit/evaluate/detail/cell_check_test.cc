@@ -3,9 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 
-#include "boundary/test_pairs.h"
+#include "evaluate/test_lattice.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 
@@ -13,32 +12,7 @@ namespace innermap {
 namespace {
 
 using openvdb::Coord;
-
-// Voxels that are inside, and where they go.
-class Lattice {
- public:
-  explicit Lattice(double voxel = 1) {
-    levelSet->setTransform(openvdb::math::Transform::createLinearTransform(voxel));
-  }
-
-  void addBox(const Coord& lower, const Coord& upper, const std::function<Vec3(const Vec3&)>& to) {
-    auto distances = levelSet->getAccessor();
-    auto positions = map->getAccessor();
-    for (const Coord& c : openvdb::CoordBBox(lower, upper)) {
-      const Vec3 q = to({double(c.x()), double(c.y()), double(c.z())});
-      distances.setValue(c, -1);
-      positions.setValue(c, openvdb::Vec3f(openvdb::Vec3d(q.x, q.y, q.z)));
-    }
-  }
-
-  CellFigures check(Progress* progress = nullptr) const {
-    static const Mesh mesh = ball(1);
-    return checkCells(*map, *levelSet, TargetShape(makeBoundaryPair(mesh, mesh)), 0, progress);
-  }
-
-  openvdb::FloatGrid::Ptr levelSet = openvdb::FloatGrid::create(1);
-  openvdb::Vec3fGrid::Ptr map = openvdb::Vec3fGrid::create();
-};
+using test::Lattice;
 
 Vec3 stay(const Vec3& p) { return p; }
 

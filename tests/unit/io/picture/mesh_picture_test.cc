@@ -163,6 +163,7 @@ MappedSolid inSteps(int steps) {
   const Mesh cube = shapes::box({-1, -1, -1}, {1, 1, 1});
   return {ComposedMap(std::vector<HarmonicMap>(static_cast<std::size_t>(steps), step)),
           makeBoundaryPair(cube, cube),
+          {},
           {}};
 }
 

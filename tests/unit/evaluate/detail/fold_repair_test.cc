@@ -1,0 +1,75 @@
+#include "innermap/evaluate/detail/fold_repair.h"
+
+#include <gtest/gtest.h>
+
+#include "evaluate/test_lattice.h"
+
+namespace innermap {
+namespace {
+
+using openvdb::Coord;
+
+Vec3 stay(const Vec3& p) { return p; }
+
+openvdb::FloatGrid::Ptr ones(const test::Lattice& lattice) {
+  const auto grid = openvdb::FloatGrid::create(0);
+  for (auto voxel = lattice.map->cbeginValueOn(); voxel; ++voxel)
+    grid->tree().setValue(voxel.getCoord(), 1);
+  return grid;
+}
+
+void apply(const FoldRepair& repair, test::Lattice& lattice) {
+  for (const auto& [at, voxel] : repair.voxels)
+    lattice.map->tree().setValue(
+        at, openvdb::Vec3f(openvdb::Vec3d(voxel.position.x, voxel.position.y, voxel.position.z)));
+}
+
+TEST(FoldRepair, CellsAreTurnedRightWhereNoVoxelIsFolded) {
+  test::Lattice lattice;
+  lattice.addBox(Coord(0), Coord(15), stay);
+  lattice.map->tree().setValue(Coord(8), {9.7f, 8.2f, 8.1f});  // beyond its neighbour
+  ASSERT_GT(lattice.check().folded, 0u);
+  const FoldRepair repair = repairFolds(*lattice.map, *ones(lattice), *lattice.levelSet, {});
+  EXPECT_EQ(repair.voxels.count(Coord(8)), 1u);
+  EXPECT_GT(repair.farthest, 0.7);
+  for (const auto& [at, voxel] : repair.voxels) {
+    EXPECT_GT(determinant(voxel.jacobian), 0);
+    // The other way is as far as two voxels, from the corners of the cells that were folded.
+    for (int k = 0; k < 3; ++k) EXPECT_LE(std::abs(at[k] - 8), 3) << at;
+  }
+  apply(repair, lattice);
+  EXPECT_EQ(lattice.check().folded, 0u);
+}
+
+TEST(FoldRepair, NothingIsDoneWhereNothingIsFolded) {
+  test::Lattice lattice;
+  lattice.addBox(Coord(0), Coord(9), stay);
+  const FoldRepair repair = repairFolds(*lattice.map, *ones(lattice), *lattice.levelSet, {});
+  EXPECT_TRUE(repair.voxels.empty());
+  EXPECT_EQ(repair.farthest, 0);
+}
+
+// A rod one voxel thick has no cells.
+TEST(FoldRepair, AVoxelWithoutCellsFollowsThoseAboutIt) {
+  test::Lattice lattice;
+  lattice.addBox(Coord(0), Coord(9), stay);
+  lattice.addBox({10, 4, 4}, {11, 4, 4}, stay);
+  const auto jacobian = ones(lattice);
+  jacobian->tree().setValue(Coord(10, 4, 4), -1);
+  lattice.map->tree().setValue(Coord(10, 4, 4), {8.5f, 4, 4});
+  const FoldRepair repair = repairFolds(*lattice.map, *jacobian, *lattice.levelSet, {});
+  const auto found = repair.voxels.find(Coord(10, 4, 4));
+  ASSERT_NE(found, repair.voxels.end());
+  EXPECT_LT(norm(found->second.position - Vec3{10, 4, 4}), 0.3);
+  EXPECT_GT(determinant(found->second.jacobian), 0.5);
+}
+
+TEST(FoldRepair, TooManyTogetherAreLeft) {
+  test::Lattice lattice;
+  lattice.addBox(Coord(0), Coord(23), [](const Vec3& p) { return Vec3{-p.x, p.y, p.z}; });
+  const FoldRepair repair = repairFolds(*lattice.map, *ones(lattice), *lattice.levelSet, {});
+  EXPECT_TRUE(repair.voxels.empty());
+}
+
+}  // namespace
+}  // namespace innermap
