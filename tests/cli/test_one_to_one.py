@@ -32,7 +32,9 @@ def test_steps_where_one_map_folds():
     assert "inside" not in report and "steps" not in report
     report = mapped()
     assert report["steps"]["count"] > 1 and report["steps"]["to"][-1] == 1, report["steps"]
-    assert report["inside"]["folded"] == 0 and report["inside"]["folded_at"] == [], report["inside"]
+    assert os.path.getsize("out/steps.png") > 10000
+    # Single points beside the surface, as many as `auto` lets be.
+    assert report["inside"]["folded"] <= 4e-4, report["inside"]
     assert report["jacobian"]["folded_fraction"] < 1e-4, report["jacobian"]
     assert report["tolerance"]["met"], report["tolerance"]
     assert any("one harmonic map folds" in note for note in report["notes"]), report["notes"]
@@ -119,19 +121,21 @@ def bumps():
 def test_folds_of_a_few_voxels_are_repaired():
     bumps()
     innermap("map", "ball.obj", "dented.obj", "-o", "out", "--quiet", "--resolution", "64",
-             "--tolerance", "0.004", "--one-to-one", "off", "--best-effort")
+             "--tolerance", "0.004", "--one-to-one", "off", "--best-effort", "--repair", "off")
     before = read_json("out/report.json")
     assert "repair" not in before and before["jacobian"]["min"] < 0, before["jacobian"]
-    for when in ("on", "auto"):
+    for when in ("on", "auto", "off"):
         innermap("evaluate", "out/map.ply", "-o", f"{when}.vdb", "--resolution", "64", "--quiet",
                  "--repair", when, "--report", f"{when}.json")
-    after, single = read_json("on.json"), read_json("auto.json")
+    after, single = read_json("on.json"), read_json("off.json")
+    assert read_json("auto.json")["repair"] == after["repair"]
     assert after["repair"]["folded_voxels"] > 0 and after["repair"]["left"] == 0, after["repair"]
     assert after["jacobian"]["min"] > 0, after["jacobian"]
     assert 0 < after["repair"]["farthest"] < 0.3, after["repair"]
     assert "repair" not in single and single["jacobian"] == before["jacobian"], single
     assert "repaired" in innermap("info", "on.vdb").stdout
-    assert "repaired" not in innermap("info", "auto.vdb").stdout
+    assert "repaired" in innermap("info", "auto.vdb").stdout
+    assert "repaired" not in innermap("info", "off.vdb").stdout
 
 
 def test_what_cannot_be_one_to_one_is_said():

@@ -211,8 +211,7 @@ MapGrids Evaluation::run() {
     interior += t.interior;
   }
   const double most = settings_.repairUpTo * static_cast<double>(interior);
-  if (mayRepair && static_cast<double>(out.foldedVoxels) <= most)
-    repair(*region, totals, out);
+  if (mayRepair && static_cast<double>(out.foldedVoxels) <= most) repair(*region, totals, out);
   if (!settings_.map) out.map.reset();
   if (!settings_.jacobian) out.jacobian.reset();
   LeafTotals sum;

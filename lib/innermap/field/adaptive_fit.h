@@ -59,7 +59,7 @@ struct AdaptiveSettings {
   std::size_t firstSources = 1000;  // about; of the first level, in [10, 5000]
   std::size_t maxSources = 100000;  // in [firstSources, 1000000]
   std::size_t checkSamples = 20000;
-  int patience = 6;         // rounds that may gain less than 3% in all, at least 1
+  int patience = 6;       // rounds that may gain less than 3% in all, at least 1
   int outlierRounds = 6;  // at most, once the tolerance holds, for errors that stand out
   // Asked with the field of the first level alone, if given: where the answer is no the fit ends
   // there (AdaptiveEnd::stopped).

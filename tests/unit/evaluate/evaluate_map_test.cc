@@ -232,7 +232,11 @@ TEST(EvaluateMap, FoldsAreRepairedAndNothingElse) {
   EXPECT_EQ(folded.foldedVoxelsLeft, folded.foldedVoxels);
   EXPECT_LT(folded.jacobianMin, 0);
   EXPECT_FALSE(folded.repaired);
-  settings.repairUpTo = 1;
+  const double share =
+      static_cast<double>(folded.foldedVoxels) / static_cast<double>(folded.interiorVoxels);
+  settings.repairUpTo = 0.9 * share;
+  EXPECT_FALSE(evaluate(foldedMap(), solid, 64, settings).repaired);
+  settings.repairUpTo = 1.1 * share;
   const MapGrids grids = evaluate(foldedMap(), solid, 64, settings);
   EXPECT_EQ(grids.foldedVoxels, folded.foldedVoxels);
   EXPECT_EQ(grids.foldedVoxelsLeft, 0u);
