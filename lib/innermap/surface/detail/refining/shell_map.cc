@@ -26,7 +26,7 @@ constexpr std::size_t kMiddle = 600;  // vertices before the best are chosen
 constexpr std::size_t kCoarse = 150;
 // Of B, while first maps are looked for: these have triangles far larger, and finding places among
 // B's own is most of the work.
-constexpr std::size_t kCoarseTarget = 1500;
+constexpr std::size_t kCoarseTarget = 2000;
 
 Layout layOut(const ClosedSurface& surface, Progress* progress) {
   if (surface.genus == 1) return layOutTorus(surface, progress);
