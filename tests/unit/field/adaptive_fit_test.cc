@@ -124,6 +124,26 @@ TEST(AdaptiveFit, SaysWhichLimitItReached) {
   EXPECT_THROW(fitToTolerance(ball.problem, ball.settings), MemoryError);
 }
 
+TEST(AdaptiveFit, EndsWithItsFirstChargesWhereTheseSayNo) {
+  Ball ball;
+  ball.settings.tolerance = 2e-4;
+  int asked = 0;
+  bool answer = true;
+  ball.settings.goOn = [&](const HarmonicField& field) {
+    EXPECT_LT(field.sources().size(), 2 * ball.settings.firstSources);
+    ++asked;
+    return answer;
+  };
+  EXPECT_EQ(fitToTolerance(ball.problem, ball.settings).end, AdaptiveEnd::met);
+  EXPECT_EQ(asked, 1);
+  answer = false;
+  const AdaptiveResult r = fitToTolerance(ball.problem, ball.settings);
+  EXPECT_EQ(r.end, AdaptiveEnd::stopped);
+  EXPECT_EQ(r.rounds.size(), 1u);
+  EXPECT_EQ(r.levels.size(), 1u);
+  EXPECT_EQ(asked, 2);
+}
+
 TEST(AdaptiveFit, NoRoomForFinerLevelsIsNoGain) {
   Ball ball;
   ball.settings.tolerance = 1e-4;

@@ -30,9 +30,9 @@ struct StepFit {
 // Each step starts from where the steps before it take the boundary, not from the shape that they
 // were to reach: so nothing is ever outside the solid that a step is fitted on, and an error is
 // handed on as it is, not magnified. A step that folds points inside is halved
-// while there are fewer than maxSteps: any of them at a coarse fit, more than half of those that
-// are left of `folds` in the end. inside: points of the source. Throws DataError, MemoryError,
-// Cancelled.
+// while there are fewer than maxSteps: where its first charges fold more than a quarter, or the
+// whole fit more than half, of what is left of `folds`. inside: points of the source. Throws
+// DataError, MemoryError, Cancelled.
 StepFit fitInSteps(const BoundaryPair& pair, const Points& inside, const StepFitSettings& settings);
 
 }  // namespace innermap

@@ -124,12 +124,14 @@ class Patch {
   // unit: a voxel's size where the map takes it, world units.
   Patch(const Voxels& voxels, const std::vector<Coord>& folded, int rings, double unit)
       : voxels_(voxels), unit_(unit) {
-    for (const Coord& c : folded)
+    for (const Coord& c : folded) {
       for (int x = -rings; x <= rings; ++x)
         for (int y = -rings; y <= rings; ++y)
           for (int z = -rings; z <= rings; ++z)
             if (const Coord at = c.offsetBy(x, y, z); voxels.inside(at)) number(at);
-    moving_ = coords_.size();
+      moving_ = coords_.size();
+      if (tooLarge()) return;  // seeds far apart would take gigabytes
+    }
     std::set<Coord> cubes;
     for (const Coord& c : coords_)
       forCubesAround(c, [&](const Coord& cube) { cubes.insert(cube); });
@@ -141,7 +143,7 @@ class Patch {
     std::fill_n(tets_.free.begin(), moving_, 1);
   }
 
-  std::size_t moving() const { return moving_; }
+  bool tooLarge() const { return moving_ > kMostMoved; }
 
   // Whether no tetrahedron is left inside out.
   bool repair(Progress* progress) { return untangle(tets_, progress) > 0; }
@@ -258,7 +260,7 @@ std::vector<Coord> repairWith(int rings, const std::vector<Coord>& folded,
           if (clusters[c].size() > kMost) continue;
           const Voxels voxels(map, levelSet, moved);
           Patch patch(voxels, clusters[c], rings, settings.growth * levelSet.voxelSize()[0]);
-          if (patch.moving() > kMostMoved) continue;
+          if (patch.tooLarge()) continue;
           done[c] = patch.repair(settings.progress);
           patch.collect(parts[c]);
         }

@@ -9,7 +9,8 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kShown = 7;  // more are too small to be looked at
+constexpr double kAccuracy = 1e-5;  // of the source's diagonal; far below a pixel
+constexpr std::size_t kShown = 7;   // more are too small to be looked at
 
 std::string labelOf(std::size_t step, std::size_t steps) {
   if (step == 0) return "source";
@@ -27,6 +28,7 @@ void writeStepsPicture(const std::string& path, const MappedSolid& mapped,
   for (std::size_t i = 0; i < kShown; ++i)
     chosen.insert((2 * i * steps + kShown - 1) / (2 * (kShown - 1)));
   EvaluateFieldSettings evaluate;
+  evaluate.accuracy = kAccuracy * box.diagonal();
   evaluate.progress = settings.progress;
   std::vector<PictureSurface> surfaces;
   Points now = mesh.vertices;
