@@ -17,6 +17,12 @@ struct RefineSettings {
   Progress* progress = nullptr;
 };
 
+// The vertices there are, and where the map has them.
+struct RefinedSoFar {
+  CoarseSurface surface;
+  Layout image;
+};
+
 // Vertices return one by one, each and its ring lowering the energy; all when the mesh has grown by
 // half. References must outlive it; it cannot be copied or moved.
 class MapRefiner {
@@ -32,6 +38,8 @@ class MapRefiner {
 
   double energy() const { return energy_.total(); }
   const std::string& origin() const { return origin_; }
+  // Sphere only.
+  RefinedSoFar soFar() const;
   // Of the fine surface, once all vertices are there.
   Layout takeImage();
 
@@ -39,6 +47,7 @@ class MapRefiner {
   static Layout startImage(const ClosedSurface& surface, const CoarseSurface& coarse,
                            const CoarseMap& start);
 
+  const ClosedSurface& surface_;
   ProgressiveMesh mesh_;
   Layout image_;
   PullbackEnergy energy_;

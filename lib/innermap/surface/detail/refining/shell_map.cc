@@ -117,33 +117,34 @@ std::vector<ConsideredMap> judged(Candidates& candidates, const LaidOutShell& a,
   return out;
 }
 
-// Of refined maps the one that the judge likes best.
-ShellMap choose(const Refiners& refiners, const LaidOutShell& a, const LaidOutShell& b,
-                const ShellMapSettings& settings) {
+// Of maps refined so far, the one that the judge likes best alone: what it sees does not change
+// much any more.
+void keepBest(Refiners& refiners, const LaidOutShell& a, const LaidOutShell& b,
+              const ShellMapSettings& settings) {
   const Locator onB(b.surface.triangles, b.layout);
-  ShellMap best;
-  double least = std::numeric_limits<double>::infinity();
-  for (const auto& refiner : refiners) {
-    ShellMap map;
-    map.energy = refiner->energy();
-    map.origin = refiner->origin();
-    map.image = refiner->takeImage();
-    if (!settings.judge) return map;  // the least energy comes first
-    const double score =
-        settings.judge->score(imagesOf(settings.judge->at, a.surface, map.image, b, onB));
-    if (!best.image.place.empty() && !(score < least)) continue;
-    least = score;
-    best = std::move(map);
-  }
-  return best;
+  std::vector<double> score(refiners.size());
+  parallelBlocks(
+      score.size(), 1,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const RefinedSoFar map = refiners[i]->soFar();
+          score[i] = settings.judge->score(imagesOf(onCoarse(settings.judge->at, a, map.surface),
+                                                    map.surface.surface, map.image, b, onB));
+        }
+      },
+      settings.progress);
+  const auto best = std::min_element(score.begin(), score.end()) - score.begin();
+  std::swap(refiners.front(), refiners[static_cast<std::size_t>(best)]);
+  refiners.resize(1);
 }
 
 ShellMap bestOf(Refiners refiners, const LaidOutShell& a, const LaidOutShell& b,
                 const ShellMapSettings& settings) {
   const std::size_t vertices = a.surface.vertices.size();
-  const std::size_t kept = static_cast<std::size_t>(settings.candidates);
+  const std::size_t kept = settings.judge ? 1 : static_cast<std::size_t>(settings.candidates);
   if (refiners.size() > kept) {
     refineAll(refiners, std::min(kMiddle, vertices), settings.progress);
+    if (settings.judge && refiners.size() > 1) keepBest(refiners, a, b, settings);
     if (refiners.size() > kept) refiners.resize(kept);
   }
   refineAll(refiners, vertices, settings.progress);
@@ -151,7 +152,11 @@ ShellMap bestOf(Refiners refiners, const LaidOutShell& a, const LaidOutShell& b,
     throw DataError(a.surface.name +
                     ": no map without flips was found; remove slivers from the mesh, or give "
                     "landmarks");
-  return choose(refiners, a, b, settings);
+  ShellMap out;
+  out.energy = refiners.front()->energy();
+  out.origin = refiners.front()->origin();
+  out.image = refiners.front()->takeImage();
+  return out;
 }
 
 RefineSettings refining(const ClosedSurface& surface, const ShellMapSettings& settings) {
