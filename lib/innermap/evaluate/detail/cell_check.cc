@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "innermap/core/detail/kuhn_cells.h"
 #include "innermap/core/parallel.h"
 #include "innermap/evaluate/detail/fold_repair.h"
-#include "innermap/evaluate/detail/kuhn_cells.h"
 #include "innermap/mesh/detail/winding_number.h"
 #include "innermap/mesh/self_intersection.h"
 
@@ -99,7 +99,8 @@ class Cells {
     constexpr std::array<std::array<std::size_t, 3>, 4> kFaces{
         {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
     const std::size_t low = cell[1] < cell[2] ? 1 : 2, high = 3 - low;
-    const Coord first = cornerOf({}, cell[low]), last = Coord(1) - cornerOf({}, cell[high]);
+    const Coord first = cornerOf(Coord(), cell[low]),
+                last = Coord(1) - cornerOf(Coord(), cell[high]);
     const auto corner = [&](std::size_t i) { return cornerOf(at, cell[i]); };
     const auto add = [&](std::size_t across) {
       const auto& face = kFaces[across];

@@ -10,8 +10,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "innermap/core/detail/kuhn_cells.h"
 #include "innermap/core/parallel.h"
-#include "innermap/evaluate/detail/kuhn_cells.h"
 #include "innermap/evaluate/detail/untangle.h"
 
 namespace innermap {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "innermap/core/detail/kuhn_cells.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
 #include "innermap/evaluate/detail/topology.h"
@@ -36,8 +37,8 @@ std::array<double, 8> cornersOf(const LinearDensity& density, const Coord& cell,
       cell - openvdb::Coord(parts * voxel.x(), parts * voxel.y(), parts * voxel.z());
   std::array<double, 8> out;
   for (std::size_t c = 0; c < 8; ++c) {
-    const Vec3 step{static_cast<double>(c >> 2), static_cast<double>(c >> 1 & 1),
-                    static_cast<double>(c & 1)};
+    const Vec3 step{static_cast<double>(c & 1), static_cast<double>(c >> 1 & 1),
+                    static_cast<double>(c >> 2)};
     const Vec3 at = (Vec3{static_cast<double>(within.x()), static_cast<double>(within.y()),
                           static_cast<double>(within.z())} +
                      step) /
@@ -115,8 +116,8 @@ void DensityCarry::addCells(const openvdb::CoordBBox& cells, const Coord& voxel,
   for (auto cell = cells.begin(); cell; ++cell) {
     const Coord local = *cell - origin;
     for (int c = 0; c < 8; ++c) {
-      const int x = local.x() + (c >> 2), y = local.y() + (c >> 1 & 1), z = local.z() + (c & 1);
-      const auto n = static_cast<std::size_t>((x * kSide + y) * kSide + z);
+      const Coord at = cornerOf(local, c);
+      const auto n = static_cast<std::size_t>((at.x() * kSide + at.y()) * kSide + at.z());
       image.images[static_cast<std::size_t>(c)] = corners.images[n];
       stretch[static_cast<std::size_t>(c)] = corners.stretch[n];
     }
@@ -155,7 +156,7 @@ void DensityCarry::addTorn(const Coord& cell, const MapSample& middle,
   const Vec3 at = lattice_.toIndex(middle.image) + Vec3{0.5, 0.5, 0.5};
   for (std::size_t c = 0; c < 8; ++c) {
     Vec3 way;
-    for (std::size_t a = 0; a < 3; ++a) way += (c >> (2 - a) & 1 ? 0.5 : -0.5) * nodes_.edges()[a];
+    for (std::size_t a = 0; a < 3; ++a) way += (c >> a & 1 ? 0.5 : -0.5) * nodes_.edges()[a];
     image.images[c] = at + lattice_.linear * (middle.jacobian * way);
   }
   deposit_.add(image, part.sums, part.figures);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "innermap/transfer/detail/kuhn.h"
+#include "innermap/core/detail/kuhn_cells.h"
 #include "innermap/transfer/detail/split_tetrahedron.h"
 
 namespace innermap {
@@ -12,11 +12,10 @@ namespace {
 constexpr double kWidest = 64;  // voxels
 constexpr double kFarthest = 1e9;
 
-double volumeOf(const CellImage& cell, const KuhnTetrahedron& kuhn) {
-  const Vec3& p = cell.images[kuhn.corner[0]];
-  return dot(cell.images[kuhn.corner[1]] - p,
-             cross(cell.images[kuhn.corner[2]] - p, cell.images[kuhn.corner[3]] - p)) /
-         6;
+double volumeOf(const CellImage& cell, const KuhnCell& kuhn) {
+  const auto image = [&](std::size_t k) { return cell.images[static_cast<std::size_t>(kuhn[k])]; };
+  const Vec3 p = image(0);
+  return dot(image(1) - p, cross(image(2) - p, image(3) - p)) / 6;
 }
 
 openvdb::Coord floorOf(const Vec3& p) {
@@ -69,17 +68,16 @@ void split(const CellImage& cell, double volume, Sums& sums) {
     const Vec3& p = cell.images[c];
     corners[c] = {{p.x, p.y, p.z}, cell.densities[c]};
   }
-  for (const KuhnTetrahedron& kuhn : kTetrahedra)
-    splitAtVoxels({&corners[kuhn.corner[0]], &corners[kuhn.corner[1]], &corners[kuhn.corner[2]],
-                   &corners[kuhn.corner[3]]},
-                  volume,
+  const auto corner = [&](int c) { return &corners[static_cast<std::size_t>(c)]; };
+  for (const KuhnCell& kuhn : kKuhnCells)
+    splitAtVoxels({corner(kuhn[0]), corner(kuhn[1]), corner(kuhn[2]), corner(kuhn[3])}, volume,
                   [&](const openvdb::Coord& at, double v, double m) { sums.add(at, v, m); });
 }
 
 double massOf(const CellImage& cell, double volume) {
   double mass = 0;
-  for (const KuhnTetrahedron& kuhn : kTetrahedra)
-    for (const std::size_t c : kuhn.corner) mass += 0.25 * volume * cell.densities[c];
+  for (const KuhnCell& kuhn : kKuhnCells)
+    for (const int c : kuhn) mass += 0.25 * volume * cell.densities[static_cast<std::size_t>(c)];
   return mass;
 }
 
@@ -94,9 +92,9 @@ void CellFigures::add(const CellFigures& other) {
 
 void CellDeposit::count(const CellImage& cell, CellFigures& figures) const {
   bool kept = false, turned = false;
-  for (const KuhnTetrahedron& kuhn : kTetrahedra) {
+  for (const KuhnCell& kuhn : kKuhnCells) {
     const double image = volumeOf(cell, kuhn) * targetVolume_;
-    ((image > 0) == kuhn.odd ? turned : kept) = true;
+    (image > 0 ? kept : turned) = true;
     figures.largestCompression =
         std::max(figures.largestCompression, sourceVolume_ / 6 / std::abs(image));
   }

@@ -9,7 +9,7 @@
 
 namespace innermap {
 
-// Corner 4 dx + 2 dy + dz. images: voxel (i, j, k) of the target spans [i, i + 1] and so on.
+// Corners as of Kuhn's cells (core/detail/kuhn_cells.h). images: voxel (i, j, k) of the target spans [i, i + 1] and so on.
 // densities: of the source, linear in each of Kuhn's tetrahedra.
 struct CellImage {
   std::array<Vec3, 8> images;

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "innermap/core/detail/kuhn_cells.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/evaluate/detail/topology.h"
-#include "innermap/transfer/detail/kuhn.h"
 #include "innermap/transfer/detail/leaf_index.h"
 
 namespace innermap {
@@ -37,11 +37,11 @@ class LeafCorners {
     }
   }
 
-  // The 8 corners of cell (x, y, z), corner 4 dx + 2 dy + dz; false when one is not active.
-  bool cell(const openvdb::Coord& at, std::array<const Corner*, 8>& out) const {
+  // The 8 corners of a cube; false when one is not active.
+  bool cell(const openvdb::Coord& cube, std::array<const Corner*, 8>& out) const {
     for (int c = 0; c < 8; ++c) {
-      const int n =
-          ((at.x() + (c >> 2)) * kSide + at.y() + (c >> 1 & 1)) * kSide + at.z() + (c & 1);
+      const openvdb::Coord at = cornerOf(cube, c);
+      const int n = (at.x() * kSide + at.y()) * kSide + at.z();
       out[static_cast<std::size_t>(c)] = &corners_[static_cast<std::size_t>(n)];
       if (!out[static_cast<std::size_t>(c)]->active) return false;
     }
@@ -145,29 +145,27 @@ class LeafRaster {
   }
 
   void add(const std::array<const Corner*, 8>& cell, const openvdb::Vec3f& at) {
-    for (const KuhnTetrahedron& t : kTetrahedra) {
+    for (const KuhnCell& kuhn : kKuhnCells) {
       std::array<const Corner*, 4> corners;
       std::array<openvdb::Vec3f, 4> sources;
       for (std::size_t k = 0; k < 4; ++k) {
-        const std::size_t c = t.corner[k];
-        corners[k] = cell[c];
-        sources[k] = at + openvdb::Vec3f(static_cast<float>(c >> 2), static_cast<float>(c >> 1 & 1),
-                                         static_cast<float>(c & 1));
+        corners[k] = cell[static_cast<std::size_t>(kuhn[k])];
+        sources[k] = at + cornerOf(openvdb::Coord(), kuhn[k]).asVec3s();
       }
-      addTetrahedron(corners, sources, t.odd);
+      addTetrahedron(corners, sources);
     }
   }
 
  private:
   void addTetrahedron(const std::array<const Corner*, 4>& c,
-                      const std::array<openvdb::Vec3f, 4>& sources, bool odd) {
+                      const std::array<openvdb::Vec3f, 4>& sources) {
     const openvdb::Vec3d a(c[0]->image);
     const openvdb::Mat3d edges(openvdb::Vec3d(c[1]->image) - a, openvdb::Vec3d(c[2]->image) - a,
                                openvdb::Vec3d(c[3]->image) - a, false);  // columns
     const double volume = edges.det();
     if (!(std::abs(volume) > 1e-12)) return;
     const openvdb::Mat3d inverse = edges.inverse(0);
-    const bool turned = (volume < 0) == (odd != mirrored_);
+    const bool turned = (volume < 0) != mirrored_;
     const openvdb::CoordBBox box = voxelsOf(c);
     for (auto voxel = box.begin(); voxel; ++voxel) {
       const openvdb::Vec3d u = inverse * ((*voxel).asVec3d() - a);

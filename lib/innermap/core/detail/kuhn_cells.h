@@ -2,8 +2,6 @@
 // "Some combinatorial lemmas in topology", 1960). Those of neighbouring cubes meet in whole faces.
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include <array>
 
 namespace innermap {
@@ -15,8 +13,10 @@ using KuhnCell = std::array<int, 4>;
 constexpr std::array<KuhnCell, 6> kKuhnCells{
     {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}}};
 
-inline openvdb::Coord cornerOf(const openvdb::Coord& cube, int bits) {
-  return cube.offsetBy(bits & 1, bits >> 1 & 1, bits >> 2 & 1);
+// Coord: openvdb::Coord, for folders that see it.
+template <typename Coord>
+Coord cornerOf(const Coord& cube, int corner) {
+  return cube.offsetBy(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
 }
 
 }  // namespace innermap
