@@ -117,8 +117,8 @@ std::vector<ConsideredMap> judged(Candidates& candidates, const LaidOutShell& a,
   return out;
 }
 
-// Of maps refined so far, the one that the judge likes best alone: what it sees does not change
-// much any more.
+// Of maps of spheres refined so far, the one that the judge likes best alone: what it sees does not
+// change much any more.
 void keepBest(Refiners& refiners, const LaidOutShell& a, const LaidOutShell& b,
               const ShellMapSettings& settings) {
   const Locator onB(b.surface.triangles, b.layout);
@@ -138,13 +138,36 @@ void keepBest(Refiners& refiners, const LaidOutShell& a, const LaidOutShell& b,
   refiners.resize(1);
 }
 
+// Of refined maps the one that the judge likes best; without one the first, of least energy.
+ShellMap choose(const Refiners& refiners, const LaidOutShell& a, const LaidOutShell& b,
+                const ShellMapSettings& settings) {
+  const Locator onB(b.surface.triangles, b.layout);
+  const bool judge = settings.judge && refiners.size() > 1;
+  ShellMap best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& refiner : refiners) {
+    ShellMap map;
+    map.energy = refiner->energy();
+    map.origin = refiner->origin();
+    map.image = refiner->takeImage();
+    if (!judge) return map;
+    const double score =
+        settings.judge->score(imagesOf(settings.judge->at, a.surface, map.image, b, onB));
+    if (!best.image.place.empty() && !(score < least)) continue;
+    least = score;
+    best = std::move(map);
+  }
+  return best;
+}
+
 ShellMap bestOf(Refiners refiners, const LaidOutShell& a, const LaidOutShell& b,
                 const ShellMapSettings& settings) {
   const std::size_t vertices = a.surface.vertices.size();
-  const std::size_t kept = settings.judge ? 1 : static_cast<std::size_t>(settings.candidates);
+  const bool judgeEarly = settings.judge && a.layout.space == ModelSpace::sphere;
+  const std::size_t kept = judgeEarly ? 1 : static_cast<std::size_t>(settings.candidates);
   if (refiners.size() > kept) {
     refineAll(refiners, std::min(kMiddle, vertices), settings.progress);
-    if (settings.judge && refiners.size() > 1) keepBest(refiners, a, b, settings);
+    if (judgeEarly && refiners.size() > 1) keepBest(refiners, a, b, settings);
     if (refiners.size() > kept) refiners.resize(kept);
   }
   refineAll(refiners, vertices, settings.progress);
@@ -152,11 +175,7 @@ ShellMap bestOf(Refiners refiners, const LaidOutShell& a, const LaidOutShell& b,
     throw DataError(a.surface.name +
                     ": no map without flips was found; remove slivers from the mesh, or give "
                     "landmarks");
-  ShellMap out;
-  out.energy = refiners.front()->energy();
-  out.origin = refiners.front()->origin();
-  out.image = refiners.front()->takeImage();
-  return out;
+  return choose(refiners, a, b, settings);
 }
 
 RefineSettings refining(const ClosedSurface& surface, const ShellMapSettings& settings) {
