@@ -142,8 +142,7 @@ class BinaryArray {
     // Deflate makes at most 1032 bytes of one.
     const std::uint64_t most = 1032 * source_.most();
     const std::uint64_t full = lastSize == 0 ? blocks : blocks - 1;
-    if (blockSize > most || lastSize > blockSize ||
-        full > most / std::max<std::uint64_t>(1, blockSize))
+    if (lastSize > blockSize || lastSize > most || (full > 0 && blockSize > most / full))
       fail(file_, array_, kCutShort);
     const std::uint64_t total = full * blockSize + lastSize;
     collector_.claim(total);
