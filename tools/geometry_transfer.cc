@@ -2,10 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "innermap/core/memory.h"
 #include "lists.h"
 
 namespace innermap::tool {
+namespace {
+
+constexpr double kPointAccuracy = 1e-7;  // of the target's extent
+
+}  // namespace
 
 void addGeometryOptions(Command& c, GeometryOptions& o, bool subdivide) {
   c.option("--vectors", "LIST", &o.vectors,
@@ -59,7 +66,8 @@ CarryPointsSettings carryPointsSettings(const OutsideSettings& outside, double a
                                         const Context& context) {
   auto settings = context.settings<CarryPointsSettings>();
   settings.outside = outside;
-  settings.accuracy = accuracy;
+  // Points are kept in double precision and may go there and back; their sums cost little.
+  settings.accuracy = std::min(accuracy, kPointAccuracy);
   return settings;
 }
 

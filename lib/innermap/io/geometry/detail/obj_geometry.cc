@@ -55,7 +55,8 @@ class ObjGeometry : public GeometryFile {
   void writeVertices(OutputBuffer& out, const CarriedGeometry& carried) const;
   void writeTextures(OutputBuffer& out) const;
   void writeElement(OutputBuffer& out, std::string_view keyword, std::size_t element,
-                    const CarriedGeometry& carried) const;
+                    const CarriedGeometry& carried, const std::vector<int>& directionNumbers) const;
+  std::vector<int> numberDirections(const CarriedGeometry& carried) const;
 
   FileBytes file_;
   std::vector<std::size_t> vertexLines_, textureLines_;  // bytes
@@ -278,8 +279,19 @@ void ObjGeometry::writeTextures(OutputBuffer& out) const {
   }
 }
 
+// Normals of points that stay, in order; -1 for others.
+std::vector<int> ObjGeometry::numberDirections(const CarriedGeometry& carried) const {
+  std::vector<int> out;
+  if (geometry.directions.empty()) return out;
+  int next = 0;
+  for (const int point : geometry.directions[0].points)
+    out.push_back(carried.number[static_cast<std::size_t>(point)] < 0 ? -1 : next++);
+  return out;
+}
+
 void ObjGeometry::writeElement(OutputBuffer& out, std::string_view keyword, std::size_t element,
-                               const CarriedGeometry& carried) const {
+                               const CarriedGeometry& carried,
+                               const std::vector<int>& directionNumbers) const {
   const Elements& elements = geometry.elements;
   if (!carried.stays[element]) return;
   bool any = false;
@@ -292,7 +304,8 @@ void ObjGeometry::writeElement(OutputBuffer& out, std::string_view keyword, std:
     out.print(" {}", number + 1);
     if (corner.texture >= 0 || corner.direction >= 0) out.raw("/");
     if (corner.texture >= 0) out.print("{}", corner.texture + 1);
-    if (corner.direction >= 0) out.print("/{}", corner.direction + 1);
+    if (corner.direction >= 0)
+      out.print("/{}", directionNumbers[static_cast<std::size_t>(corner.direction)] + 1);
   }
   if (any) out.raw("\n");
 }
@@ -307,7 +320,9 @@ std::vector<std::string> ObjGeometry::write(const std::string&, const CarriedGeo
   std::size_t begin = 0, end = 0, vertices = 0, normals = 0, textures = 0, element = 0,
               elementLine = 0;
   std::string_view keyword;
+  const std::vector<int> directionNumbers = numberDirections(carried);
   const auto normal = [&](std::size_t i) {
+    if (directionNumbers[i] < 0) return;
     const Vec3& n = carried.directions[0][i];
     out.print("vn {} {} {}\n", n.x, n.y, n.z);
   };
@@ -331,7 +346,7 @@ std::vector<std::string> ObjGeometry::write(const std::string&, const CarriedGeo
       if (textures++ == 0) writeTextures(out);
     } else if (kind == Line::element && !(normalsInPlace_ && samePoints)) {
       for (; element < elements.size() && elements.source[element] == elementLine; ++element)
-        writeElement(out, keyword, element, carried);
+        writeElement(out, keyword, element, carried, directionNumbers);
       ++elementLine;
     } else {
       copy();
