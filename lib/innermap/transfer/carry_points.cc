@@ -7,6 +7,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/evaluate/detail/active_region.h"
 #include "innermap/evaluate/detail/extended_places.h"
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/levelset/level_set.h"
@@ -71,11 +72,34 @@ struct Limits {
   }
 };
 
-openvdb::FloatGrid::Ptr coarseLevelSet(const Solid& solid, const CarryPointsSettings& settings) {
+openvdb::FloatGrid::Ptr coarseLevelSet(const Solid& solid, const CarryPointsSettings& settings,
+                                       int resolution = LevelSetSettings().resolution) {
   LevelSetSettings levelSet;
+  levelSet.resolution = resolution;
   levelSet.maxMemory = settings.maxMemory;
   levelSet.progress = settings.progress;
   return makeLevelSet(solid, levelSet);
+}
+
+// Voxels across the source and the target. Much space around them is worth less: Newton's method
+// finds from farther there, as the map is smooth.
+int resolutionOf(const CarryPointsSettings& settings) {
+  return settings.outside.distance > 0 ? 48 : LevelSetSettings().resolution;
+}
+
+// Through the source and what is around it.
+SourceLattice latticeOf(const Solid& source, const CarryPointsSettings& settings) {
+  SourceLattice out;
+  out.levelSet = coarseLevelSet(source, settings, resolutionOf(settings));
+  RegionSettings region;
+  region.maxMemory = settings.maxMemory;
+  region.progress = settings.progress;
+  out.region = activeRegion(*out.levelSet, region);
+  constexpr std::uint64_t kVoxelBytes = 64;
+  if (settings.outside.distance > 0)
+    addAround(*out.region, source, settings.outside.distance * source.diagonal(), kVoxelBytes,
+              settings.maxMemory, settings.progress);
+  return out;
 }
 
 void keep(const MapSample& sample, std::size_t i, CarriedPoints& out) {
@@ -150,22 +174,20 @@ struct PointPuller::Data {
       : map(theMap),
         source(theSource),
         settings(theSettings),
-        lattice(makeSourceLattice(source, {}, {}, settings.maxMemory, settings.progress)),
+        lattice(latticeOf(source, settings)),
         diagonal(target.diagonal()),
         inverted(invert(target)),
         leaves(inverted.region->tree()) {}
 
   InvertedMap invert(const Solid& target) {
-    if (settings.outside.distance > 0)
-      addAround(*lattice.region, source, settings.outside.distance * source.diagonal(), 64,
-                settings.maxMemory, settings.progress);
     InverseSettings inverse;
     inverse.outside = settings.outside;
     inverse.skin = kSkinVoxels;
     inverse.accuracy = std::max(settings.accuracy, 1e-7);  // starts, no more
     inverse.maxMemory = settings.maxMemory;
     inverse.progress = settings.progress;
-    return invertMap(map, source, lattice, *coarseLevelSet(target, settings), inverse);
+    return invertMap(map, source, lattice,
+                     *coarseLevelSet(target, settings, resolutionOf(settings)), inverse);
   }
 
   // Where the search for a point begins; false when nothing comes there.
