@@ -193,7 +193,7 @@ def test_cells_by_two_other_readers():
     # And Gmsh, of both.
     try:
         for name in ("posed.msh", "posed.mesh"):
-            subprocess.run(["gmsh", "-save", "-format", "msh2", "-bin", "0", "-o", "again.msh", name],
+            subprocess.run(["gmsh", name, "-save", "-format", "msh22", "-o", "again.msh"],
                            check=True, capture_output=True)
             innermap("pull", "map.ply", "again.msh", "-o", "back.vtu", "--report", "r.json")
             assert read_json("r.json")["geometry"]["cells"] == vtu[1] + vtu[2], name

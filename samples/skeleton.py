@@ -1,3 +1,4 @@
+#!/usr/bin/python3
 """Tubes along the middle of a mesh's limbs, as OBJ with texture coordinates and normals.
 
     skeleton.py MESH.obj OUT.obj
