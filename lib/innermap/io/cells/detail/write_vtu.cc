@@ -91,9 +91,11 @@ bool fitsIntegers(const CellField& field) {
 
 void writeField(std::ostream& stream, const CellField& field) {
   const bool whole = field.whole && fitsIntegers(field);
-  const std::string attributes = fmt::format("type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"{}",
-                                             whole ? "Int64" : "Float64", escaped(field.name),
-                                             field.components, kindOf(field));
+  std::string attributes = fmt::format("type=\"{}\" Name=\"{}\"{}", whole ? "Int64" : "Float64",
+                                       escaped(field.name), kindOf(field));
+  // Without the number, readers know a scalar from a vector of one component.
+  if (field.components > 1)
+    attributes += fmt::format(" NumberOfComponents=\"{}\"", field.components);
   writeArray<double>(stream, attributes, field.values.size(), [&](Base64Writer& out) {
     for (const double value : field.values)
       if (whole)

@@ -1,5 +1,3 @@
-#include "innermap/io/geometry/geometry_file.h"
-
 #include <algorithm>
 #include <filesystem>
 
@@ -10,6 +8,7 @@
 #include "innermap/core/memory.h"
 #include "innermap/io/cells/cell_file.h"
 #include "innermap/io/geometry/detail/geometry_formats.h"
+#include "innermap/io/geometry/geometry_file.h"
 
 namespace innermap {
 namespace {
@@ -41,7 +40,7 @@ void requireWritableAs(const std::string& input, const std::string& output) {
   throw FileError(output,
                   isCellFile(input)
                       ? "cells are written as .vtu, .msh or .mesh; give one of these endings"
-                      : "must end as the input does, in " + extensionOf(input));
+                      : "must end as " + input + " does, in " + extensionOf(input));
 }
 
 std::unique_ptr<GeometryFile> readGeometry(const std::string& path,
