@@ -231,7 +231,7 @@ def test_what_is_refused():
     fails(2, "push", "map.ply", "a.vdb", "-o", "b.vdb", "--subdivide", 0.1, says=["--subdivide"])
     fails(1, "push", "map.ply", "ball.obj", "-o", "a.ply", says=["a.ply", ".obj"])
     fails(1, "push", "map.ply", "nowhere.obj", "-o", "a.obj", says=["nowhere.obj"])
-    fails(1, "push", "map.ply", "ball.obj", "-o", "a.obj", "--max-memory", "1M", says=["1 MB"])
+    fails(1, "push", "map.ply", "ball.obj", "-o", "a.obj", "--max-memory", "100M", says=["100 MB"])
     fails(1, "push", "map.ply", "map.ply", "-o", "a.ply", "--vectors", "w", says=["'w'", "w_x"])
     with open("cut.ply", "wb") as file:
         file.write(b"ply\nformat binary_little_endian 1.0\nelement vertex 9\nproperty double x\n"

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 #include "innermap/core/detail/file_bytes.h"
 #include "innermap/core/detail/text_scanner.h"
@@ -27,6 +28,19 @@ const Format* findFormat(const std::string& path) {
   for (const Format& format : kFormats)
     if (equalsIgnoringCase(extensionOf(path), format.extension)) return &format;
   return nullptr;
+}
+
+// Of one pass over the points.
+constexpr std::uint64_t kOnTheWay = 160000000;
+
+// Bytes in memory for each of the file, measured: dense files, and those with directions, whose
+// Jacobians are kept, take more.
+double bytesPerByte(const std::string& path) {
+  std::string head(4096, ' ');
+  std::ifstream(path, std::ios::binary).read(head.data(), 4096);
+  if (equalsIgnoringCase(extensionOf(path), ".stl")) return head.compare(0, 5, "solid") ? 18 : 5;
+  if (equalsIgnoringCase(extensionOf(path), ".ply")) return head.find(" nx") != head.npos ? 9.5 : 5;
+  return 7;
 }
 
 }  // namespace
@@ -60,11 +74,11 @@ std::unique_ptr<GeometryFile> readGeometry(const std::string& path,
 }
 
 std::uint64_t geometryMemory(const std::string& path) {
-  if (isCellFile(path)) return 2 * readCellsMemory(path);
+  if (isCellFile(path)) return 2 * readCellsMemory(path) + kOnTheWay;
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error) throw FileError(path, "cannot be read (" + error.message() + "); check the name");
-  return 4 * size + (std::uint64_t(1) << 18) * 600;
+  return static_cast<std::uint64_t>(bytesPerByte(path) * static_cast<double>(size)) + kOnTheWay;
 }
 
 std::vector<std::string> writeGeometry(const std::string& path, const GeometryFile& file,
