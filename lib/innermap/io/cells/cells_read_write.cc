@@ -1,5 +1,3 @@
-#include "innermap/io/cells/cell_file.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +9,9 @@
 #include "innermap/core/error.h"
 #include "innermap/core/file.h"
 #include "innermap/core/memory.h"
+#include "innermap/io/cells/cell_file.h"
 #include "innermap/io/cells/detail/cell_formats.h"
+#include "innermap/io/cells/detail/hanging_vertices.h"
 
 namespace innermap {
 namespace {
@@ -83,6 +83,11 @@ CellFile CellCollector::finish() {
          std::string(leftOut_.empty() ? "" : ", only " + leftOut_.begin()->first) +
          "; give a mesh of a solid's inside");
   validate(file.mesh);
+  if (const std::uint64_t hanging = countHangingVertices(file.mesh, settings_.progress))
+    note(fmt::format(
+        "{}: {} vertices hang in the middle of edges or faces of other cells; the cells "
+        "do not fit together there",
+        path_, hanging));
   for (const auto& [kind, count] : leftOut_)
     note(fmt::format("{}: {} {} left out", path_, count, kind));
   report(1);

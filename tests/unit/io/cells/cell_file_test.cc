@@ -252,6 +252,19 @@ TEST(CellFile, VtuAsTextAndItsOtherCells) {
   expectError(path, "13 numbers");
 }
 
+TEST(CellFile, HangingVerticesAreCounted) {
+  // A tetrahedron and two that share half of its face each.
+  CellMesh mesh;
+  mesh.name = "hanging";
+  mesh.vertices = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 1}, {0, 0, -1}, {1, 1, 0}};
+  mesh.tetrahedra = {{0, 1, 2, 3}, {0, 5, 1, 4}, {0, 2, 5, 4}};
+  const std::string path = pathOf("hanging.vtu");
+  writeCells(path, mesh);
+  const CellFile file = readCells(path);
+  ASSERT_EQ(file.notes.size(), 1u);
+  EXPECT_NE(file.notes[0].find(" 1 vertices hang"), std::string::npos) << file.notes[0];
+}
+
 TEST(CellFile, MemoryIsLimited) {
   const std::string path = pathOf("mixed.vtu");
   writeCells(path, mixed());
