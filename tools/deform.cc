@@ -1,4 +1,4 @@
-// `innermap deform`: a volume in a rest pose carried through the frames of an animation.
+// `innermap deform`: what is inside a rest pose carried through the frames of an animation.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <map>
 
 #include "commands.h"
+#include "deform_geometry.h"
 #include "frame_loop.h"
 #include "innermap/core/version.h"
 #include "innermap/io/vdb/vdb_file.h"
@@ -23,6 +24,7 @@ struct DeformOptions {
   std::string rest, volume, output;
   FrameOptions frames;
   TransferOptions transfer;
+  GeometryOptions geometry;
   bool velocity = false, force = false;
   double framesPerSecond = 24;
 };
@@ -185,7 +187,10 @@ void fillReport(const std::map<std::size_t, DeformRow>& rows, const Frames& fram
 
 void check(const DeformOptions& options, const Frames& frames) {
   std::string extension = std::filesystem::path(options.output).extension().string();
-  if (extension != ".vdb")
+  requireFitting(options.volume, options.output, options.transfer, options.geometry);
+  if (isGeometryFile(options.volume)) {
+    if (options.velocity) throw UsageError("--velocity: is for volumes; leave it out");
+  } else if (extension != ".vdb")
     throw UsageError("--output: '" + options.output + "' must end in .vdb, as in a.####.vdb");
   if (options.velocity && frames.all.size() < 2)
     throw UsageError("--velocity: needs at least two frames; give more or leave it out");
@@ -229,6 +234,10 @@ void run(const DeformOptions& options, Context& context) {
   const FramePattern pattern("--output", options.output);
   const Frames frames = listFrames(options.frames, options.rest, context);
   check(options, frames);
+  if (isGeometryFile(options.volume))
+    return deformGeometry(
+        {options.rest, options.volume, options.frames, options.transfer, options.geometry}, frames,
+        pattern, context);
   if (context.dryRun()) return plan(options, frames, pattern, context);
   requireFrameMemory(context.settings(options.frames.fitting), 0);
   const PendingFolder folder = context.outputFolder(pattern.folder());
@@ -260,20 +269,24 @@ void run(const DeformOptions& options, Context& context) {
 
 Command makeDeformCommand() {
   auto o = std::make_shared<DeformOptions>();
-  Command c("deform", "Carry a volume in a rest pose through the frames of an animation");
+  Command c("deform", "Carry a volume or geometry in a rest pose through an animation");
   c.description(
-      "VOLUME's grids live inside REST. For each frame REST's inside is mapped onto the frame's, "
-      "the map is inverted and the grids are carried along, as push does. The set-up is made once "
+      "INSIDE, grids or geometry, lives inside REST. For each frame REST's inside is mapped onto "
+      "the "
+      "frame's and what is inside is carried along, as push does. The set-up is made once "
       "for all frames, all outputs have one voxel size and one lattice, and a frame's result does "
       "not depend on which others are made. Frames whose output is there already, made from the "
-      "same files and settings, are skipped. A frame that cannot be read or fitted is reported and "
+      "same files and settings, are skipped (of geometry all are made). A frame that cannot be "
+      "read or fitted is reported and "
       "left out; the exit code is then 1.");
   c.positional("REST", &o->rest, "mesh of the rest pose: .obj, .ply, .off or .stl");
-  c.positional("VOLUME", &o->volume, "the grids, a .vdb file in the rest pose's world space");
+  c.positional("INSIDE", &o->volume,
+               "what is carried, in the rest pose's world space: grids (.vdb) or geometry (.obj, "
+               ".ply, .off, .stl; cells in .vtu, .msh, .mesh)");
   addFrameArgument(c, o->frames);
   c.option("--output", "FILES", &o->output,
-           "the .vdb files to write, #### or %04d standing for the frame's number; without, it is "
-           "put before .vdb; the folder is made when missing")
+           "the files to write, of INSIDE's kind, #### or %04d standing for the frame's number; "
+           "without, it is put before the ending; the folder is made when missing")
       .shortName("-o")
       .required();
   addFrameOptions(c, o->frames);
@@ -285,6 +298,8 @@ Command makeDeformCommand() {
       .above(0)
       .atMost(1e6);
   addTransferOptions(c, o->transfer);
+  addGeometryOptions(c, o->geometry, false);
+  c.example("innermap deform rest.obj bones.obj 'walk.*.obj' -o 'out/bones.####.obj'");
   c.example("innermap deform rest.obj smoke.vdb 'walk.*.obj' -o 'out/smoke.####.vdb' --density");
   c.example(
       "innermap deform rest.obj smoke.vdb 'walk.*.obj' -o 'out/smoke.%04d.vdb' --velocity --fps "

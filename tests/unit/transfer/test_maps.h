@@ -96,7 +96,7 @@ inline Mesh ball(double radius = 1, int subdivisions = 4) {
 }
 
 // A mesh whose vertices the map has moved.
-inline Mesh moved(Mesh mesh, const HarmonicMap& map) {
+inline Mesh moved(Mesh mesh, const ComposedMap& map) {
   for (Vec3& v : mesh.vertices) v = map(v);
   return mesh;
 }

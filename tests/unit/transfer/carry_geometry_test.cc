@@ -1,0 +1,76 @@
+#include "innermap/transfer/carry_geometry.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "innermap/core/error.h"
+
+namespace innermap {
+namespace {
+
+// A bend that takes the line y = z = 0 to a parabola; points beyond x = 2 are cut.
+CarriedPoints bend(const Points& points, bool jacobians) {
+  CarriedPoints out;
+  for (const Vec3& p : points) {
+    out.points.push_back({p.x, p.y + p.x * p.x, p.z});
+    if (jacobians) out.jacobians.push_back({{{1, 0, 0}, {2 * p.x, 1, 0}, {0, 0, 1}}});
+    out.fates.push_back(p.x > 2 ? PointFate::cut : PointFate::carried);
+    out.cut += p.x > 2;
+  }
+  return out;
+}
+
+Geometry line(double length) {
+  Geometry g;
+  g.points = {{0, 0, 0}, {length, 0, 0}};
+  g.ownPoints = 2;
+  const Corner corners[2] = {{0, -1, -1}, {1, -1, -1}};
+  g.elements.add(Elements::Kind::line, 0, corners, 2);
+  return g;
+}
+
+TEST(CarryGeometry, SplitsUntilStraightIsNear) {
+  for (const double tolerance : {0.1, 1e-2, 1e-4}) {
+    Geometry g = line(2);
+    CarryGeometrySettings settings;
+    settings.subdivide = tolerance;
+    const CarriedGeometry carried = carryGeometry(g, bend, settings);
+    // The chord of a parabola of width h is h^2 / 4 away from it.
+    const double width = std::pow(2, -std::ceil(std::log2(2 / std::sqrt(4 * tolerance))));
+    EXPECT_EQ(carried.added + 1, static_cast<std::uint64_t>(std::lround(1 / width)));
+    EXPECT_EQ(g.elements.size(), 1u);
+    EXPECT_EQ(g.elements.corners.size(), carried.added + 2);
+    EXPECT_EQ(carried.ownPoints, 2u);
+  }
+}
+
+TEST(CarryGeometry, TurnsDirectionsAndLeavesOutWhatIsCut) {
+  Geometry g = line(3);
+  g.directions.push_back({"n", DirectionKind::normal, {{0, 1, 0}}, {0}});
+  g.directions.push_back({"v", DirectionKind::vector, {{1, 0, 0}}, {1}});
+  const CarriedGeometry carried = carryGeometry(g, bend);
+  EXPECT_EQ(carried.cutElements, 1u);
+  EXPECT_EQ(carried.stays[0], 0);
+  EXPECT_EQ(carried.number, (std::vector<int>{0, -1}));
+  EXPECT_NEAR(carried.directions[0][0].y, 1, 1e-15);
+  EXPECT_NEAR(carried.directions[1][0].y, 6, 1e-15);
+  EXPECT_EQ(carried.folded, 0u);
+}
+
+TEST(CarryGeometry, Limits) {
+  Geometry g = line(2);
+  CarryGeometrySettings settings;
+  settings.subdivide = 1e-12;
+  settings.maxMemory = 100000;
+  EXPECT_THROW(carryGeometry(g, bend, settings), MemoryError);
+  settings.subdivide = -1;
+  EXPECT_THROW(carryGeometry(g, bend, settings), SettingError);
+  g.splittable = false;
+  settings.subdivide = 0.1;
+  EXPECT_THROW(carryGeometry(g, bend, settings), SettingError);
+  EXPECT_GT(carryGeometryMemory(g), 0u);
+}
+
+}  // namespace
+}  // namespace innermap

@@ -1,0 +1,116 @@
+#include "deform_geometry.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "frame_loop.h"
+#include "innermap/levelset/level_set.h"
+
+namespace innermap::tool {
+namespace {
+
+constexpr double kAccuracy = 1e-7;  // of sums of charges
+
+// The set-up that all frames share.
+class Deformer {
+ public:
+  Deformer(const DeformGeometry& job, const Frames& frames, Context& context)
+      : job_(job),
+        context_(context),
+        frames_(frames),
+        fitter_(makeFrameFitter(job.rest, context.settings(job.frames.fitting), context)),
+        fits_(makeFrameFits(fitter_, frames, context)),
+        file_(readGeometryFile(job.input, job.geometry, context)) {
+    if (job.transfer.fadeTo != "fitted") pusher_ = pusherFor({});
+  }
+
+  struct Row {
+    CarriedGeometry carried;
+    BoundaryError error;
+  };
+
+  Row run(std::size_t index, const std::string& path) {
+    const FrameFile& frame = frames_.all[index];
+    const std::shared_ptr<const FrameFit> fit = fits_.at(index);
+    const PointPusher pusher = pusher_ ? *pusher_ : pusherFor(fit->boundary.moved);
+    const ComposedMap map = HarmonicMap(fit->field);
+    Row row;
+    row.error = fit->error;
+    row.carried = context_.timed("carry", [&] {
+      return carryFile(
+          *file_,
+          [&](const Points& points, bool jacobians) { return pusher.push(map, points, jacobians); },
+          0, context_);
+    });
+    warnOf(*file_, row.carried, job_.transfer, fmt::format("frame {}: ", frame.number), context_);
+    writeFrame(frame, [&] { writeGeometryFile(path, *file_, row.carried, context_); });
+    return row;
+  }
+
+  // Of the last frame: which points are outside is the same in all.
+  std::string report(const CarriedGeometry& carried) const {
+    return reportGeometry(*file_, carried, context_);
+  }
+
+ private:
+  PointPusher pusherFor(const Points& moved) const {
+    const OutsideSettings outside =
+        outsideSettings(job_.transfer, fitter_.solid().repaired().mesh.vertices, moved);
+    return PointPusher(fitter_.solid(), carryPointsSettings(outside, kAccuracy, context_));
+  }
+
+  const DeformGeometry& job_;
+  Context& context_;
+  const Frames& frames_;
+  const FrameFitter fitter_;
+  FrameFits fits_;
+  const std::unique_ptr<GeometryFile> file_;
+  std::optional<PointPusher> pusher_;  // none where each frame needs its own
+};
+
+}  // namespace
+
+void deformGeometry(const DeformGeometry& job, const Frames& frames, const FramePattern& pattern,
+                    Context& context) {
+  const auto path = [&](std::size_t i) { return pattern.path(frames.all[i].number); };
+  const std::uint64_t need = geometryMemory(job.input);
+  if (context.dryRun()) {
+    const FrameFitterSettings settings = context.settings(job.frames.fitting);
+    return context.plan(
+        {framesPlan(settings, frames), "carry " + job.input + " to " + path(frames.wanted.front()) +
+                                           " to " + path(frames.wanted.back())},
+        frameFitterMemory(settings) + need);
+  }
+  requireFrameMemory(context.settings(job.frames.fitting), need);
+  const PendingFolder folder = context.outputFolder(pattern.folder());
+  Deformer deformer(job, frames, context);
+  std::map<std::size_t, BoundaryError> errors;
+  std::optional<CarriedGeometry> last;
+  context.print(fmt::format("{:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "frame", "points",
+                            "folded", "error rms", "error 99%", "seconds"));
+  const auto results = runFrames(frames, true, context, [&](std::size_t index) {
+    StageSeconds seconds;
+    auto row = timed(seconds, "frame", [&] { return deformer.run(index, path(index)); });
+    errors[index] = row.error;
+    context.print(fmt::format("{:>8} {:>10} {:>10} {:>10.2e} {:>10.2e} {:>9.3g}\n",
+                              frames.all[index].number, row.carried.ownPoints, row.carried.folded,
+                              row.error.rms, row.error.p99, seconds.front().second));
+    last = std::move(row.carried);
+  });
+  if (last) context.print(deformer.report(*last));
+  const auto set = [&](const char* key, auto of) {
+    context.report().setColumn(std::string("frames.") + key, frames.wanted, [&](std::size_t index) {
+      const auto found = errors.find(index);
+      return found == errors.end() ? std::nan("") : of(found->second);
+    });
+  };
+  set("boundary_rms", [](const BoundaryError& e) { return e.rms; });
+  set("boundary_p99", [](const BoundaryError& e) { return e.p99; });
+  set("boundary_max", [](const BoundaryError& e) { return e.max; });
+  context.print(secondsText(results, context));
+}
+
+}  // namespace innermap::tool
