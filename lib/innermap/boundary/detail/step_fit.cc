@@ -17,9 +17,8 @@ constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32;
 // Of what is left of the tolerance for the way that is left: errors of steps add up, but do not all
 // point the same way. The last step has to do with what is left.
 constexpr double kShare = 1.3, kLastShare = 1, kLeastShare = 0.1;
-// Of the folds that are left: after a step, and of that after its first charges. The last may have
-// all.
-constexpr double kFoldShare = 0.5, kLastFoldShare = 1, kOfFirstCharges = 0.5;
+// Of the folds that are left: after a step, and after its first charges.
+constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
 constexpr double kOfTolerance = 0.9;  // is given to the steps
 constexpr int kOutlierRounds = 3, kPatience = 1;
 constexpr int kLastPatience = 3;  // what the last step does not reach is missed
@@ -58,7 +57,7 @@ class StepFitter {
       const double half = (end - at_) / 2;
       Step step = fitStep(end, may && half >= kShortest);
       if (step.fit.end == AdaptiveEnd::stopped ||
-          (may && half >= kShortestFitted && step.record.folded > allowed(end))) {
+          (may && half >= kShortestFitted && step.record.folded > allowed(kFoldShare))) {
         ends.push_back((at_ + end) / 2);
         continue;
       }
@@ -80,10 +79,9 @@ class StepFitter {
     return s;
   }
 
-  // Share of the points inside that may be folded after the step to `end`; `part` of it after that
-  // step's first charges.
-  double allowed(double end, double part = 1) const {
-    const double share = part * (end < 1 ? kFoldShare : kLastFoldShare);
+  // Share of the points inside that may be folded after a step, if that gets so much of what is
+  // left.
+  double allowed(double share) const {
     return folded_ + share * std::max(0.0, settings_.folds - folded_);
   }
 
@@ -106,9 +104,9 @@ class StepFitter {
     s.outlierRounds = kOutlierRounds;
     s.patience = to < 1 ? kPatience : kLastPatience;
     if (mayStop)
-      s.goOn = [this, to](const HarmonicField& field) {
+      s.goOn = [this](const HarmonicField& field) {
         return foldedShare(insideAfter(HarmonicMap(field)).determinants) <=
-               allowed(to, kOfFirstCharges);
+               allowed(kCoarseFoldShare);
       };
     s.maxMemory = settings_.maxMemory;
     s.progress = settings_.progress;
