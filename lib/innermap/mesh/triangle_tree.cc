@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "innermap/mesh/detail/bvh.h"
+#include "innermap/mesh/detail/local_triangles.h"
 
 namespace innermap {
 namespace {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "innermap/core/progress.h"
-#include "innermap/core/vec3.h"
 #include "innermap/mesh/mesh.h"
 #include "innermap/tetra/cell_mesh.h"
 
@@ -26,12 +25,6 @@ struct RepairCellsSettings {
   double anchor = 0;
   bool slide = true;  // vertices of the boundary may move at all
   Progress* progress = nullptr;
-};
-
-struct CarriedCells {
-  Points positions;  // #V
-  // #V: of vertices of the boundary, their places on the surface; triangle -1 for the others.
-  std::vector<SurfacePoint> onSurface;
 };
 
 struct CellRepair {

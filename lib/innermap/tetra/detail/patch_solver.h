@@ -6,7 +6,6 @@
 #include "innermap/core/progress.h"
 #include "innermap/tetra/detail/cell_system.h"
 #include "innermap/tetra/detail/guide_surface.h"
-#include "innermap/tetra/repair_cells.h"
 
 namespace innermap {
 
