@@ -11,6 +11,7 @@
 #include "innermap/tetra/detail/fit_boundary.h"
 #include "innermap/tetra/detail/keep_topology.h"
 #include "innermap/tetra/detail/lattice_signs.h"
+#include "innermap/tetra/detail/sharp_edges.h"
 #include "innermap/tetra/detail/stuffing.h"
 
 namespace innermap {
@@ -60,6 +61,8 @@ Tetrahedralization tetrahedralizeScaled(const Solid& solid, double spacing,
   settings.edge = scale * spacing;
   Tetrahedralization result = tetrahedralization(Solid(mesh, solidSettings), settings);
   result.edge /= scale;
+  result.sharpRms /= scale;
+  result.sharpMax /= scale;
   for (Vec3& v : result.mesh.vertices) v = centre + v / scale;
   return result;
 }
@@ -142,9 +145,27 @@ LatticeSigns signsOf(const Solid& solid, double spacing, const TetrahedralizeSet
   return signs;
 }
 
+void keepSharpEdges(const Solid& solid, const TetrahedralizeSettings& settings, StuffedMesh& mesh,
+                    Tetrahedralization& result) {
+  const SharpEdges sharp = sharpEdges(solid.surface(), *settings.features);
+  const SharpFit fit = fitSharpEdges(solid, sharp, result.edge, mesh, settings.progress);
+  result.sharpCurves = fit.curves;
+  result.keptCurves = fit.kept;
+  result.sharpRms = fit.rms;
+  result.sharpMax = fit.max;
+  if (fit.curves == 0)
+    result.notes.push_back(fmt::format("no edge is sharper than {:g} degrees", *settings.features));
+  if (fit.kept < fit.curves)
+    result.warnings.push_back(fmt::format(
+        "{} of {} sharp curves have no path of the mesh's edges: a finer lattice may have",
+        fit.curves - fit.kept, fit.curves));
+}
+
 }  // namespace
 
 Tetrahedralization tetrahedralization(const Solid& solid, const TetrahedralizeSettings& settings) {
+  if (settings.features && !(*settings.features > 0 && *settings.features < 180))
+    throw SettingError("features", "must lie between 0 and 180 degrees");
   const double spacing = spacingFor(solid, settings);
   requireMemoryFor(solid, spacing, settings.maxMemory);
   if (spacing < kSmallestVoxel) return tetrahedralizeScaled(solid, spacing, settings);
@@ -164,6 +185,7 @@ Tetrahedralization tetrahedralization(const Solid& solid, const TetrahedralizeSe
   StuffedMesh stuffing = stuffed(signs, settings.progress);
   signs = {};
   fitBoundary(solid, spacing, stuffing, settings.progress);
+  if (settings.features) keepSharpEdges(solid, settings, stuffing, result);
   result.mesh.name = solid.repaired().mesh.name;
   result.mesh.vertices = std::move(stuffing.vertices);
   result.mesh.tetrahedra = std::move(stuffing.tetrahedra);
