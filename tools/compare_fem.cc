@@ -54,13 +54,37 @@ std::string nameOf(const ComparedRow& row) {
   return row.charges ? fmt::format("{} charges", row.size) : fmt::format("{} tets", row.size);
 }
 
-// The most exact charges that took no longer, or null.
-const ComparedRow* atEqualTime(const CompareFem& result, const ComparedRow& elements) {
-  const ComparedRow* best = nullptr;
+// A method's errors at all times of the chart, between its own by straight lines of logarithms.
+std::vector<double> curveOf(const CompareFem& result, bool charges, double ComparedRow::*error,
+                            const std::vector<double>& times) {
+  std::vector<std::pair<double, double>> own;
+  for (const ComparedRow& r : result.rows)
+    if (r.charges == charges) own.push_back({std::log10(r.seconds), std::log10(r.*error)});
+  std::sort(own.begin(), own.end());
+  std::vector<double> values;
+  for (const double t : times) {
+    double value = kUnknown;
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      if (own[i].first == t) value = own[i].second;
+      if (i + 1 < own.size() && own[i].first < t && t < own[i + 1].first)
+        value = own[i].second + (own[i + 1].second - own[i].second) * (t - own[i].first) /
+                                    (own[i + 1].first - own[i].first);
+    }
+    values.push_back(value);
+  }
+  return values;
+}
+
+// The error that charges have after so many seconds: between those measured as the chart has it,
+// after the last as that; NaN before the first.
+double chargesAfter(const CompareFem& result, double ComparedRow::*error, double seconds) {
+  const double between = std::pow(10, curveOf(result, true, error, {std::log10(seconds)}).front());
+  if (std::isfinite(between)) return between;
+  const ComparedRow* last = nullptr;
   for (const ComparedRow& row : result.rows)
-    if (row.charges && row.seconds <= elements.seconds && (!best || row.gradient < best->gradient))
-      best = &row;
-  return best;
+    if (row.charges && row.seconds <= seconds && (!last || row.seconds > last->seconds))
+      last = &row;
+  return last ? last->*error : kUnknown;
 }
 
 void printTable(const CompareFem& result, bool map, Context& context) {
@@ -84,12 +108,13 @@ void printTable(const CompareFem& result, bool map, Context& context) {
                     result.valueOrder, result.gradientOrder));
   for (const ComparedRow& r : result.rows) {
     if (r.charges) continue;
-    const ComparedRow* best = atEqualTime(result, r);
-    context.print(best ? fmt::format("in the time of {}: {} have {:.2g} times its error in values, "
-                                     "{:.2g} times that in gradients\n",
-                                     nameOf(r), nameOf(*best), best->value / r.value,
-                                     best->gradient / r.gradient)
-                       : fmt::format("in the time of {}: no charges\n", nameOf(r)));
+    const double value = chargesAfter(result, &ComparedRow::value, r.seconds) / r.value,
+                 gradient = chargesAfter(result, &ComparedRow::gradient, r.seconds) / r.gradient;
+    context.print(std::isfinite(value)
+                      ? fmt::format("in the time of {} charges have {:.2g} times its error in "
+                                    "values and {:.2g} times that in gradients\n",
+                                    nameOf(r), value, gradient)
+                      : fmt::format("in the time of {} no charges were fitted\n", nameOf(r)));
   }
 }
 
@@ -108,27 +133,6 @@ void writeTable(const std::string& path, const CompareFem& result) {
   out.close();
   if (!out) throw FileError(path, "cannot be written");
   file.commit();
-}
-
-// A method's errors at all times of the chart, between its own by straight lines of logarithms.
-std::vector<double> curveOf(const CompareFem& result, bool charges, double ComparedRow::*error,
-                            const std::vector<double>& times) {
-  std::vector<std::pair<double, double>> own;
-  for (const ComparedRow& r : result.rows)
-    if (r.charges == charges) own.push_back({std::log10(r.seconds), std::log10(r.*error)});
-  std::sort(own.begin(), own.end());
-  std::vector<double> values;
-  for (const double t : times) {
-    double value = kUnknown;
-    for (std::size_t i = 0; i < own.size(); ++i) {
-      if (own[i].first == t) value = own[i].second;
-      if (i + 1 < own.size() && own[i].first < t && t < own[i + 1].first)
-        value = own[i].second + (own[i + 1].second - own[i].second) * (t - own[i].first) /
-                                    (own[i + 1].first - own[i].first);
-    }
-    values.push_back(value);
-  }
-  return values;
 }
 
 Chart chartOf(const CompareFem& result, const CompareOptions& options) {

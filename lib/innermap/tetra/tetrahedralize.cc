@@ -23,6 +23,8 @@ constexpr int kLeastAcross = 4, kMostAcross = 1024;
 // where its vertices go.
 constexpr double kNodeBytes = 12, kOuterBytes = 500;
 
+constexpr double kMostLost = 1e-3;  // of the surface, without a warning
+
 double longestSide(const Solid& solid) {
   const Vec3 e = solid.box().extent();
   return std::max({e.x, e.y, e.z});
@@ -127,6 +129,11 @@ LatticeSigns signsOf(const Solid& solid, double spacing, const TetrahedralizeSet
       keepTopology(solid, surface.clean ? &surface.solid : nullptr, signs, settings.progress);
   result.topology = kept.found;
   result.changedNodes = kept.changed;
+  if (kept.lost > kMostLost * static_cast<double>(kept.points))
+    result.warnings.push_back(fmt::format(
+        "{:.2g}% of the surface is farther than a cell from all tetrahedra, on parts too thin for "
+        "this lattice: use a higher resolution",
+        100.0 * static_cast<double>(kept.lost) / static_cast<double>(kept.points)));
   if (surface.clean && !kept.kept) {
     if (settings.keepTopology) refuse(solid, surface.solid, kept.found, spacing, settings);
     result.warnings.push_back(fmt::format("the tetrahedra have {} where the solid has {}",
