@@ -26,7 +26,7 @@ namespace {
 struct CompareOptions {
   std::string source, target, output;
   bool functions = false;
-  std::string resolutions = "16,32,64", charges = "250,500,1000", tolerances = "4e-3,2e-3,1e-3";
+  std::string resolutions = "16,32,64", charges = "250,500,1000", tolerances = "4e-3,1e-3,4e-4";
   CompareFemSettings settings;
   int axis = 2;
   double at = 0.5;
@@ -59,7 +59,8 @@ std::vector<double> curveOf(const CompareFem& result, bool charges, double Compa
                             const std::vector<double>& times) {
   std::vector<std::pair<double, double>> own;
   for (const ComparedRow& r : result.rows)
-    if (r.charges == charges) own.push_back({std::log10(r.seconds), std::log10(r.*error)});
+    if (r.charges == charges && r.*error > 0)
+      own.push_back({std::log10(r.seconds), std::log10(r.*error)});
   std::sort(own.begin(), own.end());
   std::vector<double> values;
   for (const double t : times) {
@@ -75,16 +76,29 @@ std::vector<double> curveOf(const CompareFem& result, bool charges, double Compa
   return values;
 }
 
-// The error that charges have after so many seconds: between those measured as the chart has it,
-// after the last as that; NaN before the first.
-double chargesAfter(const CompareFem& result, double ComparedRow::*error, double seconds) {
-  const double between = std::pow(10, curveOf(result, true, error, {std::log10(seconds)}).front());
+// A method's error after so many seconds: between those measured as the chart has it, after the
+// last as that; NaN before the first.
+double errorAfter(const CompareFem& result, bool charges, double ComparedRow::*error,
+                  double seconds) {
+  const double between =
+      std::pow(10, curveOf(result, charges, error, {std::log10(seconds)}).front());
   if (std::isfinite(between)) return between;
   const ComparedRow* last = nullptr;
   for (const ComparedRow& row : result.rows)
-    if (row.charges && row.seconds <= seconds && (!last || row.seconds > last->seconds))
+    if (row.charges == charges && row.*error > 0 && row.seconds <= seconds &&
+        (!last || row.seconds > last->seconds))
       last = &row;
   return last ? last->*error : kUnknown;
+}
+
+// The other method at the same time.
+std::string atEqualTime(const CompareFem& result, const ComparedRow& row) {
+  const double value = errorAfter(result, !row.charges, &ComparedRow::value, row.seconds),
+               gradient = errorAfter(result, !row.charges, &ComparedRow::gradient, row.seconds);
+  const std::string other = row.charges ? "finite elements" : "charges";
+  if (!std::isfinite(value)) return "there are no " + other + " yet";
+  return fmt::format("{} have {:.2g} times its error in values, {:.2g} times that in gradients",
+                     other, value / row.value, gradient / row.gradient);
 }
 
 void printTable(const CompareFem& result, bool map, Context& context) {
@@ -92,9 +106,10 @@ void printTable(const CompareFem& result, bool map, Context& context) {
                             "memory", "value", "gradient", "largest", "jump",
                             map ? "  harmonic  deformation   folded inverted" : ""));
   for (const ComparedRow& r : result.rows) {
-    context.print(fmt::format("{:>18} {:>8.2f} {:>9} {:>9.2e} {:>9.2e} {:>9.2e} {:>8.3f}",
-                              nameOf(r), r.seconds, formatBytes(r.memory), r.value, r.gradient,
-                              r.largest, r.jump));
+    const auto error = [](double v) { return std::isfinite(v) ? fmt::format("{:.2e}", v) : "-"; };
+    context.print(fmt::format("{:>18} {:>8.2f} {:>9} {:>9} {:>9} {:>9} {:>8.3f}", nameOf(r),
+                              r.seconds, formatBytes(r.memory), error(r.value), error(r.gradient),
+                              error(r.largest), r.jump));
     if (map)
       context.print(fmt::format("  {:>8.4f}  {:>11.5f} {:>7.3f}% {:>8}", r.harmonicEnergy,
                                 r.deformationEnergy, 100 * r.folded,
@@ -106,16 +121,10 @@ void printTable(const CompareFem& result, bool map, Context& context) {
         fmt::format("finite elements converge with order {:.2f} (values) and {:.2f} "
                     "(gradients)\n",
                     result.valueOrder, result.gradientOrder));
-  for (const ComparedRow& r : result.rows) {
-    if (r.charges) continue;
-    const double value = chargesAfter(result, &ComparedRow::value, r.seconds) / r.value,
-                 gradient = chargesAfter(result, &ComparedRow::gradient, r.seconds) / r.gradient;
-    context.print(std::isfinite(value)
-                      ? fmt::format("in the time of {} charges have {:.2g} times its error in "
-                                    "values and {:.2g} times that in gradients\n",
-                                    nameOf(r), value, gradient)
-                      : fmt::format("in the time of {} no charges were fitted\n", nameOf(r)));
-  }
+  for (const ComparedRow& r : result.rows)
+    if (r.value > 0)
+      context.print(fmt::format("after the {:.2f} s of {} {}\n", r.seconds, nameOf(r),
+                                atEqualTime(result, r)));
 }
 
 void writeTable(const std::string& path, const CompareFem& result) {
