@@ -275,7 +275,12 @@ void run(const CompareOptions& options, Context& context) {
     context.tell(*pair);
   }
   const Solid& solid = pair ? pair->solid() : *alone;
-  const std::uint64_t need = compareFemMemory(solid, settings);
+  std::uint64_t need = compareFemMemory(solid, settings);
+  if (pair) {
+    FitMapSettings reference;
+    reference.tolerance = settings.referenceTolerance;
+    need = std::max(need, fitMapMemory(reference));
+  }
   if (context.dryRun())
     return context.plan(
         {fmt::format("compare finite elements at resolutions {} with charges", options.resolutions),

@@ -25,13 +25,16 @@ struct TetrahedralizeOptions {
   double at = 0.5;
 };
 
-// The faces among which the boundary is found, a cell's quality as fields, what is written; or the
-// lattice.
-constexpr std::uint64_t kBytesACell = 110;
+// Measured: of a tetrahedron, the faces among which the boundary is found, its quality as fields
+// and what is written; with a picture its faces and values there, and of the picture itself.
+constexpr std::uint64_t kBytesACell = 110, kDrawnBytesACell = 132, kPicture = 200'000'000;
 
-std::uint64_t memoryFor(const Solid& solid, const TetrahedralizeSettings& settings) {
+std::uint64_t memoryFor(const TetrahedralizeOptions& options, const Solid& solid,
+                        const TetrahedralizeSettings& settings) {
   const TetrahedralizeNeed need = tetrahedralizeNeed(solid, settings);
-  return std::max<std::uint64_t>(need.memory, need.tetrahedra * kBytesACell + need.vertices * 40);
+  const std::uint64_t drawing =
+      options.picture.empty() ? 0 : need.tetrahedra * kDrawnBytesACell + kPicture;
+  return std::max({need.memory, drawing, need.tetrahedra * kBytesACell + need.vertices * 40});
 }
 
 void drawCut(const TetrahedralizeOptions& options, const CellMesh& mesh, const CellQuality& quality,
@@ -87,7 +90,7 @@ void run(const TetrahedralizeOptions& options, Context& context) {
   for (const std::string& note : solid.repaired().notes) context.note(options.mesh + ": " + note);
   TetrahedralizeSettings settings = context.settings(options.settings);
   settings.keepTopology = !options.anyTopology;
-  const std::uint64_t need = memoryFor(solid, settings);
+  const std::uint64_t need = memoryFor(options, solid, settings);
   if (context.dryRun())
     return context.plan(
         {fmt::format("fill {} with tetrahedra, to {}", options.mesh, options.output)}, need);

@@ -421,17 +421,23 @@ CompareFem compareFemOnMap(const BoundaryPair& pair, const CompareFemSettings& s
 
 std::uint64_t compareFemMemory(const Solid& solid, const CompareFemSettings& settings) {
   checkSettings(settings);
+  // Of a tetrahedron: itself, and the search for points in it. All meshes are kept for the
+  // pictures; while the finest is solved it has no search yet.
+  constexpr std::uint64_t kBytesACell = 16 + 150;
   TetrahedralizeSettings cells;
-  std::uint64_t elements = 0;
+  std::uint64_t coarser = 0, finest = 0;
   for (const int resolution : settings.resolutions) {
     cells.resolution = resolution;
     const TetrahedralizeNeed need = tetrahedralizeNeed(solid, cells);
-    // All meshes are kept for the pictures; the finest is being solved.
-    elements += need.tetrahedra * (16 + 150) + need.vertices * 48;
+    coarser += finest;
+    finest = need.tetrahedra * kBytesACell + need.vertices * 48;
+    if (resolution == settings.resolutions.back())
+      finest =
+          std::max({finest, need.memory,
+                    need.tetrahedra * 16 + harmonicCellsMemory(need.vertices, need.tetrahedra)});
   }
-  const TetrahedralizeNeed finest = tetrahedralizeNeed(solid, cells);
-  return elements +
-         std::max(harmonicCellsMemory(finest.vertices, finest.tetrahedra), finest.memory);
+  constexpr std::uint64_t kPicture = 100'000'000;
+  return coarser + finest + finest / 8 + kPicture;
 }
 
 }  // namespace innermap
