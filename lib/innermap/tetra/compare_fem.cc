@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
-#include <set>
 
 #include "innermap/boundary/surface_problem.h"
 #include "innermap/core/detail/random.h"
@@ -14,7 +13,7 @@
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
 #include "innermap/evaluate/energy.h"
-#include "innermap/tetra/cell_locator.h"
+#include "innermap/tetra/detail/elements.h"
 #include "innermap/tetra/harmonic_cells.h"
 #include "innermap/tetra/tetrahedralize.h"
 
@@ -73,14 +72,6 @@ Mat3 jacobianOf(const std::array<double, 9>& g) {
   return {{{g[0], g[1], g[2]}, {g[3], g[4], g[5]}, {g[6], g[7], g[8]}}};
 }
 
-// Sums of squares of the three channels as one number: the worst of the three, or all of them.
-double relative(const Vec3& errors, const Vec3& sizes, bool together) {
-  if (together) return std::sqrt((errors.x + errors.y + errors.z) / (sizes.x + sizes.y + sizes.z));
-  double worst = 0;
-  for (int k = 0; k < 3; ++k) worst = std::max(worst, std::sqrt(errors[k] / sizes[k]));
-  return worst;
-}
-
 void measure(const Task& task, const Samples& samples, ComparedRow& row) {
   const std::vector<InsideValues> found = row.function(samples.points);
   Vec3 valueErrors, values, gradientErrors, gradients, largest, extent;
@@ -107,7 +98,7 @@ void measure(const Task& task, const Samples& samples, ComparedRow& row) {
     deformation += deformationEnergyDensity(jacobian);
   }
   const auto count = static_cast<double>(found.size());
-  row.gradient = relative(gradientErrors, gradients, task.map);
+  row.gradient = relativeError(gradientErrors, gradients, task.map);
   if (task.map) {
     row.value = std::sqrt((valueErrors.x + valueErrors.y + valueErrors.z) / count) / task.unit;
     row.largest = norm(largest) / task.unit;
@@ -115,121 +106,9 @@ void measure(const Task& task, const Samples& samples, ComparedRow& row) {
     row.deformationEnergy = deformation / count;
     row.folded = static_cast<double>(folded) / count;
   } else {
-    row.value = relative(valueErrors, values, false);
+    row.value = relativeError(valueErrors, values, false);
     row.largest = std::max({largest.x / extent.x, largest.y / extent.y, largest.z / extent.z});
   }
-}
-
-std::array<double, 9> gradientIn(const CellMesh& mesh, const Matrix& values, int cell) {
-  const Tetrahedron& c = mesh.tetrahedra[cell];
-  const std::array<Vec3, 4> g = cornerGradients(mesh.vertices, c);
-  std::array<double, 9> out{};
-  for (int i = 0; i < 4; ++i)
-    for (int k = 0; k < 3; ++k)
-      for (int a = 0; a < 3; ++a)
-        out[3 * k + a] += values(c[i], static_cast<std::size_t>(k)) * g[i][a];
-  return out;
-}
-
-struct Elements {
-  CellMesh mesh;
-  Matrix values;
-  std::unique_ptr<CellLocator> locator;
-};
-
-// Over the faces of some thousand cells, evenly spread among all.
-double jumpOf(const Elements& e, bool together) {
-  constexpr std::size_t kCells = 20000;
-  const std::size_t count = e.mesh.tetrahedra.size();
-  const std::size_t step = std::max<std::size_t>(1, count / kCells);
-  const auto faceOf = [&](std::size_t t, int without) {
-    std::array<int, 3> face{};
-    for (int i = 0, n = 0; i < 4; ++i)
-      if (i != without) face[n++] = e.mesh.tetrahedra[t][i];
-    std::sort(face.begin(), face.end());
-    return face;
-  };
-  std::vector<std::pair<std::array<int, 3>, std::size_t>> faces;
-  for (std::size_t t = 0; t < count; t += step)
-    for (int i = 0; i < 4; ++i) faces.push_back({faceOf(t, i), t});
-  std::sort(faces.begin(), faces.end());
-  std::vector<bool> concerned(e.mesh.vertices.size(), false);
-  for (const auto& face : faces)
-    for (const int v : face.first) concerned[v] = true;
-  Vec3 jumps, sizes;
-  for (std::size_t t = 0; t < count; ++t)
-    for (int i = 0; i < 4; ++i) {
-      const auto face = faceOf(t, i);
-      if (!concerned[face[0]] || !concerned[face[1]] || !concerned[face[2]]) continue;
-      auto found = std::lower_bound(faces.begin(), faces.end(), std::pair(face, std::size_t{0}));
-      for (; found != faces.end() && found->first == face; ++found) {
-        if (found->second == t) continue;
-        const auto a = gradientIn(e.mesh, e.values, static_cast<int>(t));
-        const auto b = gradientIn(e.mesh, e.values, static_cast<int>(found->second));
-        for (int k = 0; k < 9; ++k) {
-          jumps[k / 3] += (a[k] - b[k]) * (a[k] - b[k]);
-          sizes[k / 3] += 0.5 * (a[k] * a[k] + b[k] * b[k]);
-        }
-      }
-    }
-  return relative(jumps, sizes, together);
-}
-
-Elements solveElements(const Task& task, int resolution, const CompareFemSettings& settings,
-                       ComparedRow& row) {
-  TetrahedralizeSettings cells;
-  cells.resolution = resolution;
-  cells.keepTopology = false;
-  cells.maxMemory = settings.maxMemory;
-  cells.progress = settings.progress;
-  HarmonicCellsSettings solving;
-  solving.progress = settings.progress;
-  const Watch watch;
-  Elements e;
-  Tetrahedralization made = tetrahedralization(task.solid, cells);
-  e.mesh = std::move(made.mesh);
-  row.memory = harmonicCellsMemory(e.mesh.vertices.size(), e.mesh.tetrahedra.size());
-  if (settings.maxMemory > 0)
-    requireMemory(fmt::format("finite elements at a resolution of {}", resolution), row.memory,
-                  settings.maxMemory, "leave out the finest resolution");
-  const std::vector<bool> fixed = boundaryVertices(e.mesh);
-  Matrix given(e.mesh.vertices.size(), 3);
-  parallelBlocks(
-      fixed.size(), 1024,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v) {
-          if (!fixed[v]) continue;
-          const Vec3 value = task.boundary(e.mesh.vertices[v]);
-          for (int k = 0; k < 3; ++k) given(v, static_cast<std::size_t>(k)) = value[k];
-        }
-      },
-      settings.progress);
-  HarmonicCells solved = harmonicOnCells(e.mesh, given, solving);
-  row.seconds = watch.seconds();
-  row.size = e.mesh.tetrahedra.size();
-  row.edge = made.edge;
-  row.unknowns = solved.unknowns;
-  row.iterations = solved.iterations;
-  e.values = std::move(solved.values);
-  e.locator = std::make_unique<CellLocator>(e.mesh.vertices, e.mesh.tetrahedra);
-  return e;
-}
-
-InsideFunction functionOf(std::shared_ptr<const Elements> e) {
-  return [e](const Points& points) {
-    std::vector<InsideValues> out(points.size());
-    parallelBlocks(points.size(), 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const CellPoint at = e->locator->locate(points[i]);
-        for (int c = 0; c < 4; ++c)
-          for (int k = 0; k < 3; ++k)
-            out[i].value[k] += at.barycentric[c] * e->values(e->mesh.tetrahedra[at.tetrahedron][c],
-                                                             static_cast<std::size_t>(k));
-        out[i].gradient = gradientIn(e->mesh, e->values, at.tetrahedron);
-      }
-    });
-    return out;
-  };
 }
 
 std::vector<InsideValues> insideValues(const FieldSamples& samples, std::size_t count) {
@@ -272,13 +151,12 @@ Samples compareElements(const Task& task, const CompareFemSettings& settings, Co
   std::vector<std::shared_ptr<const Elements>> all;
   for (const int resolution : settings.resolutions) {
     ComparedRow row;
-    const auto elements =
-        std::make_shared<const Elements>(solveElements(task, resolution, settings, row));
+    const auto elements = std::make_shared<const Elements>(
+        solveElements(task.solid, task.boundary, resolution, settings, row));
     row.jump = jumpOf(*elements, task.map);
     if (task.map)
       for (std::size_t t = 0; t < elements->mesh.tetrahedra.size(); ++t)
-        row.inverted += !(determinant(jacobianOf(gradientIn(elements->mesh, elements->values,
-                                                            static_cast<int>(t)))) > 0);
+        row.inverted += !(determinant(jacobianOf(gradientIn(*elements, static_cast<int>(t)))) > 0);
     row.function = functionOf(elements);
     result.rows.push_back(std::move(row));
     all.push_back(elements);

@@ -152,6 +152,22 @@ LatticeSigns signsOf(const Solid& solid, double spacing, const TetrahedralizeSet
   return signs;
 }
 
+// What the lattice's nodes promise holds for the cells too: the boundary itself is looked at.
+void checkBoundary(const Solid& solid, const StuffedMesh& mesh,
+                   const TetrahedralizeSettings& settings, Tetrahedralization& result) {
+  const BoundaryTopology made = boundaryTopology(mesh.vertices, boundaryOf(mesh));
+  if (made.manifold() && made.solid == result.topology) return;
+  const std::string what = fmt::format(
+      "the tetrahedra's boundary is not that of the lattice ({}, {} non-manifold edges and {} "
+      "vertices instead of {})",
+      describe(made.solid), made.openEdges + made.nonManifoldEdges, made.nonManifoldVertices,
+      describe(result.topology));
+  if (settings.keepTopology)
+    throw DataError(solid.repaired().mesh.name + ": " + what + "; use another resolution");
+  result.topology = made.solid;
+  result.warnings.push_back(what);
+}
+
 void keepSharpEdges(const Solid& solid, const TetrahedralizeSettings& settings, StuffedMesh& mesh,
                     Tetrahedralization& result) {
   const SharpEdges sharp = sharpEdges(solid.surface(), *settings.features);
@@ -191,6 +207,8 @@ Tetrahedralization tetrahedralization(const Solid& solid, const TetrahedralizeSe
   warpNodes(signs, settings.progress);
   StuffedMesh stuffing = stuffed(signs, settings.progress);
   signs = {};
+  checkBoundary(solid, stuffing, settings, result);
+  holdWarped(stuffing, settings.progress);
   fitBoundary(solid, spacing, stuffing, settings.progress);
   if (settings.features) keepSharpEdges(solid, settings, stuffing, result);
   result.mesh.name = solid.repaired().mesh.name;

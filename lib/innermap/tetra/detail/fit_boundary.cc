@@ -85,6 +85,13 @@ void boundVertices(const Points& before, double leastDihedral, double greatestDi
   }
 }
 
+void holdWarped(StuffedMesh& mesh, Progress* progress) {
+  Points before = mesh.vertices;
+  std::copy(mesh.unwarped.begin(), mesh.unwarped.end(), before.begin() + mesh.firstBoundary);
+  boundVertices(before, kLeastDihedral, kGreatestDihedral, mesh, progress);
+  mesh.unwarped = {};
+}
+
 void fitBoundary(const Solid& solid, double spacing, StuffedMesh& mesh, Progress* progress) {
   const auto first = static_cast<std::size_t>(mesh.firstBoundary);
   const Points before = mesh.vertices;

@@ -9,8 +9,12 @@ namespace innermap {
 
 constexpr double kLeastDihedral = 10, kGreatestDihedral = 165;  // degrees
 
-// Vertices go to the closest surface points, halved back where a dihedral angle would leave
+// Warped nodes are halved back to where they came from where a dihedral angle would leave
 // kLeastDihedral to kGreatestDihedral.
+void holdWarped(StuffedMesh& mesh, Progress* progress);
+
+// After holdWarped(). Vertices go to the closest surface points, halved back where a dihedral angle
+// would leave kLeastDihedral to kGreatestDihedral.
 void fitBoundary(const Solid& solid, double spacing, StuffedMesh& mesh, Progress* progress);
 
 // Vertices that were elsewhere `before` are halved back to there where a dihedral angle leaves the

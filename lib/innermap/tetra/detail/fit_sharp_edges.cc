@@ -33,22 +33,12 @@ TriangleTree treeOf(const SharpCurve& curve) {
 class Boundary {
  public:
   explicit Boundary(const StuffedMesh& mesh) : mesh_(mesh) {
-    // All faces with three boundary vertices that one cell alone has.
-    CellMesh outer;
-    outer.vertices = mesh.vertices;
-    for (const Tetrahedron& t : mesh.tetrahedra) {
-      int on = 0;
-      for (const int v : t) on += v >= mesh.firstBoundary;
-      if (on >= 3) outer.tetrahedra.push_back(t);
-    }
     next_.resize(mesh.vertices.size() - static_cast<std::size_t>(mesh.firstBoundary));
-    for (const Triangle& t : boundaryTriangles(outer)) {
-      if (std::min({t[0], t[1], t[2]}) < mesh.firstBoundary) continue;
+    for (const Triangle& t : boundaryOf(mesh))
       for (int k = 0; k < 3; ++k) {
         next_[index(t[k])].push_back(t[(k + 1) % 3]);
         next_[index(t[(k + 1) % 3])].push_back(t[k]);
       }
-    }
   }
 
   int first() const { return mesh_.firstBoundary; }

@@ -156,6 +156,7 @@ class Stuffer {
 
  private:
   static constexpr std::size_t kBlock = 1 << 15;
+  static constexpr double kHeld = 1.1;
 
   int cutsOf(std::size_t node) const {
     const auto& offsets = lattice_.offsets(lattice_.second(node));
@@ -208,6 +209,7 @@ class Stuffer {
         next += count;
       }
       if (kind == 0) withCuts_ = next;
+      if (kind == 2) mesh_.unwarped.resize(static_cast<std::size_t>(next) - mesh_.firstBoundary);
       if (next > std::numeric_limits<int>::max())
         throw MemoryError("over two billion vertices: use a lower resolution");
     }
@@ -228,16 +230,23 @@ class Stuffer {
             mesh_.vertices[id] = kind == 2 ? onEdge(node, signs_.onEdge[node],
                                                     cutShare(signs_, node, signs_.onEdge[node]))
                                            : lattice_.position(node);
+            if (kind == 2) mesh_.unwarped[id - mesh_.firstBoundary] = lattice_.position(node);
             if (kind != 0) return;
             cutMask_[id] = static_cast<std::uint16_t>(cuts);
             cutStart_[id] = static_cast<int>(at[3]);
             for (int d = 0; d < kDirections; ++d)
-              if (cuts >> d & 1)
-                mesh_.vertices[at[3]++] = onEdge(
-                    node, d, std::clamp(cutShare(signs_, node, d), leastCut(d), 1 - leastCut(d)));
+              if (cuts >> d & 1) mesh_.vertices[at[3]++] = onEdge(node, d, heldShare(node, d));
           });
         },
         progress_, kStage);
+  }
+
+  // Cuts that are too near to a node that could not be warped are kept off it, a little farther
+  // than need be: warped neighbours may come close from elsewhere.
+  double heldShare(std::size_t node, int direction) const {
+    const double share = cutShare(signs_, node, direction), least = leastCut(direction);
+    if (share < least) return kHeld * least;
+    return share > 1 - least ? 1 - kHeld * least : share;
   }
 
   Vec3 onEdge(std::size_t node, int direction, double share) const {
@@ -316,6 +325,23 @@ class Stuffer {
 };
 
 }  // namespace
+
+std::vector<Triangle> boundaryOf(const StuffedMesh& mesh) {
+  CellMesh outer;
+  outer.vertices = mesh.vertices;
+  for (const Tetrahedron& t : mesh.tetrahedra) {
+    int on = 0;
+    for (const int v : t) on += v >= mesh.firstBoundary;
+    if (on >= 3) outer.tetrahedra.push_back(t);
+  }
+  std::vector<Triangle> triangles = boundaryTriangles(outer);
+  triangles.erase(std::remove_if(triangles.begin(), triangles.end(),
+                                 [&](const Triangle& t) {
+                                   return std::min({t[0], t[1], t[2]}) < mesh.firstBoundary;
+                                 }),
+                  triangles.end());
+  return triangles;
+}
 
 StuffedMesh stuffed(const LatticeSigns& signs, Progress* progress) {
   return Stuffer(signs, progress).run();
