@@ -111,6 +111,23 @@ void measure(const Task& task, const Samples& samples, ComparedRow& row) {
   }
 }
 
+InsideFunction functionOf(std::shared_ptr<const Elements> e) {
+  return [e](const Points& points) {
+    std::vector<InsideValues> out(points.size());
+    parallelBlocks(points.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const CellPoint at = e->locator->locate(points[i]);
+        for (int c = 0; c < 4; ++c)
+          for (int k = 0; k < 3; ++k)
+            out[i].value[k] += at.barycentric[c] * e->values(e->mesh.tetrahedra[at.tetrahedron][c],
+                                                             static_cast<std::size_t>(k));
+        out[i].gradient = gradientIn(*e, at.tetrahedron);
+      }
+    });
+    return out;
+  };
+}
+
 std::vector<InsideValues> insideValues(const FieldSamples& samples, std::size_t count) {
   std::vector<InsideValues> out(count);
   for (std::size_t i = 0; i < count; ++i)
@@ -150,9 +167,19 @@ void checkSettings(const CompareFemSettings& settings) {
 Samples compareElements(const Task& task, const CompareFemSettings& settings, CompareFem& result) {
   std::vector<std::shared_ptr<const Elements>> all;
   for (const int resolution : settings.resolutions) {
+    ElementsSettings solving;
+    solving.resolution = resolution;
+    solving.maxMemory = settings.maxMemory;
+    solving.progress = settings.progress;
+    const auto elements =
+        std::make_shared<const Elements>(solveElements(task.solid, task.boundary, solving));
     ComparedRow row;
-    const auto elements = std::make_shared<const Elements>(
-        solveElements(task.solid, task.boundary, resolution, settings, row));
+    row.size = elements->mesh.tetrahedra.size();
+    row.edge = elements->edge;
+    row.unknowns = elements->unknowns;
+    row.iterations = elements->iterations;
+    row.seconds = elements->seconds;
+    row.memory = elements->memory;
     row.jump = jumpOf(*elements, task.map);
     if (task.map)
       for (std::size_t t = 0; t < elements->mesh.tetrahedra.size(); ++t)

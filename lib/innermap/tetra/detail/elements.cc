@@ -71,9 +71,9 @@ double jumpOf(const Elements& e, bool together) {
 }
 
 Elements solveElements(const Solid& solid, const std::function<Vec3(const Vec3&)>& boundary,
-                       int resolution, const CompareFemSettings& settings, ComparedRow& row) {
+                       const ElementsSettings& settings) {
   TetrahedralizeSettings cells;
-  cells.resolution = resolution;
+  cells.resolution = settings.resolution;
   cells.keepTopology = false;
   cells.maxMemory = settings.maxMemory;
   cells.progress = settings.progress;
@@ -83,10 +83,10 @@ Elements solveElements(const Solid& solid, const std::function<Vec3(const Vec3&)
   Elements e;
   Tetrahedralization made = tetrahedralization(solid, cells);
   e.mesh = std::move(made.mesh);
-  row.memory = harmonicCellsMemory(e.mesh.vertices.size(), e.mesh.tetrahedra.size());
+  e.memory = harmonicCellsMemory(e.mesh.vertices.size(), e.mesh.tetrahedra.size());
   if (settings.maxMemory > 0)
-    requireMemory(fmt::format("finite elements at a resolution of {}", resolution), row.memory,
-                  settings.maxMemory, "leave out the finest resolution");
+    requireMemory(fmt::format("finite elements at a resolution of {}", settings.resolution),
+                  e.memory, settings.maxMemory, "leave out the finest resolution");
   const std::vector<bool> fixed = boundaryVertices(e.mesh);
   Matrix given(e.mesh.vertices.size(), 3);
   parallelBlocks(
@@ -100,31 +100,13 @@ Elements solveElements(const Solid& solid, const std::function<Vec3(const Vec3&)
       },
       settings.progress);
   HarmonicCells solved = harmonicOnCells(e.mesh, given, solving);
-  row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  row.size = e.mesh.tetrahedra.size();
-  row.edge = made.edge;
-  row.unknowns = solved.unknowns;
-  row.iterations = solved.iterations;
+  e.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  e.edge = made.edge;
+  e.unknowns = solved.unknowns;
+  e.iterations = solved.iterations;
   e.values = std::move(solved.values);
   e.locator = std::make_unique<CellLocator>(e.mesh.vertices, e.mesh.tetrahedra);
   return e;
-}
-
-InsideFunction functionOf(std::shared_ptr<const Elements> e) {
-  return [e](const Points& points) {
-    std::vector<InsideValues> out(points.size());
-    parallelBlocks(points.size(), 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const CellPoint at = e->locator->locate(points[i]);
-        for (int c = 0; c < 4; ++c)
-          for (int k = 0; k < 3; ++k)
-            out[i].value[k] += at.barycentric[c] * e->values(e->mesh.tetrahedra[at.tetrahedron][c],
-                                                             static_cast<std::size_t>(k));
-        out[i].gradient = gradientIn(*e, at.tetrahedron);
-      }
-    });
-    return out;
-  };
 }
 
 }  // namespace innermap
