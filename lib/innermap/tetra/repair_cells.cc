@@ -68,7 +68,7 @@ class Repair {
     const std::size_t first = poor.size();
     if (settings_.whole && !system_.tets.empty()) {
       solvePatches(system_, surface_, {wholePatch(system_, settings_.slide)}, patch_, true, cells_);
-      poor = poorTets(system_, cells_.positions, settings_.least);
+      poor = poorTets(system_, cells_.positions, settings_.least);if(getenv("DBG"))fprintf(stderr,"rings %d slide %d poor %zu slid %zu\n",count,slide,poor.size(),movedBoundary().size());
     } else {
       poor = untangleWith(kRings, false, std::move(poor), first);
     }
@@ -89,7 +89,7 @@ class Repair {
                      1 - static_cast<double>(poor.size()) / static_cast<double>(first + 1));
       solvePatches(system_, surface_, growPatches(system_, poor, count, slide), patch_, false,
                    cells_);
-      poor = poorTets(system_, cells_.positions, settings_.least);
+      poor = poorTets(system_, cells_.positions, settings_.least);if(getenv("DBG"))fprintf(stderr,"rings %d slide %d poor %zu slid %zu\n",count,slide,poor.size(),movedBoundary().size());
     }
     return poor;
   }

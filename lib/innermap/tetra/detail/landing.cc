@@ -42,6 +42,7 @@ std::vector<int> land(const CellSystem& system, const GuideSurface& surface, std
     off.clear();
     for (const int v : slid)
       if (!landOne(system, surface, v, tolerance, settings.least, cells)) off.push_back(v);
+    if(getenv("DBG")){double f=0; for(int v:off) f=std::max(f,norm(cells.positions[v]-surface.position(cells.onSurface[v]))); fprintf(stderr,"pass %d slid %zu off %zu far %g\n",pass,slid.size(),off.size(),f);}
     if (off.empty() || pass + 1 == kPasses) break;
     std::vector<int> seeds;
     for (const int v : off)
