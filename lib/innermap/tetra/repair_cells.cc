@@ -68,13 +68,13 @@ class Repair {
     const std::size_t first = poor.size();
     if (settings_.whole && !system_.tets.empty()) {
       solvePatches(system_, surface_, {wholePatch(system_, settings_.slide)}, patch_, true, cells_);
-      poor = poorTets(system_, cells_.positions, settings_.least);if(getenv("DBG"))fprintf(stderr,"rings %d slide %d poor %zu slid %zu\n",count,slide,poor.size(),movedBoundary().size());
+      poor = poorTets(system_, cells_.positions, settings_.least);
     } else {
       poor = untangleWith(kRings, false, std::move(poor), first);
     }
     if (settings_.slide) poor = untangleWith(kSlidingRings, true, std::move(poor), first);
     reportProgress(settings_.progress, "landing", 0);
-    const std::vector<int> off = land(system_, surface_, movedBoundary(), landed_, patch_, cells_);
+    const std::vector<int> off = land(system_, surface_, offSurface(), landed_, patch_, cells_);
     measure(off, out);
     return out;
   }
@@ -102,14 +102,24 @@ class Repair {
     return moved;
   }
 
+  std::vector<int> offSurface() const {
+    std::vector<int> off;
+    for (std::size_t v = 0; v < system_.vertices(); ++v)
+      if (system_.onBoundary[v] && wayOff(static_cast<int>(v)) > landed_)
+        off.push_back(static_cast<int>(v));
+    return off;
+  }
+
+  double wayOff(int v) const {
+    return norm(cells_.positions[v] - surface_.position(cells_.onSurface[v]));
+  }
+
   void measure(const std::vector<int>& off, CellRepair& out) const {
     out.invertedAfter = invertedCells(mesh_, cells_.positions);
     out.poorAfter = poorTets(system_, cells_.positions, settings_.least).size();
     out.slid = movedBoundary().size();
     out.notLanded = off.size();
-    for (const int v : off)
-      out.farthestOff = std::max(
-          out.farthestOff, norm(cells_.positions[v] - surface_.position(cells_.onSurface[v])));
+    for (const int v : off) out.farthestOff = std::max(out.farthestOff, wayOff(v));
     double squares = 0;
     for (std::size_t v = 0; v < carried_.size(); ++v) {
       const double way = norm(cells_.positions[v] - carried_[v]);
