@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <tuple>
+#include <numeric>
+#include <utility>
 
 #include "innermap/core/error.h"
+#include "innermap/core/parallel.h"
 
 namespace innermap {
 namespace {
@@ -44,33 +46,63 @@ void validateFields(const CellMesh& mesh, const std::vector<CellField>& fields, 
   }
 }
 
-struct Face {
-  std::array<int, 4> key;      // sorted; the last is -1 for a triangle
-  std::array<int, 4> corners;  // as seen from outside; the last is -1 for a triangle
-  std::int64_t order;
+// All faces by number: four of each tetrahedron, then six of each hexahedron, as seen from outside;
+// the last corner is -1 for a triangle.
+class Faces {
+ public:
+  explicit Faces(const CellMesh& mesh) : mesh_(mesh) {}
+
+  std::size_t size() const { return 4 * mesh_.tetrahedra.size() + 6 * mesh_.hexahedra.size(); }
+
+  std::array<int, 4> operator[](std::size_t face) const {
+    static constexpr int kTet[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+    static constexpr int kHex[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                       {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+    const std::size_t ofTets = 4 * mesh_.tetrahedra.size();
+    if (face < ofTets) {
+      const Tetrahedron& c = mesh_.tetrahedra[face / 4];
+      const auto& f = kTet[face % 4];
+      return {c[f[0]], c[f[1]], c[f[2]], -1};
+    }
+    const Hexahedron& c = mesh_.hexahedra[(face - ofTets) / 6];
+    const auto& f = kHex[(face - ofTets) % 6];
+    return {c[f[0]], c[f[1]], c[f[2]], c[f[3]]};
+  }
+
+  // Corners in ascending order, -1 last.
+  std::array<int, 4> key(std::size_t face) const {
+    std::array<int, 4> key = (*this)[face];
+    std::sort(key.begin(), key.end(),
+              [](int a, int b) { return static_cast<unsigned>(a) < static_cast<unsigned>(b); });
+    return key;
+  }
+
+ private:
+  const CellMesh& mesh_;
 };
 
-Face makeFace(std::array<int, 4> corners, std::int64_t order) {
-  std::array<int, 4> key = corners;
-  std::sort(key.begin(), key.end(), [](int a, int b) {
-    return static_cast<unsigned>(a) < static_cast<unsigned>(b);  // -1 last
+// Whether each face belongs to one cell only: faces are compared with those of the same lowest
+// vertex.
+std::vector<char> singleFaces(const CellMesh& mesh, const Faces& faces) {
+  std::vector<std::size_t> first(mesh.vertices.size() + 1, 0);
+  for (std::size_t f = 0; f < faces.size(); ++f) ++first[faces.key(f)[0] + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::size_t> sorted(faces.size()), next(first.begin(), first.end() - 1);
+  for (std::size_t f = 0; f < faces.size(); ++f) sorted[next[faces.key(f)[0]]++] = f;
+  std::vector<char> single(faces.size(), 0);
+  parallelBlocks(mesh.vertices.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::pair<std::array<int, 4>, std::size_t>> of;
+    for (std::size_t v = begin; v < end; ++v) {
+      of.clear();
+      for (std::size_t i = first[v]; i < first[v + 1]; ++i)
+        of.emplace_back(faces.key(sorted[i]), sorted[i]);
+      std::sort(of.begin(), of.end());
+      for (std::size_t i = 0; i < of.size(); ++i)
+        single[of[i].second] = (i == 0 || of[i - 1].first != of[i].first) &&
+                               (i + 1 == of.size() || of[i + 1].first != of[i].first);
+    }
   });
-  return {key, corners, order};
-}
-
-std::vector<Face> facesOf(const CellMesh& mesh) {
-  static constexpr int kTet[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-  static constexpr int kHex[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
-                                     {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
-  std::vector<Face> faces;
-  faces.reserve(4 * mesh.tetrahedra.size() + 6 * mesh.hexahedra.size());
-  std::int64_t order = 0;
-  for (const Tetrahedron& c : mesh.tetrahedra)
-    for (const auto& f : kTet) faces.push_back(makeFace({c[f[0]], c[f[1]], c[f[2]], -1}, order++));
-  for (const Hexahedron& c : mesh.hexahedra)
-    for (const auto& f : kHex)
-      faces.push_back(makeFace({c[f[0]], c[f[1]], c[f[2]], c[f[3]]}, order++));
-  return faces;
+  return single;
 }
 
 }  // namespace
@@ -99,21 +131,12 @@ std::array<Tetrahedron, 8> cornerTetrahedra(const Hexahedron& c) {
 }
 
 std::vector<Triangle> boundaryTriangles(const CellMesh& mesh) {
-  std::vector<Face> faces = facesOf(mesh);
-  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
-    return std::tie(a.key, a.order) < std::tie(b.key, b.order);
-  });
-  std::vector<Face> single;
-  for (std::size_t i = 0, end = 0; i < faces.size(); i = end) {
-    for (end = i + 1; end < faces.size() && faces[end].key == faces[i].key; ++end) {
-    }
-    if (end == i + 1) single.push_back(faces[i]);
-  }
-  std::sort(single.begin(), single.end(),
-            [](const Face& a, const Face& b) { return a.order < b.order; });
+  const Faces faces(mesh);
+  const std::vector<char> single = singleFaces(mesh, faces);
   std::vector<Triangle> triangles;
-  for (const Face& face : single) {
-    const auto& c = face.corners;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (!single[f]) continue;
+    const auto c = faces[f];
     triangles.push_back({c[0], c[1], c[2]});
     if (c[3] >= 0) triangles.push_back({c[0], c[2], c[3]});
   }

@@ -47,28 +47,9 @@ LocalCells localOf(const CellSystem& system, const CellPatch& patch, const Carri
       tet[k] =
           std::lower_bound(numbers.begin(), numbers.end(), std::make_pair(system.tets[t][k], 0))
               ->second;
-    local.add(tet);
+    local.add(tet, t);
   }
   return local;
-}
-
-Vec3 centreOf(const Points& at, const Tetrahedron& t) {
-  return 0.25 * (at[t[0]] + at[t[1]] + at[t[2]] + at[t[3]]);
-}
-
-// Which of the patch's first tetrahedra is where the new one is, in the source.
-int originOf(const LocalCells& local, std::size_t given, const Tetrahedron& made) {
-  const Vec3 centre = centreOf(local.source, made);
-  int best = 0;
-  double nearest = std::numeric_limits<double>::infinity();
-  for (std::size_t t = 0; t < given; ++t) {
-    const double d = squaredNorm(centreOf(local.source, local.tets[t]) - centre);
-    if (d < nearest) {
-      nearest = d;
-      best = static_cast<int>(t);
-    }
-  }
-  return best;
 }
 
 // The mesh with what became of each patch: tetrahedra that stayed keep their order, new ones
@@ -88,7 +69,7 @@ std::vector<int> assemble(const std::vector<CellPatch>& patches,
         Tetrahedron tet{};
         for (int k = 0; k < 4; ++k) tet[k] = patches[p].vertices[local.tets[t][k]];
         added.push_back(tet);
-        addedOrigin.push_back(patches[p].tets[originOf(local, given, local.tets[t])]);
+        addedOrigin.push_back(local.origin[t]);
       }
     }
   }

@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::array<int, 3> kRings{2, 4, 6};
 constexpr std::array<int, 4> kSlidingRings{3, 5, 8, 12};
+constexpr int kFixedRounds = 10;
 constexpr double kLanded = 1e-9;  // of the surface's diagonal
 
 void require(const CellMesh& mesh, const Mesh& surface, const CarriedCells& carried,
@@ -83,13 +84,18 @@ class Repair {
   template <class Rings>
   std::vector<int> untangleWith(const Rings& rings, bool slide, std::vector<int> poor,
                                 std::size_t first) {
+    PatchSettings settings = patch_;
+    if (!slide) settings.rounds = kFixedRounds;
     for (const int count : rings) {
       if (poor.empty()) break;
       reportProgress(settings_.progress, slide ? "repairing the boundary" : "repairing",
                      1 - static_cast<double>(poor.size()) / static_cast<double>(first + 1));
-      solvePatches(system_, surface_, growPatches(system_, poor, count, slide), patch_, false,
+      const std::size_t before = poor.size();
+      solvePatches(system_, surface_, growPatches(system_, poor, count, slide), settings, false,
                    cells_);
-      poor = poorTets(system_, cells_.positions, settings_.least);if(getenv("DBG"))fprintf(stderr,"rings %d slide %d poor %zu slid %zu\n",count,slide,poor.size(),movedBoundary().size());
+      poor = poorTets(system_, cells_.positions, settings_.least);
+      // Where the boundary itself is folded, more of the inside does not help.
+      if (!slide && 4 * poor.size() > 3 * before) break;
     }
     return poor;
   }

@@ -111,18 +111,18 @@ LatticeSigns signsOf(const Solid& solid, double spacing, const TetrahedralizeSet
   const SurfaceTopology surface = surfaceTopology(solid);
   if (surface.clean) result.solidTopology = surface.solid;
   LatticeSigns signs = latticeSigns(solid, spacing, settings.progress);
-  const KeptTopology kept = keepTopology(
-      solid, surface.clean ? &surface.solid : nullptr, signs, settings.progress);
+  const KeptTopology kept =
+      keepTopology(solid, surface.clean ? &surface.solid : nullptr, signs, settings.progress);
   result.topology = kept.found;
   result.changedNodes = kept.changed;
   if (surface.clean && !kept.kept) {
-    if (settings.keepTopology)
-      refuse(solid, surface.solid, kept.found, spacing, settings);
+    if (settings.keepTopology) refuse(solid, surface.solid, kept.found, spacing, settings);
     result.warnings.push_back(fmt::format("the tetrahedra have {} where the solid has {}",
                                           describe(kept.found), describe(surface.solid)));
   }
   if (!surface.clean) {
-    LatticeSigns finer = latticeSigns(solid, std::max(spacing / 2, kSmallestVoxel), settings.progress);
+    LatticeSigns finer =
+        latticeSigns(solid, std::max(spacing / 2, kSmallestVoxel), settings.progress);
     const KeptTopology fine = keepTopology(solid, nullptr, finer, settings.progress);
     if (!(fine.found == kept.found))
       result.warnings.push_back(fmt::format(
@@ -147,9 +147,10 @@ Tetrahedralization tetrahedralization(const Solid& solid, const TetrahedralizeSe
         "{}: no node of the lattice is inside; use a higher resolution or a shorter edge",
         solid.repaired().mesh.name));
   if (result.changedNodes > 0)
-    result.notes.push_back(fmt::format("{} nodes of the lattice, in walls and gaps too thin for "
-                                       "it, were taken to be inside or outside all the same",
-                                       result.changedNodes));
+    result.notes.push_back(
+        fmt::format("{} nodes of the lattice, in walls and gaps too thin for "
+                    "it, were taken to be inside or outside all the same",
+                    result.changedNodes));
   warpNodes(signs, settings.progress);
   StuffedMesh stuffing = stuffed(signs, settings.progress);
   signs = {};

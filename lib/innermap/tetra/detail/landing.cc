@@ -88,7 +88,6 @@ std::vector<int> land(const CellSystem& system, const GuideSurface& surface, std
     off.clear();
     for (const int v : slid)
       if (!lander.land(v, tolerance)) off.push_back(v);
-    if(getenv("DBG")){double f=0; for(int v:off) f=std::max(f,norm(cells.positions[v]-surface.position(cells.onSurface[v]))); fprintf(stderr,"pass %d slid %zu off %zu far %g\n",pass,slid.size(),off.size(),f);}
     if (off.empty() || pass + 1 == kPasses) break;
     std::vector<int> seeds;
     for (const int v : off)
@@ -98,7 +97,6 @@ std::vector<int> land(const CellSystem& system, const GuideSurface& surface, std
     PatchSettings again = settings;
     again.stiffness = settings.stiffness * settings.most;
     again.growth = 1;
-    again.project = loose && getenv("PROJ");
     if (!loose) again.rounds = 4;
     const auto patches = growPatches(system, seeds, 2 + pass / 4, loose);
     solvePatches(system, surface, patches, again, true, cells);

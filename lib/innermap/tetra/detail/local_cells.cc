@@ -169,9 +169,22 @@ Change collapseEdge(const LocalCells& cells, int from, int to) {
 }
 
 std::vector<int> apply(LocalCells& cells, const Change& change) {
+  const auto centreOf = [&](const Tetrahedron& t) {
+    const Points& at = cells.source;
+    return 0.25 * (at[t[0]] + at[t[1]] + at[t[2]] + at[t[3]]);
+  };
+  const auto originOf = [&](const Tetrahedron& made) {
+    const Vec3 centre = centreOf(made);
+    const int nearest =
+        *std::min_element(change.removed.begin(), change.removed.end(), [&](int a, int b) {
+          return squaredNorm(centreOf(cells.tets[a]) - centre) <
+                 squaredNorm(centreOf(cells.tets[b]) - centre);
+        });
+    return cells.origin[nearest];
+  };
   for (const int t : change.removed) cells.remove(t);
   std::vector<int> added;
-  for (const Tetrahedron& t : change.added) added.push_back(cells.add(t));
+  for (const Tetrahedron& t : change.added) added.push_back(cells.add(t, originOf(t)));
   return added;
 }
 

@@ -42,12 +42,14 @@ class LocalCells {
   std::vector<char> moving;         // #V: all tetrahedra of the vertex are here
   std::vector<Tetrahedron> tets;
   std::vector<char> alive;             // of each tetrahedron
+  std::vector<int> origin;             // the one that was there, in the source, at first
   std::vector<std::vector<int>> star;  // #V: tetrahedra alive, in no order that matters
 
   bool onBoundary(int v) const { return place[v].triangle >= 0; }
 
-  int add(const Tetrahedron& t) {
+  int add(const Tetrahedron& t, int from) {
     const int number = static_cast<int>(tets.size());
+    origin.push_back(from);
     tets.push_back(t);
     alive.push_back(1);
     for (const int v : t) star[v].push_back(number);

@@ -105,9 +105,6 @@ PatchResult solvePatch(const CellSystem& system, const GuideSurface& surface,
   const double first = settings.stiffness * kCellsAVertex;
   local.tets.springs.resize(local.sliding.size());
   placeSprings(surface, first, local);
-  if (settings.project)
-    for (const Spring& spring : local.tets.springs)
-      local.tets.vertices[spring.vertex] = spring.place;
   if (settings.anchor > 0 && settings.anchors)
     for (const int v : local.sliding)
       local.tets.springs.push_back({v,

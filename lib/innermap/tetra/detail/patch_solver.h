@@ -16,7 +16,6 @@ struct PatchSettings {
   double stiffness = 20;  // of the springs along normals, times cells a vertex by edge squared
   double growth = 1.5;    // of that, a round
   double most = 30;       // times the first stiffness
-  bool project = false;   // start with the boundary on the surface, whatever that inverts
   // Vertices of the boundary that this is true of stay on their places by anchors besides.
   double anchor = 0;
   const Points* anchors = nullptr;  // #V
