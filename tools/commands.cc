@@ -16,6 +16,8 @@ std::vector<Command> allCommands() {
           makeTransferDistanceCommand(),
           makeCheckCommand(),
           makeVoxelizeCommand(),
+          makeTetrahedralizeCommand(),
+          makeCompareFemCommand(),
           makeSliceCommand(),
           makeExportCommand(),
           makeImportCommand(),

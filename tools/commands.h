@@ -19,6 +19,8 @@ Command makePushCommand();
 Command makePullCommand();
 Command makeCheckCommand();
 Command makeVoxelizeCommand();
+Command makeTetrahedralizeCommand();
+Command makeCompareFemCommand();
 Command makeSliceCommand();
 Command makeTransferDistanceCommand();
 Command makeExportCommand();

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
-#include <utility>
+#include <functional>
+#include <limits>
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
@@ -46,63 +46,73 @@ void validateFields(const CellMesh& mesh, const std::vector<CellField>& fields, 
   }
 }
 
-// All faces by number: four of each tetrahedron, then six of each hexahedron, as seen from outside;
-// the last corner is -1 for a triangle.
-class Faces {
- public:
-  explicit Faces(const CellMesh& mesh) : mesh_(mesh) {}
+constexpr int kTetFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+constexpr int kHexFaces[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                 {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
 
-  std::size_t size() const { return 4 * mesh_.tetrahedra.size() + 6 * mesh_.hexahedra.size(); }
-
-  std::array<int, 4> operator[](std::size_t face) const {
-    static constexpr int kTet[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-    static constexpr int kHex[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
-                                       {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
-    const std::size_t ofTets = 4 * mesh_.tetrahedra.size();
-    if (face < ofTets) {
-      const Tetrahedron& c = mesh_.tetrahedra[face / 4];
-      const auto& f = kTet[face % 4];
-      return {c[f[0]], c[f[1]], c[f[2]], -1};
-    }
-    const Hexahedron& c = mesh_.hexahedra[(face - ofTets) / 6];
-    const auto& f = kHex[(face - ofTets) % 6];
-    return {c[f[0]], c[f[1]], c[f[2]], c[f[3]]};
+// Corners of face f, counted over all cells, as seen from outside; the last is -1 for a triangle.
+std::array<int, 4> cornersOf(const CellMesh& mesh, std::size_t f) {
+  if (f < 4 * mesh.tetrahedra.size()) {
+    const Tetrahedron& c = mesh.tetrahedra[f / 4];
+    const auto& k = kTetFaces[f % 4];
+    return {c[k[0]], c[k[1]], c[k[2]], -1};
   }
+  f -= 4 * mesh.tetrahedra.size();
+  const Hexahedron& c = mesh.hexahedra[f / 6];
+  const auto& k = kHexFaces[f % 6];
+  return {c[k[0]], c[k[1]], c[k[2]], c[k[3]]};
+}
 
-  // Corners in ascending order, -1 last.
-  std::array<int, 4> key(std::size_t face) const {
-    std::array<int, 4> key = (*this)[face];
-    std::sort(key.begin(), key.end(),
-              [](int a, int b) { return static_cast<unsigned>(a) < static_cast<unsigned>(b); });
-    return key;
-  }
-
- private:
-  const CellMesh& mesh_;
+struct Face {
+  std::array<int, 3>
+      others;  // its vertices but the lowest, descending; the last is -1 for a triangle
+  std::uint32_t number;
 };
 
-// Whether each face belongs to one cell only: faces are compared with those of the same lowest
-// vertex.
-std::vector<char> singleFaces(const CellMesh& mesh, const Faces& faces) {
-  std::vector<std::size_t> first(mesh.vertices.size() + 1, 0);
-  for (std::size_t f = 0; f < faces.size(); ++f) ++first[faces.key(f)[0] + 1];
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<std::size_t> sorted(faces.size()), next(first.begin(), first.end() - 1);
-  for (std::size_t f = 0; f < faces.size(); ++f) sorted[next[faces.key(f)[0]]++] = f;
-  std::vector<char> single(faces.size(), 0);
-  parallelBlocks(mesh.vertices.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::pair<std::array<int, 4>, std::size_t>> of;
+// Calls use(face, lowest vertex).
+template <class Use>
+void forEachFace(const CellMesh& mesh, const Use& use) {
+  const std::size_t count = 4 * mesh.tetrahedra.size() + 6 * mesh.hexahedra.size();
+  for (std::size_t f = 0; f < count; ++f) {
+    std::array<int, 4> key = cornersOf(mesh, f);
+    const int corners = key[3] < 0 ? 3 : 4;
+    std::sort(key.begin(), key.begin() + corners, std::greater<int>());
+    const int lowest = key[corners - 1];
+    key[corners - 1] = -1;
+    use(Face{{key[0], key[1], key[2]}, static_cast<std::uint32_t>(f)}, lowest);
+  }
+}
+
+// The numbers of faces that belong to one cell alone, ascending: faces are gathered by their lowest
+// vertex, where equal ones meet.
+std::vector<std::uint32_t> singleFaces(const CellMesh& mesh) {
+  if (4 * mesh.tetrahedra.size() + 6 * mesh.hexahedra.size() >
+      std::numeric_limits<std::uint32_t>::max())
+    throw MemoryError((mesh.name.empty() ? "mesh" : mesh.name) +
+                      ": its boundary is not looked for: it has over four billion faces");
+  std::vector<std::size_t> start(mesh.vertices.size() + 1, 0);
+  forEachFace(mesh, [&](const Face&, int lowest) { ++start[lowest + 1]; });
+  for (std::size_t v = 1; v < start.size(); ++v) start[v] += start[v - 1];
+  std::vector<Face> faces(start.back());
+  std::vector<std::size_t> next(start.begin(), start.end() - 1);
+  forEachFace(mesh, [&](const Face& face, int lowest) { faces[next[lowest]++] = face; });
+  constexpr std::size_t kBlock = 4096;
+  std::vector<std::vector<std::uint32_t>> found(mesh.vertices.size() / kBlock + 1);
+  parallelBlocks(mesh.vertices.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      of.clear();
-      for (std::size_t i = first[v]; i < first[v + 1]; ++i)
-        of.emplace_back(faces.key(sorted[i]), sorted[i]);
-      std::sort(of.begin(), of.end());
-      for (std::size_t i = 0; i < of.size(); ++i)
-        single[of[i].second] = (i == 0 || of[i - 1].first != of[i].first) &&
-                               (i + 1 == of.size() || of[i + 1].first != of[i].first);
+      const auto first = faces.begin() + start[v], last = faces.begin() + start[v + 1];
+      std::sort(first, last, [](const Face& a, const Face& b) { return a.others < b.others; });
+      for (auto f = first, after = f; f != last; f = after) {
+        for (after = f + 1; after != last && after->others == f->others; ++after) {
+        }
+        if (after == f + 1) found[begin / kBlock].push_back(f->number);
+      }
     }
   });
-  return single;
+  std::vector<std::uint32_t> all;
+  for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
+  std::sort(all.begin(), all.end());
+  return all;
 }
 
 }  // namespace
@@ -131,12 +141,9 @@ std::array<Tetrahedron, 8> cornerTetrahedra(const Hexahedron& c) {
 }
 
 std::vector<Triangle> boundaryTriangles(const CellMesh& mesh) {
-  const Faces faces(mesh);
-  const std::vector<char> single = singleFaces(mesh, faces);
   std::vector<Triangle> triangles;
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    if (!single[f]) continue;
-    const auto c = faces[f];
+  for (const std::uint32_t face : singleFaces(mesh)) {
+    const std::array<int, 4> c = cornersOf(mesh, face);
     triangles.push_back({c[0], c[1], c[2]});
     if (c[3] >= 0) triangles.push_back({c[0], c[2], c[3]});
   }

@@ -72,6 +72,8 @@ std::size_t differing(const Sides& a, const Sides& b) {
   return count;
 }
 
+int complexity(const SolidTopology& t) { return t.components + t.cavities + t.handles; }
+
 class TopologyKeeper {
  public:
   TopologyKeeper(const SolidTopology& wanted, LatticeSigns& signs, const ThinParts& parts,
@@ -135,10 +137,13 @@ KeptTopology keepTopology(const Solid& solid, const SolidTopology* wanted, Latti
   const ThinParts parts = thinParts(solid, signs, progress);
   const Sides plain = signs.side;
   KeptTopology result;
-  if (wanted)
+  if (wanted) {
     TopologyKeeper(*wanted, signs, parts, progress).run();
-  else
+  } else {
+    const SolidTopology before = latticeTopology(signs);
     for (const std::size_t node : parts.walls) signs.side[node] = Side::inside;
+    if (complexity(latticeTopology(signs)) > complexity(before)) signs.side = plain;
+  }
   result.found = latticeTopology(signs);
   result.kept = wanted && result.found == *wanted;
   result.changed = differing(plain, signs.side);
