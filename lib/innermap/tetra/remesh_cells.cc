@@ -248,41 +248,21 @@ class Remesher {
   }
 
   void measureBoundary(const CellMesh& mesh, const CarriedCells& cells) {
-    const std::vector<Triangle> triangles = boundaryTriangles(mesh);
-    std::vector<double> ofFaces(triangles.size());
-    std::vector<char> inwards(triangles.size(), 0);
-    parallelBlocks(triangles.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin; t < end; ++t) {
-        const auto& [a, b, c] = triangles[t];
-        const Vec3 &p = cells.positions[a], &q = cells.positions[b], &r = cells.positions[c];
-        const ClosestPoint at = guide_.closestFrom(cells.onSurface[a].triangle, (p + q + r) / 3);
-        ofFaces[t] = guide_.closest((p + q + r) / 3).distance;
-        inwards[t] = dot(cross(q - p, r - p), guide_.normal(at.address.triangle)) < 0;
-      }
-    });
-    std::vector<double> ofVertices(cells.positions.size(), -1);
-    for (const Triangle& t : triangles)
-      for (const int v : t) ofVertices[v] = 0;
-    parallelBlocks(ofVertices.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    std::vector<char> used(mesh.vertices.size(), 0);
+    for (const Triangle& t : boundaryTriangles(mesh))
+      for (const int v : t) used[v] = 1;
+    std::vector<double> distances(used.size(), 0);
+    parallelBlocks(used.size(), kBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v)
-        if (ofVertices[v] >= 0) ofVertices[v] = guide_.closest(cells.positions[v]).distance;
+        if (used[v]) distances[v] = guide_.closest(cells.positions[v]).distance / diagonal_;
     });
-    out_.facesInwards =
-        static_cast<std::size_t>(std::count(inwards.begin(), inwards.end(), char(1)));
-    BoundaryDistance& d = out_.boundary;
-    summarise(ofVertices, d.vertexRms, d.vertexMax);
-    summarise(ofFaces, d.faceRms, d.faceMax);
-  }
-
-  void summarise(const std::vector<double>& distances, double& rms, double& max) const {
     double squares = 0, count = 0;
-    for (const double d : distances) {
-      if (d < 0) continue;
-      squares += d * d;
-      ++count;
-      max = std::max(max, d / diagonal_);
+    for (std::size_t v = 0; v < used.size(); ++v) {
+      squares += distances[v] * distances[v];
+      count += used[v];
+      out_.boundaryMax = std::max(out_.boundaryMax, distances[v]);
     }
-    rms = count > 0 ? std::sqrt(squares / count) / diagonal_ : 0;
+    out_.boundaryRms = count > 0 ? std::sqrt(squares / count) : 0;
   }
 
   void warn() {

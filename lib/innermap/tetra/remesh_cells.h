@@ -35,12 +35,6 @@ struct RemeshSettings {
   Progress* progress = nullptr;
 };
 
-// Distances of points of the boundary from the surface, fractions of its diagonal.
-struct BoundaryDistance {
-  double vertexRms = 0, vertexMax = 0;  // of its vertices
-  double faceRms = 0, faceMax = 0;      // of the middles of its triangles
-};
-
 struct Remesh {
   // Where the map takes it. Its vertices' fields have one more, "source": the places that they came
   // from. Vertices that were drawn into others are gone.
@@ -51,8 +45,9 @@ struct Remesh {
   CellRepair repair;                // moved, farthestMoved: over all that was done
   std::size_t inverted = 0;         // in the end
   std::size_t swaps = 0, collapses = 0;
-  std::size_t facesInwards = 0;  // triangles of the boundary that face against the surface
-  BoundaryDistance boundary;
+  // Of the boundary's vertices from the surface, fractions of its diagonal; what lies between them
+  // cuts corners, see boundary_fit.h.
+  double boundaryRms = 0, boundaryMax = 0;
   CellQuality quality;
   std::vector<std::string> notes, warnings;
   StageSeconds seconds;  // "carry", "coarse", "repair", "shapes"
