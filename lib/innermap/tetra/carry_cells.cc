@@ -46,8 +46,9 @@ struct Boundary {
 };
 
 // Closest points that look the other way are sought again along the surface.
+// reach: how far a vertex may be off, world units.
 std::size_t readdress(const CellMesh& mesh, const Boundary& boundary, const GuideSurface& surface,
-                      std::vector<ClosestPoint>& found) {
+                      double reach, std::vector<ClosestPoint>& found) {
   const auto agrees = [&](std::size_t b, const ClosestPoint& at) {
     return dot(boundary.normals[b], surface.normal(at.address.triangle)) >= kBackwards;
   };
@@ -59,22 +60,30 @@ std::size_t readdress(const CellMesh& mesh, const Boundary& boundary, const Guid
     progressed = false;
     std::vector<std::size_t> left;
     for (const std::size_t b : open) {
+      const Vec3& p = mesh.vertices[boundary.vertices[b]];
       ClosestPoint best;
       for (const int n : boundary.neighbours[b]) {
         if (!agrees(static_cast<std::size_t>(n), found[n])) continue;
-        const ClosestPoint other =
-            surface.closestFrom(found[n].address.triangle, mesh.vertices[boundary.vertices[b]]);
+        const ClosestPoint other = surface.closestFrom(found[n].address.triangle, p);
         if (agrees(b, other) && other.distance < best.distance) best = other;
       }
-      if (std::isfinite(best.distance)) {
-        found[b] = best;
-        ++changed;
-        progressed = true;
-      } else {
+      if (!std::isfinite(best.distance)) {
         left.push_back(b);
+        continue;
       }
+      found[b] = best;
+      ++changed;
+      progressed = true;
     }
     open = std::move(left);
+  }
+  // Those that no neighbour leads to: the closest that faces their way at all.
+  for (const std::size_t b : open) {
+    const ClosestPoint other =
+        surface.closestFacing(mesh.vertices[boundary.vertices[b]], boundary.normals[b], kBackwards);
+    if (!(other.distance <= reach)) continue;
+    found[b] = other;
+    ++changed;
   }
   return changed;
 }
@@ -142,7 +151,7 @@ CellCarry carry(const CellMesh& mesh, const BoundaryWay& way, const CarryCellsSe
       settings.progress, "placing the boundary");
   CellCarry out;
   measure(mesh, found, way.diagonal, settings, out);
-  out.readdressed = readdress(mesh, boundary, surface, found);
+  out.readdressed = readdress(mesh, boundary, surface, settings.farthest * way.diagonal, found);
   // Vertices that no cell uses stay.
   out.cells.positions = mesh.vertices;
   out.cells.onSurface.assign(mesh.vertices.size(), {-1, {1, 0, 0}});

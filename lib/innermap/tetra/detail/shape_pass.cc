@@ -7,6 +7,7 @@ namespace innermap {
 namespace {
 
 constexpr int kHalvings = 7;
+constexpr double kNeedy = 0.035;        // sine of 2 degrees
 constexpr std::size_t kMostSteps = 40;  // of a tetrahedron's descendants, a pass
 
 class Shaper {
@@ -143,6 +144,8 @@ class Shaper {
     for (int round = 0; round < 3; ++round) {
       const double worst = worstAround(v, -1);
       if (worst > 1.5 * settings_.least) break;
+      // Edges of the surface are left only where there is need.
+      if (worst > kNeedy && cells_.onBoundary(v) && surface_.onCrease(cells_.place[v])) break;
       const Vec3 here = cells_.at[v];
       Vec3 middle;
       double count = 0, size = 0;
