@@ -1,6 +1,7 @@
 // `innermap remesh`: the cells of one solid made those of another by a map between them.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 
@@ -94,7 +95,7 @@ void run(const RemeshOptions& options, Context& context) {
   CellFile file = context.timed(
       "read", [&] { return readCells(options.cells, context.settings<ReadCellsSettings>()); });
   for (const std::string& note : file.notes) context.note(note);
-  const std::uint64_t need = reading + remeshMemory(file.mesh);
+  const std::uint64_t need = std::max(reading, remeshMemory(file.mesh));
   if (context.dryRun())
     return context.plan({fmt::format("carry the {} cells of {} by {}",
                                      file.mesh.tetrahedra.size() + file.mesh.hexahedra.size(),

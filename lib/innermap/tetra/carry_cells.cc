@@ -46,9 +46,8 @@ struct Boundary {
 };
 
 // Closest points that look the other way are sought again along the surface.
-// reach: how far a vertex may be off, world units.
 std::size_t readdress(const CellMesh& mesh, const Boundary& boundary, const GuideSurface& surface,
-                      double reach, std::vector<ClosestPoint>& found) {
+                      std::vector<ClosestPoint>& found) {
   const auto agrees = [&](std::size_t b, const ClosestPoint& at) {
     return dot(boundary.normals[b], surface.normal(at.address.triangle)) >= kBackwards;
   };
@@ -76,14 +75,6 @@ std::size_t readdress(const CellMesh& mesh, const Boundary& boundary, const Guid
       progressed = true;
     }
     open = std::move(left);
-  }
-  // Those that no neighbour leads to: the closest that faces their way at all.
-  for (const std::size_t b : open) {
-    const ClosestPoint other =
-        surface.closestFacing(mesh.vertices[boundary.vertices[b]], boundary.normals[b], kBackwards);
-    if (!(other.distance <= reach)) continue;
-    found[b] = other;
-    ++changed;
   }
   return changed;
 }
@@ -151,7 +142,7 @@ CellCarry carry(const CellMesh& mesh, const BoundaryWay& way, const CarryCellsSe
       settings.progress, "placing the boundary");
   CellCarry out;
   measure(mesh, found, way.diagonal, settings, out);
-  out.readdressed = readdress(mesh, boundary, surface, settings.farthest * way.diagonal, found);
+  out.readdressed = readdress(mesh, boundary, surface, found);
   // Vertices that no cell uses stay.
   out.cells.positions = mesh.vertices;
   out.cells.onSurface.assign(mesh.vertices.size(), {-1, {1, 0, 0}});

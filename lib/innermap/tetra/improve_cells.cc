@@ -15,6 +15,7 @@ namespace innermap {
 namespace {
 
 constexpr int kRings = 2;
+constexpr double kOff = 1e-8;  // of the surface's diagonal
 constexpr std::size_t kBlock = 4096;
 
 std::vector<int> poorByAngle(const std::vector<Tetrahedron>& tets, const Points& at, double least) {
@@ -28,7 +29,24 @@ std::vector<int> poorByAngle(const std::vector<Tetrahedron>& tets, const Points&
   return poor;
 }
 
-LocalCells localOf(const CellSystem& system, const CellPatch& patch, const CarriedCells& cells) {
+std::vector<char> offSurface(const CellSystem& system, const GuideSurface& surface, double diagonal,
+                             const CarriedCells& cells) {
+  std::vector<char> off(system.vertices(), 0);
+  for (std::size_t v = 0; v < off.size(); ++v)
+    off[v] = system.onBoundary[v] && cells.onSurface[v].triangle >= 0 &&
+             norm(cells.positions[v] - surface.position(cells.onSurface[v])) > kOff * diagonal;
+  return off;
+}
+
+void addAround(const CellSystem& system, const std::vector<char>& marked, std::vector<int>& tets) {
+  for (std::size_t v = 0; v < marked.size(); ++v)
+    if (marked[v])
+      for (std::size_t i = system.first[v]; i < system.first[v + 1]; ++i)
+        tets.push_back(system.around[i]);
+}
+
+LocalCells localOf(const CellSystem& system, const CellPatch& patch, const std::vector<char>& off,
+                   const CarriedCells& cells) {
   LocalCells local;
   std::vector<std::pair<int, int>> numbers;
   for (std::size_t i = 0; i < patch.vertices.size(); ++i) {
@@ -38,6 +56,7 @@ LocalCells localOf(const CellSystem& system, const CellPatch& patch, const Carri
     local.source.push_back(system.places[v]);
     local.place.push_back(cells.onSurface[v]);
     local.moving.push_back(i < patch.moving);
+    local.off.push_back(off[v]);
   }
   std::sort(numbers.begin(), numbers.end());
   local.star.resize(patch.vertices.size());
@@ -110,25 +129,28 @@ CellImprovement improveCells(CellMesh& mesh, const Mesh& surface, CarriedCells& 
   passes.connect = settings.connect;
   passes.passes = settings.passes;
   passes.progress = settings.progress;
-  const std::vector<int> poor = mesh.hexahedra.empty()
-                                    ? poorByAngle(mesh.tetrahedra, carried.positions, passes.least)
-                                    : std::vector<int>{};
-  out.poorBefore = out.poorAfter = poor.size();
-  if (poor.empty()) {
+  const CellSystem system(mesh, RestShape::own);
+  const GuideSurface guide(surface.vertices, surface.triangles);
+  const std::vector<char> off = offSurface(system, guide, boundingBox(surface).diagonal(), carried);
+  std::vector<int> seeds;
+  if (mesh.hexahedra.empty()) {
+    seeds = poorByAngle(mesh.tetrahedra, carried.positions, passes.least);
+    out.poorBefore = out.poorAfter = seeds.size();
+    if (settings.connect) addAround(system, off, seeds);
+  }
+  if (seeds.empty()) {
     out.origin.resize(mesh.tetrahedra.size());
     for (std::size_t t = 0; t < out.origin.size(); ++t) out.origin[t] = static_cast<int>(t);
     return out;
   }
-  const CellSystem system(mesh, RestShape::own);
-  const GuideSurface guide(surface.vertices, surface.triangles);
-  const std::vector<CellPatch> patches = growPatches(system, poor, kRings, true);
+  const std::vector<CellPatch> patches = growPatches(system, seeds, kRings, true);
   std::vector<LocalCells> locals(patches.size());
   std::vector<ShapePassResult> results(patches.size());
   parallelBlocks(
       patches.size(), 1,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) {
-          locals[p] = localOf(system, patches[p], carried);
+          locals[p] = localOf(system, patches[p], off, carried);
           results[p] = improveShapes(guide, passes, locals[p]);
         }
       },

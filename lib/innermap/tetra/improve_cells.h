@@ -29,11 +29,12 @@ struct CellImprovement {
 // Works on the tetrahedra of `mesh` as they lie at `carried`: edges and faces are swapped for
 // others, edges drawn together, vertices moved, those of the boundary along the surface, wherever
 // that raises the least angle there (after Klingner and Shewchuk, "Aggressive tetrahedral mesh
-// improvement", 2007). The boundary's triangles stay as they are but for their corners' places. No
-// tetrahedron becomes inverted, neither carried nor in the mesh itself: the piecewise linear map
-// between the two stays one. Vertices that are not used any more stay, unused. Meshes with
-// hexahedra are left as they are. Deterministic, the same for any number of threads. Throws
-// SettingError, DataError where sizes disagree, Cancelled.
+// improvement", 2007). The boundary's triangles stay as they are but for their corners' places;
+// only a vertex that is off the surface is drawn into a neighbour that is not. No tetrahedron
+// becomes inverted, neither carried nor in the mesh itself: the piecewise linear map between the
+// two stays one. Vertices that are not used any more stay, unused. Meshes with hexahedra are left
+// as they are. Deterministic, the same for any number of threads. Throws SettingError, DataError
+// where sizes disagree, Cancelled.
 CellImprovement improveCells(CellMesh& mesh, const Mesh& surface, CarriedCells& carried,
                              const ImproveCellsSettings& settings = {});
 

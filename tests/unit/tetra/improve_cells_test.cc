@@ -84,7 +84,7 @@ TEST(ImproveCells, RaisesAnglesAndKeepsTheMeshAMap) {
       here += signedVolume(c.cells.positions, t);
       there += signedVolume(c.mesh.vertices, t);
     }
-    EXPECT_NEAR(here, 3, 0.02);  // edges are left where angles are below 2 degrees
+    EXPECT_NEAR(here, 3, 0.02);  // edges are left where angles are small
     EXPECT_NEAR(there, 1, 1e-9);
     // What was the boundary is the boundary still.
     EXPECT_EQ(boundaryTriangles(c.mesh).size(), c.surface.triangles.size());

@@ -80,18 +80,6 @@ bool GuideSurface::onCrease(const SurfacePoint& point) const {
   return false;
 }
 
-ClosestPoint GuideSurface::closestFacing(const Vec3& p, const Vec3& direction,
-                                         double cosine) const {
-  ClosestPoint best;
-  best.address.triangle = -1;
-  for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    if (dot(normals_[t], direction) < cosine) continue;
-    const ClosestPoint found = onTriangle(static_cast<int>(t), p);
-    if (found.distance < best.distance) best = found;
-  }
-  return best;
-}
-
 ClosestPoint GuideSurface::onTriangle(int triangle, const Vec3& p) const {
   const Triangle& t = triangles_[triangle];
   ClosestPoint found = closestOnTriangle(p, {vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]});

@@ -22,10 +22,6 @@ class GuideSurface {
   // closest point of that triangle.
   ClosestPoint closestFrom(int triangle, const Vec3& p) const;
 
-  // Of the triangles whose normal has at least that cosine with the direction, one after the other:
-  // slow.
-  ClosestPoint closestFacing(const Vec3& p, const Vec3& direction, double cosine) const;
-
   Vec3 position(const SurfacePoint& point) const;
   // Whether the point lies on an edge across which the surface turns by over 40 degrees.
   bool onCrease(const SurfacePoint& point) const;

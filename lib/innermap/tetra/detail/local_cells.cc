@@ -1,5 +1,6 @@
 #include "innermap/tetra/detail/local_cells.h"
 
+#include <iterator>
 #include <limits>
 
 namespace innermap {
@@ -165,6 +166,43 @@ Change collapseEdge(const LocalCells& cells, int from, int to) {
     change.after = std::min(change.after, qualityOf(cells, made));
     if (!(change.after > change.before)) return change;
   }
+  return change;
+}
+
+Change collapseBoundary(const LocalCells& cells, int from, int to) {
+  Change change;
+  if (!cells.moving[from] || !cells.moving[to]) return change;
+  // Neighbours of both are around their edge, or a loop of the boundary would be pinched off.
+  const auto neighboursOf = [&](int v) {
+    std::vector<int> out;
+    for (const int t : cells.star[v])
+      for (const int w : cells.tets[t])
+        if (w != from && w != to) out.push_back(w);
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
+  };
+  const std::vector<int> ofFrom = neighboursOf(from), ofTo = neighboursOf(to);
+  std::vector<int> common, around;
+  std::set_intersection(ofFrom.begin(), ofFrom.end(), ofTo.begin(), ofTo.end(),
+                        std::back_inserter(common));
+  for (const int t : cells.star[from])
+    if (has(cells.tets[t], to))
+      for (const int w : cells.tets[t])
+        if (w != from && w != to) around.push_back(w);
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  if (common != around) return change;
+  change.removed = cells.star[from];
+  double worst = 1;
+  for (const int t : change.removed) {
+    if (has(cells.tets[t], to)) continue;
+    Tetrahedron made = cells.tets[t];
+    std::replace(made.begin(), made.end(), from, to);
+    change.added.push_back(made);
+    worst = std::min(worst, qualityOf(cells, made));
+  }
+  change.after = change.added.empty() ? -1 : std::max(-1.0, worst);
   return change;
 }
 

@@ -40,6 +40,7 @@ class LocalCells {
   Points at, source;                // #V: where they are carried, and where they come from
   std::vector<SurfacePoint> place;  // #V: on the surface; triangle -1 inside
   std::vector<char> moving;         // #V: all tetrahedra of the vertex are here
+  std::vector<char> off;            // #V: on the boundary, but not on the surface
   std::vector<Tetrahedron> tets;
   std::vector<char> alive;             // of each tetrahedron
   std::vector<int> origin;             // the one that was there, in the source, at first
@@ -73,6 +74,10 @@ struct Change {
 
   bool better() const { return after > 1.02 * before + 1e-7; }
 };
+
+// Vertex `from` of the boundary, with its triangles, drawn into `to`, a neighbour there; `after` is
+// -1 where that is not to be done. The boundary changes, but for its topology.
+Change collapseBoundary(const LocalCells& cells, int from, int to);
 
 // Each is empty (not better) where it cannot be done or would leave a tetrahedron of the source
 // below kLeastSource; none changes the boundary.

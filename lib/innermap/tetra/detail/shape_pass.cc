@@ -7,6 +7,7 @@ namespace innermap {
 namespace {
 
 constexpr int kHalvings = 7;
+constexpr double kLeastDrawn = 1e-3;    // sine, where a vertex of the boundary is drawn in
 constexpr double kNeedy = 0.035;        // sine of 2 degrees
 constexpr std::size_t kMostSteps = 40;  // of a tetrahedron's descendants, a pass
 
@@ -16,6 +17,9 @@ class Shaper {
       : surface_(surface), settings_(settings), cells_(cells) {}
 
   ShapePassResult run() {
+    if (settings_.connect)
+      for (std::size_t v = 0; v < cells_.off.size(); ++v)
+        if (cells_.off[v]) drawIn(static_cast<int>(v));
     for (int pass = 0; pass < settings_.passes; ++pass) {
       throwIfCancelled(settings_.progress);
       std::vector<int> poor = poorTets();
@@ -46,6 +50,25 @@ class Shaper {
     std::vector<int> out;
     for (const auto& entry : found) out.push_back(entry.second);
     return out;
+  }
+
+  // Wedged where the surface creases or runs through itself, a vertex of the boundary that cannot
+  // come to the surface goes, if one of its neighbours there can take its place.
+  void drawIn(int v) {
+    std::vector<int> neighbours;
+    for (const int t : cells_.star[v])
+      for (const int w : cells_.tets[t])
+        if (w != v && cells_.onBoundary(w) && !cells_.off[w]) neighbours.push_back(w);
+    std::sort(neighbours.begin(), neighbours.end());
+    neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
+    Change best;
+    for (const int w : neighbours) {
+      Change change = collapseBoundary(cells_, v, w);
+      if (change.after > std::max(kLeastDrawn, best.after)) best = std::move(change);
+    }
+    if (!(best.after > kLeastDrawn)) return;
+    apply(cells_, best);
+    ++result_.collapses;
   }
 
   bool swapFrom(int first) {
@@ -145,7 +168,9 @@ class Shaper {
       const double worst = worstAround(v, -1);
       if (worst > 1.5 * settings_.least) break;
       // Edges of the surface are left only where there is need.
-      if (worst > kNeedy && cells_.onBoundary(v) && surface_.onCrease(cells_.place[v])) break;
+      if (worst > kNeedy * settings_.least && cells_.onBoundary(v) &&
+          surface_.onCrease(cells_.place[v]))
+        break;
       const Vec3 here = cells_.at[v];
       Vec3 middle;
       double count = 0, size = 0;
