@@ -15,7 +15,8 @@
 namespace innermap {
 namespace {
 
-constexpr std::array<int, 3> kRings{2, 4, 6};
+constexpr std::array<int, 4> kRings{2, 4, 6, 9};
+constexpr std::size_t kManyAPatch = 50;  // tetrahedra
 constexpr std::array<int, 4> kSlidingRings{3, 5, 8, 12};
 constexpr int kFixedRounds = 10;
 constexpr double kLanded = 1e-9;  // of the surface's diagonal
@@ -84,18 +85,20 @@ class Repair {
   template <class Rings>
   std::vector<int> untangleWith(const Rings& rings, bool slide, std::vector<int> poor,
                                 std::size_t first) {
-    PatchSettings settings = patch_;
-    if (!slide) settings.rounds = kFixedRounds;
     for (const int count : rings) {
       if (poor.empty()) break;
       reportProgress(settings_.progress, slide ? "repairing the boundary" : "repairing",
                      1 - static_cast<double>(poor.size()) / static_cast<double>(first + 1));
       const std::size_t before = poor.size();
-      solvePatches(system_, surface_, growPatches(system_, poor, count, slide), settings, false,
-                   cells_);
+      const auto patches = growPatches(system_, poor, count, slide);
+      // Few in one place are mostly beside a boundary that is folded itself, where more of the
+      // inside does not help; many are a fold of the map, where it does.
+      const bool few = before < kManyAPatch * patches.size();
+      PatchSettings settings = patch_;
+      if (!slide && few) settings.rounds = kFixedRounds;
+      solvePatches(system_, surface_, patches, settings, false, cells_);
       poor = poorTets(system_, cells_.positions, settings_.least);
-      // Where the boundary itself is folded, more of the inside does not help.
-      if (!slide && 4 * poor.size() > 3 * before) break;
+      if (!slide && few && 4 * poor.size() > 3 * before) break;
     }
     return poor;
   }
