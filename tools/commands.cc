@@ -17,6 +17,7 @@ std::vector<Command> allCommands() {
           makeCheckCommand(),
           makeVoxelizeCommand(),
           makeTetrahedralizeCommand(),
+          makeRemeshCommand(),
           makeCompareFemCommand(),
           makeSliceCommand(),
           makeExportCommand(),

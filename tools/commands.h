@@ -20,6 +20,7 @@ Command makePullCommand();
 Command makeCheckCommand();
 Command makeVoxelizeCommand();
 Command makeTetrahedralizeCommand();
+Command makeRemeshCommand();
 Command makeCompareFemCommand();
 Command makeSliceCommand();
 Command makeTransferDistanceCommand();

@@ -8,6 +8,7 @@
 #include "innermap/core/memory.h"
 #include "innermap/transfer/carry_memory.h"
 #include "inputs.h"
+#include "through.h"
 #include "transfer_options.h"
 
 namespace innermap::tool {
@@ -16,7 +17,7 @@ namespace {
 enum class Way { push, pull };
 
 struct CarryOptions {
-  std::string map, volume, output;
+  std::string map, volume, output, through;
   TransferOptions transfer;
   GeometryOptions geometry;
 };
@@ -27,6 +28,7 @@ struct Job {
   Solid target;
   OutsideSettings outside;
   openvdb::GridPtrVec grids;
+  std::optional<ThroughMap> through;
 };
 
 Job read(const CarryOptions& options, Context& context) {
@@ -35,7 +37,10 @@ Job read(const CarryOptions& options, Context& context) {
       options.transfer, mapped.solid().repaired().mesh.vertices, mapped.boundary.target.moved);
   openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
   Solid target = targetSolid(mapped, context);
-  return {std::move(mapped), std::move(target), std::move(outside), std::move(grids)};
+  std::optional<ThroughMap> through;
+  if (!options.through.empty()) through = throughMap(readThrough(options.through, mapped, context));
+  return {std::move(mapped), std::move(target), std::move(outside), std::move(grids),
+          std::move(through)};
 }
 
 openvdb::GridPtrVec push(const Job& job, const TransferOptions& options, Context& context) {
@@ -43,6 +48,7 @@ openvdb::GridPtrVec push(const Job& job, const TransferOptions& options, Context
   settings.carry = carrySettings(options);
   settings.outside = job.outside;
   settings.accuracy = sumAccuracy(job.mapped);
+  settings.through = job.through ? &*job.through : nullptr;
   const openvdb::FloatGrid::Ptr levelSet = outputLevelSet(job.target, job.grids, options, context);
   const PushResult result = context.timed("push", [&] {
     return VolumePusher(job.mapped.solid(), job.grids, settings).push(job.mapped.map, *levelSet);
@@ -57,6 +63,7 @@ openvdb::GridPtrVec pull(const Job& job, const TransferOptions& options, Context
   settings.carry = carrySettings(options);
   settings.outside = job.outside;
   settings.accuracy = sumAccuracy(job.mapped);
+  settings.through = job.through ? &*job.through : nullptr;
   const TransferOptions plain;  // the target's level set is none of the output's
   const openvdb::FloatGrid::Ptr target = outputLevelSet(job.target, job.grids, plain, context);
   settings.targetLevelSet = target.get();
@@ -104,8 +111,11 @@ void runGeometry(Way way, const CarryOptions& options, Context& context) {
                         need);
   requireMemory("carrying " + options.volume, need, context.maxMemory(), "cut the file into parts");
   const auto file = readGeometryFile(options.volume, options.geometry, context);
+  const CarryPointsSettings settings = carryPointsSettings(outside, sumAccuracy(mapped), context);
   const PointCarry carry =
-      carryOf(way, mapped, carryPointsSettings(outside, sumAccuracy(mapped), context), context);
+      options.through.empty()
+          ? carryOf(way, mapped, settings, context)
+          : carryThrough(readThrough(options.through, mapped, context), way == Way::push, settings);
   const double diagonal =
       way == Way::push ? boundingBox(moved).diagonal() : mapped.solid().diagonal();
   const CarriedGeometry carried = context.timed("carry", [&] {
@@ -148,6 +158,9 @@ Command makeCarryCommand(Way way, const std::string& name, const std::string& su
            "the file to write, of the same kind; cells may change theirs")
       .shortName("-o")
       .required();
+  c.option("--through", "CELLS", &o->through,
+           "go by the piecewise linear map of this mesh that remesh wrote (.vtu or .msh) instead: "
+           "what is carried agrees with the mesh and is nowhere folded; not for densities");
   addTransferOptions(c, o->transfer);
   addGeometryOptions(c, o->geometry, true);
   c.run([o, way](Context& context) { run(way, *o, context); });

@@ -42,7 +42,7 @@ struct CellRepair {
 // boundary's vertices as few as that takes, along the surface. A hexahedron is judged by the
 // tetrahedra at its corners.
 //
-// Patches of inverted cells and 2, 4, 6 rings of vertices about them are untangled (untangle.h)
+// Patches of inverted cells and 2, 4, 6, 9 rings of vertices about them are untangled (untangle.h)
 // with the boundary fixed; then patches of 3, 5, 8, 12 rings with the boundary held by springs
 // along the surface's normals; then the boundary is laid back on the surface as far as no cell
 // turns. Patches run side by side. What remains is told by the numbers returned. Deterministic, the

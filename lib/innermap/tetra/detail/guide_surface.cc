@@ -7,7 +7,9 @@
 namespace innermap {
 namespace {
 
-constexpr int kFruitless = 24;  // triangles tried without a nearer point
+constexpr double kOnEdge = 1e-6;    // barycentric
+constexpr double kCreased = 0.766;  // cosine of 40 degrees
+constexpr int kFruitless = 24;      // triangles tried without a nearer point
 
 // Vertices that files doubled along seams are one where they are in one place.
 std::vector<int> joinedByPlace(const Points& vertices) {
@@ -66,6 +68,16 @@ Vec3 GuideSurface::position(const SurfacePoint& point) const {
   const Triangle& t = triangles_[point.triangle];
   const auto& b = point.barycentric;
   return b[0] * vertices_[t[0]] + b[1] * vertices_[t[1]] + b[2] * vertices_[t[2]];
+}
+
+bool GuideSurface::onCrease(const SurfacePoint& point) const {
+  for (int side = 0; side < 3; ++side) {
+    // The side from its corner to the next is where the third coordinate vanishes.
+    if (point.barycentric[(side + 2) % 3] > kOnEdge) continue;
+    const int next = across_[point.triangle][side];
+    if (next >= 0 && dot(normals_[next], normals_[point.triangle]) < kCreased) return true;
+  }
+  return false;
 }
 
 ClosestPoint GuideSurface::onTriangle(int triangle, const Vec3& p) const {

@@ -23,6 +23,8 @@ class GuideSurface {
   ClosestPoint closestFrom(int triangle, const Vec3& p) const;
 
   Vec3 position(const SurfacePoint& point) const;
+  // Whether the point lies on an edge across which the surface turns by over 40 degrees.
+  bool onCrease(const SurfacePoint& point) const;
   // Of length 1; zeros for a triangle without area.
   Vec3 normal(int triangle) const { return normals_[triangle]; }
 
