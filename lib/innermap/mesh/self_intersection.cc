@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "innermap/core/parallel.h"
-#include "innermap/mesh/detail/bvh.h"
+#include "innermap/mesh/detail/local_triangles.h"
 #include "innermap/mesh/detail/intersect_triangles.h"
 #include "innermap/mesh/detail/topology.h"
 #include "innermap/mesh/triangle_tree.h"

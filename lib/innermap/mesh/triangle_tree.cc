@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "innermap/mesh/detail/bvh.h"
+#include "innermap/mesh/detail/local_triangles.h"
 
 namespace innermap {
 namespace {
@@ -77,7 +77,21 @@ bool isSliver(const Vec3& a, const Vec3& b, const Vec3& c) {
   return squaredNorm(cross(ab, ac)) <= 1e-12 * length2 * length2;
 }
 
+Candidate closestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c,
+                            bool sliver) {
+  const Candidate found = closestOnTriangle(p, a, b, c);
+  if (!sliver) return found;
+  const Candidate edge = closestOnEdges(p, a, b, c);
+  return found.squared <= edge.squared ? found : edge;
+}
+
 }  // namespace
+
+ClosestPoint closestOnTriangle(const Vec3& p, const std::array<Vec3, 3>& corners) {
+  const auto& [a, b, c] = corners;
+  const Candidate found = closestOnTriangle(p, a, b, c, isSliver(a, b, c));
+  return {{0, {1 - found.v - found.w, found.v, found.w}}, found.position, std::sqrt(found.squared)};
+}
 
 struct TriangleTree::Implementation {
   struct Leaf {
@@ -108,11 +122,7 @@ struct TriangleTree::Implementation {
   void searchLeaf(const Bvh::Node& node, const Vec3& p, Candidate& best, int& bestIndex) const {
     for (int i = node.first; i < node.first + node.count; ++i) {
       const Leaf& t = triangles[i];
-      Candidate found = closestOnTriangle(p, t.a, t.b, t.c);
-      if (t.sliver) {
-        const Candidate edge = closestOnEdges(p, t.a, t.b, t.c);
-        if (!(found.squared <= edge.squared)) found = edge;
-      }
+      const Candidate found = closestOnTriangle(p, t.a, t.b, t.c, t.sliver);
       if (found.squared < best.squared ||
           (found.squared == best.squared && bestIndex >= 0 && t.index < bestIndex)) {
         best = found;

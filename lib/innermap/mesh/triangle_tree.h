@@ -1,6 +1,7 @@
 // Bounding volume hierarchy over triangles: closest points and pairs that may touch.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -16,6 +17,10 @@ struct ClosestPoint {
   Vec3 position;
   double distance = std::numeric_limits<double>::infinity();
 };
+
+// The closest point of one triangle, its number 0. Exact up to rounding (Ericson, Real-Time
+// Collision Detection, 5.1.5).
+ClosestPoint closestOnTriangle(const Vec3& p, const std::array<Vec3, 3>& corners);
 
 // Immutable after construction; safe from any number of threads. Keeps copies of the positions.
 class TriangleTree {

@@ -40,6 +40,13 @@ struct CellMesh {
   std::vector<CellField> cellFields;    // #T + #H rows each: tetrahedra, then hexahedra
 };
 
+// Where a map takes the vertices of a mesh.
+struct CarriedCells {
+  Points positions;  // #V
+  // #V: of vertices of the boundary, their places on the surface; triangle -1 for the others.
+  std::vector<SurfacePoint> onSurface;
+};
+
 // Throws DataError when an index is out of [0, #V), a cell uses a vertex twice, a vertex that a
 // cell uses is not finite, or a field has the wrong size; the message names mesh.name.
 void validate(const CellMesh& mesh);

@@ -12,7 +12,7 @@
 
 #include "innermap/core/parallel.h"
 #include "innermap/evaluate/detail/kuhn_cells.h"
-#include "innermap/evaluate/detail/untangle.h"
+#include "innermap/evaluate/untangle.h"
 
 namespace innermap {
 namespace {
@@ -146,7 +146,11 @@ class Patch {
   bool tooLarge() const { return moving_ > kMostMoved; }
 
   // Whether no tetrahedron is left inside out.
-  bool repair(Progress* progress) { return untangle(tets_, progress) > 0; }
+  bool repair(Progress* progress) {
+    UntangleSettings settings;
+    settings.progress = progress;
+    return untangle(tets_, settings) > 0;
+  }
 
   void collect(Positions& to) const {
     for (std::size_t v = 0; v < coords_.size(); ++v)

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "innermap/core/detail/pi.h"
-#include "innermap/mesh/detail/bvh.h"
+#include "innermap/mesh/detail/local_triangles.h"
 
 namespace innermap {
 namespace {

@@ -1,4 +1,4 @@
-#include "innermap/evaluate/detail/untangle.h"
+#include "innermap/evaluate/untangle.h"
 
 #include <gtest/gtest.h>
 
@@ -83,6 +83,34 @@ TEST(Untangle, AFoldedBorderStaysFolded) {
   EXPECT_LE(untangle(patch), 0);
 }
 
+// A vertex of the border that may slide in its plane is found again there; one that is tied goes
+// where it is tied to.
+TEST(Untangle, SpringsHoldAlongTheirNormals) {
+  TetPatch patch = lattice();
+  const int sliding = vertexAt(0, 2, 2), tied = vertexAt(2, 2, 2);
+  patch.free[static_cast<std::size_t>(sliding)] = 1;
+  patch.vertices[sliding] = {3, 2.9, 2};
+  const Vec3 place = patch.vertices[tied] + Vec3{0.2, 0, 0};
+  patch.springs = {{sliding, {0, 9, 9}, {1, 0, 0}, 1e5}, {tied, place, {}, 1e5}};
+  ASSERT_LT(leastOf(patch), 0);
+  EXPECT_GT(untangle(patch), 0);
+  EXPECT_NEAR(patch.vertices[sliding].x, 0, 1e-3);
+  EXPECT_NEAR(patch.vertices[sliding].y, 2, 0.2);
+  EXPECT_LT(norm(patch.vertices[tied] - place), 1e-3);
+}
+
+TEST(Untangle, SpringsMayChangeBetweenRounds) {
+  TetPatch patch = lattice();
+  const int tied = vertexAt(2, 2, 2);
+  patch.springs = {{tied, patch.vertices[tied], {}, 1e5}};
+  const Vec3 place = patch.vertices[tied] + Vec3{0, 0.3, 0};
+  UntangleSettings settings;
+  settings.afterRound = [&](TetPatch& p, int) { p.springs[0].place = place; };
+  patch.vertices[tied] = patch.vertices[tied] + Vec3{1.5, 0, 0};
+  EXPECT_GT(untangle(patch, settings), 0);
+  EXPECT_LT(norm(patch.vertices[tied] - place), 1e-3);
+}
+
 TEST(Untangle, NothingToMove) {
   TetPatch patch = lattice();
   std::fill(patch.free.begin(), patch.free.end(), 0);
@@ -93,7 +121,9 @@ TEST(Untangle, IsCancelled) {
   TetPatch patch = lattice();
   Progress progress;
   progress.cancel();
-  EXPECT_THROW(untangle(patch, &progress), Cancelled);
+  UntangleSettings settings;
+  settings.progress = &progress;
+  EXPECT_THROW(untangle(patch, settings), Cancelled);
 }
 
 }  // namespace

@@ -1,11 +1,10 @@
-// Binary bounding volume hierarchy by the surface area heuristic; what
-// TriangleTree and WindingNumber stand on.
+// Binary bounding volume hierarchy by the surface area heuristic; what searches among triangles and
+// among cells stand on.
 #pragma once
 
 #include <vector>
 
 #include "innermap/core/vec3.h"
-#include "innermap/mesh/mesh.h"
 
 namespace innermap {
 
@@ -55,18 +54,5 @@ struct Bvh {
 // Items are given by their boxes, in a LocalFrame. Leaves hold at most leafSize items. The tree
 // depends on the boxes alone, not on the number of threads.
 Bvh buildBvh(const std::vector<Box3>& boxes, int leafSize);
-
-// Triangles in a local frame, those with non-finite corners left out.
-struct LocalTriangles {
-  struct Corners {
-    Vec3 a, b, c;
-  };
-  LocalFrame frame;
-  std::vector<Corners> corners;
-  std::vector<int> index;  // into the triangles given
-  std::vector<Box3> boxes;
-
-  LocalTriangles(const Points& vertices, const std::vector<Triangle>& triangles);
-};
 
 }  // namespace innermap

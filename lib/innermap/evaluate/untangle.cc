@@ -1,4 +1,4 @@
-#include "innermap/evaluate/detail/untangle.h"
+#include "innermap/evaluate/untangle.h"
 
 #include <lbfgs.h>
 
@@ -13,8 +13,7 @@
 namespace innermap {
 namespace {
 
-constexpr double kTheta = 0.5;  // share of the volumes' part of the energy
-constexpr int kRounds = 20, kStepsARound = 50, kPairs = 8;
+constexpr int kPairs = 8;
 constexpr double kLeastGain = 1e-2;  // of a round; below it no more is to be had
 // How fast eps falls at least, their sigma: with their 0.1 patches that can be repaired take three
 // times the rounds.
@@ -51,19 +50,22 @@ struct Lifted {
 
 class Energy {
  public:
-  Energy(TetPatch& patch, Progress* progress)
-      : patch_(patch), progress_(progress), forces_(patch.tets.size()) {
-    std::vector<int> unknownOf(patch.vertices.size(), -1);
+  Energy(TetPatch& patch, const UntangleSettings& settings)
+      : patch_(patch),
+        settings_(settings),
+        unknownOf_(patch.vertices.size(), -1),
+        forces_(patch.tets.size()) {
     for (std::size_t v = 0; v < patch.vertices.size(); ++v)
       if (patch.free[v]) {
-        unknownOf[v] = static_cast<int>(unknowns_.size());
+        unknownOf_[v] = static_cast<int>(unknowns_.size());
         unknowns_.push_back(static_cast<int>(v));
       }
-    corners_.resize(unknowns_.size());
-    for (std::size_t t = 0; t < patch.tets.size(); ++t)
-      for (std::size_t c = 0; c < 4; ++c)
-        if (const int u = unknownOf[static_cast<std::size_t>(patch.tets[t][c])]; u >= 0)
-          corners_[static_cast<std::size_t>(u)].push_back({t, c});
+    firstCorner_.assign(unknowns_.size() + 1, 0);
+    forCorners([&](std::size_t u, const Corner&) { ++firstCorner_[u + 1]; });
+    std::partial_sum(firstCorner_.begin(), firstCorner_.end(), firstCorner_.begin());
+    corners_.resize(firstCorner_.back());
+    std::vector<std::size_t> next(firstCorner_.begin(), firstCorner_.end() - 1);
+    forCorners([&](std::size_t u, const Corner& corner) { corners_[next[u]++] = corner; });
   }
 
   std::size_t size() const { return 3 * unknowns_.size(); }
@@ -92,7 +94,13 @@ class Energy {
     parallelBlocks(count, kTetsABlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) parts[begin / kTetsABlock] += of(t, eps);
     });
-    return std::accumulate(parts.begin(), parts.end(), 0.0);
+    double sum = std::accumulate(parts.begin(), parts.end(), 0.0);
+    for (const Spring& spring : patch_.springs) {
+      const Vec3 way = patch_.vertices[spring.vertex] - spring.place;
+      const double along = dot(spring.normal, way);
+      sum += spring.stiffness * (tied(spring) ? squaredNorm(way) : along * along);
+    }
+    return sum;
   }
 
   // One round at a fixed eps.
@@ -101,19 +109,41 @@ class Energy {
     lbfgs_parameter_t settings;
     lbfgs_parameter_init(&settings);
     settings.m = kPairs;
-    settings.max_iterations = kStepsARound;
+    settings.max_iterations = settings_.stepsARound;
     settings.epsilon = 1e-6;
     // What it returns says no more than x does: the round ended by its steps, or no line search
     // gained anything.
     lbfgs(static_cast<int>(size()), x, nullptr, &evaluate, &keepOn, this, &settings);
     write(x);
-    throwIfCancelled(progress_);
+    throwIfCancelled(settings_.progress);
   }
 
  private:
   struct Corner {
     std::size_t tet, corner;
   };
+
+  // In every direction, not along a normal alone.
+  static bool tied(const Spring& spring) { return !(squaredNorm(spring.normal) > 0); }
+
+  template <class Visit>
+  void forCorners(const Visit& visit) const {
+    for (std::size_t t = 0; t < patch_.tets.size(); ++t)
+      for (std::size_t c = 0; c < 4; ++c)
+        if (const int u = unknownOf_[static_cast<std::size_t>(patch_.tets[t][c])]; u >= 0)
+          visit(static_cast<std::size_t>(u), Corner{t, c});
+  }
+
+  void addSprings(lbfgsfloatval_t* g) const {
+    for (const Spring& spring : patch_.springs) {
+      const int u = unknownOf_[static_cast<std::size_t>(spring.vertex)];
+      if (u < 0) continue;
+      const Vec3 way = patch_.vertices[spring.vertex] - spring.place;
+      const Vec3 pull =
+          2 * spring.stiffness * (tied(spring) ? way : dot(spring.normal, way) * spring.normal);
+      for (int k = 0; k < 3; ++k) g[3 * u + k] += pull[k];
+    }
+  }
 
   double of(std::size_t t, double eps) {
     const Mat3 j = jacobianOf(patch_, t);
@@ -124,8 +154,9 @@ class Energy {
       for (const double x : row) squares += x * x;
     const double root = std::cbrt(chi.value), shape = 1 / (root * root),
                  size = (1 + det * det) / chi.value;
-    const double byDet = -2.0 / 3 * squares * shape / chi.value * chi.slope +
-                         kTheta * (2 * det / chi.value - size / chi.value * chi.slope);
+    const double byDet =
+        -2.0 / 3 * squares * shape / chi.value * chi.slope +
+        settings_.volumeShare * (2 * det / chi.value - size / chi.value * chi.slope);
     Mat3 byJ = cofactors(j);
     for (std::size_t r = 0; r < 3; ++r)
       for (std::size_t c = 0; c < 3; ++c) byJ[r][c] = byDet * byJ[r][c] + 2 * shape * j[r][c];
@@ -136,7 +167,7 @@ class Energy {
       force[e + 1] = {byEdges[0][e], byEdges[1][e], byEdges[2][e]};
       force[0] += -1.0 * force[e + 1];
     }
-    return squares * shape + kTheta * size;
+    return squares * shape + settings_.volumeShare * size;
   }
 
   static lbfgsfloatval_t evaluate(void* self, const lbfgsfloatval_t* x, lbfgsfloatval_t* g, int,
@@ -144,47 +175,65 @@ class Energy {
     Energy& energy = *static_cast<Energy*>(self);
     energy.write(x);
     const double value = energy.at(energy.eps_);
-    parallelBlocks(energy.unknowns_.size(), kVerticesABlock,
-                   [&](std::size_t begin, std::size_t end) {
-                     for (std::size_t u = begin; u < end; ++u) {
-                       Vec3 sum;
-                       for (const Corner& c : energy.corners_[u])
-                         sum += energy.forces_[c.tet][c.corner];
-                       for (int k = 0; k < 3; ++k) g[3 * u + static_cast<std::size_t>(k)] = sum[k];
-                     }
-                   });
+    parallelBlocks(
+        energy.unknowns_.size(), kVerticesABlock, [&](std::size_t begin, std::size_t end) {
+          for (std::size_t u = begin; u < end; ++u) {
+            Vec3 sum;
+            for (std::size_t i = energy.firstCorner_[u]; i < energy.firstCorner_[u + 1]; ++i)
+              sum += energy.forces_[energy.corners_[i].tet][energy.corners_[i].corner];
+            for (int k = 0; k < 3; ++k) g[3 * u + static_cast<std::size_t>(k)] = sum[k];
+          }
+        });
+    energy.addSprings(g);
     return value;
   }
 
   // No exception may pass through the optimiser, which is C.
   static int keepOn(void* self, const lbfgsfloatval_t*, const lbfgsfloatval_t*, lbfgsfloatval_t,
                     lbfgsfloatval_t, lbfgsfloatval_t, lbfgsfloatval_t, int, int, int) {
-    const Progress* progress = static_cast<Energy*>(self)->progress_;
+    const Progress* progress = static_cast<Energy*>(self)->settings_.progress;
     return progress && progress->cancelled() ? 1 : 0;
   }
 
   TetPatch& patch_;
-  Progress* progress_;
-  std::vector<int> unknowns_;                 // vertices
-  std::vector<std::vector<Corner>> corners_;  // of tetrahedra, at each unknown
-  std::vector<std::array<Vec3, 4>> forces_;   // derivatives by the corners
+  const UntangleSettings& settings_;
+  std::vector<int> unknowns_;                // vertices
+  std::vector<int> unknownOf_;               // each vertex, or -1
+  std::vector<Corner> corners_;              // of tetrahedra, at one unknown after the other
+  std::vector<std::size_t> firstCorner_;     // of each unknown
+  std::vector<std::array<Vec3, 4>> forces_;  // derivatives by the corners
   double eps_ = 1;
 };
 
 }  // namespace
 
-Mat3 jacobianOf(const TetPatch& patch, std::size_t tet) {
-  const std::array<int, 4>& t = patch.tets[tet];
+namespace {
+
+Mat3 edgesOf(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   Mat3 edges;
-  for (std::size_t e = 0; e < 3; ++e) {
-    const Vec3 edge = patch.vertices[t[e + 1]] - patch.vertices[t[0]];
-    for (std::size_t r = 0; r < 3; ++r) edges[r][e] = edge[static_cast<int>(r)];
+  for (std::size_t r = 0; r < 3; ++r) {
+    const int axis = static_cast<int>(r);
+    edges[r] = {b[axis] - a[axis], c[axis] - a[axis], d[axis] - a[axis]};
   }
-  return product(edges, patch.rest[tet]);
+  return edges;
 }
 
-double untangle(TetPatch& patch, Progress* progress) {
-  Energy energy(patch, progress);
+}  // namespace
+
+Mat3 inverseEdges(const std::array<Vec3, 4>& c) { return inverse(edgesOf(c[0], c[1], c[2], c[3])); }
+
+Mat3 jacobianOf(const std::array<Vec3, 4>& c, const Mat3& rest) {
+  return product(edgesOf(c[0], c[1], c[2], c[3]), rest);
+}
+
+Mat3 jacobianOf(const TetPatch& patch, std::size_t tet) {
+  const std::array<int, 4>& t = patch.tets[tet];
+  const Points& v = patch.vertices;
+  return product(edgesOf(v[t[0]], v[t[1]], v[t[2]], v[t[3]]), patch.rest[tet]);
+}
+
+double untangle(TetPatch& patch, const UntangleSettings& settings) {
+  Energy energy(patch, settings);
   double least = energy.leastDeterminant();
   if (energy.size() == 0) return least;
   const std::unique_ptr<lbfgsfloatval_t, LbfgsFree> x(
@@ -192,7 +241,7 @@ double untangle(TetPatch& patch, Progress* progress) {
   if (!x) throw std::bad_alloc();
   energy.read(x.get());
   double eps = 1;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < settings.rounds; ++round) {
     const double before = energy.at(eps);
     energy.minimise(eps, x.get());
     const double gain = 1 - energy.at(eps) / before;
@@ -200,6 +249,7 @@ double untangle(TetPatch& patch, Progress* progress) {
     if (least > 0 && gain < kLeastGain) break;
     const double mu = (1 - std::max(gain, kLeastSigma)) * Lifted(least, eps).value;
     eps = least < mu ? 2 * std::sqrt(mu * (mu - least)) : kSmallest;
+    if (settings.afterRound) settings.afterRound(patch, round);
   }
   return least;
 }

@@ -1,0 +1,169 @@
+#include "innermap/tetra/carry_cells.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "innermap/core/error.h"
+#include "innermap/core/parallel.h"
+#include "innermap/tetra/detail/guide_surface.h"
+
+namespace innermap {
+namespace {
+
+constexpr std::size_t kBlock = 1024;
+constexpr double kBackwards = -0.25;  // cosine, of normals that cannot belong together
+
+// The boundary's vertices, how they hang together, and which way they face.
+struct Boundary {
+  std::vector<int> vertices;                 // ascending
+  std::vector<int> numberOf;                 // #V, or -1
+  std::vector<std::vector<int>> neighbours;  // numbers
+  Points normals;                            // of length 1 where there is one
+
+  explicit Boundary(const CellMesh& mesh) : numberOf(mesh.vertices.size(), -1) {
+    const std::vector<Triangle> triangles = boundaryTriangles(mesh);
+    for (const Triangle& t : triangles) vertices.insert(vertices.end(), t.begin(), t.end());
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    for (std::size_t b = 0; b < vertices.size(); ++b) numberOf[vertices[b]] = static_cast<int>(b);
+    neighbours.resize(vertices.size());
+    normals.resize(vertices.size());
+    for (const Triangle& t : triangles) {
+      const Vec3& a = mesh.vertices[t[0]];
+      const Vec3 n = cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a);
+      for (int k = 0; k < 3; ++k) {
+        const int b = numberOf[t[k]];
+        normals[b] += n;
+        neighbours[b].push_back(numberOf[t[(k + 1) % 3]]);
+      }
+    }
+    for (Vec3& n : normals)
+      if (const double length = norm(n); length > 0) n = n / length;
+  }
+};
+
+// Closest points that look the other way are sought again along the surface.
+std::size_t readdress(const CellMesh& mesh, const Boundary& boundary, const GuideSurface& surface,
+                      std::vector<ClosestPoint>& found) {
+  const auto agrees = [&](std::size_t b, const ClosestPoint& at) {
+    return dot(boundary.normals[b], surface.normal(at.address.triangle)) >= kBackwards;
+  };
+  std::vector<std::size_t> open;
+  for (std::size_t b = 0; b < found.size(); ++b)
+    if (!agrees(b, found[b])) open.push_back(b);
+  std::size_t changed = 0;
+  for (bool progressed = true; progressed && !open.empty();) {
+    progressed = false;
+    std::vector<std::size_t> left;
+    for (const std::size_t b : open) {
+      ClosestPoint best;
+      for (const int n : boundary.neighbours[b]) {
+        if (!agrees(static_cast<std::size_t>(n), found[n])) continue;
+        const ClosestPoint other =
+            surface.closestFrom(found[n].address.triangle, mesh.vertices[boundary.vertices[b]]);
+        if (agrees(b, other) && other.distance < best.distance) best = other;
+      }
+      if (std::isfinite(best.distance)) {
+        found[b] = best;
+        ++changed;
+        progressed = true;
+      } else {
+        left.push_back(b);
+      }
+    }
+    open = std::move(left);
+  }
+  return changed;
+}
+
+void measure(const CellMesh& mesh, const std::vector<ClosestPoint>& found, double diagonal,
+             const CarryCellsSettings& settings, CellCarry& out) {
+  double squares = 0;
+  std::size_t far = 0;
+  for (const ClosestPoint& at : found) {
+    squares += at.distance * at.distance;
+    out.boundaryMax = std::max(out.boundaryMax, at.distance);
+    far += !(at.distance <= settings.farthest * diagonal);
+  }
+  out.boundaryVertices = found.size();
+  out.boundaryRms =
+      std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, found.size())));
+  if (far > 0)
+    throw DataError(fmt::format(
+        "{}: {} of {} vertices of the boundary are not on the map's source solid, the farthest "
+        "{:.3g} "
+        "from its surface, {:.3g} of its diagonal: the mesh must fill the solid, without hanging "
+        "nodes; what lies inside it otherwise is carried by push",
+        mesh.name.empty() ? "mesh" : mesh.name, far, found.size(), out.boundaryMax,
+        out.boundaryMax / diagonal));
+}
+
+void carryInside(const CellMesh& mesh, const MappedSolid& mapped, const Boundary& boundary,
+                 Progress* progress, CellCarry& out) {
+  std::vector<char> used(mesh.vertices.size(), 0);
+  for (const Tetrahedron& t : mesh.tetrahedra)
+    for (const int v : t) used[v] = 1;
+  for (const Hexahedron& h : mesh.hexahedra)
+    for (const int v : h) used[v] = 1;
+  std::vector<int> inside;
+  Points from;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    if (used[v] && boundary.numberOf[v] < 0) {
+      inside.push_back(static_cast<int>(v));
+      from.push_back(mesh.vertices[v]);
+    }
+  if (inside.empty()) return;
+  EvaluateFieldSettings settings;
+  settings.accuracy = sumAccuracy(mapped) * mapped.boundary.target.diagonal;
+  settings.progress = progress;
+  const Points to = pointsOf(mapped.map.evaluate(from, settings).values);
+  for (std::size_t i = 0; i < inside.size(); ++i) out.cells.positions[inside[i]] = to[i];
+}
+
+}  // namespace
+
+Mesh targetSurface(const MappedSolid& mapped) {
+  return mapped.boundary.target.mesh(mapped.solid(), "target");
+}
+
+CellCarry carryCells(const CellMesh& mesh, const MappedSolid& mapped,
+                     const CarryCellsSettings& settings) {
+  if (!(settings.farthest > 0 && settings.farthest <= 1))
+    throw SettingError("farthest",
+                       fmt::format("{} is not over 0 and at most 1", settings.farthest));
+  validate(mesh);
+  if (mesh.tetrahedra.empty() && mesh.hexahedra.empty())
+    throw DataError((mesh.name.empty() ? "mesh" : mesh.name) + ": has no cells");
+  const Solid& solid = mapped.solid();
+  const Boundary boundary(mesh);
+  const GuideSurface surface(solid.surface().vertices, solid.surface().triangles);
+  std::vector<ClosestPoint> found(boundary.vertices.size());
+  parallelBlocks(
+      found.size(), kBlock,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b)
+          found[b] = surface.closest(mesh.vertices[boundary.vertices[b]]);
+      },
+      settings.progress, "placing the boundary");
+  CellCarry out;
+  measure(mesh, found, solid.diagonal(), settings, out);
+  out.readdressed = readdress(mesh, boundary, surface, found);
+  // Vertices that no cell uses stay.
+  out.cells.positions = mesh.vertices;
+  out.cells.onSurface.assign(mesh.vertices.size(), {-1, {1, 0, 0}});
+  std::vector<SurfacePoint> places;
+  for (const ClosestPoint& at : found) places.push_back(solid.address(at.address));
+  const Points to =
+      interpolate(mapped.boundary.target.moved, solid.repaired().mesh.triangles, places);
+  for (std::size_t b = 0; b < places.size(); ++b) {
+    out.cells.positions[boundary.vertices[b]] = to[b];
+    out.cells.onSurface[boundary.vertices[b]] = places[b];
+  }
+  carryInside(mesh, mapped, boundary, settings.progress, out);
+  return out;
+}
+
+}  // namespace innermap

@@ -1,0 +1,40 @@
+// A mesh of cells that fills a map's source, carried to its target: vertices inside by the map,
+// those of the boundary by where they are on the surface.
+#pragma once
+
+#include <cstddef>
+
+#include "innermap/boundary/mapped_solid.h"
+#include "innermap/core/progress.h"
+#include "innermap/tetra/cell_mesh.h"
+#include "innermap/tetra/repair_cells.h"
+
+namespace innermap {
+
+struct CarryCellsSettings {
+  // Farthest that a vertex of the boundary may be from the solid's surface, fraction of the
+  // source's diagonal, in (0, 1]: a mesh that fills something else is refused.
+  double farthest = 0.05;
+  Progress* progress = nullptr;
+};
+
+struct CellCarry {
+  CarriedCells cells;  // places on the surface: of targetSurface(mapped)
+  std::size_t boundaryVertices = 0;
+  double boundaryRms = 0, boundaryMax = 0;  // their distance from the source, world units of it
+  std::size_t readdressed = 0;              // nearer to a sheet that their faces turn their back on
+};
+
+// The surface that boundaries are carried onto: the source's triangles where the map's boundary
+// takes them.
+Mesh targetSurface(const MappedSolid& mapped);
+
+// A vertex of the boundary takes the closest point of the source's surface; where that faces the
+// other way than the boundary there (narrow gaps), the closest that is reached along the surface
+// from its neighbours'. So the boundary goes exactly onto the target, which the map meets but for
+// its boundary error. Deterministic. Throws DataError for a mesh without cells, or whose boundary
+// is not the solid's (its vertices counted, with the farthest), SettingError, Cancelled.
+CellCarry carryCells(const CellMesh& mesh, const MappedSolid& mapped,
+                     const CarryCellsSettings& settings = {});
+
+}  // namespace innermap
