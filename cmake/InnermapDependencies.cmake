@@ -10,6 +10,8 @@ find_dependency(TBB)
 find_dependency(OpenEXR)
 find_dependency(fmt)
 find_dependency(hwy)
+# compressed .vtu files
+find_dependency(ZLIB)
 
 # OpenImageIO's own package asks for OpenCV's headers, which nothing here needs.
 if(NOT TARGET innermap_oiio)

@@ -11,7 +11,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/file.h"
-#include "innermap/mesh/detail/text_scanner.h"
+#include "innermap/core/detail/text_scanner.h"
 
 namespace innermap {
 namespace {

@@ -29,6 +29,7 @@ struct CellField {
   int components = 1;
   Kind kind = Kind::scalar;
   std::vector<double> values;
+  bool whole = false;  // whole numbers (labels, say), and written to files as such
 };
 
 struct CellMesh {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "innermap/mesh/detail/text_scanner.h"
+#include "innermap/core/detail/text_scanner.h"
 
 namespace innermap {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "innermap/core/progress.h"
-#include "innermap/mesh/detail/text_scanner.h"
+#include "innermap/core/detail/text_scanner.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {

@@ -7,12 +7,9 @@
 #include <string>
 #include <string_view>
 
-namespace innermap {
+#include "innermap/core/detail/file_bytes.h"
 
-struct FileBytes {
-  std::string path;
-  std::string bytes;
-};
+namespace innermap {
 
 // Text from a file made fit for a one-line message: shortened, unprintable bytes as '?'.
 std::string inQuotes(std::string_view text);

@@ -1,4 +1,4 @@
-#include "innermap/mesh/detail/text_scanner.h"
+#include "innermap/core/detail/text_scanner.h"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,169 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+
+#include "innermap/io/cells/detail/cell_formats.h"
+
+namespace innermap {
+namespace {
+
+// Base64 of bytes that come in pieces.
+class Base64Writer {
+ public:
+  explicit Base64Writer(std::ostream& stream) : stream_(stream) {}
+  ~Base64Writer() {
+    if (held_ > 0) put(held_);
+    stream_.write(text_.data(), static_cast<std::streamsize>(text_.size()));
+  }
+
+  template <class T>
+  void add(T value) {
+    unsigned char bytes[sizeof(T)];
+    std::memcpy(bytes, &value, sizeof(T));
+    for (const unsigned char byte : bytes) {
+      bits_ = bits_ << 8 | byte;
+      if (++held_ == 3) put(3);
+    }
+  }
+
+ private:
+  void put(int bytes) {
+    static constexpr char kDigits[] =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const std::uint32_t bits = bits_ << (8 * (3 - bytes));
+    for (int k = 0; k < 4; ++k)
+      text_.push_back(k <= bytes ? kDigits[bits >> (18 - 6 * k) & 63] : '=');
+    bits_ = 0;
+    held_ = 0;
+    if (text_.size() < (1u << 20)) return;
+    stream_.write(text_.data(), static_cast<std::streamsize>(text_.size()));
+    text_.clear();
+  }
+
+  std::ostream& stream_;
+  std::string text_;
+  std::uint32_t bits_ = 0;
+  int held_ = 0;
+};
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+// `add` puts `count` values of type T.
+template <class T>
+void writeArray(std::ostream& stream, const std::string& attributes, std::uint64_t count,
+                const std::function<void(Base64Writer&)>& add) {
+  stream << "        <DataArray " << attributes << " format=\"binary\">";
+  {
+    Base64Writer out(stream);
+    out.add<std::uint64_t>(count * sizeof(T));
+    add(out);
+  }
+  stream << "</DataArray>\n";
+}
+
+const char* kindOf(const CellField& field) {
+  if (field.kind == CellField::Kind::vector) return " Kind=\"vector\"";
+  return field.kind == CellField::Kind::normal ? " Kind=\"normal\"" : "";
+}
+
+bool fitsIntegers(const CellField& field) {
+  for (const double value : field.values)
+    if (!(std::abs(value) < 9e15) || value != std::floor(value)) return false;
+  return true;
+}
+
+void writeField(std::ostream& stream, const CellField& field) {
+  const bool whole = field.whole && fitsIntegers(field);
+  const std::string attributes = fmt::format("type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"{}",
+                                             whole ? "Int64" : "Float64", escaped(field.name),
+                                             field.components, kindOf(field));
+  writeArray<double>(stream, attributes, field.values.size(), [&](Base64Writer& out) {
+    for (const double value : field.values)
+      if (whole)
+        out.add<std::int64_t>(static_cast<std::int64_t>(value));
+      else
+        out.add(value);
+  });
+}
+
+void writeFields(std::ostream& stream, const char* tag, const std::vector<CellField>& fields) {
+  stream << "      <" << tag;
+  const auto active = [&](const char* attribute, CellField::Kind kind) {
+    for (const CellField& field : fields)
+      if (field.kind == kind && (kind != CellField::Kind::scalar || field.components == 1)) {
+        stream << ' ' << attribute << "=\"" << escaped(field.name) << '"';
+        return;
+      }
+  };
+  active("Scalars", CellField::Kind::scalar);
+  active("Vectors", CellField::Kind::vector);
+  active("Normals", CellField::Kind::normal);
+  stream << ">\n";
+  for (const CellField& field : fields) writeField(stream, field);
+  stream << "      </" << tag << ">\n";
+}
+
+void writeCells(std::ostream& stream, const CellMesh& mesh) {
+  const std::uint64_t tets = mesh.tetrahedra.size(), hexes = mesh.hexahedra.size();
+  stream << "      <Cells>\n";
+  writeArray<std::int64_t>(stream, "type=\"Int64\" Name=\"connectivity\"", 4 * tets + 8 * hexes,
+                           [&](Base64Writer& out) {
+                             for (const Tetrahedron& cell : mesh.tetrahedra)
+                               for (const int v : cell) out.add<std::int64_t>(v);
+                             for (const Hexahedron& cell : mesh.hexahedra)
+                               for (const int v : cell) out.add<std::int64_t>(v);
+                           });
+  writeArray<std::int64_t>(stream, "type=\"Int64\" Name=\"offsets\"", tets + hexes,
+                           [&](Base64Writer& out) {
+                             for (std::uint64_t c = 1; c <= tets; ++c)
+                               out.add(static_cast<std::int64_t>(4 * c));
+                             for (std::uint64_t c = 1; c <= hexes; ++c)
+                               out.add(static_cast<std::int64_t>(4 * tets + 8 * c));
+                           });
+  writeArray<std::uint8_t>(stream, "type=\"UInt8\" Name=\"types\"", tets + hexes,
+                           [&](Base64Writer& out) {
+                             for (std::uint64_t c = 0; c < tets + hexes; ++c)
+                               out.add<std::uint8_t>(c < tets ? 10 : 12);
+                           });
+  stream << "      </Cells>\n";
+}
+
+}  // namespace
+
+LostFields writeVtu(std::ostream& stream, const CellMesh& mesh) {
+  stream << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+            "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  <UnstructuredGrid>\n";
+  stream << fmt::format("    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
+                        mesh.vertices.size(), mesh.tetrahedra.size() + mesh.hexahedra.size());
+  writeFields(stream, "PointData", mesh.vertexFields);
+  writeFields(stream, "CellData", mesh.cellFields);
+  stream << "      <Points>\n";
+  writeArray<double>(stream, "type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"",
+                     3 * mesh.vertices.size(), [&](Base64Writer& out) {
+                       for (const Vec3& p : mesh.vertices)
+                         for (int a = 0; a < 3; ++a) out.add(p[a]);
+                     });
+  stream << "      </Points>\n";
+  writeCells(stream, mesh);
+  stream << "    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n";
+  return {};
+}
+
+}  // namespace innermap
