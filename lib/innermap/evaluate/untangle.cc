@@ -111,6 +111,8 @@ class Energy {
     settings.m = kPairs;
     settings.max_iterations = settings_.stepsARound;
     settings.epsilon = 1e-6;
+    // Beyond the wall that the energy then is, its values tell nothing: only shorter steps help.
+    if (eps <= kSmallest) settings.linesearch = LBFGS_LINESEARCH_BACKTRACKING_WOLFE;
     // What it returns says no more than x does: the round ended by its steps, or no line search
     // gained anything.
     lbfgs(static_cast<int>(size()), x, nullptr, &evaluate, &keepOn, this, &settings);

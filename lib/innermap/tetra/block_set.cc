@@ -131,6 +131,7 @@ BlockHexahedra blockHexahedra(const BlockSet& blocks, int pieces, double pillow)
           out.mesh.hexahedra.push_back(cell);
         }
   }
+  out.core = out.mesh.hexahedra.size();
   out.mesh.vertices = vertices.points();
   std::vector<int> outerOf(out.mesh.vertices.size(), -1);
   visitSquares(blocks, pieces, [&](const std::array<Block, 4>& corners, bool) {

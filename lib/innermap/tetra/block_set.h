@@ -39,6 +39,7 @@ Mesh blockSurface(const BlockSet& blocks, int pieces);
 // The set as hexahedra, in the shape of the blocks.
 struct BlockHexahedra {
   CellMesh mesh;
+  std::size_t core = 0;  // hexahedra in the blocks: first of all; those of the layer follow
   // A vertex on the set's boundary and the one that stands below it, under the pillow layer.
   struct Skin {
     int outer, inner;

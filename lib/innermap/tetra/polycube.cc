@@ -15,15 +15,17 @@
 namespace innermap {
 namespace {
 
-constexpr int kMost = 64, kFirstChoice = 12, kLastChoice = 48, kChoiceStep = 4;
-constexpr double kMayMiss = 0.05;            // of the solid, for a number of blocks to be chosen
+constexpr int kLeast = 2, kMost = kMostAcross;
+constexpr double kBlocks = 900;  // in all, when their number across is chosen
+constexpr int kChoices = 8;      // numbers across that are tried then, one after the other
 constexpr double kWorthTelling = 1e-4;       // of the solid's volume
 constexpr std::uint64_t kBytesABlock = 400;  // of a search, of all shifts at once
 
 // Handles of the outer boundary, then of those of cavities, ascending.
-std::vector<int> handlesOf(const Mesh& mesh, Progress* progress) {
+std::vector<int> handlesOf(const Mesh& mesh, const PolycubeSettings& polycube) {
   ClosedSurfaceSettings settings;
-  settings.progress = progress;
+  settings.closeHoles = polycube.closeHoles;
+  settings.progress = polycube.progress;
   const SurfaceShells shells = closedSurfaces(mesh, settings);
   std::size_t outer = 0, bodies = 0;
   for (std::size_t s = 0; s < shells.shells.size(); ++s)
@@ -39,8 +41,8 @@ std::vector<int> handlesOf(const Mesh& mesh, Progress* progress) {
   }
   if (bodies > 1)
     throw DataError(fmt::format(
-        "{} has {} bodies, apart from one another or overlapping; a polycube is made of one: give "
-        "each a file of its own, or unite them (innermap export --format obj of a voxelized mesh)",
+        "{} has {} bodies, apart from one another or overlapping, and a polycube is made of one: "
+        "give each a file of its own, or take the surface around them all (surface resolution)",
         mesh.name, bodies));
   std::sort(handles.begin() + 1, handles.end());
   return handles;
@@ -150,26 +152,36 @@ struct Search {
     return out;
   }
 
-  // The fewest blocks that miss little; where that cannot be had, those that miss least.
+  // About as many blocks as are wanted in all.
+  int first() const {
+    const Vec3 extent = solid.box().extent();
+    const double longest = std::max({extent.x, extent.y, extent.z});
+    const double across = std::cbrt(kBlocks * longest * longest * longest / solid.volume());
+    return std::clamp(static_cast<int>(std::lround(std::min(across, 1.0 * kMost))), kLeast, kMost);
+  }
+
   std::optional<Polycube> chosen() const {
-    std::optional<Polycube> best;
-    for (int across = kFirstChoice; across <= kLastChoice; across += kChoiceStep) {
-      std::optional<Polycube> found = at(across);
-      if (found && (!best || found->missed < best->missed)) best = std::move(found);
-      if (best && best->missed <= kMayMiss) break;
-    }
-    return best;
+    for (int across = first(), tried = 0; across <= kMost && tried < kChoices; ++across, ++tried)
+      if (std::optional<Polycube> found = at(across)) return found;
+    return {};
+  }
+
+  // What to do where so many blocks will not do.
+  std::string advice(int across) const {
+    while (++across <= kMost)
+      if (at(across)) return fmt::format("{} do", across);
+    return fmt::format("nor of more, up to {}: parts of it are too thin or too close", kMost);
   }
 };
 
 }  // namespace
 
 Polycube makePolycube(const Mesh& mesh, const PolycubeSettings& settings) {
-  if (settings.blocks != 0 && (settings.blocks < 2 || settings.blocks > kMost))
+  if (settings.blocks != 0 && (settings.blocks < kLeast || settings.blocks > kMost))
     throw SettingError("blocks",
-                       fmt::format("must be from 2 to {}, or 0 to have it chosen", kMost));
+                       fmt::format("must be from {} to {}, or 0 to have it chosen", kLeast, kMost));
   StageSeconds seconds;
-  const std::vector<int> handles = handlesOf(mesh, settings.progress);
+  const std::vector<int> handles = handlesOf(mesh, settings);
   SolidSettings solidSettings;
   solidSettings.progress = settings.progress;
   const Solid solid = timed(seconds, "solid", [&] { return Solid(mesh, solidSettings); });
@@ -178,24 +190,24 @@ Polycube makePolycube(const Mesh& mesh, const PolycubeSettings& settings) {
     return settings.blocks ? search.at(settings.blocks) : search.chosen();
   });
   if (!out) {
-    std::string advice = "look at it with innermap check";
-    if (settings.blocks)
-      for (int across = settings.blocks + 1; across <= kMost; ++across)
-        if (search.at(across)) {
-          advice = fmt::format("{} blocks do", across);
-          break;
-        }
-    throw DataError(fmt::format("{}: no set of {} blocks has its topology ({}); {}", mesh.name,
-                                settings.blocks ? fmt::format("{} across", settings.blocks)
-                                                : fmt::format("up to {} across", kLastChoice),
-                                topologyText(handles), advice));
+    const int tried = settings.blocks ? settings.blocks : search.first();
+    throw DataError(fmt::format("{}: no set of {} blocks across has its topology ({}); {}",
+                                mesh.name, tried, topologyText(handles), search.advice(tried)));
   }
   out->seconds = std::move(seconds);
   return *std::move(out);
 }
 
+double expectedBlocks(const Mesh& mesh, int across) {
+  if (across == 0) return kBlocks;
+  const Vec3 extent = boundingBox(mesh).extent();
+  const double longest = std::max({extent.x, extent.y, extent.z});
+  const double share = std::abs(signedVolume(mesh)) / (longest * longest * longest);
+  return std::clamp(share, 0.0, 1.0) * across * across * across;
+}
+
 std::uint64_t polycubeMemory(const Mesh& mesh, const PolycubeSettings& settings) {
-  const std::uint64_t across = settings.blocks ? settings.blocks : kLastChoice;
+  const std::uint64_t across = settings.blocks ? settings.blocks : kMost;
   // The mesh's box says how many blocks there are.
   const Vec3 extent = boundingBox(mesh).extent();
   const double longest = std::max({extent.x, extent.y, extent.z});

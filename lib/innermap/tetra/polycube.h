@@ -19,8 +19,10 @@
 namespace innermap {
 
 struct PolycubeSettings {
-  int blocks = 0;  // along the longest side of the mesh's box, in [2, 64]; 0: the fewest of 12, 16,
-                   // 20, ... 48 that miss no more than a twentieth of the solid
+  // Along the longest side of the mesh's box, in [2, 64]; 0: as many as give about 900 blocks in
+  // all, or a few more where those have not the mesh's topology.
+  int blocks = 0;
+  bool closeHoles = false;      // cap the holes of an open mesh; otherwise it is refused
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;
 };
@@ -43,10 +45,16 @@ struct Polycube {
   StageSeconds seconds;                 // "solid", "blocks"
 };
 
-// The mesh must be closed and bound one body, which may have handles and cavities. Throws DataError
+// The mesh must be closed (but for holes to be closed) and bound one body, which may have handles
+// and cavities. Throws DataError
 // for others, and when no set of so many blocks has the mesh's topology (then it names a number
 // that does, where one up to 64 is found); SettingError, MemoryError, Cancelled. Deterministic.
 Polycube makePolycube(const Mesh& mesh, const PolycubeSettings& settings = {});
+
+constexpr int kMostAcross = 64;
+
+// About how many blocks there will be in all, from the mesh's volume.
+double expectedBlocks(const Mesh& mesh, int across);
 
 // Bytes that it takes, at most, beside the mesh and its solid.
 std::uint64_t polycubeMemory(const Mesh& mesh, const PolycubeSettings& settings = {});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "innermap/core/progress.h"
@@ -11,26 +12,22 @@
 namespace innermap {
 
 struct HexShapingSettings {
-  double goal = 0.35;  // least scaled Jacobian that is worked for
-  int rounds = 30;     // at most, of evening out after untangling
+  double goal = 0.4;  // least scaled Jacobian of a corner that is worked for, in (0, 1)
+  int rounds = 16;    // of evening out, after untangling
+  std::uint64_t seed = 1;
   Progress* progress = nullptr;
 };
 
-struct HexShaping {
-  int rounds = 0;       // of evening out
-  double anchor = 0;    // weight that held the boundary where it was carried, energy by edge squared
-};
-
-// Moves hexes.mesh.vertices, where a map took them. surface: the solid's boundary, in world units.
-// onSurface: where on it each vertex of the skin was carried, kept up to date. `core`: hexahedra
-// that are not of the pillow layer, first in the list.
+// Moves hexes.mesh.vertices, which a map carried. surface: the solid's boundary, closed, world
+// units. onSurface: of each vertex of the skin, where on it that was carried; kept up to date.
 //
-// The energy of untangle.h on the tetrahedra at the corners; vertices of the boundary are held by
-// springs along the surface's normal where they are, and points of the surface pull at the faces
-// below them, so that the boundary neither leaves the surface nor slides off its limbs. Corners
-// below the goal count more from round to round. Deterministic. Throws Cancelled.
-HexShaping shapeHexahedra(BlockHexahedra& hexes, std::size_t core, const Mesh& surface,
-                          std::vector<SurfacePoint>& onSurface,
-                          const HexShapingSettings& settings = {});
+// The energy of untangle.h on the tetrahedra at the corners. Vertices of the boundary are held by
+// springs along the surface's normals, so that they slide; and points spread over the surface each
+// pull at the face that is nearest to them, along the way to it, so that the boundary does not
+// slide off limbs, and is drawn into edges. A spring holds at first with kStiffness times the
+// energy of a cube, to a hexahedron's edge squared. Corners below the goal count more from round to
+// round. Deterministic, the same for any number of threads. Throws Cancelled.
+void shapeHexahedra(BlockHexahedra& hexes, const Mesh& surface,
+                    std::vector<SurfacePoint>& onSurface, const HexShapingSettings& settings = {});
 
 }  // namespace innermap
