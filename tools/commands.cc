@@ -3,23 +3,12 @@
 namespace innermap::tool {
 
 std::vector<Command> allCommands() {
-  return {makeMapCommand(),
-          makeCorrespondCommand(),
-          makeSphereCommand(),
-          makeFitCommand(),
-          makeEvaluateCommand(),
-          makeSequenceCommand(),
-          makeDeformCommand(),
-          makeTextureCommand(),
-          makePushCommand(),
-          makePullCommand(),
-          makeTransferDistanceCommand(),
-          makeCheckCommand(),
-          makeVoxelizeCommand(),
-          makeSliceCommand(),
-          makeExportCommand(),
-          makeImportCommand(),
-          makeInfoCommand(),
+  return {makeMapCommand(),      makeCorrespondCommand(),       makeSphereCommand(),
+          makeFitCommand(),      makeEvaluateCommand(),         makeSequenceCommand(),
+          makeDeformCommand(),   makeTextureCommand(),          makePushCommand(),
+          makePullCommand(),     makeTransferDistanceCommand(), makeCheckCommand(),
+          makeVoxelizeCommand(), makeTetrahedralizeCommand(),   makeSliceCommand(),
+          makeExportCommand(),   makeImportCommand(),           makeInfoCommand(),
           makeHelpCommand()};
 }
 

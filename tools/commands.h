@@ -19,6 +19,7 @@ Command makePushCommand();
 Command makePullCommand();
 Command makeCheckCommand();
 Command makeVoxelizeCommand();
+Command makeTetrahedralizeCommand();
 Command makeSliceCommand();
 Command makeTransferDistanceCommand();
 Command makeExportCommand();

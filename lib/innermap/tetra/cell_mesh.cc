@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <tuple>
+#include <functional>
+#include <limits>
 
 #include "innermap/core/error.h"
+#include "innermap/core/parallel.h"
 
 namespace innermap {
 namespace {
@@ -44,33 +46,73 @@ void validateFields(const CellMesh& mesh, const std::vector<CellField>& fields, 
   }
 }
 
-struct Face {
-  std::array<int, 4> key;      // sorted; the last is -1 for a triangle
-  std::array<int, 4> corners;  // as seen from outside; the last is -1 for a triangle
-  std::int64_t order;
-};
+constexpr int kTetFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+constexpr int kHexFaces[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                 {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
 
-Face makeFace(std::array<int, 4> corners, std::int64_t order) {
-  std::array<int, 4> key = corners;
-  std::sort(key.begin(), key.end(), [](int a, int b) {
-    return static_cast<unsigned>(a) < static_cast<unsigned>(b);  // -1 last
-  });
-  return {key, corners, order};
+// Corners of face f, counted over all cells, as seen from outside; the last is -1 for a triangle.
+std::array<int, 4> cornersOf(const CellMesh& mesh, std::size_t f) {
+  if (f < 4 * mesh.tetrahedra.size()) {
+    const Tetrahedron& c = mesh.tetrahedra[f / 4];
+    const auto& k = kTetFaces[f % 4];
+    return {c[k[0]], c[k[1]], c[k[2]], -1};
+  }
+  f -= 4 * mesh.tetrahedra.size();
+  const Hexahedron& c = mesh.hexahedra[f / 6];
+  const auto& k = kHexFaces[f % 6];
+  return {c[k[0]], c[k[1]], c[k[2]], c[k[3]]};
 }
 
-std::vector<Face> facesOf(const CellMesh& mesh) {
-  static constexpr int kTet[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-  static constexpr int kHex[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
-                                     {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
-  std::vector<Face> faces;
-  faces.reserve(4 * mesh.tetrahedra.size() + 6 * mesh.hexahedra.size());
-  std::int64_t order = 0;
-  for (const Tetrahedron& c : mesh.tetrahedra)
-    for (const auto& f : kTet) faces.push_back(makeFace({c[f[0]], c[f[1]], c[f[2]], -1}, order++));
-  for (const Hexahedron& c : mesh.hexahedra)
-    for (const auto& f : kHex)
-      faces.push_back(makeFace({c[f[0]], c[f[1]], c[f[2]], c[f[3]]}, order++));
-  return faces;
+struct Face {
+  std::array<int, 3>
+      others;  // its vertices but the lowest, descending; the last is -1 for a triangle
+  std::uint32_t number;
+};
+
+// Calls use(face, lowest vertex).
+template <class Use>
+void forEachFace(const CellMesh& mesh, const Use& use) {
+  const std::size_t count = 4 * mesh.tetrahedra.size() + 6 * mesh.hexahedra.size();
+  for (std::size_t f = 0; f < count; ++f) {
+    std::array<int, 4> key = cornersOf(mesh, f);
+    const int corners = key[3] < 0 ? 3 : 4;
+    std::sort(key.begin(), key.begin() + corners, std::greater<int>());
+    const int lowest = key[corners - 1];
+    key[corners - 1] = -1;
+    use(Face{{key[0], key[1], key[2]}, static_cast<std::uint32_t>(f)}, lowest);
+  }
+}
+
+// The numbers of faces that belong to one cell alone, ascending: faces are gathered by their lowest
+// vertex, where equal ones meet.
+std::vector<std::uint32_t> singleFaces(const CellMesh& mesh) {
+  if (4 * mesh.tetrahedra.size() + 6 * mesh.hexahedra.size() >
+      std::numeric_limits<std::uint32_t>::max())
+    throw MemoryError((mesh.name.empty() ? "mesh" : mesh.name) +
+                      ": its boundary is not looked for: it has over four billion faces");
+  std::vector<std::size_t> start(mesh.vertices.size() + 1, 0);
+  forEachFace(mesh, [&](const Face&, int lowest) { ++start[lowest + 1]; });
+  for (std::size_t v = 1; v < start.size(); ++v) start[v] += start[v - 1];
+  std::vector<Face> faces(start.back());
+  std::vector<std::size_t> next(start.begin(), start.end() - 1);
+  forEachFace(mesh, [&](const Face& face, int lowest) { faces[next[lowest]++] = face; });
+  constexpr std::size_t kBlock = 4096;
+  std::vector<std::vector<std::uint32_t>> found(mesh.vertices.size() / kBlock + 1);
+  parallelBlocks(mesh.vertices.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const auto first = faces.begin() + start[v], last = faces.begin() + start[v + 1];
+      std::sort(first, last, [](const Face& a, const Face& b) { return a.others < b.others; });
+      for (auto f = first, after = f; f != last; f = after) {
+        for (after = f + 1; after != last && after->others == f->others; ++after) {
+        }
+        if (after == f + 1) found[begin / kBlock].push_back(f->number);
+      }
+    }
+  });
+  std::vector<std::uint32_t> all;
+  for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
+  std::sort(all.begin(), all.end());
+  return all;
 }
 
 }  // namespace
@@ -99,21 +141,9 @@ std::array<Tetrahedron, 8> cornerTetrahedra(const Hexahedron& c) {
 }
 
 std::vector<Triangle> boundaryTriangles(const CellMesh& mesh) {
-  std::vector<Face> faces = facesOf(mesh);
-  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
-    return std::tie(a.key, a.order) < std::tie(b.key, b.order);
-  });
-  std::vector<Face> single;
-  for (std::size_t i = 0, end = 0; i < faces.size(); i = end) {
-    for (end = i + 1; end < faces.size() && faces[end].key == faces[i].key; ++end) {
-    }
-    if (end == i + 1) single.push_back(faces[i]);
-  }
-  std::sort(single.begin(), single.end(),
-            [](const Face& a, const Face& b) { return a.order < b.order; });
   std::vector<Triangle> triangles;
-  for (const Face& face : single) {
-    const auto& c = face.corners;
+  for (const std::uint32_t face : singleFaces(mesh)) {
+    const std::array<int, 4> c = cornersOf(mesh, face);
     triangles.push_back({c[0], c[1], c[2]});
     if (c[3] >= 0) triangles.push_back({c[0], c[2], c[3]});
   }

@@ -9,6 +9,7 @@
 #include "innermap/core/memory.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/tetra/detail/fit_boundary.h"
+#include "innermap/tetra/detail/keep_topology.h"
 #include "innermap/tetra/detail/lattice_signs.h"
 #include "innermap/tetra/detail/stuffing.h"
 
@@ -16,6 +17,10 @@ namespace innermap {
 namespace {
 
 constexpr int kLeastAcross = 4, kMostAcross = 1024;
+
+// Of memory: a node of the lattice; a cell's cube inside, with twelve tetrahedra and two vertices;
+// a square of a cell's side on the surface, with more of both, and where vertices go.
+constexpr double kNodeBytes = 12, kInnerBytes = 12 * 16 + 2 * 24, kOuterBytes = 600;
 
 double longestSide(const Solid& solid) {
   const Vec3 e = solid.box().extent();
@@ -40,8 +45,9 @@ double spacingFor(const Solid& solid, const TetrahedralizeSettings& settings) {
   return settings.edge;
 }
 
-// The same solid a thousand units across: OpenVDB's voxels cannot be as small as this one needs.
-CellMesh tetrahedralizeScaled(const Solid& solid, double spacing, TetrahedralizeSettings settings) {
+// OpenVDB's voxels cannot be as small as these: the same solid a thousand units across.
+Tetrahedralization tetrahedralizeScaled(const Solid& solid, double spacing,
+                                        TetrahedralizeSettings settings) {
   const double scale = 1000 / longestSide(solid);
   const Vec3 centre = solid.box().center();
   Mesh mesh;
@@ -52,30 +58,115 @@ CellMesh tetrahedralizeScaled(const Solid& solid, double spacing, Tetrahedralize
   SolidSettings solidSettings;
   solidSettings.progress = settings.progress;
   settings.edge = scale * spacing;
-  CellMesh cells = tetrahedralize(Solid(mesh, solidSettings), settings);
-  for (Vec3& v : cells.vertices) v = centre + v / scale;
-  return cells;
+  Tetrahedralization result = tetrahedralization(Solid(mesh, solidSettings), settings);
+  result.edge /= scale;
+  for (Vec3& v : result.mesh.vertices) v = centre + v / scale;
+  return result;
+}
+
+std::uint64_t memoryFor(const Solid& solid, double spacing) {
+  const Vec3 e = solid.box().extent();
+  const double cells = (e.x / spacing + 7) * (e.y / spacing + 7) * (e.z / spacing + 7);
+  const double inner = solid.volume() / std::pow(spacing, 3);
+  const double outer = solid.area() / std::pow(spacing, 2);
+  return static_cast<std::uint64_t>(cells * 2 * kNodeBytes + inner * kInnerBytes +
+                                    outer * kOuterBytes);
+}
+
+void requireMemoryFor(const Solid& solid, double spacing, std::uint64_t limit) {
+  if (limit == 0) return;
+  const std::uint64_t need = memoryFor(solid, spacing);
+  if (need <= limit) return;
+  double fits = spacing;
+  while (memoryFor(solid, fits) > limit && longestSide(solid) / fits > kLeastAcross) fits *= 1.02;
+  requireMemory("tetrahedra of " + solid.repaired().mesh.name, need, limit,
+                fmt::format("a resolution of {:.0f} (an edge of {:.4g}) would fit",
+                            std::floor(longestSide(solid) / fits), fits));
+}
+
+[[noreturn]] void refuse(const Solid& solid, const SolidTopology& wanted,
+                         const SolidTopology& found, double spacing,
+                         const TetrahedralizeSettings& settings) {
+  const double across = longestSide(solid) / spacing;
+  std::string advice = "no resolution up to " + std::to_string(kMostAcross) + " that fits would do";
+  for (const double factor : {1.25, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0}) {
+    const double finer = std::ceil(across * factor);
+    const double step = longestSide(solid) / finer;
+    if (finer > kMostAcross ||
+        (settings.maxMemory > 0 && memoryFor(solid, step) > settings.maxMemory))
+      break;
+    LatticeSigns signs = latticeSigns(solid, step, settings.progress);
+    if (!keepTopology(solid, &wanted, signs, settings.progress).kept) continue;
+    advice = fmt::format("a resolution of {:.0f} would do", finer);
+    break;
+  }
+  throw DataError(fmt::format(
+      "{}: tetrahedra at a resolution of {:.0f} would have {} where the solid has {}; {}",
+      solid.repaired().mesh.name, across, describe(found), describe(wanted), advice));
+}
+
+// Sides of the nodes, with the solid's topology, or what is to be said.
+LatticeSigns signsOf(const Solid& solid, double spacing, const TetrahedralizeSettings& settings,
+                     Tetrahedralization& result) {
+  const SurfaceTopology surface = surfaceTopology(solid);
+  if (surface.clean) result.solidTopology = surface.solid;
+  LatticeSigns signs = latticeSigns(solid, spacing, settings.progress);
+  const KeptTopology kept =
+      keepTopology(solid, surface.clean ? &surface.solid : nullptr, signs, settings.progress);
+  result.topology = kept.found;
+  result.changedNodes = kept.changed;
+  if (surface.clean && !kept.kept) {
+    if (settings.keepTopology) refuse(solid, surface.solid, kept.found, spacing, settings);
+    result.warnings.push_back(fmt::format("the tetrahedra have {} where the solid has {}",
+                                          describe(kept.found), describe(surface.solid)));
+  }
+  if (!surface.clean) {
+    LatticeSigns finer =
+        latticeSigns(solid, std::max(spacing / 2, kSmallestVoxel), settings.progress);
+    const KeptTopology fine = keepTopology(solid, nullptr, finer, settings.progress);
+    if (!(fine.found == kept.found))
+      result.warnings.push_back(fmt::format(
+          "the tetrahedra have {}; a lattice twice as fine has {} (the mesh's own surface is open, "
+          "not manifold or overlaps, and does not tell)",
+          describe(kept.found), describe(fine.found)));
+  }
+  return signs;
 }
 
 }  // namespace
 
-CellMesh tetrahedralize(const Solid& solid, const TetrahedralizeSettings& settings) {
+Tetrahedralization tetrahedralization(const Solid& solid, const TetrahedralizeSettings& settings) {
   const double spacing = spacingFor(solid, settings);
+  requireMemoryFor(solid, spacing, settings.maxMemory);
   if (spacing < kSmallestVoxel) return tetrahedralizeScaled(solid, spacing, settings);
-  LatticeSigns signs = latticeSigns(solid, spacing, settings.progress);
-  warpNodes(signs, settings.progress);
-  StuffedMesh stuffing = stuffed(signs, settings.progress);
-  signs = {};
-  if (stuffing.tetrahedra.empty())
+  Tetrahedralization result;
+  result.edge = spacing;
+  LatticeSigns signs = signsOf(solid, spacing, settings, result);
+  if (result.topology.components == 0)
     throw DataError(fmt::format(
         "{}: no node of the lattice is inside; use a higher resolution or a shorter edge",
         solid.repaired().mesh.name));
+  if (result.changedNodes > 0)
+    result.notes.push_back(
+        fmt::format("{} nodes of the lattice, in walls and gaps too thin for "
+                    "it, were taken to be inside or outside all the same",
+                    result.changedNodes));
+  warpNodes(signs, settings.progress);
+  StuffedMesh stuffing = stuffed(signs, settings.progress);
+  signs = {};
   fitBoundary(solid, spacing, stuffing, settings.progress);
-  CellMesh mesh;
-  mesh.name = solid.repaired().mesh.name;
-  mesh.vertices = std::move(stuffing.vertices);
-  mesh.tetrahedra = std::move(stuffing.tetrahedra);
-  return mesh;
+  result.mesh.name = solid.repaired().mesh.name;
+  result.mesh.vertices = std::move(stuffing.vertices);
+  result.mesh.tetrahedra = std::move(stuffing.tetrahedra);
+  return result;
+}
+
+CellMesh tetrahedralize(const Solid& solid, const TetrahedralizeSettings& settings) {
+  return std::move(tetrahedralization(solid, settings).mesh);
+}
+
+std::uint64_t tetrahedralizeMemory(const Solid& solid, const TetrahedralizeSettings& settings) {
+  return memoryFor(solid, spacingFor(solid, settings));
 }
 
 }  // namespace innermap

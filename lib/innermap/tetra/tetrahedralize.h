@@ -1,11 +1,15 @@
 // Solids filled with well-shaped tetrahedra.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "innermap/core/progress.h"
 #include "innermap/levelset/solid.h"
+#include "innermap/tetra/boundary_topology.h"
 #include "innermap/tetra/cell_mesh.h"
 
 namespace innermap {
@@ -13,15 +17,41 @@ namespace innermap {
 struct TetrahedralizeSettings {
   int resolution = 64;  // cells of the lattice along the longest side of the box, in [4, 1024]
   double edge = 0;      // a cell's side, world units; 0 means: resolution decides
+  // Whether to throw where the solid's topology cannot be kept; else there is a warning.
+  bool keepTopology = true;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;
 };
 
+struct Tetrahedralization {
+  CellMesh mesh;
+  double edge = 0;         // world units; of the lattice's cells
+  SolidTopology topology;  // of the mesh
+  // The solid's own, where its surface is closed, manifold and free of overlaps.
+  std::optional<SolidTopology> solidTopology;
+  std::size_t changedNodes = 0;  // taken to be inside or outside against their distance
+  std::vector<std::string> notes, warnings;
+};
+
 // Isosurface stuffing (Labelle and Shewchuk, SIGGRAPH 2007) on a uniform body-centred cubic
-// lattice: all dihedral angles lie in 10 to 165 degrees, every tetrahedron has a vertex inside. The
-// boundary's vertices are moved to the closest points of the solid's surface as far as the angles
-// allow. Deterministic. Throws SettingError, MemoryError (before allocating), Cancelled, DataError
-// when the lattice is so coarse that nothing is inside.
+// lattice: all dihedral angles lie in 10 to 165 degrees, every tetrahedron has a vertex inside, the
+// boundary is manifold. Its vertices are moved to the closest points of the solid's surface as far
+// as the angles allow.
+//
+// The mesh has the components, cavities and handles of the solid: where the lattice is too coarse
+// for a wall, a gap or a handle, nodes there are taken to be inside or outside all the same, and
+// where that does not help, a resolution that would do is named. A solid whose own surface does not
+// tell them is compared with a lattice twice as fine, and a difference is a warning.
+//
+// Deterministic. Throws SettingError, MemoryError (before allocating), Cancelled, DataError when
+// the topology is not kept or nothing is inside.
+Tetrahedralization tetrahedralization(const Solid& solid,
+                                      const TetrahedralizeSettings& settings = {});
+
+// Its mesh alone.
 CellMesh tetrahedralize(const Solid& solid, const TetrahedralizeSettings& settings = {});
+
+// Peak need in bytes beyond the solid, an upper bound within a factor of about 1.5.
+std::uint64_t tetrahedralizeMemory(const Solid& solid, const TetrahedralizeSettings& settings);
 
 }  // namespace innermap

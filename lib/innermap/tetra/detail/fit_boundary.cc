@@ -50,16 +50,17 @@ void fitBoundary(const Solid& solid, double spacing, StuffedMesh& mesh, Progress
     if (std::max({c[0], c[1], c[2], c[3]}) >= mesh.firstBoundary)
       touching.push_back(static_cast<int>(t));
   }
+  std::vector<int> suspects = touching;
   std::vector<std::uint8_t> halvings(count, 0);
   std::vector<std::atomic<bool>> back(count);
   for (std::size_t i = 0; i < count; ++i) mesh.vertices[first + i] = to[i];
   for (bool changed = true; changed;) {
     for (auto& b : back) b.store(false, std::memory_order_relaxed);
     parallelBlocks(
-        touching.size(), 4096,
+        suspects.size(), 4096,
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t k = begin; k < end; ++k) {
-            const Tetrahedron& c = mesh.tetrahedra[touching[k]];
+            const Tetrahedron& c = mesh.tetrahedra[suspects[k]];
             if (wellShaped(mesh.vertices, c)) continue;
             for (const int v : c)
               if (v >= mesh.firstBoundary)
@@ -83,9 +84,8 @@ void fitBoundary(const Solid& solid, double spacing, StuffedMesh& mesh, Progress
           return true;
       return false;
     };
-    touching.erase(
-        std::remove_if(touching.begin(), touching.end(), [&](int t) { return !moved(t); }),
-        touching.end());
+    suspects.clear();
+    std::copy_if(touching.begin(), touching.end(), std::back_inserter(suspects), moved);
   }
 }
 

@@ -1,0 +1,153 @@
+#include "innermap/tetra/detail/keep_topology.h"
+
+#include <algorithm>
+#include <optional>
+#include <queue>
+
+#include "innermap/core/parallel.h"
+#include "innermap/tetra/detail/lattice_topology.h"
+#include "innermap/tetra/detail/thin_parts.h"
+
+namespace innermap {
+namespace {
+
+using Sides = std::vector<Side>;
+
+// Changes nodes to the sides that are wanted, one at a time, as far as that changes no topology:
+// those that are inside most clearly, or outside, go first.
+class SimpleChanges {
+ public:
+  SimpleChanges(LatticeSigns& signs, const Sides& wanted, Side to, Progress* progress)
+      : signs_(signs), wanted_(wanted), to_(to), link_(BccLink::get()), progress_(progress) {}
+
+  void run() {
+    for (std::size_t node = 0; node < signs_.lattice.nodes(); ++node) push(node);
+    std::size_t polled = 0;
+    while (!queue_.empty()) {
+      if (++polled % 65536 == 0) throwIfCancelled(progress_);
+      const std::size_t node = queue_.top().second;
+      queue_.pop();
+      if (signs_.side[node] == to_ || !simple(node)) continue;
+      signs_.side[node] = to_;
+      for (const std::ptrdiff_t offset : signs_.lattice.offsets(signs_.lattice.second(node)))
+        push(node + static_cast<std::size_t>(offset));
+    }
+  }
+
+ private:
+  void push(std::size_t node) {
+    if (wanted_[node] != to_ || signs_.side[node] == to_) return;
+    const float distance = signs_.distance[node];
+    queue_.push({to_ == Side::inside ? -distance : distance, node});
+  }
+
+  bool simple(std::size_t node) const {
+    int inside = 0;
+    const auto& offsets = signs_.lattice.offsets(signs_.lattice.second(node));
+    for (int d = 0; d < kDirections; ++d)
+      inside |= (signs_.side[node + static_cast<std::size_t>(offsets[d])] == Side::inside) << d;
+    return link_.connected[inside] && link_.connected[inside ^ ((1 << kDirections) - 1)];
+  }
+
+  LatticeSigns& signs_;
+  const Sides& wanted_;
+  Side to_;
+  const BccLink& link_;
+  Progress* progress_;
+  std::priority_queue<std::pair<float, std::size_t>> queue_;
+};
+
+Sides sidesBelow(const LatticeSigns& signs, double level) {
+  Sides sides(signs.side.size());
+  parallelBlocks(sides.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n)
+      sides[n] = static_cast<double>(signs.distance[n]) < level ? Side::inside : Side::outside;
+  });
+  return sides;
+}
+
+std::size_t differing(const Sides& a, const Sides& b) {
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < a.size(); ++n) count += a[n] != b[n];
+  return count;
+}
+
+int complexity(const SolidTopology& t) { return t.components + t.cavities + t.handles; }
+
+class TopologyKeeper {
+ public:
+  TopologyKeeper(const SolidTopology& wanted, LatticeSigns& signs, const ThinParts& parts,
+                 Progress* progress)
+      : wanted_(wanted), signs_(signs), parts_(parts), plain_(signs.side), progress_(progress) {}
+
+  // Walls that are lost are worse than a cut at an unlucky place.
+  bool run() {
+    if (rightWith(true, true)) return true;
+    desired_ = signs_.side;
+    if (rightWith(true, false)) return true;
+    for (const double level : {0.15, 0.3, 0.6, 1.0, 1.5, 1.9}) {
+      tryFrom(-level, Side::inside);
+      tryFrom(level, Side::outside);
+    }
+    if (best_) signs_.side = *best_;
+    return best_ || rightWith(false, true) || rightWith(false, false);
+  }
+
+ private:
+  bool right() const { return latticeTopology(signs_) == wanted_; }
+
+  bool rightWith(bool walls, bool gaps) {
+    signs_.side = plain_;
+    if (walls)
+      for (const std::size_t node : parts_.walls) signs_.side[node] = Side::inside;
+    if (gaps)
+      for (const std::size_t node : parts_.gaps) signs_.side[node] = Side::outside;
+    return right();
+  }
+
+  // From the nodes below `level` to those that are desired.
+  void tryFrom(double level, Side to) {
+    throwIfCancelled(progress_);
+    signs_.side = sidesBelow(signs_, level * signs_.lattice.spacing());
+    // Growing adds to what is desired anyway, thinning takes away from more.
+    for (std::size_t n = 0; n < desired_.size(); ++n)
+      if (desired_[n] != to) signs_.side[n] = desired_[n];
+    if (!right()) return;
+    SimpleChanges(signs_, desired_, to, progress_).run();
+    const std::size_t changed = differing(signs_.side, desired_);
+    if (best_ && changed >= leastChanged_) return;
+    best_ = signs_.side;
+    leastChanged_ = changed;
+  }
+
+  const SolidTopology& wanted_;
+  LatticeSigns& signs_;
+  const ThinParts& parts_;
+  const Sides plain_;
+  Sides desired_;
+  std::optional<Sides> best_;
+  std::size_t leastChanged_ = 0;
+  Progress* progress_;
+};
+
+}  // namespace
+
+KeptTopology keepTopology(const Solid& solid, const SolidTopology* wanted, LatticeSigns& signs,
+                          Progress* progress) {
+  const ThinParts parts = thinParts(solid, signs, progress);
+  const Sides plain = signs.side;
+  KeptTopology result;
+  if (wanted) {
+    TopologyKeeper(*wanted, signs, parts, progress).run();
+  } else {
+    const SolidTopology before = latticeTopology(signs);
+    for (const std::size_t node : parts.walls) signs.side[node] = Side::inside;
+    if (complexity(latticeTopology(signs)) > complexity(before)) signs.side = plain;
+  }
+  result.found = latticeTopology(signs);
+  result.kept = wanted && result.found == *wanted;
+  result.changed = differing(plain, signs.side);
+  return result;
+}
+
+}  // namespace innermap

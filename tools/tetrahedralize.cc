@@ -1,0 +1,140 @@
+// `innermap tetrahedralize`: a mesh's inside as tetrahedra.
+#include "innermap/tetra/tetrahedralize.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "cell_report.h"
+#include "commands.h"
+#include "innermap/core/memory.h"
+#include "innermap/io/cells/cell_file.h"
+#include "innermap/io/picture/cell_picture.h"
+#include "inputs.h"
+#include "map_report.h"
+
+namespace innermap::tool {
+namespace {
+
+struct TetrahedralizeOptions {
+  std::string mesh, output, picture;
+  TetrahedralizeSettings settings;
+  bool anyTopology = false;
+  int axis = 2;
+  double at = 0.5;
+};
+
+// Quality and fields, the search for the boundary and the picture, per byte of the mesh itself.
+constexpr double kBeside = 1.2;
+
+void drawCut(const TetrahedralizeOptions& options, const CellMesh& mesh, const CellQuality& quality,
+             Context& context) {
+  auto settings = context.settings<CellPictureSettings>();
+  settings.direction = {0, 0, 0};
+  settings.direction[options.axis] = 1;
+  settings.at = options.at;
+  settings.label = std::filesystem::path(options.mesh).filename().string() + ", cut";
+  settings.caption = fmt::format(
+      "least dihedral angle of each of {} cells: red 0, yellow 30, blue 60 degrees and more",
+      mesh.tetrahedra.size());
+  const std::vector<double> values(quality.leastDihedral.begin(), quality.leastDihedral.end());
+  writeCellPicture(options.picture, mesh, values, settings);
+}
+
+void fillReport(const Tetrahedralization& result, const Mesh& mesh, const Solid& solid,
+                Context& context) {
+  Report& report = context.report();
+  report.source = reportOf(mesh, solid.volume());
+  report.source->caps = report.source->boundaryLoops = solid.repaired().caps;
+  report.set("topology.components", result.topology.components);
+  report.set("topology.cavities", result.topology.cavities);
+  report.set("topology.handles", result.topology.handles);
+  report.set("topology.compared", result.solidTopology.has_value());
+  report.set("topology.kept",
+             result.solidTopology.has_value() && *result.solidTopology == result.topology);
+  report.set("lattice.edge", result.edge);
+  report.set("lattice.changed_nodes", result.changedNodes);
+  context.print(fmt::format("topology: {}{}\n", describe(result.topology),
+                            result.solidTopology ? ", as the solid" : ""));
+}
+
+void run(const TetrahedralizeOptions& options, Context& context) {
+  if (!isCellFile(options.output))
+    throw UsageError("--output " + options.output + ": must end in .vtu, .msh or .mesh");
+  context.output(options.output);
+  if (!options.picture.empty()) context.output(options.picture);
+  const Mesh mesh = readMeshFile(options.mesh, context);
+  const Solid solid =
+      context.timed("solid", [&] { return Solid(mesh, context.settings<SolidSettings>()); });
+  for (const std::string& note : solid.repaired().notes) context.note(options.mesh + ": " + note);
+  TetrahedralizeSettings settings = context.settings(options.settings);
+  settings.keepTopology = !options.anyTopology;
+  const auto need = static_cast<std::uint64_t>(
+      kBeside * static_cast<double>(tetrahedralizeMemory(solid, settings)));
+  if (context.dryRun())
+    return context.plan(
+        {fmt::format("fill {} with tetrahedra, to {}", options.mesh, options.output)}, need);
+  requireMemory("tetrahedra of " + options.mesh, need, context.maxMemory(),
+                "use a lower --resolution or a longer --edge");
+  Tetrahedralization result =
+      context.timed("tetrahedra", [&] { return tetrahedralization(solid, settings); });
+  for (const std::string& note : result.notes) context.note(note);
+  for (const std::string& warning : result.warnings) context.warning(warning);
+  fillReport(result, mesh, solid, context);
+  const CellQuality quality = context.timed(
+      "quality", [&] { return cellQuality(result.mesh, context.settings<CellQualitySettings>()); });
+  reportCells(result.mesh, quality, context);
+  const BoundaryFit fit = context.timed("boundary", [&] {
+    return boundaryFit(result.mesh, solid, context.settings<BoundaryFitSettings>());
+  });
+  reportBoundaryFit(fit, context);
+  if (!options.picture.empty())
+    context.timed("picture", [&] { drawCut(options, result.mesh, quality, context); });
+  context.timed("write", [&] {
+    result.mesh.cellFields = qualityFields(result.mesh, quality);
+    const std::vector<std::string> left = writeCells(options.output, result.mesh);
+    for (const std::string& field : left)
+      context.note(fmt::format("{} cannot hold the field {}", options.output, field));
+  });
+}
+
+}  // namespace
+
+Command makeTetrahedralizeCommand() {
+  auto o = std::make_shared<TetrahedralizeOptions>();
+  Command c("tetrahedralize", "Fill a mesh with tetrahedra");
+  c.description(
+      "Dihedral angles lie in 10 to 165 degrees; the boundary has the solid's components, cavities "
+      "and handles, or the command fails and names a resolution that would do. Open, dirty and "
+      "overlapping meshes work: a solid whose own surface does not tell its topology is compared "
+      "with a lattice twice as fine. Each cell's least and greatest dihedral angle stand in the "
+      "file (.vtu and .msh).");
+  c.positional("MESH", &o->mesh, "mesh file: .obj, .ply, .off or .stl");
+  c.option("--output", "FILE", &o->output,
+           "the .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file to write")
+      .shortName("-o")
+      .required();
+  c.option("--resolution", "N", &o->settings.resolution,
+           "cells of the lattice along the longest side of the mesh's box; each takes twelve "
+           "tetrahedra")
+      .range(4, 1024);
+  c.option("--edge", "LENGTH", &o->settings.edge,
+           "side of a cell of the lattice, instead of --resolution")
+      .unit("world units")
+      .atLeast(0)
+      .defaults("from --resolution");
+  c.flag("--any-topology", &o->anyTopology,
+         "warn, and go on, where the solid's topology cannot be kept");
+  c.option("--picture", "FILE", &o->picture,
+           "a .png of the cells behind a cut, coloured by their least dihedral angle");
+  c.choice("--axis", "AXIS", &o->axis, {{"x", 0}, {"y", 1}, {"z", 2}},
+           "direction across the picture's cut");
+  c.option("--at", "T", &o->at, "where the picture cuts")
+      .unit("fraction of the box along the axis")
+      .range(0, 1);
+  c.example("innermap tetrahedralize spot.obj -o spot.vtu --resolution 48 --picture spot.png");
+  c.run([o](Context& context) { run(*o, context); });
+  return c;
+}
+
+}  // namespace innermap::tool
