@@ -3,12 +3,26 @@
 namespace innermap::tool {
 
 std::vector<Command> allCommands() {
-  return {makeMapCommand(),      makeCorrespondCommand(),       makeSphereCommand(),
-          makeFitCommand(),      makeEvaluateCommand(),         makeSequenceCommand(),
-          makeDeformCommand(),   makeTextureCommand(),          makePushCommand(),
-          makePullCommand(),     makeTransferDistanceCommand(), makeCheckCommand(),
-          makeVoxelizeCommand(), makeTetrahedralizeCommand(),   makeSliceCommand(),
-          makeExportCommand(),   makeImportCommand(),           makeInfoCommand(),
+  return {makeMapCommand(),
+          makeCorrespondCommand(),
+          makeSphereCommand(),
+          makeFitCommand(),
+          makeEvaluateCommand(),
+          makeSequenceCommand(),
+          makeDeformCommand(),
+          makeTextureCommand(),
+          makePushCommand(),
+          makePullCommand(),
+          makeTransferDistanceCommand(),
+          makeCheckCommand(),
+          makeVoxelizeCommand(),
+          makeTetrahedralizeCommand(),
+          makePolycubeCommand(),
+          makeHexahedralizeCommand(),
+          makeSliceCommand(),
+          makeExportCommand(),
+          makeImportCommand(),
+          makeInfoCommand(),
           makeHelpCommand()};
 }
 

@@ -20,6 +20,8 @@ Command makePullCommand();
 Command makeCheckCommand();
 Command makeVoxelizeCommand();
 Command makeTetrahedralizeCommand();
+Command makePolycubeCommand();
+Command makeHexahedralizeCommand();
 Command makeSliceCommand();
 Command makeTransferDistanceCommand();
 Command makeExportCommand();

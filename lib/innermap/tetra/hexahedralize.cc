@@ -12,7 +12,6 @@
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
 #include "innermap/mesh/triangle_tree.h"
-#include "innermap/sample/surface_samples.h"
 #include "innermap/tetra/detail/hex_shaping.h"
 #include "innermap/tetra/detail/sharp_edges.h"
 
@@ -27,7 +26,7 @@ constexpr double kTolerance = 5e-3;
 constexpr std::size_t kMaxSources = 6000;
 constexpr int kRetries = 2;
 constexpr double kMoreBlocks = 1.15;  // each time, across
-constexpr std::size_t kSamples = 50000, kBlock = 256;
+constexpr std::size_t kFeatureSamples = 20000, kBlock = 256;
 constexpr std::uint64_t kBytesAHexahedron = 8 * 400;  // of shaping
 
 void requireSettings(const HexahedralizeSettings& settings) {
@@ -94,36 +93,28 @@ Carried carry(const Mesh& mesh, const HexahedralizeSettings& settings, Hexahedra
   return carried;
 }
 
-SurfaceDistance distanceOf(const Points& points, const TriangleTree& tree, double diagonal,
-                           Progress* progress) {
-  std::vector<double> lengths(points.size());
+// Of the solid's sharp edges from the hexahedra's surface.
+void measureFeatures(const Mesh& surface, const HexahedralizeSettings& settings,
+                     Hexahedralization& out) {
+  const SharpEdges sharp = sharpEdges(surface, settings.featureAngle * kPi / 180);
+  out.featureLength = sharp.length;
+  const Points samples = samplesOf(surface, sharp, kFeatureSamples);
+  if (samples.empty()) return;
+  const TriangleTree tree(out.mesh.vertices, boundaryTriangles(out.mesh));
+  std::vector<double> lengths(samples.size());
   parallelBlocks(
-      points.size(), kBlock,
+      samples.size(), kBlock,
       [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-          lengths[i] = tree.closest(points[i]).distance / diagonal;
+        for (std::size_t i = begin; i < end; ++i) lengths[i] = tree.closest(samples[i]).distance;
       },
-      progress);
-  SurfaceDistance out;
+      settings.progress);
+  const double diagonal = boundingBox(surface).diagonal();
   double squares = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    squares += lengths[i] * lengths[i];
-    if (lengths[i] < out.max) continue;
-    out.max = lengths[i];
-    out.farthest = points[i];
+  for (const double length : lengths) {
+    squares += length * length;
+    out.fromFeatures.max = std::max(out.fromFeatures.max, length / diagonal);
   }
-  if (!points.empty()) out.rms = std::sqrt(squares / static_cast<double>(points.size()));
-  return out;
-}
-
-Points samplesOf(const Mesh& mesh, const HexahedralizeSettings& settings) {
-  SampleSettings sampling;
-  sampling.seed = settings.seed + 1;  // other points than those that shaped the hexahedra
-  sampling.progress = settings.progress;
-  Points out;
-  for (const SurfacePoint& p : randomSamples(mesh, kSamples, sampling))
-    out.push_back(positionOf(mesh, p));
-  return out;
+  out.fromFeatures.rms = std::sqrt(squares / static_cast<double>(samples.size())) / diagonal;
 }
 
 void measure(const Mesh& surface, const HexahedralizeSettings& settings, Hexahedralization& out) {
@@ -134,18 +125,13 @@ void measure(const Mesh& surface, const HexahedralizeSettings& settings, Hexahed
   quality.progress = settings.progress;
   out.quality = cellQuality(out.mesh, quality);
   out.mesh.cellFields = qualityFields(out.mesh, out.quality);
-  Mesh skin;
-  skin.vertices = out.mesh.vertices;
-  skin.triangles = boundaryTriangles(out.mesh);
-  const double diagonal = boundingBox(surface).diagonal();
-  const TriangleTree skinTree(skin.vertices, skin.triangles),
-      tree(surface.vertices, surface.triangles);
-  out.fromSolid = distanceOf(samplesOf(surface, settings), skinTree, diagonal, settings.progress);
-  out.fromHexes = distanceOf(samplesOf(skin, settings), tree, diagonal, settings.progress);
-  const SharpEdges sharp = sharpEdges(surface, settings.featureAngle * kPi / 180);
-  out.featureLength = sharp.length;
-  out.fromFeatures =
-      distanceOf(samplesOf(surface, sharp, kSamples), skinTree, diagonal, settings.progress);
+  SolidSettings making;
+  making.progress = settings.progress;
+  BoundaryFitSettings fitting;
+  fitting.seed = settings.seed + 1;  // other points than those that shaped the hexahedra
+  fitting.progress = settings.progress;
+  out.boundary = boundaryFit(out.mesh, Solid(surface, making), fitting);
+  measureFeatures(surface, settings, out);
 }
 
 void tell(Hexahedralization& out) {

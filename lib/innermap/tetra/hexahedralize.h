@@ -16,6 +16,7 @@
 #include "innermap/core/stage_seconds.h"
 #include "innermap/mesh/mesh.h"
 #include "innermap/surface/map_quality.h"
+#include "innermap/tetra/boundary_fit.h"
 #include "innermap/tetra/cell_mesh.h"
 #include "innermap/tetra/cell_quality.h"
 #include "innermap/tetra/hexahedron_check.h"
@@ -34,12 +35,6 @@ struct HexahedralizeSettings {
   Progress* progress = nullptr;
 };
 
-// Of points of one surface from another; fractions of the solid's diagonal.
-struct SurfaceDistance {
-  double rms = 0, max = 0;
-  Vec3 farthest;  // the point, world units
-};
-
 struct Hexahedralization {
   CellMesh mesh;      // hexahedra of the blocks first, in their order, then those of the layer
   CellMesh inBlocks;  // the same hexahedra where they are in the polycube
@@ -48,10 +43,9 @@ struct Hexahedralization {
   MapQuality boundaryMap;  // of the polycube's surface onto the solid's
   HexahedronCheck before;  // as carried
   HexahedronCheck after;
-  CellQuality quality;        // of mesh
-  SurfaceDistance fromSolid;  // of the solid's surface from the hexahedra's: what they do not reach
-  SurfaceDistance fromHexes;  // of the hexahedra's surface from the solid's
-  double featureLength = 0;   // of the solid's sharp edges, world units
+  CellQuality quality;                       // of mesh
+  BoundaryFit boundary;                      // fractions of the solid's diagonal
+  double featureLength = 0;                  // of the solid's sharp edges, world units
   SurfaceDistance fromFeatures;              // of those from the hexahedra's surface
   std::vector<std::string> notes, warnings;  // a line each
   StageSeconds seconds;

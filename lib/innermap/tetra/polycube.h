@@ -41,7 +41,7 @@ struct Polycube {
   double missed = 0;   // share of the solid's volume that is in no block
   double surplus = 0;  // volume of the blocks out of the solid, as a share of the solid's
   std::vector<MissedPart> missedParts;  // over 1e-3 of the volume each, largest first
-  std::vector<std::string> notes;       // choices worth telling, a line each
+  std::vector<std::string> notes, warnings;  // a line each
   StageSeconds seconds;                 // "solid", "blocks"
 };
 
