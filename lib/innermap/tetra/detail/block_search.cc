@@ -14,19 +14,40 @@ constexpr double kThresholds[] = {0.5, 0.4, 0.3, 0.2, 0.1, 0.05};
 constexpr int kShifts = 8;
 // What is missed has to be drawn out of a flat side, what is too much only shrinks.
 constexpr double kMissed = 1.5;
+// Of each face of the boundary: without it, slanted surfaces become full of pits and bumps.
+constexpr double kFace = 0.1;
+constexpr double kLeastGain = 1e-9;  // over rounding
 
 struct Lattice {
   BlockSet blocks;
   std::vector<double> shares;
 };
 
-// What filling the block saves.
-double gainOf(double share) { return kMissed * share - (1 - share); }
+int filledBeside(const BlockSet& blocks, const Block& b) {
+  int count = 0;
+  for (int a = 0; a < 3; ++a)
+    for (int step = -1; step <= 1; step += 2) {
+      Block beside = b;
+      beside[a] += step;
+      count += blocks.at(beside);
+    }
+  return count;
+}
+
+// What filling an empty block saves, or emptying a filled one. Not for the outermost layer.
+double gainOf(const Lattice& l, std::size_t i) {
+  const double share = l.shares[i];
+  const double fill =
+      kMissed * share - (1 - share) + kFace * (2 * filledBeside(l.blocks, l.blocks.block(i)) - 6);
+  return l.blocks.filled[i] ? -fill : fill;
+}
 
 double costOf(const Lattice& l) {
   double sum = 0;
   for (std::size_t i = 0; i < l.shares.size(); ++i)
-    sum += l.blocks.filled[i] ? 1 - l.shares[i] : kMissed * l.shares[i];
+    sum += l.blocks.filled[i]
+               ? 1 - l.shares[i] + kFace * (6 - filledBeside(l.blocks, l.blocks.block(i)))
+               : kMissed * l.shares[i];
   return sum;
 }
 
@@ -69,7 +90,7 @@ void makeManifold(Lattice& l) {
             const Block b{x - 1 + (o & 1), y - 1 + (o >> 1 & 1), z - 1 + (o >> 2)};
             const std::size_t i = l.blocks.index(b);
             if (turned[i] || atRim(l.blocks, b)) continue;
-            const double cost = l.blocks.filled[i] ? gainOf(l.shares[i]) : -gainOf(l.shares[i]);
+            const double cost = -gainOf(l, i);
             if (best < l.shares.size() && cost >= least) continue;
             best = i;
             least = cost;
@@ -83,19 +104,19 @@ void makeManifold(Lattice& l) {
 
 // Turns simple blocks, those that save most first, while any saves something. Each saves cost, so
 // it ends.
-void better(Lattice& l, double least) {
+void better(Lattice& l) {
   std::priority_queue<std::pair<double, std::size_t>> queue;
   const auto offer = [&](std::size_t i) {
-    const double gain = l.blocks.filled[i] ? -gainOf(l.shares[i]) : gainOf(l.shares[i]);
-    if (gain > least && !atRim(l.blocks, l.blocks.block(i))) queue.push({gain, i});
+    if (atRim(l.blocks, l.blocks.block(i))) return;
+    const double gain = gainOf(l, i);
+    if (gain > kLeastGain) queue.push({gain, i});
   };
   for (std::size_t i = 0; i < l.shares.size(); ++i) offer(i);
   while (!queue.empty()) {
-    const auto [gain, i] = queue.top();
+    const std::size_t i = queue.top().second;
     queue.pop();
-    const double now = l.blocks.filled[i] ? -gainOf(l.shares[i]) : gainOf(l.shares[i]);
     const Block b = l.blocks.block(i);
-    if (now <= least || !isSimple(l.blocks, b)) continue;
+    if (!(gainOf(l, i) > kLeastGain) || !isSimple(l.blocks, b)) continue;
     l.blocks.filled[i] ^= 1;
     for (int z = -1; z <= 1; ++z)
       for (int y = -1; y <= 1; ++y)
@@ -114,7 +135,7 @@ std::optional<FoundBlocks> best(const BlockShares& shares, int shift,
   std::optional<FoundBlocks> out;
   const auto consider = [&](Lattice& l) {
     if (!fits(l, handles)) return;
-    better(l, 0);
+    better(l);
     const double cost = costOf(l) * l.blocks.edge * l.blocks.edge * l.blocks.edge;
     if (!out || cost < out->cost) out = FoundBlocks{l.blocks, l.shares, cost, shift, grow};
   };
