@@ -27,7 +27,8 @@ constexpr std::size_t kMaxSources = 6000;
 constexpr int kRetries = 2;
 constexpr double kMoreBlocks = 1.15;  // each time, across
 constexpr std::size_t kFeatureSamples = 20000, kBlock = 256;
-constexpr std::uint64_t kBytesAHexahedron = 8 * 400;  // of shaping
+// Measured: of shaping; and what the correspondence and the map keep while the other is made.
+constexpr std::uint64_t kBytesAHexahedron = 2560, kBeside = 200'000'000;
 
 void requireSettings(const HexahedralizeSettings& settings) {
   if (settings.pieces < 1 || settings.pieces > kMostPieces)
@@ -210,12 +211,14 @@ std::uint64_t hexahedralizeMemory(const Mesh& mesh, const HexahedralizeSettings&
   fitting.maxSources = kMaxSources;
   const double blocks = expectedBlocks(mesh, settings.blocks);
   const double pieces = settings.pieces;
-  // The layer adds about as much again where blocks are few.
-  const double hexahedra = 2 * blocks * pieces * pieces * pieces;
+  // Of the layer: one on each square of the boundary, of which a set of so many blocks has about
+  // twice as many as a cube.
+  const double hexahedra =
+      pieces * pieces * (blocks * pieces + 12 * std::cbrt(blocks) * std::cbrt(blocks));
   return std::max({correspondMemory(static_cast<std::size_t>(2 * kSurfaceVertices),
                                     mesh.vertices.size()),
                    fitMapMemory(fitting), polycubeMemory(mesh, cubes)}) +
-         static_cast<std::uint64_t>(hexahedra) * kBytesAHexahedron;
+         kBeside + static_cast<std::uint64_t>(hexahedra) * kBytesAHexahedron;
 }
 
 }  // namespace innermap
