@@ -19,6 +19,8 @@ std::vector<Command> allCommands() {
           makeTetrahedralizeCommand(),
           makePolycubeCommand(),
           makeHexahedralizeCommand(),
+          makeRemeshCommand(),
+          makeCompareFemCommand(),
           makeSliceCommand(),
           makeExportCommand(),
           makeImportCommand(),

@@ -22,6 +22,8 @@ Command makeVoxelizeCommand();
 Command makeTetrahedralizeCommand();
 Command makePolycubeCommand();
 Command makeHexahedralizeCommand();
+Command makeRemeshCommand();
+Command makeCompareFemCommand();
 Command makeSliceCommand();
 Command makeTransferDistanceCommand();
 Command makeExportCommand();

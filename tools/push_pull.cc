@@ -1,8 +1,14 @@
-// `innermap push` and `innermap pull`: grids carried through a map, and back.
+// `innermap push` and `innermap pull`: grids and geometry carried through a map, and back.
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "commands.h"
+#include "geometry_transfer.h"
+#include "innermap/core/memory.h"
+#include "innermap/transfer/carry_memory.h"
 #include "inputs.h"
+#include "through.h"
 #include "transfer_options.h"
 
 namespace innermap::tool {
@@ -11,8 +17,9 @@ namespace {
 enum class Way { push, pull };
 
 struct CarryOptions {
-  std::string map, volume, output;
+  std::string map, volume, output, through;
   TransferOptions transfer;
+  GeometryOptions geometry;
 };
 
 // What both read.
@@ -21,6 +28,7 @@ struct Job {
   Solid target;
   OutsideSettings outside;
   openvdb::GridPtrVec grids;
+  std::optional<ThroughMap> through;
 };
 
 Job read(const CarryOptions& options, Context& context) {
@@ -29,7 +37,10 @@ Job read(const CarryOptions& options, Context& context) {
       options.transfer, mapped.solid().repaired().mesh.vertices, mapped.boundary.target.moved);
   openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
   Solid target = targetSolid(mapped, context);
-  return {std::move(mapped), std::move(target), std::move(outside), std::move(grids)};
+  std::optional<ThroughMap> through;
+  if (!options.through.empty()) through = throughMap(readThrough(options.through, mapped, context));
+  return {std::move(mapped), std::move(target), std::move(outside), std::move(grids),
+          std::move(through)};
 }
 
 openvdb::GridPtrVec push(const Job& job, const TransferOptions& options, Context& context) {
@@ -37,6 +48,7 @@ openvdb::GridPtrVec push(const Job& job, const TransferOptions& options, Context
   settings.carry = carrySettings(options);
   settings.outside = job.outside;
   settings.accuracy = sumAccuracy(job.mapped);
+  settings.through = job.through ? &*job.through : nullptr;
   const openvdb::FloatGrid::Ptr levelSet = outputLevelSet(job.target, job.grids, options, context);
   const PushResult result = context.timed("push", [&] {
     return VolumePusher(job.mapped.solid(), job.grids, settings).push(job.mapped.map, *levelSet);
@@ -51,6 +63,7 @@ openvdb::GridPtrVec pull(const Job& job, const TransferOptions& options, Context
   settings.carry = carrySettings(options);
   settings.outside = job.outside;
   settings.accuracy = sumAccuracy(job.mapped);
+  settings.through = job.through ? &*job.through : nullptr;
   const TransferOptions plain;  // the target's level set is none of the output's
   const openvdb::FloatGrid::Ptr target = outputLevelSet(job.target, job.grids, plain, context);
   settings.targetLevelSet = target.get();
@@ -64,8 +77,59 @@ openvdb::GridPtrVec pull(const Job& job, const TransferOptions& options, Context
   return result.grids;
 }
 
+// Peak need in bytes of carrying geometry, beyond what its file takes.
+std::uint64_t carrierMemory(Way way, const Solid& source, const OutsideSettings& outside) {
+  return way == Way::push ? levelSetMemory(source, {}) : carryMemory(source, {}, {}, outside);
+}
+
+PointCarry carryOf(Way way, const MappedSolid& mapped, const CarryPointsSettings& settings,
+                   Context& context) {
+  if (way == Way::push) {
+    const PointPusher pusher =
+        context.timed("level set", [&] { return PointPusher(mapped.solid(), settings); });
+    return [=, map = mapped.map](const Points& points, bool jacobians) {
+      return pusher.push(map, points, jacobians);
+    };
+  }
+  const Solid target = targetSolid(mapped, context);
+  const PointPuller puller = context.timed(
+      "invert", [&] { return PointPuller(mapped.map, mapped.solid(), target, settings); });
+  return [=](const Points& points, bool jacobians) { return puller.pull(points, jacobians); };
+}
+
+void runGeometry(Way way, const CarryOptions& options, Context& context) {
+  const MappedSolid mapped = readMapFile(options.map, context);
+  const Points& moved = mapped.boundary.target.moved;
+  const OutsideSettings outside =
+      outsideSettings(options.transfer, mapped.solid().repaired().mesh.vertices, moved);
+  const std::uint64_t need =
+      geometryMemory(options.volume) + carrierMemory(way, mapped.solid(), outside);
+  if (context.dryRun())
+    return context.plan({fmt::format("{} {} by {}", way == Way::push ? "push" : "pull",
+                                     options.volume, options.map),
+                         "write " + options.output},
+                        need);
+  requireMemory("carrying " + options.volume, need, context.maxMemory(), "cut the file into parts");
+  const auto file = readGeometryFile(options.volume, options.geometry, context);
+  const CarryPointsSettings settings = carryPointsSettings(outside, sumAccuracy(mapped), context);
+  const PointCarry carry =
+      options.through.empty()
+          ? carryOf(way, mapped, settings, context)
+          : carryThrough(readThrough(options.through, mapped, context), way == Way::push, settings);
+  const double diagonal =
+      way == Way::push ? boundingBox(moved).diagonal() : mapped.solid().diagonal();
+  const CarriedGeometry carried = context.timed("carry", [&] {
+    return carryFile(*file, carry, options.geometry.subdivide * diagonal, context);
+  });
+  warnOf(*file, carried, options.transfer, "", context);
+  context.print(reportGeometry(*file, carried, context));
+  writeGeometryFile(options.output, *file, carried, context);
+}
+
 void run(Way way, const CarryOptions& options, Context& context) {
+  requireFitting(options.volume, options.output, options.transfer, options.geometry);
   context.output(options.output);
+  if (isGeometryFile(options.volume)) return runGeometry(way, options, context);
   const Job job = read(options, context);
   const Solid& solid = way == Way::push ? job.target : job.mapped.solid();
   if (context.dryRun())
@@ -86,10 +150,19 @@ Command makeCarryCommand(Way way, const std::string& name, const std::string& su
   auto o = std::make_shared<CarryOptions>();
   Command c(name, summary);
   c.positional("MAP", &o->map, "a map.ply written by fit or map");
-  c.positional("VOLUME", &o->volume,
-               "the grids, a .vdb file in the " + inputSpace + "'s world space");
-  c.option("--output", "FILE", &o->output, "the .vdb file to write").shortName("-o").required();
+  c.positional("INSIDE", &o->volume,
+               "what is carried, in the " + inputSpace +
+                   "'s world space: grids (.vdb) or geometry (.obj, .ply, .off, .stl; cells in "
+                   ".vtu, .msh, .mesh)");
+  c.option("--output", "FILE", &o->output,
+           "the file to write, of the same kind; cells may change theirs")
+      .shortName("-o")
+      .required();
+  c.option("--through", "CELLS", &o->through,
+           "go by the piecewise linear map of this mesh that remesh wrote (.vtu or .msh) instead: "
+           "what is carried agrees with the mesh and is nowhere folded; not for densities");
   addTransferOptions(c, o->transfer);
+  addGeometryOptions(c, o->geometry, true);
   c.run([o, way](Context& context) { run(way, *o, context); });
   return c;
 }
@@ -97,29 +170,37 @@ Command makeCarryCommand(Way way, const std::string& name, const std::string& su
 }  // namespace
 
 Command makePushCommand() {
-  Command c = makeCarryCommand(
-      Way::push, "push", "Carry grids that live in a map's source solid to its target", "source");
+  Command c = makeCarryCommand(Way::push, "push",
+                               "Carry grids or geometry inside a map's source solid to its target",
+                               "source");
   c.description(
       "For each voxel of the target the point of the source that the map brings there is found, by "
       "Newton's method, and the grids are sampled at it. Scalars keep their values; vectors move "
       "by their vector type (invariant, covariant, "
       "contravariant); level sets become distances again. Densities (--density) are not sampled: "
       "what each voxel of the source holds is put where the map brings it, so that no mass is "
-      "lost. Output voxels are active inside the target and in a skin of two voxels.");
+      "lost. Output voxels are active inside the target and in a skin of two voxels. Of geometry, "
+      "each point goes where the map brings it, normals are turned by the inverse transpose of its "
+      "Jacobian, vectors by the Jacobian; all else in the file stays. Points farther outside the "
+      "solid than --outside (and 0.001 of the diagonal) are left out with what uses them, unless "
+      "--fade-to says where they go.");
   c.example("innermap push map.ply smoke.vdb -o posed.vdb --grids density --density");
   c.example("innermap push map.ply fem.vdb -o posed.vdb --stress stress --resolution 256");
   c.example("innermap push map.ply mist.vdb -o posed.vdb --outside 0.1 --fade-to fitted");
+  c.example("innermap push map.ply bones.obj -o posed.obj --subdivide 0.001");
+  c.example("innermap push map.ply muscle.vtu -o posed.msh --vectors fibre");
   return c;
 }
 
 Command makePullCommand() {
-  Command c = makeCarryCommand(Way::pull, "pull",
-                               "Bring grids that live in a map's target back to its source solid",
-                               "target");
+  Command c = makeCarryCommand(
+      Way::pull, "pull", "Bring grids or geometry inside a map's target back to its source solid",
+      "target");
   c.description(
       "Each voxel p of the source gets the grids' values at f(p), where the map brings it. "
       "Everything else is as with push, the other way round.");
   c.example("innermap pull map.ply posed.vdb -o rest.vdb");
+  c.example("innermap pull map.ply posed.obj -o bones.obj");
   return c;
 }
 

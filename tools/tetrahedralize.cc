@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "cell_report.h"
@@ -24,8 +25,14 @@ struct TetrahedralizeOptions {
   double at = 0.5;
 };
 
-// Quality and fields, the search for the boundary and the picture, per byte of the mesh itself.
-constexpr double kBeside = 1.2;
+// The faces among which the boundary is found, a cell's quality as fields, what is written; or the
+// lattice.
+constexpr std::uint64_t kBytesACell = 110;
+
+std::uint64_t memoryFor(const Solid& solid, const TetrahedralizeSettings& settings) {
+  const TetrahedralizeNeed need = tetrahedralizeNeed(solid, settings);
+  return std::max<std::uint64_t>(need.memory, need.tetrahedra * kBytesACell + need.vertices * 40);
+}
 
 void drawCut(const TetrahedralizeOptions& options, const CellMesh& mesh, const CellQuality& quality,
              Context& context) {
@@ -69,8 +76,7 @@ void run(const TetrahedralizeOptions& options, Context& context) {
   for (const std::string& note : solid.repaired().notes) context.note(options.mesh + ": " + note);
   TetrahedralizeSettings settings = context.settings(options.settings);
   settings.keepTopology = !options.anyTopology;
-  const auto need = static_cast<std::uint64_t>(
-      kBeside * static_cast<double>(tetrahedralizeMemory(solid, settings)));
+  const std::uint64_t need = memoryFor(solid, settings);
   if (context.dryRun())
     return context.plan(
         {fmt::format("fill {} with tetrahedra, to {}", options.mesh, options.output)}, need);

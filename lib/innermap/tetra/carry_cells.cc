@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <functional>
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
@@ -93,53 +93,45 @@ void measure(const CellMesh& mesh, const std::vector<ClosestPoint>& found, doubl
       std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, found.size())));
   if (far > 0)
     throw DataError(fmt::format(
-        "{}: {} of {} vertices of the boundary are not on the map's source solid, the farthest "
-        "{:.3g} "
-        "from its surface, {:.3g} of its diagonal: the mesh must fill the solid, without hanging "
-        "nodes; what lies inside it otherwise is carried by push",
+        "{}: {} of {} vertices of the boundary are not on the map's solid, the farthest {:.3g} "
+        "from "
+        "its surface, {:.3g} of its diagonal: the mesh must fill the solid, without hanging nodes, "
+        "in the same place and units; what lies inside it otherwise is carried by push",
         mesh.name.empty() ? "mesh" : mesh.name, far, found.size(), out.boundaryMax,
         out.boundaryMax / diagonal));
 }
 
-void carryInside(const CellMesh& mesh, const MappedSolid& mapped, const Boundary& boundary,
-                 Progress* progress, CellCarry& out) {
+// Vertices that cells use and the boundary does not.
+std::vector<int> verticesInside(const CellMesh& mesh, const Boundary& boundary) {
   std::vector<char> used(mesh.vertices.size(), 0);
   for (const Tetrahedron& t : mesh.tetrahedra)
     for (const int v : t) used[v] = 1;
   for (const Hexahedron& h : mesh.hexahedra)
     for (const int v : h) used[v] = 1;
   std::vector<int> inside;
-  Points from;
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    if (used[v] && boundary.numberOf[v] < 0) {
-      inside.push_back(static_cast<int>(v));
-      from.push_back(mesh.vertices[v]);
-    }
-  if (inside.empty()) return;
-  EvaluateFieldSettings settings;
-  settings.accuracy = sumAccuracy(mapped) * mapped.boundary.target.diagonal;
-  settings.progress = progress;
-  const Points to = pointsOf(mapped.map.evaluate(from, settings).values);
-  for (std::size_t i = 0; i < inside.size(); ++i) out.cells.positions[inside[i]] = to[i];
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (used[v] && boundary.numberOf[v] < 0) inside.push_back(static_cast<int>(v));
+  return inside;
 }
 
-}  // namespace
+// A surface whose triangles have places on another: those of `address`, at `to`.
+struct BoundaryWay {
+  const Mesh& from;
+  std::function<SurfacePoint(const SurfacePoint&)> address;
+  const Mesh& to;
+  double diagonal;  // of `from`
+};
 
-Mesh targetSurface(const MappedSolid& mapped) {
-  return mapped.boundary.target.mesh(mapped.solid(), "target");
-}
-
-CellCarry carryCells(const CellMesh& mesh, const MappedSolid& mapped,
-                     const CarryCellsSettings& settings) {
+CellCarry carry(const CellMesh& mesh, const BoundaryWay& way, const CarryCellsSettings& settings,
+                const std::function<Points(const Points&)>& inner) {
   if (!(settings.farthest > 0 && settings.farthest <= 1))
     throw SettingError("farthest",
                        fmt::format("{} is not over 0 and at most 1", settings.farthest));
   validate(mesh);
   if (mesh.tetrahedra.empty() && mesh.hexahedra.empty())
     throw DataError((mesh.name.empty() ? "mesh" : mesh.name) + ": has no cells");
-  const Solid& solid = mapped.solid();
   const Boundary boundary(mesh);
-  const GuideSurface surface(solid.surface().vertices, solid.surface().triangles);
+  const GuideSurface surface(way.from.vertices, way.from.triangles);
   std::vector<ClosestPoint> found(boundary.vertices.size());
   parallelBlocks(
       found.size(), kBlock,
@@ -149,21 +141,70 @@ CellCarry carryCells(const CellMesh& mesh, const MappedSolid& mapped,
       },
       settings.progress, "placing the boundary");
   CellCarry out;
-  measure(mesh, found, solid.diagonal(), settings, out);
+  measure(mesh, found, way.diagonal, settings, out);
   out.readdressed = readdress(mesh, boundary, surface, found);
   // Vertices that no cell uses stay.
   out.cells.positions = mesh.vertices;
   out.cells.onSurface.assign(mesh.vertices.size(), {-1, {1, 0, 0}});
   std::vector<SurfacePoint> places;
-  for (const ClosestPoint& at : found) places.push_back(solid.address(at.address));
-  const Points to =
-      interpolate(mapped.boundary.target.moved, solid.repaired().mesh.triangles, places);
+  for (const ClosestPoint& at : found) places.push_back(way.address(at.address));
+  const Points to = interpolate(way.to.vertices, way.to.triangles, places);
   for (std::size_t b = 0; b < places.size(); ++b) {
     out.cells.positions[boundary.vertices[b]] = to[b];
     out.cells.onSurface[boundary.vertices[b]] = places[b];
   }
-  carryInside(mesh, mapped, boundary, settings.progress, out);
+  const std::vector<int> inside = verticesInside(mesh, boundary);
+  Points from;
+  for (const int v : inside) from.push_back(mesh.vertices[v]);
+  const Points images = inner(from);
+  for (std::size_t i = 0; i < inside.size(); ++i) out.cells.positions[inside[i]] = images[i];
   return out;
+}
+
+}  // namespace
+
+Mesh sourceSurface(const MappedSolid& mapped) { return mapped.solid().repaired().mesh; }
+
+Mesh targetSurface(const MappedSolid& mapped) {
+  return mapped.boundary.target.mesh(mapped.solid(), "target");
+}
+
+CellCarry carryCells(const CellMesh& mesh, const MappedSolid& mapped,
+                     const CarryCellsSettings& settings) {
+  const Solid& solid = mapped.solid();
+  const Mesh target = targetSurface(mapped);
+  const BoundaryWay way{solid.surface(), [&](const SurfacePoint& p) { return solid.address(p); },
+                        target, solid.diagonal()};
+  return carry(mesh, way, settings, [&](const Points& from) {
+    if (from.empty()) return Points{};
+    EvaluateFieldSettings evaluating;
+    evaluating.accuracy = sumAccuracy(mapped) * mapped.boundary.target.diagonal;
+    evaluating.progress = settings.progress;
+    return pointsOf(mapped.map.evaluate(from, evaluating).values);
+  });
+}
+
+CellCarry carryCellsBack(const CellMesh& mesh, const MappedSolid& mapped, const CellMap& map,
+                         const CarryCellsSettings& settings) {
+  const Mesh target = targetSurface(mapped);
+  const BoundaryWay way{target, [](const SurfacePoint& p) { return p; },
+                        mapped.solid().repaired().mesh, mapped.boundary.target.diagonal};
+  const CellLocator locator(*map.carried, map.mesh->tetrahedra);
+  return carry(mesh, way, settings, [&](const Points& from) {
+    Points to(from.size());
+    parallelBlocks(
+        from.size(), kBlock,
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) {
+            const CellPoint at = locator.locate(from[i]);
+            to[i] = at.tetrahedron < 0
+                        ? from[i]
+                        : valueAt(map.mesh->vertices, map.mesh->tetrahedra, clamped(at));
+          }
+        },
+        settings.progress, "locating vertices");
+    return to;
+  });
 }
 
 }  // namespace innermap

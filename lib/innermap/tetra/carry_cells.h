@@ -1,4 +1,4 @@
-// A mesh of cells that fills a map's source, carried to its target: vertices inside by the map,
+// A mesh of cells that fills one solid of a map, carried to the other: vertices inside by the map,
 // those of the boundary by where they are on the surface.
 #pragma once
 
@@ -6,27 +6,28 @@
 
 #include "innermap/boundary/mapped_solid.h"
 #include "innermap/core/progress.h"
+#include "innermap/tetra/cell_locator.h"
 #include "innermap/tetra/cell_mesh.h"
-#include "innermap/tetra/repair_cells.h"
 
 namespace innermap {
 
 struct CarryCellsSettings {
-  // Farthest that a vertex of the boundary may be from the solid's surface, fraction of the
-  // source's diagonal, in (0, 1]: a mesh that fills something else is refused.
+  // Farthest that a vertex of the boundary may be from the solid's surface, fraction of its
+  // diagonal, in (0, 1]: a mesh that fills something else is refused.
   double farthest = 0.05;
   Progress* progress = nullptr;
 };
 
 struct CellCarry {
-  CarriedCells cells;  // places on the surface: of targetSurface(mapped)
+  CarriedCells cells;  // places on the surface: of targetSurface(mapped), back of sourceSurface
   std::size_t boundaryVertices = 0;
-  double boundaryRms = 0, boundaryMax = 0;  // their distance from the source, world units of it
-  std::size_t readdressed = 0;              // nearer to a sheet that their faces turn their back on
+  double boundaryRms = 0, boundaryMax = 0;  // their distance from the solid, world units of it
+  std::size_t readdressed = 0;              // nearer to a sheet that they turn their back on
 };
 
-// The surface that boundaries are carried onto: the source's triangles where the map's boundary
-// takes them.
+// The surfaces that boundaries are carried onto: the same triangles, in the source and where the
+// map's boundary takes them.
+Mesh sourceSurface(const MappedSolid& mapped);
 Mesh targetSurface(const MappedSolid& mapped);
 
 // A vertex of the boundary takes the closest point of the source's surface; where that faces the
@@ -36,5 +37,15 @@ Mesh targetSurface(const MappedSolid& mapped);
 // is not the solid's (its vertices counted, with the farthest), SettingError, Cancelled.
 CellCarry carryCells(const CellMesh& mesh, const MappedSolid& mapped,
                      const CarryCellsSettings& settings = {});
+
+// A mesh of the source with where it is carried, free of inverted cells: a piecewise linear map.
+struct CellMap {
+  const CellMesh* mesh = nullptr;   // of tetrahedra
+  const Points* carried = nullptr;  // #V
+};
+
+// The mesh fills the target; vertices inside are found in the map's tetrahedra. Throws as above.
+CellCarry carryCellsBack(const CellMesh& mesh, const MappedSolid& mapped, const CellMap& map,
+                         const CarryCellsSettings& settings = {});
 
 }  // namespace innermap

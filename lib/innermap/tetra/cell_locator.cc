@@ -124,6 +124,13 @@ CellPoint CellLocator::locate(const Vec3& world) const {
   return out;
 }
 
+CellPoint clamped(CellPoint point) {
+  double sum = 0;
+  for (double& b : point.barycentric) sum += b = std::max(0.0, b);
+  for (double& b : point.barycentric) b /= sum;
+  return point;
+}
+
 Vec3 valueAt(const Points& values, const std::vector<Tetrahedron>& tetrahedra,
              const CellPoint& point) {
   Vec3 sum;

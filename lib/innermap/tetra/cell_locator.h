@@ -31,6 +31,9 @@ class CellLocator {
   std::shared_ptr<const Implementation> implementation_;
 };
 
+// With barycentric coordinates in [0, 1]: a place within, near to a point that is in none.
+CellPoint clamped(CellPoint point);
+
 // What `values`, one of each vertex, are there, linearly.
 Vec3 valueAt(const Points& values, const std::vector<Tetrahedron>& tetrahedra,
              const CellPoint& point);

@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::array<int, 3> kRings{2, 4, 6};
 constexpr std::array<int, 4> kSlidingRings{3, 5, 8, 12};
+constexpr int kFixedRounds = 10;
 constexpr double kLanded = 1e-9;  // of the surface's diagonal
 
 void require(const CellMesh& mesh, const Mesh& surface, const CarriedCells& carried,
@@ -74,7 +75,7 @@ class Repair {
     }
     if (settings_.slide) poor = untangleWith(kSlidingRings, true, std::move(poor), first);
     reportProgress(settings_.progress, "landing", 0);
-    const std::vector<int> off = land(system_, surface_, movedBoundary(), landed_, patch_, cells_);
+    const std::vector<int> off = land(system_, surface_, offSurface(), landed_, patch_, cells_);
     measure(off, out);
     return out;
   }
@@ -83,13 +84,18 @@ class Repair {
   template <class Rings>
   std::vector<int> untangleWith(const Rings& rings, bool slide, std::vector<int> poor,
                                 std::size_t first) {
+    PatchSettings settings = patch_;
+    if (!slide) settings.rounds = kFixedRounds;
     for (const int count : rings) {
       if (poor.empty()) break;
       reportProgress(settings_.progress, slide ? "repairing the boundary" : "repairing",
                      1 - static_cast<double>(poor.size()) / static_cast<double>(first + 1));
-      solvePatches(system_, surface_, growPatches(system_, poor, count, slide), patch_, false,
+      const std::size_t before = poor.size();
+      solvePatches(system_, surface_, growPatches(system_, poor, count, slide), settings, false,
                    cells_);
       poor = poorTets(system_, cells_.positions, settings_.least);
+      // Where the boundary itself is folded, more of the inside does not help.
+      if (!slide && 4 * poor.size() > 3 * before) break;
     }
     return poor;
   }
@@ -102,14 +108,24 @@ class Repair {
     return moved;
   }
 
+  std::vector<int> offSurface() const {
+    std::vector<int> off;
+    for (std::size_t v = 0; v < system_.vertices(); ++v)
+      if (system_.onBoundary[v] && wayOff(static_cast<int>(v)) > landed_)
+        off.push_back(static_cast<int>(v));
+    return off;
+  }
+
+  double wayOff(int v) const {
+    return norm(cells_.positions[v] - surface_.position(cells_.onSurface[v]));
+  }
+
   void measure(const std::vector<int>& off, CellRepair& out) const {
     out.invertedAfter = invertedCells(mesh_, cells_.positions);
     out.poorAfter = poorTets(system_, cells_.positions, settings_.least).size();
     out.slid = movedBoundary().size();
     out.notLanded = off.size();
-    for (const int v : off)
-      out.farthestOff = std::max(
-          out.farthestOff, norm(cells_.positions[v] - surface_.position(cells_.onSurface[v])));
+    for (const int v : off) out.farthestOff = std::max(out.farthestOff, wayOff(v));
     double squares = 0;
     for (std::size_t v = 0; v < carried_.size(); ++v) {
       const double way = norm(cells_.positions[v] - carried_[v]);

@@ -51,7 +51,11 @@ Tetrahedralization tetrahedralization(const Solid& solid,
 // Its mesh alone.
 CellMesh tetrahedralize(const Solid& solid, const TetrahedralizeSettings& settings = {});
 
-// Peak need in bytes beyond the solid, an upper bound within a factor of about 1.5.
-std::uint64_t tetrahedralizeMemory(const Solid& solid, const TetrahedralizeSettings& settings);
+// Estimates, from above by up to about a quarter.
+struct TetrahedralizeNeed {
+  std::size_t tetrahedra = 0, vertices = 0;
+  std::uint64_t memory = 0;  // bytes, the peak beyond the solid
+};
+TetrahedralizeNeed tetrahedralizeNeed(const Solid& solid, const TetrahedralizeSettings& settings);
 
 }  // namespace innermap

@@ -24,6 +24,7 @@ class Pull {
  private:
   openvdb::MaskGrid::Ptr region(const openvdb::GridPtrVec& grids) const;
   Points movedBack(const Points& positions) const;
+  void carryThrough(const openvdb::MaskGrid& region, CarryOutput& output) const;
 
   const PullSettings& settings_;
   ExtendedMap map_;
@@ -45,6 +46,12 @@ openvdb::MaskGrid::Ptr Pull::region(const openvdb::GridPtrVec& grids) const {
 
 // The inverse map at positions of the target, found only when a grid holds positions.
 Points Pull::movedBack(const Points& positions) const {
+  if (settings_.through) {
+    Points images;
+    std::vector<Mat3> jacobians;
+    settings_.through->pull(positions, images, jacobians);
+    return images;
+  }
   if (!settings_.targetLevelSet)
     throw DataError(
         "pull: positions (contravariant absolute vectors) need the "
@@ -60,6 +67,19 @@ Points Pull::movedBack(const Points& positions) const {
   return invertAt(map_.map(), map_.solid(), lattice, inverted, positions, inverse);
 }
 
+void Pull::carryThrough(const openvdb::MaskGrid& region, CarryOutput& output) const {
+  forLeavesThrough(
+      region, settings_.through->push,
+      [&](std::size_t, const openvdb::Coord& origin, const Points& images,
+          const std::vector<Mat3>& jacobians) {
+        std::vector<Site> sites;
+        for (std::size_t i = 0; i < images.size(); ++i)
+          sites.push_back({images[i], images[i], inverse(jacobians[i])});
+        output.carry(origin, sites.data());
+      },
+      settings_.progress);
+}
+
 PullResult Pull::run(const openvdb::GridPtrVec& grids) {
   PullResult out;
   if (settings_.targetLevelSet && !(settings_.outside.distance > 0))
@@ -69,14 +89,18 @@ PullResult Pull::run(const openvdb::GridPtrVec& grids) {
       makeCarriers(grids, settings_.carry, settings_.targetLevelSet, settings_.progress);
   const openvdb::MaskGrid::Ptr active = region(grids);
   CarryOutput output(carriers, *active);
-  map_.visit(
-      *active,
-      [&](std::size_t, const LeafValues& leaf, const std::vector<MapSample>& samples) {
-        std::vector<Site> sites;
-        for (const MapSample& s : samples) sites.push_back({s.image, s.image, inverse(s.jacobian)});
-        output.carry(leaf.origin, sites.data());
-      },
-      "pulling the grids", settings_.progress);
+  if (settings_.through)
+    carryThrough(*active, output);
+  else
+    map_.visit(
+        *active,
+        [&](std::size_t, const LeafValues& leaf, const std::vector<MapSample>& samples) {
+          std::vector<Site> sites;
+          for (const MapSample& s : samples)
+            sites.push_back({s.image, s.image, inverse(s.jacobian)});
+          output.carry(leaf.origin, sites.data());
+        },
+        "pulling the grids", settings_.progress);
   out.grids.resize(grids.size());
   output.finish([&](const Points& points) { return movedBack(points); }, out.grids,
                 settings_.progress);

@@ -12,6 +12,7 @@
 #include "innermap/levelset/solid.h"
 #include "innermap/transfer/carry.h"
 #include "innermap/transfer/outside.h"
+#include "innermap/transfer/through_map.h"
 
 namespace innermap {
 
@@ -24,6 +25,8 @@ struct PullSettings {
   // attributes that end at the target's surface are continued by three voxels beyond, so that what
   // is sampled along the surface does not mix with the background; positions need it.
   const openvdb::FloatGrid* targetLevelSet = nullptr;
+  // Goes this way instead of by the map. Null: by the map.
+  const ThroughMap* through = nullptr;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;
 };

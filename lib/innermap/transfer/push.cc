@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/evaluate/detail/active_region.h"
 #include "innermap/evaluate/evaluate_map.h"
@@ -79,6 +80,10 @@ VolumePusher::VolumePusher(const Solid& source, const openvdb::GridPtrVec& grids
   for (auto& carrier : makeCarriers(grids, settings.carry, &levelSet, settings.progress)) {
     if (carrier->isDensity()) {
       const std::size_t place = carrier->places().front();
+      if (settings.through)
+        throw DataError("grid " + grids[place]->getName() +
+                        ": densities go by the map alone, not through a mesh; leave it out or let "
+                        "it be sampled");
       data->densities.emplace_back(
           place, densityVoxels(grids[place], source, levelSet, settings.outside, settings.maxMemory,
                                settings.progress));
@@ -139,6 +144,11 @@ void VolumePusher::Data::carrySampled(const ComposedMap& map, const InvertedMap&
   output.finish(
       [&](const Points& points) {
         Points images;
+        if (settings.through) {
+          std::vector<Mat3> jacobians;
+          settings.through->push(points, images, jacobians);
+          return images;
+        }
         for (const MapSample& s : extended(map).at(points, settings.progress))
           images.push_back(s.image);
         return images;
@@ -172,7 +182,9 @@ PushResult VolumePusher::push(const ComposedMap& map, const openvdb::FloatGrid& 
     out.statistics.voxels = region->activeVoxelCount();
   } else {
     const InvertedMap inverted =
-        invertMap(map, d.source, d.lattice, targetLevelSet, inverseSettings(d.settings));
+        d.settings.through
+            ? invertThrough(*d.settings.through, d.regionOf(targetLevelSet), d.settings.progress)
+            : invertMap(map, d.source, d.lattice, targetLevelSet, inverseSettings(d.settings));
     region = inverted.region;
     out.inverted = true;
     out.statistics = inverted.statistics;

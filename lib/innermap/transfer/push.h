@@ -32,15 +32,18 @@
 #include "innermap/transfer/carry.h"
 #include "innermap/transfer/inverse_map.h"
 #include "innermap/transfer/outside.h"
+#include "innermap/transfer/through_map.h"
 
 namespace innermap {
 
 struct PushSettings {
   CarrySettings carry;
   OutsideSettings outside;
-  double skin = 2;              // active voxels outside the target's surface, in [0, 3]
-  double tolerance = 1e-3;      // of f(p) = q, target voxels, in [1e-6, 0.01]
-  double accuracy = 1e-7;       // of the sums of charges, as EvaluateSettings::accuracy
+  double skin = 2;          // active voxels outside the target's surface, in [0, 3]
+  double tolerance = 1e-3;  // of f(p) = q, target voxels, in [1e-6, 0.01]
+  double accuracy = 1e-7;   // of the sums of charges, as EvaluateSettings::accuracy
+  // Goes this way instead of by the map; for what is sampled, not for densities. Null: by the map.
+  const ThroughMap* through = nullptr;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;
 };

@@ -120,11 +120,15 @@ std::uint64_t readCellsMemory(const std::string& path) {
 }
 
 std::vector<std::string> writeCells(const std::string& path, const CellMesh& mesh) {
-  const Format& format = formatOf(path);
+  formatOf(path);
   validate(mesh);
   LostFields lost;
-  writeWholeFile(path, [&](std::ostream& stream) { lost = format.write(stream, mesh); });
+  writeWholeFile(path, [&](std::ostream& stream) { lost = writeCellsTo(path, mesh, stream); });
   return lost;
+}
+
+LostFields writeCellsTo(const std::string& path, const CellMesh& mesh, std::ostream& stream) {
+  return formatOf(path).write(stream, mesh);
 }
 
 }  // namespace innermap

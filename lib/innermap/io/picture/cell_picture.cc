@@ -99,15 +99,6 @@ class CutMesh {
   std::vector<Face> faces_;
 };
 
-Vec3 linear(const Rgb& colour) {  // of sRGB (IEC 61966-2-1)
-  Vec3 out;
-  for (int c = 0; c < 3; ++c) {
-    const double v = static_cast<double>(colour[static_cast<std::size_t>(c)]);
-    out[c] = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-  }
-  return out;
-}
-
 void checkSettings(const CellMesh& mesh, const std::vector<double>& values,
                    const CellPictureSettings& settings) {
   if (values.size() != mesh.tetrahedra.size() + mesh.hexahedra.size())

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "innermap/core/error.h"
-#include "innermap/mesh/detail/triangulate.h"
+#include "innermap/mesh/triangulate.h"
 
 namespace innermap {
 namespace {

@@ -64,6 +64,8 @@ CellFile readMsh(const FileBytes& file, const ReadCellsSettings& settings);
 CellFile readMedit(const FileBytes& file, const ReadCellsSettings& settings);
 
 using LostFields = std::vector<std::string>;
+// By the path's ending, which is one of the three.
+LostFields writeCellsTo(const std::string& path, const CellMesh& mesh, std::ostream& stream);
 LostFields writeVtu(std::ostream& stream, const CellMesh& mesh);
 LostFields writeMsh(std::ostream& stream, const CellMesh& mesh);
 LostFields writeMedit(std::ostream& stream, const CellMesh& mesh);

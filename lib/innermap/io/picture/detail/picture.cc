@@ -40,6 +40,15 @@ Rgb rampColour(double t) {
   return colour;
 }
 
+Vec3 linear(const Rgb& colour) {
+  Vec3 out;
+  for (int c = 0; c < 3; ++c) {
+    const double v = static_cast<double>(colour[static_cast<std::size_t>(c)]);
+    out[c] = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+  }
+  return out;
+}
+
 Picture::Picture(int width, int height, Rgb background)
     : width_(width), height_(height), pixels_(static_cast<std::size_t>(width) * height * 3) {
   fill(0, 0, width, height, background);

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "innermap/core/vec3.h"
+
 namespace innermap {
 
 using Rgb = std::array<float, 3>;  // sRGB, 0..1
@@ -13,6 +15,8 @@ using Rgb = std::array<float, 3>;  // sRGB, 0..1
 // Blue (0) over pale yellow to red (1), of even lightness steps on both sides: ColorBrewer's
 // RdYlBu (Cynthia Brewer, Apache-2.0) turned round, interpolated.
 Rgb rampColour(double t);
+
+Vec3 linear(const Rgb& colour);  // of sRGB (IEC 61966-2-1)
 
 enum class Align { left, centre, right };
 

@@ -1,4 +1,4 @@
-#include "innermap/mesh/detail/triangulate.h"
+#include "innermap/mesh/triangulate.h"
 
 #include <algorithm>
 #include <cmath>

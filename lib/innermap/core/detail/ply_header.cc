@@ -1,4 +1,4 @@
-#include "innermap/mesh/detail/ply_header.h"
+#include "innermap/core/detail/ply_header.h"
 
 #include <fmt/format.h>
 

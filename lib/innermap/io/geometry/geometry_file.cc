@@ -1,0 +1,78 @@
+#include "innermap/io/geometry/geometry_file.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "innermap/core/detail/file_bytes.h"
+#include "innermap/core/detail/text_scanner.h"
+#include "innermap/core/error.h"
+#include "innermap/core/file.h"
+#include "innermap/core/memory.h"
+#include "innermap/io/cells/cell_file.h"
+#include "innermap/io/geometry/detail/geometry_formats.h"
+
+namespace innermap {
+namespace {
+
+struct Format {
+  const char* extension;
+  std::unique_ptr<GeometryFile> (*read)(FileBytes, const ReadGeometrySettings&);
+};
+
+constexpr Format kFormats[] = {{".obj", readObjGeometry},
+                               {".ply", readPlyGeometry},
+                               {".off", readOffGeometry},
+                               {".stl", readStlGeometry}};
+
+const Format* findFormat(const std::string& path) {
+  for (const Format& format : kFormats)
+    if (equalsIgnoringCase(extensionOf(path), format.extension)) return &format;
+  return nullptr;
+}
+
+}  // namespace
+
+bool isGeometryFile(const std::string& path) { return findFormat(path) || isCellFile(path); }
+
+void requireWritableAs(const std::string& input, const std::string& output) {
+  if (isCellFile(input) ? isCellFile(output)
+                        : equalsIgnoringCase(extensionOf(input), extensionOf(output)))
+    return;
+  throw FileError(output,
+                  isCellFile(input)
+                      ? "cells are written as .vtu, .msh or .mesh; give one of these endings"
+                      : "must end as the input does, in " + extensionOf(input));
+}
+
+std::unique_ptr<GeometryFile> readGeometry(const std::string& path,
+                                           const ReadGeometrySettings& settings) {
+  const std::uint64_t limit = settings.maxMemory ? settings.maxMemory : availableMemory();
+  requireMemory("carrying " + path, geometryMemory(path), limit, "cut the file into parts");
+  if (isCellFile(path)) return readCellGeometry(path, settings);
+  const Format* format = findFormat(path);
+  if (!format)
+    throw FileError(path,
+                    "unknown extension " + inQuotes(extensionOf(path)) +
+                        "; geometry is read from .obj, .ply, .off, .stl, .vtu, .msh and .mesh "
+                        "files");
+  auto file = format->read(readFileBytes(path, "a file of geometry", settings.progress), settings);
+  if (file->geometry.points.empty()) throw FileError(path, "has no points");
+  return file;
+}
+
+std::uint64_t geometryMemory(const std::string& path) {
+  if (isCellFile(path)) return 2 * readCellsMemory(path);
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) throw FileError(path, "cannot be read (" + error.message() + "); check the name");
+  return 4 * size + (std::uint64_t(1) << 18) * 600;
+}
+
+std::vector<std::string> writeGeometry(const std::string& path, const GeometryFile& file,
+                                       const CarriedGeometry& carried) {
+  std::vector<std::string> lost;
+  writeWholeFile(path, [&](std::ostream& stream) { lost = file.write(path, carried, stream); });
+  return lost;
+}
+
+}  // namespace innermap

@@ -1,0 +1,430 @@
+#include "innermap/tetra/compare_fem.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <set>
+
+#include "innermap/boundary/surface_problem.h"
+#include "innermap/core/detail/random.h"
+#include "innermap/core/error.h"
+#include "innermap/core/memory.h"
+#include "innermap/core/parallel.h"
+#include "innermap/evaluate/energy.h"
+#include "innermap/tetra/cell_locator.h"
+#include "innermap/tetra/harmonic_cells.h"
+#include "innermap/tetra/tetrahedralize.h"
+
+namespace innermap {
+namespace {
+
+class Watch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// What both methods are given, and how their errors are told.
+struct Task {
+  const Solid& solid;
+  // The values at a vertex of the tetrahedra's boundary.
+  std::function<Vec3(const Vec3&)> boundary;
+  InsideFunction exact;
+  double unit = 0;   // of values' errors; 0: each channel its own size
+  double scale = 1;  // of gradients, for energies of unit volumes
+  bool map = false;
+};
+
+struct Samples {
+  Points points;
+  std::vector<InsideValues> exact;
+};
+
+// Uniform by volume, in the cells.
+Points pointsInside(const CellMesh& mesh, std::size_t count, std::uint64_t seed) {
+  std::vector<double> upTo(mesh.tetrahedra.size());
+  double sum = 0;
+  for (std::size_t t = 0; t < upTo.size(); ++t)
+    upTo[t] = sum += signedVolume(mesh.vertices, mesh.tetrahedra[t]);
+  const CounterRandom numbers(seed, 0x7e7a);
+  Points points(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto random = [&](std::uint64_t k) { return numbers.uniform(4 * i + k); };
+    const std::size_t t = std::min<std::size_t>(
+        static_cast<std::size_t>(std::lower_bound(upTo.begin(), upTo.end(), random(0) * sum) -
+                                 upTo.begin()),
+        upTo.size() - 1);
+    std::array<double, 5> cut{0, random(1), random(2), random(3), 1};
+    std::sort(cut.begin(), cut.end());
+    for (int k = 0; k < 4; ++k)
+      points[i] += (cut[k + 1] - cut[k]) * mesh.vertices[mesh.tetrahedra[t][k]];
+  }
+  return points;
+}
+
+Mat3 jacobianOf(const std::array<double, 9>& g) {
+  return {{{g[0], g[1], g[2]}, {g[3], g[4], g[5]}, {g[6], g[7], g[8]}}};
+}
+
+// Sums of squares of the three channels as one number: the worst of the three, or all of them.
+double relative(const Vec3& errors, const Vec3& sizes, bool together) {
+  if (together) return std::sqrt((errors.x + errors.y + errors.z) / (sizes.x + sizes.y + sizes.z));
+  double worst = 0;
+  for (int k = 0; k < 3; ++k) worst = std::max(worst, std::sqrt(errors[k] / sizes[k]));
+  return worst;
+}
+
+void measure(const Task& task, const Samples& samples, ComparedRow& row) {
+  const std::vector<InsideValues> found = row.function(samples.points);
+  Vec3 valueErrors, values, gradientErrors, gradients, largest, extent;
+  double harmonic = 0, deformation = 0;
+  std::size_t folded = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const double error = found[i].value[k] - samples.exact[i].value[k];
+      valueErrors[k] += error * error;
+      values[k] += samples.exact[i].value[k] * samples.exact[i].value[k];
+      largest[k] = std::max(largest[k], std::abs(error));
+      extent[k] = std::max(extent[k], std::abs(samples.exact[i].value[k]));
+      for (int a = 0; a < 3; ++a) {
+        const double g = samples.exact[i].gradient[3 * k + a];
+        gradientErrors[k] += std::pow(found[i].gradient[3 * k + a] - g, 2);
+        gradients[k] += g * g;
+      }
+    }
+    Mat3 jacobian = jacobianOf(found[i].gradient);
+    folded += !(determinant(jacobian) > 0);
+    for (auto& r : jacobian)
+      for (double& v : r) v *= task.scale;
+    harmonic += harmonicEnergyDensity(jacobian);
+    deformation += deformationEnergyDensity(jacobian);
+  }
+  const auto count = static_cast<double>(found.size());
+  row.gradient = relative(gradientErrors, gradients, task.map);
+  if (task.map) {
+    row.value = std::sqrt((valueErrors.x + valueErrors.y + valueErrors.z) / count) / task.unit;
+    row.largest = norm(largest) / task.unit;
+    row.harmonicEnergy = harmonic / count;
+    row.deformationEnergy = deformation / count;
+    row.folded = static_cast<double>(folded) / count;
+  } else {
+    row.value = relative(valueErrors, values, false);
+    row.largest = std::max({largest.x / extent.x, largest.y / extent.y, largest.z / extent.z});
+  }
+}
+
+std::array<double, 9> gradientIn(const CellMesh& mesh, const Matrix& values, int cell) {
+  const Tetrahedron& c = mesh.tetrahedra[cell];
+  const std::array<Vec3, 4> g = cornerGradients(mesh.vertices, c);
+  std::array<double, 9> out{};
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < 3; ++k)
+      for (int a = 0; a < 3; ++a)
+        out[3 * k + a] += values(c[i], static_cast<std::size_t>(k)) * g[i][a];
+  return out;
+}
+
+struct Elements {
+  CellMesh mesh;
+  Matrix values;
+  std::unique_ptr<CellLocator> locator;
+};
+
+// Over the faces of some thousand cells, evenly spread among all.
+double jumpOf(const Elements& e, bool together) {
+  constexpr std::size_t kCells = 20000;
+  const std::size_t count = e.mesh.tetrahedra.size();
+  const std::size_t step = std::max<std::size_t>(1, count / kCells);
+  const auto faceOf = [&](std::size_t t, int without) {
+    std::array<int, 3> face{};
+    for (int i = 0, n = 0; i < 4; ++i)
+      if (i != without) face[n++] = e.mesh.tetrahedra[t][i];
+    std::sort(face.begin(), face.end());
+    return face;
+  };
+  std::vector<std::pair<std::array<int, 3>, std::size_t>> faces;
+  for (std::size_t t = 0; t < count; t += step)
+    for (int i = 0; i < 4; ++i) faces.push_back({faceOf(t, i), t});
+  std::sort(faces.begin(), faces.end());
+  std::vector<bool> concerned(e.mesh.vertices.size(), false);
+  for (const auto& face : faces)
+    for (const int v : face.first) concerned[v] = true;
+  Vec3 jumps, sizes;
+  for (std::size_t t = 0; t < count; ++t)
+    for (int i = 0; i < 4; ++i) {
+      const auto face = faceOf(t, i);
+      if (!concerned[face[0]] || !concerned[face[1]] || !concerned[face[2]]) continue;
+      auto found = std::lower_bound(faces.begin(), faces.end(), std::pair(face, std::size_t{0}));
+      for (; found != faces.end() && found->first == face; ++found) {
+        if (found->second == t) continue;
+        const auto a = gradientIn(e.mesh, e.values, static_cast<int>(t));
+        const auto b = gradientIn(e.mesh, e.values, static_cast<int>(found->second));
+        for (int k = 0; k < 9; ++k) {
+          jumps[k / 3] += (a[k] - b[k]) * (a[k] - b[k]);
+          sizes[k / 3] += 0.5 * (a[k] * a[k] + b[k] * b[k]);
+        }
+      }
+    }
+  return relative(jumps, sizes, together);
+}
+
+Elements solveElements(const Task& task, int resolution, const CompareFemSettings& settings,
+                       ComparedRow& row) {
+  TetrahedralizeSettings cells;
+  cells.resolution = resolution;
+  cells.keepTopology = false;
+  cells.maxMemory = settings.maxMemory;
+  cells.progress = settings.progress;
+  HarmonicCellsSettings solving;
+  solving.progress = settings.progress;
+  const Watch watch;
+  Elements e;
+  Tetrahedralization made = tetrahedralization(task.solid, cells);
+  e.mesh = std::move(made.mesh);
+  row.memory = harmonicCellsMemory(e.mesh.vertices.size(), e.mesh.tetrahedra.size());
+  if (settings.maxMemory > 0)
+    requireMemory(fmt::format("finite elements at a resolution of {}", resolution), row.memory,
+                  settings.maxMemory, "leave out the finest resolution");
+  const std::vector<bool> fixed = boundaryVertices(e.mesh);
+  Matrix given(e.mesh.vertices.size(), 3);
+  parallelBlocks(
+      fixed.size(), 1024,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) {
+          if (!fixed[v]) continue;
+          const Vec3 value = task.boundary(e.mesh.vertices[v]);
+          for (int k = 0; k < 3; ++k) given(v, static_cast<std::size_t>(k)) = value[k];
+        }
+      },
+      settings.progress);
+  HarmonicCells solved = harmonicOnCells(e.mesh, given, solving);
+  row.seconds = watch.seconds();
+  row.size = e.mesh.tetrahedra.size();
+  row.edge = made.edge;
+  row.unknowns = solved.unknowns;
+  row.iterations = solved.iterations;
+  e.values = std::move(solved.values);
+  e.locator = std::make_unique<CellLocator>(e.mesh.vertices, e.mesh.tetrahedra);
+  return e;
+}
+
+InsideFunction functionOf(std::shared_ptr<const Elements> e) {
+  return [e](const Points& points) {
+    std::vector<InsideValues> out(points.size());
+    parallelBlocks(points.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const CellPoint at = e->locator->locate(points[i]);
+        for (int c = 0; c < 4; ++c)
+          for (int k = 0; k < 3; ++k)
+            out[i].value[k] += at.barycentric[c] * e->values(e->mesh.tetrahedra[at.tetrahedron][c],
+                                                             static_cast<std::size_t>(k));
+        out[i].gradient = gradientIn(e->mesh, e->values, at.tetrahedron);
+      }
+    });
+    return out;
+  };
+}
+
+std::vector<InsideValues> insideValues(const FieldSamples& samples, std::size_t count) {
+  std::vector<InsideValues> out(count);
+  for (std::size_t i = 0; i < count; ++i)
+    for (int k = 0; k < 3; ++k) {
+      out[i].value[k] = samples.values(i, static_cast<std::size_t>(k));
+      for (int a = 0; a < 3; ++a)
+        out[i].gradient[3 * k + a] = samples.gradients(i, static_cast<std::size_t>(3 * k + a));
+    }
+  return out;
+}
+
+template <class Field>
+InsideFunction functionOf(const Field& field, double accuracy) {
+  return [field, accuracy](const Points& points) {
+    EvaluateFieldSettings evaluate;
+    evaluate.accuracy = accuracy;
+    evaluate.gradients = true;
+    return insideValues(field.evaluate(points, evaluate), points.size());
+  };
+}
+
+void checkSettings(const CompareFemSettings& settings) {
+  if (settings.resolutions.empty() ||
+      !std::is_sorted(settings.resolutions.begin(), settings.resolutions.end()) ||
+      settings.resolutions.front() < 4 || settings.resolutions.back() > 1024)
+    throw SettingError("resolutions", "must ascend, from 4 to 1024");
+  for (const std::size_t n : settings.charges)
+    if (n < 16 || n > 20000) throw SettingError("charges", "must lie between 16 and 20000");
+  for (const double t : settings.tolerances)
+    if (!(t >= kSmallestTolerance && t <= 1))
+      throw SettingError("tolerances", "must lie between 1e-12 and 1");
+  if (settings.samples < 100 || settings.samples > 1000000)
+    throw SettingError("samples", "must lie between 100 and 1000000");
+}
+
+// Rows of the finite elements; the points are in the finest mesh.
+Samples compareElements(const Task& task, const CompareFemSettings& settings, CompareFem& result) {
+  std::vector<std::shared_ptr<const Elements>> all;
+  for (const int resolution : settings.resolutions) {
+    ComparedRow row;
+    const auto elements =
+        std::make_shared<const Elements>(solveElements(task, resolution, settings, row));
+    row.jump = jumpOf(*elements, task.map);
+    if (task.map)
+      for (std::size_t t = 0; t < elements->mesh.tetrahedra.size(); ++t)
+        row.inverted += !(determinant(jacobianOf(gradientIn(elements->mesh, elements->values,
+                                                            static_cast<int>(t)))) > 0);
+    row.function = functionOf(elements);
+    result.rows.push_back(std::move(row));
+    all.push_back(elements);
+  }
+  Samples samples;
+  samples.points = pointsInside(all.back()->mesh, settings.samples, settings.seed);
+  samples.exact = task.exact(samples.points);
+  for (ComparedRow& row : result.rows) measure(task, samples, row);
+  if (result.rows.size() > 1) {
+    const ComparedRow &coarse = result.rows[result.rows.size() - 2], &fine = result.rows.back();
+    const double finer = std::log(coarse.edge / fine.edge);
+    result.valueOrder = std::log(coarse.value / fine.value) / finer;
+    result.gradientOrder = std::log(coarse.gradient / fine.gradient) / finer;
+  }
+  return samples;
+}
+
+}  // namespace
+
+CompareFem compareFemOnFunctions(const Solid& solid, const CompareFemSettings& settings) {
+  checkSettings(settings);
+  const Vec3 e = solid.box().extent(), origin = solid.box().lower;
+  const double size = std::max({e.x, e.y, e.z});
+  // Outside the box, and so outside the solid.
+  const Vec3 charge = Vec3{e.x / size + 0.1, 0.5 * e.y / size, 0.5 * e.z / size};
+  const auto exactAt = [=](const Vec3& world) {
+    const Vec3 p = (world - origin) / size, r = p - charge;
+    const double d = norm(r), grown = std::exp(4 * p.x);
+    InsideValues v;
+    v.value = {p.x * p.x - p.y * p.y, grown * std::sin(4 * p.y), 0.1 / d};
+    v.gradient = {2 * p.x,
+                  -2 * p.y,
+                  0,
+                  4 * v.value.y,
+                  4 * grown * std::cos(4 * p.y),
+                  0,
+                  -0.1 * r.x / (d * d * d),
+                  -0.1 * r.y / (d * d * d),
+                  -0.1 * r.z / (d * d * d)};
+    for (double& g : v.gradient) g /= size;
+    return v;
+  };
+  Task task{solid, [=](const Vec3& p) { return exactAt(p).value; },
+            [=](const Points& points) {
+              std::vector<InsideValues> out;
+              for (const Vec3& p : points) out.push_back(exactAt(p));
+              return out;
+            }};
+  CompareFem result;
+  const Samples samples = compareElements(task, settings, result);
+  for (const std::size_t count : settings.charges) {
+    ComparedRow row;
+    const Watch watch;
+    SurfaceProblemSettings problem;
+    problem.collocation = 4 * count;
+    problem.heldOut = std::max<std::size_t>(500, count / 2);
+    problem.seed = settings.seed;
+    problem.progress = settings.progress;
+    const SurfaceValues values = [&](const std::vector<SurfacePoint>& at) {
+      Matrix m(at.size(), 3);
+      for (std::size_t i = 0; i < at.size(); ++i) {
+        const Vec3 v = exactAt(positionOf(solid.surface(), at[i])).value;
+        for (int k = 0; k < 3; ++k) m(i, static_cast<std::size_t>(k)) = v[k];
+      }
+      return m;
+    };
+    FitSettings fitting;
+    fitting.sources = count;
+    fitting.interpolation = Interpolation::linear;  // the values are exact between vertices too
+    fitting.maxMemory = settings.maxMemory;
+    fitting.progress = settings.progress;
+    const FitResult fit = fitField(surfaceProblem(solid, values, problem), fitting);
+    row.seconds = watch.seconds();
+    row.charges = true;
+    row.size = row.unknowns = fit.field.sources().size();
+    row.memory = fitMemory(problem.collocation, count, problem.heldOut, FitSolver::automatic);
+    row.function = functionOf(fit.field, 0);
+    measure(task, samples, row);
+    result.rows.push_back(std::move(row));
+  }
+  return result;
+}
+
+CompareFem compareFemOnMap(const BoundaryPair& pair, const CompareFemSettings& settings) {
+  checkSettings(settings);
+  const Solid& solid = pair.solid();
+  FitMapSettings fitting;
+  fitting.oneToOne = OneToOne::off;
+  fitting.interpolation = Interpolation::linear;
+  fitting.seed = settings.seed;
+  fitting.maxMemory = settings.maxMemory;
+  fitting.progress = settings.progress;
+  fitting.tolerance = settings.referenceTolerance;
+  const Watch watch;
+  const MapFit reference = fitMap(pair, fitting);
+  CompareFem result;
+  result.referenceSeconds = watch.seconds();
+  result.referenceRms = reference.error.rms;
+  const double diagonal = pair.target.diagonal;
+  const InsideFunction exact = functionOf(reference.map, 1e-8 * diagonal);
+  Task task{solid,
+            [&](const Vec3& p) {
+              const auto at = solid.closest(p, std::numeric_limits<double>::infinity());
+              const Matrix m = pair.targetsOf({at.onSurface});
+              return Vec3{m(0, 0), m(0, 1), m(0, 2)};
+            },
+            exact};
+  task.unit = diagonal;
+  task.map = true;
+  if (pair.target.volume > 0) task.scale = std::cbrt(solid.volume() / pair.target.volume);
+  const Samples samples = compareElements(task, settings, result);
+  for (const double tolerance : settings.tolerances) {
+    fitting.tolerance = tolerance;
+    const MapFit fit = fitMap(pair, fitting);
+    ComparedRow row;
+    for (const auto& [stage, seconds] : fit.seconds)
+      if (stage == "sample" || stage == "fit") row.seconds += seconds;
+    row.charges = true;
+    row.size = row.unknowns = fit.map.sources();
+    row.memory = fitMemory(fit.solve.collocation, fit.solve.sources, fit.solve.heldOut,
+                           FitSolver::iterative);
+    row.boundaryRms = fit.error.rms;
+    row.function = functionOf(fit.map, 1e-8 * diagonal);
+    measure(task, samples, row);
+    result.rows.push_back(std::move(row));
+  }
+  result.notes.push_back(fmt::format(
+      "errors are differences from a fit of charges with a boundary error of rms {:.2e}: that "
+      "favours charges, and differences below about twice that say little",
+      result.referenceRms));
+  return result;
+}
+
+std::uint64_t compareFemMemory(const Solid& solid, const CompareFemSettings& settings) {
+  checkSettings(settings);
+  TetrahedralizeSettings cells;
+  std::uint64_t elements = 0;
+  for (const int resolution : settings.resolutions) {
+    cells.resolution = resolution;
+    const TetrahedralizeNeed need = tetrahedralizeNeed(solid, cells);
+    // All meshes are kept for the pictures; the finest is being solved.
+    elements += need.tetrahedra * (16 + 150) + need.vertices * 48;
+  }
+  const TetrahedralizeNeed finest = tetrahedralizeNeed(solid, cells);
+  return elements +
+         std::max(harmonicCellsMemory(finest.vertices, finest.tetrahedra), finest.memory);
+}
+
+}  // namespace innermap

@@ -1,0 +1,337 @@
+// `innermap compare-fem`: charges beside linear finite elements.
+#include "innermap/tetra/compare_fem.h"
+
+#include <fmt/format.h>
+#include <openvdb/tools/Interpolation.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "commands.h"
+#include "correspondence.h"
+#include "innermap/core/memory.h"
+#include "innermap/evaluate/energy.h"
+#include "innermap/io/picture/chart.h"
+#include "innermap/io/picture/plane_picture.h"
+#include "innermap/levelset/level_set.h"
+#include "innermap/mesh/read.h"
+#include "inputs.h"
+#include "lists.h"
+#include "map_report.h"
+
+namespace innermap::tool {
+namespace {
+
+struct CompareOptions {
+  std::string source, target, output;
+  bool functions = false;
+  std::string resolutions = "16,32,64", charges = "250,500,1000", tolerances = "4e-3,2e-3,1e-3";
+  CompareFemSettings settings;
+  int axis = 2;
+  double at = 0.5;
+};
+
+std::vector<double> numbers(const std::string& option, const std::string& list) {
+  const std::size_t count = commaList(list).size();
+  if (count == 0) throw UsageError(option + ": give one number at least");
+  return parseNumbers(option, list, count, "a list of numbers");
+}
+
+CompareFemSettings settingsOf(const CompareOptions& options, const Context& context) {
+  CompareFemSettings settings = context.settings(options.settings);
+  settings.resolutions.clear();
+  for (const double n : numbers("--resolutions", options.resolutions))
+    settings.resolutions.push_back(static_cast<int>(std::clamp(n, -1.0, 1e6)));
+  settings.charges.clear();
+  for (const double n : numbers("--charges", options.charges))
+    settings.charges.push_back(static_cast<std::size_t>(std::clamp(n, 0.0, 1e9)));
+  settings.tolerances = numbers("--tolerances", options.tolerances);
+  return settings;
+}
+
+std::string nameOf(const ComparedRow& row) {
+  return row.charges ? fmt::format("{} charges", row.size) : fmt::format("{} tets", row.size);
+}
+
+// The most exact charges that took no longer, or null.
+const ComparedRow* atEqualTime(const CompareFem& result, const ComparedRow& elements) {
+  const ComparedRow* best = nullptr;
+  for (const ComparedRow& row : result.rows)
+    if (row.charges && row.seconds <= elements.seconds && (!best || row.gradient < best->gradient))
+      best = &row;
+  return best;
+}
+
+void printTable(const CompareFem& result, bool map, Context& context) {
+  context.print(fmt::format("{:>18} {:>8} {:>9} {:>9} {:>9} {:>9} {:>8}{}\n", "", "seconds",
+                            "memory", "value", "gradient", "largest", "jump",
+                            map ? "  harmonic  deformation   folded inverted" : ""));
+  for (const ComparedRow& r : result.rows) {
+    context.print(fmt::format("{:>18} {:>8.2f} {:>9} {:>9.2e} {:>9.2e} {:>9.2e} {:>8.3f}",
+                              nameOf(r), r.seconds, formatBytes(r.memory), r.value, r.gradient,
+                              r.largest, r.jump));
+    if (map)
+      context.print(fmt::format("  {:>8.4f}  {:>11.5f} {:>7.3f}% {:>8}", r.harmonicEnergy,
+                                r.deformationEnergy, 100 * r.folded,
+                                r.charges ? "-" : std::to_string(r.inverted)));
+    context.print("\n");
+  }
+  if (result.rows.size() > 1 && std::isfinite(result.valueOrder))
+    context.print(
+        fmt::format("finite elements converge with order {:.2f} (values) and {:.2f} "
+                    "(gradients)\n",
+                    result.valueOrder, result.gradientOrder));
+  for (const ComparedRow& r : result.rows) {
+    if (r.charges) continue;
+    const ComparedRow* best = atEqualTime(result, r);
+    context.print(best ? fmt::format("in the time of {}: {} have {:.2g} times its error in values, "
+                                     "{:.2g} times that in gradients\n",
+                                     nameOf(r), nameOf(*best), best->value / r.value,
+                                     best->gradient / r.gradient)
+                       : fmt::format("in the time of {}: no charges\n", nameOf(r)));
+  }
+}
+
+void writeTable(const std::string& path, const CompareFem& result) {
+  PendingFile file(path);
+  std::ofstream out(file.temporaryPath());
+  out << "method,size,unknowns,seconds,memory_bytes,iterations,value_error,gradient_error,"
+         "largest_error,jump,harmonic_energy,deformation_energy,folded,inverted,boundary_rms\n";
+  const auto number = [](double v) { return std::isfinite(v) ? fmt::format("{:.6g}", v) : ""; };
+  for (const ComparedRow& r : result.rows)
+    out << fmt::format(
+        "{},{},{},{:.4f},{},{},{},{},{},{},{},{},{},{},{}\n", r.charges ? "charges" : "elements",
+        r.size, r.unknowns, r.seconds, r.memory, r.iterations, number(r.value), number(r.gradient),
+        number(r.largest), number(r.jump), number(r.harmonicEnergy), number(r.deformationEnergy),
+        number(r.folded), r.charges ? "" : std::to_string(r.inverted), number(r.boundaryRms));
+  out.close();
+  if (!out) throw FileError(path, "cannot be written");
+  file.commit();
+}
+
+// A method's errors at all times of the chart, between its own by straight lines of logarithms.
+std::vector<double> curveOf(const CompareFem& result, bool charges, double ComparedRow::*error,
+                            const std::vector<double>& times) {
+  std::vector<std::pair<double, double>> own;
+  for (const ComparedRow& r : result.rows)
+    if (r.charges == charges) own.push_back({std::log10(r.seconds), std::log10(r.*error)});
+  std::sort(own.begin(), own.end());
+  std::vector<double> values;
+  for (const double t : times) {
+    double value = kUnknown;
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      if (own[i].first == t) value = own[i].second;
+      if (i + 1 < own.size() && own[i].first < t && t < own[i + 1].first)
+        value = own[i].second + (own[i + 1].second - own[i].second) * (t - own[i].first) /
+                                    (own[i + 1].first - own[i].first);
+    }
+    values.push_back(value);
+  }
+  return values;
+}
+
+Chart chartOf(const CompareFem& result, const CompareOptions& options) {
+  Chart chart;
+  chart.title = "Error against time";
+  chart.subtitle = options.functions ? "known harmonic functions in " + options.source
+                                     : options.source + " to " + options.target;
+  chart.xLabel = "log10 of seconds";
+  for (const ComparedRow& r : result.rows) chart.x.push_back(std::log10(r.seconds));
+  std::sort(chart.x.begin(), chart.x.end());
+  chart.x.erase(std::unique(chart.x.begin(), chart.x.end()), chart.x.end());
+  for (const auto& [label, error] :
+       {std::pair("log10 of the error of values", &ComparedRow::value),
+        std::pair("log10 of the error of gradients", &ComparedRow::gradient)})
+    chart.panels.push_back({label,
+                            1,
+                            {{"finite elements", curveOf(result, false, error, chart.x)},
+                             {"charges", curveOf(result, true, error, chart.x)}}});
+  return chart;
+}
+
+// |gradient|^2, of three functions the sum, in the middle's size.
+void writeSection(const std::string& path, const CompareFem& result, const Solid& solid,
+                  const CompareOptions& options, Context& context) {
+  LevelSetSettings grid = context.settings<LevelSetSettings>();
+  grid.resolution = 256;
+  const openvdb::FloatGrid::Ptr distance = makeLevelSet(solid, grid);
+  const auto density = [distance](const InsideFunction& function) {
+    return [distance, function](const Points& points) {
+      const openvdb::tools::GridSampler<openvdb::FloatGrid, openvdb::tools::BoxSampler> sampler(
+          *distance);
+      Points shown;
+      std::vector<std::size_t> place;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        if (!(sampler.wsSample({points[i].x, points[i].y, points[i].z}) < 0)) continue;
+        shown.push_back(points[i]);
+        place.push_back(i);
+      }
+      std::vector<double> out(points.size(), kUnknown);
+      const std::vector<InsideValues> inside = function(shown);
+      for (std::size_t i = 0; i < inside.size(); ++i) {
+        double sum = 0;
+        for (const double g : inside[i].gradient) sum += g * g;
+        out[place[i]] = sum;
+      }
+      return out;
+    };
+  };
+  const ComparedRow *elements = nullptr, *charges = nullptr;
+  for (const ComparedRow& r : result.rows) (r.charges ? charges : elements) = &r;
+  std::vector<PlaneFunction> functions;
+  functions.push_back({nameOf(result.rows.front()), density(result.rows.front().function)});
+  if (elements != &result.rows.front())
+    functions.push_back({nameOf(*elements), density(elements->function)});
+  if (charges) functions.push_back({nameOf(*charges), density(charges->function)});
+  // The range of what the last one has on the plane.
+  Points probe;
+  const Box3& box = solid.box();
+  for (int i = 0; i < 64; ++i)
+    for (int j = 0; j < 64; ++j) {
+      Vec3 p;
+      p[options.axis] = box.lower[options.axis] + options.at * box.extent()[options.axis];
+      for (int k = 1; k < 3; ++k) {
+        const int a = (options.axis + k) % 3;
+        p[a] = box.lower[a] + ((k == 1 ? i : j) + 0.5) / 64 * box.extent()[a];
+      }
+      probe.push_back(p);
+    }
+  std::vector<double> values = functions.back().values(probe);
+  values.erase(
+      std::remove_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }),
+      values.end());
+  std::sort(values.begin(), values.end());
+  auto settings = context.settings<PlanePictureSettings>();
+  settings.axis = options.axis;
+  settings.at = options.at;
+  if (!values.empty()) {
+    settings.blue = values[values.size() / 100];
+    settings.red = std::max(values[values.size() - 1 - values.size() / 100],
+                            settings.blue + 1e-9 * std::max(1.0, std::abs(settings.blue)));
+  }
+  settings.caption = fmt::format("energy density |gradient|^2: blue {:.3g}, red {:.3g}",
+                                 settings.blue, settings.red);
+  writePlanePicture(path, box, functions, settings);
+}
+
+void fillReport(const CompareFem& result, Report& report) {
+  const auto column = [&](const char* key, auto of) {
+    report.setColumn(std::string("comparison.") + key, result.rows, of);
+  };
+  std::vector<std::string> methods;
+  for (const ComparedRow& r : result.rows) methods.push_back(r.charges ? "charges" : "elements");
+  report.set("comparison.method", methods);
+  column("size", [](const ComparedRow& r) { return r.size; });
+  column("unknowns", [](const ComparedRow& r) { return r.unknowns; });
+  column("seconds", [](const ComparedRow& r) { return r.seconds; });
+  column("memory_bytes", [](const ComparedRow& r) { return r.memory; });
+  column("iterations", [](const ComparedRow& r) { return r.iterations; });
+  column("value_error", [](const ComparedRow& r) { return r.value; });
+  column("gradient_error", [](const ComparedRow& r) { return r.gradient; });
+  column("largest_error", [](const ComparedRow& r) { return r.largest; });
+  column("jump", [](const ComparedRow& r) { return r.jump; });
+  column("harmonic_energy", [](const ComparedRow& r) { return r.harmonicEnergy; });
+  column("deformation_energy", [](const ComparedRow& r) { return r.deformationEnergy; });
+  column("folded", [](const ComparedRow& r) { return r.folded; });
+  column("inverted", [](const ComparedRow& r) { return r.inverted; });
+  column("boundary_rms", [](const ComparedRow& r) { return r.boundaryRms; });
+  report.set("comparison.value_order", result.valueOrder);
+  report.set("comparison.gradient_order", result.gradientOrder);
+  if (result.referenceRms > 0) {
+    report.set("comparison.reference.boundary_rms", result.referenceRms);
+    report.set("comparison.reference.seconds", result.referenceSeconds);
+  }
+}
+
+void run(const CompareOptions& options, Context& context) {
+  if (options.functions != options.target.empty())
+    throw UsageError("give a TARGET to compare on its map, or --functions (not both)");
+  const CompareFemSettings settings = settingsOf(options, context);
+  const Mesh source = readMeshFile(options.source, context);
+  std::optional<BoundaryPair> pair;
+  std::optional<Solid> alone;
+  if (options.functions) {
+    alone =
+        context.timed("solid", [&] { return Solid(source, context.settings<SolidSettings>()); });
+  } else {
+    const Mesh target = context.timed("read", [&] {
+      return readMeshLike(options.target, source, context.settings<ReadSettings>());
+    });
+    pair = makeBoundaryPair(source, target, context.settings<BoundarySettings>());
+    context.tell(*pair);
+  }
+  const Solid& solid = pair ? pair->solid() : *alone;
+  const std::uint64_t need = compareFemMemory(solid, settings);
+  if (context.dryRun())
+    return context.plan(
+        {fmt::format("compare finite elements at resolutions {} with charges", options.resolutions),
+         "write comparison.csv, curves.png, section.png and report.json to " + options.output},
+        need);
+  requireMemory("finite elements", need, context.maxMemory(), "use lower --resolutions");
+  PendingFolder folder = context.outputFolder(options.output);
+  context.notePictures();
+  const CompareFem result = context.timed("compare", [&] {
+    return pair ? compareFemOnMap(*pair, settings) : compareFemOnFunctions(solid, settings);
+  });
+  for (const std::string& note : result.notes) context.note(note);
+  printTable(result, pair.has_value(), context);
+  fillReport(result, context.report());
+  context.timed("write", [&] {
+    folder.write("comparison.csv", [&](const std::string& path) { writeTable(path, result); });
+    folder.write("curves.png",
+                 [&](const std::string& path) { writeChart(path, chartOf(result, options)); });
+    folder.write("section.png", [&](const std::string& path) {
+      writeSection(path, result, solid, options, context);
+    });
+  });
+  context.finish(folder);
+}
+
+}  // namespace
+
+Command makeCompareFemCommand() {
+  auto o = std::make_shared<CompareOptions>();
+  Command c("compare-fem", "Compare maps by charges with maps by finite elements");
+  c.description(
+      "The harmonic map of the inside of SOURCE onto that of TARGET (of the same connectivity), "
+      "made by linear finite elements on tetrahedra of several sizes (conjugate gradients with an "
+      "incomplete Cholesky factor) and by charges to several tolerances, from the same boundary "
+      "map; one map, not in steps. Errors are differences from a finer fit of charges, in "
+      "fractions "
+      "of TARGET's diagonal (values) and relative (gradients). With --functions three known "
+      "harmonic functions are solved for instead, and errors are relative, of the worst of the "
+      "three. Seconds are wall time from the solid to the function; memory is what each method "
+      "claims. Writes comparison.csv, curves.png, section.png and report.json.");
+  c.positional("SOURCE", &o->source, "mesh file: .obj, .ply, .off or .stl");
+  c.positional("TARGET", &o->target, "a pose of it; left out with --functions").optional();
+  c.option("--output", "FOLDER", &o->output, "where the files go; made when missing")
+      .shortName("-o")
+      .required();
+  c.flag("--functions", &o->functions, "compare on known harmonic functions in SOURCE");
+  c.option("--resolutions", "LIST", &o->resolutions,
+           "cells of the tetrahedra's lattice along the longest side, each from 4 to 1024, "
+           "ascending");
+  c.option("--charges", "LIST", &o->charges, "with --functions: numbers of charges, 16 to 20000");
+  c.option(
+      "--tolerances", "LIST", &o->tolerances,
+      "for a map: tolerances of the fits of charges, fractions of TARGET's diagonal, 1e-12 to 1");
+  c.option("--reference", "T", &o->settings.referenceTolerance,
+           "tolerance of the fit that maps are compared with")
+      .unit("fraction of TARGET's diagonal")
+      .range(1e-12, 1);
+  c.option("--samples", "N", &o->settings.samples, "points inside at which errors are measured")
+      .range(100, 1000000);
+  c.choice("--axis", "AXIS", &o->axis, {{"x", 0}, {"y", 1}, {"z", 2}},
+           "direction across the section");
+  c.option("--at", "T", &o->at, "where the section cuts")
+      .unit("fraction of the box along the axis")
+      .range(0, 1);
+  c.option("--seed", "N", &o->settings.seed, "of all random choices").range(0, 1e15);
+  c.example("innermap compare-fem spot.obj --functions -o spot-fem");
+  c.example("innermap compare-fem rest.obj pose.obj -o pose-fem --resolutions 24,48,96");
+  c.run([o](Context& context) { run(*o, context); });
+  return c;
+}
+
+}  // namespace innermap::tool

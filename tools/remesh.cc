@@ -1,0 +1,178 @@
+// `innermap remesh`: the cells of one solid made those of another by a map between them.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "cell_report.h"
+#include "commands.h"
+#include "innermap/core/memory.h"
+#include "innermap/io/cells/cell_file.h"
+#include "innermap/io/picture/cell_picture.h"
+#include "innermap/tetra/carry_cells.h"
+#include "innermap/tetra/remesh_cells.h"
+#include "inputs.h"
+
+namespace innermap::tool {
+namespace {
+
+struct RemeshOptions {
+  std::string map, cells, surface, output, picture;
+  RemeshSettings settings;
+  int axis = 2;
+  double at = 0.5;
+};
+
+void reportRemesh(const Remesh& result, double diagonal, Context& context) {
+  Report& report = context.report();
+  report.set("remesh.inverted_at_rest", result.invertedAtRest);
+  report.set("remesh.inverted_carried", result.invertedCarried);
+  report.set("remesh.inverted", result.inverted);
+  report.set("remesh.from_coarse", result.fromCoarse);
+  report.set("remesh.swaps", result.swaps);
+  report.set("remesh.collapses", result.collapses);
+  report.set("remesh.moved_rms", result.repair.moved / diagonal);
+  report.set("remesh.moved_max", result.repair.farthestMoved / diagonal);
+  report.set("remesh.off_surface", result.repair.notLanded);
+  report.set("remesh.boundary_vertices_rms", result.boundaryRms);
+  report.set("remesh.boundary_vertices_max", result.boundaryMax);
+  addSeconds(report.seconds, result.seconds);
+  context.print(fmt::format(
+      "inverted: {} carried, {} repaired; vertices moved rms {:.2e}, max {:.2e}, {} swaps, {} "
+      "collapses\nboundary's vertices off the surface: rms {:.2e}, max {:.2e} (of the diagonal)\n",
+      result.invertedCarried, result.inverted, result.repair.moved / diagonal,
+      result.repair.farthestMoved / diagonal, result.swaps, result.collapses, result.boundaryRms,
+      result.boundaryMax));
+}
+
+void drawCut(const RemeshOptions& options, const Remesh& result, Context& context) {
+  auto settings = context.settings<CellPictureSettings>();
+  settings.direction = {0, 0, 0};
+  settings.direction[options.axis] = 1;
+  settings.at = options.at;
+  settings.label = std::filesystem::path(options.output).filename().string() + ", cut";
+  std::vector<double> values(result.quality.leastDihedral.begin(),
+                             result.quality.leastDihedral.end());
+  for (const float j : result.quality.scaledJacobian) values.push_back(60.0 * j);
+  settings.caption = result.mesh.hexahedra.empty()
+                         ? "least dihedral angle of each cell: red 0, yellow 30, blue 60 degrees"
+                         : "scaled Jacobian of each cell: red 0, yellow 0.5, blue 1";
+  writeCellPicture(options.picture, result.mesh, values, settings);
+}
+
+void write(const RemeshOptions& options, Remesh& result, Context& context) {
+  context.timed("write", [&] {
+    for (CellField& field : qualityFields(result.mesh, result.quality))
+      result.mesh.cellFields.push_back(std::move(field));
+    for (const std::string& field : writeCells(options.output, result.mesh))
+      context.warning(options.output + ": its format cannot hold the field '" + field +
+                      "'; it is left out");
+  });
+}
+
+// Fields of an earlier quality are not carried.
+void dropQuality(CellMesh& mesh) {
+  auto& fields = mesh.cellFields;
+  fields.erase(std::remove_if(fields.begin(), fields.end(),
+                              [](const CellField& f) {
+                                return f.name == "least_dihedral" ||
+                                       f.name == "greatest_dihedral" || f.name == "scaled_jacobian";
+                              }),
+               fields.end());
+}
+
+void run(const RemeshOptions& options, Context& context) {
+  if (!isCellFile(options.cells))
+    throw UsageError(options.cells + ": must be a .vtu, .msh or .mesh file");
+  if (!isCellFile(options.output))
+    throw UsageError("--output " + options.output + ": must end in .vtu, .msh or .mesh");
+  context.output(options.output);
+  if (!options.picture.empty()) context.output(options.picture);
+  const MappedSolid mapped = readMapFile(options.map, context);
+  const std::uint64_t reading = readCellsMemory(options.cells);
+  requireMemory("reading " + options.cells, reading, context.maxMemory(), "use a coarser mesh");
+  CellFile file = context.timed(
+      "read", [&] { return readCells(options.cells, context.settings<ReadCellsSettings>()); });
+  for (const std::string& note : file.notes) context.note(note);
+  const std::uint64_t need = reading + remeshMemory(file.mesh);
+  if (context.dryRun())
+    return context.plan({fmt::format("carry the {} cells of {} by {}",
+                                     file.mesh.tetrahedra.size() + file.mesh.hexahedra.size(),
+                                     options.cells, options.map),
+                         "write " + options.output},
+                        need);
+  requireMemory("carrying " + options.cells, need, context.maxMemory(), "use a coarser mesh");
+  dropQuality(file.mesh);
+  RemeshSettings settings = context.settings(options.settings);
+  std::optional<Mesh> surface;
+  if (!options.surface.empty()) {
+    surface = readMeshFile(options.surface, context);
+    settings.surface = &*surface;
+  }
+  const Mesh own = settings.back ? sourceSurface(mapped) : targetSurface(mapped);
+  const Mesh& onto = surface ? *surface : own;
+  Remesh result = remeshCells(file.mesh, mapped, settings);
+  for (const std::string& note : result.notes) context.note(note);
+  for (const std::string& warning : result.warnings) context.warning(warning);
+  reportRemesh(result, boundingBox(onto).diagonal(), context);
+  reportCells(result.mesh, result.quality, context);
+  const BoundaryFit fit = context.timed("boundary", [&] {
+    return boundaryFit(result.mesh, Solid(onto, context.settings<SolidSettings>()),
+                       context.settings<BoundaryFitSettings>());
+  });
+  reportBoundaryFit(fit, context);
+  if (!options.picture.empty())
+    context.timed("picture", [&] { drawCut(options, result, context); });
+  write(options, result, context);
+}
+
+}  // namespace
+
+Command makeRemeshCommand() {
+  auto o = std::make_shared<RemeshOptions>();
+  Command c("remesh", "Carry the cells that fill one solid onto another, none of them inverted");
+  c.description(
+      "Vertices inside go by the map, those of the boundary by their places on the surface. Cells "
+      "that this turns inside out are repaired by moving vertices, those of the boundary along the "
+      "surface; then tetrahedra with poor angles are improved by swapping edges and faces, by "
+      "drawing edges together and by moving vertices. Vertices keep the places that they came from "
+      "as the field `source`: the two together are a piecewise linear map, which push and pull "
+      "take with --through. Vectors and normals among the fields are turned by it.");
+  c.positional("MAP", &o->map, "a map.ply written by fit or map");
+  c.positional("CELLS", &o->cells,
+               "tetrahedra or hexahedra that fill the map's source: .vtu, .msh or .mesh");
+  c.positional("SURFACE", &o->surface,
+               "the mesh whose surface the boundary goes onto, as it was given to map; left out: "
+               "the map's own, the source's triangles where it takes them")
+      .optional();
+  c.option("--output", "FILE", &o->output,
+           "the .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file to write")
+      .shortName("-o")
+      .required();
+  c.flag("--back", &o->settings.back,
+         "CELLS fill the map's target and are brought to its source; SURFACE is the source");
+  c.flag("--keep-connectivity", &o->settings.keepConnectivity,
+         "move vertices alone: cells and their numbers stay as they are");
+  c.option("--angle", "ANGLE", &o->settings.angle,
+           "tetrahedra with a dihedral angle below it, or as near to 180, are improved")
+      .unit("degrees")
+      .range(1, 30);
+  c.option("--coarse", "N", &o->settings.coarse,
+           "cells along the longest side of the mesh that is repaired first where many cells are "
+           "inverted, or with --back stands for the inverse map; 0: none, or 64 with --back")
+      .range(0, 256);
+  c.option("--picture", "FILE", &o->picture,
+           "a .png of the cells behind a cut, coloured by their least dihedral angle or scaled "
+           "Jacobian");
+  c.choice("--axis", "AXIS", &o->axis, {{"x", 0}, {"y", 1}, {"z", 2}},
+           "direction across the picture's cut");
+  c.option("--at", "T", &o->at, "where the picture cuts")
+      .unit("fraction of the box along the axis")
+      .range(0, 1);
+  c.example("innermap remesh map.ply rest.vtu posed.obj -o posed.vtu");
+  c.example("innermap remesh map.ply posed.vtu rest.obj -o back.vtu --back");
+  c.run([o](Context& context) { run(*o, context); });
+  return c;
+}
+
+}  // namespace innermap::tool
