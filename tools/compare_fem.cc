@@ -26,7 +26,7 @@ namespace {
 struct CompareOptions {
   std::string source, target, output;
   bool functions = false;
-  std::string resolutions = "16,32,64", charges = "250,500,1000", tolerances = "4e-3,2e-3,1e-3";
+  std::string resolutions = "16,32,64", charges = "250,500,1000", tolerances = "4e-3,1e-3,4e-4";
   CompareFemSettings settings;
   int axis = 2;
   double at = 0.5;
@@ -54,13 +54,51 @@ std::string nameOf(const ComparedRow& row) {
   return row.charges ? fmt::format("{} charges", row.size) : fmt::format("{} tets", row.size);
 }
 
-// The most exact charges that took no longer, or null.
-const ComparedRow* atEqualTime(const CompareFem& result, const ComparedRow& elements) {
-  const ComparedRow* best = nullptr;
+// A method's errors at all times of the chart, between its own by straight lines of logarithms.
+std::vector<double> curveOf(const CompareFem& result, bool charges, double ComparedRow::*error,
+                            const std::vector<double>& times) {
+  std::vector<std::pair<double, double>> own;
+  for (const ComparedRow& r : result.rows)
+    if (r.charges == charges && r.*error > 0)
+      own.push_back({std::log10(r.seconds), std::log10(r.*error)});
+  std::sort(own.begin(), own.end());
+  std::vector<double> values;
+  for (const double t : times) {
+    double value = kUnknown;
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      if (own[i].first == t) value = own[i].second;
+      if (i + 1 < own.size() && own[i].first < t && t < own[i + 1].first)
+        value = own[i].second + (own[i + 1].second - own[i].second) * (t - own[i].first) /
+                                    (own[i + 1].first - own[i].first);
+    }
+    values.push_back(value);
+  }
+  return values;
+}
+
+// A method's error after so many seconds: between those measured as the chart has it, after the
+// last as that; NaN before the first.
+double errorAfter(const CompareFem& result, bool charges, double ComparedRow::*error,
+                  double seconds) {
+  const double between =
+      std::pow(10, curveOf(result, charges, error, {std::log10(seconds)}).front());
+  if (std::isfinite(between)) return between;
+  const ComparedRow* last = nullptr;
   for (const ComparedRow& row : result.rows)
-    if (row.charges && row.seconds <= elements.seconds && (!best || row.gradient < best->gradient))
-      best = &row;
-  return best;
+    if (row.charges == charges && row.*error > 0 && row.seconds <= seconds &&
+        (!last || row.seconds > last->seconds))
+      last = &row;
+  return last ? last->*error : kUnknown;
+}
+
+// The other method at the same time.
+std::string atEqualTime(const CompareFem& result, const ComparedRow& row) {
+  const double value = errorAfter(result, !row.charges, &ComparedRow::value, row.seconds),
+               gradient = errorAfter(result, !row.charges, &ComparedRow::gradient, row.seconds);
+  const std::string other = row.charges ? "finite elements" : "charges";
+  if (!std::isfinite(value)) return "there are no " + other + " yet";
+  return fmt::format("{} have {:.2g} times its error in values, {:.2g} times that in gradients",
+                     other, value / row.value, gradient / row.gradient);
 }
 
 void printTable(const CompareFem& result, bool map, Context& context) {
@@ -68,9 +106,10 @@ void printTable(const CompareFem& result, bool map, Context& context) {
                             "memory", "value", "gradient", "largest", "jump",
                             map ? "  harmonic  deformation   folded inverted" : ""));
   for (const ComparedRow& r : result.rows) {
-    context.print(fmt::format("{:>18} {:>8.2f} {:>9} {:>9.2e} {:>9.2e} {:>9.2e} {:>8.3f}",
-                              nameOf(r), r.seconds, formatBytes(r.memory), r.value, r.gradient,
-                              r.largest, r.jump));
+    const auto error = [](double v) { return std::isfinite(v) ? fmt::format("{:.2e}", v) : "-"; };
+    context.print(fmt::format("{:>18} {:>8.2f} {:>9} {:>9} {:>9} {:>9} {:>8.3f}", nameOf(r),
+                              r.seconds, formatBytes(r.memory), error(r.value), error(r.gradient),
+                              error(r.largest), r.jump));
     if (map)
       context.print(fmt::format("  {:>8.4f}  {:>11.5f} {:>7.3f}% {:>8}", r.harmonicEnergy,
                                 r.deformationEnergy, 100 * r.folded,
@@ -82,15 +121,10 @@ void printTable(const CompareFem& result, bool map, Context& context) {
         fmt::format("finite elements converge with order {:.2f} (values) and {:.2f} "
                     "(gradients)\n",
                     result.valueOrder, result.gradientOrder));
-  for (const ComparedRow& r : result.rows) {
-    if (r.charges) continue;
-    const ComparedRow* best = atEqualTime(result, r);
-    context.print(best ? fmt::format("in the time of {}: {} have {:.2g} times its error in values, "
-                                     "{:.2g} times that in gradients\n",
-                                     nameOf(r), nameOf(*best), best->value / r.value,
-                                     best->gradient / r.gradient)
-                       : fmt::format("in the time of {}: no charges\n", nameOf(r)));
-  }
+  for (const ComparedRow& r : result.rows)
+    if (r.value > 0)
+      context.print(fmt::format("after the {:.2f} s of {} {}\n", r.seconds, nameOf(r),
+                                atEqualTime(result, r)));
 }
 
 void writeTable(const std::string& path, const CompareFem& result) {
@@ -108,27 +142,6 @@ void writeTable(const std::string& path, const CompareFem& result) {
   out.close();
   if (!out) throw FileError(path, "cannot be written");
   file.commit();
-}
-
-// A method's errors at all times of the chart, between its own by straight lines of logarithms.
-std::vector<double> curveOf(const CompareFem& result, bool charges, double ComparedRow::*error,
-                            const std::vector<double>& times) {
-  std::vector<std::pair<double, double>> own;
-  for (const ComparedRow& r : result.rows)
-    if (r.charges == charges) own.push_back({std::log10(r.seconds), std::log10(r.*error)});
-  std::sort(own.begin(), own.end());
-  std::vector<double> values;
-  for (const double t : times) {
-    double value = kUnknown;
-    for (std::size_t i = 0; i < own.size(); ++i) {
-      if (own[i].first == t) value = own[i].second;
-      if (i + 1 < own.size() && own[i].first < t && t < own[i + 1].first)
-        value = own[i].second + (own[i + 1].second - own[i].second) * (t - own[i].first) /
-                                    (own[i + 1].first - own[i].first);
-    }
-    values.push_back(value);
-  }
-  return values;
 }
 
 Chart chartOf(const CompareFem& result, const CompareOptions& options) {

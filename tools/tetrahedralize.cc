@@ -61,6 +61,17 @@ void fillReport(const Tetrahedralization& result, const Mesh& mesh, const Solid&
              result.solidTopology.has_value() && *result.solidTopology == result.topology);
   report.set("lattice.edge", result.edge);
   report.set("lattice.changed_nodes", result.changedNodes);
+  if (result.sharpCurves > 0) {
+    report.set("features.curves", result.sharpCurves);
+    report.set("features.kept", result.keptCurves);
+    report.set("features.rms", result.sharpRms / solid.diagonal());
+    report.set("features.max", result.sharpMax / solid.diagonal());
+    context.print(fmt::format(
+        "sharp curves: {} of {} kept; off the mesh's edges rms {:.2e}, max {:.2e} (of the "
+        "diagonal)\n",
+        result.keptCurves, result.sharpCurves, result.sharpRms / solid.diagonal(),
+        result.sharpMax / solid.diagonal()));
+  }
   context.print(fmt::format("topology: {}{}\n", describe(result.topology),
                             result.solidTopology ? ", as the solid" : ""));
 }
@@ -129,6 +140,11 @@ Command makeTetrahedralizeCommand() {
       .unit("world units")
       .atLeast(0)
       .defaults("from --resolution");
+  c.option("--features", "ANGLE", &o->settings.features,
+           "keep edges of the surface that are sharper than this, between the normals of their "
+           "triangles, as edges of tetrahedra; dihedral angles then lie in 5 to 170 degrees")
+      .unit("degrees")
+      .range(1, 179);
   c.flag("--any-topology", &o->anyTopology,
          "warn, and go on, where the solid's topology cannot be kept");
   c.option("--picture", "FILE", &o->picture,
@@ -138,6 +154,7 @@ Command makeTetrahedralizeCommand() {
   c.option("--at", "T", &o->at, "where the picture cuts")
       .unit("fraction of the box along the axis")
       .range(0, 1);
+  c.example("innermap tetrahedralize part.obj -o part.msh --edge 0.02 --features 30");
   c.example("innermap tetrahedralize spot.obj -o spot.vtu --resolution 48 --picture spot.png");
   c.run([o](Context& context) { run(*o, context); });
   return c;

@@ -393,6 +393,11 @@ CompareFem compareFemOnMap(const BoundaryPair& pair, const CompareFemSettings& s
   for (const double tolerance : settings.tolerances) {
     fitting.tolerance = tolerance;
     const MapFit fit = fitMap(pair, fitting);
+    if (result.rows.back().charges && result.rows.back().size == fit.map.sources()) {
+      result.notes.push_back(
+          fmt::format("a tolerance of {:g} takes no more charges than the one before", tolerance));
+      continue;
+    }
     ComparedRow row;
     for (const auto& [stage, seconds] : fit.seconds)
       if (stage == "sample" || stage == "fit") row.seconds += seconds;
@@ -403,6 +408,8 @@ CompareFem compareFemOnMap(const BoundaryPair& pair, const CompareFemSettings& s
     row.boundaryRms = fit.error.rms;
     row.function = functionOf(fit.map, 1e-8 * diagonal);
     measure(task, samples, row);
+    if (row.size == reference.map.sources())  // it is the reference itself
+      row.value = row.gradient = row.largest = kUnknown;
     result.rows.push_back(std::move(row));
   }
   result.notes.push_back(fmt::format(

@@ -21,7 +21,7 @@ struct CompareFemSettings {
   // Of the charges, in the order given: how many for known functions, in [16, 20000]; the tolerance
   // for maps, as in FitMapSettings.
   std::vector<std::size_t> charges{250, 500, 1000};
-  std::vector<double> tolerances{4e-3, 2e-3, 1e-3};
+  std::vector<double> tolerances{4e-3, 1e-3, 4e-4};
   double referenceTolerance = 2e-4;  // of the fit that real maps are compared with
   std::size_t samples = 20000;       // points inside, in [100, 1e6]
   std::uint64_t seed = 1;
@@ -73,7 +73,7 @@ CompareFem compareFemOnFunctions(const Solid& solid, const CompareFemSettings& s
 
 // The harmonic map of a pair of boundaries: one map, not in steps. The reference is a fit of
 // charges too, to `referenceTolerance`, which favours them; errors below twice its own boundary
-// error say nothing, and a note says which rows that concerns.
+// error say little, as a note says. Rows that are the reference itself have no errors.
 CompareFem compareFemOnMap(const BoundaryPair& pair, const CompareFemSettings& settings = {});
 
 // Peak need in bytes, an estimate.

@@ -7,7 +7,6 @@
 
 #include "innermap/boundary/fit_map.h"
 #include "innermap/boundary/mesh_correspondence.h"
-#include "innermap/core/detail/pi.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
@@ -94,12 +93,25 @@ Carried carry(const Mesh& mesh, const HexahedralizeSettings& settings, Hexahedra
   return carried;
 }
 
+// At equal distances along the curves, about kFeatureSamples in all.
+Points samplesOf(const SharpEdges& sharp, double length) {
+  Points out;
+  for (const SharpCurve& curve : sharp.curves)
+    for (std::size_t i = 0; i + 1 < curve.points.size(); ++i) {
+      const Vec3 from = curve.points[i], way = curve.points[i + 1] - from;
+      const int pieces =
+          std::max(1, static_cast<int>(std::ceil(norm(way) / length * kFeatureSamples)));
+      for (int k = 0; k < pieces; ++k) out.push_back(from + (k + 0.5) / pieces * way);
+    }
+  return out;
+}
+
 // Of the solid's sharp edges from the hexahedra's surface.
 void measureFeatures(const Mesh& surface, const HexahedralizeSettings& settings,
                      Hexahedralization& out) {
-  const SharpEdges sharp = sharpEdges(surface, settings.featureAngle * kPi / 180);
-  out.featureLength = sharp.length;
-  const Points samples = samplesOf(surface, sharp, kFeatureSamples);
+  const SharpEdges sharp = sharpEdges(surface, settings.featureAngle);
+  for (const SharpCurve& curve : sharp.curves) out.featureLength += curve.length;
+  const Points samples = samplesOf(sharp, out.featureLength);
   if (samples.empty()) return;
   const TriangleTree tree(out.mesh.vertices, boundaryTriangles(out.mesh));
   std::vector<double> lengths(samples.size());

@@ -11,6 +11,7 @@
 #include "innermap/tetra/detail/fit_boundary.h"
 #include "innermap/tetra/detail/keep_topology.h"
 #include "innermap/tetra/detail/lattice_signs.h"
+#include "innermap/tetra/detail/sharp_edges.h"
 #include "innermap/tetra/detail/stuffing.h"
 
 namespace innermap {
@@ -21,6 +22,8 @@ constexpr int kLeastAcross = 4, kMostAcross = 1024;
 // Of memory: a node of the lattice; a square of a cell's side on the surface, its level set and
 // where its vertices go.
 constexpr double kNodeBytes = 12, kOuterBytes = 500;
+
+constexpr double kMostLost = 1e-3;  // of the surface, without a warning
 
 double longestSide(const Solid& solid) {
   const Vec3 e = solid.box().extent();
@@ -60,6 +63,8 @@ Tetrahedralization tetrahedralizeScaled(const Solid& solid, double spacing,
   settings.edge = scale * spacing;
   Tetrahedralization result = tetrahedralization(Solid(mesh, solidSettings), settings);
   result.edge /= scale;
+  result.sharpRms /= scale;
+  result.sharpMax /= scale;
   for (Vec3& v : result.mesh.vertices) v = centre + v / scale;
   return result;
 }
@@ -124,6 +129,11 @@ LatticeSigns signsOf(const Solid& solid, double spacing, const TetrahedralizeSet
       keepTopology(solid, surface.clean ? &surface.solid : nullptr, signs, settings.progress);
   result.topology = kept.found;
   result.changedNodes = kept.changed;
+  if (kept.lost > kMostLost * static_cast<double>(kept.points))
+    result.warnings.push_back(fmt::format(
+        "{:.2g}% of the surface is farther than a cell from all tetrahedra, on parts too thin for "
+        "this lattice: use a higher resolution",
+        100.0 * static_cast<double>(kept.lost) / static_cast<double>(kept.points)));
   if (surface.clean && !kept.kept) {
     if (settings.keepTopology) refuse(solid, surface.solid, kept.found, spacing, settings);
     result.warnings.push_back(fmt::format("the tetrahedra have {} where the solid has {}",
@@ -142,9 +152,27 @@ LatticeSigns signsOf(const Solid& solid, double spacing, const TetrahedralizeSet
   return signs;
 }
 
+void keepSharpEdges(const Solid& solid, const TetrahedralizeSettings& settings, StuffedMesh& mesh,
+                    Tetrahedralization& result) {
+  const SharpEdges sharp = sharpEdges(solid.surface(), *settings.features);
+  const SharpFit fit = fitSharpEdges(solid, sharp, result.edge, mesh, settings.progress);
+  result.sharpCurves = fit.curves;
+  result.keptCurves = fit.kept;
+  result.sharpRms = fit.rms;
+  result.sharpMax = fit.max;
+  if (fit.curves == 0)
+    result.notes.push_back(fmt::format("no edge is sharper than {:g} degrees", *settings.features));
+  if (fit.kept < fit.curves)
+    result.warnings.push_back(fmt::format(
+        "{} of {} sharp curves have no path of the mesh's edges: a finer lattice may have",
+        fit.curves - fit.kept, fit.curves));
+}
+
 }  // namespace
 
 Tetrahedralization tetrahedralization(const Solid& solid, const TetrahedralizeSettings& settings) {
+  if (settings.features && !(*settings.features > 0 && *settings.features < 180))
+    throw SettingError("features", "must lie between 0 and 180 degrees");
   const double spacing = spacingFor(solid, settings);
   requireMemoryFor(solid, spacing, settings.maxMemory);
   if (spacing < kSmallestVoxel) return tetrahedralizeScaled(solid, spacing, settings);
@@ -164,6 +192,7 @@ Tetrahedralization tetrahedralization(const Solid& solid, const TetrahedralizeSe
   StuffedMesh stuffing = stuffed(signs, settings.progress);
   signs = {};
   fitBoundary(solid, spacing, stuffing, settings.progress);
+  if (settings.features) keepSharpEdges(solid, settings, stuffing, result);
   result.mesh.name = solid.repaired().mesh.name;
   result.mesh.vertices = std::move(stuffing.vertices);
   result.mesh.tetrahedra = std::move(stuffing.tetrahedra);

@@ -17,6 +17,9 @@ namespace innermap {
 struct TetrahedralizeSettings {
   int resolution = 64;  // cells of the lattice along the longest side of the box, in [4, 1024]
   double edge = 0;      // a cell's side, world units; 0 means: resolution decides
+  // Edges of the surface sharper than this angle between their triangles' normals are kept as paths
+  // of the mesh's edges, degrees, in (0, 180); then dihedral angles lie in 5 to 170 degrees.
+  std::optional<double> features;
   // Whether to throw where the solid's topology cannot be kept; else there is a warning.
   bool keepTopology = true;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
@@ -30,6 +33,10 @@ struct Tetrahedralization {
   // The solid's own, where its surface is closed, manifold and free of overlaps.
   std::optional<SolidTopology> solidTopology;
   std::size_t changedNodes = 0;  // taken to be inside or outside against their distance
+  // With `features`: the surface's sharp curves, those that have a path, and how far all curves are
+  // from the paths, world units.
+  std::size_t sharpCurves = 0, keptCurves = 0;
+  double sharpRms = 0, sharpMax = 0;
   std::vector<std::string> notes, warnings;
 };
 

@@ -104,6 +104,123 @@ TEST(Tetrahedralize, AnEdgeIsALatticeCell) {
   EXPECT_LT(static_cast<double>(mesh.tetrahedra.size()), 1.5 * inCells);
 }
 
+// Two slabs that are joined along one side, `gap` apart: a lattice coarser than that joins them.
+Mesh clamp(double gap) {
+  const double a = 0.5 - 0.5 * gap, b = 0.5 + 0.5 * gap;
+  Mesh mesh;
+  mesh.name = "clamp";
+  const double outline[8][2] = {{0, 0}, {1, 0}, {1, a}, {0.2, a}, {0.2, b}, {1, b}, {1, 1}, {0, 1}};
+  for (const double z : {0.0, 0.5})
+    for (const auto& p : outline) mesh.vertices.push_back({p[0], p[1], z});
+  const int caps[6][3] = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 7}, {4, 5, 6}, {4, 6, 7}};
+  for (const auto& t : caps) {
+    mesh.triangles.push_back({t[0], t[2], t[1]});
+    mesh.triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
+  }
+  for (int i = 0; i < 8; ++i) {
+    const int j = (i + 1) % 8;
+    mesh.triangles.push_back({i, j, j + 8});
+    mesh.triangles.push_back({i, j + 8, i + 8});
+  }
+  return mesh;
+}
+
+TEST(Tetrahedralize, NarrowGapsStayOpen) {
+  for (const int n : {16, 24, 37}) {
+    const Tetrahedralization result = tetrahedralization(Solid(clamp(0.3 / n)), across(n));
+    expectWellShaped(result.mesh);
+    ASSERT_TRUE(result.solidTopology.has_value());
+    EXPECT_TRUE(*result.solidTopology == (SolidTopology{1, 0, 0}));
+    EXPECT_TRUE(result.topology == *result.solidTopology);
+    EXPECT_EQ(shellOf(result.mesh).euler, 2);
+    EXPECT_EQ(shellOf(result.mesh).unpaired, 0);
+  }
+}
+
+TEST(Tetrahedralize, ThinWallsAreNotLost) {
+  for (const int n : {12, 20, 31}) {
+    const Mesh sheet = shapes::box({0, 0, 0}, {1, 0.8, 0.3 / n});
+    const Tetrahedralization result = tetrahedralization(
+        Solid(shapes::joined(sheet, shapes::icosphere(3, 0.2, {0.5, 0.4, 3}))), across(n));
+    expectWellShaped(result.mesh);
+    EXPECT_TRUE(result.topology == (SolidTopology{2, 0, 0}));
+    Box3 box;
+    for (const Vec3& v : result.mesh.vertices)
+      if (v.z < 1) box.add(v);
+    const double h = result.edge;
+    EXPECT_NEAR(box.upper.x, 1, 1.5 * h);
+    EXPECT_NEAR(box.upper.y, 0.8, 1.5 * h);
+  }
+}
+
+TEST(Tetrahedralize, RefusesWithAResolutionThatWouldDo) {
+  // 30 balls in two cells of the lattice.
+  Mesh many = shapes::icosphere(2);
+  for (int i = 0; i < 30; ++i)
+    many = shapes::joined(many, shapes::icosphere(1, 0.01, {0.021 * i, 1.1, 0}));
+  const Solid solid(many);
+  try {
+    tetrahedralize(solid, across(16));
+    FAIL() << "31 components at a resolution of 16";
+  } catch (const DataError& e) {
+    EXPECT_NE(std::string(e.what()).find("would do"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("31 components"), std::string::npos) << e.what();
+  }
+  TetrahedralizeSettings settings = across(16);
+  settings.keepTopology = false;
+  const Tetrahedralization result = tetrahedralization(solid, settings);
+  ASSERT_FALSE(result.warnings.empty());
+  EXPECT_TRUE(boundaryTopology(result.mesh.vertices, boundaryTriangles(result.mesh)).solid ==
+              result.topology);
+}
+
+TEST(Tetrahedralize, OpenAndOverlappingMeshes) {
+  Mesh open = shapes::icosphere(3);
+  open.triangles.resize(open.triangles.size() - 4);
+  for (const Mesh& mesh :
+       {open, shapes::joined(shapes::icosphere(3), shapes::icosphere(3, 1, {1, 0, 0}))}) {
+    const Tetrahedralization result = tetrahedralization(Solid(mesh), across(24));
+    expectWellShaped(result.mesh);
+    EXPECT_FALSE(result.solidTopology.has_value());
+    EXPECT_TRUE(result.warnings.empty());
+    EXPECT_EQ(shellOf(result.mesh).euler, 2);
+  }
+}
+
+TEST(Tetrahedralize, SharpEdgesAreKept) {
+  const Solid solid(shapes::box({0, 0, 0}, {1, 0.8, 0.6}));
+  TetrahedralizeSettings settings = across(20);
+  settings.features = 30;
+  const Tetrahedralization result = tetrahedralization(solid, settings);
+  EXPECT_EQ(result.sharpCurves, 12u);
+  EXPECT_EQ(result.keptCurves, 12u);
+  EXPECT_LT(result.sharpMax, 0.3 * result.edge);
+  const CellQuality quality = cellQuality(result.mesh);
+  EXPECT_EQ(quality.invertedTetrahedra, 0u);
+  EXPECT_GE(quality.dihedral.least, 5 - 1e-4);
+  EXPECT_LE(quality.greatestAngle, 170 + 1e-4);
+  const Tetrahedralization blunt = tetrahedralization(solid, across(20));
+  EXPECT_LT(std::abs(volumeOf(result.mesh) - solid.volume()),
+            0.3 * std::abs(volumeOf(blunt.mesh) - solid.volume()));
+  settings.features = 100;
+  EXPECT_EQ(tetrahedralization(solid, settings).sharpCurves, 0u);
+  settings.features = 200;
+  EXPECT_THROW(tetrahedralization(solid, settings), SettingError);
+}
+
+TEST(Tetrahedralize, SaysItsMemory) {
+  const Solid solid(shapes::icosphere(3));
+  const TetrahedralizeNeed need = tetrahedralizeNeed(solid, across(32));
+  const CellMesh mesh = tetrahedralize(solid, across(32));
+  EXPECT_GE(need.tetrahedra, mesh.tetrahedra.size());
+  EXPECT_GE(need.vertices, mesh.vertices.size());
+  EXPECT_LT(static_cast<double>(need.tetrahedra),
+            1.3 * static_cast<double>(mesh.tetrahedra.size()));
+  TetrahedralizeSettings settings = across(1024);
+  settings.maxMemory = 100'000'000;
+  EXPECT_THROW(tetrahedralize(solid, settings), MemoryError);
+}
+
 TEST(Tetrahedralize, UnitsDoNotMatter) {
   const Solid solid(shapes::icosphere(3));
   const CellMesh mesh = tetrahedralize(solid, across(16));

@@ -13,4 +13,9 @@ constexpr double kLeastDihedral = 10, kGreatestDihedral = 165;  // degrees
 // kLeastDihedral to kGreatestDihedral.
 void fitBoundary(const Solid& solid, double spacing, StuffedMesh& mesh, Progress* progress);
 
+// Vertices that were elsewhere `before` are halved back to there where a dihedral angle leaves the
+// bounds, in degrees; before, all angles must have been within them. #V.
+void boundVertices(const Points& before, double leastDihedral, double greatestDihedral,
+                   StuffedMesh& mesh, Progress* progress);
+
 }  // namespace innermap

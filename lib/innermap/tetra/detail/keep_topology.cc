@@ -147,6 +147,8 @@ KeptTopology keepTopology(const Solid& solid, const SolidTopology* wanted, Latti
   result.found = latticeTopology(signs);
   result.kept = wanted && result.found == *wanted;
   result.changed = differing(plain, signs.side);
+  result.points = parts.points;
+  result.lost = parts.lost > 0 || result.changed > 0 ? thinParts(solid, signs, progress).lost : 0;
   return result;
 }
 

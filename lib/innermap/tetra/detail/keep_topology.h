@@ -14,6 +14,8 @@ struct KeptTopology {
   SolidTopology found;
   bool kept = false;        // found is `wanted`
   std::size_t changed = 0;  // nodes whose side is not what the distance says
+  // Points of the surface, about half a spacing apart, and those that no node inside is near.
+  std::size_t points = 0, lost = 0;
 };
 
 // Before warpNodes(). First the nodes in thin walls and narrow gaps get their sides; if that is not

@@ -48,20 +48,22 @@ class Finder {
       return (signs_.side[node] == Side::inside) != (sign < 0);
     };
     if (!wrong(nearestNode(x + kReach * h * into))) return -1;
-    // The farthest that a ball that touches the surface in x can be blown up.
-    constexpr int kSteps = 7;
-    double depth = 0;
+    // How far a ball that touches the surface in x can be blown up, by halving.
+    constexpr int kHalvings = 10;
+    double depth = 0, beyond = kReach * h;
     Solid::Closest other{};
-    for (int k = 1; k <= kSteps; ++k) {
-      const double s = kReach * h * k / kSteps;
+    other.onSurface.triangle = -1;
+    for (int k = 0; k < kHalvings; ++k) {
+      const double s = k == 0 ? beyond : 0.5 * (depth + beyond);
       const Solid::Closest found = solid_.closest(x + s * into, 2 * h);
-      if (found.onSurface.triangle < 0 || found.distance < 0.97 * s) {
+      if (found.onSurface.triangle >= 0 && found.distance < 0.97 * s) {
+        beyond = s;
         other = found;
-        break;
+      } else {
+        depth = s;
+        if (k == 0) break;
       }
-      depth = s;
     }
-    if (depth == 0 || other.onSurface.triangle < 0) return -1;
     // Both walls face away from one another; at a sharp edge they do not.
     const Vec3 area = areaVector(solid_.surface(), other.onSurface.triangle);
     if (dot(area, normal) > -0.5 * norm(area)) return -1;
@@ -110,6 +112,7 @@ ThinParts thinParts(const Solid& solid, const LatticeSigns& signs, Progress* pro
             throwIfCancelled(progress);
             for (int j = 0; j < n - i; ++j) {
               const Vec3 x = a + ((i + 1.0 / 3) / n) * u + ((j + 1.0 / 3) / n) * v;
+              ++own.points;
               own.lost += finder.lost(x);
               const std::int64_t wall = finder.middleOf(x, normal, -1);
               const std::int64_t gap = finder.middleOf(x, normal, 1);
@@ -119,6 +122,7 @@ ThinParts thinParts(const Solid& solid, const LatticeSigns& signs, Progress* pro
           }
         }
         const std::lock_guard<std::mutex> lock(mutex);
+        parts.points += own.points;
         parts.lost += own.lost;
         parts.walls.insert(parts.walls.end(), own.walls.begin(), own.walls.end());
         parts.gaps.insert(parts.gaps.end(), own.gaps.begin(), own.gaps.end());

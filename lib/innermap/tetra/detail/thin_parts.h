@@ -11,6 +11,7 @@ namespace innermap {
 struct ThinParts {
   std::vector<std::size_t> walls, gaps;  // nodes nearest to the middles of thin walls and gaps,
                                          // that are on the wrong side; sorted
+  std::size_t points = 0;                // of the surface that were looked from
   std::size_t lost = 0;                  // points of the surface with no node inside within reach
 };
 
