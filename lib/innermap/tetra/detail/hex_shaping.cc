@@ -124,7 +124,7 @@ class Shaping {
                 guide_.closestFrom(onSurface_[s].triangle, toWorld(patch_.vertices[v]));
             onSurface_[s] = found.address;
             patch_.springs[s] = {v, toLocal(found.position), guide_.normal(found.address.triangle),
-                                 stiffness_};
+                                 stiffness_ * slack_[v]};
           }
         },
         settings_.progress);
