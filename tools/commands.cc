@@ -17,6 +17,8 @@ std::vector<Command> allCommands() {
           makeCheckCommand(),
           makeVoxelizeCommand(),
           makeTetrahedralizeCommand(),
+          makePolycubeCommand(),
+          makeHexahedralizeCommand(),
           makeRemeshCommand(),
           makeCompareFemCommand(),
           makeSliceCommand(),

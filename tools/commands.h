@@ -20,6 +20,8 @@ Command makePullCommand();
 Command makeCheckCommand();
 Command makeVoxelizeCommand();
 Command makeTetrahedralizeCommand();
+Command makePolycubeCommand();
+Command makeHexahedralizeCommand();
 Command makeRemeshCommand();
 Command makeCompareFemCommand();
 Command makeSliceCommand();

@@ -111,6 +111,8 @@ class Energy {
     settings.m = kPairs;
     settings.max_iterations = settings_.stepsARound;
     settings.epsilon = 1e-6;
+    // Beyond the wall that the energy then is, its values tell nothing: only shorter steps help.
+    if (eps <= kSmallest) settings.linesearch = LBFGS_LINESEARCH_BACKTRACKING_WOLFE;
     // What it returns says no more than x does: the round ended by its steps, or no line search
     // gained anything.
     lbfgs(static_cast<int>(size()), x, nullptr, &evaluate, &keepOn, this, &settings);
@@ -152,6 +154,7 @@ class Energy {
     double squares = 0;
     for (const auto& row : j)
       for (const double x : row) squares += x * x;
+    const double weight = patch_.weights.empty() ? 1.0 : patch_.weights[t];
     const double root = std::cbrt(chi.value), shape = 1 / (root * root),
                  size = (1 + det * det) / chi.value;
     const double byDet =
@@ -164,10 +167,10 @@ class Energy {
     std::array<Vec3, 4>& force = forces_[t];
     force[0] = {};
     for (std::size_t e = 0; e < 3; ++e) {
-      force[e + 1] = {byEdges[0][e], byEdges[1][e], byEdges[2][e]};
+      force[e + 1] = weight * Vec3{byEdges[0][e], byEdges[1][e], byEdges[2][e]};
       force[0] += -1.0 * force[e + 1];
     }
-    return squares * shape + settings_.volumeShare * size;
+    return weight * (squares * shape + settings_.volumeShare * size);
   }
 
   static lbfgsfloatval_t evaluate(void* self, const lbfgsfloatval_t* x, lbfgsfloatval_t* g, int,
@@ -240,7 +243,7 @@ double untangle(TetPatch& patch, const UntangleSettings& settings) {
       lbfgs_malloc(static_cast<int>(energy.size())));
   if (!x) throw std::bad_alloc();
   energy.read(x.get());
-  double eps = 1;
+  double eps = settings.keep && least > 0 ? kSmallest : 1;
   for (int round = 0; round < settings.rounds; ++round) {
     const double before = energy.at(eps);
     energy.minimise(eps, x.get());

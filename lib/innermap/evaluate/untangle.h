@@ -30,14 +30,17 @@ struct TetPatch {
   // Scaled so that the determinants of J are about 1, and vertices to edges of about 1.
   std::vector<Mat3> rest;
   std::vector<Spring> springs;  // of any of the vertices
+  std::vector<double> weights;  // #T: what each counts, over 0; empty: 1 each
 };
 
 struct UntangleSettings {
   double volumeShare = 0.5;  // theta: of the volumes' part of the energy, over 0
   int rounds = 20;           // at most, over 0; in each the regularisation stays as it is
   int stepsARound = 50;      // at most, over 0
+  // Where no determinant is negative none becomes so: no regularisation in the first round either.
+  bool keep = false;
   // Called after each round, with its number from 0: may change the springs' places, normals and
-  // stiffness.
+  // stiffness, and the weights.
   std::function<void(TetPatch& patch, int round)> afterRound;
   Progress* progress = nullptr;
 };
@@ -52,7 +55,7 @@ Mat3 jacobianOf(const TetPatch& patch, std::size_t tet);
 
 // Moves the free vertices until no determinant is negative and nothing is to be gained, or the
 // rounds are over. Minimises
-//   sum over tetrahedra of |J|^2 / chi^(2/3) + theta (1 + D^2) / chi,  D = det J,
+//   sum over tetrahedra of their weight times |J|^2 / chi^(2/3) + theta (1 + D^2) / chi,  D = det J,
 //   chi = (D + sqrt(D^2 + eps^2)) / 2,
 // and the springs, with eps falling from round to round. Returns the least determinant.
 // Deterministic. Throws Cancelled, std::bad_alloc.

@@ -1,0 +1,151 @@
+#!/usr/bin/python3
+"""Command-line tests of innermap polycube and hexahedralize."""
+
+import os
+
+from cli import (MODELS, Skip, alone, cube, fails, icosphere_arrays, innermap, interrupt,
+                 no_leftovers, read_json, run, slow, torus, write_obj)
+
+
+def read_hexahedra(path):
+    """(cells, volume, cells inverted at a corner, least scaled Jacobian) as VTK has them."""
+    try:
+        import vtk  # pylint: disable=import-outside-toplevel
+    except ImportError as error:
+        raise Skip("python3-vtk9 is not installed") from error
+    reader = vtk.vtkXMLUnstructuredGridReader()
+    reader.SetFileName(path)
+    reader.Update()
+    quality = vtk.vtkMeshQuality()
+    quality.SetInputData(reader.GetOutput())
+    quality.SetHexQualityMeasureToScaledJacobian()
+    quality.Update()
+    least = quality.GetOutput().GetCellData().GetArray("Quality").GetRange()[0]
+    sizes = vtk.vtkCellSizeFilter()
+    sizes.SetInputData(reader.GetOutput())
+    sizes.Update()
+    volumes = sizes.GetOutput().GetCellData().GetArray("Volume")
+    cells = reader.GetOutput().GetNumberOfCells()
+    assert all(reader.GetOutput().GetCellType(c) == 12 for c in range(cells))
+    return cells, sum(volumes.GetValue(c) for c in range(cells)), least
+
+
+def test_torus_is_filled():
+    torus("ring.obj", n=48, m=20)
+    done = innermap("hexahedralize", "ring.obj", "-o", "ring.vtu", "--blocks", 12, "--pieces", 1,
+                    "--picture", "cut.png", "--polycube", "cubes.ply", "--polycube-picture",
+                    "cubes.png", "--in-blocks", "blocks.vtu", "--report", "report.json")
+    assert "prove all of them right side out" in done.stdout, done.stdout
+    report = read_json("report.json")
+    assert report["polycube"]["handles"] == 1
+    assert report["hexahedra"]["proven"] and report["hexahedra"]["after"]["inverted"] == 0
+    assert report["hexahedra"]["before"]["inverted"] >= 0
+    assert report["cells"]["scaled_jacobian"]["mean"] > 0.75
+    assert report["boundary"]["from_surface"]["rms"] < 5e-3
+    for stage in ("polycube", "boundary map", "map", "shape", "measure", "write", "picture"):
+        assert stage in report["seconds"], stage
+    for picture in ("cut.png", "cubes.png"):
+        assert os.path.getsize(picture) > 5000
+    cells, volume, least = read_hexahedra("ring.vtu")
+    assert cells == report["cells"]["hexahedra"]
+    assert abs(least - report["cells"]["scaled_jacobian"]["least"]) < 1e-5
+    assert abs(volume - 2 * 3.14159265**2 * 0.16) < 0.05 * volume, volume
+    cells, volume, _ = read_hexahedra("blocks.vtu")
+    assert cells == report["cells"]["hexahedra"]
+    edge = report["polycube"]["edge"]
+    assert abs(volume - report["polycube"]["blocks"] * edge**3) < 1e-6 * volume
+    no_leftovers("ring.obj", "ring.vtu", "cut.png", "cubes.ply", "cubes.png", "blocks.vtu",
+                 "report.json")
+
+
+def test_polycube_can_be_mapped():
+    torus("ring.obj", n=48, m=20)
+    done = innermap("polycube", "ring.obj", "-o", "cubes.obj", "--blocks", 10, "--pieces", 3,
+                    "--report", "report.json")
+    assert "1 handles, 0 cavities" in done.stdout
+    check = innermap("check", "cubes.obj", "--report", "check.json").stdout
+    assert read_json("check.json")["source"]["genus"] == 1, check
+    report = read_json("report.json")["polycube"]
+    assert report["across"] == 10 and 0 < report["missed"] < 0.2
+    with open("cubes.obj", encoding="ascii") as file:
+        vertices = [tuple(map(float, line.split()[1:])) for line in file if line.startswith("v ")]
+    assert len(vertices) == report["vertices"]
+    # They stand on the lattice of a third of a block.
+    for axis in range(3):
+        low = min(v[axis] for v in vertices)
+        for v in vertices:
+            steps = (v[axis] - low) / report["edge"] * 3
+            assert abs(steps - round(steps)) < 1e-6
+
+
+def test_bad_input_is_refused():
+    vertices, faces = icosphere_arrays(2)
+    write_obj("ball.obj", vertices, faces)
+    write_obj("open.obj", vertices, faces[16:])
+    far = [(x + 3, y, z) for x, y, z in vertices]
+    shifted = [tuple(i + len(vertices) for i in f) for f in faces]
+    write_obj("two.obj", vertices + far, faces + shifted)
+    for command, out in (("polycube", "out.obj"), ("hexahedralize", "out.vtu")):
+        fails(1, command, "open.obj", "-o", out, says=["open.obj", "open"])
+        fails(1, command, "two.obj", "-o", out, says=["two.obj", "2 bodies"])
+        fails(1, command, "ball.obj", "-o", out, "--max-memory", "1M", says=["memory"])
+        fails(2, command, "ball.obj", "-o", "out.stl", says=["out.stl", "must end in"])
+        fails(1, command, "ball.obj", "-o", out, "--blocks", 65, says=["--blocks"])
+    torus("ring.obj")
+    fails(1, "polycube", "ring.obj", "-o", "out.obj", "--blocks", 2,
+          says=["1 handle and 0 cavities", "do"])
+
+
+def test_holes_are_closed_and_parts_united_on_request():
+    vertices, faces = icosphere_arrays(2)
+    write_obj("open.obj", vertices, faces[16:])
+    innermap("polycube", "open.obj", "-o", "out.obj", "--blocks", 6, "--close")
+    near = [(x + 1, y, z) for x, y, z in vertices]
+    shifted = [tuple(i + len(vertices) for i in f) for f in faces]
+    write_obj("two.obj", vertices + near, faces + shifted)
+    fails(1, "polycube", "two.obj", "-o", "two_out.obj", says=["2 bodies"])
+    innermap("polycube", "two.obj", "-o", "united.obj", "--blocks", 8, "--surface-resolution", 48)
+
+
+def test_dry_run_says_the_memory():
+    cube()
+    for command, out in (("polycube", "out.obj"), ("hexahedralize", "out.vtu")):
+        done = innermap(command, "cube.obj", "-o", out, "--dry-run")
+        assert "memory: about" in done.stdout, done.stdout
+        assert not os.path.exists(out)
+
+
+@alone
+def test_can_be_stopped():
+    torus("ring.obj", n=90, m=36)
+    for after in (0.5, 4):
+        code, seconds = interrupt("hexahedralize", "ring.obj", "-o", "ring.vtu", after=after)
+        assert code in (None, 130), code
+        assert seconds < 2, seconds
+        if code == 130:
+            no_leftovers("ring.obj")
+
+
+@slow
+@alone
+def test_models_are_filled():
+    """What the defaults give; a model's least Jacobian may be low, but on one of them only."""
+    if not MODELS.is_dir():
+        raise Skip(f"{MODELS} is not there")
+    low = []
+    for name in ("spot", "fandisk", "rocker-arm", "homer", "cheburashka"):
+        innermap("hexahedralize", MODELS / f"{name}.obj", "-o", "out.vtu", "--report", "report.json",
+                 timeout=600)
+        report = read_json("report.json")
+        jacobian = report["cells"]["scaled_jacobian"]
+        assert report["hexahedra"]["proven"], name
+        assert jacobian["mean"] >= 0.75, (name, jacobian["mean"])
+        assert report["boundary"]["from_surface"]["rms"] <= 2e-3, name
+        assert report["boundary"]["to_surface"]["rms"] <= 2e-3, name
+        if jacobian["least"] < 0.1:
+            low.append(name)
+    assert len(low) <= 1, low
+
+
+if __name__ == "__main__":
+    run(globals())

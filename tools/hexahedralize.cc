@@ -1,0 +1,171 @@
+// `innermap hexahedralize`: a mesh's inside as hexahedra.
+#include "innermap/tetra/hexahedralize.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "cell_report.h"
+#include "commands.h"
+#include "innermap/core/memory.h"
+#include "innermap/io/cells/cell_file.h"
+#include "innermap/io/picture/cell_picture.h"
+#include "innermap/mesh/write.h"
+#include "inputs.h"
+#include "polycube_report.h"
+
+namespace innermap::tool {
+namespace {
+
+struct Options {
+  std::string mesh, output, picture, cubes, cubesPicture, inBlocks;
+  HexahedralizeSettings settings;
+  int resolution = 0, axis = 2;
+  double at = 0.5;
+};
+
+void claimOutputs(const Options& options, Context& context) {
+  for (const auto& [option, path] : {std::make_pair("--output", &options.output),
+                                     std::make_pair("--in-blocks", &options.inBlocks)})
+    if (!path->empty() && !isCellFile(*path))
+      throw UsageError(std::string(option) + " " + *path + ": must end in .vtu, .msh or .mesh");
+  if (!options.cubes.empty()) requireMeshFile("--polycube", options.cubes);
+  for (const std::string* path : {&options.output, &options.inBlocks, &options.cubes,
+                                  &options.picture, &options.cubesPicture})
+    if (!path->empty()) context.output(*path);
+}
+
+void reportCheck(const std::string& section, const HexahedronCheck& check, Report& report) {
+  report.set(section + ".inverted", check.inverted);
+  report.set(section + ".inverted_corners", check.invertedCorners);
+  report.set(section + ".undecided", check.undecided);
+}
+
+void fillReport(const Hexahedralization& result, Context& context) {
+  Report& report = context.report();
+  reportPolycube(result.polycube, context);
+  report.set("hexahedra.pieces", result.pieces);
+  reportCheck("hexahedra.before", result.before, report);
+  reportCheck("hexahedra.after", result.after, report);
+  report.set("hexahedra.proven", result.after.proven());
+  report.set("boundary_map.energy_forward", result.boundaryMap.energyForward);
+  report.set("boundary_map.energy_backward", result.boundaryMap.energyBackward);
+  report.set("boundary_map.stretch_p99", result.boundaryMap.stretch.p99);
+  report.set("boundary_map.stretch_max", result.boundaryMap.stretch.max);
+  reportCells(result.mesh, result.quality, context);
+  context.print(
+      fmt::format("inverted somewhere: {} as carried, {} now; {}\n", result.before.inverted,
+                  result.after.inverted,
+                  result.after.proven()
+                      ? "the Jacobian's Bernstein coefficients prove all of them right side out"
+                      : fmt::format("{} not decided", result.after.undecided)));
+  reportBoundaryFit(result.boundary, context);
+  report.set("features.length", result.featureLength);
+  report.set("features.rms", result.fromFeatures.rms);
+  report.set("features.max", result.fromFeatures.max);
+  if (result.featureLength > 0)
+    context.print(
+        fmt::format("sharp edges, not followed: {:.4g} long; the hexahedra's surface is "
+                    "off them rms {:.2e}, max {:.2e}\n",
+                    result.featureLength, result.fromFeatures.rms, result.fromFeatures.max));
+}
+
+void drawCut(const Options& options, const Hexahedralization& result, Context& context) {
+  auto settings = context.settings<CellPictureSettings>();
+  settings.direction = {0, 0, 0};
+  settings.direction[options.axis] = 1;
+  settings.at = options.at;
+  settings.blue = 1;
+  settings.red = 0;
+  settings.label = std::filesystem::path(options.mesh).filename().string() + ", cut";
+  settings.caption = fmt::format("scaled Jacobian of each of {} cells: red 0, blue 1",
+                                 result.mesh.hexahedra.size());
+  const std::vector<float>& jacobians = result.quality.scaledJacobian;
+  writeCellPicture(options.picture, result.mesh,
+                   std::vector<double>(jacobians.begin(), jacobians.end()), settings);
+}
+
+void writeAll(const Options& options, const Mesh& mesh, const Hexahedralization& result,
+              Context& context) {
+  context.timed("write", [&] {
+    for (const std::string& field : writeCells(options.output, result.mesh))
+      context.note(fmt::format("{} cannot hold the field {}", options.output, field));
+    if (!options.inBlocks.empty()) writeCells(options.inBlocks, result.inBlocks);
+    if (!options.cubes.empty())
+      writeMesh(options.cubes, blockSurface(result.polycube.blocks, result.pieces));
+  });
+  context.timed("picture", [&] {
+    if (!options.picture.empty()) drawCut(options, result, context);
+    if (!options.cubesPicture.empty())
+      drawPolycube(options.cubesPicture, mesh, result.polycube.blocks, context);
+  });
+}
+
+void run(const Options& options, Context& context) {
+  claimOutputs(options, context);
+  const Mesh mesh = surfaceToFill(options.mesh, options.resolution, context);
+  const HexahedralizeSettings settings = context.settings(options.settings);
+  const std::uint64_t need = hexahedralizeMemory(mesh, settings);
+  if (context.dryRun())
+    return context.plan(
+        {fmt::format("fill {} with hexahedra, {} along the edge of each of about {:.0f} blocks, to "
+                     "{}",
+                     options.mesh, settings.pieces, expectedBlocks(mesh, settings.blocks),
+                     options.output)},
+        need);
+  requireMemory("hexahedra of " + options.mesh, need, context.maxMemory(),
+                "use fewer --blocks or --pieces");
+  const Hexahedralization result = hexahedralize(mesh, settings);
+  context.tell(result);
+  fillReport(result, context);
+  writeAll(options, mesh, result, context);
+  if (!result.after.proven())
+    context.failAfterwards(
+        fmt::format("{} hexahedra are inverted or not proven not to be; they are "
+                    "written all the same",
+                    result.after.inverted + result.after.undecided));
+}
+
+}  // namespace
+
+Command makeHexahedralizeCommand() {
+  auto o = std::make_shared<Options>();
+  Command c("hexahedralize", "Fill a mesh with hexahedra");
+  c.description(
+      "A polycube stands in for the solid (innermap polycube); its blocks, cut into hexahedra and "
+      "with a layer of more around them, are carried into the solid by the harmonic map of one "
+      "onto "
+      "the other, and there evened out with their boundary on the surface until none is inverted, "
+      "which the Bernstein coefficients of each one's Jacobian prove. Sharp edges are drawn near, "
+      "not followed. One closed body, whose mesh may have any number of handles and cavities. "
+      "Ends with exit code 1 where some hexahedra could not be turned right.");
+  addFillOptions(c, o->mesh, o->settings.blocks, o->settings.closeHoles, o->resolution);
+  c.option("--output", "FILE", &o->output,
+           "the .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file to write, with each cell's "
+           "scaled_jacobian (.vtu and .msh)")
+      .shortName("-o")
+      .required();
+  c.option("--pieces", "K", &o->settings.pieces, "hexahedra along a block's edge").range(1, 16);
+  c.option("--feature-angle", "A", &o->settings.featureAngle,
+           "edges whose faces' normals differ by more count as sharp in the report")
+      .unit("degrees")
+      .range(1, 179);
+  c.option("--seed", "N", &o->settings.seed, "of all random choices").range(0, 1e15);
+  c.option("--polycube", "FILE", &o->cubes, "also write the polycube's surface, .obj or .ply");
+  c.option("--in-blocks", "FILE", &o->inBlocks,
+           "also write the same hexahedra in the polycube, .vtu, .msh or .mesh");
+  c.option("--picture", "FILE", &o->picture,
+           "a .png of the hexahedra behind a cut, coloured by scaled Jacobian");
+  c.option("--polycube-picture", "FILE", &o->cubesPicture, "a .png of the mesh and the polycube");
+  c.choice("--axis", "AXIS", &o->axis, {{"x", 0}, {"y", 1}, {"z", 2}},
+           "direction across the picture's cut");
+  c.option("--at", "T", &o->at, "where the picture cuts")
+      .unit("fraction of the box along the axis")
+      .range(0, 1);
+  c.example("innermap hexahedralize spot.obj -o spot.vtu --picture spot.png");
+  c.example("innermap hexahedralize part.obj -o part.msh --blocks 24 --polycube cubes.obj");
+  c.run([o](Context& context) { run(*o, context); });
+  return c;
+}
+
+}  // namespace innermap::tool
