@@ -55,8 +55,8 @@ Mat3 jacobianOf(const TetPatch& patch, std::size_t tet);
 
 // Moves the free vertices until no determinant is negative and nothing is to be gained, or the
 // rounds are over. Minimises
-//   sum over tetrahedra of their weight times |J|^2 / chi^(2/3) + theta (1 + D^2) / chi,  D = det J,
-//   chi = (D + sqrt(D^2 + eps^2)) / 2,
+//   sum over tetrahedra of their weight times |J|^2 / chi^(2/3) + theta (1 + D^2) / chi,  D = det
+//   J, chi = (D + sqrt(D^2 + eps^2)) / 2,
 // and the springs, with eps falling from round to round. Returns the least determinant.
 // Deterministic. Throws Cancelled, std::bad_alloc.
 double untangle(TetPatch& patch, const UntangleSettings& settings = {});

@@ -40,9 +40,9 @@ struct Polycube {
   int cavities = 0;
   double missed = 0;   // share of the solid's volume that is in no block
   double surplus = 0;  // volume of the blocks out of the solid, as a share of the solid's
-  std::vector<MissedPart> missedParts;  // over 1e-3 of the volume each, largest first
+  std::vector<MissedPart> missedParts;       // over 1e-3 of the volume each, largest first
   std::vector<std::string> notes, warnings;  // a line each
-  StageSeconds seconds;                 // "solid", "blocks"
+  StageSeconds seconds;                      // "solid", "blocks"
 };
 
 // The mesh must be closed (but for holes to be closed) and bound one body, which may have handles

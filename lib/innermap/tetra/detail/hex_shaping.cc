@@ -20,7 +20,6 @@ constexpr int kGrowing = 5;        // in so many
 constexpr double kPull = 2;        // of the surface's points beside the springs
 constexpr std::size_t kPointsAVertex = 4;
 constexpr int kUntangling = 12;  // rounds
-constexpr double kSlacker = 0.7;
 constexpr double kHeavier = 2, kLighter = 0.8, kHeaviest = 1000;
 constexpr double kEnough = 1.2;  // times the goal: such corners count less again
 constexpr std::size_t kBlock = 256;
@@ -108,7 +107,6 @@ class Shaping {
         patch_.rest.push_back(rest);
       }
     patch_.weights.assign(patch_.tets.size(), 1);
-    slack_.assign(mesh.vertices.size(), 1);
   }
 
   // At where the boundary is now.
@@ -124,7 +122,7 @@ class Shaping {
                 guide_.closestFrom(onSurface_[s].triangle, toWorld(patch_.vertices[v]));
             onSurface_[s] = found.address;
             patch_.springs[s] = {v, toLocal(found.position), guide_.normal(found.address.triangle),
-                                 stiffness_ * slack_[v]};
+                                 stiffness_};
           }
         },
         settings_.progress);
@@ -160,8 +158,7 @@ class Shaping {
       const double length = norm(way[skin.outer]);
       if (!(w > 1e-3) || !(length > 1e-9)) continue;  // rounded, no point or no way
       patch_.springs.push_back({skin.outer, at[skin.outer] + way[skin.outer] / w,
-                                way[skin.outer] / length,
-                                kPull * stiffness_ * slack_[skin.outer] * std::min(1.0, w)});
+                                way[skin.outer] / length, kPull * stiffness_ * std::min(1.0, w)});
     }
   }
 
@@ -180,7 +177,7 @@ class Shaping {
     });
   }
 
-  // Corners may be good where the cell between them is not; there the surface pulls less.
+  // Corners may be good where the cell between them is not.
   void weighInverted() {
     unproven_ = 0;
     const std::vector<Hexahedron>& cells = hexes_.mesh.hexahedra;
@@ -189,7 +186,6 @@ class Shaping {
       ++unproven_;
       for (std::size_t t = 8 * h; t < 8 * h + 8; ++t)
         patch_.weights[t] = std::min(4 * kHeavier * patch_.weights[t], kHeaviest);
-      for (const int v : cells[h]) slack_[v] *= kSlacker;
     }
   }
 
@@ -210,8 +206,7 @@ class Shaping {
   TetPatch patch_;                // in units, about the origin
   Points points_, pointNormals_;  // of the surface, in units
   double stiffness_ = kStiffness;
-  std::vector<double> slack_;  // #V: what springs are multiplied by
-  std::size_t unproven_ = 0;   // hexahedra that may be inverted somewhere
+  std::size_t unproven_ = 0;  // hexahedra that may be inverted somewhere
 };
 
 }  // namespace
