@@ -9,8 +9,8 @@
 
 namespace innermap {
 
-// Corners as of Kuhn's cells (core/detail/kuhn_cells.h). images: voxel (i, j, k) of the target spans [i, i + 1] and so on.
-// densities: of the source, linear in each of Kuhn's tetrahedra.
+// Corners as of Kuhn's cells (core/detail/kuhn_cells.h). images: voxel (i, j, k) of the target
+// spans [i, i + 1] and so on. densities: of the source, linear in each of Kuhn's tetrahedra.
 struct CellImage {
   std::array<Vec3, 8> images;
   std::array<double, 8> densities;
