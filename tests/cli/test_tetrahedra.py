@@ -288,18 +288,6 @@ def test_closed_models():
                 assert report["boundary"]["to_surface"]["rms"] < 2.5e-4, where
 
 
-@alone
-@slow
-def test_spot_takes_five_seconds_on_two_cores():
-    if not MODELS.exists():
-        raise Skip(f"{MODELS} is not there")
-    before = cpu_seconds()
-    innermap("tetrahedralize", MODELS / "spot.obj", "-o", "x.vtu", "--resolution", 128, "--report",
-             "r.json", "--threads", 2)
-    assert sum(read_json("r.json")["seconds"].values()) < 5
-    assert cpu_seconds() - before < 10
-
-
 @slow
 def test_orders_on_spot():
     if not MODELS.exists():
