@@ -6,7 +6,7 @@ import math
 import os
 import signal
 
-from cli import (MODELS, ROOT, Skip, alone, cpu_seconds, cube, fails, icosphere, icosphere_arrays,
+from cli import (MODELS, ROOT, Skip, cube, fails, icosphere, icosphere_arrays,
                  innermap, interrupt, no_leftovers, read_json, run, slow, torus, write_obj)
 
 
