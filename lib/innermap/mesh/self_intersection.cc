@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "innermap/core/parallel.h"
-#include "innermap/mesh/detail/local_triangles.h"
 #include "innermap/mesh/detail/intersect_triangles.h"
+#include "innermap/mesh/detail/local_triangles.h"
 #include "innermap/mesh/detail/topology.h"
 #include "innermap/mesh/triangle_tree.h"
 

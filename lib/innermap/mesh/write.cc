@@ -9,9 +9,9 @@
 #include <iterator>
 #include <ostream>
 
+#include "innermap/core/detail/text_scanner.h"
 #include "innermap/core/error.h"
 #include "innermap/core/file.h"
-#include "innermap/core/detail/text_scanner.h"
 
 namespace innermap {
 namespace {

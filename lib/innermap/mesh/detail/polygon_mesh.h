@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/detail/text_scanner.h"
+#include "innermap/core/progress.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {

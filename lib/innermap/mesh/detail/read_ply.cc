@@ -6,8 +6,8 @@
 #include <limits>
 #include <type_traits>
 
-#include "innermap/core/error.h"
 #include "innermap/core/detail/ply_header.h"
+#include "innermap/core/error.h"
 #include "innermap/mesh/detail/polygon_mesh.h"
 
 namespace innermap {
