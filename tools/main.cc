@@ -19,13 +19,26 @@ enum ExitCode { kDone = 0, kFailed = 1, kUsage = 2, kCancelled = 130 };
 
 void execute(const Command& command, const CommonOptions& common, TerminalProgress& progress) {
   Context context(common, progress);
+  for (const Option& option : command.options()) {
+    if (!option.isInput) continue;
+    if (const auto text = std::get_if<std::string*>(&option.target)) context.input(**text);
+  }
   if (!common.report.empty()) context.output(common.report);
   const ThreadLimit threads(common.threads);
   context.report().command = command.name();
-  command.execute(context);
-  throwIfCancelled(&progress);
-  if (!common.report.empty() && !common.dryRun)
+  try {
+    command.execute(context);
+  } catch (const CancelledLate&) {
+    throw;
+  } catch (const Cancelled&) {
+    // It came too late: what was asked for is there.
+    if (!context.allInPlace()) throw;
+  }
+  ignoreSignals();
+  if (!common.report.empty() && !common.dryRun) {
+    std::fflush(stdout);  // the report may go there too
     writeReport(common.report, context.finishedReport());
+  }
   if (!context.failure().empty()) throw DataError(context.failure());
 }
 
@@ -97,7 +110,9 @@ int run(const std::vector<std::string>& arguments) {
   } catch (const CancelledLate& cancelled) {
     return fail(kCancelled, cancelled.what());
   } catch (const Cancelled&) {
-    return fail(kCancelled, "cancelled; nothing was written");
+    return fail(kCancelled, outputsInPlace() == 0
+                                ? "cancelled; nothing was written"
+                                : "cancelled; some of the outputs are in place, others are not");
   } catch (const UsageError& error) {
     return fail(kUsage, error.what());
   } catch (const std::bad_alloc&) {
