@@ -1,6 +1,10 @@
 // The innermap program: finds the command, parses its options, turns errors into exit codes.
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <cctype>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 
@@ -126,7 +130,21 @@ int run(const std::vector<std::string>& arguments) {
   }
 }
 
+// OpenBLAS maps 128 MB for each of its threads when it is loaded, and where a limit on address
+// space (ulimit -v) forbids that it waits for ever. It is called by one thread at a time of ours or
+// by many that use one each, so under a limit the program starts anew with no more than that.
+void startWithFewThreads(char** argv) {
+  constexpr char variable[] = "OPENBLAS_NUM_THREADS";
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
+  if (std::getenv(variable) || setenv(variable, "1", 0) != 0) return;
+  execv("/proc/self/exe", argv);
+}
+
 }  // namespace
 }  // namespace innermap::tool
 
-int main(int argc, char** argv) { return innermap::tool::run({argv + (argc > 0), argv + argc}); }
+int main(int argc, char** argv) {
+  innermap::tool::startWithFewThreads(argv);
+  return innermap::tool::run({argv + (argc > 0), argv + argc});
+}

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -27,6 +28,14 @@ std::string systemMessage() { return std::strerror(errno); }
 std::string folderOf(const std::string& path) {
   const fs::path folder = fs::path(path).parent_path();
   return folder.empty() ? "." : folder.string();
+}
+
+// Names of the temporaries of what is called `key` begin so.
+std::string temporaryPrefix(std::string_view key) {
+  char hash[32];
+  std::snprintf(hash, sizeof hash, ".innermap-%016llx-",
+                static_cast<unsigned long long>(hashOf(key)));
+  return hash;
 }
 
 std::string temporaryName(const std::string& folder, std::string_view key) {
@@ -155,7 +164,7 @@ PendingFile::PendingFile(const std::string& path) : path_(path) {
   if (through_) requireOpenable(path, place_);
   const std::string folder = through_ ? temporaryFolder() : folderOf(place_);
   const std::string key = fs::path(place_).filename().string();
-  clearLeftBehind(folder, key);
+  clearLeftBehind(folder, temporaryPrefix(key));
   lock_ = makeLocked(path, UnfinishedKind::file, folder, key, temporary_, makeFile);
 }
 
@@ -189,7 +198,7 @@ struct PendingFolder::Staging {
   // Of what goes into devices and pipes (`folder` is empty) the machine's temporary folder.
   Staging(const std::string& folder, const std::string& named) : parent(folder) {
     const std::string place = folder.empty() ? temporaryFolder() : folder;
-    clearLeftBehind(place, kFolderKey);
+    clearLeftBehind(place, temporaryPrefix(kFolderKey));
     lock = makeLocked(named, UnfinishedKind::tree, place, kFolderKey, path, makeLockedFolder);
     if (mkdir(at(kWritten).c_str(), 0777) != 0) {
       const int error = errno;
@@ -213,7 +222,7 @@ struct PendingFolder::Staging {
 PendingFolder::PendingFolder(const std::string& folder)
     : folder_(folder), made_(makeFolders(folder)) {
   try {
-    clearLeftBehind(folder, kFolderKey);
+    clearLeftBehind(folder, temporaryPrefix(kFolderKey));
     requireWritable((fs::path(folder) / "innermap").string());
   } catch (...) {
     removeFolders(made_);
@@ -301,6 +310,10 @@ void PendingFolder::commit() {
   made_.clear();
   countInPlace();
 }
+
+void removeUnfinishedFiles() noexcept { removeUnfinished(); }
+bool commitUnderWay() noexcept { return isCommitting(); }
+std::uint64_t outputsInPlace() noexcept { return countOfInPlace(); }
 
 std::string fileKey(const std::string& path) {
   const auto numbers = [](const struct stat& status) {

@@ -7,13 +7,11 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <vector>
 
 #include "innermap/core/error.h"
-#include "innermap/core/file.h"
 
 namespace innermap {
 namespace {
@@ -122,17 +120,9 @@ std::string whyNotWritable(const std::string& path, int error) {
   }
 }
 
-std::string temporaryPrefix(std::string_view name) {
-  char hash[32];
-  std::snprintf(hash, sizeof hash, ".innermap-%016llx-",
-                static_cast<unsigned long long>(hashOf(name)));
-  return hash;
-}
-
 bool lockTemporary(int descriptor) noexcept { return flock(descriptor, LOCK_EX | LOCK_NB) == 0; }
 
-void clearLeftBehind(const std::string& folder, std::string_view name) {
-  const std::string prefix = temporaryPrefix(name);
+void clearLeftBehind(const std::string& folder, const std::string& prefix) {
   std::vector<fs::path> left;
   std::error_code error;
   for (fs::directory_iterator at(folder.empty() ? "." : folder, error), end; !error && at != end;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 namespace innermap {
 
@@ -18,16 +17,14 @@ OutputPlace outputPlace(const std::string& path);
 // What the system's error number `error` says of a failure to make `path`, and what to do.
 std::string whyNotWritable(const std::string& path, int error);
 
-// Names of temporaries of `name` begin with it: ".innermap-" and a hash.
-std::string temporaryPrefix(std::string_view name);
-
 // A lock on a file or folder that was opened, held while `descriptor` is open; false when another
 // process has it.
 bool lockTemporary(int descriptor) noexcept;
 
-// Removes what processes that were killed left behind of the output `name` in `folder`. Folders of
-// files that were being put in place when that happened are put in place to the end.
-void clearLeftBehind(const std::string& folder, std::string_view name);
+// Removes what processes that were killed left behind in `folder`, all whose names begin with
+// `prefix`. Folders of files that were being put in place when that happened are put in place to
+// the end.
+void clearLeftBehind(const std::string& folder, const std::string& prefix);
 
 // In the temporary folder of files that appear together: the files that they replace. There when
 // they are being put in place.

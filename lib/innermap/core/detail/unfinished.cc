@@ -10,12 +10,10 @@
 #include <cstdint>
 #include <cstring>
 
-#include "innermap/core/file.h"
-
 namespace innermap {
 namespace {
 
-// In fixed storage: removeUnfinishedFiles may run in a signal handler, where no lock may be taken
+// In fixed storage: removeUnfinished may run in a signal handler, where no lock may be taken
 // and nothing allocated.
 constexpr int kSlots = 1024;
 constexpr std::size_t kLongestPath = 4096;
@@ -95,10 +93,10 @@ CommitGuard::CommitGuard() noexcept { ++commits; }
 CommitGuard::~CommitGuard() { --commits; }
 
 void countInPlace() noexcept { ++inPlace; }
-bool commitUnderWay() noexcept { return commits > 0; }
-std::uint64_t outputsInPlace() noexcept { return inPlace; }
+bool isCommitting() noexcept { return commits > 0; }
+std::uint64_t countOfInPlace() noexcept { return inPlace; }
 
-void removeUnfinishedFiles() noexcept {
+void removeUnfinished() noexcept {
   ending = true;
   // Twice: another thread may have been about to make a file that it had remembered.
   for (int pass = 0; pass < 2; ++pass) {

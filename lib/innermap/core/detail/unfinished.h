@@ -1,6 +1,7 @@
 // The files and folders that must go when the process ends at once.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace innermap {
@@ -8,12 +9,12 @@ namespace innermap {
 // A folder goes when it is empty, a tree with all that is in it.
 enum class UnfinishedKind { file, folder, tree };
 
-// Remembers `path` for removeUnfinishedFiles(). To be called before it is made; forgetUnfinished()
+// Remembers `path` for removeUnfinished(). To be called before it is made; forgetUnfinished()
 // when it is finished or removed.
 void rememberUnfinished(UnfinishedKind kind, const std::string& path);
 void forgetUnfinished(const std::string& path) noexcept;
 
-// While it lives files are put in place: commitUnderWay() is true.
+// While it lives files are put in place: isCommitting() is true.
 class CommitGuard {
  public:
   CommitGuard() noexcept;
@@ -23,5 +24,10 @@ class CommitGuard {
 };
 
 void countInPlace() noexcept;
+
+// What file.h calls removeUnfinishedFiles(), commitUnderWay(), outputsInPlace().
+void removeUnfinished() noexcept;
+bool isCommitting() noexcept;
+std::uint64_t countOfInPlace() noexcept;
 
 }  // namespace innermap
