@@ -71,6 +71,10 @@ Json checkJson(const std::string& path, const MeshReport& r, const std::vector<F
           {"findings", array(found, findingJson)}};
 }
 
+std::string sized(double value) {
+  return std::isfinite(value) ? fmt::format("{:.6g}", value) : "too large to compute";
+}
+
 std::string checkText(const std::string& path, const MeshReport& r,
                       const std::vector<Finding>& found) {
   const Vec3 size = r.box.extent();
@@ -78,12 +82,12 @@ std::string checkText(const std::string& path, const MeshReport& r,
       "{}\n"
       "  {} vertices, {} triangles{}, {} component{}, {}\n"
       "  box {:.6g} x {:.6g} x {:.6g}, diagonal {:.6g}, from ({:.6g}, {:.6g}, {:.6g})\n"
-      "  area {:.6g}, volume {:.6g}{}\n",
+      "  area {}, volume {}{}\n",
       path, r.vertices, r.triangles,
       r.polygons && r.polygons != r.triangles ? fmt::format(" (from {} polygons)", r.polygons) : "",
       r.components, r.components == 1 ? "" : "s",
       r.closed ? fmt::format("closed, genus {}", r.genus) : "open", size.x, size.y, size.z,
-      r.box.diagonal(), r.box.lower.x, r.box.lower.y, r.box.lower.z, r.area, r.volume,
+      r.box.diagonal(), r.box.lower.x, r.box.lower.y, r.box.lower.z, sized(r.area), sized(r.volume),
       r.closed ? "" : " (holes capped)");
   if (found.empty()) return text + "no findings: ready for a map\n";
   text += fmt::format("{} finding{}:\n", found.size(), found.size() == 1 ? "" : "s");

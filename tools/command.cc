@@ -117,7 +117,7 @@ OptionBuilder Command::positional(const std::string& name, Target target, const 
   o.name = name;
   o.placeholder = name;
   o.help = help;
-  o.required = true;
+  o.required = o.isInput = true;
   o.target = std::move(target);
   options_.push_back(std::move(o));
   return {options_, options_.size() - 1};

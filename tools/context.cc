@@ -7,6 +7,7 @@
 
 #include "innermap/core/memory.h"
 #include "innermap/io/picture/label_font.h"
+#include "signals.h"
 #include "terminal_progress.h"
 
 namespace innermap::tool {
@@ -31,13 +32,74 @@ void Context::plan(const std::vector<std::string>& lines, std::uint64_t bytes) {
   report_.set("memory_needed_bytes", bytes);
 }
 
-void Context::output(const std::string& path) {
+namespace {
+
+std::string sameAs(const std::string& path, const std::string& other) {
+  return path == other ? "" : " (it is the same file as " + other + ")";
+}
+
+[[noreturn]] void refuseReadAndWritten(const std::string& output, const std::string& input) {
+  throw FileError(
+      output, "is read as well as written; give the output another name" + sameAs(output, input));
+}
+
+}  // namespace
+
+void Context::input(const std::string& path) {
+  const std::string key = fileKey(path);
+  if (key.empty()) return;
+  if (outputs_.count(key)) refuseReadAndWritten(outputs_[key], path);
+  inputs_.emplace(key, path);
+}
+
+void Context::enter(const std::string& path) {
+  const std::string key = fileKey(path);
+  if (key.empty()) return;
+  if (inputs_.count(key)) refuseReadAndWritten(path, inputs_[key]);
+  if (const auto [other, isNew] = outputs_.emplace(key, path); !isNew)
+    throw FileError(path, "would be written twice; give each output a name of its own" +
+                              sameAs(path, other->second));
+}
+
+void Context::output(const std::string& path, bool sure) {
+  enter(path);
+  if (sure) expectOutputs(1);
   if (dryRun()) return;
   requireWritable(path);
   if (std::filesystem::path(path).extension() == ".png") notePictures();
 }
 
-PendingFolder Context::outputFolder(const std::string& path) { return PendingFolder(path); }
+void Context::outputs(const std::vector<std::string>& paths) {
+  for (const std::string& path : paths) enter(path);
+  expectOutputs(static_cast<int>(paths.size()));
+  if (!dryRun() && !paths.empty()) requireWritable(paths.front());
+}
+
+std::unique_ptr<PendingFolder> Context::outputFolder(const std::string& path,
+                                                     const std::vector<std::string>& names) {
+  auto folder = dryRun() ? nullptr : std::make_unique<PendingFolder>(path);
+  inFolder(path, names);
+  expectOutputs(1);
+  for (const std::string& name : names)
+    if (folder && std::filesystem::path(name).extension() == ".png") {
+      notePictures();
+      break;
+    }
+  return folder;
+}
+
+void Context::inFolder(const std::string& folder, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    const std::string path = (std::filesystem::path(folder) / name).string();
+    enter(path);
+    if (!dryRun()) requireWritable(path);
+  }
+}
+
+bool Context::allInPlace() const {
+  const int sure = expectedOutputs() - (options_.report.empty() ? 0 : 1);
+  return sure > 0 && outputsInPlace() >= static_cast<std::uint64_t>(sure);
+}
 
 void Context::notePictures() {
   if (labelFont().empty())

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -56,11 +57,23 @@ class Context {
   // whether it is over the limit), on stdout.
   void plan(const std::vector<std::string>& lines, std::uint64_t bytes);
 
+  // A file that is read. Arguments, and options that are marked with reads(), are told already;
+  // this is for files that are found, say by a pattern. Throws FileError when it is an output.
+  void input(const std::string& path);
+
   // All that a command writes passes here, before it reads or computes anything. Throws FileError
-  // unless a file can be created at `path`; does nothing in a dry run.
-  void output(const std::string& path);
-  // The same for a folder of files that appear together; not for dry runs.
-  PendingFolder outputFolder(const std::string& path);
+  // when `path` is an input, or another output, and unless a file can be created there (this not in
+  // a dry run). sure: it will be written in any case.
+  void output(const std::string& path, bool sure = true);
+  // Files of one kind, of which only the first is tried out.
+  void outputs(const std::vector<std::string>& paths);
+  // A folder of files that appear together; `names` are those that are known to be written, others
+  // are added by inFolder(). Null in a dry run.
+  std::unique_ptr<PendingFolder> outputFolder(const std::string& path,
+                                              const std::vector<std::string>& names);
+  void inFolder(const std::string& folder, const std::vector<std::string>& names);
+  // Whether all outputs that are sure, but the report, are in place.
+  bool allInPlace() const;
   // Says so when pictures will have no labels for lack of a font; output() does for .png files.
   void notePictures();
 
@@ -106,11 +119,14 @@ class Context {
 
   void say(const std::string& kind, const std::string& text);
 
+  void enter(const std::string& path);
+
   const CommonOptions& options_;
   TerminalProgress& progress_;
   std::uint64_t maxMemory_ = 0;
   Report report_;
   std::string failure_;
+  std::map<std::string, std::string> inputs_, outputs_;  // by fileKey
 };
 
 }  // namespace innermap::tool

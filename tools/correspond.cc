@@ -25,6 +25,7 @@ void run(const Options& options, Context& context) {
   requirePly("--output", options.output);
   if (!options.sourceOutput.empty()) requirePly("--source-out", options.sourceOutput);
   context.output(options.output);
+  context.output(sourceOutputOf(options), false);
   if (!options.picture.empty()) context.output(options.picture);
   Mesh a = readMeshFile(options.a, context), b = readMeshFile(options.b, context);
   const std::size_t countA = a.vertices.size(), countB = b.vertices.size();

@@ -82,7 +82,7 @@ void addSurfaceOptions(Command& c, LayOutSettings& o) {
 }
 
 void addCorrespondOptions(Command& c, CorrespondOptions& o) {
-  c.option("--landmarks", "FILE", &o.landmarks, "pairs of places that are kept exactly");
+  c.option("--landmarks", "FILE", &o.landmarks, "pairs of places that are kept exactly").reads();
   c.flag("--aligned", &o.map.aligned,
          "the two stand in the same pose and orientation: prefer agreeing normals and places");
   c.option("--candidates", "N", &o.map.candidates,

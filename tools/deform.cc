@@ -234,13 +234,16 @@ void run(const DeformOptions& options, Context& context) {
   const FramePattern pattern("--output", options.output);
   const Frames frames = listFrames(options.frames, options.rest, context);
   check(options, frames);
+  // Made first, and gone again if nothing comes into it.
+  std::optional<PendingFolder> folder;
+  if (!context.dryRun()) folder.emplace(pattern.folder());
+  context.outputs(framePaths(pattern, frames));
   if (isGeometryFile(options.volume))
     return deformGeometry(
         {options.rest, options.volume, options.frames, options.transfer, options.geometry}, frames,
         pattern, context);
   if (context.dryRun()) return plan(options, frames, pattern, context);
   requireFrameMemory(context.settings(options.frames.fitting), 0);
-  const PendingFolder folder = context.outputFolder(pattern.folder());
   std::optional<Inputs> inputs;
   Frames left;
   context.timed("compare", [&] {

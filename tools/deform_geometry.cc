@@ -85,7 +85,6 @@ void deformGeometry(const DeformGeometry& job, const Frames& frames, const Frame
         frameFitterMemory(settings) + need);
   }
   requireFrameMemory(context.settings(job.frames.fitting), need);
-  const PendingFolder folder = context.outputFolder(pattern.folder());
   Deformer deformer(job, frames, context);
   std::map<std::size_t, BoundaryError> errors;
   std::optional<CarriedGeometry> last;

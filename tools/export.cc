@@ -41,9 +41,14 @@ void fillReport(const VolumeTextureResult& r, const ExportOptions& options, Cont
 
 void run(const ExportOptions& options, Context& context) {
   const VolumeTextureSettings settings = settingsOf(options, context);
-  context.output(settings.layout == VolumeLayout::slices
-                     ? FramePattern("--output", options.output).path(0)
-                     : options.output);
+  if (settings.layout == VolumeLayout::slices) {
+    const FramePattern slices("--output", options.output);
+    context.output(slices.path(0));
+    const auto number = frameNumber(options.file);
+    if (number.value_or(0) != 0) context.output(slices.path(*number), false);
+  } else {
+    context.output(options.output);
+  }
   const std::vector<std::string> names = commaList(options.grids);
   if (context.dryRun()) {
     const std::uint64_t need =

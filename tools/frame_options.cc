@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
+#include "innermap/core/file.h"
 #include "innermap/core/memory.h"
 #include "innermap/mesh/read.h"
 #include "inputs.h"
@@ -13,11 +12,6 @@ namespace innermap::tool {
 namespace {
 
 constexpr std::uint64_t kMostSources = 1000000;
-
-bool isSameFile(const std::string& a, const std::string& b) {
-  std::error_code ignored;
-  return std::filesystem::equivalent(a, b, ignored);
-}
 
 std::string span(const std::vector<FrameFile>& frames) {
   return frames.size() == 1 ? fmt::format("the only one is {}", frames.front().number)
@@ -64,6 +58,7 @@ Frames listFrames(const FrameOptions& options, const std::string& rest, Context&
         left.size() > 1 ? fmt::format(" and {} others", left.size() - 1) : std::string()));
   Frames frames;
   frames.all = std::move(list.frames);
+  for (const FrameFile& frame : frames.all) context.input(frame.path);
   std::optional<FrameRanges> ranges;
   if (!options.ranges.empty()) ranges.emplace("--frames", options.ranges);
   for (std::size_t i = 0; i < frames.all.size(); ++i)
@@ -72,6 +67,13 @@ Frames listFrames(const FrameOptions& options, const std::string& rest, Context&
     throw SettingError("--frames", fmt::format("'{}' has none of the frames; {}", options.ranges,
                                                span(frames.all)));
   return frames;
+}
+
+std::vector<std::string> framePaths(const FramePattern& pattern, const Frames& frames) {
+  std::vector<std::string> paths;
+  for (const std::size_t index : frames.wanted)
+    paths.push_back(pattern.path(frames.all[index].number));
+  return paths;
 }
 
 FrameFitter makeFrameFitter(const std::string& rest, const FrameFitterSettings& settings,

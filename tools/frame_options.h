@@ -31,6 +31,9 @@ struct Frames {
 // FileError, SettingError.
 Frames listFrames(const FrameOptions& options, const std::string& rest, Context& context);
 
+// The output of each of the frames wanted.
+std::vector<std::string> framePaths(const FramePattern& pattern, const Frames& frames);
+
 // Reads the rest pose and makes its fitter; tells of both, and fills the report's "source" and
 // "solve".
 FrameFitter makeFrameFitter(const std::string& rest, const FrameFitterSettings& settings,

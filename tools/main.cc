@@ -1,6 +1,10 @@
 // The innermap program: finds the command, parses its options, turns errors into exit codes.
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <cctype>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 
@@ -19,13 +23,26 @@ enum ExitCode { kDone = 0, kFailed = 1, kUsage = 2, kCancelled = 130 };
 
 void execute(const Command& command, const CommonOptions& common, TerminalProgress& progress) {
   Context context(common, progress);
+  for (const Option& option : command.options()) {
+    if (!option.isInput) continue;
+    if (const auto text = std::get_if<std::string*>(&option.target)) context.input(**text);
+  }
   if (!common.report.empty()) context.output(common.report);
   const ThreadLimit threads(common.threads);
   context.report().command = command.name();
-  command.execute(context);
-  throwIfCancelled(&progress);
-  if (!common.report.empty() && !common.dryRun)
+  try {
+    command.execute(context);
+  } catch (const CancelledLate&) {
+    throw;
+  } catch (const Cancelled&) {
+    // It came too late: what was asked for is there.
+    if (!context.allInPlace()) throw;
+  }
+  ignoreSignals();
+  if (!common.report.empty() && !common.dryRun) {
+    std::fflush(stdout);  // the report may go there too
     writeReport(common.report, context.finishedReport());
+  }
   if (!context.failure().empty()) throw DataError(context.failure());
 }
 
@@ -97,7 +114,9 @@ int run(const std::vector<std::string>& arguments) {
   } catch (const CancelledLate& cancelled) {
     return fail(kCancelled, cancelled.what());
   } catch (const Cancelled&) {
-    return fail(kCancelled, "cancelled; nothing was written");
+    return fail(kCancelled, outputsInPlace() == 0
+                                ? "cancelled; nothing was written"
+                                : "cancelled; some of the outputs are in place, others are not");
   } catch (const UsageError& error) {
     return fail(kUsage, error.what());
   } catch (const std::bad_alloc&) {
@@ -111,7 +130,21 @@ int run(const std::vector<std::string>& arguments) {
   }
 }
 
+// OpenBLAS maps 128 MB for each of its threads when it is loaded, and where a limit on address
+// space (ulimit -v) forbids that it waits for ever. It is called by one thread at a time of ours or
+// by many that use one each, so under a limit the program starts anew with no more than that.
+void startWithFewThreads(char** argv) {
+  constexpr char variable[] = "OPENBLAS_NUM_THREADS";
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
+  if (std::getenv(variable) || setenv(variable, "1", 0) != 0) return;
+  execv("/proc/self/exe", argv);
+}
+
 }  // namespace
 }  // namespace innermap::tool
 
-int main(int argc, char** argv) { return innermap::tool::run({argv + (argc > 0), argv + argc}); }
+int main(int argc, char** argv) {
+  innermap::tool::startWithFewThreads(argv);
+  return innermap::tool::run({argv + (argc > 0), argv + argc});
+}

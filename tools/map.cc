@@ -127,6 +127,8 @@ BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& f
   const auto progress = context.settings<BoundarySettings>();
   if (meshes.related)
     return makeBoundaryPair(std::move(meshes.source), std::move(meshes.target), progress);
+  context.inFolder(options.output,
+                   {"correspondence.ply", "correspondence.source.ply", "correspondence.png"});
   context.note(correspondPlan(options, meshes, context) + "; --correspond takes one made before");
   const std::string name = meshes.target.name;
   CorrespondOptions correspond = options.correspond;
@@ -149,12 +151,13 @@ BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& f
 
 void run(const MapOptions& options, Context& context) {
   checkFittingOptions(options.fitting);
+  const auto folder = context.outputFolder(
+      options.output,
+      {"map.ply", "map.vdb", "slices.exr", "section.png", "steps.png", "report.json"});
   Meshes meshes = readMeshes(options, context);
   if (context.dryRun()) return plan(options, meshes, context);
   const FittingOptions fitOptions = fittingFor(options, meshes);
-  PendingFolder folder = context.outputFolder(options.output);
-  context.notePictures();
-  BoundaryPair pair = makePair(options, std::move(meshes), folder, context);
+  BoundaryPair pair = makePair(options, std::move(meshes), *folder, context);
   reportBoundaries(pair, context);
   const FitMapSettings fitting =
       fitMapSettings(fitOptions, pair.source.mesh.vertices.size(), context);
@@ -164,14 +167,14 @@ void run(const MapOptions& options, Context& context) {
   reportFit(fit, fitting, options.fitting.bestEffort, context);
   const SolidGrids grids = evaluateOnGrid(fit, mapGridSettings(options.evaluation, context));
   reportGrids(grids, options.evaluation.lame, context);
-  folder.write("map.vdb", [&](const std::string& path) {
+  folder->write("map.vdb", [&](const std::string& path) {
     writeGridFile(path, grids.all(), options.evaluation.names, context);
   });
   context.timed("write", [&] {
-    folder.write("map.ply", [&](const std::string& path) { writeMap(path, fit); });
-    writePictures(grids, fit, folder, options, context);
+    folder->write("map.ply", [&](const std::string& path) { writeMap(path, fit); });
+    writePictures(grids, fit, *folder, options, context);
   });
-  context.finish(folder);
+  context.finish(*folder);
 }
 
 }  // namespace
@@ -194,7 +197,8 @@ Command makeMapCommand() {
       .shortName("-o")
       .required();
   c.option("--correspond", "FILE", &o->correspondence,
-           "SOURCE's vertices on TARGET, as innermap correspond or an earlier map wrote them");
+           "SOURCE's vertices on TARGET, as innermap correspond or an earlier map wrote them")
+      .reads();
   o->correspond.map.subdivide = kSubdivide;
   addCorrespondOptions(c, o->correspond);
   addFittingOptions(c, o->fitting);

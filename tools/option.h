@@ -33,6 +33,7 @@ struct Option {
   std::vector<std::string> choices;
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
+  bool isInput = false;    // names a file that is read
   bool lowerOpen = false;  // the least value itself is not allowed
   Target target;
 
@@ -56,6 +57,8 @@ class OptionBuilder {
     return set(&Option::choices, std::move(names));
   }
   OptionBuilder& optional() { return set(&Option::required, false); }  // positional arguments
+  // Names a file that is read, as positional arguments do: no output may be that file.
+  OptionBuilder& reads() { return set(&Option::isInput, true); }
   OptionBuilder& required() { return set(&Option::required, true); }
   OptionBuilder& range(double lower, double upper) {
     return set(&Option::lower, lower).set(&Option::upper, upper);

@@ -66,6 +66,10 @@ FrameEvaluator makeEvaluator(const SequenceOptions& options, const FrameFitter& 
 void run(const SequenceOptions& options, Context& context) {
   gridsToWrite(options);  // refuses names that cannot be before anything is read
   const Frames frames = listFrames(options.frames, options.rest, context);
+  const FramePattern pattern("--output", options.output + "/energy.####.vdb");
+  const auto folder =
+      context.outputFolder(options.output, {"energies.csv", "energies.png", "report.json"});
+  if (options.grids) context.outputs(framePaths(pattern, frames));
   const FrameFitterSettings settings = context.settings(options.frames.fitting);
   if (context.dryRun())
     return context.plan({framesPlan(settings, frames),
@@ -74,13 +78,10 @@ void run(const SequenceOptions& options, Context& context) {
                              " to " + options.output},
                         frameFitterMemory(settings));
   requireFrameMemory(settings, 0);
-  PendingFolder folder = context.outputFolder(options.output);
-  context.notePictures();
   const FrameFitter fitter = makeFrameFitter(options.rest, settings, context);
   requireFrameMemory(settings,
                      mapGridMemory(fitter.solid(), mapGridSettings(options.evaluation, context)));
   const FrameEvaluator evaluator = makeEvaluator(options, fitter, context);
-  const FramePattern pattern("--output", options.output + "/energy.####.vdb");
   FrameFits fits = makeFrameFits(fitter, frames, context);
   std::vector<SequenceRow> rows;
   context.print(sequenceHeader());
@@ -100,13 +101,14 @@ void run(const SequenceOptions& options, Context& context) {
   const std::vector<SequenceRow> table = withBroken(rows, results);
   fillReport(table, context.report());
   context.timed("write", [&] {
-    folder.write("energies.csv", [&](const std::string& path) { writeSequenceTable(path, table); });
-    folder.write("energies.png", [&](const std::string& path) {
+    folder->write("energies.csv",
+                  [&](const std::string& path) { writeSequenceTable(path, table); });
+    folder->write("energies.png", [&](const std::string& path) {
       writeChart(path, sequenceChart(table, fitter.rest().mesh.name));
     });
   });
   context.print(seconds);
-  context.finish(folder);
+  context.finish(*folder);
 }
 
 }  // namespace

@@ -5,28 +5,50 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cstdint>
+#include <cstring>
 
 #include "innermap/core/file.h"
 
 namespace innermap::tool {
 namespace {
 
-Progress* cancelled = nullptr;
-std::atomic<int> requests{0};
+std::atomic<Progress*> cancelled{nullptr};
+std::atomic<int> requests{0}, expected{0};
+std::atomic<bool> done{false};
 
-[[noreturn]] void endNow() {
+void startTimer(int microseconds) {
+  itimerval timer{};
+  timer.it_value.tv_usec = microseconds;
+  setitimer(ITIMER_REAL, &timer, nullptr);
+}
+
+void say(const char* text) {
+  if (isatty(STDERR_FILENO)) [[maybe_unused]]
+    const auto cleared = write(STDERR_FILENO, "\r\x1b[K", 4);
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, text, std::strlen(text));
+}
+
+void endNow() {
+  // Files that are being put in place are soon all there.
+  if (commitUnderWay()) return startTimer(20000);
   removeUnfinishedFiles();
+  const std::uint64_t inPlace = outputsInPlace();
+  if (inPlace > 0 && inPlace >= static_cast<std::uint64_t>(expected)) _exit(0);
+  say(inPlace == 0 ? "innermap: cancelled; nothing was written\n"
+                   : "innermap: cancelled; some of the outputs are in place, others are not\n");
   _exit(130);
 }
 
-void onTimer(int) { endNow(); }
+void onTimer(int) {
+  if (!done) endNow();
+}
 
 void onRequest(int) {
-  if (++requests > 1) endNow();
-  cancelled->cancel();
-  itimerval timer{};
-  timer.it_value.tv_usec = 800000;
-  setitimer(ITIMER_REAL, &timer, nullptr);
+  if (done) return;
+  if (++requests > 1) return endNow();
+  if (Progress* const progress = cancelled) progress->cancel();
+  startTimer(800000);
 }
 
 void install(int number, void (*handler)(int)) {
@@ -37,10 +59,8 @@ void install(int number, void (*handler)(int)) {
   sigaction(number, &action, nullptr);
 }
 
-}  // namespace
-
-void handleSignals(Progress& progress) {
-  cancelled = &progress;
+// Before main, and before what stands in static storage is made, which takes a while.
+__attribute__((constructor(101))) void installHandlers() {
   install(SIGALRM, onTimer);
   for (int number : {SIGINT, SIGTERM}) install(number, onRequest);
   // Under nohup hang-ups stay ignored.
@@ -50,5 +70,20 @@ void handleSignals(Progress& progress) {
   signal(SIGPIPE, SIG_IGN);
   signal(SIGXFSZ, SIG_IGN);
 }
+
+}  // namespace
+
+void handleSignals(Progress& progress) {
+  cancelled = &progress;
+  if (requests > 0) progress.cancel();
+}
+
+void ignoreSignals() {
+  done = true;
+  startTimer(0);
+}
+
+void expectOutputs(int more) { expected += more; }
+int expectedOutputs() { return expected; }
 
 }  // namespace innermap::tool

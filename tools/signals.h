@@ -5,10 +5,18 @@
 
 namespace innermap::tool {
 
-// SIGINT, SIGTERM and SIGHUP cancel `progress`, which must live as long as the process. If the
-// process has not ended 0.8 s later (inside a long LAPACK call, say), or at a second signal, it
-// removes its unfinished files and ends with exit code 130. Broken pipes and file size limits
-// become write errors.
+// SIGINT, SIGTERM and SIGHUP cancel `progress`, which must live as long as the process; one that
+// came earlier, since the process began, cancels it now. If the process has not ended 0.8 s later
+// (inside a long LAPACK call, say), or at a second signal, it removes its unfinished files, says
+// what is in place and ends with exit code 130, or 0 when all outputs are. Broken pipes and file
+// size limits become write errors.
 void handleSignals(Progress& progress);
+
+// From now on such signals are ignored: the work is done and in place.
+void ignoreSignals();
+
+// How many outputs this run will put in place, for what is said when it ends at once.
+void expectOutputs(int more);
+int expectedOutputs();
 
 }  // namespace innermap::tool

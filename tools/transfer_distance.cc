@@ -66,6 +66,8 @@ std::string textOf(const DistanceTransfer& made) {
 }
 
 void run(const TransferDistanceOptions& options, Context& context) {
+  const auto folder = context.outputFolder(
+      options.output, {"source.vdb", "target.vdb", "source.png", "target.png", "report.json"});
   const MappedSolid mapped = readMapFile(options.map, context);
   if (context.dryRun())
     return context.plan(
@@ -74,8 +76,6 @@ void run(const TransferDistanceOptions& options, Context& context) {
              options.output},
         mapGridMemory(mapped.solid(), gridSettings<MapGridSettings>(options.grid, context)));
   requireEvaluationMemory(mapped.solid(), options.grid, context);
-  PendingFolder folder = context.outputFolder(options.output);
-  context.notePictures();
   const Solid target = targetSolid(mapped, context);
   auto settings = gridSettings<DistanceTransferSettings>(options.grid, context);
   settings.accuracy = sumAccuracy(mapped);
@@ -84,18 +84,18 @@ void run(const TransferDistanceOptions& options, Context& context) {
   const NumberPair range = options.range.value_or(NumberPair{0, made.target.figures.largest});
   fillReport(made, range, context.report());
   context.timed("write", [&] {
-    folder.write("target.png", [&](const std::string& path) {
+    folder->write("target.png", [&](const std::string& path) {
       writeSection(path, "distance in the target", target, *made.target.depth, *made.target.surface,
                    range, options, context);
     });
-    folder.write("source.png", [&](const std::string& path) {
+    folder->write("source.png", [&](const std::string& path) {
       writeSection(path, "the target's distance, through the map", mapped.solid(), *made.through,
                    *made.source.surface, range, options, context);
     });
   });
-  writeVdbs(made, mapped, folder, context);
+  writeVdbs(made, mapped, *folder, context);
   context.print(textOf(made));
-  context.finish(folder);
+  context.finish(*folder);
 }
 
 }  // namespace

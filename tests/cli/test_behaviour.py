@@ -2,6 +2,7 @@
 """What holds for every command: quiet, dry run, report, limits, full disks, cancelling."""
 
 import os
+import resource
 import signal
 import subprocess
 
@@ -110,6 +111,30 @@ def test_a_failure_keeps_the_file_that_was_there():
           preexec_fn=file_size_limit(20000))
     with open("a.vdb", "rb") as file:
         assert file.read() == before
+
+
+def test_a_limit_on_address_space_is_no_trap():
+    # OpenBLAS waits for ever where it cannot map its buffers: that must not be reached.
+    vertices, faces = cli.icosphere_arrays(3)
+    cli.write_obj("ball.obj", vertices, faces)
+    cli.write_obj("bent.obj", [(1.3 * x, y + 0.2 * x * x, z) for x, y, z in vertices], faces)
+    said = set()
+    for size in [800, 900, 1000, 1200, 1500, 2000, 4000]:
+        limit = size << 20
+        done = subprocess.run([cli.PROGRAM, "fit", "ball.obj", "bent.obj", "-o", "m.ply", "-q",
+                               "--sources", "800", "--threads", "4", "--best-effort"],
+                              capture_output=True, text=True, timeout=120,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS,
+                                                                    (limit, limit)))
+        if done.returncode == 0:
+            os.remove("m.ply")
+            said.add("done")
+            continue
+        line = cli.error_line(done)
+        assert done.returncode == 1 and ("memory" in line or "address space" in line), done
+        said.add("address space" if "ulimit -v" in line else "memory")
+        no_leftovers("ball.obj", "bent.obj")
+    assert {"done", "address space"} <= said, said
 
 
 @alone

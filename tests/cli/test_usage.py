@@ -93,7 +93,7 @@ def test_values_out_of_range():
                           ("--resolution", "-5"), ("--half-width", "1"), ("--threads", "-1"),
                           ("--voxel-size", "1e999"), ("--resolution", "99999999999999999999"),
                           ("--max-memory", "0"), ("--max-memory", "many"),
-                          ("--max-memory", "-4GB")]:
+                          ("--max-memory", "-4GB"), ("--max-memory", "1e"), ("--max-memory", "0x10")]:
         line = fails(1, "voxelize", "cube.obj", "-o", "a.vdb", option, value)
         assert option in line, line
 

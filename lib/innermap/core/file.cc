@@ -4,139 +4,337 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 
+#include "innermap/core/detail/output_place.h"
+#include "innermap/core/detail/unfinished.h"
 #include "innermap/core/error.h"
 
 namespace innermap {
 namespace {
 
-// Names of the files now unfinished, in fixed storage: removeUnfinishedFiles may run in a signal
-// handler, where no lock may be taken and nothing allocated.
-constexpr int kSlots = 1024;
-constexpr std::size_t kLongestPath = 4096;
-struct Slot {
-  std::atomic<bool> used{false};
-  std::atomic<bool> ready{false};
-  char path[kLongestPath];
-};
-Slot slots[kSlots];
+namespace fs = std::filesystem;
 
-void remember(const std::string& path) {
-  if (path.size() >= kLongestPath) return;
-  for (Slot& slot : slots) {
-    bool expected = false;
-    if (!slot.used.compare_exchange_strong(expected, true)) continue;
-    std::memcpy(slot.path, path.c_str(), path.size() + 1);
-    slot.ready = true;
-    return;
-  }
-}
-
-void forget(const std::string& path) {
-  for (Slot& slot : slots) {
-    if (!slot.ready || path != slot.path) continue;
-    slot.ready = false;
-    slot.used = false;
-    return;
-  }
-}
+constexpr char kFolderKey[] = "";  // of the temporaries of PendingFolder
 
 std::string systemMessage() { return std::strerror(errno); }
 
-std::string temporaryName(const std::string& path) {
+std::string folderOf(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  return folder.empty() ? "." : folder.string();
+}
+
+// Names of the temporaries of what is called `key` begin so.
+std::string temporaryPrefix(std::string_view key) {
+  char hash[32];
+  std::snprintf(hash, sizeof hash, ".innermap-%016llx-",
+                static_cast<unsigned long long>(hashOf(key)));
+  return hash;
+}
+
+std::string temporaryName(const std::string& folder, std::string_view key) {
   static std::atomic<unsigned> counter{0};
-  const std::filesystem::path p(path);
-  return (p.parent_path() / ("." + p.filename().string() + "." + std::to_string(getpid()) + "-" +
-                             std::to_string(counter++) + ".part"))
+  return (fs::path(folder) / (temporaryPrefix(key) + std::to_string(getpid()) + "-" +
+                              std::to_string(counter++) + ".part"))
       .string();
+}
+
+// A temporary made by `make` (which returns a descriptor, or -1 with errno set), locked. `path` is
+// what errors name.
+int makeLocked(const std::string& path, UnfinishedKind kind, const std::string& folder,
+               std::string_view key, std::string& temporary, int (*make)(const char*)) {
+  for (;;) {
+    temporary = temporaryName(folder, key);
+    rememberUnfinished(kind, temporary);
+    const int file = make(temporary.c_str());
+    if (file < 0) {
+      const int error = errno;
+      forgetUnfinished(temporary);
+      if (error == EEXIST) continue;
+      throw FileError(path, whyNotWritable(temporary, error));
+    }
+    // Between the two, another process may have taken it for one that was left behind.
+    struct stat status {};
+    lockTemporary(file);
+    if (fstat(file, &status) != 0 || status.st_nlink > 0) return file;
+    close(file);
+    forgetUnfinished(temporary);
+  }
+}
+
+int makeFile(const char* path) { return open(path, O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666); }
+
+int makeLockedFolder(const char* path) {
+  if (mkdir(path, 0777) != 0) return -1;
+  const int folder = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) rmdir(path);
+  return folder;
+}
+
+std::string temporaryFolder() {
+  std::error_code error;
+  const fs::path folder = fs::temp_directory_path(error);
+  return error ? "/tmp" : folder.string();
+}
+
+// Whether a file is one of a PendingFolder, which counts them together.
+bool isStaged(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  return folder.filename() == kWritten &&
+         folder.parent_path().filename().string().rfind(temporaryPrefix(kFolderKey), 0) == 0;
+}
+
+void requireOpenable(const std::string& path, const std::string& place) {
+  if (access(place.c_str(), W_OK) != 0) throw FileError(path, whyNotWritable(place, errno));
+}
+
+// Appends what stands in `from` to the device or pipe.
+void copyInto(const std::string& path, const std::string& place, const std::string& from) {
+  const auto fail = [&] { throw FileError(path, "cannot be written (" + systemMessage() + ")"); };
+  std::ifstream in(from, std::ios::binary);
+  const int out = open(place.c_str(), O_WRONLY | O_APPEND | O_NOCTTY | O_CLOEXEC);
+  if (out < 0) fail();
+  std::vector<char> buffer(1 << 16);
+  while (in.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), in.gcount() > 0)
+    for (std::streamsize at = 0; at < in.gcount();) {
+      const ssize_t size =
+          ::write(out, buffer.data() + at, static_cast<std::size_t>(in.gcount() - at));
+      if (size < 0 && errno == EINTR) continue;
+      if (size < 0) {
+        const int error = errno;
+        close(out);
+        errno = error;
+        fail();
+      }
+      at += size;
+    }
+  if (close(out) != 0) fail();
+}
+
+// The file's permissions stay as they were.
+void keepMode(int temporary, const std::string& place) {
+  struct stat old {};
+  if (stat(place.c_str(), &old) == 0 && fchmod(temporary, old.st_mode & 0777) != 0) errno = 0;
+}
+
+void removeFolders(const std::vector<std::string>& made) noexcept {
+  for (auto folder = made.rbegin(); folder != made.rend(); ++folder) {
+    rmdir(folder->c_str());
+    forgetUnfinished(*folder);
+  }
+}
+
+// Those that were made, outermost first.
+std::vector<std::string> makeFolders(const std::string& path) {
+  if (path.empty()) throw FileError("output", "the folder's path is empty; give a folder");
+  std::vector<std::string> made;
+  fs::path at;
+  for (const fs::path& part : fs::path(path)) {
+    at /= part;
+    rememberUnfinished(UnfinishedKind::folder, at.string());
+    if (mkdir(at.c_str(), 0777) == 0) {
+      made.push_back(at.string());
+      continue;
+    }
+    const int error = errno;
+    forgetUnfinished(at.string());
+    std::error_code ignored;
+    if (fs::is_directory(at, ignored)) continue;
+    const std::string why = error == EEXIST ? "a file has that name" : std::strerror(error);
+    removeFolders(made);
+    throw FileError(path, "cannot be made a folder (" +
+                              (at == fs::path(path) ? why : at.string() + ": " + why) +
+                              "); choose another place");
+  }
+  return made;
 }
 
 }  // namespace
 
 PendingFile::PendingFile(const std::string& path) : path_(path) {
-  if (path.empty()) throw FileError("output", "the path is empty; give a file name");
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored))
-    throw FileError(path, "is a folder; give a file name");
-  temporary_ = temporaryName(path);
-  remember(temporary_);
-  const int file = open(temporary_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
-  if (file < 0) {
-    const std::string why = systemMessage();
-    forget(temporary_);
-    throw FileError(path, "cannot be written (" + why + "); choose a folder that is writable");
-  }
-  close(file);
+  const OutputPlace place = outputPlace(path);
+  place_ = place.path;
+  through_ = place.through;
+  if (through_) requireOpenable(path, place_);
+  const std::string folder = through_ ? temporaryFolder() : folderOf(place_);
+  const std::string key = fs::path(place_).filename().string();
+  clearLeftBehind(folder, temporaryPrefix(key));
+  lock_ = makeLocked(path, UnfinishedKind::file, folder, key, temporary_, makeFile);
 }
 
 PendingFile::~PendingFile() {
   if (!committed_) unlink(temporary_.c_str());
-  forget(temporary_);
+  forgetUnfinished(temporary_);
+  close(lock_);
 }
 
 void PendingFile::commit() {
-  const int file = open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool synced = file >= 0 && fsync(file) == 0;
-  const std::string why = synced ? "" : systemMessage();
-  if (file >= 0) close(file);
-  if (!synced) throw FileError(path_, "cannot be written to disk (" + why + "); free some space");
-  if (rename(temporary_.c_str(), path_.c_str()) != 0)
+  if (through_) {
+    copyInto(path_, place_, temporary_);
+    countInPlace();
+    return;
+  }
+  if (fsync(lock_) != 0)
+    throw FileError(path_, "cannot be written to disk (" + systemMessage() + "); free some space");
+  keepMode(lock_, place_);
+  const CommitGuard guard;
+  if (rename(temporary_.c_str(), place_.c_str()) != 0)
     throw FileError(path_, "cannot be put in place (" + systemMessage() + ")");
   committed_ = true;
+  if (!isStaged(place_)) countInPlace();
 }
 
+// The temporary folder beside files that appear together: what is new, and what that replaces.
+struct PendingFolder::Staging {
+  std::string parent, path;
+  int lock = -1;
+
+  // Of what goes into devices and pipes (`folder` is empty) the machine's temporary folder.
+  Staging(const std::string& folder, const std::string& named) : parent(folder) {
+    const std::string place = folder.empty() ? temporaryFolder() : folder;
+    clearLeftBehind(place, temporaryPrefix(kFolderKey));
+    lock = makeLocked(named, UnfinishedKind::tree, place, kFolderKey, path, makeLockedFolder);
+    if (mkdir(at(kWritten).c_str(), 0777) != 0) {
+      const int error = errno;
+      remove();
+      throw FileError(named, whyNotWritable(at(kWritten), error));
+    }
+  }
+  ~Staging() { remove(); }
+  Staging(const Staging&) = delete;
+  Staging& operator=(const Staging&) = delete;
+
+  std::string at(const char* what) const { return path + "/" + what; }
+  void remove() noexcept {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+    forgetUnfinished(path);
+    close(lock);
+  }
+};
+
 PendingFolder::PendingFolder(const std::string& folder)
-    : folder_(folder), made_(makeFolder(folder)) {
+    : folder_(folder), made_(makeFolders(folder)) {
   try {
-    requireWritable((std::filesystem::path(folder) / "innermap").string());
+    clearLeftBehind(folder, temporaryPrefix(kFolderKey));
+    requireWritable((fs::path(folder) / "innermap").string());
   } catch (...) {
-    if (made_) rmdir(folder_.c_str());
+    removeFolders(made_);
     throw;
   }
 }
 
 PendingFolder::~PendingFolder() {
-  for (const auto& [temporary, final] : files_) {
-    unlink(temporary.c_str());
-    forget(temporary);
-  }
-  if (made_) rmdir(folder_.c_str());
+  stagings_.clear();
+  removeFolders(made_);
+}
+
+PendingFolder::Staging& PendingFolder::stagingFor(const std::string& folder) {
+  for (const auto& staging : stagings_)
+    if (staging->parent == folder) return *staging;
+  stagings_.push_back(std::make_unique<Staging>(folder, folder_));
+  return *stagings_.back();
 }
 
 void PendingFolder::write(const std::string& name,
                           const std::function<void(const std::string&)>& body) {
-  const std::filesystem::path folder(folder_);
-  const std::string temporary =
-                        (folder / (".part-" + std::to_string(getpid()) + "-" + name)).string(),
-                    final = (folder / name).string();
-  remember(temporary);
-  files_.emplace_back(temporary, final);
+  File file;
+  file.path = (fs::path(folder_) / name).string();
+  const OutputPlace place = outputPlace(file.path);
+  file.place = place.path;
+  file.through = place.through;
+  if (place.through) requireOpenable(file.path, file.place);
+  const Staging& staging = stagingFor(place.through ? "" : folderOf(place.path));
+  // Writers go by the ending, which a link's target may not have.
+  const fs::path placed = fs::path(place.path).filename();
+  const std::string written =
+      placed.extension() == fs::path(name).extension() ? placed.string() : name;
+  file.temporary = staging.at(kWritten) + "/" + written;
+  file.replaced = staging.at(kReplaced) + "/" + written;
   try {
-    body(temporary);
+    body(file.temporary);
   } catch (const FileError& error) {
-    const std::string what = error.what(), prefix = temporary + ": ";
+    const std::string what = error.what(), prefix = file.temporary + ": ";
     if (what.rfind(prefix, 0) != 0) throw;
-    throw FileError(final, what.substr(prefix.size()));
+    throw FileError(file.path, what.substr(prefix.size()));
+  }
+  files_.push_back(std::move(file));
+}
+
+void PendingFolder::putInPlace(const File& file) {
+  const auto fail = [&] {
+    throw FileError(file.path, "cannot be put in place (" + systemMessage() + ")");
+  };
+  if (file.through) return copyInto(file.path, file.place, file.temporary);
+  // A second name for the old file, where the disk has such: there is no moment without one then.
+  if (link(file.place.c_str(), file.replaced.c_str()) != 0 && errno != ENOENT &&
+      rename(file.place.c_str(), file.replaced.c_str()) != 0)
+    fail();
+  if (rename(file.temporary.c_str(), file.place.c_str()) != 0) {
+    const int error = errno;
+    rename(file.replaced.c_str(), file.place.c_str());
+    errno = error;
+    fail();
   }
 }
 
-void PendingFolder::commit() {
-  for (const auto& [temporary, final] : files_)
-    if (rename(temporary.c_str(), final.c_str()) != 0)
-      throw FileError(final, "cannot be put in place (" + systemMessage() + ")");
-  for (const auto& [temporary, final] : files_) forget(temporary);
-  files_.clear();
-  made_ = false;
+void PendingFolder::putBack(const File& file) noexcept {
+  if (file.through) return;
+  if (rename(file.replaced.c_str(), file.place.c_str()) != 0) unlink(file.place.c_str());
 }
 
-void removeUnfinishedFiles() noexcept {
-  for (Slot& slot : slots)
-    if (slot.ready) unlink(slot.path);
+void PendingFolder::commit() {
+  for (const File& file : files_) outputPlace(file.path);  // no folder has taken its name
+  const CommitGuard guard;
+  for (const auto& staging : stagings_)
+    if (!staging->parent.empty() && mkdir(staging->at(kReplaced).c_str(), 0777) != 0)
+      throw FileError(folder_, "cannot be written (" + systemMessage() + "); free some space");
+  // What cannot be put back comes last.
+  std::stable_partition(files_.begin(), files_.end(), [](const File& f) { return !f.through; });
+  std::size_t placed = 0;
+  try {
+    for (; placed < files_.size(); ++placed) putInPlace(files_[placed]);
+  } catch (...) {
+    while (placed > 0) putBack(files_[--placed]);
+    throw;
+  }
+  files_.clear();
+  stagings_.clear();
+  for (const std::string& folder : made_) forgetUnfinished(folder);
+  made_.clear();
+  countInPlace();
+}
+
+void removeUnfinishedFiles() noexcept { removeUnfinished(); }
+bool commitUnderWay() noexcept { return isCommitting(); }
+std::uint64_t outputsInPlace() noexcept { return countOfInPlace(); }
+
+std::string fileKey(const std::string& path) {
+  const auto numbers = [](const struct stat& status) {
+    return std::to_string(status.st_dev) + ":" + std::to_string(status.st_ino);
+  };
+  struct stat status {};
+  if (stat(path.c_str(), &status) == 0) return S_ISREG(status.st_mode) ? numbers(status) : "";
+  try {
+    const fs::path place = outputPlace(path).path;
+    const std::string folder = folderOf(place.string());
+    if (stat(folder.c_str(), &status) == 0)
+      return numbers(status) + "/" + place.filename().string();
+    return fs::weakly_canonical(fs::absolute(place)).string();
+  } catch (const std::exception&) {
+    return "";
+  }
+}
+
+bool isSameFile(const std::string& a, const std::string& b) {
+  const std::string key = fileKey(a);
+  return !key.empty() && key == fileKey(b);
 }
 
 void writeWholeFile(const std::string& path, const std::function<void(std::ostream&)>& write) {
@@ -153,17 +351,17 @@ void writeWholeFile(const std::string& path, const std::function<void(std::ostre
   pending.commit();
 }
 
-void requireWritable(const std::string& path) { PendingFile probe(path); }
+void requireWritable(const std::string& path) {
+  // To open a pipe and close it would be the end of the file to who reads it.
+  const OutputPlace place = outputPlace(path);
+  if (place.through) return requireOpenable(path, place.path);
+  const PendingFile probe(path);
+}
 
 bool makeFolder(const std::string& path) {
-  if (path.empty()) throw FileError("output", "the folder's path is empty; give a folder");
-  std::error_code error;
-  const bool made = std::filesystem::create_directories(path, error);
-  if (error || !std::filesystem::is_directory(path))
-    throw FileError(path, "cannot be made a folder (" +
-                              (error ? error.message() : std::string("a file has that name")) +
-                              "); choose another place");
-  return made;
+  const std::vector<std::string> made = makeFolders(path);
+  for (const std::string& folder : made) forgetUnfinished(folder);
+  return !made.empty();
 }
 
 }  // namespace innermap

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <iosfwd>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,8 +15,11 @@
 namespace innermap {
 
 // A file being written: it has a temporary name beside the final one until commit() renames it.
-// Destruction without commit() removes it. When the process must end at once (second Ctrl-C, time
-// limit on cancelling), removeUnfinishedFiles() removes all that exist.
+// Links are followed: what they name is replaced. Into a device, a pipe or an open file
+// (/dev/stdout) commit() copies what was written. Destruction without commit() removes it. When the
+// process must end at once (second Ctrl-C, time limit on cancelling), removeUnfinishedFiles()
+// removes all that exist; what a killed process left behind, the next PendingFile of the same path
+// removes.
 class PendingFile {
  public:
   // Throws FileError when the folder does not exist or is not writable, or when `path` is a folder.
@@ -30,12 +34,14 @@ class PendingFile {
   void commit();
 
  private:
-  std::string path_, temporary_;
-  bool committed_ = false;
+  std::string path_, place_, temporary_;
+  int lock_ = -1;  // the temporary, open
+  bool through_ = false, committed_ = false;
 };
 
-// Files that appear in a folder together or not at all. The folder is made when missing, and
-// removed again on destruction without commit() when it was made here.
+// Files that appear in a folder together or not at all. The folder and its parents are made when
+// missing, and removed again on destruction without commit() when they were made here and are
+// empty.
 class PendingFolder {
  public:
   // Throws FileError when the folder cannot be made or not be written to.
@@ -44,21 +50,41 @@ class PendingFolder {
   PendingFolder(const PendingFolder&) = delete;
   PendingFolder& operator=(const PendingFolder&) = delete;
 
-  // Calls `body` with the path where to write the file that will be called `name`: another name
-  // with the same extension. FileErrors of it name the final path.
+  // Calls `body` with the path where to write the file that will be called `name`: another folder,
+  // the same name. FileErrors of it name the final path.
   void write(const std::string& name, const std::function<void(const std::string&)>& body);
 
-  // Renames all files written. Throws FileError.
+  // Puts all files written in place, or throws FileError and none is. A process that is killed in
+  // the middle leaves the rest for the next PendingFolder of the same folder to put in place.
   void commit();
 
  private:
+  struct Staging;
+  struct File {
+    std::string temporary, path, place, replaced;
+    bool through = false;
+  };
+  Staging& stagingFor(const std::string& folder);
+  void putInPlace(const File& file);
+  void putBack(const File& file) noexcept;
+
   std::string folder_;
-  bool made_ = false;
-  std::vector<std::pair<std::string, std::string>> files_;  // temporary, final
+  std::vector<std::string> made_;  // outermost first
+  std::vector<std::unique_ptr<Staging>> stagings_;
+  std::vector<File> files_;
 };
 
-// Async-signal-safe; for the last moments of a process.
+// All three async-signal-safe. The first is for the last moments of a process.
 void removeUnfinishedFiles() noexcept;
+// While files are put in place; the process should not end then.
+bool commitUnderWay() noexcept;
+// How many files, and folders of files, this process has put in place.
+std::uint64_t outputsInPlace() noexcept;
+
+// The same for all paths of one regular file, through links; also of one that is not there yet.
+// Empty for devices, pipes, folders, and where no file can be.
+std::string fileKey(const std::string& path);
+bool isSameFile(const std::string& a, const std::string& b);
 
 // Writes through `write` into a PendingFile and commits. Throws FileError when the stream fails (a
 // full disk, say), naming the path.

@@ -5,9 +5,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <string>
 
 #include "innermap/core/error.h"
@@ -30,7 +32,17 @@ std::uint64_t availableMemory() {
     std::uint64_t limit = 0;
     if (file >> limit && limit > 0) bytes = std::min(bytes, limit);
   }
-  return bytes;
+  return std::min(bytes, addressSpaceLeft());
+}
+
+std::uint64_t addressSpaceLeft() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+    return std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const std::uint64_t used = pages * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+  return limit.rlim_cur > used ? limit.rlim_cur - used : 0;
 }
 
 std::uint64_t peakMemory() {
@@ -57,11 +69,15 @@ std::uint64_t parseBytes(const std::string& setting, const std::string& text) {
   };
   if (text.empty() || !(std::isdigit(static_cast<unsigned char>(text[0])) || text[0] == '.'))
     return fail();
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  std::string unit(end);
+  // Not strtod, which reads 0x10.
+  double value = 0;
+  const char* const last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), last, value);
+  if (error != std::errc()) return fail();
+  std::string unit(end, last);
   std::transform(unit.begin(), unit.end(), unit.begin(),
                  [](unsigned char c) { return std::tolower(c); });
+  if (unit == "e") return fail();  // an exponent forgotten, rather than an exabyte
   if (!unit.empty() && unit.back() == 'b') unit.pop_back();
   const bool binary = unit.size() == 2 && unit[1] == 'i';
   const double base = binary ? 1024 : 1000;

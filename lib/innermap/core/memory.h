@@ -24,8 +24,12 @@ struct SizeOption {
 void requireMemoryFor(const std::string& doing, std::uint64_t bytes, std::uint64_t limit,
                       const SizeOption& size, const std::string& otherwise);
 
-// Physical memory of the machine, or of the control group the process runs in, in bytes.
+// Physical memory of the machine, or of the control group the process runs in, or what the limit on
+// address space (ulimit -v) leaves: the least, in bytes.
 std::uint64_t availableMemory();
+
+// What the limit on address space leaves, in bytes; the largest number without a limit.
+std::uint64_t addressSpaceLeft();
 
 // The largest resident size this process has had, in bytes.
 std::uint64_t peakMemory();

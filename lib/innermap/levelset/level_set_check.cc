@@ -71,12 +71,12 @@ LevelSetCheck checkLevelSet(const FloatGrid& levelSet, const Solid& solid) {
   check.lostSurface = lostShare(levelSet, solid.surface());
   if (!(check.volumeError <= 0.01)) {
     check.warnings.push_back(
-        fmt::format("the level set's volume differs from the mesh's by {:.2g}%; use smaller voxels",
+        fmt::format("the level set's volume differs from the mesh's by {:.3g}%; use smaller voxels",
                     100 * check.volumeError));
   }
   if (check.lostSurface > 0.001) {
     check.warnings.push_back(
-        fmt::format("{:.2g}% of the surface is thinner than the voxels and lost in the level set; "
+        fmt::format("{:.3g}% of the surface is thinner than the voxels and lost in the level set; "
                     "use smaller voxels",
                     100 * check.lostSurface));
   }

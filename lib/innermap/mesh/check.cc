@@ -6,6 +6,8 @@
 #include <tuple>
 
 #include "innermap/core/detail/disjoint_sets.h"
+#include "innermap/mesh/detail/clean_triangles.h"
+#include "innermap/mesh/detail/orientation.h"
 #include "innermap/mesh/detail/topology.h"
 #include "innermap/mesh/self_intersection.h"
 
@@ -183,6 +185,15 @@ void checkCrossings(const Mesh& mesh, const CheckSettings& settings, MeshReport&
   std::sort(listed.begin(), listed.end(), before);
 }
 
+// As repair() finds it.
+void checkSides(const Mesh& mesh, MeshReport& report) {
+  const std::vector<Triangle> joined =
+      mapped(mesh.triangles, joinedVertices(mesh.vertices, mesh.triangles));
+  std::vector<Triangle> kept;
+  for (const int t : cleanTriangles(joined).kept) kept.push_back(joined[t]);
+  report.oneSidedEdges = orient(mesh.vertices, kept, sortedEdges(kept)).conflicts;
+}
+
 }  // namespace
 
 MeshReport checkMesh(const Mesh& mesh, const CheckSettings& settings) {
@@ -204,6 +215,7 @@ MeshReport checkMesh(const Mesh& mesh, const CheckSettings& settings) {
   checkComponents(mesh, report);
   throwIfCancelled(settings.progress);
   checkSolid(mesh, report);
+  checkSides(mesh, report);
   reportProgress(settings.progress, "checking", 0.5);
   if (settings.selfIntersections) checkCrossings(mesh, settings, report);
   reportProgress(settings.progress, "checking", 1);

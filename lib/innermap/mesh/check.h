@@ -31,6 +31,7 @@ struct MeshReport {
   std::vector<int> duplicateTriangles;   // same three vertices, same orientation, as an earlier one
   std::vector<int> oppositeTriangles;    // same three vertices, other orientation
   std::vector<int> degenerateTriangles;  // repeated vertex, or height under 1e-12 of the diagonal
+  std::size_t oneSidedEdges = 0;         // where no orientation agrees: the surface is one-sided
   std::size_t inconsistentEdges = 0;     // both triangles run along it in the same direction
   std::vector<int> looseVertices;
   std::size_t selfIntersections = 0;  // pairs of triangles

@@ -25,12 +25,21 @@ class Findings {
 };
 
 void addSolid(const MeshReport& report, Findings& out) {
-  const double size = report.box.diagonal();
-  const bool hollow = !(std::abs(report.volume) > 1e-9 * size * size * size);
+  const double size = report.box.diagonal(), cubed = size * size * size;
+  const bool computable = std::isfinite(cubed) && (size == 0 || cubed > 1e-300);
+  out.add("not_computable", computable ? 0 : 1,
+          fmt::format("the diagonal is {:.3g}, too {} to compute with", size,
+                      size > 1 ? "large" : "small"),
+          "the mesh is refused; scale it");
+  const bool hollow = computable && !(std::abs(report.volume) > 1e-12 * report.area * size);
   out.add("no_inside", hollow ? 1 : 0,
-          fmt::format("the volume enclosed is {:.3g}, nothing for a diagonal of {:.3g}",
-                      report.volume, size),
+          fmt::format("the volume enclosed is {:.3g}, nothing for an area of {:.3g}", report.volume,
+                      report.area),
           "there is no solid to map; give a mesh that bounds one");
+  out.add("one_sided", report.oneSidedEdges,
+          counted(report.oneSidedEdges, "edge where", "edges where") +
+              " no orientation agrees: the surface has one side, as a Moebius strip",
+          "there is no inside to map; give a mesh that bounds one");
   std::string crossings = counted(report.selfIntersections, "pair of triangles that passes",
                                   "pairs of triangles that pass") +
                           " through each other";
@@ -68,9 +77,11 @@ void addOrientation(const MeshReport& report, Findings& out) {
           counted(report.inconsistentEdges, "edge whose two triangles face",
                   "edges whose two triangles face") +
               " opposite ways",
-          "triangles are turned to agree with their neighbours before the solid is made");
+          report.oneSidedEdges > 0
+              ? "they cannot all be turned to agree"
+              : "triangles are turned to agree with their neighbours before the solid is made");
   const double size = report.box.diagonal();
-  const bool inverted = report.volume < -1e-9 * size * size * size;
+  const bool inverted = report.volume < -1e-12 * report.area * size;
   out.add("inside_out", inverted ? 1 : 0,
           fmt::format("the triangles face inward, the signed volume is {:.3g}", report.volume),
           "all triangles are turned before the solid is made; shading elsewhere may look wrong");

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "innermap/core/error.h"
@@ -13,6 +15,9 @@
 
 namespace innermap {
 namespace {
+
+// Of the volume over area times diagonal: what rounding may leave of nothing, and some more.
+constexpr double kLeastThickness = 1e-12;
 
 struct ShellEdge {
   int shell;
@@ -99,12 +104,15 @@ class Repair {
   void orientTriangles() {
     Orientation orientation =
         orient(mesh_.vertices, closed_.triangles, sortedEdges(closed_.triangles));
+    if (orientation.conflicts > 0)
+      hasNoInside(
+          fmt::format("it is one-sided, as a Moebius strip is: no way of turning its "
+                      "triangles makes all neighbours agree, not at {} of its edges",
+                      orientation.conflicts));
     turned_ = std::move(orientation.turned);
     note(static_cast<std::size_t>(std::count(turned_.begin(), turned_.end(), true)),
          "triangle turned to agree with its neighbours",
          "triangles turned to agree with their neighbours");
-    note(orientation.conflicts, "edge cut open, no orientation agrees there",
-         "edges cut open, no orientation agrees there");
     for (std::size_t t = 0; t < turned_.size(); ++t)
       closed_.triangles[t] = turnedIf(turned_[t], closed_.triangles[t]);
     closed_.shell = std::move(orientation.shell);
@@ -165,10 +173,19 @@ class Repair {
     Box3 box;
     for (const Triangle& t : closed_.triangles)
       for (const int v : t) box.add(closed_.positions[v]);
+    const double size = box.diagonal(), cubed = size * size * size;
+    if (!std::isfinite(cubed) || (size > 0 && cubed < std::numeric_limits<double>::min()))
+      throw DataError(fmt::format("{}: has a diagonal of {:.3g}, too {} to compute with; scale it",
+                                  mesh_.name.empty() ? "mesh" : mesh_.name, size,
+                                  size > 1 ? "large" : "small"));
     const std::vector<double> volumes = shellVolumes(closed_);
     const double volume = std::accumulate(volumes.begin(), volumes.end(), 0.0);
-    const double size = box.diagonal();
-    if (!(volume > 1e-9 * size * size * size))
+    double area = 0;
+    for (const Triangle& t : closed_.triangles) {
+      const Vec3& origin = closed_.positions[t[0]];
+      area += norm(cross(closed_.positions[t[1]] - origin, closed_.positions[t[2]] - origin)) / 2;
+    }
+    if (!(volume > kLeastThickness * area * size))
       hasNoInside(
           fmt::format("its surface, holes capped, encloses a volume of {:.3g} for a "
                       "diagonal of {:.3g}",

@@ -37,8 +37,9 @@ struct RepairSettings {
 // gets one triangle, longer ones a fan about their length-weighted centroid. Orientation:
 // neighbours over edges of two triangles are made to agree; a component whose inside then has
 // winding number -1 is turned; an inner shell that bounds a cavity is kept. Throws DataError when
-// no solid remains: every triangle degenerate, or the volume enclosed by the repaired mesh not
-// above 1e-9 of the diagonal cubed ("has no inside").
+// no solid remains ("has no inside"): every triangle degenerate, a surface with one side, or a
+// volume enclosed by the repaired mesh not above 1e-12 of its area times the diagonal, which is
+// what rounding leaves of it. Also for a diagonal whose cube is no number.
 //
 // Triangles without area but with three vertices are kept: they hold the surface together. Seams,
 // where files double vertices along texture borders, are joined where two boundary edges coincide

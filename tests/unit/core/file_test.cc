@@ -1,6 +1,8 @@
 #include "innermap/core/file.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -21,7 +23,7 @@ class FileTest : public ::testing::Test {
     fs::create_directories(folder_);
   }
   void TearDown() override { fs::remove_all(folder_); }
-  std::string at(const char* name) const { return (folder_ / name).string(); }
+  std::string at(const std::string& name) const { return (folder_ / name).string(); }
   std::size_t entries() const {
     return static_cast<std::size_t>(
         std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
@@ -92,6 +94,118 @@ TEST_F(FileTest, AFolderOfFilesAppearsTogether) {
   folder.commit();
   EXPECT_TRUE(fs::exists(at("out/a.png")));
   EXPECT_THROW(PendingFolder(at("out/a.png")), FileError);
+}
+
+TEST_F(FileTest, AFolderIsAllNewOrAllOld) {
+  const auto put = [&](const char* text) {
+    PendingFolder folder(at("out"));
+    for (const char* name : {"a", "b", "c"})
+      folder.write(name, [&](const std::string& path) {
+        writeWholeFile(path, [&](std::ostream& out) { out << text; });
+      });
+    // Comes between: the name is free when the file is written, taken when it is put in place.
+    if (std::string(text) == "new") {
+      fs::remove(at("out/c"));
+      fs::create_directory(at("out/c"));
+    }
+    folder.commit();
+  };
+  put("old");
+  EXPECT_THROW(put("new"), FileError);
+  for (const char* name : {"out/a", "out/b"}) {
+    std::string text;
+    std::ifstream(at(name)) >> text;
+    EXPECT_EQ(text, "old") << name;
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(at("out")), fs::directory_iterator()), 3);
+}
+
+TEST_F(FileTest, LinksAreFollowedAndPipesStay) {
+  fs::create_symlink("real", at("link"));
+  for (const char* text : {"one", "two"}) {
+    writeWholeFile(at("link"), [&](std::ostream& out) { out << text; });
+    EXPECT_TRUE(fs::is_symlink(at("link")));
+    std::string found;
+    std::ifstream(at("real")) >> found;
+    EXPECT_EQ(found, text);
+  }
+  ASSERT_EQ(mkfifo(at("pipe").c_str(), 0600), 0);
+  fs::create_symlink("pipe", at("to_pipe"));
+  const int reader = open(at("pipe").c_str(), O_RDWR);
+  EXPECT_NO_THROW(requireWritable(at("to_pipe")));
+  EXPECT_NO_THROW(writeWholeFile(at("to_pipe"), [](std::ostream& out) { out << "xyz"; }));
+  char got[8] = {};
+  EXPECT_EQ(read(reader, got, sizeof got), 3);
+  close(reader);
+  EXPECT_STREQ(got, "xyz");
+  EXPECT_TRUE(fs::is_fifo(at("pipe")));
+  fs::create_symlink("circle", at("circle"));
+  EXPECT_THROW(requireWritable(at("circle")), FileError);
+}
+
+TEST_F(FileTest, OneFileHasOneKey) {
+  writeWholeFile(at("a"), [](std::ostream&) {});
+  fs::create_symlink("a", at("soft"));
+  fs::create_hard_link(at("a"), at("hard"));
+  fs::create_symlink("none", at("dangling"));
+  for (const char* name : {"soft", "hard", "./a"}) EXPECT_TRUE(isSameFile(at("a"), at(name)));
+  EXPECT_TRUE(isSameFile(at("none"), at("dangling")));
+  EXPECT_TRUE(isSameFile(at("no/where"), at("no/./where")));
+  EXPECT_FALSE(isSameFile(at("none"), at("a")));
+  EXPECT_FALSE(isSameFile(at("none"), at("other")));
+  EXPECT_FALSE(isSameFile("/dev/null", "/dev/null"));
+}
+
+TEST_F(FileTest, WordsForWhatCannotBeWritten) {
+  const auto said = [](const std::string& path) -> std::string {
+    try {
+      requireWritable(path);
+    } catch (const FileError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(said(at("no/file")).find("does not exist; make it"), std::string::npos);
+  writeWholeFile(at("a"), [](std::ostream&) {});
+  EXPECT_NE(said(at("a/file")).find("is a file, not a folder"), std::string::npos);
+  EXPECT_EQ(said(at(std::string(255, 'n'))), "");
+  EXPECT_NE(said(at(std::string(256, 'n'))).find("256 bytes"), std::string::npos);
+}
+
+TEST_F(FileTest, WhatOthersLeftGoesButWhatIsInUseStays) {
+  const PendingFile mine(at("a"));
+  const std::string left = mine.temporaryPath() + "x";
+  std::ofstream(left) << "left";
+  const PendingFile second(at("a"));
+  EXPECT_FALSE(fs::exists(left));
+  EXPECT_TRUE(fs::exists(mine.temporaryPath()));
+}
+
+TEST_F(FileTest, ACommitThatWasCutOffIsFinished) {
+  std::string staging;
+  {
+    PendingFolder folder(at("out"));
+    folder.write("a", [&](const std::string& path) {
+      staging = fs::path(path).parent_path().parent_path().string();
+      writeWholeFile(path, [](std::ostream& out) { out << "old"; });
+    });
+    folder.commit();
+  }
+  // As after a kill between two renames.
+  for (const char* part : {"/new", "/replaced"}) fs::create_directories(staging + part);
+  std::ofstream(staging + "/new/a") << "new";
+  { const PendingFolder next(at("out")); }
+  std::string text;
+  std::ifstream(at("out/a")) >> text;
+  EXPECT_EQ(text, "new");
+  EXPECT_FALSE(fs::exists(staging));
+}
+
+TEST_F(FileTest, UnfinishedFoldersGoWithWhatTheyHold) {
+  PendingFolder folder(at("one/two"));
+  folder.write("a", [](const std::string& path) { std::ofstream(path) << "x"; });
+  removeUnfinishedFiles();
+  EXPECT_EQ(entries(), 0u);
 }
 
 TEST_F(FileTest, ErrorsInAFolderNameTheFinalFile) {

@@ -15,10 +15,13 @@ TEST(Memory, SizesAreRead) {
   EXPECT_EQ(parseBytes("m", "2GiB"), 2147483648u);
   EXPECT_EQ(parseBytes("m", "12345"), 12345u);
   EXPECT_EQ(parseBytes("m", "64kb"), 64000u);
+  EXPECT_EQ(parseBytes("m", "1e9"), 1000000000u);
+  EXPECT_EQ(parseBytes("m", "0.001EB"), 1000000000000000u);
 }
 
 TEST(Memory, WhatIsNoSizeIsRefused) {
-  for (const char* text : {"", "x", "-1", "1Q", "5iB", "nan", "inf", "1e30", "1GBs", " 1"})
+  for (const char* text : {"", "x", "-1", "1Q", "5iB", "nan", "inf", "1e30", "1GBs", " 1", "1e",
+                           "1E", "0x10", "0x10M", "1e999"})
     EXPECT_THROW(parseBytes("--max-memory", text), SettingError) << text;
 }
 

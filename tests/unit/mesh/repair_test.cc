@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
+#include "innermap/mesh/check.h"
 #include "innermap/mesh/detail/winding_number.h"
 #include "innermap/mesh/read.h"
 #include "mesh/test_meshes.h"
@@ -181,7 +183,7 @@ TEST(Repair, SeamsAreJoinedNotCapped) {
   EXPECT_NEAR(windingAt(twice.mesh, {0.5, 0.4, 0.3}), 2, 1e-9);
 }
 
-TEST(Repair, AMoebiusStripIsCutAndHasNoInsideOrAWholeOne) {
+TEST(Repair, AMoebiusStripIsRefusedByName) {
   Mesh mesh;
   constexpr int kCount = 30;
   for (int i = 0; i < kCount; ++i)
@@ -195,11 +197,43 @@ TEST(Repair, AMoebiusStripIsCutAndHasNoInsideOrAWholeOne) {
     mesh.triangles.insert(mesh.triangles.end(), {{a, b, d}, {a, d, c}});
   }
   try {
-    const RepairedMesh repaired = repair(mesh);
-    expectSound(repaired, mesh);
-    EXPECT_NE(repaired.notes.front().find("cut open"), std::string::npos);
+    repair(mesh);
+    FAIL();
   } catch (const DataError& error) {
-    EXPECT_NE(std::string(error.what()).find("no inside"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("one-sided"), std::string::npos) << error.what();
+  }
+  const std::vector<Finding> found = findings(checkMesh(mesh));
+  EXPECT_TRUE(std::any_of(found.begin(), found.end(),
+                          [](const Finding& f) { return f.name == "one_sided"; }));
+}
+
+TEST(Repair, FarApartAndThinIsAnInside) {
+  Mesh two = shapes::icosphere(2);
+  const int count = static_cast<int>(two.vertices.size());
+  const Mesh one = two;
+  for (const Vec3& p : one.vertices) two.vertices.push_back(p + Vec3{1e6, 0, 0});
+  for (const Triangle& t : one.triangles)
+    two.triangles.push_back({t[0] + count, t[1] + count, t[2] + count});
+  EXPECT_NO_THROW(repair(two));
+  Mesh needle = one, plate = one;
+  for (Vec3& p : needle.vertices) p.x *= 1e5;
+  for (Vec3& p : plate.vertices) p.x *= 1e-9;
+  EXPECT_NO_THROW(repair(needle));
+  EXPECT_NO_THROW(repair(plate));
+}
+
+TEST(Repair, WhatCannotBeComputedIsSaid) {
+  for (const double scale : {1e200, 1e103, 1e-110}) {
+    Mesh mesh = shapes::icosphere(1);
+    for (Vec3& p : mesh.vertices) p = scale * p;
+    try {
+      repair(mesh);
+      FAIL() << scale;
+    } catch (const DataError& error) {
+      EXPECT_NE(std::string(error.what()).find("to compute with; scale it"), std::string::npos)
+          << error.what();
+    }
+    EXPECT_EQ(findings(checkMesh(mesh)).front().name, "not_computable");
   }
 }
 

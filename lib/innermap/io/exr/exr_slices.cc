@@ -167,8 +167,8 @@ ExrSliceResult writeExrSlices(const std::string& path, const openvdb::GridPtrVec
         result.clamped += pixels.clamped();
       }
     });
+    reportProgress(settings.progress, "writing slices", 1);
   });
-  reportProgress(settings.progress, "writing slices", 1);
   return result;
 }
 

@@ -86,8 +86,8 @@ void writeVdb(const std::string& path, const openvdb::GridPtrVec& grids,
     } catch (const openvdb::Exception& error) {
       throw FileError(path, fmt::format("cannot be written ({})", error.what()));
     }
+    reportProgress(settings.progress, "writing the VDB file", 1);
   });
-  reportProgress(settings.progress, "writing the VDB file", 1);
 }
 
 }  // namespace innermap

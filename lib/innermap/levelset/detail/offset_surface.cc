@@ -1,5 +1,6 @@
 #include "innermap/levelset/detail/offset_surface.h"
 
+#include <fmt/format.h>
 #include <openvdb/tools/SignedFloodFill.h>
 #include <openvdb/tools/VolumeToMesh.h>
 
@@ -139,7 +140,12 @@ std::vector<char> outsideVertices(const Solid& solid, const Mesh& mesh,
 
 Mesh offsetSurface(const Solid& solid, const OffsetSettings& settings) {
   if (!(settings.distance >= 1e-4 && settings.distance <= 2)) {
-    throw SettingError("distance", "must lie between 0.0001 and 2 (fraction of the diagonal)");
+    throw SettingError("distance",
+                       fmt::format("must lie between 0.0001 and 2 (fraction of the diagonal), not "
+                                   "{:.3g}; where it follows from the spacing of the charges, the "
+                                   "solid is too thin or its parts too far apart for so many: give "
+                                   "a distance, or fewer charges, or each part by itself",
+                                   settings.distance));
   }
   const double distance = settings.distance * solid.diagonal();
   Mesh mesh = settings.distance >= kFinest

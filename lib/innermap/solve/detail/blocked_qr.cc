@@ -9,6 +9,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/solve/detail/blas_kernels.h"
+#include "innermap/solve/detail/blas_memory.h"
 
 extern "C" {
 int openblas_get_num_threads();
@@ -40,6 +41,7 @@ void applyPanel(const Matrix& factors, const Matrix& blocks, std::size_t row, st
 }  // namespace
 
 SingleThreadedBlas::SingleThreadedBlas() : before_(openblas_get_num_threads()) {
+  requireBlasMemory();
   openblas_set_num_threads(1);
 }
 SingleThreadedBlas::~SingleThreadedBlas() { openblas_set_num_threads(before_); }

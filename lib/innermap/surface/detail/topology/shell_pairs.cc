@@ -29,10 +29,14 @@ std::string form(const SurfaceShells& s, int shell) {
   return out;
 }
 
+// "1 closed surface outside and 1 inside it, of 0, 0 handles".
 std::string forms(const SurfaceShells& s) {
-  std::string out;
-  for (const int r : childrenOf(s, -1)) out += (out.empty() ? "" : ", ") + form(s, r);
-  return out;
+  std::vector<int> handles;
+  for (const auto& shell : s.shells) handles.push_back(shell.genus);
+  const std::size_t outer = childrenOf(s, -1).size(), inner = s.shells.size() - outer;
+  return fmt::format("{} closed surface{}{}, of {} handle{}", outer, outer == 1 ? "" : "s",
+                     inner == 0 ? std::string() : fmt::format(" and {} inside", inner),
+                     fmt::join(handles, ", "), handles.size() == 1 && handles[0] == 1 ? "" : "s");
 }
 
 class Pairing {
@@ -110,7 +114,7 @@ std::vector<int> pairShells(const SurfaceShells& a, const SurfaceShells& b,
           "without tears; close or open a handle of one of them",
           a.mesh.name, a.shells[0].genus, b.mesh.name, b.shells[0].genus));
     throw DataError(fmt::format(
-        "{} has the closed shells {} and {} has {} (genus of each, those inside it in brackets): "
+        "{} has {}; {} has {}: "
         "solids of different topology have no map without tears; make their shells alike",
         a.mesh.name, forms(a), b.mesh.name, forms(b)));
   }
