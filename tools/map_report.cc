@@ -40,9 +40,10 @@ void reportSolve(const MapSolve& solve, Report& report) {
     report.set("solve.distance", solve.distance);
   const bool adaptive = !solve.levels.empty();
   if (adaptive) reportAdaptive(solve, report);
-  if (adaptive || solve.method == "iterative")
+  if (adaptive || solve.method == "iterative") {
     report.set("solve.residuals", solve.residuals);
-  else
+    report.set("solve.product_error", solve.productError);
+  } else
     report.set("solve.condition", solve.condition);
   report.set("solve.weight_norm", solve.weightNorm);
   if (!adaptive) report.set("solve.held_out", solve.heldOut);

@@ -27,8 +27,9 @@ constexpr double kFewFolds = 4e-4;
 // What a thousand charges fold is near what the whole fit does, where that is so much: no need to
 // go on to it.
 constexpr double kHopelessFolds = 2 * kManyFolds;
-constexpr double kWorthIt = 0.2;       // of one map's folds may be left by steps
-constexpr double kSumAccuracy = 1e-7;  // of the target's diagonal, of what is checked inside
+constexpr double kWorthIt = 0.2;         // of one map's folds may be left by steps
+constexpr double kSumAccuracy = 1e-7;    // of the target's diagonal, of what is checked inside
+constexpr double kNotedProducts = 1e-6;  // ten times what products are asked for
 constexpr PointCounts kVertexTrial{kFirstSources, 4 * kFirstSources, kFirstSources};
 
 PointCounts pointCounts(const ShellSettings& shell) {
@@ -72,6 +73,7 @@ Outcome outcomeOf(const FitResult& fit, const FitProblem& problem, const ShellSe
   s.regularization = fit.regularization;
   s.condition = fit.condition;
   s.weightNorm = fit.weightNorm;
+  s.productError = fit.productError;
   s.iterations = fit.iterative ? static_cast<int>(fit.residuals.size()) - 1 : 0;
   s.residuals = fit.residuals;
   s.trials = fit.trials;
@@ -89,6 +91,7 @@ Outcome outcomeOf(const AdaptiveResult& fit, double unit) {
   s.collocation = fit.collocation;
   s.distance = fit.levels.front().distance;
   s.weightNorm = fit.weightNorm;
+  s.productError = fit.productError;
   s.iterations = static_cast<int>(fit.residuals.size()) - 1;
   s.residuals = fit.residuals;
   s.levels = fit.levels;
@@ -377,6 +380,14 @@ void noteSteps(MapFit& fit, double singleFolded, std::size_t singleSources) {
       100 * fit.inside.outside));
 }
 
+void noteProducts(MapFit& fit) {
+  if (fit.solve.productError > kNotedProducts)
+    fit.notes.push_back(
+        fmt::format("the charges nearly cancel: their sums were exact to {:.1g} of the values, as "
+                    "far as rounding lets them be; more collocation points a charge help",
+                    fit.solve.productError));
+}
+
 void warnOfError(MapFit& fit) {
   if (fit.error.max > kDoubtfulError)
     fit.warnings.push_back(
@@ -449,6 +460,7 @@ MapFit fitMap(BoundaryPair boundary, const FitMapSettings& settings) {
              {},
              std::move(fitter.warnings),
              std::move(fitter.seconds)};
+  noteProducts(fit);
   noteSteps(fit, fitter.singleFolded, fitter.singleSources);
   warnOfError(fit);
   return fit;

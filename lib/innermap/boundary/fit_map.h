@@ -73,6 +73,7 @@ struct MapSolve {
   double radiusRatio = 0;                    // of a sphere
   double regularization = 0, condition = 0;  // of a dense solve
   double weightNorm = 0;
+  double productError = 0;  // of iterative solves: the sums', fraction of the target's extent
   int iterations = 0;
   std::vector<double> residuals;      // rms at the collocation points, of iterative solves
   std::vector<DistanceTrial> trials;  // that chose the distance

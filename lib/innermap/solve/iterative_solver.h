@@ -44,7 +44,10 @@ struct IterativeSolution {
   int iterations = 0;
   std::vector<double> residuals;  // rms at the collocation points before and after each iteration
   double weightNorm = 0;          // as in DenseSolution
-  Matrix residual;                // values less field at the collocation points, #collocation x #K
+  // The largest error of a product, fraction of the values' span: more than settings.accuracy where
+  // weights nearly cancel and their number leaves no plain sums; see FastSum::at. 0 of plain sums.
+  double productError = 0;
+  Matrix residual;  // values less field at the collocation points, #collocation x #K
 };
 
 // What is built serves any number of right-hand sides; const functions may be called from several
