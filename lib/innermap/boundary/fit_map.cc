@@ -7,6 +7,7 @@
 
 #include "innermap/boundary/detail/boundary_check.h"
 #include "innermap/boundary/detail/inside_check.h"
+#include "innermap/boundary/detail/map_certificate.h"
 #include "innermap/boundary/detail/pair_problem.h"
 #include "innermap/boundary/detail/step_fit.h"
 #include "innermap/boundary/surface_problem.h"
@@ -27,9 +28,8 @@ constexpr double kFewFolds = 4e-4;
 // What a thousand charges fold is near what the whole fit does, where that is so much: no need to
 // go on to it.
 constexpr double kHopelessFolds = 2 * kManyFolds;
-constexpr double kWorthIt = 0.2;         // of one map's folds may be left by steps
-constexpr double kSumAccuracy = 1e-7;    // of the target's diagonal, of what is checked inside
-constexpr double kNotedProducts = 1e-6;  // ten times what products are asked for
+constexpr double kWorthIt = 0.2;       // of one map's folds may be left by steps
+constexpr double kSumAccuracy = 1e-7;  // of the target's diagonal, of what is checked inside
 constexpr PointCounts kVertexTrial{kFirstSources, 4 * kFirstSources, kFirstSources};
 
 PointCounts pointCounts(const ShellSettings& shell) {
@@ -44,6 +44,7 @@ PointCounts pointCounts(const ShellSettings& shell) {
 struct Outcome {
   ComposedMap map;
   BoundaryError error;
+  MapCertificate certificate;
   double collocationError = 0;
   bool smooth = false;
   std::optional<double> verticesRms;
@@ -56,7 +57,7 @@ struct Outcome {
 // A fit with a number of charges.
 Outcome outcomeOf(const FitResult& fit, const FitProblem& problem, const ShellSettings& shell) {
   const BoundaryData& data = fit.smooth ? problem.vertices : problem.surface;
-  Outcome out{HarmonicMap(fit.field), {}, 0, fit.smooth, {}, {}, {}, {}, {}};
+  Outcome out{HarmonicMap(fit.field), {}, {}, 0, fit.smooth, {}, {}, {}, {}, {}};
   MapSolve& s = out.solve;
   s.method = fit.iterative                                  ? "iterative"
              : shell.method == Regularization::truncatedSvd ? "tsvd"
@@ -82,7 +83,7 @@ Outcome outcomeOf(const FitResult& fit, const FitProblem& problem, const ShellSe
 
 // A fit to a tolerance.
 Outcome outcomeOf(const AdaptiveResult& fit, double unit) {
-  Outcome out{HarmonicMap(fit.field), fit.error, 0, false, {}, {}, {}, {}, {}};
+  Outcome out{HarmonicMap(fit.field), fit.error, {}, 0, false, {}, {}, {}, {}, {}};
   out.collocationError =
       std::pow(fit.residuals.back() / unit, 2) * static_cast<double>(fit.collocation);
   MapSolve& s = out.solve;
@@ -133,6 +134,7 @@ class MapFitter {
         timed(seconds, "fit", [&] { return fitField(problem, fitSettings(shell, settings_)); });
     Outcome out = outcomeOf(fit, problem, shell);
     measure(problem, out);
+    certify(out);
     return out;
   }
 
@@ -151,6 +153,7 @@ class MapFitter {
         end = fit.end;
         out.emplace(outcomeOf(fit, pair_.target.diagonal));
       });
+      if (end != AdaptiveEnd::stopped) certify(*out);
     }
     out->tolerance = ToleranceOutcome{tolerance, out->error.p99, out->error.p99 <= tolerance, end};
     return std::move(*out);
@@ -283,9 +286,10 @@ class MapFitter {
     s.maxMemory = settings_.maxMemory;
     s.progress = settings_.progress;
     StepFit fit = timed(seconds, "steps", [&] { return fitInSteps(pair_, inside(), s); });
-    Outcome out{std::move(fit.map), fit.error, 0, false, {}, {}, {}, {}, std::move(fit.steps)};
+    Outcome out{std::move(fit.map), fit.error, {}, 0, false, {}, {}, {}, {}, std::move(fit.steps)};
     out.solve.method = out.solve.placement = "steps";
     out.solve.sources = out.solve.rank = out.map.sources();
+    certify(out);
     timed(seconds, "inside", [&] { out.inside = figuresOf(out); });
     out.tolerance =
         ToleranceOutcome{settings_.tolerance, out.error.p99, out.error.p99 <= settings_.tolerance,
@@ -307,14 +311,17 @@ class MapFitter {
     Outcome out = outcomeOf(*fit, problem, shell);
     measure(problem, out);
     if (out.error.p99 > tolerance && settings_.interpolation == Interpolation::automatic) return {};
+    certify(out);
     return out;
   }
 
+  // With a number of charges.
   void measure(const FitProblem& problem, Outcome& out) {
     timed(seconds, "certificate", [&] {
+      BoundaryErrorSettings e;
+      e.accuracy = certificateAccuracy(out.map, pair_, settings_.seed, settings_.progress);
+      e.progress = settings_.progress;
       const auto error = [&](const Points& points, const Matrix& values) {
-        BoundaryErrorSettings e;
-        e.progress = settings_.progress;
         return measureBoundaryError(out.map.steps().front().field(), points, values,
                                     pair_.target.diagonal, e);
       };
@@ -328,6 +335,19 @@ class MapFitter {
       out.collocationError = error(data.points, data.values).sumOfSquares;
       if (out.smooth) out.verticesRms = error(data.heldOut, data.heldOutValues).rms;
     });
+  }
+
+  // Of what is kept: the largest error is looked for. What is known by more exact sums stays.
+  void certify(Outcome& out) {
+    MapCertificateSettings s;
+    s.smooth = out.smooth;
+    s.seed = settings_.seed;
+    s.progress = settings_.progress;
+    out.certificate = timed(seconds, "certificate", [&] { return certifyMap(out.map, pair_, s); });
+    const BoundaryError& found = out.certificate.error;
+    out.error.max = std::max(out.error.max, found.max);
+    out.error.bound = std::max(out.error.max, found.bound);
+    out.error.searched = found.searched;
   }
 
   const BoundaryPair& pair_;
@@ -356,11 +376,19 @@ Facts factsOf(const BoundaryPair& pair, const Outcome& out, std::uint64_t seed) 
               {"boundary_error_p99", number(out.error.p99)},
               {"boundary_error_max", number(out.error.max)},
               {"boundary_error_samples", std::to_string(out.error.samples)},
+              {"boundary_error_p99_bound", number(out.error.p99Bound)},
+              {"boundary_error_bound", number(out.error.bound)},
+              {"boundary_error_confidence", number(kCertificateConfidence)},
+              {"boundary_error_smooth_bound", number(out.certificate.smoothBound)},
               {"c_error", number(out.collocationError)}};
   if (out.solve.radiusRatio > 0)
     facts.emplace_back("radius_ratio", number(out.solve.radiusRatio));
   else
     facts.emplace_back("distance", number(out.solve.distance));
+  if (out.smooth)
+    facts.emplace_back("boundary_error_vertices_max", number(out.certificate.verticesMax));
+  else
+    facts.emplace_back("boundary_error_triangles", number(out.certificate.triangles));
   if (!out.steps.empty()) facts.emplace_back("steps", std::to_string(out.steps.size()));
   if (out.inside.samples > 0) facts.emplace_back("folded", number(out.inside.folded));
   if (out.tolerance) {
@@ -381,7 +409,7 @@ void noteSteps(MapFit& fit, double singleFolded, std::size_t singleSources) {
 }
 
 void noteProducts(MapFit& fit) {
-  if (fit.solve.productError > kNotedProducts)
+  if (fit.solve.productError > 0)
     fit.notes.push_back(
         fmt::format("the charges nearly cancel: their sums were exact to {:.1g} of the values, as "
                     "far as rounding lets them be; more collocation points a charge help",
@@ -453,6 +481,9 @@ MapFit fitMap(BoundaryPair boundary, const FitMapSettings& settings) {
              out.collocationError,
              out.smooth,
              out.verticesRms,
+             out.smooth ? std::optional(out.certificate.verticesMax) : std::nullopt,
+             out.smooth ? std::nullopt : std::optional(out.certificate.triangles),
+             out.certificate.smoothBound,
              out.tolerance,
              std::move(out.solve),
              std::move(out.inside),

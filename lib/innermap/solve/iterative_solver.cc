@@ -268,7 +268,11 @@ FieldSamples IterativeSolver::Levels::image(const Matrix& weights, const Points&
   FastSumSettings s;
   s.accuracy = std::clamp(accuracy, kFinestProduct, kCoarsestProduct);
   s.progress = settings_.progress;
-  return FastSum(sources, weights).at(points, s);
+  FieldSamples out = FastSum(sources, weights).at(points, s);
+  // A channel's values are at most so much larger than all.
+  const double asked = s.accuracy * std::sqrt(static_cast<double>(weights.columns()));
+  if (out.error <= asked * rms(out.values)) out.error = 0;
+  return out;
 }
 
 // Adds `weights`, those of the unknowns `rows`, as directions, and follows them. `rows` starts with

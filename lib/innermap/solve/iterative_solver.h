@@ -44,8 +44,9 @@ struct IterativeSolution {
   int iterations = 0;
   std::vector<double> residuals;  // rms at the collocation points before and after each iteration
   double weightNorm = 0;          // as in DenseSolution
-  // The largest error of a product, fraction of the values' span: more than settings.accuracy where
-  // weights nearly cancel and their number leaves no plain sums; see FastSum::at. 0 of plain sums.
+  // The largest error of a product that was less exact than asked for, fraction of the values'
+  // span: where weights nearly cancel and their number leaves no plain sums; see FastSum::at. 0:
+  // none.
   double productError = 0;
   Matrix residual;  // values less field at the collocation points, #collocation x #K
 };

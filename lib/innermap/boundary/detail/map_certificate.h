@@ -1,0 +1,37 @@
+// The certificate of a map, against its boundary's triangles and against what these may stand for.
+#pragma once
+
+#include <cstdint>
+
+#include "innermap/boundary/boundary_pair.h"
+#include "innermap/core/progress.h"
+#include "innermap/field/boundary_error.h"
+#include "innermap/field/harmonic_map.h"
+
+namespace innermap {
+
+struct MapCertificateSettings {
+  bool smooth = false;  // the map was fitted to the vertices, not to the triangles
+  std::uint64_t seed = 1;
+  Progress* progress = nullptr;
+};
+
+// Fractions of the target's diagonal.
+struct MapCertificate {
+  BoundaryError error;     // from the triangles
+  double triangles = 0;    // about the largest distance of these from smooth data, unless `smooth`
+  double verticesMax = 0;  // the largest at the vertices, if `smooth`
+  // The map is nowhere farther from a smooth map through the vertices, with kCertificateConfidence.
+  double smoothBound = 0;
+};
+
+// Throws Cancelled.
+MapCertificate certifyMap(const ComposedMap& map, const BoundaryPair& pair,
+                          const MapCertificateSettings& settings = {});
+
+// Accuracy of sums, world units of the target, that changes no digit that counts of errors which
+// are as large as the map's. Throws Cancelled.
+double certificateAccuracy(const ComposedMap& map, const BoundaryPair& pair, std::uint64_t seed,
+                           Progress* progress);
+
+}  // namespace innermap
