@@ -133,8 +133,8 @@ class MapFitter {
     const FitResult fit =
         timed(seconds, "fit", [&] { return fitField(problem, fitSettings(shell, settings_)); });
     Outcome out = outcomeOf(fit, problem, shell);
-    measure(problem, out);
     certify(out);
+    measure(problem, out);
     return out;
   }
 
@@ -309,45 +309,42 @@ class MapFitter {
         timed(seconds, "fit", [&] { return fitSmooth(problem, fitting); });
     if (!fit) return {};
     Outcome out = outcomeOf(*fit, problem, shell);
-    measure(problem, out);
-    if (out.error.p99 > tolerance && settings_.interpolation == Interpolation::automatic) return {};
     certify(out);
+    if (out.error.p99 > tolerance && settings_.interpolation == Interpolation::automatic) return {};
+    measure(problem, out);
     return out;
   }
 
-  // With a number of charges.
+  // With a number of charges, after certify(): at the points of the fit.
   void measure(const FitProblem& problem, Outcome& out) {
     timed(seconds, "certificate", [&] {
       BoundaryErrorSettings e;
-      e.accuracy = certificateAccuracy(out.map, pair_, settings_.seed, settings_.progress);
+      e.accuracy = out.certificate.accuracy;
       e.progress = settings_.progress;
       const auto error = [&](const Points& points, const Matrix& values) {
         return measureBoundaryError(out.map.steps().front().field(), points, values,
                                     pair_.target.diagonal, e);
       };
-      FreshSampleSettings s;
-      s.count = kFreshSamples;
-      s.seed = settings_.seed;
-      s.progress = settings_.progress;
-      const BoundarySamples fresh = freshSamples(pair_.solid(), values(), s);
-      out.error = error(fresh.points, fresh.values);
       const BoundaryData& data = out.smooth ? problem.vertices : problem.surface;
       out.collocationError = error(data.points, data.values).sumOfSquares;
       if (out.smooth) out.verticesRms = error(data.heldOut, data.heldOutValues).rms;
     });
   }
 
-  // Of what is kept: the largest error is looked for. What is known by more exact sums stays.
+  // What an adaptive fit measured by plain sums stays.
   void certify(Outcome& out) {
     MapCertificateSettings s;
     s.smooth = out.smooth;
     s.seed = settings_.seed;
     s.progress = settings_.progress;
     out.certificate = timed(seconds, "certificate", [&] { return certifyMap(out.map, pair_, s); });
-    const BoundaryError& found = out.certificate.error;
-    out.error.max = std::max(out.error.max, found.max);
-    out.error.bound = std::max(out.error.max, found.bound);
-    out.error.searched = found.searched;
+    BoundaryError error = out.certificate.error;
+    if (out.error.samples > 0) {
+      error.rms = out.error.rms;
+      error.p99 = out.error.p99;
+      error.sumOfSquares = out.error.sumOfSquares;
+    }
+    out.error = error;
   }
 
   const BoundaryPair& pair_;

@@ -81,8 +81,7 @@ double trianglesOff(const ComposedMap& map, const BoundaryPair& pair, double acc
          pair.target.diagonal;
 }
 
-}  // namespace
-
+// Of sums, world units of the target: changes no digit that counts of errors as large as the map's.
 double certificateAccuracy(const ComposedMap& map, const BoundaryPair& pair, std::uint64_t seed,
                            Progress* progress) {
   SampleSettings sample;
@@ -94,6 +93,8 @@ double certificateAccuracy(const ComposedMap& map, const BoundaryPair& pair, std
   return std::max(kOfTheError * rms, kLeastAccuracy) * pair.target.diagonal;
 }
 
+}  // namespace
+
 MapCertificate certifyMap(const ComposedMap& map, const BoundaryPair& pair,
                           const MapCertificateSettings& settings) {
   const double accuracy = certificateAccuracy(map, pair, settings.seed, settings.progress);
@@ -104,6 +105,7 @@ MapCertificate certifyMap(const ComposedMap& map, const BoundaryPair& pair,
   s.seed = settings.seed;
   s.progress = settings.progress;
   MapCertificate out;
+  out.accuracy = accuracy;
   out.error = certify(pair.solid(), errors, s);
   const double rounding = roundingOf(pair);
   out.error.bound += rounding;

@@ -23,15 +23,11 @@ struct MapCertificate {
   double verticesMax = 0;  // the largest at the vertices, if `smooth`
   // The map is nowhere farther from a smooth map through the vertices, with kCertificateConfidence.
   double smoothBound = 0;
+  double accuracy = 0;  // of the sums by which all that was measured, world units of the target
 };
 
 // Throws Cancelled.
 MapCertificate certifyMap(const ComposedMap& map, const BoundaryPair& pair,
                           const MapCertificateSettings& settings = {});
-
-// Accuracy of sums, world units of the target, that changes no digit that counts of errors which
-// are as large as the map's. Throws Cancelled.
-double certificateAccuracy(const ComposedMap& map, const BoundaryPair& pair, std::uint64_t seed,
-                           Progress* progress);
 
 }  // namespace innermap

@@ -14,7 +14,7 @@ namespace innermap {
 using NormalDerivatives = std::function<std::vector<Vec3>(const Points& at, const Points& normals)>;
 
 struct TriangleErrorSettings {
-  std::size_t triangles = 10000;  // that are looked at: those where vertices around miss the most
+  std::size_t triangles = 4000;  // that are looked at: those where vertices around miss the most
   Progress* progress = nullptr;
 };
 
