@@ -40,9 +40,10 @@ void reportSolve(const MapSolve& solve, Report& report) {
     report.set("solve.distance", solve.distance);
   const bool adaptive = !solve.levels.empty();
   if (adaptive) reportAdaptive(solve, report);
-  if (adaptive || solve.method == "iterative")
+  if (adaptive || solve.method == "iterative") {
     report.set("solve.residuals", solve.residuals);
-  else
+    report.set("solve.product_error", solve.productError);
+  } else
     report.set("solve.condition", solve.condition);
   report.set("solve.weight_norm", solve.weightNorm);
   if (!adaptive) report.set("solve.held_out", solve.heldOut);
@@ -155,6 +156,13 @@ void reportFit(const MapFit& fit, const FitMapSettings& settings, bool bestEffor
   report.set("solve.interpolation", fit.smooth ? "smooth" : "linear");
   report.set("solve.seed", settings.seed);
   const BoundaryError& e = fit.error;
+  report.set("boundary_error.p99_bound", e.p99Bound);
+  report.set("boundary_error.bound", e.bound);
+  report.set("boundary_error.confidence", kCertificateConfidence);
+  report.set("boundary_error.searched", e.searched);
+  if (fit.verticesMax) report.set("boundary_error.vertices_max", *fit.verticesMax);
+  if (fit.triangles) report.set("boundary_error.triangles", *fit.triangles);
+  report.set("boundary_error.smooth_bound", fit.smoothBound);
   report.boundaryError = ReportBoundaryError{e.rms, e.p99, e.max, e.samples, fit.collocationError};
   context.print(fmt::format("boundary error: rms {:.2e}, 99% {:.2e}, max {:.2e} of the diagonal\n",
                             e.rms, e.p99, e.max));

@@ -10,6 +10,7 @@
 // cancels.
 #pragma once
 
+#include "innermap/boundary/certificate.h"
 #include "innermap/boundary/fit_map.h"
 #include "innermap/boundary/frame_fitter.h"
 #include "innermap/boundary/mapped_solid.h"

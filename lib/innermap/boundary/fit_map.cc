@@ -7,6 +7,7 @@
 
 #include "innermap/boundary/detail/boundary_check.h"
 #include "innermap/boundary/detail/inside_check.h"
+#include "innermap/boundary/detail/map_certificate.h"
 #include "innermap/boundary/detail/pair_problem.h"
 #include "innermap/boundary/detail/step_fit.h"
 #include "innermap/boundary/surface_problem.h"
@@ -43,6 +44,7 @@ PointCounts pointCounts(const ShellSettings& shell) {
 struct Outcome {
   ComposedMap map;
   BoundaryError error;
+  MapCertificate certificate;
   double collocationError = 0;
   bool smooth = false;
   std::optional<double> verticesRms;
@@ -55,7 +57,7 @@ struct Outcome {
 // A fit with a number of charges.
 Outcome outcomeOf(const FitResult& fit, const FitProblem& problem, const ShellSettings& shell) {
   const BoundaryData& data = fit.smooth ? problem.vertices : problem.surface;
-  Outcome out{HarmonicMap(fit.field), {}, 0, fit.smooth, {}, {}, {}, {}, {}};
+  Outcome out{HarmonicMap(fit.field), {}, {}, 0, fit.smooth, {}, {}, {}, {}, {}};
   MapSolve& s = out.solve;
   s.method = fit.iterative                                  ? "iterative"
              : shell.method == Regularization::truncatedSvd ? "tsvd"
@@ -72,6 +74,7 @@ Outcome outcomeOf(const FitResult& fit, const FitProblem& problem, const ShellSe
   s.regularization = fit.regularization;
   s.condition = fit.condition;
   s.weightNorm = fit.weightNorm;
+  s.productError = fit.productError;
   s.iterations = fit.iterative ? static_cast<int>(fit.residuals.size()) - 1 : 0;
   s.residuals = fit.residuals;
   s.trials = fit.trials;
@@ -80,7 +83,7 @@ Outcome outcomeOf(const FitResult& fit, const FitProblem& problem, const ShellSe
 
 // A fit to a tolerance.
 Outcome outcomeOf(const AdaptiveResult& fit, double unit) {
-  Outcome out{HarmonicMap(fit.field), fit.error, 0, false, {}, {}, {}, {}, {}};
+  Outcome out{HarmonicMap(fit.field), fit.error, {}, 0, false, {}, {}, {}, {}, {}};
   out.collocationError =
       std::pow(fit.residuals.back() / unit, 2) * static_cast<double>(fit.collocation);
   MapSolve& s = out.solve;
@@ -89,6 +92,7 @@ Outcome outcomeOf(const AdaptiveResult& fit, double unit) {
   s.collocation = fit.collocation;
   s.distance = fit.levels.front().distance;
   s.weightNorm = fit.weightNorm;
+  s.productError = fit.productError;
   s.iterations = static_cast<int>(fit.residuals.size()) - 1;
   s.residuals = fit.residuals;
   s.levels = fit.levels;
@@ -129,6 +133,7 @@ class MapFitter {
     const FitResult fit =
         timed(seconds, "fit", [&] { return fitField(problem, fitSettings(shell, settings_)); });
     Outcome out = outcomeOf(fit, problem, shell);
+    certify(out);
     measure(problem, out);
     return out;
   }
@@ -148,6 +153,7 @@ class MapFitter {
         end = fit.end;
         out.emplace(outcomeOf(fit, pair_.target.diagonal));
       });
+      if (end != AdaptiveEnd::stopped) certify(*out);
     }
     out->tolerance = ToleranceOutcome{tolerance, out->error.p99, out->error.p99 <= tolerance, end};
     return std::move(*out);
@@ -280,9 +286,10 @@ class MapFitter {
     s.maxMemory = settings_.maxMemory;
     s.progress = settings_.progress;
     StepFit fit = timed(seconds, "steps", [&] { return fitInSteps(pair_, inside(), s); });
-    Outcome out{std::move(fit.map), fit.error, 0, false, {}, {}, {}, {}, std::move(fit.steps)};
+    Outcome out{std::move(fit.map), fit.error, {}, 0, false, {}, {}, {}, {}, std::move(fit.steps)};
     out.solve.method = out.solve.placement = "steps";
     out.solve.sources = out.solve.rank = out.map.sources();
+    certify(out);
     timed(seconds, "inside", [&] { out.inside = figuresOf(out); });
     out.tolerance =
         ToleranceOutcome{settings_.tolerance, out.error.p99, out.error.p99 <= settings_.tolerance,
@@ -302,29 +309,42 @@ class MapFitter {
         timed(seconds, "fit", [&] { return fitSmooth(problem, fitting); });
     if (!fit) return {};
     Outcome out = outcomeOf(*fit, problem, shell);
-    measure(problem, out);
+    certify(out);
     if (out.error.p99 > tolerance && settings_.interpolation == Interpolation::automatic) return {};
+    measure(problem, out);
     return out;
   }
 
+  // With a number of charges, after certify(): at the points of the fit.
   void measure(const FitProblem& problem, Outcome& out) {
     timed(seconds, "certificate", [&] {
+      BoundaryErrorSettings e;
+      e.accuracy = out.certificate.accuracy;
+      e.progress = settings_.progress;
       const auto error = [&](const Points& points, const Matrix& values) {
-        BoundaryErrorSettings e;
-        e.progress = settings_.progress;
         return measureBoundaryError(out.map.steps().front().field(), points, values,
                                     pair_.target.diagonal, e);
       };
-      FreshSampleSettings s;
-      s.count = kFreshSamples;
-      s.seed = settings_.seed;
-      s.progress = settings_.progress;
-      const BoundarySamples fresh = freshSamples(pair_.solid(), values(), s);
-      out.error = error(fresh.points, fresh.values);
       const BoundaryData& data = out.smooth ? problem.vertices : problem.surface;
       out.collocationError = error(data.points, data.values).sumOfSquares;
       if (out.smooth) out.verticesRms = error(data.heldOut, data.heldOutValues).rms;
     });
+  }
+
+  // What an adaptive fit measured by plain sums stays.
+  void certify(Outcome& out) {
+    MapCertificateSettings s;
+    s.smooth = out.smooth;
+    s.seed = settings_.seed;
+    s.progress = settings_.progress;
+    out.certificate = timed(seconds, "certificate", [&] { return certifyMap(out.map, pair_, s); });
+    BoundaryError error = out.certificate.error;
+    if (out.error.samples > 0) {
+      error.rms = out.error.rms;
+      error.p99 = out.error.p99;
+      error.sumOfSquares = out.error.sumOfSquares;
+    }
+    out.error = error;
   }
 
   const BoundaryPair& pair_;
@@ -353,11 +373,19 @@ Facts factsOf(const BoundaryPair& pair, const Outcome& out, std::uint64_t seed) 
               {"boundary_error_p99", number(out.error.p99)},
               {"boundary_error_max", number(out.error.max)},
               {"boundary_error_samples", std::to_string(out.error.samples)},
+              {"boundary_error_p99_bound", number(out.error.p99Bound)},
+              {"boundary_error_bound", number(out.error.bound)},
+              {"boundary_error_confidence", number(kCertificateConfidence)},
+              {"boundary_error_smooth_bound", number(out.certificate.smoothBound)},
               {"c_error", number(out.collocationError)}};
   if (out.solve.radiusRatio > 0)
     facts.emplace_back("radius_ratio", number(out.solve.radiusRatio));
   else
     facts.emplace_back("distance", number(out.solve.distance));
+  if (out.smooth)
+    facts.emplace_back("boundary_error_vertices_max", number(out.certificate.verticesMax));
+  else
+    facts.emplace_back("boundary_error_triangles", number(out.certificate.triangles));
   if (!out.steps.empty()) facts.emplace_back("steps", std::to_string(out.steps.size()));
   if (out.inside.samples > 0) facts.emplace_back("folded", number(out.inside.folded));
   if (out.tolerance) {
@@ -375,6 +403,14 @@ void noteSteps(MapFit& fit, double singleFolded, std::size_t singleSources) {
       "and {:.2g}% taken out of the target",
       singleSources, 100 * singleFolded, fit.steps.size(), 100 * fit.inside.folded,
       100 * fit.inside.outside));
+}
+
+void noteProducts(MapFit& fit) {
+  if (fit.solve.productError > 0)
+    fit.notes.push_back(
+        fmt::format("the charges nearly cancel: their sums were exact to {:.1g} of the values, as "
+                    "far as rounding lets them be; more collocation points a charge help",
+                    fit.solve.productError));
 }
 
 void warnOfError(MapFit& fit) {
@@ -442,6 +478,9 @@ MapFit fitMap(BoundaryPair boundary, const FitMapSettings& settings) {
              out.collocationError,
              out.smooth,
              out.verticesRms,
+             out.smooth ? std::optional(out.certificate.verticesMax) : std::nullopt,
+             out.smooth ? std::nullopt : std::optional(out.certificate.triangles),
+             out.certificate.smoothBound,
              out.tolerance,
              std::move(out.solve),
              std::move(out.inside),
@@ -449,6 +488,7 @@ MapFit fitMap(BoundaryPair boundary, const FitMapSettings& settings) {
              {},
              std::move(fitter.warnings),
              std::move(fitter.seconds)};
+  noteProducts(fit);
   noteSteps(fit, fitter.singleFolded, fitter.singleSources);
   warnOfError(fit);
   return fit;

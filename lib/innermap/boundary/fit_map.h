@@ -73,6 +73,7 @@ struct MapSolve {
   double radiusRatio = 0;                    // of a sphere
   double regularization = 0, condition = 0;  // of a dense solve
   double weightNorm = 0;
+  double productError = 0;  // as in IterativeSolution
   int iterations = 0;
   std::vector<double> residuals;      // rms at the collocation points, of iterative solves
   std::vector<DistanceTrial> trials;  // that chose the distance
@@ -98,12 +99,21 @@ struct InsideFigures {
 };
 
 struct MapFit : MappedSolid {
-  // The certificate: at 20,000 random boundary points that took no part in the fit. Its largest
-  // value estimates the largest error anywhere inside (maximum principle).
+  // The certificate, against the boundary's triangles: at 20,000 random boundary points that took
+  // no part in the fit; its largest value, looked for (see certify), is the largest error anywhere
+  // inside (maximum principle; of one harmonic map). All here are fractions of the target's
+  // diagonal.
   BoundaryError error;
-  double collocationError = 0;                // sum of squares at the collocation points (C-Error)
-  bool smooth = false;                        // fitted to the vertices of a smooth deformation
-  std::optional<double> verticesRms;          // then: at vertices that it never saw
+  double collocationError = 0;        // sum of squares at the collocation points (C-Error)
+  bool smooth = false;                // fitted to the vertices of a smooth deformation
+  std::optional<double> verticesRms;  // then: at vertices that it never saw
+  std::optional<double> verticesMax;  // and the largest at any
+  // Else: about how far the triangles are at most from a smooth deformation that the vertices may
+  // be samples of, as vertices about each triangle tell that had no part in it.
+  std::optional<double> triangles;
+  // With kCertificateConfidence the map is nowhere farther from such a smooth deformation, if it is
+  // harmonic inside.
+  double smoothBound = 0;
   std::optional<ToleranceOutcome> tolerance;  // none with `shell`
   MapSolve solve;
   InsideFigures inside;

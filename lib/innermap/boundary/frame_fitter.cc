@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "innermap/boundary/certificate.h"
 #include "innermap/boundary/detail/problem_samples.h"
 #include "innermap/boundary/detail/streams.h"
 #include "innermap/boundary/surface_problem.h"
@@ -99,8 +100,7 @@ FrameFitter::FrameFitter(SourceBoundary rest, const FrameFitterSettings& setting
     sample.seed = seedOf(settings.seed, Stream::collocation);
     collocation_ =
         samplesAt(blueNoiseSamples(solid().surface(), frameCollocation(settings), sample));
-    sample.seed = seedOf(settings.seed, Stream::fresh);
-    fresh_ = samplesAt(randomSamples(solid().surface(), kFreshSamples, sample));
+    seed_ = settings.seed;
     return levelsOf(solid(), settings);
   });
   levels_ = levels.size();
@@ -133,8 +133,16 @@ FrameFit FrameFitter::fit(const Mesh& frame, const BoundarySettings& settings) c
     // By fast sums, to a hundredth of what is measured.
     e.accuracy = std::max(1e-2 * solution.residuals.back(), 1e-12 * boundary.diagonal);
     e.progress = settings.progress;
-    return summarizeErrors(boundaryErrors(
-        field, fresh_.points, boundary.targetsOf(solid(), fresh_.onSurface), boundary.diagonal, e));
+    CertificateSettings certificate;
+    certificate.seed = seed_;
+    certificate.progress = settings.progress;
+    return certify(
+        solid(),
+        [&](const std::vector<SurfacePoint>& places) {
+          return boundaryErrors(field, positionsOf(solid(), places),
+                                boundary.targetsOf(solid(), places), boundary.diagonal, e);
+        },
+        certificate);
   });
   std::vector<std::string> warnings = boundary.warnings;
   if (error.max > kDoubtfulError)

@@ -42,7 +42,7 @@ std::uint64_t frameFitterMemory(const FrameFitterSettings& settings);
 struct FrameFit {
   TargetBoundary boundary;
   HarmonicField field;
-  BoundaryError error;  // at 20,000 fresh points, fractions of the frame's diagonal
+  BoundaryError error;  // by certify, fractions of the frame's diagonal
   int iterations = 0;
   std::vector<std::string> warnings;
   StageSeconds seconds;  // "solid", "solve", "certificate"
@@ -77,7 +77,8 @@ class FrameFitter {
   Samples samplesAt(std::vector<SurfacePoint> onSurface) const;
 
   SourceBoundary rest_;
-  Samples collocation_, fresh_;
+  Samples collocation_;
+  std::uint64_t seed_ = 1;
   std::optional<IterativeSolver> solver_;
   std::size_t levels_ = 0;
   double distance_ = 0;

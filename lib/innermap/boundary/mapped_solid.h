@@ -16,8 +16,10 @@ struct MappedSolid {
   BoundaryPair boundary;
   // How the map was made and how good it is, as its file says it: version, source, target, method,
   // interpolation, seed, regularization, rank, boundary_error_rms, boundary_error_p99,
-  // boundary_error_max, boundary_error_samples, c_error, and distance, radius_ratio, tolerance,
-  // tolerance_reached, tolerance_met where they apply; those of injectivityFacts.
+  // boundary_error_max, boundary_error_samples, boundary_error_p99_bound, boundary_error_bound,
+  // boundary_error_confidence, boundary_error_smooth_bound, c_error, and boundary_error_triangles
+  // or boundary_error_vertices_max, and distance, radius_ratio, tolerance, tolerance_reached,
+  // tolerance_met where they apply; those of injectivityFacts.
   Facts facts;
   // As far as points tell; what grids tell, evaluateOnGrid adds.
   Injectivity injectivity;

@@ -205,7 +205,8 @@ void describeFrame(const openvdb::GridPtrVec& grids, const NumberedFit& frame) {
   const BoundaryError& error = frame.fit->error;
   insert(grids, {{"boundary_error_rms", error.rms},
                  {"boundary_error_p99", error.p99},
-                 {"boundary_error_max", error.max}});
+                 {"boundary_error_max", error.max},
+                 {"boundary_error_bound", error.bound}});
 }
 
 }  // namespace innermap

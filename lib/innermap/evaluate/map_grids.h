@@ -90,7 +90,7 @@ std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings,
 void describeMap(const openvdb::GridPtrVec& grids, const MappedSolid& mapped);
 
 // The same of grids made with the map of an animation's frame: frame (its number),
-// boundary_error_rms, boundary_error_p99, boundary_error_max.
+// boundary_error_rms, boundary_error_p99, boundary_error_max, boundary_error_bound.
 void describeFrame(const openvdb::GridPtrVec& grids, const NumberedFit& frame);
 
 }  // namespace innermap

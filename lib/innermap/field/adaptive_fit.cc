@@ -250,7 +250,8 @@ void AdaptiveFitting::keepIfBest() {
                                {},
                                collocation_.size(),
                                solution_.residuals,
-                               solution_.weightNorm});
+                               solution_.weightNorm,
+                               solution_.productError});
   for (const Level& l : levels_) best_->levels.push_back({l.distance, l.spacing, l.sources.size()});
 }
 

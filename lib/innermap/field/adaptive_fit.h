@@ -93,6 +93,7 @@ struct AdaptiveResult {
   std::size_t collocation = 0;
   std::vector<double> residuals;  // of the solve that gave the field, as in IterativeSolution
   double weightNorm = 0;
+  double productError = 0;  // as in IterativeSolution
 };
 
 // A tolerance that is not met is no error: `end` says why. Throws SettingError, MemoryError (not

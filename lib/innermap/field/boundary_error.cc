@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "innermap/core/error.h"
@@ -31,6 +32,34 @@ std::vector<double> boundaryErrors(const HarmonicField& field, const Points& poi
   return lengths;
 }
 
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Of lengths whose largest 1% stand last, in order. So many of n are within the quantile with the
+// confidence: binomial, by the normal distribution, whose 95% are 1.645.
+double quantileBound(const std::vector<double>& lengths) {
+  const double n = static_cast<double>(lengths.size());
+  const double rank = std::ceil(0.99 * n + 1.645 * std::sqrt(0.99 * 0.01 * n));
+  return rank < n ? lengths[static_cast<std::size_t>(rank)] : kInfinity;
+}
+
+// About a peak of second order on a surface the area where the error falls short of it by less than
+// t is proportional to t. So of the k largest the first falls short of the peak by a share of what
+// the last does that is over 1 - (1 - confidence)^(1/(k-1)) in 1 - confidence of all cases. Where
+// other peaks come in, or the peak is pointed, the share is larger: that of a pointed one, the
+// root, is taken.
+double largestBound(const std::vector<double>& lengths) {
+  constexpr std::size_t kLargest = 10;
+  const std::size_t n = lengths.size();
+  if (n < 100 * kLargest) return kInfinity;
+  const double first = lengths[n - 1], last = lengths[n - kLargest];
+  const double share = std::sqrt(1 - std::pow(1 - kCertificateConfidence, 1.0 / (kLargest - 1)));
+  return first + (first - last) * share / (1 - share);
+}
+
+}  // namespace
+
 BoundaryError summarizeErrors(std::vector<double> lengths) {
   BoundaryError out;
   const std::size_t n = out.samples = lengths.size();
@@ -41,6 +70,9 @@ BoundaryError summarizeErrors(std::vector<double> lengths) {
   const std::size_t rank = std::min(n - 1, static_cast<std::size_t>(std::ceil(0.99 * n)) - 1);
   std::nth_element(lengths.begin(), lengths.begin() + rank, lengths.end());
   out.p99 = lengths[rank];
+  std::sort(lengths.begin() + rank, lengths.end());
+  out.p99Bound = quantileBound(lengths);
+  out.bound = largestBound(lengths);
   return out;
 }
 

@@ -15,7 +15,13 @@ struct BoundaryError {
   double rms = 0, p99 = 0, max = 0;
   double sumOfSquares = 0;  // the paper's C-Error when taken at the collocation points
   std::size_t samples = 0;
+  // With kCertificateConfidence: at least 99% of the boundary is within p99Bound, all of it within
+  // bound; for uniform samples. See certify, whose `max` and `bound` are those of a search.
+  double p99Bound = 0, bound = 0;
+  std::size_t searched = 0;  // points beside `samples` at which the largest was looked for
 };
+
+constexpr double kCertificateConfidence = 0.95;
 
 // Fraction of the target's diagonal: a map whose error reaches it is not to be trusted.
 constexpr double kDoubtfulError = 0.1;
@@ -31,7 +37,8 @@ std::vector<double> boundaryErrors(const HarmonicField& field, const Points& poi
                                    const Matrix& values, double unit,
                                    const BoundaryErrorSettings& settings = {});
 
-// Of the lengths at all points.
+// Of the lengths at all points, which are taken for uniform ones. p99Bound and bound are infinite
+// where these are too few for them.
 BoundaryError summarizeErrors(std::vector<double> lengths);
 
 // values: #points x #K. unit: usually the target's diagonal; must be positive.

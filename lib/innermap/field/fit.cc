@@ -82,11 +82,17 @@ class Fitting {
     }
     const DenseSolution& solution = best->solution;
     HarmonicField field(std::move(best->sources), solution.weights, solution.affine);
-    return {std::move(field),        false,
-            best->distance,          smooth,
-            std::move(trials_),      solution.weightNorm,
-            solution.regularization, solution.condition,
-            solution.rank,           {}};
+    return {std::move(field),
+            false,
+            best->distance,
+            smooth,
+            std::move(trials_),
+            solution.weightNorm,
+            solution.regularization,
+            solution.condition,
+            solution.rank,
+            {},
+            0};
   }
 
   FitResult iterative();
@@ -258,7 +264,8 @@ FitResult Fitting::iterative() {
       0,
       0,
       rank,
-      std::move(solution.residuals)};
+      std::move(solution.residuals),
+      solution.productError};
 }
 
 // The one or two distances worth a fit with all sources. The best distance in a trial with fewer

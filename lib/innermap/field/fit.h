@@ -80,6 +80,7 @@ struct FitResult {
   std::size_t rank = 0;
   // Iterative solver: rms at the collocation points before and after each iteration.
   std::vector<double> residuals;
+  double productError = 0;  // as in IterativeSolution
 };
 
 // Peak need in bytes of a fit with so many points.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "innermap/core/detail/random.h"
@@ -18,6 +19,7 @@ namespace {
 
 constexpr std::size_t kPointsPerLeaf = 400;
 constexpr std::size_t kSampled = 128, kSampledBlocks = 32;
+constexpr double kLeastGain = 0.5;   // of a higher order: less, and the highest is found
 constexpr double kLeastBall = 1e-9;  // radius of a leaf of coincident points, of the charges' box
 
 std::vector<std::size_t> evenly(std::size_t wanted, std::size_t count) {
@@ -166,20 +168,43 @@ void Hierarchy::onLattice(const LatticeBlocks& lattice, const BlockVisitor& visi
       settings_.progress, stage);
 }
 
-// Orders are raised until what `sample(hierarchy)` gives is within the accuracy; null when none is.
-template <typename Sample>
-std::unique_ptr<const Hierarchy> firstAccurate(const ChargeTree& tree,
-                                               const SumReference& reference,
-                                               const FastSumSettings& settings,
-                                               const Sample& sample) {
+// A hierarchy, and how well it did at the points that are checked.
+struct Checked {
+  std::unique_ptr<const Hierarchy> hierarchy;               // null: plain sums are to be taken
+  double excess = std::numeric_limits<double>::infinity();  // error over what is allowed
+  double error = 0;                                         // in the values' units
+};
+
+// Plain sums at the points that are checked.
+using PlainSums = std::function<FieldSamples(const Charges&)>;
+
+// Orders are raised until what `sample(hierarchy)` gives is within the accuracy, or no better for
+// it: where charges nearly cancel, rounding is most of the error, and no order reaches further.
+// Then the best of them. keep() is called after the sample of each that is the best so far.
+template <typename Sample, typename Keep>
+Checked mostAccurate(const ChargeTree& tree, const Charges& charges, const PlainSums& plain,
+                     const SumSize& size, const FastSumSettings& settings, SumReference& reference,
+                     const Sample& sample, const Keep& keep) {
+  Checked best;
   FarFieldPlan plan = planFor(reference.accuracy());
   while (plan.order <= ExpansionBasis::kMostOrder) {
-    auto hierarchy = std::make_unique<const Hierarchy>(tree, plan, settings);
-    const double excess = reference.excess(sample(*hierarchy));
-    if (excess <= 1) return hierarchy;
-    plan = raised(plan, excess);
+    Checked now;
+    now.hierarchy = std::make_unique<const Hierarchy>(tree, plan, settings);
+    const FieldSamples got = sample(*now.hierarchy);
+    if (reference.excess(got) > 1 && !reference.allowsRounding())
+      reference.allowRounding(plain(charges.magnitudes()));
+    now.excess = reference.excess(got);
+    now.error = reference.error(got);
+    const bool gains = now.excess < kLeastGain * best.excess;
+    plan = raised(plan, now.excess);
+    if (now.excess < best.excess) {
+      best = std::move(now);
+      keep();
+    }
+    if (best.excess <= 1 || !gains) break;
   }
-  return {};
+  if (best.excess > 1 && plainIsCheap(size)) best.hierarchy.reset();
+  return best;
 }
 
 // Some blocks with a few wanted points each, spread over the lattice.
@@ -269,45 +294,57 @@ FieldSamples FastSum::at(const Points& points, const FastSumSettings& settings) 
   const std::vector<std::size_t> sample = evenly(kSampled, points.size());
   Points some;
   for (const std::size_t i : sample) some.push_back(points[i]);
-  const SumReference reference(plain(some), settings.accuracy, settings.absolute);
+  SumReference reference(plain(some), settings.accuracy, settings.absolute);
   const SumSize size{count(), points.size(), kPointsPerLeaf, planFor(reference.accuracy()).order,
                      settings.gradients};
   if (!useHierarchy(size, settings.method)) return plain(points);
-  FieldSamples out;
+  FieldSamples out, tried;
   const auto sampled = [&](const Hierarchy& hierarchy) {
-    out = hierarchy.at(points);
+    tried = hierarchy.at(points);
     FieldSamples got = samplesFor(some.size(), channels(), settings.gradients);
     for (std::size_t i = 0; i < sample.size(); ++i) {
-      for (std::size_t k = 0; k < channels(); ++k) got.values(i, k) = out.values(sample[i], k);
+      for (std::size_t k = 0; k < channels(); ++k) got.values(i, k) = tried.values(sample[i], k);
       for (std::size_t k = 0; settings.gradients && k < 3 * channels(); ++k)
-        got.gradients(i, k) = out.gradients(sample[i], k);
+        got.gradients(i, k) = tried.gradients(sample[i], k);
     }
     return got;
   };
-  return firstAccurate(data_->tree, reference, settings, sampled) ? out : plain(points);
+  const auto atSome = [&](const Charges& charges) {
+    return sumCharges(charges, some, false, {settings.progress});
+  };
+  const Checked best = mostAccurate(data_->tree, data_->direct, atSome, size, settings, reference,
+                                    sampled, [&] { out = std::move(tried); });
+  if (!best.hierarchy) return plain(points);
+  out.error = best.error;
+  return out;
 }
 
-void FastSum::onLattice(const LatticeBlocks& lattice, const BlockVisitor& visit,
-                        const FastSumSettings& settings, std::string_view stage) const {
+double FastSum::onLattice(const LatticeBlocks& lattice, const BlockVisitor& visit,
+                          const FastSumSettings& settings, std::string_view stage) const {
   check(settings);
   if (!(lattice.spacing > 0) || !isFinite(lattice.origin))
     throw SettingError("lattice", "needs a finite origin and a positive spacing");
-  std::unique_ptr<const Hierarchy> hierarchy;
+  Checked best;
   if (count() > 0 && channels() > 0) {
     const LatticeBlocks some = someOf(lattice);
-    const SumReference reference(directAt(data_->direct, some, settings), settings.accuracy,
-                                 settings.absolute);
+    SumReference reference(directAt(data_->direct, some, settings), settings.accuracy,
+                           settings.absolute);
     const SumSize size{count(), wantedPoints(lattice), LatticeBlock::kPoints,
                        planFor(reference.accuracy()).order, settings.gradients};
     if (useHierarchy(size, settings.method))
-      hierarchy = firstAccurate(data_->tree, reference, settings, [&](const Hierarchy& tried) {
-        return hierarchicalAt(tried, some, channels(), settings);
-      });
+      best = mostAccurate(
+          data_->tree, data_->direct,
+          [&](const Charges& charges) { return directAt(charges, some, settings); }, size, settings,
+          reference,
+          [&](const Hierarchy& tried) { return hierarchicalAt(tried, some, channels(), settings); },
+          [] {});
   }
-  if (hierarchy)
-    hierarchy->onLattice(lattice, visit, stage);
-  else
+  if (!best.hierarchy) {
     directOnLattice(data_->direct, lattice, visit, settings, stage);
+    return 0;
+  }
+  best.hierarchy->onLattice(lattice, visit, stage);
+  return best.error;
 }
 
 }  // namespace innermap

@@ -86,18 +86,20 @@ class IterativeSolver::Levels {
   std::vector<std::size_t> addSources(const Points& sources);
   void addLevel(const SourceLevel& level);
   Scaled scaled(const Matrix& values) const;
-  void startFrom(const IterativeSolution& start, const Scaled& values, Matrix& residual,
-                 Matrix& x) const;
+  double startFrom(const IterativeSolution& start, const Scaled& values, Matrix& residual,
+                   Matrix& x) const;
   Matrix scaledStart(const IterativeSolution& start, const Scaled& values) const;
-  IterativeSolution iterate(const Scaled& values, Matrix& residual, Matrix& x) const;
-  void runLevels(OrthogonalDirections& directions, Matrix& residual, Matrix& x) const;
+  IterativeSolution iterate(const Scaled& values, Matrix& residual, Matrix& x,
+                            double productError) const;
+  void runLevels(OrthogonalDirections& directions, Matrix& residual, Matrix& x,
+                 IterativeSolution& out) const;
   void takeDirections(const Matrix& weights, const std::vector<std::size_t>& rows,
                       const Points& sources, OrthogonalDirections& directions, Matrix& residual,
-                      Matrix& x) const;
+                      Matrix& x, IterativeSolution& out) const;
   void unscale(const Scaled& values, const Matrix& residual, const Matrix& x,
                IterativeSolution& out) const;
-  Matrix image(const Matrix& weights, const Points& sources, const Points& points,
-               double accuracy) const;
+  FieldSamples image(const Matrix& weights, const Points& sources, const Points& points,
+                     double accuracy) const;
   Points normalised(const Points& points) const;
   std::size_t unknowns() const { return CoarseSolver::kAffine + sources_.size(); }
 
@@ -261,12 +263,16 @@ void IterativeSolver::Levels::unscale(const Scaled& values, const Matrix& residu
 }
 
 // What the charges' weights give at the points, to a relative accuracy; all in normalised units.
-Matrix IterativeSolver::Levels::image(const Matrix& weights, const Points& sources,
-                                      const Points& points, double accuracy) const {
+FieldSamples IterativeSolver::Levels::image(const Matrix& weights, const Points& sources,
+                                            const Points& points, double accuracy) const {
   FastSumSettings s;
   s.accuracy = std::clamp(accuracy, kFinestProduct, kCoarsestProduct);
   s.progress = settings_.progress;
-  return FastSum(sources, weights).at(points, s).values;
+  FieldSamples out = FastSum(sources, weights).at(points, s);
+  // A channel's values are at most so much larger than all.
+  const double asked = s.accuracy * std::sqrt(static_cast<double>(weights.columns()));
+  if (out.error <= asked * rms(out.values)) out.error = 0;
+  return out;
 }
 
 // Adds `weights`, those of the unknowns `rows`, as directions, and follows them. `rows` starts with
@@ -275,10 +281,12 @@ void IterativeSolver::Levels::takeDirections(const Matrix& weights,
                                              const std::vector<std::size_t>& rows,
                                              const Points& sources,
                                              OrthogonalDirections& directions, Matrix& residual,
-                                             Matrix& x) const {
+                                             Matrix& x, IterativeSolution& out) const {
   const std::size_t affine = rows.size() - sources.size();
-  Matrix images =
+  FieldSamples sums =
       image(rowsOf(weights, affine), sources, collocation_, settings_.accuracy / rms(residual));
+  out.productError = std::max(out.productError, sums.error);
+  Matrix& images = sums.values;
   Matrix z(unknowns(), weights.columns());
   for (std::size_t k = 0; k < z.columns(); ++k) {
     for (std::size_t i = 0; i < rows.size(); ++i) z(rows[i], k) = weights(i, k);
@@ -293,26 +301,27 @@ void IterativeSolver::Levels::takeDirections(const Matrix& weights,
 }
 
 void IterativeSolver::Levels::runLevels(OrthogonalDirections& directions, Matrix& residual,
-                                        Matrix& x) const {
-  takeDirections(coarse_.correction(residual), coarseRows_, coarseSources_, directions, residual,
-                 x);
+                                        Matrix& x, IterativeSolution& out) const {
+  takeDirections(coarse_.correction(residual), coarseRows_, coarseSources_, directions, residual, x,
+                 out);
   for (const Level& level : levels_) {
     std::vector<std::size_t> rows = level.sources;
     for (std::size_t& i : rows) i += kAffine;
     takeDirections(level.solver.correction(residual, settings_.progress), rows,
-                   level.solver.sources(), directions, residual, x);
+                   level.solver.sources(), directions, residual, x, out);
   }
 }
 
 IterativeSolution IterativeSolver::Levels::iterate(const Scaled& values, Matrix& residual,
-                                                   Matrix& x) const {
+                                                   Matrix& x, double productError) const {
   IterativeSolution out;
+  out.productError = productError;
   OrthogonalDirections directions(collocation_.size(), unknowns());
   out.residuals.push_back(values.size * rms(residual));
   do {
     reportProgress(settings_.progress, "solving",
                    static_cast<double>(out.iterations) / settings_.maxIterations);
-    runLevels(directions, residual, x);
+    runLevels(directions, residual, x, out);
     ++out.iterations;
     out.residuals.push_back(values.size * rms(residual));
   } while (out.iterations < settings_.maxIterations && !littleIsLeft(out.residuals));
@@ -321,12 +330,14 @@ IterativeSolution IterativeSolver::Levels::iterate(const Scaled& values, Matrix&
 }
 
 // The unknowns of an earlier solution, and its residual: known where it was solved for.
-void IterativeSolver::Levels::startFrom(const IterativeSolution& start, const Scaled& values,
-                                        Matrix& residual, Matrix& x) const {
+double IterativeSolver::Levels::startFrom(const IterativeSolution& start, const Scaled& values,
+                                          Matrix& residual, Matrix& x) const {
   x = scaledStart(start, values);
   const std::size_t known = start.residual.rows();
   const Points fresh(collocation_.begin() + static_cast<std::ptrdiff_t>(known), collocation_.end());
-  const Matrix sums = image(rowsOf(x, kAffine), normalised(sources_), fresh, settings_.accuracy);
+  const FieldSamples image =
+      this->image(rowsOf(x, kAffine), normalised(sources_), fresh, settings_.accuracy);
+  const Matrix& sums = image.values;
   for (std::size_t k = 0; k < residual.columns(); ++k) {
     for (std::size_t i = 0; i < known; ++i) residual(i, k) = start.residual(i, k) / values.size;
     for (std::size_t i = 0; i < fresh.size(); ++i) {
@@ -335,14 +346,15 @@ void IterativeSolver::Levels::startFrom(const IterativeSolution& start, const Sc
           sums(i, k) + x(0, k) + x(1, k) * p.x + x(2, k) * p.y + x(3, k) * p.z;
     }
   }
+  return image.error;
 }
 
 IterativeSolution IterativeSolver::Levels::solve(const Matrix& values,
                                                  const IterativeSolution* start) const {
   const Scaled rhs = scaled(values);
   Matrix residual = rhs.values, x(unknowns(), values.columns());
-  if (start) startFrom(*start, rhs, residual, x);
-  return iterate(rhs, residual, x);
+  const double productError = start ? startFrom(*start, rhs, residual, x) : 0;
+  return iterate(rhs, residual, x, productError);
 }
 
 IterativeSolver::IterativeSolver(const Points& collocation, const std::vector<SourceLevel>& levels,

@@ -44,7 +44,11 @@ struct IterativeSolution {
   int iterations = 0;
   std::vector<double> residuals;  // rms at the collocation points before and after each iteration
   double weightNorm = 0;          // as in DenseSolution
-  Matrix residual;                // values less field at the collocation points, #collocation x #K
+  // The largest error of a product that was less exact than asked for, fraction of the values'
+  // span: where weights nearly cancel and their number leaves no plain sums; see FastSum::at. 0:
+  // none.
+  double productError = 0;
+  Matrix residual;  // values less field at the collocation points, #collocation x #K
 };
 
 // What is built serves any number of right-hand sides; const functions may be called from several

@@ -1,6 +1,7 @@
 #include "innermap/solve/kernel_sum.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
@@ -57,6 +58,16 @@ Charges::Charges(const Points& sources, const Matrix& weights)
     }
     groups_.push_back(std::move(group));
   }
+}
+
+Charges Charges::magnitudes() const {
+  Charges out = *this;
+  for (std::size_t g = 0; g < out.groups_.size(); ++g) {
+    const std::size_t width = 3 + std::min(kGroup, channels_ - g * kGroup);
+    for (std::size_t i = 0; i < out.groups_[g].size(); ++i)
+      if (i % width >= 3) out.groups_[g][i] = std::abs(out.groups_[g][i]);
+  }
+  return out;
 }
 
 void Charges::addTo(const Vec3* points, std::size_t count, double* values,

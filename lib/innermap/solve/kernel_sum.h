@@ -32,6 +32,9 @@ class Charges {
   std::size_t count() const { return count_; }
   std::size_t channels() const { return channels_; }
 
+  // The same charges with the absolute values of their weights: what they could give at most.
+  Charges magnitudes() const;
+
   // values: channel k at values[k * count + i] for points[i]. gradients may be null; its entry for
   // axis a of channel k is gradients[(3 * k + a) * count + i]. Adds to what is there. One thread.
   void addTo(const Vec3* points, std::size_t count, double* values, double* gradients) const;
@@ -47,6 +50,7 @@ class Charges {
 struct FieldSamples {
   Matrix values;     // #points x #K
   Matrix gradients;  // #points x 3 #K, columns 3 k + axis; empty when not asked for
+  double error = 0;  // of values by fast sums: see FastSum::at; 0: plain sums
 };
 
 struct KernelSumSettings {

@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "field/sphere_problem.h"
+#include "innermap/core/detail/pi.h"
+#include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 
 namespace innermap {
@@ -41,6 +45,30 @@ TEST(BoundaryError, LengthsByFastSumsAreAsAsked) {
   EXPECT_EQ(e.max, 2);
   EXPECT_DOUBLE_EQ(e.rms, std::sqrt(3.0));
   EXPECT_EQ(summarizeErrors({}).samples, 0u);
+  EXPECT_TRUE(std::isinf(e.p99Bound) && std::isinf(e.bound));  // of three no more is known
+}
+
+// Peaks of second order and pointed ones, at random points of a square: the bounds fail as often as
+// they say, at most, with some luck allowed for.
+TEST(BoundaryError, BoundsHoldWithTheirConfidence) {
+  constexpr int kTimes = 400;
+  for (const double power : {1.0, 2.0}) {
+    int quantile = 0, largest = 0;
+    for (int t = 0; t < kTimes; ++t) {
+      const CounterRandom random(17, static_cast<std::uint64_t>(t));
+      std::vector<double> lengths;
+      for (std::size_t i = 0; i < 2000; ++i) {
+        const double r = std::hypot(random.uniform(2 * i) - 0.5, random.uniform(2 * i + 1) - 0.5);
+        lengths.push_back(1 - std::pow(r, power));
+      }
+      const BoundaryError e = summarizeErrors(std::move(lengths));
+      quantile += e.p99Bound < 1 - std::pow(std::sqrt(0.01 / kPi), power);
+      largest += e.bound < 1;
+    }
+    EXPECT_LT(quantile, 0.08 * kTimes);
+    EXPECT_LT(largest, 0.08 * kTimes);
+    EXPECT_GT(quantile, 0.01 * kTimes) << "more is allowed for than there is need to";
+  }
 }
 
 TEST(BoundaryError, RefusesBadInput) {

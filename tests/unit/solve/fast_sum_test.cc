@@ -163,6 +163,39 @@ TEST(FastSum, HoldsItsAccuracyWhereWeightsCancel) {
   expectAccurate(FastSum(sources, w).at(points, hierarchical(1e-5)), exact, 1e-5);
 }
 
+// Weights that cancel to less than rounding: no order reaches the accuracy, and plain sums would
+// take as many pairs as there are charges and points.
+TEST(FastSum, TakesTheBestOrderWhereWeightsNearlyCancel) {
+  constexpr std::size_t kMany = 30000;
+  const Points points = testing::spherePoints(40000, 1);
+  Points some;
+  for (std::size_t i = 0; i < points.size(); i += 100) some.push_back(points[i]);
+  for (const double apart : {1e-4, 1e-7, 1e-9}) {
+    SCOPED_TRACE("apart " + std::to_string(std::log10(apart)));
+    Points sources = testing::spherePoints(kMany, 1.01);
+    Matrix w = testing::randomWeights(2 * kMany, 1, 8);
+    for (std::size_t j = 0; j < kMany; ++j) {
+      sources.push_back(sources[j] + Vec3{apart, 0, 0});
+      w(kMany + j, 0) = -w(j, 0);
+    }
+    const Charges charges(sources, w);
+    FastSumSettings settings = hierarchical(1e-12, false);
+    settings.method = SumMethod::cheapest;
+    const FieldSamples got = FastSum(sources, w).at(points, settings),
+                       exact = sumCharges(charges, some, false),
+                       magnitudes = sumCharges(charges.magnitudes(), some, false);
+    EXPECT_GT(got.error, 0) << "plain sums were taken";
+    FieldSamples gotAtSome;
+    gotAtSome.values = Matrix(some.size(), 1);
+    for (std::size_t i = 0; i < some.size(); ++i) gotAtSome.values(i, 0) = got.values(100 * i, 0);
+    const double error = rmsDifference(gotAtSome.values, exact.values, 0, 1);
+    // Of sums of doubles no more can be asked, of their error no less.
+    EXPECT_LT(error, 1e-15 * rms(magnitudes.values, 0, 1));
+    EXPECT_LT(error, 3 * got.error);
+    EXPECT_GT(error, got.error / 3);
+  }
+}
+
 TEST(FastSum, AbsoluteAccuracyIsEnough) {
   const Points points = testing::randomPoints(1000, 1), sources = testing::spherePoints(1000, 2);
   const Matrix w = testing::randomWeights(1000, 1, 8);

@@ -13,6 +13,7 @@ constexpr double kFarCharges = 20;    // of a ball, for each of its check points
 constexpr double kTranslation = 3;    // a check point, for each harmonic
 constexpr double kEvaluation = 0.25;  // a point, for each harmonic
 constexpr double kNear = 150;         // charges
+constexpr double kCheap = 2e9;        // plain pairs that take a second or two
 
 }  // namespace
 
@@ -40,6 +41,12 @@ FarFieldPlan raised(FarFieldPlan plan, double excess) {
   plan.order += std::isfinite(missing) ? std::clamp(static_cast<int>(std::ceil(missing)), 1, 8) : 8;
   plan.rounding = simd::Rounding::full;
   return plan;
+}
+
+bool plainIsCheap(const SumSize& size) {
+  return (size.gradients ? kGradients : 1) * static_cast<double>(size.charges) *
+             static_cast<double>(size.points) <=
+         kCheap;
 }
 
 bool hierarchyIsCheaper(const SumSize& size) {

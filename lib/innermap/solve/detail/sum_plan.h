@@ -23,4 +23,7 @@ struct SumSize {
 // Whether a hierarchy takes less time than plain sums.
 bool hierarchyIsCheaper(const SumSize& size);
 
+// Whether plain sums take a second or two of one core at most, whatever a hierarchy takes.
+bool plainIsCheap(const SumSize& size);
+
 }  // namespace innermap

@@ -18,9 +18,20 @@ class SumReference {
   // Of sums at the same points: the largest error over what is allowed.
   double excess(const FieldSamples& got) const;
 
+  // Of values at the same points: the largest root mean square error of a channel, in their units.
+  double error(const FieldSamples& got) const;
+
+  // Where charges nearly cancel their sums are exact to rounding of the charges' own sizes, no
+  // more: from now on as much is allowed. magnitudes: the sums of absolute weights, at the same
+  // points.
+  void allowRounding(const FieldSamples& magnitudes);
+  bool allowsRounding() const { return allowsRounding_; }
+
  private:
   FieldSamples exact_;
   std::vector<double> relative_;  // of each channel
+  std::vector<double> rounding_;  // relative to the values too; where it is allowed
+  bool allowsRounding_ = false;
 };
 
 }  // namespace innermap
