@@ -260,6 +260,8 @@ void fillReport(const CompareFem& result, Report& report) {
 void run(const CompareOptions& options, Context& context) {
   if (options.functions != options.target.empty())
     throw UsageError("give a TARGET to compare on its map, or --functions (not both)");
+  const auto folder = context.outputFolder(
+      options.output, {"comparison.csv", "curves.png", "section.png", "report.json"});
   const CompareFemSettings settings = settingsOf(options, context);
   const Mesh source = readMeshFile(options.source, context);
   std::optional<BoundaryPair> pair;
@@ -287,7 +289,6 @@ void run(const CompareOptions& options, Context& context) {
          "write comparison.csv, curves.png, section.png and report.json to " + options.output},
         need);
   requireMemory("finite elements", need, context.maxMemory(), "use lower --resolutions");
-  PendingFolder folder = context.outputFolder(options.output);
   context.notePictures();
   const CompareFem result = context.timed("compare", [&] {
     return pair ? compareFemOnMap(*pair, settings) : compareFemOnFunctions(solid, settings);
@@ -296,14 +297,14 @@ void run(const CompareOptions& options, Context& context) {
   printTable(result, pair.has_value(), context);
   fillReport(result, context.report());
   context.timed("write", [&] {
-    folder.write("comparison.csv", [&](const std::string& path) { writeTable(path, result); });
-    folder.write("curves.png",
-                 [&](const std::string& path) { writeChart(path, chartOf(result, options)); });
-    folder.write("section.png", [&](const std::string& path) {
+    folder->write("comparison.csv", [&](const std::string& path) { writeTable(path, result); });
+    folder->write("curves.png",
+                  [&](const std::string& path) { writeChart(path, chartOf(result, options)); });
+    folder->write("section.png", [&](const std::string& path) {
       writeSection(path, result, solid, options, context);
     });
   });
-  context.finish(folder);
+  context.finish(*folder);
 }
 
 }  // namespace

@@ -160,7 +160,8 @@ Command makeCarryCommand(Way way, const std::string& name, const std::string& su
       .required();
   c.option("--through", "CELLS", &o->through,
            "go by the piecewise linear map of this mesh that remesh wrote (.vtu or .msh) instead: "
-           "what is carried agrees with the mesh and is nowhere folded; not for densities");
+           "what is carried agrees with the mesh and is nowhere folded; not for densities")
+      .reads();
   addTransferOptions(c, o->transfer);
   addGeometryOptions(c, o->geometry, true);
   c.run([o, way](Context& context) { run(way, *o, context); });
