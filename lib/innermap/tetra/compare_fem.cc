@@ -111,7 +111,7 @@ void measure(const Task& task, const Samples& samples, ComparedRow& row) {
   }
 }
 
-InsideFunction functionOf(std::shared_ptr<const Elements> e) {
+InsideFunction functionOf(std::shared_ptr<const FiniteElements> e) {
   return [e](const Points& points) {
     std::vector<InsideValues> out(points.size());
     parallelBlocks(points.size(), 256, [&](std::size_t begin, std::size_t end) {
@@ -165,14 +165,14 @@ void checkSettings(const CompareFemSettings& settings) {
 
 // Rows of the finite elements; the points are in the finest mesh.
 Samples compareElements(const Task& task, const CompareFemSettings& settings, CompareFem& result) {
-  std::vector<std::shared_ptr<const Elements>> all;
+  std::vector<std::shared_ptr<const FiniteElements>> all;
   for (const int resolution : settings.resolutions) {
     ElementsSettings solving;
     solving.resolution = resolution;
     solving.maxMemory = settings.maxMemory;
     solving.progress = settings.progress;
     const auto elements =
-        std::make_shared<const Elements>(solveElements(task.solid, task.boundary, solving));
+        std::make_shared<const FiniteElements>(solveElements(task.solid, task.boundary, solving));
     ComparedRow row;
     row.size = elements->mesh.tetrahedra.size();
     row.edge = elements->edge;

@@ -94,7 +94,7 @@ class Repair {
       // Few in one place are mostly beside a boundary that is folded itself, where more of the
       // inside does not help; many are a fold of the map, where it does.
       const bool few = before < kManyAPatch * patches.size();
-      PatchSettings settings = patch_;
+      PatchSolverSettings settings = patch_;
       if (!slide && few) settings.rounds = kFixedRounds;
       solvePatches(system_, surface_, patches, settings, false, cells_);
       poor = poorTets(system_, cells_.positions, settings_.least);
@@ -145,7 +145,7 @@ class Repair {
   const Points carried_;
   const RepairCellsSettings& settings_;
   double landed_;
-  PatchSettings patch_;
+  PatchSolverSettings patch_;
 };
 
 }  // namespace

@@ -102,7 +102,7 @@ SourceLattice latticeOf(const Solid& source, const CarryPointsSettings& settings
   return out;
 }
 
-void keep(const MapSample& sample, std::size_t i, CarriedPoints& out) {
+void keep(const ExtendedSample& sample, std::size_t i, CarriedPoints& out) {
   out.points[i] = sample.image;
   if (!out.jacobians.empty()) out.jacobians[i] = sample.jacobian;
 }
@@ -152,7 +152,7 @@ CarriedPoints PointPusher::push(const ComposedMap& map, const Points& points,
                    const Points images = extended.imagesInside(inside, s.progress);
                    for (std::size_t n = 0; n < images.size(); ++n)
                      out.points[begin + insideAt[n]] = images[n];
-                   const std::vector<MapSample> samples = extended.at(outside, s.progress);
+                   const std::vector<ExtendedSample> samples = extended.at(outside, s.progress);
                    for (std::size_t n = 0; n < samples.size(); ++n)
                      keep(samples[n], begin + outsideAt[n], out);
                    for (std::size_t i = 0; i < part.size(); ++i)

@@ -94,9 +94,9 @@ PullResult Pull::run(const openvdb::GridPtrVec& grids) {
   else
     map_.visit(
         *active,
-        [&](std::size_t, const LeafValues& leaf, const std::vector<MapSample>& samples) {
+        [&](std::size_t, const LeafValues& leaf, const std::vector<ExtendedSample>& samples) {
           std::vector<Site> sites;
-          for (const MapSample& s : samples)
+          for (const ExtendedSample& s : samples)
             sites.push_back({s.image, s.image, inverse(s.jacobian)});
           output.carry(leaf.origin, sites.data());
         },

@@ -149,7 +149,7 @@ void VolumePusher::Data::carrySampled(const ComposedMap& map, const InvertedMap&
           settings.through->push(points, images, jacobians);
           return images;
         }
-        for (const MapSample& s : extended(map).at(points, settings.progress))
+        for (const ExtendedSample& s : extended(map).at(points, settings.progress))
           images.push_back(s.image);
         return images;
       },

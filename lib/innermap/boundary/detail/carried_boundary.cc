@@ -27,7 +27,7 @@ Matrix interpolated(const Points& vertices, const Solid& solid,
 
 }  // namespace
 
-CarriedBoundary::CarriedBoundary(const Solid& source, const CarrySettings& settings)
+CarriedBoundary::CarriedBoundary(const Solid& source, const CarriedSettings& settings)
     : source_(source),
       settings_(settings),
       surface_(source.repaired().mesh),

@@ -11,7 +11,7 @@
 
 namespace innermap {
 
-struct CarrySettings {
+struct CarriedSettings {
   double accuracy = 1e-7;  // of the sums, world units
   double chord = 1e-3;     // of the mesh about the present solid, world units; see refine
   std::uint64_t seed = 1;
@@ -20,7 +20,7 @@ struct CarrySettings {
 
 class CarriedBoundary {
  public:
-  CarriedBoundary(const Solid& source, const CarrySettings& settings);
+  CarriedBoundary(const Solid& source, const CarriedSettings& settings);
 
   const std::vector<HarmonicMap>& steps() const { return steps_; }
 
@@ -45,7 +45,7 @@ class CarriedBoundary {
   Points onSource(const Points& vertices, const std::vector<SurfacePoint>& places) const;
 
   const Solid& source_;
-  const CarrySettings settings_;
+  const CarriedSettings settings_;
   std::vector<HarmonicMap> steps_;
   RefinedSurface surface_;
   Points vertices_;                        // of surface_, now

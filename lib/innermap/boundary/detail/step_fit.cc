@@ -70,8 +70,8 @@ class StepFitter {
   }
 
  private:
-  CarrySettings carrySettings() const {
-    CarrySettings s;
+  CarriedSettings carrySettings() const {
+    CarriedSettings s;
     s.accuracy = std::min(kSumAccuracy, 1e-3 * settings_.tolerance) * unit_;
     s.chord = std::min(kChord, settings_.tolerance) * unit_;
     s.seed = settings_.seed;

@@ -12,7 +12,7 @@
 
 namespace innermap {
 
-enum class Side : std::uint8_t { outside = 0, on = 1, inside = 2 };
+enum class NodeSide : std::uint8_t { outside = 0, on = 1, inside = 2 };
 
 // Directions from a node to its 14 neighbours: d and d ^ 1 are opposite; the first six go along the
 // axes and are one spacing long, the others sqrt(3)/2.

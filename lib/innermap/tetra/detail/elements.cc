@@ -20,7 +20,7 @@ double relativeError(const Vec3& errors, const Vec3& sizes, bool together) {
   return worst;
 }
 
-std::array<double, 9> gradientIn(const Elements& elements, int cell) {
+std::array<double, 9> gradientIn(const FiniteElements& elements, int cell) {
   const CellMesh& mesh = elements.mesh;
   const Matrix& values = elements.values;
   const Tetrahedron& c = mesh.tetrahedra[cell];
@@ -33,7 +33,7 @@ std::array<double, 9> gradientIn(const Elements& elements, int cell) {
   return out;
 }
 
-double jumpOf(const Elements& e, bool together) {
+double jumpOf(const FiniteElements& e, bool together) {
   constexpr std::size_t kCells = 20000;
   const std::size_t count = e.mesh.tetrahedra.size();
   const std::size_t step = std::max<std::size_t>(1, count / kCells);
@@ -70,8 +70,8 @@ double jumpOf(const Elements& e, bool together) {
   return relativeError(jumps, sizes, together);
 }
 
-Elements solveElements(const Solid& solid, const std::function<Vec3(const Vec3&)>& boundary,
-                       const ElementsSettings& settings) {
+FiniteElements solveElements(const Solid& solid, const std::function<Vec3(const Vec3&)>& boundary,
+                             const ElementsSettings& settings) {
   TetrahedralizeSettings cells;
   cells.resolution = settings.resolution;
   cells.keepTopology = false;
@@ -80,7 +80,7 @@ Elements solveElements(const Solid& solid, const std::function<Vec3(const Vec3&)
   HarmonicCellsSettings solving;
   solving.progress = settings.progress;
   const auto start = std::chrono::steady_clock::now();
-  Elements e;
+  FiniteElements e;
   Tetrahedralization made = tetrahedralization(solid, cells);
   e.mesh = std::move(made.mesh);
   e.memory = harmonicCellsMemory(e.mesh.vertices.size(), e.mesh.tetrahedra.size());

@@ -14,7 +14,7 @@
 
 namespace innermap {
 
-struct Elements {
+struct FiniteElements {
   CellMesh mesh;
   Matrix values;  // #V x 3
   std::unique_ptr<CellLocator> locator;
@@ -32,15 +32,15 @@ struct ElementsSettings {
 };
 
 // With the values of `boundary` at the vertices of the boundary.
-Elements solveElements(const Solid& solid, const std::function<Vec3(const Vec3&)>& boundary,
-                       const ElementsSettings& settings);
+FiniteElements solveElements(const Solid& solid, const std::function<Vec3(const Vec3&)>& boundary,
+                             const ElementsSettings& settings);
 
 // Of the three channels: gradient[3 k + axis].
-std::array<double, 9> gradientIn(const Elements& elements, int cell);
+std::array<double, 9> gradientIn(const FiniteElements& elements, int cell);
 
 // Of gradients over the faces of some thousand cells, evenly spread among all: root mean square,
 // relative; of all channels together or of the worst.
-double jumpOf(const Elements& elements, bool together);
+double jumpOf(const FiniteElements& elements, bool together);
 
 // From sums of squares of the three channels.
 double relativeError(const Vec3& errors, const Vec3& sizes, bool together);

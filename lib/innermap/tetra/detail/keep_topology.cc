@@ -11,13 +11,13 @@
 namespace innermap {
 namespace {
 
-using Sides = std::vector<Side>;
+using Sides = std::vector<NodeSide>;
 
 // Changes nodes to the sides that are wanted, one at a time, as far as that changes no topology:
 // those that are inside most clearly, or outside, go first.
 class SimpleChanges {
  public:
-  SimpleChanges(LatticeSigns& signs, const Sides& wanted, Side to, Progress* progress)
+  SimpleChanges(LatticeSigns& signs, const Sides& wanted, NodeSide to, Progress* progress)
       : signs_(signs), wanted_(wanted), to_(to), link_(BccLink::get()), progress_(progress) {}
 
   void run() {
@@ -38,20 +38,20 @@ class SimpleChanges {
   void push(std::size_t node) {
     if (wanted_[node] != to_ || signs_.side[node] == to_) return;
     const float distance = signs_.distance[node];
-    queue_.push({to_ == Side::inside ? -distance : distance, node});
+    queue_.push({to_ == NodeSide::inside ? -distance : distance, node});
   }
 
   bool simple(std::size_t node) const {
     int inside = 0;
     const auto& offsets = signs_.lattice.offsets(signs_.lattice.second(node));
     for (int d = 0; d < kDirections; ++d)
-      inside |= (signs_.side[node + static_cast<std::size_t>(offsets[d])] == Side::inside) << d;
+      inside |= (signs_.side[node + static_cast<std::size_t>(offsets[d])] == NodeSide::inside) << d;
     return link_.connected[inside] && link_.connected[inside ^ ((1 << kDirections) - 1)];
   }
 
   LatticeSigns& signs_;
   const Sides& wanted_;
-  Side to_;
+  NodeSide to_;
   const BccLink& link_;
   Progress* progress_;
   std::priority_queue<std::pair<float, std::size_t>> queue_;
@@ -61,7 +61,8 @@ Sides sidesBelow(const LatticeSigns& signs, double level) {
   Sides sides(signs.side.size());
   parallelBlocks(sides.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n)
-      sides[n] = static_cast<double>(signs.distance[n]) < level ? Side::inside : Side::outside;
+      sides[n] =
+          static_cast<double>(signs.distance[n]) < level ? NodeSide::inside : NodeSide::outside;
   });
   return sides;
 }
@@ -86,8 +87,8 @@ class TopologyKeeper {
     desired_ = signs_.side;
     if (rightWith(true, false)) return true;
     for (const double level : {0.15, 0.3, 0.6, 1.0, 1.5, 1.9}) {
-      tryFrom(-level, Side::inside);
-      tryFrom(level, Side::outside);
+      tryFrom(-level, NodeSide::inside);
+      tryFrom(level, NodeSide::outside);
     }
     if (best_) signs_.side = *best_;
     return best_ || rightWith(false, true) || rightWith(false, false);
@@ -99,14 +100,14 @@ class TopologyKeeper {
   bool rightWith(bool walls, bool gaps) {
     signs_.side = plain_;
     if (walls)
-      for (const std::size_t node : parts_.walls) signs_.side[node] = Side::inside;
+      for (const std::size_t node : parts_.walls) signs_.side[node] = NodeSide::inside;
     if (gaps)
-      for (const std::size_t node : parts_.gaps) signs_.side[node] = Side::outside;
+      for (const std::size_t node : parts_.gaps) signs_.side[node] = NodeSide::outside;
     return right();
   }
 
   // From the nodes below `level` to those that are desired.
-  void tryFrom(double level, Side to) {
+  void tryFrom(double level, NodeSide to) {
     throwIfCancelled(progress_);
     signs_.side = sidesBelow(signs_, level * signs_.lattice.spacing());
     // Growing adds to what is desired anyway, thinning takes away from more.
@@ -141,7 +142,7 @@ KeptTopology keepTopology(const Solid& solid, const SolidTopology* wanted, Latti
     TopologyKeeper(*wanted, signs, parts, progress).run();
   } else {
     const SolidTopology before = latticeTopology(signs);
-    for (const std::size_t node : parts.walls) signs.side[node] = Side::inside;
+    for (const std::size_t node : parts.walls) signs.side[node] = NodeSide::inside;
     if (complexity(latticeTopology(signs)) > complexity(before)) signs.side = plain;
   }
   result.found = latticeTopology(signs);

@@ -80,7 +80,7 @@ class Lander {
 }  // namespace
 
 std::vector<int> land(const CellSystem& system, const GuideSurface& surface, std::vector<int> slid,
-                      double tolerance, const PatchSettings& settings, CarriedCells& cells) {
+                      double tolerance, const PatchSolverSettings& settings, CarriedCells& cells) {
   Lander lander(system, surface, settings.least, cells);
   std::vector<int> off;
   for (int pass = 0; pass < kPasses; ++pass) {
@@ -94,7 +94,7 @@ std::vector<int> land(const CellSystem& system, const GuideSurface& surface, std
       for (std::size_t i = system.first[v]; i < system.first[v + 1]; ++i)
         seeds.push_back(system.around[i]);
     const bool loose = pass < kLoosePasses;
-    PatchSettings again = settings;
+    PatchSolverSettings again = settings;
     again.stiffness = settings.stiffness * settings.most;
     again.growth = 1;
     if (!loose) again.rounds = 4;

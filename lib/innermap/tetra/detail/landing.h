@@ -11,6 +11,6 @@ namespace innermap {
 // Each of `slid` goes to the surface as far as its tetrahedra stay good; what is inside is
 // untangled about those that do not arrive; several times. Those that are off in the end.
 std::vector<int> land(const CellSystem& system, const GuideSurface& surface, std::vector<int> slid,
-                      double tolerance, const PatchSettings& settings, CarriedCells& cells);
+                      double tolerance, const PatchSolverSettings& settings, CarriedCells& cells);
 
 }  // namespace innermap

@@ -40,19 +40,19 @@ class Warper {
 
   // The direction of the nearest cut that is too near, or -1.
   int nearestCut(std::size_t node) const {
-    const Side side = signs_.side[node];
-    if (side == Side::on) return -1;
+    const NodeSide side = signs_.side[node];
+    if (side == NodeSide::on) return -1;
     const auto& offsets = signs_.lattice.offsets(signs_.lattice.second(node));
     const double mine = std::abs(static_cast<double>(signs_.distance[node]));
-    const bool genuine = (signs_.distance[node] < 0) == (side == Side::inside);
+    const bool genuine = (signs_.distance[node] < 0) == (side == NodeSide::inside);
     if (!genuine || mine >= signs_.lattice.spacing()) return -1;
-    const Side opposite = side == Side::inside ? Side::outside : Side::inside;
+    const NodeSide opposite = side == NodeSide::inside ? NodeSide::outside : NodeSide::inside;
     int best = -1;
     double nearest = 0;
     for (int d = 0; d < kDirections; ++d) {
       const std::size_t other = node + static_cast<std::size_t>(offsets[d]);
       if (signs_.side[other] != opposite) continue;
-      if ((signs_.distance[other] < 0) != (opposite == Side::inside)) continue;
+      if ((signs_.distance[other] < 0) != (opposite == NodeSide::inside)) continue;
       const double share =
           mine / std::max(mine + std::abs(static_cast<double>(signs_.distance[other])), 1e-300);
       if (share >= leastCut(d)) continue;
@@ -67,8 +67,8 @@ class Warper {
   void tryWarp(std::size_t node) {
     const int direction = nearestCut(node);
     if (direction < 0) return;
-    const Side before = signs_.side[node];
-    signs_.side[node] = Side::on;
+    const NodeSide before = signs_.side[node];
+    signs_.side[node] = NodeSide::on;
     const Neighbours around = neighbours(node);
     bool good = manifoldAt(around);
     for (int d = 0; good && d < kDirections; ++d)
@@ -87,10 +87,10 @@ class Warper {
     const auto& offsets = signs_.lattice.offsets(signs_.lattice.second(node));
     Neighbours n;
     for (int d = 0; d < kDirections; ++d) {
-      const Side side = signs_.side[node + static_cast<std::size_t>(offsets[d])];
-      n.inside |= (side == Side::inside) << d;
-      n.on |= (side == Side::on) << d;
-      n.outside |= (side == Side::outside) << d;
+      const NodeSide side = signs_.side[node + static_cast<std::size_t>(offsets[d])];
+      n.inside |= (side == NodeSide::inside) << d;
+      n.on |= (side == NodeSide::on) << d;
+      n.outside |= (side == NodeSide::outside) << d;
     }
     return n;
   }
@@ -137,7 +137,7 @@ LatticeSigns latticeSigns(const Solid& solid, double spacing, Progress* progress
   signs.onEdge.assign(nodes, -1);
   parallelBlocks(nodes, 1 << 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n)
-      signs.side[n] = signs.distance[n] < 0 ? Side::inside : Side::outside;
+      signs.side[n] = signs.distance[n] < 0 ? NodeSide::inside : NodeSide::outside;
   });
   return signs;
 }
@@ -147,7 +147,7 @@ double cutShare(const LatticeSigns& signs, std::size_t node, int direction) {
   const double b = static_cast<double>(signs.distance[signs.lattice.neighbour(node, direction)]);
   if ((a < 0) != (b < 0)) return a / (a - b);
   // Both inside: the cut is pushed to the end that should be outside.
-  const bool inside = signs.side[node] == Side::inside;
+  const bool inside = signs.side[node] == NodeSide::inside;
   return (a < 0) == inside ? 1 : 0;
 }
 

@@ -13,7 +13,7 @@ namespace innermap {
 struct LatticeSigns {
   BccLattice lattice;
   std::vector<float> distance;      // #nodes, signed, cut off at two spacings; world units
-  std::vector<Side> side;           // #nodes
+  std::vector<NodeSide> side;       // #nodes
   std::vector<std::int8_t> onEdge;  // #nodes: for those on the surface, the direction of the edge
                                     // whose cut they stand at; else -1
 };

@@ -26,7 +26,9 @@ long eulerCharacteristic(const LatticeSigns& signs) {
   const BccLattice& lattice = signs.lattice;
   const auto shapes = bccTetrahedra(lattice);
   const auto shares = sharesOfEuler();
-  const auto inside = [&](std::size_t node) { return signs.side[node] == Side::inside ? 1 : 0; };
+  const auto inside = [&](std::size_t node) {
+    return signs.side[node] == NodeSide::inside ? 1 : 0;
+  };
   const auto& n = lattice.size();
   const std::size_t margin = 1 + n[0] + static_cast<std::size_t>(n[0]) * n[1];
   const std::size_t cells = lattice.cells() - 2 * margin;
@@ -45,7 +47,7 @@ long eulerCharacteristic(const LatticeSigns& signs) {
     sums[begin / kBlock] = sum;
   });
   const long twelve = std::accumulate(sums.begin(), sums.end(), 0L);
-  return std::count(signs.side.begin(), signs.side.end(), Side::inside) + twelve / 12;
+  return std::count(signs.side.begin(), signs.side.end(), NodeSide::inside) + twelve / 12;
 }
 
 // Nodes of one row with the same side, next to one another.
@@ -60,9 +62,9 @@ class Runs {
     const int rows = 2 * size_[1] * size_[2];
     for (int row = 0; row < rows; ++row) {
       start_.push_back(static_cast<int>(runs_.size()));
-      const Side* side = signs.side.data() + static_cast<std::size_t>(row) * size_[0];
+      const NodeSide* side = signs.side.data() + static_cast<std::size_t>(row) * size_[0];
       for (int i = 0; i < size_[0]; ++i) {
-        const bool inside = side[i] == Side::inside;
+        const bool inside = side[i] == NodeSide::inside;
         if (i == 0 || runs_.back().inside != inside) runs_.push_back({i, i, inside});
         runs_.back().end = i + 1;
       }

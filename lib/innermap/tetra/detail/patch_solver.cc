@@ -97,7 +97,7 @@ void placeSprings(const GuideSurface& surface, double stiffness, LocalPatch& loc
 }  // namespace
 
 PatchResult solvePatch(const CellSystem& system, const GuideSurface& surface,
-                       const CellPatch& patch, const PatchSettings& settings, bool always,
+                       const CellPatch& patch, const PatchSolverSettings& settings, bool always,
                        CarriedCells& cells) {
   PatchResult result;
   result.poorBefore = poorOf(system, patch, cells.positions, settings.least);
@@ -139,7 +139,7 @@ PatchResult solvePatch(const CellSystem& system, const GuideSurface& surface,
 }
 
 std::size_t solvePatches(const CellSystem& system, const GuideSurface& surface,
-                         const std::vector<CellPatch>& patches, const PatchSettings& settings,
+                         const std::vector<CellPatch>& patches, const PatchSolverSettings& settings,
                          bool always, CarriedCells& cells) {
   std::atomic<std::size_t> poor{0};
   parallelBlocks(

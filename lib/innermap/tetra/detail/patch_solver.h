@@ -9,7 +9,7 @@
 
 namespace innermap {
 
-struct PatchSettings {
+struct PatchSolverSettings {
   double least = 1e-4;  // quality that counts as good
   double volumeShare = 0.5;
   int rounds = 20;
@@ -29,12 +29,12 @@ struct PatchResult {
 // Keeps what it finds where fewer tetrahedra are poor than before, or with `always` where no more
 // are. Moves the patch's vertices alone.
 PatchResult solvePatch(const CellSystem& system, const GuideSurface& surface,
-                       const CellPatch& patch, const PatchSettings& settings, bool always,
+                       const CellPatch& patch, const PatchSolverSettings& settings, bool always,
                        CarriedCells& cells);
 
 // One patch after the other, side by side; tetrahedra of all of them that are poor afterwards.
 std::size_t solvePatches(const CellSystem& system, const GuideSurface& surface,
-                         const std::vector<CellPatch>& patches, const PatchSettings& settings,
+                         const std::vector<CellPatch>& patches, const PatchSolverSettings& settings,
                          bool always, CarriedCells& cells);
 
 }  // namespace innermap

@@ -34,8 +34,8 @@ class FillingTable {
  public:
   explicit FillingTable(const BccTetrahedron& shape) : shape_(shape) {
     for (int code = 0; code < 81; ++code) {
-      std::array<Side, 4> side{};
-      for (int i = 0, c = code; i < 4; ++i, c /= 3) side[i] = static_cast<Side>(c % 3);
+      std::array<NodeSide, 4> side{};
+      for (int i = 0, c = code; i < 4; ++i, c /= 3) side[i] = static_cast<NodeSide>(c % 3);
       fillings_[code] = fillingOf(side);
     }
   }
@@ -54,15 +54,15 @@ class FillingTable {
     return second(p) == second(o) ? q : p;  // it ends at the long edge's cut
   }
 
-  Filling fillingOf(const std::array<Side, 4>& side) const {
+  Filling fillingOf(const std::array<NodeSide, 4>& side) const {
     std::array<int, 4> in{}, other{};
     int ins = 0, others = 0, outs = 0;
     for (int i = 0; i < 4; ++i) {
-      if (side[i] == Side::inside)
+      if (side[i] == NodeSide::inside)
         in[ins++] = i;
       else
         other[others++] = i;
-      outs += side[i] == Side::outside;
+      outs += side[i] == NodeSide::outside;
     }
     Filling f;
     if (ins == 0) return f;
@@ -71,10 +71,10 @@ class FillingTable {
     } else if (ins == 1) {
       Local t{in[0], 0, 0, 0};
       for (int k = 0; k < 3; ++k)
-        t[k + 1] = side[other[k]] == Side::outside ? cutOf(in[0], other[k]) : other[k];
+        t[k + 1] = side[other[k]] == NodeSide::outside ? cutOf(in[0], other[k]) : other[k];
       add(f, t);
     } else if (ins == 2 && outs == 1) {
-      const int o = side[other[0]] == Side::outside ? other[0] : other[1];
+      const int o = side[other[0]] == NodeSide::outside ? other[0] : other[1];
       const int apex = other[0] + other[1] - o;
       const int p = diagonalFrom(in[0], in[1], o), q = in[0] + in[1] - p;
       add(f, {p, q, cutOf(q, o), apex});
@@ -162,14 +162,14 @@ class Stuffer {
     const auto& offsets = lattice_.offsets(lattice_.second(node));
     int mask = 0;
     for (int d = 0; d < kDirections; ++d)
-      mask |= (signs_.side[node + static_cast<std::size_t>(offsets[d])] == Side::outside) << d;
+      mask |= (signs_.side[node + static_cast<std::size_t>(offsets[d])] == NodeSide::outside) << d;
     return mask;
   }
 
   bool touchesInside(std::size_t node) const {
     const auto& offsets = lattice_.offsets(lattice_.second(node));
     for (const std::ptrdiff_t offset : offsets)
-      if (signs_.side[node + static_cast<std::size_t>(offset)] == Side::inside) return true;
+      if (signs_.side[node + static_cast<std::size_t>(offset)] == NodeSide::inside) return true;
     return false;
   }
 
@@ -177,8 +177,8 @@ class Stuffer {
   template <class Use>
   void forUsed(std::size_t begin, std::size_t end, const Use& use) const {
     for (std::size_t node = begin; node < end; ++node) {
-      if (signs_.side[node] == Side::outside) continue;
-      if (signs_.side[node] == Side::inside) {
+      if (signs_.side[node] == NodeSide::outside) continue;
+      if (signs_.side[node] == NodeSide::inside) {
         const int cuts = cutsOf(node);
         use(cuts ? 0 : 1, node, cuts);
       } else if (touchesInside(node)) {
@@ -276,7 +276,7 @@ class Stuffer {
     };
     if (local < 4) return id_[node(local)];
     int p = kEdges[local - 4][0], q = kEdges[local - 4][1];
-    if (signs_.side[node(p)] != Side::inside) std::swap(p, q);
+    if (signs_.side[node(p)] != NodeSide::inside) std::swap(p, q);
     const int id = id_[node(p)], d = shape.direction[p][q];
     return cutStart_[id] + __builtin_popcount(static_cast<unsigned>(cutMask_[id] & ((1 << d) - 1)));
   }

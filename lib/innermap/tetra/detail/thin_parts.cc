@@ -45,7 +45,7 @@ class Finder {
     const Vec3 into = sign * normal;
     const double h = signs_.lattice.spacing();
     const auto wrong = [&](std::size_t node) {
-      return (signs_.side[node] == Side::inside) != (sign < 0);
+      return (signs_.side[node] == NodeSide::inside) != (sign < 0);
     };
     if (!wrong(nearestNode(x + kReach * h * into))) return -1;
     // How far a ball that touches the surface in x can be blown up, by halving.
@@ -74,9 +74,9 @@ class Finder {
   bool lost(const Vec3& x) const {
     const double h = signs_.lattice.spacing();
     const std::size_t nearest = nearestNode(x);
-    if (signs_.side[nearest] == Side::inside) return false;
+    if (signs_.side[nearest] == NodeSide::inside) return false;
     for (const std::ptrdiff_t offset : signs_.lattice.offsets(signs_.lattice.second(nearest)))
-      if (signs_.side[nearest + static_cast<std::size_t>(offset)] == Side::inside &&
+      if (signs_.side[nearest + static_cast<std::size_t>(offset)] == NodeSide::inside &&
           norm(signs_.lattice.position(nearest + static_cast<std::size_t>(offset)) - x) < 1.25 * h)
         return false;
     return true;

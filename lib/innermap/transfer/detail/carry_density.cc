@@ -79,20 +79,20 @@ class DensityCarry {
   void run();
 
   const VoxelSums& sums() const { return sums_; }
-  const CellFigures& figures() const { return figures_; }
+  const DepositFigures& figures() const { return figures_; }
 
  private:
   // What is summed by one thread.
   struct Part {
     VoxelSums sums;
-    CellFigures figures;
+    DepositFigures figures;
     std::vector<Coord> torn;
   };
 
   void addLeaf(std::size_t leaf, Part& part) const;
   void addCells(const openvdb::CoordBBox& cells, const Coord& voxel, const LinearDensity& density,
                 const Coord& origin, const CellNodes::Corners& corners, Part& part) const;
-  void addTorn(const Coord& cell, const MapSample& middle, const DensityReader& densities,
+  void addTorn(const Coord& cell, const ExtendedSample& middle, const DensityReader& densities,
                Part& part) const;
   void carryTorn(const std::vector<Coord>& torn);
   void take(std::vector<Part>& parts);
@@ -104,7 +104,7 @@ class DensityCarry {
   CellNodes nodes_;
   CellDeposit deposit_;
   VoxelSums sums_;
-  CellFigures figures_;
+  DepositFigures figures_;
 };
 
 void DensityCarry::addCells(const openvdb::CoordBBox& cells, const Coord& voxel,
@@ -148,7 +148,7 @@ void DensityCarry::addLeaf(std::size_t leaf, Part& part) const {
 }
 
 // A torn cell goes with its middle and the map's derivative there.
-void DensityCarry::addTorn(const Coord& cell, const MapSample& middle,
+void DensityCarry::addTorn(const Coord& cell, const ExtendedSample& middle,
                            const DensityReader& densities, Part& part) const {
   const Coord voxel = nodes_.voxelOf(cell);
   CellImage image;
@@ -167,7 +167,7 @@ void DensityCarry::carryTorn(const std::vector<Coord>& torn) {
   Points middles;
   for (const Coord& cell : torn)
     middles.push_back(nodes_.worldOf(cell.asVec3d() + openvdb::Vec3d(0.5)));
-  const std::vector<MapSample> samples = map_.at(middles, settings_.progress);
+  const std::vector<ExtendedSample> samples = map_.at(middles, settings_.progress);
   std::vector<Part> parts((torn.size() + kBlock - 1) / kBlock);
   parallelBlocks(
       torn.size(), kBlock,
@@ -244,7 +244,7 @@ openvdb::GridBase::Ptr carryDensity(const DensityVoxels& source, const ExtendedM
   double most = 0;
   for (const auto& [origin, sums] : carry.sums().leaves())
     for (const VoxelSums::Sum& sum : sums) most = std::max(most, sum.volume);
-  const CellFigures& cells = carry.figures();
+  const DepositFigures& cells = carry.figures();
   figures.name = source.grid->getName();
   figures.before = source.mass;
   figures.left = source.left;

@@ -83,14 +83,14 @@ double massOf(const CellImage& cell, double volume) {
 
 }  // namespace
 
-void CellFigures::add(const CellFigures& other) {
+void DepositFigures::add(const DepositFigures& other) {
   cells += other.cells;
   kept += other.kept;
   turned += other.turned;
   largestCompression = std::max(largestCompression, other.largestCompression);
 }
 
-void CellDeposit::count(const CellImage& cell, CellFigures& figures) const {
+void CellDeposit::count(const CellImage& cell, DepositFigures& figures) const {
   bool kept = false, turned = false;
   for (const KuhnCell& kuhn : kKuhnCells) {
     const double image = volumeOf(cell, kuhn) * targetVolume_;
@@ -103,7 +103,7 @@ void CellDeposit::count(const CellImage& cell, CellFigures& figures) const {
   figures.turned += turned;
 }
 
-void CellDeposit::add(const CellImage& cell, VoxelSums& sums, CellFigures& figures) const {
+void CellDeposit::add(const CellImage& cell, VoxelSums& sums, DepositFigures& figures) const {
   if (!isPlaced(cell)) return;
   count(cell, figures);
   Box3 box;

@@ -16,11 +16,11 @@ struct CellImage {
   std::array<double, 8> densities;
 };
 
-struct CellFigures {
+struct DepositFigures {
   std::uint64_t cells = 0, kept = 0, turned = 0;  // with a tetrahedron of the same, the other hand
   double largestCompression = 0;                  // of a tetrahedron: its volume by its image's
 
-  void add(const CellFigures& other);
+  void add(const DepositFigures& other);
 };
 
 class CellDeposit {
@@ -31,10 +31,10 @@ class CellDeposit {
 
   // Exactly, but for images more than 64 voxels wide: those of a cell that a map tears apart beside
   // its charges, which go to the voxel in their middle. What is not finite goes nowhere.
-  void add(const CellImage& cell, VoxelSums& sums, CellFigures& figures) const;
+  void add(const CellImage& cell, VoxelSums& sums, DepositFigures& figures) const;
 
  private:
-  void count(const CellImage& cell, CellFigures& figures) const;
+  void count(const CellImage& cell, DepositFigures& figures) const;
 
   double sourceVolume_, targetVolume_;
 };

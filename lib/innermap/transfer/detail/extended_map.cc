@@ -7,7 +7,7 @@
 namespace innermap {
 
 // w = 1 at the solid, 0 from the reach on, smooth at both ends: F = w E + (1 - w) R.
-void ExtendedMap::fade(const Vec3& p, const Vec3& beyond, MapSample& sample) const {
+void ExtendedMap::fade(const Vec3& p, const Vec3& beyond, ExtendedSample& sample) const {
   sample.outside = norm(beyond);
   if (!outside_.fadeTo || sample.outside == 0) return;
   const double reach = this->reach(), t = std::min(sample.outside / reach, 1.0);
@@ -32,8 +32,8 @@ bool ExtendedMap::isRigidAt(const Vec3& p) const {
   return squared > reach() * reach();
 }
 
-std::vector<MapSample> ExtendedMap::at(const Points& points, Progress* progress) const {
-  std::vector<MapSample> out(points.size());
+std::vector<ExtendedSample> ExtendedMap::at(const Points& points, Progress* progress) const {
+  std::vector<ExtendedSample> out(points.size());
   Points near;
   std::vector<std::size_t> index;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -44,7 +44,7 @@ std::vector<MapSample> ExtendedMap::at(const Points& points, Progress* progress)
       index.push_back(i);
     }
   }
-  const std::vector<MapSample> found = nearAt(near, progress);
+  const std::vector<ExtendedSample> found = nearAt(near, progress);
   for (std::size_t n = 0; n < index.size(); ++n) out[index[n]] = found[n];
   return out;
 }
@@ -57,10 +57,10 @@ Points ExtendedMap::imagesInside(const Points& points, Progress* progress) const
   return out;
 }
 
-std::vector<MapSample> ExtendedMap::nearAt(const Points& points, Progress* progress) const {
+std::vector<ExtendedSample> ExtendedMap::nearAt(const Points& points, Progress* progress) const {
   const ExtendedSamples extended =
       sampleExtended(map_, solid_, levelSet_, points, {accuracy_, {}, progress});
-  std::vector<MapSample> out(points.size());
+  std::vector<ExtendedSample> out(points.size());
   constexpr std::size_t kBlock = 4096;
   parallelBlocks(
       points.size(), kBlock,
@@ -82,7 +82,7 @@ void ExtendedMap::visit(const openvdb::MaskGrid& region, const Visitor& visit,
                         std::string_view stage, Progress* progress) const {
   visitField(map_, solid_, levelSet_, region,
              [&](std::size_t leaf, const LeafValues& values) {
-               std::vector<MapSample> samples(values.count);
+               std::vector<ExtendedSample> samples(values.count);
                for (std::size_t i = 0; i < values.count; ++i) {
                  const openvdb::Coord ijk =
                      values.origin +

@@ -16,7 +16,7 @@
 namespace innermap {
 
 // What the map does at one point.
-struct MapSample {
+struct ExtendedSample {
   Vec3 image;
   Mat3 jacobian;
   double outside = 0;  // distance from the solid, world units of the source
@@ -30,14 +30,14 @@ class ExtendedMap {
               const OutsideSettings& outside, double accuracy)
       : map_(map), solid_(solid), levelSet_(levelSet), outside_(outside), accuracy_(accuracy) {}
 
-  std::vector<MapSample> at(const Points& points, Progress* progress) const;
+  std::vector<ExtendedSample> at(const Points& points, Progress* progress) const;
 
   // Images of points that are inside the solid.
   Points imagesInside(const Points& points, Progress* progress) const;
 
   // The same at lattice voxels; sample i of `samples` is that of the i-th active voxel of a leaf.
   using Visitor = std::function<void(std::size_t leaf, const LeafValues& values,
-                                     const std::vector<MapSample>& samples)>;
+                                     const std::vector<ExtendedSample>& samples)>;
   void visit(const openvdb::MaskGrid& region, const Visitor& visit, std::string_view stage,
              Progress* progress) const;
 
@@ -52,8 +52,8 @@ class ExtendedMap {
  private:
   // Surely beyond the reach, where only the rigid motion is left.
   bool isRigidAt(const Vec3& p) const;
-  std::vector<MapSample> nearAt(const Points& points, Progress* progress) const;
-  void fade(const Vec3& p, const Vec3& beyond, MapSample& sample) const;
+  std::vector<ExtendedSample> nearAt(const Points& points, Progress* progress) const;
+  void fade(const Vec3& p, const Vec3& beyond, ExtendedSample& sample) const;
 
   const ComposedMap map_;  // by value: often made of one harmonic map for the call
   const Solid& solid_;

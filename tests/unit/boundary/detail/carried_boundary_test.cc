@@ -30,7 +30,7 @@ class Carried : public ::testing::Test {
   Points ways(const Vec3& way) const { return Points(solid.repaired().mesh.vertices.size(), way); }
 
   Solid solid;
-  CarrySettings settings;
+  CarriedSettings settings;
 };
 
 TEST_F(Carried, TheFirstProblemIsOfTheSource) {

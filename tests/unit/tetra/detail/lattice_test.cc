@@ -59,7 +59,7 @@ LatticeSigns randomSigns(std::uint64_t seed, double share) {
   const CounterRandom random(seed, 1);
   const std::size_t nodes = signs.lattice.nodes();
   signs.distance.resize(nodes);
-  signs.side.assign(nodes, Side::outside);
+  signs.side.assign(nodes, NodeSide::outside);
   signs.onEdge.assign(nodes, -1);
   for (std::size_t n = 0; n < nodes; ++n) {
     const Vec3 p = signs.lattice.position(n);
@@ -67,7 +67,7 @@ LatticeSigns randomSigns(std::uint64_t seed, double share) {
     const bool inside = within && random.uniform(2 * n) < share;
     const double size = 0.01 + random.uniform(2 * n + 1);
     signs.distance[n] = static_cast<float>(inside ? -size : size);
-    if (inside) signs.side[n] = Side::inside;
+    if (inside) signs.side[n] = NodeSide::inside;
   }
   return signs;
 }
