@@ -64,6 +64,7 @@ class Finder {
         if (k == 0) break;
       }
     }
+    if (other.onSurface.triangle < 0) return -1;
     // Both walls face away from one another; at a sharp edge they do not.
     const Vec3 area = areaVector(solid_.surface(), other.onSurface.triangle);
     if (dot(area, normal) > -0.5 * norm(area)) return -1;
