@@ -2,7 +2,8 @@
 """Checks the layers: which folder of lib/innermap may include which (the DEPENDS in
 lib/CMakeLists.txt), that solve/ knows no mesh and no grid, that programs include no
 header of a detail/ (those serve the library alone and are not installed), that no file includes
-itself by way of others, and that every public header has its unit test.
+itself by way of others, that no two headers define types of one name (their files would link to
+either's code), and that every public header has its unit test.
 
     layering.py [ROOT]      exit code 1 and one line for each finding
 """
@@ -12,6 +13,7 @@ import sys
 
 # Words that must not stand in a folder's sources, comments aside.
 FORBIDDEN = {"solve": r"\bmesh\b|\bMesh\b|openvdb"}
+TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)[^;(]*\{", re.M)
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.M)
 
 
@@ -149,11 +151,27 @@ def check_cycles(root):
             yield from visit(unit)
 
 
+def check_names(root):
+    """Types that two headers define in the one namespace of the library."""
+    seen = {}
+    for path in sources(os.path.join(root, "lib")):
+        if not path.endswith(".h"):
+            continue
+        here = os.path.relpath(path, root)
+        with open(path, encoding="utf-8") as file:
+            names = TYPE.findall(without_comments(file.read()))
+        for name in sorted(set(names)):
+            if name in seen:
+                yield f"{here}: defines {name}, as {seen[name]} does"
+            seen[name] = here
+
+
 def check(root):
     edges = read_edges(root)
     for top in ("tools", "tests/install", "python"):
         yield from check_outside(root, top)
     yield from check_cycles(root)
+    yield from check_names(root)
     lib = os.path.join(root, "lib/innermap")
     for folder in sorted(os.listdir(lib)):
         if os.path.isdir(os.path.join(lib, folder)):
