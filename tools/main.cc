@@ -134,10 +134,10 @@ int run(const std::vector<std::string>& arguments) {
 // space (ulimit -v) forbids that it waits for ever. It is called by one thread at a time of ours or
 // by many that use one each, so under a limit the program starts anew with no more than that.
 void startWithFewThreads(char** argv) {
-  constexpr char variable[] = "OPENBLAS_NUM_THREADS";
+  constexpr char kVariable[] = "OPENBLAS_NUM_THREADS";
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
-  if (std::getenv(variable) || setenv(variable, "1", 0) != 0) return;
+  if (std::getenv(kVariable) || setenv(kVariable, "1", 0) != 0) return;
   execv("/proc/self/exe", argv);
 }
 

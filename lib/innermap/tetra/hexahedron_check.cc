@@ -30,8 +30,10 @@ double determinantAt(const std::array<Vec3, 8>& p, double u, double v, double w)
 
 Coefficients coefficientsOf(const std::array<Vec3, 8>& p) {
   Coefficients c;
-  for (int i = 0; i < 27; ++i)
-    c[i] = determinantAt(p, 0.5 * (i % 3), 0.5 * (i / 3 % 3), 0.5 * (i / 9));
+  for (int i = 0; i < 27; ++i) {
+    const int x = i % 3, y = i / 3 % 3, z = i / 9;
+    c[i] = determinantAt(p, 0.5 * x, 0.5 * y, 0.5 * z);
+  }
   // From values at 0, 1/2, 1 to coefficients, along each axis.
   for (const int stride : {1, 3, 9})
     for (int i = 0; i < 27; ++i)

@@ -42,10 +42,10 @@ BccLattice::BccLattice(const Vec3& origin, double spacing, const std::array<int,
 Vec3 BccLattice::position(std::size_t node) const {
   const double shift = second(node) ? 0.5 : 0;
   const std::size_t c = second(node) ? node - cells_ : node;
-  const std::size_t row = c / size_[0];
+  const std::size_t row = c / size_[0], layer = row / size_[1];
   return origin_ + spacing_ * Vec3{static_cast<double>(c % size_[0]) + shift,
                                    static_cast<double>(row % size_[1]) + shift,
-                                   static_cast<double>(row / size_[1]) + shift};
+                                   static_cast<double>(layer) + shift};
 }
 
 std::array<BccTetrahedron, 12> bccTetrahedra(const BccLattice& lattice) {
