@@ -6,6 +6,7 @@
 #include <iterator>
 #include <optional>
 
+#include "innermap/core/detail/output_buffer.h"
 #include "innermap/core/detail/text_scanner.h"
 #include "innermap/core/error.h"
 #include "innermap/io/cells/detail/cell_formats.h"
@@ -149,32 +150,13 @@ class MeditReader {
   std::vector<CellUse> pendingUses_;
 };
 
-class TextBuffer {
- public:
-  explicit TextBuffer(std::ostream& stream) : stream_(stream) {}
-  ~TextBuffer() { flush(); }
-  template <class... Args>
-  void print(fmt::format_string<Args...> format, Args&&... args) {
-    fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
-    if (text_.size() > (1u << 20)) flush();
-  }
-
- private:
-  void flush() {
-    stream_.write(text_.data(), static_cast<std::streamsize>(text_.size()));
-    text_.clear();
-  }
-  std::ostream& stream_;
-  fmt::memory_buffer text_;
-};
-
 int referenceAt(const CellField* field, std::size_t row) {
   const double value = field ? field->values[row] : 0;
   return std::abs(value) < 2e9 ? static_cast<int>(std::lround(value)) : 0;
 }
 
 template <class Cells>
-void writeCells(TextBuffer& out, const char* section, const Cells& cells, const CellField* field,
+void writeCells(OutputBuffer& out, const char* section, const Cells& cells, const CellField* field,
                 std::size_t firstRow) {
   if (cells.empty()) return;
   out.print("{}\n{}\n", section, cells.size());
@@ -198,7 +180,7 @@ LostFields writeMedit(std::ostream& stream, const CellMesh& mesh) {
     if (&field != ofVertices) lost.push_back(field.name);
   for (const CellField& field : mesh.cellFields)
     if (&field != ofCells) lost.push_back(field.name);
-  TextBuffer out(stream);
+  OutputBuffer out(stream);
   out.print("MeshVersionFormatted 2\nDimension 3\nVertices\n{}\n", mesh.vertices.size());
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     const Vec3& p = mesh.vertices[v];

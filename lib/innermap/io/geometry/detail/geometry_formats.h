@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "innermap/core/detail/file_bytes.h"
+#include "innermap/core/detail/output_buffer.h"
 #include "innermap/io/geometry/geometry_file.h"
 
 namespace innermap {
@@ -22,33 +23,6 @@ std::unique_ptr<GeometryFile> readOffGeometry(FileBytes file, const ReadGeometry
 std::unique_ptr<GeometryFile> readStlGeometry(FileBytes file, const ReadGeometrySettings& settings);
 std::unique_ptr<GeometryFile> readCellGeometry(const std::string& path,
                                                const ReadGeometrySettings& settings);
-
-// Bytes on their way to a file.
-class OutputBuffer {
- public:
-  explicit OutputBuffer(std::ostream& stream) : stream_(stream) {}
-  ~OutputBuffer() { flush(); }
-  OutputBuffer(const OutputBuffer&) = delete;
-  OutputBuffer& operator=(const OutputBuffer&) = delete;
-
-  void raw(std::string_view bytes) {
-    text_.append(bytes.data(), bytes.data() + bytes.size());
-    if (text_.size() > (1u << 20)) flush();
-  }
-  template <class... Args>
-  void print(fmt::format_string<Args...> format, Args&&... args) {
-    fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
-    if (text_.size() > (1u << 20)) flush();
-  }
-
- private:
-  void flush() {
-    stream_.write(text_.data(), static_cast<std::streamsize>(text_.size()));
-    text_.clear();
-  }
-  std::ostream& stream_;
-  fmt::memory_buffer text_;
-};
 
 // The words of one line of text, with where they stand. Continued lines ('\' at the end) count as
 // one; a '#' ends it where comments are.
