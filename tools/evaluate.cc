@@ -34,7 +34,9 @@ Command makeEvaluateCommand() {
   c.description(
       "Writes the grids surface, density, map, jacobian, harmonic_energy and deformation_energy; "
       "values are active inside and in a skin of two voxels. Energies' totals, the least Jacobian, "
-      "the folded share and what is known of one-to-one stand in the metadata and the report.");
+      "the folded share and what is known of one-to-one stand in the metadata and the report. Far "
+      "from the origin, where floats do not hold positions well, also map_local: positions less "
+      "its metadata innermap_map_local_origin.");
   c.positional("MAP", &o->map, "a map.ply written by fit or map");
   c.option("--output", "FILE", &o->output, "the grids, a .vdb file").shortName("-o").required();
   addEvaluationOptions(c, o->evaluation);

@@ -199,6 +199,10 @@ void reportGrids(const SolidGrids& grids, const LameConstants& lame, Context& co
   report.jacobian = ReportJacobian{values.jacobianMin, values.jacobianMax, values.foldedFraction};
   report.grid = ReportGrid{grids.voxelSize, values.activeVoxels, values.interiorVoxels};
   report.set("grid.volume", values.volume);
+  report.set("grid.map_rounding", grids.mapRounding);
+  if (grids.mapLocal)
+    report.set("grid.map_local_origin",
+               std::vector<double>{grids.localOrigin.x, grids.localOrigin.y, grids.localOrigin.z});
   if (values.repaired) {
     report.set("repair.folded_voxels", values.foldedVoxels);
     report.set("repair.left", values.foldedVoxelsLeft);

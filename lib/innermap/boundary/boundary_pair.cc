@@ -101,6 +101,7 @@ TargetBoundary makeTargetBoundary(const Solid& source, const Mesh& target,
   TargetBoundary out;
   out.moved = repairedPositions(source.repaired(), target.vertices);
   const Mesh moved = out.mesh(source, target.name);
+  requireNearOrigin(moved);
   out.diagonal = boundingBox(moved).diagonal();
   if (!(out.diagonal > 0))
     throw DataError(target.name + ": all vertices are in one place; give a target with extent");

@@ -21,6 +21,7 @@ using Vec3Leaf = openvdb::Vec3STree::LeafNodeType;
 // the threads.
 struct LeafTotals {
   double harmonic = 0, deformation = 0, volume = 0, folded = 0;
+  double rounding = 0;
   double jacobianMin = std::numeric_limits<double>::infinity(), jacobianMax = -jacobianMin;
   std::uint64_t active = 0, interior = 0, foldedVoxels = 0;
 
@@ -32,6 +33,7 @@ struct LeafTotals {
     active += t.active;
     interior += t.interior;
     foldedVoxels += t.foldedVoxels;
+    rounding = std::max(rounding, t.rounding);
     jacobianMin = std::min(jacobianMin, t.jacobianMin);
     jacobianMax = std::max(jacobianMax, t.jacobianMax);
   }
@@ -83,8 +85,13 @@ void Evaluation::store(const Mat3& j, const Vec3& position, double share, std::s
   const double det = determinant(j), h = unitVolumeScale_ * harmonicEnergyDensity(j),
                psi = deformationEnergyDensity(j, settings_.lame);
   const auto at = static_cast<openvdb::Index>(offset);
+  const openvdb::Vec3d exact(position.x, position.y, position.z);
   if (out.map)
-    out.map->setValueOnly(at, openvdb::Vec3f(openvdb::Vec3d(position.x, position.y, position.z)));
+    out.map->setValueOnly(
+        at, openvdb::Vec3f(exact - openvdb::Vec3d(settings_.origin.x, settings_.origin.y,
+                                                  settings_.origin.z)));
+  totals.rounding =
+      std::max(totals.rounding, (openvdb::Vec3d(openvdb::Vec3f(exact)) - exact).length());
   if (out.jacobian) out.jacobian->setValueOnly(at, static_cast<float>(det));
   if (out.harmonic) out.harmonic->setValueOnly(at, static_cast<float>(h));
   if (out.deformation) out.deformation->setValueOnly(at, static_cast<float>(psi));
@@ -123,7 +130,7 @@ GridPtr named(GridPtr grid, const char* name) {
 // The values of a leaf with those of repaired voxels in their places.
 class RepairedLeaf {
  public:
-  RepairedLeaf(const LeafValues& leaf, const FoldRepair& repair)
+  RepairedLeaf(const LeafValues& leaf, const FoldRepair& repair, const Vec3& origin)
       : leaf_(leaf),
         values_(leaf.values, leaf.values + 3 * leaf.count),
         gradients_(leaf.gradients, leaf.gradients + 9 * leaf.count) {
@@ -132,7 +139,8 @@ class RepairedLeaf {
       const auto found = repair.voxels.find(leaf.origin + local);
       if (found == repair.voxels.end()) continue;
       for (std::size_t r = 0; r < 3; ++r) {
-        values_[3 * i + r] = found->second.position[static_cast<int>(r)];
+        const int axis = static_cast<int>(r);
+        values_[3 * i + r] = origin[axis] + found->second.position[axis];
         for (std::size_t a = 0; a < 3; ++a)
           gradients_[9 * i + 3 * r + a] = found->second.jacobian[r][a];
       }
@@ -175,7 +183,8 @@ void Evaluation::repair(const openvdb::MaskGrid& region, std::vector<LeafTotals>
   for (auto leaf = again->tree().cbeginLeaf(); leaf; ++leaf) origins.push_back(leaf->origin());
   visitField(map_, solid_, levelSet_, *again,
              [&](std::size_t leaf, const LeafValues& values) {
-               totals[numbers.at(origins[leaf])] = store(RepairedLeaf(values, repair).leaf(), out);
+               totals[numbers.at(origins[leaf])] =
+                   store(RepairedLeaf(values, repair, settings_.origin).leaf(), out);
              },
              {accuracy_, "repairing folds", settings_.progress});
 }
@@ -225,6 +234,7 @@ MapGrids Evaluation::run() {
   out.jacobianMax = sum.interior ? sum.jacobianMax : 0;
   out.foldedVoxelsLeft = sum.foldedVoxels;
   out.activeVoxels = sum.active;
+  out.rounding = sum.rounding;
   out.interiorVoxels = sum.interior;
   return out;
 }

@@ -21,6 +21,9 @@ struct EvaluateSettings {
   // each the map is replaced by one that is linear between voxels and folds nowhere, if one is
   // found; see MapGrids::repaired. 0: never.
   double repairUpTo = 0;
+  // World units of the target. MapGrids::map holds positions less this, and folds are looked for in
+  // it: floats hold little of positions that are far from the origin.
+  Vec3 origin;
   double skin = 2;  // active voxels outside the surface, in [0, 3]
   // Of the sums of charges: root mean square error of positions as a fraction of the target's
   // extent, in [1e-12, 1e-3]. The default is what float grids hold.
@@ -34,7 +37,8 @@ struct EvaluateSettings {
 // (p - c) for `map`, the value at c for the others (the field itself is singular at the sources
 // just outside). Background 0.
 struct MapGrids {
-  openvdb::Vec3fGrid::Ptr map;                // target position of each voxel, world units
+  openvdb::Vec3fGrid::Ptr map;                // target position of each voxel less the origin of
+                                              // the settings, world units
   openvdb::FloatGrid::Ptr jacobian;           // det of the map's gradient
   openvdb::FloatGrid::Ptr harmonicEnergy;     // density, both solids scaled to unit volume
   openvdb::FloatGrid::Ptr deformationEnergy;  // density psi
@@ -52,6 +56,9 @@ struct MapGrids {
   std::uint64_t foldedVoxels = 0;      // whose centre is inside; before repair
   std::uint64_t foldedVoxelsLeft = 0;  // after it
   double repairedFarthest = 0;         // greatest value of `repaired`
+  // The largest way by which rounding to floats moves a position, not less any origin, of the
+  // active voxels; world units of the target.
+  double rounding = 0;
 
   std::vector<openvdb::GridBase::Ptr> all() const;  // those that were asked for
 };

@@ -1,9 +1,11 @@
 #include "innermap/evaluate/map_grids.h"
 
 #include <fmt/format.h>
+#include <openvdb/tools/ValueTransformer.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <initializer_list>
 #include <utility>
 
@@ -38,6 +40,8 @@ EvaluateSettings evaluateSettings(double targetVolume, double accuracy,
   return out;
 }
 
+constexpr double kTenth = 0.1;  // of the tolerance
+
 using Figures = std::initializer_list<std::pair<const char*, double>>;
 
 void insert(const openvdb::GridPtrVec& grids, const Figures& figures) {
@@ -67,16 +71,65 @@ Injectivity injectivityOf(const MappedSolid& mapped, const SolidGrids& grids, Pr
   out.repaired = values.foldedVoxels - values.foldedVoxelsLeft;
   const auto distance = grids.surface->getConstAccessor();
   const auto position = values.map->getConstAccessor();
+  const Vec3& origin = grids.localOrigin;
   if (out.voxels.folded > 0)
     for (auto voxel = values.jacobian->cbeginValueOn(); voxel; ++voxel) {
       if (*voxel > 0 || !(distance.getValue(voxel.getCoord()) < 0)) continue;
       const openvdb::Vec3f p = position.getValue(voxel.getCoord());
-      if (target.runsThroughItself({p.x(), p.y(), p.z()}, error)) ++out.voxels.foldedAtOverlap;
+      if (target.runsThroughItself(origin + Vec3{p.x(), p.y(), p.z()}, error))
+        ++out.voxels.foldedAtOverlap;
     }
-  out.cells = checkCells(*values.map, *grids.surface, target, error, progress);
+  out.cells = checkCells(*values.map, *grids.surface, target, error, progress, origin);
   out.cells.share = static_cast<double>(out.cells.checked) / 6 * std::pow(grids.voxelSize, 3) /
                     mapped.solid().volume();
   return out;
+}
+
+// What the map was fitted to.
+double toleranceOf(const MappedSolid& mapped) {
+  for (const auto& [key, value] : mapped.facts)
+    if (key == "tolerance") {
+      const double tolerance = std::strtod(value.c_str(), nullptr);
+      if (tolerance > 0) return tolerance;
+    }
+  return kUsualTolerance;
+}
+
+// Where floats hold the target's positions well enough, the origin; else a point near its middle
+// that floats hold too.
+Vec3 localOriginOf(const MappedSolid& mapped) {
+  constexpr double kHalfUnit = 1.0 / (1 << 24);
+  const TargetBoundary& target = mapped.boundary.target;
+  const Box3 box = boundingBox(target.moved);
+  const Vec3 far{std::max(std::abs(box.lower.x), std::abs(box.upper.x)),
+                 std::max(std::abs(box.lower.y), std::abs(box.upper.y)),
+                 std::max(std::abs(box.lower.z), std::abs(box.upper.z))};
+  if (kHalfUnit * norm(far) <= kTenth * toleranceOf(mapped) * target.diagonal) return {};
+  Vec3 middle = box.center();
+  for (int a = 0; a < 3; ++a) middle[a] = static_cast<double>(static_cast<float>(middle[a]));
+  return middle;
+}
+
+// `map` less the origin becomes map_local, and absolute again.
+void splitMap(const MappedSolid& mapped, SolidGrids& grids) {
+  grids.mapRounding = grids.values.rounding / mapped.boundary.target.diagonal;
+  const Vec3 o = grids.localOrigin;
+  if (o.x == 0 && o.y == 0 && o.z == 0) return;
+  const double tolerance = toleranceOf(mapped);
+  if (grids.mapRounding > kTenth * tolerance)
+    grids.warnings.push_back(fmt::format(
+        "so far from the origin the floats of the grid 'map' hold positions to {:.2g} of the "
+        "target's diagonal only ({:.4g} world units), over a tenth of the tolerance of {:g}; take "
+        "'map_local', positions less its metadata innermap_map_local_origin, or move both meshes "
+        "nearer to the origin",
+        grids.mapRounding, grids.values.rounding, tolerance));
+  grids.mapLocal = grids.values.map;
+  grids.values.map = grids.mapLocal->deepCopy();
+  grids.mapLocal->setName("map_local");
+  const openvdb::Vec3d origin(o.x, o.y, o.z);
+  openvdb::tools::foreach (grids.values.map->beginValueOn(), [&](const auto& voxel) {
+    voxel.setValue(openvdb::Vec3f(openvdb::Vec3d(*voxel) + origin));
+  });
 }
 
 void insertStatement(const openvdb::GridPtrVec& grids, const Injectivity& known) {
@@ -89,6 +142,7 @@ void insertStatement(const openvdb::GridPtrVec& grids, const Injectivity& known)
 openvdb::GridPtrVec SolidGrids::all() const {
   openvdb::GridPtrVec out{surface, density};
   for (const openvdb::GridBase::Ptr& grid : values.all()) out.push_back(grid);
+  if (mapLocal) out.push_back(mapLocal);
   return out;
 }
 
@@ -107,15 +161,22 @@ SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& sett
     out.warnings = checkLevelSet(*out.surface, solid).warnings;
   });
   timed(out.seconds, "evaluate", [&] {
-    out.values =
-        evaluateMap(mapped.map, solid, *out.surface,
-                    evaluateSettings(mapped.boundary.target.volume, sumAccuracy(mapped), settings));
+    EvaluateSettings evaluate =
+        evaluateSettings(mapped.boundary.target.volume, sumAccuracy(mapped), settings);
+    evaluate.origin = out.localOrigin = localOriginOf(mapped);
+    out.values = evaluateMap(mapped.map, solid, *out.surface, evaluate);
   });
   requireInterior(out.values.interiorVoxels, mapped.boundary.source.mesh.name);
   out.voxelSize = out.surface->voxelSize()[0];
   out.injectivity =
       timed(out.seconds, "cells", [&] { return injectivityOf(mapped, out, settings.progress); });
+  splitMap(mapped, out);
   const openvdb::GridPtrVec all = out.all();
+  if (out.mapLocal)
+    out.mapLocal->insertMeta(
+        "innermap_map_local_origin",
+        openvdb::Vec3DMetadata({out.localOrigin.x, out.localOrigin.y, out.localOrigin.z}));
+  insert(all, {{"map_rounding", out.mapRounding}});
   describeMap(all, mapped);
   insertStatement(all, out.injectivity);
   insertTotals(all, out.values);

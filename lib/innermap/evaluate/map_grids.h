@@ -30,19 +30,29 @@ struct MapGridSettings {
   Progress* progress = nullptr;
 };
 
+constexpr double kUsualTolerance = 1e-3;
+
 struct SolidGrids {
   openvdb::FloatGrid::Ptr surface, density;  // level set, and fog of the inside
-  MapGrids values;                           // with their totals
-  double voxelSize = 0;                      // world units
-  Injectivity injectivity;                   // of the map, with what voxels and cells tell
+  MapGrids values;                           // with their totals; map: absolute positions
+  // Far from the origin, where floats hold positions to less than a tenth of the tolerance that the
+  // map was fitted to (of kUsualTolerance, if to none), also `map_local`: positions less
+  // localOrigin, which floats hold well; folds are looked for in these. Null otherwise.
+  openvdb::Vec3fGrid::Ptr mapLocal;
+  Vec3 localOrigin;
+  double mapRounding = 0;   // MapGrids::rounding, fraction of the target's diagonal
+  double voxelSize = 0;     // world units
+  Injectivity injectivity;  // of the map, with what voxels and cells tell
   std::vector<std::string> notes, warnings;
   StageSeconds seconds;  // "voxelize", "evaluate", "cells"
 
-  openvdb::GridPtrVec all() const;  // as mapGridNames(), and `repaired` where there is one
+  // As mapGridNames(), and `repaired` and `map_local` where there are such.
+  openvdb::GridPtrVec all() const;
 };
 
 // Metadata (prefix innermap_): the map's facts, harmonic_energy_total, deformation_energy_total,
-// jacobian_min, jacobian_max, folded_fraction, lame_lambda, lame_mu; one_to_one, which is what
+// jacobian_min, jacobian_max, folded_fraction, map_rounding (SolidGrids::mapRounding), lame_lambda,
+// lame_mu; map_local_origin (Vec3d) where there is that grid; one_to_one, which is what
 // injectivityStatement says. Throws SettingError, MemoryError, DataError (thinner than the voxels
 // everywhere), Cancelled. Deterministic for any number of threads.
 SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& settings = {});

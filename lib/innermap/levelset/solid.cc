@@ -32,6 +32,7 @@ void checkSettings(const SolidSettings& settings) {
 
 Solid::Solid(const Mesh& mesh, const SolidSettings& settings) {
   checkSettings(settings);
+  requireNearOrigin(mesh);
   RepairSettings repairSettings;
   repairSettings.progress = settings.progress;
   RepairedMesh repaired = repair(mesh, repairSettings);

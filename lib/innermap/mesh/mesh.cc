@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "innermap/core/error.h"
 
 namespace innermap {
@@ -88,6 +91,20 @@ Vec3 areaVector(const Mesh& mesh, int triangle) {
   const Triangle& t = mesh.triangles[triangle];
   const Vec3& a = mesh.vertices[t[0]];
   return 0.5 * cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a);
+}
+
+void requireNearOrigin(const Mesh& mesh) {
+  const Box3 box = boundingBox(mesh);
+  const double diagonal = box.diagonal();
+  if (!(diagonal > 0)) return;
+  double farthest = 0;
+  for (int a = 0; a < 3; ++a)
+    farthest = std::max({farthest, std::abs(box.lower[a]), std::abs(box.upper[a])});
+  if (farthest > kMostFromOrigin * diagonal)
+    invalid(mesh, fmt::format(
+                      "lies {:.2g} of its diagonals from the origin, {:g} at most can be computed "
+                      "with; move it nearer to the origin",
+                      farthest / diagonal, kMostFromOrigin));
 }
 
 Box3 boundingBox(const Mesh& mesh) {

@@ -54,6 +54,14 @@ Vec3 areaVector(const Mesh& mesh, int triangle);
 // Of the vertices that triangles use; loose vertices do not count.
 Box3 boundingBox(const Mesh& mesh);
 
+// How far from the origin a mesh may lie, in its own diagonals: beyond, doubles hold less of its
+// positions than what is computed with them is worth (1e-8 of the diagonal there).
+constexpr double kMostFromOrigin = 1e8;
+
+// Throws DataError when a vertex that a triangle uses is farther than that from the origin along an
+// axis. What is read from files, solids and targets are held to it.
+void requireNearOrigin(const Mesh& mesh);
+
 double surfaceArea(const Mesh& mesh);  // world units squared
 double surfaceArea(const Points& vertices, const std::vector<Triangle>& triangles);
 

@@ -28,11 +28,15 @@ PolygonMesh readPolygons(const std::string& path, Progress* progress) {
 }  // namespace
 
 Mesh readMesh(const std::string& path, const ReadSettings& settings) {
-  return toMesh(readPolygons(path, settings.progress), path, settings.progress);
+  Mesh mesh = toMesh(readPolygons(path, settings.progress), path, settings.progress);
+  requireNearOrigin(mesh);
+  return mesh;
 }
 
 Mesh readMeshLike(const std::string& path, const Mesh& reference, const ReadSettings& settings) {
-  return toMeshLike(readPolygons(path, settings.progress), path, reference, settings.progress);
+  Mesh mesh = toMeshLike(readPolygons(path, settings.progress), path, reference, settings.progress);
+  requireNearOrigin(mesh);
+  return mesh;
 }
 
 }  // namespace innermap

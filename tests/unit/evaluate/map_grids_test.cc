@@ -40,6 +40,38 @@ TEST(MapGrids, HoldTheMapAndItsTotals) {
             1e-5);
 }
 
+// Floats that far are 0.25 apart, the ball is 2 across.
+TEST(MapGrids, HoldPositionsFarFromTheOrigin) {
+  const Vec3 away{4e6, -3e6, 1e5};
+  const Mesh near = ball(2), source = moved(near, [&](const Vec3&p) { return p + away; });
+  const auto map = [&](const Vec3& p) { return affineMap(p - away) + away; };
+  const MapFit fit = fitMap(source, moved(source, map));
+  MapGridSettings settings;
+  settings.resolution = 24;
+  const SolidGrids grids = evaluateOnGrid(fit, settings);
+  ASSERT_TRUE(grids.mapLocal);
+  EXPECT_EQ(grids.warnings.size(), 1u);
+  EXPECT_EQ(grids.all().back()->getName(), "map_local");
+  const Vec3& o = grids.localOrigin;
+  EXPECT_EQ(grids.mapLocal->metaValue<openvdb::Vec3d>("innermap_map_local_origin"),
+            openvdb::Vec3d(o.x, o.y, o.z));
+  const auto absolute = grids.values.map->getConstAccessor();
+  double worst = 0, rounding = 0;
+  for (auto voxel = grids.mapLocal->cbeginValueOn(); voxel; ++voxel) {
+    const openvdb::Vec3d p = grids.mapLocal->indexToWorld(voxel.getCoord());
+    const Vec3 known = map({p.x(), p.y(), p.z()});
+    const openvdb::Vec3f local = *voxel, stored = absolute.getValue(voxel.getCoord());
+    worst = std::max(worst, norm(o + Vec3{local.x(), local.y(), local.z()} - known));
+    rounding = std::max(rounding, norm(Vec3{stored.x(), stored.y(), stored.z()} - known));
+  }
+  EXPECT_LT(worst, 1e-6);
+  EXPECT_GT(rounding, 0.1);
+  const double unit = fit.boundary.target.diagonal;
+  EXPECT_NEAR(grids.mapRounding, rounding / unit, 0.01 * rounding / unit);
+  EXPECT_EQ(grids.values.map->metaValue<double>("innermap_map_rounding"), grids.mapRounding);
+  EXPECT_EQ(grids.injectivity.cells.folded, 0u);
+}
+
 TEST(MapGrids, CarryTheFactsInTheirMetadata) {
   const MapFit fit = affineFit();
   MapGridSettings settings;

@@ -7,6 +7,7 @@
 #include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
+#include "mesh/shapes.h"
 #include "mesh/test_meshes.h"
 
 namespace innermap {
@@ -107,6 +108,16 @@ TEST(Mesh, AreaAndVolumeOfPlainTrianglesAreThoseOfTheMesh) {
   EXPECT_EQ(surfaceArea(mesh.vertices, mesh.triangles), surfaceArea(mesh));
   EXPECT_EQ(signedVolume(mesh.vertices, mesh.triangles), signedVolume(mesh));
   EXPECT_GT(surfaceArea(mesh), 0);
+}
+
+TEST(Mesh, LiesNearEnoughToTheOrigin) {
+  Mesh mesh = shapes::icosphere(1);
+  requireNearOrigin(mesh);
+  for (Vec3& p : mesh.vertices) p = 1e-3 * p + Vec3{1e5, 0, 0};
+  requireNearOrigin(mesh);
+  for (Vec3& p : mesh.vertices) p = p + Vec3{0, 1e6, 0};
+  EXPECT_THROW(requireNearOrigin(mesh), DataError);
+  requireNearOrigin(Mesh());
 }
 
 }  // namespace

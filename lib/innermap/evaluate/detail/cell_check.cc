@@ -48,10 +48,11 @@ struct Cube {
 class Cells {
  public:
   Cells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
-        const TargetShape& target, double error)
+        const TargetShape& target, double error, const Vec3& origin)
       : map_(map.getConstAccessor()),
         distance_(levelSet.getConstAccessor()),
         target_(target),
+        origin_(origin),
         error_(error),
         volume_(std::pow(levelSet.voxelSize()[0], 3)) {}
 
@@ -87,7 +88,8 @@ class Cells {
     const Vec3 p = image(0), a = image(1) - p, b = image(2) - p, c = image(3) - p;
     const double determinant = dot(cross(a, b), c) / volume_;
     out.determinants.add(
-        determinant, !(determinant > 0) && target_.runsThroughItself(p + (a + b + c) / 4, error_));
+        determinant,
+        !(determinant > 0) && target_.runsThroughItself(origin_ + p + (a + b + c) / 4, error_));
     addOuterFaces(at, cube, cell, out.faces);
   }
 
@@ -115,19 +117,21 @@ class Cells {
   openvdb::Vec3fGrid::ConstAccessor map_;
   openvdb::FloatGrid::ConstAccessor distance_;
   const TargetShape& target_;
+  const Vec3 origin_;
   double error_;
   double volume_;
 };
 
 std::vector<LeafCells> allCells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
-                                const TargetShape& target, double error, Progress* progress) {
+                                const TargetShape& target, double error, Progress* progress,
+                                const Vec3& origin) {
   std::vector<const MapLeaf*> leaves;
   for (auto leaf = map.tree().cbeginLeaf(); leaf; ++leaf) leaves.push_back(&*leaf);
   std::vector<LeafCells> out(leaves.size());
   parallelBlocks(
       leaves.size(), kLeaves,
       [&](std::size_t begin, std::size_t end) {
-        const Cells cells(map, levelSet, target, error);
+        const Cells cells(map, levelSet, target, error, origin);
         for (std::size_t i = begin; i < end; ++i) out[i] = cells.of(*leaves[i]);
       },
       progress, "checking cells");
@@ -208,8 +212,9 @@ std::int64_t overlapsOf(const OuterImage& image, Progress* progress) {
 }  // namespace
 
 CellFigures checkCells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
-                       const TargetShape& target, double error, Progress* progress) {
-  std::vector<LeafCells> leaves = allCells(map, levelSet, target, error, progress);
+                       const TargetShape& target, double error, Progress* progress,
+                       const Vec3& origin) {
+  std::vector<LeafCells> leaves = allCells(map, levelSet, target, error, progress, origin);
   CellFigures out;
   std::size_t faces = 0;
   for (const LeafCells& leaf : leaves) {

@@ -21,7 +21,15 @@ constexpr std::size_t kLeafPoints = 512;
 using Leaves = openvdb::tree::LeafManager<const openvdb::MaskTree>;
 
 void requireSameLattice(const openvdb::FloatGrid& levelSet, const openvdb::MaskGrid& region) {
-  if (levelSet.transform() != region.transform())
+  // To a thousandth of a voxel: equality of transforms is by absolute tolerances, which rounding of
+  // what is far from the origin exceeds.
+  constexpr double kOff = 1e-3, kFar = 1000;  // voxels
+  const auto &a = levelSet.transform(), &b = region.transform();
+  const auto off = [&](double index) {
+    const openvdb::Vec3d at(index);
+    return (a.indexToWorld(at) - b.indexToWorld(at)).length() / a.voxelSize()[0];
+  };
+  if (!a.isLinear() || !b.isLinear() || !(off(0) <= kOff) || !(off(kFar) <= kOff))
     throw DataError("region: is on another lattice than the level set");
   if (region.tree().hasActiveTiles()) throw DataError("region: has active tiles, not voxels only");
 }
