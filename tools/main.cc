@@ -130,21 +130,9 @@ int run(const std::vector<std::string>& arguments) {
   }
 }
 
-// OpenBLAS maps 128 MB for each of its threads when it is loaded, and where a limit on address
-// space (ulimit -v) forbids that it waits for ever. It is called by one thread at a time of ours or
-// by many that use one each, so under a limit the program starts anew with no more than that.
-void startWithFewThreads(char** argv) {
-  constexpr char kVariable[] = "OPENBLAS_NUM_THREADS";
-  rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
-  if (std::getenv(kVariable) || setenv(kVariable, "1", 0) != 0) return;
-  execv("/proc/self/exe", argv);
-}
-
 }  // namespace
 }  // namespace innermap::tool
 
 int main(int argc, char** argv) {
-  innermap::tool::startWithFewThreads(argv);
   return innermap::tool::run({argv + (argc > 0), argv + argc});
 }

@@ -119,7 +119,7 @@ def test_a_limit_on_address_space_is_no_trap():
     cli.write_obj("ball.obj", vertices, faces)
     cli.write_obj("bent.obj", [(1.3 * x, y + 0.2 * x * x, z) for x, y, z in vertices], faces)
     said = set()
-    for size in [800, 900, 1000, 1200, 1500, 2000, 4000]:
+    for size in [*range(450, 1000, 25), 1000, 1200, 1500, 2000, 4000]:
         limit = size << 20
         done = subprocess.run([cli.PROGRAM, "fit", "ball.obj", "bent.obj", "-o", "m.ply", "-q",
                                "--sources", "800", "--threads", "4", "--best-effort"],
@@ -130,6 +130,8 @@ def test_a_limit_on_address_space_is_no_trap():
             os.remove("m.ply")
             said.add("done")
             continue
+        if done.returncode == 127:
+            continue  # not even its libraries could be loaded
         line = cli.error_line(done)
         assert done.returncode == 1 and ("memory" in line or "address space" in line), done
         said.add("address space" if "ulimit -v" in line else "memory")

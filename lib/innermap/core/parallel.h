@@ -11,7 +11,8 @@
 namespace innermap {
 
 // Bounds the number of threads used by the whole process while it lives; 0 means all cores. (BLAS
-// is kept to the calling thread where it is called: see SingleThreadedBlas.)
+// is kept to the calling thread where it is called: see SingleThreadedBlas.) Where address space is
+// limited (ulimit -v) the threads are started here; throws MemoryError where it does not hold them.
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);
