@@ -11,8 +11,10 @@ namespace {
 using Samples = std::vector<SurfacePoint>;
 
 BoundarySamples withValues(const Solid& solid, const SurfaceValues& values,
-                           const Samples& samples) {
-  return {positionsOf(solid, samples), values(samples)};
+                           const SurfaceDirections& directions, const Samples& samples) {
+  BoundarySamples out{positionsOf(solid, samples), values(samples)};
+  if (directions) out.directions = directions(samples);
+  return out;
 }
 
 PatchSettings patchSettings(const PlacementRequest& request, std::uint64_t seed,
@@ -43,6 +45,7 @@ AdaptiveProblem adaptiveProblem(const Solid& solid, const SurfaceValues& values,
   const auto seed = [first = settings.seed](Stream stream, std::uint64_t index) {
     return seedOf(first, stream, index);
   };
+  const SurfaceDirections directions = settings.directions;
   AdaptiveProblem problem;
   problem.diagonal = solid.diagonal();
   problem.area = solid.area();
@@ -51,7 +54,7 @@ AdaptiveProblem adaptiveProblem(const Solid& solid, const SurfaceValues& values,
     SampleSettings sample;
     sample.seed = seed(Stream::fresh, draw);
     sample.progress = progress;
-    return withValues(solid, values, randomSamples(solid.surface(), count, sample));
+    return withValues(solid, values, directions, randomSamples(solid.surface(), count, sample));
   };
   problem.placeSources = [=](const PlacementRequest& request, double distance) {
     return patchSources(solid, request.marks, distance, request.existing,
@@ -59,7 +62,7 @@ AdaptiveProblem adaptiveProblem(const Solid& solid, const SurfaceValues& values,
   };
   problem.placeCollocation = [=](const PlacementRequest& request) {
     return withValues(
-        solid, values,
+        solid, values, directions,
         patchSamples(solid, request.marks, request.existing,
                      patchSettings(request, seed(Stream::collocation, request.index), progress)));
   };
@@ -71,7 +74,8 @@ BoundarySamples freshSamples(const Solid& solid, const SurfaceValues& values,
   SampleSettings sample;
   sample.seed = seedOf(settings.seed, Stream::fresh);
   sample.progress = settings.progress;
-  return withValues(solid, values, randomSamples(solid.surface(), settings.count, sample));
+  return withValues(solid, values, settings.directions,
+                    randomSamples(solid.surface(), settings.count, sample));
 }
 
 }  // namespace innermap

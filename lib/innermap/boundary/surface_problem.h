@@ -17,6 +17,10 @@ namespace innermap {
 // Boundary values at points of solid.surface(): #points x #K. May be called from any thread.
 using SurfaceValues = std::function<Matrix(const std::vector<SurfacePoint>& onSurface)>;
 
+// As Collocation::directions: where one is not zero, the values are derivatives. May be called from
+// any thread.
+using SurfaceDirections = std::function<Points(const std::vector<SurfacePoint>& onSurface)>;
+
 struct SurfaceProblemSettings {
   std::size_t collocation = 8000;  // boundary points to fit to, in [8, 1e7]; blue noise
   std::size_t heldOut = 2000;      // random boundary points that choose between fits
@@ -29,6 +33,7 @@ FitProblem surfaceProblem(const Solid& solid, const SurfaceValues& values,
                           const SurfaceProblemSettings& settings = {});
 
 struct AdaptiveProblemSettings {
+  SurfaceDirections directions;  // none: values everywhere
   std::uint64_t seed = 1;        // as above
   Progress* progress = nullptr;  // must outlive the problem
 };
@@ -42,6 +47,7 @@ AdaptiveProblem adaptiveProblem(const Solid& solid, const SurfaceValues& values,
 constexpr std::size_t kFreshSamples = 20000;
 
 struct FreshSampleSettings {
+  SurfaceDirections directions;  // none: values everywhere
   std::size_t count = kFreshSamples;
   std::uint64_t seed = 1;  // that of the fit: no point of its problem is among these
   Progress* progress = nullptr;

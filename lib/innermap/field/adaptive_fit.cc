@@ -73,7 +73,7 @@ class AdaptiveFitting {
   const AdaptiveSettings& settings_;
   std::optional<IterativeSolver> solver_;
   std::vector<Level> levels_;
-  Points collocation_;
+  Collocation collocation_;
   Matrix values_;
   IterativeSolution solution_;
   std::optional<HarmonicField> field_;
@@ -136,7 +136,7 @@ void AdaptiveFitting::first() {
   request.most = 100 * settings_.firstSources;
   request.index = requests_++;
   BoundarySamples samples = problem_.placeCollocation(request);
-  collocation_ = std::move(samples.points);
+  collocation_ = samples.collocation();
   values_ = std::move(samples.values);
   requireMemory("the first level of charges", memory(), settings_.maxMemory,
                 "raise the limit of memory");
@@ -177,7 +177,8 @@ std::vector<Points> AdaptiveFitting::markedByLevel(const BoundarySamples& fresh,
 // for none.
 bool AdaptiveFitting::refineOnce(const std::vector<Points>& marks) {
   std::vector<SourceLevel> added;
-  BoundarySamples points;
+  Collocation points;
+  Matrix values;
   for (std::size_t l = 1; l < marks.size(); ++l) {
     if (marks[l].empty()) continue;
     Level& fine = level(l);
@@ -193,19 +194,19 @@ bool AdaptiveFitting::refineOnce(const std::vector<Points>& marks) {
     fine.sources.insert(fine.sources.end(), fresh.begin(), fresh.end());
     added.push_back({fresh, fine.spacing * problem_.diagonal, fine.distance * problem_.diagonal});
     const BoundarySamples more = problem_.placeCollocation(
-        {fresh, kCollocationReach * fine.distance, kCollocationDarts * fine.spacing, collocation_,
-         100 * fresh.size() + 1000, requests_++});
-    collocation_.insert(collocation_.end(), more.points.begin(), more.points.end());
-    points.points.insert(points.points.end(), more.points.begin(), more.points.end());
-    append(points.values, more.values);
+        {fresh, kCollocationReach * fine.distance, kCollocationDarts * fine.spacing,
+         collocation_.points, 100 * fresh.size() + 1000, requests_++});
+    collocation_.append(more.collocation());
+    points.append(more.collocation());
+    append(values, more.values);
   }
   if (added.empty()) return false;
   if (settings_.maxMemory > 0 && memory() > settings_.maxMemory) {
     end_ = AdaptiveEnd::maxMemory;
     return false;
   }
-  append(values_, points.values);
-  solver_->add(points.points, added);
+  append(values_, values);
+  solver_->add(points, added);
   return true;
 }
 
@@ -272,7 +273,7 @@ AdaptiveResult AdaptiveFitting::run() {
   first();
   const BoundarySamples checks = problem_.draw(settings_.checkSamples, 0);
   const auto errorAtChecks = [&](const HarmonicField& field) {
-    return measureBoundaryError(field, checks.points, checks.values, problem_.unit,
+    return measureBoundaryError(field, checks.collocation(), checks.values, problem_.unit,
                                 {0, settings_.progress});
   };
   int outliers = 0;
@@ -280,7 +281,7 @@ AdaptiveResult AdaptiveFitting::run() {
     solve();
     const BoundarySamples fresh = problem_.draw(kMarkSamples, round);
     const std::vector<double> errors =
-        boundaryErrors(*field_, fresh.points, fresh.values, problem_.unit,
+        boundaryErrors(*field_, fresh.collocation(), fresh.values, problem_.unit,
                        {kErrorAccuracy * settings_.tolerance * problem_.unit, settings_.progress});
     const BoundaryError error = summarizeErrors(errors);
     rounds_.push_back(

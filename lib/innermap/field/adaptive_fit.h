@@ -17,6 +17,7 @@
 #include "innermap/core/vec3.h"
 #include "innermap/field/boundary_error.h"
 #include "innermap/field/harmonic_field.h"
+#include "innermap/solve/collocation.h"
 
 namespace innermap {
 
@@ -27,6 +28,10 @@ constexpr double kSmallestTolerance = 1e-12;
 struct BoundarySamples {
   Points points;  // on the boundary, world units
   Matrix values;  // #points x #K
+  // As Collocation::directions: where one is not zero, the derivative is what `values` holds.
+  Points directions{};
+
+  Collocation collocation() const { return {points, directions}; }
 };
 
 // Where points may stand: nearer than `reach` to a mark, or anywhere when there are no marks; no

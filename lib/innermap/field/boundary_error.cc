@@ -3,25 +3,32 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "innermap/core/error.h"
 
 namespace innermap {
 
-std::vector<double> boundaryErrors(const HarmonicField& field, const Points& points,
+std::vector<double> boundaryErrors(const HarmonicField& field, const Collocation& at,
                                    const Matrix& values, double unit,
                                    const BoundaryErrorSettings& settings) {
   if (!(unit > 0)) throw SettingError("unit", "must be positive");
-  if (values.rows() != points.size() || values.columns() != field.channels())
+  if (values.rows() != at.size() || values.columns() != field.channels())
     throw DataError("boundary error: the values do not fit the points and channels");
-  std::vector<double> lengths(points.size());
-  if (points.empty()) return lengths;
+  std::vector<double> lengths(at.size());
+  if (lengths.empty()) return lengths;
   EvaluateFieldSettings evaluation;
   evaluation.accuracy = settings.accuracy;
   evaluation.progress = settings.progress;
-  const Matrix got = field.evaluate(points, evaluation).values;
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  Matrix got = field.evaluate(at.points, evaluation).values;
+  const std::vector<std::size_t> derivatives = derivativeRows(at);
+  if (!derivatives.empty()) {
+    evaluation.gradients = true;
+    const Points points = at.subset(derivatives).points;
+    got = rowValues(at, std::move(got), field.evaluate(points, evaluation).gradients);
+  }
+  for (std::size_t i = 0; i < at.size(); ++i) {
     double square = 0;
     for (std::size_t k = 0; k < values.columns(); ++k) {
       const double e = (got(i, k) - values(i, k)) / unit;
@@ -76,10 +83,10 @@ BoundaryError summarizeErrors(std::vector<double> lengths) {
   return out;
 }
 
-BoundaryError measureBoundaryError(const HarmonicField& field, const Points& points,
+BoundaryError measureBoundaryError(const HarmonicField& field, const Collocation& at,
                                    const Matrix& values, double unit,
                                    const BoundaryErrorSettings& settings) {
-  return summarizeErrors(boundaryErrors(field, points, values, unit, settings));
+  return summarizeErrors(boundaryErrors(field, at, values, unit, settings));
 }
 
 }  // namespace innermap

@@ -7,6 +7,7 @@
 
 #include "innermap/core/progress.h"
 #include "innermap/field/harmonic_field.h"
+#include "innermap/solve/collocation.h"
 
 namespace innermap {
 
@@ -33,7 +34,7 @@ struct BoundaryErrorSettings {
 
 // The Euclidean length of the error over all channels at each point, divided by `unit`. Arguments
 // and errors as below.
-std::vector<double> boundaryErrors(const HarmonicField& field, const Points& points,
+std::vector<double> boundaryErrors(const HarmonicField& field, const Collocation& at,
                                    const Matrix& values, double unit,
                                    const BoundaryErrorSettings& settings = {});
 
@@ -43,7 +44,7 @@ BoundaryError summarizeErrors(std::vector<double> lengths);
 
 // values: #points x #K. unit: usually the target's diagonal; must be positive.
 // Throws DataError when sizes disagree, SettingError for a bad unit.
-BoundaryError measureBoundaryError(const HarmonicField& field, const Points& points,
+BoundaryError measureBoundaryError(const HarmonicField& field, const Collocation& at,
                                    const Matrix& values, double unit,
                                    const BoundaryErrorSettings& settings = {});
 

@@ -1,7 +1,9 @@
 #include "innermap/solve/iterative_solver.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <string>
 
@@ -22,6 +24,13 @@ constexpr double kLeastGain = 0.03;  // of the residual; less is not worth an it
 constexpr double kLeastShrinkage = 0.04;
 constexpr double kFinestProduct = 1e-12, kCoarsestProduct = 1e-3;  // relative
 constexpr double kSameSpacing = 1e-6;                              // relative
+
+constexpr double kOfGradients = 0.01;  // they are so much less exact than values: see fast_sum.h
+
+double affineValue(const Collocation& at, std::size_t i, const double* coefficients) {
+  const std::array<double, kAffine> row = at.affine(i);
+  return std::inner_product(row.begin(), row.end(), coefficients, 0.0);
+}
 
 double rms(const Matrix& residual) {
   double sum = 0;
@@ -65,10 +74,10 @@ std::uint64_t iterativeSolverMemory(std::size_t collocation, std::size_t sources
 
 class IterativeSolver::Levels {
  public:
-  Levels(const Points& collocation, const std::vector<SourceLevel>& levels,
+  Levels(const Collocation& collocation, const std::vector<SourceLevel>& levels,
          const IterativeSettings& settings);
 
-  void add(const Points& collocation, const std::vector<SourceLevel>& levels);
+  void add(const Collocation& collocation, const std::vector<SourceLevel>& levels);
   IterativeSolution solve(const Matrix& values, const IterativeSolution* start) const;
 
   const Points& sources() const { return sources_; }
@@ -81,8 +90,9 @@ class IterativeSolver::Levels {
   };
   struct Scaled;
 
-  void check(const Points& collocation, const std::vector<SourceLevel>& levels, bool first) const;
-  void addPoints(const Points& collocation);
+  void check(const Collocation& collocation, const std::vector<SourceLevel>& levels,
+             bool first) const;
+  void addPoints(const Collocation& collocation);
   std::vector<std::size_t> addSources(const Points& sources);
   void addLevel(const SourceLevel& level);
   Scaled scaled(const Matrix& values) const;
@@ -98,7 +108,7 @@ class IterativeSolver::Levels {
                       Matrix& x, IterativeSolution& out) const;
   void unscale(const Scaled& values, const Matrix& residual, const Matrix& x,
                IterativeSolution& out) const;
-  FieldSamples image(const Matrix& weights, const Points& sources, const Points& points,
+  FieldSamples image(const Matrix& weights, const Points& sources, const Collocation& at,
                      double accuracy) const;
   Points normalised(const Points& points) const;
   std::size_t unknowns() const { return CoarseSolver::kAffine + sources_.size(); }
@@ -106,9 +116,9 @@ class IterativeSolver::Levels {
   IterativeSettings settings_;
   Vec3 center_;
   double scale_ = 1;
-  Points collocation_;    // normalised
-  Points sources_;        // world units
-  Points coarseSources_;  // normalised
+  Collocation collocation_;  // normalised
+  Points sources_;           // world units
+  Points coarseSources_;     // normalised
   std::vector<std::size_t>
       coarseRows_;  // of the affine part and the first level among the unknowns
   CoarseSolver coarse_;
@@ -122,11 +132,12 @@ struct IterativeSolver::Levels::Scaled {
   double size = 0;             // of the widest channel
 };
 
-IterativeSolver::Levels::Levels(const Points& collocation, const std::vector<SourceLevel>& levels,
+IterativeSolver::Levels::Levels(const Collocation& collocation,
+                                const std::vector<SourceLevel>& levels,
                                 const IterativeSettings& settings)
     : settings_(settings) {
   check(collocation, levels, true);
-  const Box3 box = boundingBox(collocation);
+  const Box3 box = boundingBox(collocation.points);
   center_ = box.center();
   scale_ = box.diagonal() > 0 ? box.diagonal() : 1;
   addPoints(collocation);
@@ -138,14 +149,14 @@ IterativeSolver::Levels::Levels(const Points& collocation, const std::vector<Sou
   for (std::size_t l = 1; l < levels.size(); ++l) addLevel(levels[l]);
 }
 
-void IterativeSolver::Levels::add(const Points& collocation,
+void IterativeSolver::Levels::add(const Collocation& collocation,
                                   const std::vector<SourceLevel>& levels) {
   check(collocation, levels, false);
   addPoints(collocation);
   for (const SourceLevel& level : levels) addLevel(level);
 }
 
-void IterativeSolver::Levels::check(const Points& collocation,
+void IterativeSolver::Levels::check(const Collocation& collocation,
                                     const std::vector<SourceLevel>& levels, bool first) const {
   if (first && levels.empty())
     throw SettingError("sources", "there are none; use at least one level of them");
@@ -175,9 +186,10 @@ Points IterativeSolver::Levels::normalised(const Points& points) const {
   return out;
 }
 
-void IterativeSolver::Levels::addPoints(const Points& collocation) {
-  const Points points = normalised(collocation);
-  collocation_.insert(collocation_.end(), points.begin(), points.end());
+void IterativeSolver::Levels::addPoints(const Collocation& collocation) {
+  Collocation added(normalised(collocation.points), collocation.directions);
+  for (Vec3& direction : added.directions) direction = direction / scale_;
+  collocation_.append(added);
 }
 
 std::vector<std::size_t> IterativeSolver::Levels::addSources(const Points& sources) {
@@ -203,16 +215,26 @@ IterativeSolver::Levels::Scaled IterativeSolver::Levels::scaled(const Matrix& va
   if (values.rows() != collocation_.size())
     throw DataError("solve: the values do not fit the collocation points");
   Scaled out{values, std::vector<double>(values.columns(), 0.0), 0};
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < values.columns(); ++k) {
-    const auto [low, high] =
-        std::minmax_element(values.column(k), values.column(k) + values.rows());
-    out.middle[k] = 0.5 * (*low + *high);
-    out.size = std::max(out.size, *high - *low);
+    double low = kInfinity, high = -kInfinity;
+    for (std::size_t i = 0; i < values.rows(); ++i) {
+      if (collocation_.derivative(i)) {
+        out.size = std::max(out.size, std::abs(values(i, k)));
+        continue;
+      }
+      low = std::min(low, values(i, k));
+      high = std::max(high, values(i, k));
+    }
+    if (low > high) continue;
+    out.middle[k] = 0.5 * (low + high);
+    out.size = std::max(out.size, high - low);
   }
   if (!(out.size > 0)) out.size = 1;
   for (std::size_t k = 0; k < values.columns(); ++k)
     for (std::size_t i = 0; i < values.rows(); ++i)
-      out.values(i, k) = (values(i, k) - out.middle[k]) / out.size;
+      out.values(i, k) =
+          (values(i, k) - (collocation_.derivative(i) ? 0 : out.middle[k])) / out.size;
   return out;
 }
 
@@ -264,11 +286,18 @@ void IterativeSolver::Levels::unscale(const Scaled& values, const Matrix& residu
 
 // What the charges' weights give at the points, to a relative accuracy; all in normalised units.
 FieldSamples IterativeSolver::Levels::image(const Matrix& weights, const Points& sources,
-                                            const Points& points, double accuracy) const {
+                                            const Collocation& at, double accuracy) const {
   FastSumSettings s;
   s.accuracy = std::clamp(accuracy, kFinestProduct, kCoarsestProduct);
   s.progress = settings_.progress;
-  FieldSamples out = FastSum(sources, weights).at(points, s);
+  const FastSum sum(sources, weights);
+  FieldSamples out = sum.at(at.points, s);
+  const std::vector<std::size_t> rows = derivativeRows(at);
+  if (!rows.empty()) {
+    s.accuracy = std::max(kFinestProduct, kOfGradients * s.accuracy);
+    s.gradients = true;
+    out.values = rowValues(at, std::move(out.values), sum.at(at.subset(rows).points, s).gradients);
+  }
   // A channel's values are at most so much larger than all.
   const double asked = s.accuracy * std::sqrt(static_cast<double>(weights.columns()));
   if (out.error <= asked * rms(out.values)) out.error = 0;
@@ -290,10 +319,8 @@ void IterativeSolver::Levels::takeDirections(const Matrix& weights,
   Matrix z(unknowns(), weights.columns());
   for (std::size_t k = 0; k < z.columns(); ++k) {
     for (std::size_t i = 0; i < rows.size(); ++i) z(rows[i], k) = weights(i, k);
-    for (std::size_t i = 0; i < images.rows() && affine > 0; ++i) {
-      const Vec3& p = collocation_[i];
-      images(i, k) += z(0, k) + z(1, k) * p.x + z(2, k) * p.y + z(3, k) * p.z;
-    }
+    for (std::size_t i = 0; i < images.rows() && affine > 0; ++i)
+      images(i, k) += affineValue(collocation_, i, z.column(k));
   }
   const std::size_t first = directions.count();
   directions.add(std::move(z), std::move(images), settings_.progress);
@@ -334,17 +361,16 @@ double IterativeSolver::Levels::startFrom(const IterativeSolution& start, const 
                                           Matrix& residual, Matrix& x) const {
   x = scaledStart(start, values);
   const std::size_t known = start.residual.rows();
-  const Points fresh(collocation_.begin() + static_cast<std::ptrdiff_t>(known), collocation_.end());
+  std::vector<std::size_t> added(collocation_.size() - known);
+  std::iota(added.begin(), added.end(), known);
+  const Collocation fresh = collocation_.subset(added);
   const FieldSamples image =
       this->image(rowsOf(x, kAffine), normalised(sources_), fresh, settings_.accuracy);
   const Matrix& sums = image.values;
   for (std::size_t k = 0; k < residual.columns(); ++k) {
     for (std::size_t i = 0; i < known; ++i) residual(i, k) = start.residual(i, k) / values.size;
-    for (std::size_t i = 0; i < fresh.size(); ++i) {
-      const Vec3& p = fresh[i];
-      residual(known + i, k) -=
-          sums(i, k) + x(0, k) + x(1, k) * p.x + x(2, k) * p.y + x(3, k) * p.z;
-    }
+    for (std::size_t i = 0; i < fresh.size(); ++i)
+      residual(known + i, k) -= sums(i, k) + affineValue(fresh, i, x.column(k));
   }
   return image.error;
 }
@@ -357,14 +383,15 @@ IterativeSolution IterativeSolver::Levels::solve(const Matrix& values,
   return iterate(rhs, residual, x, productError);
 }
 
-IterativeSolver::IterativeSolver(const Points& collocation, const std::vector<SourceLevel>& levels,
+IterativeSolver::IterativeSolver(const Collocation& collocation,
+                                 const std::vector<SourceLevel>& levels,
                                  const IterativeSettings& settings)
     : levels_(std::make_unique<Levels>(collocation, levels, settings)) {}
 IterativeSolver::IterativeSolver(IterativeSolver&&) noexcept = default;
 IterativeSolver& IterativeSolver::operator=(IterativeSolver&&) noexcept = default;
 IterativeSolver::~IterativeSolver() = default;
 
-void IterativeSolver::add(const Points& collocation, const std::vector<SourceLevel>& levels) {
+void IterativeSolver::add(const Collocation& collocation, const std::vector<SourceLevel>& levels) {
   levels_->add(collocation, levels);
 }
 

@@ -8,8 +8,9 @@
 //   the first level dense least squares for its charges and the affine part,
 //   every other one restricted additive Schwarz, a regularised least-squares problem a cluster of
 //   charges with its surroundings.
-// The residual falls monotonically; stopping early regularises. Memory is linear in the number of
-// charges beyond the first level; the number of iterations does not grow with it.
+// Rows may ask for derivatives instead of values (Collocation). The residual falls monotonically;
+// stopping early regularises. Memory is linear in the number of charges beyond the first level; the
+// number of iterations does not grow with it.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +21,7 @@
 #include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/solve/affine.h"
+#include "innermap/solve/collocation.h"
 
 namespace innermap {
 
@@ -55,10 +57,10 @@ struct IterativeSolution {
 // threads.
 class IterativeSolver {
  public:
-  // collocation: 2 to 4 points a source. levels: at least one, of falling spacing. The first,
-  // solved densely, best has 500 to 3000 charges. One level alone is a dense solver. Throws
-  // SettingError, MemoryError (before allocating), Cancelled.
-  IterativeSolver(const Points& collocation, const std::vector<SourceLevel>& levels,
+  // collocation: 2 to 4 points a source, some of them with values. levels: at least one, of falling
+  // spacing. The first, solved densely, best has 500 to 3000 charges. One level alone is a dense
+  // solver. Throws SettingError, MemoryError (before allocating), Cancelled.
+  IterativeSolver(const Collocation& collocation, const std::vector<SourceLevel>& levels,
                   const IterativeSettings& settings = {});
   IterativeSolver(IterativeSolver&&) noexcept;
   IterativeSolver& operator=(IterativeSolver&&) noexcept;
@@ -68,11 +70,11 @@ class IterativeSolver {
   // is there (to 1e-6 of it) joins it. Only the new charges' clusters are factored. Points and
   // charges are numbered on from those that are there. Throws as above; what was there then stays
   // as it was only before a MemoryError or SettingError.
-  void add(const Points& collocation, const std::vector<SourceLevel>& levels);
+  void add(const Collocation& collocation, const std::vector<SourceLevel>& levels);
 
-  // values: #collocation x #K. start: an earlier solution of this solver, for the same values at
-  // the points that there were then. Same result for any number of threads. Throws DataError when
-  // the sizes do not fit.
+  // values: #collocation x #K, the rows' (see Collocation). start: an earlier solution of this
+  // solver, for the same values at the points that there were then. Same result for any number of
+  // threads. Throws DataError when the sizes do not fit.
   IterativeSolution solve(const Matrix& values, const IterativeSolution* start = nullptr) const;
 
   const Points& sources() const;  // all levels', world units

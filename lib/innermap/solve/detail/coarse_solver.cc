@@ -3,6 +3,7 @@
 #include <cblas.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -40,19 +41,18 @@ std::uint64_t coarseSolverMemory(std::size_t sources) {
   return 8 * (CoarseSolver::kPointsPerSource + 3) * static_cast<std::uint64_t>(sources) * sources;
 }
 
-CoarseSolver::CoarseSolver(const Points& collocation, const Points& sources, std::uint64_t seed,
-                           Progress* progress)
+CoarseSolver::CoarseSolver(const Collocation& collocation, const Points& sources,
+                           std::uint64_t seed, Progress* progress)
     : rows_(drawn(collocation.size(), kPointsPerSource * sources.size() + kAffine, seed)) {
   const std::size_t rows = rows_.size(), count = sources.size();
-  Points seen;
-  seen.reserve(rows);
-  for (const std::size_t i : rows_) seen.push_back(collocation[i]);
+  const Collocation seen = collocation.subset(rows_);
   Matrix a(rows + count, kAffine + count);
   for (std::size_t i = 0; i < rows; ++i) {
-    a(i, 0) = 1;
-    for (int k = 0; k < 3; ++k) a(i, static_cast<std::size_t>(1 + k)) = seen[i][k];
+    const std::array<double, kAffine> affine = seen.affine(i);
+    for (std::size_t k = 0; k < kAffine; ++k) a(i, k) = affine[k];
   }
-  fillKernelMatrix(seen, sources, 1, a.column(kAffine), a.rows(), {progress});
+  fillKernelMatrix(seen.points, sources, 1, a.column(kAffine), a.rows(), {progress});
+  fillDerivativeRows(seen, sources, a.column(kAffine), a.rows());
   const double lambda = kLambda * std::sqrt(meanSquaredNorm(a, kAffine, rows));
   for (std::size_t j = 0; j < count; ++j) a(rows + j, kAffine + j) = lambda;
   qr_ = BlockedQr(std::move(a), progress);

@@ -7,6 +7,7 @@
 #include "innermap/core/matrix.h"
 #include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
+#include "innermap/solve/collocation.h"
 #include "innermap/solve/detail/blocked_qr.h"
 
 namespace innermap {
@@ -19,7 +20,7 @@ class CoarseSolver {
   CoarseSolver() = default;
 
   // Over at most kPointsPerSource collocation points a charge, drawn at random by `seed`.
-  CoarseSolver(const Points& collocation, const Points& sources, std::uint64_t seed,
+  CoarseSolver(const Collocation& collocation, const Points& sources, std::uint64_t seed,
                Progress* progress);
 
   // (4 + #sources) x #K: the affine part, then the weights, for residual (#collocation x #K, or

@@ -30,7 +30,8 @@ Points subset(const Points& points, const std::vector<std::size_t>& indices) {
 }
 
 // On the calling thread: clusters are what runs side by side.
-Matrix kernelMatrix(const Points& points, const Points& sources) {
+Matrix kernelMatrix(const Collocation& at, const Points& sources) {
+  const Points& points = at.points;
   const std::size_t padded = simd::padded(points.size());
   std::vector<double> x(padded), y(padded), z(padded);
   for (std::size_t i = 0; i < padded; ++i) {
@@ -43,6 +44,7 @@ Matrix kernelMatrix(const Points& points, const Points& sources) {
   for (std::size_t j = 0; j < sources.size(); ++j)
     simd::kernelColumn(x.data(), y.data(), z.data(), points.size(), sources[j].x, sources[j].y,
                        sources[j].z, 1, a.column(j));
+  fillDerivativeRows(at, sources, a.data(), a.rows());
   return a;
 }
 
@@ -69,7 +71,7 @@ std::uint64_t localSolverMemory(std::size_t collocation, std::size_t sources) {
   return sizeof(float) * 2 * 24 * 24 * static_cast<std::uint64_t>(std::max(collocation, sources));
 }
 
-void LocalSolver::add(const Points& sources, const Points& collocation, Progress* progress) {
+void LocalSolver::add(const Points& sources, const Collocation& collocation, Progress* progress) {
   const std::size_t before = sources_.size(), first = clusters_.size();
   sources_.insert(sources_.end(), sources.begin(), sources.end());
   for (auto& indices : clusterPoints(sources, kClusterSize, kWidest * spacing_)) {
@@ -77,7 +79,7 @@ void LocalSolver::add(const Points& sources, const Points& collocation, Progress
     clusters_.push_back({std::move(indices), {}, {}});
   }
   const double overlap = kOverlap * spacing_, reach = overlap + std::max(spacing_, distance_);
-  const PointGrid charges(sources_, kCell * spacing_), points(collocation, kCell * spacing_);
+  const PointGrid charges(sources_, kCell * spacing_), points(collocation.points, kCell * spacing_);
   const SingleThreadedBlas guard;
   parallelBlocks(
       clusters_.size() - first, 1,
@@ -91,8 +93,8 @@ void LocalSolver::add(const Points& sources, const Points& collocation, Progress
 }
 
 void LocalSolver::factor(Cluster& cluster, const std::vector<std::size_t>& around,
-                         const Points& collocation) const {
-  const Matrix a = kernelMatrix(subset(collocation, cluster.rows), subset(sources_, around));
+                         const Collocation& collocation) const {
+  const Matrix a = kernelMatrix(collocation.subset(cluster.rows), subset(sources_, around));
   const Matrix g = choleskyOfNormalMatrix(a);
   const std::size_t own = cluster.sources.size();
   Matrix inverse(around.size(), own);  // own columns of G^-1

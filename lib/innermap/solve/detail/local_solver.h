@@ -9,6 +9,7 @@
 #include "innermap/core/matrix.h"
 #include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
+#include "innermap/solve/collocation.h"
 
 namespace innermap {
 
@@ -20,7 +21,7 @@ class LocalSolver {
   // Takes more charges and factors clusters of them, which see the charges of this level that are
   // there and all collocation points; the clusters that are there stay as they are. `collocation`
   // is that of earlier calls with points added at the end.
-  void add(const Points& sources, const Points& collocation, Progress* progress);
+  void add(const Points& sources, const Collocation& collocation, Progress* progress);
 
   // Weights (#charges of the level x #K) that lower the residual (#collocation x #K); rows beyond
   // what a cluster has seen play no part in it.
@@ -36,7 +37,7 @@ class LocalSolver {
   };
 
   void factor(Cluster& cluster, const std::vector<std::size_t>& around,
-              const Points& collocation) const;
+              const Collocation& collocation) const;
 
   double spacing_, distance_;
   Points sources_;
