@@ -10,6 +10,8 @@ std::vector<Command> allCommands() {
           makeEvaluateCommand(),
           makeSequenceCommand(),
           makeDeformCommand(),
+          makeHarmonicCommand(),
+          makeWeightsCommand(),
           makeTextureCommand(),
           makePushCommand(),
           makePullCommand(),

@@ -22,6 +22,8 @@ Command makeVoxelizeCommand();
 Command makeTetrahedralizeCommand();
 Command makePolycubeCommand();
 Command makeHexahedralizeCommand();
+Command makeHarmonicCommand();
+Command makeWeightsCommand();
 Command makeRemeshCommand();
 Command makeCompareFemCommand();
 Command makeSliceCommand();

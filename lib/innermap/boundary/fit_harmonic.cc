@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "innermap/boundary/certificate.h"
 #include "innermap/boundary/detail/problem_samples.h"
@@ -15,6 +16,7 @@
 namespace innermap {
 namespace {
 
+constexpr std::size_t kFewSources = 1000, kPointsOfFew = 4000;
 constexpr double kSumsOfTolerance = 1e-3;  // accuracy of sums
 // Of the comparison: it need not be exact.
 constexpr double kOfComparison = 0.05;
@@ -59,6 +61,51 @@ double spanOf(const BoundarySamples& samples) {
 
 double accuracyOf(const HarmonicFitSettings& settings, double span) {
   return kSumsOfTolerance * settings.tolerance * span;
+}
+
+struct Fitted {
+  HarmonicField field;
+  AdaptiveEnd end = AdaptiveEnd::met;
+  std::size_t collocation = 0;
+};
+
+Fitted fittedWhereNeeded(const SourceBoundary& boundary, const SurfaceConditions& conditions,
+                         double span, const HarmonicFitSettings& settings) {
+  AdaptiveSettings s;
+  s.tolerance = settings.tolerance;
+  s.maxSources = settings.maxSources;
+  s.maxMemory = settings.maxMemory;
+  s.progress = settings.progress;
+  const AdaptiveResult fit = fitToTolerance(problemOf(boundary, conditions, span, settings), s);
+  return {fit.field, fit.end, fit.collocation};
+}
+
+// A few charges, as far away as they do best: smooth data need no more. Nothing where they miss the
+// tolerance.
+std::optional<Fitted> fittedByFew(const SourceBoundary& boundary,
+                                  const SurfaceConditions& conditions, double span,
+                                  const HarmonicFitSettings& settings) {
+  SurfaceProblemSettings points;
+  points.collocation = kPointsOfFew;
+  points.heldOut = kFewSources;
+  points.directions = problemSettings(conditions, settings).directions;
+  points.seed = settings.seed;
+  points.progress = settings.progress;
+  const FitProblem problem = surfaceProblem(
+      boundary.solid, [&conditions](const auto& at) { return conditions.rows(at); }, points);
+  FitSettings s;
+  s.sources = kFewSources;
+  s.interpolation = Interpolation::linear;
+  s.maxMemory = settings.maxMemory;
+  s.progress = settings.progress;
+  const FitResult fit = fitField(problem, s);
+  const BoundarySamples fresh =
+      problemOf(boundary, conditions, span, settings).draw(kFreshSamples, 0);
+  const BoundaryError error =
+      measureBoundaryError(fit.field, fresh.collocation(), fresh.values, span,
+                           {accuracyOf(settings, span), settings.progress});
+  if (error.p99 > settings.tolerance) return std::nullopt;
+  return Fitted{fit.field, AdaptiveEnd::met, problem.surface.points.size()};
 }
 
 struct Certified {
@@ -159,15 +206,13 @@ HarmonicFit fitHarmonic(const SourceBoundary& boundary, const BoundaryConditions
   const AdaptiveProblem trial = problemOf(boundary, surface, 1, settings);
   const double found = spanOf(trial.draw(kFreshSamples, 0));
   const double span = found > 0 ? found : 1;
-  const AdaptiveProblem problem = problemOf(boundary, surface, span, settings);
-  AdaptiveSettings adaptive;
-  adaptive.tolerance = settings.tolerance;
-  adaptive.maxSources = settings.maxSources;
-  adaptive.maxMemory = settings.maxMemory;
-  adaptive.progress = settings.progress;
   StageSeconds seconds;
-  const AdaptiveResult fit =
-      timed(seconds, "fit", [&] { return fitToTolerance(problem, adaptive); });
+  const Fitted fit = timed(seconds, "fit", [&] {
+    std::optional<Fitted> few;
+    // Linear values have kinks at the edges.
+    if (conditions.function) few = fittedByFew(boundary, surface, span, settings);
+    return few ? *few : fittedWhereNeeded(boundary, surface, span, settings);
+  });
   HarmonicFit out{fit.field, 0, {}, 0, false, {}, 0, 0, 0, {}, {}, {}};
   out.span = span;
   out.end = fit.end;
@@ -184,6 +229,20 @@ HarmonicFit fitHarmonic(const SourceBoundary& boundary, const BoundaryConditions
   out.met = out.error.p99 <= settings.tolerance;
   out.seconds = std::move(seconds);
   return out;
+}
+
+HarmonicField withUnitSum(const HarmonicField& field) {
+  const auto count = static_cast<double>(field.channels());
+  const auto share = [&](Matrix m, bool affine) {
+    for (std::size_t i = 0; i < m.rows(); ++i) {
+      double sum = affine && i == 0 ? -1 : 0;
+      for (std::size_t k = 0; k < m.columns(); ++k) sum += m(i, k);
+      for (std::size_t k = 0; k < m.columns(); ++k) m(i, k) -= sum / count;
+    }
+    return m;
+  };
+  return {field.sources(), share(field.weights(), false),
+          Affine{field.affine().center, share(field.affine().coefficients, true)}};
 }
 
 }  // namespace innermap

@@ -70,4 +70,8 @@ struct HarmonicFit {
 HarmonicFit fitHarmonic(const SourceBoundary& boundary, const BoundaryConditions& conditions,
                         const HarmonicFitSettings& settings = {});
 
+// The field whose channels sum up to 1 everywhere: what they lack is shared among them equally.
+// Each stays harmonic, and moves by no more than the sum was off.
+HarmonicField withUnitSum(const HarmonicField& field);
+
 }  // namespace innermap

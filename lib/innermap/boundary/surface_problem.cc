@@ -36,7 +36,12 @@ FitProblem surfaceProblem(const Solid& solid, const SurfaceValues& values,
   counts.collocation = settings.collocation;
   counts.heldOut = settings.heldOut;
   const ProblemSamples samples = drawSamples(solid, counts, settings.seed, settings.progress);
-  return problemOf(solid, values, samples, settings.seed, settings.progress);
+  FitProblem problem = problemOf(solid, values, samples, settings.seed, settings.progress);
+  if (settings.directions) {
+    problem.surface.directions = settings.directions(samples.collocation);
+    problem.surface.heldOutDirections = settings.directions(samples.heldOut);
+  }
+  return problem;
 }
 
 AdaptiveProblem adaptiveProblem(const Solid& solid, const SurfaceValues& values, double unit,

@@ -24,6 +24,7 @@ using SurfaceDirections = std::function<Points(const std::vector<SurfacePoint>& 
 struct SurfaceProblemSettings {
   std::size_t collocation = 8000;  // boundary points to fit to, in [8, 1e7]; blue noise
   std::size_t heldOut = 2000;      // random boundary points that choose between fits
+  SurfaceDirections directions;    // none: values everywhere
   std::uint64_t seed = 1;          // of all random points, in [0, 1e15]
   Progress* progress = nullptr;    // must outlive the problem
 };

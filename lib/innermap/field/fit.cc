@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include "innermap/core/error.h"
@@ -175,14 +176,15 @@ Solved Fitting::solve(const BoundaryData& data, std::size_t count, std::size_t p
   out.distance = distance;
   out.sources = problem_.placeSources(count, distance);
   const std::size_t used = std::min(data.points.size(), points);
-  const Points collocation(data.points.begin(),
-                           data.points.begin() + static_cast<std::ptrdiff_t>(used));
+  std::vector<std::size_t> first(used);
+  std::iota(first.begin(), first.end(), 0);
+  const Collocation collocation = Collocation(data.points, data.directions).subset(first);
   Matrix values(used, data.values.columns());
   for (std::size_t k = 0; k < values.columns(); ++k)
     std::copy_n(data.values.column(k), used, values.column(k));
   DenseSettings dense;
   dense.progress = settings_.progress;
-  const DenseSolver solver(collocation, out.sources, data.heldOut, dense);
+  const DenseSolver solver(collocation, out.sources, {data.heldOut, data.heldOutDirections}, dense);
   out.solution =
       solver.solve(values, settings_.method, data.heldOutValues, settings_.regularization);
   return out;
@@ -250,7 +252,8 @@ FitResult Fitting::iterative() {
   const SourceLevel levels[2] = {level(coarse, far), level(fine, distance)};
   IterativeSettings s;
   s.progress = settings_.progress;
-  const IterativeSolver solver(problem_.surface.points, {levels[0], levels[1]}, s);
+  const IterativeSolver solver({problem_.surface.points, problem_.surface.directions},
+                               {levels[0], levels[1]}, s);
   IterativeSolution solution = solver.solve(problem_.surface.values);
   Points sources = solver.sources();
   const std::size_t rank = sources.size();

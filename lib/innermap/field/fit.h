@@ -25,6 +25,7 @@ namespace innermap {
 struct BoundaryData {
   Points points, heldOut;
   Matrix values, heldOutValues;
+  Points directions{}, heldOutDirections{};  // as Collocation::directions
 };
 
 struct FitProblem {

@@ -4,6 +4,13 @@
 
 namespace innermap {
 
+Collocation Collocation::normalised(const Vec3& center, double scale) const {
+  Collocation out = *this;
+  for (Vec3& p : out.points) p = (p - center) / scale;
+  for (Vec3& d : out.directions) d = d / scale;
+  return out;
+}
+
 Collocation Collocation::subset(const std::vector<std::size_t>& indices) const {
   Collocation out;
   out.points.reserve(indices.size());
@@ -26,6 +33,13 @@ std::vector<std::size_t> derivativeRows(const Collocation& at) {
   for (std::size_t i = 0; i < at.directions.size(); ++i)
     if (at.derivative(i)) out.push_back(i);
   return out;
+}
+
+void fillAffineRows(const Collocation& at, double* out, std::size_t rowStride) {
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const std::array<double, 4> row = at.affine(i);
+    for (std::size_t k = 0; k < row.size(); ++k) out[k * rowStride + i] = row[k];
+  }
 }
 
 void fillDerivativeRows(const Collocation& at, const Points& sources, double* out,

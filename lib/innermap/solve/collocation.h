@@ -32,12 +32,17 @@ struct Collocation {
     const Vec3& v = derivative(i) ? directions[i] : points[i];
     return {derivative(i) ? 0.0 : 1.0, v.x, v.y, v.z};
   }
+  // In units of `scale` about `center`: the same rows for fields in these units.
+  Collocation normalised(const Vec3& center, double scale) const;
   Collocation subset(const std::vector<std::size_t>& indices) const;
   void append(const Collocation& other);
 };
 
 // Rows where derivatives are asked for: those indices, in order.
 std::vector<std::size_t> derivativeRows(const Collocation& at);
+
+// Fills #points x 4 by the affine functions' rows, column-major with the given stride.
+void fillAffineRows(const Collocation& at, double* out, std::size_t rowStride);
 
 // Overwrites these rows of #points x #sources, `column`-major with the given stride, by
 //   -direction . (point - source) / |point - source|^3.

@@ -23,13 +23,6 @@ Points normalised(const Points& points, const Vec3& center, double scale) {
   return out;
 }
 
-void fillAffine(const Points& points, double* out, std::size_t stride) {
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    out[i] = 1;
-    for (int a = 0; a < 3; ++a) out[(1 + a) * stride + i] = points[i][a];
-  }
-}
-
 // R11^-1 b, in place. Affine directions that the points do not span (a plane, a line) get 0.
 void solveUpper(const Matrix& r, Matrix& b) {
   double largest = 0;
@@ -88,7 +81,7 @@ std::uint64_t denseSolverMemory(std::size_t collocation, std::size_t sources, st
 
 class DenseSolver::Factors {
  public:
-  Factors(const Points& collocation, const Points& sources, const Points& heldOut,
+  Factors(const Collocation& collocation, const Points& sources, const Collocation& heldOut,
           const DenseSettings& settings);
 
   DenseSolution solve(const Matrix& values, Regularization method, const Matrix& heldOutValues,
@@ -97,9 +90,9 @@ class DenseSolver::Factors {
 
  private:
   struct Projected;
-  Matrix factor(const Points& points, const Points& sources, const DenseSettings& settings);
+  Matrix factor(const Collocation& at, const Points& sources, const DenseSettings& settings);
   void decompose(Matrix& r22);
-  void prepareHeldOut(const Points& points, const Points& sources, const DenseSettings& settings);
+  void prepareHeldOut(const Collocation& at, const Points& sources, const DenseSettings& settings);
   Projected project(const Matrix& values) const;
   Matrix heldOutResidual(const Projected& rhs, const Matrix& heldOutValues) const;
   double chooseRegularization(const Projected& rhs, Regularization method, const Matrix& values,
@@ -124,8 +117,8 @@ struct DenseSolver::Factors::Projected {
   Matrix modes;   // U^T (Q^T b)_2, #sources x #K
 };
 
-DenseSolver::Factors::Factors(const Points& collocation, const Points& sources,
-                              const Points& heldOut, const DenseSettings& settings)
+DenseSolver::Factors::Factors(const Collocation& collocation, const Points& sources,
+                              const Collocation& heldOut, const DenseSettings& settings)
     : sources_(sources.size()) {
   const std::size_t m = collocation.size(), n = sources.size(), columns = n + kAffine;
   if (n == 0) throw SettingError("sources", "there are none; use at least 1");
@@ -137,26 +130,27 @@ DenseSolver::Factors::Factors(const Points& collocation, const Points& sources,
                     " collocation points",
                 denseSolverMemory(m, n, heldOut.size()), settings.maxMemory,
                 "use fewer sources (memory grows with their square)");
-  const Box3 box = boundingBox(collocation);
+  const Box3 box = boundingBox(collocation.points);
   center_ = box.center();
   scale_ = box.diagonal() > 0 ? box.diagonal() : 1;
 
   const Points normalisedSources = normalised(sources, center_, scale_);
-  Matrix r22 = factor(normalised(collocation, center_, scale_), normalisedSources, settings);
+  Matrix r22 = factor(collocation.normalised(center_, scale_), normalisedSources, settings);
   reportProgress(settings.progress, "singular values", 0);
   decompose(r22);
   reportProgress(settings.progress, "singular values", 1);
-  if (!heldOut.empty())
-    prepareHeldOut(normalised(heldOut, center_, scale_), normalisedSources, settings);
+  if (heldOut.size() > 0)
+    prepareHeldOut(heldOut.normalised(center_, scale_), normalisedSources, settings);
 }
 
 // QR of [P A]; keeps what belongs to the affine part and gives R22.
-Matrix DenseSolver::Factors::factor(const Points& points, const Points& sources,
+Matrix DenseSolver::Factors::factor(const Collocation& at, const Points& sources,
                                     const DenseSettings& settings) {
-  const std::size_t m = points.size(), n = sources.size(), columns = n + kAffine;
+  const std::size_t m = at.size(), n = sources.size(), columns = n + kAffine;
   Matrix a(m, columns);
-  fillAffine(points, a.data(), m);
-  fillKernelMatrix(points, sources, 1, a.column(kAffine), m, {settings.progress});
+  fillAffineRows(at, a.data(), m);
+  fillKernelMatrix(at.points, sources, 1, a.column(kAffine), m, {settings.progress});
+  fillDerivativeRows(at, sources, a.column(kAffine), m);
   qr_ = BlockedQr(std::move(a), settings.progress);
   const Matrix r = qr_.upperTriangle();
   Matrix r22(n, n);
@@ -184,17 +178,18 @@ void DenseSolver::Factors::decompose(Matrix& r22) {
     for (std::size_t i = 0; i < sources_; ++i) leftTransposed_(j, i) = u(i, j);
 }
 
-void DenseSolver::Factors::prepareHeldOut(const Points& points, const Points& sources,
+void DenseSolver::Factors::prepareHeldOut(const Collocation& at, const Points& sources,
                                           const DenseSettings& settings) {
   const std::size_t n = sources.size();
-  heldOutAffine_ = Matrix(points.size(), kAffine);
-  fillAffine(points, heldOutAffine_.data(), points.size());
-  Matrix kernel(points.size(), n), right(n, n);
-  fillKernelMatrix(points, sources, 1, kernel.data(), points.size(), {settings.progress});
+  heldOutAffine_ = Matrix(at.size(), kAffine);
+  fillAffineRows(at, heldOutAffine_.data(), at.size());
+  Matrix kernel(at.size(), n), right(n, n);
+  fillKernelMatrix(at.points, sources, 1, kernel.data(), at.size(), {settings.progress});
+  fillDerivativeRows(at, sources, kernel.data(), at.size());
   multiply(false, -1, heldOutAffine_, coupling_, 1, kernel, settings.progress);
   for (std::size_t j = 0; j < n; ++j)
     for (std::size_t i = 0; i < n; ++i) right(i, j) = rightTransposed_(j, i);
-  heldOutModes_ = Matrix(points.size(), n);
+  heldOutModes_ = Matrix(at.size(), n);
   multiply(false, 1, kernel, right, 0, heldOutModes_, settings.progress);
 }
 
@@ -309,8 +304,8 @@ DenseSolution DenseSolver::Factors::solve(const Matrix& values, Regularization m
   return out;
 }
 
-DenseSolver::DenseSolver(const Points& collocation, const Points& sources, const Points& heldOut,
-                         const DenseSettings& settings)
+DenseSolver::DenseSolver(const Collocation& collocation, const Points& sources,
+                         const Collocation& heldOut, const DenseSettings& settings)
     : factors_(std::make_shared<const Factors>(collocation, sources, heldOut, settings)) {}
 
 DenseSolution DenseSolver::solve(const Matrix& values, Regularization method,

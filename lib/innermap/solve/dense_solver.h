@@ -19,6 +19,7 @@
 #include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/solve/affine.h"
+#include "innermap/solve/collocation.h"
 
 namespace innermap {
 
@@ -46,13 +47,13 @@ class DenseSolver {
   // collocation: at least #sources + 4 points; heldOut: points that choose the regularisation, may
   // be empty. Throws SettingError, MemoryError (before allocating), Cancelled (within one panel;
   // but the SVD itself is one LAPACK call and finishes first).
-  DenseSolver(const Points& collocation, const Points& sources, const Points& heldOut,
+  DenseSolver(const Collocation& collocation, const Points& sources, const Collocation& heldOut,
               const DenseSettings& settings = {});
 
-  // values: #collocation x #K. Without `regularization` it is chosen by the rms error at the
-  // held-out points (heldOutValues: #heldOut x #K, required then): of all candidates, a quarter
-  // decade apart, the strongest within 2% of the best. Given: relative to the largest singular
-  // value, in [0, 1].
+  // values: #collocation x #K, the rows' (see Collocation). Without `regularization` it is chosen
+  // by the rms error at the held-out points (heldOutValues: #heldOut x #K, required then): of all
+  // candidates, a quarter decade apart, the strongest within 2% of the best. Given: relative to the
+  // largest singular value, in [0, 1].
   DenseSolution solve(const Matrix& values, Regularization method, const Matrix& heldOutValues,
                       std::optional<double> regularization = {}) const;
 

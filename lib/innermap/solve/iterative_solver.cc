@@ -187,9 +187,7 @@ Points IterativeSolver::Levels::normalised(const Points& points) const {
 }
 
 void IterativeSolver::Levels::addPoints(const Collocation& collocation) {
-  Collocation added(normalised(collocation.points), collocation.directions);
-  for (Vec3& direction : added.directions) direction = direction / scale_;
-  collocation_.append(added);
+  collocation_.append(collocation.normalised(center_, scale_));
 }
 
 std::vector<std::size_t> IterativeSolver::Levels::addSources(const Points& sources) {

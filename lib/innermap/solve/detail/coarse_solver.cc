@@ -3,7 +3,6 @@
 #include <cblas.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -47,10 +46,7 @@ CoarseSolver::CoarseSolver(const Collocation& collocation, const Points& sources
   const std::size_t rows = rows_.size(), count = sources.size();
   const Collocation seen = collocation.subset(rows_);
   Matrix a(rows + count, kAffine + count);
-  for (std::size_t i = 0; i < rows; ++i) {
-    const std::array<double, kAffine> affine = seen.affine(i);
-    for (std::size_t k = 0; k < kAffine; ++k) a(i, k) = affine[k];
-  }
+  fillAffineRows(seen, a.data(), a.rows());
   fillKernelMatrix(seen.points, sources, 1, a.column(kAffine), a.rows(), {progress});
   fillDerivativeRows(seen, sources, a.column(kAffine), a.rows());
   const double lambda = kLambda * std::sqrt(meanSquaredNorm(a, kAffine, rows));
