@@ -133,6 +133,4 @@ int run(const std::vector<std::string>& arguments) {
 }  // namespace
 }  // namespace innermap::tool
 
-int main(int argc, char** argv) {
-  return innermap::tool::run({argv + (argc > 0), argv + argc});
-}
+int main(int argc, char** argv) { return innermap::tool::run({argv + (argc > 0), argv + argc}); }

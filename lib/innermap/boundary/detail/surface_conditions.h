@@ -3,7 +3,8 @@
 
 #include <memory>
 
-#include "innermap/boundary/fit_harmonic.h"
+#include "innermap/boundary/boundary_conditions.h"
+#include "innermap/boundary/boundary_pair.h"
 #include "innermap/boundary/surface_problem.h"
 #include "innermap/mesh/triangle_tree.h"
 
