@@ -21,6 +21,7 @@ std::vector<Command> allCommands() {
           makeHexahedralizeCommand(),
           makeRemeshCommand(),
           makeCompareFemCommand(),
+          makeStudyCommand(),
           makeSliceCommand(),
           makeExportCommand(),
           makeImportCommand(),

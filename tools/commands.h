@@ -24,6 +24,7 @@ Command makePolycubeCommand();
 Command makeHexahedralizeCommand();
 Command makeRemeshCommand();
 Command makeCompareFemCommand();
+Command makeStudyCommand();
 Command makeSliceCommand();
 Command makeTransferDistanceCommand();
 Command makeExportCommand();
