@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <ostream>
 
@@ -124,6 +125,7 @@ Study makeRuns(const BoundaryPair& pair, const StudySettings& settings, Context&
     Study study =
         runStudy(pair, settings, [&](const StudyRow* row, std::size_t done, std::size_t all) {
           if (row) context.print(studyLine(*row));
+          std::fflush(stdout);
           finished = done;
           runs = all;
           context.setPart(done < all ? fmt::format("run {} of {}", done + 1, all) : std::string());

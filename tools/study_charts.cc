@@ -146,7 +146,7 @@ SvgChart energies(const Study& study) {
     addPanel(chart, study, "harmonic energy (3: rigid): " + varied, axis, "unit volumes", harmonic,
              false);
     addPanel(chart, study, "deformation energy (0: rigid): " + varied, axis, "mean density",
-             deformation, false);
+             deformation);
   }
   return chart;
 }
