@@ -275,7 +275,7 @@ std::string studyLine(const StudyRow& row) {
   if (!row.failure.empty())
     return fmt::format("{:>8} {:>8} {:>16} {}\n", row.sources, row.points, place, row.failure);
   return fmt::format(
-      "{:>8} {:>8} {:>16} {:>9.2e} {:>9.2e} {:>9.2e} {:>9.5f} {:>9.2e} {:>8.3g} {:>9.2e} "
+      "{:>8} {:>8} {:>16} {:>9.2e} {:>9.2e} {:>9.2e} {:>9.6g} {:>9.2e} {:>8.3g} {:>9.2e} "
       "{:>8.2f}{}\n",
       row.sources, row.points, place, row.cError, row.rms, row.p99, row.harmonicEnergy, row.weights,
       100 * row.folded, row.condition, row.seconds, row.kept ? " (kept)" : "");

@@ -18,6 +18,7 @@ TEST(StudyRun, SameIsTheSameFit) {
   EXPECT_TRUE(sameRun(run, {100, 3, kOffset, 0.1 * (1 + 1e-13)}));
   EXPECT_TRUE(sameRun({100, 1, kOffset, 0.1}, {100, 1.03, kOffset, 0.1}));  // both 104 points
   EXPECT_FALSE(sameRun(run, {101, 3, kOffset, 0.1}));
+  EXPECT_FALSE(sameRun(run, {150, 2, kOffset, 0.1}));  // as many points
   EXPECT_FALSE(sameRun(run, {100, 2, kOffset, 0.1}));
   EXPECT_FALSE(sameRun(run, {100, 3, kSphere, 0.1}));
   EXPECT_FALSE(sameRun(run, {100, 3, kOffset, 0.1001}));

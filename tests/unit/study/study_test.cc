@@ -226,7 +226,7 @@ TEST(Study, LimitsLeaveRunsOut) {
   const Study small = runStudy(pair, s);
   ASSERT_EQ(small.rows.size(), 6u);
   for (const StudyRow& row : small.rows) EXPECT_NE(row.failure.find("limit"), std::string::npos);
-  EXPECT_EQ(filesIn(folder.path), 0u);  // with more memory they may be made
+  EXPECT_FALSE(std::filesystem::exists(folder.path));  // with more memory they may be made
   EXPECT_GT(studyMemory({4000, 4, ChargePlacement::offset, 0.1}),
             studyMemory({1000, 4, ChargePlacement::offset, 0.1}));
 }
