@@ -82,7 +82,7 @@ class SvgAxis {
   }
 
   std::vector<double> ticks() const {
-    constexpr double kShort = 0.7;  // decades: too few powers of ten and halves of them
+    constexpr double kShort = 1;  // decade: too few powers of ten and halves of them
     if (!logarithmic_) return linearTicks(lower_, upper_);
     if (upper_ - lower_ < kShort) return linearTicks(std::pow(10, lower_), std::pow(10, upper_));
     return logTicks();
