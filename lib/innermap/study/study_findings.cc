@@ -149,9 +149,9 @@ std::string distancesAdvice(const Study& study, const Rows& rows) {
 std::string pointsAdvice(const Study& study) {
   const Rows rows = studySeries(study, StudyAxis::collocation, ChargePlacement::offset);
   if (rows.size() < 2) return {};
-  const double least = rows[leastOf(rows, &StudyRow::p99)].p99;
+  const double least = rows[leastOf(rows, &StudyRow::rms)].rms;
   for (const StudyRow& row : rows)
-    if (row.p99 <= 1.1 * least)
+    if (row.rms <= 1.1 * least)
       return fmt::format(
           "Boundary points a charge: {:.3g} will do; more of them lower the error by no more than "
           "a "

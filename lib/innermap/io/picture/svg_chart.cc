@@ -319,8 +319,9 @@ std::string svgChart(const SvgChart& chart) {
   out += textAt(kEdge + 8, 28, chart.title, "font-size=\"18\" font-weight=\"bold\"");
   out += textAt(kEdge + 8, 50, chart.subtitle, fmt::format("fill=\"{}\"", kFaint));
   for (std::size_t i = 0; i < chart.panels.size(); ++i) {
-    const Place place{static_cast<double>(kEdge + static_cast<int>(i) % across * chart.panelWidth),
-                      static_cast<double>(kHead + static_cast<int>(i) / across * chart.panelHeight),
+    const int row = static_cast<int>(i) / across, column = static_cast<int>(i) % across;
+    const Place place{static_cast<double>(kEdge + column * chart.panelWidth),
+                      static_cast<double>(kHead + row * chart.panelHeight),
                       static_cast<double>(chart.panelWidth),
                       static_cast<double>(chart.panelHeight)};
     out += chart.panels[i].rows.empty() ? curvePanel(chart.panels[i], place)
