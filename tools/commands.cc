@@ -23,6 +23,7 @@ std::vector<Command> allCommands() {
           makeHexahedralizeCommand(),
           makeRemeshCommand(),
           makeCompareFemCommand(),
+          makeStudyCommand(),
           makeSliceCommand(),
           makeExportCommand(),
           makeImportCommand(),

@@ -26,6 +26,7 @@ Command makeHarmonicCommand();
 Command makeWeightsCommand();
 Command makeRemeshCommand();
 Command makeCompareFemCommand();
+Command makeStudyCommand();
 Command makeSliceCommand();
 Command makeTransferDistanceCommand();
 Command makeExportCommand();
