@@ -63,7 +63,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     chosen->read(writtenInput(data, size));
   } catch (const innermap::Error& error) {
-    if (saying) std::puts(error.what());
+    if (saying) std::fprintf(stderr, "%s\n", error.what());
   }
   return 0;
 }

@@ -17,7 +17,7 @@ namespace innermap::fuzz {
 namespace {
 
 // What readers may take where they are told; main.cc's limits on the process leave room for it.
-constexpr std::uint64_t kMemory = std::uint64_t(64) << 20;
+constexpr std::uint64_t kMemory = std::uint64_t(8) << 20;
 
 void mesh(const std::string& path) { readMesh(path); }
 
