@@ -196,16 +196,10 @@ void verifyExr(const std::string& path, std::istream& stream, std::uint64_t size
   Walk(path, stream, size).run();
 }
 
-void verifyIfExr(const std::string& path) {
+void verifyExr(const std::string& path) {
   CheckedInputBuffer buffer(path, nullptr);
-  constexpr std::array<char, 4> kFirst{0x76, 0x2f, 0x31, 0x01};
-  std::array<char, 4> first{};
-  if (buffer.size() < first.size() || buffer.sgetn(first.data(), first.size()) != 4 ||
-      first != kFirst)
-    return;
   std::istream stream(&buffer);
   stream.exceptions(std::ios::badbit | std::ios::failbit);
-  stream.seekg(0);
   verifyExr(path, stream, buffer.size());
 }
 

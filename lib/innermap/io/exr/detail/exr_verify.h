@@ -14,7 +14,7 @@ namespace innermap {
 // for, tiles far larger than the picture.
 void verifyExr(const std::string& path, std::istream& stream, std::uint64_t size);
 
-// The same for the file at `path` if it begins as an EXR file does; nothing for others.
-void verifyIfExr(const std::string& path);
+// The same for the file at `path`.
+void verifyExr(const std::string& path);
 
 }  // namespace innermap
