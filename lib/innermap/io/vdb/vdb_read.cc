@@ -18,7 +18,6 @@ namespace {
 
 using openvdb::io::GridDescriptor;
 
-
 std::string listed(const std::vector<GridDescriptor>& grids) {
   std::vector<std::string> names;
   for (const GridDescriptor& g : grids)
