@@ -50,7 +50,7 @@ TEST(ReadLandmarks, TakesVerticesPointsAndBoth) {
 
 TEST(ReadLandmarks, NamesFileAndLineOfWhatItRefuses) {
   const std::vector<std::vector<std::string>> cases = {
-      {"", "no landmarks"},
+      {"", "is empty"},
       {"# nothing\n", "no landmarks"},
       {"1 2\n3\n", "line 2", "1 numbers"},
       {"1 2 3\n", "line 1"},

@@ -8,11 +8,16 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <string_view>
+#include <utility>
 
+#include "innermap/core/detail/file_bytes.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
+#include "innermap/io/exr/detail/exr_verify.h"
 
 namespace innermap {
 namespace {
@@ -29,19 +34,42 @@ std::string firstLine(const std::string& text) { return text.substr(0, text.find
 
 using Input = std::unique_ptr<OIIO::ImageInput>;
 
+// What OpenImageIO calls the format: by the first bytes, else by the ending. It would try a file
+// that is not what its ending says as everything that it knows, films and scans of hospitals
+// included, in turn: slow, and each of these readers is one more that a damaged file could break.
+std::string formatOf(const std::string& path) {
+  static constexpr std::pair<std::string_view, const char*> kStarts[] = {
+      {"\x89PNG", "png"},     {"\xff\xd8\xff", "jpeg"}, {"\x76\x2f\x31\x01", "openexr"},
+      {{"II*\0", 4}, "tiff"}, {{"MM\0*", 4}, "tiff"},   {{"II+\0", 4}, "tiff"},
+      {{"MM\0+", 4}, "tiff"}, {"#?RADIANCE", "hdr"},    {"#?RGBE", "hdr"}};
+  std::string head(16, '\0');
+  std::ifstream(path, std::ios::binary)
+      .read(head.data(), static_cast<std::streamsize>(head.size()));
+  for (const auto& [start, format] : kStarts)
+    if (head.compare(0, start.size(), start) == 0) return format;
+  const std::string extension = extensionOf(path);
+  return extension.empty() ? "" : lower(extension.substr(1));
+}
+
 Input open(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
     throw FileError(path, "does not exist; give the path of an image");
   if (std::filesystem::is_directory(path, ignored))
     throw FileError(path, "is a folder; give the path of an image");
-  OIIO::ImageSpec wanted;
-  wanted.attribute("oiio:UnassociatedAlpha", 1);
-  Input input = OIIO::ImageInput::open(path, &wanted);
-  if (!input)
+  const auto fail = [&](const std::string& why) {
     throw FileError(path, fmt::format("is no image that can be read ({}); give a .png, .jpg, .tif, "
                                       ".exr or another format of OpenImageIO",
-                                      firstLine(OIIO::geterror())));
+                                      firstLine(why)));
+  };
+  const std::string format = formatOf(path);
+  if (format == "openexr") verifyExr(path);
+  if (format.empty()) fail("its name has no ending and its first bytes are of no known format");
+  Input input = OIIO::ImageInput::create(format);
+  if (!input) fail(OIIO::geterror());
+  OIIO::ImageSpec wanted, found;
+  wanted.attribute("oiio:UnassociatedAlpha", 1);
+  if (!input->open(path, found, wanted)) fail(input->geterror());
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.deep) throw FileError(path, "is a deep image; flatten it first");
   if (spec.depth > 1 || spec.full_depth > 1) throw FileError(path, "is a volume, not an image");

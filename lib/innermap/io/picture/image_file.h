@@ -39,9 +39,10 @@ struct ImageFile {
   std::vector<std::string> notes;  // what was left out or repaired, a line each
 };
 
-// Reads any format that OpenImageIO reads; the first image of a file that has several. Grey images
-// give three equal channels. Alpha is left out: colours are those of an opaque surface (where they
-// are multiplied by alpha in the file, they are divided by it). Pixels outside an EXR file's data
+// Reads any format that OpenImageIO reads: PNG, JPEG, TIFF, EXR and HDR by what the file begins
+// with, others by the ending; the first image of a file that has several. Grey images give three
+// equal channels. Alpha is left out: colours are those of an opaque surface (where they are
+// multiplied by alpha in the file, they are divided by it). Pixels outside an EXR file's data
 // window are black. Numbers that are not finite become 0 and are noted. Throws FileError for what
 // is missing, damaged or cut short, is no image, is deep or a volume, or has no colour channels (Z
 // or alpha alone); MemoryError before allocating; Cancelled.

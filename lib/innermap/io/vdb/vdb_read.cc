@@ -18,8 +18,6 @@ namespace {
 
 using openvdb::io::GridDescriptor;
 
-constexpr std::uint64_t kMostGrids = 10000;
-
 std::string listed(const std::vector<GridDescriptor>& grids) {
   std::vector<std::string> names;
   for (const GridDescriptor& g : grids)

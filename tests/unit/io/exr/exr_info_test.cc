@@ -1,7 +1,7 @@
-
 #include <gtest/gtest.h>
 
 #include "innermap/core/error.h"
+#include "innermap/core/memory.h"
 #include "innermap/io/exr/exr_slices.h"
 #include "io/test_files.h"
 
@@ -26,6 +26,40 @@ TEST(ExrInfo, BadFilesAreFileErrors) {
   }
   test::write(folder.file("t.exr"), "not an image at all");
   EXPECT_THROW(readExrInfo(folder.file("t.exr")), FileError);
+}
+
+// OpenEXR reads what it knows by its type and the rest by its length, and allocates first.
+TEST(ExrInfo, LengthsOfAttributes) {
+  openvdb::initialize();
+  const test::TemporaryFolder folder;
+  const auto grid = test::block<openvdb::FloatGrid>(
+      "v", openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(9)), [](auto) { return 1.0f; });
+  writeExrSlices(folder.file("s.exr"), {grid}, {});
+  const std::string whole = test::contents(folder.file("s.exr"));
+  using namespace std::string_literals;
+  const struct {
+    std::string from, to, message;
+  } damages[] = {
+      {"sliceCount\0int\0\4\0\0\0"s, "sliceCount\0int\0\14\0\0\0"s, "wrong length"},
+      {"channels\0chlist\0"s, "channels\0chlist\0\377"s, "wrong length"},
+      {"slicePosition\0double\0\10\0\0\0"s, "slicePosition\0doubts\0\10\0\0\100"s,
+       "longer than the file"},
+      {"chunkCount\0int\0\4\0\0\0\12\0\0\0"s, "chunkCount\0int\0\4\0\0\0\0\0\0\100"s, "too short"}};
+  const std::uint64_t before = peakMemory();
+  for (const auto& damage : damages) {
+    std::string bytes = whole;
+    const std::size_t at = bytes.find(damage.from);
+    ASSERT_NE(at, bytes.npos) << damage.to;
+    bytes.replace(at, damage.to.size(), damage.to);
+    test::write(folder.file("t.exr"), bytes);
+    try {
+      readExrInfo(folder.file("t.exr"));
+      ADD_FAILURE() << damage.to;
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find(damage.message), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_LT(peakMemory() - before, 200u << 20);
 }
 
 }  // namespace

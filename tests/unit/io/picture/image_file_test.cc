@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <vector>
 
@@ -183,6 +184,42 @@ TEST(ImageFile, BadFiles) {
       const IgnoredLeaks libpng;  // its errors jump over OpenImageIO's strings
       EXPECT_THROW(readImage(cut), FileError) << name << " " << share;
     }
+  }
+}
+
+// What a file begins with counts, and no other format's reader sees it.
+TEST(ImageFile, WrongEndings) {
+  const TemporaryFolder folder;
+  write(folder.file("a.png"), specOf({"R", "G", "B"}, OIIO::TypeDesc::UINT8), {1, 0, 1});
+  std::filesystem::rename(folder.file("a.png"), folder.file("a.jpg"));
+  EXPECT_EQ(readImage(folder.file("a.jpg")).pixels.width, 5);
+  write(folder.file("b.bmp"), specOf({"R", "G", "B"}, OIIO::TypeDesc::UINT8), {1, 0, 1});
+  EXPECT_EQ(readImage(folder.file("b.bmp")).pixels.width, 5);
+  std::filesystem::rename(folder.file("b.bmp"), folder.file("b.png"));
+  EXPECT_THROW(readImage(folder.file("b.png")), FileError);
+}
+
+// OpenEXR allocates a tile, whatever the picture's size.
+TEST(ImageFile, TilesLargerThanThePicture) {
+  const TemporaryFolder folder;
+  OIIO::ImageSpec spec = specOf({"R", "G", "B"}, OIIO::TypeDesc::FLOAT, 8, 8);
+  spec.tile_width = spec.tile_height = 64;
+  auto out = OIIO::ImageOutput::create("openexr");
+  ASSERT_TRUE(out->open(folder.file("a.exr"), spec)) << out->geterror();
+  ASSERT_TRUE(out->write_image(OIIO::TypeDesc::FLOAT, std::vector<float>(8 * 8 * 3, 1).data()));
+  out->close();
+  EXPECT_EQ(readImage(folder.file("a.exr")).pixels.width, 8);
+  std::string bytes = test::contents(folder.file("a.exr"));
+  const std::string tiles("tiles\0tiledesc\0\11\0\0\0", 19);
+  const std::size_t at = bytes.find(tiles);
+  ASSERT_NE(at, bytes.npos);
+  bytes.replace(at + tiles.size(), 8, std::string("\0\40\0\0\0\40\0\0", 8));  // 8192 x 8192
+  test::write(folder.file("a.exr"), bytes);
+  try {
+    readImage(folder.file("a.exr"));
+    ADD_FAILURE();
+  } catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("far larger"), std::string::npos) << error.what();
   }
 }
 

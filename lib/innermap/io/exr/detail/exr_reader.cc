@@ -64,15 +64,19 @@ void ExrReader::check(int part, const std::vector<std::string>& channels) const 
 
 std::uint64_t ExrReader::memory(int part) const {
   const Imf::Header& h = header(part);
-  std::uint64_t columns = static_cast<std::uint64_t>(width(part)), lines = kMostLines, bytes = 0;
-  lines = std::min(lines, static_cast<std::uint64_t>(height(part)));
+  std::uint64_t columns = static_cast<std::uint64_t>(width(part));
+  std::uint64_t lines = std::min(kMostLines, static_cast<std::uint64_t>(height(part)));
+  double bytes = 0;
   if (h.hasTileDescription()) {
     columns = std::max<std::uint64_t>(columns, h.tileDescription().xSize);
     lines = h.tileDescription().ySize;
   }
   for (auto c = h.channels().begin(); c != h.channels().end(); ++c) bytes += 4;
   // Compressed and plain data of a chunk for each that is decoded at the same time.
-  return columns * lines * bytes * (2 + 2 * static_cast<std::uint64_t>(Imf::globalThreadCount()));
+  bytes *= static_cast<double>(columns) * static_cast<double>(lines) *
+           (2 + 2 * static_cast<double>(Imf::globalThreadCount()));
+  // What a damaged file says need not fit 64 bits.
+  return static_cast<std::uint64_t>(std::min(bytes, 1e18));
 }
 
 void ExrReader::read(int part, int begin, int count, const std::vector<std::string>& channels,

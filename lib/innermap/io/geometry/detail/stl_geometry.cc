@@ -76,7 +76,8 @@ class StlGeometry : public GeometryFile {
 
   void readText(Progress* progress) {
     TextLines lines(file_, false);
-    std::size_t begin = 0, end = 0, corners = 3;
+    std::size_t begin = 0, end = 0, corners = 0;
+    bool within = false;
     Vec3 normal, at[3];
     std::string_view word;
     for (std::size_t n = 0; lines.next(begin, end); ++n) {
@@ -84,17 +85,24 @@ class StlGeometry : public GeometryFile {
       LineWords words(file_, begin, end, false);
       if (!words.next(word)) continue;
       if (equalsIgnoringCase(word, "facet")) {
+        if (within) failAtLine(file_, lines.line(), "a facet begins within another");
+        within = true;
         words.next(word);
         normal = three(words, lines.line());
         corners = 0;
       } else if (equalsIgnoringCase(word, "vertex")) {
-        if (corners >= 3) failAtLine(file_, lines.line(), "a facet has over three corners");
+        if (!within || corners >= 3)
+          failAtLine(file_, lines.line(), "a corner stands outside a facet, or is its fourth");
         at[corners++] = three(words, lines.line());
       } else if (equalsIgnoringCase(word, "endfacet")) {
-        if (corners != 3) failAtLine(file_, lines.line(), "a facet has not three corners");
+        if (!within || corners != 3)
+          failAtLine(file_, lines.line(), "a facet has not three corners");
+        within = false;
         addTriangle(normal, at);
       }
     }
+    if (within)
+      failAtLine(file_, lines.line(), "the last facet does not end; the file is cut short");
   }
 
   Vec3 three(LineWords& words, std::size_t line) const {

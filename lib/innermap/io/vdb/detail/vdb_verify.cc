@@ -1,6 +1,7 @@
 #include "innermap/io/vdb/detail/vdb_verify.h"
 
 #include <fmt/format.h>
+#include <openvdb/io/Compression.h>
 
 #include <array>
 #include <bitset>
@@ -207,6 +208,7 @@ class Verifier {
 
   void tree(std::int64_t blockPosition) {
     leaves_ = 0;
+    inTopology_ = true;
     memory_ = 2000;  // the tree itself
     origins_.clear();
     if (read<std::int32_t>() != 1) damaged("a tree has several buffers");
@@ -220,6 +222,7 @@ class Verifier {
     }
     for (std::uint32_t i = 0; i < children; ++i) internal<5>(rootKey(keys));
     memory_ += 100 * keys.size();
+    inTopology_ = false;
     if (static_cast<std::int64_t>(position()) != blockPosition)
       damaged("a grid's voxels do not begin where it says");
     if (delayedLeaves_ > leaves_) damaged("a table has more leaves than the grid");
@@ -300,6 +303,7 @@ class Verifier {
     if (count == 0 && half_ && type_.halfSize != type_.size) return;
     const std::uint64_t bytes = count * valueSize;
     if (!(compression_ & (kBlosc | kZip))) return skip(bytes);
+    const std::uint64_t begin = position();
     const auto stored = read<std::int64_t>();
     if (stored <= 0) {
       if (stored == std::numeric_limits<std::int64_t>::min() ||
@@ -311,6 +315,21 @@ class Verifier {
       bloscBlock(static_cast<std::uint64_t>(stored), bytes, bytes);
     else
       skip(static_cast<std::uint64_t>(stored));
+    if (inTopology_) decode(begin, bytes);
+  }
+
+  // OpenVDB loses the nodes that it has made so far when it throws in the midst of the tree, so the
+  // tree's own blocks, which are few, are tried first. What cannot be decoded in a leaf costs
+  // nothing.
+  void decode(std::uint64_t begin, std::uint64_t bytes) {
+    const std::uint64_t end = position();
+    stream_.seekg(static_cast<std::streamoff>(begin));
+    decoded_.resize(bytes);
+    if (compression_ & kBlosc)
+      openvdb::io::bloscFromStream(stream_, decoded_.data(), bytes);
+    else
+      openvdb::io::unzipFromStream(stream_, decoded_.data(), bytes);
+    if (position() != end) damaged("a block has the wrong length");
   }
 
   // Blosc's header gives the lengths again, and its decoder believes them.
@@ -326,7 +345,8 @@ class Verifier {
   std::istream& stream_;
   const std::uint64_t size_;
   std::uint32_t version_ = 0, compression_ = 0, delayedLeaves_ = 0;
-  bool half_ = false;
+  bool half_ = false, inTopology_ = false;
+  std::vector<char> decoded_;
   ValueType type_;
   std::uint64_t leaves_ = 0, memory_ = 0;
   std::vector<Origin> origins_;  // of bool and mask leaves, which repeat theirs

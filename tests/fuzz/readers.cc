@@ -1,0 +1,131 @@
+#include "readers.h"
+
+#include <openvdb/openvdb.h>
+
+#include <sstream>
+
+#include "innermap/boundary/landmarks.h"
+#include "innermap/field/field_file.h"
+#include "innermap/io/exr/exr_slices.h"
+#include "innermap/io/geometry/geometry_file.h"
+#include "innermap/io/picture/image_file.h"
+#include "innermap/io/vdb/vdb_file.h"
+#include "innermap/io/volume/volume_texture.h"
+#include "innermap/mesh/read.h"
+
+namespace innermap::fuzz {
+namespace {
+
+// What readers may take where they are told; main.cc's limits on the process leave room for it.
+constexpr std::uint64_t kMemory = std::uint64_t(8) << 20;
+
+void mesh(const std::string& path) { readMesh(path); }
+
+// A correspondence, or a pose: a mesh of known connectivity, here the octahedron of the corpus.
+void pose(const std::string& path) {
+  static const Mesh octahedron = [] {
+    Mesh m;
+    m.name = "octahedron";
+    m.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    m.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
+                   {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+    return m;
+  }();
+  readMeshLike(path, octahedron);
+}
+
+// Also written again, with all where it was, which uses every index that was read.
+void geometry(const std::string& path) {
+  ReadGeometrySettings settings;
+  settings.maxMemory = kMemory;
+  settings.maxMemory += 160000000;  // what readGeometry plans for carrying
+  const auto file = readGeometry(path, settings);
+  CarriedGeometry carried;
+  const Geometry& g = file->geometry;
+  carried.points.points = g.points;
+  carried.points.fates.assign(g.points.size(), PointFate::carried);
+  for (const Directions& d : g.directions) carried.directions.push_back(d.values);
+  carried.ownPoints = g.ownPoints;
+  for (std::size_t i = 0; i < g.ownPoints; ++i) carried.number.push_back(static_cast<int>(i));
+  carried.stays.assign(g.elements.size(), 1);
+  std::ostringstream out;
+  file->write(path, carried, out);
+  file->inverted(carried);
+}
+
+void landmarks(const std::string& path) { readLandmarks(path); }
+
+void field(const std::string& path) {
+  const FieldFile file = readField(path);
+  const Vec3 origin;
+  for (const HarmonicField& step : file.steps) {
+    std::vector<double> values(step.channels()), gradients(3 * step.channels());
+    step.evaluate(&origin, 1, values.data(), gradients.data());
+  }
+}
+
+void vdb(const std::string& path) {
+  describe(readVdbInfo(path), path, /*metadata=*/true);
+  VdbReadSettings settings;
+  settings.maxMemory = kMemory;
+  readVdb(path, settings);
+}
+
+void exrInfo(const std::string& path) { describe(readExrInfo(path), path); }
+
+// By what the file says, or else by what the options of `innermap import` would.
+void volumeTexture(const std::string& path) {
+  VolumeTextureReadSettings settings;
+  settings.maxMemory = kMemory;
+  volumeTextureReadNeed(path, settings);
+  readVolumeTexture(path, settings);
+}
+
+void foreignVolumeTexture(const std::string& path) {
+  VolumeTextureReadSettings settings;
+  settings.maxMemory = kMemory;
+  settings.names = {"a"};
+  settings.layout = VolumeLayout::atlas;
+  settings.tiles = {2, 2};
+  settings.voxelSize = 1;
+  settings.background = 0;
+  readVolumeTexture(path, settings);
+}
+
+void image(const std::string& path) {
+  ImageSettings settings;
+  settings.maxMemory = kMemory;
+  readImage(path, settings);
+}
+
+}  // namespace
+
+const std::vector<Reader>& readers() {
+  static const std::vector<Reader> all{
+      {"mesh-obj", "obj", mesh},
+      {"mesh-ply", "ply", mesh},
+      {"mesh-off", "off", mesh},
+      {"mesh-stl", "stl", mesh},
+      {"correspondence", "ply", pose},
+      {"landmarks", "txt", landmarks},
+      {"map", "map.ply", field},
+      {"geometry-obj", "obj", geometry},
+      {"geometry-ply", "ply", geometry},
+      {"geometry-off", "off", geometry},
+      {"geometry-stl", "stl", geometry},
+      {"cells-vtu", "vtu", geometry},
+      {"cells-msh", "msh", geometry},
+      {"cells-mesh", "mesh", geometry},
+      {"vdb", "vdb", vdb},
+      {"exr-info", "exr", exrInfo},
+      {"exr-volume", "exr", volumeTexture},
+      {"exr-foreign", "exr", foreignVolumeTexture},
+      {"image-exr", "exr", image},
+      {"image-png", "png", image},
+      {"image-jpg", "jpg", image},
+      {"image-tif", "tif", image},
+  };
+  return all;
+}
+
+}  // namespace innermap::fuzz
