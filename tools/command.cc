@@ -150,6 +150,9 @@ std::vector<Option> commonOptionTable(CommonOptions& common) {
   c.flag("--dry-run", &common.dryRun,
          "say what would be done and how much memory it needs; write nothing");
   c.option("--report", "FILE", &common.report, "write what was done, with times, as JSON");
+  c.flag("--strict", &common.strict,
+         "exit code 1 when the verdict that the run ends with is not met; files are written all "
+         "the same");
   c.flag("--quiet", &common.quiet, "nothing on stderr but errors").shortName("-q");
   c.flag("--help", &common.help, "this help").shortName("-h");
   return c.options();

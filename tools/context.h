@@ -23,6 +23,7 @@ struct CommonOptions {
   int threads = 0;
   std::string maxMemory;
   bool dryRun = false;
+  bool strict = false;
   std::string report;
   bool quiet = false;
   bool help = false;
@@ -106,6 +107,14 @@ class Context {
 
   // A setting that was left to the command: what it took. option: "--tolerance". In the report.
   void used(const std::string& option, ReportValue value);
+  // The value of a setting that is a text, or null.
+  const std::string* setting(const std::string& option) const;
+
+  // Adds to the verdict that the run ends with; warns of what is not met, unless that was told.
+  void judge(ReportFinding finding, bool told = false);
+  // The verdict, on stdout, and what was written, on stderr; with --strict what is not met is a
+  // failure. The last that a run says.
+  void conclude();
 
   // Results, on stdout. Nothing else goes there.
   void print(const std::string& text);
