@@ -47,11 +47,12 @@ std::string boundaryAdvice(MapOrigin origin, bool toTolerance) {
                      : "--tolerance in place of a number of charges, or more --sources";
 }
 
-std::string foldAdvice(MapOrigin origin, const Context& context) {
+std::string foldAdvice(MapOrigin origin, bool toTolerance, const Context& context) {
   const std::string laid = ", pairs of places in --landmarks, or --aligned where both stand alike";
   if (origin == MapOrigin::file)
     return "fit the map again with --one-to-one on, a smaller --tolerance, or for solids that were "
            "never related --landmarks or --aligned";
+  if (!toTolerance) return "--one-to-one on with --tolerance, in place of a number of charges";
   const std::string first = usedOn(context, "--one-to-one")
                                 ? "more --max-steps, a smaller --tolerance"
                                 : "--one-to-one on, a smaller --tolerance";
@@ -147,7 +148,8 @@ void addVerdictOptions(Command& c, VerdictOptions& o, bool frames) {
 
 void judgeMap(const MappedSolid& mapped, const SolidGrids* grids, const VerdictOptions& options,
               MapOrigin origin, Context& context) {
-  const std::string advice = foldAdvice(origin, context);
+  const bool toTolerance = !factOf(mapped, "tolerance").empty();
+  const std::string advice = foldAdvice(origin, toTolerance, context);
   judgeBoundary(mapped, origin, context);
   const Injectivity& known = grids ? grids->injectivity : mapped.injectivity;
   if (grids || known.inside.checked > 0) {

@@ -164,16 +164,16 @@ def density(path):
 
 def test_a_density_that_is_crushed():
     icosphere("a.obj", 3)
-    ball_with("waist.obj", waist(0.12))
+    ball_with("waist.obj", waist(0.05))
     innermap("fit", "a.obj", "waist.obj", "-o", "m.ply", "--sources", 1000)
     density("d.vdb")
-    push = ("push", "m.ply", "d.vdb", "--density", "--report", "r.json")
+    push = ("push", "m.ply", "d.vdb", "--density", "--voxel-size", 0.04, "--report", "r.json")
     done = innermap(*push, "-o", "p.vdb")
     r = read_json("r.json")
     f = told(done, r, "density")
     assert "--density-limit" in f["advice"]
     grown = r["densities"]["density_largest_ratio"]
-    assert grown > 10 and largest("p.vdb", "density") > 10
+    assert grown > 6 and largest("p.vdb", "density") > 6
     assert abs(r["mass"]["density_after"] / r["mass"]["density_before"] - 1) < 1e-3
     # With the limit: no density is above it, and what is missing is said.
     done = innermap(*push, "-o", "q.vdb", "--density-limit", 4)
