@@ -50,6 +50,8 @@ def innermap(*arguments, exit_code=0, **options):
     if THREADS and len(command) > 2 and not command[1].startswith("-") and \
             command[1] != "help" and "--help" not in command and "--threads" not in command:
         command[2:2] = ["--threads", THREADS]
+    reports = reports_of(arguments, options.get("cwd", "."))
+    before = [identity(path) for path in reports]
     done = subprocess.run(command, capture_output=True, text=True,
                           timeout=options.pop("timeout", 300), **options)
     said = f"innermap {' '.join(map(str, arguments))}\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
@@ -57,19 +59,27 @@ def innermap(*arguments, exit_code=0, **options):
     if exit_code:
         assert error_line(done), said
         assert done.stderr.endswith("\n"), said
-    for report in reports_of(arguments, options.get("cwd", ".")):
-        check_report(report)
+    for report, was in zip(reports, before):
+        if identity(report) not in (None, was):
+            check_report(report)
     return done
 
 
+def identity(path):
+    """Changes when the file is written; None where there is none."""
+    if not path.is_file():
+        return None
+    status = path.stat()
+    return status.st_ino, status.st_mtime_ns, status.st_size
+
+
 def reports_of(arguments, folder):
-    """The report files that a run with these arguments may have written, where they are."""
+    """Where a run with these arguments may write reports."""
     words = [str(a) for a in arguments]
     after = {option: Path(folder, words[i + 1]) for i, option in enumerate(words[:-1])
              if option in ("--report", "-o", "--output")}
-    paths = [path / "report.json" if option != "--report" else path
-             for option, path in after.items()]
-    return [path for path in paths if path.is_file()]
+    return [path / "report.json" if option != "--report" else path
+            for option, path in after.items()]
 
 
 def check_report(path):
