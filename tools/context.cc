@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
 #include "innermap/core/memory.h"
 #include "innermap/io/picture/label_font.h"
+#include "run_record.h"
 #include "signals.h"
 #include "terminal_progress.h"
 
@@ -59,6 +61,7 @@ void Context::enter(const std::string& path) {
   if (const auto [other, isNew] = outputs_.emplace(key, path); !isNew)
     throw FileError(path, "would be written twice; give each output a name of its own" +
                               sameAs(path, other->second));
+  ordered_.emplace_back(key, path);
 }
 
 void Context::output(const std::string& path, bool sure) {
@@ -129,12 +132,114 @@ void Context::print(const std::string& text) {
   std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
+void Context::used(const std::string& option, ReportValue value) {
+  for (auto& [name, known] : report_.run->settings)
+    if (name == settingKey(option)) known = std::move(value);
+}
+
+const std::string* Context::setting(const std::string& option) const {
+  for (const auto& [name, value] : report_.run->settings)
+    if (name == settingKey(option)) return std::get_if<std::string>(&value);
+  return nullptr;
+}
+
+void Context::judge(ReportFinding finding, bool told) {
+  if (!finding.met && !told) warning(finding.statement);
+  report_.verdict.push_back(std::move(finding));
+}
+
+namespace {
+
+std::string titleOf(const std::string& name) {
+  std::string out = name;
+  std::replace(out.begin(), out.end(), '_', ' ');
+  return out;
+}
+
+// "out/: map.ply 1.2 MB, map.vdb 30 MB", a line a folder; of many files of one kind the first, the
+// last and all together.
+std::vector<std::string> writtenLines(const std::vector<ReportOutput>& outputs) {
+  constexpr std::size_t kMany = 8;
+  std::vector<std::pair<std::string, std::vector<const ReportOutput*>>> folders;
+  for (const ReportOutput& o : outputs) {
+    const std::string folder = std::filesystem::path(o.path).parent_path().string();
+    if (folders.empty() || folders.back().first != folder) folders.push_back({folder, {}});
+    folders.back().second.push_back(&o);
+  }
+  std::vector<std::string> lines;
+  for (const auto& [folder, files] : folders) {
+    std::string text = "wrote " + (folder.empty() ? "" : folder + "/: ");
+    std::uint64_t bytes = 0;
+    const auto nameOf = [](const ReportOutput* o) {
+      return std::filesystem::path(o->path).filename().string();
+    };
+    std::vector<std::string> names;
+    for (const ReportOutput* o : files) {
+      bytes += o->bytes;
+      names.push_back(nameOf(o) + " (" + formatBytes(o->bytes) + ")");
+    }
+    lines.push_back(
+        text + (files.size() > kMany
+                    ? fmt::format("{} files, {} to {} ({})", files.size(), nameOf(files.front()),
+                                  nameOf(files.back()), formatBytes(bytes))
+                    : fmt::format("{}", fmt::join(names, ", "))));
+  }
+  return lines;
+}
+
+std::string verdictText(const std::vector<ReportFinding>& verdict, std::size_t unmet) {
+  std::string text = unmet == 0 ? fmt::format("verdict: all {} met\n", verdict.size())
+                                : fmt::format("verdict: {} of {} not met\n", unmet, verdict.size());
+  for (const ReportFinding& f : verdict) {
+    text +=
+        fmt::format("  {:<7} {}: {}\n", f.met ? "met" : "NOT MET", titleOf(f.name), f.statement);
+    if (!f.advice.empty()) text += "          try: " + f.advice + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+void Context::conclude() {
+  if (dryRun()) return;
+  std::vector<std::string> unmet;
+  for (const ReportFinding& f : report_.verdict)
+    if (!f.met) unmet.push_back(titleOf(f.name));
+  if (!report_.verdict.empty()) print(verdictText(report_.verdict, unmet.size()));
+  std::vector<ReportOutput> outputs = outputsNow();
+  std::error_code none;
+  if (std::filesystem::is_regular_file(options_.report, none))
+    outputs.push_back({options_.report, std::filesystem::file_size(options_.report, none)});
+  for (const std::string& line : writtenLines(outputs)) say("", line);
+  if (options_.strict && !unmet.empty() && failure_.empty())
+    failAfterwards(
+        fmt::format("--strict: the verdict is not met ({}); the files are written all "
+                    "the same",
+                    fmt::join(unmet, ", ")));
+}
+
+// A file that is put in place is another than what stood there before, so its key has changed.
+std::vector<ReportOutput> Context::outputsNow() const {
+  std::vector<ReportOutput> out = inFolders_;
+  for (const auto& [key, path] : ordered_) {
+    std::error_code none;
+    if (path == options_.report || !std::filesystem::is_regular_file(path, none)) continue;
+    const bool listed =
+        std::any_of(out.begin(), out.end(), [&](const ReportOutput& o) { return o.path == path; });
+    if (!listed && fileKey(path) != key)
+      out.push_back({path, std::filesystem::file_size(path, none)});
+  }
+  return out;
+}
+
 const Report& Context::finishedReport() {
   report_.peakMemory = peakMemory();
+  report_.outputs = outputsNow();
   return report_;
 }
 
 void Context::finish(PendingFolder& folder) {
+  for (const auto& [path, bytes] : folder.written()) inFolders_.push_back({path, bytes});
   folder.write("report.json",
                [&](const std::string& path) { writeReport(path, finishedReport()); });
   folder.commit();

@@ -13,6 +13,7 @@
 #include "innermap/core/file.h"
 #include "innermap/core/parallel.h"
 #include "innermap/core/version.h"
+#include "run_record.h"
 #include "signals.h"
 #include "terminal_progress.h"
 
@@ -29,7 +30,7 @@ void execute(const Command& command, const CommonOptions& common, TerminalProgre
   }
   if (!common.report.empty()) context.output(common.report);
   const ThreadLimit threads(common.threads);
-  context.report().command = command.name();
+  recordRun(command, common, context.report());
   try {
     command.execute(context);
   } catch (const CancelledLate&) {
@@ -43,6 +44,7 @@ void execute(const Command& command, const CommonOptions& common, TerminalProgre
     std::fflush(stdout);  // the report may go there too
     writeReport(common.report, context.finishedReport());
   }
+  context.conclude();
   if (!context.failure().empty()) throw DataError(context.failure());
 }
 

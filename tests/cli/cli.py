@@ -4,9 +4,11 @@ A test is a script with functions named test_*. run(globals()) calls all of them
 command line names, prints what fails and ends with exit code 1 if anything did. Each function gets a
 temporary folder of its own as working directory, and is a test of its own for ctest
 (tests/CMakeLists.txt finds them by their "def" lines, and the marks @alone and @slow before these).
-Standard library only.
+Standard library only, but for jsonschema: every report that a run leaves is checked against
+docs/report.schema.json.
 """
 
+import functools
 import json
 import os
 import resource
@@ -48,6 +50,8 @@ def innermap(*arguments, exit_code=0, **options):
     if THREADS and len(command) > 2 and not command[1].startswith("-") and \
             command[1] != "help" and "--help" not in command and "--threads" not in command:
         command[2:2] = ["--threads", THREADS]
+    reports = reports_of(arguments, options.get("cwd", "."))
+    before = [identity(path) for path in reports]
     done = subprocess.run(command, capture_output=True, text=True,
                           timeout=options.pop("timeout", 300), **options)
     said = f"innermap {' '.join(map(str, arguments))}\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
@@ -55,7 +59,42 @@ def innermap(*arguments, exit_code=0, **options):
     if exit_code:
         assert error_line(done), said
         assert done.stderr.endswith("\n"), said
+    for report, was in zip(reports, before):
+        if identity(report) not in (None, was):
+            check_report(report)
     return done
+
+
+def identity(path):
+    """Changes when the file is written; None where there is none."""
+    if not path.is_file():
+        return None
+    status = path.stat()
+    return status.st_ino, status.st_mtime_ns, status.st_size
+
+
+def reports_of(arguments, folder):
+    """Where a run with these arguments may write reports."""
+    words = [str(a) for a in arguments]
+    after = {option: Path(folder, words[i + 1]) for i, option in enumerate(words[:-1])
+             if option in ("--report", "-o", "--output")}
+    return [path / "report.json" if option != "--report" else path
+            for option, path in after.items()]
+
+
+def check_report(path):
+    """The report is as docs/report.schema.json says."""
+    errors = [f"{path}: {'.'.join(map(str, e.absolute_path))}: {e.message}"
+              for e in report_validator().iter_errors(read_json(path))]
+    assert not errors, "\n".join(errors[:10])
+
+
+@functools.lru_cache(maxsize=1)
+def report_validator():
+    import jsonschema  # pylint: disable=import-outside-toplevel
+    schema = read_json(ROOT / "docs" / "report.schema.json")
+    jsonschema.Draft202012Validator.check_schema(schema)
+    return jsonschema.Draft202012Validator(schema)
 
 
 def error_line(done):

@@ -81,7 +81,7 @@ TEST(FitMap, GoesInStepsWhereOneMapFolds) {
   settings.oneToOne = OneToOne::off;
   const MapFit single = fitMap(source, target, settings);
   EXPECT_EQ(single.map.steps().size(), 1u);
-  EXPECT_EQ(single.inside.samples, 0u);
+  EXPECT_GT(single.inside.folded, 5e-3);
   settings.oneToOne = OneToOne::automatic;
   const MapFit steps = fitMap(source, target, settings);
   EXPECT_GE(steps.map.steps().size(), 2u);
@@ -144,7 +144,7 @@ TEST(FitMap, SaysWhatItKnowsOfOneToOne) {
   EXPECT_EQ(known.cells.checked, 0u);
   EXPECT_FALSE(notOneToOne(known));
   settings.oneToOne = OneToOne::off;
-  EXPECT_EQ(fitMap(source, source, settings).injectivity.inside.checked, 0u);
+  EXPECT_GT(fitMap(source, source, settings).injectivity.inside.checked, 15000u);
 }
 
 TEST(FitMap, OneStepIsEnoughForGentleMaps) {

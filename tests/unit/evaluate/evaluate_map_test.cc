@@ -232,6 +232,10 @@ TEST(EvaluateMap, FoldsAreRepairedAndNothingElse) {
   EXPECT_EQ(folded.foldedVoxelsLeft, folded.foldedVoxels);
   EXPECT_LT(folded.jacobianMin, 0);
   EXPECT_FALSE(folded.repaired);
+  ASSERT_TRUE(folded.folded);
+  EXPECT_EQ(folded.folded->activeVoxelCount(), folded.foldedVoxels);
+  for (auto v = folded.folded->cbeginValueOn(); v; ++v)
+    EXPECT_LE(folded.jacobian->tree().getValue(v.getCoord()), 0);
   const double share =
       static_cast<double>(folded.foldedVoxels) / static_cast<double>(folded.interiorVoxels);
   settings.repairUpTo = 0.9 * share;
@@ -242,6 +246,7 @@ TEST(EvaluateMap, FoldsAreRepairedAndNothingElse) {
   EXPECT_EQ(grids.foldedVoxelsLeft, 0u);
   EXPECT_GT(grids.jacobianMin, 0);
   ASSERT_TRUE(grids.repaired);
+  EXPECT_EQ(grids.folded->activeVoxelCount(), folded.foldedVoxels);  // the map's own, still
   EXPECT_EQ(grids.all().size(), folded.all().size() + 1);
   double farthest = 0;
   for (auto v = grids.map->cbeginValueOn(); v; ++v) {

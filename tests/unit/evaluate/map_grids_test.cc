@@ -121,6 +121,34 @@ TEST(MapGrids, CellsThatOverlapAreTold) {
   EXPECT_NE(injectivityStatement(known).find("winds up to 2 times"), std::string::npos);
 }
 
+// The target shrinks by a tenth after the fit, so that the images of a shell lie outside it.
+TEST(MapGrids, MarkWhatLandsOutsideTheTarget) {
+  const Mesh source = ball(3);
+  MapFit fit = fitMap(source, source);
+  MapGridSettings settings;
+  settings.resolution = 32;
+  EXPECT_FALSE(evaluateOnGrid(fit, settings).outside);
+  for (Vec3& p : fit.boundary.target.moved) p = p * 0.9;
+  const SolidGrids grids = evaluateOnGrid(fit, settings);
+  ASSERT_TRUE(grids.outside);
+  EXPECT_NEAR(grids.outsideFraction, 1 - 0.9 * 0.9 * 0.9, 0.03);
+  EXPECT_EQ(grids.all().back()->getName(), "outside");
+  std::size_t out = 0;
+  for (auto v = grids.values.map->cbeginValueOn(); v; ++v) {
+    if (!(grids.surface->tree().getValue(v.getCoord()) < 0)) continue;
+    const double depth = v->length() - 0.9;  // the ball's facets are up to 0.01 inside
+    const bool marked = grids.outside->tree().isValueOn(v.getCoord());
+    if (std::abs(depth + 0.005) > 0.005) {
+      EXPECT_EQ(marked, depth > 0) << v.getCoord();
+    }
+    if (marked) {
+      EXPECT_NEAR(grids.outside->tree().getValue(v.getCoord()), depth, 0.01);
+    }
+    out += marked;
+  }
+  EXPECT_EQ(out, grids.outside->activeVoxelCount());
+}
+
 TEST(MapGrids, VoxelSizeStandsInForTheResolution) {
   MapGridSettings settings;
   settings.voxelSize = 0.2;

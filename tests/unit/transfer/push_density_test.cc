@@ -119,6 +119,22 @@ TEST(PushDensity, KeepsMassInFolds) {
   EXPECT_EQ(foldedCells(mirrored), 0);
 }
 
+TEST(PushDensity, LimitLeavesOutWhatIsBeyond) {
+  const HarmonicMap map = affineMap({{{1, 0, 0}, {0, 1, 0}, {0, 0, 0.5}}}, {0, 0, 0});
+  const Solid source(ball()), target(moved(ball(), map));
+  const auto from = levelSetOf(source, 32), to = levelSetOf(target, 32);
+  const auto grid = sampled<openvdb::FloatGrid>(*from, "density", [](const Vec3&) { return 3.f; });
+  PushSettings settings;
+  const CarriedMass all = pushed(map, source, *to, grid, settings).masses.at(0);
+  EXPECT_EQ(all.cut, 0);
+  settings.carry.densityLimit = 1.5;  // it doubles
+  const PushResult out = pushed(map, source, *to, grid, settings);
+  const CarriedMass& mass = out.masses.at(0);
+  EXPECT_NEAR(largest<openvdb::FloatGrid>(*out.grids[0]), 3 * 1.5, 1e-5);
+  EXPECT_NEAR(mass.after + mass.cut, mass.before, 1e-6 * mass.before);
+  EXPECT_NEAR(mass.cut / mass.before, 0.25, 0.05);
+}
+
 TEST(PushDensity, StretchDividesIt) {
   const Mat3 m{{{2, 0, 0}, {0.3, 0.8, 0}, {0, 0.1, 0.5}}};
   const HarmonicMap map = affineMap(m, {1, 2, 3});
