@@ -90,7 +90,7 @@ void refuseLeftOvers(const Command& command, const std::vector<Option>& all,
   refuse(command, fmt::format("unexpected argument '{}'", rest.front()));
 }
 
-void take(const Command& command, const Given& given) {
+void take(const Command& command, const Given& given, CommonOptions& common) {
   const Option& o = *given.option;
   if (o.isFlag()) {
     if (given.flag) *std::get<bool*>(o.target) = true;
@@ -108,6 +108,7 @@ void take(const Command& command, const Given& given) {
   if (!o.isPositional() && text.size() > 2 && text.compare(0, 2, "--") == 0)
     refuse(command, fmt::format("{} needs a value, not '{}'", o.name, text));
   for (const std::string& value : given.values) parseInto(o, value);
+  common.given[o.name] = given.values.back();
 }
 
 }  // namespace
@@ -156,6 +157,7 @@ std::vector<Option> commonOptionTable(CommonOptions& common) {
 
 void parseArguments(const Command& command, CommonOptions& common,
                     const std::vector<std::string>& arguments) {
+  common.arguments = arguments;
   std::vector<Option> all = command.options();
   for (Option& o : commonOptionTable(common)) all.push_back(std::move(o));
 
@@ -180,7 +182,7 @@ void parseArguments(const Command& command, CommonOptions& common,
     if (g.option->name == "--help" && g.flag) common.help = true;
   if (common.help) return;
   refuseLeftOvers(command, all, app.remaining());
-  for (const Given& g : given) take(command, g);
+  for (const Given& g : given) take(command, g, common);
 }
 
 std::string didYouMean(const std::string& typed, const std::vector<std::string>& known) {

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
 #include "innermap/core/memory.h"
 #include "innermap/io/picture/label_font.h"
+#include "run_record.h"
 #include "signals.h"
 #include "terminal_progress.h"
 
@@ -59,6 +61,7 @@ void Context::enter(const std::string& path) {
   if (const auto [other, isNew] = outputs_.emplace(key, path); !isNew)
     throw FileError(path, "would be written twice; give each output a name of its own" +
                               sameAs(path, other->second));
+  ordered_.emplace_back(key, path);
 }
 
 void Context::output(const std::string& path, bool sure) {
@@ -129,12 +132,33 @@ void Context::print(const std::string& text) {
   std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
+void Context::used(const std::string& option, ReportValue value) {
+  for (auto& [name, known] : report_.run->settings)
+    if (name == settingKey(option)) known = std::move(value);
+}
+
+// A file that is put in place is another than what stood there before, so its key has changed.
+std::vector<ReportOutput> Context::outputsNow() const {
+  std::vector<ReportOutput> out = inFolders_;
+  for (const auto& [key, path] : ordered_) {
+    std::error_code none;
+    if (path == options_.report || !std::filesystem::is_regular_file(path, none)) continue;
+    const bool listed =
+        std::any_of(out.begin(), out.end(), [&](const ReportOutput& o) { return o.path == path; });
+    if (!listed && fileKey(path) != key)
+      out.push_back({path, std::filesystem::file_size(path, none)});
+  }
+  return out;
+}
+
 const Report& Context::finishedReport() {
   report_.peakMemory = peakMemory();
+  report_.outputs = outputsNow();
   return report_;
 }
 
 void Context::finish(PendingFolder& folder) {
+  for (const auto& [path, bytes] : folder.written()) inFolders_.push_back({path, bytes});
   folder.write("report.json",
                [&](const std::string& path) { writeReport(path, finishedReport()); });
   folder.commit();

@@ -26,6 +26,9 @@ struct CommonOptions {
   std::string report;
   bool quiet = false;
   bool help = false;
+  // As they stood on the command line: all of them, and the last value of each option by its name.
+  std::vector<std::string> arguments;
+  std::map<std::string, std::string> given;
 };
 
 // A command calls it from one thread; progress() may be used from any.
@@ -101,12 +104,15 @@ class Context {
   void failAfterwards(const std::string& text) { failure_ = text; }
   const std::string& failure() const { return failure_; }
 
+  // A setting that was left to the command: what it took. option: "--tolerance". In the report.
+  void used(const std::string& option, ReportValue value);
+
   // Results, on stdout. Nothing else goes there.
   void print(const std::string& text);
 
   // Sections that the command fills; the framework writes it to --report F afterwards.
   Report& report() { return report_; }
-  // With peak memory as it now stands.
+  // With peak memory as it now stands, and the outputs that are in place.
   const Report& finishedReport();
   // Adds report.json and puts the files in place.
   void finish(PendingFolder& folder);
@@ -120,13 +126,16 @@ class Context {
   void say(const std::string& kind, const std::string& text);
 
   void enter(const std::string& path);
+  std::vector<ReportOutput> outputsNow() const;
 
   const CommonOptions& options_;
   TerminalProgress& progress_;
   std::uint64_t maxMemory_ = 0;
   Report report_;
   std::string failure_;
-  std::map<std::string, std::string> inputs_, outputs_;  // by fileKey
+  std::map<std::string, std::string> inputs_, outputs_;       // by fileKey
+  std::vector<std::pair<std::string, std::string>> ordered_;  // outputs: key when told, path
+  std::vector<ReportOutput> inFolders_;                       // that are in place, or will be
 };
 
 }  // namespace innermap::tool

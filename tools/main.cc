@@ -13,6 +13,7 @@
 #include "innermap/core/file.h"
 #include "innermap/core/parallel.h"
 #include "innermap/core/version.h"
+#include "run_record.h"
 #include "signals.h"
 #include "terminal_progress.h"
 
@@ -29,7 +30,7 @@ void execute(const Command& command, const CommonOptions& common, TerminalProgre
   }
   if (!common.report.empty()) context.output(common.report);
   const ThreadLimit threads(common.threads);
-  context.report().command = command.name();
+  recordRun(command, common, context.report());
   try {
     command.execute(context);
   } catch (const CancelledLate&) {
@@ -133,6 +134,4 @@ int run(const std::vector<std::string>& arguments) {
 }  // namespace
 }  // namespace innermap::tool
 
-int main(int argc, char** argv) {
-  return innermap::tool::run({argv + (argc > 0), argv + argc});
-}
+int main(int argc, char** argv) { return innermap::tool::run({argv + (argc > 0), argv + argc}); }

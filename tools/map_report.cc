@@ -104,6 +104,7 @@ void reportTolerance(const MapFit& fit, const FitMapSettings& settings, bool bes
   const ToleranceOutcome& tolerance = *fit.tolerance;
   Report& report = context.report();
   report.set("tolerance.wanted", tolerance.wanted);
+  context.used("--tolerance", tolerance.wanted);
   report.set("tolerance.reached", tolerance.reached);
   report.set("tolerance.met", tolerance.met);
   if (tolerance.met) return;

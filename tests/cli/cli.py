@@ -4,9 +4,11 @@ A test is a script with functions named test_*. run(globals()) calls all of them
 command line names, prints what fails and ends with exit code 1 if anything did. Each function gets a
 temporary folder of its own as working directory, and is a test of its own for ctest
 (tests/CMakeLists.txt finds them by their "def" lines, and the marks @alone and @slow before these).
-Standard library only.
+Standard library only, but for jsonschema: every report that a run leaves is checked against
+docs/report.schema.json.
 """
 
+import functools
 import json
 import os
 import resource
@@ -55,7 +57,34 @@ def innermap(*arguments, exit_code=0, **options):
     if exit_code:
         assert error_line(done), said
         assert done.stderr.endswith("\n"), said
+    for report in reports_of(arguments, options.get("cwd", ".")):
+        check_report(report)
     return done
+
+
+def reports_of(arguments, folder):
+    """The report files that a run with these arguments may have written, where they are."""
+    words = [str(a) for a in arguments]
+    after = {option: Path(folder, words[i + 1]) for i, option in enumerate(words[:-1])
+             if option in ("--report", "-o", "--output")}
+    paths = [path / "report.json" if option != "--report" else path
+             for option, path in after.items()]
+    return [path for path in paths if path.is_file()]
+
+
+def check_report(path):
+    """The report is as docs/report.schema.json says."""
+    errors = [f"{path}: {'.'.join(map(str, e.absolute_path))}: {e.message}"
+              for e in report_validator().iter_errors(read_json(path))]
+    assert not errors, "\n".join(errors[:10])
+
+
+@functools.lru_cache(maxsize=1)
+def report_validator():
+    import jsonschema  # pylint: disable=import-outside-toplevel
+    schema = read_json(ROOT / "docs" / "report.schema.json")
+    jsonschema.Draft202012Validator.check_schema(schema)
+    return jsonschema.Draft202012Validator(schema)
 
 
 def error_line(done):

@@ -267,6 +267,16 @@ void PendingFolder::write(const std::string& name,
   files_.push_back(std::move(file));
 }
 
+std::vector<std::pair<std::string, std::uint64_t>> PendingFolder::written() const {
+  std::vector<std::pair<std::string, std::uint64_t>> out;
+  for (const File& file : files_) {
+    std::error_code unknown;
+    const std::uintmax_t bytes = fs::file_size(file.temporary, unknown);
+    out.emplace_back(file.path, unknown ? 0 : bytes);
+  }
+  return out;
+}
+
 void PendingFolder::putInPlace(const File& file) {
   const auto fail = [&] {
     throw FileError(file.path, "cannot be put in place (" + systemMessage() + ")");

@@ -54,6 +54,9 @@ class PendingFolder {
   // the same name. FileErrors of it name the final path.
   void write(const std::string& name, const std::function<void(const std::string&)>& body);
 
+  // The files written so far: their final paths, and their sizes in bytes.
+  std::vector<std::pair<std::string, std::uint64_t>> written() const;
+
   // Puts all files written in place, or throws FileError and none is. A process that is killed in
   // the middle leaves the rest for the next PendingFolder of the same folder to put in place.
   void commit();

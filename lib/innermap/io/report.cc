@@ -68,6 +68,39 @@ Json json(const ReportValue& value) {
   return std::visit([](const auto& v) { return Json(v); }, value);
 }
 
+// Beside one another at the top, as what is looked for first.
+void addRun(const ReportRun& run, Json& root) {
+  root["version"] = run.version;
+  root["command_line"] = run.commandLine;
+  root["date"] = run.date;
+  root["host"] = {{"cores", run.cores}, {"threads", run.threads}};
+  Json settings = Json::object();
+  for (const auto& [name, value] : run.settings) settings[name] = json(value);
+  root["settings"] = settings;
+}
+
+Json json(const std::vector<ReportFinding>& verdict) {
+  bool met = true;
+  Json findings = Json::array();
+  for (const ReportFinding& f : verdict) {
+    met = met && f.met;
+    Json finding{{"name", f.name},
+                 {"met", f.met},
+                 {"value", number(f.value)},
+                 {"threshold", number(f.threshold)},
+                 {"statement", f.statement}};
+    if (!f.advice.empty()) finding["advice"] = f.advice;
+    findings.push_back(finding);
+  }
+  return {{"met", met}, {"findings", findings}};
+}
+
+Json json(const std::vector<ReportOutput>& outputs) {
+  Json list = Json::array();
+  for (const ReportOutput& o : outputs) list.push_back({{"path", o.path}, {"bytes", o.bytes}});
+  return list;
+}
+
 void setExtra(Json& root, const std::string& key, const ReportValue& value) {
   Json* place = &root;
   std::size_t from = 0;
@@ -87,6 +120,8 @@ void Report::set(std::string key, ReportValue value) {
 std::string reportJson(const Report& report) {
   Json root = Json::object();
   if (!report.command.empty()) root["command"] = report.command;
+  if (report.run) addRun(*report.run, root);
+  if (!report.verdict.empty()) root["verdict"] = json(report.verdict);
   if (report.source) root["source"] = json(*report.source);
   if (report.target) root["target"] = json(*report.target);
   if (report.solve) root["solve"] = json(*report.solve);
@@ -95,6 +130,7 @@ std::string reportJson(const Report& report) {
   if (report.jacobian) root["jacobian"] = json(*report.jacobian);
   if (report.grid) root["grid"] = json(*report.grid);
   for (const auto& [key, value] : report.extra) setExtra(root, key, value);
+  root["outputs"] = json(report.outputs);
   if (!report.notes.empty()) root["notes"] = report.notes;
   if (!report.warnings.empty()) root["warnings"] = report.warnings;
   Json seconds = Json::object();

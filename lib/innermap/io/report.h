@@ -48,9 +48,35 @@ struct ReportGrid {
 using ReportValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>,
                                  std::vector<std::string>>;
 
+// What ran, when and where.
+struct ReportRun {
+  std::string version;                   // of innermap
+  std::vector<std::string> commandLine;  // as given
+  std::string date;                      // of the start, UTC, ISO 8601: "2026-01-31T23:59:59Z"
+  int cores = 0, threads = 0;            // of the machine; that may be used
+  // Every argument and option by its name without dashes in front, with the value that it had; NaN:
+  // left to the command.
+  std::vector<std::pair<std::string, ReportValue>> settings;
+};
+
+// One thing that a result is judged by.
+struct ReportFinding {
+  std::string name;                 // "boundary", "folds"
+  std::string statement;            // what was found, one line
+  double value = 0, threshold = 0;  // met: the value is at most the threshold
+  bool met = true;
+  std::string advice;  // what to try, when it is not met
+};
+
+struct ReportOutput {
+  std::string path;
+  std::uint64_t bytes = 0;
+};
+
 // Sections that were not computed are left out of the file.
 struct Report {
   std::string command;
+  std::optional<ReportRun> run;
   std::optional<ReportMesh> source, target;
   std::optional<ReportSolve> solve;
   std::optional<ReportBoundaryError> boundaryError;
@@ -59,6 +85,8 @@ struct Report {
   std::optional<ReportGrid> grid;
   std::vector<std::pair<std::string, double>> seconds;  // of each stage, in order
   std::uint64_t peakMemory = 0;                         // bytes
+  std::vector<ReportFinding> verdict;
+  std::vector<ReportOutput> outputs;  // but the report itself
   std::vector<std::string> notes, warnings;
 
   // Further keys. A dot leads into a section: "solve.distance" stands beside "sources" in "solve".
@@ -79,8 +107,8 @@ struct Report {
   }
 };
 
-// The report as indented JSON, keys in the order above; numbers that are not finite become null,
-// text that is not UTF-8 (a path) gets replacement characters.
+// The report as indented JSON, as docs/report.schema.json says; numbers that are not finite become
+// null, text that is not UTF-8 (a path) gets replacement characters.
 std::string reportJson(const Report& report);
 
 // Throws FileError. The file appears whole or not at all.

@@ -51,6 +51,24 @@ TEST(Report, HasEveryKeyOfTheContract) {
   EXPECT_EQ(j.at("peak_memory_bytes"), 123456789);
 }
 
+TEST(Report, SaysWhatRanAndHowItIsJudged) {
+  Report r = full();
+  r.run = ReportRun{"1.2.3", {"innermap", "map"}, "2026-01-31T23:59:59Z", 4, 2, {}};
+  r.run->settings = {{"tolerance", 1e-3}, {"sources", std::nan("")}};
+  r.verdict = {{"boundary", "near enough", 1e-4, 1e-3, true, ""},
+               {"folds", "folded", 0.1, 0.0, false, "unfold it"}};
+  r.outputs = {{"out/map.ply", 1234}};
+  const Json j = Json::parse(reportJson(r));
+  EXPECT_EQ(j.at("version"), "1.2.3");
+  EXPECT_EQ(j.at("host").at("threads"), 2);
+  EXPECT_EQ(j.at("settings").at("tolerance"), 1e-3);
+  EXPECT_TRUE(j.at("settings").at("sources").is_null());
+  EXPECT_EQ(j.at("verdict").at("met"), false);
+  EXPECT_EQ(j.at("verdict").at("findings").at(1).at("advice"), "unfold it");
+  EXPECT_FALSE(j.at("verdict").at("findings").at(0).contains("advice"));
+  EXPECT_EQ(j.at("outputs").at(0).at("bytes"), 1234);
+}
+
 TEST(Report, LeavesOutWhatWasNotComputed) {
   Report r;
   r.command = "check";
