@@ -25,6 +25,7 @@ std::vector<Command> allCommands() {
           makeExportCommand(),
           makeImportCommand(),
           makeInfoCommand(),
+          makeReportCommand(),
           makeHelpCommand()};
 }
 

@@ -18,12 +18,18 @@ namespace innermap::tool {
 
 class TerminalProgress;
 
+struct Page;
+
+// What --html is without a file's name.
+constexpr const char* kPageBesideOutputs = "report.html beside the outputs";
+
 // The options that every command has.
 struct CommonOptions {
   int threads = 0;
   std::string maxMemory;
   bool dryRun = false;
   std::string report;
+  std::string html;  // empty: none
   bool quiet = false;
   bool help = false;
   // As they stood on the command line: all of them, and the last value of each option by its name.
@@ -35,6 +41,7 @@ struct CommonOptions {
 class Context {
  public:
   Context(const CommonOptions& options, TerminalProgress& progress);
+  ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
@@ -84,6 +91,7 @@ class Context {
   template <class Body>
   decltype(auto) timed(const std::string& stage, Body&& body) {
     throwIfCancelled(progress());
+    noteMemory();
     return innermap::timed(report_.seconds, stage, std::forward<Body>(body));
   }
 
@@ -97,6 +105,7 @@ class Context {
     for (const std::string& text : result.notes) note(text);
     for (const std::string& text : result.warnings) warning(text);
     addSeconds(report_.seconds, result.seconds);
+    noteMemory();
   }
 
   // The command goes on and writes its files, and its report; then the program ends with this line
@@ -107,6 +116,9 @@ class Context {
   // A setting that was left to the command: what it took. option: "--tolerance". In the report.
   void used(const std::string& option, ReportValue value);
 
+  // What --html shows; null without.
+  Page* page() { return page_.get(); }
+
   // Results, on stdout. Nothing else goes there.
   void print(const std::string& text);
 
@@ -114,8 +126,10 @@ class Context {
   Report& report() { return report_; }
   // With peak memory as it now stands, and the outputs that are in place.
   const Report& finishedReport();
-  // Adds report.json and puts the files in place.
+  // Adds report.json, and report.html where that goes there, and puts the files in place.
   void finish(PendingFolder& folder);
+  // The page of a command that has no folder, when there is to be one.
+  void finishPage();
 
  private:
   template <class Settings, class = void>
@@ -126,12 +140,19 @@ class Context {
   void say(const std::string& kind, const std::string& text);
 
   void enter(const std::string& path);
+  // Where --html goes when it is to stand beside this output.
+  void placePage(const std::string& output);
+  // The most memory so far, for the stages that ended since the last time.
+  void noteMemory();
   std::vector<ReportOutput> outputsNow() const;
 
   const CommonOptions& options_;
   TerminalProgress& progress_;
   std::uint64_t maxMemory_ = 0;
   Report report_;
+  std::map<std::string, std::uint64_t> memoryAfter_;  // bytes, by stage
+  std::unique_ptr<Page> page_;
+  std::string pagePath_;
   std::string failure_;
   std::map<std::string, std::string> inputs_, outputs_;       // by fileKey
   std::vector<std::pair<std::string, std::string>> ordered_;  // outputs: key when told, path

@@ -128,10 +128,16 @@ void addGrids(Page& page, const openvdb::GridPtrVec& grids) {
   using Types = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
                                   openvdb::Int64Grid, openvdb::BoolGrid, openvdb::Vec3SGrid,
                                   openvdb::Vec3DGrid, openvdb::Vec3IGrid>;
-  for (const openvdb::GridBase::ConstPtr grid : grids)
+  for (const openvdb::GridBase::ConstPtr grid : grids) {
+    const std::string& name = grid->getName();
+    const bool shown = std::any_of(page.grids.begin(), page.grids.end(), [&](const PageGrid& g) {
+      return g.name == name || g.name == name + " x";
+    });
+    if (shown) continue;
     if (!grid->apply<Types>([&](const auto& typed) { addGrid(page, typed); }))
       page.missing.push_back("the grid " + grid->getName() + " is of type " + grid->valueType() +
                              ", which the page does not show");
+  }
 }
 
 }  // namespace innermap::tool

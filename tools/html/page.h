@@ -56,11 +56,12 @@ struct Page {
   bool empty() const { return shapes.empty() && grids.empty(); }
 };
 
-// Keeps one vertex of each cell of a lattice through the first place, as fine as `mostVertices`
-// allow; a shape that has no more stays as it is.
-void simplify(PageShape& shape, std::size_t mostVertices);
+// Keeps one vertex of each cell of a lattice through the shape, as fine as `mostVertices` allow; a
+// shape that has no more stays as it is. shape: with one place and no scalars. Which vertices are
+// kept: the vertices now are those of before at these indices.
+std::vector<int> simplify(PageShape& shape, std::size_t mostVertices);
 
-// Vertices that the frames of a sequence may have in a page of reasonable size.
+// Vertices that a shape of so many places may have in a page of reasonable size.
 std::size_t verticesForPlaces(std::size_t places);
 
 // The largest stretch of the triangles about each vertex on the way from one place to another: the
@@ -68,7 +69,8 @@ std::size_t verticesForPlaces(std::size_t places);
 std::vector<double> stretches(const Points& from, const Points& to,
                               const std::vector<Triangle>& triangles);
 
-// Adds the scalar grids among `grids`, and positions by their components; others are skipped.
+// Adds the grids whose values are numbers, and vectors by their components. Of several of one name,
+// as the frames of an animation have, the first stays.
 void addGrids(Page& page, const openvdb::GridPtrVec& grids);
 
 // The whole file. reportJson: as report.json has it.

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <unordered_map>
 
 #include "page.h"
@@ -32,21 +33,17 @@ std::size_t countOwn(const std::vector<int>& of) {
   return count;
 }
 
-template <class T>
-void keep(std::vector<T>& values, const std::vector<int>& kept) {
-  std::vector<T> out;
-  out.reserve(kept.size());
-  for (const int i : kept) out.push_back(values[static_cast<std::size_t>(i)]);
-  values = std::move(out);
-}
-
-void merge(PageShape& shape, const std::vector<int>& of) {
+// Indices of the vertices that stay.
+std::vector<int> merge(PageShape& shape, const std::vector<int>& of) {
   std::vector<int> kept, place(of.size(), -1);
+  Points points;
   for (std::size_t i = 0; i < of.size(); ++i) {
     if (of[i] != static_cast<int>(i)) continue;
     place[i] = static_cast<int>(kept.size());
     kept.push_back(static_cast<int>(i));
+    points.push_back(shape.places.front().points[i]);
   }
+  shape.places.front().points = std::move(points);
   std::vector<Triangle> triangles;
   for (const Triangle& t : shape.triangles) {
     Triangle n;
@@ -55,9 +52,7 @@ void merge(PageShape& shape, const std::vector<int>& of) {
     if (n[0] != n[1] && n[1] != n[2] && n[2] != n[0]) triangles.push_back(n);
   }
   shape.triangles = std::move(triangles);
-  for (PagePlace& p : shape.places) keep(p.points, kept);
-  for (PageScalar& s : shape.scalars)
-    for (std::vector<double>& values : s.values) keep(values, kept);
+  return kept;
 }
 
 // The larger singular value of the linear map between two triangles, by the edges' Gram matrices.
@@ -77,19 +72,20 @@ std::size_t verticesForPlaces(std::size_t places) {
                   std::min(kMostVertices, kMostPositions / std::max<std::size_t>(1, places)));
 }
 
-void simplify(PageShape& shape, std::size_t mostVertices) {
-  if (shape.places.empty() || shape.places.front().points.size() <= mostVertices) return;
+std::vector<int> simplify(PageShape& shape, std::size_t mostVertices) {
   const Points& points = shape.places.front().points;
-  shape.givenVertices = points.size();
   Box3 box;
   for (const Vec3& p : points)
     if (isFinite(p)) box.add(p);
-  if (box.empty() || !(box.diagonal() > 0)) return;
+  std::vector<int> of(points.size());
+  std::iota(of.begin(), of.end(), 0);
+  if (points.size() <= mostVertices || !(box.diagonal() > 0)) return of;
+  shape.givenVertices = points.size();
   // A surface: as many cells as its diagonal has, squared, about.
   double spacing = box.diagonal() / std::sqrt(static_cast<double>(mostVertices));
-  std::vector<int> of = representatives(points, box, spacing);
+  of = representatives(points, box, spacing);
   while (countOwn(of) > mostVertices) of = representatives(points, box, spacing *= 1.15);
-  merge(shape, of);
+  return merge(shape, of);
 }
 
 std::vector<double> stretches(const Points& from, const Points& to,

@@ -40,7 +40,7 @@ function numberTable(key, title, words) {
 }
 
 const shownElsewhere = ["command", "seconds", "notes", "warnings", "run", "verdict", "outputs", "energies", "settings",
-                        "command_line", "version", "date"];
+                        "command_line", "version", "date", "host", "memory_after_bytes"];
 
 function numbersSection() {
   const known = groups.map(([key]) => key);
@@ -104,7 +104,7 @@ function fitSection() {
 function costSection() {
   const seconds = Object.entries(page.report.seconds || {}).filter(([, s]) => typeof s === "number");
   if (!seconds.length) return null;
-  const total = seconds.reduce((sum, [, s]) => sum + s, 0), memory = page.report.memory_by_stage_bytes || {};
+  const total = seconds.reduce((sum, [, s]) => sum + s, 0), memory = page.report.memory_after_bytes || {};
   const rows = seconds.map(([stage, s]) => [stage, s, shortNumber(s) + " s" + (memory[stage] ? ", " + bytesText(memory[stage]) : "")]);
   return section("cost", "Time and memory",
     element("p", {}, `${shortNumber(total)} s in all; at most ${bytesText(page.report.peak_memory_bytes || 0)} of memory.`),
@@ -112,11 +112,10 @@ function costSection() {
 }
 
 function runSection() {
-  const report = page.report, run = report.run || report;
-  const line = run.command_line || run.commandLine, settings = run.settings || {};
+  const report = page.report, line = report.command_line, settings = report.settings || {};
   const quoted = (t) => (/^[\w./:=,+@%-]+$/.test(t) ? t : `'${t.replace(/'/g, "'\\''")}'`);
-  const text = Array.isArray(line) ? line.map(quoted).join(" ") : line || "";
-  const facts = [["version", run.version], ["date", run.date], ["cores", run.cores], ["threads", run.threads]].filter((f) => f[1] != null);
+  const text = Array.isArray(line) ? line.map(quoted).join(" ") : "", host = report.host || {};
+  const facts = [["innermap", report.version], ["started", report.date], ["cores", host.cores], ["threads", host.threads]].filter((f) => f[1] != null);
   const outputs = report.outputs || [];
   if (!text && !facts.length && !outputs.length) return null;
   return section("run", "The run",
