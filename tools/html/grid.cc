@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "page.h"
 
@@ -101,8 +102,22 @@ PageGrid frameFor(const openvdb::GridBase& grid, const openvdb::CoordBBox& box) 
 // Folds are single voxels, which a mean would hide.
 bool byLeast(const std::string& name) { return name.find("jacobian") != std::string::npos; }
 
+// Values stand in a skin around the solid too, which is none of the map's.
+const openvdb::FloatGrid* surfaceAmong(const openvdb::GridPtrVec& grids) {
+  for (const openvdb::GridBase::Ptr& grid : grids)
+    if (grid->getName() == "surface" && grid->getGridClass() == openvdb::GRID_LEVEL_SET &&
+        grid->isType<openvdb::FloatGrid>())
+      return static_cast<const openvdb::FloatGrid*>(grid.get());
+  return nullptr;
+}
+
+// surface: leaves out what lies outside of it; may be null.
 template <class Grid>
-void addGrid(Page& page, const Grid& grid) {
+void addGrid(Page& page, const Grid& grid, const openvdb::FloatGrid* surface) {
+  if (surface && (static_cast<const openvdb::GridBase*>(surface) == &grid ||
+                  surface->transform() != grid.transform()))
+    surface = nullptr;
+
   const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
   if (box.empty()) return;
   constexpr bool isVector = openvdb::VecTraits<typename Grid::ValueType>::IsVec;
@@ -113,7 +128,10 @@ void addGrid(Page& page, const Grid& grid) {
     cut.reduction = least ? "least" : "mean";
     Blocks blocks(cut, box.min(), least);
     openvdb::CoordBBox place;
+    std::optional<openvdb::FloatGrid::ConstAccessor> distance;
+    if (surface) distance.emplace(surface->getConstAccessor());
     for (auto value = grid.cbeginValueOn(); value; ++value) {
+      if (distance && distance->getValue(value.getCoord()) >= 0) continue;
       value.getBoundingBox(place);
       blocks.add(place, component(*value, axis));
     }
@@ -128,13 +146,14 @@ void addGrids(Page& page, const openvdb::GridPtrVec& grids) {
   using Types = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
                                   openvdb::Int64Grid, openvdb::BoolGrid, openvdb::Vec3SGrid,
                                   openvdb::Vec3DGrid, openvdb::Vec3IGrid>;
+  const openvdb::FloatGrid* const surface = surfaceAmong(grids);
   for (const openvdb::GridBase::ConstPtr grid : grids) {
     const std::string& name = grid->getName();
     const bool shown = std::any_of(page.grids.begin(), page.grids.end(), [&](const PageGrid& g) {
       return g.name == name || g.name == name + " x";
     });
     if (shown) continue;
-    if (!grid->apply<Types>([&](const auto& typed) { addGrid(page, typed); }))
+    if (!grid->apply<Types>([&](const auto& typed) { addGrid(page, typed, surface); }))
       page.missing.push_back("the grid " + grid->getName() + " is of type " + grid->valueType() +
                              ", which the page does not show");
   }

@@ -17,6 +17,7 @@ function ticksOf(least, greatest, logarithmic) {
 // Returns {node, setCursor(x)}.
 function lineChart(chart) {
   const width = 460, height = 220, left = 62, right = 12, top = 12, bottom = 36;
+  chart.series = chart.series.map((s) => ({name: s.name, y: chart.x.map((_, i) => (s.y || [])[i])}));
   const finite = (v) => Number.isFinite(v) && (!chart.logarithmic || v > 0);
   const ys = chart.series.flatMap((s) => s.y).concat(chart.level ? [chart.level.value] : []).filter(finite);
   const xs = chart.x.filter((v) => Number.isFinite(v) && (!chart.logX || v > 0));

@@ -60,6 +60,33 @@ function quantiles(values, shares) {
   return shares.map((s) => (some.length ? some[Math.round(s * (some.length - 1))] : NaN));
 }
 
+// Reports may come from anywhere. What is not of the kind that is expected there goes.
+function tidied(report) {
+  const isObject = (v) => v !== null && typeof v === "object" && !Array.isArray(v);
+  const lists = ["notes", "warnings", "outputs", "command_line"], texts = ["command", "version", "date"];
+  const objects = ["verdict", "host", "settings", "source", "target", "solve", "boundary_error", "worst_boundary_error", "tolerance",
+                   "inside", "steps", "energy", "energies", "jacobian", "one_to_one", "repair", "grid", "frames", "seconds", "memory_after_bytes"];
+  for (const key of lists) if (!Array.isArray(report[key])) delete report[key];
+  for (const key of texts) if (typeof report[key] !== "string") delete report[key];
+  for (const key of objects) if (!isObject(report[key])) delete report[key];
+  for (const key of ["notes", "warnings", "command_line"]) if (report[key]) report[key] = report[key].map(String);
+  if (report.outputs) report.outputs = report.outputs.filter((o) => isObject(o) && typeof o.bytes === "number");
+  if (report.verdict) report.verdict.findings = Array.isArray(report.verdict.findings) ? report.verdict.findings.filter(isObject) : [];
+  for (const key of ["source", "target"]) if (report[key] && typeof report[key].path !== "string") delete report[key].path;
+  // Numbers that are not finite are null in JSON.
+  const columns = [["solve", "round_sources", "round_p99", "residuals", "tried_distances", "tried_errors"], ["steps", "to", "p99", "folded"],
+                   ["frames", "number", "seconds"], ["energies", ...Object.keys(report.energies || {})]];
+  for (const [section, ...keys] of columns)
+    for (const key of keys) {
+      const list = (report[section] || {})[key];
+      if (list === undefined) continue;
+      if (Array.isArray(list)) report[section][key] = list.map((v) => (typeof v === "number" ? v : NaN));
+      else delete report[section][key];
+    }
+  return report;
+}
+page.report = tidied(page.report);
+
 // "inside.folded" of the report, or undefined.
 function reported(key, from = page.report) {
   return key.split(".").reduce((at, name) => (at == null ? undefined : at[name]), from);

@@ -1,5 +1,7 @@
 // What the numbers of report.json mean: [key, name, meaning, how it is written]. A key that
 // starts with *. holds for source and target. Written as: "share" of 1 as percent, "error" of a diagonal, "bytes", "seconds".
+const schema = JSON.parse(document.getElementById("schema").textContent);
+
 const groups = [
   ["boundary_error", "Boundary error", "How far the map takes the boundary from where it was to go. Inside it is nowhere larger."],
   ["worst_boundary_error", "Boundary error of the worst frame", ""],
@@ -110,6 +112,32 @@ const meanings = [
   ["frames.seconds_mean", "seconds a frame", "mean"],
   ["frames.seconds_least", "fastest frame", "", "seconds"],
   ["frames.seconds_most", "slowest frame", "", "seconds"],
+  ["outside_fraction", "outside", "share of the inside that lands outside the target", "share"],
+  ["correspondence.flips", "flips", "triangles of the common layout that are turned over"],
+  ["correspondence.degree", "degree", "how often the one surface covers the other; 1 as it should be"],
+  ["correspondence.area_ratio_log10", "area ratios", "decades between the smallest and the largest on the layout"],
+  ["correspondence.energy_forward", "energy forward", "how much lengths change from source to target, symmetric Dirichlet's first half"],
+  ["correspondence.energy_backward", "energy backward", "the same from target to source"],
+  ["correspondence.energy_sum", "energy", "both together; the least of the ways that were tried"],
+  ["correspondence.unmeasured", "not measured", "triangles of no area"],
+  ["correspondence.inverted_triangles", "turned over", "triangles of the source that lie on the target upside down"],
+  ["correspondence.inverted_share", "turned over", "their share of the area", "share"],
+  ["correspondence.image_self_intersections", "self-intersections", "of the source as laid on the target"],
+  ["correspondence.target_self_intersections", "of the target", "self-intersections that it had"],
+  ["correspondence.landmarks", "landmarks", "pairs of points that were given"],
+  ["correspondence.landmark_error", "landmark error", "farthest that one is from its like", "error"],
+  ["correspondence.vertices", "vertices", "of the source as it was laid"],
+  ["correspondence.target_vertices", "target's vertices", ""],
+  ["correspondence.subdivided", "subdivided", "whether triangles were split"],
+  ["correspondence.source_isosurface", "stand-in for the source", "a closed surface near it was laid in its place"],
+  ["correspondence.target_isosurface", "stand-in for the target", "a closed surface near it took its place"],
+  ["correspondence.farthest_from_stand_in", "from the stand-in", "farthest distance", "error"],
+  ["inverse.voxels", "voxels", "of the target that were asked where they come from"],
+  ["inverse.inside", "inside", "of these with their centre inside the target"],
+  ["inverse.uncovered", "not reached", "inside the target, but the map reaches them from nowhere"],
+  ["inverse.not_inverted", "not found", "voxels whose origin was not found"],
+  ["inverse.not_inverted_inside", "not found inside", ""],
+  ["inverse.inverted_fraction", "found", "share of the voxels whose origin was found", "share"],
   ["peak_memory_bytes", "memory", "the most that the process held", "bytes"],
   ["memory_needed_bytes", "memory needed", "estimate", "bytes"],
 ];
@@ -122,5 +150,13 @@ function meaningOf(key) {
     const any = meanings.find((m) => m[0] === "*." + last);
     if (any) return any;
   }
-  return [key, last.replace(/_/g, " "), "", /_bytes$/.test(last) ? "bytes" : /(fraction|share)$/.test(last) ? "share" : ""];
+  const parts = key.split("."), name = parts.length > 2 ? parts.slice(-2).join(": ") : last;
+  return [key, name.replace(/_/g, " "), schemaWords(parts), /_bytes$/.test(last) ? "bytes" : /(fraction|share)$/.test(last) ? "share" : ""];
+}
+
+// What docs/report.schema.json says of a part of the report.
+function schemaWords(parts) {
+  let at = schema;
+  for (const name of parts) at = (at && at.properties && at.properties[name]) || null;
+  return (at && at.description) || "";
 }

@@ -28,12 +28,12 @@ function leaves(object, before = "") {
 }
 
 function numberTable(key, title, words) {
-  const rows = leaves(page.report[key] || {}, key);
+  const rows = leaves(page.report[key] || {}, key).filter(([path]) => path !== "one_to_one.statement");  // said above
   if (!rows.length) return null;
   return element("section", {class: "numbers"}, element("h3", {}, title), words ? element("p", {class: "hint"}, words) : null,
     element("table", {}, element("tbody", {}, ...rows.map(([path, value]) => {
       const [, name, meaning, how] = meaningOf(path), text = typeof value === "string";
-      return element("tr", {"data-key": path, "data-known": meanings.some((m) => m[0] === path) || meaning !== ""},
+      return element("tr", {"data-key": path, "data-known": meanings.some((m) => m[0] === path) || name !== "" && !groups.some((g) => g[0] === key)},
         element("th", {scope: "row"}, name), element("td", {class: text ? "text" : "number"}, written(value, how)),
         element("td", {class: "meaning"}, meaning));
     }))));
@@ -46,7 +46,7 @@ function numbersSection() {
   const known = groups.map(([key]) => key);
   const others = Object.keys(page.report).filter((key) => !known.includes(key) && !shownElsewhere.includes(key));
   const loose = others.filter((key) => typeof page.report[key] !== "object");
-  const tables = [...groups, ...others.filter((key) => !loose.includes(key)).map((key) => [key, key.replace(/_/g, " "), ""])]
+  const tables = [...groups, ...others.filter((key) => !loose.includes(key)).map((key) => [key, key[0].toUpperCase() + key.slice(1).replace(/_/g, " "), schemaWords([key])])]
     .map(([key, title, words]) => numberTable(key, title, words));
   if (loose.length) page.report.other = Object.fromEntries(loose.map((key) => [key, page.report[key]]));
   tables.push(loose.length ? element("section", {class: "numbers"}, element("h3", {}, "Other"), element("table", {}, element("tbody", {},
@@ -57,14 +57,8 @@ function numbersSection() {
   return section("numbers", "The numbers", element("div", {class: "tables"}, ...tables));
 }
 
-// The findings of the verdict, whatever holds them.
-function findings() {
-  const verdict = page.report.verdict;
-  return Array.isArray(verdict) ? verdict : (verdict && verdict.findings) || [];
-}
-
 function summarySection() {
-  const report = page.report, list = findings(), out = [];
+  const report = page.report, list = (report.verdict || {}).findings || [], out = [];
   for (const f of list)
     out.push(element("li", {class: f.met ? "good" : "bad"}, element("strong", {}, f.met ? "✓ " : "✗ "),
       f.statement || f.name, f.met || !f.advice ? null : element("span", {class: "advice"}, " Try: " + f.advice)));

@@ -18,7 +18,7 @@ const preferredGrids = ["deformation_energy", "jacobian", "harmonic_energy"];
 async function sectionsSection() {
   const grids = page.grids;
   if (!grids.length) return null;
-  let grid = grids.find((g) => preferredGrids.includes(g.name)) || grids[0], values = null, scale = null;
+  let grid = preferredGrids.map((name) => grids.find((g) => g.name === name)).find(Boolean) || grids[0], values = null, scale = null;
   const at = [0.5, 0.5, 0.5];  // shares of the grid's box
   const across = [[1, 2], [0, 2], [0, 1]];  // the axes that each section shows, across and up
   const canvases = [0, 1, 2].map((a) => element("canvas", {class: "cut", tabindex: 0, role: "img", id: "cut-" + "xyz"[a]}));
@@ -36,7 +36,7 @@ async function sectionsSection() {
     const zoom = Math.max(2, Math.floor(420 / Math.max(w, h)));
     canvas.width = w * zoom;
     canvas.height = Math.round(h * zoom * length(v) / length(u));
-    const image = new ImageData(w, h), block = [0, 0, 0], folded = [];
+    const image = new ImageData(w, h), block = [0, 0, 0], crossed = [];
     block[axis] = blockAt(axis);
     for (let y = 0; y < h; ++y)
       for (let x = 0; x < w; ++x) {
@@ -44,7 +44,7 @@ async function sectionsSection() {
         block[v] = h - 1 - y;
         const value = valueIn(block), to = 4 * (y * w + x);
         if (!Number.isFinite(value)) continue;
-        if (folds() && value <= 0) folded.push([x, y]);
+        if (folds() && value <= 0) crossed.push([x, y]);
         image.data.set([...scale.colour(value), 255], to);
       }
     const small = element("canvas");
@@ -53,7 +53,7 @@ async function sectionsSection() {
     const context = canvas.getContext("2d"), tall = canvas.height / h;
     context.imageSmoothingEnabled = false;
     context.drawImage(small, 0, 0, canvas.width, canvas.height);
-    for (const [x, y] of folded) {
+    for (const [x, y] of crossed) {
       context.fillStyle = "#000";
       context.fillRect(x * zoom, y * tall, zoom, tall);
       context.fillStyle = "#ffe600";
@@ -70,6 +70,21 @@ async function sectionsSection() {
     canvas.setAttribute("aria-label", `${grid.name} across ${"xyz"[axis]}`);
   }
   const drawAll = () => { if (values) [0, 1, 2].forEach(draw); };
+
+  // Moves the sections through a block.
+  function goTo(block) {
+    block.forEach((index, a) => { sliders[a].input.value = Math.round(95 * index / Math.max(1, grid.blocks[a] - 1)); sliders[a].show(); });
+  }
+  let folded = [], next = 0;
+  function nextFold() {
+    const i = folded[next++ % folded.length], [w, h] = grid.blocks;
+    goTo([i % w, Math.floor(i / w) % h, Math.floor(i / (w * h))]);
+  }
+  // Through a place of the source, where the grids of maps are.
+  whenFocused.push(({panel, point}) => {
+    const block = point.map((c, a) => Math.floor((c - grid.origin[a]) / grid.axes[a][a]));
+    if (panel === 0 && block.every((index, a) => index >= 0 && index < grid.blocks[a])) goTo(block);
+  });
 
   const sliders = [0, 1, 2].map((a) => slider("xyz"[a], "slide-" + "xyz"[a], 95, 48, (v) => {
     at[a] = v / 95;
@@ -90,8 +105,7 @@ async function sectionsSection() {
         (Number.isFinite(value) ? `${grid.name} ${shortNumber(value)}` : "nothing");
     });
     canvas.addEventListener("click", (e) => {
-      const block = blockOf(e);
-      for (const k of across[axis]) { sliders[k].input.value = Math.round(95 * block[k] / Math.max(1, grid.blocks[k] - 1)); sliders[k].show(); }
+      goTo(blockOf(e));
     });
     canvas.addEventListener("keydown", (e) => {
       const [u, v] = across[axis], step = {ArrowLeft: [u, -1], ArrowRight: [u, 1], ArrowUp: [v, 1], ArrowDown: [v, -1]}[e.key];
@@ -110,8 +124,12 @@ async function sectionsSection() {
     words.textContent = [gridWords[grid.name] || "",
       `in the grid ${shortNumber(grid.grid_least)} to ${shortNumber(grid.grid_greatest)}`,
       grid.stride > 1 ? `here the ${grid.reduction} of each ${grid.stride}³ voxels` : "each voxel is shown"].filter(Boolean).join("; ") + ".";
-    const count = folds() ? values.reduce((sum, v) => sum + (v <= 0), 0) : 0;
-    foldNote.textContent = count ? `${count} of the places shown fold; they are black with yellow.` : folds() ? "No place that is shown folds." : "";
+    folded = [];
+    if (folds()) values.forEach((v, i) => { if (v <= 0) folded.push(i); });
+    next = 0;
+    foldNote.replaceChildren(...(folded.length
+      ? [`${folded.length} of the places shown fold; they are black with yellow. `, element("button", {type: "button", id: "next-fold", onclick: nextFold}, "go to the next")]
+      : folds() ? ["No place that is shown folds."] : []));
     for (const s of sliders) s.show();
     drawAll();
   }

@@ -62,6 +62,9 @@ function marksOf(panels) {
   return out;
 }
 
+// Called with a mark when it is chosen.
+const whenFocused = [];
+
 async function surfacesSection() {
   const panels = panelsOf(page.shapes);
   if (!panels.length) return null;
@@ -76,7 +79,7 @@ async function surfacesSection() {
   }
   for (const panel of panels) { await makePanel(panel, THREE); sizeUp(panel); }
   // One scale for all, unless that makes one of them too small to see.
-  const sizes = panels.map((p) => p.diagonal), alike = Math.max(...sizes) < 3 * Math.min(...sizes);
+  const sizes = panels.map((p) => p.diagonal), alike = Math.max(...sizes) < 1.6 * Math.min(...sizes);
   for (const panel of panels) {
     panel.unit = alike ? Math.max(...sizes) : panel.diagonal;
     place(panel, panel.points);
@@ -91,7 +94,7 @@ async function surfacesSection() {
   const home = () => {
     for (const p of panels) p.group.position.set(0, 0, 0);
     controls.target.set(0, 0, 0);
-    camera.position.set(0.55, 0.4, 1.75).multiplyScalar(camera.aspect < 1 ? 0.9 / camera.aspect : 1);
+    camera.position.set(0.45, 0.32, 1.4).multiplyScalar(camera.aspect < 1 ? 0.9 / camera.aspect : 1);
     controls.update();
     draw();
   };
@@ -196,10 +199,14 @@ async function surfacesSection() {
       const there = k === mark.panel ? mark.point : p.shape === panel.shape ? vertexOf(p, vertex) : p.centre;
       p.group.position.set(...there.map((c, a) => -(c - p.centre[a]) / p.unit));
     });
+    // From outside, where the surface faces.
+    const normal = new THREE.Vector3().fromBufferAttribute(panel.mesh.geometry.attributes.normal, vertex);
     controls.target.set(0, 0, 0);
-    camera.position.sub(controls.target).setLength(0.45);
+    if (normal.lengthSq() > 0) camera.position.copy(normal).add(new THREE.Vector3(0, 0.15, 0));
+    camera.position.setLength(0.45);
     controls.update();
     show(mark.panel, mark.point, mark.text);
+    for (const told of whenFocused) told(mark);
   }
   let pressed = null;
   canvas.addEventListener("pointerdown", (e) => { pressed = [e.clientX, e.clientY]; });
@@ -256,7 +263,7 @@ async function surfacesSection() {
     marks.length ? element("div", {class: "marks"}, element("h3", {}, "Places to look at"),
       element("p", {}, ...marks.map((m) => element("button", {type: "button", class: "mark", onclick: () => focus(m)}, m.text)))) : null,
     cut ? element("p", {class: "hint"}, `Shown with ${cut.shape.vertices} of ${cut.shape.given_vertices} vertices.`) : null,
-    alike ? null : element("p", {class: "hint"}, "The surfaces differ in size by more than three times; each is shown as large as the view."));
+    alike ? null : element("p", {class: "hint"}, "The surfaces differ in size by more than half; each is shown as large as the view."));
   whenColoursChange.push(draw);
   colouring = colourings[0][0];
   return {node, showPlace, recolour: colour, start: async () => { home(); await colour(); home(); }, focus};
