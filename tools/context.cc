@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "html/page.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/picture/label_font.h"
-#include "html/page.h"
 #include "run_record.h"
 #include "signals.h"
 #include "terminal_progress.h"

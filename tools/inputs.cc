@@ -1,8 +1,8 @@
 #include "inputs.h"
 
+#include "html/contents.h"
 #include "innermap/io/vdb/vdb_file.h"
 #include "innermap/mesh/read.h"
-#include "html/contents.h"
 #include "map_report.h"
 
 namespace innermap::tool {
@@ -18,8 +18,7 @@ openvdb::GridPtrVec readGridFile(const std::string& path, const std::vector<std:
                                  Context& context) {
   auto settings = context.settings<VdbReadSettings>();
   settings.names = names;
-  openvdb::GridPtrVec grids =
-      context.timed("read", [&] { return readVdb(path, settings).grids; });
+  openvdb::GridPtrVec grids = context.timed("read", [&] { return readVdb(path, settings).grids; });
   if (context.page()) addGrids(*context.page(), grids);
   return grids;
 }

@@ -152,7 +152,8 @@ void run(const ReportOptions& options, Context& context) {
     writePage(output, page, report.dump(-1, ' ', false, Json::error_handler_t::replace));
   });
   for (const std::string& text : page.missing) context.note("not shown: " + text);
-  context.print(fmt::format("{}: {:.1f} MB\n", output, static_cast<double>(fs::file_size(output)) / 1e6));
+  context.print(
+      fmt::format("{}: {:.1f} MB\n", output, static_cast<double>(fs::file_size(output)) / 1e6));
 }
 
 }  // namespace
@@ -167,8 +168,9 @@ Command makeReportCommand() {
       "memory, the command and its settings. What is missing is left out, and said. --html of the "
       "other commands writes the same page as they run.");
   c.positional("FOLDER", &o->folder, "that a command of innermap wrote, with a report.json");
-  c.option("--output", "FILE", &o->output, "the page").shortName("-o").defaults(
-      "report.html in the folder");
+  c.option("--output", "FILE", &o->output, "the page")
+      .shortName("-o")
+      .defaults("report.html in the folder");
   c.example("innermap report out");
   c.example("innermap report out -o page.html");
   c.run([o](Context& context) { run(*o, context); });

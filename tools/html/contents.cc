@@ -35,8 +35,8 @@ PageScalar& scalarOf(PageShape& shape, const std::string& name) {
 
 void addStretch(PageShape& shape) {
   scalarOf(shape, "stretch")
-      .values.push_back(stretches(shape.places.front().points, shape.places.back().points,
-                                  shape.triangles));
+      .values.push_back(
+          stretches(shape.places.front().points, shape.places.back().points, shape.triangles));
 }
 
 std::vector<double> distances(const Points& a, const Points& b, double unit) {

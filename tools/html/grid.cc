@@ -27,8 +27,8 @@ class Blocks {
  public:
   Blocks(PageGrid& grid, const openvdb::Coord& from, bool least)
       : grid_(grid), from_(from), least_(least) {
-    const std::size_t count = static_cast<std::size_t>(grid.blocks[0]) * grid.blocks[1] *
-                              grid.blocks[2];
+    const std::size_t count =
+        static_cast<std::size_t>(grid.blocks[0]) * grid.blocks[1] * grid.blocks[2];
     sums_.assign(count, 0.0);
     counts_.assign(count, 0);
     grid.least = std::numeric_limits<double>::infinity();

@@ -17,10 +17,12 @@ function ticksOf(least, greatest, logarithmic) {
 // Returns {node, setCursor(x)}.
 function lineChart(chart) {
   const width = 460, height = 220, left = 62, right = 12, top = 12, bottom = 36;
-  chart.series = chart.series.map((s) => ({name: s.name, y: chart.x.map((_, i) => (s.y || [])[i])}));
+  // What has no place on either axis is left out.
+  const placed = (x) => Number.isFinite(x) && (!chart.logX || x > 0);
+  chart.series = chart.series.map((s) => ({name: s.name, y: chart.x.map((x, i) => (placed(x) ? s.y[i] : NaN))}));
   const finite = (v) => Number.isFinite(v) && (!chart.logarithmic || v > 0);
   const ys = chart.series.flatMap((s) => s.y).concat(chart.level ? [chart.level.value] : []).filter(finite);
-  const xs = chart.x.filter((v) => Number.isFinite(v) && (!chart.logX || v > 0));
+  const xs = chart.x.filter(placed);
   if (!ys.length || !xs.length) return null;
   const range = (list, log) => {
     let [a, b] = [Math.min(...list), Math.max(...list)];

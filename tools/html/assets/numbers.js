@@ -79,16 +79,16 @@ function summarySection() {
 function fitSection() {
   const report = page.report, solve = report.solve || {}, charts = [];
   const add = (chart) => { const made = lineChart(chart); if (made) charts.push(made.node); };
-  if ((solve.round_sources || []).length)
+  if ((solve.round_sources || []).length && solve.round_p99)
     add({title: "Boundary error as charges are added (99% within)", x: solve.round_sources, xLabel: "charges", logX: solve.round_sources.length > 1, logarithmic: true,
          series: [{name: "error", y: solve.round_p99}], level: report.tolerance ? {value: report.tolerance.wanted, text: "tolerance"} : null});
   if ((solve.residuals || []).length)
     add({title: "Residual at the fitted points, by iteration", x: solve.residuals.map((_, i) => i), xLabel: "iteration", logarithmic: true,
          series: [{name: "residual", y: solve.residuals}]});
-  if ((solve.tried_distances || []).length)
+  if ((solve.tried_distances || []).length && solve.tried_errors)
     add({title: "Error held out, by distance of the charges", x: solve.tried_distances, xLabel: "distance", logX: true, logarithmic: true,
          series: [{name: "error", y: solve.tried_errors}]});
-  if (report.steps && (report.steps.to || []).length) {
+  if (report.steps && (report.steps.to || []).length && report.steps.p99 && report.steps.folded) {
     add({title: "Error of each step", x: report.steps.to, xLabel: "part of the way", logarithmic: true, series: [{name: "error", y: report.steps.p99}]});
     add({title: "Share that each step folds", x: report.steps.to, xLabel: "part of the way", series: [{name: "folded", y: report.steps.folded}]});
   }
