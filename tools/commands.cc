@@ -3,30 +3,14 @@
 namespace innermap::tool {
 
 std::vector<Command> allCommands() {
-  return {makeMapCommand(),
-          makeCorrespondCommand(),
-          makeSphereCommand(),
-          makeFitCommand(),
-          makeEvaluateCommand(),
-          makeSequenceCommand(),
-          makeDeformCommand(),
-          makeTextureCommand(),
-          makePushCommand(),
-          makePullCommand(),
-          makeTransferDistanceCommand(),
-          makeCheckCommand(),
-          makeVoxelizeCommand(),
-          makeTetrahedralizeCommand(),
-          makePolycubeCommand(),
-          makeHexahedralizeCommand(),
-          makeRemeshCommand(),
-          makeCompareFemCommand(),
-          makeSliceCommand(),
-          makeExportCommand(),
-          makeImportCommand(),
-          makeInfoCommand(),
-          makeReportCommand(),
-          makeHelpCommand()};
+  return {makeMapCommand(),           makeCorrespondCommand(),       makeSphereCommand(),
+          makeFitCommand(),           makeEvaluateCommand(),         makeSequenceCommand(),
+          makeDeformCommand(),        makeTextureCommand(),          makePushCommand(),
+          makePullCommand(),          makeTransferDistanceCommand(), makeCheckCommand(),
+          makeVoxelizeCommand(),      makeTetrahedralizeCommand(),   makePolycubeCommand(),
+          makeHexahedralizeCommand(), makeRemeshCommand(),           makeCompareFemCommand(),
+          makeSliceCommand(),         makeExportCommand(),           makeImportCommand(),
+          makeInfoCommand(),          makeReportCommand(),           makeHelpCommand()};
 }
 
 Command findCommand(const std::string& name) {

@@ -91,10 +91,25 @@ async function surfacesSection() {
     camera.add(light, light.target);
   }
   const controls = new THREE.OrbitControls(camera, canvas);
+  // As near as all that is shown can be seen from, a little from the right and above.
+  function fromFront() {
+    const towards = new THREE.Vector3(0.3, 0.22, 1).normalize();
+    const across = new THREE.Vector3(0, 1, 0).cross(towards).normalize(), up = towards.clone().cross(across);
+    const high = 0.95 * Math.tan(camera.fov * Math.PI / 360), wide = high * camera.aspect, p = new THREE.Vector3();
+    let distance = 0.1;
+    for (const panel of panels) {
+      const at = panel.mesh.geometry.attributes.position;
+      for (let i = 0; i < at.count; ++i) {
+        p.fromBufferAttribute(at, i);
+        distance = Math.max(distance, p.dot(towards) + Math.max(Math.abs(p.dot(up)) / high, Math.abs(p.dot(across)) / wide));
+      }
+    }
+    return towards.multiplyScalar(distance);
+  }
   const home = () => {
     for (const p of panels) p.group.position.set(0, 0, 0);
     controls.target.set(0, 0, 0);
-    camera.position.set(0.45, 0.32, 1.4).multiplyScalar(camera.aspect < 1 ? 0.9 / camera.aspect : 1);
+    camera.position.copy(fromFront());
     controls.update();
     draw();
   };
