@@ -156,6 +156,9 @@ std::vector<Option> commonOptionTable(CommonOptions& common) {
            "also write a page to look at, one file for any browser: numbers with their meaning, "
            "surfaces, sections; report.html beside the outputs, or FILE")
       .implied(kPageBesideOutputs);
+  c.flag("--strict", &common.strict,
+         "exit code 1 when the verdict that the run ends with is not met; files are written all "
+         "the same");
   c.flag("--quiet", &common.quiet, "nothing on stderr but errors").shortName("-q");
   c.flag("--help", &common.help, "this help").shortName("-h");
   return c.options();

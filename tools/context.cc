@@ -155,6 +155,86 @@ void Context::used(const std::string& option, ReportValue value) {
     if (name == settingKey(option)) known = std::move(value);
 }
 
+const std::string* Context::setting(const std::string& option) const {
+  for (const auto& [name, value] : report_.run->settings)
+    if (name == settingKey(option)) return std::get_if<std::string>(&value);
+  return nullptr;
+}
+
+void Context::judge(ReportFinding finding, bool told) {
+  if (!finding.met && !told) warning(finding.statement);
+  report_.verdict.push_back(std::move(finding));
+}
+
+namespace {
+
+std::string titleOf(const std::string& name) {
+  std::string out = name;
+  std::replace(out.begin(), out.end(), '_', ' ');
+  return out;
+}
+
+// "out/: map.ply 1.2 MB, map.vdb 30 MB", a line a folder; of many files of one kind the first, the
+// last and all together.
+std::vector<std::string> writtenLines(const std::vector<ReportOutput>& outputs) {
+  constexpr std::size_t kMany = 8;
+  std::vector<std::pair<std::string, std::vector<const ReportOutput*>>> folders;
+  for (const ReportOutput& o : outputs) {
+    const std::string folder = std::filesystem::path(o.path).parent_path().string();
+    if (folders.empty() || folders.back().first != folder) folders.push_back({folder, {}});
+    folders.back().second.push_back(&o);
+  }
+  std::vector<std::string> lines;
+  for (const auto& [folder, files] : folders) {
+    std::string text = "wrote " + (folder.empty() ? "" : folder + "/: ");
+    std::uint64_t bytes = 0;
+    const auto nameOf = [](const ReportOutput* o) {
+      return std::filesystem::path(o->path).filename().string();
+    };
+    std::vector<std::string> names;
+    for (const ReportOutput* o : files) {
+      bytes += o->bytes;
+      names.push_back(nameOf(o) + " (" + formatBytes(o->bytes) + ")");
+    }
+    lines.push_back(
+        text + (files.size() > kMany
+                    ? fmt::format("{} files, {} to {} ({})", files.size(), nameOf(files.front()),
+                                  nameOf(files.back()), formatBytes(bytes))
+                    : fmt::format("{}", fmt::join(names, ", "))));
+  }
+  return lines;
+}
+
+std::string verdictText(const std::vector<ReportFinding>& verdict, std::size_t unmet) {
+  std::string text = unmet == 0 ? fmt::format("verdict: all {} met\n", verdict.size())
+                                : fmt::format("verdict: {} of {} not met\n", unmet, verdict.size());
+  for (const ReportFinding& f : verdict) {
+    text += fmt::format("  {:<3} {}: {}\n", f.met ? "yes" : "NO", titleOf(f.name), f.statement);
+    if (!f.advice.empty()) text += "      try: " + f.advice + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+void Context::conclude() {
+  if (dryRun()) return;
+  std::vector<std::string> unmet;
+  for (const ReportFinding& f : report_.verdict)
+    if (!f.met) unmet.push_back(titleOf(f.name));
+  if (!report_.verdict.empty()) print(verdictText(report_.verdict, unmet.size()));
+  std::vector<ReportOutput> outputs = outputsNow();
+  std::error_code none;
+  if (std::filesystem::is_regular_file(options_.report, none))
+    outputs.push_back({options_.report, std::filesystem::file_size(options_.report, none)});
+  for (const std::string& line : writtenLines(outputs)) say("", line);
+  if (options_.strict && !unmet.empty() && failure_.empty())
+    failAfterwards(
+        fmt::format("--strict: the verdict is not met ({}); the files are written all "
+                    "the same",
+                    fmt::join(unmet, ", ")));
+}
+
 // A file that is put in place is another than what stood there before, so its key has changed.
 std::vector<ReportOutput> Context::outputsNow() const {
   std::vector<ReportOutput> out = inFolders_;

@@ -28,6 +28,7 @@ struct CommonOptions {
   int threads = 0;
   std::string maxMemory;
   bool dryRun = false;
+  bool strict = false;
   std::string report;
   std::string html;  // empty: none
   bool quiet = false;
@@ -115,6 +116,14 @@ class Context {
 
   // A setting that was left to the command: what it took. option: "--tolerance". In the report.
   void used(const std::string& option, ReportValue value);
+  // The value of a setting that is a text, or null.
+  const std::string* setting(const std::string& option) const;
+
+  // Adds to the verdict that the run ends with; warns of what is not met, unless that was told.
+  void judge(ReportFinding finding, bool told = false);
+  // The verdict, on stdout, and what was written, on stderr; with --strict what is not met is a
+  // failure. The last that a run says.
+  void conclude();
 
   // What --html shows; null without.
   Page* page() { return page_.get(); }

@@ -34,11 +34,11 @@ std::string settingsText(const DeformOptions& o) {
   const FrameFitterSettings& f = o.frames.fitting;
   const TransferOptions& t = o.transfer;
   const auto number = [](const auto& v) { return v ? fmt::format("{:.17g}", double(*v)) : "-"; };
-  return fmt::format("{};{};{};{};{};{};{};{};{};{};{};{:.17g};{};{};{};{};{}", versionText(),
+  return fmt::format("{};{};{};{};{};{};{};{};{};{};{};{};{:.17g};{};{};{};{};{}", versionText(),
                      f.sources, frameCollocation(f), number(f.distance), f.seed, t.grids,
-                     static_cast<int>(t.carry.sampling), t.carry.allDensities, t.densities,
-                     t.stress, t.strain, t.outside, t.fadeTo, number(t.grid.resolution),
-                     number(t.grid.voxelSize), static_cast<int>(t.names),
+                     static_cast<int>(t.carry.sampling), t.carry.allDensities, t.carry.densityLimit,
+                     t.densities, t.stress, t.strain, t.outside, t.fadeTo,
+                     number(t.grid.resolution), number(t.grid.voxelSize), static_cast<int>(t.names),
                      o.velocity ? fmt::format("{:.17g}", o.framesPerSecond) : "-");
 }
 
@@ -96,6 +96,7 @@ bool isFinished(const std::string& path, const std::string& inputs) {
 struct DeformRow {
   InverseStatistics statistics;
   BoundaryError error;
+  JudgedFrame judged;
 };
 
 // The set-up that all frames share.
@@ -122,6 +123,8 @@ class Deformer {
   }
 
   double voxelSize() const { return pusher_->voxelSize(); }
+  // Of all frames so far: the densities that grow most beside their solids.
+  const std::map<std::string, JudgedDensity>& densities() const { return densities_; }
 
   DeformRow run(std::size_t index, const std::string& path, const std::string& inputs) {
     const FrameFile& frame = frames_.all[index];
@@ -142,10 +145,24 @@ class Deformer {
     file.insertMeta(kInputs, openvdb::StringMetadata(inputs));
     writeFrame(frame,
                [&] { writeGridFile(path, result.grids, options_.transfer.names, context_, file); });
-    return {result.statistics, fit->error};
+    judge(result, *fit, frame.number);
+    return {
+        result.statistics, fit->error, {frame.number, fit->error.p99, fit->folded, fit->outside}};
   }
 
  private:
+  void judge(const PushResult& result, const FrameFit& fit, std::int64_t number) {
+    const double volumes = volumeRatio(fitter_.solid().volume(), fit.boundary.volume);
+    for (const CarriedMass& mass : result.masses) {
+      const JudgedDensity now{mass.name, fmt::format("in frame {} ", number),
+                              std::min(mass.largestRatio, options_.transfer.carry.densityLimit),
+                              volumes};
+      JudgedDensity& worst = densities_[mass.name];
+      if (worst.grid.empty() || now.growth * now.volumes > worst.growth * worst.volumes)
+        worst = now;
+    }
+  }
+
   void requireNoVelocity() const {
     const NamingScheme scheme = options_.transfer.names;
     for (const openvdb::GridBase::Ptr& grid : grids_)
@@ -159,14 +176,16 @@ class Deformer {
   const Frames& frames_;
   const FrameFitter fitter_;
   FrameFits fits_;
+  std::map<std::string, JudgedDensity> densities_;
   const openvdb::GridPtrVec grids_;
   std::optional<FramePusher> pusher_;
 };
 
-std::string lineOf(const FrameFile& frame, const DeformRow& row, double seconds) {
+std::string lineOf(const FrameFile& frame, const DeformRow& row, double seconds, double tolerance) {
   const InverseStatistics& s = row.statistics;
-  return fmt::format("{:>8} {:>10} {:>10.4f} {:>10.2e} {:>10.2e} {:>9.3g}\n", frame.number,
-                     s.voxels, 100 * s.invertedInside(), row.error.rms, row.error.p99, seconds);
+  return fmt::format("{:>8} {:>10} {:>10.4f} {:>10.2e} {:>10.2e} {:>9.3g}{}\n", frame.number,
+                     s.voxels, 100 * s.invertedInside(), row.error.rms, row.error.p99, seconds,
+                     missedMark(row.judged.misses(tolerance)));
 }
 
 // Figures of the frames that were made now; those of others are missing.
@@ -183,6 +202,8 @@ void fillReport(const std::map<std::size_t, DeformRow>& rows, const Frames& fram
   set("boundary_rms", [](const DeformRow& r) { return r.error.rms; });
   set("boundary_p99", [](const DeformRow& r) { return r.error.p99; });
   set("boundary_max", [](const DeformRow& r) { return r.error.max; });
+  set("folded_fraction", [](const DeformRow& r) { return r.judged.folded; });
+  set("outside_fraction", [](const DeformRow& r) { return r.judged.outside; });
 }
 
 void check(const DeformOptions& options, const Frames& frames) {
@@ -261,10 +282,15 @@ void run(const DeformOptions& options, Context& context) {
     rows[index] = timed(seconds, "frame", [&] {
       return deformer.run(index, pattern.path(frame.number), inputs->of(index));
     });
-    context.print(lineOf(frame, rows[index], seconds.front().second));
+    context.print(lineOf(frame, rows[index], seconds.front().second, options.frames.tolerance));
   });
   context.report().set("grid.voxel_size", deformer.voxelSize());
   fillReport(rows, left, context.report());
+  std::vector<JudgedFrame> judged;
+  for (const auto& [index, row] : rows) judged.push_back(row.judged);
+  judgeFrames(judged, options.frames.tolerance, options.frames.verdict, context);
+  for (const auto& [name, density] : deformer.densities())
+    judgeDensity(density, options.transfer.verdict, context);
   context.print(secondsText(results, context));
 }
 

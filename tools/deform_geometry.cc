@@ -30,6 +30,7 @@ class Deformer {
   struct Row {
     CarriedGeometry carried;
     BoundaryError error;
+    JudgedFrame judged;
   };
 
   Row run(std::size_t index, const std::string& path) {
@@ -39,6 +40,7 @@ class Deformer {
     const ComposedMap map = HarmonicMap(fit->field);
     Row row;
     row.error = fit->error;
+    row.judged = {frame.number, fit->error.p99, fit->folded, fit->outside};
     row.carried = context_.timed("carry", [&] {
       return carryFile(
           *file_,
@@ -87,6 +89,7 @@ void deformGeometry(const DeformGeometry& job, const Frames& frames, const Frame
   requireFrameMemory(context.settings(job.frames.fitting), need);
   Deformer deformer(job, frames, context);
   std::map<std::size_t, BoundaryError> errors;
+  std::vector<JudgedFrame> judged;
   std::optional<CarriedGeometry> last;
   context.print(fmt::format("{:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "frame", "points",
                             "folded", "error rms", "error 99%", "seconds"));
@@ -94,9 +97,11 @@ void deformGeometry(const DeformGeometry& job, const Frames& frames, const Frame
     StageSeconds seconds;
     auto row = timed(seconds, "frame", [&] { return deformer.run(index, path(index)); });
     errors[index] = row.error;
-    context.print(fmt::format("{:>8} {:>10} {:>10} {:>10.2e} {:>10.2e} {:>9.3g}\n",
+    judged.push_back(row.judged);
+    context.print(fmt::format("{:>8} {:>10} {:>10} {:>10.2e} {:>10.2e} {:>9.3g}{}\n",
                               frames.all[index].number, row.carried.ownPoints, row.carried.folded,
-                              row.error.rms, row.error.p99, seconds.front().second));
+                              row.error.rms, row.error.p99, seconds.front().second,
+                              missedMark(row.judged.misses(job.frames.tolerance))));
     last = std::move(row.carried);
   });
   if (last) context.print(deformer.report(*last));
@@ -109,6 +114,7 @@ void deformGeometry(const DeformGeometry& job, const Frames& frames, const Frame
   set("boundary_rms", [](const BoundaryError& e) { return e.rms; });
   set("boundary_p99", [](const BoundaryError& e) { return e.p99; });
   set("boundary_max", [](const BoundaryError& e) { return e.max; });
+  judgeFrames(judged, job.frames.tolerance, job.frames.verdict, context);
   context.print(secondsText(results, context));
 }
 

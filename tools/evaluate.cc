@@ -3,6 +3,7 @@
 #include "grid_options.h"
 #include "inputs.h"
 #include "map_report.h"
+#include "verdict.h"
 
 namespace innermap::tool {
 namespace {
@@ -10,6 +11,7 @@ namespace {
 struct EvaluateOptions {
   std::string map, output;
   EvaluationOptions evaluation;
+  VerdictOptions verdict;
 };
 
 void run(const EvaluateOptions& options, Context& context) {
@@ -23,6 +25,7 @@ void run(const EvaluateOptions& options, Context& context) {
                           mapped.map.steps().size());
   const SolidGrids grids = evaluateOnGrid(mapped, settings);
   reportGrids(grids, settings.lame, context);
+  judgeMap(mapped, &grids, options.verdict, MapOrigin::file, context);
   writeGridFile(options.output, grids.all(), options.evaluation.names, context);
 }
 
@@ -34,12 +37,15 @@ Command makeEvaluateCommand() {
   c.description(
       "Writes the grids surface, density, map, jacobian, harmonic_energy and deformation_energy; "
       "values are active inside and in a skin of two voxels. Energies' totals, the least Jacobian, "
-      "the folded share and what is known of one-to-one stand in the metadata and the report. Far "
+      "the folded share and what is known of one-to-one stand in the metadata and the report. "
+      "Where there are such, `folded` marks the voxels that the map folds, `outside` how far "
+      "images lie outside the target. Far "
       "from the origin, where floats do not hold positions well, also map_local: positions less "
       "its metadata innermap_map_local_origin.");
   c.positional("MAP", &o->map, "a map.ply written by fit or map");
   c.option("--output", "FILE", &o->output, "the grids, a .vdb file").shortName("-o").required();
   addEvaluationOptions(c, o->evaluation);
+  addVerdictOptions(c, o->verdict);
   c.example("innermap evaluate map.ply -o map.vdb --resolution 256");
   c.example("innermap evaluate map.ply -o map.vdb --voxel-size 0.01 --names blender");
   c.run([o](Context& context) { run(*o, context); });

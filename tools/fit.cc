@@ -4,6 +4,7 @@
 #include "innermap/mesh/read.h"
 #include "inputs.h"
 #include "map_report.h"
+#include "verdict.h"
 
 namespace innermap::tool {
 namespace {
@@ -11,6 +12,7 @@ namespace {
 struct FitOptions {
   std::string source, target, output;
   FittingOptions fitting;
+  VerdictOptions verdict;
 };
 
 void run(const FitOptions& options, Context& context) {
@@ -32,6 +34,7 @@ void run(const FitOptions& options, Context& context) {
   const MapFit fit = fitMap(std::move(pair), settings);
   reportFit(fit, settings, options.fitting.bestEffort, context);
   reportInjectivity(fit.injectivity, context);
+  judgeMap(fit, nullptr, options.verdict, MapOrigin::related, context);
   context.timed("write", [&] { writeMap(options.output, fit); });
 }
 
@@ -48,6 +51,7 @@ Command makeFitCommand() {
   c.positional("TARGET", &o->target, "the same mesh with its vertices moved");
   c.option("--output", "FILE", &o->output, "the map, a .ply file").shortName("-o").required();
   addFittingOptions(c, o->fitting);
+  addVerdictOptions(c, o->verdict);
   c.example("innermap fit rest.obj pose.obj -o map.ply");
   c.example("innermap fit rest.obj pose.obj -o map.ply --tolerance 1e-4 --best-effort");
   c.example("innermap fit rest.obj pose.obj -o map.ply --sources 4000 --distance 0.02");

@@ -98,6 +98,8 @@ void writeFrame(const FrameFile& frame, const std::function<void()>& write) {
   }
 }
 
+const char* missedMark(bool misses) { return misses ? "  misses the tolerance" : ""; }
+
 std::string secondsText(const std::vector<FrameResult>& results, Context& context) {
   double sum = 0, least = 0, most = 0;
   int count = 0;

@@ -31,6 +31,9 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
 // Calls `write`; its FileErrors become OutputFailures that name the frame.
 void writeFrame(const FrameFile& frame, const std::function<void()>& write);
 
+// What stands behind the line of a frame that misses the tolerance.
+const char* missedMark(bool misses);
+
 // "seconds a frame: mean 0.41, least 0.38, most 0.52" of the good ones; also into the report.
 std::string secondsText(const std::vector<FrameResult>& results, Context& context);
 

@@ -42,6 +42,14 @@ void addFrameOptions(Command& command, FrameOptions& o) {
       .unit("fraction of the rest pose's diagonal")
       .range(1e-4, 2)
       .defaults("1.25 spacings of the charges");
+  command
+      .option(
+          "--tolerance", "T", &o.tolerance,
+          "within which 99% of each frame's boundary should lie; frames that miss it are marked "
+          "and warned of")
+      .unit("fraction of the frame's diagonal")
+      .range(1e-12, 1);
+  addVerdictOptions(command, o.verdict, true);
   command.option("--seed", "N", &o.fitting.seed, "of all random points").range(0, 1e15);
 }
 

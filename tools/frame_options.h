@@ -9,6 +9,7 @@
 #include "command.h"
 #include "innermap/boundary/frame_fitter.h"
 #include "innermap/core/frame_files.h"
+#include "verdict.h"
 
 namespace innermap::tool {
 
@@ -16,6 +17,8 @@ struct FrameOptions {
   std::vector<std::string> files;
   std::string ranges;
   FrameFitterSettings fitting;
+  double tolerance = kUsualTolerance;  // that frames are judged by
+  VerdictOptions verdict;
 };
 
 // The argument FRAMES, which must be the last one.

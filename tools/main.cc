@@ -45,6 +45,7 @@ void execute(const Command& command, const CommonOptions& common, TerminalProgre
     std::fflush(stdout);  // the report may go there too
     writeReport(common.report, context.finishedReport());
   }
+  context.conclude();
   if (!context.failure().empty()) throw DataError(context.failure());
 }
 

@@ -14,6 +14,7 @@
 #include "inputs.h"
 #include "map_report.h"
 #include "section_options.h"
+#include "verdict.h"
 
 namespace innermap::tool {
 namespace {
@@ -27,6 +28,7 @@ struct MapOptions {
   CorrespondOptions correspond;
   FittingOptions fitting;
   EvaluationOptions evaluation;
+  VerdictOptions verdict;
   ExrSliceSettings slices;
   std::string sectionGrid = "deformation_energy";
   SectionOptions section;
@@ -156,6 +158,7 @@ void run(const MapOptions& options, Context& context) {
       {"map.ply", "map.vdb", "slices.exr", "section.png", "steps.png", "report.json"});
   Meshes meshes = readMeshes(options, context);
   if (context.dryRun()) return plan(options, meshes, context);
+  const bool laid = laidOn(options, meshes);
   const FittingOptions fitOptions = fittingFor(options, meshes);
   BoundaryPair pair = makePair(options, std::move(meshes), *folder, context);
   reportBoundaries(pair, context);
@@ -167,6 +170,7 @@ void run(const MapOptions& options, Context& context) {
   reportFit(fit, fitting, options.fitting.bestEffort, context);
   const SolidGrids grids = evaluateOnGrid(fit, mapGridSettings(options.evaluation, context));
   reportGrids(grids, options.evaluation.lame, context);
+  judgeMap(fit, &grids, options.verdict, laid ? MapOrigin::laidOn : MapOrigin::related, context);
   folder->write("map.vdb", [&](const std::string& path) {
     writeGridFile(path, grids.all(), options.evaluation.names, context);
   });
@@ -203,6 +207,7 @@ Command makeMapCommand() {
   addCorrespondOptions(c, o->correspond);
   addFittingOptions(c, o->fitting);
   addEvaluationOptions(c, o->evaluation);
+  addVerdictOptions(c, o->verdict);
   c.choice("--slice-axis", "AXIS", &o->slices.axis, {{"x", 0}, {"y", 1}, {"z", 2}},
            "of slices.exr");
   c.option("--slice-count", "N", &o->slices.count, "parts of slices.exr").range(1, 4096);

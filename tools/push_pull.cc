@@ -1,6 +1,7 @@
 // `innermap push` and `innermap pull`: grids and geometry carried through a map, and back.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "commands.h"
@@ -18,6 +19,7 @@ enum class Way { push, pull };
 
 struct CarryOptions {
   std::string map, volume, output, through;
+  VerdictOptions verdict;
   TransferOptions transfer;
   GeometryOptions geometry;
 };
@@ -43,18 +45,41 @@ Job read(const CarryOptions& options, Context& context) {
           std::move(through)};
 }
 
+double growthOf(Way way, const Job& job) {
+  const double from = job.mapped.solid().volume(), to = job.target.volume();
+  return way == Way::push ? voxelGrowth(from, to) : voxelGrowth(to, from);
+}
+
+// A voxel size that nobody asked for is said where it is not the grids' own.
+void noteVoxelSize(const openvdb::GridPtrVec& grids, const TransferOptions& options, double growth,
+                   Context& context) {
+  if (growth == 1 || options.grid.voxelSize || options.grid.resolution) return;
+  const double from = finestVoxel(grids);
+  context.used("--voxel-size", growth * from);
+  context.note(
+      fmt::format("voxels of {:.4g}: those of the grids, {:.4g}, times {:.4g}, by which "
+                  "the solid that they go to is larger; --voxel-size takes others",
+                  growth * from, from, growth));
+}
+
 openvdb::GridPtrVec push(const Job& job, const TransferOptions& options, Context& context) {
   auto settings = context.settings<PushSettings>();
   settings.carry = carrySettings(options);
   settings.outside = job.outside;
   settings.accuracy = sumAccuracy(job.mapped);
   settings.through = job.through ? &*job.through : nullptr;
-  const openvdb::FloatGrid::Ptr levelSet = outputLevelSet(job.target, job.grids, options, context);
+  const openvdb::FloatGrid::Ptr levelSet =
+      outputLevelSet(job.target, job.grids, options, context, growthOf(Way::push, job));
   const PushResult result = context.timed("push", [&] {
     return VolumePusher(job.mapped.solid(), job.grids, settings).push(job.mapped.map, *levelSet);
   });
   reportPush(result, context);
   context.print(pushText(result));
+  const double volumes = volumeRatio(job.mapped.solid().volume(), job.target.volume());
+  for (const CarriedMass& mass : result.masses)
+    judgeDensity({mass.name, "", std::min(mass.largestRatio, settings.carry.densityLimit), volumes},
+                 options.verdict, context);
+  judgeResampling(result.resampling, options.verdict, context);
   return result.grids;
 }
 
@@ -68,12 +93,21 @@ openvdb::GridPtrVec pull(const Job& job, const TransferOptions& options, Context
   const openvdb::FloatGrid::Ptr target = outputLevelSet(job.target, job.grids, plain, context);
   settings.targetLevelSet = target.get();
   const Solid& source = job.mapped.solid();
-  const openvdb::FloatGrid::Ptr levelSet = outputLevelSet(source, job.grids, options, context);
+  const openvdb::FloatGrid::Ptr levelSet =
+      outputLevelSet(source, job.grids, options, context, growthOf(Way::pull, job));
   const PullResult result = context.timed(
       "pull", [&] { return pullGrids(job.mapped.map, source, *levelSet, job.grids, settings); });
   for (const std::string& warning : result.warnings) context.warning(warning);
   context.report().set("pull.voxels", result.voxels);
   context.print(fmt::format("pulled {} grids, {} voxels\n", result.grids.size(), result.voxels));
+  const double volumes = volumeRatio(job.target.volume(), source.volume());
+  for (const openvdb::GridBase::Ptr& grid : job.grids)
+    if (result.resampling.largestGrowth > 0 && isDensity(*grid, settings.carry))
+      judgeDensity(
+          {grid->getName(), "",
+           std::min(result.resampling.largestGrowth, settings.carry.densityLimit), volumes},
+          options.verdict, context);
+  judgeResampling(result.resampling, options.verdict, context);
   return result.grids;
 }
 
@@ -123,6 +157,7 @@ void runGeometry(Way way, const CarryOptions& options, Context& context) {
   });
   warnOf(*file, carried, options.transfer, "", context);
   context.print(reportGeometry(*file, carried, context));
+  judgeMap(mapped, nullptr, options.verdict, MapOrigin::file, context);
   writeGeometryFile(options.output, *file, carried, context);
 }
 
@@ -132,14 +167,17 @@ void run(Way way, const CarryOptions& options, Context& context) {
   if (isGeometryFile(options.volume)) return runGeometry(way, options, context);
   const Job job = read(options, context);
   const Solid& solid = way == Way::push ? job.target : job.mapped.solid();
+  const double growth = growthOf(way, job);
   if (context.dryRun())
     return context.plan({fmt::format("{} {} grids of {} by {}", way == Way::push ? "push" : "pull",
                                      job.grids.size(), options.volume, options.map),
                          "write " + options.output},
-                        transferMemory(solid, job.grids, options.transfer, context));
-  requireTransferMemory(solid, job.grids, options.transfer, context);
+                        transferMemory(solid, job.grids, options.transfer, context, growth));
+  requireTransferMemory(solid, job.grids, options.transfer, context, growth);
+  noteVoxelSize(job.grids, options.transfer, growth, context);
   const openvdb::GridPtrVec grids =
       (way == Way::push ? push : pull)(job, options.transfer, context);
+  judgeMap(job.mapped, nullptr, options.verdict, MapOrigin::file, context);
   describeMap(grids, job.mapped);
   writeGridFile(options.output, grids, options.transfer.names, context);
 }
@@ -164,6 +202,7 @@ Command makeCarryCommand(Way way, const std::string& name, const std::string& su
       .reads();
   addTransferOptions(c, o->transfer);
   addGeometryOptions(c, o->geometry, true);
+  addVerdictOptions(c, o->verdict);
   c.run([o, way](Context& context) { run(way, *o, context); });
   return c;
 }

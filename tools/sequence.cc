@@ -38,8 +38,11 @@ std::vector<std::string> gridsToWrite(const SequenceOptions& options) {
   return names;
 }
 
-SequenceRow rowOf(const FrameFile& frame, const FrameFit& fit, const MapGrids& grids) {
+SequenceRow rowOf(const FrameFile& frame, const FrameFit& fit, const MapGrids& grids,
+                  double tolerance) {
   SequenceRow row;
+  row.misses = !(fit.error.p99 <= tolerance);
+  row.outside = fit.outside;
   row.file = frame;
   row.error = fit.error;
   row.harmonic = grids.harmonicTotal;
@@ -94,12 +97,16 @@ void run(const SequenceOptions& options, Context& context) {
         writeGridFile(pattern.path(frame.number), evaluator.grids({fit.get(), frame.number}, grids),
                       options.evaluation.names, context);
       });
-    rows.push_back(rowOf(frame, *fit, grids));
+    rows.push_back(rowOf(frame, *fit, grids, options.frames.tolerance));
     context.print(sequenceLine(rows.back()));
   });
   const std::string seconds = secondsText(results, context);
   const std::vector<SequenceRow> table = withBroken(rows, results);
   fillReport(table, context.report());
+  std::vector<JudgedFrame> judged;
+  for (const SequenceRow& r : rows)
+    judged.push_back({r.file.number, r.error.p99, r.folded, r.outside});
+  judgeFrames(judged, options.frames.tolerance, options.frames.verdict, context);
   context.timed("write", [&] {
     folder->write("energies.csv",
                   [&](const std::string& path) { writeSequenceTable(path, table); });

@@ -30,6 +30,8 @@ const Column kColumns[] = {
     {"jacobian_max", [](const SequenceRow& r) { return r.jacobianMax; }},
     {"folded_fraction", [](const SequenceRow& r) { return r.folded; }},
     {"volume", [](const SequenceRow& r) { return r.volume; }},
+    {"outside_fraction", [](const SequenceRow& r) { return r.outside; }},
+    {"tolerance_met", [](const SequenceRow& r) { return r.misses ? 0.0 : 1.0; }},
     {"seconds", [](const SequenceRow& r) { return r.seconds; }}};
 
 std::string quoted(const std::string& text) {
@@ -127,9 +129,9 @@ std::string sequenceHeader() {
 }
 
 std::string sequenceLine(const SequenceRow& r) {
-  return fmt::format("{:>8} {:>12.6g} {:>12.6g} {:>10.2e} {:>10.2e} {:>9.3g} {:>9.3g}\n",
+  return fmt::format("{:>8} {:>12.6g} {:>12.6g} {:>10.2e} {:>10.2e} {:>9.3g} {:>9.3g}{}\n",
                      r.file.number, r.harmonic, r.deformation, r.error.rms, r.error.p99,
-                     r.jacobianMin, 100 * r.folded);
+                     r.jacobianMin, 100 * r.folded, missedMark(r.misses));
 }
 
 }  // namespace innermap::tool

@@ -15,7 +15,8 @@ struct SequenceRow {
   FrameFile file;
   double harmonic = 0, deformation = 0, deformationMean = 0;
   BoundaryError error;
-  double jacobianMin = 0, jacobianMax = 0, folded = 0;
+  bool misses = false;  // the tolerance
+  double jacobianMin = 0, jacobianMax = 0, folded = 0, outside = 0;
   double volume = 0;  // of the frame's solid, world units cubed; 0 when its parts cancel
   double seconds = 0;
   std::string broken;  // why; all figures are then missing

@@ -7,6 +7,7 @@
 #include "innermap/io/picture/texture_images.h"
 #include "innermap/texture/solid_texture.h"
 #include "inputs.h"
+#include "verdict.h"
 
 namespace innermap::tool {
 namespace {
@@ -22,6 +23,7 @@ struct TextureOptions {
   GridOptions grid;
   SolidTextureSettings texture;
   TextureImageSettings images;
+  double tolerance = kUsualTolerance;
 
   bool blends() const { return texture.seams == TextureSeams::blend; }
 };
@@ -123,6 +125,7 @@ void run(const TextureOptions& o, Context& context) {
   const SolidTexture made = makeSolidTexture(plan, lookup);
   context.tell(made);
   fillReport(made, o, context.report());
+  judgeTexture(made.fit.error, o.tolerance, context);
   const openvdb::GridPtrVec grids = made.grids();
   for (const openvdb::GridBase::Ptr& grid : grids) {
     grid->insertMeta("innermap_texture", openvdb::StringMetadata(image));
@@ -170,6 +173,11 @@ Command makeTextureCommand() {
   c.option("--sources", "N", &o->texture.sources, "number of charges")
       .range(100, 1e6)
       .defaults("one every two voxels of the surface, 1000 to 50000");
+  c.option("--tolerance", "T", &o->tolerance,
+           "within which 99% of the surface should have its values; where it has not, that is "
+           "warned of")
+      .unit("of values in 0 to 1")
+      .above(0);
   c.option("--seed", "N", &o->texture.seed, "of all random points").range(0, 1e15);
   addNamesOption(c, o->names);
   c.example("innermap texture spot.obj spot_texture.png -o spot.vdb --mode colour");

@@ -6,6 +6,7 @@
 #include "innermap/transfer/distance_transfer.h"
 #include "inputs.h"
 #include "section_options.h"
+#include "verdict.h"
 
 namespace innermap::tool {
 namespace {
@@ -15,6 +16,7 @@ struct TransferDistanceOptions {
   GridOptions grid;
   SectionOptions section;
   std::optional<NumberPair> range;
+  VerdictOptions verdict;
 };
 
 void writeSection(const std::string& path, const std::string& title, const Solid& solid,
@@ -94,6 +96,7 @@ void run(const TransferDistanceOptions& options, Context& context) {
     });
   });
   writeVdbs(made, mapped, *folder, context);
+  judgeMap(mapped, nullptr, options.verdict, MapOrigin::file, context);
   context.print(textOf(made));
   context.finish(*folder);
 }
@@ -117,6 +120,7 @@ Command makeTransferDistanceCommand() {
   addSectionOptions(c, o->section);
   c.option("--range", "LO,HI", &o->range, "distances that are blue and red")
       .defaults("0 to the largest in the target");
+  addVerdictOptions(c, o->verdict);
   c.example("innermap transfer-distance map.ply -o distance --resolution 256");
   c.run([o](Context& context) { run(*o, context); });
   return c;

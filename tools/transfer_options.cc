@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "innermap/transfer/carry_memory.h"
 #include "inputs.h"
 #include "lists.h"
@@ -55,7 +57,14 @@ void addTransferOptions(Command& c, TransferOptions& o) {
       "--fade-to", "MOTION", &o.fadeTo,
       "what the map fades to with --outside: cut (it ends there), identity, fitted (the best "
       "rigid motion of the surface), or twelve numbers, a rigid motion's 3 x 4 matrix by rows");
-  addGridOptions(c, o.grid, "the solid", "voxels as fine as those of the grids");
+  c.option("--density-limit", "TIMES", &o.carry.densityLimit,
+           "that a density may grow at most; what comes together beyond it is left out, and how "
+           "much is said")
+      .above(0)
+      .defaults("none");
+  addCarryVerdictOptions(c, o.verdict);
+  addGridOptions(c, o.grid, "the solid",
+                 "voxels as fine as those of the grids, for the size of the solid that they go to");
   addNamesOption(c, o.names);
 }
 
@@ -90,33 +99,43 @@ openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& o
 }
 
 LevelSetSettings outputSettings(const openvdb::GridPtrVec& grids, const GridOptions& options,
-                                const Context& context) {
+                                const Context& context, double growth) {
   auto settings = gridSettings<LevelSetSettings>(options, context);
-  if (!options.voxelSize && !options.resolution) settings.voxelSize = finestVoxel(grids);
+  if (!options.voxelSize && !options.resolution) settings.voxelSize = growth * finestVoxel(grids);
   return settings;
 }
 
+double volumeRatio(double from, double to) { return from > 0 && to > 0 ? to / from : 1; }
+
+double voxelGrowth(double from, double to) {
+  constexpr double kAlike = 0.1;
+  const double growth = std::cbrt(volumeRatio(from, to));
+  return std::abs(growth - 1) <= kAlike ? 1 : growth;
+}
+
 std::uint64_t transferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                             const TransferOptions& options, const Context& context) {
+                             const TransferOptions& options, const Context& context,
+                             double growth) {
   OutsideSettings outside;
   outside.distance = options.outside;
-  return carryMemory(solid, grids, outputSettings(grids, options.grid, context), outside,
+  return carryMemory(solid, grids, outputSettings(grids, options.grid, context, growth), outside,
                      carrySettings(options));
 }
 
 void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                           const TransferOptions& options, const Context& context) {
+                           const TransferOptions& options, const Context& context, double growth) {
   requireGridMemory("carrying the volume", options.grid, context, [&](const GridOptions& grid) {
     TransferOptions other = options;
     other.grid = grid;
-    return transferMemory(solid, grids, other, context);
+    return transferMemory(solid, grids, other, context, growth);
   });
 }
 
 openvdb::FloatGrid::Ptr outputLevelSet(const Solid& solid, const openvdb::GridPtrVec& grids,
-                                       const TransferOptions& options, Context& context) {
+                                       const TransferOptions& options, Context& context,
+                                       double growth) {
   return context.timed("level set", [&] {
-    return makeLevelSet(solid, outputSettings(grids, options.grid, context));
+    return makeLevelSet(solid, outputSettings(grids, options.grid, context, growth));
   });
 }
 
@@ -151,6 +170,7 @@ void reportPush(const PushResult& result, Context& context) {
     report.set("mass." + mass.name + "_before", mass.before);
     report.set("mass." + mass.name + "_after", mass.after);
     report.set("mass." + mass.name + "_left", mass.left);
+    report.set("mass." + mass.name + "_cut", mass.cut);
     report.set("densities." + mass.name + "_largest_ratio", mass.largestRatio);
     report.set("densities." + mass.name + "_largest_compression", mass.largestCompression);
     report.set("densities." + mass.name + "_cells", mass.cells);
@@ -172,6 +192,11 @@ std::string pushText(const PushResult& result) {
         "mass of {}: {:.6g} before, {:.6g} after ({:+.3f}%); densities grow at most {:.4g} times\n",
         mass.name, mass.before, mass.after,
         mass.before != 0 ? 100 * (mass.after / mass.before - 1) : 0.0, mass.largestRatio);
+  for (const CarriedMass& mass : result.masses)
+    if (mass.cut != 0)
+      text +=
+          fmt::format("--density-limit leaves out {:.6g} of the mass of {} ({:.3g}%)\n", mass.cut,
+                      mass.name, mass.before != 0 ? 100 * mass.cut / mass.before : 0.0);
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include "grid_options.h"
 #include "innermap/transfer/pull.h"
 #include "innermap/transfer/push.h"
+#include "verdict.h"
 
 namespace innermap::tool {
 
@@ -16,6 +17,7 @@ struct TransferOptions {
   double outside = 0;
   std::string fadeTo = "cut";
   GridOptions grid;
+  CarryVerdictOptions verdict;
   NamingScheme names = NamingScheme::innermap;
 };
 
@@ -34,16 +36,27 @@ openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& o
 
 // Peak need in bytes of pushing or pulling the grids to the solid's voxels.
 std::uint64_t transferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                             const TransferOptions& options, const Context& context);
+                             const TransferOptions& options, const Context& context,
+                             double growth = 1);
 
 void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                           const TransferOptions& options, const Context& context);
+                           const TransferOptions& options, const Context& context,
+                           double growth = 1);
 
-// Of the output's solid: by --voxel-size or --resolution, else with the finest voxels of the grids.
+// By how much volumes grow; 1 where one of them is not known.
+double volumeRatio(double from, double to);
+
+// Of the output's solid: by --voxel-size or --resolution, else with the finest voxels of the grids,
+// times `growth`.
 LevelSetSettings outputSettings(const openvdb::GridPtrVec& grids, const GridOptions& options,
-                                const Context& context);
+                                const Context& context, double growth = 1);
+
+// What voxels of a solid grow by when what is inside goes to another: the cube root of their
+// volumes' ratio; 1 where that is within a tenth of it, so that poses keep the grids' own lattice.
+double voxelGrowth(double from, double to);
 openvdb::FloatGrid::Ptr outputLevelSet(const Solid& solid, const openvdb::GridPtrVec& grids,
-                                       const TransferOptions& options, Context& context);
+                                       const TransferOptions& options, Context& context,
+                                       double growth = 1);
 
 // Fills the report's "inverse", "mass" and "densities"; passes on the warnings.
 void reportPush(const PushResult& result, Context& context);

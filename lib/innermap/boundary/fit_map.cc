@@ -161,7 +161,6 @@ class MapFitter {
 
   // Counts folds, and goes in steps where there are too many.
   void check(Outcome& out) {
-    if (settings_.oneToOne == OneToOne::off) return;
     timed(seconds, "inside", [&] {
       target_.emplace(pair_);
       out.inside = figuresOf(out);
@@ -184,7 +183,6 @@ class MapFitter {
     Injectivity known;
     known.source = selfIntersectionFigures(pair_.source.check);
     known.target = selfIntersectionFigures(pair_.targetCheck);
-    if (settings_.oneToOne == OneToOne::off) return known;
     BoundaryCheckSettings s;
     s.error = out.error.max * pair_.target.diagonal;
     s.accuracy = kSumAccuracy * pair_.target.diagonal;

@@ -6,11 +6,13 @@
 #include <cmath>
 
 #include "innermap/boundary/certificate.h"
+#include "innermap/boundary/detail/inside_check.h"
 #include "innermap/boundary/detail/problem_samples.h"
 #include "innermap/boundary/detail/streams.h"
 #include "innermap/boundary/surface_problem.h"
 #include "innermap/core/error.h"
 #include "innermap/field/fit.h"
+#include "innermap/field/harmonic_map.h"
 #include "innermap/sample/source_points.h"
 #include "innermap/sample/surface_samples.h"
 
@@ -18,10 +20,12 @@ namespace innermap {
 namespace {
 
 constexpr std::size_t kPointsPerSource = 3;
-constexpr double kDistance = 1.25;  // spacings
-constexpr double kFarthest = 4;     // spacings, of charges beyond the first level
-constexpr double kProducts = 1e-6;  // accuracy; a hundredth of what the fits leave
-constexpr std::size_t kKept = 3;    // frames before the one asked for
+constexpr double kDistance = 1.25;     // spacings
+constexpr double kFarthest = 4;        // spacings, of charges beyond the first level
+constexpr double kProducts = 1e-6;     // accuracy; a hundredth of what the fits leave
+constexpr std::size_t kInside = 4000;  // points at which folds are looked for
+constexpr double kSumAccuracy = 1e-6;  // of the frame's diagonal, of these
+constexpr std::size_t kKept = 3;       // frames before the one asked for
 
 SourceLevel shell(const Solid& solid, std::size_t count, double distance, SourceSettings settings) {
   SourceLevel level;
@@ -101,6 +105,7 @@ FrameFitter::FrameFitter(SourceBoundary rest, const FrameFitterSettings& setting
     collocation_ =
         samplesAt(blueNoiseSamples(solid().surface(), frameCollocation(settings), sample));
     seed_ = settings.seed;
+    inside_ = pointsInside(solid(), kInside, settings.progress);
     return levelsOf(solid(), settings);
   });
   levels_ = levels.size();
@@ -144,14 +149,22 @@ FrameFit FrameFitter::fit(const Mesh& frame, const BoundarySettings& settings) c
         },
         certificate);
   });
+  double folded = 0, outside = 0;
+  timed(seconds, "inside", [&] {
+    const MappedPoints mapped =
+        mapPoints(HarmonicMap(field), inside_, kSumAccuracy * boundary.diagonal, settings.progress);
+    folded = foldedShare(mapped.determinants);
+    outside = outsideShare(mapped.points, TargetShape(solid(), boundary),
+                           error.max * boundary.diagonal, settings.progress);
+  });
   std::vector<std::string> warnings = boundary.warnings;
   if (error.max > kDoubtfulError)
     warnings.push_back(
         fmt::format("the boundary error reaches {:.2g} of the diagonal: this map is not to be "
                     "trusted; use more charges",
                     error.max));
-  return {std::move(boundary), std::move(field),    error,
-          solution.iterations, std::move(warnings), std::move(seconds)};
+  return {std::move(boundary), std::move(field),  error, folded, outside, solution.iterations,
+          std::move(warnings), std::move(seconds)};
 }
 
 HarmonicField velocityAt(const NumberedFit& frame, const std::optional<NumberedFit>& before,

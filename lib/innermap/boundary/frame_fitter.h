@@ -43,9 +43,12 @@ struct FrameFit {
   TargetBoundary boundary;
   HarmonicField field;
   BoundaryError error;  // by certify, fractions of the frame's diagonal
+  // Of some thousand points inside: the share whose Jacobian determinant is not above 0, and the
+  // share whose image is farther out of the frame's solid than the largest error.
+  double folded = 0, outside = 0;
   int iterations = 0;
   std::vector<std::string> warnings;
-  StageSeconds seconds;  // "solid", "solve", "certificate"
+  StageSeconds seconds;  // "solid", "solve", "certificate", "inside"
 };
 
 // Immutable once made; safe from any number of threads.
@@ -78,6 +81,7 @@ class FrameFitter {
 
   SourceBoundary rest_;
   Samples collocation_;
+  Points inside_;
   std::uint64_t seed_ = 1;
   std::optional<IterativeSolver> solver_;
   std::size_t levels_ = 0;

@@ -127,6 +127,16 @@ GridPtr named(GridPtr grid, const char* name) {
   return grid;
 }
 
+void markFolds(const openvdb::FloatGrid& levelSet, MapGrids& out) {
+  out.folded = named(openvdb::FloatGrid::create(), "folded");
+  out.folded->setTransform(out.jacobian->transform().copy());
+  auto marks = out.folded->getAccessor();
+  const auto distance = levelSet.getConstAccessor();
+  for (auto voxel = out.jacobian->cbeginValueOn(); voxel; ++voxel)
+    if (!(*voxel > 0) && distance.getValue(voxel.getCoord()) < 0)
+      marks.setValue(voxel.getCoord(), 1.0f);
+}
+
 // The values of a leaf with those of repaired voxels in their places.
 class RepairedLeaf {
  public:
@@ -219,10 +229,14 @@ MapGrids Evaluation::run() {
     out.foldedVoxels += t.foldedVoxels;
     interior += t.interior;
   }
+  if (out.jacobian && out.foldedVoxels > 0) markFolds(levelSet_, out);
   const double most = settings_.repairUpTo * static_cast<double>(interior);
   if (mayRepair && static_cast<double>(out.foldedVoxels) <= most) repair(*region, totals, out);
   if (!settings_.map) out.map.reset();
-  if (!settings_.jacobian) out.jacobian.reset();
+  if (!settings_.jacobian) {
+    out.jacobian.reset();
+    out.folded.reset();
+  }
   LeafTotals sum;
   for (const LeafTotals& t : totals) sum.add(t);
   const double cell = voxel_ * voxel_ * voxel_;
@@ -246,7 +260,7 @@ std::vector<openvdb::GridBase::Ptr> MapGrids::all() const {
   for (const openvdb::GridBase::Ptr& grid :
        {openvdb::GridBase::Ptr(map), openvdb::GridBase::Ptr(jacobian),
         openvdb::GridBase::Ptr(harmonicEnergy), openvdb::GridBase::Ptr(deformationEnergy),
-        openvdb::GridBase::Ptr(repaired)})
+        openvdb::GridBase::Ptr(repaired), openvdb::GridBase::Ptr(folded)})
     if (grid) grids.push_back(grid);
   return grids;
 }

@@ -45,6 +45,9 @@ struct MapGrids {
   // Where voxels were moved to repair folds, the way of each, world units of the target; no grid
   // where there were none. The Jacobian of such a voxel is the mean of the tetrahedra about it.
   openvdb::FloatGrid::Ptr repaired;
+  // 1 at the voxels inside where the map's own determinant is not above 0, before repair, and
+  // active there alone; no grid where there are none, or no Jacobian was asked for.
+  openvdb::FloatGrid::Ptr folded;
 
   // Integrals over the solid; cells along the surface count by their share inside.
   double harmonicTotal = 0;     // both solids scaled to unit volume: 3 for a rigid motion

@@ -12,6 +12,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/evaluate/detail/cell_check.h"
+#include "innermap/evaluate/detail/outside_voxels.h"
 #include "innermap/levelset/level_set.h"
 
 namespace innermap {
@@ -59,11 +60,36 @@ void insertTotals(const openvdb::GridPtrVec& grids, const MapGrids& values) {
   if (values.repaired) insert(grids, {{"repaired_farthest", values.repairedFarthest}});
 }
 
+double factOf(const MappedSolid& mapped, const char* name) {
+  for (const auto& [key, value] : mapped.facts)
+    if (key == name) return std::strtod(value.c_str(), nullptr);
+  return 0;
+}
+
+// The largest of the boundary, world units of the target.
+double boundaryErrorOf(const MappedSolid& mapped) {
+  const double known = mapped.injectivity.boundaryError;
+  return (known > 0 ? known : factOf(mapped, "boundary_error_max")) *
+         mapped.boundary.target.diagonal;
+}
+
+void findOutside(const MappedSolid& mapped, const TargetShape& target, Progress* progress,
+                 SolidGrids& out) {
+  OutsideVoxelsSettings settings;
+  settings.slack = boundaryErrorOf(mapped);
+  settings.origin = out.localOrigin;
+  settings.progress = progress;
+  out.outside = outsideVoxels(*out.values.map, *out.surface, target, settings);
+  if (!out.outside) return;
+  out.outsideFraction = static_cast<double>(out.outside->activeVoxelCount()) /
+                        static_cast<double>(out.values.interiorVoxels);
+}
+
 // What voxels and the cells between them tell, beside what is known of the map.
-Injectivity injectivityOf(const MappedSolid& mapped, const SolidGrids& grids, Progress* progress) {
+Injectivity injectivityOf(const MappedSolid& mapped, const SolidGrids& grids,
+                          const TargetShape& target, Progress* progress) {
   const MapGrids& values = grids.values;
-  const double error = mapped.injectivity.boundaryError * mapped.boundary.target.diagonal;
-  const TargetShape target(mapped.boundary);
+  const double error = boundaryErrorOf(mapped);
   Injectivity out = mapped.injectivity;
   out.voxels.checked = values.interiorVoxels;
   out.voxels.least = values.jacobianMin;
@@ -87,12 +113,8 @@ Injectivity injectivityOf(const MappedSolid& mapped, const SolidGrids& grids, Pr
 
 // What the map was fitted to.
 double toleranceOf(const MappedSolid& mapped) {
-  for (const auto& [key, value] : mapped.facts)
-    if (key == "tolerance") {
-      const double tolerance = std::strtod(value.c_str(), nullptr);
-      if (tolerance > 0) return tolerance;
-    }
-  return kUsualTolerance;
+  const double tolerance = factOf(mapped, "tolerance");
+  return tolerance > 0 ? tolerance : kUsualTolerance;
 }
 
 // Where floats hold the target's positions well enough, the origin; else a point near its middle
@@ -142,6 +164,7 @@ void insertStatement(const openvdb::GridPtrVec& grids, const Injectivity& known)
 openvdb::GridPtrVec SolidGrids::all() const {
   openvdb::GridPtrVec out{surface, density};
   for (const openvdb::GridBase::Ptr& grid : values.all()) out.push_back(grid);
+  if (outside) out.push_back(outside);
   if (mapLocal) out.push_back(mapLocal);
   return out;
 }
@@ -168,15 +191,17 @@ SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& sett
   });
   requireInterior(out.values.interiorVoxels, mapped.boundary.source.mesh.name);
   out.voxelSize = out.surface->voxelSize()[0];
-  out.injectivity =
-      timed(out.seconds, "cells", [&] { return injectivityOf(mapped, out, settings.progress); });
+  const TargetShape target(mapped.boundary);
+  timed(out.seconds, "outside", [&] { findOutside(mapped, target, settings.progress, out); });
+  out.injectivity = timed(out.seconds, "cells",
+                          [&] { return injectivityOf(mapped, out, target, settings.progress); });
   splitMap(mapped, out);
   const openvdb::GridPtrVec all = out.all();
   if (out.mapLocal)
     out.mapLocal->insertMeta(
         "innermap_map_local_origin",
         openvdb::Vec3DMetadata({out.localOrigin.x, out.localOrigin.y, out.localOrigin.z}));
-  insert(all, {{"map_rounding", out.mapRounding}});
+  insert(all, {{"map_rounding", out.mapRounding}, {"outside_fraction", out.outsideFraction}});
   describeMap(all, mapped);
   insertStatement(all, out.injectivity);
   insertTotals(all, out.values);

@@ -40,21 +40,26 @@ struct SolidGrids {
   // localOrigin, which floats hold well; folds are looked for in these. Null otherwise.
   openvdb::Vec3fGrid::Ptr mapLocal;
   Vec3 localOrigin;
-  double mapRounding = 0;   // MapGrids::rounding, fraction of the target's diagonal
-  double voxelSize = 0;     // world units
-  Injectivity injectivity;  // of the map, with what voxels and cells tell
+  // How far the image of each voxel inside lies outside the target, world units of that; active
+  // where that is more than the boundary's error. Null where nothing does.
+  openvdb::FloatGrid::Ptr outside;
+  double outsideFraction = 0;  // their share of the voxels inside
+  double mapRounding = 0;      // MapGrids::rounding, fraction of the target's diagonal
+  double voxelSize = 0;        // world units
+  Injectivity injectivity;     // of the map, with what voxels and cells tell
   std::vector<std::string> notes, warnings;
-  StageSeconds seconds;  // "voxelize", "evaluate", "cells"
+  StageSeconds seconds;  // "voxelize", "evaluate", "outside", "cells"
 
-  // As mapGridNames(), and `repaired` and `map_local` where there are such.
+  // As mapGridNames(), and `repaired`, `folded`, `outside` and `map_local` where there are such.
   openvdb::GridPtrVec all() const;
 };
 
 // Metadata (prefix innermap_): the map's facts, harmonic_energy_total, deformation_energy_total,
-// jacobian_min, jacobian_max, folded_fraction, map_rounding (SolidGrids::mapRounding), lame_lambda,
-// lame_mu; map_local_origin (Vec3d) where there is that grid; one_to_one, which is what
-// injectivityStatement says. Throws SettingError, MemoryError, DataError (thinner than the voxels
-// everywhere), Cancelled. Deterministic for any number of threads.
+// jacobian_min, jacobian_max, folded_fraction, outside_fraction, map_rounding
+// (SolidGrids::mapRounding), lame_lambda, lame_mu; map_local_origin (Vec3d) where there is that
+// grid; one_to_one, which is what injectivityStatement says. Throws SettingError, MemoryError,
+// DataError (thinner than the voxels everywhere), Cancelled. Deterministic for any number of
+// threads.
 SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& settings = {});
 
 // The maps of a sequence's frames on the voxels of its rest pose.

@@ -4,6 +4,23 @@
 
 namespace innermap {
 
+void ResamplingFigures::add(double growth) {
+  const double size = std::abs(growth);
+  if (!(size > 0)) return;
+  const double volume = 1 / size;  // of the input that comes to a voxel of the output
+  sum += volume;
+  largestGrowth = std::max(largestGrowth, volume);
+  if (outputVoxel > kCoarser * inputVoxel * std::cbrt(size)) coarser += volume;
+}
+
+void ResamplingFigures::add(const ResamplingFigures& others) {
+  sum += others.sum;
+  coarser += others.coarser;
+  largestGrowth = std::max(largestGrowth, others.largestGrowth);
+}
+
+void ResamplingFigures::finish() { coarserShare = sum > 0 ? coarser / sum : 0; }
+
 double finestVoxel(const openvdb::GridPtrVec& grids) {
   double finest = 0;
   for (const openvdb::GridBase::Ptr& grid : grids) {

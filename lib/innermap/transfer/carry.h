@@ -13,6 +13,7 @@
 #include <openvdb/openvdb.h>
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -28,10 +29,15 @@ struct CarrySettings {
   Sampling sampling = Sampling::linear;
   bool allDensities = false;  // all float and double grids but level sets and parts of tensors
   std::vector<std::string> densities;  // or those of these names
+  // No density grows more than so many times, above 0; what comes together beyond that is left out.
+  double densityLimit = std::numeric_limits<double>::infinity();
   // Symmetric tensors by their common name: six float grids NAME.xx, .yy, .zz, .xy, .yz, .xz, or
   // three Vec3 grids NAME.x, .y, .z, the rows.
   std::vector<std::string> stresses, strains;
 };
+
+// Whether the settings make a density of a grid: scalars of a float or double grid that fill space.
+bool isDensity(const openvdb::GridBase& grid, const CarrySettings& settings);
 
 // The least edge of a voxel of the grids, world units: what the output has unless told otherwise.
 double finestVoxel(const openvdb::GridPtrVec& grids);
@@ -44,12 +50,30 @@ struct CarriedMass {
   // around it. And of all active voxels of the target.
   double before = 0, after = 0;
   double left = 0;  // of all other active voxels of the source
+  double cut = 0;   // that CarrySettings::densityLimit left out
   // The most volume of the source in any voxel of the target, by the volume of that: no density of
   // the target is larger than the source's largest times this.
   double largestRatio = 0;
   // The same of the tetrahedra by themselves: the volume of one by that of its image.
   double largestCompression = 0;
   std::uint64_t cells = 0, foldedCells = 0;  // of the source; turned inside out at least in part
+};
+
+// How much of what is carried is finer than the output's voxels: where these are more than
+// kCoarser times as large as the finest of the input, moved by the map (the cube root of its
+// determinant). Shares are of the input's solid, by volume.
+constexpr double kCoarser = 1.5;
+struct ResamplingFigures {
+  double inputVoxel = 0, outputVoxel = 0;  // edges, world units
+  double coarserShare = 0;
+  double largestGrowth = 0;  // the most that any volume shrinks inside, so any density grows
+
+  // growth: of the input's volumes, at a place of the output.
+  void add(double growth);
+  void add(const ResamplingFigures& others);
+  void finish();
+
+  double sum = 0, coarser = 0;  // volumes of the input while voxels are added
 };
 
 // A harmonic field on the source that is written on the target's voxels: at q its value at p.

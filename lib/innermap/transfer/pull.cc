@@ -26,6 +26,9 @@ class Pull {
   Points movedBack(const Points& positions) const;
   void carryThrough(const openvdb::MaskGrid& region, CarryOutput& output) const;
 
+  ResamplingFigures carryByMap(const openvdb::MaskGrid& region, const openvdb::GridPtrVec& grids,
+                               const CarryOutput& output);
+
   const PullSettings& settings_;
   ExtendedMap map_;
 };
@@ -80,6 +83,29 @@ void Pull::carryThrough(const openvdb::MaskGrid& region, CarryOutput& output) co
       settings_.progress);
 }
 
+ResamplingFigures Pull::carryByMap(const openvdb::MaskGrid& region,
+                                   const openvdb::GridPtrVec& grids, const CarryOutput& output) {
+  ResamplingFigures all;
+  all.inputVoxel = finestVoxel(grids);
+  all.outputVoxel = map_.levelSet().voxelSize()[0];
+  std::vector<ResamplingFigures> parts(region.tree().leafCount(), all);
+  map_.visit(
+      region,
+      [&](std::size_t number, const LeafValues& leaf, const std::vector<ExtendedSample>& samples) {
+        std::vector<Site> sites;
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+          const ExtendedSample& s = samples[i];
+          sites.push_back({s.image, s.image, inverse(s.jacobian)});
+          if (leaf.inside[i]) parts[number].add(1 / determinant(s.jacobian));
+        }
+        output.carry(leaf.origin, sites.data());
+      },
+      "pulling the grids", settings_.progress);
+  for (const ResamplingFigures& part : parts) all.add(part);
+  all.finish();
+  return all;
+}
+
 PullResult Pull::run(const openvdb::GridPtrVec& grids) {
   PullResult out;
   if (settings_.targetLevelSet && !(settings_.outside.distance > 0))
@@ -92,15 +118,7 @@ PullResult Pull::run(const openvdb::GridPtrVec& grids) {
   if (settings_.through)
     carryThrough(*active, output);
   else
-    map_.visit(
-        *active,
-        [&](std::size_t, const LeafValues& leaf, const std::vector<ExtendedSample>& samples) {
-          std::vector<Site> sites;
-          for (const ExtendedSample& s : samples)
-            sites.push_back({s.image, s.image, inverse(s.jacobian)});
-          output.carry(leaf.origin, sites.data());
-        },
-        "pulling the grids", settings_.progress);
+    out.resampling = carryByMap(*active, grids, output);
   out.grids.resize(grids.size());
   output.finish([&](const Points& points) { return movedBack(points); }, out.grids,
                 settings_.progress);

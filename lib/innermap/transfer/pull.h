@@ -32,8 +32,9 @@ struct PullSettings {
 };
 
 struct PullResult {
-  openvdb::GridPtrVec grids;  // in the order given
-  std::uint64_t voxels = 0;   // active
+  openvdb::GridPtrVec grids;     // in the order given
+  std::uint64_t voxels = 0;      // active
+  ResamplingFigures resampling;  // of the voxels inside; none when pulled through a mesh
   std::vector<std::string> warnings;
 };
 

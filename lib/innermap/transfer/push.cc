@@ -48,6 +48,25 @@ int partsOf(const openvdb::GridBase& density, const Solid& source,
   return std::clamp(static_cast<int>(ratio + 1 - kLarger), 1, kMost);
 }
 
+ResamplingFigures resamplingOf(const InvertedMap& inverted, const openvdb::FloatGrid& target,
+                               const openvdb::GridPtrVec& grids) {
+  ResamplingFigures out;
+  out.inputVoxel = finestVoxel(grids);
+  out.outputVoxel = target.voxelSize()[0];
+  const auto distance = target.getConstAccessor();
+  std::size_t next = 0;
+  for (auto leaf = inverted.region->tree().cbeginLeaf(); leaf; ++leaf)
+    for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel, ++next) {
+      if (!(distance.getValue(voxel.getCoord()) < 0)) continue;
+      Mat3 jacobian;
+      for (std::size_t k = 0; k < 9; ++k)
+        jacobian[k / 3][k % 3] = static_cast<double>(inverted.jacobians[next][k]);
+      out.add(determinant(jacobian));
+    }
+  out.finish();
+  return out;
+}
+
 }  // namespace
 
 struct VolumePusher::Data {
@@ -162,6 +181,7 @@ void VolumePusher::Data::carryDensities(const ComposedMap& map, const openvdb::F
   for (const auto& [place, voxels] : densities) {
     CarryDensitySettings carry;
     carry.parts = partsOf(*voxels.grid, source, target);
+    carry.limit = settings.carry.densityLimit;
     carry.constant = settings.carry.sampling == Sampling::nearest;
     carry.maxMemory = settings.maxMemory;
     carry.progress = settings.progress;
@@ -190,6 +210,7 @@ PushResult VolumePusher::push(const ComposedMap& map, const openvdb::FloatGrid& 
     out.statistics = inverted.statistics;
     const std::string doubt = inverted.statistics.warning();
     if (!doubt.empty()) out.warnings.push_back(doubt);
+    if (!d.grids.empty()) out.resampling = resamplingOf(inverted, targetLevelSet, d.grids);
     d.carrySampled(map, inverted, out.grids);
     for (const CarriedField& field : fields)
       out.grids.push_back(fieldGrid(field, d.source, d.lattice, inverted, d.settings.accuracy,

@@ -55,6 +55,7 @@ struct PushResult {
   bool inverted = false;
   InverseStatistics statistics;
   std::vector<CarriedMass> masses;  // of grids carried as densities
+  ResamplingFigures resampling;     // of the voxels inside, where there is an inverse
   std::vector<std::string> warnings;
 };
 

@@ -1,6 +1,7 @@
 #include "innermap/boundary/detail/target_shape.h"
 
 #include <cmath>
+#include <limits>
 
 #include "innermap/boundary/detail/refined_surface.h"
 
@@ -8,10 +9,6 @@ namespace innermap {
 namespace {
 
 constexpr double kNear = 0.01;  // of the target's diagonal
-
-const std::vector<Triangle>& trianglesOf(const BoundaryPair& pair) {
-  return pair.solid().repaired().mesh.triangles;
-}
 
 TriangleTree treeOf(const std::vector<Crossing>& crossings) {
   Points places;
@@ -26,12 +23,14 @@ TriangleTree treeOf(const std::vector<Crossing>& crossings) {
 
 }  // namespace
 
-TargetShape::TargetShape(const BoundaryPair& pair)
-    : orientation_(signedVolume(pair.target.moved, trianglesOf(pair)) < 0 ? -1 : 1),
-      volume_(pair.target.volume),
-      reach_(kNear * pair.target.diagonal),
-      winding_(pair.target.moved, trianglesOf(pair)),
-      tree_(pair.target.moved, trianglesOf(pair)) {
+TargetShape::TargetShape(const Solid& source, const TargetBoundary& target)
+    : orientation_(signedVolume(target.moved, source.repaired().mesh.triangles) < 0 ? -1 : 1),
+      volume_(target.volume),
+      reach_(kNear * target.diagonal),
+      winding_(target.moved, source.repaired().mesh.triangles),
+      tree_(target.moved, source.repaired().mesh.triangles) {}
+
+TargetShape::TargetShape(const BoundaryPair& pair) : TargetShape(pair.solid(), pair.target) {
   if (pair.targetCheck.crossings.empty()) return;
   crossings_.emplace(treeOf(pair.targetCheck.crossings));
   if (pair.solid().overlaps())
@@ -40,6 +39,10 @@ TargetShape::TargetShape(const BoundaryPair& pair)
 
 bool TargetShape::inside(const Vec3& p) const {
   return volume_ > 0 && orientation_ * winding_.wholeAt(p) > 0;
+}
+
+double TargetShape::distance(const Vec3& p) const {
+  return tree_.closest(p, std::numeric_limits<double>::infinity()).distance;
 }
 
 bool TargetShape::near(const Vec3& p, double distance) const {

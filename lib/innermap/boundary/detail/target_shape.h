@@ -14,12 +14,16 @@ namespace innermap {
 class TargetShape {
  public:
   explicit TargetShape(const BoundaryPair& pair);
+  // Where the target runs through itself is not asked of it.
+  TargetShape(const Solid& source, const TargetBoundary& target);
 
   // Mirrored targets have an inside too; those that bound nothing have none.
   bool inside(const Vec3& p) const;
 
   // Whether the surface is nearer than `distance`, parts of it that lie inside others included.
   bool near(const Vec3& p, double distance) const;
+
+  double distance(const Vec3& p) const;  // from that surface, world units
 
   // What is there more than one part of the solid goes to, or none that is not turned over,
   // whatever the map: the surface winds about the point otherwise than once or not at all, or

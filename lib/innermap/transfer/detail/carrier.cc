@@ -91,8 +91,9 @@ std::vector<std::unique_ptr<Carrier>> makeCarriers(const openvdb::GridPtrVec& gr
   for (std::size_t i = 0; i < grids.size(); ++i) {
     throwIfCancelled(progress);
     if (taken[i]) continue;
-    out.push_back(
-        makeGridCarrier(grids[i], i, settings.sampling, isDensity(*grids[i], settings), solid));
+    std::optional<double> limit;
+    if (isDensity(*grids[i], settings)) limit = settings.densityLimit;
+    out.push_back(makeGridCarrier(grids[i], i, settings.sampling, limit, solid));
   }
   return out;
 }

@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -63,12 +64,10 @@ std::vector<std::unique_ptr<Carrier>> makeCarriers(const openvdb::GridPtrVec& gr
                                                    const openvdb::FloatGrid* solid,
                                                    Progress* progress);
 
-// Whether the settings make a density of a grid: scalars of a float or double grid that fill space.
-bool isDensity(const openvdb::GridBase& grid, const CarrySettings& settings);
-
-// In grid_carrier.cc: one grid. solid: as above.
+// In grid_carrier.cc: one grid. densityLimit: CarrySettings::densityLimit of a density; none: it is
+// no density. solid: as above.
 std::unique_ptr<Carrier> makeGridCarrier(const openvdb::GridBase::Ptr& grid, std::size_t place,
-                                         Sampling sampling, bool density,
+                                         Sampling sampling, std::optional<double> densityLimit,
                                          const openvdb::FloatGrid* solid);
 
 // In tensor_carrier.cc: six float grids or the three rows.

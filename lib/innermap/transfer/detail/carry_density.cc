@@ -207,17 +207,23 @@ void DensityCarry::run() {
   carryTorn(torn);
 }
 
-// Active voxels of `grid` become 0, and the others as the sums say.
+// Active voxels of `grid` become 0, and the others as the sums say. What lets volume grow together
+// more than `limit` times is thinned: the mass that this leaves out.
 template <class Grid>
-void write(const VoxelSums& sums, double voxelVolume, Grid& grid) {
+double write(const VoxelSums& sums, double voxelVolume, double limit, Grid& grid) {
+  double cut = 0;
   using Value = typename Grid::ValueType;
   for (auto voxel = grid.beginValueOn(); voxel; ++voxel) voxel.setValue(Value(0));
   for (const auto& [origin, leafSums] : sums.leaves()) {
     auto* leaf = grid.tree().touchLeaf(origin);
     for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
-      if (leafSums[i].volume > 0)
-        leaf->setValueOn(i, static_cast<Value>(leafSums[i].mass / voxelVolume));
+      if (leafSums[i].volume > 0) {
+        const double share = std::min(1.0, limit * voxelVolume / leafSums[i].volume);
+        leaf->setValueOn(i, static_cast<Value>(share * leafSums[i].mass / voxelVolume));
+        cut += (1 - share) * leafSums[i].mass;
+      }
   }
+  return cut;
 }
 
 }  // namespace
@@ -238,9 +244,11 @@ openvdb::GridBase::Ptr carryDensity(const DensityVoxels& source, const ExtendedM
   const openvdb::GridBase::Ptr out = emptyLike(*source.grid, region);
   const double volume = voxelVolume(region.transform());
   if (out->isType<openvdb::FloatGrid>())
-    write(carry.sums(), volume, static_cast<openvdb::FloatGrid&>(*out));
+    figures.cut =
+        write(carry.sums(), volume, settings.limit, static_cast<openvdb::FloatGrid&>(*out));
   else
-    write(carry.sums(), volume, static_cast<openvdb::DoubleGrid&>(*out));
+    figures.cut =
+        write(carry.sums(), volume, settings.limit, static_cast<openvdb::DoubleGrid&>(*out));
   double most = 0;
   for (const auto& [origin, sums] : carry.sums().leaves())
     for (const VoxelSums::Sum& sum : sums) most = std::max(most, sum.volume);

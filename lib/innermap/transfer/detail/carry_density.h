@@ -5,6 +5,7 @@
 #include <openvdb/openvdb.h>
 
 #include <cstdint>
+#include <limits>
 
 #include "innermap/core/progress.h"
 #include "innermap/transfer/carry.h"
@@ -14,7 +15,8 @@
 namespace innermap {
 
 struct CarryDensitySettings {
-  int parts = 1;                // cells along each edge of a voxel of the source, at least 1
+  int parts = 1;  // cells along each edge of a voxel of the source, at least 1
+  double limit = std::numeric_limits<double>::infinity();  // of a density's growth, above 0
   bool constant = false;        // densities are constant in each voxel of the source, not linear
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;

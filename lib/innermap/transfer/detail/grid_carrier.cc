@@ -45,12 +45,13 @@ class GridCarrier : public Carrier {
   using Value = typename Grid::ValueType;
   using Leaf = typename Grid::TreeType::LeafNodeType;
 
-  GridCarrier(typename Grid::ConstPtr grid, std::size_t place, Sampling sampling, bool density)
+  GridCarrier(typename Grid::ConstPtr grid, std::size_t place, Sampling sampling,
+              std::optional<double> densityLimit)
       : Carrier({place}),
         grid_(std::move(grid)),
         sampling_(sampling),
-        density_(density),
-        attribute_(isAttribute(*grid_, density)) {}
+        densityLimit_(densityLimit),
+        attribute_(isAttribute(*grid_, densityLimit.has_value())) {}
 
   openvdb::GridPtrVec makeOutput(const openvdb::MaskGrid& region) const override {
     const openvdb::GridBase::Ptr out = emptyLike(*grid_, region);
@@ -75,7 +76,7 @@ class GridCarrier : public Carrier {
                : nullptr;
   }
 
-  bool isDensity() const override { return density_; }
+  bool isDensity() const override { return densityLimit_.has_value(); }
 
   void finish(openvdb::GridPtrVec& output) const override {
     if constexpr (std::is_floating_point_v<Value>)
@@ -85,8 +86,9 @@ class GridCarrier : public Carrier {
  private:
   Value moved(const Value& value, const Mat3& a, openvdb::VecType type) const {
     if constexpr (std::is_floating_point_v<Value>) {
-      if (density_)
-        return static_cast<Value>(value / std::max(std::abs(determinant(a)), kLeastDeterminant));
+      if (densityLimit_)
+        return static_cast<Value>(
+            value / std::max({std::abs(determinant(a)), 1 / *densityLimit_, kLeastDeterminant}));
     } else if constexpr (kIsVector<Value> && !kIsDiscrete<Value>) {
       const Vec3 v = movedVector({value[0], value[1], value[2]}, a, type);
       return Value(openvdb::Vec3d(v.x, v.y, v.z));
@@ -108,14 +110,15 @@ class GridCarrier : public Carrier {
 
   typename Grid::ConstPtr grid_;
   Sampling sampling_;
-  bool density_, attribute_;
+  std::optional<double> densityLimit_;
+  bool attribute_;
 };
 
 // A mask's values are its active voxels.
 template <>
 class GridCarrier<openvdb::MaskGrid> : public Carrier {
  public:
-  GridCarrier(openvdb::MaskGrid::ConstPtr grid, std::size_t place, Sampling, bool)
+  GridCarrier(openvdb::MaskGrid::ConstPtr grid, std::size_t place, Sampling, std::optional<double>)
       : Carrier({place}), grid_(std::move(grid)) {}
 
   openvdb::GridPtrVec makeOutput(const openvdb::MaskGrid& region) const override {
@@ -140,22 +143,22 @@ class GridCarrier<openvdb::MaskGrid> : public Carrier {
 
 template <class Grid>
 std::unique_ptr<Carrier> carrierOf(const openvdb::GridBase::Ptr& grid, std::size_t place,
-                                   Sampling sampling, bool density,
+                                   Sampling sampling, std::optional<double> densityLimit,
                                    const openvdb::FloatGrid* solid) {
   typename Grid::ConstPtr typed = openvdb::gridConstPtrCast<Grid>(grid);
   if constexpr (!std::is_same_v<Grid, openvdb::MaskGrid>)
-    if (solid && isAttribute(*grid, density))
+    if (solid && isAttribute(*grid, densityLimit.has_value()))
       typed = openvdb::gridPtrCast<Grid>(continuedBeyond(*grid, *solid, kContinuedLayers));
-  return std::make_unique<GridCarrier<Grid>>(typed, place, sampling, density);
+  return std::make_unique<GridCarrier<Grid>>(typed, place, sampling, densityLimit);
 }
 
 }  // namespace
 
 std::unique_ptr<Carrier> makeGridCarrier(const openvdb::GridBase::Ptr& grid, std::size_t place,
-                                         Sampling sampling, bool density,
+                                         Sampling sampling, std::optional<double> densityLimit,
                                          const openvdb::FloatGrid* solid) {
   using Make = std::unique_ptr<Carrier> (*)(const openvdb::GridBase::Ptr&, std::size_t, Sampling,
-                                            bool, const openvdb::FloatGrid*);
+                                            std::optional<double>, const openvdb::FloatGrid*);
   const std::pair<std::string, Make> makers[] = {
       {openvdb::FloatGrid::gridType(), carrierOf<openvdb::FloatGrid>},
       {openvdb::DoubleGrid::gridType(), carrierOf<openvdb::DoubleGrid>},
@@ -167,7 +170,7 @@ std::unique_ptr<Carrier> makeGridCarrier(const openvdb::GridBase::Ptr& grid, std
       {openvdb::Vec3IGrid::gridType(), carrierOf<openvdb::Vec3IGrid>},
       {openvdb::MaskGrid::gridType(), carrierOf<openvdb::MaskGrid>}};
   for (const auto& [type, make] : makers)
-    if (grid->type() == type) return make(grid, place, sampling, density, solid);
+    if (grid->type() == type) return make(grid, place, sampling, densityLimit, solid);
   throw DataError("grid \"" + grid->getName() + "\": has the type " + grid->type() +
                   ", which cannot be carried; choose others with --grids");
 }

@@ -1,0 +1,270 @@
+#!/usr/bin/env python3
+"""The verdict that runs end with: each of its findings provoked on purpose, and seen."""
+
+import math
+
+from cli import icosphere, icosphere_arrays, innermap, no_leftovers, read_json, run, write_obj
+
+MAP = ("--resolution", 32, "--sources", 1000)
+
+
+def finding(report, name):
+    found = [f for f in report["verdict"]["findings"] if f["name"] == name]
+    assert len(found) == 1, (name, report["verdict"])
+    return found[0]
+
+
+def told(done, report, name):
+    """An unmet finding is warned of on stderr, and stands with its advice on stdout and in the
+    report."""
+    f = finding(report, name)
+    assert not f["met"] and f["value"] > f["threshold"] and f["advice"], f
+    assert not report["verdict"]["met"]
+    assert f["statement"] in done.stdout and f["advice"] in done.stdout, done.stdout
+    assert "not met" in done.stdout
+    if name != "self_intersections":  # that was warned of when the boundaries were read
+        assert f"warning: {f['statement']}" in done.stderr, done.stderr
+        assert f["statement"] in report["warnings"]
+    return f
+
+
+def ball_with(name, moved, subdivisions=3):
+    vertices, faces = icosphere_arrays(subdivisions)
+    return write_obj(name, [moved(*p) for p in vertices], faces)
+
+
+def pit(depth):
+    """Pushed in at the top, a narrow hole."""
+    return lambda x, y, z: (x, y, z - depth * math.exp(-(x * x + y * y) / 0.1) * (z > 0))
+
+
+def waist(factor):
+    """Narrow in the middle."""
+    def moved(x, y, z):
+        s = 1 - (1 - factor) * math.exp(-z * z / 0.02)
+        return (s * x, s * y, z)
+    return moved
+
+
+def mapped(target, *options, exit_code=0):
+    icosphere("a.obj", 3)
+    done = innermap("map", "a.obj", target, "-o", "out", *MAP, *options, exit_code=exit_code)
+    return done, read_json("out/report.json")
+
+
+def grids(path):
+    import openvdb  # pylint: disable=import-outside-toplevel
+    return {g.name: g for g in openvdb.readAll(path)[0]}
+
+
+def test_all_met_for_a_map_that_is_good():
+    ball_with("b.obj", lambda x, y, z: (2 * x, y, z + 0.2 * x))
+    done, r = mapped("b.obj", "--strict")
+    assert r["verdict"]["met"] and "verdict: all 4 met" in done.stdout
+    assert [f["name"] for f in r["verdict"]["findings"]] == [
+        "boundary", "one_to_one", "outside", "self_intersections"]
+    assert r["outside_fraction"] == 0 and "warning" not in done.stderr
+    for name in ("map.ply", "map.vdb", "slices.exr", "section.png", "report.json"):
+        assert f"{name} (" in done.stderr.split("wrote out/: ")[1], done.stderr
+    quiet = innermap("evaluate", "out/map.ply", "-o", "e.vdb", "--resolution", 16, "-q")
+    assert quiet.stderr == "" and "verdict: all 4 met" in quiet.stdout
+
+
+def test_a_folded_map_and_what_lands_outside():
+    ball_with("pit.obj", pit(1.7))
+    done, r = mapped("pit.obj", "--repair", "off")
+    folded = told(done, r, "one_to_one")
+    assert 0.01 < folded["value"] < 0.1 and "--one-to-one on" in folded["advice"]
+    assert abs(folded["value"] - r["jacobian"]["folded_fraction"]) < 0.01
+    outside = told(done, r, "outside")
+    assert outside["value"] == r["outside_fraction"] > 0.01
+    # Both can be seen: as many voxels are marked as the shares say.
+    made = grids("out/map.vdb")
+    inside = r["grid"]["interior_voxels"]
+    marked = made["folded"].activeVoxelCount() / inside
+    assert abs(marked - r["one_to_one"]["voxels_folded"] / inside) < 1e-9 and marked > 0.01
+    assert abs(made["outside"].activeVoxelCount() / inside - outside["value"]) < 0.01
+    assert all(v == 1 for v in (i["value"] for i in items(made["folded"])))
+    # Against the hole's own formula: what is outside is above the surface.
+    positions = made["map"].getConstAccessor()
+    for item in items(made["outside"]):
+        x, y, z = positions.getValue(item["min"])
+        flat = x * x + y * y
+        top = math.sqrt(max(0, 1 - flat)) - 1.7 * math.exp(-flat / 0.1)
+        assert z > top - 0.05 or flat + z * z > 0.98, (x, y, z, top)
+
+
+def items(grid):
+    return [{"min": i.min, "value": i.value} for i in grid.citerOnValues()]
+
+
+def test_strict_ends_with_1_and_writes_all_the_same():
+    ball_with("pit.obj", pit(1.7))
+    done, r = mapped("pit.obj", "--strict", exit_code=1)
+    assert "--strict" in done.stderr and "written all the same" in done.stderr
+    assert not r["verdict"]["met"]
+    no_leftovers("a.obj", "pit.obj", "out")
+    # Thresholds are settings.
+    done, r = mapped("pit.obj", "--strict", "--max-folded", 0.2, "--max-outside", 0.2)
+    assert r["verdict"]["met"] and finding(r, "one_to_one")["threshold"] == 0.2
+    done = innermap("evaluate", "out/map.ply", "-o", "e.vdb", "--strict", exit_code=1)
+    innermap("evaluate", "out/map.ply", "-o", "e.vdb")
+    done = innermap("fit", "a.obj", "pit.obj", "-o", "fit.ply", "--one-to-one", "off", "--strict",
+                    "--report", "r.json", exit_code=1)
+    told(done, read_json("r.json"), "one_to_one")
+
+
+def test_a_boundary_that_misses_the_tolerance():
+    ball_with("b.obj", lambda x, y, z: (x, y, z + 0.4 * math.sin(9 * x) * math.cos(8 * y)))
+    icosphere("a.obj", 3)
+    done = innermap("fit", "a.obj", "b.obj", "-o", "m.ply", "--sources", 60, "--report", "r.json")
+    f = told(done, read_json("r.json"), "boundary")
+    assert f["threshold"] == 0.001 and "--sources" in f["advice"]
+    done = innermap("transfer-distance", "m.ply", "-o", "d", "--resolution", 16)
+    told(done, read_json("d/report.json"), "boundary")
+
+
+def test_a_target_that_runs_through_itself():
+    ball_with("pinched.obj", lambda x, y, z: (x, y, z - 2.3 * math.exp(-(x * x + y * y) / 0.1)
+                                              * (z > 0)))
+    done, r = mapped("pinched.obj")
+    f = told(done, r, "self_intersections")
+    assert f["value"] == r["target"]["self_intersections"] > 0
+    assert "innermap check" in f["advice"]
+    done, r = mapped("pinched.obj", "--max-crossings", 100000)
+    assert finding(r, "self_intersections")["met"]
+
+
+def density(path, size=1.0, n=24):
+    import openvdb  # pylint: disable=import-outside-toplevel
+    grid = openvdb.FloatGrid()
+    grid.name = "density"
+    grid.transform = openvdb.createLinearTransform(2.0 * size / n)
+    grid.fill((-n // 2, -n // 2, -n // 2), (n // 2, n // 2, n // 2), 1.0)
+    openvdb.write(path, grids=[grid])
+    return path
+
+
+def test_a_density_that_is_crushed():
+    icosphere("a.obj", 3)
+    ball_with("waist.obj", waist(0.12))
+    innermap("fit", "a.obj", "waist.obj", "-o", "m.ply")
+    density("d.vdb")
+    push = ("push", "m.ply", "d.vdb", "--density", "--report", "r.json")
+    done = innermap(*push, "-o", "p.vdb")
+    r = read_json("r.json")
+    f = told(done, r, "density")
+    assert "--density-limit" in f["advice"]
+    grown = r["densities"]["density_largest_ratio"]
+    assert grown > 10 and max(i["value"] for i in items(grids("p.vdb")["density"])) > 10
+    assert abs(r["mass"]["density_after"] / r["mass"]["density_before"] - 1) < 1e-3
+    # With the limit: no density is above it, and what is missing is said.
+    done = innermap(*push, "-o", "q.vdb", "--density-limit", 4)
+    limited = read_json("r.json")
+    assert finding(limited, "density")["met"]
+    assert max(i["value"] for i in items(grids("q.vdb")["density"])) <= 4.0001
+    mass = limited["mass"]
+    assert mass["density_cut"] > 0
+    assert abs(mass["density_after"] + mass["density_cut"] - mass["density_before"]) < \
+        1e-3 * mass["density_before"]
+    assert "leaves out" in done.stdout
+    # The other way: what was narrow is pulled out wide again, and a wide one crushed.
+    innermap("fit", "waist.obj", "a.obj", "-o", "back.ply")
+    pull = ("pull", "back.ply", "d.vdb", "--density", "--report", "r.json")
+    told(innermap(*pull, "-o", "p.vdb"), read_json("r.json"), "density")
+    innermap(*pull, "-o", "q.vdb", "--density-limit", 4)
+    assert max(i["value"] for i in items(grids("q.vdb")["density"])) <= 4.0001
+
+
+def test_voxels_follow_the_size_of_the_solid():
+    icosphere("a.obj", 3)
+    for name, size in (("half", 0.5), ("twice", 2.0), ("alike", 1.02)):
+        icosphere(f"{name}.obj", 3, radius=size)
+        innermap("fit", "a.obj", f"{name}.obj", "-o", f"{name}.ply", "--sources", 200)
+    density("d.vdb")
+    counts = {}
+    for name, size in (("half", 0.5), ("twice", 2.0), ("alike", 1.0)):
+        done = innermap("push", f"{name}.ply", "d.vdb", "-o", f"{name}.vdb", "--report", "r.json")
+        r = read_json("r.json")
+        grid = grids(f"{name}.vdb")["density"]
+        assert abs(grid.transform.voxelSize()[0] - size * 2 / 24) < 1e-3 * size, name
+        counts[name] = grid.activeVoxelCount()
+        assert finding(r, "resampling")["value"] < 0.01
+        assert ("voxels of" in done.stderr) == (size != 1.0)
+        innermap("pull", f"{name}.ply", f"{name}.vdb", "-o", "back.vdb")
+        back = grids("back.vdb")["density"]
+        assert abs(back.transform.voxelSize()[0] - 2 / 24) < 0.03 * 2 / 24, name
+    assert 0.8 < counts["half"] / counts["alike"] < 1.25, counts
+    assert 0.8 < counts["twice"] / counts["alike"] < 1.25, counts
+
+
+def test_what_resampling_loses():
+    icosphere("a.obj", 3)
+    icosphere("b.obj", 3, radius=0.5)
+    innermap("fit", "a.obj", "b.obj", "-o", "m.ply", "--sources", 200)
+    density("d.vdb")
+    done = innermap("push", "m.ply", "d.vdb", "-o", "p.vdb", "--voxel-size", 2 / 24, "--report",
+                    "r.json")
+    r = read_json("r.json")
+    f = told(done, r, "resampling")
+    assert f["value"] > 0.99 and "--voxel-size" in f["advice"]
+    assert abs(r["resampling"]["output_voxel"] - 2 / 24) < 1e-6
+    innermap("pull", "m.ply", "p.vdb", "-o", "back.vdb", "--voxel-size", 0.5, "--report", "r.json")
+    assert not finding(read_json("r.json"), "resampling")["met"]
+
+
+def write_frames():
+    icosphere("rest.obj", 3)
+    for n in range(1, 5):
+        wave = 0.5 if n == 3 else 0.02
+        ball_with(f"f.{n:04}.obj", lambda x, y, z, w=wave: (
+            x + 0.1 * z, y, z + w * math.sin(14 * x) * math.sin(13 * y)))
+
+
+def test_frames_that_miss_the_tolerance():
+    write_frames()
+    done = innermap("sequence", "rest.obj", "f.####.obj", "-o", "s", "--sources", 400,
+                    "--resolution", 16, "--tolerance", 0.01)
+    r = read_json("s/report.json")
+    f = told(done, r, "boundary")
+    assert r["frames"]["missed"] == [3] and "1 of 4 frames" in f["statement"]
+    assert f["value"] == max(r["energies"]["boundary_p99"])
+    marked = [line for line in done.stdout.split("\n") if line.endswith("misses the tolerance")]
+    assert len(marked) == 1 and marked[0].split()[0] == "3", done.stdout
+    with open("s/energies.csv", encoding="utf-8") as file:
+        rows = [line.strip().split(",") for line in file]
+    column = rows[0].index("tolerance_met")
+    assert [row[column] for row in rows[1:]] == ["1", "1", "0", "1"]
+    density("d.vdb")
+    done = innermap("deform", "rest.obj", "d.vdb", "f.####.obj", "-o", "o/d.####.vdb", "--sources",
+                    400, "--tolerance", 0.01, "--strict", "--report", "r.json", exit_code=1)
+    r = read_json("r.json")
+    told(done, r, "boundary")
+    assert r["frames"]["missed"] == [3] and len(r["outputs"]) == 4
+    assert done.stdout.count("misses the tolerance") == 1
+    done = innermap("deform", "rest.obj", "rest.obj", "f.####.obj", "-o", "o/g.####.obj",
+                    "--sources", 400, "--tolerance", 0.01, "--report", "r.json")
+    assert read_json("r.json")["frames"]["missed"] == [3]
+    assert done.stdout.count("misses the tolerance") == 1
+
+
+def test_a_texture_against_the_tolerance():
+    vertices, faces = icosphere_arrays(3)
+    with open("t.ply", "w", encoding="ascii") as file:
+        file.write(f"ply\nformat ascii 1.0\nelement vertex {len(vertices)}\nproperty float x\n"
+                   "property float y\nproperty float z\nproperty float red\nproperty float green\n"
+                   f"property float blue\nelement face {len(faces)}\n"
+                   "property list uchar int vertex_indices\nend_header\n")
+        for x, y, z in vertices:
+            file.write(f"{x} {y} {z} {(1 + math.sin(25 * x)) / 2} {(y + 1) / 2} 0.5\n")
+        for a, b, c in faces:
+            file.write(f"3 {a} {b} {c}\n")
+    texture = ("texture", "t.ply", "-o", "t.vdb", "--resolution", 24, "--report", "r.json")
+    done = innermap(*texture)
+    f = told(done, read_json("r.json"), "boundary")
+    assert f["threshold"] == 0.001
+    innermap(*texture, "--tolerance", 1, "--strict")
+    assert finding(read_json("r.json"), "boundary")["met"]
+
+
+run(globals())
