@@ -75,7 +75,7 @@ function tidied(report) {
   for (const key of ["source", "target"]) if (report[key] && typeof report[key].path !== "string") delete report[key].path;
   // Numbers that are not finite are null in JSON.
   const columns = [["solve", "round_sources", "round_p99", "residuals", "tried_distances", "tried_errors"], ["steps", "to", "p99", "folded"],
-                   ["frames", "number", "seconds"], ["energies", ...Object.keys(report.energies || {})]];
+                   ["frames", "number", "seconds", "missed"], ["energies", ...Object.keys(report.energies || {})]];
   for (const [section, ...keys] of columns)
     for (const key of keys) {
       const list = (report[section] || {})[key];

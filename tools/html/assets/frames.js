@@ -40,6 +40,10 @@ function framesSection(surfaces) {
     return order.length && order[0][0] > 0 ? [element("p", {}, title + ": ", ...order.map(([v, i]) =>
       element("button", {type: "button", class: "mark", onclick: () => go(i)}, `frame ${numbers[i]} (${key === "folded_fraction" ? written(v, "share") : shortNumber(v)})`)))] : [];
   });
+  const missed = (reported("frames.missed") || []).filter((number) => numbers.includes(number));
+  if (missed.length)
+    worst.unshift(element("p", {}, `${missed.length} of ${numbers.length} miss the tolerance: `, ...missed.slice(0, 40).map((number) =>
+      element("button", {type: "button", class: "mark missed", onclick: () => go(numbers.indexOf(number))}, "frame " + number))));
   const node = section("frames", "Frames", element("div", {class: "controls"}, control.node, play), told,
     worst.length ? element("div", {class: "marks"}, element("h3", {}, "Worst frames"), ...worst) : null,
     element("div", {class: "charts"}, ...charts.map((c) => c.node)));
