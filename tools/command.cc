@@ -54,6 +54,8 @@ CLI::Option* declare(CLI::App& app, Given& given) {
   const Option& o = *given.option;
   const std::string names = o.shortName.empty() ? o.name : o.shortName + "," + o.name;
   if (o.isFlag()) return app.add_flag(names, given.flag);
+  if (!o.impliedValue.empty())
+    return app.add_flag(names + "{" + o.impliedValue + "}", given.values);
   if (o.isList())
     return app.add_option(names, given.values)->expected(1, CLI::detail::expected_max_vector_size);
   // A positional list would swallow the arguments of those after it.
@@ -150,6 +152,10 @@ std::vector<Option> commonOptionTable(CommonOptions& common) {
   c.flag("--dry-run", &common.dryRun,
          "say what would be done and how much memory it needs; write nothing");
   c.option("--report", "FILE", &common.report, "write what was done, with times, as JSON");
+  c.option("--html", "FILE", &common.html,
+           "also write a page to look at, one file for any browser: numbers with their meaning, "
+           "surfaces, sections; report.html beside the outputs, or FILE")
+      .implied(kPageBesideOutputs);
   c.flag("--strict", &common.strict,
          "exit code 1 when the verdict that the run ends with is not met; files are written all "
          "the same");

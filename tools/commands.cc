@@ -28,6 +28,7 @@ std::vector<Command> allCommands() {
           makeExportCommand(),
           makeImportCommand(),
           makeInfoCommand(),
+          makeReportCommand(),
           makeHelpCommand()};
 }
 

@@ -31,6 +31,7 @@ Command makeSliceCommand();
 Command makeTransferDistanceCommand();
 Command makeExportCommand();
 Command makeImportCommand();
+Command makeReportCommand();
 Command makeInfoCommand();
 Command makeHelpCommand();
 

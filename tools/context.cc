@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "html/page.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/picture/label_font.h"
 #include "run_record.h"
@@ -18,8 +19,11 @@ Context::Context(const CommonOptions& options, TerminalProgress& progress)
     : options_(options), progress_(progress) {
   maxMemory_ = options.maxMemory.empty() ? availableMemory() / 10 * 8
                                          : parseBytes("--max-memory", options.maxMemory);
+  if (!options.html.empty()) page_ = std::make_unique<Page>();
   if (maxMemory_ == 0) throw SettingError("--max-memory", "must be above 0; write for example 4GB");
 }
+
+Context::~Context() = default;
 
 Progress* Context::progress() const { return &progress_; }
 
@@ -67,6 +71,7 @@ void Context::enter(const std::string& path) {
 void Context::output(const std::string& path, bool sure) {
   enter(path);
   if (sure) expectOutputs(1);
+  if (path != options_.report) placePage(path);
   if (dryRun()) return;
   requireWritable(path);
   if (std::filesystem::path(path).extension() == ".png") notePictures();
@@ -75,6 +80,7 @@ void Context::output(const std::string& path, bool sure) {
 void Context::outputs(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) enter(path);
   expectOutputs(static_cast<int>(paths.size()));
+  if (!paths.empty()) placePage(paths.front());
   if (!dryRun() && !paths.empty()) requireWritable(paths.front());
 }
 
@@ -83,6 +89,7 @@ std::unique_ptr<PendingFolder> Context::outputFolder(const std::string& path,
   auto folder = dryRun() ? nullptr : std::make_unique<PendingFolder>(path);
   inFolder(path, names);
   expectOutputs(1);
+  placePage((std::filesystem::path(path) / "report.html").string());
   for (const std::string& name : names)
     if (folder && std::filesystem::path(name).extension() == ".png") {
       notePictures();
@@ -97,6 +104,17 @@ void Context::inFolder(const std::string& folder, const std::vector<std::string>
     enter(path);
     if (!dryRun()) requireWritable(path);
   }
+}
+
+// The first output says where: most commands have one folder, or one file.
+void Context::placePage(const std::string& output) {
+  if (!page_ || !pagePath_.empty()) return;
+  namespace fs = std::filesystem;
+  pagePath_ = options_.html != kPageBesideOutputs
+                  ? options_.html
+                  : (fs::path(output).parent_path() / "report.html").string();
+  enter(pagePath_);
+  if (!dryRun()) requireWritable(pagePath_);
 }
 
 bool Context::allInPlace() const {
@@ -232,17 +250,38 @@ std::vector<ReportOutput> Context::outputsNow() const {
   return out;
 }
 
+void Context::noteMemory() {
+  const std::uint64_t most = peakMemory();
+  for (const auto& [stage, seconds] : report_.seconds) memoryAfter_.emplace(stage, most);
+}
+
 const Report& Context::finishedReport() {
   report_.peakMemory = peakMemory();
   report_.outputs = outputsNow();
+  noteMemory();
+  for (const auto& [stage, bytes] : memoryAfter_) report_.set("memory_after_bytes." + stage, bytes);
   return report_;
 }
 
 void Context::finish(PendingFolder& folder) {
   for (const auto& [path, bytes] : folder.written()) inFolders_.push_back({path, bytes});
+  const std::filesystem::path page(pagePath_);
+  if (page_ && options_.html == kPageBesideOutputs) {
+    const std::string json = reportJson(finishedReport());
+    folder.write(page.filename().string(),
+                 [&](const std::string& path) { writePage(path, *page_, json); });
+    page_.reset();
+    inFolders_.push_back({pagePath_, folder.written().back().second});
+  }
   folder.write("report.json",
                [&](const std::string& path) { writeReport(path, finishedReport()); });
   folder.commit();
+}
+
+void Context::finishPage() {
+  if (!page_ || dryRun()) return;
+  placePage("");
+  writePage(pagePath_, *page_, reportJson(finishedReport()));
 }
 
 }  // namespace innermap::tool

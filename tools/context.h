@@ -18,6 +18,11 @@ namespace innermap::tool {
 
 class TerminalProgress;
 
+struct Page;
+
+// What --html is without a file's name.
+constexpr const char* kPageBesideOutputs = "report.html beside the outputs";
+
 // The options that every command has.
 struct CommonOptions {
   int threads = 0;
@@ -25,6 +30,7 @@ struct CommonOptions {
   bool dryRun = false;
   bool strict = false;
   std::string report;
+  std::string html;  // empty: none
   bool quiet = false;
   bool help = false;
   // As they stood on the command line: all of them, and the last value of each option by its name.
@@ -36,6 +42,7 @@ struct CommonOptions {
 class Context {
  public:
   Context(const CommonOptions& options, TerminalProgress& progress);
+  ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
@@ -85,6 +92,7 @@ class Context {
   template <class Body>
   decltype(auto) timed(const std::string& stage, Body&& body) {
     throwIfCancelled(progress());
+    noteMemory();
     return innermap::timed(report_.seconds, stage, std::forward<Body>(body));
   }
 
@@ -98,6 +106,7 @@ class Context {
     for (const std::string& text : result.notes) note(text);
     for (const std::string& text : result.warnings) warning(text);
     addSeconds(report_.seconds, result.seconds);
+    noteMemory();
   }
 
   // The command goes on and writes its files, and its report; then the program ends with this line
@@ -116,6 +125,9 @@ class Context {
   // failure. The last that a run says.
   void conclude();
 
+  // What --html shows; null without.
+  Page* page() { return page_.get(); }
+
   // Results, on stdout. Nothing else goes there.
   void print(const std::string& text);
 
@@ -123,8 +135,10 @@ class Context {
   Report& report() { return report_; }
   // With peak memory as it now stands, and the outputs that are in place.
   const Report& finishedReport();
-  // Adds report.json and puts the files in place.
+  // Adds report.json, and report.html where that goes there, and puts the files in place.
   void finish(PendingFolder& folder);
+  // The page of a command that has no folder, when there is to be one.
+  void finishPage();
 
  private:
   template <class Settings, class = void>
@@ -135,12 +149,19 @@ class Context {
   void say(const std::string& kind, const std::string& text);
 
   void enter(const std::string& path);
+  // Where --html goes when it is to stand beside this output.
+  void placePage(const std::string& output);
+  // The most memory so far, for the stages that ended since the last time.
+  void noteMemory();
   std::vector<ReportOutput> outputsNow() const;
 
   const CommonOptions& options_;
   TerminalProgress& progress_;
   std::uint64_t maxMemory_ = 0;
   Report report_;
+  std::map<std::string, std::uint64_t> memoryAfter_;  // bytes, by stage
+  std::unique_ptr<Page> page_;
+  std::string pagePath_;
   std::string failure_;
   std::map<std::string, std::string> inputs_, outputs_;       // by fileKey
   std::vector<std::pair<std::string, std::string>> ordered_;  // outputs: key when told, path

@@ -3,6 +3,7 @@
 
 #include "commands.h"
 #include "correspondence.h"
+#include "html/contents.h"
 #include "innermap/io/picture/mesh_picture.h"
 #include "innermap/mesh/write.h"
 #include "inputs.h"
@@ -39,6 +40,7 @@ void run(const Options& options, Context& context) {
         correspondMemory(countA, countB));
   const MeshCorrespondence moved =
       correspondMeshes(std::move(a), std::move(b), options.correspond, context);
+  if (context.page()) showPair(*context.page(), moved.source, moved.positions);
   context.timed("write", [&] {
     if (moved.changed) {
       Mesh source = moved.source;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "html/contents.h"
 #include "innermap/core/file.h"
 #include "innermap/core/memory.h"
 #include "innermap/mesh/read.h"
@@ -98,7 +99,10 @@ FrameFitter makeFrameFitter(const std::string& rest, const FrameFitterSettings& 
 FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context& context) {
   std::vector<std::int64_t> numbers;
   for (const FrameFile& frame : frames.all) numbers.push_back(frame.number);
-  return {std::move(numbers), [&](std::size_t index) {
+  std::shared_ptr<PageFrames> shown;
+  if (context.page())
+    shown = std::make_shared<PageFrames>(*context.page(), fitter.rest().mesh, frames.wanted.size());
+  return {std::move(numbers), [&, shown](std::size_t index) {
             const FrameFile& frame = frames.all[index];
             const Mesh mesh = context.timed("read", [&] {
               return readMeshLike(frame.path, fitter.rest().mesh, context.settings<ReadSettings>());
@@ -107,6 +111,8 @@ FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context
             addSeconds(context.report().seconds, fit.seconds);
             for (const std::string& warning : fit.warnings)
               context.warning(fmt::format("frame {}: {}", frame.number, warning));
+            if (shown)
+              shown->add(frame.number, mesh.vertices, fit, context.settings<PageSettings>());
             return fit;
           }};
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "html/page.h"
 #include "innermap/core/memory.h"
 
 namespace innermap::tool {
@@ -43,6 +44,7 @@ void addNamesOption(Command& command, NamingScheme& names) {
 
 void writeGridFile(const std::string& path, const openvdb::GridPtrVec& grids,
                    const NamingScheme& names, Context& context, const openvdb::MetaMap& metadata) {
+  if (context.page()) addGrids(*context.page(), grids);
   auto settings = context.settings<VdbWriteSettings>();
   settings.names = names;
   context.timed("write", [&] { writeVdb(path, grids, metadata, settings); });

@@ -31,6 +31,7 @@ std::string wrapped(const std::string& text, std::size_t indent, std::size_t at)
 
 std::string leftOf(const Option& o) {
   std::string left = o.shortName.empty() ? o.name : o.shortName + ", " + o.name;
+  if (!o.impliedValue.empty()) return left + "[=" + o.placeholder + "]";
   if (!o.placeholder.empty() && !o.isPositional()) left += " " + o.placeholder;
   return left;
 }

@@ -40,6 +40,7 @@ void execute(const Command& command, const CommonOptions& common, TerminalProgre
     if (!context.allInPlace()) throw;
   }
   ignoreSignals();
+  context.finishPage();
   if (!common.report.empty() && !common.dryRun) {
     std::fflush(stdout);  // the report may go there too
     writeReport(common.report, context.finishedReport());

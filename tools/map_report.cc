@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "html/contents.h"
+
 namespace innermap::tool {
 namespace {
 
@@ -149,6 +151,7 @@ void reportBoundaries(const BoundaryPair& pair, Context& context) {
 void reportFit(const MapFit& fit, const FitMapSettings& settings, bool bestEffort,
                Context& context) {
   context.tell(fit);
+  if (context.page()) showMap(*context.page(), fit, context.settings<PageSettings>());
   Report& report = context.report();
   if (fit.verticesRms) report.set("boundary_error.vertices_rms", *fit.verticesRms);
   if (fit.tolerance) reportTolerance(fit, settings, bestEffort, context);

@@ -37,6 +37,8 @@ struct Option {
   bool lowerOpen = false;  // the least value itself is not allowed
   Target target;
 
+  std::string impliedValue;  // "--html" alone means this, "--html=FILE" that; empty: needs a value
+
   bool isFlag() const { return std::holds_alternative<bool*>(target); }
   bool isList() const { return std::holds_alternative<std::vector<std::string>*>(target); }
   bool isPositional() const { return name[0] != '-'; }
@@ -59,6 +61,8 @@ class OptionBuilder {
   OptionBuilder& optional() { return set(&Option::required, false); }  // positional arguments
   // Names a file that is read, as positional arguments do: no output may be that file.
   OptionBuilder& reads() { return set(&Option::isInput, true); }
+  // May stand without a value, which then is this one; with one it is written --name=VALUE.
+  OptionBuilder& implied(std::string value) { return set(&Option::impliedValue, std::move(value)); }
   OptionBuilder& required() { return set(&Option::required, true); }
   OptionBuilder& range(double lower, double upper) {
     return set(&Option::lower, lower).set(&Option::upper, upper);

@@ -1,0 +1,51 @@
+// A sequence: curves over its frames, a slider that shows one, and the worst of them.
+
+const frameCurves = [
+  ["harmonic", "Harmonic energy (3: rigid)", false], ["deformation", "Deformation energy (0: rigid)", false],
+  ["boundary_p99", "Boundary error, 99% within", true], ["folded_fraction", "Share of the volume that is folded", false],
+  ["jacobian_min", "Least change of volume", false], ["volume", "Volume, world units cubed", false], ["seconds", "Seconds", false],
+];
+const worstOf = [["boundary_p99", "largest boundary error"], ["folded_fraction", "most folded"], ["deformation", "most deformed"]];
+
+function framesSection(surfaces) {
+  const numbers = reported("frames.number"), table = page.report.energies || {};
+  if (!numbers || !numbers.length) return null;
+  const charts = frameCurves.map(([key, title, logarithmic]) => {
+    const y = table[key] || reported("frames." + key);
+    return y && lineChart({title, x: numbers, xLabel: "frame", logarithmic, series: [{name: title, y}]});
+  }).filter(Boolean);
+  // The shape's places are those frames that could be read, "frame 12".
+  const places = surfaces && page.shapes.length ? page.shapes[0].places.slice(1) : [];
+  const placeOf = new Map(places.map((p, i) => [Number((p.label.match(/-?\d+$/) || [NaN])[0]), i + 1]));
+  const told = element("p", {class: "told", "aria-live": "polite"});
+  let busy = Promise.resolve();
+  const control = slider("frame", "frame-shown", numbers.length - 1, 0, (i) => {
+    const number = numbers[i];
+    for (const chart of charts) chart.setCursor(number);
+    const figures = frameCurves.filter(([key]) => table[key]).map(([key, title]) => `${title.split(/[,(]/)[0].trim().toLowerCase()} ${shortNumber(table[key][i])}`);
+    const shown = placeOf.has(number);
+    told.textContent = figures.join("; ") + (places.length && !shown ? " (this frame's surface is not in the page)" : "");
+    if (shown) busy = busy.then(() => surfaces.showPlace(placeOf.get(number)));
+    return String(number);
+  });
+  const go = (i) => { control.input.value = i; control.show(); };
+  let timer = null;
+  const play = element("button", {type: "button", id: "play", onclick: () => {
+    clearInterval(timer);
+    timer = timer ? null : setInterval(() => go((Number(control.input.value) + 1) % numbers.length), 120);
+    play.textContent = timer ? "stop" : "play";
+  }}, "play");
+  const worst = worstOf.filter(([key]) => table[key]).flatMap(([key, title]) => {
+    const order = table[key].map((v, i) => [v, i]).filter(([v]) => Number.isFinite(v)).sort((a, b) => b[0] - a[0]).slice(0, 3);
+    return order.length && order[0][0] > 0 ? [element("p", {}, title + ": ", ...order.map(([v, i]) =>
+      element("button", {type: "button", class: "mark", onclick: () => go(i)}, `frame ${numbers[i]} (${key === "folded_fraction" ? written(v, "share") : shortNumber(v)})`)))] : [];
+  });
+  const missed = (reported("frames.missed") || []).filter((number) => numbers.includes(number));
+  if (missed.length)
+    worst.unshift(element("p", {}, `${missed.length} of ${numbers.length} miss the tolerance: `, ...missed.slice(0, 40).map((number) =>
+      element("button", {type: "button", class: "mark missed", onclick: () => go(numbers.indexOf(number))}, "frame " + number))));
+  const node = section("frames", "Frames", element("div", {class: "controls"}, control.node, play), told,
+    worst.length ? element("div", {class: "marks"}, element("h3", {}, "Worst frames"), ...worst) : null,
+    element("div", {class: "charts"}, ...charts.map((c) => c.node)));
+  return {node, start: () => { go(0); return busy; }};
+}

@@ -1,0 +1,122 @@
+// The report's numbers as tables, its verdict, its command and settings.
+
+function bytesText(bytes) {
+  const units = ["bytes", "kB", "MB", "GB", "TB"];
+  let k = 0;
+  for (; bytes >= 1000 && k < 4; ++k) bytes /= 1000;
+  return `${shortNumber(bytes)} ${units[k]}`;
+}
+
+function written(value, how) {
+  if (value === null || value === undefined) return "–";
+  if (typeof value === "boolean") return value ? "yes" : "no";
+  if (typeof value !== "number") return String(value);
+  if (how === "share") return shortNumber(100 * value) + "%";
+  if (how === "bytes") return bytesText(value);
+  if (how === "seconds") return shortNumber(value) + " s";
+  if (how === "error") return shortNumber(value);
+  return Number.isInteger(value) ? value.toLocaleString("en-GB").replace(/,/g, "\u202f") : shortNumber(value);
+}
+
+// [key, value] of all that is a single value below `object`.
+function leaves(object, before = "") {
+  return Object.entries(object).flatMap(([name, value]) => {
+    const key = before ? before + "." + name : name;
+    if (value !== null && typeof value === "object") return Array.isArray(value) ? [] : leaves(value, key);
+    return [[key, value]];
+  });
+}
+
+function numberTable(key, title, words) {
+  const rows = leaves(page.report[key] || {}, key).filter(([path]) => path !== "one_to_one.statement");  // said above
+  if (!rows.length) return null;
+  return element("section", {class: "numbers"}, element("h3", {}, title), words ? element("p", {class: "hint"}, words) : null,
+    element("table", {}, element("tbody", {}, ...rows.map(([path, value]) => {
+      const [, name, meaning, how] = meaningOf(path), text = typeof value === "string";
+      return element("tr", {"data-key": path, "data-known": meanings.some((m) => m[0] === path) || name !== "" && !groups.some((g) => g[0] === key)},
+        element("th", {scope: "row"}, name), element("td", {class: text ? "text" : "number"}, written(value, how)),
+        element("td", {class: "meaning"}, meaning));
+    }))));
+}
+
+const shownElsewhere = ["command", "seconds", "notes", "warnings", "run", "verdict", "outputs", "energies", "settings",
+                        "command_line", "version", "date", "host", "memory_after_bytes"];
+
+function numbersSection() {
+  const known = groups.map(([key]) => key);
+  const others = Object.keys(page.report).filter((key) => !known.includes(key) && !shownElsewhere.includes(key));
+  const loose = others.filter((key) => typeof page.report[key] !== "object");
+  const tables = [...groups, ...others.filter((key) => !loose.includes(key)).map((key) => [key, key[0].toUpperCase() + key.slice(1).replace(/_/g, " "), schemaWords([key])])]
+    .map(([key, title, words]) => numberTable(key, title, words));
+  if (loose.length) page.report.other = Object.fromEntries(loose.map((key) => [key, page.report[key]]));
+  tables.push(loose.length ? element("section", {class: "numbers"}, element("h3", {}, "Other"), element("table", {}, element("tbody", {},
+    ...loose.map((key) => element("tr", {"data-key": key, "data-known": true}, element("th", {scope: "row"}, meaningOf(key)[1]),
+      element("td", {class: "number"}, written(page.report[key], meaningOf(key)[3])), element("td", {class: "meaning"}, meaningOf(key)[2])))))) : null);
+  delete page.report.other;
+  if (!tables.some(Boolean)) return null;
+  return section("numbers", "The numbers", element("div", {class: "tables"}, ...tables));
+}
+
+function summarySection() {
+  const report = page.report, list = (report.verdict || {}).findings || [], out = [];
+  for (const f of list)
+    out.push(element("li", {class: f.met ? "good" : "bad"}, element("strong", {}, f.met ? "✓ " : "✗ "),
+      f.statement || f.name, f.met || !f.advice ? null : element("span", {class: "advice"}, " Try: " + f.advice)));
+  if (!list.length) {
+    const good = (met, text) => out.push(element("li", {class: met ? "good" : "bad"}, element("strong", {}, met ? "✓ " : "✗ "), text));
+    const tolerance = report.tolerance, worst = report.boundary_error || report.worst_boundary_error;
+    if (tolerance) good(tolerance.met, `99% of the boundary lies within ${shortNumber(tolerance.reached)} of the target's diagonal; wanted ${shortNumber(tolerance.wanted)}`);
+    else if (worst) out.push(element("li", {}, `99% of the boundary lies within ${shortNumber(worst.p99)} of the target's diagonal`));
+    if (report.inside) good(report.inside.folded === 0, `${written(report.inside.folded, "share")} of the inside is folded, ${written(report.inside.outside, "share")} lands outside the target`);
+  }
+  for (const text of report.warnings || []) out.push(element("li", {class: "bad"}, element("strong", {}, "! "), text));
+  for (const text of report.notes || []) out.push(element("li", {}, text));
+  for (const text of page.missing) out.push(element("li", {class: "missing"}, "Not shown: " + text));
+  if (report.one_to_one && report.one_to_one.statement) out.push(element("li", {}, "One-to-one? " + report.one_to_one.statement));
+  return out.length ? section("summary", "In short", element("ul", {class: "findings"}, ...out)) : null;
+}
+
+function fitSection() {
+  const report = page.report, solve = report.solve || {}, charts = [];
+  const add = (chart) => { const made = lineChart(chart); if (made) charts.push(made.node); };
+  if ((solve.round_sources || []).length && solve.round_p99)
+    add({title: "Boundary error as charges are added (99% within)", x: solve.round_sources, xLabel: "charges", logX: solve.round_sources.length > 1, logarithmic: true,
+         series: [{name: "error", y: solve.round_p99}], level: report.tolerance ? {value: report.tolerance.wanted, text: "tolerance"} : null});
+  if ((solve.residuals || []).length)
+    add({title: "Residual at the fitted points, by iteration", x: solve.residuals.map((_, i) => i), xLabel: "iteration", logarithmic: true,
+         series: [{name: "residual", y: solve.residuals}]});
+  if ((solve.tried_distances || []).length && solve.tried_errors)
+    add({title: "Error held out, by distance of the charges", x: solve.tried_distances, xLabel: "distance", logX: true, logarithmic: true,
+         series: [{name: "error", y: solve.tried_errors}]});
+  if (report.steps && (report.steps.to || []).length && report.steps.p99 && report.steps.folded) {
+    add({title: "Error of each step", x: report.steps.to, xLabel: "part of the way", logarithmic: true, series: [{name: "error", y: report.steps.p99}]});
+    add({title: "Share that each step folds", x: report.steps.to, xLabel: "part of the way", series: [{name: "folded", y: report.steps.folded}]});
+  }
+  return charts.length ? section("fit", "How the fit went", element("div", {class: "charts"}, ...charts)) : null;
+}
+
+function costSection() {
+  const seconds = Object.entries(page.report.seconds || {}).filter(([, s]) => typeof s === "number");
+  if (!seconds.length) return null;
+  const total = seconds.reduce((sum, [, s]) => sum + s, 0), memory = page.report.memory_after_bytes || {};
+  const rows = seconds.map(([stage, s]) => [stage, s, shortNumber(s) + " s" + (memory[stage] ? ", " + bytesText(memory[stage]) : "")]);
+  return section("cost", "Time and memory",
+    element("p", {}, `${shortNumber(total)} s in all; at most ${bytesText(page.report.peak_memory_bytes || 0)} of memory.`),
+    bars("Seconds by stage" + (Object.keys(memory).length ? ", and the most memory by its end" : ""), rows));
+}
+
+function runSection() {
+  const report = page.report, line = report.command_line, settings = report.settings || {};
+  const quoted = (t) => (/^[\w./:=,+@%-]+$/.test(t) ? t : `'${t.replace(/'/g, "'\\''")}'`);
+  const text = Array.isArray(line) ? line.map(quoted).join(" ") : "", host = report.host || {};
+  const facts = [["innermap", report.version], ["started", report.date], ["cores", host.cores], ["threads", host.threads]].filter((f) => f[1] != null);
+  const outputs = report.outputs || [];
+  if (!text && !facts.length && !outputs.length) return null;
+  return section("run", "The run",
+    text ? element("p", {}, "Command:") : null, text ? element("pre", {class: "command"}, text) : null,
+    facts.length ? element("p", {}, facts.map(([name, value]) => `${name} ${value}`).join(" · ")) : null,
+    outputs.length ? element("table", {}, element("tbody", {}, ...outputs.map((o) => element("tr", {}, element("th", {scope: "row"}, o.path), element("td", {class: "number"}, bytesText(o.bytes)))))) : null,
+    Object.keys(settings).length ? element("details", {}, element("summary", {}, "Settings as used"), element("table", {class: "settings"}, element("tbody", {},
+      ...leaves(settings).map(([name, value]) => element("tr", {}, element("th", {scope: "row"}, name), element("td", {class: "text"}, written(value)))))))
+      : null);
+}
