@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "spelling.h"
+
 namespace innermap::tool {
 namespace {
 
@@ -52,7 +54,8 @@ struct Given {
 
 CLI::Option* declare(CLI::App& app, Given& given) {
   const Option& o = *given.option;
-  const std::string names = o.shortName.empty() ? o.name : o.shortName + "," + o.name;
+  std::string names = fmt::format("{}", fmt::join(spellings(o.name), ","));
+  if (!o.shortName.empty()) names = o.shortName + "," + names;
   if (o.isFlag()) return app.add_flag(names, given.flag);
   if (o.isList())
     return app.add_option(names, given.values)->expected(1, CLI::detail::expected_max_vector_size);
@@ -129,6 +132,7 @@ OptionBuilder Command::option(const std::string& name, const std::string& placeh
   o.name = name;
   o.placeholder = placeholder;
   o.help = help;
+  o.group = group_;
   o.target = std::move(target);
   addOption(options_, std::move(o));
   return {options_, options_.size() - 1};
@@ -150,7 +154,9 @@ std::vector<Option> commonOptionTable(CommonOptions& common) {
          "say what would be done and how much memory it needs; write nothing");
   c.option("--report", "FILE", &common.report, "write what was done, with times, as JSON");
   c.flag("--quiet", &common.quiet, "nothing on stderr but errors").shortName("-q");
-  c.flag("--help", &common.help, "this help").shortName("-h");
+  c.flag("--help", &common.help, "help on what is usual").shortName("-h");
+  c.flag("--help-all", &common.helpAll, "help on every option");
+  c.flag("--version", &common.version, "the program's version").shortName("-V");
   return c.options();
 }
 
@@ -177,8 +183,9 @@ void parseArguments(const Command& command, CommonOptions& common,
     refuse(command, error.what());
   }
   for (const Given& g : given)
-    if (g.option->name == "--help" && g.flag) common.help = true;
-  if (common.help) return;
+    for (bool* flag : {&common.help, &common.helpAll, &common.version})
+      if (g.flag && std::get<bool*>(g.option->target) == flag) *flag = true;
+  if (common.help || common.helpAll || common.version) return;
   refuseLeftOvers(command, all, app.remaining());
   for (const Given& g : given) take(command, g);
 }

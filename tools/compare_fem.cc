@@ -338,15 +338,17 @@ Command makeCompareFemCommand() {
   c.option("--reference", "T", &o->settings.referenceTolerance,
            "tolerance of the fit that maps are compared with")
       .unit("fraction of TARGET's diagonal")
-      .range(1e-12, 1);
+      .range(1e-12, 1)
+      .advanced();
   c.option("--samples", "N", &o->settings.samples, "points inside at which errors are measured")
-      .range(100, 1000000);
+      .range(100, 1000000)
+      .advanced();
   c.choice("--axis", "AXIS", &o->axis, {{"x", 0}, {"y", 1}, {"z", 2}},
            "direction across the section");
   c.option("--at", "T", &o->at, "where the section cuts")
       .unit("fraction of the box along the axis")
       .range(0, 1);
-  c.option("--seed", "N", &o->settings.seed, "of all random choices").range(0, 1e15);
+  c.option("--seed", "N", &o->settings.seed, "of all random choices").range(0, 1e15).advanced();
   c.example("innermap compare-fem spot.obj --functions -o spot-fem");
   c.example("innermap compare-fem rest.obj pose.obj -o pose-fem --resolutions 24,48,96");
   c.run([o](Context& context) { run(*o, context); });

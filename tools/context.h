@@ -25,7 +25,7 @@ struct CommonOptions {
   bool dryRun = false;
   std::string report;
   bool quiet = false;
-  bool help = false;
+  bool help = false, helpAll = false, version = false;
 };
 
 // A command calls it from one thread; progress() may be used from any.

@@ -46,7 +46,10 @@ Command makeFitCommand() {
       "certificate is the error at 20,000 boundary points that took no part in the fit.");
   c.positional("SOURCE", &o->source, "mesh of the solid: .obj, .ply, .off or .stl");
   c.positional("TARGET", &o->target, "the same mesh with its vertices moved");
-  c.option("--output", "FILE", &o->output, "the map, a .ply file").shortName("-o").required();
+  c.option("--output", "FILE", &o->output, "the map, a .ply file")
+      .shortName("-o")
+      .required()
+      .writes({".ply"});
   addFittingOptions(c, o->fitting);
   c.example("innermap fit rest.obj pose.obj -o map.ply");
   c.example("innermap fit rest.obj pose.obj -o map.ply --tolerance 1e-4 --best-effort");

@@ -203,9 +203,10 @@ Command makeMapCommand() {
   addCorrespondOptions(c, o->correspond);
   addFittingOptions(c, o->fitting);
   addEvaluationOptions(c, o->evaluation);
-  c.choice("--slice-axis", "AXIS", &o->slices.axis, {{"x", 0}, {"y", 1}, {"z", 2}},
-           "of slices.exr");
-  c.option("--slice-count", "N", &o->slices.count, "parts of slices.exr").range(1, 4096);
+  c.group("slices and picture");
+  c.choice("--slice-axis", "AXIS", &o->slices.axis, {{"x", 0}, {"y", 1}, {"z", 2}}, "of slices.exr")
+      .advanced();
+  c.option("--slice-count", "N", &o->slices.count, "parts of slices.exr").range(1, 4096).advanced();
   c.option("--section-grid", "NAME", &o->sectionGrid, "grid shown in section.png")
       .choices(mapGridNames());
   addSectionOptions(c, o->section);

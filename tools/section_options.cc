@@ -6,11 +6,13 @@ namespace innermap::tool {
 
 void addSectionOptions(Command& c, SectionOptions& o) {
   c.choice("--section-axis", "AXIS", &o.axis, {{"auto", {}}, {"x", 0}, {"y", 1}, {"z", 2}},
-           "direction across the pictured section; auto: where the solid is thinnest");
+           "direction across the pictured section; auto: where the solid is thinnest")
+      .advanced();
   c.option("--section-at", "T", &o.at, "place of the pictured section along its axis")
       .unit("fraction of the box")
       .range(0, 1)
-      .defaults("near the middle, where most is cut");
+      .defaults("near the middle, where most is cut")
+      .advanced();
 }
 
 SectionSettings sectionSettings(const SectionOptions& options, const Solid& solid,

@@ -133,7 +133,8 @@ Command makeTetrahedralizeCommand() {
   c.option("--output", "FILE", &o->output,
            "the .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file to write")
       .shortName("-o")
-      .required();
+      .required()
+      .writes({".vtu", ".msh", ".mesh"});
   c.option("--resolution", "N", &o->settings.resolution,
            "cells of the lattice along the longest side of the mesh's box; each takes twelve "
            "tetrahedra")
@@ -142,16 +143,20 @@ Command makeTetrahedralizeCommand() {
            "side of a cell of the lattice, instead of --resolution")
       .unit("world units")
       .atLeast(0)
-      .defaults("from --resolution");
+      .defaults("from --resolution")
+      .advanced();
   c.option("--features", "ANGLE", &o->settings.features,
            "keep edges of the surface that are sharper than this, between the normals of their "
            "triangles, as edges of tetrahedra; dihedral angles then lie in 5 to 170 degrees")
       .unit("degrees")
       .range(1, 179);
   c.flag("--any-topology", &o->anyTopology,
-         "warn, and go on, where the solid's topology cannot be kept");
+         "warn, and go on, where the solid's topology cannot be kept")
+      .advanced();
+  c.group("picture");
   c.option("--picture", "FILE", &o->picture,
-           "a .png of the cells behind a cut, coloured by their least dihedral angle");
+           "a .png of the cells behind a cut, coloured by their least dihedral angle")
+      .writes({".png"});
   c.choice("--axis", "AXIS", &o->axis, {{"x", 0}, {"y", 1}, {"z", 2}},
            "direction across the picture's cut");
   c.option("--at", "T", &o->at, "where the picture cuts")
