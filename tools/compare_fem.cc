@@ -19,6 +19,7 @@
 #include "inputs.h"
 #include "lists.h"
 #include "map_report.h"
+#include "section_options.h"
 
 namespace innermap::tool {
 namespace {
@@ -30,6 +31,7 @@ struct CompareOptions {
   CompareFemSettings settings;
   int axis = 2;
   double at = 0.5;
+  Colormap colormap = Colormap::redBlue;
 };
 
 std::vector<double> numbers(const std::string& option, const std::string& list) {
@@ -216,6 +218,7 @@ void writeSection(const std::string& path, const CompareFem& result, const Solid
       values.end());
   std::sort(values.begin(), values.end());
   auto settings = context.settings<PlanePictureSettings>();
+  settings.colormap = options.colormap;
   settings.axis = options.axis;
   settings.at = options.at;
   if (!values.empty()) {
@@ -343,6 +346,7 @@ Command makeCompareFemCommand() {
   c.option("--samples", "N", &o->settings.samples, "points inside at which errors are measured")
       .range(100, 1000000)
       .advanced();
+  addColormapOption(c, o->colormap);
   c.choice("--axis", "AXIS", &o->axis, {{"x", 0}, {"y", 1}, {"z", 2}},
            "direction across the section");
   c.option("--at", "T", &o->at, "where the section cuts")

@@ -25,10 +25,12 @@ void run(const FitOptions& options, Context& context) {
   reportBoundaries(pair, context);
   const FitMapSettings settings =
       fitMapSettings(options.fitting, pair.source.mesh.vertices.size(), context);
+  context.expect(fittingPhases(settings, pair.source.mesh.vertices.size(), false));
   if (context.dryRun())
     return context.plan({fittingPlan(settings), "write the map to " + options.output},
                         fitMapMemory(settings));
   requireFittingMemory(settings);
+  context.phase("fitting");
   const MapFit fit = fitMap(std::move(pair), settings);
   reportFit(fit, settings, options.fitting.bestEffort, context);
   reportInjectivity(fit.injectivity, context);

@@ -192,4 +192,21 @@ void requireFittingMemory(const FitMapSettings& settings) {
                    {"--sources", 1, settings.shell->sources, need}, "raise --max-memory");
 }
 
+// Seconds as measured on samples/ and models of some ten thousand triangles; a shell is factored at
+// once where it is small.
+std::vector<JobPhase> fittingPhases(const FitMapSettings& settings, std::size_t vertices,
+                                    bool laidOn) {
+  const double thousands = static_cast<double>(vertices) / 1000;
+  double fit = 0.6 + 0.25 * thousands * std::pow(1e-3 / settings.tolerance, 0.7);
+  if (settings.shell) {
+    const double sources = static_cast<double>(settings.shell->sources) / 1000;
+    fit = 0.5 + (sources <= 3 ? 0.25 * std::pow(sources, 2.5) : 1.5 * sources);
+  }
+  std::vector<JobPhase> phases = {{"fitting", fit}};
+  if (settings.oneToOne == OneToOne::off || settings.shell) return phases;
+  const double steps = 4 + 1.2 * thousands * std::pow(2e-3 / settings.tolerance, 0.7);
+  phases.push_back({"going in steps", std::max(6.0, steps), !laidOn});
+  return phases;
+}
+
 }  // namespace innermap::tool

@@ -13,6 +13,7 @@
 #include "innermap/mesh/write.h"
 #include "inputs.h"
 #include "polycube_report.h"
+#include "section_options.h"
 
 namespace innermap::tool {
 namespace {
@@ -22,6 +23,7 @@ struct Options {
   HexahedralizeSettings settings;
   int resolution = 0, axis = 2;
   double at = 0.5;
+  Colormap colormap = Colormap::redBlue;
 };
 
 void claimOutputs(const Options& options, Context& context) {
@@ -72,6 +74,7 @@ void fillReport(const Hexahedralization& result, Context& context) {
 
 void drawCut(const Options& options, const Hexahedralization& result, Context& context) {
   auto settings = context.settings<CellPictureSettings>();
+  settings.colormap = options.colormap;
   settings.direction = {0, 0, 0};
   settings.direction[options.axis] = 1;
   settings.at = options.at;
@@ -167,6 +170,7 @@ Command makeHexahedralizeCommand() {
   c.option("--polycube-picture", "FILE", &o->cubesPicture, "a .png of the mesh and the polycube")
       .writes({".png"})
       .advanced();
+  addColormapOption(c, o->colormap);
   c.choice("--axis", "AXIS", &o->axis, {{"x", 0}, {"y", 1}, {"z", 2}},
            "direction across the picture's cut");
   c.option("--at", "T", &o->at, "where the picture cuts")

@@ -82,6 +82,7 @@ void runCommand(const std::vector<std::string>& arguments) {
   }
   // Signals may come until the very end of the process.
   static TerminalProgress progress(TerminalProgress::styleFor(common.quiet));
+  progress.expect(usualPhases(command.name()));
   handleSignals(progress);
   try {
     execute(command, common, progress);

@@ -13,6 +13,7 @@
 #include "innermap/tetra/carry_cells.h"
 #include "innermap/tetra/remesh_cells.h"
 #include "inputs.h"
+#include "section_options.h"
 
 namespace innermap::tool {
 namespace {
@@ -22,6 +23,7 @@ struct RemeshOptions {
   RemeshSettings settings;
   int axis = 2;
   double at = 0.5;
+  Colormap colormap = Colormap::redBlue;
 };
 
 void reportRemesh(const Remesh& result, double diagonal, Context& context) {
@@ -48,6 +50,7 @@ void reportRemesh(const Remesh& result, double diagonal, Context& context) {
 
 void drawCut(const RemeshOptions& options, const Remesh& result, Context& context) {
   auto settings = context.settings<CellPictureSettings>();
+  settings.colormap = options.colormap;
   settings.direction = {0, 0, 0};
   settings.direction[options.axis] = 1;
   settings.at = options.at;
@@ -171,6 +174,7 @@ Command makeRemeshCommand() {
            "a .png of the cells behind a cut, coloured by their least dihedral angle or scaled "
            "Jacobian")
       .writes({".png"});
+  addColormapOption(c, o->colormap);
   c.choice("--axis", "AXIS", &o->axis, {{"x", 0}, {"y", 1}, {"z", 2}},
            "direction across the picture's cut");
   c.option("--at", "T", &o->at, "where the picture cuts")

@@ -10,6 +10,7 @@
 #include "innermap/io/vdb/vdb_file.h"
 #include "inputs.h"
 #include "lists.h"
+#include "section_options.h"
 
 namespace innermap::tool {
 namespace {
@@ -94,7 +95,7 @@ Command makeSliceCommand() {
   c.description(
       "The EXR file has a part a slice and a channel a grid (`jacobian.V`, `map.X`), cropped to "
       "the active box; each slice is a layer of voxels, with its place as attributes. The picture "
-      "shows one grid from blue (least) to red (most), or colours as they are.");
+      "shows one grid, by default from blue (least) to red (most), or colours as they are.");
   c.positional("FILE", &o->file, "the .vdb file");
   c.option("--output", "FILE", &o->output, "the .exr file to write")
       .shortName("-o")
@@ -124,8 +125,10 @@ Command makeSliceCommand() {
       .unit("world units")
       .advanced();
   c.option("--range", "LO,HI", &o->section.range,
-           "values that are blue and red in the picture; with --colour, black and white")
+           "values at the ends of the colours; with --colour, black and white")
       .defaults("all but the outermost 0.5% on each side");
+  addColormapOption(c, o->section.colormap);
+  addScaleOption(c, o->section.scale);
   c.option("--pixels", "N", &o->section.pixels, "longer side of the section in the picture")
       .range(64, 8192)
       .advanced();

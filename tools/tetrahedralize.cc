@@ -13,6 +13,7 @@
 #include "innermap/io/picture/cell_picture.h"
 #include "inputs.h"
 #include "map_report.h"
+#include "section_options.h"
 
 namespace innermap::tool {
 namespace {
@@ -23,6 +24,7 @@ struct TetrahedralizeOptions {
   bool anyTopology = false;
   int axis = 2;
   double at = 0.5;
+  Colormap colormap = Colormap::redBlue;
 };
 
 // Measured: of a tetrahedron, the faces among which the boundary is found, its quality as fields
@@ -40,6 +42,7 @@ std::uint64_t memoryFor(const TetrahedralizeOptions& options, const Solid& solid
 void drawCut(const TetrahedralizeOptions& options, const CellMesh& mesh, const CellQuality& quality,
              Context& context) {
   auto settings = context.settings<CellPictureSettings>();
+  settings.colormap = options.colormap;
   settings.direction = {0, 0, 0};
   settings.direction[options.axis] = 1;
   settings.at = options.at;
@@ -157,6 +160,7 @@ Command makeTetrahedralizeCommand() {
   c.option("--picture", "FILE", &o->picture,
            "a .png of the cells behind a cut, coloured by their least dihedral angle")
       .writes({".png"});
+  addColormapOption(c, o->colormap);
   c.choice("--axis", "AXIS", &o->axis, {{"x", 0}, {"y", 1}, {"z", 2}},
            "direction across the picture's cut");
   c.option("--at", "T", &o->at, "where the picture cuts")
