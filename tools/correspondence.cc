@@ -59,9 +59,9 @@ std::string qualityText(const MapQuality& q, ModelSpace space, bool standIn) {
       "on the {}: {} flip{}, degree {:.9f}\n"
       "energy: {:.2f} there and {:.2f} back, {:.2f} in all (4 + 4 at best)\n"
       "stretch: median {:.2f}, 99% {:.2f}, max {:.2f}\n"
-      "image: {:.3g}% of its triangles inverted; {:.3g}% of the diagonal from B at 99% of it, "
+      "image: {:.3g}% of its triangles inverted; {:.3g}% of the diagonal from TARGET at 99% of it, "
       "{:.3g}% "
-      "at most; {} self-intersection{}, {} of B itself\n{}",
+      "at most; {} self-intersection{}, {} of TARGET itself\n{}",
       space == ModelSpace::sphere ? "sphere" : "torus", q.flips, q.flips == 1 ? "" : "s", q.degree,
       q.energyForward, q.energyBackward, q.energyForward + q.energyBackward, q.stretch.median,
       q.stretch.p99, q.stretch.max, 100 * q.invertedShare, 100 * q.deviation.p99,

@@ -197,15 +197,16 @@ void requireFittingMemory(const FitMapSettings& settings) {
 std::vector<JobPhase> fittingPhases(const FitMapSettings& settings, std::size_t vertices,
                                     bool laidOn) {
   const double thousands = static_cast<double>(vertices) / 1000;
-  double fit = 0.6 + 0.25 * thousands * std::pow(1e-3 / settings.tolerance, 0.7);
+  double fit = 2 + 0.25 * thousands * std::pow(1e-3 / settings.tolerance, 0.7);
   if (settings.shell) {
     const double sources = static_cast<double>(settings.shell->sources) / 1000;
     fit = 0.5 + (sources <= 3 ? 0.25 * std::pow(sources, 2.5) : 1.5 * sources);
   }
-  std::vector<JobPhase> phases = {{"fitting", fit}};
+  std::vector<JobPhase> phases = {{"fitting", settings.shell ? fit : 0.4 * fit}};
+  if (!settings.shell) phases.push_back({"meeting the tolerance", 0.6 * fit, false, "fitting"});
   if (settings.oneToOne == OneToOne::off || settings.shell) return phases;
-  const double steps = 4 + 1.2 * thousands * std::pow(2e-3 / settings.tolerance, 0.7);
-  phases.push_back({"going in steps", std::max(6.0, steps), !laidOn});
+  const double steps = 10 + 2 * thousands * std::pow(2e-3 / settings.tolerance, 0.7);
+  phases.push_back({"going in steps", steps, !laidOn});
   return phases;
 }
 

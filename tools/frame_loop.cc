@@ -63,7 +63,7 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
                                    const std::function<void(std::size_t)>& body) {
   std::vector<FrameResult> results;
   std::size_t finished = 0;
-  context.expect({{"frames", static_cast<double>(frames.wanted.size())}});
+  context.expect({{"frames", 0.5 * static_cast<double>(frames.wanted.size())}});
   try {
     for (const std::size_t index : frames.wanted) {
       FrameResult result;

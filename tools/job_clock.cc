@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <thread>
 #include <utility>
 
@@ -10,11 +11,11 @@ namespace innermap::tool {
 namespace {
 
 // Of the expected time: less says nothing yet of the machine's speed.
-constexpr double kPrior = 0.03;
+constexpr double kPrior = 0.05;
 // A phase that reports fractions is judged by them alone from here on.
 constexpr double kTrusted = 0.2;
 // One that is over its time is thought to need this share of what it took so far.
-constexpr double kOverdue = 0.35;
+constexpr double kOverdue = 0.5;
 constexpr double kTells = 0.08;
 
 }  // namespace
@@ -24,6 +25,7 @@ void JobClock::expect(std::vector<JobPhase> phases, double now) {
   current_ = 0;
   begun_ = false;
   planned_ = since_ = now;
+  busy_ = busyness();
   fraction_ = 0;
 }
 
@@ -63,8 +65,11 @@ JobClock::State JobClock::at(double now) {
   const double total = expectedUntil(phases_.size()), done = expectedUntil(current_);
   const double own = phases_[current_].seconds;
   const double prior = kPrior * total;
-  const double speed = (since_ - planned_ + prior) / (done + prior);
   const double spent = now - since_;
+  const double over = (since_ - planned_ + prior * busy_) / (done + prior);
+  // One that is over its time says that the machine is slower than was thought.
+  const double speed =
+      std::max(over, (since_ - planned_ + spent + prior * busy_) / (done + own + prior));
   const double byTime = std::max(speed * own - spent, kOverdue * spent);
   const double byFraction = fraction_ > 0 ? spent * (1 - fraction_) / fraction_ : byTime;
   const double trust = std::min(1.0, fraction_ / kTrusted);
@@ -74,11 +79,10 @@ JobClock::State JobClock::at(double now) {
   const double weight = trust * own / (done + own + prior);
   const double pace = (1 - weight) * speed + weight * phase;
   state.secondsLeft = left + pace * (total - done - own);
-  const double passed = now - planned_;
-  const double fraction = passed / std::max(passed + state.secondsLeft, 1e-9);
+  const double fraction = now / std::max(now + state.secondsLeft, 1e-9);
   shown_ = std::max(shown_, std::min(fraction, 0.99));
   state.fraction = shown_;
-  state.tellsTime = fraction > kTells && passed > 1;
+  state.tellsTime = fraction > kTells && now > 1;
   return state;
 }
 
@@ -98,40 +102,59 @@ double totalSeconds(const std::vector<JobPhase>& phases) {
 
 // Shares as measured on samples/ and models of some ten thousand triangles.
 std::vector<JobPhase> usualPhases(const std::string& command) {
-  if (command == "correspond")
-    return {{"repairing", 4, false, "reading"}, {"trying rotations", 5},  {"trying first maps", 60},
-            {"judging first maps", 6},          {"refining the map", 20}, {"measuring the map", 3}};
-  if (command == "evaluate")
-    return {{"checking", 10, false, "reading"},
-            {"level set", 35},
-            {"evaluating the map", 20},
-            {"checking cells", 25},
-            {"writing the VDB file", 10}};
-  if (command == "texture")
-    return {
-        {"placing samples", 3},     {"offset surface", 3},      {"filling the kernel matrix", 1},
-        {"factoring", 9},           {"factoring clusters", 11}, {"solving", 8},
-        {"level set", 4},           {"continuing inwards", 40}, {"meeting the surface", 18},
-        {"writing the VDB file", 3}};
-  if (command == "push" || command == "pull")
-    return {
-        {"checking", 3, false, "reading"}, {"reading the VDB file", 4}, {"level set", 25},
-        {"covering the target", 12},       {"inverting the map", 25},   {"carrying the grids", 25},
-        {"writing the VDB file", 6}};
-  if (command == "transfer-distance")
-    return {{"checking", 20, false, "reading"},
-            {"level set", 20},
-            {"distances", 30},
-            {"drawing the section", 30}};
-  if (command == "tetrahedralize")
-    return {{"level set", 20},
-            {"filling with tetrahedra", 15},
-            {"measuring cells", 40},
-            {"comparing the boundaries", 20},
-            {"writing cells", 5}};
-  if (command == "voxelize") return {{"level set", 80}, {"writing the VDB file", 20}};
-  if (command == "slice") return {{"reading the VDB file", 50}, {"drawing the section", 50}};
-  return {};
+  static const std::map<std::string, std::vector<JobPhase>> kPhases = {
+      {"map", {{"reading", 1}, {"fitting", 5}}},  // until more is known
+      {"fit", {{"reading", 1}, {"fitting", 5}}},
+      {"sequence", {{"reading", 5}, {"level set", 5}, {"factoring", 20}, {"frames", 70}}},
+      {"deform", {{"reading", 5}, {"level set", 5}, {"factoring", 20}, {"frames", 70}}},
+      {"correspond",
+       {{"repairing", 7, false, "reading"},
+        {"trying rotations", 6},
+        {"trying first maps", 45},
+        {"judging first maps", 12},
+        {"refining the map", 27},
+        {"measuring the map", 3}}},
+      {"evaluate",
+       {{"checking", 30, false, "reading"},
+        {"level set", 33},
+        {"evaluating the map", 12},
+        {"checking cells", 15},
+        {"writing the VDB file", 10}}},
+      {"texture",
+       {{"placing samples", 3},
+        {"offset surface", 3},
+        {"filling the kernel matrix", 1},
+        {"factoring", 9},
+        {"factoring clusters", 11},
+        {"solving", 8},
+        {"level set", 4},
+        {"continuing inwards", 40},
+        {"meeting the surface", 18},
+        {"writing the VDB file", 3}}},
+      {"push",
+       {{"checking", 15, false, "reading"},
+        {"reading the VDB file", 4},
+        {"level set", 30},
+        {"covering the target", 12},
+        {"inverting the map", 20},
+        {"carrying the grids", 13},
+        {"writing the VDB file", 6}}},
+      {"transfer-distance",
+       {{"checking", 30, false, "reading"},
+        {"level set", 22},
+        {"distances", 36},
+        {"drawing the section", 12}}},
+      {"tetrahedralize",
+       {{"reading", 20},
+        {"level set", 25},
+        {"filling with tetrahedra", 20},
+        {"measuring cells", 20},
+        {"comparing the boundaries", 10},
+        {"writing cells", 5}}},
+      {"voxelize", {{"reading", 10}, {"level set", 70}, {"writing the VDB file", 20}}},
+      {"slice", {{"reading the VDB file", 50}, {"drawing the section", 50}}}};
+  const auto found = kPhases.find(command == "pull" ? "push" : command);
+  return found == kPhases.end() ? std::vector<JobPhase>() : found->second;
 }
 
 }  // namespace innermap::tool

@@ -47,6 +47,7 @@ class JobClock {
   std::size_t current_ = 0;
   bool begun_ = false;
   double planned_ = 0;               // when the phases became known
+  double busy_ = 1;                  // what one expected second takes, before any is over
   double since_ = 0, fraction_ = 0;  // of the current phase
   double shown_ = 0;
 };

@@ -21,6 +21,8 @@ namespace {
 
 // Fractions of the target's diagonal.
 constexpr double kSubdivide = 0.005;
+// correspondSeconds is for two cores and the worst; this is what it mostly is.
+constexpr double kOfLayingOut = 0.5;
 constexpr double kStrangers = 2e-3;  // the tolerance between solids that were never related
 
 struct MapOptions {
@@ -115,17 +117,18 @@ void expectPhases(const MapOptions& options, const Meshes& meshes, Context& cont
   const bool strangers = laidOn(options, meshes);
   std::vector<JobPhase> phases;
   if (!meshes.related)
-    phases.push_back({"laying out",
-                      correspondSeconds(vertices, meshes.target.vertices.size(),
-                                        correspondSettings(options.correspond, context)),
-                      false, "laying the source on"});
+    phases.push_back(
+        {"laying out",
+         kOfLayingOut * correspondSeconds(vertices, meshes.target.vertices.size(),
+                                          correspondSettings(options.correspond, context)),
+         false, "laying the source on"});
   const FitMapSettings fitting = fitMapSettings(fittingFor(options, meshes), vertices, context);
   for (const JobPhase& phase : fittingPhases(fitting, vertices, strangers)) phases.push_back(phase);
   const double fine = voxelsAcross(options, meshes.source) / 128.0;
-  const double grids = 0.45 + 0.12 * fine * fine;
-  phases.push_back({"evaluating", (strangers ? 10 : 1) * grids});
+  const double grids = 0.45 + 0.2 * fine * fine;
+  phases.push_back({"evaluating", (strangers ? 16 : 1) * grids});
   phases.push_back(
-      {"writing", 0.45 + 0.08 * fine * fine + (strangers ? 1.5 : 0), false, "pictures"});
+      {"writing", 0.45 + 0.03 * fine * fine + (strangers ? 1.5 : 0), false, "pictures"});
   context.expect(phases);
 }
 

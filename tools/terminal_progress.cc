@@ -78,7 +78,15 @@ void TerminalProgress::drawBar(std::string_view stage, double fraction) {
   last_ = time;
   drawn_ = true;
   const JobClock::State job = job_.at(now());
-  const double share = job_.known() ? job.fraction : fraction;
+  if (!job_.known()) {
+    // Stages come and go: a bar of theirs would run backwards.
+    const std::string line =
+        fmt::format("\r{}: {:.0f}%, {:.0f} s\x1b[K", label(stage), 100 * fraction, now());
+    std::fwrite(line.data(), 1, line.size(), stderr);
+    std::fflush(stderr);
+    return;
+  }
+  const double share = job.fraction;
   const std::string clock = job.tellsTime ? durationText(job.secondsLeft) + " left" : "";
   const int room = terminalWidth() - 1;
   const int names = part_.empty() ? std::clamp(room / 3, 8, 32) : std::clamp(room / 2, 8, 56);

@@ -114,7 +114,7 @@ def test_dry_runs_find_what_the_run_would_refuse():
                           (["voxelize", "cube.obj", "-o", "taken.vdb"], "taken.vdb"),
                           (["map", "ball.obj", "egg.obj", "-o", "cube.obj"], "cube.obj"),
                           (["voxelize", "cube.obj", "-o", "a.vdb", "--max-memory", "1M",
-                            "--resolution", "512"], "--max-memory")]:
+                            "--resolution", "512"], "limit of 1 MB")]:
         for dry in [["--dry-run"], []]:
             fails(1, *command, *dry, says=[says])
     innermap("map", "ball.obj", "egg.obj", "-o", "new/deep", "--dry-run")
