@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "spelling.h"
+
 namespace innermap::tool {
 namespace {
 
@@ -52,7 +54,8 @@ struct Given {
 
 CLI::Option* declare(CLI::App& app, Given& given) {
   const Option& o = *given.option;
-  const std::string names = o.shortName.empty() ? o.name : o.shortName + "," + o.name;
+  std::string names = fmt::format("{}", fmt::join(spellings(o.name), ","));
+  if (!o.shortName.empty()) names = o.shortName + "," + names;
   if (o.isFlag()) return app.add_flag(names, given.flag);
   if (!o.impliedValue.empty())
     return app.add_flag(names + "{" + o.impliedValue + "}", given.values);
@@ -132,6 +135,7 @@ OptionBuilder Command::option(const std::string& name, const std::string& placeh
   o.name = name;
   o.placeholder = placeholder;
   o.help = help;
+  o.group = group_;
   o.target = std::move(target);
   addOption(options_, std::move(o));
   return {options_, options_.size() - 1};
@@ -160,7 +164,9 @@ std::vector<Option> commonOptionTable(CommonOptions& common) {
          "exit code 1 when the verdict that the run ends with is not met; files are written all "
          "the same");
   c.flag("--quiet", &common.quiet, "nothing on stderr but errors").shortName("-q");
-  c.flag("--help", &common.help, "this help").shortName("-h");
+  c.flag("--help", &common.help, "help on what is usual").shortName("-h");
+  c.flag("--help-all", &common.helpAll, "help on every option");
+  c.flag("--version", &common.version, "the program's version").shortName("-V");
   return c.options();
 }
 
@@ -188,8 +194,9 @@ void parseArguments(const Command& command, CommonOptions& common,
     refuse(command, error.what());
   }
   for (const Given& g : given)
-    if (g.option->name == "--help" && g.flag) common.help = true;
-  if (common.help) return;
+    for (bool* flag : {&common.help, &common.helpAll, &common.version})
+      if (g.flag && std::get<bool*>(g.option->target) == flag) *flag = true;
+  if (common.help || common.helpAll || common.version) return;
   refuseLeftOvers(command, all, app.remaining());
   for (const Given& g : given) take(command, g, common);
 }

@@ -62,6 +62,8 @@ class Command {
     return option(name, placeholder, take, help).choices(names).defaults(chosen);
   }
   OptionBuilder flag(const std::string& name, bool* target, const std::string& help);
+  // The title in the help of the options that follow; "": plain "options".
+  void group(const std::string& title) { group_ = title; }
 
   void description(std::string text) { description_ = std::move(text); }  // beyond the summary
   void example(std::string line) { examples_.push_back(std::move(line)); }
@@ -75,7 +77,7 @@ class Command {
   void execute(Context& context) const { body_(context); }
 
  private:
-  std::string name_, summary_, description_;
+  std::string name_, summary_, description_, group_;
   std::vector<Option> options_;
   std::vector<std::string> examples_;
   std::function<void(Context&)> body_;
@@ -85,7 +87,8 @@ class Command {
 std::vector<Option> commonOptionTable(CommonOptions& common);
 
 // Parses `arguments` (after the command's name) by the command's table and the common one. Throws
-// UsageError, SettingError. Sets `common.help` and checks nothing further when --help is there.
+// UsageError, SettingError. Sets `common.help` and checks nothing further when --help is there;
+// likewise with --help-all and --version.
 void parseArguments(const Command& command, CommonOptions& common,
                     const std::vector<std::string>& arguments);
 

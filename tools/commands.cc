@@ -1,5 +1,9 @@
 #include "commands.h"
 
+#include <algorithm>
+
+#include "spelling.h"
+
 namespace innermap::tool {
 
 std::vector<Command> allCommands() {
@@ -32,10 +36,28 @@ std::vector<Command> allCommands() {
           makeHelpCommand()};
 }
 
+std::vector<Topic> commandTopics() {
+  std::vector<Topic> topics = {
+      {"maps", {"map", "correspond", "sphere", "fit", "evaluate"}},
+      {"what goes through a map", {"push", "pull", "transfer-distance", "remesh"}},
+      {"animation", {"sequence", "deform"}},
+      {"solids", {"check", "voxelize", "texture", "tetrahedralize", "hexahedralize", "polycube"}},
+      {"files and pictures", {"info", "slice", "export", "import"}},
+      {"other", {}}};
+  for (const Command& c : allCommands()) {
+    const auto has = [&](const Topic& topic) {
+      return std::count(topic.commands.begin(), topic.commands.end(), c.name()) > 0;
+    };
+    if (std::none_of(topics.begin(), topics.end(), has)) topics.back().commands.push_back(c.name());
+  }
+  return topics;
+}
+
 Command findCommand(const std::string& name) {
   std::vector<std::string> names;
   for (const Command& c : allCommands()) {
-    if (c.name() == name) return c;
+    for (const std::string& spelling : spellings(c.name()))
+      if (spelling == name) return c;
     names.push_back(c.name());
   }
   const bool option = name.compare(0, 1, "-") == 0;

@@ -37,12 +37,29 @@ Command makeHelpCommand();
 
 std::vector<Command> allCommands();
 
+// Names under a title, as the help has them.
+struct Topic {
+  std::string title;
+  std::vector<std::string> commands;
+};
+std::vector<Topic> commandTopics();  // each command is in one
+
 // Throws UsageError with the nearest name.
 Command findCommand(const std::string& name);
 
-// Of innermap::tool's own; the commands' texts come from their tables.
+// The commands' texts come from their tables.
 std::string generalHelp();
-std::string commandHelp(const Command& command);
-std::string markdownHelp();  // docs/commands.md
+std::string commandHelp(const Command& command, bool all);  // all: also what is advanced
+std::string markdownHelp();                                 // docs/commands.md
+std::string usageLine(const Command& command);
+std::string leftOf(const Option& option);     // "-o, --output FILE"
+std::string valueText(const Option& option);  // "world units; above 0", or ""
+
+// Completion of the command line in "bash", "zsh" or "fish".
+std::string completionScript(const std::string& shell);
+
+// A page in man(7)'s language, of a command or of the program.
+std::string manPage(const Command& command);
+std::string generalManPage();
 
 }  // namespace innermap::tool

@@ -19,6 +19,7 @@
 #include "inputs.h"
 #include "lists.h"
 #include "map_report.h"
+#include "section_options.h"
 
 namespace innermap::tool {
 namespace {
@@ -30,6 +31,7 @@ struct CompareOptions {
   CompareFemSettings settings;
   int axis = 2;
   double at = 0.5;
+  Colormap colormap = Colormap::redBlue;
 };
 
 std::vector<double> numbers(const std::string& option, const std::string& list) {
@@ -216,6 +218,7 @@ void writeSection(const std::string& path, const CompareFem& result, const Solid
       values.end());
   std::sort(values.begin(), values.end());
   auto settings = context.settings<PlanePictureSettings>();
+  settings.colormap = options.colormap;
   settings.axis = options.axis;
   settings.at = options.at;
   if (!values.empty()) {
@@ -338,15 +341,18 @@ Command makeCompareFemCommand() {
   c.option("--reference", "T", &o->settings.referenceTolerance,
            "tolerance of the fit that maps are compared with")
       .unit("fraction of TARGET's diagonal")
-      .range(1e-12, 1);
+      .range(1e-12, 1)
+      .advanced();
   c.option("--samples", "N", &o->settings.samples, "points inside at which errors are measured")
-      .range(100, 1000000);
+      .range(100, 1000000)
+      .advanced();
+  addColormapOption(c, o->colormap);
   c.choice("--axis", "AXIS", &o->axis, {{"x", 0}, {"y", 1}, {"z", 2}},
            "direction across the section");
   c.option("--at", "T", &o->at, "where the section cuts")
       .unit("fraction of the box along the axis")
       .range(0, 1);
-  c.option("--seed", "N", &o->settings.seed, "of all random choices").range(0, 1e15);
+  c.option("--seed", "N", &o->settings.seed, "of all random choices").range(0, 1e15).advanced();
   c.example("innermap compare-fem spot.obj --functions -o spot-fem");
   c.example("innermap compare-fem rest.obj pose.obj -o pose-fem --resolutions 24,48,96");
   c.run([o](Context& context) { run(*o, context); });

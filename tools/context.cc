@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 
 #include "html/page.h"
 #include "innermap/core/memory.h"
@@ -29,13 +30,27 @@ Progress* Context::progress() const { return &progress_; }
 
 void Context::setPart(const std::string& part) { progress_.setPart(part); }
 
+void Context::expect(const std::vector<JobPhase>& phases) {
+  expectedSeconds_ = busyness() * totalSeconds(phases);
+  progress_.expect(phases);
+}
+
+void Context::phase(const std::string& stage) { progress_.report(stage, 0); }
+
 void Context::plan(const std::vector<std::string>& lines, std::uint64_t bytes) {
   for (const std::string& line : lines) print(line + "\n");
+  if (expectedSeconds_ > 0) {
+    print(fmt::format("time: about {:.0f} s\n", std::max(1.0, expectedSeconds_)));
+    report_.set("seconds_expected", expectedSeconds_);
+  }
   print(fmt::format("memory: about {} of at most {}{}\n", formatBytes(bytes),
                     formatBytes(maxMemory_),
                     bytes > maxMemory_ ? ", so this would be refused" : ""));
   report_.set("dry_run", true);
   report_.set("memory_needed_bytes", bytes);
+  if (bytes > maxMemory_)
+    failAfterwards(fmt::format("{} of memory are more than the limit of {}; raise --max-memory",
+                               formatBytes(bytes), formatBytes(maxMemory_)));
 }
 
 namespace {
@@ -72,37 +87,76 @@ void Context::output(const std::string& path, bool sure) {
   enter(path);
   if (sure) expectOutputs(1);
   if (path != options_.report) placePage(path);
-  if (dryRun()) return;
   requireWritable(path);
-  if (std::filesystem::path(path).extension() == ".png") notePictures();
+  if (!dryRun() && std::filesystem::path(path).extension() == ".png") notePictures();
 }
 
 void Context::outputs(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) enter(path);
   expectOutputs(static_cast<int>(paths.size()));
   if (!paths.empty()) placePage(paths.front());
-  if (!dryRun() && !paths.empty()) requireWritable(paths.front());
+  if (!paths.empty()) requireWritable(paths.front());
 }
 
 std::unique_ptr<PendingFolder> Context::outputFolder(const std::string& path,
                                                      const std::vector<std::string>& names) {
-  auto folder = dryRun() ? nullptr : std::make_unique<PendingFolder>(path);
+  auto folder = std::make_unique<PendingFolder>(path);
   inFolder(path, names);
+  sayWhatIsThere(path, names);
   expectOutputs(1);
   placePage((std::filesystem::path(path) / "report.html").string());
+  if (dryRun()) return nullptr;
   for (const std::string& name : names)
-    if (folder && std::filesystem::path(name).extension() == ".png") {
+    if (std::filesystem::path(name).extension() == ".png") {
       notePictures();
       break;
     }
   return folder;
 }
 
+namespace {
+
+// "a, b and 3 more"
+std::string someOf(std::vector<std::string> names) {
+  constexpr std::size_t kShown = 5;
+  std::sort(names.begin(), names.end());
+  const std::size_t more = names.size() > kShown ? names.size() - kShown : 0;
+  names.resize(names.size() - more);
+  return fmt::format("{}{}", fmt::join(names, ", "), more ? fmt::format(" and {} more", more) : "");
+}
+
+// Whether a report of an earlier run stands there.
+bool isOurs(const std::filesystem::path& folder) {
+  constexpr std::streamsize kEnough = 4096;
+  std::ifstream file(folder / "report.json", std::ios::binary);
+  std::string head(kEnough, ' ');
+  file.read(head.data(), kEnough);
+  return head.compare(0, 1, "{") == 0 && head.find("\"command\"") != std::string::npos;
+}
+
+}  // namespace
+
+void Context::sayWhatIsThere(const std::string& path, const std::vector<std::string>& names) {
+  std::vector<std::string> replaced, others;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(path, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.compare(0, 1, ".") == 0) continue;
+    const bool known = std::find(names.begin(), names.end(), name) != names.end();
+    (known ? replaced : others).push_back(name);
+  }
+  if (!replaced.empty() && !isOurs(path))
+    warning(fmt::format("{}: replaces {}, and no report.json says that an earlier run wrote {}",
+                        path, someOf(replaced), replaced.size() == 1 ? "it" : "them"));
+  if (!others.empty() && !isOurs(path))
+    note(fmt::format("{} holds other things, which stay as they are: {}", path, someOf(others)));
+}
+
 void Context::inFolder(const std::string& folder, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     const std::string path = (std::filesystem::path(folder) / name).string();
     enter(path);
-    if (!dryRun()) requireWritable(path);
+    requireWritable(path);
   }
 }
 

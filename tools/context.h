@@ -13,6 +13,7 @@
 #include "innermap/core/progress.h"
 #include "innermap/core/stage_seconds.h"
 #include "innermap/io/report.h"
+#include "job_clock.h"
 
 namespace innermap::tool {
 
@@ -32,7 +33,7 @@ struct CommonOptions {
   std::string report;
   std::string html;  // empty: none
   bool quiet = false;
-  bool help = false;
+  bool help = false, helpAll = false, version = false;
   // As they stood on the command line: all of them, and the last value of each option by its name.
   std::vector<std::string> arguments;
   std::map<std::string, std::string> given;
@@ -52,6 +53,12 @@ class Context {
   // with the progress. Empty: none.
   void setPart(const std::string& part);
 
+  // What the job consists of, when that becomes known: for the progress, and the time that plan()
+  // tells. Seconds as on an idle machine of four cores.
+  void expect(const std::vector<JobPhase>& phases);
+  // One of those that the library does not report begins.
+  void phase(const std::string& stage);
+
   // Bytes: --max-memory, or 80% of the machine's.
   std::uint64_t maxMemory() const { return maxMemory_; }
 
@@ -64,8 +71,8 @@ class Context {
   }
 
   bool dryRun() const { return options_.dryRun; }
-  // What --dry-run says: a line for each thing that would be done, and the peak need in bytes (also
-  // whether it is over the limit), on stdout.
+  // What --dry-run says: a line for each thing that would be done, the seconds that expect() knows
+  // of, and the peak need in bytes (also whether it is over the limit), on stdout.
   void plan(const std::vector<std::string>& lines, std::uint64_t bytes);
 
   // A file that is read. Arguments, and options that are marked with reads(), are told already;
@@ -73,13 +80,14 @@ class Context {
   void input(const std::string& path);
 
   // All that a command writes passes here, before it reads or computes anything. Throws FileError
-  // when `path` is an input, or another output, and unless a file can be created there (this not in
-  // a dry run). sure: it will be written in any case.
+  // when `path` is an input, or another output, and unless a file can be created there. sure: it
+  // will be written in any case.
   void output(const std::string& path, bool sure = true);
   // Files of one kind, of which only the first is tried out.
   void outputs(const std::vector<std::string>& paths);
   // A folder of files that appear together; `names` are those that are known to be written, others
-  // are added by inFolder(). Null in a dry run.
+  // are added by inFolder(). Files of other names stay untouched. Says which files that are no
+  // earlier run's are replaced, or stay. Null in a dry run.
   std::unique_ptr<PendingFolder> outputFolder(const std::string& path,
                                               const std::vector<std::string>& names);
   void inFolder(const std::string& folder, const std::vector<std::string>& names);
@@ -146,6 +154,7 @@ class Context {
   template <class Settings>
   struct HasMaxMemory<Settings, std::void_t<decltype(Settings::maxMemory)>> : std::true_type {};
 
+  void sayWhatIsThere(const std::string& path, const std::vector<std::string>& names);
   void say(const std::string& kind, const std::string& text);
 
   void enter(const std::string& path);
@@ -163,6 +172,7 @@ class Context {
   std::unique_ptr<Page> page_;
   std::string pagePath_;
   std::string failure_;
+  double expectedSeconds_ = 0;
   std::map<std::string, std::string> inputs_, outputs_;       // by fileKey
   std::vector<std::pair<std::string, std::string>> ordered_;  // outputs: key when told, path
   std::vector<ReportOutput> inFolders_;                       // that are in place, or will be

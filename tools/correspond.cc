@@ -65,25 +65,36 @@ Command makeCorrespondCommand() {
   Command c("correspond", "Lay the surface of one solid onto that of another, of any connectivity");
   c.description(
       std::string(
-          "Writes A with its vertices moved onto B's surface, so that it is a target for map, fit "
+          "Writes SOURCE with its vertices moved onto TARGET's surface, so that it is a target for "
+          "map, fit "
           "and "
-          "the rest, and each vertex's `triangle` of B (counted from 0) and barycentric "
+          "the rest, and each vertex's `triangle` of TARGET (counted from 0) and barycentric "
           "coordinates "
-          "`b0 b1 b2`. The map is one-to-one between the two surfaces, each point of B is reached "
-          "once; the triangles between the moved vertices cut corners where B is finer than A "
+          "`b0 b1 b2`. The map is one-to-one between the two surfaces, each point of TARGET is "
+          "reached "
+          "once; the triangles between the moved vertices cut corners where TARGET is finer than "
+          "SOURCE "
           "(--subdivide). Solids of the same number of handles, with as many shells (cavities). ") +
       kLandmarkFormat);
-  c.positional("A", &o->a, "mesh of the first solid: .obj, .ply, .off or .stl");
-  c.positional("B", &o->b, "mesh of the second solid");
-  c.option("--output", "FILE", &o->output, "A on B, a .ply file").shortName("-o").required();
-  c.option("--source-out", "FILE", &o->sourceOutput,
-           "A with the same vertices as the output, written when A's triangles were split or its "
-           "touching parts cut apart")
-      .defaults("the output's name with .source.ply");
+  c.positional("SOURCE", &o->a, "mesh of the first solid: .obj, .ply, .off or .stl");
+  c.positional("TARGET", &o->b, "mesh of the second solid");
+  c.option("--output", "FILE", &o->output, "SOURCE on TARGET, a .ply file")
+      .shortName("-o")
+      .required()
+      .writes({".ply"});
+  c.option(
+       "--source-out", "FILE", &o->sourceOutput,
+       "SOURCE with the same vertices as the output, written when its triangles were split or its "
+       "touching parts cut apart")
+      .defaults("the output's name with .source.ply")
+      .writes({".ply"})
+      .advanced();
   addCorrespondOptions(c, o->correspond);
-  c.option("--seed", "N", &o->correspond.map.seed, "of all random choices").range(0, 1e15);
-  c.option("--picture", "FILE", &o->picture,
-           "a .png with A's coordinates as colours, on A and on B");
+  c.option("--seed", "N", &o->correspond.map.seed, "of all random choices")
+      .range(0, 1e15)
+      .advanced();
+  c.option("--picture", "FILE", &o->picture, "a .png with SOURCE's coordinates as colours, on both")
+      .writes({".png"});
   c.example("innermap correspond cow.obj man.obj -o cow_on_man.ply --picture cow_on_man.png");
   c.example(
       "innermap correspond cow.obj man.obj -o out.ply --landmarks pairs.txt --subdivide 0.005");

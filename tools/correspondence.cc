@@ -59,9 +59,9 @@ std::string qualityText(const MapQuality& q, ModelSpace space, bool standIn) {
       "on the {}: {} flip{}, degree {:.9f}\n"
       "energy: {:.2f} there and {:.2f} back, {:.2f} in all (4 + 4 at best)\n"
       "stretch: median {:.2f}, 99% {:.2f}, max {:.2f}\n"
-      "image: {:.3g}% of its triangles inverted; {:.3g}% of the diagonal from B at 99% of it, "
+      "image: {:.3g}% of its triangles inverted; {:.3g}% of the diagonal from TARGET at 99% of it, "
       "{:.3g}% "
-      "at most; {} self-intersection{}, {} of B itself\n{}",
+      "at most; {} self-intersection{}, {} of TARGET itself\n{}",
       space == ModelSpace::sphere ? "sphere" : "torus", q.flips, q.flips == 1 ? "" : "s", q.degree,
       q.energyForward, q.energyBackward, q.energyForward + q.energyBackward, q.stretch.median,
       q.stretch.p99, q.stretch.max, 100 * q.invertedShare, 100 * q.deviation.p99,
@@ -78,22 +78,30 @@ void addSurfaceOptions(Command& c, LayOutSettings& o) {
            "surface, an isosurface at N voxels across, is mapped instead, and its values are "
            "carried back to the mesh by closest points")
       .range(8, 2048)
-      .defaults("such a mesh is refused");
+      .defaults("such a mesh is refused")
+      .advanced();
 }
 
 void addCorrespondOptions(Command& c, CorrespondOptions& o) {
+  c.group("laying SOURCE onto TARGET");
   c.option("--landmarks", "FILE", &o.landmarks, "pairs of places that are kept exactly").reads();
   c.flag("--aligned", &o.map.aligned,
          "the two stand in the same pose and orientation: prefer agreeing normals and places");
   c.option("--candidates", "N", &o.map.candidates,
-           "ways to lay A on B that are refined: those whose coarse harmonic maps of the inside "
+           "ways to lay SOURCE on TARGET that are refined: those whose coarse harmonic maps of the "
+           "inside "
            "stretch and fold it least; of them the one that does so least is taken")
-      .range(1, 64);
-  c.flag("--no-refine", &o.noRefine, "only the best way to lay A on B, not refined: fast, rough");
+      .range(1, 64)
+      .advanced();
+  c.flag("--no-refine", &o.noRefine,
+         "only the best way to lay SOURCE on TARGET, not refined: fast, rough")
+      .advanced();
   c.option("--subdivide", "T", &o.map.subdivide,
-           "split A's triangles until they follow B within T, and write A so split too; 0: never")
-      .unit("fraction of B's diagonal")
-      .range(0, 1);
+           "split SOURCE's triangles until they follow TARGET within T, and write it so split too; "
+           "0: never")
+      .unit("fraction of TARGET's diagonal")
+      .range(0, 1)
+      .advanced();
   addSurfaceOptions(c, o.surfaces);
 }
 

@@ -300,7 +300,8 @@ Command makeDeformCommand() {
   auto o = std::make_shared<DeformOptions>();
   Command c("deform", "Carry a volume or geometry in a rest pose through an animation");
   c.description(
-      "INSIDE, grids or geometry, lives inside REST. For each frame REST's inside is mapped onto "
+      "INSIDE, grids or geometry, lives inside SOURCE. For each frame SOURCE's inside is mapped "
+      "onto "
       "the "
       "frame's and what is inside is carried along, as push does. The set-up is made once "
       "for all frames, all outputs have one voxel size and one lattice, and a frame's result does "
@@ -308,7 +309,7 @@ Command makeDeformCommand() {
       "same files and settings, are skipped (of geometry all are made). A frame that cannot be "
       "read or fitted is reported and "
       "left out; the exit code is then 1.");
-  c.positional("REST", &o->rest, "mesh of the rest pose: .obj, .ply, .off or .stl");
+  c.positional("SOURCE", &o->rest, "mesh of the rest pose: .obj, .ply, .off or .stl");
   c.positional("INSIDE", &o->volume,
                "what is carried, in the rest pose's world space: grids (.vdb) or geometry (.obj, "
                ".ply, .off, .stl; cells in .vtu, .msh, .mesh)");

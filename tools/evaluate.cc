@@ -43,7 +43,10 @@ Command makeEvaluateCommand() {
       "from the origin, where floats do not hold positions well, also map_local: positions less "
       "its metadata innermap_map_local_origin.");
   c.positional("MAP", &o->map, "a map.ply written by fit or map");
-  c.option("--output", "FILE", &o->output, "the grids, a .vdb file").shortName("-o").required();
+  c.option("--output", "FILE", &o->output, "the grids, a .vdb file")
+      .shortName("-o")
+      .required()
+      .writes({".vdb"});
   addEvaluationOptions(c, o->evaluation);
   addVerdictOptions(c, o->verdict);
   c.example("innermap evaluate map.ply -o map.vdb --resolution 256");

@@ -71,12 +71,14 @@ void addShapeOptions(Command& c, ExportOptions& o) {
            "resample to N voxels along the longest side: linear, the mean where voxels grow")
       .range(1, 8192)
       .defaults("the grids' own voxels");
-  c.option("--pad", "N", &o.texture.pad, "voxels about the active box").range(0, 4096);
-  c.flag("--cube", &o.texture.cube, "widen the box to a cube");
+  c.option("--pad", "N", &o.texture.pad, "voxels about the active box").range(0, 4096).advanced();
+  c.flag("--cube", &o.texture.cube, "widen the box to a cube").advanced();
   c.flag("--power-of-two", &o.texture.powerOfTwo,
-         "widen the box so that the slices' number and sides and the picture's are powers of two");
+         "widen the box so that the slices' number and sides and the picture's are powers of two")
+      .advanced();
   c.option("--tiles", "CxR", &o.tiles, "columns and rows of the atlas, such as 8x8")
-      .defaults("near a square");
+      .defaults("near a square")
+      .advanced();
 }
 
 }  // namespace
@@ -96,7 +98,8 @@ Command makeExportCommand() {
            "the .exr file; of slices, with #### or %04d for the number, else it is put before the "
            "extension")
       .shortName("-o")
-      .required();
+      .required()
+      .writes({".exr"});
   c.choice("--layout", "NAME", &o->texture.layout,
            {{"atlas", VolumeLayout::atlas},
             {"slices", VolumeLayout::slices},
@@ -108,14 +111,15 @@ Command makeExportCommand() {
            {{"auto", VolumeChannels::automatic},
             {"rgba", VolumeChannels::rgba},
             {"layers", VolumeChannels::layers}},
-           "rgba: Y or R, G, B, A; layers: by the grids' names; auto: rgba where four are enough");
+           "rgba: Y or R, G, B, A; layers: by the grids' names; auto: rgba where four are enough")
+      .advanced();
   addShapeOptions(c, *o);
   c.choice("--axis", "AXIS", &o->texture.axis, {{"x", 0}, {"y", 1}, {"z", 2}},
            "direction across the slices");
   c.choice("--rows", "ORDER", &o->texture.rowsUp, {{"down", false}, {"up", true}},
            "down: a slice's first row has the least index (Direct3D, Unreal); up: the largest "
            "(OpenGL, Unity)");
-  c.flag("--active", &o->texture.active, "also NAME.active: 1 where a voxel is active");
+  c.flag("--active", &o->texture.active, "also NAME.active: 1 where a voxel is active").advanced();
   c.example("innermap export smoke.vdb -o smoke.exr --grid density --resolution 64 --cube --half");
   c.example("innermap export map.vdb -o 'slices/map.####.exr' --layout slices --grid map,density");
   c.run([o](Context& context) { run(*o, context); });

@@ -27,10 +27,12 @@ void run(const FitOptions& options, Context& context) {
   reportBoundaries(pair, context);
   const FitMapSettings settings =
       fitMapSettings(options.fitting, pair.source.mesh.vertices.size(), context);
+  context.expect(fittingPhases(settings, pair.source.mesh.vertices.size(), false));
   if (context.dryRun())
     return context.plan({fittingPlan(settings), "write the map to " + options.output},
                         fitMapMemory(settings));
   requireFittingMemory(settings);
+  context.phase("fitting");
   const MapFit fit = fitMap(std::move(pair), settings);
   reportFit(fit, settings, options.fitting.bestEffort, context);
   reportInjectivity(fit.injectivity, context);
@@ -49,7 +51,10 @@ Command makeFitCommand() {
       "certificate is the error at 20,000 boundary points that took no part in the fit.");
   c.positional("SOURCE", &o->source, "mesh of the solid: .obj, .ply, .off or .stl");
   c.positional("TARGET", &o->target, "the same mesh with its vertices moved");
-  c.option("--output", "FILE", &o->output, "the map, a .ply file").shortName("-o").required();
+  c.option("--output", "FILE", &o->output, "the map, a .ply file")
+      .shortName("-o")
+      .required()
+      .writes({".ply"});
   addFittingOptions(c, o->fitting);
   addVerdictOptions(c, o->verdict);
   c.example("innermap fit rest.obj pose.obj -o map.ply");

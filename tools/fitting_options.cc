@@ -68,6 +68,7 @@ ShellSettings shellSettings(const FittingOptions& o, std::size_t vertices) {
 }  // namespace
 
 void addFittingOptions(Command& command, FittingOptions& o) {
+  command.group("fit of the map");
   command
       .option("--tolerance", "T", &o.tolerance,
               "charges are placed where the error is until 99% of the boundary lies within T; not "
@@ -77,7 +78,8 @@ void addFittingOptions(Command& command, FittingOptions& o) {
   command.flag("--best-effort", &o.bestEffort,
                "exit code 0 also when the tolerance cannot be met; files are written either way");
   command.option("--max-sources", "N", &o.fit.maxSources, "charges that --tolerance may take")
-      .range(kFirstSources, kMostSources);
+      .range(kFirstSources, kMostSources)
+      .advanced();
   command
       .option("--sources", "N", &o.sources,
               "number of charges on one shell, in place of --tolerance")
@@ -85,41 +87,50 @@ void addFittingOptions(Command& command, FittingOptions& o) {
       .defaults(fmt::format("{} when other options ask for such a shell", o.shell.sources));
   command.option("--collocation", "N", &o.collocation, "boundary points that the map is fitted to")
       .range(8, 1e7)
-      .defaults("4 a source; 3 a source above 3000");
+      .defaults("4 a source; 3 a source above 3000")
+      .advanced();
   command
       .option("--source-ratio", "R", &o.sourceRatio,
               "charges as a multiple of the source's vertices (sRatio), in place of --sources")
       .above(0)
-      .atMost(100);
+      .atMost(100)
+      .advanced();
   command
       .option("--collocation-ratio", "R", &o.collocationRatio,
               "boundary points as a multiple of the source's vertices (cRatio), in place of "
               "--collocation")
       .above(0)
-      .atMost(1000);
+      .atMost(1000)
+      .advanced();
   command
       .option("--distance", "D", &o.shell.distance, "of the charges from the surface (O-Distance)")
       .unit("fraction of the source's diagonal")
       .range(1e-4, 2)
-      .defaults("chosen by held-out error");
+      .defaults("chosen by held-out error")
+      .advanced();
   command
       .option("--radius-ratio", "R", &o.shell.radiusRatio,
               "charges on a sphere, in place of a shell: its radius as a multiple of half the "
               "diagonal (R-Ratio)")
       .above(1)
-      .atMost(100);
-  command.choice("--solver", "NAME", &o.shell.solver,
-                 {{"auto", FitSolver::automatic},
-                  {"dense", FitSolver::dense},
-                  {"iterative", FitSolver::iterative}},
-                 "dense: all at once, for up to some 3000 charges; iterative: for many; auto: by "
-                 "their number");
-  command.choice("--interpolation", "NAME", &o.fit.interpolation,
-                 {{"auto", Interpolation::automatic},
-                  {"linear", Interpolation::linear},
-                  {"smooth", Interpolation::smooth}},
-                 "what the target is between vertices: linear, as its triangles; smooth, when "
-                 "vertices sample a smooth deformation; auto: by the error at held-out vertices");
+      .atMost(100)
+      .advanced();
+  command
+      .choice("--solver", "NAME", &o.shell.solver,
+              {{"auto", FitSolver::automatic},
+               {"dense", FitSolver::dense},
+               {"iterative", FitSolver::iterative}},
+              "dense: all at once, for up to some 3000 charges; iterative: for many; auto: by "
+              "their number")
+      .advanced();
+  command
+      .choice("--interpolation", "NAME", &o.fit.interpolation,
+              {{"auto", Interpolation::automatic},
+               {"linear", Interpolation::linear},
+               {"smooth", Interpolation::smooth}},
+              "what the target is between vertices: linear, as its triangles; smooth, when "
+              "vertices sample a smooth deformation; auto: by the error at held-out vertices")
+      .advanced();
   command.choice(
       "--one-to-one", "WHEN", &o.fit.oneToOne,
       {{"auto", OneToOne::automatic}, {"on", OneToOne::on}, {"off", OneToOne::off}},
@@ -128,17 +139,20 @@ void addFittingOptions(Command& command, FittingOptions& o) {
                   "it out of the target; on: until nothing that is checked folds, else "
                   "exit code 1; off: one harmonic map",
                   100 * kManyFolds, 100 * kManyOutside));
-  command.option("--max-steps", "N", &o.fit.maxSteps, "steps at most").range(1, 256);
-  command.choice("--method", "NAME", &o.shell.method,
-                 {{"tikhonov", Regularization::tikhonov}, {"tsvd", Regularization::truncatedSvd}},
-                 "regularisation: Tikhonov's, or truncation of singular values (the paper's)");
+  command.option("--max-steps", "N", &o.fit.maxSteps, "steps at most").range(1, 256).advanced();
+  command
+      .choice("--method", "NAME", &o.shell.method,
+              {{"tikhonov", Regularization::tikhonov}, {"tsvd", Regularization::truncatedSvd}},
+              "regularisation: Tikhonov's, or truncation of singular values (the paper's)")
+      .advanced();
   command
       .option("--regularization", "T", &o.shell.regularization,
               "threshold of singular values, or Tikhonov's lambda")
       .unit("fraction of the largest singular value")
       .range(0, 1)
-      .defaults("chosen by held-out error");
-  command.option("--seed", "N", &o.fit.seed, "of all random points").range(0, 1e15);
+      .defaults("chosen by held-out error")
+      .advanced();
+  command.option("--seed", "N", &o.fit.seed, "of all random points").range(0, 1e15).advanced();
 }
 
 FitMapSettings fitMapSettings(const FittingOptions& options, std::size_t vertices,
@@ -176,6 +190,24 @@ void requireFittingMemory(const FitMapSettings& settings) {
   requireMemoryFor(fmt::format("fitting {} sources", settings.shell->sources),
                    fitMapMemory(settings), settings.maxMemory,
                    {"--sources", 1, settings.shell->sources, need}, "raise --max-memory");
+}
+
+// Seconds as measured on samples/ and models of some ten thousand triangles; a shell is factored at
+// once where it is small.
+std::vector<JobPhase> fittingPhases(const FitMapSettings& settings, std::size_t vertices,
+                                    bool laidOn) {
+  const double thousands = static_cast<double>(vertices) / 1000;
+  double fit = 2 + 0.25 * thousands * std::pow(1e-3 / settings.tolerance, 0.7);
+  if (settings.shell) {
+    const double sources = static_cast<double>(settings.shell->sources) / 1000;
+    fit = 0.5 + (sources <= 3 ? 0.25 * std::pow(sources, 2.5) : 1.5 * sources);
+  }
+  std::vector<JobPhase> phases = {{"fitting", settings.shell ? fit : 0.4 * fit}};
+  if (!settings.shell) phases.push_back({"meeting the tolerance", 0.6 * fit, false, "fitting"});
+  if (settings.oneToOne == OneToOne::off || settings.shell) return phases;
+  const double steps = 10 + 2 * thousands * std::pow(2e-3 / settings.tolerance, 0.7);
+  phases.push_back({"going in steps", steps, !laidOn});
+  return phases;
 }
 
 }  // namespace innermap::tool

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "command.h"
 #include "innermap/boundary/fit_map.h"
@@ -34,5 +35,10 @@ void requireFittingMemory(const FitMapSettings& settings);
 
 // "fit 2000 charges to 8000 boundary points", for --dry-run.
 std::string fittingPlan(const FitMapSettings& settings);
+
+// The fit's part of a job, for Context::expect: "fitting" and "going in steps". laidOn: the source
+// is laid onto a stranger, which mostly takes steps.
+std::vector<JobPhase> fittingPhases(const FitMapSettings& settings, std::size_t vertices,
+                                    bool laidOn);
 
 }  // namespace innermap::tool

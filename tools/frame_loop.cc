@@ -63,13 +63,16 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
                                    const std::function<void(std::size_t)>& body) {
   std::vector<FrameResult> results;
   std::size_t finished = 0;
+  context.expect({{"frames", 0.5 * static_cast<double>(frames.wanted.size())}});
   try {
     for (const std::size_t index : frames.wanted) {
       FrameResult result;
       result.file = frames.all[index];
       context.setPart(fmt::format("frame {} ({} of {})", result.file.number, results.size() + 1,
                                   frames.wanted.size()));
-      throwIfCancelled(context.progress());
+      reportProgress(
+          context.progress(), "frames",
+          static_cast<double>(results.size()) / static_cast<double>(frames.wanted.size()));
       const auto start = Clock::now();
       result.error = tryFrame(index, body);
       result.seconds = std::chrono::duration<double>(Clock::now() - start).count();

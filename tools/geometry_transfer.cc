@@ -15,6 +15,7 @@ constexpr double kPointAccuracy = 1e-7;  // of the target's extent
 }  // namespace
 
 void addGeometryOptions(Command& c, GeometryOptions& o, bool subdivide) {
+  c.group("geometry that is carried");
   c.option("--vectors", "LIST", &o.vectors,
            "of geometry: properties (.ply: NAME_x, NAME_y, NAME_z) or fields (.vtu, .msh) that are "
            "vectors and turned by the map's Jacobian")

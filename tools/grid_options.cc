@@ -51,13 +51,19 @@ void writeGridFile(const std::string& path, const openvdb::GridPtrVec& grids,
 }
 
 void addEvaluationOptions(Command& c, EvaluationOptions& o) {
+  c.group("grids");
   addGridOptions(c, o.grid);
-  c.option("--lame-lambda", "X", &o.lame.lambda, "first elastic constant").range(0, 1e12);
-  c.option("--lame-mu", "X", &o.lame.mu, "second elastic constant (shear)").range(0, 1e12);
+  c.option("--lame-lambda", "X", &o.lame.lambda, "first elastic constant")
+      .range(0, 1e12)
+      .advanced();
+  c.option("--lame-mu", "X", &o.lame.mu, "second elastic constant (shear)")
+      .range(0, 1e12)
+      .advanced();
   c.choice("--repair", "WHEN", &o.repair,
            {{"auto", RepairFolds::automatic}, {"on", RepairFolds::on}, {"off", RepairFolds::off}},
            "take folds out of the grids, where `repaired` says how far voxels were moved; auto: "
-           "where at most 0.5% of the voxels is folded");
+           "where at most 0.5% of the voxels is folded")
+      .advanced();
   addNamesOption(c, o.names);
 }
 

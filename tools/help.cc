@@ -1,7 +1,11 @@
 // `innermap help`, and the texts of --help and of docs/commands.md.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <ostream>
+
 #include "commands.h"
+#include "innermap/core/file.h"
 #include "innermap/core/version.h"
 
 namespace innermap::tool {
@@ -29,6 +33,8 @@ std::string wrapped(const std::string& text, std::size_t indent, std::size_t at)
   return result;
 }
 
+}  // namespace
+
 std::string leftOf(const Option& o) {
   std::string left = o.shortName.empty() ? o.name : o.shortName + ", " + o.name;
   if (!o.impliedValue.empty()) return left + "[=" + o.placeholder + "]";
@@ -46,17 +52,6 @@ std::string valueText(const Option& o) {
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
-std::string optionLine(const Option& o) {
-  const std::string values = valueText(o);
-  const std::string text = o.help + (values.empty() ? "" : " [" + values + "]");
-  std::string line = "  " + leftOf(o);
-  if (line.size() + 2 > kColumn)
-    line += "\n" + std::string(kColumn, ' ');
-  else
-    line.resize(kColumn, ' ');
-  return line + wrapped(text, kColumn, kColumn) + "\n";
-}
-
 std::string usageLine(const Command& command) {
   std::string line = "innermap " + command.name();
   for (const Option& o : command.options())
@@ -68,12 +63,41 @@ std::string usageLine(const Command& command) {
   return line + " [options]";
 }
 
-std::string optionSection(const std::vector<Option>& options, const std::string& title,
-                          bool positional) {
+namespace {
+
+std::string optionLine(const Option& o) {
+  const std::string values = valueText(o);
+  const std::string text = o.help + (values.empty() ? "" : " [" + values + "]");
+  std::string line = "  " + leftOf(o);
+  if (line.size() + 2 > kColumn)
+    line += "\n" + std::string(kColumn, ' ');
+  else
+    line.resize(kColumn, ' ');
+  return line + wrapped(text, kColumn, kColumn) + "\n";
+}
+
+// Groups in the order in which they begin, the usual options of each first.
+std::string optionGroups(const std::vector<Option>& options, bool all) {
+  std::vector<std::string> titles;
+  for (const Option& o : options)
+    if (!o.isPositional() && std::find(titles.begin(), titles.end(), o.group) == titles.end())
+      titles.push_back(o.group);
+  std::string text;
+  for (const std::string& title : titles) {
+    std::string usual, advanced;
+    for (const Option& o : options)
+      if (!o.isPositional() && o.group == title) (o.advanced ? advanced : usual) += optionLine(o);
+    if (all) usual += advanced;
+    if (!usual.empty()) text += "\n" + (title.empty() ? "options" : title) + ":\n" + usual;
+  }
+  return text;
+}
+
+std::string argumentSection(const std::vector<Option>& options) {
   std::string text;
   for (const Option& o : options)
-    if (o.isPositional() == positional) text += optionLine(o);
-  return text.empty() ? "" : "\n" + title + ":\n" + text;
+    if (o.isPositional()) text += optionLine(o);
+  return text.empty() ? "" : "\narguments:\n" + text;
 }
 
 std::string markdownRow(const Option& o) {
@@ -91,14 +115,36 @@ std::string markdownTable(const std::vector<Option>& options) {
 }
 
 struct HelpOptions {
-  std::string command;
-  bool markdown = false;
+  std::string command, completion, pages;
+  bool markdown = false, all = false, man = false;
 };
 
-void run(const HelpOptions& options, Context& context) {
-  if (options.markdown) return context.print(markdownHelp());
-  context.print(options.command.empty() ? generalHelp()
-                                        : commandHelp(findCommand(options.command)));
+// What an installation takes.
+void writePages(const std::string& path, Context& context) {
+  std::vector<std::pair<std::string, std::string>> files = {{"innermap.1", generalManPage()}};
+  for (const Command& c : allCommands())
+    files.emplace_back("innermap-" + c.name() + ".1", manPage(c));
+  files.emplace_back("innermap.bash", completionScript("bash"));
+  files.emplace_back("_innermap", completionScript("zsh"));
+  files.emplace_back("innermap.fish", completionScript("fish"));
+  std::vector<std::string> names;
+  for (const auto& [name, text] : files) names.push_back(name);
+  const auto folder = context.outputFolder(path, names);
+  if (!folder) return context.plan({"write man pages and completions to " + path}, 0);
+  for (const auto& [name, text] : files)
+    folder->write(name, [&, &content = text](const std::string& place) {
+      writeWholeFile(place, [&](std::ostream& out) { out << content; });
+    });
+  folder->commit();
+}
+
+void run(const HelpOptions& o, Context& context) {
+  if (!o.pages.empty()) return writePages(o.pages, context);
+  if (o.markdown) return context.print(markdownHelp());
+  if (!o.completion.empty()) return context.print(completionScript(o.completion));
+  if (o.man)
+    return context.print(o.command.empty() ? generalManPage() : manPage(findCommand(o.command)));
+  context.print(o.command.empty() ? generalHelp() : commandHelp(findCommand(o.command), o.all));
 }
 
 }  // namespace
@@ -106,10 +152,13 @@ void run(const HelpOptions& options, Context& context) {
 std::string generalHelp() {
   std::string text = fmt::format(
       "innermap {}: harmonic maps of solids, into OpenVDB and EXR\n\n"
-      "usage: innermap COMMAND [options]\n\ncommands:\n",
+      "usage: innermap COMMAND [options]\n",
       versionText());
-  for (const Command& c : allCommands())
-    text += fmt::format("  {:<19}{}\n", c.name(), wrapped(c.summary(), 21, 21));
+  for (const Topic& topic : commandTopics()) {
+    text += "\n" + topic.title + ":\n";
+    for (const std::string& name : topic.commands)
+      text += fmt::format("  {:<19}{}\n", name, wrapped(findCommand(name).summary(), 21, 21));
+  }
   CommonOptions common;
   text += "\noptions of every command:\n";
   for (const Option& o : commonOptionTable(common)) text += optionLine(o);
@@ -119,15 +168,22 @@ std::string generalHelp() {
   return text;
 }
 
-std::string commandHelp(const Command& command) {
+std::string commandHelp(const Command& command, bool all) {
   CommonOptions common;
   std::string text = command.summary() + "\n\nusage: " + usageLine(command) + "\n";
   if (!command.description().empty()) text += "\n" + wrapped(command.description(), 0, 0) + "\n";
-  text += optionSection(command.options(), "arguments", true);
-  text += optionSection(command.options(), "options", false);
-  text += optionSection(commonOptionTable(common), "options of every command", false);
+  text += argumentSection(command.options());
+  text += optionGroups(command.options(), all);
+  std::vector<Option> shared = commonOptionTable(common);
+  for (Option& o : shared) o.group = "options of every command";
+  text += optionGroups(shared, all);
   if (!command.examples().empty()) text += "\nexample:\n";
   for (const std::string& line : command.examples()) text += "  " + line + "\n";
+  const auto hidden = std::count_if(command.options().begin(), command.options().end(),
+                                    [](const Option& o) { return o.advanced; });
+  if (!all && hidden > 0)
+    text += fmt::format("\n{} more option{}: innermap {} --help-all\n", hidden,
+                        hidden == 1 ? "" : "s", command.name());
   return text;
 }
 
@@ -151,7 +207,16 @@ Command makeHelpCommand() {
   auto o = std::make_shared<HelpOptions>();
   Command c("help", "Show the help of a command, or the commands");
   c.positional("COMMAND", &o->command, "the command to explain").optional();
-  c.flag("--markdown", &o->markdown, "the reference of all commands, as docs/commands.md has it");
+  c.flag("--all", &o->all, "every option of the command, as its --help-all");
+  c.flag("--man", &o->man, "as a page for man: innermap help map --man | man -l -");
+  c.option("--completion", "SHELL", &o->completion,
+           "a script that completes the command line: . <(innermap help --completion bash)")
+      .choices({"bash", "zsh", "fish"});
+  c.flag("--markdown", &o->markdown, "the reference of all commands, as docs/commands.md has it")
+      .advanced();
+  c.option("--pages", "FOLDER", &o->pages,
+           "write what an installation takes: all pages for man and completion scripts")
+      .advanced();
   c.example("innermap help voxelize");
   c.run([o](Context& context) { run(*o, context); });
   return c;

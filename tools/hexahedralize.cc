@@ -13,6 +13,7 @@
 #include "innermap/mesh/write.h"
 #include "inputs.h"
 #include "polycube_report.h"
+#include "section_options.h"
 
 namespace innermap::tool {
 namespace {
@@ -22,6 +23,7 @@ struct Options {
   HexahedralizeSettings settings;
   int resolution = 0, axis = 2;
   double at = 0.5;
+  Colormap colormap = Colormap::redBlue;
 };
 
 void claimOutputs(const Options& options, Context& context) {
@@ -72,6 +74,7 @@ void fillReport(const Hexahedralization& result, Context& context) {
 
 void drawCut(const Options& options, const Hexahedralization& result, Context& context) {
   auto settings = context.settings<CellPictureSettings>();
+  settings.colormap = options.colormap;
   settings.direction = {0, 0, 0};
   settings.direction[options.axis] = 1;
   settings.at = options.at;
@@ -144,19 +147,30 @@ Command makeHexahedralizeCommand() {
            "the .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file to write, with each cell's "
            "scaled_jacobian (.vtu and .msh)")
       .shortName("-o")
-      .required();
+      .required()
+      .writes({".vtu", ".msh", ".mesh"});
   c.option("--pieces", "K", &o->settings.pieces, "hexahedra along a block's edge").range(1, 16);
   c.option("--feature-angle", "A", &o->settings.featureAngle,
            "edges whose faces' normals differ by more count as sharp in the report")
       .unit("degrees")
-      .range(1, 179);
-  c.option("--seed", "N", &o->settings.seed, "of all random choices").range(0, 1e15);
-  c.option("--polycube", "FILE", &o->cubes, "also write the polycube's surface, .obj or .ply");
+      .range(1, 179)
+      .advanced();
+  c.option("--seed", "N", &o->settings.seed, "of all random choices").range(0, 1e15).advanced();
+  c.option("--polycube", "FILE", &o->cubes, "also write the polycube's surface, .obj or .ply")
+      .writes({".obj", ".ply"})
+      .advanced();
   c.option("--in-blocks", "FILE", &o->inBlocks,
-           "also write the same hexahedra in the polycube, .vtu, .msh or .mesh");
+           "also write the same hexahedra in the polycube, .vtu, .msh or .mesh")
+      .writes({".vtu", ".msh", ".mesh"})
+      .advanced();
+  c.group("picture");
   c.option("--picture", "FILE", &o->picture,
-           "a .png of the hexahedra behind a cut, coloured by scaled Jacobian");
-  c.option("--polycube-picture", "FILE", &o->cubesPicture, "a .png of the mesh and the polycube");
+           "a .png of the hexahedra behind a cut, coloured by scaled Jacobian")
+      .writes({".png"});
+  c.option("--polycube-picture", "FILE", &o->cubesPicture, "a .png of the mesh and the polycube")
+      .writes({".png"})
+      .advanced();
+  addColormapOption(c, o->colormap);
   c.choice("--axis", "AXIS", &o->axis, {{"x", 0}, {"y", 1}, {"z", 2}},
            "direction across the picture's cut");
   c.option("--at", "T", &o->at, "where the picture cuts")

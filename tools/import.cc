@@ -84,7 +84,10 @@ Command makeImportCommand() {
       "not; an option wins over an attribute.");
   c.positional("FILE", &o->file,
                "the .exr file; of slices, any of the files or a pattern with #### or %04d");
-  c.option("--output", "FILE", &o->output, "the .vdb file to write").shortName("-o").required();
+  c.option("--output", "FILE", &o->output, "the .vdb file to write")
+      .shortName("-o")
+      .required()
+      .writes({".vdb"});
   c.option("--grid", "LIST", &o->grids,
            "grids to read, with commas between; of a file that does not say what its channels are, "
            "their names: R, G, B together and X, Y, Z are a vector")
@@ -96,10 +99,12 @@ Command makeImportCommand() {
            "what the pictures are")
       .defaults("from the file");
   c.option("--tiles", "CxR", &o->tiles, "columns and rows of an atlas, such as 8x8")
-      .defaults("from the file");
+      .defaults("from the file")
+      .advanced();
   c.option("--slices", "N", &o->texture.slices, "slices, when fewer than tiles, parts or files")
       .range(1, 65536)
-      .defaults("from the file, else all");
+      .defaults("from the file, else all")
+      .advanced();
   c.option("--voxel-size", "L", &o->texture.voxelSize,
            "edge of a voxel, in place of the file's matrix")
       .unit("world units")
@@ -107,7 +112,8 @@ Command makeImportCommand() {
       .defaults("from the file");
   c.option("--lower-corner", "X,Y,Z", &o->lowerCorner, "least corner of the box, with --voxel-size")
       .unit("world units")
-      .defaults("0,0,0");
+      .defaults("0,0,0")
+      .advanced();
   c.choice("--axis", "AXIS", &o->texture.axis, {{"x", 0}, {"y", 1}, {"z", 2}},
            "direction across the slices")
       .defaults("from the file, else z");
@@ -115,11 +121,13 @@ Command makeImportCommand() {
            "down: a slice's first row has the least index; up: the largest")
       .defaults("from the file, else down");
   c.option("--background", "V", &o->texture.background, "value of what is not active")
-      .defaults("from the file, else 0");
+      .defaults("from the file, else 0")
+      .advanced();
   c.choice("--class", "NAME", &o->texture.gridClass,
            {{"level-set", "level set"}, {"fog", "fog volume"}, {"unknown", "unknown"}},
            "class of the grids")
-      .defaults("from the file, else unknown");
+      .defaults("from the file, else unknown")
+      .advanced();
   c.example("innermap import smoke.exr -o smoke.vdb");
   c.example(
       "innermap import cloud.exr -o cloud.vdb --tiles 12x12 --voxel-size 0.1 --grid density "

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "commands.h"
+#include "info_json.h"
 #include "innermap/field/field_file.h"
 #include "innermap/io/exr/exr_slices.h"
 #include "innermap/io/vdb/vdb_file.h"
@@ -16,7 +17,7 @@ namespace {
 
 struct InfoOptions {
   std::string file;
-  bool metadata = false;
+  bool metadata = false, json = false;
 };
 
 std::string extension(const std::string& path) {
@@ -27,6 +28,7 @@ std::string extension(const std::string& path) {
 
 void meshInfo(const InfoOptions& options, Context& context) {
   const Mesh mesh = readMeshFile(options.file, context);
+  if (options.json) return context.print(infoJson(options.file, mesh));
   const Box3 box = boundingBox(mesh);
   const Vec3 size = box.extent();
   std::string text = fmt::format("{}: mesh, {} vertices, {} triangles", options.file,
@@ -45,6 +47,7 @@ void meshInfo(const InfoOptions& options, Context& context) {
 
 void mapInfo(const InfoOptions& options, Context& context) {
   const FieldFile file = readField(options.file);
+  if (options.json) return context.print(infoJson(options.file, file));
   std::size_t sources = 0;
   for (const HarmonicField& step : file.steps) sources += step.sources().size();
   const std::size_t channels = file.steps.front().channels(), steps = file.steps.size();
@@ -56,13 +59,24 @@ void mapInfo(const InfoOptions& options, Context& context) {
   context.print(text);
 }
 
+void vdbInfo(const InfoOptions& options, Context& context) {
+  const VdbInfo info = readVdbInfo(options.file, context.settings<VdbInfoSettings>());
+  context.print(options.json ? infoJson(options.file, info)
+                             : describe(info, options.file, options.metadata));
+}
+
+void exrInfo(const InfoOptions& options, Context& context) {
+  const std::vector<ExrPart> parts = readExrInfo(options.file);
+  const std::optional<VolumeTextureInfo> volume = readVolumeTextureInfo(options.file);
+  if (options.json) return context.print(infoJson(options.file, parts, volume));
+  context.print(describe(parts, options.file) + (volume ? describe(*volume) : ""));
+}
+
 void run(const InfoOptions& options, Context& context) {
   if (context.dryRun()) return context.plan({"describe " + options.file}, 0);
   const std::string e = extension(options.file);
-  if (e == ".vdb")
-    return context.print(describe(readVdbInfo(options.file, context.settings<VdbInfoSettings>()),
-                                  options.file, options.metadata));
-  if (e == ".exr") return context.print(describe(readExrInfo(options.file), options.file));
+  if (e == ".vdb") return vdbInfo(options, context);
+  if (e == ".exr") return exrInfo(options, context);
   if (isFieldFile(options.file)) return mapInfo(options, context);
   meshInfo(options, context);
 }
@@ -74,7 +88,9 @@ Command makeInfoCommand() {
   Command c("info", "Say what is in a file: grids, a map, a mesh, or EXR parts");
   c.positional("FILE", &o->file, "a .vdb, .exr, map or mesh file");
   c.flag("--metadata", &o->metadata, "all metadata of each grid");
+  c.flag("--json", &o->json, "machine-readable, with all metadata, on stdout");
   c.example("innermap info map.vdb");
+  c.example("innermap info map.vdb --json | jq '.grids[].name'");
   c.run([o](Context& context) { run(*o, context); });
   return c;
 }

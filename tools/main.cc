@@ -69,23 +69,23 @@ std::string inOptions(const Command& command, const std::string& error) {
 void runCommand(const std::vector<std::string>& arguments) {
   if (arguments.empty()) throw UsageError("no command given; see 'innermap --help'");
   const std::string& first = arguments.front();
-  if (first == "--version" || first == "-V") {
-    std::printf("innermap %s\n", versionText());
-    return;
-  }
-  if (first == "--help" || first == "-h") {
+  const auto printVersion = [] { std::printf("innermap %s\n", versionText()); };
+  if (first == "--version" || first == "-V") return printVersion();
+  if (first == "--help" || first == "-h" || first == "--help-all") {
     std::fputs(generalHelp().c_str(), stdout);
     return;
   }
   const Command command = findCommand(first);
   CommonOptions common;
   parseArguments(command, common, {arguments.begin() + 1, arguments.end()});
-  if (common.help) {
-    std::fputs(commandHelp(command).c_str(), stdout);
+  if (common.version) return printVersion();
+  if (common.help || common.helpAll) {
+    std::fputs(commandHelp(command, common.helpAll).c_str(), stdout);
     return;
   }
   // Signals may come until the very end of the process.
   static TerminalProgress progress(TerminalProgress::styleFor(common.quiet));
+  progress.expect(usualPhases(command.name()));
   handleSignals(progress);
   try {
     execute(command, common, progress);

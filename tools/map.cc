@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "commands.h"
 #include "correspondence.h"
@@ -21,6 +22,8 @@ namespace {
 
 // Fractions of the target's diagonal.
 constexpr double kSubdivide = 0.005;
+// correspondSeconds is for two cores and the worst; this is what it mostly is.
+constexpr double kOfLayingOut = 0.5;
 constexpr double kStrangers = 2e-3;  // the tolerance between solids that were never related
 
 struct MapOptions {
@@ -91,6 +94,14 @@ std::string correspondPlan(const MapOptions& options, const Meshes& meshes,
                         correspondSettings(options.correspond, context)));
 }
 
+// Along the longest side of the solid.
+double voxelsAcross(const MapOptions& options, const Mesh& source) {
+  const GridOptions& grid = options.evaluation.grid;
+  if (!grid.voxelSize) return grid.resolution.value_or(LevelSetSettings().resolution);
+  const Vec3 size = boundingBox(source).extent();
+  return std::max({size.x, size.y, size.z}) / *grid.voxelSize;
+}
+
 bool laidOn(const MapOptions& options, const Meshes& meshes) {
   return !meshes.related || !options.correspondence.empty();
 }
@@ -100,6 +111,27 @@ FittingOptions fittingFor(const MapOptions& options, const Meshes& meshes) {
   FittingOptions out = options.fitting;
   if (laidOn(options, meshes)) out.fit.tolerance = kStrangers;
   return out;
+}
+
+// The job after the meshes are read.
+void expectPhases(const MapOptions& options, const Meshes& meshes, Context& context) {
+  const std::size_t vertices = meshes.source.vertices.size();
+  const bool strangers = laidOn(options, meshes);
+  std::vector<JobPhase> phases;
+  if (!meshes.related)
+    phases.push_back(
+        {"laying out",
+         kOfLayingOut * correspondSeconds(vertices, meshes.target.vertices.size(),
+                                          correspondSettings(options.correspond, context)),
+         false, "laying the source on"});
+  const FitMapSettings fitting = fitMapSettings(fittingFor(options, meshes), vertices, context);
+  for (const JobPhase& phase : fittingPhases(fitting, vertices, strangers)) phases.push_back(phase);
+  const double fine = voxelsAcross(options, meshes.source) / 128.0;
+  const double grids = 0.45 + 0.2 * fine * fine;
+  phases.push_back({"evaluating", (strangers ? 16 : 1) * grids});
+  phases.push_back(
+      {"writing", 0.45 + 0.03 * fine * fine + (strangers ? 1.5 : 0), false, "pictures"});
+  context.expect(phases);
 }
 
 void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
@@ -157,8 +189,10 @@ void run(const MapOptions& options, Context& context) {
       options.output,
       {"map.ply", "map.vdb", "slices.exr", "section.png", "steps.png", "report.json"});
   Meshes meshes = readMeshes(options, context);
+  expectPhases(options, meshes, context);
   if (context.dryRun()) return plan(options, meshes, context);
   const bool laid = laidOn(options, meshes);
+  if (!meshes.related) context.phase("laying out");
   const FittingOptions fitOptions = fittingFor(options, meshes);
   BoundaryPair pair = makePair(options, std::move(meshes), *folder, context);
   reportBoundaries(pair, context);
@@ -166,14 +200,17 @@ void run(const MapOptions& options, Context& context) {
       fitMapSettings(fitOptions, pair.source.mesh.vertices.size(), context);
   requireFittingMemory(fitting);
   requireEvaluationMemory(pair.solid(), options.evaluation.grid, context);
+  context.phase("fitting");
   const MapFit fit = fitMap(std::move(pair), fitting);
   reportFit(fit, fitting, options.fitting.bestEffort, context);
+  context.phase("evaluating");
   const SolidGrids grids = evaluateOnGrid(fit, mapGridSettings(options.evaluation, context));
   reportGrids(grids, options.evaluation.lame, context);
   judgeMap(fit, &grids, options.verdict, laid ? MapOrigin::laidOn : MapOrigin::related, context);
   folder->write("map.vdb", [&](const std::string& path) {
     writeGridFile(path, grids.all(), options.evaluation.names, context);
   });
+  context.phase("writing");
   context.timed("write", [&] {
     folder->write("map.ply", [&](const std::string& path) { writeMap(path, fit); });
     writePictures(grids, fit, *folder, options, context);
@@ -208,9 +245,10 @@ Command makeMapCommand() {
   addFittingOptions(c, o->fitting);
   addEvaluationOptions(c, o->evaluation);
   addVerdictOptions(c, o->verdict);
-  c.choice("--slice-axis", "AXIS", &o->slices.axis, {{"x", 0}, {"y", 1}, {"z", 2}},
-           "of slices.exr");
-  c.option("--slice-count", "N", &o->slices.count, "parts of slices.exr").range(1, 4096);
+  c.group("slices and picture");
+  c.choice("--slice-axis", "AXIS", &o->slices.axis, {{"x", 0}, {"y", 1}, {"z", 2}}, "of slices.exr")
+      .advanced();
+  c.option("--slice-count", "N", &o->slices.count, "parts of slices.exr").range(1, 4096).advanced();
   c.option("--section-grid", "NAME", &o->sectionGrid, "grid shown in section.png")
       .choices(mapGridNames());
   addSectionOptions(c, o->section);

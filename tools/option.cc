@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 
 #include "command.h"
+#include "innermap/core/file.h"
 #include "lists.h"
+#include "spelling.h"
 
 namespace innermap::tool {
 namespace {
@@ -60,16 +64,28 @@ std::uint64_t parseCount(const Option& option, const std::string& text) {
   return parseNumber<std::uint64_t>(option, text, "a whole number");
 }
 
+// What is no regular file may be called anything: /dev/stdout.
+void requireEnding(const Option& option, const std::string& text) {
+  if (option.endings.empty() || fileKey(text).empty()) return;
+  std::string ending = std::filesystem::path(text).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (std::find(option.endings.begin(), option.endings.end(), ending) != option.endings.end())
+    return;
+  throw UsageError(fmt::format("{}: '{}' must end in {}, as the file that is written does",
+                               option.name, text, fmt::join(option.endings, " or ")));
+}
+
 std::string parseText(const Option& option, const std::string& text) {
   if (option.choices.empty()) {
     if (text.empty()) throw UsageError(option.name + ": is empty; give a value");
+    requireEnding(option, text);
     return text;
   }
-  if (std::find(option.choices.begin(), option.choices.end(), text) == option.choices.end())
-    throw UsageError(fmt::format("{}: '{}' is not one of {}{}", option.name, text,
-                                 fmt::join(option.choices, ", "),
-                                 didYouMean(text, option.choices)));
-  return text;
+  for (const std::string& choice : option.choices)
+    for (const std::string& spelling : spellings(choice))
+      if (spelling == text) return choice;
+  throw UsageError(fmt::format("{}: '{}' is not one of {}{}", option.name, text,
+                               fmt::join(option.choices, ", "), didYouMean(text, option.choices)));
 }
 
 // Puts what the text says where an option's value goes.

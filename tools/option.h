@@ -29,8 +29,11 @@ struct Option {
   std::string unit;         // "world units", or empty
   std::string help;
   std::string defaultText;  // empty: none worth telling
+  std::string group;        // the title that it stands under; empty: "options"
   bool required = false;
+  bool advanced = false;  // only --help-all tells of it
   std::vector<std::string> choices;
+  std::vector<std::string> endings;  // ".vdb": of the file that is written
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   bool isInput = false;    // names a file that is read
@@ -64,6 +67,12 @@ class OptionBuilder {
   // May stand without a value, which then is this one; with one it is written --name=VALUE.
   OptionBuilder& implied(std::string value) { return set(&Option::impliedValue, std::move(value)); }
   OptionBuilder& required() { return set(&Option::required, true); }
+  // Not for every day: --help leaves it out, --help-all does not.
+  OptionBuilder& advanced() { return set(&Option::advanced, true); }
+  // Names a file that is written; names with other endings are refused.
+  OptionBuilder& writes(std::vector<std::string> endings) {
+    return set(&Option::endings, std::move(endings));
+  }
   OptionBuilder& range(double lower, double upper) {
     return set(&Option::lower, lower).set(&Option::upper, upper);
   }
@@ -87,7 +96,8 @@ class OptionBuilder {
 std::string rangeText(const Option& option);
 
 // Parses `text` into the option's target. Throws UsageError for what is not a number, a whole
-// number or one of the choices, SettingError for a value out of range.
+// number, one of the choices or a file's name with one of the endings, SettingError for a value out
+// of range.
 void parseInto(const Option& option, const std::string& text);
 
 }  // namespace innermap::tool

@@ -69,11 +69,12 @@ Command makePolycubeCommand() {
   addFillOptions(c, o->mesh, o->settings.blocks, o->settings.closeHoles, o->resolution);
   c.option("--output", "FILE", &o->output, "the surface of the cubes, a .obj or .ply file")
       .shortName("-o")
-      .required();
+      .required()
+      .writes({".obj", ".ply"});
   c.option("--pieces", "K", &o->pieces, "squares along a block's edge, of two triangles each")
       .range(1, kMostPieces)
       .defaults("as many as give 3000 vertices");
-  c.option("--picture", "FILE", &o->picture, "a .png of the mesh and the cubes");
+  c.option("--picture", "FILE", &o->picture, "a .png of the mesh and the cubes").writes({".png"});
   c.example("innermap polycube spot.obj -o cubes.obj --blocks 12 --picture cubes.png");
   c.run([o](Context& context) { run(*o, context); });
   return c;

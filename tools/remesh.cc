@@ -13,6 +13,7 @@
 #include "innermap/tetra/carry_cells.h"
 #include "innermap/tetra/remesh_cells.h"
 #include "inputs.h"
+#include "section_options.h"
 
 namespace innermap::tool {
 namespace {
@@ -22,6 +23,7 @@ struct RemeshOptions {
   RemeshSettings settings;
   int axis = 2;
   double at = 0.5;
+  Colormap colormap = Colormap::redBlue;
 };
 
 void reportRemesh(const Remesh& result, double diagonal, Context& context) {
@@ -48,6 +50,7 @@ void reportRemesh(const Remesh& result, double diagonal, Context& context) {
 
 void drawCut(const RemeshOptions& options, const Remesh& result, Context& context) {
   auto settings = context.settings<CellPictureSettings>();
+  settings.colormap = options.colormap;
   settings.direction = {0, 0, 0};
   settings.direction[options.axis] = 1;
   settings.at = options.at;
@@ -149,22 +152,29 @@ Command makeRemeshCommand() {
   c.option("--output", "FILE", &o->output,
            "the .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file to write")
       .shortName("-o")
-      .required();
+      .required()
+      .writes({".vtu", ".msh", ".mesh"});
   c.flag("--back", &o->settings.back,
-         "CELLS fill the map's target and are brought to its source; SURFACE is the source");
+         "CELLS fill the map's target and are brought to its source; SURFACE is the source")
+      .advanced();
   c.flag("--keep-connectivity", &o->settings.keepConnectivity,
          "move vertices alone: cells and their numbers stay as they are");
   c.option("--angle", "ANGLE", &o->settings.angle,
            "tetrahedra with a dihedral angle below it, or as near to 180, are improved")
       .unit("degrees")
-      .range(1, 30);
+      .range(1, 30)
+      .advanced();
   c.option("--coarse", "N", &o->settings.coarse,
            "cells along the longest side of the mesh that is repaired first where many cells are "
            "inverted, or with --back stands for the inverse map; 0: none, or 64 with --back")
-      .range(0, 256);
+      .range(0, 256)
+      .advanced();
+  c.group("picture");
   c.option("--picture", "FILE", &o->picture,
            "a .png of the cells behind a cut, coloured by their least dihedral angle or scaled "
-           "Jacobian");
+           "Jacobian")
+      .writes({".png"});
+  addColormapOption(c, o->colormap);
   c.choice("--axis", "AXIS", &o->axis, {{"x", 0}, {"y", 1}, {"z", 2}},
            "direction across the picture's cut");
   c.option("--at", "T", &o->at, "where the picture cuts")

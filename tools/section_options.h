@@ -15,7 +15,12 @@ namespace innermap::tool {
 struct SectionOptions {
   std::optional<int> axis;  // without: where the solid is thinnest
   std::optional<double> at;
+  Colormap colormap = Colormap::redBlue;
+  SectionScale scale = SectionScale::automatic;
 };
+
+void addColormapOption(Command& command, Colormap& colormap);
+void addScaleOption(Command& command, SectionScale& scale);
 
 void addSectionOptions(Command& command, SectionOptions& options);
 

@@ -52,7 +52,10 @@ Command makeSphereCommand() {
       "areas near their share. Each shell (a cavity, say) covers the sphere by itself. With "
       "--surface-resolution, the isosurface of a mesh that is not clean is written instead.");
   c.positional("MESH", &o->mesh, "a closed mesh: .obj, .ply, .off or .stl");
-  c.option("--output", "FILE", &o->output, "the .ply file to write").shortName("-o").required();
+  c.option("--output", "FILE", &o->output, "the .ply file to write")
+      .shortName("-o")
+      .required()
+      .writes({".ply"});
   addSurfaceOptions(c, o->surface);
   c.example("innermap sphere cow.obj -o cow_sphere.ply");
   c.run([o](Context& context) { run(*o, context); });

@@ -21,6 +21,18 @@ int terminalWidth() {
   return size.ws_col;
 }
 
+// Wide enough for "12 min 30 s left", and a blank.
+constexpr int kClockWidth = 17;
+
+std::string durationText(double seconds) {
+  if (seconds < 59.5) return fmt::format("{:.0f} s", std::max(1.0, std::ceil(seconds)));
+  const int tens = static_cast<int>(std::lround(seconds / 10));
+  if (tens < 60) return fmt::format("{} min {:02d} s", tens / 6, tens % 6 * 10);
+  const int minutes = static_cast<int>(std::lround(seconds / 60));
+  if (minutes < 60) return fmt::format("{} min", minutes);
+  return fmt::format("{} h {:02d} min", minutes / 60, minutes % 60);
+}
+
 }  // namespace
 
 TerminalProgress::Style TerminalProgress::styleFor(bool quiet) {
@@ -30,12 +42,18 @@ TerminalProgress::Style TerminalProgress::styleFor(bool quiet) {
   return isatty(STDERR_FILENO) && !dumb ? Style::bar : Style::lines;
 }
 
+void TerminalProgress::expect(std::vector<JobPhase> phases) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  job_.expect(std::move(phases), now());
+}
+
 void TerminalProgress::report(std::string_view stage, double fraction) {
   if (style_ == Style::none) return;
   // Whoever comes while another thread writes has nothing new to say.
   std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
   if (!lock) return;
   const double share = std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0;
+  job_.report(stage, share, now());
   if (style_ == Style::bar)
     drawBar(stage, share);
   else
@@ -47,35 +65,55 @@ void TerminalProgress::setPart(const std::string& part) {
   part_ = part;
 }
 
+// The part, the job's phase, or else the stage.
+std::string TerminalProgress::label(std::string_view stage) const {
+  if (job_.known())
+    return !part_.empty() ? part_ : job_.title().empty() ? std::string(stage) : job_.title();
+  return part_.empty() ? std::string(stage) : part_ + ": " + std::string(stage);
+}
+
 void TerminalProgress::drawBar(std::string_view stage, double fraction) {
-  const auto now = Clock::now();
-  if (drawn_ && stage == stage_ && now - last_ < kRedraw) return;
-  last_ = now;
-  stage_ = stage;
+  const auto time = Clock::now();
+  if (drawn_ && time - last_ < kRedraw) return;
+  last_ = time;
   drawn_ = true;
+  const JobClock::State job = job_.at(now());
+  if (!job_.known()) {
+    // Stages come and go: a bar of theirs would run backwards.
+    const std::string line =
+        fmt::format("\r{}: {:.0f}%, {:.0f} s\x1b[K", label(stage), 100 * fraction, now());
+    std::fwrite(line.data(), 1, line.size(), stderr);
+    std::fflush(stderr);
+    return;
+  }
+  const double share = job.fraction;
+  const std::string clock = job.tellsTime ? durationText(job.secondsLeft) + " left" : "";
   const int room = terminalWidth() - 1;
-  const int label = part_.empty() ? std::clamp(room / 3, 8, 32) : std::clamp(room / 2, 8, 56);
-  const std::string text = part_.empty() ? std::string(stage) : part_ + ": " + stage_;
-  const int width = std::max(4, room - label - 9);
-  const int full = static_cast<int>(std::lround(fraction * width));
+  const int names = part_.empty() ? std::clamp(room / 3, 8, 32) : std::clamp(room / 2, 8, 56);
+  const int width = std::max(4, room - names - 9 - kClockWidth);
+  const int full = static_cast<int>(std::lround(share * width));
   const std::string line =
-      fmt::format("\r{:<{}.{}} [{}{}] {:3.0f}%\x1b[K", text, label, label, std::string(full, '='),
-                  std::string(width - full, ' '), 100 * fraction);
+      fmt::format("\r{:<{}.{}} [{}{}] {:3.0f}% {:>{}.{}}\x1b[K", label(stage), names, names,
+                  std::string(full, '='), std::string(width - full, ' '), 100 * share, clock,
+                  kClockWidth - 1, kClockWidth - 1);
   std::fwrite(line.data(), 1, line.size(), stderr);
   std::fflush(stderr);
 }
 
 void TerminalProgress::writeLine(std::string_view stage, double fraction) {
-  const auto now = Clock::now();
-  const std::string text = part_.empty() ? std::string(stage) : part_;
+  const auto time = Clock::now();
+  const std::string text = job_.known() || part_.empty() ? label(stage) : part_;
   const bool first = seen_.insert(text).second;
-  if (!first && now - last_ < kLineEvery) return;
-  last_ = now;
-  if (first)
-    std::fprintf(stderr, "%s\n", text.c_str());
-  else
-    std::fprintf(stderr, "%s: %s%.0f%%\n", text.c_str(),
-                 part_.empty() ? "" : (std::string(stage) + ", ").c_str(), 100 * fraction);
+  if (!first && time - last_ < kLineEvery) return;
+  last_ = time;
+  const JobClock::State job = job_.at(now());
+  std::string line = fmt::format("{:6.1f} s  {}", now(), text);
+  if (job_.known() && job.tellsTime)
+    line += fmt::format(": {:.0f}%, {} left", 100 * job.fraction, durationText(job.secondsLeft));
+  else if (!first && !job_.known())
+    line +=
+        fmt::format(": {}{:.0f}%", part_.empty() ? "" : std::string(stage) + ", ", 100 * fraction);
+  std::fprintf(stderr, "%s\n", line.c_str());
 }
 
 void TerminalProgress::clear() {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "innermap/core/progress.h"
+#include "job_clock.h"
 
 namespace innermap::tool {
 
@@ -26,16 +27,23 @@ class TerminalProgress : public Progress {
   // each part is told once, not its stages.
   void setPart(const std::string& part);
 
+  // What the whole job consists of: there is then one bar for it, with the time that is left.
+  void expect(std::vector<JobPhase> phases);
+
   // Takes the bar away, so that a message can be written.
   void clear();
 
  private:
   using Clock = std::chrono::steady_clock;
+  double now() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+  std::string label(std::string_view stage) const;
   void drawBar(std::string_view stage, double fraction);
   void writeLine(std::string_view stage, double fraction);
 
   const Style style_;
   std::mutex mutex_;
+  const Clock::time_point start_ = Clock::now();
+  JobClock job_;
   Clock::time_point last_{};
   std::string part_;
   std::string stage_;           // last shown

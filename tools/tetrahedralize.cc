@@ -13,6 +13,7 @@
 #include "innermap/io/picture/cell_picture.h"
 #include "inputs.h"
 #include "map_report.h"
+#include "section_options.h"
 
 namespace innermap::tool {
 namespace {
@@ -23,6 +24,7 @@ struct TetrahedralizeOptions {
   bool anyTopology = false;
   int axis = 2;
   double at = 0.5;
+  Colormap colormap = Colormap::redBlue;
 };
 
 // Measured: of a tetrahedron, the faces among which the boundary is found, its quality as fields
@@ -40,6 +42,7 @@ std::uint64_t memoryFor(const TetrahedralizeOptions& options, const Solid& solid
 void drawCut(const TetrahedralizeOptions& options, const CellMesh& mesh, const CellQuality& quality,
              Context& context) {
   auto settings = context.settings<CellPictureSettings>();
+  settings.colormap = options.colormap;
   settings.direction = {0, 0, 0};
   settings.direction[options.axis] = 1;
   settings.at = options.at;
@@ -133,7 +136,8 @@ Command makeTetrahedralizeCommand() {
   c.option("--output", "FILE", &o->output,
            "the .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file to write")
       .shortName("-o")
-      .required();
+      .required()
+      .writes({".vtu", ".msh", ".mesh"});
   c.option("--resolution", "N", &o->settings.resolution,
            "cells of the lattice along the longest side of the mesh's box; each takes twelve "
            "tetrahedra")
@@ -142,16 +146,21 @@ Command makeTetrahedralizeCommand() {
            "side of a cell of the lattice, instead of --resolution")
       .unit("world units")
       .atLeast(0)
-      .defaults("from --resolution");
+      .defaults("from --resolution")
+      .advanced();
   c.option("--features", "ANGLE", &o->settings.features,
            "keep edges of the surface that are sharper than this, between the normals of their "
            "triangles, as edges of tetrahedra; dihedral angles then lie in 5 to 170 degrees")
       .unit("degrees")
       .range(1, 179);
   c.flag("--any-topology", &o->anyTopology,
-         "warn, and go on, where the solid's topology cannot be kept");
+         "warn, and go on, where the solid's topology cannot be kept")
+      .advanced();
+  c.group("picture");
   c.option("--picture", "FILE", &o->picture,
-           "a .png of the cells behind a cut, coloured by their least dihedral angle");
+           "a .png of the cells behind a cut, coloured by their least dihedral angle")
+      .writes({".png"});
+  addColormapOption(c, o->colormap);
   c.choice("--axis", "AXIS", &o->axis, {{"x", 0}, {"y", 1}, {"z", 2}},
            "direction across the picture's cut");
   c.option("--at", "T", &o->at, "where the picture cuts")

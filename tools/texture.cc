@@ -150,11 +150,12 @@ Command makeTextureCommand() {
   c.positional("IMAGE", &o->image,
                "the texture, in any format of OpenImageIO; with <UDIM> in its name, a set of tiles")
       .optional();
-  c.option("--output", "FILE", &o->output, "the .vdb file to write").shortName("-o").required();
+  c.option("--output", "FILE", &o->output, "the .vdb file to write")
+      .shortName("-o")
+      .required()
+      .writes({".vdb"});
   c.choice("--mode", "MODE", &o->texture.mode,
-           {{"uv", TextureMode::coordinates},
-            {"colour", TextureMode::imageColours},
-            {"color", TextureMode::imageColours}},
+           {{"uv", TextureMode::coordinates}, {"colour", TextureMode::imageColours}},
            "uv: the texture coordinates are continued and the image is looked up at each voxel's; "
            "colour: the colours themselves are");
   c.choice(
@@ -168,17 +169,19 @@ Command makeTextureCommand() {
             {"srgb", ColourSpace::srgb}},
            "of the image; auto: as the file says, else sRGB for 8 bits and linear for more; vertex "
            "colours are linear unless srgb is given");
-  c.choice("--wrap", "WAY", &o->images.wrap, kWraps, "what stands beyond the image's borders");
+  c.choice("--wrap", "WAY", &o->images.wrap, kWraps, "what stands beyond the image's borders")
+      .advanced();
   addGridOptions(c, o->grid);
   c.option("--sources", "N", &o->texture.sources, "number of charges")
       .range(100, 1e6)
-      .defaults("one every two voxels of the surface, 1000 to 50000");
+      .defaults("one every two voxels of the surface, 1000 to 50000")
+      .advanced();
   c.option("--tolerance", "T", &o->tolerance,
            "within which 99% of the surface should have its values; where it has not, that is "
            "warned of")
       .unit("of values in 0 to 1")
       .above(0);
-  c.option("--seed", "N", &o->texture.seed, "of all random points").range(0, 1e15);
+  c.option("--seed", "N", &o->texture.seed, "of all random points").range(0, 1e15).advanced();
   addNamesOption(c, o->names);
   c.example("innermap texture spot.obj spot_texture.png -o spot.vdb --mode colour");
   c.example("innermap texture spot.obj 'spot.<UDIM>.exr' -o spot.vdb --seams blend");

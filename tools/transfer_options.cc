@@ -32,6 +32,7 @@ RigidMotion parseMotion(const std::string& text) {
 }  // namespace
 
 void addTransferOptions(Command& c, TransferOptions& o) {
+  c.group("grids that are carried");
   c.option("--grids", "LIST", &o.grids, "grids to carry, with commas between").defaults("all");
   c.choice("--sampling", "WAY", &o.carry.sampling,
            {{"nearest", Sampling::nearest},
@@ -43,12 +44,16 @@ void addTransferOptions(Command& c, TransferOptions& o) {
       "scalars are densities: divided by the change of volume; where they are pushed, their mass "
       "is kept exactly");
   c.option("--densities", "LIST", &o.densities, "only these scalars are densities")
-      .defaults("none");
+      .defaults("none")
+      .advanced();
   c.option("--stress", "LIST", &o.stress,
            "Cauchy stresses: NAME stands for the six grids NAME.xx, .yy, .zz, .xy, .yz, .xz or "
            "the rows NAME.x, .y, .z")
-      .defaults("none");
-  c.option("--strain", "LIST", &o.strain, "the same for covariant strains").defaults("none");
+      .defaults("none")
+      .advanced();
+  c.option("--strain", "LIST", &o.strain, "the same for covariant strains")
+      .defaults("none")
+      .advanced();
   c.option("--outside", "D", &o.outside,
            "carry also what is around the solid, up to this distance from it")
       .unit("fraction of the diagonal")
@@ -56,7 +61,7 @@ void addTransferOptions(Command& c, TransferOptions& o) {
   c.option(
       "--fade-to", "MOTION", &o.fadeTo,
       "what the map fades to with --outside: cut (it ends there), identity, fitted (the best "
-      "rigid motion of the surface), or twelve numbers, a rigid motion's 3 x 4 matrix by rows");
+      "rigid motion of the surface), or twelve numbers, a rigid motion's 3 x 4 matrix by rows").advanced();
   c.option("--density-limit", "TIMES", &o.carry.densityLimit,
            "that a density may grow at most; what comes together beyond it is left out, and how "
            "much is said")

@@ -95,12 +95,16 @@ Command makeVoxelizeCommand() {
       "open, dirty and overlapping meshes work. The result is checked against the mesh's volume "
       "and surface.");
   c.positional("MESH", &o->mesh, "mesh file: .obj, .ply, .off or .stl");
-  c.option("--output", "FILE", &o->output, "the .vdb file to write").shortName("-o").required();
+  c.option("--output", "FILE", &o->output, "the .vdb file to write")
+      .shortName("-o")
+      .required()
+      .writes({".vdb"});
   addGridOptions(c, o->grid, "the mesh's box");
   c.option("--half-width", "W", &o->levelSet.halfWidth,
            "width of the band on each side of the surface")
       .unit("voxels")
-      .range(2, 100);
+      .range(2, 100)
+      .advanced();
   c.flag("--fog", &o->fog, "also write `density`: 1 inside, 0 outside, shares along the surface");
   c.flag("--attributes", &o->attributes,
          "also carry texture coordinates (`uv`) and vertex colours (`Cd`) onto the band");

@@ -30,19 +30,20 @@ def pair():
 def test_an_output_is_no_input():
     grids("g.vdb")
     os.link("cube.obj", "hard.obj")
-    os.symlink("g.vdb", "soft.vdb")
+    os.link("cube.obj", "hard.vdb")
+    for name in ["soft.png", "soft.exr"]:
+        os.symlink("g.vdb", name)
     before = contents("cube.obj"), contents("g.vdb")
-    for command in [["voxelize", "cube.obj", "-o", "cube.obj"],
-                    ["voxelize", "cube.obj", "-o", "./../" + os.path.basename(os.getcwd()) + "/cube.obj"],
-                    ["voxelize", "cube.obj", "-o", "hard.obj"],
+    for command in [["voxelize", "cube.obj", "-o", "hard.vdb"],
+                    ["voxelize", "hard.obj", "-o", "./../" + os.path.basename(os.getcwd()) + "/hard.vdb"],
+                    ["voxelize", "cube.obj", "-o", "a.vdb", "--report", "hard.obj"],
                     ["voxelize", "cube.obj", "-o", "a.vdb", "--report", "cube.obj"],
                     ["check", "cube.obj", "--report", "cube.obj"],
-                    ["slice", "g.vdb", "--section", "g.vdb"],
-                    ["slice", "g.vdb", "--section", "soft.vdb"],
-                    ["slice", "g.vdb", "-o", "g.vdb"],
-                    ["export", "g.vdb", "-o", "g.vdb"],
+                    ["slice", "g.vdb", "--section", "soft.png"],
+                    ["slice", "g.vdb", "-o", "soft.exr"],
+                    ["export", "g.vdb", "-o", "soft.exr"],
                     ["sphere", "cube.obj", "-o", "cube.ply", "--report", "cube.obj"],
-                    ["voxelize", "cube.obj", "-o", "cube.obj", "--dry-run"]]:
+                    ["voxelize", "cube.obj", "-o", "hard.vdb", "--dry-run"]]:
         fails(1, *command, says=["is read as well as written"])
     assert before == (contents("cube.obj"), contents("g.vdb"))
 
@@ -60,8 +61,9 @@ def test_an_output_is_no_input_of_those_found_by_name_or_option():
           says=["is read as well as written"])
     with open("pairs.txt", "w", encoding="ascii") as file:
         file.write("")
+    os.link("pairs.txt", "pairs.png")
     fails(1, "correspond", "ball.obj", "ball.obj", "-o", "c.ply", "--landmarks", "pairs.txt",
-          "--picture", "pairs.txt", says=["is read as well as written"])
+          "--picture", "pairs.png", says=["is read as well as written"])
     os.mkdir("out")
     os.rename("ball.obj", "out/map.ply")
     fails(1, "map", "out/map.ply", "frames/f.0001.obj", "-o", "out",
@@ -72,15 +74,51 @@ def test_two_outputs_are_two_files():
     grids("g.vdb")
     icosphere("ball.obj")
     os.symlink("c.ply", "link.ply")
+    os.symlink("c.ply", "link.png")
+    os.symlink("s.exr", "s.png")
     os.mkdir("out")
-    for command in [["slice", "g.vdb", "--section", "s.exr", "-o", "s.exr"],
-                    ["slice", "g.vdb", "--section", "s.exr", "-o", "./s.exr"],
-                    ["correspond", "ball.obj", "cube.obj", "-o", "c.ply", "--picture", "c.ply"],
-                    ["correspond", "ball.obj", "cube.obj", "-o", "c.ply", "--picture", "link.ply"],
+    for command in [["slice", "g.vdb", "--section", "s.png", "-o", "s.exr"],
+                    ["slice", "g.vdb", "--section", "s.png", "-o", "./s.exr"],
+                    ["correspond", "ball.obj", "cube.obj", "-o", "link.ply", "--picture", "link.png"],
+                    ["correspond", "ball.obj", "cube.obj", "-o", "c.ply", "--picture", "link.png"],
                     ["correspond", "ball.obj", "cube.obj", "-o", "c.ply", "--source-out", "c.ply"],
-                    ["voxelize", "cube.obj", "-o", "r.json", "--report", "r.json"],
+                    ["voxelize", "cube.obj", "-o", "r.vdb", "--report", "r.vdb"],
                     ["map", "ball.obj", "cube.obj", "-o", "out", "--report", "out/map.vdb"]]:
         fails(1, *command, says=["would be written twice"])
+
+
+def test_folders_say_what_they_hold():
+    pair()
+    os.mkdir("out")
+    for name in ["map.ply", "notes.txt", "thesis.doc"]:
+        with open(f"out/{name}", "w", encoding="ascii") as file:
+            file.write("mine")
+    command = ["map", "ball.obj", "egg.obj", "-o", "out", "--resolution", "8", "--sources", "100"]
+    for dry in [["--dry-run"], []]:
+        said = innermap(*command, *dry).stderr
+        assert "warning: out: replaces map.ply, and no report.json" in said
+        assert "out holds other things, which stay as they are: notes.txt, thesis.doc" in said
+        assert contents("out/notes.txt") == contents("out/thesis.doc") == b"mine"
+        assert (contents("out/map.ply") == b"mine") == bool(dry)
+    said = innermap(*command).stderr
+    assert "replaces" not in said and "holds other things" not in said
+    innermap(*command[:4], "new/deep", *command[5:])
+    assert os.path.exists("new/deep/report.json")
+
+
+def test_dry_runs_find_what_the_run_would_refuse():
+    pair()
+    os.mkdir("taken.vdb")
+    cube()
+    for command, says in [(["voxelize", "cube.obj", "-o", "none/a.vdb"], "none"),
+                          (["voxelize", "cube.obj", "-o", "taken.vdb"], "taken.vdb"),
+                          (["map", "ball.obj", "egg.obj", "-o", "cube.obj"], "cube.obj"),
+                          (["voxelize", "cube.obj", "-o", "a.vdb", "--max-memory", "1M",
+                            "--resolution", "512"], "limit of 1 MB")]:
+        for dry in [["--dry-run"], []]:
+            fails(1, *command, *dry, says=[says])
+    innermap("map", "ball.obj", "egg.obj", "-o", "new/deep", "--dry-run")
+    assert not os.path.exists("new")
 
 
 def device(name, minor):

@@ -51,7 +51,7 @@ def test_markdown_has_every_option():
 def test_mistyped_commands_and_options():
     cube()
     fails(2, says=["no command"])
-    fails(2, "voxelise", says=["'voxelise'", "did you mean voxelize?"])
+    fails(2, "voxelis", says=["'voxelis'", "did you mean voxelize?"])
     fails(2, "chekc", "cube.obj", says=["did you mean check?"])
     fails(2, "frobnicate", says=["unknown command", "innermap --help"])
     fails(2, "--qiet", says=["'--qiet'"])
@@ -102,6 +102,30 @@ def test_values_may_follow_an_equals_sign():
     cube()
     innermap("voxelize", "cube.obj", "--output=a.vdb", "--resolution=12", "--quiet")
     innermap("voxelize", "--resolution", "12", "-q", "-o", "b.vdb", "cube.obj")
+
+
+def test_spellings_of_both_sides_are_taken():
+    cube()
+    innermap("voxelise", "cube.obj", "-o", "a.vdb", "--resolution", "12", "--fog")
+    for flag in ["--color", "--colour"]:
+        fails(1, "slice", "a.vdb", "--section", "a.png", flag, says=["'density' is no colour"])
+    fails(2, "slice", "a.vdb", "--section", "c.png", "--color", "--colour", "--colur",
+          says=["did you mean --colour?"])
+    assert innermap("help", "tetrahedralise").stdout == innermap("tetrahedralize", "-h").stdout
+    fails(2, "fit", "a.obj", "b.obj", "-o", "a.ply", "--regularisation", "0.1",
+          "--regularization", "0.1", says=["more than once"])
+
+
+def test_names_whose_ending_is_another_kinds_are_refused():
+    cube()
+    for command, ending in [(["voxelize", "cube.obj"], ".vdb"), (["sphere", "cube.obj"], ".ply"),
+                            (["tetrahedralize", "cube.obj"], ".mesh"), (["export", "a.vdb"], ".exr"),
+                            (["texture", "cube.obj"], ".vdb")]:
+        for name in ["x.png", "x", "x.vdb.bak"]:
+            fails(2, *command, "-o", name, says=["--output", name, ending])
+    fails(2, "slice", "a.vdb", "--section", "x.exr", says=["--section", ".png"])
+    innermap("voxelize", "cube.obj", "-o", "x.VDB", "--resolution", "8")
+    innermap("voxelize", "cube.obj", "-o", "/dev/null", "--resolution", "8")
 
 
 cli.run(globals())

@@ -65,6 +65,7 @@ class AdaptiveFitting {
   void solve();
   double score(const BoundaryError& error) const;
   void keepIfBest();
+  double wayThere() const;
   bool gains() const;
   std::size_t sourceCount() const;
   std::uint64_t memory() const;
@@ -233,6 +234,14 @@ void AdaptiveFitting::solve() {
   field_.emplace(solver_->sources(), solution_.weights, solution_.affine);
 }
 
+// How far the error has come from the first one to the tolerance, by its logarithm.
+double AdaptiveFitting::wayThere() const {
+  const double first = rounds_.front().error.p99, now = rounds_.back().error.p99;
+  const double goal = kMargin * settings_.tolerance;
+  if (!(now > goal)) return 1;
+  return now < first ? std::log(first / now) / std::log(first / goal) : 0;
+}
+
 // The less the better: the error as long as the tolerance does not hold, then how far the largest
 // error stands out.
 double AdaptiveFitting::score(const BoundaryError& error) const {
@@ -287,6 +296,7 @@ AdaptiveResult AdaptiveFitting::run() {
     rounds_.push_back(
         {solver_->sources().size(), collocation_.size(), solution_.iterations, error});
     keepIfBest();
+    reportProgress(settings_.progress, "meeting the tolerance", wayThere());
     if (round == 1 && settings_.goOn && !settings_.goOn(*field_)) {
       end_ = AdaptiveEnd::stopped;
       break;

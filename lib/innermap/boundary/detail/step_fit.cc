@@ -52,6 +52,7 @@ class StepFitter {
     std::vector<double> ends{1};  // the next one last
     if (settings_.maxSteps > 1) ends.push_back(0.5);
     while (!ends.empty()) {
+      reportProgress(settings_.progress, "going in steps", at_);
       const double end = ends.back();
       const bool may = static_cast<int>(records_.size() + ends.size()) < settings_.maxSteps;
       const double half = (end - at_) / 2;

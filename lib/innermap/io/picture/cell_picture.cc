@@ -126,7 +126,7 @@ void writeCellPicture(const std::string& path, const CellMesh& mesh,
     for (const VisiblePoint& p : points) {
       const double value = values[cut.cellOf[p.triangle]];
       const double share = (value - settings.blue) / (settings.red - settings.blue);
-      Vec3 colour = linear(rampColour(std::clamp(share, 0.0, 1.0)));
+      Vec3 colour = linear(rampColour(share, settings.colormap));
       const auto& b = p.barycentric;
       // The side opposite to corner 1 joins corners 2 and 0: a quadrilateral's diagonal.
       const double edge = std::min({b[0], b[2], cut.diagonal[p.triangle] ? 1.0 : b[1]});

@@ -6,6 +6,7 @@
 
 #include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
+#include "innermap/io/picture/colormap.h"
 #include "innermap/tetra/cell_mesh.h"
 
 namespace innermap {
@@ -15,9 +16,10 @@ struct CellPictureSettings {
   Vec3 direction{0, 0, 1};    // any length above 0; the viewer stands there, a little to the side
   double at = 0.5;            // where the cut is, from 0 to 1 through the mesh's box
   double blue = 60, red = 0;  // the values of the ends of the colours; different
-  std::string label;          // above it
-  std::string caption;        // below it
-  int pixels = 900;           // height of the view, in [64, 4096]
+  Colormap colormap = Colormap::redBlue;
+  std::string label;    // above it
+  std::string caption;  // below it
+  int pixels = 900;     // height of the view, in [64, 4096]
   Progress* progress = nullptr;
 };
 

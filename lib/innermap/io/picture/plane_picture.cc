@@ -36,8 +36,8 @@ PictureSurface planeSurface(const Box3& box, const PlaneFunction& function,
     std::vector<Vec3> colours(points.size(), Vec3{2, 2, 2});  // white whatever the light
     for (std::size_t i = 0; i < values.size(); ++i)
       if (std::isfinite(values[i]))
-        colours[i] = linear(rampColour(
-            std::clamp((values[i] - settings.blue) / (settings.red - settings.blue), 0.0, 1.0)));
+        colours[i] = linear(rampColour((values[i] - settings.blue) / (settings.red - settings.blue),
+                                       settings.colormap));
     return colours;
   };
   return surface;

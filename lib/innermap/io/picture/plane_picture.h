@@ -7,6 +7,7 @@
 
 #include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
+#include "innermap/io/picture/colormap.h"
 
 namespace innermap {
 
@@ -20,8 +21,9 @@ struct PlanePictureSettings {
   int axis = 2;              // the plane is across it: 0, 1, 2
   double at = 0.5;           // fraction of the box along the axis, in [0, 1]
   double blue = 0, red = 1;  // the values of the ends of the colours; different
-  std::string caption;       // below all
-  int pixels = 480;          // each view's height, in [64, 4096]
+  Colormap colormap = Colormap::redBlue;
+  std::string caption;  // below all
+  int pixels = 480;     // each view's height, in [64, 4096]
   Progress* progress = nullptr;
 };
 

@@ -19,9 +19,12 @@ namespace {
 
 constexpr Rgb kPaper{1, 1, 1}, kOutside{0.93f, 0.93f, 0.935f}, kInk{0.13f, 0.14f, 0.16f},
     kFaint{0.42f, 0.44f, 0.47f}, kOutline{0.2f, 0.21f, 0.24f}, kBroken{0, 0, 0},
-    kNoVoxel{0.76f, 0.77f, 0.78f};
+    kNoVoxel{0.76f, 0.77f, 0.78f}, kFolded{0.8f, 0, 0.75f};
 constexpr int kMargin = 28, kTitle = 78, kFooter = 22, kBarGap = 26, kBarWidth = 26, kLabels = 120,
               kSubsamples = 3;
+// A logarithmic scale shows what is over kManyTimes apart, and no more than down to kLeastShown of
+// the largest. Ratios to 1 that the colours' ends stand for, at least and at most.
+constexpr double kManyTimes = 100, kLeastShown = 1e-4, kLeastRatio = 1.1, kMostRatio = 16;
 
 bool isColour(const openvdb::GridBase& grid) {
   return grid.isType<openvdb::Vec3fGrid>() || grid.isType<openvdb::Vec3dGrid>();
@@ -62,6 +65,47 @@ double layerFor(const SliceFrame& frame, const SectionSettings& s) {
   return std::clamp(layer, double(lower), double(upper));
 }
 
+// Volumes that a map changes: what is not above 0 is turned inside out.
+bool tellsFolds(const SectionResult& r) {
+  return r.grid == "jacobian" || r.scale == SectionScale::about1;
+}
+
+// Of colours, by the values that are not outliers.
+SectionScale scaleFor(const SectionSettings& s, const SectionResult& r) {
+  if (s.colour) return SectionScale::linear;
+  if (s.scale != SectionScale::automatic) return s.scale;
+  if (s.range) return SectionScale::linear;
+  // A target of another size leaves nothing near 1.
+  const bool near1 = r.lower < kMostRatio / 4 && r.upper > 4 / kMostRatio;
+  if (r.grid == "jacobian" && near1) return SectionScale::about1;
+  const bool spans = r.lower > 0 && r.upper > kManyTimes * r.lower;
+  return spans ? SectionScale::logarithmic : SectionScale::linear;
+}
+
+// Makes the range one that the scale can have.
+void fitRange(const SectionSettings& s, SectionResult& r) {
+  if (r.scale == SectionScale::linear) return;
+  if (s.range && !(r.lower > 0))
+    throw SettingError("range", "must lie above 0 on a scale of ratios");
+  if (r.scale == SectionScale::about1) {
+    const double below = 1 / std::max(r.lower, 1 / kMostRatio);
+    r.upper = std::clamp(std::max(r.upper, below), kLeastRatio, kMostRatio);
+    r.lower = 1 / r.upper;
+  }
+  if (!(r.upper > 0)) {
+    r.scale = SectionScale::linear;  // there is nothing that has a ratio
+    return;
+  }
+  r.lower = std::max(r.lower, r.upper * kLeastShown);
+}
+
+// Where on the colours a value is; 0 to 1 in the range.
+double placeOf(double value, const SectionResult& r) {
+  if (r.scale == SectionScale::linear) return (value - r.lower) / (r.upper - r.lower);
+  if (!(value > 0)) return 0;
+  return std::log(value / r.lower) / std::log(r.upper / r.lower);
+}
+
 void chooseRange(const SectionCut& cut, const SectionSettings& s, SectionResult& result) {
   const std::vector<float> values = valuesInside(cut);
   if (values.empty())
@@ -85,6 +129,8 @@ void chooseRange(const SectionCut& cut, const SectionSettings& s, SectionResult&
     result.lower -= half;
     result.upper += half;
   }
+  result.scale = scaleFor(s, result);
+  fitRange(s, result);
 }
 
 struct Layout {
@@ -121,12 +167,14 @@ float encoded(float v) {
 }
 
 // The colour at a place of the cut inside the solid.
-Rgb colourAt(const SectionSampler& sampler, const SectionCut& cut, const SectionResult& r, double x,
-             double y) {
+Rgb colourAt(const SectionSampler& sampler, const SectionCut& cut, const SectionResult& r,
+             Colormap map, double x, double y) {
   const std::optional<float> v = sampler.value(x, y);
   if (!v) return kNoVoxel;
   if (cut.shown.channels.size() == 1)
-    return std::isfinite(*v) ? rampColour((*v - r.lower) / (r.upper - r.lower)) : kBroken;
+    return !std::isfinite(*v)           ? kBroken
+           : tellsFolds(r) && !(*v > 0) ? kFolded
+                                        : rampColour(placeOf(*v, r), map);
   Rgb rgb{};
   for (std::size_t c = 0; c < 3; ++c) {
     const float linear = *sampler.value(x, y, c);
@@ -138,19 +186,19 @@ Rgb colourAt(const SectionSampler& sampler, const SectionCut& cut, const Section
 
 // The colour of one pixel: the mean over subsamples, which also smooths the solid's edge.
 Rgb pixelColour(const SectionSampler& sampler, const SectionCut& cut, const SectionResult& r,
-                double x, double y, double dx, double dy) {
+                Colormap map, double x, double y, double dx, double dy) {
   Rgb sum{0, 0, 0};
   for (int k = 0; k < kSubsamples * kSubsamples; ++k) {
     const double sx = x + dx * ((k % kSubsamples + 0.5) / kSubsamples - 0.5);
     const double sy = y + dy * ((k / kSubsamples + 0.5) / kSubsamples - 0.5);
-    const Rgb colour = sampler.inside(sx, sy) ? colourAt(sampler, cut, r, sx, sy) : kOutside;
+    const Rgb colour = sampler.inside(sx, sy) ? colourAt(sampler, cut, r, map, sx, sy) : kOutside;
     for (int c = 0; c < 3; ++c) sum[c] += colour[c] / (kSubsamples * kSubsamples);
   }
   return sum;
 }
 
-void drawSection(const SectionCut& cut, const Layout& l, const SectionResult& r, Progress* progress,
-                 Picture& picture) {
+void drawSection(const SectionCut& cut, const Layout& l, const SectionResult& r,
+                 const SectionSettings& settings, Picture& picture) {
   const SectionSampler sampler(cut);
   const double dx = static_cast<double>(cut.frame.columns()) / l.width;
   const double dy = static_cast<double>(cut.frame.rows()) / l.height;
@@ -162,8 +210,8 @@ void drawSection(const SectionCut& cut, const Layout& l, const SectionResult& r,
       [&](std::size_t begin, std::size_t end) {
         for (auto py = static_cast<int>(begin); py < static_cast<int>(end); ++py)
           for (int px = 0; px < l.width; ++px) {
-            Rgb colour =
-                pixelColour(sampler, cut, r, (px + 0.5) * dx - 0.5, (py + 0.5) * dy - 0.5, dx, dy);
+            Rgb colour = pixelColour(sampler, cut, r, settings.colormap, (px + 0.5) * dx - 0.5,
+                                     (py + 0.5) * dy - 0.5, dx, dy);
             // A thin line around the solid sets pale colours off from the ground.
             const bool here = inside(px, py);
             if (here && (!inside(px - 1, py) || !inside(px + 1, py) || !inside(px, py - 1) ||
@@ -172,18 +220,29 @@ void drawSection(const SectionCut& cut, const Layout& l, const SectionResult& r,
             picture.set(l.x + px, l.y + py, colour);
           }
       },
-      progress, "drawing the section");
+      settings.progress, "drawing the section");
 }
 
-void drawBar(const Layout& l, const SectionResult& r, Picture& picture) {
+// Round numbers between the ends of the range.
+std::vector<double> ticksOf(const SectionResult& r) {
+  if (r.scale == SectionScale::linear) return tickValues(r.lower, r.upper, 6);
+  std::vector<double> ticks;
+  const double decades = std::log10(r.upper / r.lower);
+  for (double ten = std::pow(10, std::floor(std::log10(r.lower))); ten <= r.upper; ten *= 10)
+    for (const double digit : {1, 2, 5})
+      if (decades < 2.5 || digit < 2) ticks.push_back(digit * ten);
+  return ticks;
+}
+
+void drawBar(const Layout& l, const SectionResult& r, Colormap map, Picture& picture) {
   for (int y = 0; y < l.barHeight; ++y) {
-    const Rgb colour = rampColour(1 - (y + 0.5) / l.barHeight);
+    const Rgb colour = rampColour(1 - (y + 0.5) / l.barHeight, map);
     picture.fill(l.barX, l.barY + y, l.barX + kBarWidth, l.barY + y + 1, colour);
   }
   picture.frame(l.barX, l.barY, l.barX + kBarWidth, l.barY + l.barHeight, kInk);
   const int x = l.barX + kBarWidth;
   const auto label = [&](double value, Rgb colour, const std::string& text) {
-    const double t = (value - r.lower) / (r.upper - r.lower);
+    const double t = placeOf(value, r);
     const int y = l.barY + static_cast<int>(std::lround((1 - t) * (l.barHeight - 1)));
     picture.fill(x, y, x + 6, y + 1, kInk);
     picture.text(x + 11, y + 6, text, 16, colour);
@@ -192,10 +251,15 @@ void drawBar(const Layout& l, const SectionResult& r, Picture& picture) {
   // The ends carry the range itself; ticks too close to them would run into their text.
   label(r.upper, kInk, shortNumber(r.upper));
   label(r.lower, kInk, shortNumber(r.lower));
-  for (const double tick : tickValues(r.lower, r.upper, 6)) {
-    const double t = (tick - r.lower) / (r.upper - r.lower);
+  for (const double tick : ticksOf(r)) {
+    const double t = placeOf(tick, r);
     if (t * l.barHeight > 20 && (1 - t) * l.barHeight > 20) label(tick, kFaint, shortNumber(tick));
   }
+  if (!tellsFolds(r) || r.least > 0) return;
+  const int y = l.barY + l.barHeight + 12;
+  picture.fill(l.barX, y, x, y + 14, kFolded);
+  picture.frame(l.barX, y, x, y + 14, kInk);
+  picture.text(x + 11, y + 13, "folded", 16, kInk);
 }
 
 std::string shownName(const openvdb::GridBase& grid, const SectionSettings& s) {
@@ -274,8 +338,8 @@ SectionResult writeSectionImage(const std::string& path, const openvdb::GridPtrV
   drawText(cut, layout, result, shownName(*grid, settings), picture);
   picture.fill(kMargin, kTitle, layout.barX - kBarGap, picture.height() - kFooter - kMargin,
                kOutside);
-  drawSection(cut, layout, result, settings.progress, picture);
-  if (!settings.colour) drawBar(layout, result, picture);
+  drawSection(cut, layout, result, settings, picture);
+  if (!settings.colour) drawBar(layout, result, settings.colormap, picture);
   picture.write(path);
   return result;
 }

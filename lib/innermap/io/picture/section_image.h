@@ -1,5 +1,6 @@
-// One picture of a cross-section: a grid's values as colours from blue (least) to red (most), with
-// the colour bar, the range, the grid's name and the place written on it.
+// One picture of a cross-section: a grid's values as colours, from blue (least) to red (most)
+// unless another colormap is chosen, with the colour bar, the range, the grid's name and the place
+// written on it.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -10,10 +11,22 @@
 #include <utility>
 
 #include "innermap/core/progress.h"
+#include "innermap/io/picture/colormap.h"
 
 namespace innermap {
 
 enum class Component { x = 0, y = 1, z = 2, length = 3 };  // of vector grids
+
+// How values go along the colours.
+// linear: in even steps. logarithmic: so are their ratios; what is not above 0 has the first
+// colour. about1: ratios to 1, which has the middle colour; what is not above 0 is folded, in a
+// colour that
+//         is in no colormap.
+// automatic: about1 for `jacobian`, if there are values from 1/4 to 4; else logarithmic where all
+// values are above 0 and the largest
+//         is over 100 times the least, outliers aside. linear when a range is given; folds keep
+//         their colour.
+enum class SectionScale { automatic, linear, logarithmic, about1 };
 
 struct SectionSettings {
   std::string grid;  // name of the grid to show; empty: the first of jacobian, deformation_energy,
@@ -27,17 +40,20 @@ struct SectionSettings {
   std::optional<double> position;  // world coordinate along the axis; wins over `at`
   std::optional<std::pair<double, double>> range;  // of the colours; unset: from the values inside
   double outliers = 0.005;  // share of values cut off at each end when the range is unset, [0, 0.5)
-  int pixels = 900;         // longer side of the section itself, in [64, 8192]
+  SectionScale scale = SectionScale::automatic;
+  Colormap colormap = Colormap::redBlue;
+  int pixels = 900;             // longer side of the section itself, in [64, 8192]
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;
 };
 
 struct SectionResult {
   std::string grid;
-  double position = 0;          // world coordinate of the cut
-  double least = 0, most = 0;   // values inside the cut, all of them
-  double lower = 0, upper = 0;  // the colours' range
-  int width = 0, height = 0;    // of the picture
+  double position = 0;                        // world coordinate of the cut
+  double least = 0, most = 0;                 // values inside the cut, all of them
+  double lower = 0, upper = 0;                // the colours' range
+  SectionScale scale = SectionScale::linear;  // not automatic
+  int width = 0, height = 0;                  // of the picture
 };
 
 // Writes a PNG (8 bits, sRGB). The cut is interpolated between voxels, over active ones only. The

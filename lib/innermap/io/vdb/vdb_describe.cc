@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "innermap/core/memory.h"
 #include "innermap/io/vdb/vdb_file.h"
@@ -30,7 +31,44 @@ std::string transformText(const openvdb::math::Transform& transform) {
                      origin.y(), origin.z());
 }
 
-std::string gridText(const VdbGridInfo& g, bool metadata) {
+using Entry = std::pair<std::string, std::string>;
+
+// What innermap wrote, or all: name and value.
+std::vector<Entry> entriesOf(const VdbGridInfo& g, bool metadata) {
+  std::vector<Entry> entries;
+  if (!g.grid) return entries;
+  for (auto it = g.grid->beginMeta(); it != g.grid->endMeta(); ++it)
+    if (metadata || it->first.compare(0, 9, "innermap_") == 0)
+      entries.emplace_back(it->first, it->second ? it->second->str() : "");
+  return entries;
+}
+
+// What several grids all say alike.
+std::vector<Entry> commonEntries(const VdbInfo& info, bool metadata) {
+  std::vector<Entry> common;
+  if (info.grids.size() < 2) return common;
+  common = entriesOf(info.grids.front(), metadata);
+  for (const VdbGridInfo& grid : info.grids) {
+    const std::vector<Entry> own = entriesOf(grid, metadata);
+    common.erase(std::remove_if(common.begin(), common.end(),
+                                [&](const Entry& e) {
+                                  return std::find(own.begin(), own.end(), e) == own.end();
+                                }),
+                 common.end());
+  }
+  return common;
+}
+
+std::string entriesText(const std::vector<Entry>& entries, const std::vector<Entry>& but,
+                        const std::string& indent) {
+  std::string text;
+  for (const Entry& e : entries)
+    if (std::find(but.begin(), but.end(), e) == but.end())
+      text += fmt::format("{}{}: {}\n", indent, e.first, e.second);
+  return text;
+}
+
+std::string gridText(const VdbGridInfo& g, bool metadata, const std::vector<Entry>& common) {
   std::string text =
       fmt::format("{}: {}{}, {} in the file, {} in memory\n", g.name, g.type,
                   g.gridClass.empty() || g.gridClass == "unknown" ? "" : ", " + g.gridClass,
@@ -44,14 +82,7 @@ std::string gridText(const VdbGridInfo& g, bool metadata) {
     text += ", box " + boxText(lower->value(), upper->value());
   text += count ? "\n    " : "    ";
   text += transformText(g.grid->constTransform()) + "\n";
-  if (metadata) {
-    text += metadataText(*g.grid, "      ");
-    return text;
-  }
-  for (auto it = g.grid->beginMeta(); it != g.grid->endMeta(); ++it)
-    if (it->first.compare(0, 9, "innermap_") == 0)
-      text += fmt::format("    {}: {}\n", it->first, it->second->str());
-  return text;
+  return text + entriesText(entriesOf(g, metadata), common, metadata ? "      " : "    ");
 }
 
 }  // namespace
@@ -60,7 +91,9 @@ std::string describe(const VdbInfo& info, const std::string& path, bool metadata
   std::string text = fmt::format("{}: OpenVDB {}, {} grid{}\n", path, info.version,
                                  info.grids.size(), info.grids.size() == 1 ? "" : "s");
   text += metadataText(info.metadata, "  ");
-  for (const VdbGridInfo& grid : info.grids) text += "  " + gridText(grid, metadata);
+  const std::vector<Entry> common = commonEntries(info, metadata);
+  if (!common.empty()) text += "  in all grids:\n" + entriesText(common, {}, "    ");
+  for (const VdbGridInfo& grid : info.grids) text += "  " + gridText(grid, metadata, common);
   return text;
 }
 

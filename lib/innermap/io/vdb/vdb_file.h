@@ -77,7 +77,7 @@ struct VdbInfoSettings {
 VdbInfo readVdbInfo(const std::string& path, const VdbInfoSettings& settings = {});
 
 // What the file at `path` holds, for a terminal: a few lines a grid, with all its metadata or only
-// innermap's own.
+// innermap's own; what all grids say alike stands once, before them.
 std::string describe(const VdbInfo& info, const std::string& path, bool metadata = false);
 
 // Bytes that reading the grids of these names takes; empty means all.

@@ -75,6 +75,29 @@ struct VolumeTextureResult {
 VolumeTextureResult writeVolumeTexture(const std::string& path, const openvdb::GridPtrVec& grids,
                                        const VolumeTextureSettings& settings = {});
 
+// What a file says of itself as a volume texture.
+struct VolumeTextureInfo {
+  std::string layout;   // "atlas", "slices", "parts"
+  int axis = 2;         // across the slices: 0, 1, 2 for x, y, z
+  bool rowsUp = false;  // see VolumeTextureSettings
+  int tileColumns = 1, tileRows = 1, tileWidth = 0, tileHeight = 0, slices = 0;
+  openvdb::Coord resolution;          // voxels of the dense box along x, y, z
+  openvdb::Vec3d voxelSize{0, 0, 0};  // world units
+  openvdb::BBoxd worldBox;            // by outer faces
+  struct Grid {
+    std::string name, type, gridClass;
+    std::vector<std::string> channels;
+  };
+  std::vector<Grid> grids;
+};
+
+// From the attributes alone, without pixels. Nothing when the file has none of a volume texture, or
+// not all that are needed. Throws FileError.
+std::optional<VolumeTextureInfo> readVolumeTextureInfo(const std::string& path);
+
+// For a terminal: a few indented lines.
+std::string describe(const VolumeTextureInfo& info);
+
 // For a terminal: two lines that say what was written.
 std::string describe(const VolumeTextureResult& result, const std::string& path,
                      const VolumeTextureSettings& settings);

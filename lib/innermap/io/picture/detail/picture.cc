@@ -26,18 +26,9 @@ std::string printable(const std::string& text) {
 
 }  // namespace
 
-Rgb rampColour(double t) {
-  static const Rgb stops[] = {{49, 54, 149},   {69, 117, 180},  {116, 173, 209}, {171, 217, 233},
-                              {224, 243, 248}, {255, 255, 191}, {254, 224, 144}, {253, 174, 97},
-                              {244, 109, 67},  {215, 48, 39},   {165, 0, 38}};
-  constexpr int kLast = 10;
-  const double place = std::clamp(t, 0.0, 1.0) * kLast;
-  const int i = std::min(static_cast<int>(place), kLast - 1);
-  const float share = static_cast<float>(place - i);
-  Rgb colour;
-  for (int c = 0; c < 3; ++c)
-    colour[c] = ((1 - share) * stops[i][c] + share * stops[i + 1][c]) / 255.0f;
-  return colour;
+Rgb rampColour(double t, Colormap map) {
+  const Vec3 c = colormapColour(map, t);
+  return {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)};
 }
 
 Vec3 linear(const Rgb& colour) {

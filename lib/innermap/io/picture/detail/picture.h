@@ -7,14 +7,13 @@
 #include <vector>
 
 #include "innermap/core/vec3.h"
+#include "innermap/io/picture/colormap.h"
 
 namespace innermap {
 
 using Rgb = std::array<float, 3>;  // sRGB, 0..1
 
-// Blue (0) over pale yellow to red (1), of even lightness steps on both sides: ColorBrewer's
-// RdYlBu (Cynthia Brewer, Apache-2.0) turned round, interpolated.
-Rgb rampColour(double t);
+Rgb rampColour(double t, Colormap map = Colormap::redBlue);
 
 Vec3 linear(const Rgb& colour);  // of sRGB (IEC 61966-2-1)
 

@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""What a job shows of how far it is: on a terminal one bar, elsewhere lines."""
+
+import os
+import pty
+import re
+import subprocess
+import time
+
+import cli
+from cli import innermap
+
+
+def pair():
+    vertices, faces = cli.icosphere_arrays(3)
+    cli.write_obj("ball.obj", vertices, faces)
+    cli.write_obj("egg.obj", [(1.4 * x + 0.1 * y * y, y, z) for x, y, z in vertices], faces)
+
+
+def on_terminal(*arguments):
+    """What a terminal is shown: (seconds, percent, label, what stands after the bar) of each bar."""
+    ours, theirs = pty.openpty()
+    start, seen = time.monotonic(), []
+    with subprocess.Popen([cli.PROGRAM, *arguments], stderr=theirs, stdout=subprocess.DEVNULL,
+                          env={**os.environ, "TERM": "xterm"}) as process:
+        os.close(theirs)
+        while True:
+            try:
+                text = os.read(ours, 65536).decode(errors="replace").replace("\r\x1b[K", "")
+            except OSError:  # the other end is closed
+                break
+            for label, percent, rest in re.findall(r"\r(.+?) +\[=* *\] +(\d+)%([^\x1b\r]*)", text):
+                seen.append((time.monotonic() - start, int(percent), label, rest.strip()))
+    os.close(ours)
+    assert process.returncode == 0
+    return seen
+
+
+def test_one_bar_that_never_runs_backwards():
+    pair()
+    for command in [["map", "ball.obj", "egg.obj", "-o", "out", "--tolerance", "1e-4", "--interpolation",
+                     "linear", "--resolution", "96"],
+                    ["evaluate", "out/map.ply", "-o", "a.vdb", "--resolution", "160"]]:
+        bars = on_terminal(*command)
+        assert len(bars) > 5, bars
+        shown = [percent for _, percent, _, _ in bars]
+        assert shown == sorted(shown) and shown[-1] > shown[0], shown
+        assert all(re.fullmatch(r"|(\d+ h )?(\d+ min ?)?(\d+ s)? left", rest) for *_, rest in bars), bars
+        labels = [label for i, (_, _, label, _) in enumerate(bars) if label != bars[i - 1][2]]
+        assert len(set(labels)) == len(labels) >= 2, labels  # none comes twice
+
+
+def test_lines_carry_seconds():
+    pair()
+    done = innermap("map", "ball.obj", "egg.obj", "-o", "out", "--resolution", "32")
+    lines = [line for line in done.stderr.split("\n") if line and not line.startswith("innermap: ")]
+    found = [re.fullmatch(r" *(\d+\.\d) s  (\w.*)", line) for line in lines]
+    assert all(found) and len(found) >= 3, lines
+    seconds = [float(m.group(1)) for m in found]
+    assert seconds == sorted(seconds), seconds
+
+
+def test_dry_run_says_seconds_that_include_the_fit():
+    pair()
+    said = {}
+    for tolerance in ["1e-3", "1e-6"]:
+        text = innermap("map", "ball.obj", "egg.obj", "-o", "out", "--tolerance", tolerance,
+                        "--dry-run").stdout
+        said[tolerance] = int(re.search(r"^time: about (\d+) s$", text, re.M).group(1))
+    assert said["1e-6"] > said["1e-3"] >= 1, said
+
+
+cli.run(globals())

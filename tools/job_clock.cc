@@ -1,0 +1,160 @@
+#include "job_clock.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <thread>
+#include <utility>
+
+namespace innermap::tool {
+namespace {
+
+// Of the expected time: less says nothing yet of the machine's speed.
+constexpr double kPrior = 0.05;
+// A phase that reports fractions is judged by them alone from here on.
+constexpr double kTrusted = 0.2;
+// One that is over its time is thought to need this share of what it took so far.
+constexpr double kOverdue = 0.5;
+constexpr double kTells = 0.08;
+
+}  // namespace
+
+void JobClock::expect(std::vector<JobPhase> phases, double now) {
+  phases_ = std::move(phases);
+  current_ = 0;
+  begun_ = false;
+  planned_ = since_ = now;
+  busy_ = busyness();
+  fraction_ = 0;
+}
+
+void JobClock::report(std::string_view stage, double fraction, double now) {
+  for (std::size_t i = current_; i < phases_.size(); ++i) {
+    if (phases_[i].stage != stage) continue;
+    if (i != current_ || !begun_) {
+      current_ = i;
+      // What came before the first phase counts as part of it.
+      since_ = begun_ ? now : planned_;
+      fraction_ = 0;
+      begun_ = true;
+    }
+    phases_[i].perhaps = false;
+    fraction_ = std::max(fraction_, std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0);
+    return;
+  }
+}
+
+const std::string& JobClock::title() const {
+  static const std::string kNone;
+  if (!begun_) return kNone;
+  const JobPhase& phase = phases_[current_];
+  return phase.title.empty() ? phase.stage : phase.title;
+}
+
+double JobClock::expectedUntil(std::size_t end) const {
+  double seconds = 0;
+  for (std::size_t i = 0; i < end; ++i)
+    if (!phases_[i].perhaps) seconds += phases_[i].seconds;
+  return seconds;
+}
+
+JobClock::State JobClock::at(double now) {
+  State state;
+  if (!known() || !begun_) return {shown_, 0, false};
+  const double total = expectedUntil(phases_.size()), done = expectedUntil(current_);
+  const double own = phases_[current_].seconds;
+  const double prior = kPrior * total;
+  const double spent = now - since_;
+  const double over = (since_ - planned_ + prior * busy_) / (done + prior);
+  // One that is over its time says that the machine is slower than was thought.
+  const double speed =
+      std::max(over, (since_ - planned_ + spent + prior * busy_) / (done + own + prior));
+  const double byTime = std::max(speed * own - spent, kOverdue * spent);
+  const double byFraction = fraction_ > 0 ? spent * (1 - fraction_) / fraction_ : byTime;
+  const double trust = std::min(1.0, fraction_ / kTrusted);
+  const double left = trust * byFraction + (1 - trust) * byTime;
+  // A phase that takes longer than was thought says that others will, too.
+  const double phase = (spent + left) / std::max(own, 1e-9);
+  const double weight = trust * own / (done + own + prior);
+  const double pace = (1 - weight) * speed + weight * phase;
+  state.secondsLeft = left + pace * (total - done - own);
+  const double fraction = now / std::max(now + state.secondsLeft, 1e-9);
+  shown_ = std::max(shown_, std::min(fraction, 0.99));
+  state.fraction = shown_;
+  state.tellsTime = fraction > kTells && now > 1;
+  return state;
+}
+
+double busyness() {
+  double load = 0;
+  if (getloadavg(&load, 1) != 1) return 1;
+  // Not all that waits for a core wants as many cores as a job of ours.
+  return std::sqrt(1 + load / std::max(1U, std::thread::hardware_concurrency()));
+}
+
+double totalSeconds(const std::vector<JobPhase>& phases) {
+  double total = 0;
+  for (const JobPhase& p : phases)
+    if (!p.perhaps) total += p.seconds;
+  return total;
+}
+
+// Shares as measured on samples/ and models of some ten thousand triangles.
+std::vector<JobPhase> usualPhases(const std::string& command) {
+  static const std::map<std::string, std::vector<JobPhase>> kPhases = {
+      {"map", {{"reading", 1}, {"fitting", 5}}},  // until more is known
+      {"fit", {{"reading", 1}, {"fitting", 5}}},
+      {"sequence", {{"reading", 5}, {"level set", 5}, {"factoring", 20}, {"frames", 70}}},
+      {"deform", {{"reading", 5}, {"level set", 5}, {"factoring", 20}, {"frames", 70}}},
+      {"correspond",
+       {{"repairing", 7, false, "reading"},
+        {"trying rotations", 6},
+        {"trying first maps", 45},
+        {"judging first maps", 12},
+        {"refining the map", 27},
+        {"measuring the map", 3}}},
+      {"evaluate",
+       {{"checking", 30, false, "reading"},
+        {"level set", 33},
+        {"evaluating the map", 12},
+        {"checking cells", 15},
+        {"writing the VDB file", 10}}},
+      {"texture",
+       {{"placing samples", 3},
+        {"offset surface", 3},
+        {"filling the kernel matrix", 1},
+        {"factoring", 9},
+        {"factoring clusters", 11},
+        {"solving", 8},
+        {"level set", 4},
+        {"continuing inwards", 40},
+        {"meeting the surface", 18},
+        {"writing the VDB file", 3}}},
+      {"push",
+       {{"checking", 15, false, "reading"},
+        {"reading the VDB file", 4},
+        {"level set", 30},
+        {"covering the target", 12},
+        {"inverting the map", 20},
+        {"carrying the grids", 13},
+        {"writing the VDB file", 6}}},
+      {"transfer-distance",
+       {{"checking", 30, false, "reading"},
+        {"level set", 22},
+        {"distances", 36},
+        {"drawing the section", 12}}},
+      {"tetrahedralize",
+       {{"reading", 20},
+        {"level set", 25},
+        {"filling with tetrahedra", 20},
+        {"measuring cells", 20},
+        {"comparing the boundaries", 10},
+        {"writing cells", 5}}},
+      {"voxelize", {{"reading", 10}, {"level set", 70}, {"writing the VDB file", 20}}},
+      {"slice", {{"reading the VDB file", 50}, {"drawing the section", 50}}}};
+  const auto found = kPhases.find(command == "pull" ? "push" : command);
+  return found == kPhases.end() ? std::vector<JobPhase>() : found->second;
+}
+
+}  // namespace innermap::tool

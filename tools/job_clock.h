@@ -1,0 +1,64 @@
+// How far a job has come, and how long it will still take.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace innermap::tool {
+
+// A part of a job, in the order in which parts follow one another.
+struct JobPhase {
+  // As the library reports it, or as Context::phase() names it.
+  std::string stage;
+  // What it is expected to take on an idle machine, or its share of the job: only the ratios matter
+  // once some of them are over.
+  double seconds = 0;
+  // Counts only when it comes to it: steps where one map folds.
+  bool perhaps = false;
+  // Of stages that are passed at once and many times: the phase it stands for, when not itself.
+  std::string title = "";
+};
+
+// Times are seconds since the job began. Phases that are over say how fast the machine is; the one
+// under way is judged by the fraction it reports, or else by its time.
+class JobClock {
+ public:
+  void expect(std::vector<JobPhase> phases, double now);
+
+  // A stage goes on. Those that are no phase, and those that lie behind, play no part.
+  void report(std::string_view stage, double fraction, double now);
+
+  bool known() const { return !phases_.empty(); }
+  // Of the phase under way; empty before the first.
+  const std::string& title() const;
+
+  struct State {
+    double fraction = 0;  // of the whole job; never less than before
+    double secondsLeft = 0;
+    bool tellsTime = false;  // enough has passed to tell
+  };
+  State at(double now);
+
+ private:
+  double expectedUntil(std::size_t end) const;
+
+  std::vector<JobPhase> phases_;
+  std::size_t current_ = 0;
+  bool begun_ = false;
+  double planned_ = 0;               // when the phases became known
+  double busy_ = 1;                  // what one expected second takes, before any is over
+  double since_ = 0, fraction_ = 0;  // of the current phase
+  double shown_ = 0;
+};
+
+// On this machine, as busy as it is now: seconds on an idle one times this.
+double busyness();
+
+double totalSeconds(const std::vector<JobPhase>& phases);
+
+// What commands mostly do; empty where they are over at once. Commands that know better call
+// Context::expect themselves.
+std::vector<JobPhase> usualPhases(const std::string& command);
+
+}  // namespace innermap::tool
