@@ -23,7 +23,8 @@ struct GridOptions {
 
 // of: what --resolution is along the longest side of.
 void addGridOptions(Command& command, GridOptions& options, const std::string& of = "the solid",
-                    const std::string& defaults = fmt::format("{}", LevelSetSettings().resolution));
+                    const std::string& defaults = fmt::format("{}, more for a thin solid",
+                                                              kUsualResolution));
 
 // Settings of the library that have a resolution and a voxel size.
 template <class Settings>

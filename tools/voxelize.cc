@@ -72,6 +72,7 @@ void run(const VoxelizeOptions& options, Context& context) {
                     " has neither texture coordinates nor vertex colours to carry over");
   const auto settings = gridSettings(options.grid, context, options.levelSet);
   const double voxelSize = voxelSizeFor(solid, settings);
+  if (const std::string note = voxelSizeNote(solid, settings); !note.empty()) context.note(note);
   const std::uint64_t need = memoryFor(options, solid, mesh, settings);
   if (context.dryRun())
     return context.plan({fmt::format("voxelize {} with voxels of {:.6g} to {}", options.mesh,

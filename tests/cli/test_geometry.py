@@ -8,32 +8,7 @@ import struct
 import subprocess
 
 from cli import MODELS, ROOT, Skip, fails, icosphere_arrays, innermap, read_json, run, slow, write_obj
-
-
-def swirl(p):
-    x, y, z = p
-    a = 0.6 * z
-    return (1.2 * (math.cos(a) * x - math.sin(a) * y) + 4,
-            1.2 * (math.sin(a) * x + math.cos(a) * y), 1.1 * z)
-
-
-def scene():
-    """map.ply from ball.obj to target.obj."""
-    vertices, faces = icosphere_arrays(4)
-    write_obj("ball.obj", vertices, faces)
-    write_obj("target.obj", [swirl(p) for p in vertices], faces)
-    innermap("fit", "ball.obj", "target.obj", "-o", "map.ply", "--sources", 400,
-             "--interpolation", "smooth", "--quiet")
-
-
-def python(script, *arguments):
-    """Runs a script with Debian's Python; skips where a module is missing."""
-    done = subprocess.run(["/usr/bin/python3", "-c", script, *map(str, arguments)],
-                          capture_output=True, text=True, check=False)
-    if "No module" in done.stderr:
-        raise Skip(done.stderr.strip().split("\n")[-1])
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+from scenes import debian_python, fitted_ball, swirl
 
 
 def obj_rows(path, keyword):
@@ -48,7 +23,7 @@ def largest(a, b):
 
 
 def test_mesh_there_and_back():
-    scene()
+    fitted_ball(swirl, "--interpolation", "smooth")
     vertices, faces = icosphere_arrays(2)
     with open("core.obj", "w", encoding="utf-8") as file:
         file.write("# a core\nmtllib core.mtl\n")
@@ -78,7 +53,7 @@ def test_mesh_there_and_back():
 
 
 def test_what_is_outside():
-    scene()
+    fitted_ball(swirl, "--interpolation", "smooth")
     with open("cloud.ply", "w", encoding="utf-8") as file:
         file.write("ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\n"
                    "property double z\nproperty int id\nend_header\n0 0 0 7\n1.2 0 0 8\n0.5 0 0 9\n")
@@ -100,7 +75,7 @@ def test_what_is_outside():
 
 
 def test_long_edges_are_split():
-    scene()
+    fitted_ball(swirl, "--interpolation", "smooth")
     with open("rod.obj", "w", encoding="utf-8") as file:
         file.write("v 0.3 0 -0.9\nv 0.3 0 0.9\nv -0.3 0 0.9\nf 1 2 3\nl 1 2\n")
     innermap("push", "map.ply", "rod.obj", "-o", "a.obj", "--report", "r.json", "--subdivide", 0.001)
@@ -175,21 +150,21 @@ def agree(a, b):
 
 
 def test_cells_by_two_other_readers():
-    scene()
-    python(MAKE_CELLS)
+    fitted_ball(swirl, "--interpolation", "smooth")
+    debian_python(MAKE_CELLS)
     innermap("push", "map.ply", "cells.vtu", "-o", "posed.vtu", "--vectors", "fibre", "--report",
              "r.json")
     report = read_json("r.json")["geometry"]
     assert report["cells_inverted_before"] == 0 and report["points_outside"] == 0, report
-    vtu = json.loads(python(BY_MESHIO, "posed.vtu"))
-    agree(vtu, json.loads(python(BY_VTK, "posed.vtu")))
+    vtu = json.loads(debian_python(BY_MESHIO, "posed.vtu"))
+    agree(vtu, json.loads(debian_python(BY_VTK, "posed.vtu")))
     assert vtu[4] == report["cells_inverted_after"] == 0 and vtu[0] == report["points"]
     assert vtu[1] + vtu[2] == report["cells"]
     innermap("push", "map.ply", "cells.vtu", "-o", "posed.msh", "--vectors", "fibre", "--quiet")
-    agree(vtu, json.loads(python(BY_MESHIO, "posed.msh")))
+    agree(vtu, json.loads(debian_python(BY_MESHIO, "posed.msh")))
     done = innermap("push", "map.ply", "cells.vtu", "-o", "posed.mesh", "--vectors", "fibre")
     assert "cannot hold the field 'fibre'" in done.stderr, done.stderr
-    agree(vtu[:5], json.loads(python(BY_MESHIO, "posed.mesh"))[:5])
+    agree(vtu[:5], json.loads(debian_python(BY_MESHIO, "posed.mesh"))[:5])
     # And Gmsh, of both.
     try:
         for name in ("posed.msh", "posed.mesh"):
@@ -201,7 +176,7 @@ def test_cells_by_two_other_readers():
         raise Skip("no gmsh") from missing
     # There and back: the places and the vectors.
     innermap("pull", "map.ply", "posed.msh", "-o", "back.vtu", "--quiet")
-    off = python("import meshio, numpy as np\na, b = meshio.read('cells.vtu'), meshio.read('back.vtu')\n"
+    off = debian_python("import meshio, numpy as np\na, b = meshio.read('cells.vtu'), meshio.read('back.vtu')\n"
                  "print(abs(a.points - b.points).max(), abs(a.point_data['fibre'] - "
                  "b.point_data['fibre']).max(), abs(a.point_data['heat'] - b.point_data['heat']).max(),"
                  "sum(abs(x - y).sum() for x, y in zip(a.cell_data['part'], b.cell_data['part'])))")
@@ -226,7 +201,7 @@ def test_frames():
 
 
 def test_what_is_refused():
-    scene()
+    fitted_ball(swirl, "--interpolation", "smooth")
     fails(2, "push", "map.ply", "ball.obj", "-o", "a.obj", "--density", says=["--density"])
     fails(2, "push", "map.ply", "a.vdb", "-o", "b.vdb", "--subdivide", 0.1, says=["--subdivide"])
     fails(1, "push", "map.ply", "ball.obj", "-o", "a.ply", says=["a.ply", ".obj"])

@@ -208,7 +208,17 @@ def test_thinner_than_a_voxel():
     vertices, faces = icosphere_arrays(3)
     write_obj("plate.obj", [(x, y, 0.002 * z) for x, y, z in vertices], faces)
     fails(1, "map", "plate.obj", "plate.obj", "-o", "out", "--resolution", "32",
-          says=["plate.obj", "higher resolution"])
+          says=["plate.obj", "higher resolution", "a resolution of 1"])
+
+
+def test_needle():
+    """A resolution that nobody gave is fine enough for a solid a thousand times as long as thick."""
+    vertices, faces = icosphere_arrays(3)
+    write_obj("needle.obj", [(x, 0.001 * y, 0.001 * z) for x, y, z in vertices], faces)
+    write_obj("bent.obj", [(x, 0.001 * y + 0.1 * x * x, 0.001 * z) for x, y, z in vertices], faces)
+    done = innermap("map", "needle.obj", "bent.obj", "-o", "out")
+    assert "the solid is thin" in done.stderr, done.stderr
+    assert read_json("out/report.json")["grid"]["interior_voxels"] > 1000
 
 
 def test_full_disk_leaves_nothing():

@@ -3,11 +3,9 @@
 
 import math
 import os
-import signal
-import subprocess
 
-from cli import (MODELS, ROOT, Skip, fails, icosphere_arrays, innermap, interrupt, no_leftovers,
-                 read_json, run, slow, write_obj)
+from cli import MODELS, Skip, fails, icosphere_arrays, innermap, read_json, run, slow, write_obj
+from scenes import debian_python, fitted_ball
 
 
 def dent(p):
@@ -18,21 +16,8 @@ def dent(p):
 
 def scene(function=dent, resolution=24):
     """map.ply from ball.obj to target.obj, and the ball's tetrahedra, ball.vtu."""
-    vertices, faces = icosphere_arrays(4)
-    write_obj("ball.obj", vertices, faces)
-    write_obj("target.obj", [function(p) for p in vertices], faces)
-    innermap("fit", "ball.obj", "target.obj", "-o", "map.ply", "--sources", 600, "--quiet")
+    fitted_ball(function, sources=600)
     innermap("tetrahedralize", "ball.obj", "-o", "ball.vtu", "--resolution", resolution, "--quiet")
-
-
-def python_vtk(script, *arguments):
-    """Runs a script with VTK's own module; skips where there is none."""
-    done = subprocess.run(["/usr/bin/python3", "-c", script, *map(str, arguments)],
-                          capture_output=True, text=True, check=False)
-    if "No module" in done.stderr:
-        raise Skip("no vtk")
-    assert done.returncode == 0, done.stderr
-    return done.stdout
 
 
 def test_no_cell_stays_inverted():
@@ -49,7 +34,7 @@ def test_no_cell_stays_inverted():
     assert report["boundary"]["to_surface"]["rms"] < 5e-3, report["boundary"]
     assert os.path.getsize("cut.png") > 1000
     # VTK counts the same, here and at the places that the vertices came from.
-    out = python_vtk("""
+    out = debian_python("""
 import sys, vtk
 from vtk.util.numpy_support import vtk_to_numpy as n
 r = vtk.vtkXMLUnstructuredGridReader(); r.SetFileName(sys.argv[1]); r.Update()
@@ -98,7 +83,7 @@ def test_through_agrees_with_the_mesh():
     geometry = read_json("push.json")["geometry"]
     assert geometry["cells_inverted_after"] == 0, geometry
     innermap("pull", "map.ply", "pushed.vtu", "-o", "back.vtu", "--through", "dented.vtu", "--quiet")
-    out = python_vtk("""
+    out = debian_python("""
 import sys, vtk, numpy as np
 from vtk.util.numpy_support import vtk_to_numpy as n
 def points(f):

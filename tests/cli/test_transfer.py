@@ -1,40 +1,19 @@
 #!/usr/bin/env python3
 """Push and pull: volumes carried through maps of meshes made here, and of the horse where it is."""
 
-import math
 import os
 import signal
-import subprocess
 
-from cli import (MODELS, Skip, alone, fails, file_size_limit, icosphere, icosphere_arrays, innermap,
-                 interrupt, no_leftovers, read_json, run, write_obj)
-
-
-def swirl(p):
-    x, y, z = p
-    a = 0.6 * z
-    return (1.2 * (math.cos(a) * x - math.sin(a) * y) + 4,
-            1.2 * (math.sin(a) * x + math.cos(a) * y), 1.1 * z)
+from cli import (MODELS, Skip, alone, fails, file_size_limit, icosphere, innermap, interrupt,
+                 no_leftovers, read_json, run)
+from scenes import debian_python, fitted_ball, swirl
 
 
 def scene(function=swirl, subdivisions=4, sources=400, resolution=32):
     """map.ply from ball.obj to target.obj, and rest.vdb: a fog and a level set in the ball."""
-    vertices, faces = icosphere_arrays(subdivisions)
-    write_obj("ball.obj", vertices, faces)
-    write_obj("target.obj", [function(p) for p in vertices], faces)
-    innermap("fit", "ball.obj", "target.obj", "-o", "map.ply", "--sources", sources, "--quiet")
+    fitted_ball(function, subdivisions=subdivisions, sources=sources)
     innermap("voxelize", "ball.obj", "-o", "rest.vdb", "--resolution", resolution, "--fog",
              "--quiet")
-
-
-def python_vdb(script, *arguments):
-    """Runs a script with OpenVDB's own module; skips where there is none."""
-    done = subprocess.run(["/usr/bin/python3", "-c", script, *map(str, arguments)],
-                          capture_output=True, text=True, check=False)
-    if "No module" in done.stderr:
-        raise Skip("no pyopenvdb")
-    assert done.returncode == 0, done.stderr
-    return done.stdout
 
 
 def test_push_keeps_mass_and_inverts_all():
@@ -49,7 +28,7 @@ def test_push_keeps_mass_and_inverts_all():
     # Mass, not value: the target is larger by half.
     ratio = report["densities"]["density_largest_ratio"]
     assert 0.6 < ratio < 0.9, report["densities"]
-    out = python_vdb("""
+    out = debian_python("""
 import sys, pyopenvdb as v
 a, b = (v.read(p, "density") for p in sys.argv[1:])
 for g in a, b:
@@ -76,7 +55,7 @@ def test_densities_alone_need_no_inverse():
 def test_metadata_tells_the_map_and_its_error():
     scene()
     innermap("push", "map.ply", "rest.vdb", "-o", "posed.vdb", "--grids", "density", "--quiet")
-    out = python_vdb("import sys, pyopenvdb as v\n"
+    out = debian_python("import sys, pyopenvdb as v\n"
                      "g = v.readAllGridMetadata(sys.argv[1])\n"
                      "print(len(g), g[0].name, g[0].gridClass, 'innermap_boundary_error_rms' in "
                      "g[0].metadata)", "posed.vdb")
@@ -87,7 +66,7 @@ def test_pull_undoes_push():
     scene(resolution=64)
     innermap("push", "map.ply", "rest.vdb", "-o", "posed.vdb", "--quiet")
     innermap("pull", "map.ply", "posed.vdb", "-o", "again.vdb", "--quiet")
-    out = python_vdb("""
+    out = debian_python("""
 import sys, pyopenvdb as v
 a, b = (v.read(p, "surface") for p in sys.argv[1:])
 acc, worst, n = a.getConstAccessor(), 0, 0
@@ -105,7 +84,7 @@ def test_vectors_of_the_map_itself():
     scene(resolution=32)
     innermap("map", "ball.obj", "ball.obj", "-o", "same", "--resolution", "32", "--quiet")
     innermap("push", "map.ply", "same/map.vdb", "-o", "posed.vdb", "--grids", "map", "--quiet")
-    out = python_vdb("""
+    out = debian_python("""
 import sys, math, pyopenvdb as v
 g = v.read(sys.argv[1], "map")
 worst = 0

@@ -173,23 +173,20 @@ SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& sett
   const Solid& solid = mapped.solid();
   const LevelSetSettings levelSet = levelSetSettings(settings);
   SolidGrids out;
-  if (!(settings.voxelSize > 0) && voxelSizeFor(solid, levelSet) == kSmallestVoxel)
-    out.notes.push_back(
-        fmt::format("the voxels are {} world units, the smallest that OpenVDB can hold, "
-                    "not as small as the resolution asks for; scale the meshes up for more",
-                    kSmallestVoxel));
+  const std::string note = voxelSizeNote(solid, levelSet);
+  if (!note.empty()) out.notes.push_back(note);
   timed(out.seconds, "voxelize", [&] {
     out.surface = makeLevelSet(solid, levelSet);
     out.density = makeFog(*out.surface);
     out.warnings = checkLevelSet(*out.surface, solid).warnings;
   });
+  requireInterior(interiorVoxels(*out.surface), solid, mapped.boundary.source.mesh.name);
   timed(out.seconds, "evaluate", [&] {
     EvaluateSettings evaluate =
         evaluateSettings(mapped.boundary.target.volume, sumAccuracy(mapped), settings);
     evaluate.origin = out.localOrigin = localOriginOf(mapped);
     out.values = evaluateMap(mapped.map, solid, *out.surface, evaluate);
   });
-  requireInterior(out.values.interiorVoxels, mapped.boundary.source.mesh.name);
   out.voxelSize = out.surface->voxelSize()[0];
   const TargetShape target(mapped.boundary);
   timed(out.seconds, "outside", [&] { findOutside(mapped, target, settings.progress, out); });
@@ -249,7 +246,7 @@ FrameEvaluator::FrameEvaluator(const FrameFitter& fitter, std::vector<std::strin
     if (wants("density")) density_ = makeFog(*surface_);
     warnings_ = checkLevelSet(*surface_, fitter.solid()).warnings;
   });
-  requireInterior(interiorVoxels(*surface_), fitter.rest().mesh.name);
+  requireInterior(interiorVoxels(*surface_), fitter.solid(), fitter.rest().mesh.name);
 }
 
 bool FrameEvaluator::wants(const char* name) const {

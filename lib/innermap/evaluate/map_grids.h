@@ -22,7 +22,7 @@ enum class RepairFolds { automatic, on, off };
 constexpr double kRepairedFolds = 5e-3;
 
 struct MapGridSettings {
-  int resolution = 128;  // voxels along the longest side of the solid, in [4, 4096]
+  int resolution = 0;    // voxels along the longest side, as in LevelSetSettings
   double voxelSize = 0;  // world units; above 0: in place of the resolution
   LameConstants lame;
   RepairFolds repair = RepairFolds::automatic;

@@ -27,6 +27,45 @@ double longestSide(const Solid& solid) {
   return std::max({e.x, e.y, e.z});
 }
 
+// Mean thickness: that of plates, half of that of needles, a third of that of balls.
+double thicknessOf(const Solid& solid) { return 2 * solid.volume() / solid.area(); }
+
+// So many voxels in the thickness are at least one layer of centres, wherever the lattice begins.
+constexpr double kInThickness = 1.5;
+
+// Voxels that leave something of the thinnest solids; 0 where the thickness is not known.
+double thinVoxel(const Solid& solid) { return thicknessOf(solid) / kInThickness; }
+
+// About the most that grids of a map take: their leaves reach some 6 voxels to either side.
+double gridBytes(const Solid& solid, double voxel) {
+  constexpr double kVoxel = 100, kReach = 12;
+  return kVoxel * (solid.volume() / std::pow(voxel, 3) + kReach * solid.area() / (voxel * voxel));
+}
+
+double automaticVoxel(const Solid& solid, std::uint64_t maxMemory) {
+  constexpr double kFiner = 0.9, kMostBytes = 4e9, kHopeless = 3;
+  const double usual = voxelSizeAcross(solid.box(), kUsualResolution), thin = thinVoxel(solid);
+  if (!(thin > 0 && thin < usual)) return usual;
+  const double room = maxMemory > 0 ? 0.5 * static_cast<double>(maxMemory) : kMostBytes;
+  double voxel = std::max(thin, voxelSizeAcross(solid.box(), kMaxAcross));
+  while (voxel < usual && gridBytes(solid, voxel) > room) voxel /= kFiner;
+  return voxel > kHopeless * thicknessOf(solid) ? usual : std::min(voxel, usual);
+}
+
+int acrossFor(const Solid& solid, double voxel) {
+  return static_cast<int>(std::min(std::ceil(longestSide(solid) / voxel), 1e9));
+}
+
+// What a thin solid would take.
+std::string thinNeed(const Solid& solid) {
+  const double voxel = thinVoxel(solid);
+  const int across = acrossFor(solid, voxel);
+  return fmt::format(
+      "a resolution of {} would do{}, in about {} of memory", across,
+      across > kMaxAcross ? fmt::format(", more than the {} there are", kMaxAcross) : "",
+      formatBytes(static_cast<std::uint64_t>(std::min(gridBytes(solid, voxel), 1e18))));
+}
+
 void checkHalfWidth(const LevelSetSettings& settings) {
   if (!(settings.halfWidth >= 2 && settings.halfWidth <= 100)) {
     throw SettingError("halfWidth", "must lie between 2 and 100 voxels");
@@ -47,6 +86,8 @@ static_assert(kSmallestVoxel == kLeastVoxel);
 
 double voxelSizeFor(const Solid& solid, const LevelSetSettings& settings) {
   const double longest = longestSide(solid);
+  if (settings.voxelSize == 0 && settings.resolution == 0)
+    return automaticVoxel(solid, settings.maxMemory);
   if (settings.voxelSize == 0) {
     if (settings.resolution < kMinAcross || settings.resolution > kMaxAcross) {
       throw SettingError("resolution", "must lie between 4 and 4096 voxels");
@@ -69,6 +110,33 @@ double voxelSizeFor(const Solid& solid, const LevelSetSettings& settings) {
                            formatLength(longest / kMaxAcross) + " is needed");
   }
   return settings.voxelSize;
+}
+
+std::string voxelSizeNote(const Solid& solid, const LevelSetSettings& settings) {
+  if (settings.voxelSize > 0) return {};
+  const double voxel = voxelSizeFor(solid, settings);
+  if (voxel == kSmallestVoxel)
+    return fmt::format(
+        "the voxels are {} world units, the smallest that OpenVDB can hold, not as "
+        "small as the resolution asks for; scale the meshes up for more",
+        kSmallestVoxel);
+  if (settings.resolution > 0) return {};
+  if (!(thicknessOf(solid) > 0) ||
+      thinVoxel(solid) >= voxelSizeAcross(solid.box(), kUsualResolution))
+    return {};
+  const std::string chosen =
+      fmt::format("the solid is thin, {} on average: {} voxels along its longest side",
+                  formatLength(thicknessOf(solid)), acrossFor(solid, voxel));
+  if (voxel <= thinVoxel(solid)) return chosen + " in place of " + std::to_string(kUsualResolution);
+  return chosen + "; " + thinNeed(solid);
+}
+
+void requireInterior(std::uint64_t interiorVoxels, const Solid& solid, const std::string& name) {
+  if (interiorVoxels > 0) return;
+  throw DataError(name +
+                  ": is thinner than the voxels everywhere, none has its centre inside; use a "
+                  "higher resolution" +
+                  (thicknessOf(solid) > 0 ? ": " + thinNeed(solid) : ""));
 }
 
 openvdb::math::Transform::Ptr transformFor(const Solid& solid, double voxelSize) {

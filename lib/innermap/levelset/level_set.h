@@ -16,7 +16,9 @@ namespace innermap {
 
 struct LevelSetSettings {
   double voxelSize = 0;  // world units; 0 means: resolution decides
-  int resolution = 128;  // voxels along the longest side of the solid's box, in [4, 4096]
+  // Voxels along the longest side of the solid's box, in [4, 4096]; 0: kUsualResolution, and more
+  // where the solid is thinner than these on average, as far as half of maxMemory holds them.
+  int resolution = 0;
   // Of the narrow band, voxels, in [2, 100]. Three hold the skin of two voxels that grids of values
   // have outside, and one more for interpolation.
   double halfWidth = 3;
@@ -27,6 +29,8 @@ struct LevelSetSettings {
   Progress* progress = nullptr;
 };
 
+constexpr int kUsualResolution = 128;
+
 // OpenVDB takes no transform whose determinant is below 3e-15.
 constexpr double kSmallestVoxel = 1.45e-5;  // world units
 
@@ -35,6 +39,9 @@ constexpr double kSmallestVoxel = 1.45e-5;  // world units
 // Throws SettingError for values out of range, or for a voxel size that would give more than 4096
 // voxels across.
 double voxelSizeFor(const Solid& solid, const LevelSetSettings& settings);
+
+// What the user should know of a size that voxelSizeFor chose; empty where it is as expected.
+std::string voxelSizeNote(const Solid& solid, const LevelSetSettings& settings);
 
 // Transform of uniform scale whose index space has the solid's lower box corner near the origin
 // (coordinates stay small however far away the solid is). Voxel centres are at whole indices.
@@ -65,8 +72,8 @@ LevelSetCheck checkLevelSet(const openvdb::FloatGrid& levelSet, const Solid& sol
 // Voxels whose centre is inside.
 std::uint64_t interiorVoxels(const openvdb::FloatGrid& levelSet);
 
-// Throws DataError, saying what `name` is and what helps, when there is none.
-void requireInterior(std::uint64_t interiorVoxels, const std::string& name);
+// Throws DataError, saying what `name` is and which resolution would do, when there is none.
+void requireInterior(std::uint64_t interiorVoxels, const Solid& solid, const std::string& name);
 
 struct AttributeSettings {
   Progress* progress = nullptr;

@@ -90,11 +90,4 @@ std::uint64_t interiorVoxels(const FloatGrid& levelSet) {
   return count;
 }
 
-void requireInterior(std::uint64_t interiorVoxels, const std::string& name) {
-  if (interiorVoxels > 0) return;
-  throw DataError(name +
-                  ": is thinner than the voxels everywhere, none has its centre inside; use a "
-                  "higher resolution");
-}
-
 }  // namespace innermap

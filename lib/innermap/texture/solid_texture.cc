@@ -200,7 +200,7 @@ class Maker {
     out_.density = makeFog(*out_.surface);
     out_.warnings = checkLevelSet(*out_.surface, solid_).warnings;
     out_.interiorVoxels = interiorVoxels(*out_.surface);
-    requireInterior(out_.interiorVoxels, parts_.mesh.name);
+    requireInterior(out_.interiorVoxels, solid_, parts_.mesh.name);
   }
 
   std::vector<openvdb::Vec3fGrid::Ptr> continueField(const HarmonicField& field) const {
@@ -309,7 +309,10 @@ SolidTexturePlan planSolidTexture(Mesh mesh, const SolidTextureSettings& setting
   });
   for (const std::string& note : parts->solid->repaired().notes)
     plan.notes.push_back(parts->mesh.name + ": " + note);
-  plan.voxelSize = voxelSizeFor(*parts->solid, levelSetSettings(settings));
+  const LevelSetSettings levelSet = levelSetSettings(settings);
+  plan.voxelSize = voxelSizeFor(*parts->solid, levelSet);
+  if (const std::string note = voxelSizeNote(*parts->solid, levelSet); !note.empty())
+    plan.notes.push_back(note);
   plan.sources =
       settings.sources > 0 ? settings.sources : chargesFor(*parts->solid, plan.voxelSize);
   if (usesImage(settings)) timed(plan.seconds, "charts", [&] { findCharts(*parts, plan); });

@@ -37,7 +37,7 @@ enum class TextureSeams { keep, blend };
 struct SolidTextureSettings {
   TextureMode mode = TextureMode::coordinates;
   TextureSeams seams = TextureSeams::keep;  // blend: with `coordinates` only
-  int resolution = 128;                     // voxels along the longest side, in [4, 4096]
+  int resolution = 0;                       // as in LevelSetSettings
   double voxelSize = 0;                     // world units, in place of the resolution when above 0
   // Number of charges, in [1, 1000000]; 0: one every two voxels of the surface, 1000 to 50000.
   std::size_t sources = 0;

@@ -73,7 +73,7 @@ struct Limits {
 };
 
 openvdb::FloatGrid::Ptr coarseLevelSet(const Solid& solid, const CarryPointsSettings& settings,
-                                       int resolution = LevelSetSettings().resolution) {
+                                       int resolution = kUsualResolution) {
   LevelSetSettings levelSet;
   levelSet.resolution = resolution;
   levelSet.maxMemory = settings.maxMemory;
@@ -84,7 +84,7 @@ openvdb::FloatGrid::Ptr coarseLevelSet(const Solid& solid, const CarryPointsSett
 // Voxels across the source and the target. Much space around them is worth less: Newton's method
 // finds from farther there, as the map is smooth.
 int resolutionOf(const CarryPointsSettings& settings) {
-  return settings.outside.distance > 0 ? 48 : LevelSetSettings().resolution;
+  return settings.outside.distance > 0 ? 48 : kUsualResolution;
 }
 
 // Through the source and what is around it.

@@ -159,7 +159,7 @@ DistanceTransfer transferDistance(const ComposedMap& map, const Solid& source, c
   MapGrids grids;
   timed(out.seconds, "evaluate",
         [&] { grids = evaluateMap(map, source, *out.source.surface, evaluate); });
-  requireInterior(grids.interiorVoxels, "the source");
+  requireInterior(grids.interiorVoxels, source, "the source");
   timed(out.seconds, "transfer",
         [&] { out.through = depthThrough(*grids.map, target, {settings.progress}); });
   out.throughFigures = depthFigures(*out.through, *out.source.surface);

@@ -52,7 +52,7 @@ DepthFigures depthFigures(const openvdb::FloatGrid& distance, const openvdb::Flo
 struct DistanceTransferSettings {
   // Of each of the two solids' grids: as in LevelSetSettings.
   double voxelSize = 0;         // world units; 0 means: resolution decides
-  int resolution = 128;         // voxels along the longest side, in [4, 4096]
+  int resolution = 0;           // voxels along the longest side
   double accuracy = 1e-7;       // of the map's sums: as in EvaluateSettings
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;

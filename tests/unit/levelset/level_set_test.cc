@@ -207,6 +207,53 @@ TEST(LevelSet, MemoryEstimateBoundsTheTree) {
   }
 }
 
+// A resolution that nobody gave.
+TEST(AutomaticVoxels, AreFineEnoughForThinSolids) {
+  const auto voxels = [](const Solid& solid) {
+    return solid.box().extent().x / voxelSizeFor(solid, LevelSetSettings());
+  };
+  const Solid usual(shapes::icosphere(3)), plate(shapes::box({0, 0, 0}, {1, 1, 0.005})),
+      needle(shapes::box({0, 0, 0}, {1, 1e-3, 1e-3}));
+  EXPECT_NEAR(voxels(usual), kUsualResolution, 1e-6);
+  EXPECT_EQ(voxelSizeNote(usual, LevelSetSettings()), "");
+  for (const Solid& thin : {plate, needle}) {
+    EXPECT_GT(voxels(thin), 200);
+    EXPECT_LT(voxels(thin), 4096);
+    EXPECT_NE(voxelSizeNote(thin, LevelSetSettings()), "");
+    const openvdb::FloatGrid::Ptr grid = makeLevelSet(thin);
+    EXPECT_GT(interiorVoxels(*grid), 0U);
+    EXPECT_LT(checkLevelSet(*grid, thin).lostSurface, 0.01);
+  }
+  EXPECT_NEAR(voxelSizeFor(needle, resolution(40)), 1.0 / 40, 1e-9);
+}
+
+TEST(AutomaticVoxels, HeedTheMemoryLimit) {
+  const Solid plate(shapes::box({0, 0, 0}, {1, 1, 2e-3}));
+  LevelSetSettings small, large;
+  small.maxMemory = 200'000'000;
+  large.maxMemory = 1'000'000'000;
+  EXPECT_GT(voxelSizeFor(plate, small), 1.5 * voxelSizeFor(plate, large));
+  EXPECT_LE(levelSetMemory(plate, small), small.maxMemory);
+  const std::string note = voxelSizeNote(plate, small);
+  EXPECT_NE(note.find("a resolution of 75"), std::string::npos) << note;
+}
+
+TEST(AutomaticVoxels, SayWhatHopelesslyThinSolidsWouldTake) {
+  const Solid plate(shapes::box({0, 0, 0}, {1, 1, 1e-4}));
+  EXPECT_NEAR(voxelSizeFor(plate, LevelSetSettings()), 1.0 / kUsualResolution, 1e-9);
+  const std::string need = "a resolution of 1500";
+  const std::string note = voxelSizeNote(plate, LevelSetSettings());
+  EXPECT_NE(note.find(need), std::string::npos) << note;
+  EXPECT_NE(note.find("more than the 4096"), std::string::npos) << note;
+  try {
+    requireInterior(0, plate, "plate");
+    FAIL();
+  } catch (const DataError& error) {
+    EXPECT_NE(std::string(error.what()).find(need), std::string::npos) << error.what();
+  }
+  EXPECT_NO_THROW(requireInterior(1, plate, "plate"));
+}
+
 TEST(LevelSetCheck, ThinSheetsAreSaidToBeLost) {
   // A plate much thinner than the voxels, between two layers of them, beside a box.
   const Solid solid(shapes::joined(shapes::box({0, 0, 0}, {1, 1, 1}),

@@ -11,15 +11,21 @@
 namespace innermap {
 namespace {
 
-// Vertices farther from the triangle's plane, of their distance, are beyond a crease.
-constexpr double kCrease = 0.35;
+// Of a harmonic polynomial of second order in space, less what is known: products of two
+// barycentric coordinates, which vanish at the corners, each with the square of the distance from
+// the plane that makes it harmonic; and twists about two directions in the plane.
+constexpr int kTerms = 3;
+using Terms = Eigen::Matrix<double, kTerms, 1>;
+
+// Of these terms, per square of a distance in sizes: of regular triangles.
+constexpr double kLikeDistance = 0.44;
 constexpr double kRidge = 1e-3;  // keeps the polynomial small where vertices do not tell it
 
 // Of what the polynomial leaves of the misses: what a third order does on the triangle, and what
 // may be between vertices that do not resolve the map, where the polynomial leaves most of them.
 // Measured at charges near to balls and tori, down to half an edge: see the test of known
 // functions.
-constexpr double kThirdOrder = 1.0 / 8, kUnresolved = 4, kMost = 1.2;
+constexpr double kThirdOrder = 1.0 / 8, kUnresolved = 6, kMost = 2;
 
 class Triangles {
  public:
@@ -76,36 +82,43 @@ double Triangles::miss(std::size_t t, const Vec3& slope) const {
   if (!(area2 > 0)) return 0;
   const Vec3 normal = normal2 / area2, a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
   const double size2 = std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
-  // Products of barycentric coordinates vanish at the corners.
-  Eigen::Matrix3d normalMatrix = Eigen::Matrix3d::Zero(), right = Eigen::Matrix3d::Zero();
+  // Gradients of the barycentric coordinates.
+  const Vec3 g1 = cross(normal, c - b) / area2, g2 = cross(normal, a - c) / area2,
+             g3 = -1.0 * (g1 + g2);
   struct Miss {
-    Eigen::Vector3d products, value;
+    Terms terms;
+    Eigen::Vector3d value;
     double weight;
   };
+  Eigen::Matrix<double, kTerms, kTerms> normalMatrix =
+      Eigen::Matrix<double, kTerms, kTerms>::Zero();
+  Eigen::Matrix<double, kTerms, 3> right = Eigen::Matrix<double, kTerms, 3>::Zero();
   std::vector<Miss> misses;
   for (const std::size_t v : around(t)) {
-    const Vec3 p = mesh_.vertices[v];
-    const double off = dot(p - a, normal);
-    const double distance2 = dot(p - centroid(t), p - centroid(t));
-    if (off * off > kCrease * kCrease * distance2) continue;
-    const double l1 = dot(cross(c - b, p - b), normal) / area2,
-                 l2 = dot(cross(a - c, p - c), normal) / area2, l3 = 1 - l1 - l2;
+    const Vec3 p = mesh_.vertices[v], from = p - centroid(t);
+    const double off = dot(p - a, normal), distance2 = dot(from, from);
+    const double l1 = dot(p - b, g1), l2 = dot(p - c, g2), l3 = 1 - l1 - l2;
     const Vec3 miss = values_[v] - l1 * values_[vertex(t, 0)] - l2 * values_[vertex(t, 1)] -
                       l3 * values_[vertex(t, 2)] - off * slope;
-    Miss m{{l1 * l2, l2 * l3, l3 * l1}, {miss.x, miss.y, miss.z}, size2 / (size2 + distance2)};
-    normalMatrix += m.weight * m.weight * m.products * m.products.transpose();
-    right += m.weight * m.weight * m.products * m.value.transpose();
+    Miss m;
+    m.terms << l1 * l2 - off * off * dot(g1, g2), l2 * l3 - off * off * dot(g2, g3),
+        l3 * l1 - off * off * dot(g3, g1);
+    m.value = {miss.x, miss.y, miss.z};
+    // Past a sliver the plane is far off, and the polynomial as much larger than on it.
+    m.weight = std::min(size2 / (size2 + distance2), 1 / (1 + kLikeDistance * m.terms.lpNorm<1>()));
+    normalMatrix += m.weight * m.weight * m.terms * m.terms.transpose();
+    right += m.weight * m.weight * m.terms * m.value.transpose();
     misses.push_back(m);
   }
   if (misses.empty()) return 0;
-  normalMatrix += kRidge * normalMatrix.trace() / 3 * Eigen::Matrix3d::Identity();
-  const Eigen::Matrix3d q = normalMatrix.ldlt().solve(right);
+  normalMatrix.diagonal().array() += kRidge * normalMatrix.trace() / kTerms;
+  const Eigen::Matrix<double, kTerms, 3> q = normalMatrix.ldlt().solve(right);
   // In the middle of the edges, and of the triangle.
   double most = q.colwise().sum().norm() / 9;
   for (int e = 0; e < 3; ++e) most = std::max(most, q.row(e).norm() / 4);
   double left = 0, largest = 0;
   for (const Miss& m : misses) {
-    left = std::max(left, m.weight * (m.value - q.transpose() * m.products).norm());
+    left = std::max(left, m.weight * (m.value - q.transpose() * m.terms).norm());
     largest = std::max(largest, m.weight * m.value.norm());
   }
   if (!(largest > 0)) return 0;

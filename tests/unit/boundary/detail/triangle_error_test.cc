@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "boundary/test_pairs.h"
+#include "boundary/known_maps.h"
 
 namespace innermap {
 namespace {
@@ -48,6 +48,30 @@ TEST(TriangleError, FallsWithTheSquareOfTheEdges) {
   EXPECT_NEAR(errorOf(shapes::icosphere(4), harmonicPolynomial) /
                   errorOf(shapes::icosphere(3), harmonicPolynomial),
               0.25, 0.05);
+}
+
+// Past a sliver its plane leads anywhere; that is no error on it.
+TEST(TriangleError, IsNotLargerForSlivers) {
+  Mesh mesh = shapes::icosphere(3);
+  const Triangle cut = mesh.triangles[500];
+  const Vec3 a = mesh.vertices[cut[0]], b = mesh.vertices[cut[1]], c = mesh.vertices[cut[2]];
+  const int beside = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.push_back(0.4998 * (a + b) + 0.0004 * c);
+  mesh.triangles[500] = {cut[0], cut[1], beside};
+  mesh.triangles.push_back({cut[1], cut[2], beside});
+  mesh.triangles.push_back({cut[2], cut[0], beside});
+  EXPECT_LT(errorOf(mesh, harmonicPolynomial), 4 * trueError(mesh, harmonicPolynomial));
+}
+
+// Vertices past the edges of a box tell of it too: the polynomial is harmonic in space.
+TEST(TriangleError, IsAboutThatAtSharpEdges) {
+  for (const int n : {1, 4}) {
+    const Mesh mesh = known::gridBox(n);
+    const double found = errorOf(mesh, harmonicPolynomial),
+                 known = trueError(mesh, harmonicPolynomial);
+    EXPECT_GT(found, 0.7 * known) << n;
+    EXPECT_LT(found, 8 * known) << n;
+  }
 }
 
 TEST(TriangleError, OfNothing) { EXPECT_EQ(errorOf(Mesh(), affineMap), 0); }

@@ -3,15 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <map>
-#include <unordered_map>
 #include <utility>
 
 #include "innermap/core/detail/text_scanner.h"
 #include "innermap/core/error.h"
 #include "innermap/io/cells/detail/cell_formats.h"
-#include "innermap/io/cells/detail/msh_cursor.h"
+#include "innermap/io/cells/detail/msh_fields.h"
 
 namespace innermap {
 namespace {
@@ -28,35 +26,10 @@ constexpr MshCell kCells[] = {
     {5, 8, CellUse::hexahedron, "hexahedra"},   {6, 6, CellUse::refused, "prisms"},
     {7, 5, CellUse::refused, "pyramids"},       {15, 1, CellUse::leftOut, "points"}};
 
-// Rows by the tags that files give them: any whole numbers, mostly 1, 2, 3.
-class Tags {
- public:
-  void add(std::int64_t tag, std::int64_t row) {
-    if (tag == static_cast<std::int64_t>(rows_.size()) + 1 && sparse_.empty())
-      rows_.push_back(row);
-    else
-      sparse_[tag] = row;
-  }
-  // -1: none.
-  std::int64_t find(std::int64_t tag) const {
-    if (tag >= 1 && tag <= static_cast<std::int64_t>(rows_.size())) {
-      const auto again = sparse_.find(tag);
-      return again == sparse_.end() ? rows_[static_cast<std::size_t>(tag) - 1] : again->second;
-    }
-    const auto found = sparse_.find(tag);
-    return found == sparse_.end() ? -1 : found->second;
-  }
-  bool contains(std::int64_t tag) const { return find(tag) >= 0; }
-
- private:
-  std::vector<std::int64_t> rows_;  // of 1, 2, 3, ...
-  std::unordered_map<std::int64_t, std::int64_t> sparse_;
-};
-
 class MshReader {
  public:
   MshReader(const FileBytes& file, const ReadCellsSettings& settings)
-      : file_(file), collector_(file.path, settings), in_(file) {}
+      : file_(file), collector_(file.path, settings), in_(file), fields_(collector_, in_) {}
 
   CellFile read() {
     readFormat();
@@ -70,7 +43,7 @@ class MshReader {
       readSection(section);
     }
     if (nodes_ == 0) in_.fail("has no nodes; the file is cut short or holds no mesh");
-    finishFields();
+    fields_.finish(file_.path, nodeRows_, nodes_, std::move(tets_), std::move(hexes_));
     return collector_.finish();
   }
 
@@ -109,7 +82,7 @@ class MshReader {
     else if (section == "$Entities" && !old_)
       readEntities();
     else if (section == "$NodeData" || section == "$ElementData")
-      readData(section == "$NodeData");
+      fields_.read(section == "$NodeData");
     else if (section == "$Comments" || section == "$PhysicalNames" || section == "$Periodic" ||
              section == "$PartitionedEntities" || section == "$GhostElements" ||
              section == "$Parametrizations" || section == "$ElementNodeData" ||
@@ -241,7 +214,7 @@ class MshReader {
     }
     collector_.addCell(cell.use, corners);
     if (cell.use == CellUse::leftOut) return collector_.leaveOut(cell.name);
-    CellLists& lists = cell.use == CellUse::tetrahedron ? tets_ : hexes_;
+    MshCellLists& lists = cell.use == CellUse::tetrahedron ? tets_ : hexes_;
     lists.tags.push_back(tag);
     lists.entities.push_back(static_cast<double>(entity));
     lists.groups.push_back(static_cast<double>(physical));
@@ -294,104 +267,15 @@ class MshReader {
     }
   }
 
-  struct Data {
-    bool onNodes;
-    CellField field;
-    std::vector<std::int64_t> tags;
-  };
-
-  void readData(bool onNodes) {
-    Data data;
-    data.onNodes = onNodes;
-    const std::int64_t texts = in_.textInteger();
-    in_.requireRoom(texts, 1, 1);
-    for (std::int64_t k = 0; k < texts; ++k) {
-      std::string text = in_.quoted();
-      if (k == 0) data.field.name = std::move(text);
-    }
-    const std::int64_t reals = in_.textInteger();
-    in_.requireRoom(reals, 1, 1);
-    for (std::int64_t k = 0; k < reals; ++k) in_.textReal();
-    const std::int64_t integers = in_.textInteger();
-    in_.requireRoom(integers, 1, 1);
-    std::int64_t components = 1, count = 0;
-    for (std::int64_t k = 0; k < integers; ++k) {
-      const std::int64_t value = in_.textInteger();
-      if (k == 1) components = value;
-      if (k == 2) count = value;
-    }
-    in_.endLine();
-    if (components < 1 || components > 1000)
-      in_.fail(fmt::format("a field has {} components", components));
-    const auto width = static_cast<int>(components);
-    in_.requireRoom(count, 1 + width, 4 + 8 * width);
-    data.field.components = width;
-    if (width == 3) data.field.kind = CellField::Kind::vector;
-    for (std::int64_t i = 0; i < count; ++i) {
-      collector_.poll(static_cast<std::uint64_t>(i));
-      data.tags.push_back(in_.integer());
-      for (int k = 0; k < width; ++k) data.field.values.push_back(in_.real());
-    }
-    data_.push_back(std::move(data));
-  }
-
-  // Fields are put in the mesh's order when all of it is known.
-  void finishFields() {
-    addLabels(kGmshPhysical, tets_.groups, hexes_.groups);
-    addLabels(kGmshGeometrical, tets_.entities, hexes_.entities);
-    Tags cellRows;
-    std::int64_t cells = 0;
-    for (const CellLists* lists : {&tets_, &hexes_})
-      for (const std::int64_t tag : lists->tags) cellRows.add(tag, cells++);
-    for (Data& data : data_) {
-      const Tags& rows = data.onNodes ? nodeRows_ : cellRows;
-      const auto width = static_cast<std::size_t>(data.field.components);
-      std::vector<double> values(static_cast<std::size_t>(data.onNodes ? nodes_ : cells) * width,
-                                 std::numeric_limits<double>::quiet_NaN());
-      std::size_t used = 0;
-      for (std::size_t i = 0; i < data.tags.size(); ++i) {
-        const std::int64_t row = rows.find(data.tags[i]);
-        if (row < 0) continue;  // of cells that were left out
-        ++used;
-        std::copy_n(&data.field.values[i * width], width,
-                    &values[static_cast<std::size_t>(row) * width]);
-      }
-      data.field.values = std::move(values);
-      if (used == 0 && !data.tags.empty()) {
-        collector_.note(fmt::format("{}: field {} is on none of the cells; it is left out",
-                                    file_.path, inQuotes(data.field.name)));
-        continue;
-      }
-      auto& fields = collector_.file.mesh;
-      (data.onNodes ? fields.vertexFields : fields.cellFields).push_back(std::move(data.field));
-    }
-  }
-
-  void addLabels(const char* name, std::vector<double>& ofTets,
-                 const std::vector<double>& ofHexes) {
-    ofTets.insert(ofTets.end(), ofHexes.begin(), ofHexes.end());
-    const auto different = [&](double value) { return value != 0 && value != 1; };
-    if (std::any_of(ofTets.begin(), ofTets.end(), different) ||
-        (name == std::string(kGmshPhysical) &&
-         std::any_of(ofTets.begin(), ofTets.end(), [](double v) { return v != 0; })))
-      collector_.file.mesh.cellFields.push_back(
-          {name, 1, CellField::Kind::scalar, std::move(ofTets), true});
-  }
-
-  struct CellLists {
-    std::vector<std::int64_t> tags;
-    std::vector<double> entities, groups;
-  };
-
   const FileBytes& file_;
   CellCollector collector_;
   MshCursor in_;
   bool old_ = false;
   std::int64_t nodes_ = 0;
-  Tags nodeRows_;
+  MshTags nodeRows_;
   std::map<std::int64_t, std::int64_t> physical_;  // of a volume's tag
-  CellLists tets_, hexes_;
-  std::vector<Data> data_;
+  MshCellLists tets_, hexes_;
+  MshFields fields_;
 };
 
 }  // namespace
