@@ -122,7 +122,7 @@ HarmonicGrids evaluateHarmonic(const HarmonicField& field, const Solid& solid,
   });
   out.voxelSize = out.surface->voxelSize()[0];
   out.interiorVoxels = interiorVoxels(*out.surface);
-  requireInterior(out.interiorVoxels, solid.repaired().mesh.name);
+  requireInterior(out.interiorVoxels, solid, solid.repaired().mesh.name);
   RegionSettings where;
   where.skin = kSkin;
   where.maxMemory = settings.maxMemory;
