@@ -7,6 +7,8 @@
 #include <atomic>
 #include <cstdint>
 #include <cstring>
+#include <exception>
+#include <new>
 
 #include "innermap/core/file.h"
 
@@ -23,10 +25,13 @@ void startTimer(int microseconds) {
   setitimer(ITIMER_REAL, &timer, nullptr);
 }
 
-void say(const char* text) {
-  if (isatty(STDERR_FILENO)) [[maybe_unused]]
-    const auto cleared = write(STDERR_FILENO, "\r\x1b[K", 4);
+void append(const char* text) {
   [[maybe_unused]] const auto written = write(STDERR_FILENO, text, std::strlen(text));
+}
+
+void say(const char* text) {
+  if (isatty(STDERR_FILENO)) append("\r\x1b[K");
+  append(text);
 }
 
 void endNow() {
@@ -51,6 +56,31 @@ void onRequest(int) {
   startTimer(800000);
 }
 
+[[noreturn]] void onTerminate() {
+  for (int waits = 0; commitUnderWay() && waits < 1000; ++waits) usleep(1000);
+  removeUnfinishedFiles();
+  const char* why = "an error occurred that could not be handled";
+  const std::exception_ptr current = std::current_exception();  // names its text
+  try {
+    if (current) std::rethrow_exception(current);
+  } catch (const std::bad_alloc&) {
+    why = kMemoryExhausted;
+  } catch (const std::exception& error) {
+    why = error.what();
+  } catch (...) {
+  }
+  say("innermap: ");
+  append(why);
+  append("\n");
+  _exit(1);
+}
+
+// The system's own end follows.
+void onCrash(int number) {
+  removeUnfinishedFiles();
+  raise(number);
+}
+
 void install(int number, void (*handler)(int)) {
   struct sigaction action {};
   action.sa_handler = handler;
@@ -67,6 +97,15 @@ __attribute__((constructor(101))) void installHandlers() {
   struct sigaction before {};
   sigaction(SIGHUP, nullptr, &before);
   if (before.sa_handler != SIG_IGN) install(SIGHUP, onRequest);
+  for (int number : {SIGQUIT, SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGXCPU}) {
+    sigaction(number, nullptr, &before);
+    if (before.sa_handler != SIG_DFL) continue;  // a sanitizer's
+    struct sigaction action {};
+    action.sa_handler = onCrash;
+    action.sa_flags = static_cast<int>(SA_RESETHAND | SA_NODEFER);
+    sigaction(number, &action, nullptr);
+  }
+  std::set_terminate(onTerminate);
   signal(SIGPIPE, SIG_IGN);
   signal(SIGXFSZ, SIG_IGN);
 }
