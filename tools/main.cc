@@ -125,7 +125,7 @@ int run(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return fail(kFailed, kMemoryExhausted);
   } catch (const std::exception& error) {
-    return fail(kFailed, error.what());
+    return fail(kFailed, reasonOf(error));
   } catch (...) {
     return fail(kFailed, "an unknown error occurred");
   }

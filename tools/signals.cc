@@ -66,7 +66,7 @@ void onRequest(int) {
   } catch (const std::bad_alloc&) {
     why = kMemoryExhausted;
   } catch (const std::exception& error) {
-    why = error.what();
+    why = reasonOf(error);
   } catch (...) {
   }
   say("innermap: ");
@@ -75,9 +75,10 @@ void onRequest(int) {
   _exit(1);
 }
 
-// The system's own end follows.
+// The system's own end follows, at once after this; a second signal waits for it.
 void onCrash(int number) {
   removeUnfinishedFiles();
+  signal(number, SIG_DFL);
   raise(number);
 }
 
@@ -102,7 +103,7 @@ __attribute__((constructor(101))) void installHandlers() {
     if (before.sa_handler != SIG_DFL) continue;  // a sanitizer's
     struct sigaction action {};
     action.sa_handler = onCrash;
-    action.sa_flags = static_cast<int>(SA_RESETHAND | SA_NODEFER);
+    sigfillset(&action.sa_mask);
     sigaction(number, &action, nullptr);
   }
   std::set_terminate(onTerminate);
@@ -111,6 +112,13 @@ __attribute__((constructor(101))) void installHandlers() {
 }
 
 }  // namespace
+
+const char* reasonOf(const std::exception& error) noexcept {
+  if (std::strstr(error.what(), "pthread_create"))  // TBB
+    return "a thread cannot be started: memory, or the number of processes allowed, is exhausted; "
+           "use fewer threads (--threads)";
+  return error.what();
+}
 
 void handleSignals(Progress& progress) {
   cancelled = &progress;

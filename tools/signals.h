@@ -1,6 +1,8 @@
 // Ctrl-C, SIGTERM, the signals that must not kill, and ends that nothing catches.
 #pragma once
 
+#include <exception>
+
 #include "innermap/core/progress.h"
 
 namespace innermap::tool {
@@ -19,6 +21,9 @@ void handleSignals(Progress& progress);
 // Of std::bad_alloc.
 constexpr char kMemoryExhausted[] =
     "memory is exhausted; use fewer or larger voxels, fewer points, or another machine";
+// What to say of another exception: its text, unless that is a library's own word for something
+// else.
+const char* reasonOf(const std::exception& error) noexcept;
 
 // From now on such signals are ignored: the work is done and in place.
 void ignoreSignals();

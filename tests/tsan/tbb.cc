@@ -32,7 +32,7 @@ class Announced : public d1::task {
  private:
   // Where it throws, TBB cancels it next.
   task* run(task* (task::*what)(d1::execution_data&), d1::execution_data& data) {
-    __tsan_acquire(&real_);
+    __tsan_acquire(this);
     task* const next = (real_.*what)(data);
     delete this;
     return next;
@@ -41,8 +41,9 @@ class Announced : public d1::task {
 };
 
 Announced& announce(d1::task& task) {
-  __tsan_release(&task);
-  return *new Announced(task);
+  auto* const announced = new Announced(task);
+  __tsan_release(announced);
+  return *announced;
 }
 
 void* allocateBytes(std::size_t size) {
