@@ -99,18 +99,21 @@ void runCommand(const std::vector<std::string>& arguments) {
   progress.clear();
 }
 
-int fail(int code, const std::string& message) {
-  // One line, whatever a file's name or another library's message holds.
-  std::string line = message;
-  for (char& c : line)
-    if (static_cast<unsigned char>(c) < 32 || c == 127) c = ' ';
-  std::fprintf(stderr, "innermap: %s\n", line.c_str());
+// One line, whatever a file's name or another library's message holds. Allocates nothing: there may
+// be no memory.
+int fail(int code, const char* message) {
+  std::fputs("innermap: ", stderr);
+  for (; *message; ++message) {
+    const auto c = static_cast<unsigned char>(*message);
+    std::fputc(c < 32 || c == 127 ? ' ' : c, stderr);
+  }
+  std::fputc('\n', stderr);
   return code;
 }
 
-int run(const std::vector<std::string>& arguments) {
+int run(int argc, char** argv) {
   try {
-    runCommand(arguments);
+    runCommand({argv + (argc > 0), argv + argc});
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
       return fail(kFailed, "standard output cannot be written");
     return kDone;
@@ -123,11 +126,9 @@ int run(const std::vector<std::string>& arguments) {
   } catch (const UsageError& error) {
     return fail(kUsage, error.what());
   } catch (const std::bad_alloc&) {
-    return fail(
-        kFailed,
-        "memory is exhausted; use fewer or larger voxels, fewer points, or another machine");
+    return fail(kFailed, kMemoryExhausted);
   } catch (const std::exception& error) {
-    return fail(kFailed, error.what());
+    return fail(kFailed, reasonOf(error));
   } catch (...) {
     return fail(kFailed, "an unknown error occurred");
   }
@@ -136,4 +137,4 @@ int run(const std::vector<std::string>& arguments) {
 }  // namespace
 }  // namespace innermap::tool
 
-int main(int argc, char** argv) { return innermap::tool::run({argv + (argc > 0), argv + argc}); }
+int main(int argc, char** argv) { return innermap::tool::run(argc, argv); }

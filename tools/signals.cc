@@ -7,6 +7,8 @@
 #include <atomic>
 #include <cstdint>
 #include <cstring>
+#include <exception>
+#include <new>
 
 #include "innermap/core/file.h"
 
@@ -23,10 +25,13 @@ void startTimer(int microseconds) {
   setitimer(ITIMER_REAL, &timer, nullptr);
 }
 
-void say(const char* text) {
-  if (isatty(STDERR_FILENO)) [[maybe_unused]]
-    const auto cleared = write(STDERR_FILENO, "\r\x1b[K", 4);
+void append(const char* text) {
   [[maybe_unused]] const auto written = write(STDERR_FILENO, text, std::strlen(text));
+}
+
+void say(const char* text) {
+  if (isatty(STDERR_FILENO)) append("\r\x1b[K");
+  append(text);
 }
 
 void endNow() {
@@ -51,6 +56,32 @@ void onRequest(int) {
   startTimer(800000);
 }
 
+[[noreturn]] void onTerminate() {
+  for (int waits = 0; commitUnderWay() && waits < 1000; ++waits) usleep(1000);
+  removeUnfinishedFiles();
+  const char* why = "an error occurred that could not be handled";
+  const std::exception_ptr current = std::current_exception();  // names its text
+  try {
+    if (current) std::rethrow_exception(current);
+  } catch (const std::bad_alloc&) {
+    why = kMemoryExhausted;
+  } catch (const std::exception& error) {
+    why = reasonOf(error);
+  } catch (...) {
+  }
+  say("innermap: ");
+  append(why);
+  append("\n");
+  _exit(1);
+}
+
+// The system's own end follows, at once after this; a second signal waits for it.
+void onCrash(int number) {
+  removeUnfinishedFiles();
+  signal(number, SIG_DFL);
+  raise(number);
+}
+
 void install(int number, void (*handler)(int)) {
   struct sigaction action {};
   action.sa_handler = handler;
@@ -67,11 +98,27 @@ __attribute__((constructor(101))) void installHandlers() {
   struct sigaction before {};
   sigaction(SIGHUP, nullptr, &before);
   if (before.sa_handler != SIG_IGN) install(SIGHUP, onRequest);
+  for (int number : {SIGQUIT, SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGXCPU}) {
+    sigaction(number, nullptr, &before);
+    if (before.sa_handler != SIG_DFL) continue;  // a sanitizer's
+    struct sigaction action {};
+    action.sa_handler = onCrash;
+    sigfillset(&action.sa_mask);
+    sigaction(number, &action, nullptr);
+  }
+  std::set_terminate(onTerminate);
   signal(SIGPIPE, SIG_IGN);
   signal(SIGXFSZ, SIG_IGN);
 }
 
 }  // namespace
+
+const char* reasonOf(const std::exception& error) noexcept {
+  if (std::strstr(error.what(), "pthread_create"))  // TBB
+    return "a thread cannot be started: memory, or the number of processes allowed, is exhausted; "
+           "use fewer threads (--threads)";
+  return error.what();
+}
 
 void handleSignals(Progress& progress) {
   cancelled = &progress;

@@ -1,5 +1,7 @@
-// Ctrl-C, SIGTERM and the signals that must not kill.
+// Ctrl-C, SIGTERM, the signals that must not kill, and ends that nothing catches.
 #pragma once
+
+#include <exception>
 
 #include "innermap/core/progress.h"
 
@@ -11,6 +13,17 @@ namespace innermap::tool {
 // what is in place and ends with exit code 130, or 0 when all outputs are. Broken pipes and file
 // size limits become write errors.
 void handleSignals(Progress& progress);
+
+// Before the process ends by another signal (a crash, SIGQUIT) it removes its unfinished files too.
+// So does it where an exception cannot be caught, as in functions of libraries that may not throw
+// but are out of memory; it then says which, with exit code 1.
+
+// Of std::bad_alloc.
+constexpr char kMemoryExhausted[] =
+    "memory is exhausted; use fewer or larger voxels, fewer points, or another machine";
+// What to say of another exception: its text, unless that is a library's own word for something
+// else.
+const char* reasonOf(const std::exception& error) noexcept;
 
 // From now on such signals are ignored: the work is done and in place.
 void ignoreSignals();

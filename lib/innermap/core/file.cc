@@ -135,22 +135,25 @@ std::vector<std::string> makeFolders(const std::string& path) {
   if (path.empty()) throw FileError("output", "the folder's path is empty; give a folder");
   std::vector<std::string> made;
   fs::path at;
-  for (const fs::path& part : fs::path(path)) {
-    at /= part;
-    rememberUnfinished(UnfinishedKind::folder, at.string());
-    if (mkdir(at.c_str(), 0777) == 0) {
+  try {
+    for (const fs::path& part : fs::path(path)) {
+      at /= part;
       made.push_back(at.string());
-      continue;
+      rememberUnfinished(UnfinishedKind::folder, made.back());
+      if (mkdir(at.c_str(), 0777) == 0) continue;
+      const int error = errno;
+      forgetUnfinished(made.back());
+      made.pop_back();
+      std::error_code ignored;
+      if (fs::is_directory(at, ignored)) continue;
+      const std::string why = error == EEXIST ? "a file has that name" : std::strerror(error);
+      throw FileError(path, "cannot be made a folder (" +
+                                (at == fs::path(path) ? why : at.string() + ": " + why) +
+                                "); choose another place");
     }
-    const int error = errno;
-    forgetUnfinished(at.string());
-    std::error_code ignored;
-    if (fs::is_directory(at, ignored)) continue;
-    const std::string why = error == EEXIST ? "a file has that name" : std::strerror(error);
+  } catch (...) {
     removeFolders(made);
-    throw FileError(path, "cannot be made a folder (" +
-                              (at == fs::path(path) ? why : at.string() + ": " + why) +
-                              "); choose another place");
+    throw;
   }
   return made;
 }
@@ -200,10 +203,14 @@ struct PendingFolder::Staging {
     const std::string place = folder.empty() ? temporaryFolder() : folder;
     clearLeftBehind(place, temporaryPrefix(kFolderKey));
     lock = makeLocked(named, UnfinishedKind::tree, place, kFolderKey, path, makeLockedFolder);
-    if (mkdir(at(kWritten).c_str(), 0777) != 0) {
-      const int error = errno;
+    try {
+      if (mkdir(at(kWritten).c_str(), 0777) != 0) {
+        const int error = errno;
+        throw FileError(named, whyNotWritable(at(kWritten), error));
+      }
+    } catch (...) {
       remove();
-      throw FileError(named, whyNotWritable(at(kWritten), error));
+      throw;
     }
   }
   ~Staging() { remove(); }
@@ -212,8 +219,7 @@ struct PendingFolder::Staging {
 
   std::string at(const char* what) const { return path + "/" + what; }
   void remove() noexcept {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
+    removeTree(path);
     forgetUnfinished(path);
     close(lock);
   }
@@ -296,7 +302,9 @@ void PendingFolder::putInPlace(const File& file) {
 
 void PendingFolder::putBack(const File& file) noexcept {
   if (file.through) return;
-  if (rename(file.replaced.c_str(), file.place.c_str()) != 0) unlink(file.place.c_str());
+  // There was none before.
+  if (rename(file.replaced.c_str(), file.place.c_str()) != 0 && errno == ENOENT)
+    unlink(file.place.c_str());
 }
 
 void PendingFolder::commit() {

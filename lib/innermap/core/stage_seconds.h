@@ -24,7 +24,7 @@ decltype(auto) timed(StageSeconds& stages, const std::string& stage, Body&& body
     const std::string& stage;
     std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
     int thrown = std::uncaught_exceptions();
-    ~Watch() {
+    ~Watch() noexcept(false) {  // not while another exception flies
       if (std::uncaught_exceptions() > thrown) return;
       const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
       addSeconds(stages, stage, elapsed.count());

@@ -58,7 +58,7 @@ void removeContents(int folder, int depth) noexcept {
   close(folder);
 }
 
-void removeTree(const char* path) noexcept {
+void removeTreeAt(const char* path) noexcept {
   const int folder = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   if (folder >= 0) removeContents(folder, 2);
   rmdir(path);
@@ -89,6 +89,8 @@ void forgetUnfinished(const std::string& path) noexcept {
   }
 }
 
+void removeTree(const std::string& path) noexcept { removeTreeAt(path.c_str()); }
+
 CommitGuard::CommitGuard() noexcept { ++commits; }
 CommitGuard::~CommitGuard() { --commits; }
 
@@ -104,7 +106,7 @@ void removeUnfinished() noexcept {
     for (Slot& slot : slots) {
       if (!slot.ready) continue;
       if (slot.kind == UnfinishedKind::file) unlink(slot.path);
-      if (slot.kind == UnfinishedKind::tree) removeTree(slot.path);
+      if (slot.kind == UnfinishedKind::tree) removeTreeAt(slot.path);
     }
     // Folders lie in one another, in no order.
     for (bool removed = true; removed;) {

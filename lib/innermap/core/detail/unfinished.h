@@ -23,6 +23,9 @@ class CommitGuard {
   CommitGuard& operator=(const CommitGuard&) = delete;
 };
 
+// Removes a folder of ours and what is in it; allocates nothing.
+void removeTree(const std::string& path) noexcept;
+
 void countInPlace() noexcept;
 
 // What file.h calls removeUnfinishedFiles(), commitUnderWay(), outputsInPlace().

@@ -56,6 +56,12 @@ ExrThreads::ExrThreads() : before_(Imf::globalThreadCount()) {
   Imf::setGlobalThreadCount(static_cast<int>(std::min<std::size_t>(allowed, 64)));
 }
 
-ExrThreads::~ExrThreads() { Imf::setGlobalThreadCount(before_); }
+ExrThreads::~ExrThreads() {
+  try {
+    Imf::setGlobalThreadCount(before_);
+  } catch (const std::exception&) {
+    // Without memory it keeps its threads, which wait.
+  }
+}
 
 }  // namespace innermap

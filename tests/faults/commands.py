@@ -1,0 +1,118 @@
+"""What tests/faults/run runs: every command that writes, on small inputs."""
+
+import shutil
+import struct
+import sys
+import zlib
+from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "cli"))
+import cli  # pylint: disable=wrong-import-position
+
+# Arguments, with I/ for the inputs and O/ for where outputs go.
+COMMANDS = {
+    "map": ["map", "I/ball.obj", "I/egg.obj", "-o", "O/out", "--resolution", "16"],
+    "map-strangers": ["map", "I/ball.obj", "I/cube.obj", "-o", "O/out", "--resolution", "12",
+                      "--sources", "300"],
+    "fit": ["fit", "I/ball.obj", "I/egg.obj", "-o", "O/m.ply", "--sources", "300", "--best-effort",
+            "--report", "O/r.json"],
+    "evaluate": ["evaluate", "I/map.ply", "-o", "O/m.vdb", "--resolution", "30"],
+    "correspond": ["correspond", "I/ball.obj", "I/cube.obj", "-o", "O/c.ply", "--picture",
+                   "O/c.png"],
+    "sphere": ["sphere", "I/ball.obj", "-o", "O/s.ply"],
+    "sequence": ["sequence", "I/ball.obj", "I/frames", "-o", "O/q", "--resolution", "16",
+                 "--sources", "200"],
+    "sequence-grids": ["sequence", "I/ball.obj", "I/frames", "-o", "O/q", "--resolution", "12",
+                       "--sources", "200", "--grids"],
+    "deform": ["deform", "I/ball.obj", "I/small.obj", "I/frames", "-o", "O/f/b.####.obj",
+               "--sources", "200"],
+    "deform-grids": ["deform", "I/ball.obj", "I/small.vdb", "I/frames", "-o", "O/f/b.####.vdb",
+                     "--sources", "200", "--resolution", "20"],
+    "texture": ["texture", "I/ball.ply", "-o", "O/t.vdb", "--resolution", "24"],
+    "texture-image": ["texture", "I/quad.obj", "I/image.png", "-o", "O/t.vdb", "--resolution",
+                      "24"],
+    "push": ["push", "I/map.ply", "I/map.vdb", "-o", "O/p.vdb", "--grids", "density",
+             "--resolution", "20"],
+    "push-mesh": ["push", "I/map.ply", "I/small.obj", "-o", "O/p.obj"],
+    "push-cells": ["push", "I/map.ply", "I/ball.vtu", "-o", "O/p.msh"],
+    "pull": ["pull", "I/map.ply", "I/egg.obj", "-o", "O/p.obj"],
+    "pull-grids": ["pull", "I/map.ply", "I/small.vdb", "-o", "O/p.vdb", "--resolution", "20"],
+    "transfer-distance": ["transfer-distance", "I/map.ply", "-o", "O/d", "--resolution", "20"],
+    "check": ["check", "I/ball.obj", "--report", "O/r.json"],
+    "voxelize": ["voxelize", "I/ball.obj", "-o", "O/a.vdb", "--resolution", "40", "--fog"],
+    "tetrahedralize": ["tetrahedralize", "I/ball.obj", "-o", "O/t.vtu", "--resolution", "8",
+                       "--picture", "O/t.png"],
+    "polycube": ["polycube", "I/round.obj", "-o", "O/c.obj", "--blocks", "3"],
+    "hexahedralize": ["hexahedralize", "I/round.obj", "-o", "O/h.vtu", "--blocks", "3", "--pieces",
+                      "1", "--polycube", "O/c.obj", "--in-blocks", "O/b.msh"],
+    "remesh": ["remesh", "I/map.ply", "I/ball.vtu", "-o", "O/r.mesh", "--coarse", "0"],
+    "compare-fem": ["compare-fem", "I/round.obj", "--functions", "-o", "O/fem", "--resolutions",
+                    "6,8", "--charges", "50,100", "--samples", "200"],
+    "slice": ["slice", "I/map.vdb", "-o", "O/s.exr", "--section", "O/s.png"],
+    "export": ["export", "I/map.vdb", "-o", "O/e.####.exr", "--layout", "slices", "--grid",
+               "jacobian"],
+    "export-tiles": ["export", "I/map.vdb", "-o", "O/e.exr", "--grid", "density"],
+    "import": ["import", "I/map.exr", "-o", "O/i.vdb"],
+    "info": ["info", "I/map.vdb", "--report", "O/r.json"],
+}
+# Whose files come together.
+FOLDERS = ("map", "map-strangers", "transfer-distance", "sequence", "export", "compare-fem")
+
+
+def write_png(path, size=16):
+    rows = b"".join(b"\0" + bytes(v for x in range(size) for v in (16 * x, 16 * y, 99))
+                    for y in range(size))
+
+    def chunk(name, data):
+        body = name + data
+        return struct.pack(">I", len(data)) + body + struct.pack(">I", zlib.crc32(body))
+
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", size, size, 8, 2,
+                                                                    0, 0, 0))
+                     + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
+def write_coloured(path, vertices, faces):
+    with open(path, "w", encoding="ascii") as file:
+        file.write(f"ply\nformat ascii 1.0\nelement vertex {len(vertices)}\n")
+        file.write("".join(f"property double {c}\n" for c in "xyz"))
+        file.write("".join(f"property uchar {c}\n" for c in ("red", "green", "blue")))
+        file.write(f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n")
+        for v in vertices:
+            file.write("{} {} {} {} 0 99\n".format(*v, int(100 + 100 * v[0])))
+        for f in faces:
+            file.write("3 {} {} {}\n".format(*f))
+
+
+def write_textured(path, vertices, faces):
+    with open(path, "w", encoding="ascii") as file:
+        for x, y, z in vertices:
+            file.write(f"v {x} {y} {z}\nvt {0.5 + 0.4 * x} {0.5 + 0.4 * y}\n")
+        for f in faces:
+            file.write("f " + " ".join(f"{i + 1}/{i + 1}" for i in f) + "\n")
+
+
+def make_inputs(folder):
+    vertices, faces = cli.icosphere_arrays(3)
+    cli.write_obj(folder / "ball.obj", vertices, faces)
+    egg = [(1.3 * x, y + 0.1 * x * x, z) for x, y, z in vertices]
+    cli.write_obj(folder / "egg.obj", egg, faces)
+    cli.write_obj(folder / "small.obj", [tuple(0.5 * c for c in v) for v in vertices], faces)
+    cli.write_obj(folder / "round.obj", *cli.icosphere_arrays(2))
+    cli.cube(folder / "cube.obj")
+    (folder / "frames").mkdir()
+    cli.write_obj(folder / "frames/f.0001.obj", egg, faces)
+    cli.write_obj(folder / "frames/f.0002.obj", [(x, 1.2 * y, z) for x, y, z in vertices], faces)
+    write_coloured(folder / "ball.ply", vertices, faces)
+    write_textured(folder / "quad.obj", vertices, faces)
+    write_png(folder / "image.png")
+    cli.innermap("map", folder / "ball.obj", folder / "egg.obj", "-o", folder / "out",
+                 "--resolution", "16", "-q")
+    for name in ("map.ply", "map.vdb"):
+        shutil.move(folder / "out" / name, folder / name)
+    shutil.rmtree(folder / "out")
+    cli.innermap("export", folder / "map.vdb", "-o", folder / "map.exr", "-q")
+    cli.innermap("voxelize", folder / "small.obj", "-o", folder / "small.vdb", "--resolution", "20",
+                 "--fog", "-q")
+    cli.innermap("tetrahedralize", folder / "ball.obj", "-o", folder / "ball.vtu", "--resolution",
+                 "8", "-q")
