@@ -67,9 +67,12 @@ def innermap(*arguments, exit_code=0, **options):
 
 def identity(path):
     """Changes when the file is written; None where there is none."""
-    if not path.is_file():
+    try:
+        if not path.is_file():
+            return None
+        status = path.stat()
+    except OSError:  # no file can be there
         return None
-    status = path.stat()
     return status.st_ino, status.st_mtime_ns, status.st_size
 
 
