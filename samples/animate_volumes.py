@@ -1,11 +1,13 @@
 #!/usr/bin/python3
-"""Draws volumes as render_volume.py does, one after another as a GIF that goes round:
+"""Draws volumes as render_volume.py does, one after another as an animated PNG that goes round:
 
-    animate_volumes.py OUT.gif FRAME.vdb [FRAME.vdb ...]
+    animate_volumes.py OUT.png FRAME.vdb [FRAME.vdb ...]
 
 All frames show the same piece of space; their files have one lattice, as innermap deform writes them.
 """
+import struct
 import sys
+import zlib
 
 import numpy as np
 import OpenImageIO as oiio
@@ -35,6 +37,42 @@ def enlarged(picture, width, height):
     return oiio.ImageBufAlgo.resize(pixels, filtername="lanczos3", roi=roi).get_pixels(oiio.FLOAT)
 
 
+def filtered(pixels):
+    """Rows of a PNG, each less what its neighbours say (Paeth)."""
+    here = pixels.astype(int)
+    left, up, corner = np.zeros_like(here), np.zeros_like(here), np.zeros_like(here)
+    left[:, 1:], up[1:], corner[1:, 1:] = here[:, :-1], here[:-1], here[:-1, :-1]
+    guess = left + up - corner
+    near = np.abs(np.stack([left, up, corner]) - guess).argmin(0)
+    rest = here - np.choose(near, [left, up, corner])
+    rows = np.full((len(here), 1 + here.shape[1] * 3), 4, np.uint8)
+    rows[:, 1:] = (rest & 255).reshape(len(here), -1)
+    return rows.tobytes()
+
+
+def chunk(kind, data):
+    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+
+def write_animation(path, frames):
+    """An animated PNG (https://www.w3.org/TR/png-3): frames of one size, 8 bits a channel."""
+    height, width = frames[0].shape[:2]
+    data = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0))
+    data += chunk(b"acTL", struct.pack(">II", len(frames), 0))
+    number = 0
+    for frame in frames:
+        delay = round(1000 * SECONDS / len(frames))
+        data += chunk(b"fcTL", struct.pack(">IIIIIHHBB", number, width, height, 0, 0, delay, 1000, 0, 0))
+        packed = zlib.compress(filtered(frame), 9)
+        if number:
+            data += chunk(b"fdAT", struct.pack(">I", number + 1) + packed)
+        else:
+            data += chunk(b"IDAT", packed)
+        number += 2 if number else 1
+    with open(path, "wb") as file:
+        file.write(data + chunk(b"IEND", b""))
+
+
 def main():
     out, paths = sys.argv[1], sys.argv[2:]
     places = [place(path) for path in paths]
@@ -42,23 +80,15 @@ def main():
     high = np.max([p[1] for p in places], 0) + MARGIN
     columns, rows = (high - low + 1).tolist()
     width, height = round(ENLARGED * columns), round(ENLARGED * rows)
-    spec = oiio.ImageSpec(width, height, 3, "uint8")
-    spec.attribute("oiio:Movie", 1)
-    spec.attribute("FramesPerSecond", float(len(paths) / SECONDS))
-    file = oiio.ImageOutput.create(out)
-    if not file or not file.open(out, tuple([spec] * len(paths))):
-        sys.exit(file.geterror() if file else oiio.geterror())
-    for number, (path, (first, last)) in enumerate(zip(paths, places)):
+    frames = []
+    for path, (first, last) in zip(paths, places):
         picture = np.zeros((rows, columns, 3), np.float32) + PAPER
         left, top = first[0] - low[0], high[1] - last[1]
         piece = drawn(path)
         picture[top:top + piece.shape[0], left:left + piece.shape[1]] = piece
-        if number and not file.open(out, spec, "AppendSubimage"):
-            sys.exit(file.geterror())
-        if not file.write_image((255 * np.clip(srgb(enlarged(picture, width, height)), 0, 1) +
-                                 0.5).astype(np.uint8)):
-            sys.exit(file.geterror())
-    file.close()
+        pixels = np.clip(srgb(enlarged(picture, width, height)), 0, 1)
+        frames.append((255 * pixels + 0.5).astype(np.uint8))
+    write_animation(out, frames)
 
 
 if __name__ == "__main__":

@@ -197,7 +197,7 @@ void requireFittingMemory(const FitMapSettings& settings) {
 std::vector<JobPhase> fittingPhases(const FitMapSettings& settings, std::size_t vertices,
                                     bool laidOn) {
   const double thousands = static_cast<double>(vertices) / 1000;
-  double fit = 2 + 0.25 * thousands * std::pow(1e-3 / settings.tolerance, 0.7);
+  double fit = 1.4 + 0.25 * thousands * std::pow(1e-3 / settings.tolerance, 0.7);
   if (settings.shell) {
     const double sources = static_cast<double>(settings.shell->sources) / 1000;
     fit = 0.5 + (sources <= 3 ? 0.25 * std::pow(sources, 2.5) : 1.5 * sources);

@@ -185,7 +185,7 @@ class Runner {
     grid.maxMemory = settings_.maxMemory;
     grid.progress = settings_.progress;
     levelSet_ = makeLevelSet(pair_.solid(), grid);
-    requireInterior(interiorVoxels(*levelSet_), pair_.source.mesh.name);
+    requireInterior(interiorVoxels(*levelSet_), pair_.solid(), pair_.source.mesh.name);
   }
 
   void takeGrids(const MapFit& fit, StudyRow& row) const {

@@ -48,8 +48,12 @@ TEST(SectionImage, BlueIsLeastRedIsMostAndOutsideIsGrey) {
   const TemporaryFolder folder;
   SectionSettings settings;
   settings.pixels = 450;
-  const SectionResult r = writeSectionImage(folder.file("s.png"), scene(), settings);
-  EXPECT_EQ(r.grid, "jacobian");
+  const openvdb::GridPtrVec grids = scene();
+  for (const auto& grid : grids)
+    if (grid->getName() == "jacobian") grid->setName("values");
+  settings.grid = "values";
+  const SectionResult r = writeSectionImage(folder.file("s.png"), grids, settings);
+  EXPECT_EQ(r.grid, "values");
   EXPECT_NEAR(r.position, 0, 1e-9);
   EXPECT_NEAR(r.least, -0.95, 0.051);
   EXPECT_NEAR(r.most, 0.95, 0.051);
@@ -67,6 +71,22 @@ TEST(SectionImage, BlueIsLeastRedIsMostAndOutsideIsGrey) {
   EXPECT_NEAR(corner.r, corner.b, 0.03);
   EXPECT_GT(corner.r, 0.85);
   EXPECT_EQ(folder.count(), 1u);
+}
+
+TEST(SectionImage, WhatAJacobianFoldsHasAColourOfItsOwn) {
+  const TemporaryFolder folder;
+  SectionSettings settings;
+  settings.pixels = 450;
+  const SectionResult r = writeSectionImage(folder.file("s.png"), scene(), settings);
+  EXPECT_EQ(r.grid, "jacobian");
+  EXPECT_NEAR(r.lower * r.upper, 1, 1e-9);
+  const Image image(folder.file("s.png"));
+  const int cx = 28 + 240, cy = 78 + 225, radius = 18 * 450 / 47;
+  const Colour folded = image.at(cx - radius, cy), shrunk = image.at(cx + radius, cy);
+  EXPECT_LT(folded.g, 0.1);
+  EXPECT_GT(folded.r, 0.7);
+  EXPECT_GT(folded.b, 0.65);
+  EXPECT_GT(shrunk.g, 0.6);  // 0.75 of the volume: near the pale middle
 }
 
 TEST(SectionImage, PlaceAndRangeCanBeGiven) {
