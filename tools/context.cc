@@ -209,8 +209,9 @@ std::string verdictText(const std::vector<ReportFinding>& verdict, std::size_t u
   std::string text = unmet == 0 ? fmt::format("verdict: all {} met\n", verdict.size())
                                 : fmt::format("verdict: {} of {} not met\n", unmet, verdict.size());
   for (const ReportFinding& f : verdict) {
-    text += fmt::format("  {:<3} {}: {}\n", f.met ? "yes" : "NO", titleOf(f.name), f.statement);
-    if (!f.advice.empty()) text += "      try: " + f.advice + "\n";
+    text +=
+        fmt::format("  {:<7} {}: {}\n", f.met ? "met" : "NOT MET", titleOf(f.name), f.statement);
+    if (!f.advice.empty()) text += "          try: " + f.advice + "\n";
   }
   return text;
 }

@@ -47,11 +47,12 @@ std::string boundaryAdvice(MapOrigin origin, bool toTolerance) {
                      : "--tolerance in place of a number of charges, or more --sources";
 }
 
-std::string foldAdvice(MapOrigin origin, const Context& context) {
+std::string foldAdvice(MapOrigin origin, bool toTolerance, const Context& context) {
   const std::string laid = ", pairs of places in --landmarks, or --aligned where both stand alike";
   if (origin == MapOrigin::file)
     return "fit the map again with --one-to-one on, a smaller --tolerance, or for solids that were "
            "never related --landmarks or --aligned";
+  if (!toTolerance) return "--one-to-one on with --tolerance, in place of a number of charges";
   const std::string first = usedOn(context, "--one-to-one")
                                 ? "more --max-steps, a smaller --tolerance"
                                 : "--one-to-one on, a smaller --tolerance";
@@ -78,8 +79,8 @@ void judgeBoundary(const MappedSolid& mapped, MapOrigin origin, Context& context
 }
 
 std::string foldStatement(double folded, const DeterminantFigures& points, double threshold) {
-  if (folded <= 0) return "one-to-one as far as checked: nowhere folded inside";
-  std::string out = fmt::format("not one-to-one: {} of the inside is folded (at most: {})",
+  if (folded <= 0) return "nowhere folded inside: one-to-one as far as checked";
+  std::string out = fmt::format("{} of the inside is folded (at most: {}): not one-to-one there",
                                 percent(folded), percent(threshold));
   if (points.foldedAtOverlap > 0 && points.folded > 0)
     out += fmt::format(
@@ -147,7 +148,8 @@ void addVerdictOptions(Command& c, VerdictOptions& o, bool frames) {
 
 void judgeMap(const MappedSolid& mapped, const SolidGrids* grids, const VerdictOptions& options,
               MapOrigin origin, Context& context) {
-  const std::string advice = foldAdvice(origin, context);
+  const bool toTolerance = !factOf(mapped, "tolerance").empty();
+  const std::string advice = foldAdvice(origin, toTolerance, context);
   judgeBoundary(mapped, origin, context);
   const Injectivity& known = grids ? grids->injectivity : mapped.injectivity;
   if (grids || known.inside.checked > 0) {
@@ -160,7 +162,7 @@ void judgeMap(const MappedSolid& mapped, const SolidGrids* grids, const VerdictO
     std::string text = foldStatement(folded, known.inside, options.maxFolded);
     if (known.repaired > 0)
       text += fmt::format("; in the grids {} voxels were repaired", known.repaired);
-    context.judge(finding("one_to_one", text, folded, options.maxFolded, advice));
+    context.judge(finding("folds", text, folded, options.maxFolded, advice));
     judgeOutside(grids ? std::max(grids->outsideFraction, known.outside) : known.outside, options,
                  advice, context);
   }
@@ -192,13 +194,12 @@ void judgeFrames(const std::vector<JudgedFrame>& frames, double tolerance,
                         "more --sources, another --distance, or a larger --tolerance"));
   const std::string advice = "more --sources; map these frames by `innermap map --one-to-one on`";
   const JudgedFrame folded = worst([](const JudgedFrame& f) { return f.folded; });
-  text = folded.folded > 0
-             ? fmt::format(
-                   "not one-to-one: up to {} of the inside is folded, in frame {} (at "
-                   "most: {})",
-                   percent(folded.folded), folded.number, percent(options.maxFolded))
-             : "one-to-one as far as checked: nowhere folded inside, in no frame";
-  context.judge(finding("one_to_one", text, folded.folded, options.maxFolded, advice));
+  text = folded.folded > 0 ? fmt::format(
+                                 "up to {} of the inside is folded, in frame {} (at most: {}): not "
+                                 "one-to-one there",
+                                 percent(folded.folded), folded.number, percent(options.maxFolded))
+                           : "nowhere folded inside, in no frame: one-to-one as far as checked";
+  context.judge(finding("folds", text, folded.folded, options.maxFolded, advice));
   const JudgedFrame out = worst([](const JudgedFrame& f) { return f.outside; });
   context.report().set("outside_fraction", out.outside);
   text = fmt::format(

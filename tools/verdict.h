@@ -45,8 +45,8 @@ void judgeFrames(const std::vector<JudgedFrame>& frames, double tolerance,
 void judgeTexture(const BoundaryError& error, double tolerance, Context& context);
 
 struct CarryVerdictOptions {
-  double maxDensity = 10;  // times
-  double maxLost = 0.1;    // share of the inside
+  double maxDensity = 6;  // times: a fold's three layers, each twice as dense as all on average
+  double maxLost = 0.1;   // share of the inside
 };
 void addCarryVerdictOptions(Command& command, CarryVerdictOptions& options);
 
