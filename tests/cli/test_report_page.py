@@ -229,7 +229,7 @@ def check_sequence(path, frames):
         page.value(SETTLED)
         worst = page.value("document.querySelector('#frames button.mark').textContent")
         shown = page.value("document.querySelectorAll('.captions span')[1].textContent")
-        assert worst.startswith(shown + " "), (worst, shown)
+        assert (worst + " ").startswith(shown + " "), (worst, shown)
         check_quiet(page)
         print("ready after", page.value("document.documentElement.dataset.milliseconds"), "ms,",
               os.path.getsize(path), "bytes")
