@@ -162,7 +162,11 @@ def test_values_are_the_grids():
     cli.write_obj("rest.obj", vertices, faces)
     cli.write_obj("grown.obj", [(1.2 * x, 1.1 * y, 0.9 * z) for x, y, z in vertices], faces)
     innermap("map", "rest.obj", "grown.obj", "-o", "out", "--resolution", "40", "--html", "--quiet")
-    jacobian = next(g for g in data_of("out/report.html")["grids"] if g["name"] == "jacobian")
+    grids = {g["name"]: g for g in data_of("out/report.html")["grids"]}
+    jacobian = grids["jacobian"]
+    for axis, growth in zip("xyz", (1.2, 1.1, 0.9)):
+        furthest = grids["map " + axis]["grid_greatest"] / growth
+        assert 0.93 < furthest < 1.001, (axis, furthest)  # voxel centres within the ball
     assert max(abs(jacobian[k] - 1.2 * 1.1 * 0.9) for k in ("least", "greatest")) < 1e-4, jacobian
     with Browser() as browser:
         page = browser.open("out/report.html")
@@ -229,7 +233,7 @@ def check_sequence(path, frames):
         page.value(SETTLED)
         worst = page.value("document.querySelector('#frames button.mark').textContent")
         shown = page.value("document.querySelectorAll('.captions span')[1].textContent")
-        assert worst.startswith(shown + " "), (worst, shown)
+        assert (worst + " ").startswith(shown + " "), (worst, shown)
         check_quiet(page)
         print("ready after", page.value("document.documentElement.dataset.milliseconds"), "ms,",
               os.path.getsize(path), "bytes")
