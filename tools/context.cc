@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
-#include "innermap/core/memory.h"
 #include "innermap/io/picture/label_font.h"
 #include "signals.h"
 #include "terminal_progress.h"
@@ -23,13 +23,30 @@ Progress* Context::progress() const { return &progress_; }
 
 void Context::setPart(const std::string& part) { progress_.setPart(part); }
 
-void Context::plan(const std::vector<std::string>& lines, std::uint64_t bytes) {
+void Context::plan(const std::vector<std::string>& lines, std::uint64_t need) {
+  const std::uint64_t bytes = claimed(need);
   for (const std::string& line : lines) print(line + "\n");
   print(fmt::format("memory: about {} of at most {}{}\n", formatBytes(bytes),
                     formatBytes(maxMemory_),
                     bytes > maxMemory_ ? ", so this would be refused" : ""));
   report_.set("dry_run", true);
   report_.set("memory_needed_bytes", bytes);
+}
+
+std::uint64_t Context::claimed(std::uint64_t bytes) const {
+  return most_ = std::max(most_, processMemory(bytes));
+}
+
+void Context::requireMemory(const std::string& what, std::uint64_t bytes,
+                            const std::string& advice) const {
+  innermap::requireMemory(what, claimed(bytes), maxMemory_, advice);
+}
+
+void Context::requireMemory(const std::string& what, std::uint64_t bytes, SizeOption size,
+                            const std::string& otherwise) const {
+  const std::uint64_t before = processMemory(0);
+  size.need = [before, need = size.need](std::uint64_t value) { return before + need(value); };
+  requireMemoryFor(what, claimed(bytes), maxMemory_, size, otherwise);
 }
 
 namespace {

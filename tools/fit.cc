@@ -17,18 +17,19 @@ void run(const FitOptions& options, Context& context) {
   checkFittingOptions(options.fitting);
   context.output(options.output);
   Mesh source = readMeshFile(options.source, context);
+  requireMeshMemory(options.target, context);
   Mesh target = context.timed("read", [&] {
     return readMeshLike(options.target, source, context.settings<ReadSettings>());
   });
   BoundaryPair pair =
       makeBoundaryPair(std::move(source), std::move(target), context.settings<BoundarySettings>());
   reportBoundaries(pair, context);
-  const FitMapSettings settings =
-      fitMapSettings(options.fitting, pair.source.mesh.vertices.size(), context);
+  const std::size_t vertices = pair.source.mesh.vertices.size();
+  const FitMapSettings settings = fitMapSettings(options.fitting, vertices, context);
   if (context.dryRun())
     return context.plan({fittingPlan(settings), "write the map to " + options.output},
-                        fitMapMemory(settings));
-  requireFittingMemory(settings);
+                        fitMapMemory(settings, vertices));
+  requireFittingMemory(settings, vertices, context);
   const MapFit fit = fitMap(std::move(pair), settings);
   reportFit(fit, settings, options.fitting.bestEffort, context);
   reportInjectivity(fit.injectivity, context);

@@ -25,7 +25,7 @@ std::string extension(const std::string& path) {
   return e;
 }
 
-void meshInfo(const InfoOptions& options, Context& context) {
+std::string meshInfo(const InfoOptions& options, Context& context) {
   const Mesh mesh = readMeshFile(options.file, context);
   const Box3 box = boundingBox(mesh);
   const Vec3 size = box.extent();
@@ -40,10 +40,10 @@ void meshInfo(const InfoOptions& options, Context& context) {
       "diagonal {:.6g}\n  area {:.6g}, volume {:.6g}\n",
       box.lower.x, box.lower.y, box.lower.z, box.upper.x, box.upper.y, box.upper.z, size.x, size.y,
       size.z, box.diagonal(), surfaceArea(mesh), signedVolume(mesh));
-  context.print(text);
+  return text;
 }
 
-void mapInfo(const InfoOptions& options, Context& context) {
+std::string mapInfo(const InfoOptions& options) {
   const FieldFile file = readField(options.file);
   std::size_t sources = 0;
   for (const HarmonicField& step : file.steps) sources += step.sources().size();
@@ -53,18 +53,22 @@ void mapInfo(const InfoOptions& options, Context& context) {
       steps == 1 ? "harmonic field" : fmt::format("map in {} harmonic steps", steps), channels,
       channels == 1 ? "" : "s", sources, file.boundary.size(), file.boundaryTriangles.size());
   for (const auto& [key, value] : file.facts) text += fmt::format("    {}: {}\n", key, value);
-  context.print(text);
+  return text;
 }
 
 void run(const InfoOptions& options, Context& context) {
-  if (context.dryRun()) return context.plan({"describe " + options.file}, 0);
   const std::string e = extension(options.file);
+  // A dry run reads too, as only what is in the file tells what it takes.
+  std::string text;
   if (e == ".vdb")
-    return context.print(describe(readVdbInfo(options.file, context.settings<VdbInfoSettings>()),
-                                  options.file, options.metadata));
-  if (e == ".exr") return context.print(describe(readExrInfo(options.file), options.file));
-  if (isFieldFile(options.file)) return mapInfo(options, context);
-  meshInfo(options, context);
+    text = describe(readVdbInfo(options.file, context.settings<VdbInfoSettings>()), options.file,
+                    options.metadata);
+  else if (e == ".exr")
+    text = describe(readExrInfo(options.file), options.file);
+  else
+    text = isFieldFile(options.file) ? mapInfo(options) : meshInfo(options, context);
+  if (context.dryRun()) return context.plan({"describe " + options.file}, 0);
+  context.print(text);
 }
 
 }  // namespace

@@ -97,19 +97,21 @@ LevelSetSettings outputSettings(const openvdb::GridPtrVec& grids, const GridOpti
 }
 
 std::uint64_t transferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                             const TransferOptions& options, const Context& context) {
+                             const TransferOptions& options, const Context& context,
+                             const CarryKind& kind) {
   OutsideSettings outside;
   outside.distance = options.outside;
   return carryMemory(solid, grids, outputSettings(grids, options.grid, context), outside,
-                     carrySettings(options));
+                     carrySettings(options), kind);
 }
 
 void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                           const TransferOptions& options, const Context& context) {
+                           const TransferOptions& options, const Context& context,
+                           const CarryKind& kind) {
   requireGridMemory("carrying the volume", options.grid, context, [&](const GridOptions& grid) {
     TransferOptions other = options;
     other.grid = grid;
-    return transferMemory(solid, grids, other, context);
+    return transferMemory(solid, grids, other, context, kind);
   });
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "grid_options.h"
+#include "innermap/transfer/carry_memory.h"
 #include "innermap/transfer/pull.h"
 #include "innermap/transfer/push.h"
 
@@ -32,12 +33,14 @@ OutsideSettings outsideSettings(const TransferOptions& options, const Points& fr
 openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& options,
                                Context& context);
 
-// Peak need in bytes of pushing or pulling the grids to the solid's voxels.
+// Need in bytes of pushing or pulling the grids, read already, to the solid's voxels.
 std::uint64_t transferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                             const TransferOptions& options, const Context& context);
+                             const TransferOptions& options, const Context& context,
+                             const CarryKind& kind);
 
 void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                           const TransferOptions& options, const Context& context);
+                           const TransferOptions& options, const Context& context,
+                           const CarryKind& kind);
 
 // Of the output's solid: by --voxel-size or --resolution, else with the finest voxels of the grids.
 LevelSetSettings outputSettings(const openvdb::GridPtrVec& grids, const GridOptions& options,

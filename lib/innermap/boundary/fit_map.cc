@@ -216,7 +216,7 @@ class MapFitter {
   }
 
   bool roomForSteps() {
-    const std::uint64_t need = peakMemory() + kStepsMemory;
+    const std::uint64_t need = processMemory(kStepsMemory);
     if (settings_.maxMemory == 0 || need <= settings_.maxMemory) return true;
     warnings.push_back(
         fmt::format("one harmonic map folds {:.2g}% of the inside; going in steps may need about "
@@ -258,7 +258,7 @@ class MapFitter {
     s.tolerance = tolerance;
     s.maxSources = settings_.maxSources;
     s.checkSamples = kFreshSamples;
-    s.maxMemory = settings_.maxMemory;
+    s.maxMemory = memoryLeft(settings_.maxMemory);
     s.progress = settings_.progress;
     return s;
   }
@@ -283,7 +283,7 @@ class MapFitter {
     s.maxSteps = settings_.maxSteps;
     s.maxSources = settings_.maxSources;
     s.seed = settings_.seed;
-    s.maxMemory = settings_.maxMemory;
+    s.maxMemory = memoryLeft(settings_.maxMemory);
     s.progress = settings_.progress;
     StepFit fit = timed(seconds, "steps", [&] { return fitInSteps(pair_, inside(), s); });
     Outcome out{std::move(fit.map), fit.error, {}, 0, false, {}, {}, {}, {}, std::move(fit.steps)};
@@ -451,7 +451,9 @@ std::size_t shellCollocation(const ShellSettings& shell) {
   return static_cast<std::size_t>(std::max(perSource * static_cast<double>(shell.sources), 16.0));
 }
 
-std::uint64_t fitMapMemory(const FitMapSettings& settings) {
+std::uint64_t fitMapMemory(const FitMapSettings& settings, std::size_t vertices) {
+  // Measured, bytes: the certificate and the look at the inside, of a vertex and at least.
+  constexpr std::uint64_t kVertex = 1700, kChecks = 40'000'000;
   PointCounts counts{kFirstSources, 4 * kFirstSources, kFirstSources};
   FitSolver solver = FitSolver::dense;
   if (settings.shell) {
@@ -459,8 +461,9 @@ std::uint64_t fitMapMemory(const FitMapSettings& settings) {
     if (!settings.shell->radiusRatio) solver = settings.shell->solver;
   }
   // Blue noise thins five candidates a point; each costs some 100 bytes.
-  return peakMemory() + fitMemory(counts.collocation, counts.sources, counts.heldOut, solver) +
-         500 * (counts.collocation + counts.sources) + 200 * kFreshSamples;
+  return std::max(fitMemory(counts.collocation, counts.sources, counts.heldOut, solver) +
+                      500 * (counts.collocation + counts.sources) + 200 * kFreshSamples,
+                  kChecks + kVertex * vertices);
 }
 
 MapFit fitMap(BoundaryPair boundary, const FitMapSettings& settings) {

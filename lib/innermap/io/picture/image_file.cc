@@ -13,6 +13,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
+#include "innermap/io/exr/detail/exr_verify.h"
 
 namespace innermap {
 namespace {
@@ -35,6 +36,7 @@ Input open(const std::string& path) {
     throw FileError(path, "does not exist; give the path of an image");
   if (std::filesystem::is_directory(path, ignored))
     throw FileError(path, "is a folder; give the path of an image");
+  verifyIfExr(path, nullptr);
   OIIO::ImageSpec wanted;
   wanted.attribute("oiio:UnassociatedAlpha", 1);
   Input input = OIIO::ImageInput::open(path, &wanted);
