@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "innermap/core/error.h"
 #include "innermap/io/picture/label_font.h"
 #include "signals.h"
 #include "terminal_progress.h"
@@ -33,17 +34,27 @@ void Context::plan(const std::vector<std::string>& lines, std::uint64_t need) {
   report_.set("memory_needed_bytes", bytes);
 }
 
+void Context::requireProgram() const {
+  if (const std::uint64_t own = processMemory(0); own > maxMemory_)
+    throw MemoryError(
+        fmt::format("the program, its libraries and what was read so far take {} of memory, more "
+                    "than the limit of {}; raise --max-memory",
+                    formatBytes(own), formatBytes(maxMemory_)));
+}
+
 std::uint64_t Context::claimed(std::uint64_t bytes) const {
   return most_ = std::max(most_, processMemory(bytes));
 }
 
 void Context::requireMemory(const std::string& what, std::uint64_t bytes,
                             const std::string& advice) const {
+  requireProgram();
   innermap::requireMemory(what, claimed(bytes), maxMemory_, advice);
 }
 
 void Context::requireMemory(const std::string& what, std::uint64_t bytes, SizeOption size,
                             const std::string& otherwise) const {
+  requireProgram();
   const std::uint64_t before = processMemory(0);
   size.need = [before, need = size.need](std::uint64_t value) { return before + need(value); };
   requireMemoryFor(what, claimed(bytes), maxMemory_, size, otherwise);

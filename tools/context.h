@@ -124,6 +124,8 @@ class Context {
   template <class Settings>
   struct HasMaxMemory<Settings, std::void_t<decltype(Settings::maxMemory)>> : std::true_type {};
 
+  void requireProgram() const;
+
   // The peak with so many bytes more, or with what was asked for before.
   std::uint64_t claimed(std::uint64_t bytes) const;
 

@@ -95,6 +95,7 @@ CorrespondSettings settingsOf(const MeshCorrespondenceSettings& settings) {
     };
   out.seed = settings.seed;
   out.subdivide = settings.subdivide;
+  out.maxMemory = settings.maxMemory;
   out.progress = settings.progress;
   return out;
 }

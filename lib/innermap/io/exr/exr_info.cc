@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "innermap/core/error.h"
+#include "innermap/io/exr/detail/exr_stream.h"
 #include "innermap/io/exr/exr_slices.h"
 
 namespace innermap {
@@ -19,9 +20,10 @@ std::vector<ExrPart> readExrInfo(const std::string& path) {
     throw FileError(path, "does not exist; give the path of an .exr file");
   if (!std::ifstream(path))
     throw FileError(path, std::string("cannot be opened (") + std::strerror(errno) + ")");
-  try {
-    const Imf::MultiPartInputFile file(path.c_str(), 0, /*reconstructChunkOffsetTable=*/false);
-    std::vector<ExrPart> parts;
+  std::vector<ExrPart> parts;
+  withExrErrors(path, "read", "", nullptr, [&] {
+    ExrInputStream stream(path, nullptr);
+    const Imf::MultiPartInputFile file(stream, 0, /*reconstructChunkOffsetTable=*/false);
     for (int i = 0; i < file.parts(); ++i) {
       const Imf::Header& header = file.header(i);
       const Imath::Box2i& window = header.dataWindow();
@@ -33,12 +35,8 @@ std::vector<ExrPart> readExrInfo(const std::string& path) {
         part.channels.push_back(c.name());
       parts.push_back(std::move(part));
     }
-    return parts;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw FileError(path, std::string("cannot be read (") + error.what() + ")");
-  }
+  });
+  return parts;
 }
 
 std::string describe(const std::vector<ExrPart>& parts, const std::string& path) {
