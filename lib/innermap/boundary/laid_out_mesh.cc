@@ -12,7 +12,7 @@ namespace innermap {
 namespace {
 
 // Measured, bytes: what coarsened surfaces take, and a vertex of meshes of up to 160,000.
-constexpr std::uint64_t kCoarse = 24'000'000, kBytesPerVertex = 3000;
+constexpr std::uint64_t kCoarse = 24'000'000, kBytesPerVertex = 2200;
 
 // Whether parts that are not connected pass through each other, so that the shells are not the
 // boundary of the solid.
