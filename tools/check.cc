@@ -114,8 +114,8 @@ void run(const CheckOptions& options, Context& context) {
   if (context.dryRun())
     return context.plan(
         {"check " + options.mesh + fmt::format(" ({} triangles)", mesh.triangles.size())}, need);
-  requireMemory("checking " + options.mesh, need, context.maxMemory(),
-                "raise --max-memory or simplify the mesh");
+  context.requireMemory("checking " + options.mesh, need,
+                        "raise --max-memory or simplify the mesh");
   const MeshReport report =
       context.timed("check", [&] { return checkMesh(mesh, context.settings(options.check)); });
   const std::vector<Finding> found = findings(report);

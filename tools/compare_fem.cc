@@ -273,6 +273,7 @@ void run(const CompareOptions& options, Context& context) {
     alone =
         context.timed("solid", [&] { return Solid(source, context.settings<SolidSettings>()); });
   } else {
+    requireMeshMemory(options.target, context);
     const Mesh target = context.timed("read", [&] {
       return readMeshLike(options.target, source, context.settings<ReadSettings>());
     });
@@ -284,14 +285,14 @@ void run(const CompareOptions& options, Context& context) {
   if (pair) {
     FitMapSettings reference;
     reference.tolerance = settings.referenceTolerance;
-    need = std::max(need, fitMapMemory(reference));
+    need = std::max(need, fitMapMemory(reference, source.vertices.size()));
   }
   if (context.dryRun())
     return context.plan(
         {fmt::format("compare finite elements at resolutions {} with charges", options.resolutions),
          "write comparison.csv, curves.png, section.png and report.json to " + options.output},
         need);
-  requireMemory("finite elements", need, context.maxMemory(), "use lower --resolutions");
+  context.requireMemory("finite elements", need, "use lower --resolutions");
   context.notePictures();
   const CompareFem result = context.timed("compare", [&] {
     return pair ? compareFemOnMap(*pair, settings) : compareFemOnFunctions(solid, settings);

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "html/page.h"
+#include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/picture/label_font.h"
 #include "run_record.h"
@@ -37,7 +38,8 @@ void Context::expect(const std::vector<JobPhase>& phases) {
 
 void Context::phase(const std::string& stage) { progress_.report(stage, 0); }
 
-void Context::plan(const std::vector<std::string>& lines, std::uint64_t bytes) {
+void Context::plan(const std::vector<std::string>& lines, std::uint64_t need) {
+  const std::uint64_t bytes = claimed(need);
   for (const std::string& line : lines) print(line + "\n");
   if (expectedSeconds_ > 0) {
     print(fmt::format("time: about {:.0f} s\n", std::max(1.0, expectedSeconds_)));
@@ -51,6 +53,32 @@ void Context::plan(const std::vector<std::string>& lines, std::uint64_t bytes) {
   if (bytes > maxMemory_)
     failAfterwards(fmt::format("{} of memory are more than the limit of {}; raise --max-memory",
                                formatBytes(bytes), formatBytes(maxMemory_)));
+}
+
+void Context::requireProgram() const {
+  if (const std::uint64_t own = processMemory(0); own > maxMemory_)
+    throw MemoryError(
+        fmt::format("the program, its libraries and what was read so far take {} of memory, more "
+                    "than the limit of {}; raise --max-memory",
+                    formatBytes(own), formatBytes(maxMemory_)));
+}
+
+std::uint64_t Context::claimed(std::uint64_t bytes) const {
+  return most_ = std::max(most_, processMemory(bytes));
+}
+
+void Context::requireMemory(const std::string& what, std::uint64_t bytes,
+                            const std::string& advice) const {
+  requireProgram();
+  innermap::requireMemory(what, claimed(bytes), maxMemory_, advice);
+}
+
+void Context::requireMemory(const std::string& what, std::uint64_t bytes, SizeOption size,
+                            const std::string& otherwise) const {
+  requireProgram();
+  const std::uint64_t before = processMemory(0);
+  size.need = [before, need = size.need](std::uint64_t value) { return before + need(value); };
+  requireMemoryFor(what, claimed(bytes), maxMemory_, size, otherwise);
 }
 
 namespace {

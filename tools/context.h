@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "innermap/core/file.h"
+#include "innermap/core/memory.h"
 #include "innermap/core/progress.h"
 #include "innermap/core/stage_seconds.h"
 #include "innermap/io/report.h"
@@ -72,8 +73,14 @@ class Context {
 
   bool dryRun() const { return options_.dryRun; }
   // What --dry-run says: a line for each thing that would be done, the seconds that expect() knows
-  // of, and the peak need in bytes (also whether it is over the limit), on stdout.
+  // of, and the peak of the process (also whether it is over the limit), on stdout. bytes: the need
+  // beyond what the process has by now.
   void plan(const std::vector<std::string>& lines, std::uint64_t bytes);
+  // Throws MemoryError when as many bytes more would be over the limit, as core/memory.h says. What
+  // plan() says is the most that was asked for here: of a file that is read before it, too.
+  void requireMemory(const std::string& what, std::uint64_t bytes, const std::string& advice) const;
+  void requireMemory(const std::string& what, std::uint64_t bytes, SizeOption size,
+                     const std::string& otherwise) const;
 
   // A file that is read. Arguments, and options that are marked with reads(), are told already;
   // this is for files that are found, say by a pattern. Throws FileError when it is an output.
@@ -155,6 +162,11 @@ class Context {
   struct HasMaxMemory<Settings, std::void_t<decltype(Settings::maxMemory)>> : std::true_type {};
 
   void sayWhatIsThere(const std::string& path, const std::vector<std::string>& names);
+  void requireProgram() const;
+
+  // The peak with so many bytes more, or with what was asked for before.
+  std::uint64_t claimed(std::uint64_t bytes) const;
+
   void say(const std::string& kind, const std::string& text);
 
   void enter(const std::string& path);
@@ -167,6 +179,7 @@ class Context {
   const CommonOptions& options_;
   TerminalProgress& progress_;
   std::uint64_t maxMemory_ = 0;
+  mutable std::uint64_t most_ = 0;  // of claimed()
   Report report_;
   std::map<std::string, std::uint64_t> memoryAfter_;  // bytes, by stage
   std::unique_ptr<Page> page_;

@@ -22,6 +22,11 @@ std::string sourceOutputOf(const Options& options) {
   return options.output.substr(0, options.output.size() - 4) + ".source.ply";
 }
 
+std::uint64_t memoryOf(const Options& options, std::size_t countA, std::size_t countB) {
+  const std::uint64_t map = correspondMemory(countA, countB);
+  return options.picture.empty() ? map : std::max(map, meshPictureMemory());
+}
+
 void run(const Options& options, Context& context) {
   requirePly("--output", options.output);
   if (!options.sourceOutput.empty()) requirePly("--source-out", options.sourceOutput);
@@ -37,7 +42,9 @@ void run(const Options& options, Context& context) {
              options.a, options.b, countB,
              correspondSeconds(countA, countB, correspondSettings(options.correspond, context))),
          "write them to " + options.output},
-        correspondMemory(countA, countB));
+        memoryOf(options, countA, countB));
+  context.requireMemory("the correspondence", memoryOf(options, countA, countB),
+                        "use coarser meshes");
   const MeshCorrespondence moved =
       correspondMeshes(std::move(a), std::move(b), options.correspond, context);
   if (context.page()) showPair(*context.page(), moved.source, moved.positions);

@@ -140,8 +140,9 @@ ReportMesh reportOf(const LaidOutMesh& laid) {
 
 MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const CorrespondOptions& options,
                                     Context& context) {
-  requireMemory("the correspondence", correspondMemory(a.vertices.size(), b.vertices.size()),
-                context.maxMemory(), "use coarser meshes");
+  context.requireMemory("the correspondence",
+                        correspondMemory(a.vertices.size(), b.vertices.size()),
+                        "use coarser meshes");
   auto settings = correspondSettings(options, context);
   if (!options.landmarks.empty()) settings.landmarks = readLandmarks(options.landmarks);
   LaidOutMesh laidA = layOut(std::move(a), options.surfaces, context);

@@ -102,15 +102,16 @@ struct DeformRow {
 // The set-up that all frames share.
 class Deformer {
  public:
-  Deformer(const DeformOptions& options, const Frames& frames, Context& context)
+  Deformer(const DeformOptions& options, const Frames& frames, SourceBoundary rest,
+           openvdb::GridPtrVec grids, Context& context)
       : options_(options),
         context_(context),
         frames_(frames),
-        fitter_(makeFrameFitter(options.rest, context.settings(options.frames.fitting), context)),
+        fitter_(
+            makeFrameFitter(std::move(rest), context.settings(options.frames.fitting), context)),
         fits_(makeFrameFits(fitter_, frames, context)),
-        grids_(readVolume(options.volume, options.transfer, context)) {
+        grids_(std::move(grids)) {
     requireNoVelocity();
-    requireTransferMemory(fitter_.solid(), grids_, options.transfer, context);
     FramePushSettings settings;
     settings.push = context.settings<PushSettings>();
     settings.push.carry = carrySettings(options.transfer);
@@ -241,14 +242,20 @@ Frames framesLeft(const DeformOptions& options, const Frames& frames, const Fram
   return left;
 }
 
+// In bytes, beside what is read.
+std::uint64_t memoryOf(const DeformOptions& options, const Solid& solid,
+                       const openvdb::GridPtrVec& grids, const Context& context) {
+  return transferMemory(solid, grids, options.transfer, context, {true, options.velocity ? 1 : 0});
+}
+
 void plan(const DeformOptions& options, const Frames& frames, const FramePattern& pattern,
-          Context& context) {
+          std::uint64_t others, Context& context) {
   const auto path = [&](std::size_t i) { return pattern.path(frames.all[i].number); };
   const FrameFitterSettings settings = context.settings(options.frames.fitting);
   context.plan({framesPlan(settings, frames), "carry " + options.volume + " to " +
                                                   path(frames.wanted.front()) + " to " +
                                                   path(frames.wanted.back())},
-               frameFitterMemory(settings));
+               frameFitterMemory(settings) + others);
 }
 
 void run(const DeformOptions& options, Context& context) {
@@ -263,8 +270,11 @@ void run(const DeformOptions& options, Context& context) {
     return deformGeometry(
         {options.rest, options.volume, options.frames, options.transfer, options.geometry}, frames,
         pattern, context);
-  if (context.dryRun()) return plan(options, frames, pattern, context);
-  requireFrameMemory(context.settings(options.frames.fitting), 0);
+  if (context.dryRun()) {
+    const SourceBoundary rest = readRest(options.rest, context);
+    const openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
+    return plan(options, frames, pattern, memoryOf(options, rest.solid, grids, context), context);
+  }
   std::optional<Inputs> inputs;
   Frames left;
   context.timed("compare", [&] {
@@ -272,7 +282,11 @@ void run(const DeformOptions& options, Context& context) {
     left = framesLeft(options, frames, pattern, *inputs, context);
   });
   if (left.wanted.empty()) return;
-  Deformer deformer(options, left, context);
+  SourceBoundary rest = readRest(options.rest, context);
+  openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
+  requireFrameMemory(context.settings(options.frames.fitting),
+                     memoryOf(options, rest.solid, grids, context), context);
+  Deformer deformer(options, left, std::move(rest), std::move(grids), context);
   std::map<std::size_t, DeformRow> rows;
   context.print(fmt::format("{:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "frame", "voxels",
                             "inverted %", "error rms", "error 99%", "seconds"));

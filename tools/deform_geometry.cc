@@ -21,7 +21,8 @@ class Deformer {
       : job_(job),
         context_(context),
         frames_(frames),
-        fitter_(makeFrameFitter(job.rest, context.settings(job.frames.fitting), context)),
+        fitter_(makeFrameFitter(readRest(job.rest, context), context.settings(job.frames.fitting),
+                                context)),
         fits_(makeFrameFits(fitter_, frames, context)),
         file_(readGeometryFile(job.input, job.geometry, context)) {
     if (job.transfer.fadeTo != "fitted") pusher_ = pusherFor({});
@@ -86,7 +87,7 @@ void deformGeometry(const DeformGeometry& job, const Frames& frames, const Frame
                                            " to " + path(frames.wanted.back())},
         frameFitterMemory(settings) + need);
   }
-  requireFrameMemory(context.settings(job.frames.fitting), need);
+  requireFrameMemory(context.settings(job.frames.fitting), need, context);
   Deformer deformer(job, frames, context);
   std::map<std::size_t, BoundaryError> errors;
   std::vector<JudgedFrame> judged;

@@ -20,9 +20,8 @@ void run(const EvaluateOptions& options, Context& context) {
   const MapGridSettings settings = mapGridSettings(options.evaluation, context);
   if (context.dryRun())
     return context.plan({"evaluate " + options.map, "write grids to " + options.output},
-                        mapGridMemory(mapped.solid(), settings, mapped.map.steps().size()));
-  requireEvaluationMemory(mapped.solid(), options.evaluation.grid, context,
-                          mapped.map.steps().size());
+                        mapGridMemory(mapped.solid(), settings, mapGridKind(mapped)));
+  requireEvaluationMemory(mapped.solid(), options.evaluation.grid, context, mapGridKind(mapped));
   const SolidGrids grids = evaluateOnGrid(mapped, settings);
   reportGrids(grids, settings.lame, context);
   judgeMap(mapped, &grids, options.verdict, MapOrigin::file, context);

@@ -50,14 +50,14 @@ void run(const ExportOptions& options, Context& context) {
     context.output(options.output);
   }
   const std::vector<std::string> names = commaList(options.grids);
-  if (context.dryRun()) {
-    const std::uint64_t need =
-        readMemory(readVdbInfo(options.file, context.settings<VdbInfoSettings>()), names);
+  const openvdb::GridPtrVec grids = readGridFile(options.file, names, context);
+  const std::uint64_t need = volumeTextureMemory(grids, settings);
+  if (context.dryRun())
     return context.plan({fmt::format("write {} as a volume texture ({}) to {}", options.file,
                                      volumeLayoutName(settings.layout), options.output)},
                         need);
-  }
-  const openvdb::GridPtrVec grids = readGridFile(options.file, names, context);
+  context.requireMemory("the volume texture " + options.output, need,
+                        "export fewer grids or at a lower --resolution");
   const VolumeTextureResult result =
       context.timed("write", [&] { return writeVolumeTexture(options.output, grids, settings); });
   for (const std::string& warning : warningsOf(result, options.output, settings))

@@ -19,19 +19,20 @@ void run(const FitOptions& options, Context& context) {
   checkFittingOptions(options.fitting);
   context.output(options.output);
   Mesh source = readMeshFile(options.source, context);
+  requireMeshMemory(options.target, context);
   Mesh target = context.timed("read", [&] {
     return readMeshLike(options.target, source, context.settings<ReadSettings>());
   });
   BoundaryPair pair =
       makeBoundaryPair(std::move(source), std::move(target), context.settings<BoundarySettings>());
   reportBoundaries(pair, context);
-  const FitMapSettings settings =
-      fitMapSettings(options.fitting, pair.source.mesh.vertices.size(), context);
-  context.expect(fittingPhases(settings, pair.source.mesh.vertices.size(), false));
+  const std::size_t vertices = pair.source.mesh.vertices.size();
+  const FitMapSettings settings = fitMapSettings(options.fitting, vertices, context);
+  context.expect(fittingPhases(settings, vertices, false));
   if (context.dryRun())
     return context.plan({fittingPlan(settings), "write the map to " + options.output},
-                        fitMapMemory(settings));
-  requireFittingMemory(settings);
+                        fitMapMemory(settings, vertices));
+  requireFittingMemory(settings, vertices, context);
   context.phase("fitting");
   const MapFit fit = fitMap(std::move(pair), settings);
   reportFit(fit, settings, options.fitting.bestEffort, context);

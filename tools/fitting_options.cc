@@ -175,21 +175,21 @@ std::string fittingPlan(const FitMapSettings& settings) {
                      shellCollocation(*settings.shell));
 }
 
-void requireFittingMemory(const FitMapSettings& settings) {
+void requireFittingMemory(const FitMapSettings& settings, std::size_t vertices,
+                          const Context& context) {
+  const std::uint64_t bytes = fitMapMemory(settings, vertices);
   if (!settings.shell)
-    return requireMemory("the first level of charges", fitMapMemory(settings), settings.maxMemory,
-                         "raise --max-memory");
+    return context.requireMemory("the first level of charges", bytes, "raise --max-memory");
   const double points = static_cast<double>(shellCollocation(*settings.shell)) /
                         static_cast<double>(settings.shell->sources);
   const auto need = [&](std::uint64_t sources) {
     FitMapSettings fewer = settings;
     fewer.shell->sources = sources;
     fewer.shell->collocation = static_cast<std::size_t>(points * static_cast<double>(sources));
-    return fitMapMemory(fewer);
+    return fitMapMemory(fewer, vertices);
   };
-  requireMemoryFor(fmt::format("fitting {} sources", settings.shell->sources),
-                   fitMapMemory(settings), settings.maxMemory,
-                   {"--sources", 1, settings.shell->sources, need}, "raise --max-memory");
+  context.requireMemory(fmt::format("fitting {} sources", settings.shell->sources), bytes,
+                        {"--sources", 1, settings.shell->sources, need}, "raise --max-memory");
 }
 
 // Seconds as measured on samples/ and models of some ten thousand triangles; a shell is factored at

@@ -31,7 +31,8 @@ FitMapSettings fitMapSettings(const FittingOptions& options, std::size_t vertice
 void checkFittingOptions(const FittingOptions& options);
 
 // Throws MemoryError, with the largest --sources that would fit, when the need is over the limit.
-void requireFittingMemory(const FitMapSettings& settings);
+void requireFittingMemory(const FitMapSettings& settings, std::size_t vertices,
+                          const Context& context);
 
 // "fit 2000 charges to 8000 boundary points", for --dry-run.
 std::string fittingPlan(const FitMapSettings& settings);

@@ -89,11 +89,15 @@ std::vector<std::string> framePaths(const FramePattern& pattern, const Frames& f
   return paths;
 }
 
-FrameFitter makeFrameFitter(const std::string& rest, const FrameFitterSettings& settings,
-                            Context& context) {
+SourceBoundary readRest(const std::string& rest, Context& context) {
   SourceBoundary source =
       makeSourceBoundary(readMeshFile(rest, context), context.settings<BoundarySettings>());
   reportSource(source, context);
+  return source;
+}
+
+FrameFitter makeFrameFitter(SourceBoundary source, const FrameFitterSettings& settings,
+                            Context& context) {
   FrameFitter fitter(std::move(source), settings);
   addSeconds(context.report().seconds, fitter.seconds());
   reportFitter(fitter, settings, context.report());
@@ -128,17 +132,17 @@ std::string framesPlan(const FrameFitterSettings& settings, const Frames& frames
                      frames.all[frames.wanted.back()].number);
 }
 
-void requireFrameMemory(const FrameFitterSettings& settings, std::uint64_t others) {
+void requireFrameMemory(const FrameFitterSettings& settings, std::uint64_t others,
+                        const Context& context) {
   const auto need = [&](std::uint64_t sources) {
     FrameFitterSettings fewer = settings;
     fewer.sources = sources;
     fewer.collocation = 0;
     return frameFitterMemory(fewer) + others;
   };
-  requireMemoryFor(fmt::format("a sequence with {} charges", settings.sources),
-                   frameFitterMemory(settings) + others, settings.maxMemory,
-                   {"--sources", 1, kMostSources, need},
-                   "use a lower --resolution or raise --max-memory");
+  context.requireMemory(fmt::format("a sequence with {} charges", settings.sources),
+                        frameFitterMemory(settings) + others, {"--sources", 1, kMostSources, need},
+                        "use a lower --resolution or raise --max-memory");
 }
 
 }  // namespace innermap::tool

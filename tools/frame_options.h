@@ -37,9 +37,11 @@ Frames listFrames(const FrameOptions& options, const std::string& rest, Context&
 // The output of each of the frames wanted.
 std::vector<std::string> framePaths(const FramePattern& pattern, const Frames& frames);
 
-// Reads the rest pose and makes its fitter; tells of both, and fills the report's "source" and
-// "solve".
-FrameFitter makeFrameFitter(const std::string& rest, const FrameFitterSettings& settings,
+// The rest pose; fills the report's "source".
+SourceBoundary readRest(const std::string& rest, Context& context);
+
+// Its fitter; fills the report's "solve".
+FrameFitter makeFrameFitter(SourceBoundary source, const FrameFitterSettings& settings,
                             Context& context);
 
 // Reads and fits frames.all as they are asked for. All three must outlive the result.
@@ -50,6 +52,7 @@ std::string framesPlan(const FrameFitterSettings& settings, const Frames& frames
 
 // Throws MemoryError, with the largest --sources that would fit beside `others` bytes, when the
 // need of all together is over the limit.
-void requireFrameMemory(const FrameFitterSettings& settings, std::uint64_t others);
+void requireFrameMemory(const FrameFitterSettings& settings, std::uint64_t others,
+                        const Context& context);
 
 }  // namespace innermap::tool

@@ -74,8 +74,8 @@ CarryPointsSettings carryPointsSettings(const OutsideSettings& outside, double a
 
 CarriedGeometry carryFile(GeometryFile& file, const PointCarry& carry, double subdivide,
                           Context& context) {
-  requireMemory("carrying the geometry", carryGeometryMemory(file.geometry), context.maxMemory(),
-                "cut the file into parts");
+  context.requireMemory("carrying the geometry", carryGeometryMemory(file.geometry),
+                        "cut the file into parts");
   auto settings = context.settings<CarryGeometrySettings>();
   settings.subdivide = subdivide;
   return carryGeometry(file.geometry, carry, settings);

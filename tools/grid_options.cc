@@ -30,8 +30,8 @@ void requireGridMemory(const std::string& doing, const GridOptions& options, con
     other.resolution = static_cast<int>(resolution);
     return need(other);
   };
-  requireMemoryFor(doing, need(options), context.maxMemory(),
-                   {"--resolution", kLeast, kMost, needAt}, "raise --max-memory");
+  context.requireMemory(doing, need(options), {"--resolution", kLeast, kMost, needAt},
+                        "raise --max-memory");
 }
 
 void addNamesOption(Command& command, NamingScheme& names) {
@@ -75,9 +75,9 @@ MapGridSettings mapGridSettings(const EvaluationOptions& options, const Context&
 }
 
 void requireEvaluationMemory(const Solid& solid, const GridOptions& options, const Context& context,
-                             std::size_t steps) {
+                             const MapGridKind& kind) {
   requireGridMemory("evaluating the map on a grid", options, context, [&](const GridOptions& o) {
-    return mapGridMemory(solid, gridSettings<MapGridSettings>(o, context), steps);
+    return mapGridMemory(solid, gridSettings<MapGridSettings>(o, context), kind);
   });
 }
 

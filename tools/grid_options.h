@@ -59,6 +59,6 @@ void addEvaluationOptions(Command& command, EvaluationOptions& options);
 MapGridSettings mapGridSettings(const EvaluationOptions& options, const Context& context);
 
 void requireEvaluationMemory(const Solid& solid, const GridOptions& options, const Context& context,
-                             std::size_t steps = 1);
+                             const MapGridKind& kind);
 
 }  // namespace innermap::tool

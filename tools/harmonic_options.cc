@@ -141,6 +141,7 @@ void runHarmonic(const HarmonicOptions& options,
   if (!options.field.empty()) context.output(options.field);
   Mesh mesh = readMeshFile(options.mesh, context);
   const NamedConditions known = conditionsOf(mesh);
+  const std::size_t vertices = mesh.vertices.size();
   const SourceBoundary boundary =
       makeSourceBoundary(std::move(mesh), context.settings<BoundarySettings>());
   reportSource(boundary, context);
@@ -148,13 +149,13 @@ void runHarmonic(const HarmonicOptions& options,
   FitMapSettings like;
   like.tolerance = settings.tolerance;
   const std::uint64_t need =
-      std::max(fitMapMemory(like), harmonicGridMemory(boundary.solid, known.names.size(), grids));
+      std::max(fitMapMemory(like, vertices), harmonicGridMemory(boundary.solid, known.names.size(), grids));
   if (context.dryRun())
     return context.plan({fmt::format("fit {} channel(s) on {}", known.names.size(), options.mesh),
                          "write grids to " + options.output},
                         need);
-  requireMemory("the harmonic field", need, context.maxMemory(),
-                "use a lower --resolution or raise --max-memory");
+  context.requireMemory("the harmonic field", need,
+                        "use a lower --resolution or raise --max-memory");
   HarmonicFit fit = fitHarmonic(boundary, known.conditions, settings);
   if (unitSum) fit.field = withUnitSum(fit.field);
   reportHarmonic(fit, options, context);

@@ -116,8 +116,7 @@ void run(const Options& options, Context& context) {
                      options.mesh, settings.pieces, expectedBlocks(mesh, settings.blocks),
                      options.output)},
         need);
-  requireMemory("hexahedra of " + options.mesh, need, context.maxMemory(),
-                "use fewer --blocks or --pieces");
+  context.requireMemory("hexahedra of " + options.mesh, need, "use fewer --blocks or --pieces");
   const Hexahedralization result = hexahedralize(mesh, settings);
   context.tell(result);
   fillReport(result, context);

@@ -18,6 +18,7 @@ struct ImportOptions {
 VolumeTextureReadSettings settingsOf(const ImportOptions& options, Context& context) {
   auto s = context.settings(options.texture);
   s.names = commaList(options.grids);
+  s.maxMemory = memoryLeft(s.maxMemory);  // the grids grow as they are read
   if (!options.tiles.empty()) s.tiles = parseTiles("--tiles", options.tiles);
   if (!options.lowerCorner.empty()) {
     if (!s.voxelSize) throw UsageError("--lower-corner: has a meaning with --voxel-size only");

@@ -26,9 +26,9 @@ std::string extension(const std::string& path) {
   return e;
 }
 
-void meshInfo(const InfoOptions& options, Context& context) {
+std::string meshInfo(const InfoOptions& options, Context& context) {
   const Mesh mesh = readMeshFile(options.file, context);
-  if (options.json) return context.print(infoJson(options.file, mesh));
+  if (options.json) return infoJson(options.file, mesh);
   const Box3 box = boundingBox(mesh);
   const Vec3 size = box.extent();
   std::string text = fmt::format("{}: mesh, {} vertices, {} triangles", options.file,
@@ -42,12 +42,12 @@ void meshInfo(const InfoOptions& options, Context& context) {
       "diagonal {:.6g}\n  area {:.6g}, volume {:.6g}\n",
       box.lower.x, box.lower.y, box.lower.z, box.upper.x, box.upper.y, box.upper.z, size.x, size.y,
       size.z, box.diagonal(), surfaceArea(mesh), signedVolume(mesh));
-  context.print(text);
+  return text;
 }
 
-void mapInfo(const InfoOptions& options, Context& context) {
+std::string mapInfo(const InfoOptions& options) {
   const FieldFile file = readField(options.file);
-  if (options.json) return context.print(infoJson(options.file, file));
+  if (options.json) return infoJson(options.file, file);
   std::size_t sources = 0;
   for (const HarmonicField& step : file.steps) sources += step.sources().size();
   const std::size_t channels = file.steps.front().channels(), steps = file.steps.size();
@@ -56,29 +56,31 @@ void mapInfo(const InfoOptions& options, Context& context) {
       steps == 1 ? "harmonic field" : fmt::format("map in {} harmonic steps", steps), channels,
       channels == 1 ? "" : "s", sources, file.boundary.size(), file.boundaryTriangles.size());
   for (const auto& [key, value] : file.facts) text += fmt::format("    {}: {}\n", key, value);
-  context.print(text);
+  return text;
 }
 
-void vdbInfo(const InfoOptions& options, Context& context) {
+std::string vdbInfo(const InfoOptions& options, const Context& context) {
   const VdbInfo info = readVdbInfo(options.file, context.settings<VdbInfoSettings>());
-  context.print(options.json ? infoJson(options.file, info)
-                             : describe(info, options.file, options.metadata));
+  return options.json ? infoJson(options.file, info)
+                      : describe(info, options.file, options.metadata);
 }
 
-void exrInfo(const InfoOptions& options, Context& context) {
+std::string exrInfo(const InfoOptions& options) {
   const std::vector<ExrPart> parts = readExrInfo(options.file);
   const std::optional<VolumeTextureInfo> volume = readVolumeTextureInfo(options.file);
-  if (options.json) return context.print(infoJson(options.file, parts, volume));
-  context.print(describe(parts, options.file) + (volume ? describe(*volume) : ""));
+  if (options.json) return infoJson(options.file, parts, volume);
+  return describe(parts, options.file) + (volume ? describe(*volume) : "");
 }
 
 void run(const InfoOptions& options, Context& context) {
-  if (context.dryRun()) return context.plan({"describe " + options.file}, 0);
   const std::string e = extension(options.file);
-  if (e == ".vdb") return vdbInfo(options, context);
-  if (e == ".exr") return exrInfo(options, context);
-  if (isFieldFile(options.file)) return mapInfo(options, context);
-  meshInfo(options, context);
+  // A dry run reads too, as only what is in the file tells what it takes.
+  const std::string text = e == ".vdb"                 ? vdbInfo(options, context)
+                           : e == ".exr"               ? exrInfo(options)
+                           : isFieldFile(options.file) ? mapInfo(options)
+                                                       : meshInfo(options, context);
+  if (context.dryRun()) return context.plan({"describe " + options.file}, 0);
+  context.print(text);
 }
 
 }  // namespace

@@ -12,7 +12,10 @@
 
 namespace innermap::tool {
 
-// Throws as innermap::readMesh does.
+// Throws MemoryError when the mesh in a file would not fit.
+void requireMeshMemory(const std::string& path, const Context& context);
+
+// Throws as these, and as innermap::readMesh does.
 Mesh readMeshFile(const std::string& path, Context& context);
 
 // The grids of these names, or all. Throws as innermap::readVdb does.

@@ -74,6 +74,7 @@ Meshes readMeshes(const MapOptions& options, Context& context) {
       requireOnTarget(meshes.target, readMeshFile(options.target, context));
     return meshes;
   }
+  requireMeshMemory(options.target, context);
   try {
     meshes.target = context.timed(
         "read", [&] { return readMeshLike(options.target, meshes.source, settings); });
@@ -142,12 +143,15 @@ void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
   std::vector<std::string> lines;
   const bool steps = laidOn(options, meshes) && fitting.oneToOne != OneToOne::off;
   std::uint64_t need = std::max(
-      fitMapMemory(fitting) + (steps ? kStepsMemory : 0),
-      mapGridMemory(source.solid, mapGridSettings(options.evaluation, context), steps ? 2 : 1));
+      fitMapMemory(fitting, vertices) + (steps ? kStepsMemory : 0),
+      mapGridMemory(
+          source.solid, mapGridSettings(options.evaluation, context),
+          {steps ? std::size_t{2} : 1, needsLocalMap(meshes.target.vertices, fitting.tolerance)}));
   std::string files = "map.ply, map.vdb, slices.exr, section.png";
   if (!meshes.related) {
     lines.push_back(correspondPlan(options, meshes, context));
-    need = std::max(need, correspondMemory(vertices, meshes.target.vertices.size()));
+    need = std::max(
+        {need, correspondMemory(vertices, meshes.target.vertices.size()), meshPictureMemory()});
     files += ", correspondence.ply, correspondence.png";
   }
   lines.push_back(fittingPlan(fitting));
@@ -196,10 +200,11 @@ void run(const MapOptions& options, Context& context) {
   const FittingOptions fitOptions = fittingFor(options, meshes);
   BoundaryPair pair = makePair(options, std::move(meshes), *folder, context);
   reportBoundaries(pair, context);
-  const FitMapSettings fitting =
-      fitMapSettings(fitOptions, pair.source.mesh.vertices.size(), context);
-  requireFittingMemory(fitting);
-  requireEvaluationMemory(pair.solid(), options.evaluation.grid, context);
+  const std::size_t vertices = pair.source.mesh.vertices.size();
+  const FitMapSettings fitting = fitMapSettings(fitOptions, vertices, context);
+  requireFittingMemory(fitting, vertices, context);
+  requireEvaluationMemory(pair.solid(), options.evaluation.grid, context,
+                          {1, needsLocalMap(pair.target.moved, fitting.tolerance)});
   context.phase("fitting");
   const MapFit fit = fitMap(std::move(pair), fitting);
   reportFit(fit, fitting, options.fitting.bestEffort, context);

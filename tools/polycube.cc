@@ -44,7 +44,7 @@ void run(const PolycubeOptions& options, Context& context) {
         {fmt::format("write a polycube of about {:.0f} blocks of {} to {}",
                      expectedBlocks(mesh, settings.blocks), options.mesh, options.output)},
         need);
-  requireMemory("a polycube of " + options.mesh, need, context.maxMemory(), "use fewer --blocks");
+  context.requireMemory("a polycube of " + options.mesh, need, "use fewer --blocks");
   const Polycube cube = makePolycube(mesh, settings);
   context.tell(cube);
   reportPolycube(cube, context);

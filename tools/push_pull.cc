@@ -113,7 +113,8 @@ openvdb::GridPtrVec pull(const Job& job, const TransferOptions& options, Context
 
 // Peak need in bytes of carrying geometry, beyond what its file takes.
 std::uint64_t carrierMemory(Way way, const Solid& source, const OutsideSettings& outside) {
-  return way == Way::push ? levelSetMemory(source, {}) : carryMemory(source, {}, {}, outside);
+  return way == Way::push ? levelSetMemory(source, {})
+                          : carryMemory(source, {}, {}, outside, {}, {false, 0});
 }
 
 PointCarry carryOf(Way way, const MappedSolid& mapped, const CarryPointsSettings& settings,
@@ -143,7 +144,7 @@ void runGeometry(Way way, const CarryOptions& options, Context& context) {
                                      options.volume, options.map),
                          "write " + options.output},
                         need);
-  requireMemory("carrying " + options.volume, need, context.maxMemory(), "cut the file into parts");
+  context.requireMemory("carrying " + options.volume, need, "cut the file into parts");
   const auto file = readGeometryFile(options.volume, options.geometry, context);
   const CarryPointsSettings settings = carryPointsSettings(outside, sumAccuracy(mapped), context);
   const PointCarry carry =
@@ -168,12 +169,13 @@ void run(Way way, const CarryOptions& options, Context& context) {
   const Job job = read(options, context);
   const Solid& solid = way == Way::push ? job.target : job.mapped.solid();
   const double growth = growthOf(way, job);
+  const CarryKind kind{way == Way::push, 0};
   if (context.dryRun())
     return context.plan({fmt::format("{} {} grids of {} by {}", way == Way::push ? "push" : "pull",
                                      job.grids.size(), options.volume, options.map),
                          "write " + options.output},
-                        transferMemory(solid, job.grids, options.transfer, context, growth));
-  requireTransferMemory(solid, job.grids, options.transfer, context, growth);
+                        transferMemory(solid, job.grids, options.transfer, context, kind, growth));
+  requireTransferMemory(solid, job.grids, options.transfer, context, kind, growth);
   noteVoxelSize(job.grids, options.transfer, growth, context);
   const openvdb::GridPtrVec grids =
       (way == Way::push ? push : pull)(job, options.transfer, context);

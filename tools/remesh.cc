@@ -94,7 +94,7 @@ void run(const RemeshOptions& options, Context& context) {
   if (!options.picture.empty()) context.output(options.picture);
   const MappedSolid mapped = readMapFile(options.map, context);
   const std::uint64_t reading = readCellsMemory(options.cells);
-  requireMemory("reading " + options.cells, reading, context.maxMemory(), "use a coarser mesh");
+  context.requireMemory("reading " + options.cells, reading, "use a coarser mesh");
   CellFile file = context.timed(
       "read", [&] { return readCells(options.cells, context.settings<ReadCellsSettings>()); });
   for (const std::string& note : file.notes) context.note(note);
@@ -105,7 +105,7 @@ void run(const RemeshOptions& options, Context& context) {
                                      options.cells, options.map),
                          "write " + options.output},
                         need);
-  requireMemory("carrying " + options.cells, need, context.maxMemory(), "use a coarser mesh");
+  context.requireMemory("carrying " + options.cells, need, "use a coarser mesh");
   dropQuality(file.mesh);
   RemeshSettings settings = context.settings(options.settings);
   std::optional<Mesh> surface;

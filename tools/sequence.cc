@@ -74,16 +74,17 @@ void run(const SequenceOptions& options, Context& context) {
       context.outputFolder(options.output, {"energies.csv", "energies.png", "report.json"});
   if (options.grids) context.outputs(framePaths(pattern, frames));
   const FrameFitterSettings settings = context.settings(options.frames.fitting);
+  SourceBoundary rest = readRest(options.rest, context);
+  const std::uint64_t gridsNeed =
+      mapGridMemory(rest.solid, mapGridSettings(options.evaluation, context), {1, false, false});
   if (context.dryRun())
     return context.plan({framesPlan(settings, frames),
                          "write energies.csv, energies.png and report.json" +
                              std::string(options.grids ? " and the grids of each frame" : "") +
                              " to " + options.output},
-                        frameFitterMemory(settings));
-  requireFrameMemory(settings, 0);
-  const FrameFitter fitter = makeFrameFitter(options.rest, settings, context);
-  requireFrameMemory(settings,
-                     mapGridMemory(fitter.solid(), mapGridSettings(options.evaluation, context)));
+                        frameFitterMemory(settings) + gridsNeed);
+  requireFrameMemory(settings, gridsNeed, context);
+  const FrameFitter fitter = makeFrameFitter(std::move(rest), settings, context);
   const FrameEvaluator evaluator = makeEvaluator(options, fitter, context);
   FrameFits fits = makeFrameFits(fitter, frames, context);
   std::vector<SequenceRow> rows;

@@ -63,6 +63,19 @@ void writeSection(const SliceOptions& options, const openvdb::GridPtrVec& grids,
   context.report().set("section.range", std::vector<double>{r.lower, r.upper});
 }
 
+std::uint64_t memoryOf(const SliceOptions& options, const openvdb::GridPtrVec& grids) {
+  std::uint64_t need = 0;
+  if (!options.output.empty()) {
+    ExrSliceSettings slices = options.slices;
+    slices.axis = options.axis;
+    need = exrSliceMemory(grids, slices);
+  }
+  if (options.picture.empty()) return need;
+  SectionSettings section = options.section;
+  section.axis = options.axis;
+  return std::max(need, sectionImageMemory(grids, section));
+}
+
 void run(const SliceOptions& options, Context& context) {
   if (options.output.empty() && options.picture.empty())
     throw UsageError(
@@ -71,6 +84,8 @@ void run(const SliceOptions& options, Context& context) {
   for (const std::string* path : {&options.output, &options.picture})
     if (!path->empty()) context.output(*path);
   const VdbInfo info = readVdbInfo(options.file, context.settings<VdbInfoSettings>());
+  const openvdb::GridPtrVec grids = readGridFile(options.file, namesToRead(options, info), context);
+  const std::uint64_t need = memoryOf(options, grids);
   if (context.dryRun()) {
     std::vector<std::string> lines;
     if (!options.output.empty())
@@ -78,9 +93,9 @@ void run(const SliceOptions& options, Context& context) {
                                   options.slices.count, options.axis, options.output));
     if (!options.picture.empty())
       lines.push_back("draw a section of " + options.file + " to " + options.picture);
-    return context.plan(lines, readMemory(info));
+    return context.plan(lines, need);
   }
-  const openvdb::GridPtrVec grids = readGridFile(options.file, namesToRead(options, info), context);
+  context.requireMemory("cutting " + options.file, need, "slice fewer grids or along another axis");
   if (!options.output.empty())
     context.timed("slices", [&] { writeSlices(options, grids, context); });
   if (!options.picture.empty())

@@ -26,7 +26,7 @@ void run(const Options& options, Context& context) {
         {fmt::format("lay the {} vertices of {} out on the unit sphere", vertices, options.mesh),
          "write them to " + options.output},
         need);
-  requireMemory("the layout", need, context.maxMemory(), "use a coarser mesh");
+  context.requireMemory("the layout", need, "use a coarser mesh");
   const LaidOutMesh laid = layOut(std::move(mesh), options.surface, context);
   context.report().source = reportOf(laid);
   const MeshOnSphere sphere = onSphere(laid);

@@ -97,8 +97,8 @@ void run(const TetrahedralizeOptions& options, Context& context) {
   if (context.dryRun())
     return context.plan(
         {fmt::format("fill {} with tetrahedra, to {}", options.mesh, options.output)}, need);
-  requireMemory("tetrahedra of " + options.mesh, need, context.maxMemory(),
-                "use a lower --resolution or a longer --edge");
+  context.requireMemory("tetrahedra of " + options.mesh, need,
+                        "use a lower --resolution or a longer --edge");
   Tetrahedralization result =
       context.timed("tetrahedra", [&] { return tetrahedralization(solid, settings); });
   for (const std::string& note : result.notes) context.note(note);

@@ -114,10 +114,10 @@ void run(const TextureOptions& o, Context& context) {
                                      image, o.mesh, plan.sources, plan.voxelSize),
                          "write surface, density, Cd and uv to " + o.output},
                         need);
-  requireMemory("the solid texture", need, context.maxMemory(),
-                fmt::format("use a --voxel-size above {:.3g}, fewer --sources or raise "
-                            "--max-memory",
-                            1.5 * plan.voxelSize));
+  context.requireMemory("the solid texture", need,
+                        fmt::format("use a --voxel-size above {:.3g}, fewer --sources or raise "
+                                    "--max-memory",
+                                    1.5 * plan.voxelSize));
   TextureLookup lookup;
   if (!o.image.empty())
     lookup = [images = readImages(o, tiles, context)](

@@ -71,14 +71,18 @@ void run(const TransferDistanceOptions& options, Context& context) {
   const auto folder = context.outputFolder(
       options.output, {"source.vdb", "target.vdb", "source.png", "target.png", "report.json"});
   const MappedSolid mapped = readMapFile(options.map, context);
+  const Solid target = targetSolid(mapped, context);
+  const auto need = [&](const GridOptions& grid) {
+    return distanceTransferMemory(mapped.solid(), target,
+                                  gridSettings<DistanceTransferSettings>(grid, context));
+  };
   if (context.dryRun())
     return context.plan(
         {"transfer the target's distance field through " + options.map,
          "write source.vdb, target.vdb, source.png, target.png and report.json to " +
              options.output},
-        mapGridMemory(mapped.solid(), gridSettings<MapGridSettings>(options.grid, context)));
-  requireEvaluationMemory(mapped.solid(), options.grid, context);
-  const Solid target = targetSolid(mapped, context);
+        need(options.grid));
+  requireGridMemory("transferring the distance", options.grid, context, need);
   auto settings = gridSettings<DistanceTransferSettings>(options.grid, context);
   settings.accuracy = sumAccuracy(mapped);
   const DistanceTransfer made = transferDistance(mapped.map, mapped.solid(), target, settings);

@@ -120,19 +120,20 @@ double voxelGrowth(double from, double to) {
 
 std::uint64_t transferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
                              const TransferOptions& options, const Context& context,
-                             double growth) {
+                             const CarryKind& kind, double growth) {
   OutsideSettings outside;
   outside.distance = options.outside;
   return carryMemory(solid, grids, outputSettings(grids, options.grid, context, growth), outside,
-                     carrySettings(options));
+                     carrySettings(options), kind);
 }
 
 void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                           const TransferOptions& options, const Context& context, double growth) {
+                           const TransferOptions& options, const Context& context,
+                           const CarryKind& kind, double growth) {
   requireGridMemory("carrying the volume", options.grid, context, [&](const GridOptions& grid) {
     TransferOptions other = options;
     other.grid = grid;
-    return transferMemory(solid, grids, other, context, growth);
+    return transferMemory(solid, grids, other, context, kind, growth);
   });
 }
 

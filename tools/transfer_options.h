@@ -4,6 +4,7 @@
 #include <string>
 
 #include "grid_options.h"
+#include "innermap/transfer/carry_memory.h"
 #include "innermap/transfer/pull.h"
 #include "innermap/transfer/push.h"
 #include "verdict.h"
@@ -34,14 +35,14 @@ OutsideSettings outsideSettings(const TransferOptions& options, const Points& fr
 openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& options,
                                Context& context);
 
-// Peak need in bytes of pushing or pulling the grids to the solid's voxels.
+// Need in bytes of pushing or pulling the grids, read already, to the solid's voxels.
 std::uint64_t transferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
                              const TransferOptions& options, const Context& context,
-                             double growth = 1);
+                             const CarryKind& kind, double growth = 1);
 
 void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
                            const TransferOptions& options, const Context& context,
-                           double growth = 1);
+                           const CarryKind& kind, double growth = 1);
 
 // By how much volumes grow; 1 where one of them is not known.
 double volumeRatio(double from, double to);

@@ -78,8 +78,8 @@ void run(const VoxelizeOptions& options, Context& context) {
     return context.plan({fmt::format("voxelize {} with voxels of {:.6g} to {}", options.mesh,
                                      voxelSize, options.output)},
                         need);
-  requireMemory("voxelizing " + options.mesh, need, context.maxMemory(),
-                fmt::format("use a --voxel-size above {:.3g}", 1.5 * voxelSize));
+  context.requireMemory("voxelizing " + options.mesh, need,
+                        fmt::format("use a --voxel-size above {:.3g}", 1.5 * voxelSize));
   const openvdb::GridPtrVec grids = makeGrids(options, solid, mesh, settings, context);
   openvdb::MetaMap metadata;
   metadata.insertMeta("innermap_source", openvdb::StringMetadata(options.mesh));

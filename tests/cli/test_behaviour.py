@@ -66,7 +66,7 @@ def test_report_holds_times_and_memory():
 
 def test_too_much_memory_is_refused_before_it_is_used():
     icosphere()
-    fails(1, "voxelize", "ball.obj", "-o", "a.vdb", "--resolution", "2000", "--max-memory", "50MB",
+    fails(1, "voxelize", "ball.obj", "-o", "a.vdb", "--resolution", "2000", "--max-memory", "500MB",
           says=["memory", "--voxel-size"])
 
 

@@ -185,8 +185,8 @@ def test_bad_input():
     fails(1, "map", "ball.obj", "ball.obj", "-o", "out", "--sources", "0", says=["--sources"])
     fails(1, "map", "ball.obj", "ball.obj", "-o", "out", "--voxel-size", "-1",
           says=["--voxel-size"])
-    fails(1, "map", "ball.obj", "ball.obj", "-o", "out", "--max-memory", "200M", "--sources",
-          "5000", says=["--sources"])
+    fails(1, "map", "ball.obj", "ball.obj", "-o", "out", "--max-memory", "300M", "--sources",
+          "20000", says=["--sources"])
     fails(1, "map", "ball.obj", "ball.obj", "-o", "ball.obj", says=["ball.obj"])
     fails(1, "evaluate", "ball.obj", "-o", "a.vdb", says=["ball.obj", "map.ply"])
     fails(1, "fit", "ball.obj", "other.obj", "-o", "map.ply",

@@ -150,7 +150,7 @@ def test_limits_and_dry_run():
     ball_frames(moved, {1: 0.1, 2: 0.2})
     text = innermap("sequence", "rest.obj", "frames", "-o", "x", "--dry-run").stdout
     assert "8000 charges" in text and "2 frames, 1 to 2" in text and "memory" in text
-    fails(1, "sequence", "rest.obj", "frames", "-o", "x", "--max-memory", "80MB",
+    fails(1, "sequence", "rest.obj", "frames", "-o", "x", "--max-memory", "270MB",
           says=["memory", "--sources"])
     fails(1, "sequence", "rest.obj", "frames", "-o", "x", "--distance", "0.5",
           says=["--distance", "4 spacings"])

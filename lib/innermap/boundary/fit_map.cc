@@ -112,7 +112,9 @@ std::size_t shellCollocation(const ShellSettings& shell) {
   return static_cast<std::size_t>(std::max(perSource * static_cast<double>(shell.sources), 16.0));
 }
 
-std::uint64_t fitMapMemory(const FitMapSettings& settings) {
+std::uint64_t fitMapMemory(const FitMapSettings& settings, std::size_t vertices) {
+  // Measured, bytes: the certificate and the look at the inside, of a vertex and at least.
+  constexpr std::uint64_t kVertex = 1700, kChecks = 40'000'000;
   PointCounts counts = kFirstCounts;
   FitSolver solver = FitSolver::dense;
   if (settings.shell) {
@@ -120,8 +122,9 @@ std::uint64_t fitMapMemory(const FitMapSettings& settings) {
     if (!settings.shell->radiusRatio) solver = settings.shell->solver;
   }
   // Blue noise thins five candidates a point; each costs some 100 bytes.
-  return peakMemory() + fitMemory(counts.collocation, counts.sources, counts.heldOut, solver) +
-         500 * (counts.collocation + counts.sources) + 200 * kFreshSamples;
+  return std::max(fitMemory(counts.collocation, counts.sources, counts.heldOut, solver) +
+                      500 * (counts.collocation + counts.sources) + 200 * kFreshSamples,
+                  kChecks + kVertex * vertices);
 }
 
 MapFit fitMap(BoundaryPair boundary, const FitMapSettings& settings) {

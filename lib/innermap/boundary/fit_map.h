@@ -58,7 +58,7 @@ struct FitMapSettings {
   OneToOne oneToOne = OneToOne::automatic;  // with `shell` folds are counted, no more
   int maxSteps = 16;                        // in [1, 256]
   std::uint64_t seed = 1;                   // of all random points, in [0, 1e15]
-  std::uint64_t maxMemory = 0;              // bytes; 0 means no limit
+  std::uint64_t maxMemory = 0;              // bytes, of the process; 0 means no limit
   Progress* progress = nullptr;
 };
 
@@ -124,11 +124,11 @@ struct MapFit : MappedSolid {
   StageSeconds seconds;  // "sample", "fit", "certificate", "inside", "steps"
 };
 
-// Peak need of the process in bytes: what it has had already, and what the fit takes; with a
-// tolerance, what its first level of charges does. How many follow, and whether the map goes in
-// steps, is not known beforehand: charges are added while they fit maxMemory, and where steps do
-// not fit the single map is kept.
-std::uint64_t fitMapMemory(const FitMapSettings& settings);
+// Need in bytes of a fit to so many vertices of the source, beside their boundaries, and of looking
+// at what it gives; with a tolerance, of its first level of charges. How many follow, and whether
+// the map goes in steps, is not known beforehand: charges are added while the process stays within
+// maxMemory, and where steps do not fit the single map is kept.
+std::uint64_t fitMapMemory(const FitMapSettings& settings, std::size_t vertices);
 
 // What maps in steps take beside that in bytes: the most that was measured between unrelated solids
 // of some 10,000 triangles, where 0.3e9 is as common.

@@ -87,13 +87,11 @@ std::size_t frameCollocation(const FrameFitterSettings& settings) {
 }
 
 std::uint64_t frameFitterMemory(const FrameFitterSettings& settings) {
-  constexpr std::uint64_t kProgram = 64'000'000;  // with nothing loaded yet
   const std::uint64_t points = frameCollocation(settings);
   const FitSolver solver =
       settings.sources > kMostDenseSources ? FitSolver::iterative : FitSolver::dense;
   // Blue noise thins five candidates a point; each costs some 100 bytes.
-  return kProgram + fitMemory(points, settings.sources, 0, solver) +
-         500 * (points + settings.sources);
+  return fitMemory(points, settings.sources, 0, solver) + 500 * (points + settings.sources);
 }
 
 FrameFitter::FrameFitter(SourceBoundary rest, const FrameFitterSettings& settings)

@@ -11,8 +11,8 @@
 namespace innermap {
 namespace {
 
-// Measured: up to 10,000 bytes a vertex for small meshes, less for large ones.
-constexpr std::uint64_t kProgram = 64'000'000, kBytesPerVertex = 6000;
+// Measured, bytes: what coarsened surfaces take, and a vertex of meshes of up to 160,000.
+constexpr std::uint64_t kCoarse = 24'000'000, kBytesPerVertex = 2200;
 
 // Whether parts that are not connected pass through each other, so that the shells are not the
 // boundary of the solid.
@@ -165,7 +165,7 @@ LaidOutMesh layOutMesh(Mesh mesh, const LayOutSettings& settings) {
 }
 
 std::uint64_t layOutMemory(std::size_t vertices) {
-  return kProgram + kBytesPerVertex * static_cast<std::uint64_t>(vertices);
+  return kCoarse + kBytesPerVertex * static_cast<std::uint64_t>(vertices);
 }
 
 MeshOnSphere onSphere(const LaidOutMesh& laid) {

@@ -15,8 +15,8 @@
 namespace innermap {
 namespace {
 
-constexpr std::uint64_t kPicture = 300'000'000;  // bytes
-constexpr double kOffTarget = 0.01;              // of the target's diagonal
+constexpr std::uint64_t kJudged = 24'000'000;  // bytes: the insides of the ways that are tried
+constexpr double kOffTarget = 0.01;            // of the target's diagonal
 
 void requireCorrespondMemory(const Mesh& a, const Mesh& b,
                              const MeshCorrespondenceSettings& settings) {
@@ -95,6 +95,7 @@ CorrespondSettings settingsOf(const MeshCorrespondenceSettings& settings) {
     };
   out.seed = settings.seed;
   out.subdivide = settings.subdivide;
+  out.maxMemory = settings.maxMemory;
   out.progress = settings.progress;
   return out;
 }
@@ -167,7 +168,7 @@ MeshCorrespondence correspondMeshes(LaidOutMesh a, LaidOutMesh b,
 }
 
 std::uint64_t correspondMemory(std::size_t verticesA, std::size_t verticesB) {
-  return layOutMemory(verticesA + verticesB) + kPicture;
+  return layOutMemory(verticesA + verticesB) + kJudged;
 }
 
 // Measured on two cores: trying first maps on coarsened surfaces takes about as long for all but

@@ -1,6 +1,7 @@
 #include "innermap/core/memory.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -53,6 +54,24 @@ std::uint64_t peakMemory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+std::uint64_t processMemory(std::uint64_t bytes) {
+  std::uint64_t pages = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> pages >> resident;
+  resident *= static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+  // What was freed is taken first.
+  const std::uint64_t held = resident - std::min<std::uint64_t>(resident, mallinfo2().fordblks);
+  const std::uint64_t before = held + kLibrariesAtWork;
+  const std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
+  return std::max(peakMemory() + kLibrariesAtWork, bytes > most - before ? most : before + bytes);
+}
+
+std::uint64_t memoryLeft(std::uint64_t limit) {
+  if (limit == 0) return 0;
+  // So many bytes are above any peak so far.
+  const std::uint64_t many = std::uint64_t(1) << 62, held = processMemory(many) - many;
+  return limit > held ? limit - held : 1;
 }
 
 std::string formatBytes(std::uint64_t bytes) {

@@ -34,6 +34,18 @@ std::uint64_t addressSpaceLeft();
 // The largest resident size this process has had, in bytes.
 std::uint64_t peakMemory();
 
+// What the libraries take once they work, in bytes, measured: buffers of BLAS and of the readers
+// and writers, stacks of threads, code that was not touched before.
+constexpr std::uint64_t kLibrariesAtWork = 24'000'000;
+
+// The peak that this process is going to have when work takes `bytes` beyond what it holds by now:
+// the program, its libraries and what was read. All functions ...Memory() of the library say such
+// bytes; limits of programs are on the sum.
+std::uint64_t processMemory(std::uint64_t bytes);
+
+// The most bytes that processMemory() puts within `limit`, at least 1; 0, no limit, stays 0.
+std::uint64_t memoryLeft(std::uint64_t limit);
+
 // "1.5 GB": three significant digits, powers of 1000.
 std::string formatBytes(std::uint64_t bytes);
 

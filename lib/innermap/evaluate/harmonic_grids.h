@@ -45,8 +45,7 @@ HarmonicGrids evaluateHarmonic(const HarmonicField& field, const Solid& solid,
                                const std::vector<std::string>& names,
                                const HarmonicGridSettings& settings = {});
 
-// Peak need of the process in bytes: what it has had already, and what the grids of so many
-// channels take.
+// Need in bytes of the grids of so many channels.
 std::uint64_t harmonicGridMemory(const Solid& solid, std::size_t channels,
                                  const HarmonicGridSettings& settings = {});
 

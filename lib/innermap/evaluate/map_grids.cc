@@ -120,14 +120,9 @@ double toleranceOf(const MappedSolid& mapped) {
 // Where floats hold the target's positions well enough, the origin; else a point near its middle
 // that floats hold too.
 Vec3 localOriginOf(const MappedSolid& mapped) {
-  constexpr double kHalfUnit = 1.0 / (1 << 24);
-  const TargetBoundary& target = mapped.boundary.target;
-  const Box3 box = boundingBox(target.moved);
-  const Vec3 far{std::max(std::abs(box.lower.x), std::abs(box.upper.x)),
-                 std::max(std::abs(box.lower.y), std::abs(box.upper.y)),
-                 std::max(std::abs(box.lower.z), std::abs(box.upper.z))};
-  if (kHalfUnit * norm(far) <= kTenth * toleranceOf(mapped) * target.diagonal) return {};
-  Vec3 middle = box.center();
+  const Points& target = mapped.boundary.target.moved;
+  if (!needsLocalMap(target, toleranceOf(mapped))) return {};
+  Vec3 middle = boundingBox(target).center();
   for (int a = 0; a < 3; ++a) middle[a] = static_cast<double>(static_cast<float>(middle[a]));
   return middle;
 }
@@ -206,23 +201,41 @@ SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& sett
   return out;
 }
 
+bool needsLocalMap(const Points& target, double tolerance) {
+  constexpr double kHalfUnit = 1.0 / (1 << 24);
+  const Box3 box = boundingBox(target);
+  const Vec3 far{std::max(std::abs(box.lower.x), std::abs(box.upper.x)),
+                 std::max(std::abs(box.lower.y), std::abs(box.upper.y)),
+                 std::max(std::abs(box.lower.z), std::abs(box.upper.z))};
+  return kHalfUnit * norm(far) > kTenth * tolerance * box.diagonal();
+}
+
+MapGridKind mapGridKind(const MappedSolid& mapped) {
+  return {mapped.map.steps().size(),
+          needsLocalMap(mapped.boundary.target.moved, toleranceOf(mapped))};
+}
+
 std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings,
-                            std::size_t steps) {
+                            const MapGridKind& kind) {
   // Leaves of 8^3 voxels are allocated whole: along the surface they reach about 6 voxels to either
-  // side. 25 bytes a voxel of values, 8 of fog and masks.
-  constexpr double kReach = 12, kVoxel = 33, kLeaf = 512;
+  // side. Map, Jacobian, two energies, masks; map_local is one more.
+  constexpr double kReach = 12, kVoxel = 26, kLocal = 13, kLeaf = 512;
   // Measured, bytes: what the first of several steps gives, for as many leaves as are evaluated
-  // together (visit_field.cc); the boundary of the cells, a voxel of the surface, and at most
-  // (cell_check.cc); anything else.
-  constexpr double kBetweenSteps = 200e3, kTogether = 1024, kFace = 1400, kMostFaces = 350e6,
-                   kOther = 25e6;
+  // together (visit_field.cc); the boundary of the cells, a face, where overlaps are looked for and
+  // beyond (cell_check.cc); anything else.
+  constexpr double kBetweenSteps = 200e3, kTogether = 1024, kFace = 500, kMostFaces = 550e3,
+                   kBeyond = 100, kOther = 20e6;
   const LevelSetSettings levelSet = levelSetSettings(settings);
   const double voxel = voxelSizeFor(solid, levelSet), area = solid.area() / (voxel * voxel);
   const double voxels = solid.volume() / std::pow(voxel, 3) + kReach * area;
-  const double between = steps > 1 ? kBetweenSteps * std::min(kTogether, voxels / kLeaf) : 0;
-  const double work = std::max(between, std::min(kMostFaces, kFace * area));
-  return peakMemory() + levelSetMemory(solid, levelSet) +
-         static_cast<std::uint64_t>(kVoxel * voxels + work + kOther);
+  const double between = kind.steps > 1 ? kBetweenSteps * std::min(kTogether, voxels / kLeaf) : 0;
+  // Two triangles of a cell's side, of which a surface has one and a half to a square on average.
+  const double faces = 3 * area;
+  const double cells = (faces < kMostFaces ? kFace : kBeyond) * (kind.cells ? faces : 0);
+  // The density is a second level set.
+  return 2 * levelSetMemory(solid, levelSet) +
+         static_cast<std::uint64_t>((kVoxel + (kind.local ? kLocal : 0)) * voxels +
+                                    std::max(between, cells) + kOther);
 }
 
 void describeMap(const openvdb::GridPtrVec& grids, const MappedSolid& mapped) {

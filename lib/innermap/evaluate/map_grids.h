@@ -95,10 +95,22 @@ class FrameEvaluator {
 // surface, density, map, jacobian, harmonic_energy, deformation_energy.
 const std::vector<std::string>& mapGridNames();
 
-// Peak need of the process in bytes: what it has had already, and what evaluating a map of so many
-// steps takes, from the solid's volume and area. Throws Cancelled.
+// Whether a target of these vertices, in world units, stands so far from the origin that the grid
+// `map_local` is made too: floats hold positions no better than to a tenth of the tolerance, a
+// fraction of its diagonal.
+bool needsLocalMap(const Points& target, double tolerance);
+
+// How mapGridMemory() counts: harmonic maps one after another, whether there is a map_local, and
+// whether the cells between the voxels are looked at, as FrameEvaluator does not.
+struct MapGridKind {
+  std::size_t steps = 1;
+  bool local = false, cells = true;
+};
+MapGridKind mapGridKind(const MappedSolid& mapped);
+
+// Need of evaluateOnGrid() in bytes, from the solid's volume and area. Throws Cancelled.
 std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings,
-                            std::size_t steps = 1);
+                            const MapGridKind& kind = {});
 
 // The map's facts as metadata of grids made with it (prefix innermap_); of its injectivity the
 // statement, one_to_one.

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "innermap/core/parallel.h"
 
@@ -57,6 +59,13 @@ float fractionAt(const openvdb::tree::ValueAccessor<const FloatTree>& values, co
   return static_cast<float>(cellFraction(distance, normal));
 }
 
+void requireLevelSet(const FloatGrid& levelSet) {
+  if (levelSet.getGridClass() != openvdb::GRID_LEVEL_SET || !levelSet.hasUniformVoxels()) {
+    throw DataError("grid " + levelSet.getName() +
+                    ": is not a level set of cubic voxels; make one with voxelize");
+  }
+}
+
 }  // namespace
 
 double cellFraction(double distance, const Vec3& normal) {
@@ -73,10 +82,7 @@ double cellFraction(double distance, const Vec3& normal) {
 }
 
 FloatGrid::Ptr makeFog(const FloatGrid& levelSet) {
-  if (levelSet.getGridClass() != openvdb::GRID_LEVEL_SET || !levelSet.hasUniformVoxels()) {
-    throw DataError("grid " + levelSet.getName() +
-                    ": is not a level set of cubic voxels; make one with voxelize");
-  }
+  requireLevelSet(levelSet);
   const double h = levelSet.voxelSize()[0];
   FloatGrid::Ptr fog = levelSet.deepCopy();
   FloatTree& tree = fog->tree();
@@ -112,6 +118,27 @@ double fogVolume(const FloatGrid& fog) {
     sum += double(value.getValue()) * static_cast<double>(value.getVoxelCount());
   }
   return sum * std::pow(fog.voxelSize()[0], 3);
+}
+
+double insideVolume(const FloatGrid& levelSet) {
+  requireLevelSet(levelSet);
+  const double h = levelSet.voxelSize()[0];
+  const openvdb::tree::LeafManager<const FloatTree> leaves(levelSet.tree());
+  std::vector<double> sums(leaves.leafCount());
+  parallelBlocks(sums.size(), 16, [&](std::size_t begin, std::size_t end) {
+    openvdb::tree::ValueAccessor<const FloatTree> values(levelSet.tree());
+    for (std::size_t l = begin; l < end; ++l) {
+      const auto& leaf = leaves.leaf(l);
+      for (openvdb::Index i = 0; i < leaf.SIZE; ++i)
+        sums[l] += double(fractionAt(values, leaf.offsetToGlobalCoord(i), leaf.getValue(i), h));
+    }
+  });
+  double voxels = std::accumulate(sums.begin(), sums.end(), 0.0);
+  auto tile = levelSet.tree().cbeginValueAll();
+  tile.setMaxDepth(FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile)
+    if (*tile < 0) voxels += static_cast<double>(tile.getVoxelCount());
+  return voxels * std::pow(h, 3);
 }
 
 }  // namespace innermap

@@ -153,7 +153,7 @@ std::uint64_t levelSetMemory(const Solid& solid, const LevelSetSettings& setting
   checkHalfWidth(settings);
   const double h = voxelSizeFor(solid, settings);
   const Band band(solid.body(), latticeOrigin(solid.box(), h), h, 0, settings.halfWidth * h);
-  const double leaves = 1.25 * band.estimateLeaves(settings.progress);
+  const double leaves = band.estimateLeaves(settings.progress);  // an over-estimate
   const double leafBytes = sizeof(Leaf) + Band::kLeafVoxels * sizeof(float) + 3 * sizeof(Coord);
   // Nodes of 128 voxels a side hold 256 leaves of a flat surface; half of that is common.
   const double middleNodes = leaves / 100 + 8;

@@ -224,7 +224,7 @@ MeshReport checkMesh(const Mesh& mesh, const CheckSettings& settings) {
 
 std::uint64_t checkMemory(const Mesh& mesh) {
   // Edges, fans and the tree of boxes; measured at about 300 bytes a triangle.
-  return 400 * mesh.triangles.size() + 200 * mesh.vertices.size();
+  return 350 * mesh.triangles.size() + 100 * mesh.vertices.size();
 }
 
 }  // namespace innermap

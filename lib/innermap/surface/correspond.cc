@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "innermap/core/error.h"
+#include "innermap/core/memory.h"
 #include "innermap/core/stage_seconds.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/surface/detail/handles/cut_alike.h"
@@ -17,6 +18,9 @@
 
 namespace innermap {
 namespace {
+
+// Measured: of splitting, and of carrying back and measuring what is split.
+constexpr std::uint64_t kBytesATriangle = 1400;
 
 // A landmark by shells.
 struct ShellLandmark {
@@ -272,6 +276,10 @@ class Corresponder {
     how.tolerance = settings_.subdivide;
     how.progress = settings_.progress;
     ShellCorrespondence& map = shell.map;
+    if (settings_.maxMemory > 0)
+      how.triangles = std::min<std::size_t>(
+          how.triangles,
+          map.surface.triangles.size() + memoryLeft(settings_.maxMemory) / kBytesATriangle);
     const Subdivided done = timed(out_.seconds, "subdivide", [&] {
       return subdivide({map.source, map.surface, map.image, map.targetSurface, map.targetLayout},
                        laidOutB_[map.target]->metric, split_, how);

@@ -63,6 +63,7 @@ struct CorrespondSettings {
   JudgeMaker judge;  // chooses among first maps and among those refined; none: the least energy
   std::uint64_t seed = 1;
   double subdivide = 0;  // split A until it follows B within this share of B's diagonal; 0: never
+  std::uint64_t maxMemory = 0;  // bytes, of the process, that splitting ends at; 0 means no limit
   Progress* progress = nullptr;
 };
 

@@ -27,7 +27,7 @@ constexpr int kRetries = 2;
 constexpr double kMoreBlocks = 1.15;  // each time, across
 constexpr std::size_t kFeatureSamples = 20000, kBlock = 256;
 // Measured: of shaping; and what the correspondence and the map keep while the other is made.
-constexpr std::uint64_t kBytesAHexahedron = 2560, kBeside = 200'000'000;
+constexpr std::uint64_t kBytesAHexahedron = 2560, kBeside = 30'000'000;
 
 void requireSettings(const HexahedralizeSettings& settings) {
   if (settings.pieces < 1 || settings.pieces > kMostPieces)
@@ -229,7 +229,8 @@ std::uint64_t hexahedralizeMemory(const Mesh& mesh, const HexahedralizeSettings&
       pieces * pieces * (blocks * pieces + 12 * std::cbrt(blocks) * std::cbrt(blocks));
   return std::max({correspondMemory(static_cast<std::size_t>(2 * kSurfaceVertices),
                                     mesh.vertices.size()),
-                   fitMapMemory(fitting), polycubeMemory(mesh, cubes)}) +
+                   fitMapMemory(fitting, static_cast<std::size_t>(2 * kSurfaceVertices)),
+                   polycubeMemory(mesh, cubes)}) +
          kBeside + static_cast<std::uint64_t>(hexahedra) * kBytesAHexahedron;
 }
 

@@ -19,8 +19,9 @@ constexpr int kLeast = 2, kMost = kMostAcross;
 constexpr double kBlocks = 900;         // in all, when their number across is chosen
 constexpr int kChoices = 8;             // numbers across that are tried then, one after the other
 constexpr double kWorthTelling = 1e-4;  // of the solid's volume
-// Measured: of a search, of all shifts at once; and the level set, 128 across or little more.
-constexpr std::uint64_t kBytesABlock = 400, kLevelSet = 130'000'000;
+// Measured: of a search, of all shifts at once; the level set, 128 across or little more; the
+// solid.
+constexpr std::uint64_t kBytesABlock = 400, kLevelSet = 16'000'000, kBytesATriangle = 850;
 
 // Handles of the outer boundary, then of those of cavities, ascending.
 std::vector<int> handlesOf(const Mesh& mesh, const PolycubeSettings& polycube) {
@@ -215,7 +216,8 @@ std::uint64_t polycubeMemory(const Mesh& mesh, const PolycubeSettings& settings)
   double blocks = 1;
   for (int a = 0; a < 3; ++a)
     blocks *= std::ceil(extent[a] / longest * static_cast<double>(across)) + 4;
-  return kLevelSet + static_cast<std::uint64_t>(blocks) * kBytesABlock;
+  return kLevelSet + kBytesATriangle * mesh.triangles.size() +
+         kBytesABlock * static_cast<std::uint64_t>(blocks);
 }
 
 }  // namespace innermap

@@ -73,7 +73,7 @@ struct Remesh {
 Remesh remeshCells(const CellMesh& mesh, const MappedSolid& mapped,
                    const RemeshSettings& settings = {});
 
-// Peak need in bytes, with the mesh and the map.
+// Need in bytes, beside the mesh and the map.
 std::uint64_t remeshMemory(const CellMesh& mesh);
 
 }  // namespace innermap

@@ -77,11 +77,12 @@ std::uint64_t memoryOf(const SolidTexturePlan& plan) {
   const double voxels = parts.solid->volume() / std::pow(plan.voxelSize, 3) +
                         12 * parts.solid->area() / (plan.voxelSize * plan.voxelSize);
   const auto grids =
-      static_cast<std::uint64_t>((33.0 + 4.0 * static_cast<double>(channels)) * voxels);
+      static_cast<std::uint64_t>((30.0 + 4.0 * static_cast<double>(channels)) * voxels);
   const std::size_t collocation = collocationFor(plan.sources);
   const std::uint64_t fit = fitMemory(collocation, plan.sources, kHeldOut, FitSolver::iterative) +
                             80 * channels * collocation;
-  return std::max(fit, levelSetMemory(*parts.solid, levelSetSettings(s)) + grids);
+  constexpr std::uint64_t kOther = 30'000'000;  // measured
+  return kOther + std::max(fit, levelSetMemory(*parts.solid, levelSetSettings(s)) + grids);
 }
 
 void findCharts(SolidTexturePlan::Parts& parts, SolidTexturePlan& plan) {

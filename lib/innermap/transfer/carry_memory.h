@@ -12,11 +12,17 @@
 
 namespace innermap {
 
-// Estimate of the peak need, in bytes, of pushing or pulling the grids to the voxels of a solid,
-// those of makeLevelSet(solid, output). Only the distance of `outside` counts; of `carry`, which
-// grids are densities.
+// Which way, and how many fields of vectors are pushed beside (VolumePusher::push).
+struct CarryKind {
+  bool pushed = true;
+  int fields = 0;
+};
+
+// Estimate of the need, in bytes, of pushing or pulling the grids, which are read already, to the
+// voxels of a solid, those of makeLevelSet(solid, output). Only the distance of `outside` counts;
+// of `carry`, which grids are densities.
 std::uint64_t carryMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
                           const LevelSetSettings& output, const OutsideSettings& outside = {},
-                          const CarrySettings& carry = {});
+                          const CarrySettings& carry = {}, const CarryKind& kind = {});
 
 }  // namespace innermap

@@ -79,13 +79,18 @@ openvdb::FloatGrid::Ptr leafByLeaf(const Grid& region, const Fill& fill, Progres
 
 Vec3 vec3(const openvdb::Vec3d& v) { return {v.x(), v.y(), v.z()}; }
 
-SolidDepths depthsOf(const Solid& solid, const DistanceTransferSettings& settings,
-                     StageSeconds& seconds) {
+LevelSetSettings levelSetSettings(const DistanceTransferSettings& settings) {
   LevelSetSettings levelSet;
   levelSet.voxelSize = settings.voxelSize;
   levelSet.resolution = settings.resolution;
   levelSet.maxMemory = settings.maxMemory;
   levelSet.progress = settings.progress;
+  return levelSet;
+}
+
+SolidDepths depthsOf(const Solid& solid, const DistanceTransferSettings& settings,
+                     StageSeconds& seconds) {
+  const LevelSetSettings levelSet = levelSetSettings(settings);
   DepthSettings depth;
   depth.maxMemory = settings.maxMemory;
   depth.progress = settings.progress;
@@ -166,6 +171,20 @@ DistanceTransfer transferDistance(const ComposedMap& map, const Solid& source, c
   out.outsideFraction = static_cast<double>(out.throughFigures.negative) /
                         std::max<double>(1, static_cast<double>(out.throughFigures.voxels));
   return out;
+}
+
+std::uint64_t distanceTransferMemory(const Solid& source, const Solid& target,
+                                     const DistanceTransferSettings& settings) {
+  // Of a voxel of the source: its depth, its image, the depth of that; and masks. Leaves of 8^3
+  // voxels are allocated whole, along the surface some 6 voxels to either side.
+  constexpr double kSource = 20.6, kTarget = 4.2, kReach = 12, kOther = 20e6;
+  const LevelSetSettings levelSet = levelSetSettings(settings);
+  const auto need = [&](const Solid& solid, double bytes) {
+    const double voxel = voxelSizeFor(solid, levelSet);
+    return static_cast<double>(levelSetMemory(solid, levelSet)) +
+           bytes * (solid.volume() / std::pow(voxel, 3) + kReach * solid.area() / (voxel * voxel));
+  };
+  return static_cast<std::uint64_t>(need(source, kSource) + need(target, kTarget) + kOther);
 }
 
 }  // namespace innermap

@@ -78,4 +78,8 @@ struct DistanceTransfer {
 DistanceTransfer transferDistance(const ComposedMap& map, const Solid& source, const Solid& target,
                                   const DistanceTransferSettings& settings = {});
 
+// Need of that in bytes, from the solids' volumes and areas. Throws Cancelled.
+std::uint64_t distanceTransferMemory(const Solid& source, const Solid& target,
+                                     const DistanceTransferSettings& settings = {});
+
 }  // namespace innermap

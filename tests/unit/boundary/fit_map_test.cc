@@ -252,12 +252,13 @@ TEST(FitMap, RefusesSettingsOutsideTheirRange) {
 TEST(FitMap, CountsItsMemory) {
   FitMapSettings settings;
   settings.shell = ShellSettings{};
-  const std::uint64_t few = fitMapMemory(settings);
+  const std::uint64_t few = fitMapMemory(settings, 1000);
   settings.shell->sources = 20000;
   settings.shell->solver = FitSolver::dense;
-  const std::uint64_t many = fitMapMemory(settings);
+  const std::uint64_t many = fitMapMemory(settings, 1000);
   EXPECT_GT(many, 20000u * 80000u * 8u);
   EXPECT_LT(few, many / 10);
+  EXPECT_GT(fitMapMemory(settings, 100'000'000), many);
 }
 
 TEST(FitMap, Cancels) {

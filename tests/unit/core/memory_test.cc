@@ -52,6 +52,26 @@ TEST(Memory, PeakGrowsWithUse) {
   EXPECT_GE(availableMemory(), peakMemory());
 }
 
+TEST(Memory, ThatOfTheProcessCountsWhatItHolds) {
+  const std::uint64_t before = processMemory(0);
+  EXPECT_GE(before, peakMemory());
+  EXPECT_GE(processMemory(1'000'000'000), 1'000'000'000u);
+  EXPECT_LE(processMemory(1'000'000'000), 1'000'000'000u + before);
+  {
+    std::vector<char> block(1 << 28);
+    for (std::size_t i = 0; i < block.size(); i += 4096) block[i] = static_cast<char>(i);
+    EXPECT_GE(processMemory(1'000'000'000), 1'000'000'000u + block.size());
+  }
+  // What was freed is there to be used again.
+  EXPECT_LT(processMemory(1'000'000'000), 1'000'000'000u + before + (1u << 27));
+  EXPECT_EQ(processMemory(~0ull), ~0ull);
+  EXPECT_EQ(memoryLeft(0), 0u);
+  EXPECT_EQ(memoryLeft(1000), 1u);
+  const std::uint64_t left = memoryLeft(8'000'000'000);
+  EXPECT_GT(left, 7'000'000'000u);
+  EXPECT_NEAR(double(processMemory(left)), 8e9, 1e7);
+}
+
 TEST(Memory, SaysWhatSizeWouldFit) {
   const SizeOption size{"points", 1, 1000, [](std::uint64_t n) { return 10 * n; }};
   EXPECT_NO_THROW(requireMemoryFor("this", 400, 500, size, "wait"));

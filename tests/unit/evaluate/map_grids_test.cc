@@ -158,15 +158,15 @@ TEST(MapGrids, VoxelSizeStandsInForTheResolution) {
 TEST(MapGrids, CountTheirMemory) {
   const Solid solid(ball(2));
   MapGridSettings settings;
-  // Of the process so far, which may grow at any time but here does not by much.
-  const auto beside = [&](std::size_t steps) {
-    return static_cast<double>(mapGridMemory(solid, settings, steps)) -
-           static_cast<double>(peakMemory());
+  const auto need = [&](const MapGridKind& kind) {
+    return static_cast<double>(mapGridMemory(solid, settings, kind));
   };
-  const double coarse = beside(1);
-  EXPECT_GT(beside(5), coarse + 50e6);
+  const double coarse = need({});
+  EXPECT_GT(need({5}), coarse + 50e6);
+  EXPECT_GT(need({1, true}), coarse);
+  EXPECT_LT(need({1, false, false}), coarse);
   settings.resolution = 512;
-  EXPECT_GT(beside(1), 10 * coarse);
+  EXPECT_GT(need({}), 10 * coarse);
   settings.maxMemory = 1000;
   EXPECT_THROW(evaluateOnGrid(affineFit(), settings), MemoryError);
 }

@@ -12,6 +12,7 @@ using namespace test;
 TEST(CarryMemory, GrowsWithVoxelsGridsAndWhatIsAround) {
   auto grid = openvdb::FloatGrid::create();
   grid->setTransform(openvdb::math::Transform::createLinearTransform(0.5));
+  grid->denseFill(openvdb::CoordBBox(openvdb::Coord(-20), openvdb::Coord(20)), 1);
   auto finer = openvdb::DoubleGrid::create();
   finer->setTransform(openvdb::math::Transform::createLinearTransform(0.125));
   EXPECT_DOUBLE_EQ(finestVoxel({grid, finer}), 0.125);
@@ -27,7 +28,12 @@ TEST(CarryMemory, GrowsWithVoxelsGridsAndWhatIsAround) {
   EXPECT_LT(carryMemory(solid, {grid}, fine), carryMemory(solid, {grid}, fine, outside));
   CarrySettings densities;
   densities.allDensities = true;
-  EXPECT_LT(carryMemory(solid, {grid}, fine), carryMemory(solid, {grid}, fine, {}, densities));
+  const CarryKind pulled{false, 0}, withField{true, 1};
+  const std::uint64_t pushed = carryMemory(solid, {grid}, fine);
+  EXPECT_LT(carryMemory(solid, {grid}, fine, {}, {}, pulled), pushed);
+  EXPECT_LT(carryMemory(solid, {grid}, fine, {}, {}, pulled),
+            carryMemory(solid, {grid}, fine, {}, densities));
+  EXPECT_GT(carryMemory(solid, {grid}, fine, {}, {}, withField), pushed);
 }
 
 }  // namespace

@@ -182,7 +182,7 @@ MappedPoints MapFitter::insideOf(const ComposedMap& map) {
 }
 
 bool MapFitter::roomForSteps() {
-  const std::uint64_t need = peakMemory() + kStepsMemory;
+  const std::uint64_t need = processMemory(kStepsMemory);
   if (settings_.maxMemory == 0 || need <= settings_.maxMemory) return true;
   warnings.push_back(
       fmt::format("one harmonic map folds {:.2g}% of the inside; going in steps may need about "
@@ -223,7 +223,7 @@ AdaptiveSettings MapFitter::adaptiveSettings(double tolerance) const {
   s.tolerance = tolerance;
   s.maxSources = settings_.maxSources;
   s.checkSamples = kFreshSamples;
-  s.maxMemory = settings_.maxMemory;
+  s.maxMemory = memoryLeft(settings_.maxMemory);
   s.progress = settings_.progress;
   return s;
 }
@@ -248,7 +248,7 @@ FitOutcome MapFitter::inSteps() {
   s.maxSteps = settings_.maxSteps;
   s.maxSources = settings_.maxSources;
   s.seed = settings_.seed;
-  s.maxMemory = settings_.maxMemory;
+  s.maxMemory = memoryLeft(settings_.maxMemory);
   s.progress = settings_.progress;
   StepFit fit = timed(seconds, "steps", [&] { return fitInSteps(pair_, inside(), s); });
   FitOutcome out{std::move(fit.map), fit.error, {}, 0, false, {}, {}, {}, {}, std::move(fit.steps)};

@@ -123,16 +123,19 @@ Pixels pixelsOf(const openvdb::GridPtrVec& grids, const SliceFrame& frame, int l
   return pixels;
 }
 
-std::uint64_t memoryFor(const SliceFrame& frame, std::size_t channels) {
-  // The values of a slice, a grid's more while they are turned to halves, OpenEXR's line buffers.
+std::uint64_t memoryFor(const SliceFrame& frame, std::size_t channels, int slices) {
+  // The values of a slice, a grid's more while they are turned to halves; of each part its header
+  // and OpenEXR's buffer of 16 lines, raw and compressed.
+  constexpr std::uint64_t kHeader = 16384, kLines = 40;
   return frame.rows() * frame.columns() * (channels + 3) * sizeof(float) +
-         frame.columns() * channels * sizeof(float) * 64;
+         static_cast<std::uint64_t>(slices) *
+             (kHeader + frame.columns() * channels * sizeof(float) * kLines);
 }
 
 }  // namespace
 
 std::uint64_t exrSliceMemory(const openvdb::GridPtrVec& grids, const ExrSliceSettings& settings) {
-  return memoryFor(sliceFrame(grids, settings.axis), allChannels(grids).size());
+  return memoryFor(sliceFrame(grids, settings.axis), allChannels(grids).size(), settings.count);
 }
 
 ExrSliceResult writeExrSlices(const std::string& path, const openvdb::GridPtrVec& grids,
@@ -142,8 +145,8 @@ ExrSliceResult writeExrSlices(const std::string& path, const openvdb::GridPtrVec
     throw SettingError("count", "is out of range; give a number of slices from 1 to 65536");
   const SliceFrame frame = sliceFrame(grids, settings.axis);
   const std::vector<std::string> channels = allChannels(grids);
-  requireMemory("slicing to " + path, memoryFor(frame, channels.size()), settings.maxMemory,
-                "slice fewer grids or along another axis");
+  requireMemory("slicing to " + path, memoryFor(frame, channels.size(), settings.count),
+                settings.maxMemory, "slice fewer grids or along another axis");
   const std::vector<int> layers = sliceLayers(frame, settings.count);
   std::vector<Imf::Header> headers;
   for (std::size_t i = 0; i < layers.size(); ++i)

@@ -14,6 +14,8 @@ namespace {
 constexpr char kStage[] = "drawing the surfaces";
 constexpr Rgb kPaper{1, 1, 1}, kInk{0.13f, 0.14f, 0.16f};
 constexpr int kMargin = 24, kTitle = 44, kFooter = 40, kSubsamples = 3;
+constexpr int kTogether = 1 << 19;  // subsamples that are coloured together
+constexpr double kWidest = 1.6;     // a view, in its heights
 
 // Right, up and towards the viewer.
 struct View {
@@ -160,31 +162,36 @@ double light(Vec3 normal, const View& view) {
 void drawView(const PictureSurface& surface, const View& view, int x0, int y0, int width,
               int height, Progress* progress, Picture& picture) {
   const Seen seen = rasterise(surface, view, width * kSubsamples, height * kSubsamples, progress);
-  std::vector<VisiblePoint> points;
-  for (std::size_t i = 0; i < seen.triangle.size(); ++i) {
-    const double u = static_cast<double>(seen.u[i]), v = static_cast<double>(seen.v[i]);
-    if (seen.triangle[i] >= 0)
-      points.push_back({seen.triangle[i], {std::max(0.0, 1 - u - v), u, v}});
-  }
-  const std::vector<Vec3> colours = surface.colours(points);
-  if (colours.size() != points.size())
-    throw DataError(surface.label + ": not as many colours as points");
   const Normals normals(surface);
   std::vector<Vec3> sum(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   std::vector<int> covered(sum.size(), 0);
-  std::size_t next = 0;
-  for (int y = 0; y < seen.height; ++y)
-    for (int x = 0; x < seen.width; ++x) {
-      const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(seen.width) +
-                            static_cast<std::size_t>(x);
-      if (seen.triangle[i] < 0) continue;
-      const auto& b = points[next].barycentric;
-      const std::size_t pixel =
-          static_cast<std::size_t>(y / kSubsamples) * static_cast<std::size_t>(width) +
-          static_cast<std::size_t>(x / kSubsamples);
-      sum[pixel] += light(normals.at(seen.triangle[i], b[1], b[2]), view) * colours[next++];
-      ++covered[pixel];
+  // Points and colours take much more than what is seen, so not of all rows at once.
+  const int rows = std::max(1, kTogether / seen.width);
+  std::vector<VisiblePoint> points;
+  std::vector<std::size_t> pixels;
+  for (int first = 0; first < seen.height; first += rows) {
+    points.clear();
+    pixels.clear();
+    for (int y = first; y < std::min(first + rows, seen.height); ++y)
+      for (int x = 0; x < seen.width; ++x) {
+        const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(seen.width) +
+                              static_cast<std::size_t>(x);
+        if (seen.triangle[i] < 0) continue;
+        const double u = static_cast<double>(seen.u[i]), v = static_cast<double>(seen.v[i]);
+        points.push_back({seen.triangle[i], {std::max(0.0, 1 - u - v), u, v}});
+        pixels.push_back(static_cast<std::size_t>(y / kSubsamples) *
+                             static_cast<std::size_t>(width) +
+                         static_cast<std::size_t>(x / kSubsamples));
+      }
+    const std::vector<Vec3> colours = surface.colours(points);
+    if (colours.size() != points.size())
+      throw DataError(surface.label + ": not as many colours as points");
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const auto& b = points[i].barycentric;
+      sum[pixels[i]] += light(normals.at(points[i].triangle, b[1], b[2]), view) * colours[i];
+      ++covered[pixels[i]];
     }
+  }
   for (std::size_t p = 0; p < sum.size(); ++p) {
     if (covered[p] == 0) continue;
     Rgb colour;
@@ -205,7 +212,7 @@ double aspect(const PictureSurface& surface, const std::vector<Vec3>& from) {
       for (const int v : t) box.add(view(surface.vertices[v]));
     widest = std::max(widest, box.extent().x / std::max(box.extent().y, 1e-300));
   }
-  return std::min(widest, 1.6);
+  return std::min(widest, kWidest);
 }
 
 void check(const std::vector<PictureSurface>& surfaces, const MeshPictureSettings& settings) {
@@ -221,6 +228,14 @@ void check(const std::vector<PictureSurface>& surfaces, const MeshPictureSetting
 }
 
 }  // namespace
+
+std::uint64_t meshPictureMemory(const MeshPictureSettings& settings) {
+  // Of a subsample: the triangle, its coordinates, its depth; and of those that are coloured
+  // together, what was measured.
+  constexpr std::uint64_t kSeen = 20, kColoured = 120;
+  const double samples = kWidest * settings.pixels * settings.pixels * kSubsamples * kSubsamples;
+  return kSeen * static_cast<std::uint64_t>(samples) + kColoured * kTogether;
+}
 
 void writeMeshPicture(const std::string& path, const std::vector<PictureSurface>& surfaces,
                       const MeshPictureSettings& settings) {

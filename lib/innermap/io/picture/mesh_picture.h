@@ -42,6 +42,9 @@ struct MeshPictureSettings {
 void writeMeshPicture(const std::string& path, const std::vector<PictureSurface>& surfaces,
                       const MeshPictureSettings& settings = {});
 
+// Need of each of the functions here in bytes, beside the surfaces.
+std::uint64_t meshPictureMemory(const MeshPictureSettings& settings = {});
+
 // A's coordinates as colours, with a chequered pattern in which stretch shows, on A and on B side
 // by side. B is coloured point by point by where the map comes from, not vertex by vertex. Throws
 // as writeMeshPicture.

@@ -305,11 +305,14 @@ void checkSettings(const SectionSettings& s) {
     throw SettingError("range", "is empty; give the lower number first");
 }
 
-}  // namespace
+struct Shown {
+  openvdb::GridBase::Ptr grid;
+  openvdb::GridPtrVec needed;  // it, and what says where the solid is
+  SliceFrame frame;
+  Layout layout;
+};
 
-SectionResult writeSectionImage(const std::string& path, const openvdb::GridPtrVec& grids,
-                                const SectionSettings& settings) {
-  checkSettings(settings);
+Shown shownOf(const openvdb::GridPtrVec& grids, const SectionSettings& settings) {
   const openvdb::GridBase::Ptr grid = gridToShow(grids, settings.grid, settings.colour);
   if (settings.colour && !isColour(*grid))
     throw DataError(fmt::format("grid '{}' is no colour but of type {}; show it without colour",
@@ -320,11 +323,29 @@ SectionResult writeSectionImage(const std::string& path, const openvdb::GridPtrV
       if (solid != grid && solid->constTransform() == grid->constTransform())
         needed.push_back(solid);
   const SliceFrame frame = sliceFrame(needed, settings.axis);
-  const Layout layout = layoutFor(frame, settings.pixels, !settings.colour);
-  requireMemory("the section " + path,
-                frame.rows() * frame.columns() * 12 * sizeof(float) +
-                    std::uint64_t(layout.totalWidth) * layout.totalHeight * 16,
-                settings.maxMemory, "cut along another axis or ask for fewer pixels");
+  return {grid, needed, frame, layoutFor(frame, settings.pixels, !settings.colour)};
+}
+
+std::uint64_t memoryFor(const Shown& shown) {
+  return shown.frame.rows() * shown.frame.columns() * 12 * sizeof(float) +
+         std::uint64_t(shown.layout.totalWidth) * shown.layout.totalHeight * 16;
+}
+
+}  // namespace
+
+std::uint64_t sectionImageMemory(const openvdb::GridPtrVec& grids,
+                                 const SectionSettings& settings) {
+  checkSettings(settings);
+  return memoryFor(shownOf(grids, settings));
+}
+
+SectionResult writeSectionImage(const std::string& path, const openvdb::GridPtrVec& grids,
+                                const SectionSettings& settings) {
+  checkSettings(settings);
+  const Shown shown = shownOf(grids, settings);
+  requireMemory("the section " + path, memoryFor(shown), settings.maxMemory,
+                "cut along another axis or ask for fewer pixels");
+  const auto& [grid, needed, frame, layout] = shown;
   const SectionCut cut = cutThrough(grid, needed, frame, layerFor(frame, settings),
                                     {componentOf(settings), settings.colour});
 

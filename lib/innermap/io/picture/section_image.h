@@ -65,4 +65,7 @@ struct SectionResult {
 SectionResult writeSectionImage(const std::string& path, const openvdb::GridPtrVec& grids,
                                 const SectionSettings& settings = {});
 
+// Need of that in bytes, beside the grids. Throws as writeSectionImage does of its settings.
+std::uint64_t sectionImageMemory(const openvdb::GridPtrVec& grids, const SectionSettings& settings);
+
 }  // namespace innermap

@@ -151,8 +151,8 @@ FloatGrid::Ptr narrowBand(const SolidBody& body, const Vec3& origin, double voxe
 
 double gridVolume(const SolidBody& body, int resolution) {
   const double h = voxelSizeAcross(body.box(), resolution);
-  return fogVolume(
-      *makeFog(*narrowBand(body, latticeOrigin(body.box(), h), h, kUsualHalfWidth * h, nullptr)));
+  return insideVolume(
+      *narrowBand(body, latticeOrigin(body.box(), h), h, kUsualHalfWidth * h, nullptr));
 }
 
 }  // namespace innermap

@@ -229,10 +229,13 @@ double write(const VoxelSums& sums, double voxelVolume, double limit, Grid& grid
 }  // namespace
 
 std::uint64_t densityMemory(std::uint64_t sourceVoxels, double targetVoxels) {
-  // Cells are at most half as many again as the target's voxels, where they are finer than those of
-  // the source; along the surface they have more corners than there are cells.
-  const double nodes = 1.4 * std::max(static_cast<double>(sourceVoxels), 1.5 * targetVoxels);
-  return kParts + CellNodes::memory(static_cast<std::size_t>(nodes)) +
+  // Where the target's voxels are finer than those of the source, these are cut so far (push.cc);
+  // along the surface cells have more corners than there are cells.
+  const double source = std::max(1.0, static_cast<double>(sourceVoxels));
+  const double parts = std::clamp(std::floor(std::cbrt(targetVoxels / source) + 0.25), 1.0, 32.0);
+  const double nodes = 1.2 * source * parts * parts * parts;
+  constexpr std::uint64_t kSummed = 50'000'000;  // of kParts, measured
+  return kSummed + CellNodes::memory(static_cast<std::size_t>(nodes)) +
          static_cast<std::uint64_t>(targetVoxels) * sizeof(VoxelSums::Sum);
 }
 

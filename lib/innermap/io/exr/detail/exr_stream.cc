@@ -51,9 +51,13 @@ void withExrErrors(const std::string& path, const std::string& done, const std::
 }
 
 ExrThreads::ExrThreads() : before_(Imf::globalThreadCount()) {
-  const auto allowed =
-      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  Imf::setGlobalThreadCount(static_cast<int>(std::min<std::size_t>(allowed, 64)));
+  Imf::setGlobalThreadCount(static_cast<int>(allowed()));
+}
+
+std::size_t ExrThreads::allowed() {
+  const std::size_t most = 64, active = tbb::global_control::active_value(
+                                   tbb::global_control::max_allowed_parallelism);
+  return std::min(most, active);
 }
 
 ExrThreads::~ExrThreads() {

@@ -63,6 +63,9 @@ class ExrThreads {
  public:
   ExrThreads();
   ~ExrThreads();
+
+  static std::size_t allowed();  // their number
+
   ExrThreads(const ExrThreads&) = delete;
   ExrThreads& operator=(const ExrThreads&) = delete;
 
