@@ -16,7 +16,7 @@ namespace innermap {
 namespace {
 
 constexpr std::size_t kMostVertices = 200000;
-constexpr std::size_t kPeaks = 48, kAbout = 10;  // places searched about at once, points about each
+constexpr std::size_t kPeaks = 48, kAbout = 16;  // places searched about at once, points about each
 constexpr int kRounds = 6;
 constexpr double kNearer = 1.0 / 2.5;       // of the radius, from round to round
 constexpr double kMargin = 0.1;             // beyond the largest that was found

@@ -12,8 +12,6 @@
 namespace innermap {
 namespace {
 
-constexpr double kPointsPerSource = 4, kPointsPerManySources = 3;
-
 std::string number(double x) { return fmt::format("{:.9g}", x); }
 
 Facts factsOf(const BoundaryPair& pair, const FitOutcome& out, std::uint64_t seed) {
@@ -104,13 +102,6 @@ void validate(const FitMapSettings& settings) {
 }
 
 }  // namespace
-
-std::size_t shellCollocation(const ShellSettings& shell) {
-  if (shell.collocation > 0) return shell.collocation;
-  const double perSource =
-      shell.sources > kMostDenseSources ? kPointsPerManySources : kPointsPerSource;
-  return static_cast<std::size_t>(std::max(perSource * static_cast<double>(shell.sources), 16.0));
-}
 
 std::uint64_t fitMapMemory(const FitMapSettings& settings, std::size_t vertices) {
   // Measured, bytes: the certificate and the look at the inside, of a vertex and at least.

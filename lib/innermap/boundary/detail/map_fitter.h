@@ -9,7 +9,7 @@
 #include "innermap/boundary/detail/map_certificate.h"
 #include "innermap/boundary/detail/problem_samples.h"
 #include "innermap/boundary/detail/target_shape.h"
-#include "innermap/boundary/fit_map.h"
+#include "innermap/boundary/map_fit.h"
 #include "innermap/boundary/surface_problem.h"
 
 namespace innermap {

@@ -1,0 +1,120 @@
+// What fitMap (fit_map.h) takes and gives.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "innermap/boundary/mapped_solid.h"
+#include "innermap/field/adaptive_fit.h"
+#include "innermap/field/boundary_error.h"
+#include "innermap/field/fit.h"
+
+namespace innermap {
+
+// A number of charges, whatever the error.
+struct ShellSettings {
+  std::size_t sources = 2000;  // in [1, 1000000]; dense: at most 20000
+  std::size_t collocation =
+      0;  // boundary points, at least sources + 4; 0: 4 a source (3 above 3000)
+  std::optional<double> distance;     // of the source's diagonal, in [1e-4, 2]; chosen when absent
+  std::optional<double> radiusRatio;  // in (1, 100]: charges on a sphere of that many half
+                                      // diagonals instead; not together with a distance
+  FitSolver solver = FitSolver::automatic;
+  Regularization method = Regularization::tikhonov;
+  std::optional<double> regularization;  // relative, in [0, 1]; chosen when absent
+};
+
+// Boundary points of these settings: `collocation`, or its default.
+std::size_t shellCollocation(const ShellSettings& shell);
+
+// What is done about folds. automatic: steps, where one harmonic map folds more than kManyFolds of
+// the inside or takes more than kManyOutside of it out of the target; where its first charges fold
+// twice that share, it is not fitted to the end. on: steps until no point that is checked is
+// folded. off: one harmonic map.
+enum class OneToOne { automatic, on, off };
+
+constexpr double kManyFolds = 5e-3, kManyOutside = 1e-2;
+
+// What maps in steps take beside a single one in bytes: the most that was measured between
+// unrelated solids of some 10,000 triangles, where 0.3e9 is as common.
+constexpr std::uint64_t kStepsMemory = 700'000'000;
+
+struct FitMapSettings {
+  // 99% of the boundary shall lie within it; fraction of the target's diagonal, in
+  // [kSmallestTolerance, 1]. Not used with `shell`.
+  double tolerance = 1e-3;
+  std::size_t maxSources = 100000;  // that the tolerance may take, in [1000, 1000000]
+  std::optional<ShellSettings> shell;
+  Interpolation interpolation = Interpolation::automatic;
+  OneToOne oneToOne = OneToOne::automatic;  // with `shell` folds are counted, no more
+  int maxSteps = 16;                        // in [1, 256]
+  std::uint64_t seed = 1;                   // of all random points, in [0, 1e15]
+  std::uint64_t maxMemory = 0;              // bytes, of the process; 0 means no limit
+  Progress* progress = nullptr;
+};
+
+// How the charges were placed and their weights found. Lengths are fractions of the source's
+// diagonal.
+struct MapSolve {
+  std::string method;     // "adaptive", "iterative", or what a dense solve was regularised by:
+                          // "tikhonov", "tsvd"
+  std::string placement;  // "adaptive", "shell", "sphere"
+  std::size_t sources = 0, collocation = 0, heldOut = 0, rank = 0;
+  double distance = 0;                       // of the charges, of the first level; none on a sphere
+  double radiusRatio = 0;                    // of a sphere
+  double regularization = 0, condition = 0;  // of a dense solve
+  double weightNorm = 0;
+  double productError = 0;  // as in IterativeSolution
+  int iterations = 0;
+  std::vector<double> residuals;      // rms at the collocation points, of iterative solves
+  std::vector<DistanceTrial> trials;  // that chose the distance
+  std::vector<AdaptiveLevel> levels;  // of an adaptive placement
+  std::vector<AdaptiveRound> rounds;
+};
+
+struct ToleranceOutcome {
+  double wanted = 0, reached = 0;  // fractions of the target's diagonal
+  bool met = false;
+  // Why no more was reached, when it is not met; `met` then means that Interpolation::smooth fits
+  // the vertices only.
+  AdaptiveEnd end = AdaptiveEnd::met;
+};
+
+// What the map does to points inside the source.
+struct InsideFigures {
+  std::size_t samples = 0;  // of a lattice through the inside
+  double folded = 0;        // share of them where the Jacobian determinant is not above 0
+  double outside = 0;       // share whose image is farther out of the target than the largest error
+  Points foldedAt;          // the first of them, at most 16, world units of the source
+  DeterminantFigures determinants;  // of them
+};
+
+struct MapFit : MappedSolid {
+  // The certificate, against the boundary's triangles: at 20,000 random boundary points that took
+  // no part in the fit; its largest value, looked for (see certify), is the largest error anywhere
+  // inside (maximum principle; of one harmonic map). All here are fractions of the target's
+  // diagonal.
+  BoundaryError error;
+  double collocationError = 0;        // sum of squares at the collocation points (C-Error)
+  bool smooth = false;                // fitted to the vertices of a smooth deformation
+  std::optional<double> verticesRms;  // then: at vertices that it never saw
+  std::optional<double> verticesMax;  // and the largest at any
+  // Else: about how far the triangles are at most from a smooth deformation that the vertices may
+  // be samples of, as vertices about each triangle tell that had no part in it.
+  std::optional<double> triangles;
+  // With kCertificateConfidence the map is nowhere farther from such a smooth deformation, if it is
+  // harmonic inside.
+  double smoothBound = 0;
+  std::optional<ToleranceOutcome> tolerance;  // none with `shell`
+  MapSolve solve;
+  InsideFigures inside;
+  std::vector<MapStep> steps;  // none of a single harmonic map
+  // Of the fit, a line each; those of its boundaries stand in `boundary`, and here too when fitMap
+  // was given meshes.
+  std::vector<std::string> notes, warnings;
+  StageSeconds seconds;  // "sample", "fit", "certificate", "inside", "steps"
+};
+
+}  // namespace innermap
