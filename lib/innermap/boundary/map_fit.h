@@ -32,7 +32,7 @@ std::size_t shellCollocation(const ShellSettings& shell);
 // What is done about folds. automatic: steps, where one harmonic map folds more than kManyFolds of
 // the inside or takes more than kManyOutside of it out of the target; where its first charges fold
 // twice that share, it is not fitted to the end. on: steps until no point that is checked is
-// folded. off: one harmonic map.
+// folded. off: one harmonic map, of which folds are counted.
 enum class OneToOne { automatic, on, off };
 
 constexpr double kManyFolds = 5e-3, kManyOutside = 1e-2;

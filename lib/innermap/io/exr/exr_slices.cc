@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <ostream>
 #include <set>
 
@@ -159,16 +160,19 @@ ExrSliceResult writeExrSlices(const std::string& path, const openvdb::GridPtrVec
   writeWholeFile(path, [&](std::ostream& file) {
     withExrErrors(path, "written", "; free some space", settings.progress, [&] {
       ExrOutputStream stream(path, file, settings.progress);
-      Imf::MultiPartOutputFile output(stream, headers.data(), static_cast<int>(headers.size()));
+      auto output = std::make_unique<Imf::MultiPartOutputFile>(stream, headers.data(),
+                                                               static_cast<int>(headers.size()));
       for (std::size_t i = 0; i < layers.size(); ++i) {
         reportProgress(settings.progress, "writing slices",
                        static_cast<double>(i) / static_cast<double>(layers.size()));
         const Pixels pixels = pixelsOf(grids, frame, layers[i], settings.half, settings.progress);
-        Imf::OutputPart part(output, static_cast<int>(i));
+        Imf::OutputPart part(*output, static_cast<int>(i));
         part.setFrameBuffer(pixels.buffer());
         part.writePixels(static_cast<int>(frame.rows()));
         result.clamped += pixels.clamped();
       }
+      output.reset();
+      stream.requireComplete();
     });
     reportProgress(settings.progress, "writing slices", 1);
   });

@@ -162,6 +162,7 @@ void withStream(const std::string& path, Progress* progress,
     withExrErrors(path, "written", "; free some space", progress, [&] {
       ExrOutputStream stream(path, file, progress);
       body(stream);
+      stream.requireComplete();
     });
   });
 }

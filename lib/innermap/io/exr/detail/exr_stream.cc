@@ -21,6 +21,19 @@ void ExrOutputStream::write(const char data[], int count) {
   if (!stream_)
     throw FileError(path_, fmt::format("cannot be written ({}); free some space",
                                        errno ? std::strerror(errno) : "write error"));
+  // A place is a number of 8 bytes, 0 for none.
+  if (back_ && count == 8 && std::all_of(data, data + count, [](char c) { return c == 0; }))
+    missing_ = true;
+  end_ = std::max(end_, tellp());
+}
+
+void ExrOutputStream::seekp(std::uint64_t position) {
+  stream_.seekp(static_cast<std::streamoff>(position));
+  back_ = position < end_;
+}
+
+void ExrOutputStream::requireComplete() const {
+  if (missing_) throw FileError(path_, "cannot be written whole: OpenEXR ran out of memory");
 }
 
 ExrInputStream::ExrInputStream(const std::string& path, const Progress* progress)

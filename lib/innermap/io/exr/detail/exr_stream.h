@@ -14,8 +14,9 @@
 
 namespace innermap {
 
-// OpenEXR's own file stream does not notice a disk that is full when it is closed. Throws FileError
-// naming `path`, Cancelled.
+// OpenEXR's own file stream does not notice a disk that is full when it is closed; and a chunk that
+// it has no memory to compress it leaves out without a word (3.1). Throws FileError naming `path`,
+// Cancelled.
 class ExrOutputStream : public Imf::OStream {
  public:
   ExrOutputStream(const std::string& path, std::ostream& stream, const Progress* progress)
@@ -23,14 +24,18 @@ class ExrOutputStream : public Imf::OStream {
 
   void write(const char data[], int count) override;
   std::uint64_t tellp() override { return static_cast<std::uint64_t>(stream_.tellp()); }
-  void seekp(std::uint64_t position) override {
-    stream_.seekp(static_cast<std::streamoff>(position));
-  }
+  void seekp(std::uint64_t position) override;
+
+  // To be called when OpenEXR is done with it. Throws FileError when a chunk is missing.
+  void requireComplete() const;
 
  private:
   std::string path_;
   std::ostream& stream_;
   const Progress* progress_;
+  std::uint64_t end_ = 0;  // of what is written
+  bool back_ = false;      // in what was written before: the tables of the chunks' places, at last
+  bool missing_ = false;
 };
 
 // Every access beyond the file's end is a FileError; polls for Cancelled.
