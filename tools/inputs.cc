@@ -1,8 +1,8 @@
 #include "inputs.h"
 
-#include "html/contents.h"
 #include <filesystem>
 
+#include "html/contents.h"
 #include "innermap/io/vdb/vdb_file.h"
 #include "innermap/mesh/read.h"
 #include "map_report.h"
