@@ -148,8 +148,8 @@ void runHarmonic(const HarmonicOptions& options,
   HarmonicFitSettings settings = context.settings(options.fit);
   FitMapSettings like;
   like.tolerance = settings.tolerance;
-  const std::uint64_t need =
-      std::max(fitMapMemory(like, vertices), harmonicGridMemory(boundary.solid, known.names.size(), grids));
+  const std::uint64_t need = std::max(
+      fitMapMemory(like, vertices), harmonicGridMemory(boundary.solid, known.names.size(), grids));
   if (context.dryRun())
     return context.plan({fmt::format("fit {} channel(s) on {}", known.names.size(), options.mesh),
                          "write grids to " + options.output},

@@ -58,10 +58,10 @@ void addTransferOptions(Command& c, TransferOptions& o) {
            "carry also what is around the solid, up to this distance from it")
       .unit("fraction of the diagonal")
       .range(0, 1);
-  c.option(
-      "--fade-to", "MOTION", &o.fadeTo,
-      "what the map fades to with --outside: cut (it ends there), identity, fitted (the best "
-      "rigid motion of the surface), or twelve numbers, a rigid motion's 3 x 4 matrix by rows").advanced();
+  c.option("--fade-to", "MOTION", &o.fadeTo,
+           "what the map fades to with --outside: cut (it ends there), identity, fitted (the best "
+           "rigid motion of the surface), or twelve numbers, a rigid motion's 3 x 4 matrix by rows")
+      .advanced();
   c.option("--density-limit", "TIMES", &o.carry.densityLimit,
            "that a density may grow at most; what comes together beyond it is left out, and how "
            "much is said")
