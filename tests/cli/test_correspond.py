@@ -183,7 +183,7 @@ def test_points_between_vertices_are_told():
 def test_bad_landmarks():
     icosphere("a.obj")
     icosphere("b.obj", subdivisions=3)
-    cases = [("", ["no landmarks"]),
+    cases = [("", ["empty"]),
              ("1 2\n3\n", ["line 2", "1 numbers"]),
              ("1 2 3\n", ["line 1"]),
              ("1 2 3 4\n", ["line 1", "v12"]),
@@ -344,7 +344,7 @@ def test_bad_input():
         fails(1, "correspond", bad, "ball.obj", "-o", "out.ply", says=says)
         fails(1, "correspond", "ball.obj", bad, "-o", "out.ply", says=says)
     fails(1, "sphere", "fin.obj", "-o", "out.ply", says=["fin.obj", edge])
-    fails(2, "correspond", "ball.obj", "-o", "out.ply", says=["B"])
+    fails(2, "correspond", "ball.obj", "-o", "out.ply", says=["TARGET"])
     fails(2, "correspond", "ball.obj", "ball.obj", "-o", "out.obj", says=["--output", ".ply"])
     fails(1, "correspond", "ball.obj", "ball.obj", "-o", "/nowhere/out.ply", says=["/nowhere"])
     fails(1, "correspond", "ball.obj", "ball.obj", "-o", "out.ply", "--candidates", "0",
