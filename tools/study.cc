@@ -98,10 +98,11 @@ void plan(const StudyOptions& options, const BoundaryPair& pair, const StudySett
   const std::vector<StudyRun> runs = studyRuns(pair.solid(), settings);
   std::vector<std::string> lines;
   std::uint64_t most = 0;
+  const std::uint64_t room = memoryLeft(settings.maxMemory);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const std::uint64_t need = studyMemory(runs[i]);
-    const bool isThere = isKept(pair, runs[i], settings), fits = need <= settings.maxMemory;
+    const bool isThere = isKept(pair, runs[i], settings), fits = need <= room;
     kept += isThere;
     if (!isThere && fits) most = std::max(most, need);
     lines.push_back(

@@ -15,9 +15,9 @@
 namespace innermap {
 namespace {
 
-// Of a run beside the solver: the program, the boundaries' trees, the certificate, the voxels;
+// Of a run beside the solver: the certificate, the voxels;
 // measured.
-constexpr std::uint64_t kOther = 150'000'000;
+constexpr std::uint64_t kOther = 30'000'000;
 constexpr std::size_t kFewestHeldOut = 1000, kMostHeldOut = 5000;  // of fitMap
 
 using Clock = std::chrono::steady_clock;
@@ -265,6 +265,7 @@ Study runStudy(const BoundaryPair& pair, const StudySettings& settings,
   study.spacing = spacingOfOne(pair.solid());
   const KeptRuns keptRuns(pair, settings);
   Runner runner(pair, settings);
+  const std::uint64_t most = memoryLeft(settings.maxMemory);
   if (visitor) visitor(nullptr, 0, runs.size());
   for (const StudyRun& run : runs) {
     throwIfCancelled(settings.progress);
@@ -272,7 +273,7 @@ Study runStudy(const BoundaryPair& pair, const StudySettings& settings,
     const std::uint64_t need = studyMemory(run);
     if (row) {
       ++study.kept;
-    } else if (settings.maxMemory > 0 && need > settings.maxMemory) {
+    } else if (most > 0 && need > most) {
       row = tooLarge(run, need, settings.maxMemory);
     } else if (settings.maxSeconds > 0 && secondsSince(start) > settings.maxSeconds) {
       ++study.left;

@@ -34,7 +34,7 @@ struct Study {
 constexpr std::size_t kMostRuns = 10000;
 std::vector<StudyRun> studyRuns(const Solid& source, const StudySettings& settings);
 
-// Peak need of the process in bytes while it makes a run, an estimate.
+// Need in bytes of making a run, an estimate.
 std::uint64_t studyMemory(const StudyRun& run);
 
 // Whether settings.folder has the run.
