@@ -44,7 +44,7 @@ TEST(ExrInfo, LengthsOfAttributes) {
       {"channels\0chlist\0"s, "channels\0chlist\0\377"s, "wrong length"},
       {"slicePosition\0double\0\10\0\0\0"s, "slicePosition\0doubts\0\10\0\0\100"s,
        "longer than the file"},
-      {"chunkCount\0int\0\4\0\0\0\12\0\0\0"s, "chunkCount\0int\0\4\0\0\0\0\0\0\100"s, "too short"}};
+      {"chunkCount\0int\0\4\0\0\0\1\0\0\0"s, "chunkCount\0int\0\4\0\0\0\0\0\0\100"s, "too short"}};
   const std::uint64_t before = peakMemory();
   for (const auto& damage : damages) {
     std::string bytes = whole;
