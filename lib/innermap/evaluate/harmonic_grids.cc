@@ -156,8 +156,7 @@ std::uint64_t harmonicGridMemory(const Solid& solid, std::size_t channels,
   const double voxel = voxelSizeFor(solid, levelSet), area = solid.area() / (voxel * voxel);
   const double voxels = solid.volume() / std::pow(voxel, 3) + kReach * area;
   const double bytes = kFog + 1 + static_cast<double>(bytesPerVoxel(channels, settings));
-  return 2 * levelSetMemory(solid, levelSet) +
-         static_cast<std::uint64_t>(bytes * voxels + kOther);
+  return 2 * levelSetMemory(solid, levelSet) + static_cast<std::uint64_t>(bytes * voxels + kOther);
 }
 
 }  // namespace innermap
