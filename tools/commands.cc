@@ -38,11 +38,13 @@ std::vector<Command> allCommands() {
 
 std::vector<Topic> commandTopics() {
   std::vector<Topic> topics = {
-      {"maps", {"map", "correspond", "sphere", "fit", "evaluate"}},
+      {"maps", {"map", "correspond", "sphere", "fit", "evaluate", "study"}},
       {"what goes through a map", {"push", "pull", "transfer-distance", "remesh"}},
       {"animation", {"sequence", "deform"}},
-      {"solids", {"check", "voxelize", "texture", "tetrahedralize", "hexahedralize", "polycube"}},
-      {"files and pictures", {"info", "slice", "export", "import"}},
+      {"solids",
+       {"check", "voxelize", "texture", "harmonic", "weights", "tetrahedralize", "hexahedralize",
+        "polycube"}},
+      {"files and pictures", {"info", "slice", "export", "import", "report"}},
       {"other", {}}};
   for (const Command& c : allCommands()) {
     const auto has = [&](const Topic& topic) {

@@ -113,18 +113,22 @@ void addHarmonicOptions(Command& command, HarmonicOptions& o, const std::string&
   command.positional("MESH", &o.mesh, "mesh of the solid: .obj, .ply, .off or .stl");
   command.option("--output", "FILE", &o.output, "the grids, a .vdb file")
       .shortName("-o")
-      .required();
-  command.option("--field", "FILE", &o.field,
-                 "also the field itself in double precision, a .ply file of charges and weights");
+      .required()
+      .writes({".vdb"});
+  command
+      .option("--field", "FILE", &o.field,
+              "also the field itself in double precision, a .ply file of charges and weights")
+      .writes({".ply"});
   command
       .option("--tolerance", "T", &o.fit.tolerance,
               "charges are added until 99% of the boundary lies within it; fraction of the values' "
               "span")
       .range(kSmallestTolerance, 1);
   command.option("--max-sources", "N", &o.fit.maxSources, "charges that the tolerance may take")
-      .range(1000, 1000000);
+      .range(1000, 1000000)
+      .advanced();
   command.flag("--best-effort", &o.bestEffort, "a tolerance that is not met is a warning");
-  command.option("--seed", "N", &o.fit.seed, "of all random points").range(0, 1e15);
+  command.option("--seed", "N", &o.fit.seed, "of all random points").range(0, 1e15).advanced();
   addGridOptions(command, o.grid);
   command.option(
       "--grids", "LIST", &o.grids,
