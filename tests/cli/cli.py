@@ -30,6 +30,11 @@ MODELS = ROOT.parent / "shared" / "models"
 THREADS = os.environ.get("INNERMAP_TEST_THREADS", "")
 
 
+# Seconds within which a run that is cancelled is over. Half a second here; machines that others use
+# as well are slower, and a run that does not heed the signal takes longer than this by far.
+AT_ONCE = 5
+
+
 class Skip(Exception):
     """Raised by a test that cannot run here."""
 

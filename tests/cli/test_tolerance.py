@@ -140,7 +140,7 @@ def test_interrupt_leaves_nothing():
                                   "1e-7", after=after)
         if code is None:
             continue
-        assert code == 130 and seconds < 1.0, (code, seconds)
+        assert code == 130 and seconds < cli.AT_ONCE, (code, seconds)
         no_leftovers("ball.obj", "target.obj")
 
 
