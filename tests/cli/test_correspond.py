@@ -6,7 +6,8 @@ import os
 import signal
 import struct
 
-from cli import (MODELS, Skip, alone, cube, fails, icosphere, icosphere_arrays, innermap, interrupt,
+from cli import (AT_ONCE, MODELS, Skip, alone,
+                 cube, fails, icosphere, icosphere_arrays, innermap, interrupt,
                  no_leftovers, read_json, run, slow, torus, write_obj)
 
 TYPES = {"double": ("d", 8), "float": ("f", 4), "int": ("i", 4), "uint": ("I", 4), "uchar": ("B", 1)}
@@ -405,10 +406,10 @@ def test_interrupted():
         code, seconds = interrupt("correspond", "a.obj", "b.obj", "-o", "out.ply", after=after)
         if code is None:
             continue
-        assert code == 130 and seconds < cli.AT_ONCE, (after, code, seconds)
+        assert code == 130 and seconds < AT_ONCE, (after, code, seconds)
         no_leftovers("a.obj", "b.obj")
     code, seconds = interrupt("map", "a.obj", "b.obj", "-o", "out", after=2, number=signal.SIGTERM)
-    assert code is None or seconds < cli.AT_ONCE, (code, seconds)
+    assert code is None or seconds < AT_ONCE, (code, seconds)
     assert code is None or not os.path.exists("out")
 
 

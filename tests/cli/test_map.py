@@ -6,7 +6,8 @@ import os
 import signal
 import subprocess
 
-from cli import (MODELS, Skip, alone, cube, fails, file_size_limit, icosphere, icosphere_arrays,
+from cli import (AT_ONCE, MODELS, Skip, alone,
+                 cube, fails, file_size_limit, icosphere, icosphere_arrays,
                  innermap, interrupt, no_leftovers, read_json, run, slow, write_obj)
 
 FILES = ["map.ply", "map.vdb", "report.json", "section.png", "slices.exr"]
@@ -238,7 +239,7 @@ def test_interrupt_leaves_nothing():
         if code is None:
             continue
         assert code == 130, code
-        assert seconds < cli.AT_ONCE, seconds
+        assert seconds < AT_ONCE, seconds
         no_leftovers("ball.obj", "target.obj", "out")
         assert not os.path.exists("out") or not os.listdir("out"), os.listdir("out")
         caught += 1

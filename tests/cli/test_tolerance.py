@@ -4,7 +4,8 @@
 import math
 import os
 
-from cli import (MODELS, Skip, alone, error_line, fails, icosphere_arrays, innermap, interrupt,
+from cli import (AT_ONCE, MODELS, Skip, alone,
+                 error_line, fails, icosphere_arrays, innermap, interrupt,
                  no_leftovers, read_json, run, write_obj)
 
 
@@ -140,7 +141,7 @@ def test_interrupt_leaves_nothing():
                                   "1e-7", after=after)
         if code is None:
             continue
-        assert code == 130 and seconds < cli.AT_ONCE, (code, seconds)
+        assert code == 130 and seconds < AT_ONCE, (code, seconds)
         no_leftovers("ball.obj", "target.obj")
 
 

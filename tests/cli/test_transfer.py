@@ -4,7 +4,8 @@
 import os
 import signal
 
-from cli import (MODELS, Skip, alone, fails, file_size_limit, icosphere, innermap, interrupt,
+from cli import (AT_ONCE, MODELS, Skip, alone,
+                 fails, file_size_limit, icosphere, innermap, interrupt,
                  no_leftovers, read_json, run)
 from scenes import debian_python, fitted_ball, swirl
 
@@ -192,7 +193,7 @@ def test_interrupting_leaves_nothing():
         code, seconds = interrupt("push", "map.ply", "rest.vdb", "-o", "x.vdb", "--resolution",
                                   "300", after=after, number=signal.SIGINT)
         assert code == 130, code
-        assert seconds < cli.AT_ONCE, seconds
+        assert seconds < AT_ONCE, seconds
         assert set(os.listdir(".")) == before
 
 
