@@ -122,8 +122,13 @@ void Context::output(const std::string& path, bool sure) {
 void Context::outputs(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) enter(path);
   expectOutputs(static_cast<int>(paths.size()));
-  if (!paths.empty()) placePage(paths.front());
-  if (!paths.empty()) requireWritable(paths.front());
+  if (paths.empty()) return;
+  placePage(paths.front());
+  // In a dry run the folder that a command would make for them may not be there.
+  const std::filesystem::path parent = std::filesystem::path(paths.front()).parent_path();
+  std::error_code ignored;
+  if (!dryRun() || parent.empty() || std::filesystem::exists(parent, ignored))
+    requireWritable(paths.front());
 }
 
 std::unique_ptr<PendingFolder> Context::outputFolder(const std::string& path,

@@ -119,7 +119,10 @@ class Walk {
       stream_.seekg(static_cast<std::streamoff>(bytes), std::ios::cur);
     };
     if (type == "chlist") {
-      while (!name().empty()) skip(16);
+      // OpenImageIO ends the program where there is none.
+      if (name().empty()) fail("has no channels");
+      do skip(16);
+      while (!name().empty());
       if (position() != end) wrong();
     } else if (type == "preview") {
       if (length < 8) wrong();
