@@ -239,7 +239,7 @@ void Context::print(const std::string& text) {
 
 void Context::used(const std::string& option, ReportValue value) {
   for (auto& [name, known] : report_.run->settings)
-    if (name == settingKey(option)) known = std::move(value);
+    if (name == settingKey(option)) known = value;
 }
 
 const std::string* Context::setting(const std::string& option) const {
@@ -326,7 +326,8 @@ void Context::conclude() {
 // A file that is put in place is another than what stood there before, so its key has changed.
 std::vector<ReportOutput> Context::outputsNow() const {
   std::vector<ReportOutput> out = inFolders_;
-  for (const auto& [key, path] : ordered_) {
+  for (const auto& told : ordered_) {
+    const std::string &key = told.first, &path = told.second;
     std::error_code none;
     if (path == options_.report || !std::filesystem::is_regular_file(path, none)) continue;
     const bool listed =
