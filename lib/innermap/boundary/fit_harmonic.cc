@@ -74,7 +74,7 @@ Fitted fittedWhereNeeded(const SourceBoundary& boundary, const SurfaceConditions
   AdaptiveSettings s;
   s.tolerance = settings.tolerance;
   s.maxSources = settings.maxSources;
-  s.maxMemory = settings.maxMemory;
+  s.maxMemory = memoryLeft(settings.maxMemory);
   s.progress = settings.progress;
   const AdaptiveResult fit = fitToTolerance(problemOf(boundary, conditions, span, settings), s);
   return {fit.field, fit.end, fit.collocation};
@@ -96,7 +96,7 @@ std::optional<Fitted> fittedByFew(const SourceBoundary& boundary,
   FitSettings s;
   s.sources = kFewSources;
   s.interpolation = Interpolation::linear;
-  s.maxMemory = settings.maxMemory;
+  s.maxMemory = memoryLeft(settings.maxMemory);
   s.progress = settings.progress;
   const FitResult fit = fitField(problem, s);
   const BoundarySamples fresh =
@@ -188,7 +188,7 @@ double comparisonBound(const SourceBoundary& boundary, const SurfaceConditions& 
   coarse.tolerance = kOfComparison;
   coarse.maxSources = kMostOfComparison;
   coarse.outlierRounds = 0;
-  coarse.maxMemory = settings.maxMemory;
+  coarse.maxMemory = memoryLeft(settings.maxMemory);
   coarse.progress = settings.progress;
   const AdaptiveProblem problem =
       adaptiveProblem(boundary.solid, rows, largest, problemSettings(conditions, settings));
