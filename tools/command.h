@@ -39,6 +39,8 @@ class Command {
  public:
   Command(std::string name, std::string summary)
       : name_(std::move(name)), summary_(std::move(summary)) {}
+  Command(Command&&) = default;
+  Command& operator=(Command&&) = default;
 
   // Arguments without a name, in order; required unless .optional(). The last may be a list.
   OptionBuilder positional(const std::string& name, Target target, const std::string& help);

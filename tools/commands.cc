@@ -1,39 +1,45 @@
 #include "commands.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include "spelling.h"
 
 namespace innermap::tool {
 
 std::vector<Command> allCommands() {
-  return {makeMapCommand(),
-          makeCorrespondCommand(),
-          makeSphereCommand(),
-          makeFitCommand(),
-          makeEvaluateCommand(),
-          makeSequenceCommand(),
-          makeDeformCommand(),
-          makeHarmonicCommand(),
-          makeWeightsCommand(),
-          makeTextureCommand(),
-          makePushCommand(),
-          makePullCommand(),
-          makeTransferDistanceCommand(),
-          makeCheckCommand(),
-          makeVoxelizeCommand(),
-          makeTetrahedralizeCommand(),
-          makePolycubeCommand(),
-          makeHexahedralizeCommand(),
-          makeRemeshCommand(),
-          makeCompareFemCommand(),
-          makeStudyCommand(),
-          makeSliceCommand(),
-          makeExportCommand(),
-          makeImportCommand(),
-          makeInfoCommand(),
-          makeReportCommand(),
-          makeHelpCommand()};
+  constexpr Command (*kMakers[])() = {makeMapCommand,
+                                      makeCorrespondCommand,
+                                      makeSphereCommand,
+                                      makeFitCommand,
+                                      makeEvaluateCommand,
+                                      makeSequenceCommand,
+                                      makeDeformCommand,
+                                      makeHarmonicCommand,
+                                      makeWeightsCommand,
+                                      makeTextureCommand,
+                                      makePushCommand,
+                                      makePullCommand,
+                                      makeTransferDistanceCommand,
+                                      makeCheckCommand,
+                                      makeVoxelizeCommand,
+                                      makeTetrahedralizeCommand,
+                                      makePolycubeCommand,
+                                      makeHexahedralizeCommand,
+                                      makeRemeshCommand,
+                                      makeCompareFemCommand,
+                                      makeStudyCommand,
+                                      makeSliceCommand,
+                                      makeExportCommand,
+                                      makeImportCommand,
+                                      makeInfoCommand,
+                                      makeReportCommand,
+                                      makeHelpCommand};
+  std::vector<Command> out;
+  out.reserve(std::size(kMakers));
+  for (const auto make : kMakers) out.push_back(make());
+  return out;
 }
 
 std::vector<Topic> commandTopics() {
@@ -57,9 +63,10 @@ std::vector<Topic> commandTopics() {
 
 Command findCommand(const std::string& name) {
   std::vector<std::string> names;
-  for (const Command& c : allCommands()) {
+  std::vector<Command> all = allCommands();
+  for (Command& c : all) {
     for (const std::string& spelling : spellings(c.name()))
-      if (spelling == name) return c;
+      if (spelling == name) return std::move(c);
     names.push_back(c.name());
   }
   const bool option = name.compare(0, 1, "-") == 0;

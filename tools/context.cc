@@ -32,7 +32,7 @@ Progress* Context::progress() const { return &progress_; }
 void Context::setPart(const std::string& part) { progress_.setPart(part); }
 
 void Context::expect(const std::vector<JobPhase>& phases) {
-  expectedSeconds_ = busyness() * totalSeconds(phases);
+  expectedSeconds_ = totalSeconds(phases);
   progress_.expect(phases);
 }
 
@@ -64,7 +64,8 @@ void Context::requireProgram() const {
 }
 
 std::uint64_t Context::claimed(std::uint64_t bytes) const {
-  return most_ = std::max(most_, processMemory(bytes));
+  const std::uint64_t page = page_ ? kPageMemory : 0;
+  return most_ = std::max(most_, processMemory(bytes + page));
 }
 
 void Context::requireMemory(const std::string& what, std::uint64_t bytes,
@@ -77,7 +78,10 @@ void Context::requireMemory(const std::string& what, std::uint64_t bytes, SizeOp
                             const std::string& otherwise) const {
   requireProgram();
   const std::uint64_t before = processMemory(0);
-  size.need = [before, need = size.need](std::uint64_t value) { return before + need(value); };
+  const std::uint64_t page = page_ ? kPageMemory : 0;
+  size.need = [before, page, need = size.need](std::uint64_t value) {
+    return before + page + need(value);
+  };
   requireMemoryFor(what, claimed(bytes), maxMemory_, size, otherwise);
 }
 

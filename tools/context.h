@@ -22,6 +22,9 @@ class TerminalProgress;
 
 struct Page;
 
+// Bytes that making a page takes, which holds so many vertices and blocks at most; measured: 1 to
+// 23 MB.
+constexpr std::uint64_t kPageMemory = 25'000'000;
 // What --html is without a file's name.
 constexpr const char* kPageBesideOutputs = "report.html beside the outputs";
 
@@ -55,7 +58,7 @@ class Context {
   void setPart(const std::string& part);
 
   // What the job consists of, when that becomes known: for the progress, and the time that plan()
-  // tells. Seconds as on an idle machine of four cores.
+  // tells.
   void expect(const std::vector<JobPhase>& phases);
   // One of those that the library does not report begins.
   void phase(const std::string& stage);

@@ -7,6 +7,7 @@
 #include "innermap/io/picture/mesh_picture.h"
 #include "innermap/mesh/write.h"
 #include "inputs.h"
+#include "job_cost.h"
 
 namespace innermap::tool {
 namespace {
@@ -35,14 +36,12 @@ void run(const Options& options, Context& context) {
   if (!options.picture.empty()) context.output(options.picture);
   Mesh a = readMeshFile(options.a, context), b = readMeshFile(options.b, context);
   const std::size_t countA = a.vertices.size(), countB = b.vertices.size();
+  context.expect(correspondPhases(countA + countB));
   if (context.dryRun())
-    return context.plan(
-        {fmt::format(
-             "map the {} vertices of {} onto {} ({} vertices), in about {:.0f} s", countA,
-             options.a, options.b, countB,
-             correspondSeconds(countA, countB, correspondSettings(options.correspond, context))),
-         "write them to " + options.output},
-        memoryOf(options, countA, countB));
+    return context.plan({fmt::format("map the {} vertices of {} onto {} ({} vertices)", countA,
+                                     options.a, options.b, countB),
+                         "write them to " + options.output},
+                        memoryOf(options, countA, countB));
   context.requireMemory("the correspondence", memoryOf(options, countA, countB),
                         "use coarser meshes");
   const MeshCorrespondence moved =

@@ -12,6 +12,7 @@
 #include "innermap/core/version.h"
 #include "innermap/io/vdb/vdb_file.h"
 #include "inputs.h"
+#include "job_cost.h"
 #include "transfer_options.h"
 
 namespace innermap::tool {
@@ -248,6 +249,14 @@ std::uint64_t memoryOf(const DeformOptions& options, const Solid& solid,
   return transferMemory(solid, grids, options.transfer, context, {true, options.velocity ? 1 : 0});
 }
 
+void expectFrames(const DeformOptions& options, const Solid& solid,
+                  const openvdb::GridPtrVec& grids, const Frames& frames, Context& context) {
+  const std::size_t charges = options.frames.fitting.sources;
+  JobSize size = jobSize(solid, outputSettings(grids, options.transfer.grid, context), charges);
+  size.items = static_cast<double>(grids.size()) * size.inside;
+  context.expect(framePhases(charges, frames.wanted.size(), stageOf("frames: volume", size)));
+}
+
 void plan(const DeformOptions& options, const Frames& frames, const FramePattern& pattern,
           std::uint64_t others, Context& context) {
   const auto path = [&](std::size_t i) { return pattern.path(frames.all[i].number); };
@@ -255,7 +264,7 @@ void plan(const DeformOptions& options, const Frames& frames, const FramePattern
   context.plan({framesPlan(settings, frames), "carry " + options.volume + " to " +
                                                   path(frames.wanted.front()) + " to " +
                                                   path(frames.wanted.back())},
-               frameFitterMemory(settings) + others);
+               frameFitterMemory(settings, others));
 }
 
 void run(const DeformOptions& options, Context& context) {
@@ -273,6 +282,7 @@ void run(const DeformOptions& options, Context& context) {
   if (context.dryRun()) {
     const SourceBoundary rest = readRest(options.rest, context);
     const openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
+    expectFrames(options, rest.solid, grids, frames, context);
     return plan(options, frames, pattern, memoryOf(options, rest.solid, grids, context), context);
   }
   std::optional<Inputs> inputs;
@@ -286,6 +296,7 @@ void run(const DeformOptions& options, Context& context) {
   openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
   requireFrameMemory(context.settings(options.frames.fitting),
                      memoryOf(options, rest.solid, grids, context), context);
+  expectFrames(options, rest.solid, grids, left, context);
   Deformer deformer(options, left, std::move(rest), std::move(grids), context);
   std::map<std::size_t, DeformRow> rows;
   context.print(fmt::format("{:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "frame", "voxels",

@@ -8,6 +8,7 @@
 
 #include "frame_loop.h"
 #include "innermap/levelset/level_set.h"
+#include "job_cost.h"
 
 namespace innermap::tool {
 namespace {
@@ -80,12 +81,16 @@ void deformGeometry(const DeformGeometry& job, const Frames& frames, const Frame
                     Context& context) {
   const auto path = [&](std::size_t i) { return pattern.path(frames.all[i].number); };
   const std::uint64_t need = geometryMemory(job.input);
+  JobSize size;
+  size.items = static_cast<double>(need) / 1e6;
+  context.expect(framePhases(job.frames.fitting.sources, frames.wanted.size(),
+                             stageOf("frames: geometry", size)));
   if (context.dryRun()) {
     const FrameFitterSettings settings = context.settings(job.frames.fitting);
     return context.plan(
         {framesPlan(settings, frames), "carry " + job.input + " to " + path(frames.wanted.front()) +
                                            " to " + path(frames.wanted.back())},
-        frameFitterMemory(settings) + need);
+        frameFitterMemory(settings, need));
   }
   requireFrameMemory(context.settings(job.frames.fitting), need, context);
   Deformer deformer(job, frames, context);

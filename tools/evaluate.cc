@@ -2,6 +2,7 @@
 #include "commands.h"
 #include "grid_options.h"
 #include "inputs.h"
+#include "job_cost.h"
 #include "map_report.h"
 #include "verdict.h"
 
@@ -18,6 +19,7 @@ void run(const EvaluateOptions& options, Context& context) {
   context.output(options.output);
   const MappedSolid mapped = readMapFile(options.map, context);
   const MapGridSettings settings = mapGridSettings(options.evaluation, context);
+  context.expect(evaluationPhases(jobSize(mapped.solid(), settings, mapped.map.sources())));
   if (context.dryRun())
     return context.plan({"evaluate " + options.map, "write grids to " + options.output},
                         mapGridMemory(mapped.solid(), settings, mapGridKind(mapped)));

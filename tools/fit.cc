@@ -3,6 +3,7 @@
 #include "fitting_options.h"
 #include "innermap/mesh/read.h"
 #include "inputs.h"
+#include "job_cost.h"
 #include "map_report.h"
 #include "verdict.h"
 
@@ -23,12 +24,13 @@ void run(const FitOptions& options, Context& context) {
   Mesh target = context.timed("read", [&] {
     return readMeshLike(options.target, source, context.settings<ReadSettings>());
   });
+  const FitMapSettings settings = fitMapSettings(options.fitting, source.vertices.size(), context);
+  const double places = bentPlaces(source, target.vertices, settings.tolerance);
   BoundaryPair pair =
       makeBoundaryPair(std::move(source), std::move(target), context.settings<BoundarySettings>());
   reportBoundaries(pair, context);
   const std::size_t vertices = pair.source.mesh.vertices.size();
-  const FitMapSettings settings = fitMapSettings(options.fitting, vertices, context);
-  context.expect(fittingPhases(settings, vertices, false));
+  context.expect(fittingPhases(settings, places, false));
   if (context.dryRun())
     return context.plan({fittingPlan(settings), "write the map to " + options.output},
                         fitMapMemory(settings, vertices));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "innermap/core/memory.h"
+#include "job_cost.h"
 
 namespace innermap::tool {
 namespace {
@@ -192,21 +193,23 @@ void requireFittingMemory(const FitMapSettings& settings, std::size_t vertices,
                         {"--sources", 1, settings.shell->sources, need}, "raise --max-memory");
 }
 
-// Seconds as measured on samples/ and models of some ten thousand triangles; a shell is factored at
-// once where it is small.
-std::vector<JobPhase> fittingPhases(const FitMapSettings& settings, std::size_t vertices,
-                                    bool laidOn) {
-  const double thousands = static_cast<double>(vertices) / 1000;
-  double fit = 1.4 + 0.25 * thousands * std::pow(1e-3 / settings.tolerance, 0.7);
+// The more charges, the more rounds until they do.
+constexpr double kRoundsPower = 1.4;
+
+std::vector<JobPhase> fittingPhases(const FitMapSettings& settings, double places, bool laidOn) {
+  JobSize size;
   if (settings.shell) {
     const double sources = static_cast<double>(settings.shell->sources) / 1000;
-    fit = 0.5 + (sources <= 3 ? 0.25 * std::pow(sources, 2.5) : 1.5 * sources);
+    size.items = sources <= 3 ? 0.25 * std::pow(sources, 2.5) : 1.5 * sources;
+    return {stageOf("fitting: a shell", size)};
   }
-  std::vector<JobPhase> phases = {{"fitting", settings.shell ? fit : 0.4 * fit}};
-  if (!settings.shell) phases.push_back({"meeting the tolerance", 0.6 * fit, false, "fitting"});
-  if (settings.oneToOne == OneToOne::off || settings.shell) return phases;
-  const double steps = 10 + 2 * thousands * std::pow(2e-3 / settings.tolerance, 0.7);
-  phases.push_back({"going in steps", steps, !laidOn});
+  size.items = std::pow(places, kRoundsPower);
+  std::vector<JobPhase> phases = {stageOf("fitting", size),
+                                  stageOf("meeting the tolerance", size, 1, "fitting")};
+  if (settings.oneToOne == OneToOne::off) return phases;
+  size.items = places;
+  phases.push_back(stageOf("going in steps", size));
+  phases.back().perhaps = !laidOn;
   return phases;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "html/page.h"
+
 namespace innermap::tool {
 namespace {
 
@@ -63,7 +65,6 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
                                    const std::function<void(std::size_t)>& body) {
   std::vector<FrameResult> results;
   std::size_t finished = 0;
-  context.expect({{"frames", 0.5 * static_cast<double>(frames.wanted.size())}});
   try {
     for (const std::size_t index : frames.wanted) {
       FrameResult result;
@@ -73,6 +74,8 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
       reportProgress(
           context.progress(), "frames",
           static_cast<double>(results.size()) / static_cast<double>(frames.wanted.size()));
+      if (Page* page = context.page())
+        page->frame = PageFrame{result.file.number, results.size(), frames.wanted.size()};
       const auto start = Clock::now();
       result.error = tryFrame(index, body);
       result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
@@ -88,6 +91,7 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
         fmt::format("cancelled; {} of {} frames are in place", finished, frames.wanted.size()));
   }
   context.setPart("");
+  if (context.page()) context.page()->frame.reset();
   report(results, context);
   sayBroken(results, context);
   return results;

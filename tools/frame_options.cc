@@ -138,10 +138,10 @@ void requireFrameMemory(const FrameFitterSettings& settings, std::uint64_t other
     FrameFitterSettings fewer = settings;
     fewer.sources = sources;
     fewer.collocation = 0;
-    return frameFitterMemory(fewer) + others;
+    return frameFitterMemory(fewer, others);
   };
   context.requireMemory(fmt::format("a sequence with {} charges", settings.sources),
-                        frameFitterMemory(settings) + others, {"--sources", 1, kMostSources, need},
+                        frameFitterMemory(settings, others), {"--sources", 1, kMostSources, need},
                         "use a lower --resolution or raise --max-memory");
 }
 

@@ -37,18 +37,18 @@ std::vector<std::pair<std::string, std::vector<double>>> parseGroups(const std::
   return out;
 }
 
+// "endo=0:1,epi=1:0" as groups and their rows of numbers.
+struct GroupNumbers {
+  std::vector<SurfaceGroup> groups;
+  Matrix numbers;
+};
+
 const SurfaceGroup& groupNamed(const std::vector<SurfaceGroup>& groups, const std::string& name,
                                const std::string& path) {
   std::vector<std::string> known;
   for (const SurfaceGroup& group : groups) {
     known.push_back(group.name);
-    if (group.name != name) continue;
-    if (group.triangles.empty())
-      throw FileError(path, fmt::format("group '{}' has no faces; a point or a line inside cannot "
-                                        "hold a value in three dimensions: give it as a small ball "
-                                        "or tube, a closed part of the surface",
-                                        name));
-    return group;
+    if (group.name == name) return group;
   }
   throw FileError(path,
                   fmt::format("has no group '{}'; it has {}", name,
@@ -68,7 +68,7 @@ class Conditions {
       fixGroups();
     else
       readVertices();
-    if (!options_.flux.empty()) setFluxes();
+    if (!options_.flux.empty()) readFluxes();
     nameChannels();
     return std::move(out_);
   }
@@ -79,27 +79,29 @@ class Conditions {
     return groups_;
   }
 
-  void fixGroups() {
-    const auto given = parseGroups("--fix", options_.fix);
-    const std::size_t channels = given.empty() ? 0 : given.front().second.size();
-    if (given.empty()) throw UsageError("--fix: names no group");
-    Matrix& values = out_.conditions.values;
-    values = Matrix(3 * mesh_.triangles.size(), channels);
-    out_.conditions.free.assign(mesh_.triangles.size(), 1);
-    for (const auto& [name, numbers] : given) {
-      requireChannels("--fix", name, numbers.size(), channels);
-      for (const int t : groupNamed(groups(), name, mesh_.name).triangles) {
-        out_.conditions.free[static_cast<std::size_t>(t)] = 0;
-        for (std::size_t c = 0; c < 3; ++c)
-          for (std::size_t k = 0; k < channels; ++k)
-            values(3 * static_cast<std::size_t>(t) + c, k) = numbers[k];
-      }
+  GroupNumbers numbersOf(const std::string& option, const std::string& text) {
+    const auto given = parseGroups(option, text);
+    if (given.empty()) throw UsageError(option + ": names no group");
+    const std::size_t channels = given.front().second.size();
+    GroupNumbers out;
+    out.numbers = Matrix(given.size(), channels);
+    for (std::size_t g = 0; g < given.size(); ++g) {
+      const auto& [name, numbers] = given[g];
+      requireChannels(option, name, numbers.size(), channels);
+      out.groups.push_back(groupNamed(groups(), name, mesh_.name));
+      for (std::size_t k = 0; k < channels; ++k) out.numbers(g, k) = numbers[k];
     }
+    return out;
+  }
+
+  void fixGroups() {
+    const GroupNumbers given = numbersOf("--fix", options_.fix);
+    out_.conditions = valuesOnGroups(mesh_, given.groups, given.numbers);
   }
 
   // Triangles with a corner whose value is not known are free.
   void readVertices() {
-    Matrix& values = out_.conditions.values;
+    Matrix values;
     if (options_.colours) {
       if (mesh_.colours.empty()) throw FileError(mesh_.name, "has no vertex colours");
       values = Matrix(mesh_.vertices.size(), 3);
@@ -114,26 +116,14 @@ class Conditions {
       out_.names = commaList(options_.properties);
       values = readVertexProperties(mesh_.name, out_.names, mesh_);
     }
-    std::vector<std::uint8_t>& free = out_.conditions.free;
-    free.assign(mesh_.triangles.size(), 0);
-    for (std::size_t t = 0; t < free.size(); ++t)
-      for (const int v : mesh_.triangles[t])
-        for (std::size_t k = 0; k < values.columns(); ++k)
-          if (!std::isfinite(values(static_cast<std::size_t>(v), k))) free[t] = 1;
+    out_.conditions = valuesAtVertices(mesh_, std::move(values));
   }
 
-  void setFluxes() {
-    const std::size_t channels = out_.conditions.values.columns();
-    Matrix& flux = out_.conditions.flux;
-    flux = Matrix(mesh_.triangles.size(), channels);
-    for (const auto& [name, numbers] : parseGroups("--flux", options_.flux)) {
-      requireChannels("--flux", name, numbers.size(), channels);
-      for (const int t : groupNamed(groups(), name, mesh_.name).triangles) {
-        out_.conditions.free[static_cast<std::size_t>(t)] = 1;
-        for (std::size_t k = 0; k < channels; ++k)
-          flux(static_cast<std::size_t>(t), k) = numbers[k];
-      }
-    }
+  void readFluxes() {
+    const GroupNumbers given = numbersOf("--flux", options_.flux);
+    requireChannels("--flux", given.groups.front().name, given.numbers.columns(),
+                    out_.conditions.values.columns());
+    setFluxes(mesh_, given.groups, given.numbers, out_.conditions);
   }
 
   static void requireChannels(const std::string& option, const std::string& group,

@@ -4,22 +4,17 @@
 
 #include <algorithm>
 
+#include "fitting_options.h"
 #include "innermap/boundary/fit_map.h"
+#include "innermap/boundary/solid_field.h"
 #include "innermap/core/memory.h"
-#include "innermap/core/version.h"
-#include "innermap/field/field_file.h"
 #include "inputs.h"
+#include "job_cost.h"
 #include "lists.h"
 #include "map_report.h"
 
 namespace innermap::tool {
 namespace {
-
-std::string why(AdaptiveEnd end, const HarmonicFitSettings& settings) {
-  if (end == AdaptiveEnd::maxSources)
-    return fmt::format("--max-sources {} is reached", settings.maxSources);
-  return end == AdaptiveEnd::maxMemory ? "--max-memory is reached" : "more charges do not help";
-}
 
 void reportHarmonic(const HarmonicFit& fit, const HarmonicOptions& options, Context& context) {
   context.tell(fit);
@@ -45,35 +40,11 @@ void reportHarmonic(const HarmonicFit& fit, const HarmonicOptions& options, Cont
       "--tolerance {:g} is not met: 99% of the boundary lies within {:.3g} of the values' span, "
       "with "
       "{} charges; {}",
-      options.fit.tolerance, e.p99, fit.sources, why(fit.end, options.fit));
+      options.fit.tolerance, e.p99, fit.sources, whyEnded(fit.end, options.fit.maxSources));
   if (options.bestEffort)
     context.warning(text);
   else
     context.failAfterwards(text + "; what is written is marked so (--best-effort: exit code 0)");
-}
-
-Facts factsOf(const HarmonicFit& fit, const HarmonicOptions& options,
-              const std::vector<std::string>& names) {
-  const auto number = [](double value) { return fmt::format("{:.9g}", value); };
-  return {{"version", versionText()},
-          {"source", options.mesh},
-          {"channels", fmt::format("{}", fmt::join(names, ","))},
-          {"span", number(fit.span)},
-          {"seed", fmt::format("{}", options.fit.seed)},
-          {"tolerance", number(options.fit.tolerance)},
-          {"tolerance_met", fit.met ? "true" : "false"},
-          {"boundary_error_rms", number(fit.error.rms)},
-          {"boundary_error_p99", number(fit.error.p99)},
-          {"boundary_error_max", number(fit.error.max)},
-          {"boundary_error_samples", fmt::format("{}", fit.error.samples)},
-          {"inside_error_bound", number(fit.bound)},
-          {"free_share", number(fit.freeShare)}};
-}
-
-void describe(const openvdb::GridPtrVec& grids, const Facts& facts) {
-  for (const openvdb::GridBase::Ptr& grid : grids)
-    for (const auto& [key, value] : facts)
-      grid->insertMeta("innermap_" + key, openvdb::StringMetadata(value));
 }
 
 HarmonicGridSettings gridSettingsOf(const HarmonicOptions& options, const Context& context) {
@@ -95,17 +66,6 @@ HarmonicGridSettings gridSettingsOf(const HarmonicOptions& options, const Contex
   return out;
 }
 
-// Reads back as a field of any channels on the mesh that it was made for.
-void writeFieldFile(const HarmonicOptions& options, const HarmonicField& field,
-                    const SourceBoundary& boundary, const Facts& facts) {
-  FieldFile file;
-  file.steps = {field};
-  file.facts = facts;
-  file.boundary = file.boundaryTarget = boundary.mesh.vertices;
-  file.boundaryTriangles = boundary.mesh.triangles;
-  writeField(options.field, file);
-}
-
 }  // namespace
 
 void addHarmonicOptions(Command& command, HarmonicOptions& o, const std::string& defaultGrids) {
@@ -124,6 +84,12 @@ void addHarmonicOptions(Command& command, HarmonicOptions& o, const std::string&
               "charges are added until 99% of the boundary lies within it; fraction of the values' "
               "span")
       .range(kSmallestTolerance, 1);
+  command
+      .option("--crease-angle", "DEGREES", &o.creaseAngle,
+              "triangles that meet at less stand for a smooth surface: what flows through it is "
+              "counted along interpolated normals; 0: along each triangle's own")
+      .range(0, 90)
+      .advanced();
   command.option("--max-sources", "N", &o.fit.maxSources, "charges that the tolerance may take")
       .range(1000, 1000000)
       .advanced();
@@ -144,7 +110,16 @@ void runHarmonic(const HarmonicOptions& options,
   context.output(options.output);
   if (!options.field.empty()) context.output(options.field);
   Mesh mesh = readMeshFile(options.mesh, context);
-  const NamedConditions known = conditionsOf(mesh);
+  NamedConditions known = conditionsOf(mesh);
+  known.conditions.creaseAngle = options.creaseAngle;
+  if (known.conditions.values.rows() == 3 * mesh.triangles.size()) {
+    const double share = removeJumps(mesh, known.conditions);
+    if (share > 0)
+      context.note(
+          fmt::format("values that touch are joined: on {:.2g}% of the surface, the triangles "
+                      "along their borders, they go over into one another",
+                      100 * share));
+  }
   const std::size_t vertices = mesh.vertices.size();
   const SourceBoundary boundary =
       makeSourceBoundary(std::move(mesh), context.settings<BoundarySettings>());
@@ -154,6 +129,14 @@ void runHarmonic(const HarmonicOptions& options,
   like.tolerance = settings.tolerance;
   const std::uint64_t need = std::max(
       fitMapMemory(like, vertices), harmonicGridMemory(boundary.solid, known.names.size(), grids));
+  JobSize size = jobSize(boundary.solid, grids);
+  size.items = static_cast<double>(known.names.size()) * size.inside;
+  std::vector<JobPhase> phases = fittingPhases(like, likelyPlaces(vertices, like.tolerance), false);
+  phases.pop_back();  // no steps
+  for (JobPhase& phase : phases) phase.seconds *= 1 + 0.1 * static_cast<double>(known.names.size());
+  for (const char* stage : {"level set", "evaluating the field", "writing the VDB file"})
+    phases.push_back(stageOf(stage, size));
+  context.expect(phases);
   if (context.dryRun())
     return context.plan({fmt::format("fit {} channel(s) on {}", known.names.size(), options.mesh),
                          "write grids to " + options.output},
@@ -163,17 +146,19 @@ void runHarmonic(const HarmonicOptions& options,
   HarmonicFit fit = fitHarmonic(boundary, known.conditions, settings);
   if (unitSum) fit.field = withUnitSum(fit.field);
   reportHarmonic(fit, options, context);
-  const Facts facts = factsOf(fit, options, known.names);
+  const Facts facts = harmonicFacts(fit, options.fit, options.mesh, known.names);
   HarmonicGridSettings evaluation = grids;
   evaluation.span = fit.span;
   const HarmonicGrids made = evaluateHarmonic(fit.field, boundary.solid, known.names, evaluation);
   for (const std::string& text : made.warnings) context.warning(text);
   addSeconds(context.report().seconds, made.seconds);
   context.report().grid = ReportGrid{made.voxelSize, made.activeVoxels, made.interiorVoxels};
-  describe(made.all(), facts);
+  describeField(made.all(), facts);
   writeGridFile(options.output, made.all(), options.names, context);
   if (!options.field.empty())
-    context.timed("write", [&] { writeFieldFile(options, fit.field, boundary, facts); });
+    context.timed("write", [&] {
+      writeSolidField(options.field, {fit.field, boundary, known.names, facts});
+    });
 }
 
 }  // namespace innermap::tool

@@ -14,6 +14,7 @@ namespace innermap::tool {
 struct HarmonicOptions {
   std::string mesh, output, field;
   HarmonicFitSettings fit;
+  double creaseAngle = BoundaryConditions{}.creaseAngle;
   bool bestEffort = false;
   GridOptions grid;
   std::string grids;  // comma list

@@ -12,6 +12,7 @@
 #include "innermap/io/picture/cell_picture.h"
 #include "innermap/mesh/write.h"
 #include "inputs.h"
+#include "job_cost.h"
 #include "polycube_report.h"
 #include "section_options.h"
 
@@ -109,6 +110,14 @@ void run(const Options& options, Context& context) {
   const Mesh mesh = surfaceToFill(options.mesh, options.resolution, context);
   const HexahedralizeSettings settings = context.settings(options.settings);
   const std::uint64_t need = hexahedralizeMemory(mesh, settings);
+  JobSize size;
+  const double blocks = expectedBlocks(mesh, settings.blocks);
+  size.items = blocks * std::pow(settings.pieces, 3) / 1000;
+  std::vector<JobPhase> phases = correspondPhases(mesh.vertices.size());
+  for (const char* stage : {"meeting the tolerance: cubes", "checking hexahedra",
+                            "untangling hexahedra", "shaping hexahedra"})
+    phases.push_back(stageOf(stage, size));
+  context.expect(phases);
   if (context.dryRun())
     return context.plan(
         {fmt::format("fill {} with hexahedra, {} along the edge of each of about {:.0f} blocks, to "

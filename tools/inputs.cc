@@ -10,13 +10,11 @@
 namespace innermap::tool {
 
 void requireMeshMemory(const std::string& path, const Context& context) {
-  // Measured of a file's byte, with the byte itself: 1.3 to 2.4.
-  constexpr double kByte = 2.6;
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error) return;  // the reader says why
   context.requireMemory("reading " + path,
-                        static_cast<std::uint64_t>(kByte * static_cast<double>(size)),
+                        static_cast<std::uint64_t>(kMeshByte * static_cast<double>(size)),
                         "use a coarser mesh or raise --max-memory");
 }
 

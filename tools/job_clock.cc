@@ -2,21 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
-#include <thread>
 #include <utility>
 
 namespace innermap::tool {
 namespace {
 
-// Of the expected time: less says nothing yet of the machine's speed.
-constexpr double kPrior = 0.05;
-// A phase that reports fractions is judged by them alone from here on.
-constexpr double kTrusted = 0.2;
+// Of the expected time: less than this says little yet of how the job goes.
+constexpr double kPrior = 0.1;
+// A phase that reports fractions is judged by them from here on, to this share at least.
+constexpr double kTrusted = 0.25, kOfFraction = 0.6;
+constexpr double kLeast = 1e-3;  // seconds
 // One that is over its time is thought to need this share of what it took so far.
 constexpr double kOverdue = 0.5;
+// One that has reported nothing for a while, the same of that while.
+constexpr double kSilent = 0.3;
 constexpr double kTells = 0.08;
+// A stage that is reported to have gone back this far has begun once more.
+constexpr double kAgain = 0.5;
 
 }  // namespace
 
@@ -24,25 +27,43 @@ void JobClock::expect(std::vector<JobPhase> phases, double now) {
   phases_ = std::move(phases);
   current_ = 0;
   begun_ = false;
-  planned_ = since_ = now;
-  busy_ = busyness();
-  fraction_ = 0;
+  planned_ = since_ = reported_ = now;
+  fraction_ = part_ = 0;
+  time_ = 0;
 }
 
 void JobClock::report(std::string_view stage, double fraction, double now) {
   for (std::size_t i = current_; i < phases_.size(); ++i) {
-    if (phases_[i].stage != stage) continue;
+    if (phases_[i].stage != stage) {
+      if (phases_[i].gate && (i != current_ || !begun_)) return;
+      continue;
+    }
     if (i != current_ || !begun_) {
       current_ = i;
       // What came before the first phase counts as part of it.
-      since_ = begun_ ? now : planned_;
-      fraction_ = 0;
+      since_ = reported_ = begun_ ? now : planned_;
+      fraction_ = part_ = 0;
+      time_ = 0;
       begun_ = true;
     }
     phases_[i].perhaps = false;
-    fraction_ = std::max(fraction_, std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0);
+    advance(std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0, now);
     return;
   }
+}
+
+void JobClock::advance(double fraction, double now) {
+  const int times = phases_[current_].times;
+  if (fraction < part_ - kAgain && time_ + 1 < times) {
+    ++time_;
+    part_ = 0;
+  }
+  // What is reported may turn out to have been too much; one that begins once more unforeseen has
+  // still done what it has.
+  if (fraction < part_ - kAgain || fraction == part_) return;
+  part_ = fraction;
+  fraction_ = (time_ + part_) / times;
+  reported_ = now;
 }
 
 const std::string& JobClock::title() const {
@@ -59,6 +80,13 @@ double JobClock::expectedUntil(std::size_t end) const {
   return seconds;
 }
 
+// Seconds that the current phase needs by what it reported; `otherwise` where it reported nothing.
+double JobClock::leftByFraction(double now, double otherwise) const {
+  if (!(fraction_ > 0)) return otherwise;
+  const double then = (reported_ - since_) * (1 - fraction_) / fraction_, silent = now - reported_;
+  return std::max(then - silent, kSilent * silent);
+}
+
 JobClock::State JobClock::at(double now) {
   State state;
   if (!known() || !begun_) return {shown_, 0, false};
@@ -66,31 +94,25 @@ JobClock::State JobClock::at(double now) {
   const double own = phases_[current_].seconds;
   const double prior = kPrior * total;
   const double spent = now - since_;
-  const double over = (since_ - planned_ + prior * busy_) / (done + prior);
-  // One that is over its time says that the machine is slower than was thought.
-  const double speed =
-      std::max(over, (since_ - planned_ + spent + prior * busy_) / (done + own + prior));
+  const double over = (since_ - planned_ + prior) / (done + prior);
+  // One that is over its time says that the job goes slower than was thought.
+  const double speed = std::max(over, (since_ - planned_ + spent + prior) / (done + own + prior));
   const double byTime = std::max(speed * own - spent, kOverdue * spent);
-  const double byFraction = fraction_ > 0 ? spent * (1 - fraction_) / fraction_ : byTime;
-  const double trust = std::min(1.0, fraction_ / kTrusted);
-  const double left = trust * byFraction + (1 - trust) * byTime;
+  const double trust = phases_[current_].steady ? std::min(1.0, fraction_ / kTrusted) : 0;
+  // Fractions seldom go quite as the time does: between the two, by their ratio.
+  const double weight = trust * std::max(kOfFraction, fraction_);
+  const double left = std::pow(std::max(leftByFraction(now, byTime), kLeast), weight) *
+                      std::pow(std::max(byTime, kLeast), 1 - weight);
   // A phase that takes longer than was thought says that others will, too.
   const double phase = (spent + left) / std::max(own, 1e-9);
-  const double weight = trust * own / (done + own + prior);
-  const double pace = (1 - weight) * speed + weight * phase;
+  const double share = trust * own / (done + own + prior);
+  const double pace = (1 - share) * speed + share * phase;
   state.secondsLeft = left + pace * (total - done - own);
   const double fraction = now / std::max(now + state.secondsLeft, 1e-9);
   shown_ = std::max(shown_, std::min(fraction, 0.99));
   state.fraction = shown_;
   state.tellsTime = fraction > kTells && now > 1;
   return state;
-}
-
-double busyness() {
-  double load = 0;
-  if (getloadavg(&load, 1) != 1) return 1;
-  // Not all that waits for a core wants as many cores as a job of ours.
-  return std::sqrt(1 + load / std::max(1U, std::thread::hardware_concurrency()));
 }
 
 double totalSeconds(const std::vector<JobPhase>& phases) {

@@ -11,17 +11,23 @@ namespace innermap::tool {
 struct JobPhase {
   // As the library reports it, or as Context::phase() names it.
   std::string stage;
-  // What it is expected to take on an idle machine, or its share of the job: only the ratios matter
-  // once some of them are over.
+  // What it is expected to take here and now: only the ratios matter once some of them are over.
   double seconds = 0;
   // Counts only when it comes to it: steps where one map folds.
   bool perhaps = false;
   // Of stages that are passed at once and many times: the phase it stands for, when not itself.
   std::string title = "";
+  // So often it is reported from 0 to 1, one time after another.
+  int times = 1;
+  // Later phases do not begin before this one: the library may report stages of their names until
+  // then.
+  bool gate = false;
+  // Its fractions say how long it takes.
+  bool steady = true;
 };
 
-// Times are seconds since the job began. Phases that are over say how fast the machine is; the one
-// under way is judged by the fraction it reports, or else by its time.
+// Times are seconds since the job began. Phases that are over say how the job goes beside what was
+// expected; the one under way is judged by the fraction it reports, or else by its time.
 class JobClock {
  public:
   void expect(std::vector<JobPhase> phases, double now);
@@ -42,18 +48,20 @@ class JobClock {
 
  private:
   double expectedUntil(std::size_t end) const;
+  void advance(double fraction, double now);
+  double leftByFraction(double now, double otherwise) const;
 
   std::vector<JobPhase> phases_;
   std::size_t current_ = 0;
   bool begun_ = false;
-  double planned_ = 0;               // when the phases became known
-  double busy_ = 1;                  // what one expected second takes, before any is over
-  double since_ = 0, fraction_ = 0;  // of the current phase
+  double planned_ = 0;  // when the phases became known
+  // Of the current phase: when it began, how much of it is done and when that was reported, and the
+  // same of the time under way where it comes several times.
+  double since_ = 0, fraction_ = 0, reported_ = 0;
+  int time_ = 0;
+  double part_ = 0;
   double shown_ = 0;
 };
-
-// On this machine, as busy as it is now: seconds on an idle one times this.
-double busyness();
 
 double totalSeconds(const std::vector<JobPhase>& phases);
 

@@ -13,18 +13,13 @@
 #include "innermap/mesh/read.h"
 #include "innermap/mesh/write.h"
 #include "inputs.h"
+#include "job_cost.h"
 #include "map_report.h"
 #include "section_options.h"
 #include "verdict.h"
 
 namespace innermap::tool {
 namespace {
-
-// Fractions of the target's diagonal.
-constexpr double kSubdivide = 0.005;
-// correspondSeconds is for two cores and the worst; this is what it mostly is.
-constexpr double kOfLayingOut = 0.5;
-constexpr double kStrangers = 2e-3;  // the tolerance between solids that were never related
 
 struct MapOptions {
   std::string source, target, output, correspondence;
@@ -85,32 +80,30 @@ Meshes readMeshes(const MapOptions& options, Context& context) {
   return meshes;
 }
 
-std::string correspondPlan(const MapOptions& options, const Meshes& meshes,
-                           const Context& context) {
-  return fmt::format(
-      "{} and {} differ in connectivity, so the one is laid onto the other first, in about {:.0f} "
-      "s",
-      options.source, options.target,
-      correspondSeconds(meshes.source.vertices.size(), meshes.target.vertices.size(),
-                        correspondSettings(options.correspond, context)));
+std::string correspondPlan(const MapOptions& options) {
+  return fmt::format("{} and {} differ in connectivity, so the one is laid onto the other first",
+                     options.source, options.target);
 }
 
-// Along the longest side of the solid.
-double voxelsAcross(const MapOptions& options, const Mesh& source) {
+// Before the solid is known: of the mesh as it was given.
+JobSize gridSize(const MapOptions& options, const Mesh& source) {
   const GridOptions& grid = options.evaluation.grid;
-  if (!grid.voxelSize) return grid.resolution.value_or(LevelSetSettings().resolution);
   const Vec3 size = boundingBox(source).extent();
-  return std::max({size.x, size.y, size.z}) / *grid.voxelSize;
+  const double longest = std::max({size.x, size.y, size.z});
+  const double voxel =
+      grid.voxelSize ? *grid.voxelSize : longest / grid.resolution.value_or(kUsualResolution);
+  constexpr std::size_t kLikely = 2;  // charges a vertex
+  return jobSize(std::abs(signedVolume(source)), surfaceArea(source), voxel,
+                 kLikely * source.vertices.size());
 }
 
 bool laidOn(const MapOptions& options, const Meshes& meshes) {
   return !meshes.related || !options.correspondence.empty();
 }
 
-// Surfaces that were laid on one another follow each other within some thousandths anyway.
 FittingOptions fittingFor(const MapOptions& options, const Meshes& meshes) {
   FittingOptions out = options.fitting;
-  if (laidOn(options, meshes)) out.fit.tolerance = kStrangers;
+  if (laidOn(options, meshes)) out.fit.tolerance = kLaidOnTolerance;
   return out;
 }
 
@@ -119,19 +112,19 @@ void expectPhases(const MapOptions& options, const Meshes& meshes, Context& cont
   const std::size_t vertices = meshes.source.vertices.size();
   const bool strangers = laidOn(options, meshes);
   std::vector<JobPhase> phases;
-  if (!meshes.related)
-    phases.push_back(
-        {"laying out",
-         kOfLayingOut * correspondSeconds(vertices, meshes.target.vertices.size(),
-                                          correspondSettings(options.correspond, context)),
-         false, "laying the source on"});
+  if (!meshes.related) phases = correspondPhases(vertices + meshes.target.vertices.size());
   const FitMapSettings fitting = fitMapSettings(fittingFor(options, meshes), vertices, context);
-  for (const JobPhase& phase : fittingPhases(fitting, vertices, strangers)) phases.push_back(phase);
-  const double fine = voxelsAcross(options, meshes.source) / 128.0;
-  const double grids = 0.45 + 0.2 * fine * fine;
-  phases.push_back({"evaluating", (strangers ? 16 : 1) * grids});
-  phases.push_back(
-      {"writing", 0.45 + 0.03 * fine * fine + (strangers ? 1.5 : 0), false, "pictures"});
+  const double places = meshes.related
+                            ? bentPlaces(meshes.source, meshes.target.vertices, fitting.tolerance)
+                            : likelyPlaces(vertices, fitting.tolerance);
+  for (const JobPhase& phase : fittingPhases(fitting, places, strangers)) phases.push_back(phase);
+  const JobSize size = gridSize(options, meshes.source);
+  JobPhase begin{"evaluating", 0};
+  begin.gate = true;
+  phases.push_back(begin);
+  for (const JobPhase& phase : evaluationPhases(size)) phases.push_back(phase);
+  phases.push_back(stageOf("writing slices", size));
+  phases.push_back(stageOf("drawing the section", size));
   context.expect(phases);
 }
 
@@ -149,7 +142,7 @@ void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
           {steps ? std::size_t{2} : 1, needsLocalMap(meshes.target.vertices, fitting.tolerance)}));
   std::string files = "map.ply, map.vdb, slices.exr, section.png";
   if (!meshes.related) {
-    lines.push_back(correspondPlan(options, meshes, context));
+    lines.push_back(correspondPlan(options));
     need = std::max(
         {need, correspondMemory(vertices, meshes.target.vertices.size()), meshPictureMemory()});
     files += ", correspondence.ply, correspondence.png";
@@ -167,7 +160,7 @@ BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& f
     return makeBoundaryPair(std::move(meshes.source), std::move(meshes.target), progress);
   context.inFolder(options.output,
                    {"correspondence.ply", "correspondence.source.ply", "correspondence.png"});
-  context.note(correspondPlan(options, meshes, context) + "; --correspond takes one made before");
+  context.note(correspondPlan(options) + "; --correspond takes one made before");
   const std::string name = meshes.target.name;
   CorrespondOptions correspond = options.correspond;
   correspond.map.seed = options.fitting.fit.seed;
@@ -196,7 +189,6 @@ void run(const MapOptions& options, Context& context) {
   expectPhases(options, meshes, context);
   if (context.dryRun()) return plan(options, meshes, context);
   const bool laid = laidOn(options, meshes);
-  if (!meshes.related) context.phase("laying out");
   const FittingOptions fitOptions = fittingFor(options, meshes);
   BoundaryPair pair = makePair(options, std::move(meshes), *folder, context);
   reportBoundaries(pair, context);
@@ -215,7 +207,6 @@ void run(const MapOptions& options, Context& context) {
   folder->write("map.vdb", [&](const std::string& path) {
     writeGridFile(path, grids.all(), options.evaluation.names, context);
   });
-  context.phase("writing");
   context.timed("write", [&] {
     folder->write("map.ply", [&](const std::string& path) { writeMap(path, fit); });
     writePictures(grids, fit, *folder, options, context);
@@ -245,7 +236,7 @@ Command makeMapCommand() {
   c.option("--correspond", "FILE", &o->correspondence,
            "SOURCE's vertices on TARGET, as innermap correspond or an earlier map wrote them")
       .reads();
-  o->correspond.map.subdivide = kSubdivide;
+  o->correspond.map.subdivide = kLaidOnSubdivide;
   addCorrespondOptions(c, o->correspond);
   addFittingOptions(c, o->fitting);
   addEvaluationOptions(c, o->evaluation);

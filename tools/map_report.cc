@@ -54,21 +54,6 @@ void reportSolve(const MapSolve& solve, Report& report) {
   report.setColumn("solve.tried_errors", solve.trials, [](auto& t) { return t.heldOutRms; });
 }
 
-std::string whyEnded(AdaptiveEnd end, const FitMapSettings& settings) {
-  switch (end) {
-    case AdaptiveEnd::maxSources:
-      return fmt::format("--max-sources {} is reached", settings.maxSources);
-    case AdaptiveEnd::maxMemory:
-      return "--max-memory is reached";
-    case AdaptiveEnd::noGain:
-      return "more charges do not help";
-    case AdaptiveEnd::met:
-    case AdaptiveEnd::stopped:
-      break;
-  }
-  return "vertices are all that --interpolation smooth fits";
-}
-
 std::vector<double> coordinates(const Points& points) {
   std::vector<double> out;
   for (const Vec3& p : points) out.insert(out.end(), {p.x, p.y, p.z});
@@ -110,7 +95,7 @@ void reportTolerance(const MapFit& fit, const FitMapSettings& settings, bool bes
   report.set("tolerance.reached", tolerance.reached);
   report.set("tolerance.met", tolerance.met);
   if (tolerance.met) return;
-  const std::string why = whyEnded(tolerance.end, settings);
+  const std::string why = whyEnded(tolerance.end, settings.maxSources);
   report.set("tolerance.ended", why);
   const std::string text = fmt::format(
       "--tolerance {:g} is not met: 99% of the boundary lies within {:.3g} of the target's "
@@ -123,6 +108,21 @@ void reportTolerance(const MapFit& fit, const FitMapSettings& settings, bool bes
 }
 
 }  // namespace
+
+std::string whyEnded(AdaptiveEnd end, std::size_t maxSources) {
+  switch (end) {
+    case AdaptiveEnd::maxSources:
+      return fmt::format("--max-sources {} is reached", maxSources);
+    case AdaptiveEnd::maxMemory:
+      return "--max-memory is reached";
+    case AdaptiveEnd::noGain:
+      return "more charges do not help";
+    case AdaptiveEnd::met:
+    case AdaptiveEnd::stopped:
+      break;
+  }
+  return "vertices are all that --interpolation smooth fits";
+}
 
 ReportMesh reportOf(const Mesh& mesh, double volume) {
   ReportMesh out;

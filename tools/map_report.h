@@ -31,4 +31,7 @@ void reportInjectivity(const Injectivity& known, Context& context);
 // Notes, warnings and seconds, "energy", "jacobian", "grid" and "one_to_one"; four lines.
 void reportGrids(const SolidGrids& grids, const LameConstants& lame, Context& context);
 
+// Why an adaptive fit ended short of its tolerance, in words.
+std::string whyEnded(AdaptiveEnd end, std::size_t maxSources);
+
 }  // namespace innermap::tool

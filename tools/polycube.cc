@@ -23,15 +23,6 @@ struct PolycubeOptions {
   std::optional<int> pieces;
 };
 
-constexpr double kVertices = 3000;  // about, where the number of pieces is not given
-constexpr int kMostPieces = 64;
-
-int piecesOf(const PolycubeOptions& options, const BlockSet& blocks) {
-  if (options.pieces) return *options.pieces;
-  const double faces = static_cast<double>(blockSurface(blocks, 1).triangles.size()) / 2;
-  return std::clamp(static_cast<int>(std::ceil(std::sqrt(kVertices / faces))), 1, kMostPieces);
-}
-
 void run(const PolycubeOptions& options, Context& context) {
   requireMeshFile("--output", options.output);
   context.output(options.output);
@@ -48,7 +39,7 @@ void run(const PolycubeOptions& options, Context& context) {
   const Polycube cube = makePolycube(mesh, settings);
   context.tell(cube);
   reportPolycube(cube, context);
-  const Mesh surface = blockSurface(cube.blocks, piecesOf(options, cube.blocks));
+  const Mesh surface = blockSurface(cube.blocks, options.pieces.value_or(usualPieces(cube.blocks)));
   context.report().set("polycube.vertices", surface.vertices.size());
   context.timed("write", [&] { writeMesh(options.output, surface); });
   if (!options.picture.empty())
@@ -72,7 +63,7 @@ Command makePolycubeCommand() {
       .required()
       .writes({".obj", ".ply"});
   c.option("--pieces", "K", &o->pieces, "squares along a block's edge, of two triangles each")
-      .range(1, kMostPieces)
+      .range(1, kMostBlockPieces)
       .defaults("as many as give 3000 vertices");
   c.option("--picture", "FILE", &o->picture, "a .png of the mesh and the cubes").writes({".png"});
   c.example("innermap polycube spot.obj -o cubes.obj --blocks 12 --picture cubes.png");

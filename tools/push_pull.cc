@@ -7,9 +7,11 @@
 #include "commands.h"
 #include "geometry_transfer.h"
 #include "innermap/core/memory.h"
+#include "innermap/io/cells/cell_file.h"
+#include "innermap/tetra/through_cells.h"
 #include "innermap/transfer/carry_memory.h"
 #include "inputs.h"
-#include "through.h"
+#include "job_cost.h"
 #include "transfer_options.h"
 
 namespace innermap::tool {
@@ -33,6 +35,12 @@ struct Job {
   std::optional<ThroughMap> through;
 };
 
+LinearCellMap readThrough(const std::string& path, const MappedSolid& mapped, Context& context) {
+  const CellMesh mesh = context.timed(
+      "read", [&] { return readCells(path, context.settings<ReadCellsSettings>()).mesh; });
+  return linearMapOf(mesh, mapped);
+}
+
 Job read(const CarryOptions& options, Context& context) {
   MappedSolid mapped = readMapFile(options.map, context);
   OutsideSettings outside = outsideSettings(
@@ -48,6 +56,46 @@ Job read(const CarryOptions& options, Context& context) {
 double growthOf(Way way, const Job& job) {
   const double from = job.mapped.solid().volume(), to = job.target.volume();
   return way == Way::push ? voxelGrowth(from, to) : voxelGrowth(to, from);
+}
+
+void expectCarrying(Way way, const Job& job, const TransferOptions& options, double growth,
+                    Context& context) {
+  const std::size_t charges = job.mapped.map.sources();
+  const double asGiven = finestVoxel(job.grids);
+  const auto sizeOf = [&](const Solid& solid, const LevelSetSettings& settings) {
+    return jobSize(solid, settings, charges);
+  };
+  LevelSetSettings given;
+  given.voxelSize = asGiven;
+  const Solid& source = job.mapped.solid();
+  const Solid& to = way == Way::push ? job.target : source;
+  JobSize made = sizeOf(to, outputSettings(job.grids, options.grid, context, growth));
+  made.items = static_cast<double>(job.grids.size()) * made.inside;
+  const JobSize from = sizeOf(way == Way::push ? source : job.target, given);
+  JobPhase levelSets = stageOf("level set", made, 2);
+  levelSets.seconds = (levelSets.seconds + stageOf("level set", from, 2).seconds) / 2;
+  std::vector<JobPhase> phases = {levelSets};
+  const CarrySettings carry = carrySettings(options);
+  std::size_t densities = 0;
+  for (const openvdb::GridBase::Ptr& grid : job.grids) densities += isDensity(*grid, carry);
+  if (way == Way::pull) {
+    phases.push_back(stageOf("pulling the grids", made));
+  } else {
+    if (densities < job.grids.size()) {
+      phases.push_back(stageOf("covering the target", made));
+      phases.push_back(stageOf("inverting the map", made));
+      phases.push_back(stageOf("carrying the grids", made));
+    }
+    if (densities > 0) {
+      JobSize held = from;
+      held.items = static_cast<double>(densities) * from.inside;
+      phases.push_back(stageOf("finding what is in the solid", held));
+      phases.push_back(stageOf("mapping the densities", held));
+      phases.push_back(stageOf("carrying the densities", held));
+    }
+  }
+  phases.push_back(stageOf("writing the VDB file", made));
+  context.expect(phases);
 }
 
 // A voxel size that nobody asked for is said where it is not the grids' own.
@@ -170,6 +218,7 @@ void run(Way way, const CarryOptions& options, Context& context) {
   const Solid& solid = way == Way::push ? job.target : job.mapped.solid();
   const double growth = growthOf(way, job);
   const CarryKind kind{way == Way::push, 0};
+  expectCarrying(way, job, options.transfer, growth, context);
   if (context.dryRun())
     return context.plan({fmt::format("{} {} grids of {} by {}", way == Way::push ? "push" : "pull",
                                      job.grids.size(), options.volume, options.map),

@@ -13,6 +13,7 @@
 #include "innermap/tetra/carry_cells.h"
 #include "innermap/tetra/remesh_cells.h"
 #include "inputs.h"
+#include "job_cost.h"
 #include "section_options.h"
 
 namespace innermap::tool {
@@ -99,6 +100,13 @@ void run(const RemeshOptions& options, Context& context) {
       "read", [&] { return readCells(options.cells, context.settings<ReadCellsSettings>()); });
   for (const std::string& note : file.notes) context.note(note);
   const std::uint64_t need = std::max(reading, remeshMemory(file.mesh));
+  JobSize size;
+  size.items = static_cast<double>(file.mesh.tetrahedra.size() + file.mesh.hexahedra.size()) / 1e6;
+  // Comes several times, with the like of it in between.
+  JobPhase boundary = stageOf("repairing the boundary", size);
+  boundary.steady = false;
+  context.expect({stageOf("repairing", size), boundary, stageOf("improving shapes", size),
+                  stageOf("writing cells", size)});
   if (context.dryRun())
     return context.plan({fmt::format("carry the {} cells of {} by {}",
                                      file.mesh.tetrahedra.size() + file.mesh.hexahedra.size(),

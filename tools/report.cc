@@ -13,6 +13,7 @@
 #include "innermap/field/field_file.h"
 #include "innermap/io/vdb/vdb_file.h"
 #include "innermap/mesh/read.h"
+#include "inputs.h"
 
 namespace innermap::tool {
 namespace {
@@ -121,18 +122,73 @@ void addSurfaces(Page& page, const Json& report, const fs::path& folder, Context
   });
 }
 
-void addGridsOf(Page& page, const fs::path& folder, Context& context) {
+// The frame whose number a file's name ends in.
+std::optional<PageFrame> frameOf(const std::string& path, const Json& report) {
+  const Json* numbers = at(report, "frames", "number");
+  const std::string name = fs::path(path).stem().string();
+  const std::size_t begin = name.find_last_not_of("0123456789") + 1;
+  if (!numbers || !numbers->is_array() || begin >= name.size() || name.size() - begin > 15)
+    return std::nullopt;
+  const std::int64_t number = std::stoll(name.substr(begin));
+  for (std::size_t i = 0; i < numbers->size(); ++i)
+    if ((*numbers)[i].is_number() && std::llround((*numbers)[i].get<double>()) == number)
+      return PageFrame{number, i, numbers->size()};
+  return std::nullopt;
+}
+
+struct GridFile {
+  std::string path;
+  std::optional<PageFrame> frame;  // whose it is
+};
+
+// Those that the page shows: of frames only some, and some of the others.
+std::vector<GridFile> gridFiles(const Json& report, const fs::path& folder) {
+  constexpr std::size_t kMostFiles = 8;
   std::vector<std::string> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
     if (entry.is_regular_file() && entry.path().extension() == ".vdb")
       files.push_back(entry.path().string());
   std::sort(files.begin(), files.end());
+  std::vector<GridFile> shown;
+  std::size_t others = 0;
+  for (const std::string& file : files) {
+    const std::optional<PageFrame> frame = frameOf(file, report);
+    if (frame ? frame->index % frameStep(frame->of) == 0 : ++others <= kMostFiles)
+      shown.push_back({file, frame});
+  }
+  return shown;
+}
+
+void addGridsOf(Page& page, const Json& report, const fs::path& folder, Context& context) {
+  const std::vector<GridFile> files = gridFiles(report, folder);
   if (files.empty()) page.missing.push_back("sections: the folder has no .vdb file");
-  // Of the frames of an animation the first; grids of one name are shown once.
-  constexpr std::size_t kMostFiles = 8;
-  for (std::size_t i = 0; i < std::min(files.size(), kMostFiles); ++i)
+  // Grids of one name are shown once, or once a frame.
+  for (const GridFile& file : files) {
+    page.frame = file.frame;
     tried(page,
-          [&] { addGrids(page, readVdb(files[i], context.settings<VdbReadSettings>()).grids); });
+          [&] { addGrids(page, readVdb(file.path, context.settings<VdbReadSettings>()).grids); });
+  }
+  page.frame.reset();
+}
+
+// Of the largest grid file and of all surfaces, as they are read, and of the page.
+std::uint64_t memoryOf(const Json& report, const fs::path& folder, const Context& context) {
+  std::uint64_t grids = 0;
+  double surfaces = 0;
+  Page unsaid;
+  for (const GridFile& file : gridFiles(report, folder))
+    tried(unsaid, [&] {
+      grids = std::max(grids,
+                       readMemory(readVdbInfo(file.path, context.settings<VdbInfoSettings>()), {}));
+    });
+  for (const std::string& path :
+       {(folder / "map.ply").string(), found(textAt(report, "source", "path"), folder),
+        found(textAt(report, "target", "path"), folder)}) {
+    std::error_code none;
+    if (const std::uintmax_t size = fs::file_size(path, none); !none)
+      surfaces += kMeshByte * static_cast<double>(size);
+  }
+  return std::max(grids, static_cast<std::uint64_t>(surfaces)) + kPageMemory;
 }
 
 void run(const ReportOptions& options, Context& context) {
@@ -144,10 +200,12 @@ void run(const ReportOptions& options, Context& context) {
   if (!fs::is_directory(folder)) throw FileError(options.folder, "is no folder");
   const Json report = readReport(json);
   context.output(output);
-  if (context.dryRun()) return context.plan({"write the page of " + json + " to " + output}, 0);
+  if (context.dryRun())
+    return context.plan({"write the page of " + json + " to " + output},
+                        memoryOf(report, folder, context));
   Page page;
   context.timed("surfaces", [&] { addSurfaces(page, report, folder, context); });
-  context.timed("sections", [&] { addGridsOf(page, folder, context); });
+  context.timed("sections", [&] { addGridsOf(page, report, folder, context); });
   context.timed("write", [&] {
     writePage(output, page, report.dump(-1, ' ', false, Json::error_handler_t::replace));
   });

@@ -7,7 +7,9 @@
 #include "commands.h"
 #include "frame_loop.h"
 #include "grid_options.h"
+#include "html/page.h"
 #include "innermap/io/picture/chart.h"
+#include "job_cost.h"
 #include "lists.h"
 #include "sequence_table.h"
 
@@ -55,9 +57,17 @@ SequenceRow rowOf(const FrameFile& frame, const FrameFit& fit, const MapGrids& g
   return row;
 }
 
+// Those that are written, or else those that the page shows.
+std::vector<std::string> gridsToMake(const SequenceOptions& options, Context& context) {
+  const std::vector<std::string> written = gridsToWrite(options);
+  if (!written.empty() || !context.page()) return written;
+  return {"surface", "jacobian", "deformation_energy"};
+}
+
 FrameEvaluator makeEvaluator(const SequenceOptions& options, const FrameFitter& fitter,
                              Context& context) {
-  FrameEvaluator made(fitter, gridsToWrite(options), mapGridSettings(options.evaluation, context));
+  FrameEvaluator made(fitter, gridsToMake(options, context),
+                      mapGridSettings(options.evaluation, context));
   addSeconds(context.report().seconds, made.seconds());
   for (const std::string& warning : made.warnings()) context.warning(warning);
   context.report().set("grid.voxel_size", made.voxelSize());
@@ -77,12 +87,18 @@ void run(const SequenceOptions& options, Context& context) {
   SourceBoundary rest = readRest(options.rest, context);
   const std::uint64_t gridsNeed =
       mapGridMemory(rest.solid, mapGridSettings(options.evaluation, context), {1, false, false});
+  const JobSize size =
+      jobSize(rest.solid, mapGridSettings(options.evaluation, context), settings.sources);
+  std::vector<JobPhase> phases = framePhases(settings.sources, frames.wanted.size(),
+                                             stageOf("frames: grids", withNearSums(size)));
+  phases.insert(phases.end() - 1, stageOf("level set", size));
+  context.expect(phases);
   if (context.dryRun())
     return context.plan({framesPlan(settings, frames),
                          "write energies.csv, energies.png and report.json" +
                              std::string(options.grids ? " and the grids of each frame" : "") +
                              " to " + options.output},
-                        frameFitterMemory(settings) + gridsNeed);
+                        frameFitterMemory(settings, gridsNeed));
   requireFrameMemory(settings, gridsNeed, context);
   const FrameFitter fitter = makeFrameFitter(std::move(rest), settings, context);
   const FrameEvaluator evaluator = makeEvaluator(options, fitter, context);
@@ -98,6 +114,8 @@ void run(const SequenceOptions& options, Context& context) {
         writeGridFile(pattern.path(frame.number), evaluator.grids({fit.get(), frame.number}, grids),
                       options.evaluation.names, context);
       });
+    else if (context.page())
+      addGrids(*context.page(), evaluator.grids({fit.get(), frame.number}, grids));
     rows.push_back(rowOf(frame, *fit, grids, options.frames.tolerance));
     context.print(sequenceLine(rows.back()));
   });

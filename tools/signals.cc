@@ -17,7 +17,7 @@ namespace {
 
 std::atomic<Progress*> cancelled{nullptr};
 std::atomic<int> requests{0}, expected{0};
-std::atomic<bool> done{false};
+std::atomic<bool> done{false}, kept{false};
 
 void startTimer(int microseconds) {
   itimerval timer{};
@@ -40,9 +40,14 @@ void endNow() {
   removeUnfinishedFiles();
   const std::uint64_t inPlace = outputsInPlace();
   if (inPlace > 0 && inPlace >= static_cast<std::uint64_t>(expected)) _exit(0);
-  say(inPlace == 0 ? "innermap: cancelled; nothing was written\n"
-                   : "innermap: cancelled; some of the outputs are in place, others are not\n");
+  say(inPlace == 0 && kept ? "innermap: cancelled; what is finished is kept for the next run\n"
+      : inPlace == 0       ? "innermap: cancelled; nothing was written\n"
+                     : "innermap: cancelled; some of the outputs are in place, others are not\n");
   _exit(130);
+}
+
+bool allInPlace() {
+  return expected > 0 && outputsInPlace() >= static_cast<std::uint64_t>(expected);
 }
 
 void onTimer(int) {
@@ -69,6 +74,8 @@ void onRequest(int) {
     why = reasonOf(error);
   } catch (...) {
   }
+  // There is none where it could not be allocated.
+  if (!current) why = "an error could not be told, as happens when memory is exhausted";
   say("innermap: ");
   append(why);
   append("\n");
@@ -80,6 +87,13 @@ void onCrash(int number) {
   removeUnfinishedFiles();
   signal(number, SIG_DFL);
   raise(number);
+}
+
+// Ends as by a crash, which leaves a core, but not amid the commit or after it.
+void onQuit(int number) {
+  if (done) return;
+  if (commitUnderWay() || allInPlace()) return endNow();
+  onCrash(number);
 }
 
 void install(int number, void (*handler)(int)) {
@@ -102,7 +116,7 @@ __attribute__((constructor(101))) void installHandlers() {
     sigaction(number, nullptr, &before);
     if (before.sa_handler != SIG_DFL) continue;  // a sanitizer's
     struct sigaction action {};
-    action.sa_handler = onCrash;
+    action.sa_handler = number == SIGQUIT ? onQuit : onCrash;
     sigfillset(&action.sa_mask);
     sigaction(number, &action, nullptr);
   }
@@ -131,6 +145,7 @@ void ignoreSignals() {
 }
 
 void expectOutputs(int more) { expected += more; }
+void noteKeptWork() { kept = true; }
 int expectedOutputs() { return expected; }
 
 }  // namespace innermap::tool

@@ -30,6 +30,8 @@ void ignoreSignals();
 
 // How many outputs this run will put in place, for what is said when it ends at once.
 void expectOutputs(int more);
+// From now on this run has finished work that stays for the next one.
+void noteKeptWork();
 int expectedOutputs();
 
 }  // namespace innermap::tool

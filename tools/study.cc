@@ -14,8 +14,10 @@
 #include "innermap/core/memory.h"
 #include "innermap/mesh/read.h"
 #include "inputs.h"
+#include "job_cost.h"
 #include "lists.h"
 #include "map_report.h"
+#include "signals.h"
 #include "study_files.h"
 
 namespace innermap::tool {
@@ -118,8 +120,30 @@ void plan(const StudyOptions& options, const BoundaryPair& pair, const StudySett
   context.plan(lines, most);
 }
 
+// Seconds of one core that the first n runs take, for each n; those that are kept take none.
+std::vector<double> workOf(const BoundaryPair& pair, const StudySettings& settings) {
+  constexpr double kSmall = 0.06, kThousandCubed = 0.25, kAPoint = 0.06;  // measured
+  std::vector<double> work{0};
+  for (const StudyRun& run : studyRuns(pair.solid(), settings)) {
+    const double thousands = static_cast<double>(run.sources) / 1000;
+    const double own =
+        kSmall + std::pow(thousands, 3) * (kThousandCubed + kAPoint * run.collocation);
+    work.push_back(work.back() + (isKept(pair, run, settings) ? 0 : own));
+  }
+  return work;
+}
+
+void expectRuns(const std::vector<double>& work, double most, Context& context) {
+  JobSize size;
+  size.items = work.back();
+  JobPhase runs = stageOf("runs", size);
+  if (most > 0) runs.seconds = std::min(runs.seconds, most);
+  context.expect({runs});
+}
+
 // Finished runs stay when the others are not made.
-Study makeRuns(const BoundaryPair& pair, const StudySettings& settings, Context& context) {
+Study makeRuns(const BoundaryPair& pair, const StudySettings& settings,
+               const std::vector<double>& work, Context& context) {
   std::size_t finished = 0, runs = 0;
   context.print(studyHeader());
   try {
@@ -128,7 +152,9 @@ Study makeRuns(const BoundaryPair& pair, const StudySettings& settings, Context&
           if (row) context.print(studyLine(*row));
           std::fflush(stdout);
           finished = done;
+          if (row) noteKeptWork();
           runs = all;
+          if (work.back() > 0) reportProgress(context.progress(), "runs", work[done] / work.back());
           context.setPart(done < all ? fmt::format("run {} of {}", done + 1, all) : std::string());
         });
     context.setPart("");
@@ -191,8 +217,10 @@ void run(const StudyOptions& options, Context& context) {
   for (const std::string& name : studyChartNames()) names.push_back(name);
   const auto folder = context.outputFolder(options.output, names);
   const BoundaryPair pair = readPair(options, context);
+  const std::vector<double> work = workOf(pair, settings);
+  expectRuns(work, settings.maxSeconds, context);
   if (context.dryRun()) return plan(options, pair, settings, context);
-  Study study = context.timed("runs", [&] { return makeRuns(pair, settings, context); });
+  Study study = context.timed("runs", [&] { return makeRuns(pair, settings, work, context); });
   const StudyFindings findings = studyFindings(study);
   if (study.left > 0)
     study.warnings.push_back(fmt::format(

@@ -12,78 +12,12 @@
 #include "innermap/core/file.h"
 #include "innermap/core/version.h"
 #include "innermap/io/picture/svg_chart.h"
+#include "innermap/study/study_columns.h"
 
 namespace innermap::tool {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-struct Column {
-  const char* name;
-  const char* heading;  // on the page; null: not there
-  double (*value)(const Study&, const StudyRow&);
-  bool ofRun = false;  // known of failed runs too
-};
-
-double ratio(std::size_t count, const Study& study) {
-  return static_cast<double>(count) / static_cast<double>(study.vertices);
-}
-
-const Column kColumns[] = {
-    {"sources", "charges",
-     [](const Study&, const StudyRow& r) { return static_cast<double>(r.sources); }, true},
-    {"points", "boundary points",
-     [](const Study&, const StudyRow& r) { return static_cast<double>(r.points); }, true},
-    {"points_per_source", nullptr, [](const Study&, const StudyRow& r) { return r.collocation; },
-     true},
-    {"s_ratio", nullptr, [](const Study& s, const StudyRow& r) { return ratio(r.sources, s); },
-     true},
-    {"c_ratio", nullptr, [](const Study& s, const StudyRow& r) { return ratio(r.points, s); },
-     true},
-    {"o_distance", "distance",
-     [](const Study&, const StudyRow& r) {
-       return r.placement == ChargePlacement::offset ? r.at : StudyRow::kNone;
-     },
-     true},
-    {"spacings", "in spacings",
-     [](const Study& s, const StudyRow& r) {
-       return r.placement == ChargePlacement::offset
-                  ? r.at / s.spacing * std::sqrt(static_cast<double>(r.sources))
-                  : StudyRow::kNone;
-     },
-     true},
-    {"r_ratio", "radius",
-     [](const Study&, const StudyRow& r) {
-       return r.placement == ChargePlacement::sphere ? r.at : StudyRow::kNone;
-     },
-     true},
-    {"c_error", "C-Error", [](const Study&, const StudyRow& r) { return r.cError; }},
-    {"collocation_rms", "its rms",
-     [](const Study&, const StudyRow& r) { return r.collocationRms; }},
-    {"rms", "fresh rms", [](const Study&, const StudyRow& r) { return r.rms; }},
-    {"p99", "fresh 99%", [](const Study&, const StudyRow& r) { return r.p99; }},
-    {"max", "largest", [](const Study&, const StudyRow& r) { return r.max; }},
-    {"harmonic_energy", "harmonic energy",
-     [](const Study&, const StudyRow& r) { return r.harmonicEnergy; }},
-    {"deformation_energy", "deformation energy",
-     [](const Study&, const StudyRow& r) { return r.deformationEnergy; }},
-    {"jacobian_min", "least det J", [](const Study&, const StudyRow& r) { return r.jacobianMin; }},
-    {"folded", "folded", [](const Study&, const StudyRow& r) { return r.folded; }},
-    {"weights", "weights", [](const Study&, const StudyRow& r) { return r.weights; }},
-    {"condition", "condition", [](const Study&, const StudyRow& r) { return r.condition; }},
-    {"regularization", "regularisation",
-     [](const Study&, const StudyRow& r) { return r.regularization; }},
-    {"rank", "rank", [](const Study&, const StudyRow& r) { return static_cast<double>(r.rank); }},
-    {"seconds", "seconds", [](const Study&, const StudyRow& r) { return r.seconds; }},
-    {"seconds_overall", nullptr, [](const Study&, const StudyRow& r) { return r.secondsOverall; }}};
-
-const char* placementText(const StudyRun& run) {
-  return run.placement == ChargePlacement::sphere ? "sphere" : "offset";
-}
-
-double valueOf(const Column& column, const Study& study, const StudyRow& row) {
-  return column.ofRun || row.failure.empty() ? column.value(study, row) : StudyRow::kNone;
-}
 
 std::string quoted(const std::string& text) {
   std::string out = "\"";
@@ -100,7 +34,8 @@ Json number(double value) {
 
 Json json(const Study& study, const StudyRow& row) {
   Json out{{"placement", placementText(row)}};
-  for (const Column& column : kColumns) out[column.name] = number(valueOf(column, study, row));
+  for (const StudyColumn& column : studyColumns())
+    out[column.name] = number(valueOf(column, study, row));
   out["kept"] = row.kept;
   if (!row.failure.empty()) out["failure"] = row.failure;
   return out;
@@ -137,14 +72,14 @@ figure{margin:1.5em 0}figure>div{background:#fff;border:1px solid var(--line);ov
 
 std::string rowsOfPage(const Study& study, const StudyFindings& findings) {
   std::string out = "<table><thead><tr><th>placement</th>";
-  for (const Column& column : kColumns)
-    if (column.heading) out += fmt::format("<th>{}</th>", column.heading);
+  for (const StudyColumn& column : studyColumns())
+    if (column.title) out += fmt::format("<th>{}</th>", column.title);
   out += "<th></th></tr></thead><tbody>\n";
   for (const StudyRow& row : study.rows) {
     const bool best = findings.best && sameRun(row, *findings.best);
     out += fmt::format("<tr{}><td>{}</td>", best ? " class=\"best\"" : "", placementText(row));
-    for (const Column& column : kColumns) {
-      if (!column.heading) continue;
+    for (const StudyColumn& column : studyColumns()) {
+      if (!column.title) continue;
       const double value = valueOf(column, study, row);
       out += fmt::format("<td class=\"n\">{}</td>",
                          std::isfinite(value) ? fmt::format("{:.4g}", value) : "");
@@ -214,11 +149,11 @@ std::string fileNameOf(const std::string& path) {
 void writeStudyTable(const std::string& path, const Study& study) {
   writeWholeFile(path, [&](std::ostream& file) {
     file << "placement";
-    for (const Column& column : kColumns) file << "," << column.name;
+    for (const StudyColumn& column : studyColumns()) file << "," << column.name;
     file << ",failure\n";
     for (const StudyRow& row : study.rows) {
       file << placementText(row);
-      for (const Column& column : kColumns) {
+      for (const StudyColumn& column : studyColumns()) {
         const double value = valueOf(column, study, row);
         file << "," << (std::isfinite(value) ? fmt::format("{:.9g}", value) : "");
       }

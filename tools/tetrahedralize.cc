@@ -12,6 +12,7 @@
 #include "innermap/io/cells/cell_file.h"
 #include "innermap/io/picture/cell_picture.h"
 #include "inputs.h"
+#include "job_cost.h"
 #include "map_report.h"
 #include "section_options.h"
 
@@ -94,6 +95,15 @@ void run(const TetrahedralizeOptions& options, Context& context) {
   TetrahedralizeSettings settings = context.settings(options.settings);
   settings.keepTopology = !options.anyTopology;
   const std::uint64_t need = memoryFor(options, solid, settings);
+  JobSize size;
+  size.items = static_cast<double>(tetrahedralizeNeed(solid, settings).tetrahedra) / 1e6;
+  JobPhase voxels = stageOf("level set: cells", size),
+           thin = stageOf("looking for thin parts", size);
+  voxels.steady = thin.steady = false;  // they come again where the solid is thin
+  thin.perhaps = true;
+  context.expect({voxels, thin, stageOf("filling with tetrahedra", size),
+                  stageOf("fitting the boundary", size), stageOf("measuring cells", size),
+                  stageOf("comparing the boundaries", size), stageOf("writing cells", size)});
   if (context.dryRun())
     return context.plan(
         {fmt::format("fill {} with tetrahedra, to {}", options.mesh, options.output)}, need);

@@ -7,6 +7,7 @@
 #include "innermap/io/picture/texture_images.h"
 #include "innermap/texture/solid_texture.h"
 #include "inputs.h"
+#include "job_cost.h"
 #include "verdict.h"
 
 namespace innermap::tool {
@@ -95,6 +96,31 @@ void fillReport(const SolidTexture& made, const TextureOptions& options, Report&
   r.grid = grid;
 }
 
+void expectPhases(const TextureOptions& o, const SolidTextureSettings& settings,
+                  const SolidTexturePlan& plan, Context& context) {
+  const Mesh& mesh = plan.mesh();
+  double area = surfaceArea(mesh);
+  JobSize size = jobSize(std::abs(signedVolume(mesh)), area, plan.voxelSize, plan.sources);
+  const bool colours = settings.mode == TextureMode::imageColours;
+  // In fields of three channels; colours are solved with more care.
+  const double fields = o.blends() ? std::max(1, plan.groups) : colours ? 2.5 : 1;
+  size.items = fields * size.charges;
+  std::vector<JobPhase> phases;
+  if (!o.image.empty()) phases.push_back(stageOf("reading the image", size));
+  for (const char* stage :
+       {"placing samples", "factoring", "factoring clusters", "solving", "level set"})
+    phases.push_back(stageOf(stage, size));
+  size.items = fields * size.inside;
+  phases.push_back(stageOf(colours ? "continuing inwards: colours" : "continuing inwards", size));
+  phases.push_back(stageOf("meeting the surface", size));
+  if (o.blends())
+    phases.push_back(stageOf("blending charts", size));
+  else if (settings.mode == TextureMode::coordinates)
+    phases.push_back(stageOf("looking up colours", size));
+  phases.push_back(stageOf("writing the VDB file", size));
+  context.expect(phases);
+}
+
 void run(const TextureOptions& o, Context& context) {
   const SolidTextureSettings settings = settingsOf(o, context);
   context.output(o.output);
@@ -109,6 +135,7 @@ void run(const TextureOptions& o, Context& context) {
   if (isTiled(o.image)) tiles = udimTiles(plan.mesh());
   const std::uint64_t need =
       plan.memory + (o.image.empty() ? 0 : textureImageMemory(o.image, tiles));
+  expectPhases(o, settings, plan, context);
   if (context.dryRun())
     return context.plan({fmt::format("continue {} into {} with {} charges and voxels of {:.6g}",
                                      image, o.mesh, plan.sources, plan.voxelSize),

@@ -5,6 +5,7 @@
 #include "grid_options.h"
 #include "innermap/transfer/distance_transfer.h"
 #include "inputs.h"
+#include "job_cost.h"
 #include "section_options.h"
 #include "verdict.h"
 
@@ -67,6 +68,20 @@ std::string textOf(const DistanceTransfer& made) {
       made.throughFigures.largest, 100 * made.outsideFraction);
 }
 
+// The target's distances, then the source's through the map and its own.
+void expectPhases(const TransferDistanceOptions& options, const MappedSolid& mapped,
+                  const Solid& target, Context& context) {
+  const auto settings = gridSettings<LevelSetSettings>(options.grid, context);
+  const JobSize there = jobSize(target, settings);
+  const JobSize here = jobSize(mapped.solid(), settings, mapped.map.sources());
+  JobPhase source = stageOf("level set", here);
+  source.gate = true;
+  context.expect({stageOf("level set", there), stageOf("distances", there), source,
+                  stageOf("distances", here), stageOf("evaluating the map", withNearSums(here)),
+                  stageOf("distances", here), stageOf("drawing the section", here, 2),
+                  stageOf("writing the VDB file", here, 2)});
+}
+
 void run(const TransferDistanceOptions& options, Context& context) {
   const auto folder = context.outputFolder(
       options.output, {"source.vdb", "target.vdb", "source.png", "target.png", "report.json"});
@@ -76,6 +91,7 @@ void run(const TransferDistanceOptions& options, Context& context) {
     return distanceTransferMemory(mapped.solid(), target,
                                   gridSettings<DistanceTransferSettings>(grid, context));
   };
+  expectPhases(options, mapped, target, context);
   if (context.dryRun())
     return context.plan(
         {"transfer the target's distance field through " + options.map,

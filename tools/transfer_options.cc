@@ -110,14 +110,6 @@ LevelSetSettings outputSettings(const openvdb::GridPtrVec& grids, const GridOpti
   return settings;
 }
 
-double volumeRatio(double from, double to) { return from > 0 && to > 0 ? to / from : 1; }
-
-double voxelGrowth(double from, double to) {
-  constexpr double kAlike = 0.1;
-  const double growth = std::cbrt(volumeRatio(from, to));
-  return std::abs(growth - 1) <= kAlike ? 1 : growth;
-}
-
 std::uint64_t transferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
                              const TransferOptions& options, const Context& context,
                              const CarryKind& kind, double growth) {

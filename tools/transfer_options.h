@@ -44,17 +44,11 @@ void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
                            const TransferOptions& options, const Context& context,
                            const CarryKind& kind, double growth = 1);
 
-// By how much volumes grow; 1 where one of them is not known.
-double volumeRatio(double from, double to);
-
 // Of the output's solid: by --voxel-size or --resolution, else with the finest voxels of the grids,
 // times `growth`.
 LevelSetSettings outputSettings(const openvdb::GridPtrVec& grids, const GridOptions& options,
                                 const Context& context, double growth = 1);
 
-// What voxels of a solid grow by when what is inside goes to another: the cube root of their
-// volumes' ratio; 1 where that is within a tenth of it, so that poses keep the grids' own lattice.
-double voxelGrowth(double from, double to);
 openvdb::FloatGrid::Ptr outputLevelSet(const Solid& solid, const openvdb::GridPtrVec& grids,
                                        const TransferOptions& options, Context& context,
                                        double growth = 1);

@@ -27,30 +27,8 @@ NamedConditions conditionsOf(const WeightOptions& options, const Mesh& mesh) {
   for (const std::string& name : wanted)
     if (std::none_of(groups.begin(), groups.end(), [&](const auto& g) { return g.name == name; }))
       throw FileError(mesh.name, fmt::format("has no group '{}'", name));
-  if (groups.size() < 2)
-    throw FileError(mesh.name, fmt::format("weights need two groups of faces or more, here {}",
-                                           groups.size() == 1 ? "is one" : "are none"));
-  out.conditions.values = Matrix(3 * mesh.triangles.size(), groups.size());
-  out.conditions.free.assign(mesh.triangles.size(), 1);
-  for (std::size_t k = 0; k < groups.size(); ++k) {
-    out.names.push_back(groups[k].name);
-    if (groups[k].triangles.empty())
-      throw FileError(mesh.name,
-                      fmt::format("group '{}' has no faces; a point or a line inside cannot hold a "
-                                  "weight in three dimensions: give it as a small ball or tube, a "
-                                  "closed part of the surface",
-                                  groups[k].name));
-    for (const int triangle : groups[k].triangles) {
-      const auto t = static_cast<std::size_t>(triangle);
-      if (!out.conditions.free[t])
-        throw FileError(mesh.name,
-                        fmt::format("a face is in group '{}' and in another; name groups "
-                                    "that share none (--groups)",
-                                    groups[k].name));
-      out.conditions.free[t] = 0;
-      for (std::size_t c = 0; c < 3; ++c) out.conditions.values(3 * t + c, k) = 1;
-    }
-  }
+  out.conditions = weightConditions(mesh, groups);
+  for (const SurfaceGroup& group : groups) out.names.push_back(group.name);
   return out;
 }
 
@@ -58,10 +36,13 @@ NamedConditions conditionsOf(const WeightOptions& options, const Mesh& mesh) {
 
 Command makeWeightsCommand() {
   auto o = std::make_shared<WeightOptions>();
+  o->harmonic.fit.tolerance =
+      1e-2;  // where groups touch, a finer one is spent on the border's kinks
   Command c("weights", "Harmonic weights of groups of a surface, inside the solid");
   c.description(
       "A channel for each group: 1 on it, 0 on the other groups, nothing flows through the rest of "
-      "the surface. All are fitted at once and sum up to 1 everywhere.");
+      "the surface. Groups that touch go over into one another on the triangles along their "
+      "border. All are fitted at once and sum up to 1 everywhere.");
   addHarmonicOptions(c, o->harmonic, "value");
   c.option("--groups", "LIST", &o->groups, "groups, objects or materials of the OBJ, by name")
       .defaults("all that have faces");

@@ -21,6 +21,8 @@ import traceback
 from pathlib import Path
 
 PROGRAM = os.environ.get("INNERMAP", "innermap")
+if os.sep in PROGRAM:
+    PROGRAM = os.path.abspath(PROGRAM)  # tests run in folders of their own
 ROOT = Path(os.environ.get("INNERMAP_ROOT", Path(__file__).resolve().parents[2]))
 sys.path.append(str(ROOT / "samples"))
 import make_shapes  # pylint: disable=wrong-import-position

@@ -106,6 +106,18 @@ for n in [1, 2, 4, 9]:
     assert "innermap_frames_per_second: 24" in text
 
 
+def test_grids_of_another_map_are_carried():
+    """Their metadata say what that map was, in types of their own."""
+    ball_frames(moved, {1: 0.1})
+    innermap("fit", "rest.obj", "frames/f.0001.obj", "-o", "map.ply")
+    innermap("evaluate", "map.ply", "-o", "rest.vdb", "--resolution", 20)
+    deform("--grids", "density")
+    text = innermap("info", "out/d.0001.vdb").stdout
+    assert "innermap_boundary_error_p99" in text and "innermap_one_to_one" not in text, text
+    innermap("push", "map.ply", "out/d.0001.vdb", "-o", "again.vdb")
+    assert "innermap_one_to_one" in innermap("info", "again.vdb").stdout
+
+
 def test_velocity_is_of_second_order_in_gaps():
     """Accelerated along x, x = t^2: the parabola through three frames is the motion itself."""
     ball_frames(lambda v, t: (v[0] + t * t, v[1], v[2]), {1: 1, 2: 2, 5: 5, 6: 6})

@@ -89,6 +89,18 @@ def test_weights_sum_up_to_one():
     assert abs(sum(constant) - 1) < 1e-12, affine
 
 
+def test_groups_that_touch_are_joined():
+    write_capsule("shell.obj")
+    with open("shell.obj", encoding="utf-8") as file:
+        text = file.read()
+    with open("tiled.obj", "w", encoding="utf-8") as file:
+        file.write(text.replace("g rim", "g inner"))  # nothing is free
+    report = report_of("weights", "tiled.obj", "-o", "w.vdb", "--groups", "inner,outer",
+                       "--resolution", "24")
+    assert report["tolerance"]["met"], report
+    assert any("joined" in text for text in report["notes"]), report["notes"]
+
+
 def test_values_of_vertices():
     vertices = write_capsule("shell.obj")
     with open("table.csv", "w", encoding="utf-8") as file:

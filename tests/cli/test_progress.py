@@ -70,4 +70,51 @@ def test_dry_run_says_seconds_that_include_the_fit():
     assert said["1e-6"] > said["1e-3"] >= 1, said
 
 
+def test_every_long_command_says_seconds_in_a_dry_run():
+    pair()
+    innermap("fit", "ball.obj", "egg.obj", "-o", "map.ply")
+    innermap("evaluate", "map.ply", "-o", "map.vdb", "--resolution", "24")
+    innermap("tetrahedralize", "ball.obj", "-o", "cells.vtu", "--resolution", "16")
+    for number in (1, 2):
+        vertices, faces = cli.icosphere_arrays(3)
+        cli.write_obj(f"frame.{number}.obj", [(x, (1 + 0.1 * number) * y, z) for x, y, z in vertices],
+                      faces)
+    vertices, faces = cli.icosphere_arrays(3)
+    with open("coloured.obj", "w") as file:
+        for x, y, z in vertices:
+            file.write(f"v {x} {y} {z} {(x + 1) / 2} {(y + 1) / 2} {(z + 1) / 2}\n")
+        for face in faces:
+            file.write("f " + " ".join(str(v + 1) for v in face) + "\n")
+    frames = "frame.*.obj"
+    for command in [["evaluate", "map.ply", "-o", "a.vdb"],
+                    ["push", "map.ply", "map.vdb", "-o", "a.vdb", "--grids", "density"],
+                    ["push", "map.ply", "map.vdb", "-o", "a.vdb", "--grids", "density", "--density"],
+                    ["pull", "map.ply", "map.vdb", "-o", "a.vdb", "--grids", "density"],
+                    ["transfer-distance", "map.ply", "-o", "out"],
+                    ["sequence", "ball.obj", frames, "-o", "out"],
+                    ["deform", "ball.obj", "map.vdb", frames, "-o", "out/a.##.vdb"],
+                    ["deform", "ball.obj", "cells.vtu", frames, "-o", "out/a.##.vtu"],
+                    ["texture", "coloured.obj", "-o", "a.vdb"],
+                    ["harmonic", "coloured.obj", "--vertex-colours", "-o", "a.vdb"],
+                    ["correspond", "ball.obj", "egg.obj", "-o", "a.ply"],
+                    ["tetrahedralize", "ball.obj", "-o", "a.vtu"],
+                    ["remesh", "map.ply", "cells.vtu", "-o", "a.vtu"],
+                    ["hexahedralize", "ball.obj", "-o", "a.vtu"],
+                    ["study", "ball.obj", "egg.obj", "-o", "out"],
+                    ["fit", "ball.obj", "egg.obj", "-o", "a.ply"]]:
+        text = innermap(*command, "--dry-run").stdout
+        assert re.search(r"^time: about \d+ s$", text, re.M), (command, text)
+
+
+def test_more_voxels_are_said_to_take_longer():
+    pair()
+    innermap("fit", "ball.obj", "egg.obj", "-o", "map.ply")
+    said = []
+    for resolution in ["64", "1024"]:
+        text = innermap("evaluate", "map.ply", "-o", "a.vdb", "--resolution", resolution, "--dry-run",
+                        "--max-memory", "100GB").stdout
+        said.append(int(re.search(r"^time: about (\d+) s$", text, re.M).group(1)))
+    assert said[1] > said[0], said
+
+
 cli.run(globals())

@@ -218,10 +218,29 @@ def test_strangers():
         check_quiet(page)
 
 
-def check_sequence(path, frames):
+def check_frames_sections(page, frames):
+    """Each frame has sections of its own, in the colours of all."""
+    at = "document.querySelector('#sections .hint').textContent"
+    legend = "document.querySelector('#sections .legend').textContent"
+    seen_before, before = set(), page.value(legend)
+    for i in range(frames):
+        choose(page, "#frame-shown", i)
+        number = page.value("document.querySelector('#frame-shown ~ output').textContent")
+        assert page.value(at).startswith(f"frame {number}; "), page.value(at)
+        assert page.value(legend) == before
+        seen_before.add(seen(page, "#cut-z")["sum"])
+    assert len(seen_before) == frames, "frames share their sections"
+    choose(page, "#frame-shown", 0)
+
+
+def check_sequence(path, frames, sections=True):
     with Browser() as browser:
         page = browser.open(path)
         check_surfaces(page)
+        if sections:
+            choose(page, "#frame-shown", min(frames - 1, 2))
+            check_sections(page, ["deformation_energy", "jacobian"])
+            check_frames_sections(page, min(frames, 5))
         assert page.value("document.querySelectorAll('#frames svg').length") >= 5
         assert page.value("document.querySelector('#frame-shown').max") == str(frames - 1)
         picture = seen(page, "canvas.surfaces")
@@ -246,7 +265,12 @@ def test_sequence():
     check_sequence("out/report.html", 4)
     # The same from the folder's files and the frames that the report names.
     innermap("report", "out", "-o", "again.html", "--quiet")
-    check_sequence("again.html", 4)
+    check_sequence("again.html", 4, sections=False)
+    # With grids, those of each frame come from its file.
+    innermap("sequence", "rest.obj", "frames", "-o", "grids", "--sources", "400", "--resolution", "24",
+             "--grids", "--grid-list", "surface,jacobian,deformation_energy", "--quiet")
+    innermap("report", "grids", "-o", "grids.html", "--quiet")
+    check_sequence("grids.html", 4)
 
 
 def test_every_command():

@@ -54,9 +54,22 @@ COMMANDS = {
     "export-tiles": ["export", "I/map.vdb", "-o", "O/e.exr", "--grid", "density"],
     "import": ["import", "I/map.exr", "-o", "O/i.vdb"],
     "info": ["info", "I/map.vdb", "--report", "O/r.json"],
+    "harmonic": ["harmonic", "I/groups.obj", "-o", "O/h.vdb", "--field", "O/h.ply", "--fix",
+                 "top=1,bottom=0", "--resolution", "16", "--tolerance", "0.02", "--best-effort"],
+    "weights": ["weights", "I/groups.obj", "-o", "O/w.vdb", "--groups", "top,bottom", "--resolution",
+                "12", "--tolerance", "0.1", "--best-effort", "--report", "O/r.json"],
+    "study": ["study", "I/round.obj", "I/oval.obj", "-o", "O/study", "--sources", "20,40",
+              "--points", "2,3", "--distances", "0.1,0.2", "--radius-ratios", "1.5",
+              "--base-sources", "30", "--base-points", "2"],
+    "report": ["report", "I/made", "-o", "O/page.html"],
+    "map-html": ["map", "I/ball.obj", "I/egg.obj", "-o", "O/out", "--resolution", "12", "--html"],
+    "push-html": ["push", "I/map.ply", "I/small.obj", "-o", "O/p.obj", "--html=O/page.html"],
 }
 # Whose files come together.
-FOLDERS = ("map", "map-strangers", "transfer-distance", "sequence", "export", "compare-fem")
+FOLDERS = ("map", "map-strangers", "transfer-distance", "sequence", "export", "compare-fem", "study",
+           "map-html")
+# What a command keeps of its work as it goes on, for the next run.
+KEPT = {"study": "study/runs/"}
 
 
 def write_png(path, size=16):
@@ -92,13 +105,30 @@ def write_textured(path, vertices, faces):
             file.write("f " + " ".join(f"{i + 1}/{i + 1}" for i in f) + "\n")
 
 
+def write_groups(path, vertices, faces):
+    """The caps are groups, between them is the rest."""
+    def group(face):
+        z = sum(vertices[i][2] for i in face) / 3
+        return "top" if z > 0.7 else "bottom" if z < -0.7 else "rest"
+    with open(path, "w", encoding="ascii") as file:
+        file.write("".join("v {} {} {}\n".format(*v) for v in vertices))
+        for name in ("top", "bottom", "rest"):
+            file.write(f"g {name}\n")
+            file.write("".join("f {} {} {}\n".format(*(i + 1 for i in f)) for f in faces
+                               if group(f) == name))
+
+
 def make_inputs(folder):
     vertices, faces = cli.icosphere_arrays(3)
     cli.write_obj(folder / "ball.obj", vertices, faces)
     egg = [(1.3 * x, y + 0.1 * x * x, z) for x, y, z in vertices]
     cli.write_obj(folder / "egg.obj", egg, faces)
     cli.write_obj(folder / "small.obj", [tuple(0.5 * c for c in v) for v in vertices], faces)
-    cli.write_obj(folder / "round.obj", *cli.icosphere_arrays(2))
+    coarse, coarse_faces = cli.icosphere_arrays(2)
+    cli.write_obj(folder / "round.obj", coarse, coarse_faces)
+    cli.write_obj(folder / "oval.obj", [(1.3 * x, y + 0.1 * x * x, z) for x, y, z in coarse],
+                  coarse_faces)
+    write_groups(folder / "groups.obj", vertices, faces)
     cli.cube(folder / "cube.obj")
     (folder / "frames").mkdir()
     cli.write_obj(folder / "frames/f.0001.obj", egg, faces)
@@ -106,11 +136,10 @@ def make_inputs(folder):
     write_coloured(folder / "ball.ply", vertices, faces)
     write_textured(folder / "quad.obj", vertices, faces)
     write_png(folder / "image.png")
-    cli.innermap("map", folder / "ball.obj", folder / "egg.obj", "-o", folder / "out",
+    cli.innermap("map", folder / "ball.obj", folder / "egg.obj", "-o", folder / "made",
                  "--resolution", "16", "-q")
     for name in ("map.ply", "map.vdb"):
-        shutil.move(folder / "out" / name, folder / name)
-    shutil.rmtree(folder / "out")
+        shutil.copy(folder / "made" / name, folder / name)
     cli.innermap("export", folder / "map.vdb", "-o", folder / "map.exr", "-q")
     cli.innermap("voxelize", folder / "small.obj", "-o", folder / "small.vdb", "--resolution", "20",
                  "--fog", "-q")

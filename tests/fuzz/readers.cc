@@ -8,6 +8,7 @@
 #include "innermap/field/field_file.h"
 #include "innermap/io/exr/exr_slices.h"
 #include "innermap/io/geometry/geometry_file.h"
+#include "innermap/io/geometry/surface_data.h"
 #include "innermap/io/picture/image_file.h"
 #include "innermap/io/vdb/vdb_file.h"
 #include "innermap/io/volume/volume_texture.h"
@@ -21,18 +22,23 @@ constexpr std::uint64_t kMemory = std::uint64_t(8) << 20;
 
 void mesh(const std::string& path) { readMesh(path); }
 
-// A correspondence, or a pose: a mesh of known connectivity, here the octahedron of the corpus.
-void pose(const std::string& path) {
-  static const Mesh octahedron = [] {
-    Mesh m;
-    m.name = "octahedron";
-    m.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-    m.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
-                   {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-    return m;
-  }();
-  readMeshLike(path, octahedron);
+Mesh octahedron() {
+  Mesh m;
+  m.name = "octahedron";
+  m.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  m.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
+                 {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+  return m;
 }
+
+// A correspondence, or a pose: a mesh of known connectivity, that of most of the corpus.
+void pose(const std::string& path) { readMeshLike(path, octahedron()); }
+
+void groups(const std::string& path) { readGroups(path, readMesh(path)); }
+
+void properties(const std::string& path) { readVertexProperties(path, {"s"}, readMesh(path)); }
+
+void table(const std::string& path) { readVertexTable(path, octahedron()); }
 
 // Also written again, with all where it was, which uses every index that was read.
 void geometry(const std::string& path) {
@@ -108,6 +114,9 @@ const std::vector<Reader>& readers() {
       {"mesh-stl", "stl", mesh},
       {"correspondence", "ply", pose},
       {"landmarks", "txt", landmarks},
+      {"groups", "obj", groups},
+      {"properties", "ply", properties},
+      {"table", "csv", table},
       {"map", "map.ply", field},
       {"geometry-obj", "obj", geometry},
       {"geometry-ply", "ply", geometry},

@@ -6,8 +6,6 @@
 namespace innermap::tool {
 namespace {
 
-constexpr std::size_t kMostFrames = 160;
-
 std::string fileName(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
@@ -91,8 +89,7 @@ void showMap(Page& page, const MappedSolid& mapped, const PageSettings& settings
 }
 
 PageFrames::PageFrames(Page& page, const Mesh& rest, std::size_t expected) : page_(page) {
-  each_ = (expected + kMostFrames - 1) / kMostFrames;
-  if (each_ == 0) each_ = 1;
+  each_ = frameStep(expected);
   PageShape shape = shapeOf(rest, "rest: " + fileName(rest.name));
   kept_ = simplify(shape, verticesForPlaces(expected / each_ + 1));
   page_.shapes.clear();

@@ -57,7 +57,7 @@ template <class Number>
 Quantised quantised(const std::vector<Number>& values) {
   constexpr double kDecades = 1e3, kSteps = 65534;
   Quantised out;
-  out.codes.assign(values.size(), 0);
+  std::vector<std::uint16_t> codes(values.size(), 0);
   double least = std::numeric_limits<double>::infinity(), greatest = -least, positive = least;
   for (const Number value : values) {
     if (!std::isfinite(value)) continue;
@@ -65,7 +65,10 @@ Quantised quantised(const std::vector<Number>& values) {
     greatest = std::max<double>(greatest, value);
     if (value > 0) positive = std::min<double>(positive, value);
   }
-  if (!(least <= greatest)) return out;
+  if (!(least <= greatest)) {
+    out.codes = encoded(codes);
+    return out;
+  }
   out.logarithmic = least >= 0 && greatest > kDecades * positive;
   // What is 0, or all but 0, is as good as the least that is shown.
   if (out.logarithmic) least = std::max({least, positive, 1e-9 * greatest});
@@ -76,8 +79,9 @@ Quantised quantised(const std::vector<Number>& values) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i])) continue;
     const double share = width > 0 ? std::clamp((scale(values[i]) - from) / width, 0.0, 1.0) : 0;
-    out.codes[i] = static_cast<std::uint16_t>(1 + std::lround(kSteps * share));
+    codes[i] = static_cast<std::uint16_t>(1 + std::lround(kSteps * share));
   }
+  out.codes = encoded(codes);
   return out;
 }
 

@@ -16,7 +16,7 @@ std::string encoded(const std::vector<std::uint32_t>& numbers);
 struct Quantised {
   double least = 0, greatest = 0;
   bool logarithmic = false;
-  std::vector<std::uint16_t> codes;
+  std::string codes;  // encoded
 };
 
 template <class Number>

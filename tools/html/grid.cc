@@ -9,7 +9,10 @@ namespace innermap::tool {
 namespace {
 
 // Blocks along the longest side of a grid.
-constexpr int kMostBlocks = 96;
+constexpr int kMostBlocks = 96, kFewestBlocks = 24;
+// Of the grids of all frames together, so that the page stays of reasonable size.
+constexpr double kFrameValues = 1.2e6;
+constexpr std::size_t kMostFrames = 160;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 float component(float value, int) { return value; }
@@ -53,10 +56,11 @@ class Blocks {
   }
 
   void finish() {
-    grid_.values.resize(sums_.size());
+    std::vector<float> values(sums_.size());
     for (std::size_t i = 0; i < sums_.size(); ++i)
-      grid_.values[i] =
+      values[i] =
           counts_[i] == 0 ? kNone : static_cast<float>(least_ ? sums_[i] : sums_[i] / counts_[i]);
+    grid_.values = quantised(values);
   }
 
  private:
@@ -80,13 +84,27 @@ Vec3 world(const openvdb::math::Transform& transform, const openvdb::Vec3d& inde
   return {p.x(), p.y(), p.z()};
 }
 
-// Sizes and places for the box of a grid's voxels.
-PageGrid frameFor(const openvdb::GridBase& grid, const openvdb::CoordBBox& box) {
+// Of a page of frames, each with so many values a block.
+int blocksAlong(std::int64_t longest, std::uint64_t voxels, std::size_t frames,
+                std::size_t values) {
+  const double each = kFrameValues / static_cast<double>(frames * values);
+  const double across = static_cast<double>(longest) *
+                        std::cbrt(each / static_cast<double>(std::max<std::uint64_t>(voxels, 1)));
+  return static_cast<int>(std::clamp<double>(across, kFewestBlocks, kMostBlocks));
+}
+
+// Sizes and places for the box of a grid's voxels. values: those of all grids beside it.
+PageGrid frameFor(const openvdb::GridBase& grid, const openvdb::CoordBBox& box,
+                  const std::optional<PageFrame>& frame, std::size_t values) {
   PageGrid out;
   std::int64_t longest = 1;
   for (int a = 0; a < 3; ++a)
     longest = std::max<std::int64_t>(longest, std::int64_t{box.max()[a]} - box.min()[a] + 1);
-  out.stride = static_cast<int>((longest + kMostBlocks - 1) / kMostBlocks);
+  const int most = frame ? blocksAlong(longest, grid.activeVoxelCount(),
+                                       frame->of / frameStep(frame->of), values)
+                         : kMostBlocks;
+  if (frame) out.frame = frame->number;
+  out.stride = static_cast<int>((longest + most - 1) / most);
   const openvdb::Vec3d corner = box.min().asVec3d() - openvdb::Vec3d(0.5);
   out.origin = world(grid.transform(), corner);
   for (int a = 0; a < 3; ++a) {
@@ -113,7 +131,7 @@ const openvdb::FloatGrid* surfaceAmong(const openvdb::GridPtrVec& grids) {
 
 // surface: leaves out what lies outside of it; may be null.
 template <class Grid>
-void addGrid(Page& page, const Grid& grid, const openvdb::FloatGrid* surface) {
+void addGrid(Page& page, const Grid& grid, const openvdb::FloatGrid* surface, std::size_t values) {
   if (surface && (static_cast<const openvdb::GridBase*>(surface) == &grid ||
                   surface->transform() != grid.transform()))
     surface = nullptr;
@@ -123,7 +141,7 @@ void addGrid(Page& page, const Grid& grid, const openvdb::FloatGrid* surface) {
   constexpr bool isVector = openvdb::VecTraits<typename Grid::ValueType>::IsVec;
   const bool least = byLeast(grid.getName());
   for (int axis = 0; axis < (isVector ? 3 : 1); ++axis) {
-    PageGrid cut = frameFor(grid, box);
+    PageGrid cut = frameFor(grid, box, page.frame, values);
     cut.name = grid.getName() + (isVector ? std::string(" ") + "xyz"[axis] : std::string());
     cut.reduction = least ? "least" : "mean";
     Blocks blocks(cut, box.min(), least);
@@ -142,18 +160,28 @@ void addGrid(Page& page, const Grid& grid, const openvdb::FloatGrid* surface) {
 
 }  // namespace
 
+std::size_t frameStep(std::size_t frames) {
+  return std::max<std::size_t>(1, (frames + kMostFrames - 1) / kMostFrames);
+}
+
 void addGrids(Page& page, const openvdb::GridPtrVec& grids) {
   using Types = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
                                   openvdb::Int64Grid, openvdb::BoolGrid, openvdb::Vec3SGrid,
                                   openvdb::Vec3DGrid, openvdb::Vec3IGrid>;
+  if (page.frame && page.frame->index % frameStep(page.frame->of) != 0) return;
   const openvdb::FloatGrid* const surface = surfaceAmong(grids);
+  std::size_t values = 0;
+  for (const openvdb::GridBase::Ptr& grid : grids)
+    values += grid->valueType().compare(0, 3, "vec") == 0 ? 3 : 1;
+  const std::optional<std::int64_t> frame =
+      page.frame ? std::optional(page.frame->number) : std::nullopt;
   for (const openvdb::GridBase::ConstPtr grid : grids) {
     const std::string& name = grid->getName();
     const bool shown = std::any_of(page.grids.begin(), page.grids.end(), [&](const PageGrid& g) {
-      return g.name == name || g.name == name + " x";
+      return g.frame == frame && (g.name == name || g.name == name + " x");
     });
     if (shown) continue;
-    if (!grid->apply<Types>([&](const auto& typed) { addGrid(page, typed, surface); }))
+    if (!grid->apply<Types>([&](const auto& typed) { addGrid(page, typed, surface, values); }))
       page.missing.push_back("the grid " + grid->getName() + " is of type " + grid->valueType() +
                              ", which the page does not show");
   }

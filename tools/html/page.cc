@@ -37,13 +37,11 @@ Json json(const PagePlace& place) {
           {"points", encoded(codes)}};
 }
 
-template <class Number>
-Json valuesJson(const std::vector<Number>& values) {
-  const Quantised q = quantised(values);
+Json json(const Quantised& q) {
   return {{"least", q.least},
           {"greatest", q.greatest},
           {"logarithmic", q.logarithmic},
-          {"codes", encoded(q.codes)}};
+          {"codes", q.codes}};
 }
 
 Json json(const PageShape& shape) {
@@ -60,7 +58,7 @@ Json json(const PageShape& shape) {
   for (const PagePlace& place : shape.places) out["places"].push_back(json(place));
   for (const PageScalar& scalar : shape.scalars) {
     Json one = {{"name", scalar.name}, {"values", Json::array()}};
-    for (const auto& values : scalar.values) one["values"].push_back(valuesJson(values));
+    for (const auto& values : scalar.values) one["values"].push_back(json(quantised(values)));
     out["scalars"].push_back(std::move(one));
   }
   return out;
@@ -75,7 +73,8 @@ Json json(const PageGrid& grid) {
               {"axes", {json(grid.axes[0]), json(grid.axes[1]), json(grid.axes[2])}},
               {"grid_least", grid.least},
               {"grid_greatest", grid.greatest}};
-  out.update(valuesJson(grid.values));
+  if (grid.frame) out["frame"] = *grid.frame;
+  out.update(json(grid.values));
   return out;
 }
 

@@ -8,9 +8,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "encode.h"
 #include "innermap/core/vec3.h"
 #include "innermap/mesh/mesh.h"
 
@@ -44,14 +46,22 @@ struct PageGrid {
   int stride = 1;                  // voxels
   Vec3 origin;                     // of the first block's corner, world units
   std::array<Vec3, 3> axes;        // from block to block, world units
-  std::vector<float> values;       // x fastest; NaN where the grid has none
   double least = 0, greatest = 0;  // of the grid itself
+  Quantised values;                // x fastest; none where the grid has none
+  std::optional<std::int64_t> frame;
+};
+
+// A frame of an animation.
+struct PageFrame {
+  std::int64_t number = 0;
+  std::size_t index = 0, of = 1;  // among those that are made
 };
 
 struct Page {
   std::vector<PageShape> shapes;
   std::vector<PageGrid> grids;
   std::vector<std::string> missing;  // what could not be shown, and why, a line each
+  std::optional<PageFrame> frame;    // that is being made
 
   bool empty() const { return shapes.empty() && grids.empty(); }
 };
@@ -69,8 +79,11 @@ std::size_t verticesForPlaces(std::size_t places);
 std::vector<double> stretches(const Points& from, const Points& to,
                               const std::vector<Triangle>& triangles);
 
-// Adds the grids whose values are numbers, and vectors by their components. Of several of one name,
-// as the frames of an animation have, the first stays.
+// Of so many frames, a page shows each such one.
+std::size_t frameStep(std::size_t frames);
+
+// Adds the grids whose values are numbers, and vectors by their components. Of several of one name
+// the first stays; those of page.frame are that frame's, coarser the more frames there are.
 void addGrids(Page& page, const openvdb::GridPtrVec& grids);
 
 // The whole file. reportJson: as report.json has it.

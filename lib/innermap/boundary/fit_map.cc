@@ -105,7 +105,7 @@ void validate(const FitMapSettings& settings) {
 
 std::uint64_t fitMapMemory(const FitMapSettings& settings, std::size_t vertices) {
   // Measured, bytes: the certificate and the look at the inside, of a vertex and at least.
-  constexpr std::uint64_t kVertex = 1700, kChecks = 40'000'000;
+  constexpr std::uint64_t kVertex = 2100, kChecks = 40'000'000;
   PointCounts counts = kFirstCounts;
   FitSolver solver = FitSolver::dense;
   if (settings.shell) {

@@ -86,12 +86,15 @@ std::size_t frameCollocation(const FrameFitterSettings& settings) {
   return std::max(kPointsPerSource * settings.sources, settings.sources + 8);
 }
 
-std::uint64_t frameFitterMemory(const FrameFitterSettings& settings) {
-  const std::uint64_t points = frameCollocation(settings);
+std::uint64_t frameFitterMemory(const FrameFitterSettings& settings, std::uint64_t others) {
+  const std::uint64_t points = frameCollocation(settings), n = settings.sources;
   const FitSolver solver =
       settings.sources > kMostDenseSources ? FitSolver::iterative : FitSolver::dense;
+  const std::uint64_t solving = fitMemory(points, n, 0, solver);
+  // Of a dense solver the factors Q, U and V stay; the rest is given back before the first frame.
+  const std::uint64_t stays = solver == FitSolver::dense ? 8 * n * (points + 2 * n + 100) : solving;
   // Blue noise thins five candidates a point; each costs some 100 bytes.
-  return fitMemory(points, settings.sources, 0, solver) + 500 * (points + settings.sources);
+  return std::max(solving, stays + others) + 500 * (points + n);
 }
 
 FrameFitter::FrameFitter(SourceBoundary rest, const FrameFitterSettings& settings)

@@ -35,8 +35,8 @@ struct FrameFitterSettings {
 // Boundary points of these settings: `collocation`, or its default.
 std::size_t frameCollocation(const FrameFitterSettings& settings);
 
-// Peak need in bytes of setting up and solving.
-std::uint64_t frameFitterMemory(const FrameFitterSettings& settings);
+// Peak need in bytes of setting up and solving, and then of what else a frame takes: `others`.
+std::uint64_t frameFitterMemory(const FrameFitterSettings& settings, std::uint64_t others = 0);
 
 // The map of one frame.
 struct FrameFit {

@@ -171,23 +171,27 @@ std::uint64_t correspondMemory(std::size_t verticesA, std::size_t verticesB) {
   return layOutMemory(verticesA + verticesB) + kJudged;
 }
 
-// Measured on two cores: trying first maps on coarsened surfaces takes about as long for all but
-// small meshes, the rest grows with the number of vertices.
-double correspondSeconds(std::size_t verticesA, std::size_t verticesB,
-                         const MeshCorrespondenceSettings& settings) {
-  const double vertices = static_cast<double>(verticesA + verticesB);
-  const double refine = settings.refine ? 3.0 * settings.candidates : 0;
-  return 1 + (10 + refine) * vertices / (vertices + 2000) + 0.5e-3 * vertices;
+bool sameConnectivity(const Mesh& a, const Mesh& b) {
+  if (a.vertices.size() != b.vertices.size()) return false;
+  // A polygon may be cut in other ways.
+  const bool polygons = !a.polygonStart.empty() && a.polygonStart == b.polygonStart &&
+                        a.polygonCorners == b.polygonCorners;
+  return polygons || a.triangles == b.triangles;
 }
 
 void writeCorrespondence(const std::string& path, const MeshCorrespondence& map) {
+  writeCorrespondence(path, map.source, map.positions, map.onTarget);
+}
+
+void writeCorrespondence(const std::string& path, const Mesh& source, const Points& positions,
+                         const std::vector<SurfacePoint>& onTarget) {
   Mesh moved;
   moved.name = path;
-  moved.vertices = map.positions;
-  moved.triangles = map.source.triangles;
+  moved.vertices = positions;
+  moved.triangles = source.triangles;
   std::vector<std::int32_t> triangles;
   std::array<std::vector<double>, 3> weights;
-  for (const SurfacePoint& p : map.onTarget) {
+  for (const SurfacePoint& p : onTarget) {
     triangles.push_back(p.triangle);
     for (std::size_t k = 0; k < 3; ++k) weights[k].push_back(p.barycentric[k]);
   }

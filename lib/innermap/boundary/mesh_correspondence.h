@@ -65,6 +65,15 @@ struct MeshCorrespondence {
   Mesh target(const std::string& name) const;
 };
 
+// Whether each vertex of the one is its like's of the other: the same number of them, and the same
+// polygons or triangles. Otherwise the one has to be laid onto the other first.
+bool sameConnectivity(const Mesh& a, const Mesh& b);
+
+// What maps through a correspondence are made with unless told otherwise: surfaces that were laid
+// on one another follow each other within some thousandths anyway. Fractions of B's diagonal:
+// FitMapSettings::tolerance, MeshCorrespondenceSettings::subdivide.
+constexpr double kLaidOnTolerance = 2e-3, kLaidOnSubdivide = 5e-3;
+
 // Lays both out, maps A onto B (surface/correspond.h), carries that back to the meshes as given and
 // measures it. Throws what layOutMesh(), placeLandmarks() and correspond() throw; MemoryError
 // before anything is done; SettingError, Cancelled. Same result for any number of threads.
@@ -78,14 +87,13 @@ MeshCorrespondence correspondMeshes(LaidOutMesh a, LaidOutMesh b,
 // Bytes, for meshes of so many vertices: about what is needed, with a picture of both.
 std::uint64_t correspondMemory(std::size_t verticesA, std::size_t verticesB);
 
-// Seconds that it would take on two cores, roughly.
-double correspondSeconds(std::size_t verticesA, std::size_t verticesB,
-                         const MeshCorrespondenceSettings& settings = {});
-
 // PLY, binary little endian: vertices x y z (double), `triangle` (int, of B, counted from 0) and
 // `b0 b1 b2` (double, barycentric coordinates there); source's triangles. The file appears whole or
 // not at all. Throws FileError.
 void writeCorrespondence(const std::string& path, const MeshCorrespondence& map);
+
+void writeCorrespondence(const std::string& path, const Mesh& source, const Points& positions,
+                         const std::vector<SurfacePoint>& onTarget);
 
 // Where that file, or any mesh of its connectivity, puts the vertices of `source`. Throws as
 // readMeshLike does.

@@ -25,7 +25,7 @@ class Progress {
   }
 
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
-  bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
+  virtual bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
 
  private:
   std::atomic<bool> cancelled_{false};
@@ -40,5 +40,22 @@ inline void reportProgress(Progress* progress, std::string_view stage, double fr
   throwIfCancelled(progress);
   progress->report(stage, fraction);
 }
+
+// Reports a part of a stage, from 0 to 1, as what it is of the whole: from `from` to `to`.
+// Cancelled with the whole, which must outlive it and may be null.
+class PartOfStage : public Progress {
+ public:
+  PartOfStage(Progress* whole, double from, double to) : whole_(whole), from_(from), to_(to) {}
+  void report(std::string_view stage, double fraction) override {
+    reportProgress(whole_, stage, from_ + fraction * (to_ - from_));
+  }
+  bool cancelled() const noexcept override {
+    return Progress::cancelled() || (whole_ && whole_->cancelled());
+  }
+
+ private:
+  Progress* const whole_;
+  const double from_, to_;
+};
 
 }  // namespace innermap

@@ -14,6 +14,8 @@
 namespace innermap {
 namespace {
 
+constexpr double kMoving = 0.9;  // of repairing folds; then what was moved is evaluated again
+
 using FloatLeaf = openvdb::FloatTree::LeafNodeType;
 using Vec3Leaf = openvdb::Vec3STree::LeafNodeType;
 
@@ -171,7 +173,9 @@ void Evaluation::repair(const openvdb::MaskGrid& region, std::vector<LeafTotals>
                         MapGrids& out) const {
   FoldRepairSettings s;
   s.growth = std::pow(unitVolumeScale_, -0.5);
-  s.progress = settings_.progress;
+  PartOfStage moving(settings_.progress, 0, kMoving), evaluating(settings_.progress, kMoving, 1);
+  s.progress = &moving;
+  reportProgress(&moving, kRepairing, 0);
   const FoldRepair repair = repairFolds(*out.map, *out.jacobian, levelSet_, s);
   if (repair.voxels.empty() && out.foldedVoxels == 0) return;
   out.repairedFarthest = repair.farthest;
@@ -196,7 +200,7 @@ void Evaluation::repair(const openvdb::MaskGrid& region, std::vector<LeafTotals>
                totals[numbers.at(origins[leaf])] =
                    store(RepairedLeaf(values, repair, settings_.origin).leaf(), out);
              },
-             {accuracy_, "repairing folds", settings_.progress});
+             {accuracy_, kRepairing, &evaluating});
 }
 
 MapGrids Evaluation::run() {

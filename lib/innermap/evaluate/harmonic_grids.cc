@@ -11,21 +11,14 @@
 #include "innermap/evaluate/detail/active_region.h"
 #include "innermap/evaluate/detail/topology.h"
 #include "innermap/evaluate/detail/visit_field.h"
+#include "innermap/levelset/detail/level_set_settings.h"
+#include "innermap/levelset/detail/set_metadata.h"
 #include "innermap/levelset/level_set.h"
 
 namespace innermap {
 namespace {
 
 constexpr double kSkin = 2;  // voxels
-
-LevelSetSettings levelSetSettings(const HarmonicGridSettings& settings) {
-  LevelSetSettings out;
-  out.resolution = settings.resolution;
-  out.voxelSize = settings.voxelSize;
-  out.maxMemory = settings.maxMemory;
-  out.progress = settings.progress;
-  return out;
-}
 
 std::uint64_t bytesPerVoxel(std::size_t channels, const HarmonicGridSettings& settings) {
   return channels * ((settings.values ? 4 : 0) + (settings.gradients ? 12 : 0) +
@@ -146,6 +139,12 @@ HarmonicGrids evaluateHarmonic(const HarmonicField& field, const Solid& solid,
     for (const ChannelGrids& grids : channels) grids.append(out.fields);
   });
   return out;
+}
+
+void describeField(const openvdb::GridPtrVec& grids, const Facts& facts) {
+  for (const openvdb::GridBase::Ptr& grid : grids)
+    for (const auto& [key, value] : facts)
+      setMetadata(*grid, "innermap_" + key, openvdb::StringMetadata(value));
 }
 
 std::uint64_t harmonicGridMemory(const Solid& solid, std::size_t channels,

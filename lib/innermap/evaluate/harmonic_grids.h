@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "innermap/core/stage_seconds.h"
+#include "innermap/field/field_file.h"
 #include "innermap/field/harmonic_field.h"
 #include "innermap/levelset/solid.h"
 
@@ -44,6 +45,9 @@ struct HarmonicGrids {
 HarmonicGrids evaluateHarmonic(const HarmonicField& field, const Solid& solid,
                                const std::vector<std::string>& names,
                                const HarmonicGridSettings& settings = {});
+
+// The field's facts as metadata of its grids (prefix innermap_).
+void describeField(const openvdb::GridPtrVec& grids, const Facts& facts);
 
 // Need in bytes of the grids of so many channels.
 std::uint64_t harmonicGridMemory(const Solid& solid, std::size_t channels,

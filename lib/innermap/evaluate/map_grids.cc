@@ -7,25 +7,19 @@
 #include <cmath>
 #include <cstdlib>
 #include <initializer_list>
+#include <string_view>
 #include <utility>
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/evaluate/detail/cell_check.h"
 #include "innermap/evaluate/detail/outside_voxels.h"
+#include "innermap/levelset/detail/level_set_settings.h"
+#include "innermap/levelset/detail/set_metadata.h"
 #include "innermap/levelset/level_set.h"
 
 namespace innermap {
 namespace {
-
-LevelSetSettings levelSetSettings(const MapGridSettings& settings) {
-  LevelSetSettings out;
-  out.resolution = settings.resolution;
-  out.voxelSize = settings.voxelSize;
-  out.maxMemory = settings.maxMemory;
-  out.progress = settings.progress;
-  return out;
-}
 
 EvaluateSettings evaluateSettings(double targetVolume, double accuracy,
                                   const MapGridSettings& settings) {
@@ -48,7 +42,7 @@ using Figures = std::initializer_list<std::pair<const char*, double>>;
 void insert(const openvdb::GridPtrVec& grids, const Figures& figures) {
   for (const openvdb::GridBase::Ptr& grid : grids)
     for (const auto& [key, value] : figures)
-      grid->insertMeta(std::string("innermap_") + key, openvdb::DoubleMetadata(value));
+      setMetadata(*grid, std::string("innermap_") + key, openvdb::DoubleMetadata(value));
 }
 
 void insertTotals(const openvdb::GridPtrVec& grids, const MapGrids& values) {
@@ -151,7 +145,17 @@ void splitMap(const MappedSolid& mapped, SolidGrids& grids) {
 
 void insertStatement(const openvdb::GridPtrVec& grids, const Injectivity& known) {
   for (const openvdb::GridBase::Ptr& grid : grids)
-    grid->insertMeta("innermap_one_to_one", openvdb::StringMetadata(injectivityStatement(known)));
+    setMetadata(*grid, "innermap_one_to_one", openvdb::StringMetadata(injectivityStatement(known)));
+}
+
+// Of a map that the grid was made with before.
+void dropCertificate(openvdb::MetaMap& map) {
+  std::vector<std::string> names;
+  for (auto meta = map.beginMeta(); meta != map.endMeta(); ++meta)
+    for (const std::string_view begin : {"innermap_boundary_error", "innermap_one_to_one"})
+      if (std::string_view(meta->first).substr(0, begin.size()) == begin)
+        names.push_back(meta->first);
+  for (const std::string& name : names) map.removeMeta(name);
 }
 
 }  // namespace
@@ -243,7 +247,7 @@ void describeMap(const openvdb::GridPtrVec& grids, const MappedSolid& mapped) {
   for (const openvdb::GridBase::Ptr& grid : grids)
     for (const auto& fact : mapped.facts)
       if (std::find(figures.begin(), figures.end(), fact) == figures.end())
-        grid->insertMeta("innermap_" + fact.first, openvdb::StringMetadata(fact.second));
+        setMetadata(*grid, "innermap_" + fact.first, openvdb::StringMetadata(fact.second));
   insertStatement(grids, mapped.injectivity);
 }
 
@@ -296,8 +300,10 @@ const std::vector<std::string>& mapGridNames() {
 }
 
 void describeFrame(const openvdb::GridPtrVec& grids, const NumberedFit& frame) {
-  for (const openvdb::GridBase::Ptr& grid : grids)
-    grid->insertMeta("innermap_frame", openvdb::Int64Metadata(frame.number));
+  for (const openvdb::GridBase::Ptr& grid : grids) {
+    dropCertificate(*grid);
+    setMetadata(*grid, "innermap_frame", openvdb::Int64Metadata(frame.number));
+  }
   const BoundaryError& error = frame.fit->error;
   insert(grids, {{"boundary_error_rms", error.rms},
                  {"boundary_error_p99", error.p99},

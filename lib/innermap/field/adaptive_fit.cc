@@ -29,6 +29,9 @@ constexpr double kWorstRatio = 17, kOutlier = 10;
 constexpr double kMargin = 0.97;
 constexpr double kErrorAccuracy = 1e-3;  // of the tolerance
 constexpr double kLeastGain = 0.97;      // of the score in the rounds of patience
+constexpr double kMostRounds = 20;       // that are looked ahead
+constexpr std::size_t kLookBack = 2;     // rounds, for how the next will go
+constexpr double kOfOutlierRounds = 0.5;
 
 void append(Matrix& a, const Matrix& b) {
   Matrix out(a.rows() + b.rows(), b.columns());
@@ -65,7 +68,7 @@ class AdaptiveFitting {
   void solve();
   double score(const BoundaryError& error) const;
   void keepIfBest();
-  double wayThere() const;
+  double workDone() const;
   bool gains() const;
   std::size_t sourceCount() const;
   std::uint64_t memory() const;
@@ -234,12 +237,31 @@ void AdaptiveFitting::solve() {
   field_.emplace(solver_->sources(), solution_.weights, solution_.affine);
 }
 
-// How far the error has come from the first one to the tolerance, by its logarithm.
-double AdaptiveFitting::wayThere() const {
-  const double first = rounds_.front().error.p99, now = rounds_.back().error.p99;
+// Share of the work, if the rounds to come go on as those so far did: each with so many times the
+// charges and so much of the error of the one before.
+double AdaptiveFitting::workDone() const {
+  if (rounds_.size() < 2) return 0;
+  const std::size_t look = std::min<std::size_t>(rounds_.size() - 1, kLookBack);
+  const AdaptiveRound &now = rounds_.back(), &then = rounds_[rounds_.size() - 1 - look];
   const double goal = kMargin * settings_.tolerance;
-  if (!(now > goal)) return 1;
-  return now < first ? std::log(first / now) / std::log(first / goal) : 0;
+  const auto steps = static_cast<double>(look);
+  double rounds = 0;
+  if (now.error.p99 > goal)
+    rounds = now.error.p99 < then.error.p99
+                 ? steps * std::log(goal / now.error.p99) / std::log(now.error.p99 / then.error.p99)
+                 : kMostRounds;
+  // What stands out needs some more, seldom as many as it may.
+  if (!isTame(now.error)) rounds += kOfOutlierRounds * settings_.outlierRounds;
+  double done = 0;
+  for (const AdaptiveRound& round : rounds_) done += static_cast<double>(round.sources);
+  const auto last = static_cast<double>(now.sources);
+  const double growth = std::pow(last / static_cast<double>(then.sources), 1 / steps);
+  double left = 0, next = last;
+  for (double r = 0; r < std::min<double>(rounds, kMostRounds); ++r) {
+    next = std::min(growth * next, static_cast<double>(settings_.maxSources));
+    left += std::min(1.0, rounds - r) * next;
+  }
+  return done / (done + left);
 }
 
 // The less the better: the error as long as the tolerance does not hold, then how far the largest
@@ -296,7 +318,7 @@ AdaptiveResult AdaptiveFitting::run() {
     rounds_.push_back(
         {solver_->sources().size(), collocation_.size(), solution_.iterations, error});
     keepIfBest();
-    reportProgress(settings_.progress, "meeting the tolerance", wayThere());
+    reportProgress(settings_.progress, "meeting the tolerance", workDone());
     if (round == 1 && settings_.goOn && !settings_.goOn(*field_)) {
       end_ = AdaptiveEnd::stopped;
       break;

@@ -1,6 +1,7 @@
 #include "innermap/tetra/block_set.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <unordered_map>
 
@@ -106,6 +107,12 @@ Mesh blockSurface(const BlockSet& blocks, int pieces) {
   });
   mesh.vertices = vertices.points();
   return mesh;
+}
+
+int usualPieces(const BlockSet& blocks) {
+  constexpr double kVertices = 3000;  // about one a square
+  const double faces = static_cast<double>(blockSurface(blocks, 1).triangles.size()) / 2;
+  return std::clamp(static_cast<int>(std::ceil(std::sqrt(kVertices / faces))), 1, kMostBlockPieces);
 }
 
 BlockHexahedra blockHexahedra(const BlockSet& blocks, int pieces, double pillow) {

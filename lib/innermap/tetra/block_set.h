@@ -36,6 +36,11 @@ struct BlockSet {
 // Throws SettingError.
 Mesh blockSurface(const BlockSet& blocks, int pieces);
 
+// Pieces with which that has about 3000 vertices or more, enough to be mapped; at most
+// kMostBlockPieces.
+constexpr int kMostBlockPieces = 64;
+int usualPieces(const BlockSet& blocks);
+
 // The set as hexahedra, in the shape of the blocks.
 struct BlockHexahedra {
   CellMesh mesh;

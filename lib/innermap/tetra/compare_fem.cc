@@ -341,7 +341,7 @@ std::uint64_t compareFemMemory(const Solid& solid, const CompareFemSettings& set
           std::max({finest, need.memory,
                     need.tetrahedra * 16 + harmonicCellsMemory(need.vertices, need.tetrahedra)});
   }
-  constexpr std::uint64_t kPicture = 100'000'000;
+  constexpr std::uint64_t kPicture = 170'000'000;
   return coarser + finest + finest / 8 + kPicture;
 }
 

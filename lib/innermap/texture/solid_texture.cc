@@ -8,6 +8,7 @@
 #include "innermap/boundary/surface_problem.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
+#include "innermap/levelset/detail/level_set_settings.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/texture/detail/continuation.h"
 #include "innermap/texture/detail/surface_texture.h"
@@ -46,15 +47,6 @@ void check(const SolidTextureSettings& s, const Mesh& mesh) {
     throw DataError(mesh.name +
                     ": has no texture coordinates to look an image up with; unwrap it and save it "
                     "with its UVs");
-}
-
-LevelSetSettings levelSetSettings(const SolidTextureSettings& s) {
-  LevelSetSettings out;
-  out.resolution = s.resolution;
-  out.voxelSize = s.voxelSize;
-  out.maxMemory = s.maxMemory;
-  out.progress = s.progress;
-  return out;
 }
 
 std::size_t chargesFor(const Solid& solid, double voxel) {

@@ -1,6 +1,7 @@
 #include "innermap/transfer/carry.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace innermap {
 
@@ -29,6 +30,14 @@ double finestVoxel(const openvdb::GridPtrVec& grids) {
     if (finest == 0 || smallest < finest) finest = smallest;
   }
   return finest;
+}
+
+double volumeRatio(double from, double to) { return from > 0 && to > 0 ? to / from : 1; }
+
+double voxelGrowth(double from, double to) {
+  constexpr double kAlike = 0.1;
+  const double growth = std::cbrt(volumeRatio(from, to));
+  return std::abs(growth - 1) <= kAlike ? 1 : growth;
 }
 
 }  // namespace innermap

@@ -39,8 +39,17 @@ struct CarrySettings {
 // Whether the settings make a density of a grid: scalars of a float or double grid that fill space.
 bool isDensity(const openvdb::GridBase& grid, const CarrySettings& settings);
 
-// The least edge of a voxel of the grids, world units: what the output has unless told otherwise.
+// The least edge of a voxel of the grids, world units: that of the output unless told otherwise,
+// times voxelGrowth().
 double finestVoxel(const openvdb::GridPtrVec& grids);
+
+// By how much volumes grow from one to the other; 1 where one of them is not known (not above 0).
+double volumeRatio(double from, double to);
+
+// What the voxels of grids grow by, unless told otherwise, when they go from a solid of one volume
+// to one of the other: the cube root of their ratio; 1 where that is within a tenth of it, so that
+// poses keep the grids' own lattice.
+double voxelGrowth(double from, double to);
 
 // What became of a density, world units: sums of values times the voxel's volume.
 struct CarriedMass {

@@ -217,6 +217,13 @@ PointPuller::PointPuller(const ComposedMap& map, const Solid& source, const Soli
                          const CarryPointsSettings& settings) {
   requireInRange(settings);
   data_ = std::make_shared<Data>(map, source, target, settings);
+  progress_ = settings.progress;
+}
+
+PointPuller PointPuller::reportingTo(Progress* progress) const {
+  PointPuller out = *this;
+  out.progress_ = progress;
+  return out;
 }
 
 CarriedPoints PointPuller::pull(const Points& points, bool jacobians) const {
@@ -228,8 +235,8 @@ CarriedPoints PointPuller::pull(const Points& points, bool jacobians) const {
   NewtonSettings newton;
   newton.tolerance = std::max(4 * accuracy, 1e-9 * d.diagonal);
   newton.longestStep = 4 * d.lattice.levelSet->voxelSize()[0];
-  newton.progress = s.progress;
-  return inParts(points, jacobians, s.progress,
+  newton.progress = progress_;
+  return inParts(points, jacobians, progress_,
                  [&](std::size_t begin, std::size_t end, CarriedPoints& out) {
                    Points targets, sources;
                    std::vector<std::size_t> at;
@@ -258,7 +265,7 @@ CarriedPoints PointPuller::pull(const Points& points, bool jacobians) const {
                          which.push_back(n);
                        }
                      if (!which.empty() && which.size() <= kMostStepByStep) {
-                       from = invertStepByStep(d.map, again, from, {newton.tolerance, s.progress});
+                       from = invertStepByStep(d.map, again, from, {newton.tolerance, progress_});
                        const NewtonResult second = solveNewton(extended, again, from, newton);
                        for (std::size_t k = 0; k < which.size(); ++k) {
                          sources[which[k]] = from[k];

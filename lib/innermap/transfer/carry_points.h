@@ -75,9 +75,14 @@ class PointPuller {
   // Throws as PointPusher::push.
   CarriedPoints pull(const Points& points, bool jacobians) const;
 
+  // The same inverse, reporting to another than that of the settings, which must outlive the
+  // puller's use.
+  PointPuller reportingTo(Progress* progress) const;
+
  private:
   struct Data;
   std::shared_ptr<const Data> data_;
+  Progress* progress_ = nullptr;
 };
 
 // Peak need in bytes of carrying so many points, beyond the points given: with Jacobians or

@@ -10,6 +10,7 @@
 #include "innermap/core/parallel.h"
 #include "innermap/evaluate/detail/active_region.h"
 #include "innermap/evaluate/evaluate_map.h"
+#include "innermap/levelset/detail/level_set_settings.h"
 #include "innermap/levelset/level_set.h"
 
 namespace innermap {
@@ -78,15 +79,6 @@ openvdb::FloatGrid::Ptr leafByLeaf(const Grid& region, const Fill& fill, Progres
 }
 
 Vec3 vec3(const openvdb::Vec3d& v) { return {v.x(), v.y(), v.z()}; }
-
-LevelSetSettings levelSetSettings(const DistanceTransferSettings& settings) {
-  LevelSetSettings levelSet;
-  levelSet.voxelSize = settings.voxelSize;
-  levelSet.resolution = settings.resolution;
-  levelSet.maxMemory = settings.maxMemory;
-  levelSet.progress = settings.progress;
-  return levelSet;
-}
 
 SolidDepths depthsOf(const Solid& solid, const DistanceTransferSettings& settings,
                      StageSeconds& seconds) {

@@ -183,8 +183,8 @@ Measured measure(const Sources& sources, const Voxels& voxels, int across, doubl
   out.direct = watch.lap() * static_cast<double>(voxels.count) / static_cast<double>(timed.size());
   const FieldSamples exact = sumCharges(charges, voxels.positions(voxels.checked), true);
 
-  const std::uint64_t before = residentMemory();
   forgetPeakMemory();
+  const std::uint64_t before = residentMemory();
   Kept kept(voxels);
   FastSumSettings settings;
   settings.accuracy = accuracy;

@@ -126,7 +126,7 @@ void expectWithin(const Mesh& mesh, const Known& known, const IsFree& isFree, do
   const double error = errorInside(fit, boundary.solid, known);
   EXPECT_LE(error, inside);
   EXPECT_LE(error, fit.bound);
-  EXPECT_LE(fit.bound, 50 * tolerance);
+  EXPECT_LE(fit.bound, 4 * tolerance);  // measured: 1.4 at most
 }
 
 TEST(FitHarmonic, ValuesFromAFunctionAreMetToAMillionth) {
@@ -156,6 +156,53 @@ TEST(FitHarmonic, FluxThroughTheOuterSideOfAShell) {
     mesh.triangles.push_back({first + t[0], first + t[2], first + t[1]});
   expectWithin(
       mesh, kCharge, [](const Vec3& p, const Vec3&) { return norm(p) > 0.75; }, 3e-4, 1e-3);
+}
+
+// Half of a ring about the z axis, cut at y = 0.
+Mesh halfRing(int along, int around) {
+  Mesh mesh;
+  mesh.name = "half ring";
+  for (int j = 0; j <= along; ++j)
+    for (int i = 0; i < around; ++i) {
+      const double a = kPi * j / along, b = 2 * kPi * i / around, r = 1 + 0.35 * std::cos(b);
+      mesh.vertices.push_back({r * std::cos(a), r * std::sin(a), 0.35 * std::sin(b)});
+    }
+  const auto vertex = [&](int j, int i) { return j * around + i % around; };
+  for (int i = 0; i < around; ++i) {
+    for (int j = 0; j < along; ++j)
+      mesh.triangles.insert(mesh.triangles.end(),
+                            {{vertex(j, i), vertex(j + 1, i), vertex(j + 1, i + 1)},
+                             {vertex(j, i), vertex(j + 1, i + 1), vertex(j, i + 1)}});
+    if (i == 0 || i + 1 == around) continue;
+    mesh.triangles.insert(mesh.triangles.end(),
+                          {{vertex(0, 0), vertex(0, i), vertex(0, i + 1)},
+                           {vertex(along, 0), vertex(along, i + 1), vertex(along, i)}});
+  }
+  return mesh;
+}
+
+// The angle about the axis is harmonic, and nothing of it flows through the ring's side. Along the
+// triangles' own normals something does, with a jump at each edge.
+TEST(FitHarmonic, FacetsOfASmoothSideTakeFewCharges) {
+  const Mesh mesh = halfRing(32, 24);
+  const SourceBoundary boundary = makeSourceBoundary(mesh);
+  const Known angle{[](const Vec3& p) { return std::atan2(p.y, p.x) / kPi; },
+                    [](const Vec3&) { return Vec3{}; }};
+  BoundaryConditions conditions =
+      conditionsOf(mesh, angle, [](const Vec3&, const Vec3& n) { return std::abs(n.y) < 0.9999; });
+  conditions.values = Matrix(mesh.vertices.size(), 1);
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    conditions.values(v, 0) = mesh.vertices[v].x > 0 ? 0 : 1;
+  conditions.function = nullptr;
+  HarmonicFitSettings settings;
+  settings.tolerance = 3e-3;
+  settings.maxSources = 6000;
+  const HarmonicFit smooth = fitHarmonic(boundary, conditions, settings);
+  EXPECT_TRUE(smooth.met);
+  // The ring's triangles are off its surface by (pi / 32)^2 1.35 / 8 = 1.6e-3.
+  EXPECT_LE(errorInside(smooth, boundary.solid, angle), 2 * settings.tolerance);
+  conditions.creaseAngle = 0;
+  EXPECT_FALSE(fitHarmonic(boundary, conditions, settings).met);
 }
 
 // Where values and fluxes meet the field goes as the root of the distance: its error is largest
@@ -192,7 +239,7 @@ TEST(FitHarmonic, TheBoundHoldsWhereTheFieldIsSingular) {
   const double error = errorInside(fit, boundary.solid, kRoot);
   EXPECT_TRUE(fit.met);
   EXPECT_LE(error, fit.bound);
-  EXPECT_LE(fit.bound, 50 * error);
+  EXPECT_LE(fit.bound, 15 * error);        // measured: 5.6
   EXPECT_NEAR(fit.freeShare, 0.1, 0.001);  // 1 of 10
 }
 

@@ -52,6 +52,16 @@ TEST(HarmonicGrids, OnlyWhatIsAskedFor) {
   EXPECT_EQ(evaluateHarmonic(affineField(), solid, {"a", "b"}, settings).all().size(), 4u);
 }
 
+TEST(HarmonicGrids, SayWhatTheFieldIs) {
+  HarmonicGridSettings settings;
+  settings.resolution = 16;
+  const auto grids =
+      evaluateHarmonic(affineField(), Solid(shapes::icosphere(2)), {"a", "b"}, settings);
+  describeField(grids.all(), {{"span", "3"}});
+  for (const openvdb::GridBase::Ptr& grid : grids.all())
+    EXPECT_EQ(grid->metaValue<std::string>("innermap_span"), "3");
+}
+
 TEST(HarmonicGrids, RefusesBadNamesAndSettings) {
   const Solid solid(shapes::icosphere(1));
   for (const std::vector<std::string>& names :

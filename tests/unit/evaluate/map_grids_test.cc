@@ -220,5 +220,25 @@ TEST_F(Frames, AreEvaluatedOnTheGridOfTheirRestPose) {
   EXPECT_THROW(FrameEvaluator(fitter, {"depth"}, coarse()), SettingError);
 }
 
+// Grids go through one map after another, and other programs use names of ours.
+TEST_F(Frames, DescribeGridsThatWereDescribedBefore) {
+  const openvdb::GridBase::Ptr grid = openvdb::FloatGrid::create();
+  grid->insertMeta("innermap_frame", openvdb::StringMetadata("12"));
+  grid->insertMeta("innermap_source", openvdb::FloatMetadata(1));
+  FitMapSettings fitting;
+  fitting.tolerance = 1e-2;
+  const MapFit map = fitMap(rest, moved(rest, affineMap), fitting);
+  describeMap({grid}, map);
+  ASSERT_EQ(grid->metaValue<std::string>("innermap_source"), map.facts[1].second);
+  ASSERT_FALSE(grid->metaValue<std::string>("innermap_boundary_error_rms").empty());
+  describeFrame({grid}, {&fit, 12});
+  EXPECT_EQ(grid->metaValue<std::int64_t>("innermap_frame"), 12);
+  EXPECT_EQ(grid->metaValue<double>("innermap_boundary_error_rms"), fit.error.rms);
+  EXPECT_EQ((*grid)["innermap_boundary_error_samples"], nullptr);
+  EXPECT_EQ((*grid)["innermap_one_to_one"], nullptr);
+  describeMap({grid}, map);
+  EXPECT_FALSE(grid->metaValue<std::string>("innermap_boundary_error_rms").empty());
+}
+
 }  // namespace
 }  // namespace innermap

@@ -25,6 +25,13 @@ TEST(BlockSet, SurfaceIsClosedAndOfTheBlocksVolume) {
   }
 }
 
+TEST(BlockSet, UsualPiecesGiveAMeshThatCanBeMapped) {
+  const BlockSet blocks = ringOfBlocks();
+  const int pieces = usualPieces(blocks);
+  EXPECT_GE(blockSurface(blocks, pieces).vertices.size(), 3000u);
+  EXPECT_LT(blockSurface(blocks, pieces - 1).vertices.size(), 3000u);
+}
+
 TEST(BlockSet, HexahedraFillTheBlocks) {
   const BlockSet blocks = ringOfBlocks();
   const BlockHexahedra hexes = blockHexahedra(blocks, 2);

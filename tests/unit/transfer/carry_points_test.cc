@@ -60,6 +60,22 @@ TEST(CarryPoints, PullBringsBack) {
   }
 }
 
+TEST(CarryPoints, OneInverseServesCallsWithProgressOfTheirOwn) {
+  const ComposedMap map(chargedMap());
+  const Solid source(ball()), target(moved(ball(), map));
+  CarryPointsSettings settings;
+  PointPuller puller = [&] {
+    Progress over;  // gone before the first call
+    settings.progress = &over;
+    return PointPuller(map, source, target, settings).reportingTo(nullptr);
+  }();
+  const Points images = {map({0.1, 0.2, 0.3})};
+  EXPECT_LE(norm(puller.pull(images, false).points[0] - Vec3{0.1, 0.2, 0.3}), 1e-5);
+  Progress cancelled;
+  cancelled.cancel();
+  EXPECT_THROW(puller.reportingTo(&cancelled).pull(images, false), Cancelled);
+}
+
 TEST(CarryPoints, OutsideIsCutExtendedOrFaded) {
   const ComposedMap map = affineMap(rotation(0.7, 0.2), {1, 2, 3});
   const Solid solid(ball());

@@ -352,5 +352,14 @@ TEST(Carry, RefusesWhatMakesNoSense) {
   EXPECT_THROW(pair.push(tensorGrids(pair, "t"), carry), DataError);
 }
 
+TEST(VoxelGrowth, FollowsTheSolidsBeyondATenth) {
+  EXPECT_NEAR(voxelGrowth(1, 8), 2, 1e-12);
+  EXPECT_NEAR(voxelGrowth(8, 1), 0.5, 1e-12);
+  EXPECT_EQ(voxelGrowth(1, 1.3), 1);  // 1.09
+  EXPECT_GT(voxelGrowth(1, 1.4), 1.1);
+  EXPECT_EQ(voxelGrowth(0, 1), 1);
+  EXPECT_EQ(volumeRatio(2, 5), 2.5);
+}
+
 }  // namespace
 }  // namespace innermap

@@ -26,7 +26,8 @@ function lineChart(chart) {
   if (!ys.length || !xs.length) return null;
   const range = (list, log) => {
     let [a, b] = [Math.min(...list), Math.max(...list)];
-    if (a === b) [a, b] = log ? [a / 2, b * 2] : [a - Math.abs(a) / 10 - 1e-12, b + Math.abs(b) / 10 + 1e-12];
+    if (a === b && log) [a, b] = [a / 2, b * 2];
+    else if (a === b) [a, b] = a === 0 ? [0, 1] : [a - Math.abs(a) / 10, b + Math.abs(b) / 10];
     return [a, b];
   };
   const [y0, y1] = range(ys, chart.logarithmic), [x0, x1] = range(xs, chart.logX);

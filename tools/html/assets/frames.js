@@ -7,7 +7,7 @@ const frameCurves = [
 ];
 const worstOf = [["boundary_p99", "largest boundary error"], ["folded_fraction", "most folded"], ["deformation", "most deformed"]];
 
-function framesSection(surfaces) {
+function framesSection(surfaces, sections) {
   const numbers = reported("frames.number"), table = page.report.energies || {};
   if (!numbers || !numbers.length) return null;
   const charts = frameCurves.map(([key, title, logarithmic]) => {
@@ -26,6 +26,7 @@ function framesSection(surfaces) {
     const shown = placeOf.has(number);
     told.textContent = figures.join("; ") + (places.length && !shown ? " (this frame's surface is not in the page)" : "");
     if (shown) busy = busy.then(() => surfaces.showPlace(placeOf.get(number)));
+    if (sections) busy = busy.then(() => sections.showFrame(number));
     return String(number);
   });
   const go = (i) => { control.input.value = i; control.show(); };

@@ -34,8 +34,9 @@ function numberTable(key, title, words) {
     element("table", {}, element("tbody", {}, ...rows.map(([path, value]) => {
       const [, name, meaning, how] = meaningOf(path), text = typeof value === "string";
       return element("tr", {"data-key": path, "data-known": meanings.some((m) => m[0] === path) || name !== "" && !groups.some((g) => g[0] === key)},
-        element("th", {scope: "row"}, name), element("td", {class: text ? "text" : "number"}, written(value, how)),
-        element("td", {class: "meaning"}, meaning));
+        element("th", {scope: "row"}, name),
+        element("td", {class: text ? (value.length < 24 ? "text short" : "text") : "number", colspan: meaning ? 1 : 2}, written(value, how)),
+        meaning ? element("td", {class: "meaning"}, meaning) : null);
     }))));
 }
 

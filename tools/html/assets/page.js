@@ -9,7 +9,7 @@ async function build() {
   document.title = [title, what].filter(Boolean).join(": ");
 
   const surfaces = await surfacesSection(), sections = await sectionsSection();
-  const frames = framesSection(surfaces);
+  const frames = framesSection(surfaces, sections);
   main.append(...[summarySection(), surfaces && (surfaces.node || surfaces), frames && frames.node, sections && sections.node, fitSection(),
                   numbersSection(), costSection(), runSection()].filter(Boolean));
   const jumps = [...main.querySelectorAll("main > section")].map((s) => element("a", {href: "#" + s.id}, s.querySelector("h2").textContent));

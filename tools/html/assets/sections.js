@@ -18,7 +18,22 @@ const preferredGrids = ["deformation_energy", "jacobian", "harmonic_energy"];
 async function sectionsSection() {
   const grids = page.grids;
   if (!grids.length) return null;
+  const names = [...new Set(grids.map((g) => g.name))];
   let grid = preferredGrids.map((name) => grids.find((g) => g.name === name)).find(Boolean) || grids[0], values = null, scale = null;
+  let frame = grid.frame;  // that is shown, of a sequence
+  const gridOf = (name) => grids.find((g) => g.name === name && (g.frame === undefined || g.frame === frame)) || grids.find((g) => g.name === name);
+  // One scale for all frames, by the two that reach farthest.
+  const scales = new Map();
+  async function scaleOf(name) {
+    if (!scales.has(name)) {
+      const all = grids.filter((g) => g.name === name), some = new Set([
+        all.reduce((a, b) => (b.grid_greatest > a.grid_greatest ? b : a)), all.reduce((a, b) => (b.grid_least < a.grid_least ? b : a))]);
+      const read = [];
+      for (const g of some) for (const v of await readValues(g)) if (Number.isFinite(v)) read.push(v);
+      scales.set(name, scaleFor(name, read, [...some].some((g) => g.logarithmic)));
+    }
+    return scales.get(name);
+  }
   const at = [0.5, 0.5, 0.5];  // shares of the grid's box
   const across = [[1, 2], [0, 2], [0, 1]];  // the axes that each section shows, across and up
   const canvases = [0, 1, 2].map((a) => element("canvas", {class: "cut", tabindex: 0, role: "img", id: "cut-" + "xyz"[a]}));
@@ -75,9 +90,9 @@ async function sectionsSection() {
   function goTo(block) {
     block.forEach((index, a) => { sliders[a].input.value = Math.round(95 * index / Math.max(1, grid.blocks[a] - 1)); sliders[a].show(); });
   }
-  let folded = [], next = 0;
+  let folded = [], nextFolded = 0;
   function nextFold() {
-    const i = folded[next++ % folded.length], [w, h] = grid.blocks;
+    const i = folded[nextFolded++ % folded.length], [w, h] = grid.blocks;
     goTo([i % w, Math.floor(i / w) % h, Math.floor(i / (w * h))]);
   }
   // Through a place of the source, where the grids of maps are.
@@ -117,16 +132,16 @@ async function sectionsSection() {
   });
 
   async function take(name) {
-    grid = grids.find((g) => g.name === name);
-    values = await readValues(grid);
-    scale = scaleFor(grid.name, values, grid.logarithmic);
+    const next = gridOf(name);
+    [values, scale] = [await readValues(next), await scaleOf(name)];
+    grid = next;
     legendPlace.replaceChildren(legend(scale, grid.name));
-    words.textContent = [gridWords[grid.name] || "",
+    words.textContent = [grid.frame === undefined ? "" : "frame " + grid.frame, gridWords[grid.name] || "",
       `in the grid ${shortNumber(grid.grid_least)} to ${shortNumber(grid.grid_greatest)}`,
       grid.stride > 1 ? `here the ${grid.reduction} of each ${grid.stride}³ voxels` : "each voxel is shown"].filter(Boolean).join("; ") + ".";
     folded = [];
     if (folds()) values.forEach((v, i) => { if (v <= 0) folded.push(i); });
-    next = 0;
+    nextFolded = 0;
     foldNote.replaceChildren(...(folded.length
       ? [`${folded.length} of the places shown fold; they are black with yellow. `, element("button", {type: "button", id: "next-fold", onclick: nextFold}, "go to the next")]
       : folds() ? ["No place that is shown folds."] : []));
@@ -135,9 +150,16 @@ async function sectionsSection() {
   }
   const node = section("sections", "Sections through the volume",
     element("div", {class: "controls"},
-      choice("grid", "grid-shown", [[grid.name, grid.name], ...grids.filter((g) => g !== grid).map((g) => [g.name, g.name])], take)),
+      choice("grid", "grid-shown", [[grid.name, grid.name], ...names.filter((name) => name !== grid.name).map((name) => [name, name])], take)),
     element("div", {class: "cuts"}, ...[0, 1, 2].map((a) => element("figure", {}, canvases[a], element("figcaption", {}, `across ${"xyz"[a]}: ${"xyz"[across[a][0]]} to the right, ${"xyz"[across[a][1]]} up`), sliders[a].node))),
     legendPlace, words, foldNote, told);
   whenColoursChange.push(drawAll);
-  return {node, start: () => take(grid.name), recolour: () => take(grid.name)};
+  const recolour = () => { scales.clear(); return take(grid.name); };
+  // Goes to a frame's grids, where the page has them.
+  const showFrame = (number) => {
+    if (frame === number || !grids.some((g) => g.frame === number)) return Promise.resolve();
+    frame = number;
+    return take(grid.name);
+  };
+  return {node, start: () => take(grid.name), recolour, showFrame};
 }

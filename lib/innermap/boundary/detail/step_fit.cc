@@ -20,6 +20,9 @@ constexpr double kShare = 1.3, kLastShare = 1, kLeastShare = 0.1;
 // Of the folds that are left: after a step, and after its first charges.
 constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
 constexpr double kOfTolerance = 0.9;  // is given to the steps
+// Of the work until there to the work in all, by the way until there: the nearer to the target, the
+// shorter the steps and the more charges they take.
+constexpr double kWorkPower = 2.4;
 constexpr int kOutlierRounds = 3, kPatience = 1;
 constexpr int kLastPatience = 3;  // what the last step does not reach is missed
 // Of the target's diagonal. Sums, and where points inside go; the mesh about an intermediate shape.
@@ -52,7 +55,7 @@ class StepFitter {
     std::vector<double> ends{1};  // the next one last
     if (settings_.maxSteps > 1) ends.push_back(0.5);
     while (!ends.empty()) {
-      reportProgress(settings_.progress, "going in steps", at_);
+      reportProgress(settings_.progress, "going in steps", std::pow(at_, kWorkPower));
       const double end = ends.back();
       const bool may = static_cast<int>(records_.size() + ends.size()) < settings_.maxSteps;
       const double half = (end - at_) / 2;

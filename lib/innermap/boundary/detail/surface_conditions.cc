@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "innermap/boundary/detail/problem_samples.h"
+#include "innermap/core/detail/pi.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 
@@ -17,6 +18,7 @@ SurfaceConditions::SurfaceConditions(const SourceBoundary& boundary,
   channels_ = conditions.function ? 0 : conditions.values.columns();
   check();
   splitSurface();
+  if (anyFree()) smoothNormals();
   if (conditions.function) {
     const Mesh& surface = boundary.solid.surface();
     channels_ = conditions.function({positionOf(surface, SurfacePoint{})}).columns();
@@ -30,6 +32,9 @@ SurfaceConditions::SurfaceConditions(const SourceBoundary& boundary,
 void SurfaceConditions::check() const {
   const Mesh& mesh = boundary_.mesh;
   const std::size_t triangles = mesh.triangles.size(), rows = conditions_.values.rows();
+  if (!(conditions_.creaseAngle >= 0 && conditions_.creaseAngle <= 90))
+    throw SettingError("creaseAngle",
+                       fmt::format("{} degrees are not in [0, 90]", conditions_.creaseAngle));
   if (!conditions_.function && rows != mesh.vertices.size() && rows != 3 * triangles)
     throw DataError(fmt::format(
         "harmonic field: {} rows of values for {} vertices; there must be one a vertex, or three a "
@@ -78,6 +83,49 @@ void SurfaceConditions::splitSurface() {
         "somewhere");
   freeShare_ = freeArea / surfaceArea(surface);
   fixed_ = std::make_unique<TriangleTree>(surface.vertices, fixed.triangles);
+}
+
+void SurfaceConditions::smoothNormals() {
+  const Mesh& surface = boundary_.solid.surface();
+  const std::size_t count = surface.triangles.size();
+  Points normals(count);  // unit, 0 where a triangle has no area
+  std::vector<std::vector<std::pair<std::size_t, Vec3>>> around(surface.vertices.size());
+  for (std::size_t t = 0; t < count; ++t) {
+    const Triangle& corners = surface.triangles[t];
+    const Vec3 normal = areaVector(surface, static_cast<int>(t));
+    const double area = norm(normal);
+    if (!(area > 0)) continue;
+    normals[t] = normal / area;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto at = [&](std::size_t k) {
+        return surface.vertices[static_cast<std::size_t>(corners[(c + k) % 3])];
+      };
+      const Vec3 a = at(1) - at(0), b = at(2) - at(0);
+      around[static_cast<std::size_t>(corners[c])].emplace_back(
+          t, cross(a, b) / (dot(a, a) * dot(b, b)));
+    }
+  }
+  const double least = std::cos(conditions_.creaseAngle * kPi / 180);
+  normals_.resize(count);
+  parallelBlocks(count, 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      for (std::size_t c = 0; c < 3; ++c) {
+        Vec3 sum;
+        for (const auto& [other, weighted] :
+             around[static_cast<std::size_t>(surface.triangles[t][c])])
+          if (other == t || dot(normals[other], normals[t]) > least) sum += weighted;
+        const double length = norm(sum);
+        normals_[t][c] = length > 0 ? sum / length : normals[t];
+      }
+  });
+}
+
+Vec3 SurfaceConditions::normalAt(const SurfacePoint& onSurface) const {
+  const std::array<Vec3, 3>& corners = normals_[static_cast<std::size_t>(onSurface.triangle)];
+  Vec3 sum;
+  for (std::size_t c = 0; c < 3; ++c) sum += onSurface.barycentric[c] * corners[c];
+  const double length = norm(sum);
+  return length > 0 ? sum / length : Vec3{};
 }
 
 int SurfaceConditions::inputTriangle(const SurfacePoint& onSurface) const {
@@ -130,6 +178,7 @@ void SurfaceConditions::checkFunction(const Matrix& out, std::size_t points) con
 }
 
 Matrix SurfaceConditions::values(const std::vector<SurfacePoint>& onSurface) const {
+  if (onSurface.empty()) return {0, channels_};
   if (conditions_.function) {
     Matrix out = conditions_.function(positionsOf(boundary_.solid, onSurface));
     checkFunction(out, onSurface.size());
@@ -145,6 +194,7 @@ Matrix SurfaceConditions::values(const std::vector<SurfacePoint>& onSurface) con
 
 Matrix SurfaceConditions::fluxes(const std::vector<SurfacePoint>& onSurface,
                                  const Points& normals) const {
+  if (onSurface.empty()) return {0, channels_};
   if (conditions_.fluxFunction) {
     Matrix out = conditions_.fluxFunction(positionsOf(boundary_.solid, onSurface), normals);
     checkFunction(out, onSurface.size());
@@ -188,11 +238,8 @@ Points SurfaceConditions::directions(const std::vector<SurfacePoint>& onSurface)
   parallelBlocks(onSurface.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (!isFree(onSurface[i])) continue;
-      const Vec3 normal = areaVector(surface, onSurface[i].triangle);
-      const double length = norm(normal);
-      if (!(length > 0)) continue;  // no point is ever drawn there
       const double away = fixed_->closest(positionOf(surface, onSurface[i])).distance;
-      out[i] = (std::max(away, kLeastLength * boundary_.solid.diagonal()) / length) * normal;
+      out[i] = std::max(away, kLeastLength * boundary_.solid.diagonal()) * normalAt(onSurface[i]);
     }
   });
   return out;

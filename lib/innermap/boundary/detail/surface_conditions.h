@@ -1,6 +1,7 @@
 // Conditions on a mesh, asked for at points of its solid's surface.
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "innermap/boundary/boundary_conditions.h"
@@ -28,6 +29,8 @@ class SurfaceConditions {
  private:
   void check() const;
   void splitSurface();
+  void smoothNormals();
+  Vec3 normalAt(const SurfacePoint& onSurface) const;
   int inputTriangle(const SurfacePoint& onSurface) const;
   void checkFunction(const Matrix& out, std::size_t points) const;
   Matrix values(const std::vector<SurfacePoint>& onSurface) const;
@@ -44,6 +47,8 @@ class SurfaceConditions {
   std::vector<std::uint8_t> freePieces_;  // of surface().triangles
   std::unique_ptr<TriangleTree> fixed_;   // where values are given; null: everywhere
   double freeShare_ = 0;
+  std::vector<std::array<Vec3, 3>>
+      normals_;  // at the corners of surface().triangles; if any is free
 };
 
 }  // namespace innermap

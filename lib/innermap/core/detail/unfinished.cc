@@ -94,7 +94,16 @@ void removeTree(const std::string& path) noexcept { removeTreeAt(path.c_str()); 
 CommitGuard::CommitGuard() noexcept { ++commits; }
 CommitGuard::~CommitGuard() { --commits; }
 
-void countInPlace() noexcept { ++inPlace; }
+namespace {
+thread_local int keptWork = 0;
+}  // namespace
+
+KeptWork::KeptWork() noexcept { ++keptWork; }
+KeptWork::~KeptWork() { --keptWork; }
+
+void countInPlace() noexcept {
+  if (keptWork == 0) ++inPlace;
+}
 bool isCommitting() noexcept { return commits > 0; }
 std::uint64_t countOfInPlace() noexcept { return inPlace; }
 

@@ -28,6 +28,15 @@ void removeTree(const std::string& path) noexcept;
 
 void countInPlace() noexcept;
 
+// While it lives, what this thread puts in place is no output but work kept for the next run.
+class KeptWork {
+ public:
+  KeptWork() noexcept;
+  ~KeptWork();
+  KeptWork(const KeptWork&) = delete;
+  KeptWork& operator=(const KeptWork&) = delete;
+};
+
 // What file.h calls removeUnfinishedFiles(), commitUnderWay(), outputsInPlace().
 void removeUnfinished() noexcept;
 bool isCommitting() noexcept;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -250,13 +251,21 @@ std::optional<RepairedVoxel> repairedAt(const Voxels& voxels, const Coord& at, d
 }
 
 // Repairs clusters side by side, each moving voxels that no other one looks at; the voxels of those
-// where that failed.
-std::vector<Coord> repairWith(int rings, const std::vector<Coord>& folded,
+// where that failed. pass: number of kRings.
+std::vector<Coord> repairWith(std::size_t pass, const std::vector<Coord>& folded,
                               const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
                               const FoldRepairSettings& settings, Positions& moved) {
+  const int rings = kRings[pass];
   const auto clusters = clustersOf(folded, 2 * rings + 2);
   std::vector<Positions> parts(clusters.size());
   std::vector<char> done(clusters.size(), 0);
+  std::atomic<std::size_t> passed{0};
+  const auto pastCluster = [&](std::size_t c) {
+    const double share =
+        static_cast<double>(passed += clusters[c].size()) / static_cast<double>(folded.size());
+    reportProgress(settings.progress, kRepairing,
+                   (static_cast<double>(pass) + share) / kRings.size());
+  };
   parallelBlocks(
       clusters.size(), 1,
       [&](std::size_t begin, std::size_t end) {
@@ -267,6 +276,7 @@ std::vector<Coord> repairWith(int rings, const std::vector<Coord>& folded,
           if (patch.tooLarge()) continue;
           done[c] = patch.repair(settings.progress);
           patch.collect(parts[c]);
+          pastCluster(c);
         }
       },
       settings.progress);
@@ -316,18 +326,22 @@ FoldRepair repairFolds(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& 
                        const openvdb::FloatGrid& levelSet, const FoldRepairSettings& settings) {
   Positions moved;
   const Voxels voxels(map, levelSet, moved);
-  const auto repair = [&](std::vector<Coord> seeds) {
-    for (const int rings : kRings)
-      if (!seeds.empty()) seeds = repairWith(rings, seeds, map, levelSet, settings, moved);
+  const auto repair = [&](std::vector<Coord> seeds, double from, double to) {
+    PartOfStage part(settings.progress, from, to);
+    FoldRepairSettings s = settings;
+    s.progress = &part;
+    for (std::size_t pass = 0; pass < kRings.size() && !seeds.empty(); ++pass)
+      seeds = repairWith(pass, seeds, map, levelSet, s, moved);
     return seeds;
   };
-  const std::vector<Coord> left = repair(foldedVoxels(map, jacobian, levelSet, settings.progress));
+  const std::vector<Coord> left =
+      repair(foldedVoxels(map, jacobian, levelSet, settings.progress), 0, 0.8);
   // Where cells that are inside out are too many, there may be few voxels that are.
   std::vector<Coord> worst;
   auto determinants = jacobian.getConstAccessor();
   std::copy_if(left.begin(), left.end(), std::back_inserter(worst),
                [&](const Coord& at) { return !(determinants.getValue(at) > 0); });
-  if (worst.size() < left.size()) repair(worst);
+  if (worst.size() < left.size()) repair(worst, 0.8, 1);
   FoldRepair out;
   for (const auto& entry : moved) {
     const Coord& at = entry.first;

@@ -25,6 +25,8 @@ struct FoldRepair {
   double farthest = 0;  // way of one of them, world units of the target
 };
 
+constexpr const char* kRepairing = "repairing folds";  // the stage
+
 struct FoldRepairSettings {
   double growth = 1;  // cube root of the volumes' ratio, target to source
   Progress* progress = nullptr;

@@ -165,8 +165,12 @@ void visitLeaves(const HarmonicField& field, const ComposedMap* map, const Solid
     firstRow.push_back(onSkin.size());
     for (const LeafPlan::Skin& voxel : plans[l].skin) onSkin.push_back(voxel.at);
   }
+  const auto leafCount = static_cast<double>(leaves.leafCount());
+  PartOfStage part(settings.progress, static_cast<double>(begin) / leafCount,
+                   static_cast<double>(end) / leafCount);
   const EvaluateFieldSettings all{settings.accuracy, true, settings.progress},
-      wanted{settings.accuracy, settings.gradients, settings.progress};
+      wanted{settings.accuracy, settings.gradients, settings.progress},
+      reporting{settings.accuracy, settings.gradients, &part};
   FieldSamples skin = field.evaluate(onSkin, all);
   const auto gather = [&](LeafBuffer& buffer, std::size_t l, const double* values,
                           const double* gradients) {
@@ -180,7 +184,7 @@ void visitLeaves(const HarmonicField& field, const ComposedMap* map, const Solid
           gather(buffer, l, values, gradients);
           visit(begin + l, buffer.leaf());
         },
-        wanted, settings.stage);
+        reporting, settings.stage);
   map->finish(skin, all);
   std::vector<LeafBuffer> buffers(count, LeafBuffer(field.channels()));
   field.onLattice(
@@ -188,7 +192,7 @@ void visitLeaves(const HarmonicField& field, const ComposedMap* map, const Solid
       [&](std::size_t l, const double* values, const double* gradients) {
         gather(buffers[l], l, values, gradients);
       },
-      wanted, settings.stage);
+      reporting, settings.stage);
   finishInside(*map, buffers, wanted);
   parallelBlocks(
       count, 1,

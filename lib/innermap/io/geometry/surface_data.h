@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "innermap/boundary/boundary_conditions.h"
 #include "innermap/core/matrix.h"
 #include "innermap/core/progress.h"
 #include "innermap/mesh/mesh.h"
@@ -13,11 +14,6 @@ namespace innermap {
 
 struct ReadSurfaceDataSettings {
   Progress* progress = nullptr;
-};
-
-struct SurfaceGroup {
-  std::string name;
-  std::vector<int> triangles;  // of the mesh, ascending
 };
 
 // Groups (g, which may give a face several names), objects (o) and materials (usemtl) of an OBJ, by

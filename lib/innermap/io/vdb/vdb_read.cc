@@ -92,7 +92,6 @@ class InputArchive : public openvdb::io::Archive {
       throw FileError(path_, fmt::format("grid '{}' has the type {}, which innermap does not read",
                                          d.gridName(), d.gridType()));
     openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid(d.gridType());
-    grid->setSaveFloatAsHalf(d.saveFloatAsHalf());
     stream_.seekg(static_cast<std::streamoff>(verified_[i].begin));
     readGrid(grid, d, stream_);
     return grid;

@@ -11,6 +11,7 @@
 #include "innermap/core/version.h"
 #include "innermap/io/vdb/detail/vdb_stream.h"
 #include "innermap/io/vdb/vdb_file.h"
+#include "innermap/levelset/detail/set_metadata.h"
 
 namespace innermap {
 namespace {
@@ -71,7 +72,7 @@ void writeVdb(const std::string& path, const openvdb::GridPtrVec& grids,
   openvdb::initialize();
   const openvdb::GridCPtrVec copies = named(path, grids, settings.names);
   openvdb::MetaMap metadata(fileMetadata);
-  metadata.insertMeta("creator", openvdb::StringMetadata(creator()));
+  setMetadata(metadata, "creator", openvdb::StringMetadata(creator()));
   reportProgress(settings.progress, "writing the VDB file", 0);
   writeWholeFile(path, [&](std::ostream& file) {
     PollingOutputBuffer buffer(*file.rdbuf(), settings.progress);

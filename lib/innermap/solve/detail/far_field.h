@@ -17,6 +17,7 @@
 #include "innermap/solve/detail/expansion_basis.h"
 #include "innermap/solve/detail/kernel_simd.h"
 #include "innermap/solve/detail/proxies.h"
+#include "innermap/solve/detail/row.h"
 
 namespace innermap {
 
@@ -34,7 +35,7 @@ using NearCharges = std::vector<std::vector<double>>;
 struct FarFieldWorkspace {
   NearCharges far;
   std::vector<std::uint32_t> stack;
-  std::vector<double> values, harmonics, x, y, z;
+  simd::Row values, harmonics, x, y, z;
 };
 
 struct FarFieldPlan {
@@ -75,7 +76,7 @@ class FarField {
   const Proxies& proxies_;
   FarFieldPlan plan_;
   std::shared_ptr<const ExpansionBasis> basis_;
-  std::vector<double> x_, y_, z_;  // check points, padded
+  simd::Row x_, y_, z_;  // check points, padded
 };
 
 }  // namespace innermap

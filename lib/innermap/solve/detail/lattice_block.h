@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "innermap/solve/detail/row.h"
 #include "innermap/solve/detail/solid_harmonics.h"
 
 namespace innermap {
@@ -33,7 +34,7 @@ class LatticeBlock {
   const SolidHarmonics& harmonics_;
   std::vector<std::size_t> order_;  // functions by parity
   std::array<std::size_t, 9> begin_{};
-  std::vector<double> octant_;                            // 64 x functions, in that order
+  simd::Row octant_;                                      // 64 x functions, in that order
   std::array<std::array<std::uint16_t, 64>, 8> place_{};  // of the octant's points for each sign
 };
 

@@ -7,6 +7,7 @@
 
 #include "innermap/solve/detail/far_field.h"
 #include "innermap/solve/detail/lattice_block.h"
+#include "innermap/solve/detail/row.h"
 
 namespace innermap {
 
@@ -39,10 +40,10 @@ class LeafSums {
   void addNear(const FarField& field, const NearCharges& near, double radius);
 
   std::size_t stride_ = 0;
-  std::vector<double> values_, gradients_;
+  simd::Row values_, gradients_;
   std::vector<std::uint16_t> places_;  // of each target, below stride()
-  std::vector<double> x_, y_, z_;      // of targets, about the ball's centre
-  std::vector<double> harmonics_, sums_, slopes_, scaledX_, scaledY_, scaledZ_;
+  simd::Row x_, y_, z_;                // of targets, about the ball's centre
+  simd::Row harmonics_, sums_, slopes_, scaledX_, scaledY_, scaledZ_;
 };
 
 }  // namespace innermap

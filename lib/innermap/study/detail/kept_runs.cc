@@ -11,6 +11,7 @@
 #include <ostream>
 #include <string_view>
 
+#include "innermap/core/detail/unfinished.h"
 #include "innermap/core/file.h"
 #include "innermap/core/version.h"
 
@@ -124,6 +125,7 @@ void KeptRuns::keep(const StudyRow& row) const {
   if (folder_.empty()) return;
   const std::string key = keyOf(row);
   makeFolder(folder_);
+  const KeptWork guard;
   writeWholeFile(pathOf(key), [&](std::ostream& file) {
     file << kFirstLine << "\nkey " << key << "\n";
     if (!row.failure.empty()) {

@@ -4,6 +4,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/evaluate/detail/topology.h"
+#include "innermap/levelset/detail/set_metadata.h"
 
 namespace innermap {
 namespace {
@@ -107,7 +108,7 @@ void noteOutside(const openvdb::GridPtrVec& grids, const OutsideSettings& outsid
       "{}",
       outside.distance, outside.fadeTo ? "fading to a rigid motion" : "cut off there");
   for (const openvdb::GridBase::Ptr& grid : grids)
-    grid->insertMeta("innermap_outside", openvdb::StringMetadata(text));
+    setMetadata(*grid, "innermap_outside", openvdb::StringMetadata(text));
 }
 
 std::uint64_t outputBytesPerVoxel(const openvdb::GridPtrVec& grids) {

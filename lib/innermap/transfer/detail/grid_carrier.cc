@@ -5,6 +5,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/evaluate/detail/topology.h"
+#include "innermap/levelset/detail/set_metadata.h"
 #include "innermap/transfer/detail/carrier.h"
 #include "innermap/transfer/detail/continue_values.h"
 #include "innermap/transfer/detail/sampling.h"
@@ -103,7 +104,7 @@ class GridCarrier : public Carrier {
     typename Grid::Ptr out = openvdb::tools::levelSetRebuild(in, 0, static_cast<float>(width),
                                                              static_cast<float>(width));
     for (auto meta = in.beginMeta(); meta != in.endMeta(); ++meta)
-      out->insertMeta(meta->first, *meta->second);
+      setMetadata(*out, meta->first, *meta->second);
     out->setGridClass(openvdb::GRID_LEVEL_SET);
     return out;
   }

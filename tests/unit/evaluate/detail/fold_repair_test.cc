@@ -41,6 +41,34 @@ TEST(FoldRepair, CellsAreTurnedRightWhereNoVoxelIsFolded) {
   EXPECT_EQ(lattice.check().folded, 0u);
 }
 
+TEST(FoldRepair, SaysHowFarItIs) {
+  struct Recorder : Progress {
+    void report(std::string_view stage, double fraction) override {
+      EXPECT_EQ(stage, kRepairing);
+      EXPECT_GE(fraction, last);
+      EXPECT_LE(fraction, 1);
+      last = fraction;
+      ++reports;
+    }
+    double last = 0;
+    int reports = 0;
+  } progress;
+  test::Lattice lattice;
+  lattice.addBox(Coord(0), Coord(40, 10, 10), stay);
+  for (const int x : {5, 35}) {
+    const auto at = static_cast<float>(x);
+    lattice.map->tree().setValue(Coord(x, 5, 5), {at + 1.7f, 5.2f, 5.1f});
+  }
+  FoldRepairSettings settings;
+  settings.progress = &progress;
+  const auto jacobian = ones(lattice);
+  repairFolds(*lattice.map, *jacobian, *lattice.levelSet, settings);
+  EXPECT_GE(progress.reports, 2);
+  EXPECT_GT(progress.last, 0);
+  progress.cancel();
+  EXPECT_THROW(repairFolds(*lattice.map, *jacobian, *lattice.levelSet, settings), Cancelled);
+}
+
 TEST(FoldRepair, NothingIsDoneWhereNothingIsFolded) {
   test::Lattice lattice;
   lattice.addBox(Coord(0), Coord(9), stay);

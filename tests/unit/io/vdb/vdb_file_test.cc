@@ -4,6 +4,9 @@
 #include <signal.h>
 #include <sys/resource.h>
 
+#include <array>
+#include <cstring>
+
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
@@ -311,6 +314,86 @@ TEST(VdbFileDamage, FlippedBytesNeverCrash) {
     }
   }
   EXPECT_LT(peakMemory(), std::uint64_t(2) << 30);
+}
+
+void replaceAll(std::string& text, const std::string& from, const std::string& to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+}
+
+// A grid says twice whether its voxels are half floats, in its descriptor and in its metadata.
+// Where they differ OpenVDB believes the metadata and loses its way; so must the check before.
+TEST(VdbFileDamage, HalfFloatsInOnePlaceOnlyAreFoundBeforeReading) {
+  const TemporaryFolder folder;
+  const std::string key = openvdb::GridBase::META_SAVE_HALF_FLOAT;
+  const std::string other(key.size(), 'x');
+  for (const VdbCompression compression :
+       {VdbCompression::none, VdbCompression::zip, VdbCompression::blosc}) {
+    for (const bool described : {true, false}) {
+      auto grid = block<openvdb::FloatGrid>("a", kBox, [](auto c) { return float(c.x()); });
+      if (described)
+        grid->setSaveFloatAsHalf(true);
+      else
+        grid->insertMeta(other, openvdb::BoolMetadata(true));
+      VdbWriteSettings settings;
+      settings.compression = compression;
+      writeVdb(folder.file("a.vdb"), {grid}, {}, settings);
+      std::string bytes = contents(folder.file("a.vdb"));
+      replaceAll(bytes, described ? key : other, described ? other : key);
+      write(folder.file("b.vdb"), bytes);
+      try {
+        readVdb(folder.file("b.vdb"));
+        FAIL() << described;
+      } catch (const FileError& error) {
+        EXPECT_NE(std::string(error.what()).find("damaged"), std::string::npos) << error.what();
+      }
+    }
+  }
+}
+
+TEST(VdbFileDamage, TruthIsZeroOrOne) {
+  const TemporaryFolder folder;
+  auto grid = block<openvdb::FloatGrid>("a", kBox, [](auto c) { return float(c.x()); });
+  grid->setSaveFloatAsHalf(true);
+  writeVdb(folder.file("a.vdb"), {grid});
+  std::string bytes = contents(folder.file("a.vdb"));
+  const std::string before = std::string(openvdb::GridBase::META_SAVE_HALF_FLOAT) +
+                             std::string("\4\0\0\0bool\1\0\0\0", 12);
+  const std::size_t at = bytes.find(before);
+  ASSERT_NE(at, std::string::npos);
+  bytes[at + before.size()] = 2;
+  write(folder.file("b.vdb"), bytes);
+  EXPECT_THROW(readVdb(folder.file("b.vdb")), FileError);
+}
+
+// The table for reading leaves later is kept compressed: sixteen bytes may claim two gigabytes.
+TEST(VdbFileDamage, TableOfMoreLeavesThanTheFileCanHold) {
+  const TemporaryFolder folder;
+  auto grid = block<openvdb::FloatGrid>("a", kBox, [](auto c) { return float(c.x()); });
+  const std::string type = "__delayedload";
+  grid->insertMeta("later", openvdb::StringMetadata(std::string(40, 'x')));
+  writeVdb(folder.file("a.vdb"), {grid});
+  std::string bytes = contents(folder.file("a.vdb"));
+  const std::uint32_t count = 2000000000, stored = 32;
+  const std::array<std::uint32_t, 6> table = {count, stored, 0x02010102, count, count, stored};
+  const std::size_t at = bytes.find(std::string(40, 'x'));
+  ASSERT_NE(at, std::string::npos);
+  std::memcpy(bytes.data() + at, table.data(), sizeof(table));
+  // The type's name is longer than "string" was, so the offsets that follow are wrong as well; the
+  // table comes first.
+  const std::size_t name = bytes.rfind("string", at);
+  const auto length = static_cast<char>(type.size());
+  bytes.replace(name, 6, type);
+  bytes[name - 4] = length;
+  write(folder.file("b.vdb"), bytes);
+  const std::uint64_t before = peakMemory();
+  try {
+    readVdb(folder.file("b.vdb"));
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("more leaves"), std::string::npos) << error.what();
+  }
+  EXPECT_LT(peakMemory() - before, 300u << 20);
 }
 
 }  // namespace

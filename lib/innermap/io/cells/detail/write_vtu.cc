@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "innermap/io/cells/detail/cell_formats.h"
+#include "innermap/io/picture/svg_chart.h"
 
 namespace innermap {
 namespace {
@@ -48,23 +49,6 @@ class Base64Writer {
   int held_ = 0;
 };
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 // `add` puts `count` values of type T.
 template <class T>
 void writeArray(std::ostream& stream, const std::string& attributes, std::uint64_t count,
@@ -92,7 +76,7 @@ bool fitsIntegers(const CellField& field) {
 void writeField(std::ostream& stream, const CellField& field) {
   const bool whole = field.whole && fitsIntegers(field);
   std::string attributes = fmt::format("type=\"{}\" Name=\"{}\"{}", whole ? "Int64" : "Float64",
-                                       escaped(field.name), kindOf(field));
+                                       markupText(field.name), kindOf(field));
   // Without the number, readers know a scalar from a vector of one component.
   if (field.components > 1)
     attributes += fmt::format(" NumberOfComponents=\"{}\"", field.components);
@@ -110,7 +94,7 @@ void writeFields(std::ostream& stream, const char* tag, const std::vector<CellFi
   const auto active = [&](const char* attribute, CellField::Kind kind) {
     for (const CellField& field : fields)
       if (field.kind == kind && (kind != CellField::Kind::scalar || field.components == 1)) {
-        stream << ' ' << attribute << "=\"" << escaped(field.name) << '"';
+        stream << ' ' << attribute << "=\"" << markupText(field.name) << '"';
         return;
       }
   };

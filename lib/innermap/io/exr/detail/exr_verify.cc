@@ -12,6 +12,7 @@ namespace innermap {
 namespace {
 
 constexpr std::int32_t kMagic = 20000630, kTiled = 0x200, kMultiPart = 0x1000;
+constexpr std::int32_t kLastPixelType = 2;  // unsigned, half, float
 constexpr std::size_t kLongestName = 255;
 constexpr std::uint64_t kTilePixels = std::uint64_t(1) << 22;  // whatever the picture's size
 
@@ -119,10 +120,14 @@ class Walk {
       stream_.seekg(static_cast<std::streamoff>(bytes), std::ios::cur);
     };
     if (type == "chlist") {
-      // OpenImageIO ends the program where there is none.
+      // OpenImageIO ends the program where there is none, or one of an unknown type.
       if (name().empty()) fail("has no channels");
-      do skip(16);
-      while (!name().empty());
+      do {
+        const std::int32_t pixels = number();
+        if (pixels < 0 || pixels > kLastPixelType)
+          fail("is damaged: a channel is of no known type");
+        skip(12);
+      } while (!name().empty());
       if (position() != end) wrong();
     } else if (type == "preview") {
       if (length < 8) wrong();

@@ -1,6 +1,7 @@
 #include "innermap/io/vdb/detail/vdb_verify.h"
 
 #include <fmt/format.h>
+#include <openvdb/Grid.h>
 #include <openvdb/io/Compression.h>
 
 #include <array>
@@ -132,15 +133,33 @@ class Verifier {
       if (fixed && *fixed != size) damaged("metadata of type " + type + " has the wrong size");
       const std::uint64_t end = position() + size;
       if (type == "__delayedload") delayedLoad(end);
+      // What is neither may count as both in what a compiler makes of it.
+      if (type == "bool" && read<unsigned char>() > 1) damaged("a truth value is neither 0 nor 1");
       if (position() > end) damaged("metadata is longer than it says");
       skip(end - position());
     }
+  }
+
+  // Checks a grid's metadata. OpenVDB learns from them whether voxels are half floats, however the
+  // descriptor's type ends; what it takes for true it decides itself.
+  bool savedAsHalf() {
+    const std::uint64_t begin = position();
+    metadata();
+    const std::uint64_t end = position();
+    stream_.seekg(static_cast<std::streamoff>(begin));
+    openvdb::MetaMap map;
+    map.readMeta(stream_);
+    if (position() != end) damaged("metadata is longer than it says");
+    const openvdb::Metadata::Ptr half = map[openvdb::GridBase::META_SAVE_HALF_FLOAT];
+    return half && half->asBool();
   }
 
   // What OpenVDB keeps of each leaf to load it lazily: a byte, and the length of its block.
   void delayedLoad(std::uint64_t end) {
     if (position() == end) return;
     delayedLeaves_ = read<std::uint32_t>();
+    // A leaf takes more than its mask in the file; a compressed table may claim any number.
+    if (delayedLeaves_ > size_ / 64) damaged("a table has more leaves than the file");
     for (const std::uint64_t valueSize : {1, 8}) {
       const auto bytes = read<std::uint32_t>();
       if (valueSize == 8 && bytes == ~std::uint32_t(0)) continue;  // no lengths are kept
@@ -178,9 +197,9 @@ class Verifier {
     text(1u << 16);  // the grid's name
     std::string type = text(256);
     const std::string halfSuffix = "_HalfFloat";
-    half_ = type.size() > halfSuffix.size() &&
-            type.compare(type.size() - halfSuffix.size(), halfSuffix.size(), halfSuffix) == 0;
-    if (half_) type.resize(type.size() - halfSuffix.size());
+    if (type.size() > halfSuffix.size() &&
+        type.compare(type.size() - halfSuffix.size(), halfSuffix.size(), halfSuffix) == 0)
+      type.resize(type.size() - halfSuffix.size());
     const bool instance = !text(1u << 16).empty();
     const auto gridPosition = read<std::int64_t>(), blockPosition = read<std::int64_t>(),
                endPosition = read<std::int64_t>();
@@ -191,7 +210,7 @@ class Verifier {
       damaged("a grid's offsets do not fit the file");
     result.end = static_cast<std::uint64_t>(endPosition);
     compression_ = read<std::uint32_t>();
-    metadata();
+    half_ = savedAsHalf();
     transform();
     const auto value = valueTypeOf(type);
     result.readable = value.has_value();

@@ -1,14 +1,11 @@
-#include "through.h"
-
-#include <fmt/format.h>
+#include "innermap/tetra/through_cells.h"
 
 #include <algorithm>
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
-#include "innermap/io/cells/cell_file.h"
 
-namespace innermap::tool {
+namespace innermap {
 namespace {
 
 constexpr std::size_t kBlock = 512;
@@ -35,14 +32,12 @@ bool apart(const Box3& mesh, const Box3& solid) {
 
 }  // namespace
 
-LinearCellMap readThrough(const std::string& path, const MappedSolid& mapped, Context& context) {
-  const CellMesh mesh = context.timed(
-      "read", [&] { return readCells(path, context.settings<ReadCellsSettings>()).mesh; });
-  if (apart(boundingBox(mesh.vertices), boundingBox(mapped.boundary.target.moved)))
-    throw DataError(path +
+LinearCellMap linearMapOf(const CellMesh& carried, const MappedSolid& mapped) {
+  if (apart(boundingBox(carried.vertices), boundingBox(mapped.boundary.target.moved)))
+    throw DataError(carried.name +
                     ": does not fill the map's target; give the mesh that remesh made with "
                     "this map");
-  return LinearCellMap(mesh);
+  return LinearCellMap(carried);
 }
 
 ThroughMap throughMap(const LinearCellMap& map) {
@@ -76,4 +71,4 @@ PointCarry carryThrough(const LinearCellMap& map, bool push, const CarryPointsSe
   };
 }
 
-}  // namespace innermap::tool
+}  // namespace innermap

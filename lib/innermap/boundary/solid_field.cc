@@ -1,0 +1,89 @@
+#include "innermap/boundary/solid_field.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "innermap/core/error.h"
+#include "innermap/core/version.h"
+
+namespace innermap {
+namespace {
+
+constexpr const char* kChannels = "channels";
+
+std::vector<std::string> partsOf(const std::string& text) {
+  std::vector<std::string> out;
+  std::size_t at = 0;
+  while (at <= text.size()) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    out.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return out;
+}
+
+std::string textOf(double value) { return fmt::format("{:.9g}", value); }
+
+}  // namespace
+
+Facts harmonicFacts(const HarmonicFit& fit, const HarmonicFitSettings& settings,
+                    const std::string& source, const std::vector<std::string>& names) {
+  if (names.size() != fit.field.channels())
+    throw DataError(fmt::format("{} names for {} channels", names.size(), fit.field.channels()));
+  for (const std::string& name : names)
+    if (name.empty() || name.find_first_of(",\n\r") != std::string::npos)
+      throw DataError(fmt::format("'{}' cannot be the name of a channel", name));
+  return {{"version", versionText()},
+          {"source", source},
+          {kChannels, fmt::format("{}", fmt::join(names, ","))},
+          {"span", textOf(fit.span)},
+          {"seed", fmt::format("{}", settings.seed)},
+          {"tolerance", textOf(settings.tolerance)},
+          {"tolerance_met", fit.met ? "true" : "false"},
+          {"boundary_error_rms", textOf(fit.error.rms)},
+          {"boundary_error_p99", textOf(fit.error.p99)},
+          {"boundary_error_max", textOf(fit.error.max)},
+          {"boundary_error_samples", fmt::format("{}", fit.error.samples)},
+          {"inside_error_bound", textOf(fit.bound)},
+          {"free_share", textOf(fit.freeShare)}};
+}
+
+void writeSolidField(const std::string& path, const SolidField& field) {
+  FieldFile file;
+  file.steps = {field.field};
+  file.facts = field.facts;
+  file.boundary = file.boundaryTarget = field.boundary.mesh.vertices;
+  file.boundaryTriangles = field.boundary.mesh.triangles;
+  writeField(path, file);
+}
+
+SolidField readSolidField(const std::string& path, const BoundarySettings& settings) {
+  FieldFile file = readField(path);
+  if (!tellOfField(file.facts) || file.steps.size() != 1)
+    throw FileError(path, "is the file of a map, not of a field");
+  if (file.boundaryTriangles.empty()) throw FileError(path, "holds no boundary");
+  Mesh mesh;
+  mesh.name = path;
+  mesh.vertices = std::move(file.boundary);
+  mesh.triangles = std::move(file.boundaryTriangles);
+  std::vector<std::string> names;
+  for (const auto& [key, value] : file.facts) {
+    if (key == "source") mesh.name = value;
+    if (key == kChannels) names = partsOf(value);
+  }
+  HarmonicField field = std::move(file.steps.front());
+  if (names.size() != field.channels())
+    throw FileError(path,
+                    fmt::format("names {} channels and has {}", names.size(), field.channels()));
+  validate(mesh);
+  return {std::move(field), makeSourceBoundary(std::move(mesh), settings), std::move(names),
+          std::move(file.facts)};
+}
+
+bool tellOfField(const Facts& facts) {
+  return std::any_of(facts.begin(), facts.end(),
+                     [](const auto& fact) { return fact.first == kChannels; });
+}
+
+}  // namespace innermap

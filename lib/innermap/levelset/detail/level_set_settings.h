@@ -1,0 +1,20 @@
+// The level set that settings of a whole job ask for.
+#pragma once
+
+#include "innermap/levelset/level_set.h"
+
+namespace innermap {
+
+// settings: of any job that has resolution, voxelSize, maxMemory and progress as LevelSetSettings
+// has them.
+template <class Settings>
+LevelSetSettings levelSetSettings(const Settings& settings) {
+  LevelSetSettings out;
+  out.resolution = settings.resolution;
+  out.voxelSize = settings.voxelSize;
+  out.maxMemory = settings.maxMemory;
+  out.progress = settings.progress;
+  return out;
+}
+
+}  // namespace innermap

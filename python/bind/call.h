@@ -1,0 +1,75 @@
+// One call from Python into the library: without the interpreter's lock, with progress, Ctrl-C and
+// limits.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "innermap/core/progress.h"
+
+namespace innermap::python {
+
+class Keywords;
+
+// What every long function takes.
+struct CallOptions {
+  pybind11::object progress = pybind11::none();  // callable(stage, fraction)
+  std::uint64_t maxMemory = 0;                   // bytes
+  int threads = 0;                               // 0: all cores
+
+  void describe(Keywords& k);
+};
+
+// Calls that go on when the interpreter ends, in daemon threads, are cancelled.
+void bindCalls();
+
+// Calls `work` in a thread of its own, with the lock of the interpreter released, while this one
+// waits: it looks for signals and calls `progress` some twenty times a second. What a signal
+// handler or `progress` raises cancels the work and comes out here; so does what `work` throws.
+void runCall(const CallOptions& options, const std::function<void(Progress*)>& work);
+
+// The same, with what `work` gives.
+template <class Work>
+auto call(const CallOptions& options, Work&& work)
+    -> decltype(work(static_cast<Progress*>(nullptr))) {
+  std::optional<decltype(work(static_cast<Progress*>(nullptr)))> out;
+  runCall(options, [&](Progress* progress) { out.emplace(work(progress)); });
+  return std::move(*out);
+}
+
+// Settings of the library with the limit on memory, where they have one, and the progress.
+template <class Settings, class = void>
+struct HasMaxMemory : std::false_type {};
+template <class Settings>
+struct HasMaxMemory<Settings, std::void_t<decltype(std::declval<Settings&>().maxMemory)>>
+    : std::true_type {};
+
+template <class Settings>
+Settings with(const CallOptions& options, Progress* progress, Settings settings = {}) {
+  if constexpr (HasMaxMemory<Settings>::value) settings.maxMemory = options.maxMemory;
+  settings.progress = progress;
+  return settings;
+}
+
+// The error of Python that a callable raised: the call ends with it.
+void keepPythonError(Progress* progress, const pybind11::error_already_set& error);
+
+// For callables of Python within `work`, from any of the library's threads: with the lock, and what
+// Python raises comes out of runCall(). body: gives nothing that holds an object of Python.
+template <class Body>
+auto inPython(Progress* progress, Body&& body) -> decltype(body()) {
+  const pybind11::gil_scoped_acquire lock;
+  try {
+    return body();
+  } catch (pybind11::error_already_set& error) {
+    keepPythonError(progress, error);
+  }
+  throw Cancelled();
+}
+
+}  // namespace innermap::python

@@ -1,0 +1,278 @@
+#include "bind/correspondence.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "bind/arrays.h"
+#include "bind/errors.h"
+#include "bind/meshes.h"
+#include "innermap/io/geometry/surface_data.h"
+#include "innermap/mesh/write.h"
+
+namespace py = pybind11;
+
+namespace innermap::python {
+namespace {
+
+LandmarkPlace placeFrom(const py::object& object) {
+  LandmarkPlace place;
+  if (PyIndex_Check(object.ptr()) && !py::isinstance<py::array>(object)) {
+    const auto vertex = py::cast<std::int64_t>(py::int_(object));
+    if (vertex < 0 || vertex > std::numeric_limits<int>::max())
+      wrongValue("landmarks", fmt::format("{} is not a vertex", vertex));
+    place.vertex = static_cast<int>(vertex);
+    return place;
+  }
+  const Matrix point = matrixFrom(object, "landmarks");
+  if (point.rows() != 3 || point.columns() != 1)
+    wrongValue("landmarks", "a place is the number of a vertex or three coordinates");
+  place.point = {point(0, 0), point(1, 0), point(2, 0)};
+  return place;
+}
+
+LandmarkList landmarksFrom(const py::object& given) {
+  if (isPath(given)) return readLandmarks(pathFrom(given, "landmarks"));
+  LandmarkList out;
+  if (!py::isinstance<py::iterable>(given))
+    wrongType("landmarks", "expects a list of pairs of places, or a path");
+  for (const auto& pair : py::iter(given)) {
+    if (!py::isinstance<py::sequence>(pair) && !py::isinstance<py::array>(pair))
+      wrongType("landmarks", "expects pairs of places");
+    if (py::len(pair) != 2)
+      wrongValue("landmarks", "expects pairs: a place on the first mesh, one on the second");
+    const auto place = [&](int i) { return placeFrom(py::object(pair[py::int_(i)])); };
+    LandmarkPair both;
+    both.onA = place(0);
+    both.onB = place(1);
+    out.pairs.push_back(both);
+  }
+  if (out.pairs.empty()) wrongValue("landmarks", "is empty");
+  return out;
+}
+
+py::dict quantilesOf(const Quantiles& q) {
+  py::dict out;
+  out["median"] = q.median;
+  out["p99"] = q.p99;
+  out["max"] = q.max;
+  return out;
+}
+
+py::dict qualityOf(const MeshCorrespondence& map) {
+  const MapQuality& q = map.quality;
+  py::dict out;
+  out["flips"] = q.flips;
+  out["degree"] = q.degree;
+  out["area_ratio_log10"] = q.areaRatioLog10;
+  out["energy_forward"] = q.energyForward;
+  out["energy_backward"] = q.energyBackward;
+  out["stretch"] = quantilesOf(q.stretch);
+  out["triangle_stretch"] = quantilesOf(q.triangleStretch);
+  out["unmeasured"] = q.unmeasured;
+  out["inverted_triangles"] = q.invertedTriangles;
+  out["inverted_share"] = q.invertedShare;
+  out["deviation"] = quantilesOf(q.deviation);
+  out["deviation_of_target"] = quantilesOf(q.backDeviation);
+  out["image_self_intersections"] = q.imageSelfIntersections;
+  out["target_self_intersections"] = q.targetSelfIntersections;
+  out["landmarks"] = map.landmarks;
+  out["landmark_error"] = map.landmarkError;
+  return out;
+}
+
+std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+py::array trianglesOf(const PyCorrespondence& c) {
+  std::vector<std::int32_t> out;
+  for (const SurfacePoint& p : c.onTarget) out.push_back(p.triangle);
+  return arrayOf(out);
+}
+
+py::array barycentricOf(const PyCorrespondence& c) {
+  Points out;
+  for (const SurfacePoint& p : c.onTarget)
+    out.push_back({p.barycentric[0], p.barycentric[1], p.barycentric[2]});
+  return arrayOf(out);
+}
+
+struct CorrespondCall : CorrespondOptions {
+  CallOptions call;
+  void describe(Keywords& k) {
+    CorrespondOptions::describe(k);
+    k.count("seed", &map.seed, {0, 1e15}, "of all random choices");
+    call.describe(k);
+  }
+};
+
+py::object correspondTwo(const Arguments& a, CorrespondCall& o) {
+  std::size_t at = 0;
+  const Mesh first = takeMesh(a, at, "source"), second = takeMesh(a, at, "target");
+  if (at < a.size()) throw py::type_error("correspond() takes a source and a target, no more");
+  return py::cast(correspondMeshes(first, second, o.settings(), o.call));
+}
+
+// As the program does: where triangles were split, the source stands beside.
+py::object save(const Arguments& a, NoOptions&) {
+  const auto& self = py::cast<const PyCorrespondence&>(a[0]);
+  const std::string path = pathFrom(a[1], "path");
+  if (path.size() < 5 || path.compare(path.size() - 4, 4, ".ply") != 0)
+    wrongValue("path", "must end in .ply, got '" + path + "'");
+  if (self.onTarget.empty()) {
+    writeMesh(path, self.target());
+    return py::none();
+  }
+  {
+    const py::gil_scoped_release unlocked;
+    if (self.changed) {
+      Mesh source = self.source;
+      source.colours.clear();
+      writeMesh(path.substr(0, path.size() - 4) + ".source.ply", source);
+    }
+    writeCorrespondence(path, self.source, self.positions, self.onTarget);
+  }
+  return py::none();
+}
+
+// A file of the program has addresses beside the places; any other mesh may serve too.
+std::vector<SurfacePoint> addressesIn(const std::string& path, const Mesh& source,
+                                      Progress* progress) {
+  Matrix values;
+  try {
+    values = readVertexProperties(path, {"triangle", "b0", "b1", "b2"}, source, {progress});
+  } catch (const FileError&) {
+    return {};
+  }
+  std::vector<SurfacePoint> out(values.rows());
+  for (std::size_t v = 0; v < out.size(); ++v) {
+    if (!(values(v, 0) >= 0 && values(v, 0) < 2147483648.0)) return {};
+    out[v].triangle = static_cast<int>(values(v, 0));
+    for (std::size_t k = 0; k < 3; ++k) out[v].barycentric[k] = values(v, k + 1);
+  }
+  return out;
+}
+
+struct LoadOptions {
+  CallOptions call;
+  void describe(Keywords& k) { call.describe(k); }
+};
+
+py::object loadCorrespondence(const Arguments& a, LoadOptions& o) {
+  if (a.empty()) throw py::type_error("load_correspondence() lacks its argument 'path'");
+  const std::string path = pathFrom(a[0], "path");
+  std::size_t at = 1;
+  auto out = std::make_shared<PyCorrespondence>();
+  out->source = takeMesh(a, at, "source");
+  runCall(o.call, [&](Progress* progress) {
+    out->positions = readCorrespondence(path, out->source, {progress}).vertices;
+    out->onTarget = addressesIn(path, out->source, progress);
+  });
+  return py::cast(out);
+}
+
+std::string reprOf(const PyCorrespondence& c) {
+  return fmt::format("<innermap.Correspondence: {} vertices of '{}'>", c.positions.size(),
+                     c.source.name);
+}
+
+}  // namespace
+
+Mesh PyCorrespondence::target() const {
+  Mesh out = source;
+  out.vertices = positions;
+  return out;
+}
+
+void CorrespondOptions::describe(Keywords& k) {
+  k.object("landmarks", &landmarks, "Sequence[tuple[place, place]] or path",
+           "pairs that are kept exactly, a place on the source and one on the target: the number "
+           "of a vertex, or three coordinates; or a file as the program reads it");
+  k.flag("close", &map.closeHoles, "close the holes of open meshes by caps");
+  k.count("surface_resolution", &map.standInResolution, {0, 2048},
+          "for a mesh that is open, not manifold or made of overlapping parts: an isosurface of "
+          "the solid at so many voxels across, 8 or more, is mapped instead; 0: such a mesh is "
+          "refused");
+  k.flag("aligned", &map.aligned,
+         "the two stand in the same pose and orientation: prefer agreeing normals and places");
+  k.count("candidates", &map.candidates, {1, 64}, "ways to lay one on the other that are refined");
+  k.flag("refine", &map.refine, "False: only the best way, not refined: fast, rough");
+  k.number("subdivide", &map.subdivide, {0, 1},
+           "split the source's triangles until they follow the target within it, a fraction of "
+           "the target's diagonal; 0: never");
+}
+
+MeshCorrespondenceSettings CorrespondOptions::settings() const {
+  MeshCorrespondenceSettings out = map;
+  if (!landmarks.is_none()) out.landmarks = landmarksFrom(landmarks);
+  return out;
+}
+
+std::shared_ptr<PyCorrespondence> correspondMeshes(const Mesh& a, const Mesh& b,
+                                                   const MeshCorrespondenceSettings& settings,
+                                                   const CallOptions& options) {
+  const MeshCorrespondence made = call(options, [&](Progress* progress) {
+    return innermap::correspondMeshes(a, b, with(options, progress, settings));
+  });
+  auto out = std::make_shared<PyCorrespondence>();
+  out->source = made.source;
+  out->positions = made.positions;
+  out->onTarget = made.onTarget;
+  out->changed = made.changed;
+  out->notes = joined(joined(made.a.notes, made.b.notes), made.notes);
+  out->warnings = made.warnings;
+  out->quality = qualityOf(made);
+  return out;
+}
+
+void bindCorrespondence(py::module_& m) {
+  py::class_<PyCorrespondence, std::shared_ptr<PyCorrespondence>> c(
+      m, "Correspondence",
+      "Where the vertices of one mesh, the source, lie on another. fit() takes it in place of its "
+      "meshes.");
+  c.def_readonly("source", &PyCorrespondence::source,
+                 "The source, a Mesh: as given, or with its triangles split; its own vertices come "
+                 "first.")
+      .def_property_readonly("target", &PyCorrespondence::target,
+                             "The same mesh with its vertices on the target, a Mesh.")
+      .def_property_readonly(
+          "positions", [](const PyCorrespondence& self) { return arrayOf(self.positions); },
+          "(n, 3) float64: the places of the source's vertices, world units of the target.")
+      .def_property_readonly("triangles", &trianglesOf,
+                             "(n,) int32: the triangle of the target that each lies on; empty "
+                             "where a file does not say.")
+      .def_property_readonly("barycentric", &barycentricOf, "(n, 3) float64: and where in it.")
+      .def_readonly("changed", &PyCorrespondence::changed,
+                    "Whether the source's triangles were split or parts of it cut apart.")
+      .def_readonly("quality", &PyCorrespondence::quality,
+                    "Figures by name: flips, degree, energies, stretch, deviation from the target "
+                    "(shares of its diagonal), landmark_error; empty where it was read.")
+      .def_readonly("notes", &PyCorrespondence::notes, "What was done, a line each.")
+      .def_readonly("warnings", &PyCorrespondence::warnings, "What makes it doubtful, a line each.")
+      .def("__repr__", &reprOf);
+  define<NoOptions>(c,
+                    {"save", "self, path",
+                     "Writes the places to a .ply file, which load_correspondence() and the "
+                     "program read; where triangles were split, also the source, to "
+                     "NAME.source.ply. Raises FileError."},
+                    save);
+  define<CorrespondCall>(
+      m,
+      {"correspond", "*meshes",
+       "Lays the surface of one solid onto that of another, of any connectivity: one-to-one, each "
+       "point of the target reached once.\n\nmeshes: the source and the target, each as V, F or "
+       "whatever stands for a mesh; both closed, with as many handles and as many shells. Returns "
+       "a Correspondence. Raises UnfitMesh, DataError, MemoryError."},
+      correspondTwo);
+  define<LoadOptions>(m,
+                      {"load_correspondence", "path, *source",
+                       "Reads the places of a mesh's vertices on another, as "
+                       "Correspondence.save() or the program wrote them. source: the mesh that "
+                       "was laid on the other; NAME.source.ply where there is one. Raises "
+                       "FileError, DataError for another mesh."},
+                      loadCorrespondence);
+}
+
+}  // namespace innermap::python

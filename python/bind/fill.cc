@@ -1,0 +1,206 @@
+// Solids filled with tetrahedra and hexahedra, and stood in for by cubes.
+#include <fmt/format.h>
+
+#include "bind/arrays.h"
+#include "bind/cells.h"
+#include "bind/errors.h"
+#include "bind/keywords.h"
+#include "bind/meshes.h"
+#include "innermap/core/memory.h"
+#include "innermap/levelset/isosurface.h"
+#include "innermap/tetra/block_set.h"
+#include "innermap/tetra/hexahedralize.h"
+#include "innermap/tetra/polycube.h"
+#include "innermap/tetra/tetrahedralize.h"
+
+namespace py = pybind11;
+
+namespace innermap::python {
+namespace {
+
+struct TetrahedralizeOptions {
+  TetrahedralizeSettings settings;
+  std::optional<double> edge;
+  CallOptions call;
+
+  void describe(Keywords& k) {
+    k.count(
+        "resolution", &settings.resolution, {4, 1024},
+        "cells of the lattice along the longest side of the mesh's box, twelve tetrahedra each");
+    k.number("edge", &edge, {1e-12, 1e12},
+             "side of a cell of the lattice, world units, in place of the resolution");
+    k.number("features", &settings.features, {1, 179},
+             "edges of the surface sharper than this, degrees between the normals of their "
+             "triangles, are kept as edges of tetrahedra");
+    k.flag("keep_topology", &settings.keepTopology,
+           "raise DataError where the solid's components, cavities and handles cannot be kept; "
+           "else there is a warning");
+    call.describe(k);
+  }
+};
+
+py::object tetrahedra(const Arguments& a, TetrahedralizeOptions& o) {
+  std::size_t at = 0;
+  const Mesh mesh = takeMesh(a, at, "mesh");
+  o.settings.edge = o.edge.value_or(0);
+  Tetrahedralization made = call(o.call, [&](Progress* progress) {
+    SolidSettings solid;
+    solid.progress = progress;
+    return tetrahedralization(Solid(mesh, solid), with(o.call, progress, o.settings));
+  });
+  const CellQuality quality =
+      call(o.call, [&](Progress* progress) { return cellQuality(made.mesh, {progress}); });
+  made.mesh.cellFields = qualityFields(made.mesh, quality);
+  py::dict figures;
+  figures["edge"] = made.edge;
+  figures["components"] = made.topology.components;
+  figures["cavities"] = made.topology.cavities;
+  figures["handles"] = made.topology.handles;
+  figures["least_dihedral"] = quality.dihedral.least;
+  figures["greatest_dihedral"] = quality.greatestAngle;
+  figures["inverted"] = quality.invertedTetrahedra;
+  figures["notes"] = made.notes;
+  figures["warnings"] = made.warnings;
+  return cellsObject(std::move(made.mesh), figures);
+}
+
+// What hexahedralize() and polycube() take.
+struct BlockOptions {
+  int blocks = 0, surfaceResolution = 0;
+  bool closeHoles = false;
+  CallOptions call;
+
+  void describe(Keywords& k) {
+    k.count("blocks", &blocks, {0, static_cast<double>(kMostAcross)},
+            "blocks along the longest side of the mesh's box; 0: as many as give about 900 in all");
+    k.flag("close", &closeHoles, "close the holes of an open mesh by caps");
+    k.count(
+        "surface_resolution", &surfaceResolution, {0, 2048},
+        "fill the surface around the solid at so many voxels across, 8 at least, instead of the "
+        "mesh itself: for scans and overlapping parts; 0: the mesh itself");
+    call.describe(k);
+  }
+
+  Mesh surfaceToFill(Mesh mesh, Progress* progress) const {
+    if (surfaceResolution == 0) return mesh;
+    if (surfaceResolution < 8) throw SettingError("surface_resolution", "must be at least 8");
+    SolidSettings solid;
+    solid.progress = progress;
+    auto settings = with<IsosurfaceSettings>(call, progress);
+    settings.resolution = surfaceResolution;
+    return isosurfaceOf(Solid(mesh, solid), settings).mesh;
+  }
+};
+
+py::dict figuresOf(const Polycube& cube) {
+  py::dict out;
+  out["across"] = cube.across;
+  out["blocks"] = cube.blocks.count();
+  out["edge"] = cube.blocks.edge;
+  out["handles"] = cube.handles;
+  out["cavities"] = cube.cavities;
+  out["missed"] = cube.missed;
+  out["surplus"] = cube.surplus;
+  out["notes"] = cube.notes;
+  out["warnings"] = cube.warnings;
+  return out;
+}
+
+struct HexahedralizeOptions : BlockOptions {
+  HexahedralizeSettings settings;
+
+  void describe(Keywords& k) {
+    k.count("pieces", &settings.pieces, {1, 16}, "hexahedra along a block's edge");
+    k.count("seed", &settings.seed, {0, 1e15}, "of all random choices");
+    BlockOptions::describe(k);
+  }
+};
+
+py::object hexahedra(const Arguments& a, HexahedralizeOptions& o) {
+  std::size_t at = 0;
+  const Mesh mesh = takeMesh(a, at, "mesh");
+  o.settings.blocks = o.blocks;
+  o.settings.closeHoles = o.closeHoles;
+  Hexahedralization made = call(o.call, [&](Progress* progress) {
+    const HexahedralizeSettings settings = with(o.call, progress, o.settings);
+    const Mesh surface = o.surfaceToFill(mesh, progress);
+    requireMemory("hexahedra", processMemory(hexahedralizeMemory(surface, settings)),
+                  settings.maxMemory, "use fewer blocks or pieces");
+    return hexahedralize(surface, settings);
+  });
+  py::dict figures;
+  figures["proven"] = made.after.proven();
+  figures["inverted"] = made.after.inverted;
+  figures["inverted_before"] = made.before.inverted;
+  figures["scaled_jacobian_least"] = made.quality.jacobian.least;
+  figures["scaled_jacobian_mean"] = made.quality.jacobian.mean;
+  figures["polycube"] = figuresOf(made.polycube);
+  figures["polycube_surface"] = blockSurface(made.polycube.blocks, made.pieces);
+  figures["in_blocks"] = cellsObject(std::move(made.inBlocks));
+  figures["notes"] = made.notes;
+  figures["warnings"] = made.warnings;
+  made.mesh.cellFields = qualityFields(made.mesh, made.quality);
+  return cellsObject(std::move(made.mesh), figures);
+}
+
+struct PolycubeOptions : BlockOptions {
+  std::optional<int> pieces;
+
+  void describe(Keywords& k) {
+    k.count("pieces", &pieces, {1, static_cast<double>(kMostBlockPieces)},
+            "squares along a block's edge, of two triangles each; as many as give about 3000 "
+            "vertices if not given");
+    BlockOptions::describe(k);
+  }
+};
+
+py::object polycube(const Arguments& a, PolycubeOptions& o) {
+  std::size_t at = 0;
+  const Mesh mesh = takeMesh(a, at, "mesh");
+  Mesh surface;
+  const Polycube made = call(o.call, [&](Progress* progress) {
+    auto settings = with<PolycubeSettings>(o.call, progress);
+    settings.blocks = o.blocks;
+    settings.closeHoles = o.closeHoles;
+    const Mesh toFill = o.surfaceToFill(mesh, progress);
+    requireMemory("a polycube", processMemory(polycubeMemory(toFill, settings)), settings.maxMemory,
+                  "use fewer blocks");
+    Polycube cube = makePolycube(toFill, settings);
+    surface = blockSurface(cube.blocks, o.pieces.value_or(usualPieces(cube.blocks)));
+    return cube;
+  });
+  return py::make_tuple(std::make_shared<Mesh>(std::move(surface)), figuresOf(made));
+}
+
+}  // namespace
+
+void bindFill(py::module_& m) {
+  define<TetrahedralizeOptions>(
+      m,
+      {"tetrahedralize", "*mesh",
+       "Fills a solid with tetrahedra: an innermap.Cells whose cell_data has each cell's "
+       "least_dihedral and greatest_dihedral, degrees.\n\nDihedral angles lie in 10 to 165 "
+       "degrees, with features in 5 to 170 (isosurface stuffing; Labelle and Shewchuk 2007). mesh: "
+       "V, F or whatever stands for a mesh. Raises DataError where the topology cannot be kept, "
+       "naming a resolution that does; MemoryError."},
+      tetrahedra);
+  define<HexahedralizeOptions>(
+      m,
+      {"hexahedralize", "*mesh",
+       "Fills a solid with hexahedra by way of a polycube: an innermap.Cells whose cell_data has "
+       "each cell's scaled_jacobian.\n\nfigures has proven, whether all are proven right side out "
+       "everywhere; polycube_surface, a Mesh; in_blocks, the same hexahedra in the polycube, a "
+       "Cells. mesh: one closed body. Raises DataError, MemoryError."},
+      hexahedra);
+  define<PolycubeOptions>(
+      m,
+      {"polycube", "*mesh",
+       "Stands equal cubes in for a solid: (surface, figures), the surface of the cubes as an "
+       "innermap.Mesh, fine enough to be mapped, and a dict: across, blocks, edge (world units), "
+       "handles, cavities, and of the solid's volume the shares that are missed and in surplus. "
+       "mesh: one closed body. Raises DataError, naming a number of blocks that has the mesh's "
+       "topology."},
+      polycube);
+}
+
+}  // namespace innermap::python

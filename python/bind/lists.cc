@@ -1,0 +1,46 @@
+#include "bind/lists.h"
+
+#include <fmt/format.h>
+
+#include "bind/arrays.h"
+#include "bind/errors.h"
+
+namespace py = pybind11;
+
+namespace innermap::python {
+
+std::vector<std::string> textsFrom(py::handle object, const std::string& name) {
+  if (object.is_none()) return {};
+  if (py::isinstance<py::str>(object)) return {py::cast<std::string>(object)};
+  if (!py::isinstance<py::iterable>(object)) wrongType(name, "expects a list of texts");
+  std::vector<std::string> out;
+  for (const auto& item : object) {
+    if (!py::isinstance<py::str>(item)) wrongType(name, "expects a list of texts");
+    out.push_back(py::cast<std::string>(item));
+  }
+  return out;
+}
+
+std::vector<double> numbersFrom(py::handle object, const std::string& name) {
+  if (object.is_none()) return {};
+  if (PyNumber_Check(object.ptr()) && !py::isinstance<py::array>(object)) {
+    py::list one;
+    one.append(object);
+    return numbersFrom(one, name);
+  }
+  if (py::len(object) == 0) return {};
+  const Matrix numbers = matrixFrom(object, name);
+  if (numbers.columns() != 1) wrongValue(name, "expects numbers in one list");
+  std::vector<double> out(numbers.rows());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = numbers(i, 0);
+  return out;
+}
+
+std::pair<double, double> pairFrom(py::handle object, const std::string& name) {
+  const std::vector<double> numbers = numbersFrom(object, name);
+  if (numbers.size() != 2)
+    wrongValue(name, fmt::format("expects two numbers, got {}", numbers.size()));
+  return {numbers[0], numbers[1]};
+}
+
+}  // namespace innermap::python

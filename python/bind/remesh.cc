@@ -1,0 +1,217 @@
+// Cells carried by a map and repaired; finite elements beside charges.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bind/arrays.h"
+#include "bind/cells.h"
+#include "bind/errors.h"
+#include "bind/keywords.h"
+#include "bind/lists.h"
+#include "bind/map.h"
+#include "bind/meshes.h"
+#include "innermap/core/memory.h"
+#include "innermap/tetra/compare_fem.h"
+#include "innermap/tetra/remesh_cells.h"
+
+namespace py = pybind11;
+
+namespace innermap::python {
+namespace {
+
+struct RemeshOptions {
+  RemeshSettings settings;
+  py::object surface, vectors, normals;
+  CallOptions call;
+
+  void describe(Keywords& k) {
+    k.object("surface", &surface, "mesh",
+             "that the boundary goes onto, the solid's own but for how it is cut into triangles; "
+             "if not given that of the map");
+    k.flag("back", &settings.back, "the cells fill the map's target and are brought to its source");
+    k.flag("keep_connectivity", &settings.keepConnectivity,
+           "move vertices alone: cells and their numbers stay");
+    k.number("angle", &settings.angle, {1, 30},
+             "tetrahedra with a dihedral angle below it, degrees, or as near to 180, are improved");
+    k.count("coarse", &settings.coarse, {0, 256},
+            "cells along the longest side of the mesh that is repaired first where many cells are "
+            "inverted, or with back stands for the inverse map; 0: none, or 64 with back");
+    k.object("vectors", &vectors, "list[str]",
+             "fields that are vectors, turned by the Jacobian, beside those that a file says are");
+    k.object("normals", &normals, "list[str]",
+             "likewise normals of surfaces, turned by its inverse transpose");
+    call.describe(k);
+  }
+};
+
+// Fields of an earlier quality are not carried.
+void dropQuality(CellMesh& mesh) {
+  auto& fields = mesh.cellFields;
+  fields.erase(std::remove_if(fields.begin(), fields.end(),
+                              [](const CellField& f) {
+                                return f.name == "least_dihedral" ||
+                                       f.name == "greatest_dihedral" || f.name == "scaled_jacobian";
+                              }),
+               fields.end());
+}
+
+py::object remesh(const Arguments& a, RemeshOptions& o) {
+  if (!py::isinstance<PyMap>(a[0])) wrongType("map", "expects an innermap.Map");
+  const auto& map = py::cast<const PyMap&>(a[0]);
+  CellMesh cells = cellsFrom(a[1], "cells", o.call, textsFrom(o.vectors, "vectors"),
+                             textsFrom(o.normals, "normals"));
+  dropQuality(cells);
+  std::optional<Mesh> surface;
+  if (!o.surface.is_none()) surface = meshFrom(o.surface, "surface");
+  if (surface) o.settings.surface = &*surface;
+  Remesh made = call(o.call, [&](Progress* progress) {
+    requireMemory("carrying the cells", processMemory(remeshMemory(cells)), o.call.maxMemory,
+                  "use a coarser mesh");
+    return remeshCells(cells, *map.mapped, with(o.call, progress, o.settings));
+  });
+  py::dict figures;
+  figures["inverted"] = made.inverted;
+  figures["inverted_at_rest"] = made.invertedAtRest;
+  figures["inverted_carried"] = made.invertedCarried;
+  figures["swaps"] = made.swaps;
+  figures["collapses"] = made.collapses;
+  figures["boundary_rms"] = made.boundaryRms;
+  figures["boundary_max"] = made.boundaryMax;
+  figures["notes"] = made.notes;
+  figures["warnings"] = made.warnings;
+  for (CellField& field : qualityFields(made.mesh, made.quality))
+    made.mesh.cellFields.push_back(std::move(field));
+  return cellsObject(std::move(made.mesh), figures);
+}
+
+struct CompareOptions {
+  CompareFemSettings settings;
+  py::object resolutions, charges, tolerances;
+  CallOptions call;
+
+  void describe(Keywords& k) {
+    k.object("resolutions", &resolutions, "list[int]",
+             "cells of the tetrahedra's lattice along the longest side, 4 to 1024, ascending; 16, "
+             "32, 64 if not given");
+    k.object("charges", &charges, "list[int]",
+             "for known functions: numbers of charges, 16 to 20000; 250, 500, 1000 if not given");
+    k.object("tolerances", &tolerances, "list[float]",
+             "for a map: tolerances of the fits of charges, fractions of the target's diagonal; "
+             "4e-3, 1e-3, 4e-4 if not given");
+    k.number("reference", &settings.referenceTolerance, {1e-12, 1},
+             "tolerance of the fit that maps are compared with");
+    k.count("samples", &settings.samples, {100, 1e6}, "points inside where errors are measured");
+    k.count("seed", &settings.seed, {0, 1e15}, "of all random choices");
+    call.describe(k);
+  }
+};
+
+template <class Value>
+py::array column(const std::vector<ComparedRow>& rows, Value value) {
+  std::vector<double> out;
+  for (const ComparedRow& r : rows) out.push_back(static_cast<double>(value(r)));
+  return arrayOf(out);
+}
+
+// The columns of the program's comparison.csv.
+py::dict tableOf(const CompareFem& result) {
+  const auto& rows = result.rows;
+  py::dict out;
+  py::list method;
+  for (const ComparedRow& r : rows) method.append(r.charges ? "charges" : "elements");
+  out["method"] = method;
+  out["size"] = column(rows, [](const ComparedRow& r) { return r.size; });
+  out["unknowns"] = column(rows, [](const ComparedRow& r) { return r.unknowns; });
+  out["seconds"] = column(rows, [](const ComparedRow& r) { return r.seconds; });
+  out["memory_bytes"] = column(rows, [](const ComparedRow& r) { return r.memory; });
+  out["iterations"] = column(rows, [](const ComparedRow& r) { return r.iterations; });
+  out["value_error"] = column(rows, [](const ComparedRow& r) { return r.value; });
+  out["gradient_error"] = column(rows, [](const ComparedRow& r) { return r.gradient; });
+  out["largest_error"] = column(rows, [](const ComparedRow& r) { return r.largest; });
+  out["jump"] = column(rows, [](const ComparedRow& r) { return r.jump; });
+  out["harmonic_energy"] = column(rows, [](const ComparedRow& r) { return r.harmonicEnergy; });
+  out["deformation_energy"] =
+      column(rows, [](const ComparedRow& r) { return r.deformationEnergy; });
+  out["folded"] = column(rows, [](const ComparedRow& r) { return r.folded; });
+  out["inverted"] = column(rows, [](const ComparedRow& r) { return r.inverted; });
+  out["boundary_rms"] = column(rows, [](const ComparedRow& r) { return r.boundaryRms; });
+  out["value_order"] = result.valueOrder;
+  out["gradient_order"] = result.gradientOrder;
+  out["notes"] = result.notes;
+  return out;
+}
+
+template <class T>
+void take(const py::object& given, const char* name, std::vector<T>& to) {
+  if (given.is_none()) return;
+  to.clear();
+  for (const double n : numbersFrom(given, name)) {
+    if constexpr (std::is_integral_v<T>)
+      if (n < 0 || n > 1e9) wrongValue(name, fmt::format("has {}", n));
+    to.push_back(static_cast<T>(n));
+  }
+  if (to.empty()) wrongValue(name, "is empty");
+}
+
+py::object compareFem(const Arguments& a, CompareOptions& o) {
+  std::size_t at = 0;
+  const Mesh source = takeMesh(a, at, "source");
+  take(o.resolutions, "resolutions", o.settings.resolutions);
+  take(o.charges, "charges", o.settings.charges);
+  take(o.tolerances, "tolerances", o.settings.tolerances);
+  std::optional<Mesh> target;
+  if (at < a.size()) {
+    if (isArrayLike(a[at])) {
+      target = source;
+      target->vertices = pointsFrom(a[at], "V_target");
+    } else {
+      target = meshFrom(a[at], "target");
+    }
+    if (++at < a.size()) throw py::type_error("compare_fem() takes a source and a target");
+  }
+  return tableOf(call(o.call, [&](Progress* progress) {
+    const CompareFemSettings settings = with(o.call, progress, o.settings);
+    if (target) {
+      BoundarySettings boundary;
+      boundary.progress = progress;
+      const BoundaryPair pair = makeBoundaryPair(source, *target, boundary);
+      requireMemory("finite elements", processMemory(compareFemMemory(pair.solid(), settings)),
+                    settings.maxMemory, "use lower resolutions");
+      return compareFemOnMap(pair, settings);
+    }
+    SolidSettings ofSolid;
+    ofSolid.progress = progress;
+    const Solid solid(source, ofSolid);
+    requireMemory("finite elements", processMemory(compareFemMemory(solid, settings)),
+                  settings.maxMemory, "use lower resolutions");
+    return compareFemOnFunctions(solid, settings);
+  }));
+}
+
+}  // namespace
+
+void bindRemesh(py::module_& m) {
+  define<RemeshOptions>(
+      m,
+      {"remesh", "map, cells",
+       "Carries the cells that fill a map's source onto its target, none of them inverted: an "
+       "innermap.Cells.\n\ncells: a Cells, a path, (points, {'tetra': array}) or a meshio.Mesh. "
+       "Its point_data has source, the places that vertices came from; the two together are a "
+       "piecewise linear map that push() and pull() take as `through`. Raises DataError, "
+       "MemoryError."},
+      remesh);
+}
+
+void bindCompareFem(py::module_& m) {
+  define<CompareOptions>(
+      m,
+      {"compare_fem", "*meshes",
+       "Finite elements and charges on the same boundary values: a dict of columns, a row for each "
+       "method and size, as the program's comparison.csv has them; value_order and gradient_order "
+       "of the elements.\n\ncompare_fem(V, F) compares on known harmonic functions, with relative "
+       "errors of the worst of three; compare_fem(V, F, V_target) on the map. Raises DataError, "
+       "MemoryError."},
+      compareFem);
+}
+
+}  // namespace innermap::python

@@ -1,0 +1,59 @@
+// Surfaces laid out on the unit sphere.
+#include <memory>
+
+#include "bind/keywords.h"
+#include "bind/meshes.h"
+#include "innermap/boundary/laid_out_mesh.h"
+#include "innermap/core/memory.h"
+
+namespace py = pybind11;
+
+namespace innermap::python {
+namespace {
+
+struct SphereOptions {
+  LayOutSettings settings;
+  CallOptions call;
+
+  void describe(Keywords& k) {
+    k.flag("close", &settings.closeHoles, "close the holes of an open mesh by caps");
+    k.count("surface_resolution", &settings.standInResolution, {0, 2048},
+            "for a mesh that is open, not manifold or made of overlapping parts: an isosurface of "
+            "the solid at so many voxels across, 8 or more, is laid out instead; 0: such a mesh "
+            "is refused");
+    call.describe(k);
+  }
+};
+
+py::object sphere(const Arguments& a, SphereOptions& o) {
+  std::size_t at = 0;
+  const Mesh mesh = takeMesh(a, at, "mesh");
+  if (at < a.size()) throw py::type_error("sphere() takes one mesh");
+  MeshOnSphere made = call(o.call, [&](Progress* progress) {
+    requireMemory("the layout", processMemory(layOutMemory(mesh.vertices.size())), o.call.maxMemory,
+                  "use a coarser mesh");
+    return onSphere(layOutMesh(mesh, with(o.call, progress, o.settings)));
+  });
+  py::dict figures;
+  figures["flips"] = made.quality.flips;
+  figures["degree"] = made.quality.degree;
+  figures["area_ratio_log10"] = made.quality.areaRatioLog10;
+  return py::make_tuple(std::make_shared<Mesh>(std::move(made.mesh)), figures);
+}
+
+}  // namespace
+
+void bindSphere(py::module_& m) {
+  define<SphereOptions>(
+      m,
+      {"sphere", "*mesh",
+       "Lays a closed surface without handles out on the unit sphere about the origin, one-to-one, "
+       "areas near their share: (surface, figures), an innermap.Mesh with the mesh's own vertices "
+       "and faces, or those of the isosurface that stands in for it, and a dict: flips, degree "
+       "(1: covered once), area_ratio_log10 (of the smallest triangle to its share).\n\nEach "
+       "shell, a cavity say, covers the sphere by itself. mesh: V, F or whatever stands for a "
+       "mesh. Raises UnfitMesh, DataError for handles, MemoryError."},
+      sphere);
+}
+
+}  // namespace innermap::python

@@ -1,0 +1,144 @@
+// study(): how a map depends on its settings.
+#include "innermap/study/study.h"
+
+#include <fmt/format.h>
+
+#include <type_traits>
+
+#include "bind/arrays.h"
+#include "bind/errors.h"
+#include "bind/keywords.h"
+#include "bind/lists.h"
+#include "bind/meshes.h"
+#include "bind/volumes.h"
+#include "innermap/study/study_columns.h"
+#include "innermap/study/study_findings.h"
+
+namespace py = pybind11;
+
+namespace innermap::python {
+namespace {
+
+struct StudyOptions {
+  StudySettings study;
+  py::object sources, collocation, distances, radiusRatios, folder;
+  CallOptions call;
+
+  void describe(Keywords& k) {
+    k.object(
+        "sources", &sources, "Sequence[int]",
+        "numbers of charges, 16 to 20000; 125 to 2000 if not given; an empty list: not varied");
+    k.object("points", &collocation, "Sequence[float]",
+             "boundary points a charge, 1 to 100; 1 to 6 if not given");
+    k.object("distances", &distances, "Sequence[float]",
+             "of the charges, fractions of the source's diagonal, 1e-4 to 2; 0.0025 to 0.32 if not "
+             "given");
+    k.object("radius_ratios", &radiusRatios, "Sequence[float]",
+             "of charges on a sphere, 1 to 100; 1.1 to 5 if not given");
+    k.count("base_sources", &study.baseSources, {16, 20000}, "charges while others are varied");
+    k.number("base_points", &study.baseCollocation, {1, 100}, "likewise points a charge");
+    k.number("base_distance", &study.baseDistance, {1e-4, 2},
+             "likewise the distance; a spacing of the charges if not given");
+    k.number("base_radius_ratio", &study.baseRadiusRatio, {1, 100}, "likewise the radius");
+    k.choice<StudyGrid>(
+        "grid", &study.grid,
+        {{"none", StudyGrid::none}, {"pairs", StudyGrid::pairs}, {"full", StudyGrid::full}},
+        "beside each list alone: nothing, products of two lists, of all");
+    k.choice<Interpolation>("interpolation", &study.interpolation,
+                            {{"linear", Interpolation::linear}, {"smooth", Interpolation::smooth}},
+                            "of the boundary between vertices");
+    k.number("regularization", &study.regularization, {0, 1},
+             "relative; chosen for each run if not given");
+    k.count("resolution", &study.resolution, {4, 1024},
+            "voxels that energies and folds are taken from");
+    k.count("seed", &study.seed, {0, 1e15}, "of all random points");
+    k.number("max_seconds", &study.maxSeconds, {0, 1e9}, "no run begins later; 0: no limit");
+    k.object("folder", &folder, "path", "where finished runs are kept, to be taken from there");
+    call.describe(k);
+  }
+};
+
+template <class T>
+void take(const py::object& given, const char* name, std::vector<T>& to) {
+  if (given.is_none()) return;
+  to.clear();
+  for (const double n : numbersFrom(given, name)) {
+    if constexpr (std::is_integral_v<T>)
+      if (n < 0 || n > 1e9) wrongValue(name, fmt::format("has {}", n));
+    to.push_back(static_cast<T>(n));
+  }
+}
+
+py::dict tableOf(const Study& study) {
+  py::dict out;
+  py::list placement, failure;
+  for (const StudyRow& row : study.rows) {
+    placement.append(placementText(row));
+    failure.append(row.failure);
+  }
+  out["placement"] = placement;
+  for (const StudyColumn& column : studyColumns()) {
+    std::vector<double> values;
+    for (const StudyRow& row : study.rows) values.push_back(valueOf(column, study, row));
+    out[column.name] = arrayOf(values);
+  }
+  out["failure"] = failure;
+  return out;
+}
+
+py::dict findingsOf(const Study& study, const StudySettings& settings) {
+  const StudyFindings found = studyFindings(study);
+  py::dict out;
+  if (found.best) out["best"] = optionsOf(*found.best, settings);
+  if (found.cheapest) out["cheapest"] = optionsOf(*found.cheapest, settings);
+  out["advice"] = found.advice;
+  py::list statements;
+  for (const StudyStatement& s : found.statements)
+    statements.append(py::make_tuple(s.text, verdictText(s.verdict), s.figures));
+  out["statements"] = statements;
+  out["left"] = study.left;
+  out["warnings"] = study.warnings;
+  return out;
+}
+
+py::object study(const Arguments& a, StudyOptions& o) {
+  std::size_t at = 0;
+  const Mesh source = takeMesh(a, at, "source");
+  if (at + 1 != a.size()) throw py::type_error("study() takes a source and a target");
+  Mesh target;
+  if (isArrayLike(a[at])) {
+    target = source;
+    target.vertices = pointsFrom(a[at], "V_target");
+  } else {
+    target = meshFrom(a[at], "target");
+  }
+  take(o.sources, "sources", o.study.sources);
+  take(o.collocation, "points", o.study.collocation);
+  take(o.distances, "distances", o.study.distances);
+  take(o.radiusRatios, "radius_ratios", o.study.radiusRatios);
+  if (!o.folder.is_none()) o.study.folder = pathFrom(o.folder, "folder");
+  const Study made = call(o.call, [&](Progress* progress) {
+    BoundarySettings boundary;
+    boundary.progress = progress;
+    return runStudy(makeBoundaryPair(source, target, boundary), with(o.call, progress, o.study));
+  });
+  return py::make_tuple(tableOf(made), findingsOf(made, o.study));
+}
+
+}  // namespace
+
+void bindStudy(py::module_& m) {
+  define<StudyOptions>(
+      m,
+      {"study", "*meshes",
+       "How a map's error, energies and stability depend on its settings, as Li et al. (2009) "
+       "study "
+       "them: (table, findings).\n\nstudy(V, F, V_target), or a source and a target of the same "
+       "connectivity. table: a dict of columns, a row a run, as the program's study.csv has them. "
+       "findings: the best settings as options of the program, advice, the paper's statements with "
+       "whether they hold. Ctrl-C keeps finished runs in folder. Raises DataError, SettingError, "
+       "MemoryError."},
+      study);
+}
+
+}  // namespace innermap::python

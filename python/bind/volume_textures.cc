@@ -1,0 +1,157 @@
+// Volume textures in EXR files, out and in.
+#include <fmt/format.h>
+
+#include "bind/arrays.h"
+#include "bind/errors.h"
+#include "bind/grids.h"
+#include "bind/keywords.h"
+#include "bind/lists.h"
+#include "bind/meshes.h"
+#include "bind/volumes.h"
+#include "innermap/core/memory.h"
+#include "innermap/io/slice.h"
+#include "innermap/io/volume/volume_texture.h"
+
+namespace py = pybind11;
+
+namespace innermap::python {
+namespace {
+
+const std::vector<std::pair<const char*, VolumeLayout>> kLayouts{{"atlas", VolumeLayout::atlas},
+                                                                 {"slices", VolumeLayout::slices},
+                                                                 {"parts", VolumeLayout::parts}};
+
+std::pair<int, int> tilesFrom(const py::object& object) {
+  const auto [columns, rows] = pairFrom(object, "tiles");
+  if (!(columns >= 1 && columns <= 65536 && rows >= 1 && rows <= 65536))
+    wrongValue("tiles", "expects (columns, rows)");
+  return {static_cast<int>(columns), static_cast<int>(rows)};
+}
+
+struct WriteOptions {
+  VolumeTextureSettings texture;
+  std::string axis = "z";
+  py::object names, tiles;
+  CallOptions call;
+
+  void describe(Keywords& k) {
+    k.choice<VolumeLayout>("layout", &texture.layout, kLayouts,
+                           "atlas: one picture of tiles; slices: a file each, #### in the path for "
+                           "the number; parts: one multi-part file");
+    k.object("names", &names, "str or Sequence[str]", "of the grids; all if not given");
+    k.text("axis", &axis, "'x', 'y' or 'z': across the slices");
+    k.flag("rows_up", &texture.rowsUp, "the first row of a slice has the largest index");
+    k.choice<VolumeChannels>("channels", &texture.channels,
+                             {{"auto", VolumeChannels::automatic},
+                              {"rgba", VolumeChannels::rgba},
+                              {"layers", VolumeChannels::layers}},
+                             "how channels are called; auto: rgba where there are four at most");
+    k.flag("half", &texture.half, "half floats: half the size, three digits");
+    k.flag("active", &texture.active, "also NAME.active: 1 where a voxel is active");
+    k.count("resolution", &texture.resolution, {0, 8192},
+            "resample to so many voxels along the longest side; 0: the grids' own");
+    k.count("pad", &texture.pad, {0, 4096}, "voxels about the active box");
+    k.flag("cube", &texture.cube, "widen the box to a cube");
+    k.flag("power_of_two", &texture.powerOfTwo,
+           "widen the box so that all sides are powers of two");
+    k.object("tiles", &tiles, "tuple[int, int]",
+             "columns and rows of the atlas; near a square if not given");
+    call.describe(k);
+  }
+};
+
+py::object write(const Arguments& a, WriteOptions& o) {
+  const std::string path = pathFrom(a[0], "path");
+  const openvdb::GridPtrVec grids = takeGrids(a[1], "grids", textsFrom(o.names, "names"), o.call);
+  o.texture.axis = parseAxis("axis", o.axis);
+  if (!o.tiles.is_none()) o.texture.tiles = tilesFrom(o.tiles);
+  const VolumeTextureResult made = call(o.call, [&](Progress* progress) {
+    return writeVolumeTexture(path, grids, with(o.call, progress, o.texture));
+  });
+  py::dict out;
+  out["files"] = made.files;
+  out["channels"] = made.channels;
+  out["width"] = made.width;
+  out["height"] = made.height;
+  out["tiles"] = py::make_tuple(made.tileColumns, made.tileRows);
+  out["slices"] = made.slices;
+  out["resolution"] = py::make_tuple(made.resolution.x(), made.resolution.y(), made.resolution.z());
+  out["clamped"] = made.clamped;
+  out["rounded"] = made.inexact;
+  return std::move(out);
+}
+
+struct ReadOptions {
+  VolumeTextureReadSettings texture;
+  py::object names, layout, axis, tiles, lowerCorner, rowsUp;
+  CallOptions call;
+
+  void describe(Keywords& k) {
+    k.object(
+        "names", &names, "str or Sequence[str]",
+        "of the grids to read; of a file that does not say what its channels are, their names");
+    k.object("layout", &layout, "str", "'atlas', 'slices' or 'parts'; from the file if not given");
+    k.object("axis", &axis, "str", "'x', 'y' or 'z'; from the file if not given");
+    k.object("tiles", &tiles, "tuple[int, int]",
+             "columns and rows of an atlas; from the file if not given");
+    k.count("slices", &texture.slices, {1, 65536}, "when fewer than tiles, parts or files");
+    k.object("rows_up", &rowsUp, "bool", "see write_volume_texture(); from the file if not given");
+    k.number("voxel_size", &texture.voxelSize, {1e-12, 1e12},
+             "edge of a voxel, world units, in place of the file's matrix");
+    k.object("lower_corner", &lowerCorner, "array (3,)",
+             "of the box, world units, with voxel_size; 0, 0, 0 if not given");
+    k.number("background", &texture.background, {-1e30, 1e30},
+             "of all grids; from the file if not given");
+    call.describe(k);
+  }
+};
+
+py::object read(const Arguments& a, ReadOptions& o) {
+  const std::string path = pathFrom(a[0], "path");
+  VolumeTextureReadSettings& s = o.texture;
+  s.names = textsFrom(o.names, "names");
+  if (!o.layout.is_none())
+    s.layout = parseVolumeLayout("layout", py::cast<std::string>(py::str(o.layout)));
+  if (!o.axis.is_none()) s.axis = parseAxis("axis", py::cast<std::string>(py::str(o.axis)));
+  if (!o.tiles.is_none()) s.tiles = tilesFrom(o.tiles);
+  if (!o.rowsUp.is_none()) s.rowsUp = py::cast<bool>(o.rowsUp);
+  if (!o.lowerCorner.is_none()) {
+    if (!s.voxelSize) wrongValue("lower_corner", "has a meaning with voxel_size only");
+    const std::vector<double> corner = numbersFrom(o.lowerCorner, "lower_corner");
+    if (corner.size() != 3) wrongValue("lower_corner", "expects three numbers");
+    s.lowerCorner = {corner[0], corner[1], corner[2]};
+  }
+  VolumeTextureContents contents = call(o.call, [&](Progress* progress) {
+    VolumeTextureReadSettings settings = with(o.call, progress, s);
+    settings.maxMemory = memoryLeft(settings.maxMemory);  // the grids grow as they are read
+    return readVolumeTexture(path, settings);
+  });
+  py::dict totals;
+  totals["layout"] = volumeLayoutName(contents.layout);
+  totals["not_finite"] = contents.notFinite;
+  return gridsObject(std::move(contents.grids), totals, o.call);
+}
+
+}  // namespace
+
+void bindVolumeTextures(py::module_& m) {
+  define<WriteOptions>(
+      m,
+      {"write_volume_texture", "path, grids",
+       "Writes grids as a volume texture for engines, dense voxels in EXR pictures whose "
+       "attributes "
+       "say what they are; read_volume_texture() and `innermap import` read them. grids: an "
+       "innermap.Grids or the path of a .vdb file. Returns files, channels, tiles and sizes. "
+       "Raises FileError, DataError, MemoryError."},
+      write);
+  define<ReadOptions>(
+      m,
+      {"read_volume_texture", "path",
+       "Reads a volume texture: an innermap.Grids. Of slices, path is any of the files or a "
+       "pattern "
+       "with #### or %04d. For textures of other programs, keywords say what the file does not. "
+       "Raises FileError, MemoryError."},
+      read);
+}
+
+}  // namespace innermap::python

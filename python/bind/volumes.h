@@ -1,0 +1,13 @@
+// Grids out of arrays, files, meshes and maps.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace innermap::python {
+
+void bindVolumes(pybind11::module_& m);         // after bindGrids and bindMap
+void bindVolumeTextures(pybind11::module_& m);  // likewise
+void bindSolidTexture(pybind11::module_& m);
+void bindStudy(pybind11::module_& m);
+
+}  // namespace innermap::python

@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+"""The commands of README.md and docs/ as they stand there: each is accepted and runs, with small
+stand-ins for the files that it names."""
+
+import re
+import shlex
+import shutil
+from pathlib import Path
+
+import cli
+from cli import ROOT, innermap, slow
+
+BLOCK = re.compile(r"^```sh\n(.*?)^```", re.M | re.S)
+LONG = {"study", "compare-fem", "hexahedralize", "harmonic"}  # have tests of their own
+GENERATED = {"commands.md", "benchmarks.md"}
+
+
+def documented():
+    """(page, arguments) of each command, without those that stand for any (SOURCE, FOLDER)."""
+    for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]:
+        if page.name in GENERATED:
+            continue
+        for block in BLOCK.findall(page.read_text(encoding="utf-8")):
+            for line in block.replace("\\\n", " ").splitlines():
+                words = shlex.split(line, comments=True)
+                if words[:1] == ["innermap"] and not any(w.isupper() for w in words):
+                    yield page.name, words[1:]
+
+
+def write_ball(path, groups=(), bend=0.0, thin=1.0):
+    """A ball with texture coordinates, its faces in groups along z."""
+    vertices, faces = cli.icosphere_arrays(3)
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    with open(path, "w", encoding="utf-8") as file:
+        for x, y, z in vertices:
+            file.write(f"v {thin * (x + bend * z * z)} {thin * y} {z}\nvt {(x + 1) / 2} {(z + 1) / 2}\n")
+        by_group = {}
+        for face in faces:
+            z = sum(vertices[v][2] for v in face) / 3
+            name = groups[min(len(groups) - 1, int((z + 1) / 2 * len(groups)))] if groups else "all"
+            by_group.setdefault(name, []).append(face)
+        for name, some in by_group.items():
+            file.write(f"g {name}\n")
+            for face in some:
+                file.write("f " + " ".join(f"{v + 1}/{v + 1}" for v in face) + "\n")
+
+
+def write_scan(path):
+    """Points with a velocity."""
+    vertices = cli.icosphere_arrays(1)[0]
+    names = ["x", "y", "z", "velocity_x", "velocity_y", "velocity_z"]
+    rows = [f"{0.3 * x} {0.3 * y} {0.3 * z} {y} {z} {x}" for x, y, z in vertices]
+    Path(path).write_text("\n".join(
+        ["ply", "format ascii 1.0", f"element vertex {len(rows)}",
+         *(f"property float {name}" for name in names), "end_header", *rows, ""]))
+
+
+def write_muscle(path):
+    """A tetrahedron with fibres."""
+    Path(path).write_text("""<VTKFile type="UnstructuredGrid"><UnstructuredGrid>
+<Piece NumberOfPoints="4" NumberOfCells="1">
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">
+0 0 0 0.3 0 0 0 0.3 0 0 0 0.3</DataArray></Points>
+<Cells><DataArray type="Int32" Name="connectivity" format="ascii">0 1 2 3</DataArray>
+<DataArray type="Int32" Name="offsets" format="ascii">4</DataArray>
+<DataArray type="UInt8" Name="types" format="ascii">10</DataArray></Cells>
+<CellData><DataArray type="Float64" Name="fibre" NumberOfComponents="3" format="ascii">0 0 1</DataArray>
+</CellData></Piece></UnstructuredGrid></VTKFile>
+""")
+
+
+def stand_ins():
+    Path("samples").symlink_to(ROOT / "samples")
+    for path in ["homer.obj", "spot.obj"]:
+        write_ball(path, thin=0.3)
+    for path in ["rest.obj", "cow.obj", "horse-poses/reference.obj", "horse-gallop/reference.obj"]:
+        write_ball(path)
+    for path in ["pose.obj", "man.obj", "bent.obj", "horse-poses/pose-02.obj"]:
+        write_ball(path, bend=0.1)
+    for number in (1, 2):
+        for path in ["frames/f.{}.obj", "walk.{}.obj", "horse-gallop/frame.{}.obj"]:
+            write_ball(path.format(number), bend=0.05 * number)
+    write_ball("heart.obj", ["endo", "epi"])
+    write_ball("body.obj", ["head", "arms", "legs"])
+    vertices, faces = cli.icosphere_arrays(1)
+    for path in ["bones.obj", "posed.obj", "hair.obj"]:
+        cli.write_obj(path, [(0.3 * x, 0.3 * y, 0.3 * z) for x, y, z in vertices], faces)
+    innermap("fit", "rest.obj", "pose.obj", "-o", "map.ply")
+    Path("homer_spot").mkdir()
+    innermap("fit", "homer.obj", "spot.obj", "-o", "homer_spot/map.ply")
+    innermap("correspond", "cow.obj", "man.obj", "-o", "cow_on_man.ply", "--surface-resolution", "16",
+             "--picture", "spot_texture.png")
+    write_scan("scan.ply")
+    write_muscle("muscle.vtu")
+    innermap("evaluate", "map.ply", "-o", "smoke.vdb", "--resolution", "24")
+    shutil.copy("smoke.vdb", "posed.vdb")
+    innermap("texture", "spot.obj", "spot_texture.png", "-o", "spot.vdb", "--resolution", "16")
+    innermap("export", "smoke.vdb", "-o", "smoke.exr", "--grid", "density", "--resolution", "16", "--cube")
+    innermap("tetrahedralize", "homer.obj", "-o", "homer.vtu", "--resolution", "12")
+    innermap("remesh", "homer_spot/map.ply", "homer.vtu", "-o", "spot.vtu")
+    innermap("map", "rest.obj", "pose.obj", "-o", "out", "--resolution", "16")
+
+
+@slow
+def test_commands_of_the_pages():
+    stand_ins()
+    commands = list(documented())
+    assert len(commands) > 35, len(commands)
+    for page, words in commands:
+        try:
+            said = innermap(*words, "--dry-run").stdout
+            if words[0] not in LONG:
+                innermap(*words)
+        except AssertionError as error:
+            raise AssertionError(f"{page}: innermap {' '.join(words)}: {error}") from error
+        assert said.strip(), (page, words)
+
+
+cli.run(globals())

@@ -1,0 +1,176 @@
+"""Grids, meshes, cells, files and points through a map, and frames: as the program does them."""
+
+import numpy as np
+
+import cli
+import innermap
+import shapes
+
+
+def a_map():
+    V, F = shapes.ball(3)
+    m = innermap.fit(V, F, shapes.twisted(V), **shapes.FEW)
+    m.save("map.ply")
+    return m
+
+
+def smoke(path="smoke.vdb"):
+    """A ball of density inside, with positions."""
+    n = 24
+    matrix = np.diag([1.6 / n, 1.6 / n, 1.6 / n, 1])
+    matrix[:3, 3] = -0.8 + 0.8 / n
+    at = np.stack(np.meshgrid(*[np.arange(n)] * 3, indexing="ij"), axis=-1)
+    places = at @ matrix[:3, :3].T + matrix[:3, 3]
+    inside = np.linalg.norm(places, axis=-1) < 0.6
+    density = (inside * (1 + 0.5 * places[..., 2])).astype(np.float32)
+    grids = innermap.grids({"density": density, "place": (places * inside[..., None]).astype("f4")},
+                           matrix)
+    grids.write_vdb(path)
+    return grids
+
+
+def identical(a, b, names):
+    for name in names:
+        assert np.allclose(a.matrix, b.matrix) and np.array_equal(a[name], b[name]), name
+
+
+def test_pushes_grids_as_the_program_does():
+    m, grids = a_map(), smoke()
+    pushed = innermap.push(m, "smoke.vdb", "module.vdb", densities=["density"])
+    cli.innermap("push", "map.ply", "smoke.vdb", "-o", "program.vdb", "--densities", "density")
+    identical(innermap.read_vdb("module.vdb"), innermap.read_vdb("program.vdb"),
+              ["density", "place"])
+    mass = pushed.totals["mass"]["density"]
+    assert abs(mass["after"] / mass["before"] - 1) < 1e-4
+    identical(innermap.push(m, grids, densities=True), pushed, ["density", "place"])
+    assert list(innermap.push(m, grids, grids="density")) == ["density"]
+
+
+def test_pulls_grids_as_the_program_does():
+    m = a_map()
+    smoke()
+    pulled = innermap.pull(m, "smoke.vdb", grids="density", resolution=32)
+    cli.innermap("pull", "map.ply", "smoke.vdb", "-o", "program.vdb", "--grids", "density",
+                 "--resolution", "32")
+    identical(pulled, innermap.read_vdb("program.vdb"), ["density"])
+
+
+def test_pushes_points_and_meshes():
+    m = a_map()
+    X = shapes.inside(100)
+    Y, found, J = innermap.push(m, X, jacobian=True)
+    assert found.all()
+    assert np.abs(Y - m(X)).max() < 1e-6 and np.abs(J - m(X, jacobian=True)[1]).max() < 1e-5
+    back, found = innermap.pull(m, Y)
+    assert found.all() and np.abs(back - X).max() < 1e-5
+    far, found = innermap.push(m, [[5.0, 0, 0], [0, 0, 0]])
+    assert list(found) == [False, True] and np.isnan(far[0]).all()
+    V, F = shapes.ball(2)
+    W, G = innermap.push(m, (0.5 * V, F))
+    assert np.array_equal(F, G) and np.abs(W - m(0.5 * V)).max() < 1e-6
+    shifted = np.hstack([np.eye(3), [[1], [0], [0]]])
+    moved, found = innermap.push(m, [[1.4, 0, 0]], outside=0.3, fade_to=shifted)
+    assert found.all()
+    try:
+        innermap.push(m, (5 * V, F))
+    except innermap.DataError as error:
+        assert "outside" in str(error)
+    else:
+        raise AssertionError("no error")
+
+
+def test_pushes_files_as_the_program_does():
+    m = a_map()
+    V, F = shapes.ball(2)
+    innermap.write_mesh("small.obj", 0.5 * V, F)
+    figures = innermap.push(m, "small.obj", "module.obj", subdivide=1e-4)
+    cli.innermap("push", "map.ply", "small.obj", "-o", "program.obj", "--subdivide", "1e-4")
+    assert open("module.obj").read() == open("program.obj").read()
+    assert figures["points"] == len(V) and figures["points_added"] > 0
+    assert figures["points_cut"] == 0
+
+
+def test_refuses_what_cannot_be_carried():
+    m, grids = a_map(), smoke()
+    for wrong, kind, says in (
+            (lambda: innermap.push(m, "nothing.vdb"), innermap.FileError, "nothing.vdb"),
+            (lambda: innermap.push(m, grids, densities=["fog"]), innermap.DataError, "fog"),
+            (lambda: innermap.push(m, grids, grids=["fog"]), KeyError, "fog"),
+            (lambda: innermap.push(m, grids, fade_to="fitted"), ValueError, "outside"),
+            (lambda: innermap.push(m, grids, sampling="cubic"), innermap.SettingError, "sampling"),
+            (lambda: innermap.push("map.ply", grids), TypeError, "map: "),
+            (lambda: innermap.push(m, np.zeros((3, 2))), ValueError, "X: expects"),
+            (lambda: innermap.push(m, grids, max_memory="1MB"), MemoryError, "1 MB"),
+            (lambda: innermap.grids({"a": np.zeros((2, 2))}, np.eye(4)), ValueError, "a: expects"),
+            (lambda: innermap.grids({"a": np.ones((2, 2, 2))}, np.zeros((4, 4))), ValueError,
+             "matrix"),
+            (lambda: innermap.grids({"a": np.zeros((2, 2, 2))}, np.eye(4)), ValueError,
+             "no active")):
+        try:
+            wrong()
+        except kind as error:
+            assert says in str(error), error
+        else:
+            raise AssertionError(f"no error: {says}")
+
+
+def frames():
+    V, F = shapes.ball(3)
+    poses = []
+    for i in range(3):
+        pose = V.copy()
+        pose[:, 0] += 0.1 * i * V[:, 2] ** 2
+        innermap.write_mesh(f"pose.{i:04d}.obj", pose, F)
+        poses.append(pose)
+    innermap.write_mesh("rest.obj", V, F)
+    return V, F, poses
+
+
+def test_deforms_through_frames_as_the_program_does():
+    V, F, poses = frames()
+    smoke()
+    X = shapes.inside(50)
+    places, found = innermap.deform((V, F), X, poses, sources=800)
+    assert places.shape == (3, 50, 3) and found.all()
+    assert np.abs(places[0] - X).max() < 1e-6
+    table = innermap.deform("rest.obj", "smoke.vdb", "pose.*.obj", "module.####.vdb", sources=800,
+                            grids="density", densities=True)
+    cli.innermap("deform", "rest.obj", "smoke.vdb", "pose.*.obj", "-o", "program.####.vdb",
+                 "--sources", "800", "--grids", "density", "--density")
+    assert list(table["frame"]) == [0, 1, 2] and table["error"] == ["", "", ""]
+    assert (table["boundary_rms"] < 1e-2).all()
+    for i in range(3):
+        identical(innermap.read_vdb(f"module.{i:04d}.vdb"), innermap.read_vdb(f"program.{i:04d}.vdb"),
+                  ["density"])
+    made = innermap.deform("rest.obj", "smoke.vdb", poses, sources=800, grids="density", only="1-2",
+                           densities=True, velocity=True)
+    assert len(made) == 2 and list(made[0]) == ["density", "velocity"]
+
+
+def test_deforms_files_as_the_program_does():
+    V, F, _ = frames()
+    innermap.write_mesh("inner.obj", 0.5 * V, F)
+    innermap.deform("rest.obj", "inner.obj", "pose.*.obj", "module.####.obj", sources=800)
+    cli.innermap("deform", "rest.obj", "inner.obj", "pose.*.obj", "-o", "program.####.obj",
+                 "--sources", "800")
+    assert open("module.0002.obj").read() == open("program.0002.obj").read()
+
+
+def test_measures_a_sequence_as_the_program_does():
+    V, F, poses = frames()
+    table = innermap.sequence("rest.obj", "pose.*.obj", sources=800, resolution=32,
+                              output="module.####.vdb", grids="jacobian")
+    cli.innermap("sequence", "rest.obj", "pose.*.obj", "-o", "program", "--sources", "800",
+                 "--resolution", "32")
+    report = cli.read_json("program/report.json")
+    for name in ("harmonic", "deformation", "boundary_p99", "folded_fraction", "volume"):
+        assert np.allclose(table[name], report["energies"][name], rtol=1e-6, atol=1e-12), name
+    assert abs(table["harmonic"][0] - 3) < 0.02 < table["harmonic"][2] - 3, table["harmonic"]
+    assert list(innermap.read_vdb("module.0001.vdb")) == ["jacobian"]
+    poses[1] = poses[1] * 0  # bounds no solid
+    table = innermap.sequence((V, F), poses, sources=800, resolution=32)
+    assert table["error"][1] and not table["error"][0] and np.isnan(table["harmonic"][1])
+
+
+if __name__ == "__main__":
+    cli.run(globals())
