@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "bind/arrays.h"
 #include "bind/carry_options.h"
@@ -163,19 +162,9 @@ PointCarry Job::carryOf(Progress* progress) const {
 
 py::object Job::points(const py::object& what) const {
   const Points points = pointsFrom(what, push_ ? "X" : "Y");
-  CarriedPoints carried =
-      call(o_.call, [&](Progress* progress) { return carryPoints(points, o_.jacobian, progress); });
-  py::array_t<bool> found(static_cast<py::ssize_t>(points.size()));
-  bool* is = found.mutable_data();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    is[i] = carried.fates[i] == PointFate::carried;
-    if (is[i]) continue;
-    carried.points[i] = {std::nan(""), std::nan(""), std::nan("")};
-    if (o_.jacobian)
-      for (auto& row : carried.jacobians[i]) row.fill(std::nan(""));
-  }
-  if (!o_.jacobian) return py::make_tuple(arrayOf(carried.points), found);
-  return py::make_tuple(arrayOf(carried.points), found, arrayOf(carried.jacobians));
+  return carriedTuple(
+      call(o_.call, [&](Progress* progress) { return carryPoints(points, o_.jacobian, progress); }),
+      o_.jacobian);
 }
 
 // Meshes and cells are whole: all of their points have a place, or none.

@@ -110,13 +110,7 @@ struct WriteFieldOptions : FieldGridOptions {
 py::object writeFieldVdb(const Arguments& a, WriteFieldOptions& o) {
   const std::string path = pathFrom(a[1], "path");
   const HarmonicGrids grids = gridsOf(py::cast<const PyField&>(a[0]), o);
-  runCall(o.call, [&](Progress* progress) {
-    VdbWriteSettings settings;
-    settings.names = o.names;
-    settings.progress = progress;
-    writeVdb(path, grids.all(), {}, settings);
-  });
-  return py::none();
+  return writeGrids(path, grids.all(), o.names, o.call);
 }
 
 py::object save(const Arguments& a, NoOptions&) {

@@ -161,13 +161,7 @@ struct WriteOptions {
 py::object write(const Arguments& a, WriteOptions& o) {
   const openvdb::GridPtrVec grids = py::cast<const PyGrids&>(a[0]).grids;
   const std::string path = pathFrom(a[1], "path");
-  runCall(o.call, [&](Progress* progress) {
-    VdbWriteSettings settings;
-    settings.names = o.names;
-    settings.progress = progress;
-    writeVdb(path, grids, {}, settings);
-  });
-  return py::none();
+  return writeGrids(path, grids, o.names, o.call);
 }
 
 }  // namespace
@@ -185,6 +179,17 @@ void describeNames(Keywords& k, NamingScheme* names) {
                           {"blender", NamingScheme::blender},
                           {"houdini", NamingScheme::houdini}},
                          "what the grids are called in the file");
+}
+
+py::object writeGrids(const std::string& path, const openvdb::GridPtrVec& grids, NamingScheme names,
+                      const CallOptions& call) {
+  runCall(call, [&](Progress* progress) {
+    VdbWriteSettings settings;
+    settings.names = names;
+    settings.progress = progress;
+    writeVdb(path, grids, {}, settings);
+  });
+  return py::none();
 }
 
 py::object gridsObject(openvdb::GridPtrVec grids, const py::dict& totals, const CallOptions& call) {

@@ -35,6 +35,9 @@ struct GridOptions {
 
 // `names=` of functions that write .vdb files.
 void describeNames(Keywords& k, NamingScheme* names);
+// None, once the file is there. Throws as writeVdb().
+pybind11::object writeGrids(const std::string& path, const openvdb::GridPtrVec& grids,
+                            NamingScheme names, const CallOptions& call);
 
 // The grids, which have one transform, as an innermap.Grids. totals: numbers about them.
 pybind11::object gridsObject(openvdb::GridPtrVec grids, const pybind11::dict& totals,

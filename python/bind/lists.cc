@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "bind/arrays.h"
 #include "bind/errors.h"
 
@@ -33,6 +35,16 @@ std::vector<double> numbersFrom(py::handle object, const std::string& name) {
   if (numbers.columns() != 1) wrongValue(name, "expects numbers in one list");
   std::vector<double> out(numbers.rows());
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = numbers(i, 0);
+  return out;
+}
+
+std::vector<std::int64_t> countsFrom(py::handle object, const std::string& name) {
+  std::vector<std::int64_t> out;
+  for (const double n : numbersFrom(object, name)) {
+    if (n < 0 || n > 1e9 || n != std::floor(n))
+      wrongValue(name, fmt::format("has {}, expects whole numbers from 0", n));
+    out.push_back(static_cast<std::int64_t>(n));
+  }
   return out;
 }
 

@@ -61,20 +61,11 @@ struct InverseOptions {
 py::object inverseMap(const Arguments& a, InverseOptions& o) {
   const auto& map = py::cast<const PyMap&>(a[0]);
   const Points points = pointsFrom(a[1], "Y");
-  CarriedPoints carried = call(o.call, [&](Progress* progress) {
-    return map.puller(o.call, progress).pull(points, o.jacobian);
-  });
-  py::array_t<bool> found(static_cast<py::ssize_t>(points.size()));
-  bool* is = found.mutable_data();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    is[i] = carried.fates[i] == PointFate::carried;
-    if (is[i]) continue;
-    carried.points[i] = {std::nan(""), std::nan(""), std::nan("")};
-    if (o.jacobian)
-      for (auto& row : carried.jacobians[i]) row.fill(std::nan(""));
-  }
-  if (!o.jacobian) return py::make_tuple(arrayOf(carried.points), found);
-  return py::make_tuple(arrayOf(carried.points), found, arrayOf(carried.jacobians));
+  return carriedTuple(call(o.call,
+                           [&](Progress* progress) {
+                             return map.puller(o.call, progress).pull(points, o.jacobian);
+                           }),
+                      o.jacobian);
 }
 
 py::object save(const Arguments& a, NoOptions&) {
@@ -123,6 +114,20 @@ PointPuller PyMap::puller(const CallOptions& options, Progress* progress) const 
         PointPuller(mapped->map, mapped->solid(), target, settings).reportingTo(nullptr);
   }
   return inverse_->made->reportingTo(progress);
+}
+
+py::tuple carriedTuple(CarriedPoints carried, bool jacobians) {
+  py::array_t<bool> found(static_cast<py::ssize_t>(carried.points.size()));
+  bool* is = found.mutable_data();
+  for (std::size_t i = 0; i < carried.points.size(); ++i) {
+    is[i] = carried.fates[i] == PointFate::carried;
+    if (is[i]) continue;
+    carried.points[i] = {std::nan(""), std::nan(""), std::nan("")};
+    if (jacobians)
+      for (auto& row : carried.jacobians[i]) row.fill(std::nan(""));
+  }
+  if (!jacobians) return py::make_tuple(arrayOf(carried.points), found);
+  return py::make_tuple(arrayOf(carried.points), found, arrayOf(carried.jacobians));
 }
 
 void bindMap(py::module_& m) {

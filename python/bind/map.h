@@ -35,6 +35,9 @@ struct PyMap {
   std::shared_ptr<Inverse> inverse_ = std::make_shared<Inverse>();
 };
 
+// (points, found) or (points, found, jacobians): NaN where a point has no place.
+pybind11::tuple carriedTuple(CarriedPoints carried, bool jacobians);
+
 void bindMap(pybind11::module_& m);
 void bindMapGrids(pybind11::module_& m);  // after bindMap
 void bindFit(pybind11::module_& m);

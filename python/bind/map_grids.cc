@@ -82,13 +82,7 @@ py::object evaluate(const Arguments& a, MapGridOptions& o) {
 py::object writeMapVdb(const Arguments& a, WriteMapOptions& o) {
   const std::string path = pathFrom(a[1], "path");
   const SolidGrids grids = gridsOf(py::cast<const PyMap&>(a[0]), o);
-  runCall(o.call, [&](Progress* progress) {
-    VdbWriteSettings settings;
-    settings.names = o.names;
-    settings.progress = progress;
-    writeVdb(path, grids.all(), {}, settings);
-  });
-  return py::none();
+  return writeGrids(path, grids.all(), o.names, o.call);
 }
 
 struct Folds {

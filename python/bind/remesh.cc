@@ -141,24 +141,12 @@ py::dict tableOf(const CompareFem& result) {
   return out;
 }
 
-template <class T>
-void take(const py::object& given, const char* name, std::vector<T>& to) {
-  if (given.is_none()) return;
-  to.clear();
-  for (const double n : numbersFrom(given, name)) {
-    if constexpr (std::is_integral_v<T>)
-      if (n < 0 || n > 1e9) wrongValue(name, fmt::format("has {}", n));
-    to.push_back(static_cast<T>(n));
-  }
-  if (to.empty()) wrongValue(name, "is empty");
-}
-
 py::object compareFem(const Arguments& a, CompareOptions& o) {
   std::size_t at = 0;
   const Mesh source = takeMesh(a, at, "source");
-  take(o.resolutions, "resolutions", o.settings.resolutions);
-  take(o.charges, "charges", o.settings.charges);
-  take(o.tolerances, "tolerances", o.settings.tolerances);
+  takeNumbers(o.resolutions, "resolutions", o.settings.resolutions);
+  takeNumbers(o.charges, "charges", o.settings.charges);
+  takeNumbers(o.tolerances, "tolerances", o.settings.tolerances);
   std::optional<Mesh> target;
   if (at < a.size()) {
     if (isArrayLike(a[at])) {

@@ -1,10 +1,6 @@
 // study(): how a map depends on its settings.
 #include "innermap/study/study.h"
 
-#include <fmt/format.h>
-
-#include <type_traits>
-
 #include "bind/arrays.h"
 #include "bind/errors.h"
 #include "bind/keywords.h"
@@ -58,17 +54,6 @@ struct StudyOptions {
   }
 };
 
-template <class T>
-void take(const py::object& given, const char* name, std::vector<T>& to) {
-  if (given.is_none()) return;
-  to.clear();
-  for (const double n : numbersFrom(given, name)) {
-    if constexpr (std::is_integral_v<T>)
-      if (n < 0 || n > 1e9) wrongValue(name, fmt::format("has {}", n));
-    to.push_back(static_cast<T>(n));
-  }
-}
-
 py::dict tableOf(const Study& study) {
   py::dict out;
   py::list placement, failure;
@@ -112,10 +97,10 @@ py::object study(const Arguments& a, StudyOptions& o) {
   } else {
     target = meshFrom(a[at], "target");
   }
-  take(o.sources, "sources", o.study.sources);
-  take(o.collocation, "points", o.study.collocation);
-  take(o.distances, "distances", o.study.distances);
-  take(o.radiusRatios, "radius_ratios", o.study.radiusRatios);
+  takeNumbers(o.sources, "sources", o.study.sources);
+  takeNumbers(o.collocation, "points", o.study.collocation);
+  takeNumbers(o.distances, "distances", o.study.distances);
+  takeNumbers(o.radiusRatios, "radius_ratios", o.study.radiusRatios);
   if (!o.folder.is_none()) o.study.folder = pathFrom(o.folder, "folder");
   const Study made = call(o.call, [&](Progress* progress) {
     BoundarySettings boundary;

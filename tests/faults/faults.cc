@@ -52,27 +52,34 @@ void report(const char* text) {
   if (logFile >= 0) syscall(SYS_write, logFile, text, std::strlen(text));
 }
 
-// The library that asked for it: the innermost that is not this one or the C++ library.
+bool isDlopen(const Dl_info& info) {
+  return info.dli_sname && std::strcmp(info.dli_sname, "dlopen") == 0;
+}
+
+// The library that asked for it: the innermost that is not this one or the C++ library; "dlopen"
+// for what opening a library takes.
 const char* callerOf(void** frames, int count) {
   Dl_info own{}, info{};
   dladdr(reinterpret_cast<void*>(&report), &own);
+  const char* found = nullptr;
   for (int i = 0; i < count; ++i) {
     if (!dladdr(frames[i], &info) || !info.dli_fname || info.dli_fbase == own.dli_fbase) continue;
+    if (isDlopen(info)) return "dlopen";
     const char* slash = std::strrchr(info.dli_fname, '/');
     const char* name = slash ? slash + 1 : info.dli_fname;
-    if (std::strncmp(name, "libstdc++", 9) != 0) return name;
+    if (!found && std::strncmp(name, "libstdc++", 9) != 0) found = name;
   }
-  return "?";
+  return found ? found : "?";
 }
 
 void hit(const char* what) {
   const Inside inside;
   static std::atomic<int> lines{0};
   if (++lines > 1000) return;
-  void* callers[12];
+  void* callers[20];
   char line[200];
   std::snprintf(line, sizeof line, "failed %s in %s\n", what,
-                callerOf(callers, backtrace(callers, 12)));
+                callerOf(callers, backtrace(callers, 20)));
   report(line);
   if (!trace || lines > 1) return;
   void* frames[60];

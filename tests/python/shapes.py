@@ -32,3 +32,14 @@ def twisted(V):
 
 def bent(V):
     return V + np.stack([0.1 * np.sin(3 * V[:, 1]), 0.2 * V[:, 2] ** 2, 0.1 * V[:, 0]], axis=1)
+
+
+def refuses(*cases):
+    """Each case, (call, error, words), raises that error with these words."""
+    for wrong, kind, says in cases:
+        try:
+            wrong()
+        except kind as error:
+            assert says in str(error), error
+        else:
+            raise AssertionError(f"no error: {says}")

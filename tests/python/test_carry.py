@@ -92,26 +92,20 @@ def test_pushes_files_as_the_program_does():
 
 def test_refuses_what_cannot_be_carried():
     m, grids = a_map(), smoke()
-    for wrong, kind, says in (
-            (lambda: innermap.push(m, "nothing.vdb"), innermap.FileError, "nothing.vdb"),
-            (lambda: innermap.push(m, grids, densities=["fog"]), innermap.DataError, "fog"),
-            (lambda: innermap.push(m, grids, grids=["fog"]), KeyError, "fog"),
-            (lambda: innermap.push(m, grids, fade_to="fitted"), ValueError, "outside"),
-            (lambda: innermap.push(m, grids, sampling="cubic"), innermap.SettingError, "sampling"),
-            (lambda: innermap.push("map.ply", grids), TypeError, "map: "),
-            (lambda: innermap.push(m, np.zeros((3, 2))), ValueError, "X: expects"),
-            (lambda: innermap.push(m, grids, max_memory="1MB"), MemoryError, "1 MB"),
-            (lambda: innermap.grids({"a": np.zeros((2, 2))}, np.eye(4)), ValueError, "a: expects"),
-            (lambda: innermap.grids({"a": np.ones((2, 2, 2))}, np.zeros((4, 4))), ValueError,
-             "matrix"),
-            (lambda: innermap.grids({"a": np.zeros((2, 2, 2))}, np.eye(4)), ValueError,
-             "no active")):
-        try:
-            wrong()
-        except kind as error:
-            assert says in str(error), error
-        else:
-            raise AssertionError(f"no error: {says}")
+    shapes.refuses(
+        (lambda: innermap.push(m, "nothing.vdb"), innermap.FileError, "nothing.vdb"),
+        (lambda: innermap.push(m, grids, densities=["fog"]), innermap.DataError, "fog"),
+        (lambda: innermap.push(m, grids, grids=["fog"]), KeyError, "fog"),
+        (lambda: innermap.push(m, grids, fade_to="fitted"), ValueError, "outside"),
+        (lambda: innermap.push(m, grids, sampling="cubic"), innermap.SettingError, "sampling"),
+        (lambda: innermap.push("map.ply", grids), TypeError, "map: "),
+        (lambda: innermap.push(m, np.zeros((3, 2))), ValueError, "X: expects"),
+        (lambda: innermap.push(m, grids, max_memory="1MB"), MemoryError, "1 MB"),
+        (lambda: innermap.grids({"a": np.zeros((2, 2))}, np.eye(4)), ValueError, "a: expects"),
+        (lambda: innermap.grids({"a": np.ones((2, 2, 2))}, np.zeros((4, 4))), ValueError,
+         "matrix"),
+        (lambda: innermap.grids({"a": np.zeros((2, 2, 2))}, np.eye(4)), ValueError,
+         "no active"))
 
 
 def frames():

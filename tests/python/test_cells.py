@@ -145,21 +145,15 @@ def test_ends_when_progress_raises():
 def test_refuses_what_are_no_cells():
     V, F = shapes.ball(1)
     m = innermap.fit(V, F, V, **shapes.FEW)
-    for wrong, kind, says in (
-            (lambda: innermap.remesh(m, (V, {"wedge": np.zeros((1, 6), int)})), ValueError, "wedge"),
-            (lambda: innermap.remesh(m, (V, {"tetra": [[0, 1, 2, 999]]})), ValueError, "999"),
-            (lambda: innermap.remesh(m, (V, {"tetra": [[0, 1, 2]]})), ValueError, "(n, 4)"),
-            (lambda: innermap.remesh(m, (V, {"triangle": F})), ValueError, "no cells"),
-            (lambda: innermap.read_cells("nothing.vtu"), innermap.FileError, "nothing.vtu"),
-            (lambda: innermap.tetrahedralize(V, F, resolution=2), innermap.SettingError,
-             "resolution"),
-            (lambda: innermap.tetrahedralize(V), TypeError, "triangles")):
-        try:
-            wrong()
-        except kind as error:
-            assert says in str(error), error
-        else:
-            raise AssertionError(f"no error: {says}")
+    shapes.refuses(
+        (lambda: innermap.remesh(m, (V, {"wedge": np.zeros((1, 6), int)})), ValueError, "wedge"),
+        (lambda: innermap.remesh(m, (V, {"tetra": [[0, 1, 2, 999]]})), ValueError, "999"),
+        (lambda: innermap.remesh(m, (V, {"tetra": [[0, 1, 2]]})), ValueError, "(n, 4)"),
+        (lambda: innermap.remesh(m, (V, {"triangle": F})), ValueError, "no cells"),
+        (lambda: innermap.read_cells("nothing.vtu"), innermap.FileError, "nothing.vtu"),
+        (lambda: innermap.tetrahedralize(V, F, resolution=2), innermap.SettingError,
+         "resolution"),
+        (lambda: innermap.tetrahedralize(V), TypeError, "triangles"))
 
 
 if __name__ == "__main__":

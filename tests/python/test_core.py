@@ -34,31 +34,25 @@ def test_names_the_argument_that_is_wrong():
     m = innermap.fit(V, F, V, **shapes.FEW)
     nan = V.copy()
     nan[3, 1] = np.nan
-    for wrong, kind, says in (
-            (lambda: innermap.fit(V, F, V, tolerence=1), TypeError, "is it 'tolerance'"),
-            (lambda: innermap.fit(V, F, V, tolerance=3), innermap.SettingError, "tolerance: "),
-            (lambda: innermap.fit(V, F, V, tolerance="a"), TypeError, "tolerance: "),
-            (lambda: innermap.fit(V, F + 1, V), innermap.DataError, "F: row"),
-            (lambda: innermap.fit(V, F - 1, V), innermap.DataError, "F: row"),
-            (lambda: innermap.fit(V, F.astype(float), V), TypeError, "F: expects"),
-            (lambda: innermap.fit(V[:, :2], F, V), ValueError, "V: expects an array of shape"),
-            (lambda: innermap.fit(nan, F, V), ValueError, "V: row 3 is not finite"),
-            (lambda: innermap.fit(V, F, nan), ValueError, "V_target: row 3 is not finite"),
-            (lambda: innermap.fit(V[:0], F, V), ValueError, "V: is empty"),
-            (lambda: innermap.fit(V, F[:0], V), ValueError, "F: "),
-            (lambda: innermap.fit("nothing.obj", V), innermap.FileError, "nothing.obj"),
-            (lambda: innermap.fit("nothing.obj", V), OSError, "nothing.obj"),
-            (lambda: m(np.zeros((3, 2))), ValueError, "X: expects an array of shape (n, 3)"),
-            (lambda: m("text"), TypeError, "X: expects"),
-            (lambda: m(None), TypeError, "X: expects"),
-            (lambda: m(1j * V), TypeError, "X: expects"),
-            (lambda: m(), TypeError, "lacks its argument 'X'")):
-        try:
-            wrong()
-        except kind as error:
-            assert says in str(error), error
-        else:
-            raise AssertionError(f"no error: {says}")
+    shapes.refuses(
+        (lambda: innermap.fit(V, F, V, tolerence=1), TypeError, "is it 'tolerance'"),
+        (lambda: innermap.fit(V, F, V, tolerance=3), innermap.SettingError, "tolerance: "),
+        (lambda: innermap.fit(V, F, V, tolerance="a"), TypeError, "tolerance: "),
+        (lambda: innermap.fit(V, F + 1, V), innermap.DataError, "F: row"),
+        (lambda: innermap.fit(V, F - 1, V), innermap.DataError, "F: row"),
+        (lambda: innermap.fit(V, F.astype(float), V), TypeError, "F: expects"),
+        (lambda: innermap.fit(V[:, :2], F, V), ValueError, "V: expects an array of shape"),
+        (lambda: innermap.fit(nan, F, V), ValueError, "V: row 3 is not finite"),
+        (lambda: innermap.fit(V, F, nan), ValueError, "V_target: row 3 is not finite"),
+        (lambda: innermap.fit(V[:0], F, V), ValueError, "V: is empty"),
+        (lambda: innermap.fit(V, F[:0], V), ValueError, "F: "),
+        (lambda: innermap.fit("nothing.obj", V), innermap.FileError, "nothing.obj"),
+        (lambda: innermap.fit("nothing.obj", V), OSError, "nothing.obj"),
+        (lambda: m(np.zeros((3, 2))), ValueError, "X: expects an array of shape (n, 3)"),
+        (lambda: m("text"), TypeError, "X: expects"),
+        (lambda: m(None), TypeError, "X: expects"),
+        (lambda: m(1j * V), TypeError, "X: expects"),
+        (lambda: m(), TypeError, "lacks its argument 'X'"))
 
 
 def test_refuses_what_needs_more_memory():
@@ -139,16 +133,10 @@ def test_puts_maps_on_grids():
     assert (places >= grids.bounds[0] - 1e-9).all() and (places <= grids.bounds[1] + 1e-9).all()
     assert grids.totals["folded_fraction"] == 0 and grids.totals["interior_voxels"] == len(inside)
     assert grids.metadata("map")["vector_type"] == "invariant"
-    for wrong, kind in ((lambda: grids["nothing"], KeyError),
-                        (lambda: m.evaluate(resolution=3), innermap.SettingError),
-                        (lambda: m.evaluate(resolution=4000, max_memory="2GB"),
-                         innermap.MemoryError)):
-        try:
-            wrong()
-        except kind:
-            pass
-        else:
-            raise AssertionError("no error")
+    shapes.refuses((lambda: grids["nothing"], KeyError, "nothing"),
+                   (lambda: m.evaluate(resolution=3), innermap.SettingError, "resolution"),
+                   (lambda: m.evaluate(resolution=4000, max_memory="2GB"), innermap.MemoryError,
+                    "2 GB"))
 
 
 def test_takes_meshes_in_many_ways():
