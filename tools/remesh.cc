@@ -67,23 +67,10 @@ void drawCut(const RemeshOptions& options, const Remesh& result, Context& contex
 
 void write(const RemeshOptions& options, Remesh& result, Context& context) {
   context.timed("write", [&] {
-    for (CellField& field : qualityFields(result.mesh, result.quality))
-      result.mesh.cellFields.push_back(std::move(field));
     for (const std::string& field : writeCells(options.output, result.mesh))
       context.warning(options.output + ": its format cannot hold the field '" + field +
                       "'; it is left out");
   });
-}
-
-// Fields of an earlier quality are not carried.
-void dropQuality(CellMesh& mesh) {
-  auto& fields = mesh.cellFields;
-  fields.erase(std::remove_if(fields.begin(), fields.end(),
-                              [](const CellField& f) {
-                                return f.name == "least_dihedral" ||
-                                       f.name == "greatest_dihedral" || f.name == "scaled_jacobian";
-                              }),
-               fields.end());
 }
 
 void run(const RemeshOptions& options, Context& context) {
@@ -114,7 +101,6 @@ void run(const RemeshOptions& options, Context& context) {
                          "write " + options.output},
                         need);
   context.requireMemory("carrying " + options.cells, need, "use a coarser mesh");
-  dropQuality(file.mesh);
   RemeshSettings settings = context.settings(options.settings);
   std::optional<Mesh> surface;
   if (!options.surface.empty()) {

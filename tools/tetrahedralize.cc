@@ -124,7 +124,7 @@ void run(const TetrahedralizeOptions& options, Context& context) {
   if (!options.picture.empty())
     context.timed("picture", [&] { drawCut(options, result.mesh, quality, context); });
   context.timed("write", [&] {
-    result.mesh.cellFields = qualityFields(result.mesh, quality);
+    setQualityFields(result.mesh, quality);
     const std::vector<std::string> left = writeCells(options.output, result.mesh);
     for (const std::string& field : left)
       context.note(fmt::format("{} cannot hold the field {}", options.output, field));

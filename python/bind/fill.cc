@@ -50,7 +50,7 @@ py::object tetrahedra(const Arguments& a, TetrahedralizeOptions& o) {
   });
   const CellQuality quality =
       call(o.call, [&](Progress* progress) { return cellQuality(made.mesh, {progress}); });
-  made.mesh.cellFields = qualityFields(made.mesh, quality);
+  setQualityFields(made.mesh, quality);
   py::dict figures;
   figures["edge"] = made.edge;
   figures["components"] = made.topology.components;
@@ -139,7 +139,6 @@ py::object hexahedra(const Arguments& a, HexahedralizeOptions& o) {
   figures["in_blocks"] = cellsObject(std::move(made.inBlocks));
   figures["notes"] = made.notes;
   figures["warnings"] = made.warnings;
-  made.mesh.cellFields = qualityFields(made.mesh, made.quality);
   return cellsObject(std::move(made.mesh), figures);
 }
 

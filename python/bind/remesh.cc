@@ -1,8 +1,6 @@
 // Cells carried by a map and repaired; finite elements beside charges.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "bind/arrays.h"
 #include "bind/cells.h"
 #include "bind/errors.h"
@@ -44,23 +42,11 @@ struct RemeshOptions {
   }
 };
 
-// Fields of an earlier quality are not carried.
-void dropQuality(CellMesh& mesh) {
-  auto& fields = mesh.cellFields;
-  fields.erase(std::remove_if(fields.begin(), fields.end(),
-                              [](const CellField& f) {
-                                return f.name == "least_dihedral" ||
-                                       f.name == "greatest_dihedral" || f.name == "scaled_jacobian";
-                              }),
-               fields.end());
-}
-
 py::object remesh(const Arguments& a, RemeshOptions& o) {
   if (!py::isinstance<PyMap>(a[0])) wrongType("map", "expects an innermap.Map");
   const auto& map = py::cast<const PyMap&>(a[0]);
   CellMesh cells = cellsFrom(a[1], "cells", o.call, textsFrom(o.vectors, "vectors"),
                              textsFrom(o.normals, "normals"));
-  dropQuality(cells);
   std::optional<Mesh> surface;
   if (!o.surface.is_none()) surface = meshFrom(o.surface, "surface");
   if (surface) o.settings.surface = &*surface;
@@ -79,8 +65,6 @@ py::object remesh(const Arguments& a, RemeshOptions& o) {
   figures["boundary_max"] = made.boundaryMax;
   figures["notes"] = made.notes;
   figures["warnings"] = made.warnings;
-  for (CellField& field : qualityFields(made.mesh, made.quality))
-    made.mesh.cellFields.push_back(std::move(field));
   return cellsObject(std::move(made.mesh), figures);
 }
 

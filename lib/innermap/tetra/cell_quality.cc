@@ -124,10 +124,13 @@ CellQuality cellQuality(const CellMesh& mesh, const CellQualitySettings& setting
   return q;
 }
 
-std::vector<CellField> qualityFields(const CellMesh& mesh, const CellQuality& quality) {
+void setQualityFields(CellMesh& mesh, const CellQuality& quality) {
   const std::size_t tetrahedra = mesh.tetrahedra.size(), hexahedra = mesh.hexahedra.size();
-  std::vector<CellField> fields;
-  const auto add = [&](const char* name, const std::vector<float>& values, std::size_t first) {
+  auto& fields = mesh.cellFields;
+  const auto set = [&](const char* name, const std::vector<float>& values, std::size_t first) {
+    fields.erase(std::remove_if(fields.begin(), fields.end(),
+                                [&](const CellField& f) { return f.name == name; }),
+                 fields.end());
     if (values.empty()) return;
     CellField field;
     field.name = name;
@@ -136,10 +139,9 @@ std::vector<CellField> qualityFields(const CellMesh& mesh, const CellQuality& qu
       field.values[first + i] = static_cast<double>(values[i]);
     fields.push_back(std::move(field));
   };
-  add("least_dihedral", quality.leastDihedral, 0);
-  add("greatest_dihedral", quality.greatestDihedral, 0);
-  add("scaled_jacobian", quality.scaledJacobian, tetrahedra);
-  return fields;
+  set("least_dihedral", quality.leastDihedral, 0);
+  set("greatest_dihedral", quality.greatestDihedral, 0);
+  set("scaled_jacobian", quality.scaledJacobian, tetrahedra);
 }
 
 }  // namespace innermap

@@ -47,9 +47,9 @@ struct CellQualitySettings {
 // The mesh must be valid. The same for any number of threads. Throws Cancelled.
 CellQuality cellQuality(const CellMesh& mesh, const CellQualitySettings& settings = {});
 
-// One row a cell of the mesh, tetrahedra first, for a file: "least_dihedral" and
-// "greatest_dihedral" where there are tetrahedra, "scaled_jacobian" where there are hexahedra; 0
-// for cells of the other kind.
-std::vector<CellField> qualityFields(const CellMesh& mesh, const CellQuality& quality);
+// Makes it fields of the mesh's cells, in place of those of an earlier quality: "least_dihedral"
+// and "greatest_dihedral" where there are tetrahedra, "scaled_jacobian" where there are hexahedra;
+// 0 for cells of the other kind. quality: of this mesh.
+void setQualityFields(CellMesh& mesh, const CellQuality& quality);
 
 }  // namespace innermap

@@ -137,7 +137,7 @@ void measure(const Mesh& surface, const HexahedralizeSettings& settings, Hexahed
   CellQualitySettings quality;
   quality.progress = settings.progress;
   out.quality = cellQuality(out.mesh, quality);
-  out.mesh.cellFields = qualityFields(out.mesh, out.quality);
+  setQualityFields(out.mesh, out.quality);
   SolidSettings making;
   making.progress = settings.progress;
   BoundaryFitSettings fitting;

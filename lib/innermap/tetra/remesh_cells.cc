@@ -232,6 +232,7 @@ class Remesher {
     CellQualitySettings judging;
     judging.progress = settings_.progress;
     out_.quality = cellQuality(made, judging);
+    setQualityFields(made, out_.quality);
     warn();
   }
 

@@ -37,7 +37,7 @@ struct RemeshSettings {
 
 struct Remesh {
   // Where the map takes it. Its vertices' fields have one more, "source": the places that they came
-  // from. Vertices that were drawn into others are gone.
+  // from; its cells' fields have their quality. Vertices that were drawn into others are gone.
   CellMesh mesh;
   std::size_t invertedAtRest = 0;   // of the mesh given
   std::size_t invertedCarried = 0;  // before anything was repaired
