@@ -19,12 +19,6 @@ struct VoxelizeOptions {
   bool fog = false, attributes = false;
 };
 
-std::uint64_t memoryFor(const VoxelizeOptions& options, const Solid& solid, const Mesh& mesh,
-                        const LevelSetSettings& settings) {
-  const int vectors = options.attributes ? !mesh.uvs.empty() + !mesh.colours.empty() : 0;
-  return levelSetMemory(solid, settings) * (1 + options.fog + 3 * vectors);
-}
-
 void fillReport(const openvdb::FloatGrid& levelSet, const Solid& solid, const Mesh& mesh,
                 Report& report) {
   report.source = reportOf(mesh, solid.volume());
@@ -73,7 +67,7 @@ void run(const VoxelizeOptions& options, Context& context) {
   const auto settings = gridSettings(options.grid, context, options.levelSet);
   const double voxelSize = voxelSizeFor(solid, settings);
   if (const std::string note = voxelSizeNote(solid, settings); !note.empty()) context.note(note);
-  const std::uint64_t need = memoryFor(options, solid, mesh, settings);
+  const std::uint64_t need = voxelizeMemory(solid, settings, mesh, options.fog, options.attributes);
   if (context.dryRun())
     return context.plan({fmt::format("voxelize {} with voxels of {:.6g} to {}", options.mesh,
                                      voxelSize, options.output)},

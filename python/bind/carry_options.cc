@@ -81,7 +81,7 @@ OutsideSettings CarryOptions::outsideSettings(const Points& from, const Points& 
   OutsideSettings out;
   out.distance = outside;
   const bool isText = py::isinstance<py::str>(fadeTo);
-  const std::string text = isText ? py::cast<std::string>(fadeTo) : "cut";
+  const std::string text = isText ? textFrom(fadeTo, "fade_to") : "cut";
   if (fadeTo.is_none() || (isText && text == "cut")) return out;
   if (!(outside > 0)) wrongValue("fade_to", "is for what lies outside; give outside too");
   if (!isText)

@@ -9,6 +9,7 @@
 #include "bind/arrays.h"
 #include "bind/errors.h"
 #include "bind/keywords.h"
+#include "bind/lists.h"
 #include "bind/meshes.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/cells/cell_file.h"
@@ -31,15 +32,14 @@ std::vector<Block> blocksOf(const py::object& cells, const std::string& name) {
   std::vector<Block> out;
   if (py::isinstance<py::dict>(cells)) {
     for (const auto& [type, data] : py::dict(cells))
-      out.push_back(
-          {py::cast<std::string>(py::str(type)), py::reinterpret_borrow<py::object>(data)});
+      out.push_back({textOf(type, name), py::reinterpret_borrow<py::object>(data)});
     return out;
   }
   for (const auto& item : cells) {
     if (py::hasattr(item, "type") && py::hasattr(item, "data"))
-      out.push_back({py::cast<std::string>(py::str(item.attr("type"))), item.attr("data")});
+      out.push_back({textOf(item.attr("type"), name), item.attr("data")});
     else if (py::isinstance<py::tuple>(item) && py::len(item) == 2)
-      out.push_back({py::cast<std::string>(py::str(item[py::int_(0)])), item[py::int_(1)]});
+      out.push_back({textOf(item[py::int_(0)], name), item[py::int_(1)]});
     else
       wrongValue(name, "expects cells as a dict of arrays by type, or a list of (type, array)");
   }
@@ -109,7 +109,7 @@ py::array arrayOfField(const CellField& field, std::size_t first, std::size_t ro
 // Of several blocks in the mesh's order: tetrahedra, then hexahedra.
 void takeCellData(const py::dict& data, const std::vector<Block>& blocks, CellMesh& mesh) {
   for (const auto& [key, values] : data) {
-    const auto name = py::cast<std::string>(py::str(key));
+    const std::string name = textOf(key, "cell_data");
     const py::list parts(py::reinterpret_borrow<py::object>(values));
     if (parts.size() != blocks.size())
       wrongValue(name, fmt::format("cell_data has {} arrays, there are {} blocks of cells",
@@ -148,8 +148,7 @@ CellMesh meshOf(const py::object& points, const py::object& cells, const py::dic
   if (mesh.tetrahedra.empty() && mesh.hexahedra.empty())
     wrongValue(name, "has no cells of type 'tetra' or 'hexahedron'");
   for (const auto& [key, values] : pointData)
-    mesh.vertexFields.push_back(
-        fieldOf(py::cast<std::string>(py::str(key)), values, mesh.vertices.size()));
+    mesh.vertexFields.push_back(fieldOf(textOf(key, "point_data"), values, mesh.vertices.size()));
   takeCellData(cellData, blocks, mesh);
   validate(mesh);
   return mesh;

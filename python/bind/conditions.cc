@@ -9,6 +9,7 @@
 #include "bind/arrays.h"
 #include "bind/call.h"
 #include "bind/errors.h"
+#include "bind/lists.h"
 #include "bind/meshes.h"
 #include "innermap/io/geometry/surface_data.h"
 
@@ -45,17 +46,6 @@ std::vector<int> trianglesSelected(const py::object& object, const std::string& 
   return out;
 }
 
-// A number, or one a channel.
-std::vector<double> numbersFrom(const py::object& object, const std::string& name) {
-  if (py::isinstance<py::float_>(object) || py::isinstance<py::int_>(object)) {
-    const double value = py::cast<double>(object);
-    if (!std::isfinite(value)) wrongValue(name, "has a value that is not finite");
-    return {value};
-  }
-  const Matrix values = matrixFrom(py::array::ensure(object).attr("reshape")(-1), name);
-  return std::vector<double>(values.data(), values.data() + values.rows());
-}
-
 struct GroupNumbers {
   std::vector<SurfaceGroup> groups;
   Matrix numbers;
@@ -79,6 +69,7 @@ GroupNumbers numbersOf(const py::object& given, const std::string& name, const G
     if (pair.size() != 2) wrongValue(name, "expects pairs (triangles, values)");
     out.groups.push_back(groups.select(pair[0], name));
     const std::vector<double> numbers = numbersFrom(pair[1], name);
+    if (numbers.empty()) wrongValue(name, "has no value for '" + out.groups.back().name + "'");
     if (out.numbers.empty()) out.numbers = Matrix(items.size(), numbers.size());
     if (numbers.size() != out.numbers.columns())
       wrongValue(name, fmt::format("has {} values for '{}' and {} for others", numbers.size(),
@@ -101,7 +92,7 @@ Groups::Groups(const Mesh& mesh, const py::object& given) : mesh_(mesh) {
   read_ = true;
   for (const auto& [key, value] : py::dict(given)) {
     if (!py::isinstance<py::str>(key)) wrongType("groups", "expects a dict {name: triangles}");
-    const auto name = py::cast<std::string>(key);
+    const std::string name = textFrom(key, "groups");
     groups_.push_back({name, trianglesSelected(py::reinterpret_borrow<py::object>(value),
                                                "groups['" + name + "']", mesh.triangles.size())});
   }
@@ -116,7 +107,7 @@ const std::vector<SurfaceGroup>& Groups::known() const {
 SurfaceGroup Groups::select(const py::object& given, const std::string& name) const {
   if (!py::isinstance<py::str>(given))
     return {name, trianglesSelected(given, name, mesh_.triangles.size())};
-  const auto wanted = py::cast<std::string>(given);
+  const std::string wanted = textFrom(given, name);
   std::vector<std::string> names;
   for (const SurfaceGroup& group : known()) {
     if (group.name == wanted) return group;

@@ -18,9 +18,10 @@ namespace {
 LandmarkPlace placeFrom(const py::object& object) {
   LandmarkPlace place;
   if (PyIndex_Check(object.ptr()) && !py::isinstance<py::array>(object)) {
-    const auto vertex = py::cast<std::int64_t>(py::int_(object));
-    if (vertex < 0 || vertex > std::numeric_limits<int>::max())
-      wrongValue("landmarks", fmt::format("{} is not a vertex", vertex));
+    int overflow = 0;
+    const long long vertex = PyLong_AsLongLongAndOverflow(py::int_(object).ptr(), &overflow);
+    if (overflow != 0 || vertex < 0 || vertex > std::numeric_limits<int>::max())
+      wrongValue("landmarks", "a vertex is counted from 0");
     place.vertex = static_cast<int>(vertex);
     return place;
   }

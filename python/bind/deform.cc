@@ -43,7 +43,7 @@ class Deformation {
   Deformation(const Mesh& rest, const FrameSet& frames, const DeformOptions& o)
       : rest_(rest), frames_(frames), o_(o) {
     fadeToFitted_ = py::isinstance<py::str>(o.fadeTo) &&
-                    py::cast<std::string>(o.fadeTo) == "fitted" && o.outside > 0;
+                    textFrom(o.fadeTo, "fade_to") == "fitted" && o.outside > 0;
     if (!fadeToFitted_) outside_ = o.outsideSettings({}, {});
     outside_.distance = o.outside;
   }

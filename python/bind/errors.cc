@@ -1,5 +1,7 @@
 #include "bind/errors.h"
 
+#include <exception>
+
 #include "innermap/boundary/laid_out_mesh.h"
 #include "innermap/core/error.h"
 
@@ -26,23 +28,33 @@ py::tuple bases(PyObject* ours, PyObject* theirs) {
   return py::make_tuple(py::handle(ours), py::handle(theirs));
 }
 
+// Paths in messages may be of any bytes.
+void raise(PyObject* type, const std::exception& error) {
+  const std::string text = error.what();
+  PyObject* const words =
+      PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "backslashreplace");
+  if (!words) return;  // no memory: which is raised already
+  PyErr_SetObject(type, words);
+  Py_DECREF(words);
+}
+
 void translate(std::exception_ptr thrown) {  // NOLINT(performance-unnecessary-value-param)
   try {
     if (thrown) std::rethrow_exception(thrown);
   } catch (const FileError& e) {
-    PyErr_SetString(classes.file, e.what());
+    raise(classes.file, e);
   } catch (const UnfitMesh& e) {
-    PyErr_SetString(classes.unfit, e.what());
+    raise(classes.unfit, e);
   } catch (const DataError& e) {
-    PyErr_SetString(classes.data, e.what());
+    raise(classes.data, e);
   } catch (const SettingError& e) {
-    PyErr_SetString(classes.setting, e.what());
+    raise(classes.setting, e);
   } catch (const MemoryError& e) {
-    PyErr_SetString(classes.memory, e.what());
+    raise(classes.memory, e);
   } catch (const Cancelled& e) {
-    PyErr_SetString(classes.cancelled, e.what());
+    raise(classes.cancelled, e);
   } catch (const Error& e) {
-    PyErr_SetString(classes.error, e.what());
+    raise(classes.error, e);
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "bind/arrays.h"
 #include "bind/errors.h"
+#include "bind/lists.h"
 #include "bind/meshes.h"
 #include "innermap/core/memory.h"
 #include "innermap/mesh/read.h"
@@ -93,7 +94,7 @@ void FrameSet::takeMeshes(const py::object& given) {
 
 void FrameSet::choose(const py::object& only) {
   std::optional<FrameRanges> ranges;
-  if (!only.is_none()) ranges.emplace("only", py::cast<std::string>(py::str(only)));
+  if (!only.is_none()) ranges.emplace("only", textOf(only, "only"));
   for (std::size_t i = 0; i < numbers_.size(); ++i)
     if (!ranges || ranges->contains(numbers_[i])) wanted_.push_back(i);
   if (wanted_.empty()) throw SettingError("only", "has none of the frames");
@@ -137,7 +138,7 @@ FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, const CallOption
                      std::uint64_t others, Progress* progress) {
   const FrameFitterSettings settings = o.settings(call, progress);
   requireMemory(fmt::format("a sequence with {} charges", settings.sources),
-                processMemory(frameFitterMemory(settings) + others), call.maxMemory,
+                processMemory(frameFitterMemory(settings, others)), call.maxMemory,
                 "use fewer sources");
   BoundarySettings boundary;
   boundary.progress = progress;

@@ -5,6 +5,7 @@
 #include <pybind11/numpy.h>
 
 #include <algorithm>
+#include <type_traits>
 
 #include "bind/arrays.h"
 #include "bind/errors.h"
@@ -40,9 +41,15 @@ struct PyGrids {
   }
 };
 
-template <class Tree, class Number>
-py::array denseOf(const GridBase& grid, const CoordBBox& box) {
-  using Value = typename Tree::ValueType;
+// Of which there are arrays.
+using ArrayGrids = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
+                                     openvdb::Int64Grid, openvdb::BoolGrid, openvdb::Vec3SGrid,
+                                     openvdb::Vec3DGrid, openvdb::Vec3IGrid>;
+
+template <class Grid>
+py::array denseOf(const Grid& grid, const CoordBBox& box) {
+  using Value = typename Grid::ValueType;
+  using Number = typename openvdb::VecTraits<Value>::ElementType;
   constexpr std::size_t kWidth = sizeof(Value) / sizeof(Number);
   const openvdb::Coord size = box.dim();
   std::vector<py::ssize_t> shape{size.x(), size.y(), size.z()};
@@ -52,43 +59,27 @@ py::array denseOf(const GridBase& grid, const CoordBBox& box) {
   {
     const py::gil_scoped_release unlocked;
     openvdb::tools::Dense<Value> dense(box, values);
-    openvdb::tools::copyToDense(static_cast<const openvdb::Grid<Tree>&>(grid), dense);
+    openvdb::tools::copyToDense(grid, dense);
   }
   return std::move(out);
-}
-
-py::array denseOf(const GridBase& grid, const CoordBBox& box) {
-  if (grid.isType<openvdb::FloatGrid>()) return denseOf<openvdb::FloatTree, float>(grid, box);
-  if (grid.isType<openvdb::DoubleGrid>()) return denseOf<openvdb::DoubleTree, double>(grid, box);
-  if (grid.isType<openvdb::Int32Grid>())
-    return denseOf<openvdb::Int32Tree, std::int32_t>(grid, box);
-  if (grid.isType<openvdb::Int64Grid>())
-    return denseOf<openvdb::Int64Tree, std::int64_t>(grid, box);
-  if (grid.isType<openvdb::BoolGrid>()) return denseOf<openvdb::BoolTree, bool>(grid, box);
-  if (grid.isType<openvdb::Vec3SGrid>()) return denseOf<openvdb::Vec3STree, float>(grid, box);
-  if (grid.isType<openvdb::Vec3DGrid>()) return denseOf<openvdb::Vec3DTree, double>(grid, box);
-  if (grid.isType<openvdb::Vec3IGrid>())
-    return denseOf<openvdb::Vec3ITree, std::int32_t>(grid, box);
-  throw DataError(
-      fmt::format("grid '{}' is of type {}, which has no array", grid.getName(), grid.type()));
-}
-
-std::uint64_t bytesOf(const GridBase& grid, const CoordBBox& box) {
-  const std::uint64_t value = grid.isType<openvdb::Vec3DGrid>()   ? 24
-                              : grid.isType<openvdb::Vec3SGrid>() ? 12
-                              : grid.isType<openvdb::Vec3IGrid>() ? 12
-                                                                  : 8;
-  return box.volume() * value;
 }
 
 py::array arrayNamed(const PyGrids& grids, const std::string& name) {
   const GridBase& grid = grids.named(name);
   const openvdb::Coord size = grids.box.dim();
-  requireMemory(
-      fmt::format("the array of '{}', {} x {} x {} voxels,", name, size.x(), size.y(), size.z()),
-      processMemory(bytesOf(grid, grids.box)), grids.maxMemory,
-      "use a lower resolution, or write_vdb()");
-  return denseOf(grid, grids.box);
+  py::array out;
+  const bool known = grid.apply<ArrayGrids>([&](const auto& typed) {
+    using Value = typename std::decay_t<decltype(typed)>::ValueType;
+    requireMemory(
+        fmt::format("the array of '{}', {} x {} x {} voxels,", name, size.x(), size.y(), size.z()),
+        processMemory(grids.box.volume() * sizeof(Value)), grids.maxMemory,
+        "use a lower resolution, or write_vdb()");
+    out = denseOf(typed, grids.box);
+  });
+  if (!known)
+    throw DataError(
+        fmt::format("grid '{}' is of type {}, which has no array", grid.getName(), grid.type()));
+  return out;
 }
 
 py::array matrixOf(const PyGrids& grids) {

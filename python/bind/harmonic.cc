@@ -6,6 +6,7 @@
 #include "bind/errors.h"
 #include "bind/field.h"
 #include "bind/keywords.h"
+#include "bind/lists.h"
 #include "bind/meshes.h"
 #include "innermap/boundary/fit_map.h"
 #include "innermap/core/memory.h"
@@ -74,7 +75,7 @@ std::vector<std::string> namesFrom(const py::object& given, std::size_t channels
   }
   if (py::isinstance<py::str>(given) || !py::isinstance<py::iterable>(given))
     wrongType("names", "expects a list of the channels' names");
-  for (const auto& name : py::iter(given)) out.push_back(py::cast<std::string>(py::str(name)));
+  for (const auto& name : py::iter(given)) out.push_back(textOf(name, "names"));
   if (out.size() != channels)
     wrongValue("names", fmt::format("has {} for {} channels", out.size(), channels));
   return out;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bind/errors.h"
+#include "bind/lists.h"
 #include "innermap/core/memory.h"
 
 namespace py = pybind11;
@@ -46,6 +47,12 @@ std::int64_t wholeFrom(const char* name, py::handle given, const Range& range) {
     throw SettingError(name, fmt::format("must be a whole number{}, got {}", words(range),
                                          py::cast<std::string>(py::str(number))));
   return value;
+}
+
+bool isTrue(py::handle given) {
+  const int truth = PyObject_IsTrue(given.ptr());
+  if (truth < 0) throw py::error_already_set();
+  return truth != 0;
 }
 
 // Lines of at most 90 letters, indented.
@@ -117,18 +124,20 @@ void Keywords::whole(const char* name, std::optional<std::int64_t>* value, Range
 void Keywords::flag(const char* name, bool* value, const char* doc) {
   const py::object given = take(name);
   entry(name, "bool", *value ? "True" : "False", "", doc);
-  if (given.is_none()) return;
-  const int truth = PyObject_IsTrue(given.ptr());
-  if (truth < 0) throw py::error_already_set();
-  *value = truth != 0;
+  if (!given.is_none()) *value = isTrue(given);
+}
+
+void Keywords::flag(const char* name, std::optional<bool>* value, const char* doc) {
+  const py::object given = take(name);
+  entry(name, "bool", *value ? (**value ? "True" : "False") : "None", "", doc);
+  if (!given.is_none()) *value = isTrue(given);
 }
 
 void Keywords::text(const char* name, std::string* value, const char* doc) {
   const py::object given = take(name);
   entry(name, "str", "'" + *value + "'", "", doc);
   if (given.is_none()) return;
-  if (!py::isinstance<py::str>(given)) wrongType(name, "expects a str, got " + typeName(given));
-  *value = py::cast<std::string>(given);
+  *value = textFrom(given, name);
 }
 
 void Keywords::bytes(const char* name, std::uint64_t* value, const char* doc) {
@@ -137,7 +146,7 @@ void Keywords::bytes(const char* name, std::uint64_t* value, const char* doc) {
   if (given.is_none())
     *value = availableMemory() / 10 * 8;
   else if (py::isinstance<py::str>(given))
-    *value = parseBytes(name, py::cast<std::string>(given));
+    *value = parseBytes(name, textFrom(given, name));
   else
     *value = static_cast<std::uint64_t>(wholeFrom(name, given, {1, 9e18}));
   if (*value == 0) throw SettingError(name, "must be above 0; write for example '4GB'");
@@ -156,7 +165,7 @@ void Keywords::oneOf(const char* name, const std::vector<std::string>& choices, 
   entry(name, all, "'" + choices[*value] + "'", "", doc);
   if (given.is_none()) return;
   if (!py::isinstance<py::str>(given)) wrongType(name, "expects one of " + all);
-  const auto text = py::cast<std::string>(given);
+  const std::string text = textFrom(given, name);
   const auto found = std::find(choices.begin(), choices.end(), text);
   if (found == choices.end())
     throw SettingError(name, fmt::format("must be one of {}, got '{}'", all, text));
@@ -165,7 +174,7 @@ void Keywords::oneOf(const char* name, const std::vector<std::string>& choices, 
 
 void Keywords::finish() const {
   for (const auto& item : given_) {
-    const auto name = py::cast<std::string>(item.first);
+    const std::string name = textFrom(item.first, function_);
     if (std::find(names_.begin(), names_.end(), name) != names_.end()) continue;
     const std::string meant = nearest(name, names_);
     throw py::type_error(fmt::format("{}() has no argument '{}'{}", function_, name,
@@ -239,8 +248,12 @@ void defineFunction(py::handle scope, const Function& function, const Keywords& 
                  described.signature();
   std::string doc = fmt::format("{}({})\n--\n\n{}", function.name, signature, function.doc);
   if (!described.docs().empty()) doc += "\n\nKeyword arguments\n\n" + described.docs();
-  const auto general = [parameters, body = std::move(body), name = std::string(function.name)](
-                           const py::args& given, const py::kwargs& named) {
+  const auto general = [parameters, scope, body = std::move(body),
+                        name = std::string(function.name)](const py::args& given,
+                                                           const py::kwargs& named) {
+    if (parameters.method && (given.empty() || !py::isinstance(given[0], scope)))
+      throw py::type_error(fmt::format("{}() is a method of {}", name,
+                                       py::cast<std::string>(scope.attr("__name__"))));
     py::dict keywords(named);
     const Arguments arguments = parameters.resolve(name, given, keywords);
     return body(arguments, keywords);

@@ -44,6 +44,7 @@ class Keywords {
     if (number) *value = static_cast<Integer>(*number);
   }
   void flag(const char* name, bool* value, const char* doc);
+  void flag(const char* name, std::optional<bool>* value, const char* doc);
   void text(const char* name, std::string* value, const char* doc);
   void bytes(const char* name, std::uint64_t* value, const char* doc);  // 4000000000 or "4GB"
   // type: as in a stub. The function looks at the object itself; None if not given.

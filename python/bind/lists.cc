@@ -11,25 +11,45 @@ namespace py = pybind11;
 
 namespace innermap::python {
 
+std::string textFrom(py::handle object, const std::string& name) {
+  if (!py::isinstance<py::str>(object)) wrongType(name, "expects a str");
+  py::ssize_t size = 0;
+  const char* const text = PyUnicode_AsUTF8AndSize(object.ptr(), &size);
+  if (!text) {
+    PyErr_Clear();
+    wrongValue(name, "has half a surrogate pair, which is no letter");
+  }
+  return {text, static_cast<std::size_t>(size)};
+}
+
+std::string textOf(py::handle object, const std::string& name) {
+  return textFrom(py::str(object), name);
+}
+
 std::vector<std::string> textsFrom(py::handle object, const std::string& name) {
   if (object.is_none()) return {};
-  if (py::isinstance<py::str>(object)) return {py::cast<std::string>(object)};
+  if (py::isinstance<py::str>(object)) return {textFrom(object, name)};
   if (!py::isinstance<py::iterable>(object)) wrongType(name, "expects a list of texts");
   std::vector<std::string> out;
   for (const auto& item : object) {
     if (!py::isinstance<py::str>(item)) wrongType(name, "expects a list of texts");
-    out.push_back(py::cast<std::string>(item));
+    out.push_back(textFrom(item, name));
   }
   return out;
 }
 
 std::vector<double> numbersFrom(py::handle object, const std::string& name) {
   if (object.is_none()) return {};
-  if (PyNumber_Check(object.ptr()) && !py::isinstance<py::array>(object)) {
-    py::list one;
-    one.append(object);
-    return numbersFrom(one, name);
+  const bool one = py::isinstance<py::array>(object)
+                       ? py::reinterpret_borrow<py::array>(object).ndim() == 0
+                       : PyNumber_Check(object.ptr()) != 0;
+  if (one) {
+    py::list list;
+    list.append(object);
+    return numbersFrom(list, name);
   }
+  if (!py::isinstance<py::sequence>(object) && !py::isinstance<py::array>(object))
+    wrongType(name, "expects a number or a list of numbers");
   if (py::len(object) == 0) return {};
   const Matrix numbers = matrixFrom(object, name);
   if (numbers.columns() != 1) wrongValue(name, "expects numbers in one list");

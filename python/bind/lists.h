@@ -1,4 +1,4 @@
-// Lists as arguments.
+// Texts and lists as arguments.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -11,6 +11,10 @@
 
 namespace innermap::python {
 
+// A str, in UTF-8. Throw TypeError for what is none, DataError for half a surrogate pair.
+std::string textFrom(pybind11::handle object, const std::string& name);
+// str(object).
+std::string textOf(pybind11::handle object, const std::string& name);
 // One text or several; none for None. Throws TypeError for what is no text.
 std::vector<std::string> textsFrom(pybind11::handle object, const std::string& name);
 // One number or several, finite; none for None.

@@ -5,6 +5,7 @@
 #include "bind/arrays.h"
 #include "bind/call.h"
 #include "bind/errors.h"
+#include "bind/lists.h"
 #include "innermap/mesh/check.h"
 #include "innermap/mesh/read.h"
 #include "innermap/mesh/write.h"
@@ -35,7 +36,7 @@ Mesh meshOf(py::handle vertices, py::handle triangles, const std::string& name,
 py::object trianglesOfCells(const py::object& mesh, const std::string& name) {
   py::list arrays;
   for (const auto& block : mesh.attr("cells")) {
-    const auto type = py::cast<std::string>(py::str(block.attr("type")));
+    const std::string type = textOf(block.attr("type"), name);
     if (type == "vertex" || type == "line") continue;
     if (type != "triangle")
       wrongValue(name, "has cells of type '" + type +
@@ -78,7 +79,9 @@ bool isPath(py::handle object) {
 
 std::string pathFrom(py::handle object, const std::string& name) {
   if (!isPath(object)) wrongType(name, "expects a path (str or os.PathLike)");
-  return py::cast<std::string>(py::module_::import("os").attr("fsdecode")(object));
+  const std::string path = py::bytes(py::module_::import("os").attr("fsencode")(object));
+  if (path.find('\0') != std::string::npos) wrongValue(name, "has a zero byte, as no path has");
+  return path;
 }
 
 Mesh meshFrom(const py::object& object, const std::string& name) {

@@ -83,7 +83,7 @@ py::object write(const Arguments& a, WriteOptions& o) {
 
 struct ReadOptions {
   VolumeTextureReadSettings texture;
-  py::object names, layout, axis, tiles, lowerCorner, rowsUp;
+  py::object names, layout, axis, tiles, lowerCorner;
   CallOptions call;
 
   void describe(Keywords& k) {
@@ -95,7 +95,7 @@ struct ReadOptions {
     k.object("tiles", &tiles, "tuple[int, int]",
              "columns and rows of an atlas; from the file if not given");
     k.count("slices", &texture.slices, {1, 65536}, "when fewer than tiles, parts or files");
-    k.object("rows_up", &rowsUp, "bool", "see write_volume_texture(); from the file if not given");
+    k.flag("rows_up", &texture.rowsUp, "see write_volume_texture(); from the file if not given");
     k.number("voxel_size", &texture.voxelSize, {1e-12, 1e12},
              "edge of a voxel, world units, in place of the file's matrix");
     k.object("lower_corner", &lowerCorner, "array (3,)",
@@ -110,11 +110,9 @@ py::object read(const Arguments& a, ReadOptions& o) {
   const std::string path = pathFrom(a[0], "path");
   VolumeTextureReadSettings& s = o.texture;
   s.names = textsFrom(o.names, "names");
-  if (!o.layout.is_none())
-    s.layout = parseVolumeLayout("layout", py::cast<std::string>(py::str(o.layout)));
-  if (!o.axis.is_none()) s.axis = parseAxis("axis", py::cast<std::string>(py::str(o.axis)));
+  if (!o.layout.is_none()) s.layout = parseVolumeLayout("layout", textOf(o.layout, "layout"));
+  if (!o.axis.is_none()) s.axis = parseAxis("axis", textOf(o.axis, "axis"));
   if (!o.tiles.is_none()) s.tiles = tilesFrom(o.tiles);
-  if (!o.rowsUp.is_none()) s.rowsUp = py::cast<bool>(o.rowsUp);
   if (!o.lowerCorner.is_none()) {
     if (!s.voxelSize) wrongValue("lower_corner", "has a meaning with voxel_size only");
     const std::vector<double> corner = numbersFrom(o.lowerCorner, "lower_corner");

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <type_traits>
 
 #include "bind/arrays.h"
 #include "bind/errors.h"
@@ -64,6 +66,10 @@ openvdb::math::Transform::Ptr transformFrom(const py::object& object) {
 template <class Grid, class Number>
 openvdb::GridBase::Ptr gridFrom(const py::array& array, double background, double tolerance) {
   using Value = typename Grid::ValueType;
+  if constexpr (std::is_integral_v<Number>)
+    for (const double given : {background, tolerance})
+      if (!(std::abs(given) < static_cast<double>(std::numeric_limits<Number>::max())))
+        wrongValue("background", fmt::format("{:g} is more than these whole numbers hold", given));
   const py::array_t<Number, py::array::c_style | py::array::forcecast> plain(array);
   const auto ground = static_cast<Number>(background);
   const auto grid = Grid::create(Value(ground));
@@ -92,13 +98,15 @@ openvdb::GridBase::Ptr gridOf(const py::handle& item, const std::string& name, d
   const char kind = array.dtype().kind();
   if (kind == 'f') {
     if (vector) return gridFrom<openvdb::Vec3SGrid, float>(array, background, tolerance);
-    if (array.itemsize() == 8)
+    if (array.itemsize() >= 8)
       return gridFrom<openvdb::DoubleGrid, double>(array, background, tolerance);
     return gridFrom<openvdb::FloatGrid, float>(array, background, tolerance);
   }
   if (vector || (kind != 'i' && kind != 'u'))
     wrongType(name, "expects floats, or whole numbers for one value a voxel");
-  if (array.itemsize() == 8)
+  if (kind == 'u' && array.itemsize() == 8)
+    wrongType(name, "is of uint64, which no grid holds; convert it to int64");
+  if (array.itemsize() == (kind == 'u' ? 4 : 8))
     return gridFrom<openvdb::Int64Grid, std::int64_t>(array, background, tolerance);
   return gridFrom<openvdb::Int32Grid, std::int32_t>(array, background, tolerance);
 }
@@ -110,7 +118,7 @@ py::object grids(const Arguments& a, FromArraysOptions& o) {
   const auto levelSets = textsFrom(o.levelSets, "level_sets"), fogs = textsFrom(o.fogs, "fogs");
   openvdb::GridPtrVec made;
   for (const auto& [key, array] : py::dict(a[0])) {
-    const auto name = py::cast<std::string>(py::str(key));
+    const std::string name = textOf(key, "arrays");
     openvdb::GridBase::Ptr grid = gridOf(array, name, background, o.tolerance);
     grid->setName(name);
     grid->setTransform(transform->copy());
@@ -162,6 +170,9 @@ py::object voxelize(const Arguments& a, VoxelizeOptions& o) {
     SolidSettings ofSolid;
     ofSolid.progress = progress;
     const Solid solid(mesh, ofSolid);
+    requireMemory("voxelizing",
+                  processMemory(voxelizeMemory(solid, settings, mesh, o.fog, o.attributes)),
+                  settings.maxMemory, "use larger voxels");
     const openvdb::FloatGrid::Ptr surface = makeLevelSet(solid, settings);
     made.push_back(surface);
     if (o.fog) made.push_back(makeFog(*surface));

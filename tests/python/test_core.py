@@ -52,7 +52,9 @@ def test_names_the_argument_that_is_wrong():
         (lambda: m("text"), TypeError, "X: expects"),
         (lambda: m(None), TypeError, "X: expects"),
         (lambda: m(1j * V), TypeError, "X: expects"),
-        (lambda: m(), TypeError, "lacks its argument 'X'"))
+        (lambda: m(), TypeError, "lacks its argument 'X'"),
+        (lambda: innermap.Map.save(), TypeError, "save() is a method of Map"),
+        (lambda: innermap.Map.save("m.ply", "m.ply"), TypeError, "save() is a method of Map"))
 
 
 def test_refuses_what_needs_more_memory():

@@ -26,13 +26,14 @@ def test_keeps_arrays_in_a_vdb_file():
         assert again[name].dtype == array.dtype and np.array_equal(again[name], array), name
     assert "fog volume" in cli.innermap("info", "arrays.vdb").stdout
     assert list(innermap.read_vdb("arrays.vdb", names=["wind"])) == ["wind"]
-    for wrong, says in (("no number", "background"), ([1, 2], "background")):
-        try:
-            innermap.grids(arrays, matrix, background=wrong)
-        except TypeError as error:
-            assert says in str(error), error
-        else:
-            raise AssertionError("no error")
+    unsigned = np.full((2, 2, 2), 2 ** 32 - 1, np.uint32)
+    assert (innermap.grids({"a": unsigned}, matrix)["a"] == 2 ** 32 - 1).all()
+    shapes.refuses(
+        (lambda: innermap.grids(arrays, matrix, background="no number"), TypeError, "background"),
+        (lambda: innermap.grids(arrays, matrix, background=[1, 2]), TypeError, "background"),
+        (lambda: innermap.grids(arrays, matrix, background=1e20), ValueError, "background"),
+        (lambda: innermap.grids({"a": unsigned.astype(np.uint64)}, matrix), TypeError, "uint64"),
+        (lambda: innermap.voxelize(*shapes.ball(2), max_memory="1MB"), MemoryError, "1 MB"))
     # Every second slice of a larger array, and one in Fortran's order.
     wide = generator.random((6, 8, 10))
     for array in (wide[::2], np.asfortranarray(wide)):

@@ -145,4 +145,10 @@ std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const FloatGrid& levelSet
   return grids;
 }
 
+std::uint64_t voxelizeMemory(const Solid& solid, const LevelSetSettings& settings, const Mesh& mesh,
+                             bool fog, bool attributes) {
+  const int vectors = attributes ? !mesh.uvs.empty() + !mesh.colours.empty() : 0;
+  return levelSetMemory(solid, settings) * (1 + fog + 3 * vectors);
+}
+
 }  // namespace innermap

@@ -87,4 +87,8 @@ std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const openvdb::FloatGrid&
                                                        const Solid& solid, const Mesh& mesh,
                                                        const AttributeSettings& settings = {});
 
+// Need in bytes of a level set of those settings with a fog (fog.h) and attributes of the mesh.
+std::uint64_t voxelizeMemory(const Solid& solid, const LevelSetSettings& settings, const Mesh& mesh,
+                             bool fog, bool attributes);
+
 }  // namespace innermap
