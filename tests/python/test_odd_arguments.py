@@ -143,7 +143,10 @@ def child(count, seed):
         every = random.Random(seed).sample(every, count)
     for words, function, arguments, named in every:
         print(words, end="", flush=True)
-        wrong = attempt(function, arguments, named)
+        try:
+            wrong = attempt(function, arguments, named)
+        except Long:  # when it had ended
+            wrong = None
         print(f"\nWRONG: {wrong}" if wrong else "", flush=True)
     print("all")
 
