@@ -10,6 +10,7 @@
 #include "bind/arrays.h"
 #include "bind/errors.h"
 #include "bind/keywords.h"
+#include "bind/lists.h"
 #include "bind/meshes.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
@@ -237,11 +238,15 @@ void bindGrids(py::module_& m) {
       "g.transform = pyopenvdb.createLinearTransform(grids.matrix.T.tolist()); or sparse, as a "
       "file: write_vdb(path).");
   grids
-      .def("__getitem__", &arrayNamed,
-           documented("__getitem__(self, name)",
-                      "The grid as a new dense array: float32 as in the grid. Raises KeyError, "
-                      "MemoryError.")
-               .c_str())
+      .def(
+          "__getitem__",
+          [](const PyGrids& g, const py::str& name) {
+            return arrayNamed(g, textFrom(name, "name"));
+          },
+          documented("__getitem__(self, name)",
+                     "The grid as a new dense array: float32 as in the grid. Raises KeyError, "
+                     "MemoryError.")
+              .c_str())
       .def("__iter__", [](const PyGrids& g) { return py::iter(namesOf(g)); })
       .def("__len__", [](const PyGrids& g) { return g.grids.size(); })
       .def("__contains__",
@@ -249,7 +254,9 @@ void bindGrids(py::module_& m) {
       .def("keys", &namesOf, documented("keys(self)", "The names of the grids.").c_str())
       .def(
           "metadata",
-          [](const PyGrids& g, const std::string& name) { return metadataOf(g.named(name)); },
+          [](const PyGrids& g, const py::str& name) {
+            return metadataOf(g.named(textFrom(name, "name")));
+          },
           documented("metadata(self, name)", "What the grid says of itself, by key.").c_str())
       .def_property_readonly("matrix", &matrixOf,
                              "(4, 4) float64: from an array's indices to the world, for columns.")
