@@ -191,11 +191,7 @@ void CorrespondOptions::describe(Keywords& k) {
   k.object("landmarks", &landmarks, "Sequence[tuple[place, place]] or path",
            "pairs that are kept exactly, a place on the source and one on the target: the number "
            "of a vertex, or three coordinates; or a file as the program reads it");
-  k.flag("close", &map.closeHoles, "close the holes of open meshes by caps");
-  k.count("surface_resolution", &map.standInResolution, {0, 2048},
-          "for a mesh that is open, not manifold or made of overlapping parts: an isosurface of "
-          "the solid at so many voxels across, 8 or more, is mapped instead; 0: such a mesh is "
-          "refused");
+  describeLayout(k, &map.closeHoles, &map.standInResolution);
   k.flag("aligned", &map.aligned,
          "the two stand in the same pose and orientation: prefer agreeing normals and places");
   k.count("candidates", &map.candidates, {1, 64}, "ways to lay one on the other that are refined");

@@ -5,7 +5,6 @@
 #include "bind/arrays.h"
 #include "bind/call.h"
 #include "bind/correspondence.h"
-#include "bind/errors.h"
 #include "bind/keywords.h"
 #include "bind/map.h"
 #include "bind/meshes.h"
@@ -149,12 +148,7 @@ Job jobOf(const Arguments& a, const CallOptions& options) {
   if (at >= a.size()) throw py::type_error("fit() lacks its target: V_target, or a mesh");
   const bool last = at + 1 == a.size();
   if (last && isArrayLike(a[at])) {
-    Points moved = pointsFrom(a[at], "V_target");
-    if (moved.size() != job.source.vertices.size())
-      wrongValue("V_target", fmt::format("has {} rows, the source has {} vertices; give V and F of "
-                                         "a target of other connectivity",
-                                         moved.size(), job.source.vertices.size()));
-    job.target = likeSource(job.source, std::move(moved), "target");
+    job.target = takeTarget(a, at, job.source);
     return job;
   }
   if (last && isPath(a[at])) {

@@ -115,6 +115,27 @@ Mesh takeMesh(const Arguments& arguments, std::size_t& at, const std::string& na
   return meshOf(first, arguments[at++], name, "V", "F");
 }
 
+Mesh takeTarget(const Arguments& arguments, std::size_t& at, const Mesh& source) {
+  const py::object& given = arguments[at++];
+  if (!isArrayLike(given)) return meshFrom(given, "target");
+  Mesh out = source;
+  out.name = "target";
+  out.vertices = pointsFrom(given, "V_target");
+  if (out.vertices.size() != source.vertices.size())
+    wrongValue("V_target", fmt::format("has {} rows, the source has {} vertices; a target with "
+                                       "triangles of its own is V, F or a tuple (V, F)",
+                                       out.vertices.size(), source.vertices.size()));
+  return out;
+}
+
+void describeLayout(Keywords& k, bool* closeHoles, int* standInResolution) {
+  k.flag("close", closeHoles, "close the holes of an open mesh by caps");
+  k.count("surface_resolution", standInResolution, {0, 2048},
+          "for a mesh that is open, not manifold or made of overlapping parts: an isosurface of "
+          "the solid at so many voxels across, 8 or more, stands in for it; 0: such a mesh is "
+          "refused");
+}
+
 void bindMeshes(py::module_& m) {
   bindMeshClass(m);
   define<ReadOptions>(

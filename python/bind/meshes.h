@@ -15,6 +15,9 @@ void bindMeshes(pybind11::module_& m);
 void bindCheck(pybind11::module_& m);
 void bindSphere(pybind11::module_& m);
 
+// `close=` and `surface_resolution=` of what is laid out.
+void describeLayout(Keywords& k, bool* closeHoles, int* standInResolution);
+
 // One of
 //   V, F             two arguments, (n, 3) and (m, 3)
 //   (V, F)           a tuple
@@ -25,6 +28,8 @@ void bindSphere(pybind11::module_& m);
 // name: of the mesh in messages ("source"); at: the argument that it begins with, moved behind it.
 Mesh takeMesh(const Arguments& arguments, std::size_t& at, const std::string& name);
 Mesh meshFrom(const pybind11::object& object, const std::string& name);
+// The source with other places, V_target, or a mesh as one argument.
+Mesh takeTarget(const Arguments& arguments, std::size_t& at, const Mesh& source);
 
 bool isPath(pybind11::handle object);  // str or os.PathLike
 std::string pathFrom(pybind11::handle object, const std::string& name);

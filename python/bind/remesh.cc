@@ -1,6 +1,4 @@
 // Cells carried by a map and repaired; finite elements beside charges.
-#include <fmt/format.h>
-
 #include "bind/arrays.h"
 #include "bind/cells.h"
 #include "bind/errors.h"
@@ -132,15 +130,8 @@ py::object compareFem(const Arguments& a, CompareOptions& o) {
   takeNumbers(o.charges, "charges", o.settings.charges);
   takeNumbers(o.tolerances, "tolerances", o.settings.tolerances);
   std::optional<Mesh> target;
-  if (at < a.size()) {
-    if (isArrayLike(a[at])) {
-      target = source;
-      target->vertices = pointsFrom(a[at], "V_target");
-    } else {
-      target = meshFrom(a[at], "target");
-    }
-    if (++at < a.size()) throw py::type_error("compare_fem() takes a source and a target");
-  }
+  if (at < a.size()) target = takeTarget(a, at, source);
+  if (at < a.size()) throw py::type_error("compare_fem() takes a source and a target");
   return tableOf(call(o.call, [&](Progress* progress) {
     const CompareFemSettings settings = with(o.call, progress, o.settings);
     if (target) {

@@ -16,11 +16,7 @@ struct SphereOptions {
   CallOptions call;
 
   void describe(Keywords& k) {
-    k.flag("close", &settings.closeHoles, "close the holes of an open mesh by caps");
-    k.count("surface_resolution", &settings.standInResolution, {0, 2048},
-            "for a mesh that is open, not manifold or made of overlapping parts: an isosurface of "
-            "the solid at so many voxels across, 8 or more, is laid out instead; 0: such a mesh "
-            "is refused");
+    describeLayout(k, &settings.closeHoles, &settings.standInResolution);
     call.describe(k);
   }
 };

@@ -2,7 +2,6 @@
 #include "innermap/study/study.h"
 
 #include "bind/arrays.h"
-#include "bind/errors.h"
 #include "bind/keywords.h"
 #include "bind/lists.h"
 #include "bind/meshes.h"
@@ -90,13 +89,7 @@ py::object study(const Arguments& a, StudyOptions& o) {
   std::size_t at = 0;
   const Mesh source = takeMesh(a, at, "source");
   if (at + 1 != a.size()) throw py::type_error("study() takes a source and a target");
-  Mesh target;
-  if (isArrayLike(a[at])) {
-    target = source;
-    target.vertices = pointsFrom(a[at], "V_target");
-  } else {
-    target = meshFrom(a[at], "target");
-  }
+  const Mesh target = takeTarget(a, at, source);
   takeNumbers(o.sources, "sources", o.study.sources);
   takeNumbers(o.collocation, "points", o.study.collocation);
   takeNumbers(o.distances, "distances", o.study.distances);
