@@ -1,7 +1,4 @@
 #include <fmt/format.h>
-
-#include <variant>
-
 #include "bind/arrays.h"
 #include "bind/call.h"
 #include "bind/correspondence.h"
