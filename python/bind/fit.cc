@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+
 #include "bind/arrays.h"
 #include "bind/call.h"
 #include "bind/correspondence.h"
