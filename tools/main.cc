@@ -29,7 +29,9 @@ void execute(const Command& command, const CommonOptions& common, TerminalProgre
     if (const auto text = std::get_if<std::string*>(&option.target)) context.input(**text);
   }
   if (!common.report.empty()) context.output(common.report);
-  const ThreadLimit threads(common.threads);
+  // Never undone: TBB would start the threads that were kept from it.
+  static const auto* const threads = new ThreadLimit(common.threads);
+  static_cast<void>(threads);
   recordRun(command, common, context.report());
   try {
     command.execute(context);

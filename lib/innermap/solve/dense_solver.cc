@@ -10,6 +10,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/solve/detail/blocked_qr.h"
+#include "innermap/solve/detail/lapack_status.h"
 #include "innermap/solve/kernel_sum.h"
 
 namespace innermap {
@@ -64,8 +65,8 @@ void svd(Matrix& r, Matrix& s, Matrix& u, Matrix& vt) {
   u = Matrix(r.rows(), r.rows());
   vt = Matrix(r.rows(), r.rows());
   const SingleThreadedBlas guard;
-  if (LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'S', n, n, r.data(), n, s.data(), u.data(), n, vt.data(),
-                     n) != 0)
+  if (!lapackSucceeded(LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'S', n, n, r.data(), n, s.data(), u.data(),
+                                      n, vt.data(), n)))
     throw DataError(
         "solve: the singular value decomposition did not converge; the points hold NaN or "
         "infinite numbers");

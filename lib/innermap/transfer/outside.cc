@@ -1,11 +1,10 @@
 #include "innermap/transfer/outside.h"
 
-#include <lapacke.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "innermap/core/error.h"
+#include "innermap/solve/detail/lapack_status.h"
 
 namespace innermap {
 namespace {
@@ -62,7 +61,7 @@ RigidMotion bestRigidMotion(const Points& from, const Points& to) {
                   0,
                   s[2][2] - s[0][0] - s[1][1]};
   double values[4];
-  if (LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', 4, n, 4, values) != 0)
+  if (!lapackSucceeded(LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', 4, n, 4, values)))
     throw DataError("rigid motion: the points are not finite");
   RigidMotion out;
   out.rotation = rotationOf(n[3], n[7], n[11], n[15]);
