@@ -1,8 +1,13 @@
+# Modules that are loaded at run time (lib/modules): where they are installed, and where they are built.
+set(INNERMAP_MODULES_FOLDER ${CMAKE_INSTALL_LIBDIR}/innermap)
+set(INNERMAP_MODULES_BUILD_FOLDER ${PROJECT_BINARY_DIR}/lib/modules)
+
 # Compile options of our own targets; nothing is set globally.
 function(innermap_own_target target)
   target_compile_features(${target} PUBLIC cxx_std_17)
   # Executables are compiled like libraries, so that all share the precompiled headers.
-  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE OFF)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE OFF
+                        BUILD_RPATH ${INNERMAP_MODULES_BUILD_FOLDER})
   target_compile_options(${target} PRIVATE -fPIC)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow)
   if(INNERMAP_WARNINGS_AS_ERRORS)

@@ -293,7 +293,6 @@ void run(const CompareOptions& options, Context& context) {
          "write comparison.csv, curves.png, section.png and report.json to " + options.output},
         need);
   context.requireMemory("finite elements", need, "use lower --resolutions");
-  context.notePictures();
   const CompareFem result = context.timed("compare", [&] {
     return pair ? compareFemOnMap(*pair, settings) : compareFemOnFunctions(solid, settings);
   });

@@ -120,7 +120,7 @@ void Context::output(const std::string& path, bool sure) {
   if (sure) expectOutputs(1);
   if (path != options_.report) placePage(path);
   requireWritable(path);
-  if (!dryRun() && std::filesystem::path(path).extension() == ".png") notePictures();
+  if (std::filesystem::path(path).extension() == ".png") notePictures();
 }
 
 void Context::outputs(const std::vector<std::string>& paths) {
@@ -142,13 +142,12 @@ std::unique_ptr<PendingFolder> Context::outputFolder(const std::string& path,
   sayWhatIsThere(path, names);
   expectOutputs(1);
   placePage((std::filesystem::path(path) / "report.html").string());
-  if (dryRun()) return nullptr;
   for (const std::string& name : names)
     if (std::filesystem::path(name).extension() == ".png") {
       notePictures();
       break;
     }
-  return folder;
+  return dryRun() ? nullptr : std::move(folder);
 }
 
 namespace {
@@ -214,7 +213,8 @@ bool Context::allInPlace() const {
 }
 
 void Context::notePictures() {
-  if (labelFont().empty())
+  // Asking for the font loads what draws, so from here on it counts as memory that the program takes.
+  if (labelFont().empty() && !dryRun())
     note(
         "no font is installed, so pictures have no labels; install DejaVu Sans (on Debian the "
         "package fonts-dejavu-core)");

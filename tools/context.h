@@ -103,8 +103,6 @@ class Context {
   void inFolder(const std::string& folder, const std::vector<std::string>& names);
   // Whether all outputs that are sure, but the report, are in place.
   bool allInPlace() const;
-  // Says so when pictures will have no labels for lack of a font; output() does for .png files.
-  void notePictures();
 
   // What `body` returns; adds its wall time to the report's "seconds" under `stage`.
   template <class Body>
@@ -173,6 +171,8 @@ class Context {
   void say(const std::string& kind, const std::string& text);
 
   void enter(const std::string& path);
+  // When a picture is to be written: a note where it will have no labels for lack of a font.
+  void notePictures();
   // Where --html goes when it is to stand beside this output.
   void placePage(const std::string& output);
   // The most memory so far, for the stages that ended since the last time.

@@ -1,6 +1,5 @@
 #include "innermap/io/picture/image_file.h"
 
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,6 +17,7 @@
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
 #include "innermap/io/exr/detail/exr_verify.h"
+#include "innermap/io/picture/detail/image_library.h"
 
 namespace innermap {
 namespace {
@@ -31,8 +31,6 @@ std::string lower(std::string text) {
 }
 
 std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
-
-using Input = std::unique_ptr<OIIO::ImageInput>;
 
 // What OpenImageIO calls the format: by the first bytes, else by the ending. It would try a file
 // that is not what its ending says as everything that it knows, films and scans of hospitals
@@ -51,7 +49,7 @@ std::string formatOf(const std::string& path) {
   return extension.empty() ? "" : lower(extension.substr(1));
 }
 
-Input open(const std::string& path) {
+std::unique_ptr<ImageReader> open(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
     throw FileError(path, "does not exist; give the path of an image");
@@ -65,20 +63,18 @@ Input open(const std::string& path) {
   const std::string format = formatOf(path);
   if (format == "openexr") verifyExr(path);
   if (format.empty()) fail("its name has no ending and its first bytes are of no known format");
-  Input input = OIIO::ImageInput::create(format);
-  if (!input) fail(OIIO::geterror());
-  OIIO::ImageSpec wanted, found;
-  wanted.attribute("oiio:UnassociatedAlpha", 1);
-  if (!input->open(path, found, wanted)) fail(input->geterror());
-  const OIIO::ImageSpec& spec = input->spec();
-  if (spec.deep) throw FileError(path, "is a deep image; flatten it first");
-  if (spec.depth > 1 || spec.full_depth > 1) throw FileError(path, "is a volume, not an image");
-  for (const int side : {spec.width, spec.height, spec.full_width, spec.full_height})
+  std::string why;
+  std::unique_ptr<ImageReader> input = imageLibrary().open(path, format, why);
+  if (!input) fail(why);
+  const ImageInfo& info = input->info();
+  if (info.deep) throw FileError(path, "is a deep image; flatten it first");
+  if (info.depth > 1 || info.fullDepth > 1) throw FileError(path, "is a volume, not an image");
+  for (const int side : {info.width, info.height, info.fullWidth, info.fullHeight})
     if (side < 1 || side > kMostPixels)
       throw FileError(path,
                       fmt::format("says that it is {} x {} pixels; it must have 1 to {} along "
                                   "each side",
-                                  spec.full_width, spec.full_height, kMostPixels));
+                                  info.fullWidth, info.fullHeight, kMostPixels));
   return input;
 }
 
@@ -117,15 +113,15 @@ Channels channelsIn(const std::vector<std::string>& names, const std::string& la
   return c;
 }
 
-Channels channelsOf(const std::string& path, const OIIO::ImageSpec& spec) {
-  const std::vector<std::string>& names = spec.channelnames;
+Channels channelsOf(const std::string& path, const ImageInfo& info) {
+  const std::vector<std::string>& names = info.channels;
   Channels found = channelsIn(names, "");
   for (std::size_t i = 0; i < names.size() && found.colour[0] < 0; ++i)
     if (const std::size_t dot = names[i].rfind('.'); dot != std::string::npos)
       found = channelsIn(names, lower(names[i].substr(0, dot + 1)));
   // Formats without names call them by number.
   if (found.colour[0] < 0 && !names.empty() && lower(names[0]).rfind("channel", 0) == 0)
-    for (int c = 0; c < 3; ++c) found.colour[c] = spec.nchannels >= 3 ? c : 0;
+    for (int c = 0; c < 3; ++c) found.colour[c] = names.size() >= 3 ? c : 0;
   if (found.colour[0] < 0)
     throw FileError(path, fmt::format("has no colour channels, only {}; give an image with R, G, B "
                                       "or Y",
@@ -148,15 +144,13 @@ Decoding gammaDecoding(double gamma) {
           [gamma](double v) { return v > 0 ? std::pow(v, gamma) : 0.0; }};
 }
 
-Decoding decodingOf(const OIIO::ImageSpec& spec, ColourSpace wanted,
-                    std::vector<std::string>& notes) {
+Decoding decodingOf(const ImageInfo& info, ColourSpace wanted, std::vector<std::string>& notes) {
   const Decoding linear, srgb{"sRGB", linearFromSrgb};
   if (wanted == ColourSpace::linear) return linear;
   if (wanted == ColourSpace::srgb) return srgb;
-  const Decoding byType = spec.format.basesize() == 1 ? srgb : linear;
-  const std::string name(spec.get_string_attribute("oiio:ColorSpace"));
+  const Decoding byType = info.numberBytes == 1 ? srgb : linear;
+  const std::string& name = info.colourSpace;
   const std::string key = lower(name);
-  const double gamma = spec.get_float_attribute("oiio:Gamma", 0.0f);
   if (key.empty()) return byType;
   if (key == "srgb" || key == "srgb_texture" || key == "srgb_tx") return srgb;
   if (key == "linear" || key == "scene_linear" || key == "raw" || key == "data" ||
@@ -165,7 +159,7 @@ Decoding decodingOf(const OIIO::ImageSpec& spec, ColourSpace wanted,
   if (key == "rec709") return {"Rec. 709", linearFromRec709};
   if (key.rfind("gamma", 0) == 0) {
     const double stated = std::atof(key.c_str() + 5);
-    const double value = stated > 0 ? stated : gamma;
+    const double value = stated > 0 ? stated : info.gamma;
     if (value > 0.1 && value < 10) return gammaDecoding(value);
   }
   notes.push_back(
@@ -173,9 +167,9 @@ Decoding decodingOf(const OIIO::ImageSpec& spec, ColourSpace wanted,
   return byType;
 }
 
-std::uint64_t memoryOf(const OIIO::ImageSpec& spec, const Channels& channels) {
-  const std::uint64_t file = std::uint64_t(spec.width) * spec.height;
-  const std::uint64_t full = std::uint64_t(spec.full_width) * spec.full_height;
+std::uint64_t memoryOf(const ImageInfo& info, const Channels& channels) {
+  const std::uint64_t file = std::uint64_t(info.width) * info.height;
+  const std::uint64_t full = std::uint64_t(info.fullWidth) * info.fullHeight;
   return file * static_cast<std::uint64_t>(channels.end() - channels.begin()) * sizeof(float) +
          full * 3 * sizeof(float) * 4 / 3;
 }
@@ -190,20 +184,20 @@ bool stopWhenCancelled(void* opaque, float done) {
 // From the file's pixels, `stride` floats each, to the picture's place in the display window.
 class Placing {
  public:
-  Placing(const OIIO::ImageSpec& spec, const Channels& channels, const Decoding& decoding)
-      : spec_(spec), channels_(channels), decoding_(decoding) {
+  Placing(const ImageInfo& info, const Channels& channels, const Decoding& decoding)
+      : info_(info), channels_(channels), decoding_(decoding) {
     first_ = channels.begin();
     stride_ = channels.end() - first_;
-    divide_ = channels.alpha >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
+    divide_ = channels.alpha >= 0 && !info.alphaIsDivided;
   }
 
   void row(const std::vector<float>& from, int y, Pixels& to, std::size_t& broken) const {
-    const int ty = y + spec_.y - spec_.full_y;
+    const int ty = y + info_.y - info_.fullY;
     if (ty < 0 || ty >= to.height) return;
-    for (int x = 0; x < spec_.width; ++x) {
-      const int tx = x + spec_.x - spec_.full_x;
+    for (int x = 0; x < info_.width; ++x) {
+      const int tx = x + info_.x - info_.fullX;
       if (tx < 0 || tx >= to.width) continue;
-      const float* p = &from[(std::size_t(y) * spec_.width + x) * stride_];
+      const float* p = &from[(std::size_t(y) * info_.width + x) * stride_];
       float* q = &to.rgb[3 * (std::size_t(ty) * to.width + tx)];
       const double alpha = divide_ ? p[channels_.alpha - first_] : 1;
       for (int c = 0; c < 3; ++c) {
@@ -218,7 +212,7 @@ class Placing {
   }
 
  private:
-  const OIIO::ImageSpec& spec_;
+  const ImageInfo& info_;
   const Channels& channels_;
   const Decoding& decoding_;
   int first_ = 0, stride_ = 1;
@@ -233,40 +227,37 @@ double linearFromSrgb(double v) {
 }
 
 std::uint64_t imageMemory(const std::string& path) {
-  const Input input = open(path);
-  return memoryOf(input->spec(), channelsOf(path, input->spec()));
+  const std::unique_ptr<ImageReader> input = open(path);
+  return memoryOf(input->info(), channelsOf(path, input->info()));
 }
 
 ImageFile readImage(const std::string& path, const ImageSettings& settings) {
-  const Input input = open(path);
-  const OIIO::ImageSpec spec = input->spec();
-  const Channels channels = channelsOf(path, spec);
-  requireMemory("the image " + path, memoryOf(spec, channels), settings.maxMemory,
+  const std::unique_ptr<ImageReader> input = open(path);
+  const ImageInfo& info = input->info();
+  const Channels channels = channelsOf(path, info);
+  requireMemory("the image " + path, memoryOf(info, channels), settings.maxMemory,
                 "make it smaller or raise --max-memory");
   ImageFile out;
-  const Decoding decoding = decodingOf(spec, settings.colourSpace, out.notes);
+  const Decoding decoding = decodingOf(info, settings.colourSpace, out.notes);
   out.colourSpace = decoding.name;
   const bool grey = channels.colour[0] == channels.colour[1];
   for (int c = 0; c < (grey ? 1 : 3); ++c)
-    out.channels +=
-        (c ? "," : "") + spec.channelnames[static_cast<std::size_t>(channels.colour[c])];
+    out.channels += (c ? "," : "") + info.channels[static_cast<std::size_t>(channels.colour[c])];
 
   const auto stride = static_cast<std::size_t>(channels.end() - channels.begin());
-  std::vector<float> raw(std::size_t(spec.width) * spec.height * stride);
-  const bool whole = input->read_image(
-      0, 0, channels.begin(), channels.end(), OIIO::TypeDesc::FLOAT, raw.data(), OIIO::AutoStride,
-      OIIO::AutoStride, OIIO::AutoStride, stopWhenCancelled, settings.progress);
+  std::vector<float> raw(std::size_t(info.width) * info.height * stride);
+  std::string why;
+  const bool whole = input->read(channels.begin(), channels.end(), raw.data(), stopWhenCancelled,
+                                 settings.progress, why);
   throwIfCancelled(settings.progress);
-  if (!whole || input->has_error())
-    throw FileError(path,
-                    fmt::format("is damaged or cut short ({})", firstLine(input->geterror())));
-  out.pixels.width = spec.full_width;
-  out.pixels.height = spec.full_height;
-  out.pixels.rgb.assign(std::size_t(3) * spec.full_width * spec.full_height, 0.0f);
-  const Placing placing(spec, channels, decoding);
+  if (!whole) throw FileError(path, fmt::format("is damaged or cut short ({})", firstLine(why)));
+  out.pixels.width = info.fullWidth;
+  out.pixels.height = info.fullHeight;
+  out.pixels.rgb.assign(std::size_t(3) * info.fullWidth * info.fullHeight, 0.0f);
+  const Placing placing(info, channels, decoding);
   std::atomic<std::size_t> broken{0};
   parallelBlocks(
-      static_cast<std::size_t>(spec.height), 16,
+      static_cast<std::size_t>(info.height), 16,
       [&](std::size_t begin, std::size_t end) {
         std::size_t count = 0;
         for (std::size_t y = begin; y < end; ++y)

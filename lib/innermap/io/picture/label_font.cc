@@ -1,9 +1,9 @@
 #include "innermap/io/picture/label_font.h"
 
-#include <OpenImageIO/imagebufalgo.h>
-
 #include <filesystem>
 #include <system_error>
+
+#include "innermap/io/picture/detail/image_library.h"
 
 namespace innermap {
 
@@ -17,7 +17,7 @@ const std::string& labelFont() {
           "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"}) {
       std::error_code ignored;
       if (std::filesystem::is_regular_file(candidate, ignored) &&
-          OIIO::ImageBufAlgo::text_size("0", 16, candidate).defined())
+          imageLibrary().textWidth("0", 16, candidate) >= 0)
         return std::string(candidate);
     }
     return std::string();

@@ -1,17 +1,13 @@
 #include "innermap/io/picture/detail/picture.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "innermap/core/error.h"
 #include "innermap/core/file.h"
+#include "innermap/io/picture/detail/image_library.h"
 #include "innermap/io/picture/label_font.h"
 
 namespace innermap {
@@ -76,27 +72,18 @@ void Picture::text(int x, int y, const std::string& text, int size, Rgb colour, 
     const int width = textWidth(line, size);
     x -= align == Align::right ? width : width / 2;
   }
-  OIIO::ImageBuf buffer(OIIO::ImageSpec(width_, height_, 3, OIIO::TypeDesc::FLOAT), pixels_.data());
-  OIIO::ImageBufAlgo::render_text(buffer, x, y, line, size, labelFont(), colour);
+  imageLibrary().drawText(width_, height_, pixels_.data(), x, y, line, size, labelFont(), colour);
 }
 
 void Picture::write(const std::string& path) const {
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  OIIO::Filesystem::IOProxy* proxy = &memory;
-  OIIO::ImageSpec spec(width_, height_, 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   std::vector<unsigned char> pixels(pixels_.size());
   std::transform(pixels_.begin(), pixels_.end(), pixels.begin(), [](float v) {
     return static_cast<unsigned char>(std::lround(std::clamp(v, 0.0f, 1.0f) * 255));
   });
-  const std::unique_ptr<OIIO::ImageOutput> output =
-      OIIO::ImageOutput::create("memory.png", &memory);
-  if (!output || !output->open("memory.png", spec) ||
-      !output->write_image(OIIO::TypeDesc::UINT8, pixels.data()) || !output->close())
-    throw FileError(path, "the picture cannot be encoded as PNG (" +
-                              (output ? output->geterror() : OIIO::geterror()) + ")");
+  std::string why;
+  const std::vector<unsigned char> bytes =
+      imageLibrary().encodePng(width_, height_, pixels.data(), why);
+  if (bytes.empty()) throw FileError(path, "the picture cannot be encoded as PNG (" + why + ")");
   writeWholeFile(path, [&](std::ostream& file) {
     file.write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
@@ -105,8 +92,8 @@ void Picture::write(const std::string& path) const {
 
 int textWidth(const std::string& text, int size) {
   if (!labelFont().empty()) {
-    const OIIO::ROI roi = OIIO::ImageBufAlgo::text_size(printable(text), size, labelFont());
-    if (roi.defined()) return roi.xend;
+    const int width = imageLibrary().textWidth(printable(text), size, labelFont());
+    if (width >= 0) return width;
   }
   return static_cast<int>(text.size()) * size * 3 / 5;
 }
