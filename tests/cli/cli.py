@@ -3,7 +3,8 @@
 A test is a script with functions named test_*. run(globals()) calls all of them, or those that the
 command line names, prints what fails and ends with exit code 1 if anything did. Each function gets a
 temporary folder of its own as working directory, and is a test of its own for ctest
-(tests/CMakeLists.txt finds them by their "def" lines, and the marks @alone and @slow before these).
+(tests/CMakeLists.txt finds them by their "def" lines, and the marks @alone, @slow and @nightly before
+these).
 Standard library only, but for jsonschema: every report that a run leaves is checked against
 docs/report.schema.json.
 """
@@ -11,6 +12,7 @@ docs/report.schema.json.
 import functools
 import json
 import os
+import re
 import resource
 import signal
 import subprocess
@@ -18,6 +20,7 @@ import sys
 import tempfile
 import time
 import traceback
+from collections import namedtuple
 from pathlib import Path
 
 PROGRAM = os.environ.get("INNERMAP", "innermap")
@@ -37,6 +40,10 @@ THREADS = os.environ.get("INNERMAP_TEST_THREADS", "")
 AT_ONCE = 5
 
 
+# text: all that it printed; bytes of memory; seconds, None where it says none.
+DryRun = namedtuple("DryRun", "text memory seconds")
+
+
 class Skip(Exception):
     """Raised by a test that cannot run here."""
 
@@ -48,6 +55,11 @@ def alone(test):
 
 def slow(test):
     """Marks a test that `tests/run --quick` leaves out."""
+    return test
+
+
+def nightly(test):
+    """Marks a test that tests/run leaves to tests/nightly."""
     return test
 
 
@@ -81,6 +93,20 @@ def identity(path):
     except OSError:  # no file can be there
         return None
     return status.st_ino, status.st_mtime_ns, status.st_size
+
+
+UNITS = {"B": 1, "kB": 1e3, "MB": 1e6, "GB": 1e9, "TB": 1e12}
+
+
+def dry_run(*arguments):
+    """Runs innermap with --dry-run, which must write nothing; what it says that the run would need."""
+    before = set(os.listdir("."))
+    text = innermap(*arguments, "--dry-run").stdout
+    assert set(os.listdir(".")) == before, set(os.listdir(".")) - before
+    memory = re.search(r"^memory: .*?([0-9.e+]+) ([kMGT]?B)\b", text, re.M)
+    seconds = re.search(r"^time: .*?(\d+) s$", text, re.M)
+    assert memory, text
+    return DryRun(text, float(memory[1]) * UNITS[memory[2]], int(seconds[1]) if seconds else None)
 
 
 def reports_of(arguments, folder):

@@ -3,9 +3,9 @@
 
 import os
 
-from cli import (AT_ONCE, MODELS, Skip, alone,
-                 cube, fails, icosphere_arrays, innermap, interrupt,
-                 no_leftovers, read_json, run, slow, torus, write_obj)
+import cli
+from cli import (AT_ONCE, MODELS, Skip, alone, cube, fails, icosphere_arrays, innermap, interrupt,
+                 nightly, no_leftovers, read_json, run, torus, write_obj)
 
 
 def read_hexahedra(path):
@@ -33,10 +33,9 @@ def read_hexahedra(path):
 
 def test_torus_is_filled():
     torus("ring.obj", n=48, m=20)
-    done = innermap("hexahedralize", "ring.obj", "-o", "ring.vtu", "--blocks", 12, "--pieces", 1,
-                    "--picture", "cut.png", "--polycube", "cubes.ply", "--polycube-picture",
-                    "cubes.png", "--in-blocks", "blocks.vtu", "--report", "report.json")
-    assert "prove all of them right side out" in done.stdout, done.stdout
+    innermap("hexahedralize", "ring.obj", "-o", "ring.vtu", "--blocks", 12, "--pieces", 1, "--picture",
+             "cut.png", "--polycube", "cubes.ply", "--polycube-picture", "cubes.png", "--in-blocks",
+             "blocks.vtu", "--report", "report.json")
     report = read_json("report.json")
     assert report["polycube"]["handles"] == 1
     assert report["hexahedra"]["proven"] and report["hexahedra"]["after"]["inverted"] == 0
@@ -61,9 +60,8 @@ def test_torus_is_filled():
 
 def test_polycube_can_be_mapped():
     torus("ring.obj", n=48, m=20)
-    done = innermap("polycube", "ring.obj", "-o", "cubes.obj", "--blocks", 10, "--pieces", 3,
-                    "--report", "report.json")
-    assert "1 handles, 0 cavities" in done.stdout
+    innermap("polycube", "ring.obj", "-o", "cubes.obj", "--blocks", 10, "--pieces", 3, "--report",
+             "report.json")
     check = innermap("check", "cubes.obj", "--report", "check.json").stdout
     assert read_json("check.json")["source"]["genus"] == 1, check
     report = read_json("report.json")["polycube"]
@@ -87,14 +85,14 @@ def test_bad_input_is_refused():
     shifted = [tuple(i + len(vertices) for i in f) for f in faces]
     write_obj("two.obj", vertices + far, faces + shifted)
     for command, out in (("polycube", "out.obj"), ("hexahedralize", "out.vtu")):
-        fails(1, command, "open.obj", "-o", out, says=["open.obj", "open"])
+        fails(1, command, "open.obj", "-o", out, says=["open.obj"])
         fails(1, command, "two.obj", "-o", out, says=["two.obj", "2 bodies"])
-        fails(1, command, "ball.obj", "-o", out, "--max-memory", "1M", says=["memory"])
-        fails(2, command, "ball.obj", "-o", "out.stl", says=["out.stl", "must end in"])
+        fails(1, command, "ball.obj", "-o", out, "--max-memory", "1M", says=["1 MB"])
+        fails(2, command, "ball.obj", "-o", "out.stl", says=["out.stl"])
         fails(1, command, "ball.obj", "-o", out, "--blocks", 65, says=["--blocks"])
     torus("ring.obj")
     fails(1, "polycube", "ring.obj", "-o", "out.obj", "--blocks", 2,
-          says=["1 handle and 0 cavities", "do"])
+          says=["1 handle and 0 cavities"])
 
 
 def test_holes_are_closed_and_parts_united_on_request():
@@ -111,11 +109,10 @@ def test_holes_are_closed_and_parts_united_on_request():
 def test_dry_run_says_the_memory():
     cube()
     for command, out in (("polycube", "out.obj"), ("hexahedralize", "out.vtu")):
-        done = innermap(command, "cube.obj", "-o", out, "--dry-run")
-        assert "memory: about" in done.stdout, done.stdout
-        assert not os.path.exists(out)
+        cli.dry_run(command, "cube.obj", "-o", out)
 
 
+@nightly
 @alone
 def test_can_be_stopped():
     torus("ring.obj", n=90, m=36)
@@ -127,7 +124,7 @@ def test_can_be_stopped():
             no_leftovers("ring.obj")
 
 
-@slow
+@nightly
 @alone
 def test_models_are_filled():
     """What the defaults give; a model's least Jacobian may be low, but on one of them only."""

@@ -6,9 +6,9 @@ import os
 import signal
 import subprocess
 
-from cli import (AT_ONCE, MODELS, Skip, alone,
-                 cube, fails, file_size_limit, icosphere, icosphere_arrays,
-                 innermap, interrupt, no_leftovers, read_json, run, slow, write_obj)
+from cli import (AT_ONCE, MODELS, Skip, alone, cube, fails, file_size_limit, icosphere,
+                 icosphere_arrays, innermap, interrupt, nightly, no_leftovers, read_json, run,
+                 write_obj)
 
 FILES = ["map.ply", "map.vdb", "report.json", "section.png", "slices.exr"]
 
@@ -191,7 +191,7 @@ def test_bad_input():
     fails(1, "map", "ball.obj", "ball.obj", "-o", "ball.obj", says=["ball.obj"])
     fails(1, "evaluate", "ball.obj", "-o", "a.vdb", says=["ball.obj", "map.ply"])
     fails(1, "fit", "ball.obj", "other.obj", "-o", "map.ply",
-          says=["other.obj", "connectivity", "innermap correspond"])
+          says=["other.obj", "correspond"])
     fails(2, "map", "ball.obj", "-o", "out", says=["TARGET"])
     fails(2, "map", "ball.obj", "ball.obj", "-o", "out", "--sorces", "4", says=["--sources"])
 
@@ -202,14 +202,14 @@ def test_all_points_in_one_place_as_target():
     write_obj("point.obj", [(0, 0, 0)] * len(vertices), faces)
     write_obj("flat.obj", [(x, y, 0) for x, y, z in vertices], faces)
     fails(1, "map", "ball.obj", "point.obj", "-o", "out", says=["point.obj"])
-    fails(1, "map", "ball.obj", "flat.obj", "-o", "out", says=["flat.obj", "no inside"])
+    fails(1, "map", "ball.obj", "flat.obj", "-o", "out", says=["flat.obj"])
 
 
 def test_thinner_than_a_voxel():
     vertices, faces = icosphere_arrays(3)
     write_obj("plate.obj", [(x, y, 0.002 * z) for x, y, z in vertices], faces)
     fails(1, "map", "plate.obj", "plate.obj", "-o", "out", "--resolution", "32",
-          says=["plate.obj", "higher resolution", "a resolution of 1"])
+          says=["plate.obj", "a resolution of 1"])
 
 
 def test_needle():
@@ -217,8 +217,7 @@ def test_needle():
     vertices, faces = icosphere_arrays(3)
     write_obj("needle.obj", [(x, 0.001 * y, 0.001 * z) for x, y, z in vertices], faces)
     write_obj("bent.obj", [(x, 0.001 * y + 0.1 * x * x, 0.001 * z) for x, y, z in vertices], faces)
-    done = innermap("map", "needle.obj", "bent.obj", "-o", "out")
-    assert "the solid is thin" in done.stderr, done.stderr
+    innermap("map", "needle.obj", "bent.obj", "-o", "out", "--quiet")
     assert read_json("out/report.json")["grid"]["interior_voxels"] > 1000
 
 
@@ -229,6 +228,7 @@ def test_full_disk_leaves_nothing():
               "64", says=["out/map."], preexec_fn=file_size_limit(size))
 
 
+@nightly
 @alone
 def test_interrupt_leaves_nothing():
     pair(lambda p: (p[0], p[1], p[2] + 0.2 * abs(p[0])), subdivisions=5)
@@ -260,7 +260,7 @@ def test_horse():
     assert report["jacobian"]["folded_fraction"] < 2e-3, report["jacobian"]
 
 
-@slow
+@nightly
 def test_every_model_gets_a_sound_map():
     if not MODELS.exists():
         raise Skip("no ../shared/models")

@@ -4,9 +4,8 @@
 import math
 import os
 
-from cli import (AT_ONCE, MODELS, Skip, alone,
-                 error_line, fails, icosphere_arrays, innermap, interrupt,
-                 no_leftovers, read_json, run, write_obj)
+from cli import (AT_ONCE, MODELS, Skip, alone, error_line, fails, icosphere_arrays, innermap,
+                 interrupt, nightly, no_leftovers, read_json, run, write_obj)
 
 
 def kinked(p):
@@ -133,6 +132,7 @@ def test_dry_run_says_what_would_be_done():
     no_leftovers("ball.obj", "target.obj")
 
 
+@nightly
 @alone
 def test_interrupt_leaves_nothing():
     pair()

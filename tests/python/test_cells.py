@@ -89,9 +89,8 @@ def test_remeshes_as_the_program_does():
     assert np.abs(back - X).max() < 1e-9
 
 
-@cli.slow
 def test_fills_with_hexahedra_as_the_program_does():
-    V, F = shapes.ball(3)
+    V, F = shapes.ball(2)
     innermap.write_mesh("ball.obj", V, F)
     cells = innermap.hexahedralize((V, F), blocks=4)
     cli.innermap("hexahedralize", "ball.obj", "-o", "program.vtu", "--blocks", "4")

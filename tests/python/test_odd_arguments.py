@@ -14,11 +14,13 @@ from pathlib import Path
 import numpy as np
 
 import cli
+from cli import nightly
 import innermap
 import shapes
 from test_calls import environment
 
-COUNT, SEED, LONGEST = 400, 1, 1.0  # seconds of a call that takes what is odd
+COUNT, SEED = 120, 1  # of calls that tests/run tries
+LONGEST = 1.0  # seconds of a call that takes what is odd
 
 
 class Raises:
@@ -151,14 +153,23 @@ def child(count, seed):
     print("all")
 
 
-def test_end_in_words():
-    print(f"seed {SEED}")
-    line = [sys.executable, Path(__file__).resolve(), str(COUNT), str(SEED)]
+def end_in_words(count, seed):
+    print(f"seed {seed}")
+    line = [sys.executable, Path(__file__).resolve(), str(count), str(seed)]
     done = subprocess.run(line, env=environment(), capture_output=True, text=True, check=False)
     said = done.stdout.splitlines()
     wrong = [f"{before}: {line}" for before, line in zip(said, said[1:]) if "WRONG" in line]
     assert done.returncode == 0 and said[-1] == "all", (done.returncode, said[-1:], done.stderr)
     assert not wrong, "\n".join(wrong)
+
+
+def test_some_end_in_words():
+    end_in_words(COUNT, SEED)
+
+
+@nightly
+def test_all_end_in_words():
+    end_in_words(0, SEED)
 
 
 if __name__ == "__main__":

@@ -116,7 +116,7 @@ TEST(FitMap, StepsThatDoNotFitAreLeft) {
 }
 
 // The certificate of the whole: against the map's own values at boundary points.
-TEST(FitMap, StepsAreCertifiedEndToEnd) {
+TEST(FitMapRelease, StepsAreCertifiedEndToEnd) {
   const Mesh source = ball(4), target = moved(source, dented);
   FitMapSettings settings;
   settings.tolerance = 4e-3;

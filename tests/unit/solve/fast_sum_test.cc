@@ -165,7 +165,7 @@ TEST(FastSum, HoldsItsAccuracyWhereWeightsCancel) {
 
 // Weights that cancel to less than rounding: no order reaches the accuracy, and plain sums would
 // take as many pairs as there are charges and points.
-TEST(FastSum, TakesTheBestOrderWhereWeightsNearlyCancel) {
+TEST(FastSumRelease, TakesTheBestOrderWhereWeightsNearlyCancel) {
   constexpr std::size_t kMany = 30000;
   const Points points = testing::spherePoints(40000, 1);
   Points some;

@@ -10,7 +10,7 @@
 namespace innermap {
 namespace {
 
-TEST(CompareFem, OrdersOnKnownFunctions) {
+TEST(CompareFemRelease, OrdersOnKnownFunctions) {
   const Solid solid(shapes::icosphere(4));
   CompareFemSettings settings;
   settings.resolutions = {12, 24, 48};

@@ -38,7 +38,7 @@ TEST(Hexahedralize, FillsATorus) {
   EXPECT_EQ(hexes.inBlocks.hexahedra, hexes.mesh.hexahedra);
 }
 
-TEST(Hexahedralize, ReachesAcrossThinPartsAndCavities) {
+TEST(HexahedralizeRelease, ReachesAcrossThinPartsAndCavities) {
   Mesh shell = shapes::icosphere(4);
   const int first = static_cast<int>(shell.vertices.size());
   const Mesh inner = shapes::icosphere(3, 0.55);
@@ -50,7 +50,7 @@ TEST(Hexahedralize, ReachesAcrossThinPartsAndCavities) {
   EXPECT_NEAR(volumeOf(hexes.mesh), signedVolume(shell), 0.05 * signedVolume(shell));
 }
 
-TEST(Hexahedralize, SameForAnyNumberOfThreads) {
+TEST(HexahedralizeRelease, SameForAnyNumberOfThreads) {
   const Mesh ball = shapes::icosphere(3);
   Points first;
   for (const int threads : {1, 2}) {

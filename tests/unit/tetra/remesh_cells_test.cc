@@ -32,7 +32,7 @@ const CellField* fieldOf(const CellMesh& mesh, const std::string& name) {
   return nullptr;
 }
 
-TEST(RemeshCells, ADentedBallIsTurnedRight) {
+TEST(RemeshCellsRelease, ADentedBallIsTurnedRight) {
   const CellMesh mesh = filled(dented().solid(), 24);
   const Remesh made = remeshCells(mesh, dented());
   EXPECT_GT(made.invertedCarried, 0u);
@@ -120,7 +120,7 @@ TEST(RemeshCells, BringsATargetsMeshBack) {
   EXPECT_GT(made.quality.dihedral.least, 1);
 }
 
-TEST(RemeshCells, SameForAnyNumberOfThreads) {
+TEST(RemeshCellsRelease, SameForAnyNumberOfThreads) {
   const CellMesh mesh = filled(dented().solid(), 14);
   Points first;
   for (const int threads : {1, 2}) {

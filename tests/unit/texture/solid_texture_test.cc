@@ -192,8 +192,7 @@ TEST(SolidTexture, PartsWithoutCoordinatesAreNoted) {
   for (std::size_t t = 0; t < 32; ++t) mesh.uvTriangles[t] = {-1, -1, -1};
   const SolidTexture made = makeSolidTexture(mesh, kGreen, coarse(TextureMode::coordinates));
   ASSERT_EQ(made.notes.size(), 1u);
-  EXPECT_NE(made.notes[0].find("10% of the surface has no texture"), std::string::npos)
-      << made.notes[0];
+  EXPECT_NE(made.notes[0].find("10%"), std::string::npos) << made.notes[0];
 }
 
 TEST(SolidTexture, BadInputIsRefused) {

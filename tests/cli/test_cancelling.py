@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""Cancelling, once a mechanism: commands that write one file, a folder, and frames, two of each.
+
+What is counted are stages that a run begins after the signal, not seconds, so that other work on the
+machine does not matter. How soon a command ends is measured by a test beside its others,
+which tests/nightly runs alone.
+"""
+
+import os
+import signal
+import subprocess
+
+import cli
+from cli import innermap
+
+# The stage that a signal meets may end, and the next may have begun when it comes.
+MOST_STAGES_AFTER = 2
+
+
+def stopped(*arguments, at, number=signal.SIGINT):
+    """Runs innermap and signals it when it says its stage number `at`: (exit code, stages that it
+    began after that)."""
+    process = subprocess.Popen([cli.PROGRAM, *map(str, arguments)], stdout=subprocess.DEVNULL,
+                               stderr=subprocess.PIPE, text=True)
+    for _ in range(at):
+        process.stderr.readline()
+    process.send_signal(number)
+    try:
+        said = process.communicate(timeout=120)[1]
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.communicate()
+        raise
+    stages = [line for line in said.split("\n") if line and not line.startswith("innermap: ")]
+    return process.returncode, len(stages)
+
+
+def stops(arguments, judge, at=(1, 3), number=signal.SIGINT):
+    for stage in at:
+        code, after = stopped(*arguments, at=stage, number=number)
+        assert code == 130, (arguments, stage, code)
+        assert after <= MOST_STAGES_AFTER, (arguments, stage, after)
+        judge()
+
+
+def left(*expected):
+    """A check that the folder holds these and nothing else."""
+    return lambda: cli.no_leftovers(*expected)
+
+
+def pair(subdivisions):
+    vertices, faces = cli.icosphere_arrays(subdivisions)
+    cli.write_obj("ball.obj", vertices, faces)
+    cli.write_obj("bent.obj", [(x, y, z + 0.2 * abs(x)) for x, y, z in vertices], faces)
+
+
+def frames(subdivisions, count):
+    vertices, faces = cli.icosphere_arrays(subdivisions)
+    cli.write_obj("ball.obj", vertices, faces)
+    os.mkdir("frames")
+    for n in range(1, count + 1):
+        cli.write_obj(f"frames/f.{n:04}.obj",
+                      [(x, y, z * (1 + 0.01 * n) + 0.01 * n * x * x) for x, y, z in vertices], faces)
+
+
+def test_commands_that_write_a_file():
+    pair(4)
+    stops(["voxelize", "ball.obj", "-o", "a.vdb", "--resolution", 800, "--half-width", 8, "--fog"],
+          left("ball.obj", "bent.obj"), at=(1,))
+    stops(["fit", "ball.obj", "bent.obj", "-o", "m.ply", "--tolerance", 1e-7],
+          left("ball.obj", "bent.obj"), number=signal.SIGTERM)
+
+
+def test_commands_that_write_a_folder():
+    pair(4)
+    stops(["map", "ball.obj", "bent.obj", "-o", "one/two", "--tolerance", 1e-6],
+          left("ball.obj", "bent.obj"))
+    innermap("fit", "ball.obj", "bent.obj", "-o", "m.ply", "--tolerance", 1e-2, "--quiet")
+    stops(["transfer-distance", "m.ply", "-o", "out", "--resolution", 500],
+          left("ball.obj", "bent.obj", "m.ply"), at=(1, 2), number=signal.SIGHUP)
+
+
+def test_commands_that_write_frames():
+    frames(3, 40)
+    innermap("voxelize", "ball.obj", "-o", "in.vdb", "--resolution", 48, "--fog", "--quiet")
+
+    def whole_frames():
+        for name in os.listdir("out") if os.path.exists("out") else []:
+            assert name.endswith(".vdb") and not name.startswith("."), name
+            innermap("info", os.path.join("out", name))
+        cli.no_leftovers("ball.obj", "in.vdb", "frames", "out")
+
+    stops(["sequence", "ball.obj", "frames", "-o", "out", "--grids", "--sources", 600], whole_frames,
+          at=(1, 9))
+    stops(["deform", "ball.obj", "in.vdb", "frames", "-o", "out/d.vdb", "--sources", 600], whole_frames,
+          at=(1, 9))
+
+
+cli.run(globals())
