@@ -129,7 +129,7 @@ void expectWithin(const Mesh& mesh, const Known& known, const IsFree& isFree, do
   EXPECT_LE(fit.bound, 4 * tolerance);  // measured: 1.4 at most
 }
 
-TEST(FitHarmonic, ValuesFromAFunctionAreMetToAMillionth) {
+TEST(FitHarmonicRelease, ValuesFromAFunctionAreMetToAMillionth) {
   for (const Mesh& mesh :
        {shapes::icosphere(2), shapes::torus(24, 12), shapes::box({-1, -0.7, -0.5}, {1, 0.7, 0.5})})
     expectWithin(mesh, kPolynomial, kNowhere, 1e-6, 1e-5);
@@ -141,13 +141,13 @@ TEST(FitHarmonic, InsulatedSidesOfABox) {
       mesh, kInsulated, [](const Vec3&, const Vec3& n) { return std::abs(n.z) < 0.5; }, 3e-4, 1e-3);
 }
 
-TEST(FitHarmonic, InsulatedSideOfACylinder) {
+TEST(FitHarmonicRelease, InsulatedSideOfACylinder) {
   expectWithin(
       cylinder(48), kCylinder, [](const Vec3&, const Vec3& n) { return std::abs(n.z) < 0.5; }, 3e-4,
       1e-3);
 }
 
-TEST(FitHarmonic, FluxThroughTheOuterSideOfAShell) {
+TEST(FitHarmonicRelease, FluxThroughTheOuterSideOfAShell) {
   const Mesh inner = shapes::icosphere(2, 0.5);
   Mesh mesh = shapes::icosphere(2);
   const int first = static_cast<int>(mesh.vertices.size());
@@ -183,7 +183,7 @@ Mesh halfRing(int along, int around) {
 
 // The angle about the axis is harmonic, and nothing of it flows through the ring's side. Along the
 // triangles' own normals something does, with a jump at each edge.
-TEST(FitHarmonic, FacetsOfASmoothSideTakeFewCharges) {
+TEST(FitHarmonicRelease, FacetsOfASmoothSideTakeFewCharges) {
   const Mesh mesh = halfRing(32, 24);
   const SourceBoundary boundary = makeSourceBoundary(mesh);
   const Known angle{[](const Vec3& p) { return std::atan2(p.y, p.x) / kPi; },

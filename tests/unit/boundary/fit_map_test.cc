@@ -74,7 +74,7 @@ Vec3 dented(const Vec3& p) {
   return p - Vec3{0, 0, 0.85 * std::exp(-angle * angle / 0.36)};
 }
 
-TEST(FitMap, GoesInStepsWhereOneMapFolds) {
+TEST(FitMapRelease, GoesInStepsWhereOneMapFolds) {
   const Mesh source = ball(4), target = moved(source, dented);
   FitMapSettings settings;
   settings.tolerance = 2e-3;

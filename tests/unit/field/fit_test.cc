@@ -124,7 +124,7 @@ TEST(Fit, FewVerticesTakeFewerSources) {
   EXPECT_EQ(fitField(p, s).field.sources().size(), 150u);
 }
 
-TEST(Fit, ManySourcesAreSolvedForIteratively) {
+TEST(FitRelease, ManySourcesAreSolvedForIteratively) {
   FitProblem p = testing::ballProblem(12000);
   for (std::size_t i = 0; i < p.surface.points.size(); ++i)
     p.surface.values(i, 0) += std::abs(std::sin(5 * p.surface.points[i].x));

@@ -59,7 +59,7 @@ void expectOneToOne(const Correspondence& map) {
   }
 }
 
-TEST(Correspond, ABodyOntoItselfInAnotherMesh) {
+TEST(CorrespondRelease, ABodyOntoItselfInAnotherMesh) {
   const Mesh a = limbs(3), b = limbs(4, 0.2);
   const Correspondence map = correspond(EmbeddedSurface(a), EmbeddedSurface(b));
   ASSERT_EQ(map.positions.size(), a.vertices.size());
@@ -173,7 +173,7 @@ Mesh hollow(double inner, int level, const Vec3& at, bool innerFirst) {
   return out;
 }
 
-TEST(Correspond, ShellsArePairedByNesting) {
+TEST(CorrespondRelease, ShellsArePairedByNesting) {
   const Mesh a = hollow(0.5, 2, {0, 0, 0}, true), b = hollow(0.3, 3, {0.2, 0, 0}, false);
   const Correspondence map = correspond(EmbeddedSurface(a), EmbeddedSurface(b));
   ASSERT_EQ(map.shells.size(), 2u);
@@ -193,7 +193,7 @@ TEST(Correspond, ShellsArePairedByNesting) {
   }
 }
 
-TEST(Correspond, ToriMeetMeridianToMeridian) {
+TEST(CorrespondRelease, ToriMeetMeridianToMeridian) {
   const int n = 36, m = 14;
   const Mesh a = meshOf(shapes::tube(shapes::circle, n, m, 0.3), "a"),
              b = meshOf(shapes::tube(shapes::trefoil, 90, 10, 0.35), "b");
@@ -208,7 +208,7 @@ TEST(Correspond, ToriMeetMeridianToMeridian) {
   }
 }
 
-TEST(Correspond, SubdividedSourceFollowsTheTarget) {
+TEST(CorrespondRelease, SubdividedSourceFollowsTheTarget) {
   Mesh a = shapes::icosphere(2);
   a.uvTriangles = a.triangles;
   for (const Vec3& p : a.vertices) a.uvs.push_back({p.x, p.y});

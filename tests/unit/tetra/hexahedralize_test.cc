@@ -21,7 +21,7 @@ HexahedralizeSettings across(int blocks, int pieces) {
   return settings;
 }
 
-TEST(Hexahedralize, FillsATorus) {
+TEST(HexahedralizeRelease, FillsATorus) {
   const Mesh torus = shapes::torus(60, 24);
   const Hexahedralization hexes = hexahedralize(torus, across(11, 1));
   EXPECT_GT(hexes.before.inverted, 0u);
@@ -38,7 +38,7 @@ TEST(Hexahedralize, FillsATorus) {
   EXPECT_EQ(hexes.inBlocks.hexahedra, hexes.mesh.hexahedra);
 }
 
-TEST(HexahedralizeRelease, ReachesAcrossThinPartsAndCavities) {
+TEST(HexahedralizeNightly, ReachesAcrossThinPartsAndCavities) {
   Mesh shell = shapes::icosphere(4);
   const int first = static_cast<int>(shell.vertices.size());
   const Mesh inner = shapes::icosphere(3, 0.55);
@@ -51,7 +51,7 @@ TEST(HexahedralizeRelease, ReachesAcrossThinPartsAndCavities) {
 }
 
 TEST(HexahedralizeRelease, SameForAnyNumberOfThreads) {
-  const Mesh ball = shapes::icosphere(3);
+  const Mesh ball = shapes::icosphere(2);
   Points first;
   for (const int threads : {1, 2}) {
     const ThreadLimit limit(threads);

@@ -47,7 +47,7 @@ TEST(RemeshCellsRelease, ADentedBallIsTurnedRight) {
   EXPECT_LT(norm(map.pull(map.push({0.2, 0.1, -0.4}).image).image - Vec3{0.2, 0.1, -0.4}), 1e-9);
 }
 
-TEST(RemeshCells, KeepsTheConnectivityWhereAsked) {
+TEST(RemeshCellsRelease, KeepsTheConnectivityWhereAsked) {
   const CellMesh mesh = filled(dented().solid(), 16);
   RemeshSettings settings;
   settings.keepConnectivity = true;
@@ -109,7 +109,7 @@ TEST(RemeshCells, AffineMapsNeedNoRepairAndTurnFields) {
   }
 }
 
-TEST(RemeshCells, BringsATargetsMeshBack) {
+TEST(RemeshCellsRelease, BringsATargetsMeshBack) {
   const CellMesh mesh = filled(makeTargetSolid(dented().boundary), 20);
   RemeshSettings settings;
   settings.back = true;

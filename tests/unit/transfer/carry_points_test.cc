@@ -76,7 +76,7 @@ TEST(CarryPoints, OneInverseServesCallsWithProgressOfTheirOwn) {
   EXPECT_THROW(puller.reportingTo(&cancelled).pull(images, false), Cancelled);
 }
 
-TEST(CarryPoints, OutsideIsCutExtendedOrFaded) {
+TEST(CarryPointsRelease, OutsideIsCutExtendedOrFaded) {
   const ComposedMap map = affineMap(rotation(0.7, 0.2), {1, 2, 3});
   const Solid solid(ball());
   const double diagonal = solid.diagonal();

@@ -188,7 +188,7 @@ TEST(Carry, TensorsByRowsAreTheSame) {
   EXPECT_LT(error, 1e-5);
 }
 
-TEST(Carry, DensitiesKeepTheirMass) {
+TEST(CarryRelease, DensitiesKeepTheirMass) {
   const Pair pair(chargedMap(), 128);
   // Some of it inside, none at the surface: the integral is exact but for the sampling.
   auto grid = sampled<openvdb::FloatGrid>(*pair.from, "density", [](const Vec3& p) {

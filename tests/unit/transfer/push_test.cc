@@ -161,7 +161,7 @@ Errors closedFormErrors(const ClosedForm& form, int resolution) {
   return e;
 }
 
-TEST(Push, TwistBendAndPolynomialAgreeWithTheirFormulas) {
+TEST(PushRelease, TwistBendAndPolynomialAgreeWithTheirFormulas) {
   for (const ClosedForm& form : closedForms()) {
     SCOPED_TRACE(form.name);
     const Errors coarse = closedFormErrors(form, 24), fine = closedFormErrors(form, 48);
@@ -248,7 +248,7 @@ TEST(Push, GridsOfOtherTransformsAreSampledWhereTheyAre) {
   EXPECT_LT(error, 0.01);
 }
 
-TEST(Push, WhatLiesAroundComesAlong) {
+TEST(PushRelease, WhatLiesAroundComesAlong) {
   const HarmonicMap map = affineMap({{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {5, 0, 0});
   const Solid source(ball()), target(ball());
   auto grid = openvdb::FloatGrid::create();

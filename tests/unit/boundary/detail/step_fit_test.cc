@@ -58,7 +58,7 @@ std::vector<double> errorsAt(const StepFit& fit, const BoundaryPair& pair, const
 // What the whole solid turns, moves and grows is no part of the way: every step should stay where
 // it is, and what they compose to is known inside. It is nowhere farther from that than the
 // boundary and, by the maximum principle in the second step's solid, twice the first step's error.
-TEST(StepFit, SimilaritiesAreMetInside) {
+TEST(StepFitRelease, SimilaritiesAreMetInside) {
   const Mesh source = bar();
   const Move map = [](const Vec3& p) { return Vec3{2 - 3 * p.y, 3 * p.x + 1, 3 * p.z}; };
   const BoundaryPair pair = makeBoundaryPair(source, moved(source, map));
@@ -79,7 +79,7 @@ TEST(StepFit, SimilaritiesAreMetInside) {
 // of the certificate's, each is as likely to be any point. Beyond the 200th largest are
 // 200 m / n of them on average, with a variance of 200 (m / n) (1 + m / n); that 8 or more lie
 // beyond the largest has the probability (m / (m + n))^8.
-TEST(StepFit, ErrorsElsewhereAreThoseOfTheCertificate) {
+TEST(StepFitRelease, ErrorsElsewhereAreThoseOfTheCertificate) {
   constexpr double kOthers = 5000, kShare = kOthers / kFreshSamples, kBeyond = 0.01 * kFreshSamples;
   const double mean = kBeyond * kShare, deviation = std::sqrt(mean * (1 + kShare));
   struct Case {
@@ -141,7 +141,7 @@ TEST(StepFit, TheUnitIsTheTargetsDiagonal) {
 
 // What the composed map should be is not known of a bend, but a fit ten times as exact is nearer to
 // it: inside, they differ by no more than both say of their boundary.
-TEST(StepFit, InsideErrorsAreBelowTheCertificates) {
+TEST(StepFitRelease, InsideErrorsAreBelowTheCertificates) {
   const Mesh source = bar();
   for (const Move& map : {bent(2.5), twisted(2)}) {
     const BoundaryPair pair = makeBoundaryPair(source, moved(source, map));

@@ -88,7 +88,7 @@ TEST(GluedMap, OntoTheSameShapeIsNearlyIsometric) {
   expectMap(a, b, 3);
 }
 
-TEST(GluedMap, BetweenDifferentShapes) {
+TEST(GluedMapRelease, BetweenDifferentShapes) {
   const ClosedSurface a = rounded(plate(2, 2), 2);
   const ClosedSurface b =
       rounded(boundaryOf(without(block({0, 0, 0}, {10, 4, 4}),

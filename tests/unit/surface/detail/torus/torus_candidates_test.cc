@@ -145,7 +145,7 @@ TEST(TorusCandidates, SameForAnyNumberOfThreadsAndCancelled) {
   EXPECT_THROW(torusCandidates(a, onA, b, onB, settings), Cancelled);
 }
 
-TEST(TorusCandidatesModels, RockerArmOntoATorusAndBack) {
+TEST(TorusCandidatesModelsRelease, RockerArmOntoATorusAndBack) {
   const std::string folder = INNERMAP_MODELS;
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
   const ClosedSurface a = closed(readMesh(folder + "/rocker-arm.obj"), 1),
