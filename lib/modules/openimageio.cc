@@ -105,7 +105,7 @@ class Library final : public ImageLibrary {
 }  // namespace
 }  // namespace innermap
 
-extern "C" [[gnu::visibility("default")]] const innermap::ImageLibrary* innermap_image_library() {
+extern "C" [[gnu::visibility("default")]] const innermap::ImageLibrary* innermapImageLibrary() {
   static const innermap::Library library;
   return &library;
 }

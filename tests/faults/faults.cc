@@ -22,12 +22,14 @@
 #include <cstring>
 #include <new>
 
+// NOLINTBEGIN(readability-identifier-naming): glibc's names
 extern "C" {
 void* __libc_malloc(std::size_t);
 void* __libc_calloc(std::size_t, std::size_t);
 void* __libc_realloc(void*, std::size_t);
 void* __libc_memalign(std::size_t, std::size_t);
 }
+// NOLINTEND(readability-identifier-naming)
 
 namespace {
 
@@ -190,6 +192,7 @@ void* operator new[](std::size_t n, const std::nothrow_t&) noexcept { return all
 
 extern "C" {
 
+// NOLINTNEXTLINE(readability-identifier-naming)
 int __libc_start_main(int (*main)(int, char**, char**), int argc, char** argv, void (*init)(),
                       void (*fini)(), void (*rtldFini)(), void* stackEnd) {
   using Start =

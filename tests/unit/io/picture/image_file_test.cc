@@ -33,7 +33,7 @@ struct IgnoredLeaks {
 #endif
 
 // Every pixel has the same values, but for pixel (0, 0), which has twice them.
-void write(const std::string& path, OIIO::ImageSpec spec, const std::vector<float>& values) {
+void write(const std::string& path, const OIIO::ImageSpec& spec, const std::vector<float>& values) {
   auto out = OIIO::ImageOutput::create(path);
   ASSERT_TRUE(out) << OIIO::geterror();
   std::vector<float> pixels;
@@ -44,7 +44,7 @@ void write(const std::string& path, OIIO::ImageSpec spec, const std::vector<floa
   out->close();
 }
 
-OIIO::ImageSpec specOf(std::vector<std::string> channels, OIIO::TypeDesc type, int width = 5,
+OIIO::ImageSpec specOf(std::vector<std::string> channels, const OIIO::TypeDesc& type, int width = 5,
                        int height = 3) {
   OIIO::ImageSpec spec(width, height, static_cast<int>(channels.size()), type);
   spec.channelnames = std::move(channels);

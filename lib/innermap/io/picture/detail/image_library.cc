@@ -13,7 +13,7 @@ const ImageLibrary& load() {
   // the binary that holds this code says (its run path), then where the system's libraries are.
   void* const module = dlopen(INNERMAP_IMAGE_MODULE, RTLD_LAZY | RTLD_LOCAL);
   const char* const why = module ? "" : dlerror();
-  void* const entry = module ? dlsym(module, "innermap_image_library") : nullptr;
+  void* const entry = module ? dlsym(module, "innermapImageLibrary") : nullptr;
   if (!entry)
     throw Error(
         fmt::format("pictures need the module {}, which cannot be loaded ({}); install innermap "

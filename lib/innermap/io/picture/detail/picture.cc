@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ostream>
 
 #include "innermap/core/error.h"
 #include "innermap/core/file.h"
