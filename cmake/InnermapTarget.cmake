@@ -8,6 +8,10 @@ function(innermap_own_target target)
   # Executables are compiled like libraries, so that all share the precompiled headers.
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE OFF
                         BUILD_RPATH ${INNERMAP_MODULES_BUILD_FOLDER})
+  get_target_property(type ${target} TYPE)
+  if(type MATCHES "EXECUTABLE|MODULE" AND NOT target MATCHES "innermap_images")
+    add_dependencies(${target} innermap_images)
+  endif()
   target_compile_options(${target} PRIVATE -fPIC)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow)
   if(INNERMAP_WARNINGS_AS_ERRORS)
