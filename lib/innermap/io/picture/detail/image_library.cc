@@ -8,7 +8,12 @@
 namespace innermap {
 namespace {
 
-const ImageLibrary& load() {
+// The sanitizer would find another type: a module has descriptions of types of its own.
+#ifdef __clang__
+__attribute__((no_sanitize("function")))
+#endif
+const ImageLibrary&
+load() {
   // The name holds the version, so another version's module is not found. It is looked for where
   // the binary that holds this code says (its run path), then where the system's libraries are.
   void* const module = dlopen(INNERMAP_IMAGE_MODULE, RTLD_LAZY | RTLD_LOCAL);
