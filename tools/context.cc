@@ -213,7 +213,8 @@ bool Context::allInPlace() const {
 }
 
 void Context::notePictures() {
-  // Asking for the font loads what draws, so from here on it counts as memory that the program takes.
+  // Asking for the font loads what draws, so from here on it counts as memory that the program
+  // takes.
   if (labelFont().empty() && !dryRun())
     note(
         "no font is installed, so pictures have no labels; install DejaVu Sans (on Debian the "

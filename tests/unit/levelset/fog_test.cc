@@ -51,7 +51,7 @@ TEST(Fog, CellFractionAgreesWithCounting) {
   EXPECT_NEAR(cellFraction((1.5 - 0.1) * s, {s, s, s}), 1e-3 / 6, 1e-15);
 }
 
-TEST(Fog, VolumeConvergesAtSecondOrder) {
+TEST(FogRelease, VolumeConvergesAtSecondOrder) {
   for (const Mesh& mesh : {shapes::icosphere(6), shapes::torus(400, 200)}) {
     SCOPED_TRACE(mesh.name);
     const Solid solid(mesh);

@@ -193,7 +193,7 @@ TEST(LevelSet, SettingsOutOfRange) {
   EXPECT_EQ(voxelSizeFor(solid, coarse), 0.5);
 }
 
-TEST(LevelSet, MemoryEstimateBoundsTheTree) {
+TEST(LevelSetRelease, MemoryEstimateBoundsTheTree) {
   const Solid solid(shapes::torus(100, 50));
   for (const int n : {96, 192}) {
     for (const double width : {3.0, 8.0}) {

@@ -88,7 +88,7 @@ TEST(CorrespondRelease, SameForAnyNumberOfThreads) {
   for (std::size_t v = 0; v < one.size(); ++v) ASSERT_LT(norm(one[v] - two[v]), 1e-15) << v;
 }
 
-TEST(Correspond, LandmarksAreMet) {
+TEST(CorrespondRelease, LandmarksAreMet) {
   const Mesh a = shapes::icosphere(3), b = limbs(3);
   CorrespondSettings settings;
   for (const int v : {3, 40, 171, 300, 512}) {

@@ -44,7 +44,7 @@ TEST(CarryPoints, PushAgreesWithDirectSums) {
   }
 }
 
-TEST(CarryPoints, PullBringsBack) {
+TEST(CarryPointsRelease, PullBringsBack) {
   // Two steps, one after the other.
   const ComposedMap map({chargedMap(0.2), affineMap(rotation(0.4, 1.1), {3, -1, 2})});
   const Solid source(ball()), target(moved(ball(), map));

@@ -159,7 +159,7 @@ double tensorError(int resolution, bool stress) {
   return error;
 }
 
-TEST(Carry, TensorsAgreeWithClosedForms) {
+TEST(CarryRelease, TensorsAgreeWithClosedForms) {
   for (const bool stress : {true, false}) {
     const double coarse = tensorError(16, stress), fine = tensorError(32, stress);
     EXPECT_LT(coarse, 0.1) << stress;

@@ -32,7 +32,7 @@ double scalarError(const HarmonicMap& map, int resolution, Sampling sampling) {
 }
 
 // Nearest: first order; linear: second; quadratic: third.
-TEST(Push, ScalarsConvergeWithTheOrderOfTheSampling) {
+TEST(PushRelease, ScalarsConvergeWithTheOrderOfTheSampling) {
   const double ratios[] = {1.7, 3, 5};
   int k = 0;
   for (const Sampling sampling : {Sampling::nearest, Sampling::linear, Sampling::quadratic}) {

@@ -16,7 +16,7 @@ void expectAtDistance(const Solid& solid, const Mesh& mesh, double distance) {
   }
 }
 
-TEST(OffsetSurface, OfABallIsABall) {
+TEST(OffsetSurfaceRelease, OfABallIsABall) {
   const Solid solid(shapes::icosphere(4));
   for (const double d : {1e-4, 0.0024, 0.0026, 0.05, 0.3, 2.0}) {
     SCOPED_TRACE(d);

@@ -50,7 +50,7 @@ Points scattered(std::uint64_t seed) {
   return points;
 }
 
-TEST(GreedyRemoval, IsTheLoopOneByOneForAnyNumberOfThreads) {
+TEST(GreedyRemovalRelease, IsTheLoopOneByOneForAnyNumberOfThreads) {
   for (const std::uint64_t seed : {1u, 2u}) {
     const double radius = 0.03;
     const NeighbourGrid grid(scattered(seed), radius);

@@ -99,14 +99,14 @@ TEST(GluedMapRelease, BetweenDifferentShapes) {
   expectMap(b, a, 12);
 }
 
-TEST(GluedMap, OfThreeHandles) {
+TEST(GluedMapRelease, OfThreeHandles) {
   const ClosedSurface a = rounded(plate(3, 2), 2);
   const ClosedSurface b =
       rounded(boundaryOf(with(shapes::plateCells(3), block({0, 0, 2}, {2, 0, 6})), 3), 1);
   expectMap(a, b, 12);
 }
 
-TEST(GluedMap, MeetsLandmarks) {
+TEST(GluedMapRelease, MeetsLandmarks) {
   const ClosedSurface a = rounded(plate(2, 2), 2), b = rounded(plate(2, 3), 3);
   const CutPair pair = cutAlike(handleLoops(a), handleLoops(b));
   const GluedMap free = gluedMap(pair);
