@@ -20,17 +20,21 @@ MOST_STAGES_AFTER = 2
 def stopped(*arguments, at, number=signal.SIGINT):
     """Runs innermap and signals it when it says its stage number `at`: (exit code, stages that it
     began after that)."""
-    process = subprocess.Popen([cli.PROGRAM, *map(str, arguments)], stdout=subprocess.DEVNULL,
-                               stderr=subprocess.PIPE, text=True)
-    for _ in range(at):
-        process.stderr.readline()
-    process.send_signal(number)
-    try:
-        said = process.communicate(timeout=120)[1]
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.communicate()
-        raise
+    with subprocess.Popen([cli.PROGRAM, *map(str, arguments)], stdout=subprocess.DEVNULL,
+                          stderr=subprocess.PIPE) as process:
+        stream = process.stderr.fileno()
+        begun = b""
+        while begun.count(b"\n") < at:
+            text = os.read(stream, 65536)  # all that there is
+            if not text:
+                break
+            begun += text
+        process.send_signal(number)
+        try:
+            said = process.communicate(timeout=120)[1].decode()
+        except subprocess.TimeoutExpired:
+            process.kill()
+            raise
     stages = [line for line in said.split("\n") if line and not line.startswith("innermap: ")]
     return process.returncode, len(stages)
 
