@@ -242,7 +242,7 @@ void Context::print(const std::string& text) {
   std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
-void Context::used(const std::string& option, ReportValue value) {
+void Context::used(const std::string& option, const ReportValue& value) {
   for (auto& [name, known] : report_.run->settings)
     if (name == settingKey(option)) known = value;
 }

@@ -131,7 +131,7 @@ class Context {
   const std::string& failure() const { return failure_; }
 
   // A setting that was left to the command: what it took. option: "--tolerance". In the report.
-  void used(const std::string& option, ReportValue value);
+  void used(const std::string& option, const ReportValue& value);
   // The value of a setting that is a text, or null.
   const std::string* setting(const std::string& option) const;
 

@@ -135,8 +135,10 @@ class Deformer {
     if (options_.velocity)
       fields.push_back({"velocity", fits_.velocity(index, options_.framesPerSecond),
                         openvdb::VEC_CONTRAVARIANT_RELATIVE});
-    const auto [result, seconds] = pusher_->push({fit.get(), frame.number}, fields);
-    addSeconds(context_.report().seconds, seconds);
+    // No structured binding: lambdas cannot capture one in C++17.
+    const FramePush pushed = pusher_->push({fit.get(), frame.number}, fields);
+    const auto& result = pushed.result;
+    addSeconds(context_.report().seconds, pushed.seconds);
     for (const std::string& warning : result.warnings)
       context_.warning(fmt::format("frame {}: {}", frame.number, warning));
     if (options_.velocity)

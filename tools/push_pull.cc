@@ -43,14 +43,13 @@ LinearCellMap readThrough(const std::string& path, const MappedSolid& mapped, Co
 
 Job read(const CarryOptions& options, Context& context) {
   MappedSolid mapped = readMapFile(options.map, context);
-  OutsideSettings outside = outsideSettings(
+  const OutsideSettings outside = outsideSettings(
       options.transfer, mapped.solid().repaired().mesh.vertices, mapped.boundary.target.moved);
   openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
   Solid target = targetSolid(mapped, context);
   std::optional<ThroughMap> through;
   if (!options.through.empty()) through = throughMap(readThrough(options.through, mapped, context));
-  return {std::move(mapped), std::move(target), std::move(outside), std::move(grids),
-          std::move(through)};
+  return {std::move(mapped), std::move(target), outside, std::move(grids), std::move(through)};
 }
 
 double growthOf(Way way, const Job& job) {

@@ -40,6 +40,7 @@ const std::string& writtenInput(const std::uint8_t* data, std::size_t size) {
 
 }  // namespace
 
+// libFuzzer's names. NOLINTBEGIN(readability-identifier-naming)
 extern "C" int LLVMFuzzerInitialize(int* count, char*** values) {
   bool listing = false;
   for (int i = 1; i < *count; ++i) {
@@ -67,3 +68,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   return 0;
 }
+// NOLINTEND(readability-identifier-naming)

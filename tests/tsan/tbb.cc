@@ -119,8 +119,10 @@ void __TBB_EXPORTED_FUNC deallocate(d1::small_object_pool&, void* at, std::size_
 }
 void* __TBB_EXPORTED_FUNC cache_aligned_allocate(std::size_t size) { return allocateBytes(size); }
 void __TBB_EXPORTED_FUNC cache_aligned_deallocate(void* at) { std::free(at); }
+// NOLINTBEGIN(readability-identifier-naming)
 void* __TBB_EXPORTED_FUNC allocate_memory(std::size_t size) { return allocateBytes(size); }
 void __TBB_EXPORTED_FUNC deallocate_memory(void* at) { std::free(at); }
+// NOLINTEND(readability-identifier-naming)
 
 }  // namespace r1
 }  // namespace tbb::detail

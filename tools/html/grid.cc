@@ -138,11 +138,11 @@ void addGrid(Page& page, const Grid& grid, const openvdb::FloatGrid* surface, st
 
   const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
   if (box.empty()) return;
-  constexpr bool isVector = openvdb::VecTraits<typename Grid::ValueType>::IsVec;
+  constexpr bool kIsVector = openvdb::VecTraits<typename Grid::ValueType>::IsVec;
   const bool least = byLeast(grid.getName());
-  for (int axis = 0; axis < (isVector ? 3 : 1); ++axis) {
+  for (int axis = 0; axis < (kIsVector ? 3 : 1); ++axis) {
     PageGrid cut = frameFor(grid, box, page.frame, values);
-    cut.name = grid.getName() + (isVector ? std::string(" ") + "xyz"[axis] : std::string());
+    cut.name = grid.getName() + (kIsVector ? std::string(" ") + "xyz"[axis] : std::string());
     cut.reduction = least ? "least" : "mean";
     Blocks blocks(cut, box.min(), least);
     openvdb::CoordBBox place;

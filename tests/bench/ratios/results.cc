@@ -9,6 +9,7 @@
 
 #include "innermap/solve/kernel_sum.h"
 
+// NOLINTNEXTLINE(readability-identifier-naming)
 extern "C" char* openblas_get_corename();
 
 namespace innermap::bench {

@@ -11,6 +11,7 @@
 #include "pairs.h"
 #include "program.h"
 
+// NOLINTNEXTLINE(readability-identifier-naming)
 extern "C" void openblas_set_num_threads(int threads);
 
 namespace innermap::bench {

@@ -61,7 +61,8 @@ TEST(Check, BoundaryLoopsWithTheirLengths) {
 TEST(Check, LoopsThatMeetInAVertexAreTwo) {
   // A 3 x 3 grid of quads without two that touch in a corner.
   Mesh mesh;
-  for (int i = 0; i < 16; ++i) mesh.vertices.push_back({double(i % 4), double(i / 4), 0});
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 4; ++x) mesh.vertices.push_back({double(x), double(y), 0});
   for (int i = 0; i < 9; ++i) {
     if (i == 4 || i == 8) continue;
     const int a = i % 3 + 4 * (i / 3);

@@ -53,7 +53,9 @@ TEST(CellQuality, CountsAndFields) {
   EXPECT_EQ(q.invertedHexahedra, 0u);
   EXPECT_LT(q.dihedral.least, 1e-6);
   EXPECT_NEAR(q.greatestAngle, 180, 1e-4);
-  EXPECT_EQ(std::accumulate(q.dihedral.histogram.begin(), q.dihedral.histogram.end(), 0u), 2u);
+  EXPECT_EQ(
+      std::accumulate(q.dihedral.histogram.begin(), q.dihedral.histogram.end(), std::size_t(0)),
+      2u);
   EXPECT_EQ(q.dihedral.histogram.front(), 1u);
   EXPECT_EQ(q.jacobian.histogram.back(), 1u);
   setQualityFields(mesh, q);

@@ -39,7 +39,8 @@ Mesh ballWithUvs() {
 Mesh cubeOfCharts() {
   Mesh mesh = shapes::box({0, 0, 0}, {1, 1, 1});
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto side = static_cast<double>(t / 2);
+    const std::size_t square = t / 2;
+    const auto side = static_cast<double>(square);
     Triangle uv;
     for (int k = 0; k < 3; ++k) {
       const Vec3 p = mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][k])];

@@ -189,8 +189,9 @@ Rgb pixelColour(const SectionSampler& sampler, const SectionCut& cut, const Sect
                 Colormap map, double x, double y, double dx, double dy) {
   Rgb sum{0, 0, 0};
   for (int k = 0; k < kSubsamples * kSubsamples; ++k) {
-    const double sx = x + dx * ((k % kSubsamples + 0.5) / kSubsamples - 0.5);
-    const double sy = y + dy * ((k / kSubsamples + 0.5) / kSubsamples - 0.5);
+    const int column = k % kSubsamples, row = k / kSubsamples;
+    const double sx = x + dx * ((column + 0.5) / kSubsamples - 0.5);
+    const double sy = y + dy * ((row + 0.5) / kSubsamples - 0.5);
     const Rgb colour = sampler.inside(sx, sy) ? colourAt(sampler, cut, r, map, sx, sy) : kOutside;
     for (int c = 0; c < 3; ++c) sum[c] += colour[c] / (kSubsamples * kSubsamples);
   }

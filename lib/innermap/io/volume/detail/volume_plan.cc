@@ -38,7 +38,8 @@ struct DenseBox {
 
   // Grows to more voxels about the middle; by whole voxels, so that a lattice of the grids stays.
   void grow(int a, std::int64_t voxels) {
-    lower[a] -= scale * static_cast<double>((voxels - size[a]) / 2);
+    const std::int64_t before = (voxels - size[a]) / 2;
+    lower[a] -= scale * static_cast<double>(before);
     size[a] = voxels;
     side[a] = scale * static_cast<double>(voxels);
   }
