@@ -3,8 +3,7 @@
 A test is a script with functions named test_*. run(globals()) calls all of them, or those that the
 command line names, prints what fails and ends with exit code 1 if anything did. Each function gets a
 temporary folder of its own as working directory, and is a test of its own for ctest
-(tests/CMakeLists.txt finds them by their "def" lines, and the marks @alone, @slow and @nightly before
-these).
+(tests/CMakeLists.txt finds them by their "def" lines, and the marks @alone and @nightly before these).
 Standard library only, but for jsonschema: every report that a run leaves is checked against
 docs/report.schema.json.
 """
@@ -50,11 +49,6 @@ class Skip(Exception):
 
 def alone(test):
     """Marks a test that measures time: ctest runs nothing beside it, and it has all cores."""
-    return test
-
-
-def slow(test):
-    """Marks a test that `tests/run --quick` leaves out."""
     return test
 
 

@@ -75,7 +75,7 @@ TEST(LayOutMesh, PutsAnIsosurfaceForPartsThatOverlap) {
   EXPECT_EQ(laid.mesh.vertices.size(), mesh.vertices.size());
   EXPECT_LT(laid.volume(), signedVolume(mesh)) << "what is in both balls counts once";
   ASSERT_EQ(laid.notes.size(), 2u);
-  EXPECT_NE(laid.notes[1].find("20"), std::string::npos) << laid.notes[1];
+  EXPECT_NE(laid.notes[1].find("20 voxels"), std::string::npos) << laid.notes[1];
 }
 
 TEST(LayOutMesh, RefusesSettingsOutOfRange) {

@@ -119,7 +119,7 @@ TEST(PlaceLandmarks, FindsVerticesExactlyAndPointsAtTheNearestVertex) {
   EXPECT_EQ(placed.landmarks[1].vertex, t[0]);
   EXPECT_LT(norm(positionOf(b, placed.landmarks[1].onTarget) - list.pairs[1].onB.point), 1e-12);
   EXPECT_NE(placed.note.find("a.obj"), std::string::npos) << placed.note;
-  EXPECT_NE(placed.note.find("2"), std::string::npos) << placed.note;
+  EXPECT_NE(placed.note.find("pair 2"), std::string::npos) << placed.note;
   EXPECT_TRUE(placed.far);
 }
 

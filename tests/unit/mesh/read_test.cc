@@ -220,10 +220,10 @@ TEST_F(Read, LikeNamesTheFirstDifference) {
   };
   const std::string v = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
   EXPECT_EQ(message(v + "f 1 2 3\nf 1 3 4\n"), "accepted");  // same triangles, no polygons
-  EXPECT_NE(message(v + "f 2 3 4 1\n").find("0"), std::string::npos);
-  EXPECT_NE(message(v + "f 1 2 3 4\nf 1 2 3\n").find("2"), std::string::npos);
-  EXPECT_NE(message(v + "v 0 0 0\nf 1 2 3 4\n").find("5"), std::string::npos);
-  EXPECT_NE(message(v + "f 1 2 4\nf 1 2 3\n").find("0"), std::string::npos);
+  EXPECT_NE(message(v + "f 2 3 4 1\n").find("polygon 0"), std::string::npos);
+  EXPECT_NE(message(v + "f 1 2 3 4\nf 1 2 3\n").find("2 polygons"), std::string::npos);
+  EXPECT_NE(message(v + "v 0 0 0\nf 1 2 3 4\n").find("5 vertices"), std::string::npos);
+  EXPECT_NE(message(v + "f 1 2 4\nf 1 2 3\n").find("triangle 0"), std::string::npos);
 }
 
 TEST_F(Read, CancelledReadsThrow) {

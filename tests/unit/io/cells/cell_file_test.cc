@@ -192,7 +192,7 @@ TEST(CellFile, BadNumbersAndIndicesAreNamed) {
         meditOf(std::string(kFourVertices) + "Triangles 1\n1 2 3 0\nTetrahedra 1\n1 2 3 4 0\n"));
   const CellFile file = readCells(path);
   ASSERT_EQ(file.notes.size(), 1u);
-  EXPECT_NE(file.notes[0].find("1"), std::string::npos);
+  EXPECT_NE(file.notes[0].find("1 triangles"), std::string::npos);
   EXPECT_EQ(file.mesh.tetrahedra.size(), 1u);
 }
 
@@ -262,7 +262,7 @@ TEST(CellFile, HangingVerticesAreCounted) {
   writeCells(path, mesh);
   const CellFile file = readCells(path);
   ASSERT_EQ(file.notes.size(), 1u);
-  EXPECT_NE(file.notes[0].find(" 1 "), std::string::npos) << file.notes[0];
+  EXPECT_NE(file.notes[0].find(" 1 vertices"), std::string::npos) << file.notes[0];
 }
 
 TEST(CellFile, MemoryIsLimited) {

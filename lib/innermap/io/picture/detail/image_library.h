@@ -1,5 +1,5 @@
 // What reads, writes and letters pictures: OpenImageIO, in a module that is loaded when it is first
-// asked for. OpenImageIO brings some 250 shared libraries (Debian's among them video codecs), which
+// asked for. OpenImageIO brings over 200 shared libraries (Debian's among them video codecs), which
 // take longer to load than most commands take to run; a process without pictures never loads them.
 #pragma once
 
