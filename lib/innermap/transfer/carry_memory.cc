@@ -32,7 +32,7 @@ std::uint64_t carryMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
   // Measured, bytes: sources and Jacobians of the inverse and its starts, an active voxel; the
   // lattice through the source that the starts come from, 128 voxels across at most, and what else
   // does not grow.
-  constexpr double kInverted = 100, kLattice = 150e6, kAcross = 128, kOther = 30e6;
+  constexpr double kInverted = 100, kLattice = 150e6, kAcross = 128, kOther = 10e6;
   // Leaves of 8^3 voxels are allocated whole, along the surface some 6 voxels to either side; two
   // are active.
   constexpr double kReach = 12, kSkin = 2;

@@ -31,7 +31,7 @@ const Format* findFormat(const std::string& path) {
 }
 
 // Of one pass over the points.
-constexpr std::uint64_t kOnTheWay = 40'000'000;
+constexpr std::uint64_t kOnTheWay = 25'000'000;
 
 // Bytes in memory for each of the file, measured: dense files, and those with directions, whose
 // Jacobians are kept, take more.

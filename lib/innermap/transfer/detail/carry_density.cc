@@ -234,7 +234,7 @@ std::uint64_t densityMemory(std::uint64_t sourceVoxels, double targetVoxels) {
   const double source = std::max(1.0, static_cast<double>(sourceVoxels));
   const double parts = std::clamp(std::floor(std::cbrt(targetVoxels / source) + 0.25), 1.0, 32.0);
   const double nodes = 1.2 * source * parts * parts * parts;
-  constexpr std::uint64_t kSummed = 50'000'000;  // of kParts, measured
+  constexpr std::uint64_t kSummed = 30'000'000;  // of kParts, measured
   return kSummed + CellNodes::memory(static_cast<std::size_t>(nodes)) +
          static_cast<std::uint64_t>(targetVoxels) * sizeof(VoxelSums::Sum);
 }
