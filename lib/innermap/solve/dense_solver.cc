@@ -9,6 +9,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
+#include "innermap/solve/detail/affine_fit.h"
 #include "innermap/solve/detail/blocked_qr.h"
 #include "innermap/solve/detail/lapack_status.h"
 #include "innermap/solve/kernel_sum.h"
@@ -16,24 +17,12 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kAffine = 4;  // 1, x, y, z
+constexpr std::size_t kAffine = kAffineUnknowns;
 
 Points normalised(const Points& points, const Vec3& center, double scale) {
   Points out(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) out[i] = (points[i] - center) / scale;
   return out;
-}
-
-// R11^-1 b, in place. Affine directions that the points do not span (a plane, a line) get 0.
-void solveUpper(const Matrix& r, Matrix& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < kAffine; ++i) largest = std::max(largest, std::abs(r(i, i)));
-  for (std::size_t c = 0; c < b.columns(); ++c)
-    for (std::size_t i = kAffine; i-- > 0;) {
-      double sum = b(i, c);
-      for (std::size_t j = i + 1; j < kAffine; ++j) sum -= r(i, j) * b(j, c);
-      b(i, c) = std::abs(r(i, i)) > 1e-12 * largest ? sum / r(i, i) : 0;
-    }
 }
 
 double filterFactor(Regularization method, double sigma, double threshold) {
@@ -166,7 +155,7 @@ Matrix DenseSolver::Factors::factor(const Collocation& at, const Points& sources
       else
         r22(i - kAffine, j - kAffine) = r(i, j);
     }
-  solveUpper(affineBlock_, coupling_);
+  solveAffineTriangle(affineBlock_, coupling_);
   return r22;
 }
 
@@ -203,7 +192,7 @@ DenseSolver::Factors::Projected DenseSolver::Factors::project(const Matrix& valu
     std::copy_n(c.column(k), kAffine, out.affine.column(k));
     std::copy_n(c.column(k) + kAffine, sources_, tail.column(k));
   }
-  solveUpper(affineBlock_, out.affine);
+  solveAffineTriangle(affineBlock_, out.affine);
   multiply(false, 1, leftTransposed_, tail, 0, out.modes);
   return out;
 }

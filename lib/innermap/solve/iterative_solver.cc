@@ -9,6 +9,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
+#include "innermap/solve/detail/affine_fit.h"
 #include "innermap/solve/detail/coarse_solver.h"
 #include "innermap/solve/detail/directions.h"
 #include "innermap/solve/detail/local_solver.h"
@@ -25,6 +26,7 @@ constexpr double kLeastShrinkage = 0.04;
 constexpr double kFinestProduct = 1e-12, kCoarsestProduct = 1e-3;  // relative
 constexpr double kSameSpacing = 1e-6;                              // relative
 
+constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
 constexpr double kOfGradients = 0.01;  // they are so much less exact than values: see fast_sum.h
 
 double affineValue(const Collocation& at, std::size_t i, const double* coefficients) {
@@ -125,11 +127,13 @@ class IterativeSolver::Levels {
   std::vector<Level> levels_;  // beyond the first, of falling spacing
 };
 
-// Values centred and divided by `size`: the local solves are in single precision.
+// Values less their affine part, divided by `size`: the local solves are in single precision, and a
+// part that is far larger than what is left would decide which directions are worth taking.
 struct IterativeSolver::Levels::Scaled {
   Matrix values;
-  std::vector<double> middle;  // of each channel
-  double size = 0;             // of the widest channel
+  Matrix affine;        // of 1, x, y, z in normalised units, 4 x #K; the values' own units
+  double size = 0;      // of the widest channel
+  double rounding = 0;  // of the values
 };
 
 IterativeSolver::Levels::Levels(const Collocation& collocation,
@@ -212,11 +216,15 @@ void IterativeSolver::Levels::addLevel(const SourceLevel& level) {
 IterativeSolver::Levels::Scaled IterativeSolver::Levels::scaled(const Matrix& values) const {
   if (values.rows() != collocation_.size())
     throw DataError("solve: the values do not fit the collocation points");
-  Scaled out{values, std::vector<double>(values.columns(), 0.0), 0};
+  Scaled out;
+  out.values = values;
+  std::vector<double> middle(values.columns(), 0.0);
+  double largest = 0;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < values.columns(); ++k) {
     double low = kInfinity, high = -kInfinity;
     for (std::size_t i = 0; i < values.rows(); ++i) {
+      largest = std::max(largest, std::abs(values(i, k)));
       if (collocation_.derivative(i)) {
         out.size = std::max(out.size, std::abs(values(i, k)));
         continue;
@@ -225,14 +233,20 @@ IterativeSolver::Levels::Scaled IterativeSolver::Levels::scaled(const Matrix& va
       high = std::max(high, values(i, k));
     }
     if (low > high) continue;
-    out.middle[k] = 0.5 * (low + high);
+    middle[k] = 0.5 * (low + high);
     out.size = std::max(out.size, high - low);
+    for (std::size_t i = 0; i < values.rows(); ++i)
+      if (!collocation_.derivative(i)) out.values(i, k) -= middle[k];
   }
   if (!(out.size > 0)) out.size = 1;
-  for (std::size_t k = 0; k < values.columns(); ++k)
+  out.affine = fitAffine(collocation_, out.values);
+  for (std::size_t k = 0; k < values.columns(); ++k) {
     for (std::size_t i = 0; i < values.rows(); ++i)
       out.values(i, k) =
-          (values(i, k) - (collocation_.derivative(i) ? 0 : out.middle[k])) / out.size;
+          (out.values(i, k) - affineValue(collocation_, i, out.affine.column(k))) / out.size;
+    out.affine(0, k) += middle[k];
+  }
+  out.rounding = kRounding * largest / out.size;
   return out;
 }
 
@@ -248,13 +262,13 @@ Matrix IterativeSolver::Levels::scaledStart(const IterativeSolution& start,
   for (std::size_t k = 0; k < channels; ++k) {
     const Vec3& c = start.affine.center;
     const Vec3 shift = center_ - c;
-    double middle = start.affine.coefficients(0, k) - values.middle[k];
-    for (int a = 0; a < 3; ++a) {
-      const double slope = start.affine.coefficients(static_cast<std::size_t>(1 + a), k);
-      middle += slope * shift[a];
-      x(static_cast<std::size_t>(1 + a), k) = slope * scale_ / values.size;
+    double middle = start.affine.coefficients(0, k);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double slope = start.affine.coefficients(1 + a, k);
+      middle += slope * shift[static_cast<int>(a)];
+      x(1 + a, k) = (slope * scale_ - values.affine(1 + a, k)) / values.size;
     }
-    x(0, k) = middle / values.size;
+    x(0, k) = (middle - values.affine(0, k)) / values.size;
     for (std::size_t j = 0; j < start.weights.rows(); ++j)
       x(kAffine + j, k) = start.weights(j, k) / (values.size * scale_);
   }
@@ -272,9 +286,9 @@ void IterativeSolver::Levels::unscale(const Scaled& values, const Matrix& residu
   out.affine.coefficients = Matrix(kAffine, channels);
   out.weights = Matrix(sources_.size(), channels);
   for (std::size_t k = 0; k < channels; ++k) {
-    out.affine.coefficients(0, k) = values.middle[k] + values.size * x(0, k);
-    for (std::size_t r = 1; r < kAffine; ++r)
-      out.affine.coefficients(r, k) = values.size * x(r, k) / scale_;
+    for (std::size_t r = 0; r < kAffine; ++r)
+      out.affine.coefficients(r, k) =
+          (values.affine(r, k) + values.size * x(r, k)) / (r == 0 ? 1 : scale_);
     for (std::size_t j = 0; j < sources_.size(); ++j) {
       out.weightNorm = std::max(out.weightNorm, std::abs(x(kAffine + j, k)));
       out.weights(j, k) = values.size * scale_ * x(kAffine + j, k);
@@ -343,13 +357,15 @@ IterativeSolution IterativeSolver::Levels::iterate(const Scaled& values, Matrix&
   out.productError = productError;
   OrthogonalDirections directions(collocation_.size(), unknowns());
   out.residuals.push_back(values.size * rms(residual));
-  do {
+  bool left = rms(residual) > values.rounding;
+  while (left && out.iterations < settings_.maxIterations) {
     reportProgress(settings_.progress, "solving",
                    static_cast<double>(out.iterations) / settings_.maxIterations);
     runLevels(directions, residual, x, out);
     ++out.iterations;
     out.residuals.push_back(values.size * rms(residual));
-  } while (out.iterations < settings_.maxIterations && !littleIsLeft(out.residuals));
+    left = !littleIsLeft(out.residuals);
+  }
   unscale(values, residual, x, out);
   return out;
 }

@@ -32,6 +32,10 @@ Mesh frame(const Mesh& rest, double t) {
   return moved(rest, [t](const Vec3& p) { return at(t, p); });
 }
 
+Mesh scaled(const Mesh& mesh, const Vec3& size) {
+  return moved(mesh, [&](const Vec3& p) { return Vec3{size.x * p.x, size.y * p.y, size.z * p.z}; });
+}
+
 TEST(FrameFitter, FitsEachFrameForItself) {
   const Mesh rest = ball();
   const FrameFitter fitter(makeSourceBoundary(rest), few());
@@ -55,6 +59,23 @@ TEST(FrameFitter, ManyChargesAreSolvedForIteratively) {
   EXPECT_TRUE(fitter.iterative());
   EXPECT_EQ(fitter.sources().size(), 4500u);
   EXPECT_LT(fitter.fit(frame(rest, 1)).error.p99, 1e-3);
+}
+
+// A frame that passes through the rest meets it, without a jump: what is left is in proportion to how
+// far the frame is from an affine image of the rest.
+TEST(FrameFitterRelease, FramesNearTheRestAreMet) {
+  for (const Mesh& rest : {ball(), shapes::torus(24, 12), scaled(ball(), {1, 1, 0.02}),
+                           scaled(ball(), {1, 0.03, 0.03})})
+    for (const std::size_t charges : {300u, 4000u}) {
+      SCOPED_TRACE(rest.name + ", charges: " + std::to_string(charges));
+      FrameFitterSettings settings;
+      settings.sources = charges;
+      const FrameFitter fitter(makeSourceBoundary(rest), settings);
+      EXPECT_LT(fitter.fit(rest).error.max, 1e-12);
+      EXPECT_LT(fitter.fit(moved(rest, affineMap)).error.max, 1e-12);
+      for (const double t : {1e-3, 1e-6, 1e-9})
+        EXPECT_LT(fitter.fit(frame(rest, t)).error.max, 1e-12 + 0.05 * t);
+    }
 }
 
 class Velocity : public testing::Test {

@@ -106,19 +106,25 @@ void OrthogonalDirections::add(Matrix directions, Matrix images, Progress* progr
 void OrthogonalDirections::project(std::size_t first, Matrix& residual, Matrix& x) const {
   const SingleThreadedBlas guard;
   parallelBlocks(residual.columns(), 1, [&](std::size_t k, std::size_t) {
-    double* r = residual.column(k);
-    for (std::size_t c = first; c < column_.size(); ++c) {
-      const Column& at = column_[c];
-      const double* q = blocks_[at.block].images.column(at.index);
-      const double* z = blocks_[at.block].directions.column(at.index);
-      const double part = dot(q, r, images_), all = std::sqrt(dot(r, r, images_)),
-                   size = std::sqrt(dot(x.column(k), x.column(k), unknowns_));
-      if (std::abs(part) < kLittleGain * all && size > 0 &&
-          std::abs(part) * at.step > kLargeChange * size)
-        continue;
-      addScaled(r, -part, q, images_);
-      addScaled(x.column(k), part, z, unknowns_);
-    }
+    double *r = residual.column(k), *to = x.column(k);
+    const auto little = [&](double part) {
+      return std::abs(part) < kLittleGain * std::sqrt(dot(r, r, images_));
+    };
+    const auto large = [&](double change) {
+      const double size = std::sqrt(dot(to, to, unknowns_));
+      return size > 0 && std::abs(change) > kLargeChange * size;
+    };
+    // What is little is judged when all else has been taken: then x has its size, and a direction
+    // is little of what is left.
+    for (const bool last : {false, true})
+      for (std::size_t c = first; c < column_.size(); ++c) {
+        const Column& at = column_[c];
+        const double* q = blocks_[at.block].images.column(at.index);
+        const double part = dot(q, r, images_);
+        if (little(part) && (!last || large(part * at.step))) continue;
+        addScaled(r, -part, q, images_);
+        addScaled(to, part, blocks_[at.block].directions.column(at.index), unknowns_);
+      }
   });
 }
 

@@ -49,6 +49,25 @@ TEST(Directions, ManyDirectionsGiveLeastSquares) {
   }
 }
 
+// The second channel has a little of the first direction, then much of another, and x is nothing yet:
+// the little is a large change at first, and none in the end.
+TEST(Directions, LittleIsJudgedWhenAllElseIsTaken) {
+  Matrix identity(4, 3), b(4, 2);
+  for (std::size_t i = 0; i < 3; ++i) identity(i, i) = 1;
+  b(0, 0) = 1;
+  b(0, 1) = 1e-6;
+  b(1, 1) = 1e-4;
+  b(2, 1) = 1;
+  Matrix residual = b, x(3, 2);
+  OrthogonalDirections directions(4, 3);
+  Matrix z(3, 3);
+  for (std::size_t i = 0; i < 3; ++i) z(i, i) = 1;
+  directions.add(z, identity);
+  directions.project(0, residual, x);
+  for (std::size_t k = 0; k < 2; ++k)
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(residual(i, k), 0, 1e-15);
+}
+
 TEST(Directions, DependentAndZeroColumnsAreLeftOut) {
   const Matrix a = randomMatrix(20, 4, 1), z = randomMatrix(4, 2, 2);
   Matrix residual = randomMatrix(20, 1, 3), x(4, 1);
