@@ -61,8 +61,8 @@ TEST(FrameFitter, ManyChargesAreSolvedForIteratively) {
   EXPECT_LT(fitter.fit(frame(rest, 1)).error.p99, 1e-3);
 }
 
-// A frame that passes through the rest meets it, without a jump: what is left is in proportion to how
-// far the frame is from an affine image of the rest.
+// A frame that passes through the rest meets it, without a jump: what is left is in proportion to
+// how far the frame is from an affine image of the rest.
 TEST(FrameFitterRelease, FramesNearTheRestAreMet) {
   for (const Mesh& rest : {ball(), shapes::torus(24, 12), scaled(ball(), {1, 1, 0.02}),
                            scaled(ball(), {1, 0.03, 0.03})})

@@ -68,7 +68,8 @@ Matrix choleskyOfNormalMatrix(const Matrix& a) {
 std::uint64_t localSolverMemory(std::size_t collocation, std::size_t sources) {
   // A cluster of 12^2 sources sees the collocation points of about (12 + 2 * 6)^2 of them. Plates,
   // needles, ears and limbs bring others close: up to 1.13 times that was measured.
-  return sizeof(float) * 24 * 24 * static_cast<std::uint64_t>(std::max(collocation, sources)) * 3 / 2;
+  return sizeof(float) * 24 * 24 * static_cast<std::uint64_t>(std::max(collocation, sources)) * 3 /
+         2;
 }
 
 void LocalSolver::add(const Points& sources, const Collocation& collocation, Progress* progress) {

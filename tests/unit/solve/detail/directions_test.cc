@@ -49,8 +49,8 @@ TEST(Directions, ManyDirectionsGiveLeastSquares) {
   }
 }
 
-// The second channel has a little of the first direction, then much of another, and x is nothing yet:
-// the little is a large change at first, and none in the end.
+// The second channel has a little of the first direction, then much of another, and x is nothing
+// yet: the little is a large change at first, and none in the end.
 TEST(Directions, LittleIsJudgedWhenAllElseIsTaken) {
   Matrix identity(4, 3), b(4, 2);
   for (std::size_t i = 0; i < 3; ++i) identity(i, i) = 1;
