@@ -4,7 +4,9 @@
 #include <Eigen/Sparse>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "innermap/boundary/detail/triangle_turns.h"
 #include "innermap/core/error.h"
 
 namespace innermap {
@@ -41,6 +43,12 @@ Matrix3d frameOf(const Points& at, const Triangle& t) {
   return out;
 }
 
+Matrix3d turnedBy(const Vector3d& turn) {
+  const double angle = turn.norm();
+  if (angle == 0) return Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+}
+
 // A triangle's deformation: exp(turn) stretch, and the weights of its edges.
 struct Deformation {
   Vector3d turn = Vector3d::Zero();  // axis times angle
@@ -48,29 +56,43 @@ struct Deformation {
   double weight[3] = {};  // of the edge after corner k
 
   Matrix3d at(double t) const {
-    const double angle = turn.norm();
-    const Matrix3d partly = (1 - t) * Matrix3d::Identity() + t * stretch;
-    if (angle == 0) return partly;
-    return Eigen::AngleAxisd(t * angle, turn / angle).toRotationMatrix() * partly;
+    return turnedBy(t * turn) * ((1 - t) * Matrix3d::Identity() + t * stretch);
   }
 };
 
-Deformation deformationOf(const Points& from, const Points& to, const Triangle& t) {
-  Deformation out;
+// Empty where the triangle has no area.
+std::optional<Matrix3d> gradientOf(const Points& from, const Points& to, const Triangle& t) {
   const Matrix3d before = frameOf(from, t), after = frameOf(to, t);
   const double size = before.col(0).norm() * before.col(1).norm() * before.col(2).norm();
-  if (std::abs(before.determinant()) > 1e-12 * size) {
-    const Matrix3d f = after * before.inverse();
-    const Matrix3d r = rotationOf(f);
-    const Eigen::AngleAxisd turn(r);
-    out.turn = turn.angle() * turn.axis();
-    out.stretch = r.transpose() * f;
-  }
+  if (!(std::abs(before.determinant()) > 1e-12 * size)) return {};
+  return after * before.inverse();
+}
+
+void weigh(const Points& from, const Triangle& t, Deformation& out) {
   for (int k = 0; k < 3; ++k) {  // the angle at the corner opposite to the edge after corner k
     const Vec3 &a = from[t[k]], &b = from[t[(k + 1) % 3]], &c = from[t[(k + 2) % 3]];
     const double area = norm(cross(a - c, b - c));
     out.weight[k] = area > 0 ? std::clamp(dot(a - c, b - c) / area, kLeastCotangent, kMostCotangent)
                              : kLeastCotangent;
+  }
+}
+
+std::vector<Deformation> deformationsOf(const Points& from, const Points& to,
+                                        const std::vector<Triangle>& triangles) {
+  std::vector<Matrix3d> gradients(triangles.size(), Matrix3d::Identity()), rotations = gradients;
+  std::vector<bool> known(triangles.size(), false);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    if (const auto gradient = gradientOf(from, to, triangles[t])) {
+      gradients[t] = *gradient;
+      rotations[t] = rotationOf(*gradient);
+      known[t] = true;
+    }
+  const std::vector<Vector3d> turns = turnsOf(triangles, rotations, known);
+  std::vector<Deformation> out(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    weigh(from, triangles[t], out[t]);
+    out[t].turn = turns[t];
+    out[t].stretch = turnedBy(turns[t]).transpose() * gradients[t];
   }
   return out;
 }
@@ -151,7 +173,7 @@ ShapePath::ShapePath(const Points& from, const Points& to, const std::vector<Tri
   out->from = from;
   out->to = movedBack(out->rest, to);
   out->triangles = triangles;
-  for (const Triangle& t : triangles) out->deformations.push_back(deformationOf(from, out->to, t));
+  out->deformations = deformationsOf(from, out->to, triangles);
   out->factor();
   implementation_ = std::move(out);
 }

@@ -1,10 +1,10 @@
 // Shapes between a surface and its image, for maps that go there in steps.
 //
 // Each triangle's deformation is parted into a rotation and a stretch; the rotation goes by its
-// angle, the stretch linearly, and the vertices follow by least squares over the edges: Xu, Zhang,
-// Wang and Bao, "Poisson shape interpolation" (SPM 2005), with the triangle frames of Sumner and
-// Popovic, "Deformation transfer for triangle meshes" (SIGGRAPH 2004). What the whole surface
-// turns, moves and grows is left out of the way, and put back at its end.
+// angle (triangle_turns.h), the stretch linearly, and the vertices follow by least squares over the
+// edges: Xu, Zhang, Wang and Bao, "Poisson shape interpolation" (SPM 2005), with the triangle
+// frames of Sumner and Popovic, "Deformation transfer for triangle meshes" (SIGGRAPH 2004). What
+// the whole surface turns, moves and grows is left out of the way, and put back at its end.
 #pragma once
 
 #include <memory>

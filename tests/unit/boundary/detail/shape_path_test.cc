@@ -30,9 +30,9 @@ Mat3 turnAboutZ(double angle) {
 }
 
 // A long box, subdivided by being a ball stretched to one.
-Mesh bar() {
+Mesh bar(double thickness = 1) {
   Mesh mesh = shapes::icosphere(3);
-  for (Vec3& p : mesh.vertices) p = {4 * p.x, p.y, 0.7 * p.z};
+  for (Vec3& p : mesh.vertices) p = {4 * p.x, thickness * p.y, 0.7 * thickness * p.z};
   return mesh;
 }
 
@@ -56,29 +56,33 @@ TEST(ShapePath, LeavesOutSimilarities) {
   EXPECT_LT(norm(path.rest()({1, 2, 3}) - motion({1, 2, 3})), 1e-9);
 }
 
-// A bar bent to a half circle: half way it is bent to a quarter circle, not squashed, so its middle
-// line is as long as before.
+// A bar coiled up by `angle`: half way it is coiled by half of it, not squashed, so its middle line
+// is as long as before. In the last case its ends turn by more than half a turn each, beyond
+// the shortest logarithm.
 TEST(ShapePath, TurnsInsteadOfCuttingAcross) {
-  const Mesh from = bar();
-  const auto bent = [](const Vec3& p, double angle) {
-    const double radius = 8 / angle, along = angle * p.x / 8;
-    return Vec3{(radius - p.y) * std::sin(along), radius - (radius - p.y) * std::cos(along), p.z};
-  };
-  Points to = from.vertices, half = to;
-  for (std::size_t i = 0; i < to.size(); ++i) {
-    to[i] = bent(from.vertices[i], kPi);
-    half[i] = bent(from.vertices[i], kPi / 2);
+  for (const double angle : {kPi, 2.4 * kPi}) {
+    SCOPED_TRACE("angle " + std::to_string(angle));
+    const Mesh from = bar(kPi / angle);
+    const auto coiled = [](const Vec3& p, double by) {
+      const double radius = 8 / by, along = by * p.x / 8;
+      return Vec3{(radius - p.y) * std::sin(along), radius - (radius - p.y) * std::cos(along), p.z};
+    };
+    Points to = from.vertices, half = to;
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      to[i] = coiled(from.vertices[i], angle);
+      half[i] = coiled(from.vertices[i], angle / 2);
+    }
+    const ShapePath path(from.vertices, to, from.triangles, 1);
+    const Points middle = path.at(0.5);
+    std::size_t left = 0, right = 0;
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      if (from.vertices[i].x < from.vertices[left].x) left = i;
+      if (from.vertices[i].x > from.vertices[right].x) right = i;
+    }
+    const double apart = norm(middle[left] - middle[right]),
+                 wanted = norm(half[left] - half[right]);
+    EXPECT_NEAR(apart, wanted, 0.05 * wanted);
   }
-  const ShapePath path(from.vertices, to, from.triangles, 1);
-  const Points middle = path.at(0.5);
-  // The two ends are as far from each other as on the quarter circle; straight ways end nearer.
-  std::size_t left = 0, right = 0;
-  for (std::size_t i = 0; i < to.size(); ++i) {
-    if (from.vertices[i].x < from.vertices[left].x) left = i;
-    if (from.vertices[i].x > from.vertices[right].x) right = i;
-  }
-  const double apart = norm(middle[left] - middle[right]), wanted = norm(half[left] - half[right]);
-  EXPECT_NEAR(apart, wanted, 0.05 * wanted);
 }
 
 TEST(MovedBy, MovesTheField) {
