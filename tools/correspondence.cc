@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "innermap/core/memory.h"
+#include "inputs.h"
 #include "map_report.h"
 
 namespace innermap::tool {
@@ -14,12 +15,29 @@ void reportQuantiles(Report& report, const std::string& key, const Quantiles& q)
   report.set(key + ".max", q.max);
 }
 
+void reportOuter(const std::string& side, const LaidOutMesh& laid, Report& report) {
+  const std::string key = "correspondence." + side;
+  report.set(key + ".taken", laid.outer.has_value());
+  if (!laid.outer) return;
+  const OuterSurface& outer = *laid.outer;
+  report.set(key + ".edge", outer.edge);
+  report.set(key + ".vertices", outer.mesh.vertices.size());
+  report.set(key + ".handles", outer.topology.handles);
+  report.set(key + ".left_out", outer.leftOut);
+  report.set(key + ".apart_p99", outer.apartP99);
+  report.set(key + ".apart_max", outer.apartMax);
+  report.setColumn(key + ".cuts.x", outer.cuts, [](auto& c) { return c.place.x; });
+  report.setColumn(key + ".cuts.y", outer.cuts, [](auto& c) { return c.place.y; });
+  report.setColumn(key + ".cuts.z", outer.cuts, [](auto& c) { return c.place.z; });
+  report.setColumn(key + ".cuts.size", outer.cuts, [](auto& c) { return c.size; });
+}
+
 void reportMap(const MeshCorrespondence& map, Report& report) {
   const MapQuality& q = map.quality;
   const auto set = [&](const char* key, auto value) {
     report.set(std::string("correspondence.") + key, value);
   };
-  if (map.farthestFromStandIn) set("farthest_from_stand_in", *map.farthestFromStandIn);
+  if (map.farthestFromOuter) set("farthest_from_outer_surface", *map.farthestFromOuter);
   set("flips", q.flips);
   set("degree", q.degree);
   set("area_ratio_log10", q.areaRatioLog10);
@@ -40,8 +58,8 @@ void reportMap(const MeshCorrespondence& map, Report& report) {
   set("vertices", map.source.vertices.size());
   set("target_vertices", map.b.mesh.vertices.size());
   set("subdivided", map.changed);
-  set("source_isosurface", map.a.standIn);
-  set("target_isosurface", map.b.standIn);
+  reportOuter("source_outer_surface", map.a, report);
+  reportOuter("target_outer_surface", map.b, report);
 }
 
 // First maps of the first shell, which the inside chose between, best first.
@@ -54,7 +72,7 @@ void reportConsidered(const std::vector<ConsideredMap>& maps, Report& report) {
   report.setColumn("correspondence.considered.score", maps, [](auto& m) { return m.score; });
 }
 
-std::string qualityText(const MapQuality& q, ModelSpace space, bool standIn) {
+std::string qualityText(const MapQuality& q, ModelSpace space, bool outer) {
   return fmt::format(
       "on the {}: {} flip{}, degree {:.9f}\n"
       "energy: {:.2f} there and {:.2f} back, {:.2f} in all (4 + 4 at best)\n"
@@ -66,19 +84,23 @@ std::string qualityText(const MapQuality& q, ModelSpace space, bool standIn) {
       q.energyForward, q.energyBackward, q.energyForward + q.energyBackward, q.stretch.median,
       q.stretch.p99, q.stretch.max, 100 * q.invertedShare, 100 * q.deviation.p99,
       100 * q.deviation.max, q.imageSelfIntersections, q.imageSelfIntersections == 1 ? "" : "s",
-      q.targetSelfIntersections, standIn ? "(figures of the isosurface that stands in)\n" : "");
+      q.targetSelfIntersections, outer ? "(of the outer surface)\n" : "");
 }
 
 }  // namespace
 
-void addSurfaceOptions(Command& c, LayOutSettings& o) {
-  c.flag("--close", &o.closeHoles, "close the holes of an open mesh by caps");
-  c.option("--surface-resolution", "N", &o.standInResolution,
-           "for a mesh that is open, not manifold or made of overlapping parts: the solid's own "
-           "surface, an isosurface at N voxels across, is mapped instead, and its values are "
-           "carried back to the mesh by closest points")
-      .range(8, 2048)
-      .defaults("such a mesh is refused")
+void addSurfaceOptions(Command& c, SurfaceOptions& o) {
+  c.flag("--close", &o.close, "no longer needed: the holes of an open mesh are closed by caps")
+      .advanced();
+  c.option("--surface-resolution", "N", &o.layOut.outerResolution,
+           "cells across of the outer surface, which is taken for a mesh that runs through itself, "
+           "overlaps or is not manifold")
+      .range(8, 1024)
+      .defaults("80, more for thin solids")
+      .advanced();
+  c.option("--genus", "N", &o.layOut.handles, "handles of that outer surface")
+      .range(0, 1000)
+      .defaults("the mesh's own; of several pieces, those that stay at other resolutions")
       .advanced();
 }
 
@@ -118,17 +140,19 @@ void requirePly(const std::string& option, const std::string& path) {
     throw UsageError(option + ": '" + path + "' must end in .ply");
 }
 
-LaidOutMesh layOut(Mesh mesh, const LayOutSettings& options, Context& context) {
-  try {
-    LaidOutMesh laid = layOutMesh(std::move(mesh), context.settings(options));
-    for (const std::string& note : laid.notes) context.note(note);
-    addSeconds(context.report().seconds, laid.seconds);
-    return laid;
-  } catch (const UnfitMesh& error) {
-    throw DataError(std::string(error.what()) +
-                    (error.closingHelps() ? " (--close; --surface-resolution N for larger holes)"
-                                          : " (--surface-resolution N)"));
-  }
+Mesh readCleanSurface(const std::string& path, const SurfaceOptions& options, Context& context) {
+  Mesh mesh = readMeshFile(path, context);
+  CleanSurface clean = context.timed(
+      "surface", [&] { return cleanSurface(mesh, context.settings(options.layOut)); });
+  for (const std::string& note : clean.notes) context.note(note);
+  return clean.outer ? std::move(clean.outer->mesh) : std::move(mesh);
+}
+
+LaidOutMesh layOut(Mesh mesh, const SurfaceOptions& options, Context& context) {
+  LaidOutMesh laid = layOutMesh(std::move(mesh), context.settings(options.layOut));
+  for (const std::string& note : laid.notes) context.note(note);
+  addSeconds(context.report().seconds, laid.seconds);
+  return laid;
 }
 
 ReportMesh reportOf(const LaidOutMesh& laid) {
@@ -154,7 +178,7 @@ MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const CorrespondOptions& opt
   reportMap(map, context.report());
   reportConsidered(map.map.shells.front().considered, context.report());
   context.print(
-      qualityText(map.quality, map.map.shells.front().image.space, map.a.standIn || map.b.standIn));
+      qualityText(map.quality, map.map.shells.front().image.space, map.a.outer || map.b.outer));
   return map;
 }
 

@@ -9,14 +9,19 @@
 
 namespace innermap::tool {
 
+struct SurfaceOptions {
+  LayOutSettings layOut;
+  bool close = false;  // holes are closed anyway
+};
+
 struct CorrespondOptions {
-  LayOutSettings surfaces;
+  SurfaceOptions surfaces;
   MeshCorrespondenceSettings map;
   std::string landmarks;
   bool noRefine = false;
 };
 
-void addSurfaceOptions(Command& command, LayOutSettings& options);
+void addSurfaceOptions(Command& command, SurfaceOptions& options);
 void addCorrespondOptions(Command& command, CorrespondOptions& options);
 
 // The landmarks are not read yet.
@@ -26,8 +31,11 @@ MeshCorrespondenceSettings correspondSettings(const CorrespondOptions& options,
 // Throws UsageError unless `path`, the value of `option`, ends in .ply.
 void requirePly(const std::string& option, const std::string& path);
 
-// Lays the mesh out and tells: notes, seconds. DataErrors name the options that would help.
-LaidOutMesh layOut(Mesh mesh, const LayOutSettings& options, Context& context);
+// Lays the mesh out and tells: notes, seconds.
+LaidOutMesh layOut(Mesh mesh, const SurfaceOptions& options, Context& context);
+
+// The mesh, or the outer surface of its solid where that is needed; tells as layOut().
+Mesh readCleanSurface(const std::string& path, const SurfaceOptions& options, Context& context);
 
 // For the report.
 ReportMesh reportOf(const LaidOutMesh& mesh);

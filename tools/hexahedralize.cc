@@ -22,7 +22,8 @@ namespace {
 struct Options {
   std::string mesh, output, picture, cubes, cubesPicture, inBlocks;
   HexahedralizeSettings settings;
-  int resolution = 0, axis = 2;
+  SurfaceOptions surface;
+  int axis = 2;
   double at = 0.5;
   Colormap colormap = Colormap::redBlue;
 };
@@ -107,7 +108,7 @@ void writeAll(const Options& options, const Mesh& mesh, const Hexahedralization&
 
 void run(const Options& options, Context& context) {
   claimOutputs(options, context);
-  const Mesh mesh = surfaceToFill(options.mesh, options.resolution, context);
+  const Mesh mesh = readCleanSurface(options.mesh, options.surface, context);
   const HexahedralizeSettings settings = context.settings(options.settings);
   const std::uint64_t need = hexahedralizeMemory(mesh, settings);
   JobSize size;
@@ -150,7 +151,7 @@ Command makeHexahedralizeCommand() {
       "which the Bernstein coefficients of each one's Jacobian prove. Sharp edges are drawn near, "
       "not followed. One closed body, whose mesh may have any number of handles and cavities. "
       "Ends with exit code 1 where some hexahedra could not be turned right.");
-  addFillOptions(c, o->mesh, o->settings.blocks, o->settings.closeHoles, o->resolution);
+  addFillOptions(c, o->mesh, o->settings.blocks, o->surface);
   c.option("--output", "FILE", &o->output,
            "the .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file to write, with each cell's "
            "scaled_jacobian (.vtu and .msh)")

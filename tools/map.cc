@@ -164,6 +164,7 @@ BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& f
   const std::string name = meshes.target.name;
   CorrespondOptions correspond = options.correspond;
   correspond.map.seed = options.fitting.fit.seed;
+  correspond.map.carryBack = false;
   const MeshCorrespondence moved =
       correspondMeshes(std::move(meshes.source), std::move(meshes.target), correspond, context);
   const Mesh target = moved.target(name);

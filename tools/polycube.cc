@@ -19,7 +19,7 @@ namespace {
 struct PolycubeOptions {
   std::string mesh, output, picture;
   PolycubeSettings settings;
-  int resolution = 0;
+  SurfaceOptions surface;
   std::optional<int> pieces;
 };
 
@@ -27,7 +27,7 @@ void run(const PolycubeOptions& options, Context& context) {
   requireMeshFile("--output", options.output);
   context.output(options.output);
   if (!options.picture.empty()) context.output(options.picture);
-  const Mesh mesh = surfaceToFill(options.mesh, options.resolution, context);
+  const Mesh mesh = readCleanSurface(options.mesh, options.surface, context);
   const PolycubeSettings settings = context.settings(options.settings);
   const std::uint64_t need = polycubeMemory(mesh, settings);
   if (context.dryRun())
@@ -57,7 +57,7 @@ Command makePolycubeCommand() {
       "cavities; where no such set is found the command fails and names a number of blocks that "
       "does. The surface's vertices stand close enough to be mapped (innermap map OUT MESH "
       "--aligned). One closed body, whose mesh may have any number of handles and cavities.");
-  addFillOptions(c, o->mesh, o->settings.blocks, o->settings.closeHoles, o->resolution);
+  addFillOptions(c, o->mesh, o->settings.blocks, o->surface);
   c.option("--output", "FILE", &o->output, "the surface of the cubes, a .obj or .ply file")
       .shortName("-o")
       .required()

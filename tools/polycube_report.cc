@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include "innermap/io/picture/mesh_picture.h"
-#include "innermap/levelset/isosurface.h"
-#include "inputs.h"
 #include "map_report.h"
 
 namespace innermap::tool {
@@ -31,34 +29,12 @@ PictureSurface flat(const Mesh& mesh, const std::string& label, const Vec3& colo
 
 }  // namespace
 
-void addFillOptions(Command& c, std::string& mesh, int& blocks, bool& closeHoles, int& resolution) {
+void addFillOptions(Command& c, std::string& mesh, int& blocks, SurfaceOptions& surface) {
   c.positional("MESH", &mesh, "mesh file: .obj, .ply, .off or .stl");
   c.option("--blocks", "N", &blocks, "blocks along the longest side of the mesh's box; 0: chosen")
       .range(0, kMostAcross)
       .defaults("as many as give about 900 in all");
-  c.flag("--close", &closeHoles, "close the holes of an open mesh by caps");
-  c.option("--surface-resolution", "N", &resolution,
-           "take the surface around the solid at so many voxels across instead of the mesh itself: "
-           "for scans, overlapping parts and edges of three triangles")
-      .unit("voxels")
-      .range(0, 2048)
-      .defaults("the mesh itself");
-}
-
-Mesh surfaceToFill(const std::string& path, int resolution, Context& context) {
-  Mesh mesh = readMeshFile(path, context);
-  if (resolution == 0) return mesh;
-  if (resolution < 8) throw SettingError("--surface-resolution", "must be at least 8");
-  const Solid solid =
-      context.timed("solid", [&] { return Solid(mesh, context.settings<SolidSettings>()); });
-  auto settings = context.settings<IsosurfaceSettings>();
-  settings.resolution = resolution;
-  Isosurface surface = context.timed("surface", [&] { return isosurfaceOf(solid, settings); });
-  if (surface.leftOut > 0)
-    context.note(
-        fmt::format("{} shells of the surface are too small and left out", surface.leftOut));
-  surface.mesh.name = path;
-  return std::move(surface.mesh);
+  addSurfaceOptions(c, surface);
 }
 
 void requireMeshFile(const std::string& option, const std::string& path) {

@@ -4,15 +4,13 @@
 #include <string>
 
 #include "command.h"
+#include "correspondence.h"
 #include "innermap/tetra/polycube.h"
 
 namespace innermap::tool {
 
-// MESH, --blocks, --close, --surface-resolution.
-void addFillOptions(Command& c, std::string& mesh, int& blocks, bool& closeHoles, int& resolution);
-
-// The mesh, or with a resolution above 0 the isosurface of its solid.
-Mesh surfaceToFill(const std::string& path, int resolution, Context& context);
+// MESH, --blocks and the options of its outer surface.
+void addFillOptions(Command& c, std::string& mesh, int& blocks, SurfaceOptions& surface);
 
 // Throws UsageError unless the path ends in .obj or .ply.
 void requireMeshFile(const std::string& option, const std::string& path);

@@ -12,7 +12,7 @@ namespace {
 
 struct Options {
   std::string mesh, output;
-  LayOutSettings surface;
+  SurfaceOptions surface;
 };
 
 void run(const Options& options, Context& context) {
@@ -49,8 +49,9 @@ Command makeSphereCommand() {
   Command c("sphere", "Lay a closed surface without handles out on the unit sphere");
   c.description(
       "Writes the mesh with its vertices on the unit sphere about the origin, no triangle flipped, "
-      "areas near their share. Each shell (a cavity, say) covers the sphere by itself. With "
-      "--surface-resolution, the isosurface of a mesh that is not clean is written instead.");
+      "areas near their share. Each shell (a cavity, say) covers the sphere by itself. Of a mesh "
+      "that "
+      "runs through itself the outer surface is laid out.");
   c.positional("MESH", &o->mesh, "a closed mesh: .obj, .ply, .off or .stl");
   c.option("--output", "FILE", &o->output, "the .ply file to write")
       .shortName("-o")

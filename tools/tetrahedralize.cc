@@ -1,5 +1,5 @@
 // `innermap tetrahedralize`: a mesh's inside as tetrahedra.
-#include "innermap/tetra/tetrahedralize.h"
+#include "innermap/lattice/tetrahedralize.h"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bind/call.h"
-#include "innermap/tetra/cell_mesh.h"
+#include "innermap/lattice/cell_mesh.h"
 
 namespace innermap::python {
 

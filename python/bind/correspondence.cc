@@ -191,7 +191,7 @@ void CorrespondOptions::describe(Keywords& k) {
   k.object("landmarks", &landmarks, "Sequence[tuple[place, place]] or path",
            "pairs that are kept exactly, a place on the source and one on the target: the number "
            "of a vertex, or three coordinates; or a file as the program reads it");
-  describeLayout(k, &map.closeHoles, &map.standInResolution);
+  describeLayout(k, &close, &map.outerResolution, &map.handles);
   k.flag("aligned", &map.aligned,
          "the two stand in the same pose and orientation: prefer agreeing normals and places");
   k.count("candidates", &map.candidates, {1, 64}, "ways to lay one on the other that are refined");
@@ -261,7 +261,7 @@ void bindCorrespondence(py::module_& m) {
        "Lays the surface of one solid onto that of another, of any connectivity: one-to-one, each "
        "point of the target reached once.\n\nmeshes: the source and the target, each as V, F or "
        "whatever stands for a mesh; both closed, with as many handles and as many shells. Returns "
-       "a Correspondence. Raises UnfitMesh, DataError, MemoryError."},
+       "a Correspondence. Raises DataError, MemoryError."},
       correspondTwo);
   define<LoadOptions>(m,
                       {"load_correspondence", "path, *source",

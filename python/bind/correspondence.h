@@ -26,6 +26,7 @@ struct PyCorrespondence {
 // How one mesh is laid onto another: keywords of correspond() and, between strangers, of fit().
 struct CorrespondOptions {
   MeshCorrespondenceSettings map;
+  bool close = false;
   pybind11::object landmarks = pybind11::none();
 
   void describe(Keywords& k);

@@ -2,7 +2,6 @@
 
 #include <exception>
 
-#include "innermap/boundary/laid_out_mesh.h"
 #include "innermap/core/error.h"
 
 namespace py = pybind11;
@@ -12,7 +11,7 @@ namespace {
 
 // They live as long as the interpreter, which may end before statics do.
 struct Classes {
-  PyObject *error, *file, *data, *unfit, *setting, *memory, *cancelled;
+  PyObject *error, *file, *data, *setting, *memory, *cancelled;
 };
 Classes classes;
 
@@ -43,8 +42,6 @@ void translate(std::exception_ptr thrown) {  // NOLINT(performance-unnecessary-v
     if (thrown) std::rethrow_exception(thrown);
   } catch (const FileError& e) {
     raise(classes.file, e);
-  } catch (const UnfitMesh& e) {
-    raise(classes.unfit, e);
   } catch (const DataError& e) {
     raise(classes.data, e);
   } catch (const SettingError& e) {
@@ -71,10 +68,6 @@ void bindErrors(py::module_& m) {
                         "Data that are well-formed but that the computation cannot use: a mesh "
                         "with no inside, an array of the wrong shape.",
                         bases(classes.error, PyExc_ValueError));
-  classes.unfit = define(m, "UnfitMesh",
-                         "A mesh that cannot be laid out as it is; close_holes or "
-                         "surface_resolution may help.",
-                         py::reinterpret_borrow<py::object>(classes.data));
   classes.setting = define(m, "SettingError",
                            "A setting outside its range, or settings that contradict one another.",
                            bases(classes.error, PyExc_ValueError));

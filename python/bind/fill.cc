@@ -6,12 +6,12 @@
 #include "bind/errors.h"
 #include "bind/keywords.h"
 #include "bind/meshes.h"
+#include "innermap/boundary/laid_out_mesh.h"
 #include "innermap/core/memory.h"
-#include "innermap/levelset/isosurface.h"
+#include "innermap/lattice/tetrahedralize.h"
 #include "innermap/tetra/block_set.h"
 #include "innermap/tetra/hexahedralize.h"
 #include "innermap/tetra/polycube.h"
-#include "innermap/tetra/tetrahedralize.h"
 
 namespace py = pybind11;
 
@@ -66,29 +66,21 @@ py::object tetrahedra(const Arguments& a, TetrahedralizeOptions& o) {
 
 // What hexahedralize() and polycube() take.
 struct BlockOptions {
-  int blocks = 0, surfaceResolution = 0;
-  bool closeHoles = false;
+  int blocks = 0;
+  bool close = false;
+  LayOutSettings surface;
   CallOptions call;
 
   void describe(Keywords& k) {
     k.count("blocks", &blocks, {0, static_cast<double>(kMostAcross)},
             "blocks along the longest side of the mesh's box; 0: as many as give about 900 in all");
-    k.flag("close", &closeHoles, "close the holes of an open mesh by caps");
-    k.count(
-        "surface_resolution", &surfaceResolution, {0, 2048},
-        "fill the surface around the solid at so many voxels across, 8 at least, instead of the "
-        "mesh itself: for scans and overlapping parts; 0: the mesh itself");
+    describeLayout(k, &close, &surface.outerResolution, &surface.handles);
     call.describe(k);
   }
 
   Mesh surfaceToFill(Mesh mesh, Progress* progress) const {
-    if (surfaceResolution == 0) return mesh;
-    if (surfaceResolution < 8) throw SettingError("surface_resolution", "must be at least 8");
-    SolidSettings solid;
-    solid.progress = progress;
-    auto settings = with<IsosurfaceSettings>(call, progress);
-    settings.resolution = surfaceResolution;
-    return isosurfaceOf(Solid(mesh, solid), settings).mesh;
+    CleanSurface clean = cleanSurface(mesh, with(call, progress, surface));
+    return clean.outer ? std::move(clean.outer->mesh) : std::move(mesh);
   }
 };
 
@@ -120,7 +112,6 @@ py::object hexahedra(const Arguments& a, HexahedralizeOptions& o) {
   std::size_t at = 0;
   const Mesh mesh = takeMesh(a, at, "mesh");
   o.settings.blocks = o.blocks;
-  o.settings.closeHoles = o.closeHoles;
   Hexahedralization made = call(o.call, [&](Progress* progress) {
     const HexahedralizeSettings settings = with(o.call, progress, o.settings);
     const Mesh surface = o.surfaceToFill(mesh, progress);
@@ -160,7 +151,6 @@ py::object polycube(const Arguments& a, PolycubeOptions& o) {
   const Polycube made = call(o.call, [&](Progress* progress) {
     auto settings = with<PolycubeSettings>(o.call, progress);
     settings.blocks = o.blocks;
-    settings.closeHoles = o.closeHoles;
     const Mesh toFill = o.surfaceToFill(mesh, progress);
     requireMemory("a polycube", processMemory(polycubeMemory(toFill, settings)), settings.maxMemory,
                   "use fewer blocks");

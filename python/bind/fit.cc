@@ -166,6 +166,7 @@ py::object fit(const Arguments& a, FitOptions& o) {
   if (!job.related) {
     CorrespondOptions correspond = o.correspond;
     correspond.map.seed = settings.seed;
+    correspond.map.carryBack = false;
     const auto laid = correspondMeshes(job.source, job.target, correspond.settings(), o.call);
     job.source = laid->source;
     job.target = likeSource(laid->source, laid->positions, job.target.name);

@@ -15,8 +15,8 @@ void bindMeshes(pybind11::module_& m);
 void bindCheck(pybind11::module_& m);
 void bindSphere(pybind11::module_& m);
 
-// `close=` and `surface_resolution=` of what is laid out.
-void describeLayout(Keywords& k, bool* closeHoles, int* standInResolution);
+// `surface_resolution=` and `genus=` of what is laid out, and `close=`, which nothing needs.
+void describeLayout(Keywords& k, bool* close, int* resolution, std::optional<int>* genus);
 
 // One of
 //   V, F             two arguments, (n, 3) and (m, 3)

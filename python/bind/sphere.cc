@@ -13,10 +13,11 @@ namespace {
 
 struct SphereOptions {
   LayOutSettings settings;
+  bool close = false;
   CallOptions call;
 
   void describe(Keywords& k) {
-    describeLayout(k, &settings.closeHoles, &settings.standInResolution);
+    describeLayout(k, &close, &settings.outerResolution, &settings.handles);
     call.describe(k);
   }
 };
@@ -45,10 +46,11 @@ void bindSphere(py::module_& m) {
       {"sphere", "*mesh",
        "Lays a closed surface without handles out on the unit sphere about the origin, one-to-one, "
        "areas near their share: (surface, figures), an innermap.Mesh with the mesh's own vertices "
-       "and faces, or those of the isosurface that stands in for it, and a dict: flips, degree "
+       "and faces, or those of the outer surface where the mesh runs through itself, and a dict: "
+       "flips, degree "
        "(1: covered once), area_ratio_log10 (of the smallest triangle to its share).\n\nEach "
        "shell, a cavity say, covers the sphere by itself. mesh: V, F or whatever stands for a "
-       "mesh. Raises UnfitMesh, DataError for handles, MemoryError."},
+       "mesh. Raises DataError for handles, MemoryError."},
       sphere);
 }
 

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "innermap/core/error.h"
 #include "innermap/core/stage_seconds.h"
-#include "innermap/levelset/isosurface.h"
 #include "innermap/mesh/repair.h"
 #include "innermap/mesh/self_intersection.h"
 #include "innermap/mesh/triangle_tree.h"
@@ -14,77 +16,88 @@ namespace {
 // Measured, bytes: what coarsened surfaces take, and a vertex of meshes of up to 160,000.
 constexpr std::uint64_t kCoarse = 24'000'000, kBytesPerVertex = 2200;
 
-// Whether parts that are not connected pass through each other, so that the shells are not the
-// boundary of the solid.
-bool shellsCross(const SurfaceShells& shells, Progress* progress) {
-  if (shells.shells.size() < 2) return false;
+// How many pairs of triangles pass through each other.
+std::size_t crossings(const SurfaceShells& shells, Progress* progress) {
   Points vertices;
   std::vector<Triangle> triangles;
-  std::vector<std::size_t> shell;
-  for (std::size_t s = 0; s < shells.shells.size(); ++s) {
+  for (const ClosedSurface& surface : shells.shells) {
     const int first = static_cast<int>(vertices.size());
-    const ClosedSurface& surface = shells.shells[s];
     vertices.insert(vertices.end(), surface.vertices.begin(), surface.vertices.end());
-    for (const auto& [a, b, c] : surface.triangles) {
+    for (const auto& [a, b, c] : surface.triangles)
       triangles.push_back({a + first, b + first, c + first});
-      shell.push_back(s);
-    }
   }
-  bool cross = false;
+  std::size_t count = 0;
   SelfIntersectionSettings settings;
   settings.progress = progress;
-  const auto visit = [&](const Crossing& c) {
-    cross = cross ||
-            shell[static_cast<std::size_t>(c.first)] != shell[static_cast<std::size_t>(c.second)];
-  };
-  forEachSelfIntersection(vertices, triangles, visit, settings);
-  return cross;
+  forEachSelfIntersection(
+      vertices, triangles, [&](const Crossing&) { ++count; }, settings);
+  return count;
 }
 
-// Why the mesh itself cannot be mapped; empty when it can. Throws DataError when there is no solid.
-std::string obstacle(const Mesh& mesh, bool close, Progress* progress) {
+// Why the mesh itself cannot be mapped, if so, and the handles of a mesh that is of one piece.
+struct Obstacle {
+  std::string why;
+  std::optional<int> handles;
+};
+
+// Throws DataError when there is no solid.
+Obstacle obstacleOf(const Mesh& mesh, Progress* progress) {
   RepairSettings repairSettings;
   repairSettings.progress = progress;
   repair(mesh, repairSettings);
   ClosedSurfaceSettings settings;
-  settings.closeHoles = close;
+  settings.closeHoles = true;
   settings.progress = progress;
   try {
-    if (!shellsCross(closedSurfaces(mesh, settings), progress)) return "";
-    return mesh.name +
-           ": has parts that overlap one another; unite them, or map the solid's own surface (an "
-           "isosurface) instead";
+    const SurfaceShells shells = closedSurfaces(mesh, settings);
+    Obstacle out;
+    if (const std::size_t pairs = crossings(shells, progress))
+      out.why = fmt::format("{}: runs through itself, {} pair{} of triangles cross", mesh.name,
+                            pairs, pairs == 1 ? "" : "s");
+    if (shells.shells.size() == 1) out.handles = shells.shells[0].genus;
+    return out;
   } catch (const DataError& error) {
-    return error.what();
+    const std::string why = error.what();
+    return {why.substr(0, why.rfind("; ")), {}};
   }
 }
 
-Isosurface standInFor(const Mesh& mesh, const LayOutSettings& settings) {
+OuterSurface outerSurfaceOf(const Mesh& mesh, const Obstacle& obstacle,
+                            const LayOutSettings& settings) {
   SolidSettings solidSettings;
   solidSettings.progress = settings.progress;
-  IsosurfaceSettings how;
-  how.resolution = settings.standInResolution;
+  OuterSurfaceSettings how;
+  how.resolution = settings.outerResolution;
+  how.handles = settings.handles ? settings.handles : obstacle.handles;
   how.maxMemory = settings.maxMemory;
   how.progress = settings.progress;
-  return isosurfaceOf(Solid(mesh, solidSettings), how);
+  return outerSurface(Solid(mesh, solidSettings), how);
 }
 
-std::string standInNote(const LaidOutMesh& laid, int resolution, std::size_t leftOut) {
-  const std::size_t shells = laid.shells().shells.size();
-  return fmt::format(
-      "{}: its solid's own surface is mapped, {} vertices of an isosurface at {} voxels across, "
-      "genus {}{}{}",
-      laid.mesh.name, laid.shells().mesh.vertices.size(), resolution, laid.handles(),
-      shells == 1 ? "" : fmt::format(" ({} shells)", shells),
-      leftOut == 0   ? ""
-      : leftOut == 1 ? "; 1 tiny part of it left out"
-                     : fmt::format("; {} tiny parts of it left out", leftOut));
-}
+constexpr std::size_t kNotedCuts = 3;
 
-void check(const LayOutSettings& settings) {
-  const int resolution = settings.standInResolution;
-  if (resolution != 0 && (resolution < 8 || resolution > 2048))
-    throw SettingError("standInResolution", "must be from 8 to 2048, or 0 for none");
+std::vector<std::string> notesOn(const OuterSurface& outer, const std::string& name) {
+  std::vector<std::string> notes;
+  const SolidTopology& t = outer.topology;
+  notes.push_back(
+      fmt::format("{}: the outer surface of its solid is mapped: {} vertices, {}; 99% of what "
+                  "shows of the mesh "
+                  "is within {:.2g} of the diagonal of it, all within {:.2g}",
+                  name, outer.mesh.vertices.size(), describe(t), outer.apartP99, outer.apartMax));
+  if (outer.leftOut > 0)
+    notes.push_back(fmt::format("{}: {} tiny part{} of it left out", name, outer.leftOut,
+                                outer.leftOut == 1 ? " is" : "s are"));
+  if (outer.cuts.empty()) return notes;
+  std::string places;
+  for (std::size_t c = 0; c < std::min(kNotedCuts, outer.cuts.size()); ++c) {
+    const auto& [at, size] = outer.cuts[c];
+    places += fmt::format("{}({:.4g}, {:.4g}, {:.4g}), {:.2g} across", c ? "; " : "", at.x, at.y,
+                          at.z, size);
+  }
+  notes.push_back(fmt::format("{}: its parts are cut apart where they meet, in {} place{}: {}{}",
+                              name, outer.cuts.size(), outer.cuts.size() == 1 ? "" : "s", places,
+                              outer.cuts.size() > kNotedCuts ? "; smaller ones" : ""));
+  return notes;
 }
 
 // Places on the sphere of the first `count` vertices of the shells' mesh.
@@ -128,39 +141,39 @@ double LaidOutMesh::volume() const {
   return sum;
 }
 
+CleanSurface cleanSurface(const Mesh& mesh, const LayOutSettings& settings) {
+  const Obstacle obstacle = obstacleOf(mesh, settings.progress);
+  if (obstacle.why.empty()) return {};
+  CleanSurface out;
+  out.outer = outerSurfaceOf(mesh, obstacle, settings);
+  out.notes = notesOn(*out.outer, mesh.name);
+  out.notes.insert(out.notes.begin(), obstacle.why);
+  return out;
+}
+
 LaidOutMesh layOutMesh(Mesh mesh, const LayOutSettings& settings) {
-  check(settings);
   Progress* progress = settings.progress;
   StageSeconds seconds;
-  const auto embed = [&](const Mesh& surface, bool close) {
+  const auto embed = [&](const Mesh& surface) {
     EmbeddingSettings how;
-    how.closeHoles = close;
+    how.closeHoles = true;
     how.progress = progress;
     return timed(seconds, "lay out", [&] { return EmbeddedSurface(surface, how); });
   };
-  const std::string why =
-      timed(seconds, "check", [&] { return obstacle(mesh, settings.closeHoles, progress); });
-  if (why.empty()) {
-    const EmbeddedSurface embedded = embed(mesh, settings.closeHoles);
+  CleanSurface clean = timed(seconds, "check", [&] { return cleanSurface(mesh, settings); });
+  if (!clean.outer) {
+    const EmbeddedSurface embedded = embed(mesh);
     LaidOutMesh laid(std::move(mesh), embedded);
     laid.seconds = std::move(seconds);
     for (const std::string& note : laid.shells().notes)
       laid.notes.push_back(laid.mesh.name + ": " + note);
-    if (settings.standInResolution)
-      laid.notes.push_back(laid.mesh.name + ": is closed and clean, so it is mapped as it is");
     return laid;
   }
-  if (!settings.standInResolution)
-    throw UnfitMesh(why, !settings.closeHoles && obstacle(mesh, true, progress).empty());
-  const Isosurface standIn =
-      timed(seconds, "isosurface", [&] { return standInFor(mesh, settings); });
-  const EmbeddedSurface embedded = embed(standIn.mesh, false);
+  const EmbeddedSurface embedded = embed(clean.outer->mesh);
   LaidOutMesh laid(std::move(mesh), embedded);
-  laid.standIn = true;
-  laid.voxelSize = standIn.voxelSize;
+  laid.outer = std::move(clean.outer);
+  laid.notes = std::move(clean.notes);
   laid.seconds = std::move(seconds);
-  laid.notes = {why.substr(0, why.rfind("; ")),
-                standInNote(laid, settings.standInResolution, standIn.leftOut)};
   return laid;
 }
 

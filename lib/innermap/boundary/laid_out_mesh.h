@@ -1,37 +1,27 @@
-// A mesh that is to be mapped onto others, laid out: its own surface, or an isosurface of its solid
-// where that is no clean closed one.
+// A mesh that is to be mapped onto others, laid out: its own surface, holes capped, or the outer
+// surface of its solid where the mesh runs through itself, overlaps or is not manifold.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "innermap/core/error.h"
 #include "innermap/core/progress.h"
+#include "innermap/lattice/outer_surface.h"
 #include "innermap/mesh/mesh.h"
 #include "innermap/surface/correspond.h"
 
 namespace innermap {
 
 struct LayOutSettings {
-  bool closeHoles = false;    // cap the holes of an open mesh
-  int standInResolution = 0;  // for a mesh that is open, not manifold or of overlapping parts: an
-                              // isosurface of its solid at so many voxels across stands in for it,
-                              // in [8, 2048]; 0: such a mesh is refused
+  // Of the outer surface, where it is taken: OuterSurfaceSettings::resolution, and handles instead
+  // of the mesh's own.
+  int outerResolution = 0;
+  std::optional<int> handles;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;
-};
-
-// The mesh itself cannot be laid out, and the settings ask for nothing else.
-class UnfitMesh : public DataError {
- public:
-  UnfitMesh(const std::string& what, bool closingHelps)
-      : DataError(what), closingHelps_(closingHelps) {}
-  bool closingHelps() const { return closingHelps_; }  // closeHoles would do; or else a stand-in
-
- private:
-  bool closingHelps_;
 };
 
 struct LaidOutMesh {
@@ -39,20 +29,30 @@ struct LaidOutMesh {
       : mesh(std::move(given)), embedded(std::move(laidOut)) {}
 
   Mesh mesh;                 // as given
-  EmbeddedSurface embedded;  // the mesh's own shells, or those of the stand-in
-  bool standIn = false;
-  double voxelSize = 0;                                 // of the stand-in, world units
+  EmbeddedSurface embedded;  // the mesh's own shells, or those of the outer surface
+  // Where it was taken instead of the mesh; its mesh is shells().mesh.
+  std::optional<OuterSurface> outer;
   std::vector<std::string> notes;                       // what was done, a line each
   std::vector<std::pair<std::string, double>> seconds;  // by stage
 
   const SurfaceShells& shells() const { return embedded.surfaces(); }
   // Whether vertex and triangle numbers of the mesh are those of shells().mesh.
-  bool ownNumbers() const { return !standIn; }
+  bool ownNumbers() const { return !outer; }
   int handles() const;    // of all shells
   double volume() const;  // inside the shells, world units cubed
 };
 
-// Throws UnfitMesh; DataError where there is no solid at all; SettingError, MemoryError, Cancelled.
+// What stands for a mesh wherever a clean closed surface is needed.
+struct CleanSurface {
+  std::optional<OuterSurface> outer;  // without: the mesh itself, holes capped
+  std::vector<std::string> notes;     // why the outer surface, and what was done, a line each
+};
+
+// Throws as layOutMesh().
+CleanSurface cleanSurface(const Mesh& mesh, const LayOutSettings& settings = {});
+
+// Throws DataError where there is no solid at all, and what outerSurface() throws; SettingError,
+// MemoryError, Cancelled.
 LaidOutMesh layOutMesh(Mesh mesh, const LayOutSettings& settings = {});
 
 // Bytes of laying out surfaces of so many vertices in all: about what is needed.

@@ -112,7 +112,7 @@ class Finder {
   void requireOnShells(const Vec3& p, std::size_t pair) const {
     if (input_.ownNumbers()) return;
     const double distance = shells_.closest(p).distance;
-    if (distance > 3 * input_.voxelSize)
+    if (distance > 3 * input_.outer->edge)
       failAt(
           list_, pair,
           fmt::format("is {:.2g} of the diagonal away from the surface that is mapped instead of "

@@ -41,21 +41,21 @@ std::vector<SurfacePoint> onGiven(const LaidOutMesh& b, const std::vector<Surfac
   return result;
 }
 
-// Fills source, changed, positions, onTarget, farthestFromStandIn.
-void carryBack(MeshCorrespondence& out, Progress* progress) {
+// Fills source, changed, positions, onTarget, farthestFromOuter.
+void carryBack(MeshCorrespondence& out, bool toOwnVertices, Progress* progress) {
   const LaidOutMesh &a = out.a, &b = out.b;
   std::vector<SurfacePoint> onTarget;
-  if (a.standIn) {
+  if (a.outer && toOwnVertices) {
     SurfaceImageSettings settings;
     settings.progress = progress;
     const SurfaceImages images = imagesOf(a.mesh.vertices, out.map, b.shells(), settings);
     out.source = a.mesh;
     out.positions = images.positions;
     onTarget = images.onTarget;
-    out.farthestFromStandIn = images.farthest / boundingBox(a.mesh).diagonal();
+    out.farthestFromOuter = images.farthest / boundingBox(a.mesh).diagonal();
   } else {
     const Correspondence& map = out.map;
-    out.changed = map.source.vertices.size() > a.shells().mesh.vertices.size() ||
+    out.changed = a.outer || map.source.vertices.size() > a.shells().mesh.vertices.size() ||
                   a.shells().splitVertices > 0;
     out.source = out.changed ? map.source : a.mesh;
     const auto count = static_cast<std::ptrdiff_t>(out.source.vertices.size());
@@ -135,8 +135,8 @@ Mesh MeshCorrespondence::target(const std::string& name) const {
 MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const MeshCorrespondenceSettings& settings) {
   requireCorrespondMemory(a, b, settings);
   LayOutSettings surfaces;
-  surfaces.closeHoles = settings.closeHoles;
-  surfaces.standInResolution = settings.standInResolution;
+  surfaces.outerResolution = settings.outerResolution;
+  surfaces.handles = settings.handles;
   surfaces.maxMemory = settings.maxMemory;
   surfaces.progress = settings.progress;
   LaidOutMesh laidA = layOutMesh(std::move(a), surfaces);
@@ -157,7 +157,7 @@ MeshCorrespondence correspondMeshes(LaidOutMesh a, LaidOutMesh b,
   out.map = correspond(out.a.embedded, out.b.embedded, how);
   for (const auto& [stage, seconds] : out.map.seconds) addSeconds(out.seconds, stage, seconds);
   out.notes.insert(out.notes.end(), out.map.notes.begin(), out.map.notes.end());
-  timed(out.seconds, "carry back", [&] { carryBack(out, settings.progress); });
+  timed(out.seconds, "carry back", [&] { carryBack(out, settings.carryBack, settings.progress); });
   MapQualitySettings measure;
   measure.progress = settings.progress;
   out.quality = timed(out.seconds, "measure", [&] { return mapQuality(out.map, measure); });

@@ -19,17 +19,20 @@
 namespace innermap {
 
 struct MeshCorrespondenceSettings {
-  bool closeHoles = false;    // as in LayOutSettings, for both meshes
-  int standInResolution = 0;  // as in LayOutSettings, for both meshes
-  LandmarkList landmarks;     // kept exactly
-  bool aligned = false;       // the two stand in the same pose: prefer agreeing normals and places
-  int candidates = 3;         // ways to lay A on B that are refined, in [1, 64]
-  bool byInside = true;       // choose by a coarse harmonic map of the inside; otherwise, and where
-                              // there is none, by the surfaces' energy
-  bool refine = true;         // false: fast, rough
-  double subdivide = 0;       // split A until it follows B within this fraction of B's diagonal, in
-                              // [0, 1); 0: never
-  std::uint64_t seed = 1;     // of all random choices
+  int outerResolution = 0;     // as in LayOutSettings, for both meshes
+  std::optional<int> handles;  // as in LayOutSettings, for both meshes
+  // Where A's outer surface was laid on B: values at A's own vertices, as at the closest points of
+  // the outer surface; otherwise the source is the outer surface itself, which is what maps fit.
+  bool carryBack = true;
+  LandmarkList landmarks;  // kept exactly
+  bool aligned = false;    // the two stand in the same pose: prefer agreeing normals and places
+  int candidates = 3;      // ways to lay A on B that are refined, in [1, 64]
+  bool byInside = true;    // choose by a coarse harmonic map of the inside; otherwise, and where
+                           // there is none, by the surfaces' energy
+  bool refine = true;      // false: fast, rough
+  double subdivide = 0;    // split A until it follows B within this fraction of B's diagonal, in
+                           // [0, 1); 0: never
+  std::uint64_t seed = 1;  // of all random choices
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;
 };
@@ -38,24 +41,24 @@ struct MeshCorrespondence {
   MeshCorrespondence(LaidOutMesh first, LaidOutMesh second)
       : a(std::move(first)), b(std::move(second)) {}
 
-  // A as given, or with its triangles split or its touching parts cut apart. Its vertices stay
-  // first, in order.
+  // A as given, or with its triangles split or its touching parts cut apart: its vertices stay
+  // first, in order. Without carryBack, A's outer surface where that was laid on B.
   Mesh source;
   bool changed = false;                // source is not as given
   Points positions;                    // #vertices of source, on B, world units
-  std::vector<SurfacePoint> onTarget;  // of each, triangle of b.mesh. On a cap, or where a stand-in
-                                       // was mapped, the closest point of the mesh
+  std::vector<SurfacePoint> onTarget;  // of each, triangle of b.mesh. On a cap, or where an outer
+                                       // surface was mapped, the closest point of the mesh
 
   LaidOutMesh a, b;
   Correspondence map;  // between the shells of a and b
-  MapQuality quality;  // of map: of stand-ins, where there are any
+  MapQuality quality;  // of map: of outer surfaces, where there are any
 
   std::size_t landmarks = 0;
   double landmarkError = 0;  // greatest distance of a landmark from its place on B, fraction of
                              // B's diagonal
-  // Where a stand-in was mapped instead of A: A's vertex farthest from it, fraction of A's
-  // diagonal.
-  std::optional<double> farthestFromStandIn;
+  // Where values were carried back from A's outer surface: A's vertex farthest from it, fraction of
+  // A's diagonal.
+  std::optional<double> farthestFromOuter;
 
   std::vector<std::string> notes;     // choices worth telling, a line each; beside a.notes, b.notes
   std::vector<std::string> warnings;  // what makes the result doubtful
@@ -80,7 +83,7 @@ constexpr double kLaidOnTolerance = 2e-3, kLaidOnSubdivide = 5e-3;
 MeshCorrespondence correspondMeshes(Mesh a, Mesh b,
                                     const MeshCorrespondenceSettings& settings = {});
 
-// For meshes that are laid out: closeHoles and standInResolution do not count.
+// For meshes that are laid out: outerResolution and handles do not count.
 MeshCorrespondence correspondMeshes(LaidOutMesh a, LaidOutMesh b,
                                     const MeshCorrespondenceSettings& settings = {});
 

@@ -99,7 +99,7 @@ class ShellBuilder {
     if (!crowded.empty())
       throw DataError(fmt::format(
           "{}: {} edge{} more than two triangles, between the vertices {} (counted from 0); part "
-          "what meets there, or map the solid's own surface (an isosurface) instead",
+          "what meets there",
           nameOf(mesh_), crowded.size(), crowded.size() == 1 ? " has" : "s have", named(crowded)));
     if (!oneSided.empty())
       throw DataError(fmt::format(

@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "innermap/core/progress.h"
+#include "innermap/lattice/cell_mesh.h"
 #include "innermap/levelset/solid.h"
-#include "innermap/tetra/cell_mesh.h"
 
 namespace innermap {
 

@@ -6,8 +6,8 @@
 
 #include "innermap/boundary/mapped_solid.h"
 #include "innermap/core/progress.h"
+#include "innermap/lattice/cell_mesh.h"
 #include "innermap/tetra/cell_locator.h"
-#include "innermap/tetra/cell_mesh.h"
 
 namespace innermap {
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "innermap/core/vec3.h"
-#include "innermap/tetra/cell_mesh.h"
+#include "innermap/lattice/cell_mesh.h"
 
 namespace innermap {
 

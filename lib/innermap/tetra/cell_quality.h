@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "innermap/core/progress.h"
-#include "innermap/tetra/cell_mesh.h"
+#include "innermap/lattice/cell_mesh.h"
 
 namespace innermap {
 

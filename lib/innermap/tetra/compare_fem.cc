@@ -13,9 +13,9 @@
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
 #include "innermap/evaluate/energy.h"
+#include "innermap/lattice/tetrahedralize.h"
 #include "innermap/tetra/detail/elements.h"
 #include "innermap/tetra/harmonic_cells.h"
-#include "innermap/tetra/tetrahedralize.h"
 
 namespace innermap {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "innermap/core/matrix.h"
 #include "innermap/core/progress.h"
-#include "innermap/tetra/cell_mesh.h"
+#include "innermap/lattice/cell_mesh.h"
 
 namespace innermap {
 

@@ -10,9 +10,9 @@
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
+#include "innermap/lattice/detail/sharp_edges.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/tetra/detail/hex_shaping.h"
-#include "innermap/tetra/detail/sharp_edges.h"
 
 namespace innermap {
 namespace {
@@ -52,7 +52,6 @@ Carried carry(const Mesh& mesh, const HexahedralizeSettings& settings, Hexahedra
   Carried carried;
   MeshCorrespondenceSettings laying;
   laying.aligned = true;
-  laying.closeHoles = settings.closeHoles;
   laying.seed = settings.seed;
   laying.maxMemory = settings.maxMemory;
   laying.progress = settings.progress;
@@ -167,7 +166,6 @@ Hexahedralization attempt(const Mesh& mesh, const HexahedralizeSettings& setting
   Hexahedralization out;
   PolycubeSettings cubes;
   cubes.blocks = blocks;
-  cubes.closeHoles = settings.closeHoles;
   cubes.maxMemory = settings.maxMemory;
   cubes.progress = settings.progress;
   out.polycube = timed(out.seconds, "polycube", [&] { return makePolycube(mesh, cubes); });

@@ -14,10 +14,10 @@
 
 #include "innermap/core/progress.h"
 #include "innermap/core/stage_seconds.h"
+#include "innermap/lattice/cell_mesh.h"
 #include "innermap/mesh/mesh.h"
 #include "innermap/surface/map_quality.h"
 #include "innermap/tetra/boundary_fit.h"
-#include "innermap/tetra/cell_mesh.h"
 #include "innermap/tetra/cell_quality.h"
 #include "innermap/tetra/hexahedron_check.h"
 #include "innermap/tetra/polycube.h"
@@ -27,7 +27,6 @@ namespace innermap {
 struct HexahedralizeSettings {
   int blocks = 0;           // of the polycube, as in PolycubeSettings
   int pieces = 2;           // hexahedra along a block's edge, in [1, 16]
-  bool closeHoles = false;  // as in PolycubeSettings
   double featureAngle =
       30;                  // degrees between faces over which an edge counts as sharp, in (0, 180)
   std::uint64_t seed = 1;  // of all random choices

@@ -10,7 +10,7 @@
 #include <cstddef>
 
 #include "innermap/core/progress.h"
-#include "innermap/tetra/cell_mesh.h"
+#include "innermap/lattice/cell_mesh.h"
 
 namespace innermap {
 

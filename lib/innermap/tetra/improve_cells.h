@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "innermap/core/progress.h"
+#include "innermap/lattice/cell_mesh.h"
 #include "innermap/mesh/mesh.h"
-#include "innermap/tetra/cell_mesh.h"
 
 namespace innermap {
 

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "innermap/core/vec3.h"
+#include "innermap/lattice/cell_mesh.h"
 #include "innermap/tetra/cell_locator.h"
-#include "innermap/tetra/cell_mesh.h"
 
 namespace innermap {
 

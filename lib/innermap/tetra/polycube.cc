@@ -26,7 +26,7 @@ constexpr std::uint64_t kBytesABlock = 400, kLevelSet = 16'000'000, kBytesATrian
 // Handles of the outer boundary, then of those of cavities, ascending.
 std::vector<int> handlesOf(const Mesh& mesh, const PolycubeSettings& polycube) {
   ClosedSurfaceSettings settings;
-  settings.closeHoles = polycube.closeHoles;
+  settings.closeHoles = true;
   settings.progress = polycube.progress;
   const SurfaceShells shells = closedSurfaces(mesh, settings);
   std::size_t outer = 0, bodies = 0;
@@ -44,7 +44,7 @@ std::vector<int> handlesOf(const Mesh& mesh, const PolycubeSettings& polycube) {
   if (bodies > 1)
     throw DataError(fmt::format(
         "{} has {} bodies, apart from one another or overlapping, and a polycube is made of one: "
-        "give each a file of its own, or take the surface around them all (surface resolution)",
+        "give each a file of its own, or take the outer surface of them all",
         mesh.name, bodies));
   std::sort(handles.begin() + 1, handles.end());
   return handles;

@@ -10,7 +10,7 @@
 #include "innermap/boundary/mapped_solid.h"
 #include "innermap/core/progress.h"
 #include "innermap/core/stage_seconds.h"
-#include "innermap/tetra/cell_mesh.h"
+#include "innermap/lattice/cell_mesh.h"
 #include "innermap/tetra/cell_quality.h"
 #include "innermap/tetra/improve_cells.h"
 #include "innermap/tetra/repair_cells.h"

@@ -5,7 +5,7 @@
 #include <functional>
 #include <map>
 
-#include "innermap/tetra/cell_mesh.h"
+#include "innermap/lattice/cell_mesh.h"
 
 namespace innermap::test {
 

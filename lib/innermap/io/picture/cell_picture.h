@@ -7,7 +7,7 @@
 #include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/io/picture/colormap.h"
-#include "innermap/tetra/cell_mesh.h"
+#include "innermap/lattice/cell_mesh.h"
 
 namespace innermap {
 

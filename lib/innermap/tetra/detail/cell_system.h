@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "innermap/core/vec3.h"
-#include "innermap/tetra/cell_mesh.h"
+#include "innermap/lattice/cell_mesh.h"
 
 namespace innermap {
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <optional>
 
+#include "innermap/lattice/cell_mesh.h"
 #include "innermap/tetra/cell_locator.h"
-#include "innermap/tetra/cell_mesh.h"
 #include "innermap/tetra/detail/guide_surface.h"
 
 namespace innermap {

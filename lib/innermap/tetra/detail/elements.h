@@ -8,9 +8,9 @@
 
 #include "innermap/core/matrix.h"
 #include "innermap/core/progress.h"
+#include "innermap/lattice/cell_mesh.h"
 #include "innermap/levelset/solid.h"
 #include "innermap/tetra/cell_locator.h"
-#include "innermap/tetra/cell_mesh.h"
 
 namespace innermap {
 

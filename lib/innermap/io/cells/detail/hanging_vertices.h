@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "innermap/core/progress.h"
-#include "innermap/tetra/cell_mesh.h"
+#include "innermap/lattice/cell_mesh.h"
 
 namespace innermap {
 

@@ -61,7 +61,7 @@ BoundingClasses boundingClasses(const ClosedSurface& surface, const HalfEdges& e
   }
   throw DataError(fmt::format(
       "{}: cannot tell which loops around its handles bound inside; it probably passes through "
-      "itself there (see `innermap check`): repair it, or take the isosurface of its level set",
+      "itself there (see `innermap check`): repair it",
       surface.name));
 }
 

@@ -1,0 +1,209 @@
+#include "innermap/lattice/outer_surface.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "innermap/core/detail/random.h"
+#include "innermap/core/error.h"
+#include "innermap/core/memory.h"
+#include "innermap/core/parallel.h"
+#include "innermap/lattice/detail/buried_sheets.h"
+#include "innermap/lattice/detail/fit_boundary.h"
+#include "innermap/lattice/detail/grow_solid.h"
+#include "innermap/lattice/detail/lattice_topology.h"
+#include "innermap/lattice/detail/stuffing.h"
+#include "innermap/lattice/detail/thin_parts.h"
+#include "innermap/lattice/tetrahedralize.h"
+#include "innermap/levelset/level_set.h"
+#include "innermap/mesh/triangle_tree.h"
+
+namespace innermap {
+namespace {
+
+constexpr int kUsualAcross = 80, kLeastAcross = 8, kMostAcross = 1024;
+// Of the resolution: a handle of the solid, and not of the lattice, is there at all of them.
+constexpr std::array<double, 2> kOtherResolutions = {0.8, 1.25};
+constexpr std::size_t kCompared = 20000;  // points of the solid's surface
+// Bytes of a node beyond what tetrahedra take: sides, orders, queues.
+constexpr double kNodeBytes = 60;
+
+double longestSide(const Solid& solid) {
+  const Vec3 e = solid.box().extent();
+  return std::max({e.x, e.y, e.z});
+}
+
+double spacingFor(const Solid& solid, const OuterSurfaceSettings& settings) {
+  if (settings.resolution == 0) {
+    // Thin solids get more voxels by themselves.
+    const double usual = voxelSizeFor(solid, {}) * kUsualResolution / kUsualAcross;
+    return std::max(usual, longestSide(solid) / kMostAcross);
+  }
+  if (settings.resolution < kLeastAcross || settings.resolution > kMostAcross)
+    throw SettingError("resolution", fmt::format("must be from {} to {} cells across, or 0",
+                                                 kLeastAcross, kMostAcross));
+  return longestSide(solid) / settings.resolution;
+}
+
+// Each node inside or outside; thin walls are inside, narrow gaps outside.
+LatticeSigns signsOf(const Solid& solid, double spacing, Progress* progress) {
+  LatticeSigns signs = latticeSigns(solid, spacing, progress);
+  const ThinParts thin = thinParts(solid, signs, progress);
+  for (const std::size_t node : thin.walls) signs.side[node] = NodeSide::inside;
+  for (const std::size_t node : thin.gaps) signs.side[node] = NodeSide::outside;
+  return signs;
+}
+
+std::vector<int> handlesOf(const LatticeSigns& signs, const SolidParts& parts) {
+  LatticeSigns alone = signs;
+  std::vector<int> handles;
+  for (const Sides& part : parts.parts) {
+    alone.side = part;
+    handles.push_back(latticeTopology(alone).handles);
+  }
+  return handles;
+}
+
+// Of each part.
+std::vector<int> wantedHandles(const Solid& solid, const LatticeSigns& signs,
+                               const SolidParts& parts, const OuterSurfaceSettings& settings) {
+  if (settings.handles) {
+    if (*settings.handles < 0) throw SettingError("handles", "must be at least 0");
+    std::vector<int> handles(parts.parts.size(), 0);
+    handles[0] = *settings.handles;
+    return handles;
+  }
+  std::vector<int> handles = handlesOf(signs, parts);
+  for (const double factor : kOtherResolutions) {
+    const LatticeSigns other = signsOf(solid, signs.lattice.spacing() / factor, settings.progress);
+    const SolidParts there = partsOf(other, settings.progress);
+    if (there.parts.size() != parts.parts.size()) continue;
+    const std::vector<int> found = handlesOf(other, there);
+    for (std::size_t p = 0; p < handles.size(); ++p) handles[p] = std::min(handles[p], found[p]);
+  }
+  return handles;
+}
+
+// Sets the sides; the nodes of `parts` that are left outside are the cuts.
+void grow(const Solid& solid, const SolidParts& parts, const std::vector<int>& handles,
+          LatticeSigns& signs, Progress* progress) {
+  Sides all(signs.side.size(), NodeSide::outside), grown = all;
+  const auto unite = [](Sides& sides, const Sides& more) {
+    for (std::size_t n = 0; n < sides.size(); ++n)
+      if (more[n] == NodeSide::inside) sides[n] = NodeSide::inside;
+  };
+  for (const Sides& part : parts.parts) unite(all, part);
+  signs.side = all;
+  const std::vector<float> order = growingOrder(solid, signs, progress);
+  for (std::size_t p = 0; p < parts.parts.size(); ++p) {
+    if (!growWithHandles(signs, parts.parts[p], handles[p], order, progress))
+      throw DataError(fmt::format(
+          "{}: its outer surface cannot be given {} handle{}: no part of what it encloses has that "
+          "many; give another number (--genus) or a finer lattice (--surface-resolution)",
+          solid.repaired().mesh.name, handles[p], handles[p] == 1 ? "" : "s"));
+    unite(grown, signs.side);
+  }
+  signs.side = std::move(grown);
+}
+
+std::vector<SurfaceCut> cutsOf(const LatticeSigns& signs, const SolidParts& parts,
+                               Progress* progress) {
+  LatticeSigns cut = signs;
+  std::fill(cut.side.begin(), cut.side.end(), NodeSide::outside);
+  for (const Sides& part : parts.parts)
+    for (std::size_t n = 0; n < part.size(); ++n)
+      if (part[n] == NodeSide::inside && signs.side[n] != NodeSide::inside)
+        cut.side[n] = NodeSide::inside;
+  std::vector<SurfaceCut> cuts;
+  for (const std::vector<std::size_t>& nodes : piecesInside(cut, progress)) {
+    Box3 box;
+    for (const std::size_t n : nodes) box.add(signs.lattice.position(n));
+    cuts.push_back({box.center(), norm(box.extent()) + signs.lattice.spacing()});
+  }
+  return cuts;
+}
+
+// The lattice's boundary as a mesh.
+Mesh surfaceOf(const Solid& solid, LatticeSigns& signs, Progress* progress) {
+  warpNodes(signs, progress);
+  StuffedMesh stuffing = stuffed(signs, progress);
+  holdWarped(stuffing, progress);
+  fitBoundary(solid, signs.lattice.spacing(), stuffing, progress);
+  Mesh mesh;
+  mesh.name = solid.repaired().mesh.name;
+  mesh.triangles = boundaryOf(stuffing);
+  mesh.vertices.assign(stuffing.vertices.begin() + stuffing.firstBoundary, stuffing.vertices.end());
+  for (Triangle& t : mesh.triangles)
+    for (int& v : t) v -= stuffing.firstBoundary;
+  return mesh;
+}
+
+void compare(const Solid& solid, OuterSurface& out, Progress* progress) {
+  const Mesh& surface = solid.surface();
+  std::vector<double> sums{0};
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    sums.push_back(sums.back() + norm(areaVector(surface, static_cast<int>(t))));
+  const TriangleTree tree(out.mesh.vertices, out.mesh.triangles);
+  const CounterRandom random(1, 72);
+  std::vector<double> apart(kCompared);
+  parallelBlocks(
+      kCompared, 256,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const double at =
+              sums.back() * (static_cast<double>(i) + random.uniform(3 * i)) / kCompared;
+          const auto above = std::upper_bound(sums.begin(), sums.end() - 1, at);
+          const Triangle& t = surface.triangles[static_cast<std::size_t>(
+              std::max<std::ptrdiff_t>(above - sums.begin() - 1, 0))];
+          const double s = std::sqrt(random.uniform(3 * i + 1)), u = random.uniform(3 * i + 2);
+          const Points& v = surface.vertices;
+          apart[i] =
+              tree.closest((1 - s) * v[t[0]] + s * (1 - u) * v[t[1]] + s * u * v[t[2]]).distance;
+        }
+      },
+      progress, "comparing the surfaces");
+  std::sort(apart.begin(), apart.end());
+  out.apartP99 = apart[kCompared * 99 / 100] / solid.diagonal();
+  out.apartMax = apart.back() / solid.diagonal();
+}
+
+}  // namespace
+
+std::uint64_t outerSurfaceMemory(const Solid& solid, const OuterSurfaceSettings& settings) {
+  const double spacing = spacingFor(solid, settings);
+  TetrahedralizeSettings cells;
+  cells.edge = spacing;
+  const Vec3 e = solid.box().extent();
+  const double nodes = 2 * (e.x / spacing + 7) * (e.y / spacing + 7) * (e.z / spacing + 7);
+  return tetrahedralizeNeed(solid, cells).memory + static_cast<std::uint64_t>(kNodeBytes * nodes);
+}
+
+OuterSurface outerSurface(const Solid& solid, const OuterSurfaceSettings& settings) {
+  const std::string& name = solid.repaired().mesh.name;
+  OuterSurface out;
+  out.edge = spacingFor(solid, settings);
+  requireMemory("the outer surface of " + name, outerSurfaceMemory(solid, settings),
+                settings.maxMemory, "a coarser lattice takes less (--surface-resolution)");
+  LatticeSigns signs = signsOf(solid, out.edge, settings.progress);
+  const SolidParts parts = partsOf(signs, settings.progress);
+  if (parts.parts.empty())
+    throw DataError(name +
+                    ": has no outer surface, all parts are thinner than a cell of the lattice; "
+                    "give a finer one (--surface-resolution)");
+  out.leftOut = parts.leftOut;
+  grow(solid, parts, wantedHandles(solid, signs, parts, settings), signs, settings.progress);
+  out.cuts = cutsOf(signs, parts, settings.progress);
+  out.mesh = surfaceOf(solid, signs, settings.progress);
+  const BoundaryTopology made = boundaryTopology(out.mesh.vertices, out.mesh.triangles);
+  out.topology = made.solid;
+  if (!made.manifold() || !(made.solid == latticeTopology(signs)))
+    throw DataError(name +
+                    ": its outer surface is no manifold at this resolution; give another "
+                    "one (--surface-resolution)");
+  compare(solid, out, settings.progress);
+  return out;
+}
+
+}  // namespace innermap

@@ -1,0 +1,58 @@
+// The outer surface of a solid whose mesh runs through itself, is open, or has parts that overlap.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "innermap/core/progress.h"
+#include "innermap/lattice/boundary_topology.h"
+#include "innermap/levelset/solid.h"
+#include "innermap/mesh/mesh.h"
+
+namespace innermap {
+
+struct OuterSurfaceSettings {
+  int resolution = 0;  // cells of the lattice along the longest side of the box, in [8, 1024]; 0:
+                       // 80, and more where the solid is thin
+  // Of all handles of the surface, at least 0. Without: those that the solid has at three
+  // resolutions.
+  std::optional<int> handles;
+  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  Progress* progress = nullptr;
+};
+
+// Where the surface was cut apart: the solid's parts meet there, and would make a handle.
+struct SurfaceCut {
+  Vec3 place;       // its middle, world units
+  double size = 0;  // the diagonal of its box, world units
+};
+
+struct OuterSurface {
+  Mesh mesh;               // world units; closed, manifold, outward, without self-intersections
+  double edge = 0;         // of the lattice's cells, world units
+  SolidTopology topology;  // of the mesh
+  std::vector<SurfaceCut> cuts;
+  std::size_t leftOut = 0;  // parts of less than a thousandth of the volume of the largest
+  // Of the solid's surface (Solid::surface()) from the mesh, fractions of the diagonal; the cuts
+  // are part of the mesh alone.
+  double apartP99 = 0, apartMax = 0;
+};
+
+// The surface of what the mesh encloses (winding number above 1/2), holes closed, overlaps united,
+// with the topology of the mesh instead of the union's: where parts of one body touch or run
+// through one another the union has handles that the body has not. The solid is grown again on a
+// lattice, node by node from its deepest part, by nodes that change no topology (Bertrand 1994);
+// what cannot be taken is a cut. Then as tetrahedralization(): isosurface stuffing, boundary
+// vertices on the solid's surface. Pockets that are enclosed are filled.
+//
+// Deterministic. Throws SettingError, MemoryError (before allocating), Cancelled; DataError where
+// nothing is inside at the resolution or no part of the solid has the handles that are asked for.
+OuterSurface outerSurface(const Solid& solid, const OuterSurfaceSettings& settings = {});
+
+// Estimate of the peak need in bytes, beyond the solid.
+std::uint64_t outerSurfaceMemory(const Solid& solid, const OuterSurfaceSettings& settings);
+
+}  // namespace innermap
