@@ -24,6 +24,7 @@ void reportOuter(const std::string& side, const LaidOutMesh& laid, Report& repor
   report.set(key + ".vertices", outer.mesh.vertices.size());
   report.set(key + ".handles", outer.topology.handles);
   report.set(key + ".left_out", outer.leftOut);
+  report.set(key + ".left_out_share", outer.leftOutShare);
   report.set(key + ".apart_p99", outer.apartP99);
   report.set(key + ".apart_max", outer.apartMax);
   report.setColumn(key + ".cuts.x", outer.cuts, [](auto& c) { return c.place.x; });

@@ -69,6 +69,7 @@ OuterSurface outerSurfaceOf(const Mesh& mesh, const Obstacle& obstacle,
   OuterSurfaceSettings how;
   how.resolution = settings.outerResolution;
   how.handles = settings.handles ? settings.handles : obstacle.handles;
+  how.onePiece = obstacle.handles.has_value();
   how.maxMemory = settings.maxMemory;
   how.progress = settings.progress;
   return outerSurface(Solid(mesh, solidSettings), how);
@@ -85,8 +86,9 @@ std::vector<std::string> notesOn(const OuterSurface& outer, const std::string& n
                   "is within {:.2g} of the diagonal of it, all within {:.2g}",
                   name, outer.mesh.vertices.size(), describe(t), outer.apartP99, outer.apartMax));
   if (outer.leftOut > 0)
-    notes.push_back(fmt::format("{}: {} tiny part{} of it left out", name, outer.leftOut,
-                                outer.leftOut == 1 ? " is" : "s are"));
+    notes.push_back(fmt::format("{}: {} part{} of it left out, {:.2g}% of the volume", name,
+                                outer.leftOut, outer.leftOut == 1 ? " is" : "s are",
+                                100 * outer.leftOutShare));
   if (outer.cuts.empty()) return notes;
   std::string places;
   for (std::size_t c = 0; c < std::min(kNotedCuts, outer.cuts.size()); ++c) {

@@ -18,6 +18,7 @@
 #include "innermap/lattice/detail/thin_parts.h"
 #include "innermap/lattice/tetrahedralize.h"
 #include "innermap/levelset/level_set.h"
+#include "innermap/mesh/self_intersection.h"
 #include "innermap/mesh/triangle_tree.h"
 
 namespace innermap {
@@ -27,6 +28,8 @@ constexpr int kUsualAcross = 80, kLeastAcross = 8, kMostAcross = 1024;
 // Of the resolution: a handle of the solid, and not of the lattice, is there at all of them.
 constexpr std::array<double, 2> kOtherResolutions = {0.8, 1.25};
 constexpr std::size_t kCompared = 20000;  // points of the solid's surface
+constexpr double kSlit = 0.6;            // spacings from a cut's nodes to its walls
+constexpr int kUncrossings = 8;
 // Bytes of a node beyond what tetrahedra take: sides, orders, queues.
 constexpr double kNodeBytes = 60;
 
@@ -78,7 +81,7 @@ std::vector<int> wantedHandles(const Solid& solid, const LatticeSigns& signs,
   std::vector<int> handles = handlesOf(signs, parts);
   for (const double factor : kOtherResolutions) {
     const LatticeSigns other = signsOf(solid, signs.lattice.spacing() / factor, settings.progress);
-    const SolidParts there = partsOf(other, settings.progress);
+    const SolidParts there = partsOf(other, settings.onePiece, settings.progress);
     if (there.parts.size() != parts.parts.size()) continue;
     const std::vector<int> found = handlesOf(other, there);
     for (std::size_t p = 0; p < handles.size(); ++p) handles[p] = std::min(handles[p], found[p]);
@@ -125,11 +128,50 @@ std::vector<SurfaceCut> cutsOf(const LatticeSigns& signs, const SolidParts& part
   return cuts;
 }
 
+// Distances as if what is cut away were a slit, whose walls stand apart.
+void openCuts(const SolidParts& parts, LatticeSigns& signs) {
+  const double open = kSlit * signs.lattice.spacing();
+  std::vector<std::size_t> cut;
+  for (const Sides& part : parts.parts)
+    for (std::size_t n = 0; n < part.size(); ++n)
+      if (part[n] == NodeSide::inside && signs.side[n] != NodeSide::inside) cut.push_back(n);
+  for (const std::size_t n : cut)
+    for (int d = 0; d < kDirections; ++d) {
+      float& distance = signs.distance[signs.lattice.neighbour(n, d)];
+      distance = std::max(distance, static_cast<float>(open - signs.lattice.length(d)));
+    }
+  for (const std::size_t n : cut)
+    signs.distance[n] = std::max(signs.distance[n], static_cast<float>(open));
+}
+
+// Vertices that were moved onto the solid's surface go back where that made triangles cross, as in
+// gaps narrower than a cell; where they were, none do.
+void uncross(const Points& before, Mesh& mesh, Progress* progress) {
+  SelfIntersectionSettings settings;
+  settings.progress = progress;
+  for (int pass = 0; pass < kUncrossings; ++pass) {
+    std::vector<bool> back(mesh.vertices.size(), pass + 1 == kUncrossings);
+    bool any = false;
+    forEachSelfIntersection(
+        mesh.vertices, mesh.triangles,
+        [&](const Crossing& c) {
+          any = true;
+          for (const int t : {c.first, c.second})
+            for (const int v : mesh.triangles[t]) back[v] = true;
+        },
+        settings);
+    if (!any) return;
+    for (std::size_t v = 0; v < back.size(); ++v)
+      if (back[v]) mesh.vertices[v] = before[v];
+  }
+}
+
 // The lattice's boundary as a mesh.
 Mesh surfaceOf(const Solid& solid, LatticeSigns& signs, Progress* progress) {
   warpNodes(signs, progress);
   StuffedMesh stuffing = stuffed(signs, progress);
   holdWarped(stuffing, progress);
+  const Points before(stuffing.vertices.begin() + stuffing.firstBoundary, stuffing.vertices.end());
   fitBoundary(solid, signs.lattice.spacing(), stuffing, progress);
   Mesh mesh;
   mesh.name = solid.repaired().mesh.name;
@@ -137,6 +179,7 @@ Mesh surfaceOf(const Solid& solid, LatticeSigns& signs, Progress* progress) {
   mesh.vertices.assign(stuffing.vertices.begin() + stuffing.firstBoundary, stuffing.vertices.end());
   for (Triangle& t : mesh.triangles)
     for (int& v : t) v -= stuffing.firstBoundary;
+  uncross(before, mesh, progress);
   return mesh;
 }
 
@@ -187,14 +230,16 @@ OuterSurface outerSurface(const Solid& solid, const OuterSurfaceSettings& settin
   requireMemory("the outer surface of " + name, outerSurfaceMemory(solid, settings),
                 settings.maxMemory, "a coarser lattice takes less (--surface-resolution)");
   LatticeSigns signs = signsOf(solid, out.edge, settings.progress);
-  const SolidParts parts = partsOf(signs, settings.progress);
+  const SolidParts parts = partsOf(signs, settings.onePiece, settings.progress);
   if (parts.parts.empty())
     throw DataError(name +
                     ": has no outer surface, all parts are thinner than a cell of the lattice; "
                     "give a finer one (--surface-resolution)");
   out.leftOut = parts.leftOut;
+  out.leftOutShare = parts.leftOutShare;
   grow(solid, parts, wantedHandles(solid, signs, parts, settings), signs, settings.progress);
   out.cuts = cutsOf(signs, parts, settings.progress);
+  openCuts(parts, signs);
   out.mesh = surfaceOf(solid, signs, settings.progress);
   const BoundaryTopology made = boundaryTopology(out.mesh.vertices, out.mesh.triangles);
   out.topology = made.solid;

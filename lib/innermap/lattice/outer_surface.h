@@ -20,6 +20,7 @@ struct OuterSurfaceSettings {
   // Of all handles of the surface, at least 0. Without: those that the solid has at three
   // resolutions.
   std::optional<int> handles;
+  bool onePiece = false;        // the largest part alone
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;
 };
@@ -35,7 +36,10 @@ struct OuterSurface {
   double edge = 0;         // of the lattice's cells, world units
   SolidTopology topology;  // of the mesh
   std::vector<SurfaceCut> cuts;
-  std::size_t leftOut = 0;  // parts of less than a thousandth of the volume of the largest
+  // Parts of less than a thousandth of the volume of the largest, or all others; and their share of
+  // the volume.
+  std::size_t leftOut = 0;
+  double leftOutShare = 0;
   // Of the solid's surface (Solid::surface()) from the mesh, fractions of the diagonal; the cuts
   // are part of the mesh alone.
   double apartP99 = 0, apartMax = 0;

@@ -16,7 +16,7 @@ namespace {
 constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32;
 // Of what is left of the tolerance for the way that is left: errors of steps add up, but do not all
 // point the same way. The last step has to do with what is left.
-constexpr double kShare = 1.3, kLastShare = 1, kLeastShare = 0.1;
+constexpr double kShare = 1.3, kLastShare = 1, kLeastShare = 0.5;
 // Of the folds that are left: after a step, and after its first charges.
 constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
 constexpr double kOfTolerance = 0.9;  // is given to the steps
@@ -25,6 +25,10 @@ constexpr double kOfTolerance = 0.9;  // is given to the steps
 constexpr double kWorkPower = 2.4;
 constexpr int kOutlierRounds = 3, kPatience = 1;
 constexpr int kLastPatience = 3;  // what the last step does not reach is missed
+// Charges of one step, at most, at the tolerance of surfaces that were laid on one another; more in
+// proportion at a smaller one. Steps that can be met take 4,000 to 13,000; jumps across slits take
+// all there are.
+constexpr double kStepSources = 15000, kAtTolerance = 2e-3;
 // Of the target's diagonal. Sums, and where points inside go; the mesh about an intermediate shape.
 constexpr double kSumAccuracy = 1e-7, kChord = 1e-3;
 
@@ -96,6 +100,11 @@ class StepFitter {
     return std::max({tolerance, kLeastShare * part * settings_.tolerance, kSmallestTolerance});
   }
 
+  std::size_t mostSources() const {
+    const double most = kStepSources * std::max(1.0, kAtTolerance / settings_.tolerance);
+    return static_cast<std::size_t>(std::min(most, static_cast<double>(settings_.maxSources)));
+  }
+
   // mayStop: where the first level of charges folds points that are not folded yet. Folds of that
   // level are few or none where those of the whole fit are none.
   Step fitStep(double to, bool mayStop) {
@@ -104,7 +113,7 @@ class StepFitter {
     for (std::size_t v = 0; v < ways.size(); ++v) ways[v] = ways[v] - now[v];
     AdaptiveSettings s;
     s.tolerance = toleranceUntil(to);
-    s.maxSources = settings_.maxSources;
+    s.maxSources = mostSources();
     s.outlierRounds = kOutlierRounds;
     s.patience = to < 1 ? kPatience : kLastPatience;
     if (mayStop)
@@ -115,6 +124,8 @@ class StepFitter {
     s.maxMemory = settings_.maxMemory;
     s.progress = settings_.progress;
     AdaptiveResult fit = fitToTolerance(boundary_.problem(ways, unit_), s);
+    if (fit.end == AdaptiveEnd::maxSources && s.maxSources < settings_.maxSources)
+      fit.end = AdaptiveEnd::noGain;
     HarmonicMap map(fit.field);
     MappedPoints inside = insideAfter(map);
     const MapStep record{at_, to, fit.field.sources().size(), fit.error.p99,

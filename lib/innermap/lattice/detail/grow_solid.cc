@@ -101,17 +101,22 @@ std::vector<std::vector<std::size_t>> piecesInside(const LatticeSigns& signs, Pr
   return found;
 }
 
-SolidParts partsOf(const LatticeSigns& signs, Progress* progress) {
+SolidParts partsOf(const LatticeSigns& signs, bool onePiece, Progress* progress) {
   const std::vector<std::vector<std::size_t>> found = piecesInside(signs, progress);
   SolidParts out;
+  std::size_t all = 0, left = 0;
   for (const auto& nodes : found) {
-    if (static_cast<double>(nodes.size()) < kLeastPart * static_cast<double>(found[0].size())) {
+    all += nodes.size();
+    if ((onePiece && !out.parts.empty()) ||
+        static_cast<double>(nodes.size()) < kLeastPart * static_cast<double>(found[0].size())) {
       ++out.leftOut;
+      left += nodes.size();
       continue;
     }
     out.parts.push_back(sidesOf(signs.side.size(), nodes));
     fillPockets(signs.lattice, out.parts.back());
   }
+  out.leftOutShare = all ? static_cast<double>(left) / static_cast<double>(all) : 0;
   return out;
 }
 

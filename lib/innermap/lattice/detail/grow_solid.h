@@ -12,14 +12,15 @@ namespace innermap {
 
 struct SolidParts {
   std::vector<Sides> parts;  // pockets filled, the largest first
-  std::size_t leftOut = 0;   // below a thousandth of the largest
+  std::size_t leftOut = 0;   // below a thousandth of the largest, or all others
+  double leftOutShare = 0;   // of the nodes inside
 };
 
 // The nodes inside in pieces that hang together, the largest first.
 std::vector<std::vector<std::size_t>> piecesInside(const LatticeSigns& signs, Progress* progress);
 
-// What hangs together inside.
-SolidParts partsOf(const LatticeSigns& signs, Progress* progress);
+// What hangs together inside; of that the largest alone with `onePiece`.
+SolidParts partsOf(const LatticeSigns& signs, bool onePiece, Progress* progress);
 
 // Sets the sides to what is grown of `part` by `order` (highest first) from the largest of its
 // cores {order at least some value} that has so many handles. False where no core has: the sides
