@@ -1,5 +1,5 @@
 // `innermap tetrahedralize`: a mesh's inside as tetrahedra.
-#include "innermap/lattice/tetrahedralize.h"
+#include "innermap/tetra/tetrahedralize.h"
 
 #include <fmt/format.h>
 
@@ -34,7 +34,7 @@ constexpr std::uint64_t kBytesACell = 110, kDrawnBytesACell = 132, kPicture = 20
 
 std::uint64_t memoryFor(const TetrahedralizeOptions& options, const Solid& solid,
                         const TetrahedralizeSettings& settings) {
-  const TetrahedralizeNeed need = tetrahedralizeNeed(solid, settings);
+  const StuffingNeed need = tetrahedralizeNeed(solid, settings);
   const std::uint64_t drawing =
       options.picture.empty() ? 0 : need.tetrahedra * kDrawnBytesACell + kPicture;
   return std::max({need.memory, drawing, need.tetrahedra * kBytesACell + need.vertices * 40});

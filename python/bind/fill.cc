@@ -8,10 +8,10 @@
 #include "bind/meshes.h"
 #include "innermap/boundary/laid_out_mesh.h"
 #include "innermap/core/memory.h"
-#include "innermap/lattice/tetrahedralize.h"
 #include "innermap/tetra/block_set.h"
 #include "innermap/tetra/hexahedralize.h"
 #include "innermap/tetra/polycube.h"
+#include "innermap/tetra/tetrahedralize.h"
 
 namespace py = pybind11;
 

@@ -262,7 +262,7 @@ def test_genus_one():
     fails(1, "sphere", "a.obj", "-o", "no.ply", says=["a.obj", "1 handle"])
 
 
-def test_two_handles_through_isosurfaces():
+def test_two_handles_through_outer_surfaces():
     for name, minor, apart, scale in (("a.obj", 0.35, 2.3, 1), ("b.obj", 0.45, 2.5, 1.4)):
         points, faces = read_obj(torus("torus.obj", 40, 20, 1, minor))
         place = lambda shift: [(scale * (x + shift), scale * y, scale * z) for x, y, z in points]
@@ -287,21 +287,17 @@ def test_sphere():
     fails(2, "sphere", "a.obj", "-o", "out.obj", says=["--output", ".ply"])
 
 
-def test_open_meshes_need_consent():
+def test_holes_of_open_meshes_are_closed():
     vertices, faces = icosphere_arrays(3)
     write_obj("open.obj", vertices, faces[1:40] + faces[42:])
     blob("b.obj", 3, (1.2, 0.9, 1), 0.8)
-    fails(1, "correspond", "open.obj", "b.obj", "-o", "out.ply",
-          says=["open.obj", "--close"])
-    fails(1, "map", "open.obj", "b.obj", "-o", "out", says=["open.obj", "--close"])
-    fails(1, "sphere", "open.obj", "-o", "out.ply", says=["open.obj", "--close"])
-    report = corresponded("open.obj", "b.obj", "--close")
+    report = corresponded("open.obj", "b.obj")
     rows, out = read_ply("out.ply")
     assert len(rows) == 642 and len(out) == len(faces) - 3  # no cap in the file
     check_on_target(rows, "b.obj")
     assert any("capped" in note for note in report["notes"]), report["notes"]
     # And as a target: what lands on a cap has the closest triangle of the file.
-    corresponded("b.obj", "open.obj", "--close")
+    corresponded("b.obj", "open.obj")
     for row in read_ply("out.ply")[0]:
         assert 0 <= row["triangle"] < len(faces) - 3, row
 
@@ -312,21 +308,21 @@ def test_a_surface_of_its_own_stands_in():
     other = [(x + 1, y + 0.2, z) for x, y, z in ball[0]], ball[1]
     joined("a.obj", (*ball, False), (*other, False))
     icosphere("b.obj", subdivisions=3)
-    fails(1, "correspond", "a.obj", "b.obj", "-o", "out.ply",
-          says=["a.obj", "--surface-resolution"])
     report = corresponded("a.obj", "b.obj", "--surface-resolution", "24")
     rows, faces = read_ply("out.ply")
     assert len(rows) == 2 * 642 and faces == read_obj("a.obj")[1]
     check_on_target(rows, "b.obj")
     quality = report["correspondence"]
-    assert quality["source_isosurface"] and not quality["target_isosurface"], quality
-    assert any("isosurface" in note for note in report["notes"]), report["notes"]
+    outer = quality["source_outer_surface"]
+    assert outer["taken"] and outer["handles"] == 0 and outer["apart_p99"] < 0.02, quality
+    assert not quality["target_outer_surface"]["taken"], quality
+    assert any("a.obj" in note for note in report["notes"]), report["notes"]
     # Vertices on the outside are spread over all of b.
     points = [position(row) for row in rows]
     for axis in range(3):
         assert max(p[axis] for p in points) > 0.9 and min(p[axis] for p in points) < -0.9
     report = corresponded("b.obj", "a.obj", "--surface-resolution", "24")
-    assert report["correspondence"]["target_isosurface"], report
+    assert report["correspondence"]["target_outer_surface"]["taken"], report
     for row in read_ply("out.ply")[0]:
         assert 0 <= row["triangle"] < 2 * len(ball[1]), row
 

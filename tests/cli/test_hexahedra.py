@@ -95,15 +95,17 @@ def test_bad_input_is_refused():
           says=["1 handle and 0 cavities"])
 
 
-def test_holes_are_closed_and_parts_united_on_request():
+def test_holes_are_closed_and_parts_united():
     vertices, faces = icosphere_arrays(2)
     write_obj("open.obj", vertices, faces[16:])
-    innermap("polycube", "open.obj", "-o", "out.obj", "--blocks", 6, "--close")
+    innermap("polycube", "open.obj", "-o", "out.obj", "--blocks", 6)
     near = [(x + 1, y, z) for x, y, z in vertices]
     shifted = [tuple(i + len(vertices) for i in f) for f in faces]
     write_obj("two.obj", vertices + near, faces + shifted)
-    fails(1, "polycube", "two.obj", "-o", "two_out.obj", says=["2 bodies"])
-    innermap("polycube", "two.obj", "-o", "united.obj", "--blocks", 8, "--surface-resolution", 48)
+    innermap("polycube", "two.obj", "-o", "united.obj", "--blocks", 8)
+    apart = [(x + 3, y, z) for x, y, z in vertices]
+    write_obj("apart.obj", vertices + apart, faces + shifted)
+    fails(1, "polycube", "apart.obj", "-o", "two_out.obj", says=["2 bodies"])
 
 
 def test_dry_run_says_the_memory():

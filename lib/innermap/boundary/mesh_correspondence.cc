@@ -146,7 +146,7 @@ MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const MeshCorrespondenceSett
 
 MeshCorrespondence correspondMeshes(LaidOutMesh a, LaidOutMesh b,
                                     const MeshCorrespondenceSettings& settings) {
-  requireCorrespondMemory(a.mesh, b.mesh, settings);
+  requireCorrespondMemory(a.shells().mesh, b.shells().mesh, settings);
   MeshCorrespondence out(std::move(a), std::move(b));
   CorrespondSettings how = settingsOf(settings);
   if (!settings.landmarks.pairs.empty()) {

@@ -16,7 +16,7 @@
 #include "innermap/lattice/detail/lattice_topology.h"
 #include "innermap/lattice/detail/stuffing.h"
 #include "innermap/lattice/detail/thin_parts.h"
-#include "innermap/lattice/tetrahedralize.h"
+#include "innermap/lattice/stuffing_need.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/mesh/self_intersection.h"
 #include "innermap/mesh/triangle_tree.h"
@@ -28,7 +28,7 @@ constexpr int kUsualAcross = 80, kLeastAcross = 8, kMostAcross = 1024;
 // Of the resolution: a handle of the solid, and not of the lattice, is there at all of them.
 constexpr std::array<double, 2> kOtherResolutions = {0.8, 1.25};
 constexpr std::size_t kCompared = 20000;  // points of the solid's surface
-constexpr double kSlit = 0.6;            // spacings from a cut's nodes to its walls
+constexpr double kSlit = 0.6;             // spacings from a cut's nodes to its walls
 constexpr int kUncrossings = 8;
 // Bytes of a node beyond what tetrahedra take: sides, orders, queues.
 constexpr double kNodeBytes = 60;
@@ -216,11 +216,9 @@ void compare(const Solid& solid, OuterSurface& out, Progress* progress) {
 
 std::uint64_t outerSurfaceMemory(const Solid& solid, const OuterSurfaceSettings& settings) {
   const double spacing = spacingFor(solid, settings);
-  TetrahedralizeSettings cells;
-  cells.edge = spacing;
   const Vec3 e = solid.box().extent();
   const double nodes = 2 * (e.x / spacing + 7) * (e.y / spacing + 7) * (e.z / spacing + 7);
-  return tetrahedralizeNeed(solid, cells).memory + static_cast<std::uint64_t>(kNodeBytes * nodes);
+  return stuffingNeed(solid, spacing).memory + static_cast<std::uint64_t>(kNodeBytes * nodes);
 }
 
 OuterSurface outerSurface(const Solid& solid, const OuterSurfaceSettings& settings) {

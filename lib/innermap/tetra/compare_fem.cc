@@ -13,9 +13,9 @@
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
 #include "innermap/evaluate/energy.h"
-#include "innermap/lattice/tetrahedralize.h"
 #include "innermap/tetra/detail/elements.h"
 #include "innermap/tetra/harmonic_cells.h"
+#include "innermap/tetra/tetrahedralize.h"
 
 namespace innermap {
 namespace {
@@ -333,7 +333,7 @@ std::uint64_t compareFemMemory(const Solid& solid, const CompareFemSettings& set
   std::uint64_t coarser = 0, finest = 0;
   for (const int resolution : settings.resolutions) {
     cells.resolution = resolution;
-    const TetrahedralizeNeed need = tetrahedralizeNeed(solid, cells);
+    const StuffingNeed need = tetrahedralizeNeed(solid, cells);
     coarser += finest;
     finest = need.tetrahedra * kBytesACell + need.vertices * 48;
     if (resolution == settings.resolutions.back())

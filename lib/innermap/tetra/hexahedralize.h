@@ -25,8 +25,8 @@
 namespace innermap {
 
 struct HexahedralizeSettings {
-  int blocks = 0;           // of the polycube, as in PolycubeSettings
-  int pieces = 2;           // hexahedra along a block's edge, in [1, 16]
+  int blocks = 0;  // of the polycube, as in PolycubeSettings
+  int pieces = 2;  // hexahedra along a block's edge, in [1, 16]
   double featureAngle =
       30;                  // degrees between faces over which an edge counts as sharp, in (0, 180)
   std::uint64_t seed = 1;  // of all random choices

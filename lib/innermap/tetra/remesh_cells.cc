@@ -9,12 +9,12 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
-#include "innermap/lattice/tetrahedralize.h"
 #include "innermap/tetra/carry_cells.h"
 #include "innermap/tetra/detail/cell_system.h"
 #include "innermap/tetra/detail/coarse_start.h"
 #include "innermap/tetra/detail/guide_surface.h"
 #include "innermap/tetra/detail/turn_fields.h"
+#include "innermap/tetra/tetrahedralize.h"
 
 namespace innermap {
 namespace {

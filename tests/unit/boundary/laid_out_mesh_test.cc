@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "boundary/blobs.h"
+#include "innermap/core/detail/pi.h"
 #include "mesh/test_meshes.h"
 
 namespace innermap {
@@ -18,20 +19,10 @@ bool anyHas(const std::vector<std::string>& lines, const std::string& word) {
   return false;
 }
 
-// The message of UnfitMesh, and whether closing would help.
-std::pair<std::string, bool> refusalOf(const Mesh& mesh, const LayOutSettings& settings = {}) {
-  try {
-    layOutMesh(mesh, settings);
-  } catch (const UnfitMesh& error) {
-    return {error.what(), error.closingHelps()};
-  }
-  return {"", false};
-}
-
 TEST(LayOutMesh, TakesACleanMeshAsItIs) {
   const Mesh mesh = blob("a.obj", 2, 0.5);
   const LaidOutMesh laid = layOutMesh(mesh);
-  EXPECT_FALSE(laid.standIn);
+  EXPECT_FALSE(laid.outer);
   EXPECT_TRUE(laid.ownNumbers());
   EXPECT_EQ(laid.handles(), 0);
   EXPECT_NEAR(laid.volume(), signedVolume(mesh), 1e-12);
@@ -39,50 +30,51 @@ TEST(LayOutMesh, TakesACleanMeshAsItIs) {
   ASSERT_EQ(laid.seconds.size(), 2u);
   EXPECT_EQ(laid.seconds[0].first, "check");
   EXPECT_EQ(laid.seconds[1].first, "lay out");
-  LayOutSettings settings;
-  settings.standInResolution = 16;
-  const LaidOutMesh same = layOutMesh(mesh, settings);
-  EXPECT_FALSE(same.standIn);
-  EXPECT_TRUE(anyHas(same.notes, "as it is"));
 }
 
-TEST(LayOutMesh, RefusesAnOpenMeshUnlessItIsToBeClosed) {
-  const Mesh open = opened(blob("open.obj", 2, 0.5), 6);
-  const auto [message, closingHelps] = refusalOf(open);
-  EXPECT_EQ(message.find("open.obj: "), 0u) << message;
-  EXPECT_TRUE(closingHelps);
-  LayOutSettings settings;
-  settings.closeHoles = true;
-  const LaidOutMesh laid = layOutMesh(open, settings);
-  EXPECT_FALSE(laid.standIn);
+TEST(LayOutMesh, ClosesTheHolesOfAnOpenMesh) {
+  const LaidOutMesh laid = layOutMesh(opened(blob("open.obj", 2, 0.5), 6));
+  EXPECT_FALSE(laid.outer);
   EXPECT_GT(laid.shells().caps, 0);
   EXPECT_TRUE(anyHas(laid.notes, "open.obj: ")) << "what was capped";
 }
 
-TEST(LayOutMesh, PutsAnIsosurfaceForPartsThatOverlap) {
+TEST(LayOutMesh, TakesTheOuterSurfaceOfPartsThatOverlap) {
   const Mesh mesh = overlapping("two.obj");
-  const auto [message, closingHelps] = refusalOf(mesh);
-  EXPECT_NE(message.find("two.obj: "), std::string::npos) << message;
-  EXPECT_FALSE(closingHelps);
   LayOutSettings settings;
-  settings.standInResolution = 20;
+  settings.outerResolution = 20;
   const LaidOutMesh laid = layOutMesh(mesh, settings);
-  EXPECT_TRUE(laid.standIn);
+  ASSERT_TRUE(laid.outer);
   EXPECT_FALSE(laid.ownNumbers());
-  EXPECT_GT(laid.voxelSize, 0);
+  EXPECT_EQ(laid.shells().mesh.vertices.size(), laid.outer->mesh.vertices.size());
   EXPECT_EQ(laid.handles(), 0);
   EXPECT_EQ(laid.shells().shells.size(), 1u);
   EXPECT_EQ(laid.mesh.vertices.size(), mesh.vertices.size());
   EXPECT_LT(laid.volume(), signedVolume(mesh)) << "what is in both balls counts once";
-  ASSERT_EQ(laid.notes.size(), 2u);
-  EXPECT_NE(laid.notes[1].find("20 voxels"), std::string::npos) << laid.notes[1];
+  EXPECT_TRUE(anyHas(laid.notes, "two.obj: "));
+}
+
+// A coil that closes on itself is a ball still: one piece, whose union with itself is a ring.
+TEST(LayOutMesh, KeepsTheHandlesOfAMeshThatRunsThroughItself) {
+  const Mesh mesh = shapes::coil(2.2 * kPi);
+  const LaidOutMesh laid = layOutMesh(mesh);
+  ASSERT_TRUE(laid.outer);
+  EXPECT_EQ(laid.handles(), 0);
+  EXPECT_FALSE(laid.outer->cuts.empty());
+  LayOutSettings settings;
+  settings.handles = 1;
+  const LaidOutMesh ring = layOutMesh(mesh, settings);
+  EXPECT_EQ(ring.handles(), 1);
+  EXPECT_TRUE(ring.outer->cuts.empty());
+  settings.handles = 3;
+  EXPECT_THROW(layOutMesh(mesh, settings), DataError);
 }
 
 TEST(LayOutMesh, RefusesSettingsOutOfRange) {
   LayOutSettings settings;
-  for (const int bad : {-1, 7, 2049}) {
-    settings.standInResolution = bad;
-    EXPECT_THROW(layOutMesh(blob("a.obj", 1, 0.5), settings), SettingError) << bad;
+  for (const int bad : {-1, 7, 1025}) {
+    settings.outerResolution = bad;
+    EXPECT_THROW(layOutMesh(overlapping("two.obj"), settings), SettingError) << bad;
   }
 }
 

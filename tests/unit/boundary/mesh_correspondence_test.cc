@@ -58,7 +58,7 @@ TEST(CorrespondMeshes, LaysOneOnTheOther) {
   EXPECT_EQ(map.quality.flips, 0u);
   EXPECT_NEAR(map.quality.degree, 1, 1e-9);
   EXPECT_LT(map.quality.energyForward + map.quality.energyBackward, 10);
-  EXPECT_FALSE(map.a.standIn || map.b.standIn || map.farthestFromStandIn);
+  EXPECT_FALSE(map.a.outer || map.b.outer || map.farthestFromOuter);
   EXPECT_EQ(map.landmarks, 0u);
   EXPECT_TRUE(map.warnings.empty());
   EXPECT_EQ(stagesOf(map), (std::vector<std::string>{"embed_source", "embed_target", "map",
@@ -127,27 +127,33 @@ TEST(CorrespondMeshes, SplitsTheSourceWhereAsked) {
   expectOnTarget(map, kB, 1e-12);
 }
 
-TEST(CorrespondMeshes, CarriesStandInsBackToTheMeshesAsGiven) {
+TEST(CorrespondMeshes, CarriesValuesOfOuterSurfacesBackToTheMeshesAsGiven) {
   MeshCorrespondenceSettings settings = quick();
-  settings.standInResolution = 12;
+  settings.outerResolution = 12;
   settings.refine = false;
   const Mesh overlapping = shapes::overlapping("two.obj");
   const MeshCorrespondence from = correspondMeshes(overlapping, kB, settings);
-  EXPECT_TRUE(from.a.standIn);
-  EXPECT_FALSE(from.b.standIn || from.changed);
+  EXPECT_TRUE(from.a.outer);
+  EXPECT_FALSE(from.b.outer || from.changed);
   EXPECT_EQ(from.source.triangles, overlapping.triangles);
   expectOnTarget(from, kB, 1e-12);
-  ASSERT_TRUE(from.farthestFromStandIn);
-  EXPECT_GT(*from.farthestFromStandIn, 0.05) << "vertices inside the other ball";
+  ASSERT_TRUE(from.farthestFromOuter);
+  EXPECT_GT(*from.farthestFromOuter, 0.05) << "vertices inside the other ball";
   const MeshCorrespondence onto = correspondMeshes(kA, overlapping, settings);
-  EXPECT_TRUE(onto.b.standIn);
-  EXPECT_FALSE(onto.farthestFromStandIn);
+  EXPECT_TRUE(onto.b.outer);
+  EXPECT_FALSE(onto.farthestFromOuter);
   expectOnTarget(onto, overlapping, 0.05);
+  // What maps are fitted to: the outer surface itself.
+  settings.carryBack = false;
+  const MeshCorrespondence outer = correspondMeshes(overlapping, kB, settings);
+  EXPECT_TRUE(outer.changed);
+  EXPECT_EQ(outer.source.vertices.size(), outer.a.outer->mesh.vertices.size());
+  EXPECT_FALSE(outer.farthestFromOuter);
+  expectOnTarget(outer, kB, 1e-12);
 }
 
 TEST(CorrespondMeshes, RefusesWhatHasNoMap) {
   EXPECT_THROW(correspondMeshes(kA, shapes::torus(12, 8), quick()), DataError);
-  EXPECT_THROW(correspondMeshes(shapes::opened(kA, 4), kB, quick()), UnfitMesh);
   MeshCorrespondenceSettings settings = quick();
   settings.maxMemory = 1'000'000;
   EXPECT_THROW(correspondMeshes(kA, kB, settings), MemoryError);
@@ -161,9 +167,8 @@ TEST(CorrespondMeshes, RefusesWhatHasNoMap) {
   EXPECT_THROW(correspondMeshes(kA, kB, settings), Cancelled);
 }
 
-TEST(CorrespondMeshes, ClosesHolesWhereAsked) {
+TEST(CorrespondMeshes, ClosesHoles) {
   MeshCorrespondenceSettings settings = quick();
-  settings.closeHoles = true;
   settings.refine = false;
   const Mesh open = shapes::opened(kB, 6);
   const MeshCorrespondence map = correspondMeshes(kA, open, settings);

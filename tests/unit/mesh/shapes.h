@@ -61,6 +61,17 @@ inline Mesh torus(int n, int m, double major = 1, double minor = 0.35) {
   return mesh;
 }
 
+// A rod bent along a circle by `angle`: beyond a full turn its ends run into one another. The
+// middle of the rod is at (0, -2, 0).
+inline Mesh coil(double angle, double radius = 2, double thickness = 0.5) {
+  Mesh mesh = icosphere(4);
+  for (Vec3& p : mesh.vertices) {
+    const double along = 0.5 * angle * p.x, out = radius + thickness * p.y;
+    p = {out * std::sin(along), -out * std::cos(along), thickness * p.z};
+  }
+  return mesh;
+}
+
 inline Mesh box(Vec3 lower, Vec3 upper) {
   Mesh mesh;
   mesh.name = "box";

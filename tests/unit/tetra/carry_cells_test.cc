@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "innermap/core/error.h"
-#include "innermap/lattice/tetrahedralize.h"
+#include "innermap/tetra/tetrahedralize.h"
 #include "tetra/kuhn_mesh.h"
 #include "tetra/mapped_balls.h"
 

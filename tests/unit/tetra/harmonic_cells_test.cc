@@ -6,7 +6,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
-#include "innermap/lattice/tetrahedralize.h"
+#include "innermap/tetra/tetrahedralize.h"
 #include "mesh/shapes.h"
 
 namespace innermap {

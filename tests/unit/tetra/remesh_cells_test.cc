@@ -6,9 +6,9 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
-#include "innermap/lattice/tetrahedralize.h"
 #include "innermap/tetra/carry_cells.h"
 #include "innermap/tetra/linear_map.h"
+#include "innermap/tetra/tetrahedralize.h"
 #include "tetra/kuhn_mesh.h"
 #include "tetra/mapped_balls.h"
 

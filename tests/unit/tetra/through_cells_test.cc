@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "innermap/core/error.h"
-#include "innermap/lattice/tetrahedralize.h"
 #include "innermap/tetra/remesh_cells.h"
+#include "innermap/tetra/tetrahedralize.h"
 #include "tetra/mapped_balls.h"
 
 namespace innermap {

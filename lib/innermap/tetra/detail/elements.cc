@@ -8,8 +8,8 @@
 
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
-#include "innermap/lattice/tetrahedralize.h"
 #include "innermap/tetra/harmonic_cells.h"
+#include "innermap/tetra/tetrahedralize.h"
 
 namespace innermap {
 

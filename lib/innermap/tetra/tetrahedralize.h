@@ -10,6 +10,7 @@
 #include "innermap/core/progress.h"
 #include "innermap/lattice/boundary_topology.h"
 #include "innermap/lattice/cell_mesh.h"
+#include "innermap/lattice/stuffing_need.h"
 #include "innermap/levelset/solid.h"
 
 namespace innermap {
@@ -22,8 +23,6 @@ struct TetrahedralizeSettings {
   std::optional<double> features;
   // Whether to throw where the solid's topology cannot be kept; else there is a warning.
   bool keepTopology = true;
-  // Instead of the solid's own, which only a surface that is closed and free of overlaps tells.
-  std::optional<SolidTopology> topology;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;
 };
@@ -60,11 +59,6 @@ Tetrahedralization tetrahedralization(const Solid& solid,
 // Its mesh alone.
 CellMesh tetrahedralize(const Solid& solid, const TetrahedralizeSettings& settings = {});
 
-// Estimates, from above by up to about a quarter.
-struct TetrahedralizeNeed {
-  std::size_t tetrahedra = 0, vertices = 0;
-  std::uint64_t memory = 0;  // bytes, the peak beyond the solid
-};
-TetrahedralizeNeed tetrahedralizeNeed(const Solid& solid, const TetrahedralizeSettings& settings);
+StuffingNeed tetrahedralizeNeed(const Solid& solid, const TetrahedralizeSettings& settings);
 
 }  // namespace innermap

@@ -1,4 +1,4 @@
-#include "innermap/lattice/tetrahedralize.h"
+#include "innermap/tetra/tetrahedralize.h"
 
 #include <fmt/format.h>
 
@@ -10,18 +10,14 @@
 #include "innermap/lattice/detail/fit_boundary.h"
 #include "innermap/lattice/detail/keep_topology.h"
 #include "innermap/lattice/detail/lattice_signs.h"
-#include "innermap/lattice/detail/sharp_edges.h"
 #include "innermap/lattice/detail/stuffing.h"
 #include "innermap/levelset/level_set.h"
+#include "innermap/tetra/detail/sharp_edges.h"
 
 namespace innermap {
 namespace {
 
 constexpr int kLeastAcross = 4, kMostAcross = 1024;
-
-// Of memory: a node of the lattice; a square of a cell's side on the surface, its level set and
-// where its vertices go.
-constexpr double kNodeBytes = 12, kOuterBytes = 500;
 
 constexpr double kMostLost = 1e-3;  // of the surface, without a warning
 
@@ -69,22 +65,8 @@ Tetrahedralization tetrahedralizeScaled(const Solid& solid, double spacing,
   return result;
 }
 
-TetrahedralizeNeed needFor(const Solid& solid, double spacing) {
-  const Vec3 e = solid.box().extent();
-  const double cells = (e.x / spacing + 7) * (e.y / spacing + 7) * (e.z / spacing + 7);
-  const double inner = solid.volume() / std::pow(spacing, 3);
-  const double outer = solid.area() / std::pow(spacing, 2);
-  // A cell's cube has twelve tetrahedra and two nodes; what the surface adds to both was measured:
-  // 1.8 to 2.7 and 1.4 to 1.9 to a square of a cell's side.
-  const double tetrahedra = 12 * inner + 2.8 * outer, vertices = 2 * inner + 2 * outer;
-  const double bytes = cells * 2 * kNodeBytes + tetrahedra * sizeof(Tetrahedron) +
-                       vertices * sizeof(Vec3) + outer * kOuterBytes;
-  return {static_cast<std::size_t>(tetrahedra), static_cast<std::size_t>(vertices),
-          static_cast<std::uint64_t>(bytes)};
-}
-
 std::uint64_t memoryFor(const Solid& solid, double spacing) {
-  return needFor(solid, spacing).memory;
+  return stuffingNeed(solid, spacing).memory;
 }
 
 void requireMemoryFor(const Solid& solid, double spacing, std::uint64_t limit) {
@@ -122,8 +104,7 @@ void requireMemoryFor(const Solid& solid, double spacing, std::uint64_t limit) {
 // Sides of the nodes, with the solid's topology, or what is to be said.
 LatticeSigns signsOf(const Solid& solid, double spacing, const TetrahedralizeSettings& settings,
                      Tetrahedralization& result) {
-  const SurfaceTopology surface =
-      settings.topology ? SurfaceTopology{true, *settings.topology} : surfaceTopology(solid);
+  const SurfaceTopology surface = surfaceTopology(solid);
   if (surface.clean) result.solidTopology = surface.solid;
   LatticeSigns signs = latticeSigns(solid, spacing, settings.progress);
   const KeptTopology kept =
@@ -222,8 +203,8 @@ CellMesh tetrahedralize(const Solid& solid, const TetrahedralizeSettings& settin
   return std::move(tetrahedralization(solid, settings).mesh);
 }
 
-TetrahedralizeNeed tetrahedralizeNeed(const Solid& solid, const TetrahedralizeSettings& settings) {
-  return needFor(solid, spacingFor(solid, settings));
+StuffingNeed tetrahedralizeNeed(const Solid& solid, const TetrahedralizeSettings& settings) {
+  return stuffingNeed(solid, spacingFor(solid, settings));
 }
 
 }  // namespace innermap

@@ -8,8 +8,8 @@
 #include "innermap/evaluate/untangle.h"
 #include "innermap/lattice/cell_mesh.h"
 #include "innermap/lattice/detail/fit_boundary.h"
-#include "innermap/lattice/detail/sharp_edges.h"
 #include "innermap/mesh/triangle_tree.h"
+#include "innermap/tetra/detail/sharp_edges.h"
 
 namespace innermap {
 namespace {

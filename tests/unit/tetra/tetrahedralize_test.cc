@@ -1,4 +1,4 @@
-#include "innermap/lattice/tetrahedralize.h"
+#include "innermap/tetra/tetrahedralize.h"
 
 #include <gtest/gtest.h>
 
@@ -209,7 +209,7 @@ TEST(Tetrahedralize, SharpEdgesAreKept) {
 
 TEST(Tetrahedralize, SaysItsMemory) {
   const Solid solid(shapes::icosphere(3));
-  const TetrahedralizeNeed need = tetrahedralizeNeed(solid, across(32));
+  const StuffingNeed need = tetrahedralizeNeed(solid, across(32));
   const CellMesh mesh = tetrahedralize(solid, across(32));
   EXPECT_GE(need.tetrahedra, mesh.tetrahedra.size());
   EXPECT_GE(need.vertices, mesh.vertices.size());

@@ -1,0 +1,98 @@
+#include "innermap/lattice/outer_surface.h"
+
+#include <gtest/gtest.h>
+
+#include "innermap/core/detail/pi.h"
+#include "innermap/core/error.h"
+#include "innermap/core/parallel.h"
+#include "innermap/mesh/self_intersection.h"
+#include "mesh/shapes.h"
+
+namespace innermap {
+namespace {
+
+OuterSurface outer(const Mesh& mesh, int resolution, std::optional<int> handles = {}) {
+  OuterSurfaceSettings settings;
+  settings.resolution = resolution;
+  settings.handles = handles;
+  return outerSurface(Solid(mesh), settings);
+}
+
+void expectEmbedded(const Mesh& mesh) {
+  EXPECT_TRUE(boundaryTopology(mesh.vertices, mesh.triangles).manifold());
+  std::size_t crossings = 0;
+  forEachSelfIntersection(mesh.vertices, mesh.triangles, [&](const Crossing&) { ++crossings; });
+  EXPECT_EQ(crossings, 0u);
+}
+
+TEST(OuterSurface, UnitesPartsThatOverlap) {
+  const Mesh two =
+      shapes::joined(shapes::icosphere(3, 1, {-0.6, 0, 0}), shapes::icosphere(3, 1, {0.6, 0, 0}));
+  const OuterSurface made = outer(two, 40);
+  EXPECT_EQ(made.topology, (SolidTopology{1, 0, 0}));
+  EXPECT_TRUE(made.cuts.empty());
+  expectEmbedded(made.mesh);
+  // Two unit balls less their lens, each cap of height 0.4.
+  const double lens = 2 * kPi * 0.4 * 0.4 * (3 - 0.4) / 3;
+  EXPECT_NEAR(signedVolume(made.mesh), 8 * kPi / 3 - lens, 0.02 * 8 * kPi / 3);
+  EXPECT_LT(made.apartMax, 0.02);
+}
+
+// Its ends run into one another: a ring as a union, a ball as a mesh.
+TEST(OuterSurface, CutsWhereAMeshMeetsItself) {
+  const Mesh coil = shapes::coil(2.2 * kPi);
+  for (const int resolution : {32, 40, 48, 64, 80}) {
+    SCOPED_TRACE("resolution " + std::to_string(resolution));
+    const OuterSurface ball = outer(coil, resolution, 0), ring = outer(coil, resolution);
+    EXPECT_EQ(ball.topology, (SolidTopology{1, 0, 0}));
+    EXPECT_EQ(ring.topology, (SolidTopology{1, 0, 1})) << "the union's, at all resolutions";
+    EXPECT_TRUE(ring.cuts.empty());
+    expectEmbedded(ball.mesh);
+    expectEmbedded(ring.mesh);
+    // Where the ends overlap, half a turn away from the middle of the coil, and nowhere else.
+    ASSERT_FALSE(ball.cuts.empty());
+    for (const SurfaceCut& cut : ball.cuts) EXPECT_GT(cut.place.y, 0);
+  }
+}
+
+TEST(OuterSurface, LeavesOutOtherPiecesIfOnePieceIsWanted) {
+  const Mesh two =
+      shapes::joined(shapes::icosphere(3, 1, {-2, 0, 0}), shapes::icosphere(3, 0.5, {2, 0, 0}));
+  EXPECT_EQ(outer(two, 40).topology.components, 2);
+  OuterSurfaceSettings settings;
+  settings.resolution = 40;
+  settings.onePiece = true;
+  const OuterSurface one = outerSurface(Solid(two), settings);
+  EXPECT_EQ(one.topology.components, 1);
+  EXPECT_EQ(one.leftOut, 1u);
+  EXPECT_NEAR(one.leftOutShare, 1.0 / 9, 0.02);
+}
+
+TEST(OuterSurface, IsTheSameForAnyNumberOfThreads) {
+  const Mesh coil = shapes::coil(2.2 * kPi);
+  const Mesh many = outer(coil, 32, 0).mesh;
+  const ThreadLimit one(1);
+  const Mesh single = outer(coil, 32, 0).mesh;
+  EXPECT_EQ(many.triangles, single.triangles);
+  ASSERT_EQ(many.vertices.size(), single.vertices.size());
+  for (std::size_t v = 0; v < many.vertices.size(); ++v)
+    EXPECT_EQ(norm(many.vertices[v] - single.vertices[v]), 0);
+}
+
+TEST(OuterSurface, RefusesWhatCannotBe) {
+  const Mesh ball = shapes::icosphere(2);
+  EXPECT_THROW(outer(ball, 7), SettingError);
+  EXPECT_THROW(outer(ball, 40, -1), SettingError);
+  EXPECT_THROW(outer(ball, 40, 1), DataError);
+  OuterSurfaceSettings settings;
+  settings.maxMemory = 1000;
+  EXPECT_THROW(outerSurface(Solid(ball), settings), MemoryError);
+  Progress progress;
+  progress.cancel();
+  settings = {};
+  settings.progress = &progress;
+  EXPECT_THROW(outerSurface(Solid(ball), settings), Cancelled);
+}
+
+}  // namespace
+}  // namespace innermap
