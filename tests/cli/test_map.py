@@ -228,6 +228,27 @@ def test_full_disk_leaves_nothing():
               "64", says=["out/map."], preexec_fn=file_size_limit(size))
 
 
+def test_a_mesh_that_runs_through_itself_is_mapped_by_its_outer_surface():
+    # A rod bent by more than a full turn: its ends run into one another, a ring as a union.
+    vertices, faces = icosphere_arrays(3)
+    angle = 1.1 * math.pi
+    coil = [((2 + 0.5 * y) * math.sin(angle * x), -(2 + 0.5 * y) * math.cos(angle * x), 0.5 * z)
+            for x, y, z in vertices]
+    write_obj("coil.obj", coil, [f[1:] + f[:1] for f in faces])
+    write_obj("rod.obj", [(3 * x, 0.5 * y, 0.5 * z) for x, y, z in vertices], faces[1:] + faces[:1])
+    innermap("map", "coil.obj", "rod.obj", "-o", "out", "--surface-resolution", "24", "--candidates",
+             "1", "--resolution", "32", "--quiet")
+    report = read_json("out/report.json")
+    outer = report["correspondence"]["source_outer_surface"]
+    assert outer["taken"] and outer["handles"] == 0, outer
+    assert outer["cuts"]["y"] and min(outer["cuts"]["y"]) > 0, outer  # where the ends meet
+    # The map is that of the outer surface, which stands in the folder.
+    assert report["source"]["vertices"] >= outer["vertices"] > len(vertices), (report["source"], outer)
+    assert os.path.exists("out/correspondence.source.ply")
+    assert report["boundary_error"]["p99"] < 5e-3, report["boundary_error"]
+    assert report["inside"]["folded"] < 2e-3, report["inside"]
+
+
 @nightly
 @alone
 def test_interrupt_leaves_nothing():
