@@ -220,8 +220,8 @@ class Correspondence:
 
 def correspond(
     *meshes: Any, landmarks: Union[Sequence[Tuple[Place, Place]], Path, None] = None,
-    close: bool = False, surface_resolution: int = 0, aligned: bool = False, candidates: int = 3,
-    refine: bool = True, subdivide: float = 0, seed: int = 1, progress: Optional[Progress] = None,
+    close: bool = False, surface_resolution: int = 0, genus: Optional[int] = None,
+    aligned: bool = False, candidates: int = 3, refine: bool = True, subdivide: float = 0, seed: int = 1, progress: Optional[Progress] = None,
     max_memory: Union[int, str, None] = None, threads: int = 0) -> Correspondence: ...
 
 def load_correspondence(
@@ -229,8 +229,8 @@ def load_correspondence(
     max_memory: Union[int, str, None] = None, threads: int = 0) -> Correspondence: ...
 
 def sphere(
-    *mesh: AnyMesh, close: bool = False, surface_resolution: int = 0, progress:
-    Optional[Progress] = None, max_memory: Union[int, str, None] = None, threads: int = 0
+    *mesh: AnyMesh, close: bool = False, surface_resolution: int = 0,
+    genus: Optional[int] = None, progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None, threads: int = 0
 ) -> Tuple[Mesh, Dict[str, Any]]: ...
 
 def fit(
@@ -242,7 +242,8 @@ def fit(
     solver: Literal['auto', 'dense', 'iterative'] = 'auto',
     method: Literal['tikhonov', 'tsvd'] = 'tikhonov', regularization: Optional[float] = None,
     landmarks: Union[Sequence[Tuple[Place, Place]], Path, None] = None, close: bool = False,
-    surface_resolution: int = 0, aligned: bool = False, candidates: int = 3, refine: bool = True,
+    surface_resolution: int = 0, genus: Optional[int] = None, aligned: bool = False,
+    candidates: int = 3, refine: bool = True,
     subdivide: float = 0.005, progress: Optional[Progress] = None,
     max_memory: Union[int, str, None] = None, threads: int = 0) -> Map: ...
 
@@ -339,12 +340,14 @@ def tetrahedralize(
 
 def hexahedralize(
     *mesh: AnyMesh, pieces: int = 2, seed: int = 1, blocks: int = 0, close: bool = False,
-    surface_resolution: int = 0, progress: Optional[Progress] = None, max_memory: Union[int,
+    surface_resolution: int = 0, genus: Optional[int] = None,
+    progress: Optional[Progress] = None, max_memory: Union[int,
     str, None] = None, threads: int = 0) -> Cells: ...
 
 def polycube(
     *mesh: AnyMesh, pieces: Optional[int] = None, blocks: int = 0, close: bool = False,
-    surface_resolution: int = 0, progress: Optional[Progress] = None, max_memory: Union[int,
+    surface_resolution: int = 0, genus: Optional[int] = None,
+    progress: Optional[Progress] = None, max_memory: Union[int,
     str, None] = None, threads: int = 0) -> Tuple[Mesh, Dict[str, Any]]: ...
 
 def remesh(
