@@ -120,7 +120,7 @@ std::size_t AdaptiveFitting::sourceCount() const {
 
 std::uint64_t AdaptiveFitting::memory() const {
   const std::size_t coarse = levels_.front().sources.size();
-  return iterativeSolverMemory(collocation_.size(), sourceCount() - coarse, coarse);
+  return iterativeSolverMemory(collocation_.size(), sourceCount() - coarse, coarse, true);
 }
 
 void AdaptiveFitting::first() {

@@ -68,9 +68,9 @@ Matrix rowsOf(const Matrix& a, std::size_t first) {
 }  // namespace
 
 std::uint64_t iterativeSolverMemory(std::size_t collocation, std::size_t sources,
-                                    std::size_t coarse) {
+                                    std::size_t coarse, bool refined) {
   const double directions = 8.0 * static_cast<double>(collocation + sources + coarse) * 6 * 2 * 8;
-  return localSolverMemory(collocation, sources) + coarseSolverMemory(coarse) +
+  return localSolverMemory(collocation, sources, refined) + coarseSolverMemory(coarse) +
          static_cast<std::uint64_t>(directions);
 }
 

@@ -86,7 +86,8 @@ class IterativeSolver {
 };
 
 // Estimate of the peak need in bytes; coarse: sources of the first level, sources: of the others.
+// refined: finer levels stand in places only, as add() puts them.
 std::uint64_t iterativeSolverMemory(std::size_t collocation, std::size_t sources,
-                                    std::size_t coarse);
+                                    std::size_t coarse, bool refined = false);
 
 }  // namespace innermap

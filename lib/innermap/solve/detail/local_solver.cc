@@ -65,11 +65,12 @@ Matrix choleskyOfNormalMatrix(const Matrix& a) {
 
 }  // namespace
 
-std::uint64_t localSolverMemory(std::size_t collocation, std::size_t sources) {
+std::uint64_t localSolverMemory(std::size_t collocation, std::size_t sources, bool refined) {
   // A cluster of 12^2 sources sees the collocation points of about (12 + 2 * 6)^2 of them. Plates,
-  // needles, ears and limbs bring others close: up to 1.13 times that was measured.
-  return sizeof(float) * 24 * 24 * static_cast<std::uint64_t>(std::max(collocation, sources)) * 3 /
-         2;
+  // needles, ears and limbs bring others close: up to 1.13 times that was measured. Where finer
+  // levels stand in places only, clusters of the coarser ones see their points too.
+  const std::uint64_t seen = sizeof(float) * 24 * 24 * std::max(collocation, sources);
+  return refined ? 2 * seen : seen * 3 / 2;
 }
 
 void LocalSolver::add(const Points& sources, const Collocation& collocation, Progress* progress) {

@@ -45,6 +45,7 @@ class LocalSolver {
 };
 
 // Estimate of the peak need in bytes of the clusters for so many sources of one level.
-std::uint64_t localSolverMemory(std::size_t collocation, std::size_t sources);
+// refined: finer levels stand in places only.
+std::uint64_t localSolverMemory(std::size_t collocation, std::size_t sources, bool refined);
 
 }  // namespace innermap
