@@ -28,10 +28,14 @@ constexpr int kUsualAcross = 80, kLeastAcross = 8, kMostAcross = 1024;
 // Of the resolution: a handle of the solid, and not of the lattice, is there at all of them.
 constexpr std::array<double, 2> kOtherResolutions = {0.8, 1.25};
 constexpr std::size_t kCompared = 20000;  // points of the solid's surface
+constexpr int kMostHandles = 64;          // that nobody asked for
 constexpr double kSlit = 0.6;             // spacings from a cut's nodes to its walls
 constexpr int kUncrossings = 8;
 // Bytes of a node beyond what tetrahedra take: sides, orders, queues.
 constexpr double kNodeBytes = 60;
+
+// OpenVDB's voxels have a least size: a smaller solid is taken a thousand units across.
+constexpr double kSmallestSide = kMostAcross * kSmallestVoxel, kEnlargedSide = 1000;
 
 double longestSide(const Solid& solid) {
   const Vec3 e = solid.box().extent();
@@ -69,6 +73,15 @@ std::vector<int> handlesOf(const LatticeSigns& signs, const SolidParts& parts) {
   return handles;
 }
 
+void refuseTangles(const std::vector<int>& handles, const std::string& name) {
+  const int most = *std::max_element(handles.begin(), handles.end());
+  if (most > kMostHandles)
+    throw DataError(fmt::format(
+        "{}: its outer surface has {} handles, more than {}: the mesh crosses itself nearly "
+        "everywhere; repair it, or ask for fewer (--genus)",
+        name, most, kMostHandles));
+}
+
 // Of each part.
 std::vector<int> wantedHandles(const Solid& solid, const LatticeSigns& signs,
                                const SolidParts& parts, const OuterSurfaceSettings& settings) {
@@ -86,11 +99,13 @@ std::vector<int> wantedHandles(const Solid& solid, const LatticeSigns& signs,
     const std::vector<int> found = handlesOf(other, there);
     for (std::size_t p = 0; p < handles.size(); ++p) handles[p] = std::min(handles[p], found[p]);
   }
+  refuseTangles(handles, solid.repaired().mesh.name);
   return handles;
 }
 
-// Sets the sides; the nodes of `parts` that are left outside are the cuts.
-void grow(const Solid& solid, const SolidParts& parts, const std::vector<int>& handles,
+// Sets the sides; the nodes of `parts` that are left outside are the cuts. A part that cannot be
+// grown with its handles keeps those it has, unless they were asked for.
+void grow(const Solid& solid, const SolidParts& parts, const std::vector<int>& handles, bool asked,
           LatticeSigns& signs, Progress* progress) {
   Sides all(signs.side.size(), NodeSide::outside), grown = all;
   const auto unite = [](Sides& sides, const Sides& more) {
@@ -101,7 +116,7 @@ void grow(const Solid& solid, const SolidParts& parts, const std::vector<int>& h
   signs.side = all;
   const std::vector<float> order = growingOrder(solid, signs, progress);
   for (std::size_t p = 0; p < parts.parts.size(); ++p) {
-    if (!growWithHandles(signs, parts.parts[p], handles[p], order, progress))
+    if (!growWithHandles(signs, parts.parts[p], handles[p], order, progress) && asked)
       throw DataError(fmt::format(
           "{}: its outer surface cannot be given {} handle{}: no part of what it encloses has that "
           "many; give another number (--genus) or a finer lattice (--surface-resolution)",
@@ -221,7 +236,26 @@ std::uint64_t outerSurfaceMemory(const Solid& solid, const OuterSurfaceSettings&
   return stuffingNeed(solid, spacing).memory + static_cast<std::uint64_t>(kNodeBytes * nodes);
 }
 
+namespace {
+
+OuterSurface enlargedOuterSurface(const Solid& solid, const OuterSurfaceSettings& settings) {
+  const double scale = kEnlargedSide / longestSide(solid);
+  const Vec3 centre = solid.box().center();
+  Mesh mesh = solid.repaired().mesh;
+  for (Vec3& v : mesh.vertices) v = scale * (v - centre);
+  SolidSettings solidSettings;
+  solidSettings.progress = settings.progress;
+  OuterSurface out = outerSurface(Solid(mesh, solidSettings), settings);
+  out.edge /= scale;
+  for (Vec3& v : out.mesh.vertices) v = centre + v / scale;
+  for (SurfaceCut& cut : out.cuts) cut = {centre + cut.place / scale, cut.size / scale};
+  return out;
+}
+
+}  // namespace
+
 OuterSurface outerSurface(const Solid& solid, const OuterSurfaceSettings& settings) {
+  if (longestSide(solid) < kSmallestSide) return enlargedOuterSurface(solid, settings);
   const std::string& name = solid.repaired().mesh.name;
   OuterSurface out;
   out.edge = spacingFor(solid, settings);
@@ -235,7 +269,8 @@ OuterSurface outerSurface(const Solid& solid, const OuterSurfaceSettings& settin
                     "give a finer one (--surface-resolution)");
   out.leftOut = parts.leftOut;
   out.leftOutShare = parts.leftOutShare;
-  grow(solid, parts, wantedHandles(solid, signs, parts, settings), signs, settings.progress);
+  grow(solid, parts, wantedHandles(solid, signs, parts, settings), settings.handles.has_value(),
+       signs, settings.progress);
   out.cuts = cutsOf(signs, parts, settings.progress);
   openCuts(parts, signs);
   out.mesh = surfaceOf(solid, signs, settings.progress);

@@ -53,7 +53,8 @@ struct OuterSurface {
 // vertices on the solid's surface. Pockets that are enclosed are filled.
 //
 // Deterministic. Throws SettingError, MemoryError (before allocating), Cancelled; DataError where
-// nothing is inside at the resolution or no part of the solid has the handles that are asked for.
+// nothing is inside at the resolution, no part of the solid has the handles that are asked for, or
+// there are more than 64 that nobody asked for.
 OuterSurface outerSurface(const Solid& solid, const OuterSurfaceSettings& settings = {});
 
 // Estimate of the peak need in bytes, beyond the solid.

@@ -55,6 +55,16 @@ TEST(OuterSurface, CutsWhereAMeshMeetsItself) {
   }
 }
 
+TEST(OuterSurface, SizeAndPlaceDoNotMatter) {
+  for (const double scale : {1e-8, 1e6}) {
+    const OuterSurface made = outer(shapes::transformed(shapes::coil(2.2 * kPi), scale, {}), 32, 0);
+    EXPECT_EQ(made.topology, (SolidTopology{1, 0, 0}));
+    EXPECT_EQ(made.cuts.size(), 1u);
+    EXPECT_GT(made.cuts[0].place.y, scale);
+    expectEmbedded(made.mesh);
+  }
+}
+
 TEST(OuterSurface, LeavesOutOtherPiecesIfOnePieceIsWanted) {
   const Mesh two =
       shapes::joined(shapes::icosphere(3, 1, {-2, 0, 0}), shapes::icosphere(3, 0.5, {2, 0, 0}));

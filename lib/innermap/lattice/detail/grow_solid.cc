@@ -13,6 +13,7 @@ constexpr double kLeastPart = 1e-3;
 // spacing, then in equal steps.
 constexpr float kFineSteps = 1000, kHalfSteps = 8;
 constexpr int kFarSteps = 20;
+constexpr std::size_t kMostCores = 60;  // evenly out of more
 
 // The nodes of the lattice that can be reached from `start` over nodes for which `open` holds.
 template <class Open>
@@ -82,7 +83,11 @@ std::vector<float> coresOf(const Sides& part, const std::vector<float>& order) {
     steps.push_back(kHalfSteps + (top - kHalfSteps) * static_cast<float>(k) / kFarSteps);
   std::sort(steps.begin(), steps.end());
   steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
-  return steps;
+  if (steps.size() <= kMostCores) return steps;
+  std::vector<float> some;
+  for (std::size_t k = 0; k < kMostCores; ++k)
+    some.push_back(steps[k * (steps.size() - 1) / (kMostCores - 1)]);
+  return some;
 }
 
 }  // namespace
