@@ -80,11 +80,10 @@ constexpr std::size_t kNotedCuts = 3;
 std::vector<std::string> notesOn(const OuterSurface& outer, const std::string& name) {
   std::vector<std::string> notes;
   const SolidTopology& t = outer.topology;
-  notes.push_back(
-      fmt::format("{}: the outer surface of its solid is mapped: {} vertices, {}; 99% of what "
-                  "shows of the mesh "
-                  "is within {:.2g} of the diagonal of it, all within {:.2g}",
-                  name, outer.mesh.vertices.size(), describe(t), outer.apartP99, outer.apartMax));
+  notes.push_back(fmt::format(
+      "{}: the outer surface of its solid is mapped: {} vertices, {}; 99% of the mesh's "
+      "visible part lies within {:.2g} of the diagonal of it, all of that within {:.2g}",
+      name, outer.mesh.vertices.size(), describe(t), outer.apartP99, outer.apartMax));
   if (outer.leftOut > 0)
     notes.push_back(fmt::format("{}: {} part{} of it left out, {:.2g}% of the volume", name,
                                 outer.leftOut, outer.leftOut == 1 ? " is" : "s are",

@@ -78,7 +78,7 @@ void refuseTangles(const std::vector<int>& handles, const std::string& name) {
   if (most > kMostHandles)
     throw DataError(fmt::format(
         "{}: its outer surface has {} handles, more than {}: the mesh crosses itself nearly "
-        "everywhere; repair it, or ask for fewer (--genus)",
+        "everywhere; repair it, or ask for fewer (genus)",
         name, most, kMostHandles));
 }
 
@@ -119,23 +119,29 @@ void grow(const Solid& solid, const SolidParts& parts, const std::vector<int>& h
     if (!growWithHandles(signs, parts.parts[p], handles[p], order, progress) && asked)
       throw DataError(fmt::format(
           "{}: its outer surface cannot be given {} handle{}: no part of what it encloses has that "
-          "many; give another number (--genus) or a finer lattice (--surface-resolution)",
+          "many; give another number (genus) or a finer lattice (surface resolution)",
           solid.repaired().mesh.name, handles[p], handles[p] == 1 ? "" : "s"));
     unite(grown, signs.side);
   }
   signs.side = std::move(grown);
 }
 
-std::vector<SurfaceCut> cutsOf(const LatticeSigns& signs, const SolidParts& parts,
-                               Progress* progress) {
-  LatticeSigns cut = signs;
-  std::fill(cut.side.begin(), cut.side.end(), NodeSide::outside);
+// The nodes of the parts that were not taken.
+std::vector<std::size_t> cutNodes(const LatticeSigns& signs, const SolidParts& parts) {
+  std::vector<std::size_t> cut;
   for (const Sides& part : parts.parts)
     for (std::size_t n = 0; n < part.size(); ++n)
-      if (part[n] == NodeSide::inside && signs.side[n] != NodeSide::inside)
-        cut.side[n] = NodeSide::inside;
+      if (part[n] == NodeSide::inside && signs.side[n] != NodeSide::inside) cut.push_back(n);
+  return cut;
+}
+
+std::vector<SurfaceCut> cutsOf(const LatticeSigns& signs, const std::vector<std::size_t>& cut,
+                               Progress* progress) {
+  LatticeSigns alone = signs;
+  std::fill(alone.side.begin(), alone.side.end(), NodeSide::outside);
+  for (const std::size_t n : cut) alone.side[n] = NodeSide::inside;
   std::vector<SurfaceCut> cuts;
-  for (const std::vector<std::size_t>& nodes : piecesInside(cut, progress)) {
+  for (const std::vector<std::size_t>& nodes : piecesInside(alone, progress)) {
     Box3 box;
     for (const std::size_t n : nodes) box.add(signs.lattice.position(n));
     cuts.push_back({box.center(), norm(box.extent()) + signs.lattice.spacing()});
@@ -144,12 +150,8 @@ std::vector<SurfaceCut> cutsOf(const LatticeSigns& signs, const SolidParts& part
 }
 
 // Distances as if what is cut away were a slit, whose walls stand apart.
-void openCuts(const SolidParts& parts, LatticeSigns& signs) {
+void openCuts(const std::vector<std::size_t>& cut, LatticeSigns& signs) {
   const double open = kSlit * signs.lattice.spacing();
-  std::vector<std::size_t> cut;
-  for (const Sides& part : parts.parts)
-    for (std::size_t n = 0; n < part.size(); ++n)
-      if (part[n] == NodeSide::inside && signs.side[n] != NodeSide::inside) cut.push_back(n);
   for (const std::size_t n : cut)
     for (int d = 0; d < kDirections; ++d) {
       float& distance = signs.distance[signs.lattice.neighbour(n, d)];
@@ -227,16 +229,13 @@ void compare(const Solid& solid, OuterSurface& out, Progress* progress) {
   out.apartMax = apart.back() / solid.diagonal();
 }
 
-}  // namespace
-
-std::uint64_t outerSurfaceMemory(const Solid& solid, const OuterSurfaceSettings& settings) {
+// Estimate of the peak need in bytes, beyond the solid.
+std::uint64_t memoryFor(const Solid& solid, const OuterSurfaceSettings& settings) {
   const double spacing = spacingFor(solid, settings);
   const Vec3 e = solid.box().extent();
   const double nodes = 2 * (e.x / spacing + 7) * (e.y / spacing + 7) * (e.z / spacing + 7);
   return stuffingNeed(solid, spacing).memory + static_cast<std::uint64_t>(kNodeBytes * nodes);
 }
-
-namespace {
 
 OuterSurface enlargedOuterSurface(const Solid& solid, const OuterSurfaceSettings& settings) {
   const double scale = kEnlargedSide / longestSide(solid);
@@ -259,27 +258,28 @@ OuterSurface outerSurface(const Solid& solid, const OuterSurfaceSettings& settin
   const std::string& name = solid.repaired().mesh.name;
   OuterSurface out;
   out.edge = spacingFor(solid, settings);
-  requireMemory("the outer surface of " + name, outerSurfaceMemory(solid, settings),
-                settings.maxMemory, "a coarser lattice takes less (--surface-resolution)");
+  requireMemory("the outer surface of " + name, memoryFor(solid, settings), settings.maxMemory,
+                "a coarser lattice takes less (surface resolution)");
   LatticeSigns signs = signsOf(solid, out.edge, settings.progress);
   const SolidParts parts = partsOf(signs, settings.onePiece, settings.progress);
   if (parts.parts.empty())
     throw DataError(name +
                     ": has no outer surface, all parts are thinner than a cell of the lattice; "
-                    "give a finer one (--surface-resolution)");
+                    "give a finer one (surface resolution)");
   out.leftOut = parts.leftOut;
   out.leftOutShare = parts.leftOutShare;
   grow(solid, parts, wantedHandles(solid, signs, parts, settings), settings.handles.has_value(),
        signs, settings.progress);
-  out.cuts = cutsOf(signs, parts, settings.progress);
-  openCuts(parts, signs);
+  const std::vector<std::size_t> cut = cutNodes(signs, parts);
+  out.cuts = cutsOf(signs, cut, settings.progress);
+  openCuts(cut, signs);
   out.mesh = surfaceOf(solid, signs, settings.progress);
   const BoundaryTopology made = boundaryTopology(out.mesh.vertices, out.mesh.triangles);
   out.topology = made.solid;
   if (!made.manifold() || !(made.solid == latticeTopology(signs)))
     throw DataError(name +
                     ": its outer surface is no manifold at this resolution; give another "
-                    "one (--surface-resolution)");
+                    "one (surface resolution)");
   compare(solid, out, settings.progress);
   return out;
 }

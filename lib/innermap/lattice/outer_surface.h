@@ -57,7 +57,4 @@ struct OuterSurface {
 // there are more than 64 that nobody asked for.
 OuterSurface outerSurface(const Solid& solid, const OuterSurfaceSettings& settings = {});
 
-// Estimate of the peak need in bytes, beyond the solid.
-std::uint64_t outerSurfaceMemory(const Solid& solid, const OuterSurfaceSettings& settings);
-
 }  // namespace innermap

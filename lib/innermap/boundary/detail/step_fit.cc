@@ -7,6 +7,7 @@
 #include "innermap/boundary/detail/carried_boundary.h"
 #include "innermap/boundary/detail/inside_check.h"
 #include "innermap/boundary/detail/shape_path.h"
+#include "innermap/boundary/mesh_correspondence.h"
 
 namespace innermap {
 namespace {
@@ -28,7 +29,7 @@ constexpr int kLastPatience = 3;  // what the last step does not reach is missed
 // Charges of one step, at most, at the tolerance of surfaces that were laid on one another; more in
 // proportion at a smaller one. Steps that can be met take 4,000 to 13,000; jumps across slits take
 // all there are.
-constexpr double kStepSources = 15000, kAtTolerance = 2e-3;
+constexpr double kStepSources = 15000;
 // Of the target's diagonal. Sums, and where points inside go; the mesh about an intermediate shape.
 constexpr double kSumAccuracy = 1e-7, kChord = 1e-3;
 
@@ -101,7 +102,7 @@ class StepFitter {
   }
 
   std::size_t mostSources() const {
-    const double most = kStepSources * std::max(1.0, kAtTolerance / settings_.tolerance);
+    const double most = kStepSources * std::max(1.0, kLaidOnTolerance / settings_.tolerance);
     return static_cast<std::size_t>(std::min(most, static_cast<double>(settings_.maxSources)));
   }
 

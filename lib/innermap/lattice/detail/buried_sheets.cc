@@ -16,6 +16,7 @@ constexpr char kStage[] = "looking for buried sheets";
 // Lengths in spacings.
 constexpr float kFar = std::numeric_limits<float>::max();
 constexpr double kApart = 0.35;       // of samples of the sheets
+constexpr double kMostSamples = 4e6;  // sparser ones where the sheets have so much area
 constexpr double kLinked = 0.9;       // samples of one patch
 constexpr double kBuried = 1.3;       // of the nearest node, whose distances end at 2
 constexpr float kShallow = 3;         // the deepest node along a patch that does not count
@@ -66,6 +67,10 @@ std::vector<float> depths(const LatticeSigns& signs, Progress* progress) {
 }
 
 std::vector<Sample> samplesOf(const Mesh& mesh, double apart, Progress* progress) {
+  double all = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    all += norm(areaVector(mesh, static_cast<int>(t)));
+  apart = std::max(apart, std::sqrt(all / kMostSamples));
   const CounterRandom random(1, 71);
   std::vector<Sample> samples;
   std::uint64_t drawn = 0;
