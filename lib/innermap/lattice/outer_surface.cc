@@ -13,8 +13,10 @@
 #include "innermap/lattice/detail/buried_sheets.h"
 #include "innermap/lattice/detail/fit_boundary.h"
 #include "innermap/lattice/detail/grow_solid.h"
+#include "innermap/lattice/detail/inside_distances.h"
 #include "innermap/lattice/detail/lattice_topology.h"
 #include "innermap/lattice/detail/stuffing.h"
+#include "innermap/lattice/detail/surface_cuts.h"
 #include "innermap/lattice/detail/thin_parts.h"
 #include "innermap/lattice/stuffing_need.h"
 #include "innermap/levelset/level_set.h"
@@ -29,7 +31,6 @@ constexpr int kUsualAcross = 80, kLeastAcross = 8, kMostAcross = 1024;
 constexpr std::array<double, 2> kOtherResolutions = {0.8, 1.25};
 constexpr std::size_t kCompared = 20000;  // points of the solid's surface
 constexpr int kMostHandles = 64;          // that nobody asked for
-constexpr double kSlit = 0.6;             // spacings from a cut's nodes to its walls
 constexpr int kUncrossings = 8;
 // Bytes of a node beyond what tetrahedra take: sides, orders, queues.
 constexpr double kNodeBytes = 60;
@@ -103,62 +104,28 @@ std::vector<int> wantedHandles(const Solid& solid, const LatticeSigns& signs,
   return handles;
 }
 
-// Sets the sides; the nodes of `parts` that are left outside are the cuts. A part that cannot be
-// grown with its handles keeps those it has, unless they were asked for.
+Sides united(const std::vector<Sides>& parts) {
+  Sides all(parts.front().size(), NodeSide::outside);
+  for (const Sides& part : parts)
+    for (std::size_t n = 0; n < all.size(); ++n)
+      if (part[n] == NodeSide::inside) all[n] = NodeSide::inside;
+  return all;
+}
+
+// Sets the sides. A part that cannot be grown with its handles keeps those it has, unless they were
+// asked for. order: of growingOrder().
 void grow(const Solid& solid, const SolidParts& parts, const std::vector<int>& handles, bool asked,
-          LatticeSigns& signs, Progress* progress) {
-  Sides all(signs.side.size(), NodeSide::outside), grown = all;
-  const auto unite = [](Sides& sides, const Sides& more) {
-    for (std::size_t n = 0; n < sides.size(); ++n)
-      if (more[n] == NodeSide::inside) sides[n] = NodeSide::inside;
-  };
-  for (const Sides& part : parts.parts) unite(all, part);
-  signs.side = all;
-  const std::vector<float> order = growingOrder(solid, signs, progress);
+          const std::vector<float>& order, LatticeSigns& signs, Progress* progress) {
+  std::vector<Sides> grown;
   for (std::size_t p = 0; p < parts.parts.size(); ++p) {
     if (!growWithHandles(signs, parts.parts[p], handles[p], order, progress) && asked)
       throw DataError(fmt::format(
           "{}: its outer surface cannot be given {} handle{}: no part of what it encloses has that "
           "many; give another number (genus) or a finer lattice (surface resolution)",
           solid.repaired().mesh.name, handles[p], handles[p] == 1 ? "" : "s"));
-    unite(grown, signs.side);
+    grown.push_back(signs.side);
   }
-  signs.side = std::move(grown);
-}
-
-// The nodes of the parts that were not taken.
-std::vector<std::size_t> cutNodes(const LatticeSigns& signs, const SolidParts& parts) {
-  std::vector<std::size_t> cut;
-  for (const Sides& part : parts.parts)
-    for (std::size_t n = 0; n < part.size(); ++n)
-      if (part[n] == NodeSide::inside && signs.side[n] != NodeSide::inside) cut.push_back(n);
-  return cut;
-}
-
-std::vector<SurfaceCut> cutsOf(const LatticeSigns& signs, const std::vector<std::size_t>& cut,
-                               Progress* progress) {
-  LatticeSigns alone = signs;
-  std::fill(alone.side.begin(), alone.side.end(), NodeSide::outside);
-  for (const std::size_t n : cut) alone.side[n] = NodeSide::inside;
-  std::vector<SurfaceCut> cuts;
-  for (const std::vector<std::size_t>& nodes : piecesInside(alone, progress)) {
-    Box3 box;
-    for (const std::size_t n : nodes) box.add(signs.lattice.position(n));
-    cuts.push_back({box.center(), norm(box.extent()) + signs.lattice.spacing()});
-  }
-  return cuts;
-}
-
-// Distances as if what is cut away were a slit, whose walls stand apart.
-void openCuts(const std::vector<std::size_t>& cut, LatticeSigns& signs) {
-  const double open = kSlit * signs.lattice.spacing();
-  for (const std::size_t n : cut)
-    for (int d = 0; d < kDirections; ++d) {
-      float& distance = signs.distance[signs.lattice.neighbour(n, d)];
-      distance = std::max(distance, static_cast<float>(open - signs.lattice.length(d)));
-    }
-  for (const std::size_t n : cut)
-    signs.distance[n] = std::max(signs.distance[n], static_cast<float>(open));
+  signs.side = united(grown);
 }
 
 // Vertices that were moved onto the solid's surface go back where that made triangles cross, as in
@@ -268,11 +235,16 @@ OuterSurface outerSurface(const Solid& solid, const OuterSurfaceSettings& settin
                     "give a finer one (surface resolution)");
   out.leftOut = parts.leftOut;
   out.leftOutShare = parts.leftOutShare;
-  grow(solid, parts, wantedHandles(solid, signs, parts, settings), settings.handles.has_value(),
-       signs, settings.progress);
-  const std::vector<std::size_t> cut = cutNodes(signs, parts);
-  out.cuts = cutsOf(signs, cut, settings.progress);
-  openCuts(cut, signs);
+  const std::vector<int> handles = wantedHandles(solid, signs, parts, settings);
+  const Sides all = united(parts.parts);
+  signs.side = all;
+  const std::vector<float> depth = depthsInside(signs, settings.progress);
+  grow(solid, parts, handles, settings.handles.has_value(),
+       growingOrder(solid, signs, depth, settings.progress), signs, settings.progress);
+  const std::vector<std::size_t> cut = cutNodes(all, signs);
+  for (const Box3& box : cutBoxes(cut, signs, settings.progress))
+    out.cuts.push_back({box.center(), norm(box.extent()) + signs.lattice.spacing()});
+  openCuts(cut, depth, signs, settings.progress);
   out.mesh = surfaceOf(solid, signs, settings.progress);
   const BoundaryTopology made = boundaryTopology(out.mesh.vertices, out.mesh.triangles);
   out.topology = made.solid;

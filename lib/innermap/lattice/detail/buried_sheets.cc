@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <queue>
 #include <utility>
 
 #include "innermap/core/detail/disjoint_sets.h"
 #include "innermap/core/detail/random.h"
+#include "innermap/lattice/detail/inside_distances.h"
 
 namespace innermap {
 namespace {
@@ -29,42 +29,6 @@ struct Sample {
   int triangle;
   float order;
 };
-
-// Spacings from each node inside to the nodes of `from`, along the lattice.
-std::vector<float> distancesInside(const LatticeSigns& signs, std::vector<float> from,
-                                   Progress* progress) {
-  using Entry = std::pair<float, std::size_t>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  for (std::size_t n = 0; n < from.size(); ++n)
-    if (from[n] < kFar) queue.push({from[n], n});
-  std::size_t polled = 0;
-  while (!queue.empty()) {
-    if (++polled % 65536 == 0) throwIfCancelled(progress);
-    const auto [distance, node] = queue.top();
-    queue.pop();
-    if (distance > from[node]) continue;
-    for (int d = 0; d < kDirections; ++d) {
-      const std::size_t next = signs.lattice.neighbour(node, d);
-      if (signs.side[next] != NodeSide::inside) continue;
-      const float there =
-          distance + static_cast<float>(signs.lattice.length(d) / signs.lattice.spacing());
-      if (there >= from[next]) continue;
-      from[next] = there;
-      queue.push({there, next});
-    }
-  }
-  return from;
-}
-
-// Beyond the band too, where the distances are cut off.
-std::vector<float> depths(const LatticeSigns& signs, Progress* progress) {
-  const auto spacing = static_cast<float>(signs.lattice.spacing());
-  std::vector<float> near(signs.side.size(), kFar);
-  for (std::size_t n = 0; n < near.size(); ++n)
-    if (signs.side[n] == NodeSide::inside && signs.distance[n] > -1.9f * spacing)
-      near[n] = std::max(0.0f, -signs.distance[n] / spacing);
-  return distancesInside(signs, std::move(near), progress);
-}
 
 std::vector<Sample> samplesOf(const Mesh& mesh, double apart, Progress* progress) {
   double all = 0;
@@ -159,9 +123,9 @@ std::vector<Sample> sheets(const Solid& solid, const LatticeSigns& signs,
 
 }  // namespace
 
-std::vector<float> growingOrder(const Solid& solid, const LatticeSigns& signs, Progress* progress) {
+std::vector<float> growingOrder(const Solid& solid, const LatticeSigns& signs,
+                                const std::vector<float>& depth, Progress* progress) {
   reportProgress(progress, kStage, 0);
-  const std::vector<float> depth = depths(signs, progress);
   const BccLattice& lattice = signs.lattice;
   std::vector<float> nearest(signs.side.size(), kFar), order(signs.side.size(), kFar);
   for (const Sample& s : sheets(solid, signs, depth, progress)) {

@@ -16,6 +16,8 @@ namespace innermap {
 // those of smaller ones: so where a limb pierces the body, the cut is the patch of the body's skin
 // across the limb, where it enters, and not across the limb at its root. Patches buried no deeper
 // than some three spacings, where parts touch, do not count: there the shallowest nodes come last.
-std::vector<float> growingOrder(const Solid& solid, const LatticeSigns& signs, Progress* progress);
+// depth: #nodes, of depthsInside().
+std::vector<float> growingOrder(const Solid& solid, const LatticeSigns& signs,
+                                const std::vector<float>& depth, Progress* progress);
 
 }  // namespace innermap
