@@ -1,5 +1,7 @@
 #include "innermap/evaluate/detail/fold_repair.h"
 
+#include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -25,6 +27,14 @@ constexpr std::array<int, 4> kReaches{1, 2, 3, 4};  // of what a voxel in no tet
 // Folded voxels near one another that are repaired, and voxels that move for that: more of them
 // are no blemish beside a surface but a map that folds, and would take minutes.
 constexpr std::size_t kMost = 3000, kMostMoved = 6000;
+// The least stretch that is wanted of a tetrahedron that is not folded, of the middle one, unless
+// the map flattens most of them more; the middle one, of the largest; the largest, of what an
+// undeformed one has.
+constexpr double kFlattest = 0.3, kThinnest = 1e-3, kSmallestWanted = 1e-6;
+// Of the springs that hold voxels beside the surface, but for those of folded tetrahedra. Stiffer
+// ones end the search before what was folded has its shape; softer ones let voxels out of the
+// target.
+constexpr double kSkinStiffness = 3;
 constexpr std::size_t kLeaves = 8;  // that a thread takes at a time
 
 Mat3 restOf(const std::array<int, 4>& tet) {
@@ -32,6 +42,56 @@ Mat3 restOf(const std::array<int, 4>& tet) {
   for (std::size_t e = 0; e < 3; ++e)
     for (std::size_t r = 0; r < 3; ++r) edges[r][e] = (tet[e + 1] >> r & 1) - (tet[0] >> r & 1);
   return inverse(edges);
+}
+
+// A Jacobian by its singular values, the least of them negative where it turns over.
+struct Stretched {
+  Eigen::Matrix3d from, to;  // J = to * diagonal(by) * from^T
+  Eigen::Vector3d by;
+
+  explicit Stretched(const Mat3& j) {
+    Eigen::Matrix3d m;
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c)
+        m(r, c) = j[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
+    // Of a size that the compiler does not know: else it warns of Eigen's own code.
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    by = svd.singularValues();
+    to = svd.matrixU();
+    from = svd.matrixV();
+    if (to.determinant() * from.determinant() > 0) return;
+    to.col(2) *= -1;
+    by[2] *= -1;
+  }
+
+  double flatness() const { return by[2] / by[1]; }
+
+  bool folded() const { return !(by[2] > 0); }
+
+  // Right side out, and hardly flatter than is usual about it.
+  Mat3 rightened(double usual) const {
+    Eigen::Vector3d s = by;
+    s[0] = std::max(s[0], kSmallestWanted);
+    s[1] = std::max(s[1], kThinnest * s[0]);
+    s[2] = std::max(s[2], (folded() ? usual : std::min(usual, kFlattest)) * s[1]);
+    const Eigen::Matrix3d m = to * s.asDiagonal() * from.transpose();
+    Mat3 out;
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c)
+        out[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)] = m(r, c);
+    return out;
+  }
+};
+
+// The median of those that are right side out.
+double usualFlatness(const std::vector<Stretched>& all) {
+  std::vector<double> found;
+  for (const Stretched& s : all)
+    if (!s.folded()) found.push_back(s.flatness());
+  if (found.empty()) return 1;
+  const auto middle = found.begin() + static_cast<std::ptrdiff_t>(found.size() / 2);
+  std::nth_element(found.begin(), middle, found.end());
+  return *middle;
 }
 
 // Voxels that are near one another: those whose cells, so many voxels wide, touch.
@@ -148,6 +208,7 @@ class Patch {
 
   // Whether no tetrahedron is left inside out.
   bool repair(Progress* progress) {
+    keepShapes();
     UntangleSettings settings;
     settings.progress = progress;
     return untangle(tets_, settings) > 0;
@@ -166,6 +227,40 @@ class Patch {
       tets_.vertices.push_back((1 / unit_) * voxels_.now(c));
     }
     return at->second;
+  }
+
+  // Each tetrahedron wants to be as it is, but right side out and not flat: else the patch would
+  // even out what the map stretches, and draw the solid's skin along.
+  void keepShapes() {
+    if (tets_.tets.empty()) return;
+    std::vector<Stretched> now;
+    for (std::size_t t = 0; t < tets_.tets.size(); ++t) now.emplace_back(jacobianOf(tets_, t));
+    const double usual = usualFlatness(now);
+    std::vector<char> held(tets_.free);
+    double logSum = 0;
+    for (std::size_t t = 0; t < tets_.tets.size(); ++t) {
+      if (now[t].folded())
+        for (const int v : tets_.tets[t]) held[static_cast<std::size_t>(v)] = 0;
+      const Mat3 wanted = now[t].rightened(usual);
+      logSum += std::log(determinant(wanted));
+      tets_.rest[t] = product(tets_.rest[t], inverse(wanted));
+    }
+    const double size = std::exp(logSum / (3 * static_cast<double>(tets_.tets.size())));
+    for (Vec3& p : tets_.vertices) p = (1 / size) * p;
+    for (Mat3& rest : tets_.rest)
+      for (auto& row : rest)
+        for (double& x : row) x *= size;
+    unit_ *= size;
+    for (std::size_t v = 0; v < coords_.size(); ++v)
+      if (held[v] && onSkin(coords_[v]))
+        tets_.springs.push_back({static_cast<int>(v), tets_.vertices[v], {}, kSkinStiffness});
+  }
+
+  // Whether a voxel about it is outside.
+  bool onSkin(const Coord& c) const {
+    for (int n = 0; n < 27; ++n)
+      if (!voxels_.inside(c.offsetBy(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1))) return true;
+    return false;
   }
 
   void addTet(const std::array<Coord, 4>& corners, const Mat3& rest) {
@@ -330,8 +425,10 @@ FoldRepair repairFolds(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& 
     PartOfStage part(settings.progress, from, to);
     FoldRepairSettings s = settings;
     s.progress = &part;
-    for (std::size_t pass = 0; pass < kRings.size() && !seeds.empty(); ++pass)
+    for (std::size_t pass = 0; pass < kRings.size() && !seeds.empty(); ++pass) {
+      if (outOfTime(settings.progress)) break;
       seeds = repairWith(pass, seeds, map, levelSet, s, moved);
+    }
     return seeds;
   };
   const std::vector<Coord> left =
