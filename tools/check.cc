@@ -6,7 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "correspondence.h"
+#include "html/contents.h"
 #include "innermap/core/memory.h"
+#include "innermap/mesh/write.h"
+#include "innermap/surface/closed_surface.h"
 #include "inputs.h"
 #include "map_report.h"
 
@@ -19,6 +23,8 @@ struct CheckOptions {
   std::string mesh;
   bool json = false;
   CheckSettings check;
+  std::string outer;
+  LayOutSettings layOut;
 };
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -108,8 +114,20 @@ void fillReport(const Mesh& mesh, const MeshReport& r, const std::vector<Finding
   for (const Finding& f : found) report.set("findings." + f.name, f.count);
 }
 
+// What stands for the mesh where it is mapped onto a stranger, filled or laid out.
+void writeOuter(const CheckOptions& options, Mesh mesh, Context& context) {
+  ClosedSurfaceSettings closing;
+  closing.closeHoles = true;
+  const Mesh outer = closedSurfaces(takeCleanSurface(std::move(mesh), options.layOut, context),
+                                    context.settings(closing))
+                         .mesh;
+  if (context.page()) addMesh(*context.page(), outer);
+  context.timed("write", [&] { writeMesh(options.outer, outer); });
+}
+
 void run(const CheckOptions& options, Context& context) {
-  const Mesh mesh = readMeshFile(options.mesh, context);
+  if (!options.outer.empty()) context.output(options.outer);
+  Mesh mesh = readMeshFile(options.mesh, context);
   const std::uint64_t need = checkMemory(mesh);
   if (context.dryRun())
     return context.plan(
@@ -124,6 +142,7 @@ void run(const CheckOptions& options, Context& context) {
                                        .dump(2, ' ', false, Json::error_handler_t::replace) +
                                    "\n"
                              : checkText(options.mesh, report, found));
+  if (!options.outer.empty()) writeOuter(options, std::move(mesh), context);
 }
 
 }  // namespace
@@ -139,7 +158,13 @@ Command makeCheckCommand() {
   c.flag("--json", &o->json, "machine-readable findings on stdout");
   c.option("--listed", "N", &o->check.listed, "self-intersections that are placed; all are counted")
       .range(0, 1e6);
+  c.option("--outer", "FILE", &o->outer,
+           "also write the closed surface that stands for MESH where it is laid onto another solid "
+           "or filled: its outer surface if it runs through itself, else MESH; .ply or .obj")
+      .writes({".ply", ".obj"});
+  addOuterOptions(c, o->layOut);
   c.example("innermap check horse.obj");
+  c.example("innermap check posed.obj --outer outer.ply --html");
   c.example("innermap check horse.obj --json > findings.json");
   c.run([o](Context& context) { run(*o, context); });
   return c;

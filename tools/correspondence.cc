@@ -15,24 +15,6 @@ void reportQuantiles(Report& report, const std::string& key, const Quantiles& q)
   report.set(key + ".max", q.max);
 }
 
-void reportOuter(const std::string& side, const LaidOutMesh& laid, Report& report) {
-  const std::string key = "correspondence." + side;
-  report.set(key + ".taken", laid.outer.has_value());
-  if (!laid.outer) return;
-  const OuterSurface& outer = *laid.outer;
-  report.set(key + ".edge", outer.edge);
-  report.set(key + ".vertices", outer.mesh.vertices.size());
-  report.set(key + ".handles", outer.topology.handles);
-  report.set(key + ".left_out", outer.leftOut);
-  report.set(key + ".left_out_share", outer.leftOutShare);
-  report.set(key + ".apart_p99", outer.apartP99);
-  report.set(key + ".apart_max", outer.apartMax);
-  report.setColumn(key + ".cuts.x", outer.cuts, [](auto& c) { return c.place.x; });
-  report.setColumn(key + ".cuts.y", outer.cuts, [](auto& c) { return c.place.y; });
-  report.setColumn(key + ".cuts.z", outer.cuts, [](auto& c) { return c.place.z; });
-  report.setColumn(key + ".cuts.size", outer.cuts, [](auto& c) { return c.size; });
-}
-
 void reportMap(const MeshCorrespondence& map, Report& report) {
   const MapQuality& q = map.quality;
   const auto set = [&](const char* key, auto value) {
@@ -59,8 +41,8 @@ void reportMap(const MeshCorrespondence& map, Report& report) {
   set("vertices", map.source.vertices.size());
   set("target_vertices", map.b.mesh.vertices.size());
   set("subdivided", map.changed);
-  reportOuter("source_outer_surface", map.a, report);
-  reportOuter("target_outer_surface", map.b, report);
+  reportOuter("correspondence.source_outer_surface", map.a.outer, report);
+  reportOuter("correspondence.target_outer_surface", map.b.outer, report);
 }
 
 // First maps of the first shell, which the inside chose between, best first.
@@ -93,13 +75,17 @@ std::string qualityText(const MapQuality& q, ModelSpace space, bool outer) {
 void addSurfaceOptions(Command& c, SurfaceOptions& o) {
   c.flag("--close", &o.close, "no longer needed: the holes of an open mesh are closed by caps")
       .advanced();
-  c.option("--surface-resolution", "N", &o.layOut.outerResolution,
+  addOuterOptions(c, o.layOut);
+}
+
+void addOuterOptions(Command& c, LayOutSettings& o) {
+  c.option("--surface-resolution", "N", &o.outerResolution,
            "cells across of the outer surface, which is taken for a mesh that runs through itself, "
            "overlaps or is not manifold")
       .range(8, 1024)
       .defaults("80, more for thin solids")
       .advanced();
-  c.option("--genus", "N", &o.layOut.handles, "handles of that outer surface")
+  c.option("--genus", "N", &o.handles, "handles of that outer surface")
       .range(0, 1000)
       .defaults("the mesh's own; of several pieces, those that stay at other resolutions")
       .advanced();
@@ -141,12 +127,33 @@ void requirePly(const std::string& option, const std::string& path) {
     throw UsageError(option + ": '" + path + "' must end in .ply");
 }
 
-Mesh readCleanSurface(const std::string& path, const SurfaceOptions& options, Context& context) {
-  Mesh mesh = readMeshFile(path, context);
-  CleanSurface clean = context.timed(
-      "surface", [&] { return cleanSurface(mesh, context.settings(options.layOut)); });
+Mesh takeCleanSurface(Mesh mesh, const LayOutSettings& settings, Context& context) {
+  CleanSurface clean =
+      context.timed("surface", [&] { return cleanSurface(mesh, context.settings(settings)); });
   for (const std::string& note : clean.notes) context.note(note);
+  reportOuter("outer_surface", clean.outer, context.report());
   return clean.outer ? std::move(clean.outer->mesh) : std::move(mesh);
+}
+
+Mesh readCleanSurface(const std::string& path, const SurfaceOptions& options, Context& context) {
+  return takeCleanSurface(readMeshFile(path, context), options.layOut, context);
+}
+
+void reportOuter(const std::string& key, const std::optional<OuterSurface>& taken, Report& report) {
+  report.set(key + ".taken", taken.has_value());
+  if (!taken) return;
+  const OuterSurface& outer = *taken;
+  report.set(key + ".edge", outer.edge);
+  report.set(key + ".vertices", outer.mesh.vertices.size());
+  report.set(key + ".handles", outer.topology.handles);
+  report.set(key + ".left_out", outer.leftOut);
+  report.set(key + ".left_out_share", outer.leftOutShare);
+  report.set(key + ".apart_p99", outer.apartP99);
+  report.set(key + ".apart_max", outer.apartMax);
+  report.setColumn(key + ".cuts.x", outer.cuts, [](auto& c) { return c.place.x; });
+  report.setColumn(key + ".cuts.y", outer.cuts, [](auto& c) { return c.place.y; });
+  report.setColumn(key + ".cuts.z", outer.cuts, [](auto& c) { return c.place.z; });
+  report.setColumn(key + ".cuts.size", outer.cuts, [](auto& c) { return c.size; });
 }
 
 LaidOutMesh layOut(Mesh mesh, const SurfaceOptions& options, Context& context) {

@@ -22,6 +22,8 @@ struct CorrespondOptions {
 };
 
 void addSurfaceOptions(Command& command, SurfaceOptions& options);
+// Those of the outer surface alone.
+void addOuterOptions(Command& command, LayOutSettings& settings);
 void addCorrespondOptions(Command& command, CorrespondOptions& options);
 
 // The landmarks are not read yet.
@@ -34,10 +36,13 @@ void requirePly(const std::string& option, const std::string& path);
 // Lays the mesh out and tells: notes, seconds.
 LaidOutMesh layOut(Mesh mesh, const SurfaceOptions& options, Context& context);
 
-// The mesh, or the outer surface of its solid where that is needed; tells as layOut().
+// The mesh, or the outer surface of its solid where that is needed; tells as layOut(), with the
+// report's "outer_surface".
+Mesh takeCleanSurface(Mesh mesh, const LayOutSettings& settings, Context& context);
 Mesh readCleanSurface(const std::string& path, const SurfaceOptions& options, Context& context);
 
 // For the report.
+void reportOuter(const std::string& key, const std::optional<OuterSurface>& taken, Report& report);
 ReportMesh reportOf(const LaidOutMesh& mesh);
 
 // Maps A onto B and tells: notes, the report's "correspondence" and "seconds", a text for the

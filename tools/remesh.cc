@@ -7,6 +7,7 @@
 
 #include "cell_report.h"
 #include "commands.h"
+#include "correspondence.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/cells/cell_file.h"
 #include "innermap/io/picture/cell_picture.h"
@@ -104,11 +105,12 @@ void run(const RemeshOptions& options, Context& context) {
   RemeshSettings settings = context.settings(options.settings);
   std::optional<Mesh> surface;
   if (!options.surface.empty()) {
-    surface = readMeshFile(options.surface, context);
+    surface = takeCleanSurface(readMeshFile(options.surface, context), {}, context);
     settings.surface = &*surface;
   }
   const Mesh own = settings.back ? sourceSurface(mapped) : targetSurface(mapped);
   const Mesh& onto = surface ? *surface : own;
+  context.spend(Context::kMostOfTime);
   Remesh result = remeshCells(file.mesh, mapped, settings);
   for (const std::string& note : result.notes) context.note(note);
   for (const std::string& warning : result.warnings) context.warning(warning);
@@ -148,6 +150,7 @@ Command makeRemeshCommand() {
       .shortName("-o")
       .required()
       .writes({".vtu", ".msh", ".mesh"});
+  c.limitTime("after which repairing and improving end");
   c.flag("--back", &o->settings.back,
          "CELLS fill the map's target and are brought to its source; SURFACE is the source")
       .advanced();

@@ -185,11 +185,13 @@ def write_obj(path, vertices, faces):
     return path
 
 
+CUBE_FACES = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+
+
 def cube(path="cube.obj", size=1.0, origin=(0.0, 0.0, 0.0)):
     vertices = [tuple(o + size * c for o, c in zip(origin, (i & 1, i >> 1 & 1, i >> 2)))
                 for i in range(8)]
-    faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
-    return write_obj(path, vertices, faces)
+    return write_obj(path, vertices, CUBE_FACES)
 
 
 def icosphere_arrays(subdivisions=2, radius=1.0):

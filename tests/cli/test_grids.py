@@ -35,6 +35,23 @@ def test_check_tells_what_is_wrong():
     assert cli.read_json("r.json")["source"]["boundary_loops"] == 1
 
 
+def test_check_writes_the_outer_surface():
+    cube("a.obj")
+    vertices = [tuple(o + (i >> a & 1) for a in range(3)) for o in (0, 0.5) for i in range(8)]
+    faces = [tuple(first + v for v in f) for first in (0, 8) for f in cli.CUBE_FACES]
+    write_obj("two.obj", vertices, faces)
+    innermap("check", "two.obj", "--outer", "outer.ply", "--surface-resolution", 16, "--report",
+             "r.json")
+    outer = cli.read_json("r.json")["outer_surface"]
+    assert outer["taken"] and outer["handles"] == 0 and not outer["cuts"]["x"], outer
+    found = json.loads(innermap("check", "outer.ply", "--json").stdout)
+    assert found["closed"] and found["components"] == 1 and found["self_intersections"] == 0, found
+    assert abs(found["volume"] - 1.875) < 0.02, found["volume"]
+    innermap("check", "a.obj", "--outer", "same.ply", "--report", "same.json")
+    assert cli.read_json("same.json")["outer_surface"] == {"taken": False}
+    assert json.loads(innermap("check", "same.ply", "--json").stdout)["vertices"] == 8
+
+
 def test_voxelize_holds_the_volume():
     icosphere(subdivisions=4, radius=2)
     innermap("voxelize", "ball.obj", "-o", "ball.vdb", "--resolution", "128", "--report", "r.json")

@@ -50,8 +50,8 @@ void addSolid(const MeshReport& report, Findings& out) {
   }
   out.add(
       "self_intersections", report.selfIntersections, crossings,
-      "as a source: overlapping parts become one solid by their winding number; as a target: no "
-      "map onto it can be one-to-one there, it folds");
+      "between unrelated meshes its outer surface is taken (--outer writes it); else overlapping "
+      "parts become one solid by their winding number, and no map onto it is one-to-one there");
 }
 
 void addBoundary(const MeshReport& report, Findings& out) {

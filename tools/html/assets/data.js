@@ -93,8 +93,10 @@ function reported(key, from = page.report) {
 }
 
 // A list of coordinates as points.
+// x, y, z one after the other, or a list of each.
 function pointsIn(list) {
   const out = [];
+  if (list && Array.isArray(list.x)) return list.x.map((x, i) => [x, list.y[i], list.z[i]]);
   for (let i = 0; Array.isArray(list) && i + 2 < list.length; i += 3) out.push(list.slice(i, i + 3));
   return out;
 }

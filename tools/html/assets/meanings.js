@@ -37,6 +37,7 @@ const meanings = [
   ["tolerance.wanted", "wanted", "99% of the boundary was to lie within this", "error"],
   ["tolerance.reached", "reached", "99% lies within this", "error"],
   ["tolerance.met", "met", "whether it does"],
+  ["tolerance.missed", "missed", "of the boundary, where the tolerance is not met", "share"],
   ["tolerance.ended", "why no more", "what ended the fit before it was met"],
   ["one_to_one.statement", "in words", "what was checked, what was found and what follows"],
   ["one_to_one.inside_checked", "points inside", "that were checked"],
@@ -62,7 +63,7 @@ const meanings = [
   ["one_to_one.degree_greatest", "greatest winding", "1 where the boundary goes round once, as it should"],
   ["one_to_one.outside", "outside", "share of the points inside that land outside the target by more than the boundary error", "share"],
   ["one_to_one.repaired", "repaired", "voxels that were folded before"],
-  ["one_to_one.boundary_error", "boundary error", "the largest", "error"],
+  ["one_to_one.boundary_error", "boundary error", "of 99% of it", "error"],
   ["inside.samples", "points", "that were looked at"],
   ["inside.folded", "folded", "share of these that the map turns inside out", "share"],
   ["inside.folded_at_overlap", "folded at overlaps", "share of them folded where the target runs through itself", "share"],
@@ -129,6 +130,8 @@ const meanings = [
   ["correspondence.vertices", "vertices", "of the source as it was laid"],
   ["correspondence.target_vertices", "target's vertices", ""],
   ["correspondence.subdivided", "subdivided", "whether triangles were split"],
+  ["outer_surface.taken", "outer surface", "it was taken in place of a mesh that crosses itself"],
+  ["outer_surface.apart_p99", "the mesh from its outer surface", "99% of what shows is as near", "error"],
   ["correspondence.source_outer_surface.taken", "outer surface of the source", "it was mapped in place of a mesh that crosses itself"],
   ["correspondence.source_outer_surface.apart_p99", "the source from its outer surface", "99% of what shows is as near", "error"],
   ["correspondence.target_outer_surface.taken", "outer surface of the target", "it was mapped onto in place of a mesh that crosses itself"],
@@ -142,6 +145,7 @@ const meanings = [
   ["inverse.inverted_fraction", "found", "share of the voxels whose origin was found", "share"],
   ["peak_memory_bytes", "memory", "the most that the process held", "bytes"],
   ["memory_needed_bytes", "memory needed", "estimate", "bytes"],
+  ["stopped_by_time", "stopped by time", "--max-time ended something: another run may differ", ""],
 ];
 
 function meaningOf(key) {

@@ -59,6 +59,10 @@ function marksOf(panels) {
   add("inside.folded_at", "fold inside", 0);
   add("one_to_one.source_crossings_at", "source crosses itself", 0);
   add("one_to_one.target_crossings_at", "target crosses itself", 1);
+  add("tolerance.worst_at", "largest error", 0);
+  add("outer_surface.cuts", "cut", 0);
+  add("correspondence.source_outer_surface.cuts", "source is cut", 0);
+  add("correspondence.target_outer_surface.cuts", "target is cut", 1);
   return out;
 }
 
