@@ -97,10 +97,15 @@ void reportTolerance(const MapFit& fit, const FitMapSettings& settings, bool bes
   if (tolerance.met) return;
   const std::string why = whyEnded(tolerance.end, settings.maxSources);
   report.set("tolerance.ended", why);
+  report.set("tolerance.missed", fit.error.missed);
+  report.set("tolerance.worst_at", coordinates({fit.error.maxAt}));
   const std::string text = fmt::format(
       "--tolerance {:g} is not met: 99% of the boundary lies within {:.3g} of the target's "
-      "diagonal, with {} charges; {}",
-      tolerance.wanted, tolerance.reached, fit.solve.sources, why);
+      "diagonal, with {} charges; {}; {:.2g}% of the boundary misses it, most near ({:.4g}, "
+      "{:.4g}, "
+      "{:.4g})",
+      tolerance.wanted, tolerance.reached, fit.solve.sources, why, 100 * fit.error.missed,
+      fit.error.maxAt.x, fit.error.maxAt.y, fit.error.maxAt.z);
   if (bestEffort)
     context.warning(text);
   else
@@ -117,6 +122,8 @@ std::string whyEnded(AdaptiveEnd end, std::size_t maxSources) {
       return "--max-memory is reached";
     case AdaptiveEnd::noGain:
       return "more charges do not help";
+    case AdaptiveEnd::time:
+      return "--max-time is reached";
     case AdaptiveEnd::met:
     case AdaptiveEnd::stopped:
       break;

@@ -87,10 +87,10 @@ class Search {
     keepLargest(4 * kPeaks * kAbout);
   }
 
-  double largest() const {
-    double most = 0;
-    for (const Place& p : places_) most = std::max(most, p.error);
-    return most;
+  // The first of several.
+  Place largest() const {
+    return *std::max_element(places_.begin(), places_.end(),
+                             [](const Place& a, const Place& b) { return a.error < b.error; });
   }
 
   std::size_t count() const { return count_ + places_.size(); }
@@ -141,12 +141,18 @@ BoundaryError certify(const Solid& solid, const SurfaceErrors& errors,
   sample.seed = seedOf(settings.seed, Stream::fresh);
   sample.progress = settings.progress;
   Search search(solid, errors, settings);
-  BoundaryError out =
-      summarizeErrors(search.measure(randomSamples(solid.surface(), settings.samples, sample)));
+  const std::vector<double> random =
+      search.measure(randomSamples(solid.surface(), settings.samples, sample));
+  BoundaryError out = summarizeErrors(random);
+  const auto missed =
+      std::count_if(random.begin(), random.end(), [&](double e) { return e > settings.tolerance; });
+  out.missed = static_cast<double>(missed) / static_cast<double>(random.size());
   search.measure(vertexPlaces(solid.surface()));
   double radius = std::sqrt(solid.area() / static_cast<double>(settings.samples));
   for (int round = 0; round < kRounds; ++round, radius *= kNearer) search.about(radius, round);
-  out.max = search.largest();
+  const Place largest = search.largest();
+  out.max = largest.error;
+  out.maxAt = largest.position;
   out.searched = search.count() - out.samples;
   out.bound = std::max(out.bound, (1 + kMargin) * out.max);
   return out;

@@ -27,6 +27,7 @@ std::vector<SurfacePoint> vertexPlaces(const Mesh& mesh);
 struct CertificateSettings {
   std::size_t samples = kFreshSamples;  // uniform by area: those of freshSamples; in [1, 1e7]
   std::uint64_t seed = 1;               // that of the fit, in [0, 1e15]
+  double tolerance = 0;                 // for BoundaryError::missed, in the units of `errors`
   Progress* progress = nullptr;
 };
 

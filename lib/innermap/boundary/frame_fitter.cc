@@ -156,7 +156,7 @@ FrameFit FrameFitter::fit(const Mesh& frame, const BoundarySettings& settings) c
         mapPoints(HarmonicMap(field), inside_, kSumAccuracy * boundary.diagonal, settings.progress);
     folded = foldedShare(mapped.determinants);
     outside = outsideShare(mapped.points, TargetShape(solid(), boundary),
-                           error.max * boundary.diagonal, settings.progress);
+                           error.p99 * boundary.diagonal, settings.progress);
   });
   std::vector<std::string> warnings = boundary.warnings;
   if (error.max > kDoubtfulError)

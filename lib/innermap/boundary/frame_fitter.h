@@ -44,7 +44,7 @@ struct FrameFit {
   HarmonicField field;
   BoundaryError error;  // by certify, fractions of the frame's diagonal
   // Of some thousand points inside: the share whose Jacobian determinant is not above 0, and the
-  // share whose image is farther out of the frame's solid than the largest error.
+  // share whose image is farther out of the frame's solid than error.p99.
   double folded = 0, outside = 0;
   int iterations = 0;
   std::vector<std::string> warnings;

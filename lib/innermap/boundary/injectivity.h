@@ -45,7 +45,7 @@ struct DeterminantFigures {
 };
 
 // How often the image of the boundary winds about points of a lattice in the target that are
-// farther from its surface than the boundary's error.
+// farther from its surface than boundaryError.
 struct DegreeFigures {
   std::size_t checked = 0;  // points; none: no point lies so deep
   int least = 0, greatest = 0;
@@ -74,7 +74,7 @@ struct Injectivity {
   std::size_t repaired = 0;     // of the voxels: that were folded before
   double outside = 0;           // share of `inside` farther out of the target than boundaryError
   DegreeFigures degree;
-  double boundaryError = 0;  // the largest, fraction of the target's diagonal
+  double boundaryError = 0;  // that 99% of it keep, fraction of the target's diagonal
   SelfIntersectionFigures source, target;
 };
 

@@ -70,12 +70,11 @@ std::string boundary(const Injectivity& known) {
   std::string out;
   if (known.outside > 0)
     out += percent(known.outside) +
-           " of the points inside come to lie outside the target by more than the boundary's "
-           "error. ";
+           " of the points inside come to lie outside the target by more than the error of 99% of "
+           "the boundary. ";
   const DegreeFigures& degree = known.degree;
   const std::string within = fmt::format(
-      "The boundary's image is within {:.2g} of the target's diagonal of the target where that was "
-      "measured",
+      "99% of the boundary's image is within {:.2g} of the target's diagonal of the target",
       known.boundaryError);
   if (degree.checked > 0)
     out += fmt::format(

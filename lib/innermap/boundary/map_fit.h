@@ -84,10 +84,10 @@ struct ToleranceOutcome {
 
 // What the map does to points inside the source.
 struct InsideFigures {
-  std::size_t samples = 0;  // of a lattice through the inside
-  double folded = 0;        // share of them where the Jacobian determinant is not above 0
-  double outside = 0;       // share whose image is farther out of the target than the largest error
-  Points foldedAt;          // the first of them, at most 16, world units of the source
+  std::size_t samples = 0;          // of a lattice through the inside
+  double folded = 0;                // share of them where the Jacobian determinant is not above 0
+  double outside = 0;               // share whose image is farther out of the target than error.p99
+  Points foldedAt;                  // the first of them, at most 16, world units of the source
   DeterminantFigures determinants;  // of them
 };
 

@@ -60,10 +60,10 @@ double factOf(const MappedSolid& mapped, const char* name) {
   return 0;
 }
 
-// The largest of the boundary, world units of the target.
+// Of 99% of the boundary, world units of the target.
 double boundaryErrorOf(const MappedSolid& mapped) {
   const double known = mapped.injectivity.boundaryError;
-  return (known > 0 ? known : factOf(mapped, "boundary_error_max")) *
+  return (known > 0 ? known : factOf(mapped, "boundary_error_p99")) *
          mapped.boundary.target.diagonal;
 }
 

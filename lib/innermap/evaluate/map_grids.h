@@ -41,7 +41,7 @@ struct SolidGrids {
   openvdb::Vec3fGrid::Ptr mapLocal;
   Vec3 localOrigin;
   // How far the image of each voxel inside lies outside the target, world units of that; active
-  // where that is more than the boundary's error. Null where nothing does.
+  // where that is more than the error of 99% of the boundary. Null where nothing does.
   openvdb::FloatGrid::Ptr outside;
   double outsideFraction = 0;  // their share of the voxels inside
   double mapRounding = 0;      // MapGrids::rounding, fraction of the target's diagonal

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "innermap/core/progress.h"
+#include "innermap/core/vec3.h"
 #include "innermap/field/harmonic_field.h"
 #include "innermap/solve/collocation.h"
 
@@ -20,6 +21,8 @@ struct BoundaryError {
   // bound; for uniform samples. See certify, whose `max` and `bound` are those of a search.
   double p99Bound = 0, bound = 0;
   std::size_t searched = 0;  // points beside `samples` at which the largest was looked for
+  Vec3 maxAt;                // where it was met, world units of the source
+  double missed = 0;         // share of the samples over the tolerance that certify was given
 };
 
 constexpr double kCertificateConfidence = 0.95;

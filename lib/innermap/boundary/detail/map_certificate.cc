@@ -103,6 +103,7 @@ MapCertificate certifyMap(const ComposedMap& map, const BoundaryPair& pair,
   };
   CertificateSettings s;
   s.seed = settings.seed;
+  s.tolerance = settings.tolerance;
   s.progress = settings.progress;
   MapCertificate out;
   out.accuracy = accuracy;

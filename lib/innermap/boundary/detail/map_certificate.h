@@ -11,7 +11,8 @@
 namespace innermap {
 
 struct MapCertificateSettings {
-  bool smooth = false;  // the map was fitted to the vertices, not to the triangles
+  bool smooth = false;   // the map was fitted to the vertices, not to the triangles
+  double tolerance = 0;  // as CertificateSettings has it, fraction of the target's diagonal
   std::uint64_t seed = 1;
   Progress* progress = nullptr;
 };

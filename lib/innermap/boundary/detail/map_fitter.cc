@@ -140,7 +140,7 @@ void MapFitter::check(FitOutcome& out) {
   if (out.inside.folded <= (on ? 0 : kManyFolds) && out.inside.outside <= kManyOutside) return;
   singleFolded = out.inside.folded;
   singleSources = out.solve.sources;
-  if (!roomForSteps()) return finishSingle(out);
+  if (!roomForSteps() || outOfTime(settings_.progress)) return finishSingle(out);
   FitOutcome steps = inSteps();
   if (steps.inside.folded <= (on ? 1 : kWorthIt) * singleFolded)
     out = std::move(steps);
@@ -153,7 +153,7 @@ Injectivity MapFitter::injectivityOf(const FitOutcome& out) {
   known.source = selfIntersectionFigures(pair_.source.check);
   known.target = selfIntersectionFigures(pair_.targetCheck);
   BoundaryCheckSettings s;
-  s.error = out.error.max * pair_.target.diagonal;
+  s.error = out.error.p99 * pair_.target.diagonal;
   s.accuracy = kSumAccuracy * pair_.target.diagonal;
   s.seed = settings_.seed;
   s.progress = settings_.progress;
@@ -161,7 +161,7 @@ Injectivity MapFitter::injectivityOf(const FitOutcome& out) {
     known.inside = out.inside.determinants;
     known.outside = out.inside.outside;
     known.boundary = boundaryDeterminants(out.map, pair_, *target_, s);
-    known.boundaryError = out.error.max;
+    known.boundaryError = out.error.p99;
     known.degree = boundaryDegree(out.map, pair_, *target_, s);
   });
   return known;
@@ -229,7 +229,7 @@ AdaptiveSettings MapFitter::adaptiveSettings(double tolerance) const {
 }
 
 InsideFigures MapFitter::figuresOf(const FitOutcome& out) {
-  const double slack = out.error.max * pair_.target.diagonal;
+  const double slack = out.error.p99 * pair_.target.diagonal;
   const MappedPoints here = insideOf(out.map);
   InsideFigures figures;
   figures.samples = inside_.size();
@@ -300,6 +300,7 @@ void MapFitter::measure(const FitProblem& problem, FitOutcome& out) {
 void MapFitter::certify(FitOutcome& out) {
   MapCertificateSettings s;
   s.smooth = out.smooth;
+  s.tolerance = settings_.tolerance;
   s.seed = settings_.seed;
   s.progress = settings_.progress;
   out.certificate = timed(seconds, "certificate", [&] { return certifyMap(out.map, pair_, s); });
