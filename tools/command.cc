@@ -145,6 +145,10 @@ OptionBuilder Command::flag(const std::string& name, bool* target, const std::st
   return option(name, "", target, help);
 }
 
+OptionBuilder Command::limitTime(const std::string& help) {
+  return option("--max-time", "S", maxTime_.get(), help).unit("seconds").above(0);
+}
+
 std::vector<Option> commonOptionTable(CommonOptions& common) {
   Command c("", "");
   c.option("--threads", "N", &common.threads, "number of threads; 0 means all cores")

@@ -9,7 +9,9 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -69,6 +71,10 @@ class Command {
 
   void description(std::string text) { description_ = std::move(text); }  // beyond the summary
   void example(std::string line) { examples_.push_back(std::move(line)); }
+  // Adds --max-time S; help: what ends by it. See Context::spend.
+  OptionBuilder limitTime(const std::string& help);
+  // Seconds; infinity: no limit.
+  double maxTime() const { return maxTime_->value_or(std::numeric_limits<double>::infinity()); }
   void run(std::function<void(Context&)> body) { body_ = std::move(body); }
 
   const std::string& name() const { return name_; }
@@ -83,6 +89,7 @@ class Command {
   std::vector<Option> options_;
   std::vector<std::string> examples_;
   std::function<void(Context&)> body_;
+  std::unique_ptr<std::optional<double>> maxTime_ = std::make_unique<std::optional<double>>();
 };
 
 // The options that every command has, bound to `common`.

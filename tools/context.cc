@@ -27,6 +27,18 @@ Context::Context(const CommonOptions& options, TerminalProgress& progress)
 
 Context::~Context() = default;
 
+void Context::spend(double share, double later) {
+  const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start_;
+  progress_.setSecondsLeft(share * (options_.maxTime - gone.count() - later));
+}
+
+void Context::noteTime() {
+  if (!progress_.endedByTime() || timeNoted_) return;
+  timeNoted_ = true;
+  report_.set("stopped_by_time", true);
+  warning("stopped by --max-time: another run may differ");
+}
+
 Progress* Context::progress() const { return &progress_; }
 
 void Context::setPart(const std::string& part) { progress_.setPart(part); }
@@ -312,6 +324,7 @@ std::string verdictText(const std::vector<ReportFinding>& verdict, std::size_t u
 
 void Context::conclude() {
   if (dryRun()) return;
+  noteTime();
   std::vector<std::string> unmet;
   for (const ReportFinding& f : report_.verdict)
     if (!f.met) unmet.push_back(titleOf(f.name));
@@ -349,6 +362,7 @@ void Context::noteMemory() {
 }
 
 const Report& Context::finishedReport() {
+  noteTime();
   report_.peakMemory = peakMemory();
   report_.outputs = outputsNow();
   noteMemory();

@@ -1,7 +1,9 @@
 // What a running command is given: progress, limits, timing, a place for messages.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -32,6 +34,7 @@ constexpr const char* kPageBesideOutputs = "report.html beside the outputs";
 struct CommonOptions {
   int threads = 0;
   std::string maxMemory;
+  double maxTime = std::numeric_limits<double>::infinity();  // seconds
   bool dryRun = false;
   bool strict = false;
   std::string report;
@@ -65,6 +68,12 @@ class Context {
 
   // Bytes: --max-memory, or 80% of the machine's.
   std::uint64_t maxMemory() const { return maxMemory_; }
+
+  // Beside measuring and writing, which take a tenth of what trying and refining do, or less.
+  static constexpr double kMostOfTime = 0.9;
+  // Of what --max-time leaves now, less `later` seconds for what has to come after, this share may
+  // be spent on improving what comes next.
+  void spend(double share, double later = 0);
 
   // The settings of the library with the limit on memory, where they have one, and the progress.
   template <class Settings>
@@ -177,11 +186,15 @@ class Context {
   void placePage(const std::string& output);
   // The most memory so far, for the stages that ended since the last time.
   void noteMemory();
+  // Says when the result depends on --max-time.
+  void noteTime();
   std::vector<ReportOutput> outputsNow() const;
 
   const CommonOptions& options_;
   TerminalProgress& progress_;
   std::uint64_t maxMemory_ = 0;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  bool timeNoted_ = false;
   mutable std::uint64_t most_ = 0;  // of claimed()
   Report report_;
   std::map<std::string, std::uint64_t> memoryAfter_;  // bytes, by stage

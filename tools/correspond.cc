@@ -44,6 +44,7 @@ void run(const Options& options, Context& context) {
                         memoryOf(options, countA, countB));
   context.requireMemory("the correspondence", memoryOf(options, countA, countB),
                         "use coarser meshes");
+  context.spend(Context::kMostOfTime);
   const MeshCorrespondence moved =
       correspondMeshes(std::move(a), std::move(b), options.correspond, context);
   if (context.page()) showPair(*context.page(), moved.source, moved.positions);
@@ -95,6 +96,7 @@ Command makeCorrespondCommand() {
       .defaults("the output's name with .source.ply")
       .writes({".ply"})
       .advanced();
+  c.limitTime("after which trying and refining end");
   addCorrespondOptions(c, o->correspond);
   c.option("--seed", "N", &o->correspond.map.seed, "of all random choices")
       .range(0, 1e15)

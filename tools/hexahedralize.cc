@@ -127,6 +127,7 @@ void run(const Options& options, Context& context) {
                      options.output)},
         need);
   context.requireMemory("hexahedra of " + options.mesh, need, "use fewer --blocks or --pieces");
+  context.spend(Context::kMostOfTime);
   const Hexahedralization result = hexahedralize(mesh, settings);
   context.tell(result);
   fillReport(result, context);
@@ -158,6 +159,7 @@ Command makeHexahedralizeCommand() {
       .shortName("-o")
       .required()
       .writes({".vtu", ".msh", ".mesh"});
+  c.limitTime("after which fitting, untangling and shaping end");
   c.option("--pieces", "K", &o->settings.pieces, "hexahedra along a block's edge").range(1, 16);
   c.option("--feature-angle", "A", &o->settings.featureAngle,
            "edges whose faces' normals differ by more count as sharp in the report")

@@ -80,6 +80,7 @@ void runCommand(const std::vector<std::string>& arguments) {
   const Command command = findCommand(first);
   CommonOptions common;
   parseArguments(command, common, {arguments.begin() + 1, arguments.end()});
+  common.maxTime = command.maxTime();
   if (common.version) return printVersion();
   if (common.help || common.helpAll) {
     std::fputs(commandHelp(command, common.helpAll).c_str(), stdout);

@@ -21,6 +21,8 @@
 namespace innermap::tool {
 namespace {
 
+constexpr double kRepairShare = 0.3;  // of what --max-time leaves when the fit has ended
+
 struct MapOptions {
   std::string source, target, output, correspondence;
   CorrespondOptions correspond;
@@ -107,8 +109,8 @@ FittingOptions fittingFor(const MapOptions& options, const Meshes& meshes) {
   return out;
 }
 
-// The job after the meshes are read.
-void expectPhases(const MapOptions& options, const Meshes& meshes, Context& context) {
+// The job after the meshes are read; the seconds from the evaluation on.
+double expectPhases(const MapOptions& options, const Meshes& meshes, Context& context) {
   const std::size_t vertices = meshes.source.vertices.size();
   const bool strangers = laidOn(options, meshes);
   std::vector<JobPhase> phases;
@@ -121,11 +123,13 @@ void expectPhases(const MapOptions& options, const Meshes& meshes, Context& cont
   const JobSize size = gridSize(options, meshes.source);
   JobPhase begin{"evaluating", 0};
   begin.gate = true;
-  phases.push_back(begin);
-  for (const JobPhase& phase : evaluationPhases(size)) phases.push_back(phase);
-  phases.push_back(stageOf("writing slices", size));
-  phases.push_back(stageOf("drawing the section", size));
+  std::vector<JobPhase> last{begin};
+  for (const JobPhase& phase : evaluationPhases(size)) last.push_back(phase);
+  last.push_back(stageOf("writing slices", size));
+  last.push_back(stageOf("drawing the section", size));
+  phases.insert(phases.end(), last.begin(), last.end());
   context.expect(phases);
+  return totalSeconds(last);
 }
 
 void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
@@ -187,10 +191,11 @@ void run(const MapOptions& options, Context& context) {
       options.output,
       {"map.ply", "map.vdb", "slices.exr", "section.png", "steps.png", "report.json"});
   Meshes meshes = readMeshes(options, context);
-  expectPhases(options, meshes, context);
+  const double later = expectPhases(options, meshes, context);
   if (context.dryRun()) return plan(options, meshes, context);
   const bool laid = laidOn(options, meshes);
   const FittingOptions fitOptions = fittingFor(options, meshes);
+  context.spend(kLayingTimeShare, later);
   BoundaryPair pair = makePair(options, std::move(meshes), *folder, context);
   reportBoundaries(pair, context);
   const std::size_t vertices = pair.source.mesh.vertices.size();
@@ -199,9 +204,11 @@ void run(const MapOptions& options, Context& context) {
   requireEvaluationMemory(pair.solid(), options.evaluation.grid, context,
                           {1, needsLocalMap(pair.target.moved, fitting.tolerance)});
   context.phase("fitting");
+  context.spend(1, later);
   const MapFit fit = fitMap(std::move(pair), fitting);
   reportFit(fit, fitting, options.fitting.bestEffort, context);
   context.phase("evaluating");
+  context.spend(kRepairShare);
   const SolidGrids grids = evaluateOnGrid(fit, mapGridSettings(options.evaluation, context));
   reportGrids(grids, options.evaluation.lame, context);
   judgeMap(fit, &grids, options.verdict, laid ? MapOrigin::laidOn : MapOrigin::related, context);
@@ -234,6 +241,7 @@ Command makeMapCommand() {
   c.option("--output", "FOLDER", &o->output, "where the files go; made when missing")
       .shortName("-o")
       .required();
+  c.limitTime("after which trying, refining, steps and repairs end; the rest takes what it takes");
   c.option("--correspond", "FILE", &o->correspondence,
            "SOURCE's vertices on TARGET, as innermap correspond or an earlier map wrote them")
       .reads();

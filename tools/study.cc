@@ -133,11 +133,11 @@ std::vector<double> workOf(const BoundaryPair& pair, const StudySettings& settin
   return work;
 }
 
-void expectRuns(const std::vector<double>& work, double most, Context& context) {
+void expectRuns(const std::vector<double>& work, Context& context) {
   JobSize size;
   size.items = work.back();
   JobPhase runs = stageOf("runs", size);
-  if (most > 0) runs.seconds = std::min(runs.seconds, most);
+  runs.seconds = std::min(runs.seconds, context.progress()->secondsLeft());
   context.expect({runs});
 }
 
@@ -218,13 +218,14 @@ void run(const StudyOptions& options, Context& context) {
   const auto folder = context.outputFolder(options.output, names);
   const BoundaryPair pair = readPair(options, context);
   const std::vector<double> work = workOf(pair, settings);
-  expectRuns(work, settings.maxSeconds, context);
+  context.spend(1);
+  expectRuns(work, context);
   if (context.dryRun()) return plan(options, pair, settings, context);
   Study study = context.timed("runs", [&] { return makeRuns(pair, settings, work, context); });
   const StudyFindings findings = studyFindings(study);
   if (study.left > 0)
     study.warnings.push_back(fmt::format(
-        "{} runs are left, as --max-seconds ended; the same command goes on after those that are "
+        "{} runs are left, as --max-time ended; the same command goes on after those that are "
         "kept in {}",
         study.left, settings.folder));
   const auto failed = std::count_if(study.rows.begin(), study.rows.end(),
@@ -293,10 +294,7 @@ void addFitOptions(Command& c, StudyOptions& o) {
       .range(4, 1024);
   c.option("--lame-lambda", "L", &o.settings.lame.lambda, "of the deformation energy").atLeast(0);
   c.option("--lame-mu", "M", &o.settings.lame.mu, "of the deformation energy").atLeast(0);
-  c.option("--max-seconds", "S", &o.settings.maxSeconds,
-           "no run begins later; the same command goes on another time; 0: no limit")
-      .unit("seconds")
-      .atLeast(0);
+  c.limitTime("no run begins later; the same command goes on another time");
   c.option("--seed", "N", &o.settings.seed, "of all random choices").range(0, 1e15);
 }
 
@@ -325,7 +323,7 @@ Command makeStudyCommand() {
   addListOptions(c, *o);
   addFitOptions(c, *o);
   c.example("innermap study rest.obj pose.obj -o study");
-  c.example("innermap study rest.obj pose.obj -o study --sources 100:3200:6 --max-seconds 600");
+  c.example("innermap study rest.obj pose.obj -o study --sources 100:3200:6 --max-time 600");
   c.run([o](Context& context) { run(*o, context); });
   return c;
 }

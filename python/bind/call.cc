@@ -178,6 +178,10 @@ void CallOptions::describe(Keywords& k) {
   k.count("threads", &threads, {0, 4096}, "at most; 0: all cores. Results do not depend on it");
 }
 
+void CallOptions::describeTime(Keywords& k, const char* doc) {
+  k.number("max_time", &maxTime, {1e-6, 1e9}, doc);
+}
+
 void bindCalls() {
   py::module_::import("atexit").attr("register")(py::cpp_function([] {
     const py::gil_scoped_release unlocked;
@@ -191,6 +195,10 @@ void keepPythonError(Progress* progress, const py::error_already_set& error) {
 
 void runCall(const CallOptions& options, const std::function<void(Progress*)>& work) {
   CallProgress progress;
+  if (options.maxTime) {
+    const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - options.began;
+    progress.setSecondsLeft(options.timeShare * (*options.maxTime - gone.count()));
+  }
   const ActiveCall active(progress);
   std::exception_ptr error;
   {
@@ -209,6 +217,9 @@ void runCall(const CallOptions& options, const std::function<void(Progress*)>& w
   if (!error) look(progress, options.progress);
   progress.rethrow();
   if (error) std::rethrow_exception(error);
+  if (progress.endedByTime() &&
+      PyErr_WarnEx(PyExc_RuntimeWarning, "stopped by max_time: another call may differ", 1) != 0)
+    throw py::error_already_set();
 }
 
 }  // namespace innermap::python

@@ -4,6 +4,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -21,8 +22,16 @@ struct CallOptions {
   pybind11::object progress = pybind11::none();  // callable(stage, fraction)
   std::uint64_t maxMemory = 0;                   // bytes
   int threads = 0;                               // 0: all cores
+  std::optional<double> maxTime;                 // seconds
+  double timeShare = 1;                          // of what is left of them, for the next runCall
+  std::chrono::steady_clock::time_point began = std::chrono::steady_clock::now();
 
   void describe(Keywords& k);
+  // For functions that improve a result until a deadline.
+  void describeTime(Keywords& k,
+                    const char* doc =
+                        "seconds after which trying, refining and repairing end, with a "
+                        "RuntimeWarning: another call may differ; no limit if not given");
 };
 
 // Calls that go on when the interpreter ends, in daemon threads, are cancelled.

@@ -106,6 +106,7 @@ struct CorrespondCall : CorrespondOptions {
     CorrespondOptions::describe(k);
     k.count("seed", &map.seed, {0, 1e15}, "of all random choices");
     call.describe(k);
+    call.describeTime(k);
   }
 };
 

@@ -105,6 +105,7 @@ struct HexahedralizeOptions : BlockOptions {
     k.count("pieces", &settings.pieces, {1, 16}, "hexahedra along a block's edge");
     k.count("seed", &settings.seed, {0, 1e15}, "of all random choices");
     BlockOptions::describe(k);
+    call.describeTime(k);
   }
 };
 

@@ -54,6 +54,7 @@ void FitOptions::describe(Keywords& k) {
   describeShell(k);
   correspond.describe(k);
   call.describe(k);
+  call.describeTime(k);
 }
 
 void FitOptions::describeShell(Keywords& k) {
@@ -167,7 +168,9 @@ py::object fit(const Arguments& a, FitOptions& o) {
     CorrespondOptions correspond = o.correspond;
     correspond.map.seed = settings.seed;
     correspond.map.carryBack = false;
-    const auto laid = correspondMeshes(job.source, job.target, correspond.settings(), o.call);
+    CallOptions laying = o.call;
+    laying.timeShare = kLayingTimeShare;
+    const auto laid = correspondMeshes(job.source, job.target, correspond.settings(), laying);
     job.source = laid->source;
     job.target = likeSource(laid->source, laid->positions, job.target.name);
   }

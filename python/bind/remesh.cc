@@ -37,6 +37,7 @@ struct RemeshOptions {
     k.object("normals", &normals, "list[str]",
              "likewise normals of surfaces, turned by its inverse transpose");
     call.describe(k);
+    call.describeTime(k);
   }
 };
 

@@ -47,9 +47,9 @@ struct StudyOptions {
     k.count("resolution", &study.resolution, {4, 1024},
             "voxels that energies and folds are taken from");
     k.count("seed", &study.seed, {0, 1e15}, "of all random points");
-    k.number("max_seconds", &study.maxSeconds, {0, 1e9}, "no run begins later; 0: no limit");
     k.object("folder", &folder, "path", "where finished runs are kept, to be taken from there");
     call.describe(k);
+    call.describeTime(k, "seconds after which no run begins; no limit if not given");
   }
 };
 

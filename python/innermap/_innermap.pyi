@@ -222,7 +222,8 @@ def correspond(
     *meshes: Any, landmarks: Union[Sequence[Tuple[Place, Place]], Path, None] = None,
     close: bool = False, surface_resolution: int = 0, genus: Optional[int] = None,
     aligned: bool = False, candidates: int = 3, refine: bool = True, subdivide: float = 0, seed: int = 1, progress: Optional[Progress] = None,
-    max_memory: Union[int, str, None] = None, threads: int = 0) -> Correspondence: ...
+    max_memory: Union[int, str, None] = None, threads: int = 0,
+    max_time: Optional[float] = None) -> Correspondence: ...
 
 def load_correspondence(
     path: Path, *source: AnyMesh, progress: Optional[Progress] = None,
@@ -245,7 +246,8 @@ def fit(
     surface_resolution: int = 0, genus: Optional[int] = None, aligned: bool = False,
     candidates: int = 3, refine: bool = True,
     subdivide: float = 0.005, progress: Optional[Progress] = None,
-    max_memory: Union[int, str, None] = None, threads: int = 0) -> Map: ...
+    max_memory: Union[int, str, None] = None, threads: int = 0,
+    max_time: Optional[float] = None) -> Map: ...
 
 class Field:
     def __call__(
@@ -342,7 +344,8 @@ def hexahedralize(
     *mesh: AnyMesh, pieces: int = 2, seed: int = 1, blocks: int = 0, close: bool = False,
     surface_resolution: int = 0, genus: Optional[int] = None,
     progress: Optional[Progress] = None, max_memory: Union[int,
-    str, None] = None, threads: int = 0) -> Cells: ...
+    str, None] = None, threads: int = 0,
+    max_time: Optional[float] = None) -> Cells: ...
 
 def polycube(
     *mesh: AnyMesh, pieces: Optional[int] = None, blocks: int = 0, close: bool = False,
@@ -354,7 +357,8 @@ def remesh(
     map: Map, cells: AnyCells, *, surface: Optional[AnyMesh] = None, back: bool = False,
     keep_connectivity: bool = False, angle: int = 10, coarse: int = 32, vectors: Union[str,
     Sequence[str], None] = None, normals: Union[str, Sequence[str], None] = None, progress:
-    Optional[Progress] = None, max_memory: Union[int, str, None] = None, threads: int = 0) -> Cells: ...
+    Optional[Progress] = None, max_memory: Union[int, str, None] = None, threads: int = 0,
+    max_time: Optional[float] = None) -> Cells: ...
 
 def compare_fem(
     *meshes: Any, resolutions: Optional[Sequence[int]] = None, charges: Optional[Sequence[int]]
@@ -460,6 +464,6 @@ def study(
     None, distances: Optional[Sequence[float]] = None, radius_ratios: Optional[Sequence[float]]
     = None, base_sources: int = 1000, base_points: int = 4, base_distance: Optional[float] =
     None, base_radius_ratio: float = 1.5, grid: str = 'pairs', interpolation: str = 'linear',
-    regularization: Optional[float] = None, resolution: int = 64, seed: int = 1, max_seconds:
-    float = 0, folder: Optional[Path] = None, progress: Optional[Progress] = None, max_memory:
-    Union[int, str, None] = None, threads: int = 0) -> Tuple[Dict[str, Any], Dict[str, Any]]: ...
+    regularization: Optional[float] = None, resolution: int = 64, seed: int = 1, folder: Optional[Path] = None, progress: Optional[Progress] = None, max_memory:
+    Union[int, str, None] = None, threads: int = 0,
+    max_time: Optional[float] = None) -> Tuple[Dict[str, Any], Dict[str, Any]]: ...

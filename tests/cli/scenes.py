@@ -23,6 +23,18 @@ def fitted_ball(function=swirl, *options, subdivisions=4, sources=400):
              "--quiet")
 
 
+def dent(p):
+    """A ball's upper side pushed in so deep that the harmonic map folds."""
+    x, y, z = p
+    return (x, y, z - 0.9 * math.exp(-(x * x + y * y) / 0.15)) if z > 0 else p
+
+
+def cells_and_map(function=dent, resolution=24):
+    """map.ply from ball.obj to target.obj, and the ball's tetrahedra, ball.vtu."""
+    fitted_ball(function, sources=600)
+    innermap("tetrahedralize", "ball.obj", "-o", "ball.vtu", "--resolution", resolution, "--quiet")
+
+
 def debian_python(script, *arguments):
     """What a script prints with Debian's Python; skips where a module is missing."""
     done = subprocess.run(["/usr/bin/python3", "-c", script, *map(str, arguments)],

@@ -6,23 +6,11 @@ import os
 
 from cli import (MODELS, Skip, dry_run, fails, icosphere_arrays, innermap, nightly, read_json, run,
                  write_obj)
-from scenes import debian_python, fitted_ball
-
-
-def dent(p):
-    """A ball's upper side pushed in so deep that the harmonic map folds."""
-    x, y, z = p
-    return (x, y, z - 0.9 * math.exp(-(x * x + y * y) / 0.15)) if z > 0 else p
-
-
-def scene(function=dent, resolution=24):
-    """map.ply from ball.obj to target.obj, and the ball's tetrahedra, ball.vtu."""
-    fitted_ball(function, sources=600)
-    innermap("tetrahedralize", "ball.obj", "-o", "ball.vtu", "--resolution", resolution, "--quiet")
+from scenes import cells_and_map, debian_python
 
 
 def test_no_cell_stays_inverted():
-    scene()
+    cells_and_map()
     innermap("remesh", "map.ply", "ball.vtu", "-o", "dented.vtu", "--report", "r.json",
              "--picture", "cut.png", "--quiet")
     report = read_json("r.json")
@@ -53,7 +41,7 @@ for p in (n(g.GetPoints().GetData()), n(g.GetPointData().GetArray("source"))):
 
 
 def test_keeps_connectivity_and_brings_back():
-    scene(resolution=16)
+    cells_and_map(resolution=16)
     innermap("remesh", "map.ply", "ball.vtu", "-o", "kept.vtu", "--keep-connectivity", "--report",
              "kept.json", "--quiet")
     kept = read_json("kept.json")["remesh"]
@@ -67,7 +55,7 @@ def test_keeps_connectivity_and_brings_back():
 
 
 def test_the_same_for_one_thread_and_two():
-    scene(resolution=12)
+    cells_and_map(resolution=12)
     for threads in 1, 2:
         innermap("remesh", "map.ply", "ball.vtu", "-o", f"{threads}.vtu", "--threads", threads,
                  "--quiet")
@@ -77,7 +65,7 @@ def test_the_same_for_one_thread_and_two():
 
 def test_through_agrees_with_the_mesh():
     """Vertices of the mesh, carried as points through it, meet it, and come back."""
-    scene(resolution=16)
+    cells_and_map(resolution=16)
     innermap("remesh", "map.ply", "ball.vtu", "-o", "dented.vtu", "--keep-connectivity", "--quiet")
     innermap("push", "map.ply", "ball.vtu", "-o", "pushed.vtu", "--through", "dented.vtu", "--report",
              "push.json", "--quiet")
@@ -103,7 +91,7 @@ print(abs(a - b).max(), abs(c - d).max())
 
 
 def test_what_does_not_fit_is_said():
-    scene(lambda p: (p[0] * 2, p[1], p[2]), resolution=8)
+    cells_and_map(lambda p: (p[0] * 2, p[1], p[2]), resolution=8)
     vertices, faces = icosphere_arrays(3)
     write_obj("far.obj", [(x + 3, y, z) for x, y, z in vertices], faces)
     innermap("tetrahedralize", "far.obj", "-o", "far.vtu", "--resolution", 8, "--quiet")

@@ -227,7 +227,7 @@ def test_dry_run():
 
 def test_budgets():
     shapes()
-    study("--max-seconds", "1e-6")
+    study("--max-time", "1e-6")
     assert read_json("out/report.json")["study"]["left"] == RUNS and table() == []
     # Too large for the limit: in the table, with the reason.
     innermap("study", "ball.obj", "egg.obj", "-o", "more", "--sources", "40,5000", "--points", "none",

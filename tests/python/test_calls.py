@@ -6,6 +6,7 @@ import subprocess
 import sys
 import threading
 import time
+import warnings
 
 import numpy as np
 
@@ -53,6 +54,18 @@ def seconds_to_end(call):
     said, errors = process.communicate(timeout=120)
     assert process.returncode == 3 and said.endswith("interrupted\n"), (call, said, errors)
     return time.monotonic() - begin
+
+
+def test_max_time_ends_what_improves():
+    V, F = shapes.ball(4)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        fitted = innermap.fit(V, F, shapes.bent(V), tolerance=1e-9, max_time=1e-3)
+    assert [w.category for w in told] == [RuntimeWarning] and "max_time" in str(told[0].message), told
+    assert not fitted.tolerance_met
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        innermap.fit(V, F, shapes.bent(V), max_time=1000, **shapes.FEW)
 
 
 def test_ends_on_ctrl_c():

@@ -77,6 +77,10 @@ bool sameConnectivity(const Mesh& a, const Mesh& b);
 // FitMapSettings::tolerance, MeshCorrespondenceSettings::subdivide.
 constexpr double kLaidOnTolerance = 2e-3, kLaidOnSubdivide = 5e-3;
 
+// Of the seconds until a deadline, what laying a surface on another may spend on trying and
+// refining where a map is fitted to the result.
+constexpr double kLayingTimeShare = 0.4;
+
 // Lays both out, maps A onto B (surface/correspond.h), carries that back to the meshes as given and
 // measures it. Throws what layOutMesh(), placeLandmarks() and correspond() throw; MemoryError
 // before anything is done; SettingError, Cancelled. Same result for any number of threads.

@@ -194,8 +194,8 @@ class Energy {
   // No exception may pass through the optimiser, which is C.
   static int keepOn(void* self, const lbfgsfloatval_t*, const lbfgsfloatval_t*, lbfgsfloatval_t,
                     lbfgsfloatval_t, lbfgsfloatval_t, lbfgsfloatval_t, int, int, int) {
-    const Progress* progress = static_cast<Energy*>(self)->settings_.progress;
-    return progress && progress->cancelled() ? 1 : 0;
+    Progress* progress = static_cast<Energy*>(self)->settings_.progress;
+    return progress && (progress->cancelled() || outOfTime(progress)) ? 1 : 0;
   }
 
   TetPatch& patch_;
@@ -249,7 +249,7 @@ double untangle(TetPatch& patch, const UntangleSettings& settings) {
     energy.minimise(eps, x.get());
     const double gain = 1 - energy.at(eps) / before;
     least = energy.leastDeterminant();
-    if (least > 0 && gain < kLeastGain) break;
+    if ((least > 0 && gain < kLeastGain) || outOfTime(settings.progress)) break;
     const double mu = (1 - std::max(gain, kLeastSigma)) * Lifted(least, eps).value;
     eps = least < mu ? 2 * std::sqrt(mu * (mu - least)) : kSmallest;
     if (settings.afterRound) settings.afterRound(patch, round);

@@ -1,6 +1,7 @@
 #include "innermap/field/adaptive_fit.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -32,6 +33,7 @@ constexpr double kLeastGain = 0.97;      // of the score in the rounds of patien
 constexpr double kMostRounds = 20;       // that are looked ahead
 constexpr std::size_t kLookBack = 2;     // rounds, for how the next will go
 constexpr double kOfOutlierRounds = 0.5;
+constexpr double kNextRound = 1.5;  // seconds, of the one before; for a deadline
 
 void append(Matrix& a, const Matrix& b) {
   Matrix out(a.rows() + b.rows(), b.columns());
@@ -40,6 +42,10 @@ void append(Matrix& a, const Matrix& b) {
     std::copy_n(b.column(k), b.rows(), out.column(k) + a.rows());
   }
   a = std::move(out);
+}
+
+double secondsSince(std::chrono::steady_clock::time_point then) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
 }
 
 bool isTame(const BoundaryError& error) { return error.max <= kWorstRatio * error.rms; }
@@ -309,6 +315,7 @@ AdaptiveResult AdaptiveFitting::run() {
   };
   int outliers = 0;
   for (std::uint64_t round = 1;; ++round) {
+    const auto began = std::chrono::steady_clock::now();
     solve();
     const BoundarySamples fresh = problem_.draw(kMarkSamples, round);
     const std::vector<double> errors =
@@ -330,6 +337,10 @@ AdaptiveResult AdaptiveFitting::run() {
     if (error.p99 <= kMargin * settings_.tolerance && ++outliers > settings_.outlierRounds) break;
     if (!gains()) {
       end_ = AdaptiveEnd::noGain;
+      break;
+    }
+    if (outOfTime(settings_.progress, kNextRound * secondsSince(began))) {
+      end_ = AdaptiveEnd::time;
       break;
     }
     if (!refine(markedByLevel(fresh, errors, error))) break;

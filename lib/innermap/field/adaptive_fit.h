@@ -73,8 +73,8 @@ struct AdaptiveSettings {
   Progress* progress = nullptr;
 };
 
-// Why an adaptive fit ended.
-enum class AdaptiveEnd { met, maxSources, maxMemory, noGain, stopped };
+// Why an adaptive fit ended; time: at the deadline of its progress.
+enum class AdaptiveEnd { met, maxSources, maxMemory, noGain, stopped, time };
 
 struct AdaptiveRound {
   std::size_t sources = 0, collocation = 0;

@@ -201,6 +201,7 @@ Trial Fitting::makeTrial(bool smooth) {
   for (int step = 0; step <= steps; ++step) {
     const double ratio = steps ? 1.0 * step / steps : 0;
     reportProgress(settings_.progress, "choosing the distance", ratio);
+    if (out.best && outOfTime(settings_.progress)) break;
     try {
       Solved solved = solve(data, few, kTrialPointsPerSource * few + 16,
                             out.nearest * std::pow(farthest / out.nearest, ratio));

@@ -364,7 +364,7 @@ IterativeSolution IterativeSolver::Levels::iterate(const Scaled& values, Matrix&
     runLevels(directions, residual, x, out);
     ++out.iterations;
     out.residuals.push_back(values.size * rms(residual));
-    left = !littleIsLeft(out.residuals);
+    left = !littleIsLeft(out.residuals) && !outOfTime(settings_.progress);
   }
   unscale(values, residual, x, out);
   return out;

@@ -70,7 +70,6 @@ void checkSettings(const StudySettings& settings) {
     throw SettingError("regularization", "must lie between 0 and 1");
   if (settings.resolution < 4 || settings.resolution > 1024)
     throw SettingError("resolution", "must lie between 4 and 1024");
-  if (!(settings.maxSeconds >= 0)) throw SettingError("seconds", "must not be negative");
   const auto ascend = [](const auto& list, const char* name) {
     if (!std::is_sorted(list.begin(), list.end())) throw SettingError(name, "must ascend");
   };
@@ -256,7 +255,6 @@ bool isKept(const BoundaryPair& pair, const StudyRun& run, const StudySettings& 
 
 Study runStudy(const BoundaryPair& pair, const StudySettings& settings,
                const StudyVisitor& visitor) {
-  const auto start = Clock::now();
   const std::vector<StudyRun> runs = studyRuns(pair.solid(), settings);
   Study study;
   study.base = baseRun(pair.solid(), settings);
@@ -275,7 +273,7 @@ Study runStudy(const BoundaryPair& pair, const StudySettings& settings,
       ++study.kept;
     } else if (most > 0 && need > most) {
       row = tooLarge(run, need, settings.maxMemory);
-    } else if (settings.maxSeconds > 0 && secondsSince(start) > settings.maxSeconds) {
+    } else if (outOfTime(settings.progress)) {
       ++study.left;
       continue;
     } else {

@@ -25,7 +25,7 @@ struct Study {
   std::size_t vertices = 0;        // of the source mesh
   double spacing = 0;              // of one charge: sqrt(area), fraction of the source's diagonal
   std::size_t made = 0, kept = 0;  // of the rows
-  std::size_t left = 0;            // runs that maxSeconds left for another time
+  std::size_t left = 0;            // runs that the deadline left for another time
   std::vector<std::string> warnings;
 };
 

@@ -55,9 +55,8 @@ struct StudySettings {
   // Where finished runs are kept, a file each, to be taken from there by the next study of the same
   // boundaries, settings and version; made when missing. Empty: nowhere.
   std::string folder;
-  double maxSeconds = 0;        // no run begins later; 0 means no limit
-  std::uint64_t maxMemory = 0;  // bytes, of each run; 0 means no limit
-  Progress* progress = nullptr;
+  std::uint64_t maxMemory = 0;   // bytes, of each run; 0 means no limit
+  Progress* progress = nullptr;  // after its deadline no run begins; one that has begun goes on
 };
 
 // What became of a run. Errors are fractions of the target's diagonal; what is not known is NaN.

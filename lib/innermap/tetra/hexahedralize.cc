@@ -27,6 +27,8 @@ constexpr int kRetries = 2;
 constexpr double kMoreBlocks = 1.15;  // each time, across
 constexpr std::size_t kFeatureSamples = 20000, kBlock = 256;
 // Measured: of shaping; and what the correspondence and the map keep while the other is made.
+// Of the time that is left: what comes after, shaping above all, needs the rest.
+constexpr double kFittingShare = 0.4;
 constexpr std::uint64_t kBytesAHexahedron = 2560, kBeside = 30'000'000;
 
 void requireSettings(const HexahedralizeSettings& settings) {
@@ -54,7 +56,8 @@ Carried carry(const Mesh& mesh, const HexahedralizeSettings& settings, Hexahedra
   laying.aligned = true;
   laying.seed = settings.seed;
   laying.maxMemory = settings.maxMemory;
-  laying.progress = settings.progress;
+  PartOfTime layingTime(settings.progress, kLayingTimeShare);
+  laying.progress = &layingTime;
   const MeshCorrespondence map = timed(out.seconds, "boundary map", [&] {
     return correspondMeshes(blockSurface(out.polycube.blocks, surfacePieces(out.polycube.blocks)),
                             mesh, laying);
@@ -72,7 +75,8 @@ Carried carry(const Mesh& mesh, const HexahedralizeSettings& settings, Hexahedra
     fitting.oneToOne = OneToOne::off;
     fitting.seed = settings.seed;
     fitting.maxMemory = settings.maxMemory;
-    fitting.progress = settings.progress;
+    PartOfTime fittingTime(settings.progress, kFittingShare);
+    fitting.progress = &fittingTime;
     const MapFit fit = fitMap(map.source, map.target("polycube on " + mesh.name), fitting);
     EvaluateFieldSettings evaluating;
     evaluating.accuracy = 1e-5 * fit.solid().diagonal();
@@ -196,7 +200,7 @@ Hexahedralization hexahedralize(const Mesh& mesh, const HexahedralizeSettings& s
   Hexahedralization best = attempt(mesh, settings, settings.blocks);
   for (int retry = 0; retry < kRetries && settings.blocks == 0 && !best.after.proven(); ++retry) {
     const int more = static_cast<int>(std::ceil(kMoreBlocks * best.polycube.across));
-    if (more > kMostAcross) break;
+    if (more > kMostAcross || outOfTime(settings.progress)) break;
     try {
       Hexahedralization other = attempt(mesh, settings, more);
       const auto bad = [](const Hexahedralization& h) {

@@ -124,6 +124,7 @@ class Remesher {
     std::optional<CoarseLevel> level;
     const auto most = static_cast<std::size_t>(cellCount()) + 4 * given_.hexahedra.size();
     for (int resolution = settings_.coarse; resolution <= 1024; resolution *= 2) {
+      if (outOfTime(settings_.progress)) break;
       CellMesh mesh = tetrahedralize(mapped_.solid(), fillSettings(resolution));
       if (3 * mesh.tetrahedra.size() > most) break;
       CarriedCells moved = carried(mesh);
@@ -156,7 +157,7 @@ class Remesher {
       out_.repair.poorAfter = repair.poorAfter;
       out_.repair.notLanded = repair.notLanded;
       out_.repair.farthestOff = repair.farthestOff;
-      if (!mesh.hexahedra.empty()) break;
+      if (!mesh.hexahedra.empty() || outOfTime(settings_.progress)) break;
       if (turn + 1 == kTurns && repair.invertedAfter == 0 && repair.notLanded == 0) break;
       const CellImprovement improved =
           timed(out_.seconds, "shapes", [&] { return improve(mesh, cells); });

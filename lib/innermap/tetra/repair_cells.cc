@@ -86,7 +86,7 @@ class Repair {
   std::vector<int> untangleWith(const Rings& rings, bool slide, std::vector<int> poor,
                                 std::size_t first) {
     for (const int count : rings) {
-      if (poor.empty()) break;
+      if (poor.empty() || outOfTime(settings_.progress)) break;
       reportProgress(settings_.progress, slide ? "repairing the boundary" : "repairing",
                      1 - static_cast<double>(poor.size()) / static_cast<double>(first + 1));
       const std::size_t before = poor.size();

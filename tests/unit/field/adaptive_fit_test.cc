@@ -144,6 +144,19 @@ TEST(AdaptiveFit, EndsWithItsFirstChargesWhereTheseSayNo) {
   EXPECT_EQ(asked, 2);
 }
 
+TEST(AdaptiveFit, EndsAtTheDeadlineWithWhatThereIs) {
+  Ball ball;
+  ball.settings.tolerance = 2e-4;
+  Progress late;
+  late.setSecondsLeft(0);
+  ball.settings.progress = &late;
+  const AdaptiveResult r = fitToTolerance(ball.problem, ball.settings);
+  EXPECT_EQ(r.end, AdaptiveEnd::time);
+  EXPECT_EQ(r.rounds.size(), 1u);
+  EXPECT_GT(r.error.p99, ball.settings.tolerance);
+  EXPECT_TRUE(late.endedByTime());
+}
+
 TEST(AdaptiveFit, NoRoomForFinerLevelsIsNoGain) {
   Ball ball;
   ball.settings.tolerance = 1e-4;

@@ -217,11 +217,13 @@ TEST(Study, LimitsLeaveRunsOut) {
   StudySettings s = quick();
   s.folder = folder.path.string();
   const BoundaryPair pair = pairOf();
-  s.maxSeconds = 1e-9;
+  Progress late;
+  late.setSecondsLeft(0);
+  s.progress = &late;
   const Study none = runStudy(pair, s);
   EXPECT_EQ(none.left, 6u);
   EXPECT_TRUE(none.rows.empty());
-  s.maxSeconds = 0;
+  s.progress = nullptr;
   s.maxMemory = 1000;
   const Study small = runStudy(pair, s);
   ASSERT_EQ(small.rows.size(), 6u);

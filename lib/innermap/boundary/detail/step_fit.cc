@@ -1,6 +1,7 @@
 #include "innermap/boundary/detail/step_fit.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -59,12 +60,21 @@ class StepFitter {
   StepFit fit() {
     std::vector<double> ends{1};  // the next one last
     if (settings_.maxSteps > 1) ends.push_back(0.5);
+    bool hurries = false;  // one step does the rest of the way, for lack of time
+    double seconds = 0;    // of the last step, taken or not
     while (!ends.empty()) {
       reportProgress(settings_.progress, "going in steps", std::pow(at_, kWorkPower));
+      if (!hurries && outOfTime(settings_.progress, seconds)) {
+        hurries = true;
+        ends = {1};
+      }
       const double end = ends.back();
-      const bool may = static_cast<int>(records_.size() + ends.size()) < settings_.maxSteps;
+      const bool may =
+          !hurries && static_cast<int>(records_.size() + ends.size()) < settings_.maxSteps;
       const double half = (end - at_) / 2;
+      const auto began = std::chrono::steady_clock::now();
       Step step = fitStep(end, may && half >= kShortest);
+      seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
       if (step.fit.end == AdaptiveEnd::stopped ||
           (may && half >= kShortestFitted && step.record.folded > allowed(kFoldShare))) {
         ends.push_back((at_ + end) / 2);

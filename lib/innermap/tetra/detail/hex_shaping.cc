@@ -69,6 +69,7 @@ class Shaping {
     // Up to twice as many where some are not right side out by then.
     for (int round = 0; round < 2 * settings_.rounds; ++round) {
       if (round >= settings_.rounds && unproven_ == 0) break;
+      if (outOfTime(settings_.progress)) break;
       reportProgress(settings_.progress, "shaping hexahedra",
                      std::min(1.0, static_cast<double>(round) / settings_.rounds));
       if (round < kGrowing) stiffness_ *= kGrowth;

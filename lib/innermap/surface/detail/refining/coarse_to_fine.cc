@@ -53,7 +53,10 @@ void CoarseToFine::relaxAll(int sweeps) {
     if (energy_.sweeps()) std::fill(active.begin(), active.end(), 1);
     std::fill(next.begin(), next.end(), 0);
     for (int v = 0; v < static_cast<int>(mesh_.capacity()); ++v) {
-      if (v % 512 == 0) throwIfCancelled(settings_.progress);
+      if (v % 512 == 0) {
+        throwIfCancelled(settings_.progress);
+        if (outOfTime(settings_.progress)) return;
+      }
       if (!mesh_.present(v) || !active[v]) continue;
       if (!(relax(v, settings_.steps) > settings_.enough)) continue;
       moved = true;
@@ -87,6 +90,7 @@ bool CoarseToFine::insert(int v, int into) {
     least = e;
     place = candidate;
   }
+  if (outOfTime(settings_.progress)) return true;
   relax(v, settings_.steps + 1);
   for (const RingVertex& r : ring_) relax(r.vertex, 1);
   return true;

@@ -170,6 +170,7 @@ ShellMap bestOf(Refiners refiners, const LaidOutShell& a, const LaidOutShell& b,
     if (judgeEarly && refiners.size() > 1) keepBest(refiners, a, b, settings);
     if (refiners.size() > kept) refiners.resize(kept);
   }
+  if (refiners.size() > 1 && outOfTime(settings.progress)) refiners.resize(1);
   refineAll(refiners, vertices, settings.progress);
   if (refiners.empty())
     throw DataError(a.surface.name +

@@ -61,7 +61,8 @@ class Subdivision {
       const std::vector<char> deviates = deviating(look);
       const std::vector<std::pair<int, int>> edges = edgesToSplit(deviates);
       if (edges.empty()) break;
-      if (surface_.triangles.size() + 2 * edges.size() > settings_.triangles) {
+      if (outOfTime(settings_.progress) ||
+          surface_.triangles.size() + 2 * edges.size() > settings_.triangles) {
         out.enough = false;
         break;
       }

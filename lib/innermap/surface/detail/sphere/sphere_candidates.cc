@@ -105,11 +105,14 @@ class Trial {
   Maps run(const std::vector<MapStart>& starts, const CoarseSurface& coarse,
            const CoarseMapSettings& how) {
     Maps found(starts.size());
+    std::atomic<bool> some{false};
     parallel(starts.size(), [&](std::size_t i) {
+      if (some && outOfTime(settings_.progress)) return;
       CoarseMapSettings drawing = how;
       drawing.drawn = coarseAnchors(starts[i].drawn, coarse);
       found[i] = relax(rotatedCoarse(coarse, la_, starts[i].rotation), coarse, drawing);
       if (!found[i]) return;
+      some = true;
       found[i]->origin = starts[i].origin;
       found[i]->energy += landmarkCost(*found[i], coarse);
     });
@@ -121,7 +124,9 @@ class Trial {
   Maps rerun(const std::vector<CoarseMap>& maps, const CoarseSurface& coarse, const LimbTips& tipsA,
              const LimbTips& tipsB) {
     Maps found(2 * maps.size());
+    std::atomic<bool> some{settings_.landmarks.empty()};
     parallel(found.size(), [&](std::size_t i) {
+      if (some && outOfTime(settings_.progress)) return;
       const CoarseMap& from = maps[i / 2];
       CoarseMapSettings how;
       how.fixed = coarseAnchors(settings_.landmarks, coarse);
@@ -137,7 +142,9 @@ class Trial {
         return;
       }
       found[i] = relax(from.image, coarse, how);
-      if (found[i]) found[i]->origin = origin;
+      if (!found[i]) return;
+      some = true;
+      found[i]->origin = origin;
     });
     return found;
   }
