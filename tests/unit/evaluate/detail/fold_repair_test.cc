@@ -107,7 +107,7 @@ TEST(FoldRepair, AVoxelWithoutCellsFollowsThoseAboutIt) {
   const FoldRepair repair = repairFolds(*lattice.map, *jacobian, *lattice.levelSet, {});
   const auto found = repair.voxels.find(Coord(10, 4, 4));
   ASSERT_NE(found, repair.voxels.end());
-  EXPECT_LT(norm(found->second.position - Vec3{10, 4, 4}), 0.3);
+  EXPECT_LT(norm(found->second.position - Vec3{10, 4, 4}), 0.6);  // on its side of 9, by far
   EXPECT_GT(determinant(found->second.jacobian), 0.5);
 }
 
