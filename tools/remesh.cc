@@ -7,7 +7,6 @@
 
 #include "cell_report.h"
 #include "commands.h"
-#include "correspondence.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/cells/cell_file.h"
 #include "innermap/io/picture/cell_picture.h"
@@ -105,7 +104,7 @@ void run(const RemeshOptions& options, Context& context) {
   RemeshSettings settings = context.settings(options.settings);
   std::optional<Mesh> surface;
   if (!options.surface.empty()) {
-    surface = takeCleanSurface(readMeshFile(options.surface, context), {}, context);
+    surface = readMeshFile(options.surface, context);
     settings.surface = &*surface;
   }
   const Mesh own = settings.back ? sourceSurface(mapped) : targetSurface(mapped);

@@ -133,12 +133,14 @@ def copy(vertices, faces, random):
     return np.vstack([vertices, moved]), np.vstack([faces, faces + len(vertices)])
 
 
+KINDS = {"bend": bend, "push": push, "spikes": spikes, "copy": copy}
+
+
 def main():
-    kinds = {"bend": bend, "push": push, "spikes": spikes, "copy": copy}
-    if len(sys.argv) != 5 or sys.argv[1] not in kinds or not sys.argv[2].isdigit():
+    if len(sys.argv) != 5 or sys.argv[1] not in KINDS or not sys.argv[2].isdigit():
         sys.exit(__doc__)
     vertices, faces = read_obj(sys.argv[3])
-    write_obj(sys.argv[4], *kinds[sys.argv[1]](vertices, faces, np.random.default_rng(int(sys.argv[2]))))
+    write_obj(sys.argv[4], *KINDS[sys.argv[1]](vertices, faces, np.random.default_rng(int(sys.argv[2]))))
 
 
 if __name__ == "__main__":
