@@ -33,7 +33,7 @@ class Progress {
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
   virtual bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
 
-  // From now, at least 0; infinity: no deadline. Instead of one that was set before.
+  // From now; below 0: the deadline is past; infinity: there is none. Instead of one set before.
   void setSecondsLeft(double seconds) noexcept {
     deadline_.store(now() + seconds, std::memory_order_relaxed);
   }
