@@ -104,31 +104,40 @@ TEST(CertificateNightly, HoldsForMoreKnownFunctions) {
   expectBoundsOfKnown([](std::size_t m, std::size_t k) { return k != m % 7; });
 }
 
-// All functions on each of the meshes at all places, in each way at three of them: about a minute a
-// mesh. Prints the largest share of `bound` and of `smoothBound` that errors take, and how many
-// times the error inside the latter is at most.
-TEST(CertificateNightly, HoldsOnAllMeshes) {
+std::vector<known::NamedMesh> allMeshes() {
   std::vector<known::NamedMesh> meshes = known::meshes();
   for (const known::NamedMesh& m : known::moreMeshes()) meshes.push_back(m);
-  int way = 0;
-  for (const auto& [meshName, mesh] : meshes)
-    for (const auto& [name, f] : known::functionsOn(mesh)) {
-      double used = 0, over = 0, usedTriangles = 0;
-      for (const Place& place : kPlaces) {
-        way = (way + 1) % kWays;
-        SCOPED_TRACE(fmt::format("{} on {}, scale {:g}, {:g} diagonals off, way {}", name, meshName,
-                                 place.scale, place.diagonals, way));
-        const Outcome o = fitKnown(mesh, f, place, wayOf(way));
-        expectBounds(o);
-        usedTriangles = std::max(usedTriangles, o.found.triangles / o.triangles);
-        used = std::max(used, std::max(o.found.surface, o.found.inside) / o.smooth);
-        over = std::max(over, (o.smooth - o.floor) / o.found.inside);
-      }
-      fmt::print("| {} | {} | {:.2f} | {:.2f} | {:.1f} |\n", meshName, name, usedTriangles, used,
-                 over);
-      std::fflush(stdout);
-      ++way;
+  return meshes;
+}
+
+// By the number of the mesh: shards run them side by side.
+class CertificateOnMeshNightly : public ::testing::TestWithParam<std::size_t> {};
+INSTANTIATE_TEST_SUITE_P(All, CertificateOnMeshNightly,
+                         ::testing::Range(std::size_t(0), allMeshes().size()));
+
+// All functions at all places, in each way at three of them: about a minute. Prints the largest
+// share of `bound` and of `smoothBound` that errors take, and how many times the error inside the
+// latter is at most.
+TEST_P(CertificateOnMeshNightly, Holds) {
+  const auto [meshName, mesh] = allMeshes()[GetParam()];
+  int way = static_cast<int>(GetParam());
+  for (const auto& [name, f] : known::functionsOn(mesh)) {
+    double used = 0, over = 0, usedTriangles = 0;
+    for (const Place& place : kPlaces) {
+      way = (way + 1) % kWays;
+      SCOPED_TRACE(fmt::format("{} on {}, scale {:g}, {:g} diagonals off, way {}", name, meshName,
+                               place.scale, place.diagonals, way));
+      const Outcome o = fitKnown(mesh, f, place, wayOf(way));
+      expectBounds(o);
+      usedTriangles = std::max(usedTriangles, o.found.triangles / o.triangles);
+      used = std::max(used, std::max(o.found.surface, o.found.inside) / o.smooth);
+      over = std::max(over, (o.smooth - o.floor) / o.found.inside);
     }
+    fmt::print("| {} | {} | {:.2f} | {:.2f} | {:.1f} |\n", meshName, name, usedTriangles, used,
+               over);
+    std::fflush(stdout);
+    ++way;
+  }
 }
 
 // A needle of an error at a place that no random point is likely to fall near: beside a vertex.
