@@ -33,7 +33,10 @@ void run(const Options& options, Context& context) {
   if (!options.sourceOutput.empty()) requirePly("--source-out", options.sourceOutput);
   context.output(options.output);
   context.output(sourceOutputOf(options), false);
-  if (!options.picture.empty()) context.output(options.picture);
+  if (!options.picture.empty()) {
+    context.output(options.picture);
+    context.output(otherPicture(options.picture), false);
+  }
   Mesh a = readMeshFile(options.a, context), b = readMeshFile(options.b, context);
   const std::size_t countA = a.vertices.size(), countB = b.vertices.size();
   context.expect(correspondPhases(countA + countB));
@@ -58,7 +61,9 @@ void run(const Options& options, Context& context) {
   });
   if (!options.picture.empty())
     context.timed("picture", [&] {
-      writeCorrespondencePicture(options.picture, moved, context.settings<MeshPictureSettings>());
+      writeCorrespondencePictures(
+          options.picture, moved, [](const std::string& path, const auto& write) { write(path); },
+          context);
     });
   if (moved.changed)
     context.note(fmt::format("{} has A with the same {} vertices: give both to innermap map",
@@ -101,7 +106,9 @@ Command makeCorrespondCommand() {
   c.option("--seed", "N", &o->correspond.map.seed, "of all random choices")
       .range(0, 1e15)
       .advanced();
-  c.option("--picture", "FILE", &o->picture, "a .png with SOURCE's coordinates as colours, on both")
+  c.option("--picture", "FILE", &o->picture,
+           "a .png with SOURCE's coordinates as colours, on both; where another way is about as "
+           "good, that goes to the same name with .other.png")
       .writes({".png"});
   c.example("innermap correspond cow.obj man.obj -o cow_on_man.ply --picture cow_on_man.png");
   c.example(

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "innermap/core/memory.h"
+#include "innermap/io/picture/mesh_picture.h"
 #include "inputs.h"
 #include "map_report.h"
 
@@ -45,14 +46,24 @@ void reportMap(const MeshCorrespondence& map, Report& report) {
   reportOuter("correspondence.target_outer_surface", map.b.outer, report);
 }
 
-// First maps of the first shell, which the inside chose between, best first.
-void reportConsidered(const std::vector<ConsideredMap>& maps, Report& report) {
+// First maps of the first shell, which the inside chose between, best first; and the way taken.
+void reportConsidered(const ShellCorrespondence& shell, Report& report) {
+  const std::vector<ConsideredMap>& maps = shell.considered;
+  report.set("correspondence.way", shell.way);
+  if (shell.other) {
+    report.set("correspondence.other_way.way", shell.other->way);
+    report.setColumn("correspondence.other_way.score", shell.other->score,
+                     [](auto s) { return s; });
+    report.setColumn("correspondence.other_way.turn", shell.other->turn, [](auto t) { return t; });
+  }
   if (maps.empty()) return;
   std::vector<std::string> origins;
   for (const ConsideredMap& m : maps) origins.push_back(m.origin);
   report.set("correspondence.considered.origin", origins);
   report.setColumn("correspondence.considered.energy", maps, [](auto& m) { return m.energy; });
   report.setColumn("correspondence.considered.score", maps, [](auto& m) { return m.score; });
+  report.setColumn("correspondence.considered.turn", maps, [](auto& m) { return m.turn; });
+  report.setColumn("correspondence.considered.way", maps, [](auto& m) { return m.way; });
 }
 
 std::string qualityText(const MapQuality& q, ModelSpace space, bool outer) {
@@ -102,6 +113,13 @@ void addCorrespondOptions(Command& c, CorrespondOptions& o) {
            "stretch and fold it least; of them the one that does so least is taken")
       .range(1, 64)
       .advanced();
+  c.option("--choose", "N", &o.map.way.choose,
+           "of the ways to lay SOURCE on TARGET that differ, the one of this number by preference; "
+           "a note tells where the second is about as good as the first")
+      .range(1, 64);
+  c.flag("--mirror", &o.map.way.mirror,
+         "the best way that turns left into right of what is taken otherwise, for bodies that are "
+         "the same on both sides");
   c.flag("--no-refine", &o.noRefine,
          "only the best way to lay SOURCE on TARGET, not refined: fast, rough")
       .advanced();
@@ -170,6 +188,19 @@ ReportMesh reportOf(const LaidOutMesh& laid) {
   return out;
 }
 
+void writeCorrespondencePictures(const std::string& path, const MeshCorrespondence& map,
+                                 const WritePicture& write, const Context& context) {
+  const auto settings = context.settings<MeshPictureSettings>();
+  write(path, [&](const std::string& to) { writeCorrespondencePicture(to, map, settings); });
+  if (const std::optional<MeshCorrespondence> other = map.otherWay())
+    write(otherPicture(path),
+          [&](const std::string& to) { writeCorrespondencePicture(to, *other, settings); });
+}
+
+std::string otherPicture(const std::string& path) {
+  return path.substr(0, path.size() - 4) + ".other.png";
+}
+
 MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const CorrespondOptions& options,
                                     Context& context) {
   context.requireMemory("the correspondence",
@@ -184,7 +215,7 @@ MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const CorrespondOptions& opt
   MeshCorrespondence map = innermap::correspondMeshes(std::move(laidA), std::move(laidB), settings);
   context.tell(map);
   reportMap(map, context.report());
-  reportConsidered(map.map.shells.front().considered, context.report());
+  reportConsidered(map.map.shells.front(), context.report());
   context.print(
       qualityText(map.quality, map.map.shells.front().image.space, map.a.outer || map.b.outer));
   return map;

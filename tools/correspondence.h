@@ -1,6 +1,7 @@
 // What the commands that lay surfaces out share: options, and results in the report.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -44,6 +45,15 @@ Mesh readCleanSurface(const std::string& path, const SurfaceOptions& options, Co
 // For the report.
 void reportOuter(const std::string& key, const std::optional<OuterSurface>& taken, Report& report);
 ReportMesh reportOf(const LaidOutMesh& mesh);
+
+// The picture of a correspondence at `path`; where there is another way that is about as good, its
+// picture at otherPicture(path). Both through `write`, which is given a path and what writes there.
+using WritePicture =
+    std::function<void(const std::string& path, const std::function<void(const std::string&)>&)>;
+void writeCorrespondencePictures(const std::string& path, const MeshCorrespondence& map,
+                                 const WritePicture& write, const Context& context);
+// picture.png -> picture.other.png
+std::string otherPicture(const std::string& path);
 
 // Maps A onto B and tells: notes, the report's "correspondence" and "seconds", a text for the
 // terminal.

@@ -162,8 +162,8 @@ BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& f
   const auto progress = context.settings<BoundarySettings>();
   if (meshes.related)
     return makeBoundaryPair(std::move(meshes.source), std::move(meshes.target), progress);
-  context.inFolder(options.output,
-                   {"correspondence.ply", "correspondence.source.ply", "correspondence.png"});
+  context.inFolder(options.output, {"correspondence.ply", "correspondence.source.ply",
+                                    "correspondence.png", "correspondence.other.png"});
   context.note(correspondPlan(options) + "; --correspond takes one made before");
   const std::string name = meshes.target.name;
   CorrespondOptions correspond = options.correspond;
@@ -178,9 +178,9 @@ BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& f
     folder.write("correspondence.source.ply",
                  [&](const std::string& path) { writeMesh(path, moved.source); });
   context.timed("picture", [&] {
-    folder.write("correspondence.png", [&](const std::string& path) {
-      writeCorrespondencePicture(path, moved, context.settings<MeshPictureSettings>());
-    });
+    writeCorrespondencePictures(
+        "correspondence.png", moved,
+        [&](const std::string& file, const auto& write) { folder.write(file, write); }, context);
   });
   return makeBoundaryPair(moved.source, target, progress);
 }

@@ -196,6 +196,10 @@ void CorrespondOptions::describe(Keywords& k) {
   k.flag("aligned", &map.aligned,
          "the two stand in the same pose and orientation: prefer agreeing normals and places");
   k.count("candidates", &map.candidates, {1, 64}, "ways to lay one on the other that are refined");
+  k.count("choose", &map.way.choose, {1, 64},
+          "of the ways to lay one on the other that differ, the one of this number by preference");
+  k.flag("mirror", &map.way.mirror,
+         "the best way that turns left into right of what is taken otherwise");
   k.flag("refine", &map.refine, "False: only the best way, not refined: fast, rough");
   k.number("subdivide", &map.subdivide, {0, 1},
            "split the source's triangles until they follow the target within it, a fraction of "

@@ -221,7 +221,8 @@ class Correspondence:
 def correspond(
     *meshes: Any, landmarks: Union[Sequence[Tuple[Place, Place]], Path, None] = None,
     close: bool = False, surface_resolution: int = 0, genus: Optional[int] = None,
-    aligned: bool = False, candidates: int = 3, refine: bool = True, subdivide: float = 0, seed: int = 1, progress: Optional[Progress] = None,
+    aligned: bool = False, candidates: int = 3, choose: int = 1, mirror: bool = False,
+    refine: bool = True, subdivide: float = 0, seed: int = 1, progress: Optional[Progress] = None,
     max_memory: Union[int, str, None] = None, threads: int = 0,
     max_time: Optional[float] = None) -> Correspondence: ...
 
@@ -244,7 +245,7 @@ def fit(
     method: Literal['tikhonov', 'tsvd'] = 'tikhonov', regularization: Optional[float] = None,
     landmarks: Union[Sequence[Tuple[Place, Place]], Path, None] = None, close: bool = False,
     surface_resolution: int = 0, genus: Optional[int] = None, aligned: bool = False,
-    candidates: int = 3, refine: bool = True,
+    candidates: int = 3, choose: int = 1, mirror: bool = False, refine: bool = True,
     subdivide: float = 0.005, progress: Optional[Progress] = None,
     max_memory: Union[int, str, None] = None, threads: int = 0,
     max_time: Optional[float] = None) -> Map: ...

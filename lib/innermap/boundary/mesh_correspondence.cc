@@ -88,6 +88,7 @@ CorrespondSettings settingsOf(const MeshCorrespondenceSettings& settings) {
   CorrespondSettings out;
   out.aligned = settings.aligned;
   out.candidates = settings.candidates;
+  out.way = settings.way;
   out.refine = settings.refine;
   if (settings.byInside)
     out.judge = [progress = settings.progress](const ClosedSurface& a, const ClosedSurface& b) {
@@ -130,6 +131,15 @@ Mesh MeshCorrespondence::target(const std::string& name) const {
   mesh.name = name;
   mesh.vertices = positions;
   return mesh;
+}
+
+std::optional<MeshCorrespondence> MeshCorrespondence::otherWay() const {
+  if (!map.shells.front().other) return {};
+  MeshCorrespondence out = *this;
+  ShellCorrespondence& shell = out.map.shells.front();
+  shell.surface = shell.other->surface;
+  shell.image = shell.other->image;
+  return out;
 }
 
 MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const MeshCorrespondenceSettings& settings) {

@@ -29,6 +29,7 @@ struct MeshCorrespondenceSettings {
   int candidates = 3;      // ways to lay A on B that are refined, in [1, 64]
   bool byInside = true;    // choose by a coarse harmonic map of the inside; otherwise, and where
                            // there is none, by the surfaces' energy
+  WantedWay way;           // which of the ways to lay A on B that differ; needs byInside
   bool refine = true;      // false: fast, rough
   double subdivide = 0;    // split A until it follows B within this fraction of B's diagonal, in
                            // [0, 1); 0: never
@@ -66,6 +67,10 @@ struct MeshCorrespondence {
 
   // source with its vertices on B.
   Mesh target(const std::string& name) const;
+
+  // The other way to lay A's first shell on B that is about as good, where there is one: `map` with
+  // a coarse surface in place of that shell, for preimagesOf() and pictures alone.
+  std::optional<MeshCorrespondence> otherWay() const;
 };
 
 // Whether each vertex of the one is its like's of the other: the same number of them, and the same

@@ -208,6 +208,7 @@ class Corresponder {
     s.aligned = settings_.aligned;
     s.candidates = settings_.candidates;
     s.refine = settings_.refine;
+    s.wanted = settings_.way;
     s.seed = settings_.seed;
     s.progress = settings_.progress;
     return s;
@@ -234,7 +235,10 @@ class Corresponder {
       out.map.targetSurface = onto.surface;
       out.map.targetLayout = onto.layout;
       out.map.origin = map.origin;
+      out.map.way = map.way;
       out.map.considered = std::move(map.considered);
+      out.map.other = std::move(map.other);
+      noteOther(out.map);
     }
     subdivideOne(out);
     const Locator locator(out.map.targetSurface.triangles, out.map.targetLayout);
@@ -242,7 +246,20 @@ class Corresponder {
     return out;
   }
 
+  void noteOther(const ShellCorrespondence& map) {
+    if (!map.other) return;
+    const auto& [way, score, turn, surface, image] = *map.other;
+    out_.notes.push_back(fmt::format(
+        "{} can be laid on {} in two ways that are about as good: the one taken (score {:.2f}, "
+        "less "
+        "is better) turns it by {:.0f} degrees, the other (score {:.2f}) by {:.0f}; choose {} "
+        "takes "
+        "the other",
+        map.surface.name, map.targetSurface.name, score[0], turn[0], score[1], turn[1], way));
+  }
+
   void mapHandles(MappedShell& out) {
+    requireOnlyWay(settings_.way, "solids of two handles and more are");
     CutAlikeSettings cutting;
     cutting.aligned = settings_.aligned;
     cutting.landmarks = out.exact;

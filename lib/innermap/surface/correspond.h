@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -61,6 +62,7 @@ struct CorrespondSettings {
   int candidates = 3;    // that are refined, in [1, 64]; the one of least energy is taken
   bool refine = true;
   JudgeMaker judge;  // chooses among first maps and among those refined; none: the least energy
+  WantedWay way;     // another than the best: with a judge, of shells of genus 0 and 1
   std::uint64_t seed = 1;
   double subdivide = 0;  // split A until it follows B within this share of B's diagonal; 0: never
   std::uint64_t maxMemory = 0;  // bytes, of the process, that splitting ends at; 0 means no limit
@@ -81,7 +83,9 @@ struct ShellCorrespondence {
   Points positions;                             // #vertices of surface, world units
   std::shared_ptr<const CutSurface> targetCut;  // how B's shell was cut; null up to genus 1
   std::string origin;                           // how the map was found, in words
+  int way = 1;                                  // WantedWay::choose that gives this one
   std::vector<ConsideredMap> considered;        // with a judge: first maps, best first
+  std::optional<OtherWay> other;                // that is as good
 };
 
 struct Correspondence {
@@ -103,7 +107,8 @@ std::vector<SurfacePoint> onTargetMesh(const ShellCorrespondence& shell,
                                        const std::vector<SurfacePoint>& points);
 
 // Throws DataError where the solids' topology differs (naming both), where landmarks contradict one
-// another or the orientation; SettingError; Cancelled. Same result for any number of threads.
+// another or the orientation; SettingError, also where there is no such way round; Cancelled. Same
+// result for any number of threads.
 Correspondence correspond(const EmbeddedSurface& a, const EmbeddedSurface& b,
                           const CorrespondSettings& settings = {});
 

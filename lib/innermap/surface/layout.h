@@ -80,11 +80,27 @@ struct MapJudge {
   std::function<double(const Points& images)> score;  // of `at`, world units on B; less is better
 };
 
+// Which way round one surface is laid on another, of those that a judge heard.
+struct WantedWay {
+  int choose = 1;       // by preference: the best, then the next that differs, ...
+  bool mirror = false;  // instead: the best that turns left into right, as `choose` = 1 does not
+};
+
 // A map that was considered.
 struct ConsideredMap {
   std::string origin;  // how it was found, in words
   double energy = 0;   // of a coarse surface, both ways
-  double score = 0;    // the judge's
+  double score = 0;    // the judge's, of that
+  double turn = 0;     // degrees of the rotation nearest to it, in [0, 180]
+  int way = 1;         // maps that put A's parts at about the same places are one way round
+};
+
+// Another way round that a judge finds as good as the one that was taken.
+struct OtherWay {
+  int way = 2;
+  std::array<double, 2> score{}, turn{};  // of the one taken and of this one
+  ClosedSurface surface;                  // A's shell, coarse
+  Layout image;                           // of it
 };
 
 }  // namespace innermap

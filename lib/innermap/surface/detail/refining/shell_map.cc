@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <memory>
-#include <numeric>
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/surface/detail/refining/decimate.h"
-#include "innermap/surface/detail/refining/layout_map.h"
+#include "innermap/surface/detail/refining/judged_maps.h"
 #include "innermap/surface/detail/refining/map_refiner.h"
+#include "innermap/surface/detail/refining/ways_round.h"
 #include "innermap/surface/detail/sphere/sphere_candidates.h"
 #include "innermap/surface/detail/sphere/sphere_layout.h"
 #include "innermap/surface/detail/torus/torus_candidates.h"
@@ -20,9 +19,8 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kTried = 10;    // candidates that are refined to
-constexpr std::size_t kJudged = 40;   // first maps that a judge hears
-constexpr std::size_t kMiddle = 600;  // vertices before the best are chosen
+constexpr std::size_t kTried = 10;   // candidates that are refined to
+constexpr std::size_t kJudged = 40;  // first maps that a judge hears
 constexpr std::size_t kCoarse = 150;
 // Of B, while first maps are looked for: these have triangles far larger, and finding places among
 // B's own is most of the work.
@@ -60,122 +58,46 @@ void refineAll(Refiners& refiners, std::size_t vertices, Progress* progress) {
   refiners = std::move(out);
 }
 
-// Images of a judge's points by a layout of A's shell on B's model space.
-Points imagesOf(const std::vector<SurfacePoint>& points, const ClosedSurface& surface,
-                const Layout& image, const LaidOutShell& b, const Locator& onB) {
-  const Locator none(surface.triangles, image);
-  const LayoutMap map({surface, image, none}, {b.surface, b.layout, onB});
-  Points out;
-  for (const SurfacePoint& p : points) out.push_back(map.at(p.triangle, p.barycentric).position);
-  return out;
-}
-
-// The judge's points on the coarse surface, by A's own layout.
-std::vector<SurfacePoint> onCoarse(const std::vector<SurfacePoint>& points, const LaidOutShell& a,
-                                   const CoarseSurface& coarse) {
-  Layout own = a.layout;
-  own.place.clear();
-  for (const int v : coarse.vertex) own.place.push_back(a.layout.place[v]);
-  const Locator locator(coarse.surface.triangles, own);
-  std::vector<SurfacePoint> out;
-  for (const SurfacePoint& p : points) {
-    Vec3 ray;
-    for (int k = 0; k < 3; ++k)
-      ray += p.barycentric[k] * a.layout.corner(a.surface.triangles, p.triangle, k);
-    ray = ray / norm(ray);
-    const Located where = locator.find(ray);
-    out.push_back({where.triangle, locator.barycentric(ray, where)});
-  }
-  return out;
-}
-
-// Orders first maps by the judge's score.
-std::vector<ConsideredMap> judged(Candidates& candidates, const LaidOutShell& a,
-                                  const LaidOutShell& b, const ShellMapSettings& settings) {
-  const std::vector<SurfacePoint> points = onCoarse(settings.judge->at, a, candidates.coarse);
-  const Locator onB(b.surface.triangles, b.layout);
-  std::vector<double> score(candidates.maps.size());
-  parallelBlocks(
-      score.size(), 1,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-          score[i] = settings.judge->score(
-              imagesOf(points, candidates.coarse.surface, candidates.maps[i].image, b, onB));
-      },
-      settings.progress, "judging first maps");
-  std::vector<std::size_t> order(score.size());
-  std::iota(order.begin(), order.end(), std::size_t(0));
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t x, std::size_t y) { return score[x] < score[y]; });
-  std::vector<ConsideredMap> out;
-  std::vector<CoarseMap> maps;
-  for (const std::size_t i : order) {
-    out.push_back({candidates.maps[i].origin, candidates.maps[i].energy, score[i]});
-    maps.push_back(std::move(candidates.maps[i]));
-  }
-  candidates.maps = std::move(maps);
-  return out;
-}
-
-// Of maps of spheres refined so far, the one that the judge likes best alone: what it sees does not
-// change much any more.
-void keepBest(Refiners& refiners, const LaidOutShell& a, const LaidOutShell& b,
-              const ShellMapSettings& settings) {
-  const Locator onB(b.surface.triangles, b.layout);
-  std::vector<double> score(refiners.size());
-  parallelBlocks(
-      score.size(), 1,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const RefinedSoFar map = refiners[i]->soFar();
-          score[i] = settings.judge->score(imagesOf(onCoarse(settings.judge->at, a, map.surface),
-                                                    map.surface.surface, map.image, b, onB));
-        }
-      },
-      settings.progress);
-  const auto best = std::min_element(score.begin(), score.end()) - score.begin();
-  std::swap(refiners.front(), refiners[static_cast<std::size_t>(best)]);
-  refiners.resize(1);
-}
-
-// Of refined maps the one that the judge likes best; without one the first, of least energy.
+// Of refined maps the one of the way that is wanted, by the judge; without one the first, of least
+// energy.
 ShellMap choose(const Refiners& refiners, const LaidOutShell& a, const LaidOutShell& b,
                 const ShellMapSettings& settings) {
-  const Locator onB(b.surface.triangles, b.layout);
-  const bool judge = settings.judge && refiners.size() > 1;
-  ShellMap best;
-  double least = std::numeric_limits<double>::infinity();
+  std::vector<ShellMap> maps;
   for (const auto& refiner : refiners) {
-    ShellMap map;
-    map.energy = refiner->energy();
-    map.origin = refiner->origin();
-    map.image = refiner->takeImage();
-    if (!judge) return map;
-    const double score =
-        settings.judge->score(imagesOf(settings.judge->at, a.surface, map.image, b, onB));
-    if (!best.image.place.empty() && !(score < least)) continue;
-    least = score;
-    best = std::move(map);
+    maps.emplace_back();
+    maps.back().energy = refiner->energy();
+    maps.back().origin = refiner->origin();
+    maps.back().image = refiner->takeImage();
+    if (!settings.judge) return std::move(maps.front());
   }
-  return best;
+  const Locator onB(b.surface.triangles, b.layout);
+  const Points points = interpolate(a.surface.vertices, a.surface.triangles, settings.judge->at);
+  std::vector<JudgedMap> judged;
+  for (const ShellMap& map : maps)
+    judged.push_back(judgedMap(*settings.judge, points,
+                               imagesOf(settings.judge->at, a.surface, map.image, b, onB)));
+  const std::vector<std::size_t> order = byPreference(judged);
+  std::vector<JudgedMap> sorted;
+  for (const std::size_t i : order) sorted.push_back(judged[i]);
+  const std::vector<std::size_t> ways = waysOf(sorted);
+  const std::size_t wanted = wantedWay(sorted, ways, settings.wanted, a.surface.name);
+  const auto found = std::find(ways.begin(), ways.end(), wanted) - ways.begin();
+  ShellMap& out = maps[order[static_cast<std::size_t>(found)]];
+  out.way = static_cast<int>(wanted) + 1;
+  return std::move(out);
 }
 
 ShellMap bestOf(Refiners refiners, const LaidOutShell& a, const LaidOutShell& b,
                 const ShellMapSettings& settings) {
   const std::size_t vertices = a.surface.vertices.size();
-  const bool judgeEarly = settings.judge && a.layout.space == ModelSpace::sphere;
-  const std::size_t kept = judgeEarly ? 1 : static_cast<std::size_t>(settings.candidates);
+  const auto kept = static_cast<std::size_t>(settings.candidates);
   if (refiners.size() > kept) {
     refineAll(refiners, std::min(kMiddle, vertices), settings.progress);
-    if (judgeEarly && refiners.size() > 1) keepBest(refiners, a, b, settings);
     if (refiners.size() > kept) refiners.resize(kept);
   }
   if (refiners.size() > 1 && outOfTime(settings.progress)) refiners.resize(1);
   refineAll(refiners, vertices, settings.progress);
-  if (refiners.empty())
-    throw DataError(a.surface.name +
-                    ": no map without flips was found; remove slivers from the mesh, or give "
-                    "landmarks");
+  if (refiners.empty()) throw noMapWithoutFlips(a.surface);
   return choose(refiners, a, b, settings);
 }
 
@@ -216,7 +138,8 @@ struct CoarseTarget {
   const TargetMetric metric;
 };
 
-ShellMap mapSphere(const LaidOutShell& a, const LaidOutShell& b, const ShellMapSettings& settings) {
+Candidates firstMaps(const LaidOutShell& a, const LaidOutShell& b,
+                     const ShellMapSettings& settings) {
   SphereCandidateSettings search;
   search.landmarks = settings.landmarks;
   search.aligned = settings.aligned;
@@ -227,22 +150,19 @@ ShellMap mapSphere(const LaidOutShell& a, const LaidOutShell& b, const ShellMapS
   search.seed = settings.seed;
   search.progress = settings.progress;
   const CoarseTarget target(b, settings.progress);
-  Candidates candidates = sphereCandidates(a.surface, a.layout, a.tips, target.shape.surface,
-                                           target.metric, b.tips, search);
-  std::vector<ConsideredMap> considered;
-  if (settings.judge) {
-    considered = judged(candidates, a, b, settings);
-    const std::size_t best = settings.refine ? static_cast<std::size_t>(settings.candidates) : 1;
-    if (candidates.maps.size() > best) candidates.maps.resize(best);
-  }
+  return sphereCandidates(a.surface, a.layout, a.tips, target.shape.surface, target.metric, b.tips,
+                          search);
+}
+
+ShellMap mapSphere(const LaidOutShell& a, const LaidOutShell& b, const ShellMapSettings& settings) {
+  const Candidates candidates = firstMaps(a, b, settings);
   const RefineSettings how = refining(a.surface, settings);
+  if (settings.judge) return judgedMapOf(a, b, candidates, how, settings);
   Refiners refiners;
   for (const CoarseMap& m : candidates.maps)
     refiners.push_back(std::make_unique<MapRefiner>(a.surface, candidates.mesh, candidates.coarse,
                                                     m, b.metric, how));
-  ShellMap out = bestOf(std::move(refiners), a, b, settings);
-  out.considered = std::move(considered);
-  return out;
+  return bestOf(std::move(refiners), a, b, settings);
 }
 
 // Each candidate has frames of its own, so each is coarsened by itself.
@@ -313,6 +233,7 @@ LaidOutShell::LaidOutShell(const ClosedSurface& shell, Layout laidOut, Progress*
                                               : LimbTips{}) {}
 
 ShellMap mapShell(const LaidOutShell& a, const LaidOutShell& b, const ShellMapSettings& settings) {
+  if (!settings.judge) requireOnlyWay(settings.wanted, "without a judge of the inside they are");
   return a.layout.space == ModelSpace::sphere ? mapSphere(a, b, settings)
                                               : mapTorus(a, b, settings);
 }

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "innermap/core/progress.h"
 #include "innermap/surface/detail/refining/anchor_flow.h"
 #include "innermap/surface/detail/refining/target_metric.h"
+#include "innermap/surface/detail/refining/ways_round.h"
 #include "innermap/surface/detail/sphere/limb_tips.h"
 #include "innermap/surface/layout.h"
 
@@ -34,6 +36,7 @@ struct ShellMapSettings {
   int candidates = 3;  // that are refined to the end
   bool refine = true;
   const MapJudge* judge = nullptr;  // none: the least energy decides
+  WantedWay wanted;                 // with a judge
   std::uint64_t seed = 1;
   Progress* progress = nullptr;
 };
@@ -42,7 +45,9 @@ struct ShellMap {
   Layout image;        // of A on B's model space
   double energy = 0;   // both ways, 8 for an isometry
   std::string origin;  // of the candidate that became it
+  int way = 1;         // of those that differ, by preference
   std::vector<ConsideredMap> considered;
+  std::optional<OtherWay> other;
 };
 
 // Throws DataError where no map without flips was found (landmarks that contradict one another),
