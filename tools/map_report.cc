@@ -120,6 +120,8 @@ std::string whyEnded(AdaptiveEnd end, std::size_t maxSources) {
       return fmt::format("--max-sources {} is reached", maxSources);
     case AdaptiveEnd::maxMemory:
       return "--max-memory is reached";
+    case AdaptiveEnd::jumps:
+      return "it holds but where parts that cross slide along each other";
     case AdaptiveEnd::noGain:
       return "more charges do not help";
     case AdaptiveEnd::time:

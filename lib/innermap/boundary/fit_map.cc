@@ -64,6 +64,19 @@ void noteSteps(MapFit& fit, double singleFolded, std::size_t singleSources) {
       100 * fit.inside.outside));
 }
 
+void noteJumps(MapFit& fit, const std::vector<ValueJump>& jumps) {
+  if (jumps.empty()) return;
+  const ValueJump& worst =
+      *std::max_element(jumps.begin(), jumps.end(),
+                        [](const ValueJump& a, const ValueJump& b) { return a.size < b.size; });
+  fit.notes.push_back(fmt::format(
+      "{}: exposed parts slide along each other where they cross, by up to {:.2g} of the target's "
+      "diagonal, most near ({:.4g}, {:.4g}, {:.4g}); the map blends there, and its error is large "
+      "along those lines",
+      fit.boundary.source.mesh.name, worst.size / fit.boundary.target.diagonal, worst.place.x,
+      worst.place.y, worst.place.z));
+}
+
 void noteProducts(MapFit& fit) {
   if (fit.solve.productError > 0)
     fit.notes.push_back(
@@ -143,6 +156,7 @@ MapFit fitMap(BoundaryPair boundary, const FitMapSettings& settings) {
              {},
              std::move(fitter.warnings),
              std::move(fitter.seconds)};
+  noteJumps(fit, fitter.jumps);
   noteProducts(fit);
   noteSteps(fit, fitter.singleFolded, fitter.singleSources);
   warnOfError(fit);

@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
-#include "innermap/core/detail/point_grid.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
+#include "innermap/field/detail/refinement_marks.h"
 #include "innermap/solve/iterative_solver.h"
 
 namespace innermap {
@@ -17,24 +17,19 @@ namespace {
 constexpr double kDistance = 1.0;           // spacings
 constexpr double kSourceDarts = 0.83;       // spacings; fills to one charge a spacing squared
 constexpr double kCollocationDarts = 0.46;  // spacings; three points a charge
-constexpr double kMarkReach = 0.8;          // spacings of the level above
 constexpr double kCollocationReach = 2;     // distances, from a new charge
 constexpr int kMostLevels = 14;
 constexpr double kNearest = 1e-6;  // of the diagonal
 constexpr std::size_t kMarkSamples = 30000;
-// Marks are points over the tolerance times a factor that falls to the lower one as it comes near.
-constexpr double kMarkLeast = 0.93, kMarkMost = 1.5;
-// When the tolerance holds but the largest error is over kWorstRatio of the rms: what is marked.
-constexpr double kWorstRatio = 17, kOutlier = 10;
 // Of the tolerance; other points than those that were looked at differ a little.
 constexpr double kMargin = 0.97;
 constexpr double kErrorAccuracy = 1e-3;  // of the tolerance
 constexpr double kLeastGain = 0.97;      // of the score in the rounds of patience
+constexpr double kForNothing = 4;        // times the charges that did as well
 constexpr double kMostRounds = 20;       // that are looked ahead
 constexpr std::size_t kLookBack = 2;     // rounds, for how the next will go
 constexpr double kOfOutlierRounds = 0.5;
 constexpr double kNextRound = 1.5;  // seconds, of the one before; for a deadline
-
 void append(Matrix& a, const Matrix& b) {
   Matrix out(a.rows() + b.rows(), b.columns());
   for (std::size_t k = 0; k < b.columns(); ++k) {
@@ -48,7 +43,7 @@ double secondsSince(std::chrono::steady_clock::time_point then) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
 }
 
-bool isTame(const BoundaryError& error) { return error.max <= kWorstRatio * error.rms; }
+bool isTame(const BoundaryError& error) { return RefinementMarks::isTame(error); }
 
 class AdaptiveFitting {
  public:
@@ -60,7 +55,7 @@ class AdaptiveFitting {
  private:
   struct Level {
     double spacing, distance;  // fractions of the diagonal
-    Points sources, attempts;  // attempts: marks that were refined to this level
+    Points sources;
   };
 
   void check() const;
@@ -68,9 +63,6 @@ class AdaptiveFitting {
   Level& level(std::size_t l);
   bool refine(const std::vector<Points>& marks);
   bool refineOnce(const std::vector<Points>& marks);
-  std::vector<Points> markedByLevel(const BoundarySamples& fresh, const std::vector<double>& errors,
-                                    const BoundaryError& error) const;
-  std::size_t levelOf(const Vec3& p, const std::vector<PointGrid>& attempts) const;
   void solve();
   double score(const BoundaryError& error) const;
   void keepIfBest();
@@ -81,6 +73,7 @@ class AdaptiveFitting {
 
   const AdaptiveProblem& problem_;
   const AdaptiveSettings& settings_;
+  std::optional<RefinementMarks> marks_;
   std::optional<IterativeSolver> solver_;
   std::vector<Level> levels_;
   Collocation collocation_;
@@ -113,7 +106,7 @@ AdaptiveFitting::Level& AdaptiveFitting::level(std::size_t l) {
     const double first =
         std::sqrt(problem_.area / static_cast<double>(settings_.firstSources)) / problem_.diagonal;
     const double spacing = first * std::pow(0.5, static_cast<double>(levels_.size()));
-    levels_.push_back({spacing, kDistance * spacing, {}, {}});
+    levels_.push_back({spacing, kDistance * spacing, {}});
   }
   return levels_[l];
 }
@@ -131,6 +124,7 @@ std::uint64_t AdaptiveFitting::memory() const {
 
 void AdaptiveFitting::first() {
   Level& coarse = level(0);
+  marks_.emplace(problem_.jumps, coarse.spacing * problem_.diagonal, settings_.tolerance);
   PlacementRequest request;
   request.spacing = kSourceDarts * coarse.spacing;
   request.reach = coarse.spacing;
@@ -159,30 +153,6 @@ void AdaptiveFitting::first() {
                   s);
 }
 
-// The finest level that was tried around p.
-std::size_t AdaptiveFitting::levelOf(const Vec3& p, const std::vector<PointGrid>& attempts) const {
-  for (std::size_t l = levels_.size(); --l > 0;)
-    if (attempts[l].anyNearer(p, kMarkReach * levels_[l - 1].spacing * problem_.diagonal)) return l;
-  return 0;
-}
-
-// The points that ask for charges, by the level that these should be on.
-std::vector<Points> AdaptiveFitting::markedByLevel(const BoundarySamples& fresh,
-                                                   const std::vector<double>& errors,
-                                                   const BoundaryError& error) const {
-  const double tolerance = settings_.tolerance;
-  double over = tolerance * std::clamp(kMarkLeast * error.p99 / tolerance, kMarkLeast, kMarkMost);
-  if (error.p99 <= kMarkLeast * tolerance && error.max > kWorstRatio * error.rms)
-    over = kOutlier * error.rms;
-  std::vector<PointGrid> attempts;
-  for (const Level& l : levels_)
-    attempts.emplace_back(l.attempts, 2 * kMarkReach * l.spacing * problem_.diagonal);
-  std::vector<Points> marks(levels_.size() + 1);
-  for (std::size_t i = 0; i < errors.size(); ++i)
-    if (errors[i] > over) marks[levelOf(fresh.points[i], attempts) + 1].push_back(fresh.points[i]);
-  return marks;
-}
-
 // Adds charges around the marks, and boundary points around the charges; false when there is room
 // for none.
 bool AdaptiveFitting::refineOnce(const std::vector<Points>& marks) {
@@ -192,14 +162,13 @@ bool AdaptiveFitting::refineOnce(const std::vector<Points>& marks) {
   for (std::size_t l = 1; l < marks.size(); ++l) {
     if (marks[l].empty()) continue;
     Level& fine = level(l);
-    const double above = levels_[l - 1].spacing;
-    fine.attempts.insert(fine.attempts.end(), marks[l].begin(), marks[l].end());
+    marks_->tried(l, marks[l]);
     const std::size_t there = sourceCount();
     if (fine.distance < kNearest || there >= settings_.maxSources) continue;
-    const Points fresh =
-        problem_.placeSources({marks[l], kMarkReach * above, kSourceDarts * fine.spacing,
-                               fine.sources, settings_.maxSources - there, requests_++},
-                              fine.distance);
+    const Points fresh = problem_.placeSources(
+        {marks[l], marks_->reach(l) / problem_.diagonal, kSourceDarts * fine.spacing, fine.sources,
+         settings_.maxSources - there, requests_++},
+        fine.distance);
     if (fresh.empty()) continue;
     fine.sources.insert(fine.sources.end(), fresh.begin(), fresh.end());
     added.push_back({fresh, fine.spacing * problem_.diagonal, fine.distance * problem_.diagonal});
@@ -293,8 +262,15 @@ void AdaptiveFitting::keepIfBest() {
   for (const Level& l : levels_) best_->levels.push_back({l.distance, l.spacing, l.sources.size()});
 }
 
-// Whether one of the last rounds was better than all before.
+// Whether one of the last rounds was better than all before, and charges have not grown too much
+// since it last became so.
 bool AdaptiveFitting::gains() const {
+  const auto good = std::find_if(rounds_.begin(), rounds_.end(), [&](const AdaptiveRound& round) {
+    return kLeastGain * score(round.error) <= bestScore_;
+  });
+  if (static_cast<double>(rounds_.back().sources) >
+      kForNothing * static_cast<double>(good->sources))
+    return false;
   const auto patience = static_cast<std::size_t>(settings_.patience);
   if (rounds_.size() <= patience) return true;
   double best[2] = {score(rounds_.front().error), score(rounds_.back().error)};
@@ -309,19 +285,19 @@ AdaptiveResult AdaptiveFitting::run() {
   check();
   first();
   const BoundarySamples checks = problem_.draw(settings_.checkSamples, 0);
-  const auto errorAtChecks = [&](const HarmonicField& field) {
-    return measureBoundaryError(field, checks.collocation(), checks.values, problem_.unit,
-                                {0, settings_.progress});
+  const auto errorsAtChecks = [&](const HarmonicField& field) {
+    return boundaryErrors(field, checks.collocation(), checks.values, problem_.unit,
+                          {0, settings_.progress});
   };
   int outliers = 0;
   for (std::uint64_t round = 1;; ++round) {
     const auto began = std::chrono::steady_clock::now();
     solve();
     const BoundarySamples fresh = problem_.draw(kMarkSamples, round);
-    const std::vector<double> errors =
+    std::vector<double> errors =
         boundaryErrors(*field_, fresh.collocation(), fresh.values, problem_.unit,
                        {kErrorAccuracy * settings_.tolerance * problem_.unit, settings_.progress});
-    const BoundaryError error = summarizeErrors(errors);
+    const BoundaryError error = marks_->awayFromJumps(fresh.points, errors);
     rounds_.push_back(
         {solver_->sources().size(), collocation_.size(), solution_.iterations, error});
     keepIfBest();
@@ -331,7 +307,8 @@ AdaptiveResult AdaptiveFitting::run() {
       break;
     }
     if (error.p99 <= kMargin * settings_.tolerance && isTame(error)) {
-      const BoundaryError other = errorAtChecks(*field_);
+      std::vector<double> others = errorsAtChecks(*field_);
+      const BoundaryError other = marks_->awayFromJumps(checks.points, others);
       if (other.p99 <= kMargin * settings_.tolerance && isTame(other)) break;
     }
     if (error.p99 <= kMargin * settings_.tolerance && ++outliers > settings_.outlierRounds) break;
@@ -343,12 +320,14 @@ AdaptiveResult AdaptiveFitting::run() {
       end_ = AdaptiveEnd::time;
       break;
     }
-    if (!refine(markedByLevel(fresh, errors, error))) break;
+    if (!refine(marks_->byLevel(fresh.points, errors, error))) break;
   }
   AdaptiveResult out = std::move(*best_);
-  out.error = errorAtChecks(out.field);
-  const bool met = end_ != AdaptiveEnd::stopped && out.error.p99 <= settings_.tolerance;
-  out.end = met ? AdaptiveEnd::met : end_;
+  out.error = summarizeErrors(errorsAtChecks(out.field));
+  if (end_ != AdaptiveEnd::stopped && out.error.p99 <= settings_.tolerance)
+    out.end = AdaptiveEnd::met;
+  else
+    out.end = end_ == AdaptiveEnd::met && !problem_.jumps.empty() ? AdaptiveEnd::jumps : end_;
   out.rounds = std::move(rounds_);
   return out;
 }

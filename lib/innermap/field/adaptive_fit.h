@@ -50,6 +50,9 @@ struct AdaptiveProblem {
   double diagonal = 0;  // of the solid, world units
   double area = 0;      // of the boundary, world units squared
   double unit = 0;      // of errors: the values' diagonal
+  // Places where the values jump, as no harmonic field does, by more than the tolerance. Charges
+  // get a few levels finer about them, and the error that is left there does not ask for more.
+  Points jumps;
   // `count` random points, uniform by area; independent ones for each `draw`.
   std::function<BoundarySamples(std::size_t count, std::uint64_t draw)> draw;
   // Source points at `distance` (fraction of the diagonal) from the boundary, over marked parts of
@@ -73,13 +76,14 @@ struct AdaptiveSettings {
   Progress* progress = nullptr;
 };
 
-// Why an adaptive fit ended; time: at the deadline of its progress.
-enum class AdaptiveEnd { met, maxSources, maxMemory, noGain, stopped, time };
+// Why an adaptive fit ended; jumps: the tolerance holds but about them; time: at the deadline of
+// its progress.
+enum class AdaptiveEnd { met, maxSources, maxMemory, noGain, jumps, stopped, time };
 
 struct AdaptiveRound {
   std::size_t sources = 0, collocation = 0;
   int iterations = 0;
-  BoundaryError error;  // at this round's fresh points
+  BoundaryError error;  // at this round's fresh points, but what is left at jumps
 };
 
 struct AdaptiveLevel {

@@ -185,6 +185,44 @@ TEST(AdaptiveFit, GoesOnBelowALevelWithoutRoom) {
   EXPECT_EQ(r.end, AdaptiveEnd::met);
 }
 
+// One half is moved along the other: no charges meet that, and finer ones about the line between
+// them are no better.
+TEST(AdaptiveFit, DoesNotChaseJumps) {
+  const auto split = [](const Points& points) {
+    Matrix v = testing::harmonicMapValues(points);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (points[i].y > 0) v(i, 0) += 0.1;
+    return v;
+  };
+  Ball ball;
+  ball.problem.draw = [&](std::size_t count, std::uint64_t draw) {
+    const Points points = onSphere(count, 7 + draw);
+    return BoundarySamples{points, split(points)};
+  };
+  ball.problem.placeCollocation = [&](const PlacementRequest& request) {
+    const Points points = darts(request, 1);
+    return BoundarySamples{points, split(points)};
+  };
+  ball.settings.tolerance = 4e-3;
+  ball.settings.maxSources = 5000;
+  for (int k = 0; k < 1000; ++k)
+    ball.problem.jumps.push_back({std::cos(2 * kPi * k / 1000), 0, std::sin(2 * kPi * k / 1000)});
+  const AdaptiveResult known = fitToTolerance(ball.problem, ball.settings);
+  EXPECT_EQ(known.end, AdaptiveEnd::jumps);
+  EXPECT_GT(known.error.p99, ball.settings.tolerance);
+  EXPECT_LT(known.rounds.back().error.p99, ball.settings.tolerance);
+  // Beyond some spacings of the third level the jump is not felt.
+  const double spacing = std::sqrt(4 * kPi / 150) / 4;
+  Points away;
+  for (const Vec3& p : onSphere(20000, 999))
+    if (std::abs(p.y) > 3 * spacing) away.push_back(p);
+  EXPECT_LT(measureBoundaryError(known.field, away, split(away), kDiagonal).p99,
+            ball.settings.tolerance);
+  ball.problem.jumps.clear();
+  const AdaptiveResult unknown = fitToTolerance(ball.problem, ball.settings);
+  EXPECT_LT(2 * known.field.sources().size(), unknown.field.sources().size());
+}
+
 TEST(AdaptiveFit, SameForAnyNumberOfThreads) {
   const auto weights = [] {
     Ball ball;

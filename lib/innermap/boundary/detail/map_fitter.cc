@@ -120,7 +120,7 @@ FitOutcome MapFitter::within(double tolerance, bool mayStop) {
         return foldedShare(insideOf(HarmonicMap(field)).determinants) <= kHopelessFolds;
       };
     timed(seconds, "fit", [&] {
-      const AdaptiveResult fit = fitToTolerance(problem(), settings);
+      const AdaptiveResult fit = fitToTolerance(problem(tolerance), settings);
       end = fit.end;
       out.emplace(outcomeOf(fit, pair_.target.diagonal));
     });
@@ -198,14 +198,18 @@ void MapFitter::finishSingle(FitOutcome& out) {
   timed(seconds, "inside", [&] { out.inside = figuresOf(out); });
 }
 
-AdaptiveProblem MapFitter::problem() const {
+AdaptiveProblem MapFitter::problem(double tolerance) {
   AdaptiveProblemSettings s;
   s.seed = settings_.seed;
   s.progress = settings_.progress;
-  return adaptiveProblem(
+  AdaptiveProblem out = adaptiveProblem(
       pair_.solid(),
       [this](const std::vector<SurfacePoint>& points) { return pair_.targetsOf(points); },
       pair_.target.diagonal, s);
+  jumps = valueJumps(pair_.solid(), pair_.target.moved, tolerance * pair_.target.diagonal,
+                     settings_.progress);
+  for (const ValueJump& jump : jumps) out.jumps.push_back(jump.place);
+  return out;
 }
 
 FitProblem MapFitter::problemOf(const PointCounts& counts) {

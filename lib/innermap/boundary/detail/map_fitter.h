@@ -9,6 +9,7 @@
 #include "innermap/boundary/detail/map_certificate.h"
 #include "innermap/boundary/detail/problem_samples.h"
 #include "innermap/boundary/detail/target_shape.h"
+#include "innermap/boundary/detail/value_jumps.h"
 #include "innermap/boundary/map_fit.h"
 #include "innermap/boundary/surface_problem.h"
 
@@ -44,6 +45,7 @@ class MapFitter {
   double singleFolded = 0;
   std::size_t singleSources = 0;
   std::vector<std::string> warnings;
+  std::vector<ValueJump> jumps;  // larger than the tolerance of an adaptive fit
 
   FitOutcome onShell(const ShellSettings& shell);
 
@@ -62,7 +64,7 @@ class MapFitter {
   MappedPoints insideOf(const ComposedMap& map);
   bool roomForSteps();
   void finishSingle(FitOutcome& out);
-  AdaptiveProblem problem() const;
+  AdaptiveProblem problem(double tolerance);
   FitProblem problemOf(const PointCounts& counts);
   AdaptiveSettings adaptiveSettings(double tolerance) const;
   InsideFigures figuresOf(const FitOutcome& out);
