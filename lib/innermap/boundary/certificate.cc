@@ -17,6 +17,8 @@ namespace {
 
 constexpr std::size_t kMostVertices = 200000;
 constexpr std::size_t kPeaks = 48, kAbout = 16;  // places searched about at once, points about each
+// The first time, when a random point may stand on the foot of a peak narrower than their spacing.
+constexpr std::size_t kFirstPeaks = 480, kFirstAbout = 8;
 constexpr int kRounds = 6;
 constexpr double kNearer = 1.0 / 2.5;       // of the radius, from round to round
 constexpr double kMargin = 0.1;             // beyond the largest that was found
@@ -66,11 +68,12 @@ class Search {
   }
 
   void about(double radius, int round) {
-    const std::vector<Place> from = peaks(radius);
+    const std::size_t about = round == 0 ? kFirstAbout : kAbout;
+    const std::vector<Place> from = peaks(radius, round == 0 ? kFirstPeaks : kPeaks);
     std::vector<Vec3> wanted;
     const CounterRandom random(seedOf(settings_.seed, Stream::fresh, kFirstDraw), 13 + round);
-    for (std::size_t i = 0; i < from.size() * kAbout; ++i)
-      wanted.push_back(from[i / kAbout].position + radius * inBall(random, 3 * i));
+    for (std::size_t i = 0; i < from.size() * about; ++i)
+      wanted.push_back(from[i / about].position + radius * inBall(random, 3 * i));
     std::vector<SurfacePoint> places(wanted.size());
     parallelBlocks(
         wanted.size(), 8,
@@ -78,7 +81,7 @@ class Search {
           for (std::size_t i = begin; i < end; ++i) {
             const Solid::Closest closest = solid_.closest(wanted[i], 2 * radius);
             places[i] =
-                closest.onSurface.triangle >= 0 ? closest.onSurface : from[i / kAbout].onSurface;
+                closest.onSurface.triangle >= 0 ? closest.onSurface : from[i / about].onSurface;
           }
         },
         settings_.progress);
@@ -111,11 +114,11 @@ class Search {
   }
 
   // The largest errors, none within `apart` of a larger one.
-  std::vector<Place> peaks(double apart) {
+  std::vector<Place> peaks(double apart, std::size_t most) {
     keepLargest(std::max(places_.size() / 8, 4 * kPeaks * kAbout));
     std::vector<Place> out;
     for (const Place& p : places_) {
-      if (out.size() == kPeaks) break;
+      if (out.size() == most) break;
       const bool isFar = std::all_of(out.begin(), out.end(), [&](const Place& q) {
         return norm(p.position - q.position) > apart;
       });
