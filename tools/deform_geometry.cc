@@ -80,7 +80,9 @@ class Deformer {
 void deformGeometry(const DeformGeometry& job, const Frames& frames, const FramePattern& pattern,
                     Context& context) {
   const auto path = [&](std::size_t i) { return pattern.path(frames.all[i].number); };
-  const std::uint64_t need = geometryMemory(job.input);
+  // What the fitter leaves scattered over the heap counts when the first frame is carried.
+  constexpr std::uint64_t kScattered = 25'000'000;
+  const std::uint64_t need = geometryMemory(job.input) + kScattered;
   JobSize size;
   size.items = static_cast<double>(need) / 1e6;
   context.expect(framePhases(job.frames.fitting.sources, frames.wanted.size(),

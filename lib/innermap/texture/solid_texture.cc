@@ -73,7 +73,7 @@ std::uint64_t memoryOf(const SolidTexturePlan& plan) {
   const std::size_t collocation = collocationFor(plan.sources);
   const std::uint64_t fit = fitMemory(collocation, plan.sources, kHeldOut, FitSolver::iterative) +
                             80 * channels * collocation;
-  constexpr std::uint64_t kOther = 30'000'000;  // measured
+  constexpr std::uint64_t kOther = 20'000'000;  // measured
   return kOther + std::max(fit, levelSetMemory(*parts.solid, levelSetSettings(s)) + grids);
 }
 
