@@ -14,6 +14,7 @@
 #include "innermap/surface/detail/refining/locate.h"
 #include "innermap/surface/detail/refining/shell_map.h"
 #include "innermap/surface/detail/refining/subdivide.h"
+#include "innermap/surface/detail/refining/ways_round.h"
 #include "innermap/surface/detail/topology/shell_pairs.h"
 
 namespace innermap {

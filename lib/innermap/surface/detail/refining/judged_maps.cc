@@ -192,12 +192,6 @@ Points imagesOf(const std::vector<SurfacePoint>& points, const ClosedSurface& su
   return out;
 }
 
-DataError noMapWithoutFlips(const ClosedSurface& surface) {
-  return DataError(surface.name +
-                   ": no map without flips was found; remove slivers from the mesh, or give "
-                   "landmarks");
-}
-
 ShellMap judgedMapOf(const LaidOutShell& a, const LaidOutShell& b, const Candidates& candidates,
                      const RefineSettings& refining, const ShellMapSettings& settings) {
   return JudgedMaps(a, b, candidates, refining, settings).take();

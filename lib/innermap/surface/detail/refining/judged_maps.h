@@ -1,8 +1,8 @@
 // First maps of one sphere on another, between which a judge chooses.
 #pragma once
 
+#include "innermap/surface/detail/refining/laid_out_shell.h"
 #include "innermap/surface/detail/refining/map_refiner.h"
-#include "innermap/surface/detail/refining/shell_map.h"
 #include "innermap/surface/detail/sphere/sphere_candidates.h"
 
 namespace innermap {
@@ -18,7 +18,5 @@ ShellMap judgedMapOf(const LaidOutShell& a, const LaidOutShell& b, const Candida
 // Images of a judge's points on `surface`, A's or coarser, by its layout on B's model space.
 Points imagesOf(const std::vector<SurfacePoint>& points, const ClosedSurface& surface,
                 const Layout& image, const LaidOutShell& b, const Locator& onB);
-
-DataError noMapWithoutFlips(const ClosedSurface& surface);
 
 }  // namespace innermap

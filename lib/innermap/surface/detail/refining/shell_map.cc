@@ -12,9 +12,7 @@
 #include "innermap/surface/detail/refining/map_refiner.h"
 #include "innermap/surface/detail/refining/ways_round.h"
 #include "innermap/surface/detail/sphere/sphere_candidates.h"
-#include "innermap/surface/detail/sphere/sphere_layout.h"
 #include "innermap/surface/detail/torus/torus_candidates.h"
-#include "innermap/surface/detail/torus/torus_layout.h"
 
 namespace innermap {
 namespace {
@@ -25,13 +23,6 @@ constexpr std::size_t kCoarse = 150;
 // Of B, while first maps are looked for: these have triangles far larger, and finding places among
 // B's own is most of the work.
 constexpr std::size_t kCoarseTarget = 2000;
-
-Layout layOut(const ClosedSurface& surface, Progress* progress) {
-  if (surface.genus == 1) return layOutTorus(surface, progress);
-  SphereLayoutSettings settings;
-  settings.progress = progress;
-  return layOutSphere(surface, settings);
-}
 
 using Refiners = std::vector<std::unique_ptr<MapRefiner>>;
 
@@ -221,16 +212,6 @@ ShellMap mapTorus(const LaidOutShell& a, const LaidOutShell& b, const ShellMapSe
 }
 
 }  // namespace
-
-LaidOutShell::LaidOutShell(const ClosedSurface& shell, Progress* progress)
-    : LaidOutShell(shell, layOut(shell, progress), progress) {}
-
-LaidOutShell::LaidOutShell(const ClosedSurface& shell, Layout laidOut, Progress* progress)
-    : surface(shell),
-      layout(std::move(laidOut)),
-      metric(surface, layout),
-      tips(layout.space == ModelSpace::sphere ? limbTips(surface, layout, 800, progress)
-                                              : LimbTips{}) {}
 
 ShellMap mapShell(const LaidOutShell& a, const LaidOutShell& b, const ShellMapSettings& settings) {
   if (!settings.judge) requireOnlyWay(settings.wanted, "without a judge of the inside they are");
