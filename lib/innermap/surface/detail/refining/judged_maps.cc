@@ -102,7 +102,7 @@ class JudgedMaps {
     if (other - maps_.begin() >= static_cast<std::ptrdiff_t>(count) && other != maps_.end() &&
         asGood(other->judged, maps_.front().judged))
       std::rotate(maps_.begin() + static_cast<std::ptrdiff_t>(count++), other, other + 1);
-    if (!settings_.refine || outOfTime(settings_.progress)) count = 1;
+    if (!settings_.refine || outOfTime(settings_.progress)) count = std::min<std::size_t>(count, 1);
     std::vector<char> good(count, 1);
     if (count > 1)
       parallelBlocks(
