@@ -30,6 +30,7 @@ constexpr double kMostRounds = 20;       // that are looked ahead
 constexpr std::size_t kLookBack = 2;     // rounds, for how the next will go
 constexpr double kOfOutlierRounds = 0.5;
 constexpr double kNextRound = 1.5;  // seconds, of the one before; for a deadline
+
 void append(Matrix& a, const Matrix& b) {
   Matrix out(a.rows() + b.rows(), b.columns());
   for (std::size_t k = 0; k < b.columns(); ++k) {
@@ -42,8 +43,6 @@ void append(Matrix& a, const Matrix& b) {
 double secondsSince(std::chrono::steady_clock::time_point then) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
 }
-
-bool isTame(const BoundaryError& error) { return RefinementMarks::isTame(error); }
 
 class AdaptiveFitting {
  public:
@@ -226,7 +225,7 @@ double AdaptiveFitting::workDone() const {
                  ? steps * std::log(goal / now.error.p99) / std::log(now.error.p99 / then.error.p99)
                  : kMostRounds;
   // What stands out needs some more, seldom as many as it may.
-  if (!isTame(now.error)) rounds += kOfOutlierRounds * settings_.outlierRounds;
+  if (!RefinementMarks::isTame(now.error)) rounds += kOfOutlierRounds * settings_.outlierRounds;
   double done = 0;
   for (const AdaptiveRound& round : rounds_) done += static_cast<double>(round.sources);
   const auto last = static_cast<double>(now.sources);
@@ -306,10 +305,10 @@ AdaptiveResult AdaptiveFitting::run() {
       end_ = AdaptiveEnd::stopped;
       break;
     }
-    if (error.p99 <= kMargin * settings_.tolerance && isTame(error)) {
+    if (error.p99 <= kMargin * settings_.tolerance && RefinementMarks::isTame(error)) {
       std::vector<double> others = errorsAtChecks(*field_);
       const BoundaryError other = marks_->awayFromJumps(checks.points, others);
-      if (other.p99 <= kMargin * settings_.tolerance && isTame(other)) break;
+      if (other.p99 <= kMargin * settings_.tolerance && RefinementMarks::isTame(other)) break;
     }
     if (error.p99 <= kMargin * settings_.tolerance && ++outliers > settings_.outlierRounds) break;
     if (!gains()) {
