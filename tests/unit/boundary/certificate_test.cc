@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <limits>
 
@@ -110,7 +111,7 @@ std::vector<known::NamedMesh> allMeshes() {
   return meshes;
 }
 
-// By the number of the mesh: shards run them side by side.
+// By the number of the mesh: shards run them side by side, and tests/nightly a third a night.
 class CertificateOnMeshNightly : public ::testing::TestWithParam<std::size_t> {};
 INSTANTIATE_TEST_SUITE_P(All, CertificateOnMeshNightly,
                          ::testing::Range(std::size_t(0), allMeshes().size()));
@@ -119,6 +120,9 @@ INSTANTIATE_TEST_SUITE_P(All, CertificateOnMeshNightly,
 // share of `bound` and of `smoothBound` that errors take, and how many times the error inside the
 // latter is at most.
 TEST_P(CertificateOnMeshNightly, Holds) {
+  const char* const night = std::getenv("INNERMAP_TEST_SEED");
+  if (night && (GetParam() + std::strtoul(night, nullptr, 10)) % 3 != 0)
+    GTEST_SKIP() << "on another night";
   const auto [meshName, mesh] = allMeshes()[GetParam()];
   int way = static_cast<int>(GetParam());
   for (const auto& [name, f] : known::functionsOn(mesh)) {
