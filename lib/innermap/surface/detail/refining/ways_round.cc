@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kSamePlaces = 0.1;  // mean distance, of the images' diagonal
 // Of the lesser score; and what scores of coarse maps of a body onto itself differ by.
-constexpr double kAsGood = 0.1, kNoise = 0.02;
+constexpr double kAsGood = 0.1, kNoise = 5e-3;
 constexpr double kLessTurned = 45, kMirrored = 120;  // degrees
 
 Points centred(const Points& points) {
