@@ -16,7 +16,7 @@ double CoarseToFine::relax(int v, int steps) {
     mesh_.ring(v, starRing_);
     ringPlaces(layout_, starRing_, starPlaces_);
     const Vec3 to = kernelCentroid(layout_.space, q, starPlaces_);
-    const double e = energy_.at(to);
+    const double e = energy_.below(now, to);
     if (e < now) {
       q = to;
       now = e;
@@ -29,7 +29,7 @@ double CoarseToFine::relax(int v, int steps) {
     double share = 1;
     for (int k = 0; k < 12; ++k, share *= 0.4) {
       const Vec3 to = moveAlong(layout_.space, q, share * step);
-      const double e = energy_.at(to);
+      const double e = energy_.below(now, to);
       if (e < now) {
         q = to;
         now = e;
@@ -85,7 +85,7 @@ bool CoarseToFine::insert(int v, int into) {
   place = near;
   double least = energy_.at(near);
   for (const Vec3& candidate : {kernelCentroid(layout_.space, near, places_), mean}) {
-    const double e = energy_.at(candidate);
+    const double e = energy_.below(least, candidate);
     if (!(e < least)) continue;
     least = e;
     place = candidate;

@@ -32,6 +32,12 @@ class StarEnergy {
   virtual bool squeezed() const { return false; }
   // Of the gathered star; infinite where a triangle is not positive.
   virtual double at(const Vec3& place) const = 0;
+  // at(place) where that is below `most`; elsewhere any value that is not, which may be known
+  // sooner.
+  virtual double below(double most, const Vec3& place) const {
+    (void)most;
+    return at(place);
+  }
   // Tangent vector towards lower energy; `now` is at(place).
   virtual Vec3 step(const Vec3& place, double now) const = 0;
 };

@@ -102,13 +102,13 @@ Located Locator::step(const Located& from, int corner) const {
   return to;
 }
 
-Located Locator::find(const Vec3& p, const Located& hint) const {
+Located Locator::find(const Vec3& p, const Located& hint, Weights& w) const {
   Located at = hint;
   // Where a step is to begin looking for a way out: not the same side always, or walks may circle.
   unsigned turn = 0;
   const int most = 200 + 8 * static_cast<int>(std::sqrt(static_cast<double>(cones_.size())));
   for (int i = 0; i < most; ++i) {
-    const std::array<double, 3> w = cones_[at.triangle].weights(local(p, at));
+    w = cones_[at.triangle].weights(local(p, at));
     const double rounding = -1e-14 * (std::abs(w[0]) + std::abs(w[1]) + std::abs(w[2]));
     // Most walks are a step or two long: out by the side that is farthest away at first.
     int leave = w[0] < w[1] ? 0 : 1;
@@ -123,7 +123,9 @@ Located Locator::find(const Vec3& p, const Located& hint) const {
     }
     at = step(at, leave);
   }
-  return search(p, hint);
+  at = search(p, hint);
+  w = cones_[at.triangle].weights(local(p, at));
+  return at;
 }
 
 // The triangle whose least weight, as a share, is largest.

@@ -20,21 +20,28 @@ struct Located {
 // layout must be valid. Immutable; safe from any number of threads.
 class Locator {
  public:
+  using Weights = std::array<double, 3>;  // barycentric but for a factor
+
   // The cone over a triangle's corners. side[k] = a x (b - a) for the edge a b opposite corner k,
   // which rounding leaves exact for short edges too.
   struct Cone {
     Vec3 side[3];
 
-    std::array<double, 3> weights(const Vec3& p) const {  // barycentric but for a factor
+    Weights weights(const Vec3& p) const {
       return {dot(p, side[0]), dot(p, side[1]), dot(p, side[2])};
     }
   };
 
   Locator(const std::vector<Triangle>& triangles, const Layout& layout);
 
-  // p: a ray near unit length, or a point of the plane z = 1.
-  Located find(const Vec3& p, const Located& hint) const;
+  // p: a ray near unit length, or a point of the plane z = 1. weights: its own in what is found.
+  Located find(const Vec3& p, const Located& hint, Weights& weights) const;
+  Located find(const Vec3& p, const Located& hint) const {
+    Weights weights;
+    return find(p, hint, weights);
+  }
   Located find(const Vec3& p) const { return find(p, hintFor(p)); }
+  Located find(const Vec3& p, Weights& weights) const { return find(p, hintFor(p), weights); }
 
   // Barycentric coordinates in [0, 1] of the point in the triangle found, sum 1.
   std::array<double, 3> barycentric(const Vec3& p, const Located& where) const;

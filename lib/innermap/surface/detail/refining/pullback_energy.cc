@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kThin = 0.01;  // of the star's mean triangle
+constexpr double kRounding = 1e-12;
 
 }  // namespace
 
@@ -86,14 +87,18 @@ void PullbackEnergy::gather(int v) {
   squeezed_ = least < kThin * sum / static_cast<double>(star_.size());
 }
 
-double PullbackEnergy::of(const StarTriangle& t, const Vec3& place, Located& where) const {
+double PullbackEnergy::of(const StarTriangle& t, const Vec3& place, Located& where,
+                          double most) const {
   const Vec3 e = t.a - place, f = t.b - place;
   double sum = 0;
   const double half = 0.5 / t.area;
+  const double each = t.area / static_cast<double>(samples_.size());
+  const double enough = most / each;
+  Locator::Weights weights;
   for (const Vec2& s : samples_) {
     const Vec3 x = place + (s.x * e + s.y * f);
-    where = target_.locator().find(x, where);
-    const TargetMetric::Plane p = target_.project(x, where, e, f);
+    where = target_.locator().find(x, where, weights);
+    const TargetMetric::Plane p = target_.project(where, weights, e, f);
     const double det = half * p.det();
     if (!(det > 0)) return kInfinite;
     const double ee = p.e.x * p.e.x + p.e.y * p.e.y, ff = p.f.x * p.f.x + p.f.y * p.f.y,
@@ -101,16 +106,23 @@ double PullbackEnergy::of(const StarTriangle& t, const Vec3& place, Located& whe
     // |J|^2 from the images of the sides opposite the corners: f - e, f, e.
     const double squared = (t.cotFree * (ee + ff - 2 * ef) + t.cotA * ff + t.cotB * ee) / t.area;
     sum += Stretch{squared, det}.bothWays();
+    if (sum > enough) return kInfinite;
   }
   return sum * t.area / static_cast<double>(samples_.size());
 }
 
-double PullbackEnergy::at(const Vec3& place) const {
+double PullbackEnergy::at(const Vec3& place) const { return below(kInfinite, place); }
+
+double PullbackEnergy::below(double most, const Vec3& place) const {
+  most *= 1 + kRounding;
   for (const StarTriangle& t : star_)
     if (!(tripleProduct(place, t.a, t.b) > 0)) return kInfinite;
   double sum = 0;
   Located where = target_.locator().find(place);
-  for (const StarTriangle& t : star_) sum += of(t, place, where);
+  for (const StarTriangle& t : star_) {
+    sum += of(t, place, where, most - sum);
+    if (sum > most) break;
+  }
   return sum;
 }
 
@@ -150,7 +162,7 @@ double PullbackEnergy::ofTriangle(int t) const {
   const Vec3& place = image_.place[mesh_.triangle(t)[0]];
   if (!(tripleProduct(place, star.a, star.b) > 0)) return kInfinite;
   Located where = target_.locator().find(place);
-  return of(star, place, where);
+  return of(star, place, where, kInfinite);
 }
 
 double PullbackEnergy::total() const {

@@ -27,6 +27,7 @@ class PullbackEnergy : public StarEnergy {
   void gather(int vertex) override;
   bool squeezed() const override { return squeezed_; }
   double at(const Vec3& place) const override;
+  double below(double most, const Vec3& place) const override;
   Vec3 step(const Vec3& place, double now) const override;
 
   // Of one triangle; of all that stand.
@@ -38,8 +39,8 @@ class PullbackEnergy : public StarEnergy {
     Vec3 a, b;
     double cotFree, cotA, cotB, area;
   };
-  // `where`: any place near by, and the last one found.
-  double of(const StarTriangle& t, const Vec3& place, Located& where) const;
+  // `where`: any place near by, and the last one found. Infinite where it is above `most`.
+  double of(const StarTriangle& t, const Vec3& place, Located& where, double most) const;
   StarTriangle starTriangle(int t, int corner) const;
 
   const ProgressiveMesh& mesh_;

@@ -27,15 +27,15 @@ class TargetMetric {
 
   const Locator& locator() const { return locator_; }
 
-  // The projection from rays onto the surface, at x in the triangle found: images of two tangent
-  // vectors, in the triangle's plane.
+  // The projection from rays onto the surface, at the weights in the triangle found: images of two
+  // tangent vectors, in the triangle's plane.
   struct Plane {
     Vec2 e, f;
     double det() const { return e.x * f.y - e.y * f.x; }
   };
-  Plane project(const Vec3& x, const Located& where, const Vec3& e, const Vec3& f) const {
+  Plane project(const Located& where, const Locator::Weights& w, const Vec3& e,
+                const Vec3& f) const {
     const Locator::Cone& cone = locator_.cone(where.triangle);
-    const std::array<double, 3> w = cone.weights(locator_.local(x, where));
     const double inverse = 1 / (w[0] + w[1] + w[2]);
     const double b1 = w[1] * inverse, b2 = w[2] * inverse;
     const Shape& s = shapes_[where.triangle];

@@ -40,8 +40,9 @@ double costOf(const Mat3& rotation, const std::vector<MapSample>& samples,
   double sum = 0;
   for (const MapSample& s : samples) {
     const Vec3 x = rotation * s.x;
-    const Located where = target.locator().find(x);
-    const TargetMetric::Plane p = target.project(x, where, rotation * s.e, rotation * s.f);
+    Locator::Weights weights;
+    const Located where = target.locator().find(x, weights);
+    const TargetMetric::Plane p = target.project(where, weights, rotation * s.e, rotation * s.f);
     const Stretch stretch{p.e.x * p.e.x + p.e.y * p.e.y + p.f.x * p.f.x + p.f.y * p.f.y, p.det()};
     sum += stretch.logSquared();
     if (normals) sum += kNormalWeight * (1 - dot(s.normal, (*normals)[where.triangle]));

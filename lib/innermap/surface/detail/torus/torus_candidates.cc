@@ -175,8 +175,9 @@ class Search {
     double sum = 0;
     for (const MapSample& s : side.samples) {
       const Vec3 x = linear.point(s.x + before) + after;
-      const Located where = side.target.locator().find(x);
-      const TargetMetric::Plane p = side.target.project(x, where, linear(s.e), linear(s.f));
+      Locator::Weights weights;
+      const Located where = side.target.locator().find(x, weights);
+      const TargetMetric::Plane p = side.target.project(where, weights, linear(s.e), linear(s.f));
       const Stretch stretch{p.e.x * p.e.x + p.e.y * p.e.y + p.f.x * p.f.x + p.f.y * p.f.y, p.det()};
       sum += stretch.logSquared();
       if (settings_.aligned)
