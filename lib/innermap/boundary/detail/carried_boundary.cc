@@ -25,6 +25,13 @@ Matrix interpolated(const Points& vertices, const Solid& solid,
   return values.targetsOf(solid, places);
 }
 
+BoundarySamples samplesFrom(const Points& now, const Points& ways) {
+  Matrix to(now.size(), 3);
+  for (std::size_t i = 0; i < now.size(); ++i)
+    for (int k = 0; k < 3; ++k) to(i, static_cast<std::size_t>(k)) = now[i][k] + ways[i][k];
+  return {now, std::move(to)};
+}
+
 }  // namespace
 
 CarriedBoundary::CarriedBoundary(const Solid& source, const CarriedSettings& settings)
@@ -57,6 +64,17 @@ std::vector<SurfacePoint> CarriedBoundary::placesOf(std::size_t count, std::uint
   return places;
 }
 
+const CarriedBoundary::Draw& CarriedBoundary::drawn(std::size_t count, std::uint64_t draw) {
+  Draw& d = draws_[{count, draw}];
+  if (d.places.empty()) {
+    d.places = placesOf(count, draw);
+    d.now = onSource(source_.repaired().mesh.vertices, d.places);
+  }
+  d.now = carried(d.now, d.steps);
+  d.steps = steps_.size();
+  return d;
+}
+
 void CarriedBoundary::advance(const HarmonicMap& step, bool last) {
   steps_.push_back(step);
   if (last) return;
@@ -79,7 +97,7 @@ void CarriedBoundary::advance(const HarmonicMap& step, bool last) {
   solid_ = Solid(now, solid);
 }
 
-AdaptiveProblem CarriedBoundary::problem(const Points& ways, double unit) const {
+AdaptiveProblem CarriedBoundary::problem(const Points& ways, double unit) {
   AdaptiveProblemSettings s;
   s.seed = settings_.seed;
   s.progress = settings_.progress;
@@ -102,43 +120,25 @@ AdaptiveProblem CarriedBoundary::problem(const Points& ways, double unit) const 
       from[i] = {samples.values(i, 0), samples.values(i, 1), samples.values(i, 2)};
       way[i] = {samples.values(i, 3), samples.values(i, 4), samples.values(i, 5)};
     }
-    Points now = carried(std::move(from), 0);
-    Matrix to(now.size(), 3);
-    for (std::size_t i = 0; i < now.size(); ++i)
-      for (int k = 0; k < 3; ++k) to(i, static_cast<std::size_t>(k)) = now[i][k] + way[i][k];
-    return BoundarySamples{std::move(now), std::move(to)};
+    return samplesFrom(carried(std::move(from), 0), way);
   };
   out.placeCollocation = [carry, place = out.placeCollocation](const PlacementRequest& request) {
     return carry(place(request));
   };
   // Uniform by the source's area, as the certificate is.
-  out.draw = [this, carry, ways](std::size_t count, std::uint64_t index) {
-    const std::vector<SurfacePoint> places = placesOf(count, index);
-    const Points from = onSource(source_.repaired().mesh.vertices, places),
-                 way = onSource(ways, places);
-    BoundarySamples samples{from, Matrix(count, 6)};
-    for (std::size_t i = 0; i < count; ++i)
-      for (int k = 0; k < 3; ++k) {
-        samples.values(i, static_cast<std::size_t>(k)) = from[i][k];
-        samples.values(i, static_cast<std::size_t>(k) + 3) = way[i][k];
-      }
-    return carry(samples);
+  out.draw = [this, ways](std::size_t count, std::uint64_t index) {
+    const Draw& d = drawn(count, index);
+    return samplesFrom(d.now, onSource(ways, d.places));
   };
   return out;
 }
 
 BoundaryError CarriedBoundary::errorFrom(const Points& shape, double unit) {
-  const Mesh& mesh = source_.repaired().mesh;
-  if (fresh_.empty()) {
-    freshPlaces_ = placesOf(kFreshSamples, 0);
-    fresh_ = onSource(mesh.vertices, freshPlaces_);
-  }
-  fresh_ = carried(std::move(fresh_), freshSteps_);
-  freshSteps_ = steps_.size();
-  const Points wanted = interpolate(shape, mesh.triangles, freshPlaces_);
+  const Draw& fresh = drawn(kFreshSamples, 0);
+  const Points wanted = interpolate(shape, source_.repaired().mesh.triangles, fresh.places);
   std::vector<double> lengths;
   for (std::size_t i = 0; i < wanted.size(); ++i)
-    lengths.push_back(norm(fresh_[i] - wanted[i]) / unit);
+    lengths.push_back(norm(fresh.now[i] - wanted[i]) / unit);
   return summarizeErrors(std::move(lengths));
 }
 

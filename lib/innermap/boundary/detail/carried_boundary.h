@@ -2,6 +2,9 @@
 // from. Its points are exact images, not points of a mesh between the images of vertices.
 #pragma once
 
+#include <cstdint>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "innermap/boundary/detail/refined_surface.h"
@@ -31,28 +34,36 @@ class CarriedBoundary {
   // Each point of the boundary goes from where it is by its way: fitted where it is not buried in
   // other parts now, measured everywhere. ways: of the vertices of source.repaired().mesh, linear
   // between them. unit: what errors are fractions of. Holds a reference to this.
-  AdaptiveProblem problem(const Points& ways, double unit) const;
+  AdaptiveProblem problem(const Points& ways, double unit);
 
   // Distances from where `shape`, positions of those vertices, has them: at the points of
   // freshSamples, fractions of the unit.
   BoundaryError errorFrom(const Points& shape, double unit);
 
  private:
+  // Random places, the same at each step.
+  struct Draw {
+    std::vector<SurfacePoint> places;  // on the source's repaired mesh
+    Points now;                        // where they are after so many steps
+    std::size_t steps = 0;
+  };
+
   Points carried(Points points, std::size_t firstStep) const;
   // Random places on the source's repaired mesh, uniform by its area; those of draw 0 are
   // freshSamples'.
   std::vector<SurfacePoint> placesOf(std::size_t count, std::uint64_t draw) const;
+  const Draw& drawn(std::size_t count, std::uint64_t draw);
   Points onSource(const Points& vertices, const std::vector<SurfacePoint>& places) const;
 
   const Solid& source_;
   const CarriedSettings settings_;
   std::vector<HarmonicMap> steps_;
   RefinedSurface surface_;
-  Points vertices_;                        // of surface_, now
-  Solid solid_;                            // that these bound
-  std::vector<SurfacePoint> freshPlaces_;  // on the source's repaired mesh
-  Points fresh_;                           // where they are after so many steps
-  std::size_t freshSteps_ = 0;
+  Points vertices_;  // of surface_, now
+  Solid solid_;      // that these bound
+  // By count and number. A step goes on from where the one before has taken them: carried all the
+  // way each time they cost more than the fits.
+  std::map<std::pair<std::size_t, std::uint64_t>, Draw> draws_;
 };
 
 }  // namespace innermap

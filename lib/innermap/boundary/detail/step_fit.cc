@@ -125,7 +125,7 @@ class StepFitter {
     AdaptiveSettings s;
     s.tolerance = toleranceUntil(to);
     s.maxSources = mostSources();
-    s.outlierRounds = kOutlierRounds;
+    s.outlierRounds = to < 1 ? 0 : kOutlierRounds;
     s.patience = to < 1 ? kPatience : kLastPatience;
     if (mayStop)
       s.goOn = [this](const HarmonicField& field) {

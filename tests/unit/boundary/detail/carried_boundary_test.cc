@@ -34,7 +34,7 @@ class Carried : public ::testing::Test {
 };
 
 TEST_F(Carried, TheFirstProblemIsOfTheSource) {
-  const CarriedBoundary boundary(solid, settings);
+  CarriedBoundary boundary(solid, settings);
   const AdaptiveProblem problem = boundary.problem(ways({1, 2, 3}), solid.diagonal());
   const BoundarySamples samples = problem.draw(500, 1);
   ASSERT_EQ(samples.points.size(), 500u);
