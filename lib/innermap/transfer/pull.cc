@@ -114,7 +114,7 @@ PullResult Pull::run(const openvdb::GridPtrVec& grids) {
   const Carriers carriers =
       makeCarriers(grids, settings_.carry, settings_.targetLevelSet, settings_.progress);
   const openvdb::MaskGrid::Ptr active = region(grids);
-  CarryOutput output(carriers, *active);
+  CarryOutput output(carriers, *active, map_.levelSet());
   if (settings_.through)
     carryThrough(*active, output);
   else

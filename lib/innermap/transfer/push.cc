@@ -81,8 +81,8 @@ struct VolumePusher::Data {
   openvdb::MaskGrid::Ptr regionOf(const openvdb::FloatGrid& target) const;
   ExtendedMap extended(const ComposedMap& map) const;
   Vec3 inSolid(const Vec3& p) const;
-  void carrySampled(const ComposedMap& map, const InvertedMap& inverted,
-                    openvdb::GridPtrVec& out) const;
+  void carrySampled(const ComposedMap& map, const openvdb::FloatGrid& target,
+                    const InvertedMap& inverted, openvdb::GridPtrVec& out) const;
   void carryDensities(const ComposedMap& map, const openvdb::FloatGrid& target,
                       const openvdb::MaskGrid& region, PushResult& out) const;
 };
@@ -138,9 +138,9 @@ Vec3 VolumePusher::Data::inSolid(const Vec3& p) const {
   return source.closest(p, std::numeric_limits<double>::infinity()).position;
 }
 
-void VolumePusher::Data::carrySampled(const ComposedMap& map, const InvertedMap& inverted,
-                                      openvdb::GridPtrVec& out) const {
-  CarryOutput output(sampled, *inverted.region);
+void VolumePusher::Data::carrySampled(const ComposedMap& map, const openvdb::FloatGrid& target,
+                                      const InvertedMap& inverted, openvdb::GridPtrVec& out) const {
+  CarryOutput output(sampled, *inverted.region, target);
   std::vector<openvdb::Coord> origins;
   for (auto leaf = inverted.region->tree().cbeginLeaf(); leaf; ++leaf)
     origins.push_back(leaf->origin());
@@ -211,7 +211,7 @@ PushResult VolumePusher::push(const ComposedMap& map, const openvdb::FloatGrid& 
     const std::string doubt = inverted.statistics.warning();
     if (!doubt.empty()) out.warnings.push_back(doubt);
     if (!d.grids.empty()) out.resampling = resamplingOf(inverted, targetLevelSet, d.grids);
-    d.carrySampled(map, inverted, out.grids);
+    d.carrySampled(map, targetLevelSet, inverted, out.grids);
     for (const CarriedField& field : fields)
       out.grids.push_back(fieldGrid(field, d.source, d.lattice, inverted, d.settings.accuracy,
                                     d.settings.progress));

@@ -1,6 +1,7 @@
 #include "innermap/transfer/push.h"
 
 #include <gtest/gtest.h>
+#include <openvdb/tools/Composite.h>
 
 #include <functional>
 
@@ -79,6 +80,49 @@ TEST(Push, AttributesDoNotMeetTheBackgroundWhereTheTargetIsMissed) {
   forInside<openvdb::FloatGrid>(*out.grids[0], *to, [&](const Vec3& q, float value) {
     ASSERT_NEAR(value, 5, 1e-5) << "at radius " << norm(q);
   });
+}
+
+// A hollow ball, onto a target that the map misses by two voxels: outside it is the target's own
+// surface, inside its own wall still.
+TEST(Push, TheSurfaceOfTheSolidBecomesThatOfTheTarget) {
+  Mat3 same{}, larger{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    same[k][k] = 1;
+    larger[k][k] = 1.1;
+  }
+  const Solid source(ball()), target(moved(ball(), affineMap(larger, {}))), wall(ball(0.6));
+  const auto to = levelSetOf(target, 44);
+  LevelSetSettings forty;
+  forty.resolution = 40;
+  const LevelSetSettings lattice = onLatticeOf(source, forty);
+  const auto hollow = openvdb::tools::csgDifferenceCopy(*makeLevelSet(source, lattice),
+                                                        *makeLevelSet(wall, lattice));
+  hollow->setGridClass(openvdb::GRID_LEVEL_SET);
+  const PushResult out = VolumePusher(source, {hollow}).push(affineMap(same, {}), *to);
+  const auto& carried = static_cast<const openvdb::FloatGrid&>(*out.grids[0]);
+  const double voxel = carried.voxelSize()[0];
+  for (int i = 0; i < 26; ++i) {
+    const openvdb::Vec3d q(0.05 * i, 0.01, 0.01);
+    const openvdb::Coord c = openvdb::Coord::round(carried.transform().worldToIndex(q));
+    const auto g = openvdb::gridConstPtrCast<openvdb::FloatGrid>(hollow);
+           g->tree().getValue(openvdb::Coord::round(g->transform().worldToIndex(q))),
+           carried.tree().getValue(c));
+  }
+  double errors[2] = {0, 0};  // of the outer surface, and the wall
+  std::size_t counts[2] = {0, 0};
+  for (auto v = carried.cbeginValueOn(); v; ++v) {
+    if (std::abs(*v) > 2 * voxel) continue;
+    const auto q = carried.transform().indexToWorld(v.getCoord());
+    const bool inner = q.length() < 0.8;
+    const double distance =
+        inner ? 0.6 - q.length() : static_cast<double>(to->tree().getValue(v.getCoord()));
+    errors[inner] = std::max(errors[inner], std::abs(static_cast<double>(*v) - distance));
+    ++counts[inner];
+  }
+  EXPECT_GT(counts[0], 1000u);
+  EXPECT_GT(counts[1], 1000u);
+  EXPECT_LT(errors[0], 0.15 * voxel);  // the surface goes through a mesh
+  EXPECT_LT(errors[1], 0.15 * voxel);
 }
 
 // Maps whose inside has a closed form: the harmonic twist and bend (to first order the twist and

@@ -32,8 +32,9 @@ class Carrier {
   // Empty grids like the inputs, active in the region.
   virtual openvdb::GridPtrVec makeOutput(const openvdb::MaskGrid& region) const = 0;
 
-  // For the active voxels of the region's leaf at `origin`, in order. One thread a leaf.
-  virtual void carry(const openvdb::Coord& origin, const Site* sites,
+  // For the active voxels of the region's leaf at `origin`, in order. to: level set of the solid
+  // that the output lives in, on its lattice. One thread a leaf.
+  virtual void carry(const openvdb::Coord& origin, const Site* sites, const openvdb::FloatGrid& to,
                      const openvdb::GridPtrVec& output) const = 0;
 
   // The output as it should be written: level sets with true distances again.
@@ -57,6 +58,7 @@ class Carrier {
 // Carriers for all of `grids`. solid: level set of the solid that they live in, null when it is not
 // known: beyond it attributes (all but level sets, fog volumes and densities) are continued by a
 // few voxels from their nearest, so that sampling along its surface does not meet the background.
+// Must outlive them.
 // Throws DataError: a type that cannot be carried, a name that settings have and no grid, a tensor
 // whose parts are missing or doubled.
 std::vector<std::unique_ptr<Carrier>> makeCarriers(const openvdb::GridPtrVec& grids,

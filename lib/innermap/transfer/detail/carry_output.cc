@@ -58,14 +58,15 @@ bool meets(const openvdb::GridBase& grid, const openvdb::FloatGrid& solid, Progr
 
 }  // namespace
 
-CarryOutput::CarryOutput(const Carriers& carriers, const openvdb::MaskGrid& region)
-    : carriers_(carriers) {
+CarryOutput::CarryOutput(const Carriers& carriers, const openvdb::MaskGrid& region,
+                         const openvdb::FloatGrid& levelSet)
+    : carriers_(carriers), levelSet_(levelSet) {
   for (const auto& carrier : carriers) outputs_.push_back(carrier->makeOutput(region));
 }
 
 void CarryOutput::carry(const openvdb::Coord& origin, const Site* sites) const {
   for (std::size_t c = 0; c < carriers_.size(); ++c)
-    carriers_[c]->carry(origin, sites, outputs_[c]);
+    carriers_[c]->carry(origin, sites, levelSet_, outputs_[c]);
 }
 
 void CarryOutput::finish(const std::function<Points(const Points&)>& movePositions,

@@ -18,7 +18,9 @@ using Carriers = std::vector<std::unique_ptr<Carrier>>;
 
 class CarryOutput {
  public:
-  CarryOutput(const Carriers& carriers, const openvdb::MaskGrid& region);
+  // levelSet: of the solid that the output lives in; the region is on its lattice.
+  CarryOutput(const Carriers& carriers, const openvdb::MaskGrid& region,
+              const openvdb::FloatGrid& levelSet);
 
   // For the active voxels of the region's leaf at `origin`, in order. From any thread.
   void carry(const openvdb::Coord& origin, const Site* sites) const;
@@ -29,6 +31,7 @@ class CarryOutput {
 
  private:
   const Carriers& carriers_;
+  const openvdb::FloatGrid& levelSet_;
   std::vector<openvdb::GridPtrVec> outputs_;
 };
 

@@ -1,4 +1,7 @@
-#include <openvdb/tools/LevelSetRebuild.h>
+#include <openvdb/tools/MeshToVolume.h>
+#include <openvdb/tools/SignedFloodFill.h>
+#include <openvdb/tools/ValueTransformer.h>
+#include <openvdb/tools/VolumeToMesh.h>
 
 #include <algorithm>
 #include <cmath>
@@ -40,6 +43,43 @@ bool isAttribute(const openvdb::GridBase& grid, bool density) {
          grid.getGridClass() != openvdb::GRID_FOG_VOLUME;
 }
 
+// Where a level set is the surface of the solid that it lives in, to a voxel, it becomes that of
+// the other solid. Where the map crushes, its error is many voxels of the source; carried as it is,
+// the surface would be as ragged.
+class OwnSurface {
+ public:
+  OwnSurface(const openvdb::FloatGrid& solid, const openvdb::GridBase& levelSet)
+      : solid_(solid), voxel_(levelSet.voxelSize()[0]) {}
+
+  class Sampler {
+   public:
+    explicit Sampler(const OwnSurface& own) : own_(own), solid_(own.solid_, Sampling::linear) {}
+
+    // value: of the level set at the site. distance: from the other solid's surface, world units.
+    double replaced(double value, const Site& site, double distance) const {
+      const double same = own_.sameness(value, static_cast<double>(solid_.at(site.at)));
+      if (!(same > 0)) return value;
+      const double grown =
+          std::cbrt(std::max(std::abs(determinant(site.derivative)), kLeastDeterminant));
+      return (1 - same) * value + same * distance / grown;
+    }
+
+   private:
+    const OwnSurface& own_;
+    const PointwiseSampler<openvdb::FloatGrid> solid_;
+  };
+
+ private:
+  // 1 up to a voxel of the grid apart, 0 from two on; beyond the solid's band only signs count.
+  double sameness(double value, double own) const {
+    const double band = static_cast<double>(solid_.background());
+    return std::clamp(2 - std::abs(std::clamp(value, -band, band) - own) / voxel_, 0.0, 1.0);
+  }
+
+  const openvdb::FloatGrid& solid_;
+  double voxel_;
+};
+
 template <class Grid>
 class GridCarrier : public Carrier {
  public:
@@ -47,12 +87,15 @@ class GridCarrier : public Carrier {
   using Leaf = typename Grid::TreeType::LeafNodeType;
 
   GridCarrier(typename Grid::ConstPtr grid, std::size_t place, Sampling sampling,
-              std::optional<double> densityLimit)
+              std::optional<double> densityLimit, const openvdb::FloatGrid* solid)
       : Carrier({place}),
         grid_(std::move(grid)),
         sampling_(sampling),
         densityLimit_(densityLimit),
-        attribute_(isAttribute(*grid_, densityLimit.has_value())) {}
+        attribute_(isAttribute(*grid_, densityLimit.has_value())) {
+    if (solid && grid_->getGridClass() == openvdb::GRID_LEVEL_SET)
+      ownSurface_.emplace(*solid, *grid_);
+  }
 
   openvdb::GridPtrVec makeOutput(const openvdb::MaskGrid& region) const override {
     const openvdb::GridBase::Ptr out = emptyLike(*grid_, region);
@@ -61,8 +104,10 @@ class GridCarrier : public Carrier {
     return {out};
   }
 
-  void carry(const openvdb::Coord& origin, const Site* sites,
+  void carry(const openvdb::Coord& origin, const Site* sites, const openvdb::FloatGrid& to,
              const openvdb::GridPtrVec& output) const override {
+    if constexpr (std::is_floating_point_v<Value>)
+      if (ownSurface_) return carryLevelSet(origin, sites, to, output);
     const PointwiseSampler<Grid> sampler(*grid_, sampling_);
     const openvdb::VecType type = grid_->getVectorType();
     Leaf& leaf = *static_cast<Grid&>(*output[0]).tree().probeLeaf(origin);
@@ -97,15 +142,47 @@ class GridCarrier : public Carrier {
     return value;
   }
 
+  void carryLevelSet(const openvdb::Coord& origin, const Site* sites, const openvdb::FloatGrid& to,
+                     const openvdb::GridPtrVec& output) const {
+    const PointwiseSampler<Grid> sampler(*grid_, sampling_);
+    const OwnSurface::Sampler own(*ownSurface_);
+    const auto distances = to.getConstAccessor();
+    Leaf& leaf = *static_cast<Grid&>(*output[0]).tree().probeLeaf(origin);
+    for (auto voxel = leaf.beginValueOn(); voxel; ++voxel, ++sites) {
+      const double distance = static_cast<double>(distances.getValue(voxel.getCoord()));
+      voxel.setValue(static_cast<Value>(own.replaced(sampler.at(sites->at), *sites, distance)));
+    }
+  }
+
   openvdb::GridBase::Ptr rebuilt(const openvdb::GridBase::Ptr& sampled) const {
     const auto& in = static_cast<const Grid&>(*sampled);
     const double width =
         std::max(3.0, static_cast<double>(grid_->background()) / grid_->voxelSize()[0]);
-    typename Grid::Ptr out = openvdb::tools::levelSetRebuild(in, 0, static_cast<float>(width),
-                                                             static_cast<float>(width));
+    typename Grid::Ptr out = bandOf(in, static_cast<float>(width));
     for (auto meta = in.beginMeta(); meta != in.endMeta(); ++meta)
       setMetadata(*out, meta->first, *meta->second);
     out->setGridClass(openvdb::GRID_LEVEL_SET);
+    return out;
+  }
+
+  // Distances from where the values change their sign, in a band of so many voxels to each side.
+  // Signs are those of the values: levelSetRebuild fills all that cannot be reached from outside.
+  static typename Grid::Ptr bandOf(const Grid& sampled, float width) {
+    // In index space, where floats are exact enough far from the origin too.
+    const typename Grid::ConstPtr indexed =
+        Grid::create(std::const_pointer_cast<typename Grid::TreeType>(sampled.treePtr()));
+    std::vector<openvdb::Vec3s> points;
+    std::vector<openvdb::Vec3I> triangles;
+    std::vector<openvdb::Vec4I> quads;
+    openvdb::tools::volumeToMesh(*indexed, points, triangles, quads);
+    const openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec4I> mesh(points,
+                                                                                          quads);
+    typename Grid::Ptr out = openvdb::tools::meshToVolume<Grid>(
+        mesh, sampled.transform(), width, width, openvdb::tools::UNSIGNED_DISTANCE_FIELD);
+    openvdb::tools::foreach (out->beginValueOn(), [&sampled](const auto& voxel) {
+      if (sampled.getConstUnsafeAccessor().getValue(voxel.getCoord()) < 0) voxel.setValue(-*voxel);
+    });
+    openvdb::tools::signedFloodFill(out->tree());
     return out;
   }
 
@@ -113,20 +190,22 @@ class GridCarrier : public Carrier {
   Sampling sampling_;
   std::optional<double> densityLimit_;
   bool attribute_;
+  std::optional<OwnSurface> ownSurface_;  // of level sets, where the solid is known
 };
 
 // A mask's values are its active voxels.
 template <>
 class GridCarrier<openvdb::MaskGrid> : public Carrier {
  public:
-  GridCarrier(openvdb::MaskGrid::ConstPtr grid, std::size_t place, Sampling, std::optional<double>)
+  GridCarrier(openvdb::MaskGrid::ConstPtr grid, std::size_t place, Sampling, std::optional<double>,
+              const openvdb::FloatGrid*)
       : Carrier({place}), grid_(std::move(grid)) {}
 
   openvdb::GridPtrVec makeOutput(const openvdb::MaskGrid& region) const override {
     return {emptyLike(*grid_, region)};
   }
 
-  void carry(const openvdb::Coord& origin, const Site* sites,
+  void carry(const openvdb::Coord& origin, const Site* sites, const openvdb::FloatGrid&,
              const openvdb::GridPtrVec& output) const override {
     auto input = grid_->getConstAccessor();
     auto& leaf = *static_cast<openvdb::MaskGrid&>(*output[0]).tree().probeLeaf(origin);
@@ -150,7 +229,7 @@ std::unique_ptr<Carrier> carrierOf(const openvdb::GridBase::Ptr& grid, std::size
   if constexpr (!std::is_same_v<Grid, openvdb::MaskGrid>)
     if (solid && isAttribute(*grid, densityLimit.has_value()))
       typed = openvdb::gridPtrCast<Grid>(continuedBeyond(*grid, *solid, kContinuedLayers));
-  return std::make_unique<GridCarrier<Grid>>(typed, place, sampling, densityLimit);
+  return std::make_unique<GridCarrier<Grid>>(typed, place, sampling, densityLimit, solid);
 }
 
 }  // namespace

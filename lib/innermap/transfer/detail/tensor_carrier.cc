@@ -47,7 +47,7 @@ class TensorCarrier : public Carrier {
     return out;
   }
 
-  void carry(const openvdb::Coord& origin, const Site* sites,
+  void carry(const openvdb::Coord& origin, const Site* sites, const openvdb::FloatGrid&,
              const openvdb::GridPtrVec& output) const override {
     std::vector<PointwiseSampler<Grid>> samplers;
     std::vector<typename Grid::TreeType::LeafNodeType*> leaves;
