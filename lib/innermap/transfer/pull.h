@@ -41,7 +41,8 @@ struct PullResult {
 // For each voxel p of the source, the grids' values at f(p), moved back by what they are. levelSet:
 // of `source`, half-width at least the skin; its transform is that of the output, which is active
 // where the signed distance is at most the skin (with outside settings: the outside distance).
-// Names, classes, backgrounds, vector types and metadata stay; level sets are rebuilt as distances.
+// Names, classes, backgrounds, vector types and metadata stay; level sets are rebuilt as distances,
+// and where one is the target's own surface, to a voxel, it becomes the source's.
 // Throws as VolumePusher does.
 PullResult pullGrids(const ComposedMap& map, const Solid& source,
                      const openvdb::FloatGrid& levelSet, const openvdb::GridPtrVec& grids,

@@ -71,9 +71,10 @@ class VolumePusher {
   // targetLevelSet: of the target, class level set, half-width at least the skin; its transform is
   // that of the output. Output grids keep name, class, background, vector type and metadata; they
   // are active where the target's signed distance is at most the skin. Level sets are rebuilt as
-  // distances. With outside settings, also where the volume around the source comes to. Densities
-  // are active also where mass of theirs comes to beyond that. Throws as invertMap does. Same
-  // result for any number of threads.
+  // distances; where one is the source's own surface, to a voxel, it becomes the target's. With
+  // outside settings, also where the volume around the source comes to. Densities are active also
+  // where mass of theirs comes to beyond that. Throws as invertMap does. Same result for any number
+  // of threads.
   PushResult push(const ComposedMap& map, const openvdb::FloatGrid& targetLevelSet,
                   const std::vector<CarriedField>& fields = {}) const;
 

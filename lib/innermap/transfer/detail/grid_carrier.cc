@@ -48,8 +48,12 @@ bool isAttribute(const openvdb::GridBase& grid, bool density) {
 // the surface would be as ragged.
 class OwnSurface {
  public:
-  OwnSurface(const openvdb::FloatGrid& solid, const openvdb::GridBase& levelSet)
-      : solid_(solid), voxel_(levelSet.voxelSize()[0]) {}
+  template <class Grid>
+  OwnSurface(const openvdb::FloatGrid& solid, const Grid& levelSet)
+      : solid_(solid),
+        voxel_(levelSet.voxelSize()[0]),
+        band_(std::min(static_cast<double>(solid.background()),
+                       static_cast<double>(levelSet.background()))) {}
 
   class Sampler {
    public:
@@ -70,14 +74,14 @@ class OwnSurface {
   };
 
  private:
-  // 1 up to a voxel of the grid apart, 0 from two on; beyond the solid's band only signs count.
+  // 1 up to a voxel of the grid apart, 0 from two on; beyond their bands only signs count.
   double sameness(double value, double own) const {
-    const double band = static_cast<double>(solid_.background());
-    return std::clamp(2 - std::abs(std::clamp(value, -band, band) - own) / voxel_, 0.0, 1.0);
+    const double apart = std::clamp(value, -band_, band_) - std::clamp(own, -band_, band_);
+    return std::clamp(2 - std::abs(apart) / voxel_, 0.0, 1.0);
   }
 
   const openvdb::FloatGrid& solid_;
-  double voxel_;
+  double voxel_, band_;
 };
 
 template <class Grid>
@@ -93,8 +97,9 @@ class GridCarrier : public Carrier {
         sampling_(sampling),
         densityLimit_(densityLimit),
         attribute_(isAttribute(*grid_, densityLimit.has_value())) {
-    if (solid && grid_->getGridClass() == openvdb::GRID_LEVEL_SET)
-      ownSurface_.emplace(*solid, *grid_);
+    if constexpr (std::is_floating_point_v<Value>)
+      if (solid && grid_->getGridClass() == openvdb::GRID_LEVEL_SET)
+        ownSurface_.emplace(*solid, *grid_);
   }
 
   openvdb::GridPtrVec makeOutput(const openvdb::MaskGrid& region) const override {
