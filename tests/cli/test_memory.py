@@ -229,7 +229,7 @@ CASES = [
     Case("polycube of a fine mesh", torus, "polycube torus.obj -o out.obj", 60, 600),
     Case("hexahedralize", ball, "hexahedralize ball.obj -o out.vtu --blocks 8", 3, 5),
     Case("hexahedralize --blocks", lambda _: ball(3), "hexahedralize ball.obj -o out.vtu --blocks {}",
-         6, 20),
+         6, 26),
     Case("remesh", cells, "remesh map.ply in.vtu -o out.vtu", 24, 100),
     Case("compare-fem", lambda _: torus(60),
          "compare-fem torus.obj -o out --functions --charges 500 --resolutions {}", 16, 72),

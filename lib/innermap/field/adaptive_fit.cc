@@ -301,7 +301,7 @@ AdaptiveResult AdaptiveFitting::run() {
         {solver_->sources().size(), collocation_.size(), solution_.iterations, error});
     keepIfBest();
     reportProgress(settings_.progress, "meeting the tolerance", workDone());
-    if (round == 1 && settings_.goOn && !settings_.goOn(*field_)) {
+    if (settings_.goOn && !settings_.goOn(*field_, static_cast<int>(round))) {
       end_ = AdaptiveEnd::stopped;
       break;
     }

@@ -69,9 +69,9 @@ struct AdaptiveSettings {
   std::size_t checkSamples = 20000;
   int patience = 6;       // rounds that may gain less than 3% in all, at least 1
   int outlierRounds = 6;  // at most, once the tolerance holds, for errors that stand out
-  // Asked with the field of the first level alone, if given: where the answer is no the fit ends
-  // there (AdaptiveEnd::stopped).
-  std::function<bool(const HarmonicField& field)> goOn;
+  // Asked with the field of each round, if given; that of the first has the first level alone.
+  // Where the answer is no the fit ends there (AdaptiveEnd::stopped).
+  std::function<bool(const HarmonicField& field, int round)> goOn;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
   Progress* progress = nullptr;
 };

@@ -116,8 +116,9 @@ FitOutcome MapFitter::within(double tolerance, bool mayStop) {
   if (!out) {
     AdaptiveSettings settings = adaptiveSettings(tolerance);
     if (mayStop && mayTakeSteps())
-      settings.goOn = [this](const HarmonicField& field) {
-        return foldedShare(insideOf(HarmonicMap(field)).determinants) <= kHopelessFolds;
+      settings.goOn = [this](const HarmonicField& field, int round) {
+        return round > 1 ||
+               foldedShare(insideOf(HarmonicMap(field)).determinants) <= kHopelessFolds;
       };
     timed(seconds, "fit", [&] {
       const AdaptiveResult fit = fitToTolerance(problem(tolerance), settings);

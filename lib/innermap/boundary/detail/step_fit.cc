@@ -73,7 +73,7 @@ class StepFitter {
           !hurries && static_cast<int>(records_.size() + ends.size()) < settings_.maxSteps;
       const double half = (end - at_) / 2;
       const auto began = std::chrono::steady_clock::now();
-      Step step = fitStep(end, may && half >= kShortest);
+      Step step = fitStep(end, may);
       seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
       if (step.fit.end == AdaptiveEnd::stopped ||
           (may && half >= kShortestFitted && step.record.folded > allowed(kFoldShare))) {
@@ -116,9 +116,9 @@ class StepFitter {
     return static_cast<std::size_t>(std::min(most, static_cast<double>(settings_.maxSources)));
   }
 
-  // mayStop: where the first level of charges folds points that are not folded yet. Folds of that
-  // level are few or none where those of the whole fit are none.
-  Step fitStep(double to, bool mayStop) {
+  // mayHalve: stops where a round folds too many points that are not folded yet. Folds of the first
+  // level of charges are few or none where those of the whole fit are none.
+  Step fitStep(double to, bool mayHalve) {
     const Points now = path_.at(at_);
     Points ways = path_.at(to);
     for (std::size_t v = 0; v < ways.size(); ++v) ways[v] = ways[v] - now[v];
@@ -127,10 +127,12 @@ class StepFitter {
     s.maxSources = mostSources();
     s.outlierRounds = to < 1 ? 0 : kOutlierRounds;
     s.patience = to < 1 ? kPatience : kLastPatience;
-    if (mayStop)
-      s.goOn = [this](const HarmonicField& field) {
+    const double half = (to - at_) / 2;
+    if (mayHalve && half >= kShortest)
+      s.goOn = [this, half](const HarmonicField& field, int round) {
+        if (round > 1 && half < kShortestFitted) return true;
         return foldedShare(insideAfter(HarmonicMap(field)).determinants) <=
-               allowed(kCoarseFoldShare);
+               allowed(round == 1 ? kCoarseFoldShare : kFoldShare);
       };
     s.maxMemory = settings_.maxMemory;
     s.progress = settings_.progress;
