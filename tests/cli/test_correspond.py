@@ -446,7 +446,9 @@ def test_interrupted():
 def test_real_models():
     if not (MODELS / "spot.obj").exists():
         raise Skip(f"no models in {MODELS}")
-    report = corresponded(MODELS / "spot.obj", MODELS / "homer.obj")
+    report = corresponded(MODELS / "spot.obj", MODELS / "homer.obj", "--subdivide", "0.005")
+    # Flat triangles across what is thin crossed in 3 pairs; split further, they do not.
+    assert report["correspondence"]["image_self_intersections"] == 0
     quality = report["correspondence"]
     # Chosen by the inside. By the surfaces alone there are lesser energies, upside down.
     check_quality(quality, 14, 4.5)

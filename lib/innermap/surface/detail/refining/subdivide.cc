@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "innermap/core/parallel.h"
+#include "innermap/mesh/self_intersection.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/surface/detail/refining/coarse_to_fine.h"
 #include "innermap/surface/detail/refining/locate.h"
@@ -18,6 +19,8 @@ namespace {
 
 constexpr double kMargin = 0.8;  // of the tolerance: points between those looked at deviate more
 constexpr int kRounds = 60;
+constexpr int kUncrossings = 20;         // rounds that split what crosses
+constexpr double kMostCrossing = 0.003;  // share of the triangles; more make the map dear to fit
 
 std::uint64_t keyOf(int i, int j) {
   return static_cast<std::uint64_t>(std::min(i, j)) << 32 |
@@ -58,8 +61,13 @@ class Subdivision {
     for (int round = 0; round < kRounds; ++round) {
       reportProgress(settings_.progress, "splitting the source",
                      static_cast<double>(round) / kRounds);
-      const std::vector<char> deviates = deviating(look);
-      const std::vector<std::pair<int, int>> edges = edgesToSplit(deviates);
+      std::vector<char> marked = deviating(look);
+      std::vector<std::pair<int, int>> edges =
+          edgesToSplit(marked, [this](int t, int k) { return modelLength(t, k); });
+      if (edges.empty() && mayUncross()) {
+        marked = crossing();
+        edges = edgesToSplit(marked, [this](int t, int k) { return imageLength(t, k); });
+      }
       if (edges.empty()) break;
       if (outOfTime(settings_.progress) ||
           surface_.triangles.size() + 2 * edges.size() > settings_.triangles) {
@@ -70,7 +78,7 @@ class Subdivision {
       for (const auto& [t, k] : edges) splitEdge(t, k);
       look = relaxFrom(first);
       // Those that had to wait for a neighbour.
-      for (std::size_t t = 0; t < deviates.size(); ++t) look[t] = look[t] || deviates[t];
+      for (std::size_t t = 0; t < marked.size(); ++t) look[t] = look[t] || marked[t];
     }
     out.added = surface_.vertices.size() - before;
     return out;
@@ -138,13 +146,41 @@ class Subdivision {
       if (t >= 0) marked[t] = 1;
   }
 
-  double length(int t, int k) const {  // of the edge opposite corner k
+  // Flat triangles cut across what is thin. Smaller ones do not, unless the target crosses itself.
+  bool mayUncross() {
+    if (uncrossings_ == 0 &&
+        !selfIntersections(shell_.target.vertices, shell_.target.triangles, {settings_.progress})
+             .empty())
+      uncrossings_ = kUncrossings;
+    return uncrossings_++ < kUncrossings;
+  }
+
+  // Triangles whose flat images pass through each other; none where these are so many that the map
+  // itself is at fault.
+  std::vector<char> crossing() const {
+    std::vector<char> out(surface_.triangles.size(), 0);
+    for (const Crossing& c :
+         selfIntersections(positions_, surface_.triangles, {settings_.progress}))
+      out[c.first] = out[c.second] = 1;
+    const auto count = static_cast<double>(std::count(out.begin(), out.end(), 1));
+    if (count > kMostCrossing * static_cast<double>(out.size())) out.assign(out.size(), 0);
+    return out;
+  }
+
+  // Of the edge opposite corner k, on the model space and on the target.
+  double modelLength(int t, int k) const {
     return norm(image_.corner(surface_.triangles, t, (k + 2) % 3) -
                 image_.corner(surface_.triangles, t, (k + 1) % 3));
   }
+  double imageLength(int t, int k) const {
+    const Triangle& tri = surface_.triangles[t];
+    return norm(positions_[tri[(k + 2) % 3]] - positions_[tri[(k + 1) % 3]]);
+  }
 
   // The longest edges of the marked triangles, no two of one triangle: (triangle, opposite corner).
-  std::vector<std::pair<int, int>> edgesToSplit(const std::vector<char>& marked) {
+  template <typename Length>
+  std::vector<std::pair<int, int>> edgesToSplit(const std::vector<char>& marked,
+                                                const Length& length) {
     neighbours_ = neighboursOf(surface_.triangles);
     struct Edge {
       double length;
@@ -268,6 +304,7 @@ class Subdivision {
   const SubdivideSettings& settings_;
   const TriangleTree tree_;
   const double limit_;
+  int uncrossings_ = 0;  // so far
   Points positions_;
   Neighbours neighbours_;
   Midpoints vertices_, uvs_;

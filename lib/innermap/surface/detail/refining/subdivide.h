@@ -39,8 +39,9 @@ struct Subdivided {
 
 // Splits the longest edges (on the model space) of triangles whose flat images are farther than the
 // tolerance from the target, or that the target's vertices between their corners are farther from,
-// and relaxes around the new vertices. split.mesh grows with the shell: its own vertices and
-// triangles stay first and keep their numbers. Throws Cancelled.
+// then, where the target does not cross itself, of those whose flat images cross; and relaxes
+// around the new vertices. split.mesh grows with the shell: its own vertices and triangles stay
+// first and keep their numbers. Throws Cancelled.
 Subdivided subdivide(const SplitShell& shell, const TargetMetric& target, SplitMesh& split,
                      const SubdivideSettings& settings);
 
