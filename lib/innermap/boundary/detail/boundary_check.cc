@@ -31,8 +31,9 @@ WindingNumber imageOf(const ComposedMap& map, const Mesh& surface,
                       const BoundaryCheckSettings& settings) {
   RefinedSurface refined(surface);
   Points images = imagesOf(map, surface.vertices, settings);
+  EdgeImages edges;
   refine(
-      refined, images,
+      refined, images, edges,
       [&](const std::vector<SurfacePoint>& places) {
         return imagesOf(map, interpolate(surface.vertices, surface.triangles, places), settings);
       },

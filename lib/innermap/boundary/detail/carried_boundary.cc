@@ -75,13 +75,24 @@ const CarriedBoundary::Draw& CarriedBoundary::drawn(std::size_t count, std::uint
   return d;
 }
 
+void CarriedBoundary::carrySurface() {
+  Points points = vertices_;
+  for (const auto& edge : edges_)
+    points.insert(points.end(), edge.second.begin(), edge.second.end());
+  points = carried(std::move(points), steps_.size() - 1);
+  auto next = points.begin() + static_cast<std::ptrdiff_t>(vertices_.size());
+  vertices_.assign(points.begin(), next);
+  for (auto& edge : edges_)
+    for (Vec3& on : edge.second) on = *next++;
+}
+
 void CarriedBoundary::advance(const HarmonicMap& step, bool last) {
   steps_.push_back(step);
   if (last) return;
-  vertices_ = carried(std::move(vertices_), steps_.size() - 1);
+  carrySurface();
   const Mesh& mesh = source_.repaired().mesh;
   refine(
-      surface_, vertices_,
+      surface_, vertices_, edges_,
       [&](const std::vector<SurfacePoint>& places) {
         return carried(onSource(mesh.vertices, places), 0);
       },

@@ -49,6 +49,7 @@ class CarriedBoundary {
   };
 
   Points carried(Points points, std::size_t firstStep) const;
+  void carrySurface();  // by the last step
   // Random places on the source's repaired mesh, uniform by its area; those of draw 0 are
   // freshSamples'.
   std::vector<SurfacePoint> placesOf(std::size_t count, std::uint64_t draw) const;
@@ -59,8 +60,9 @@ class CarriedBoundary {
   const CarriedSettings settings_;
   std::vector<HarmonicMap> steps_;
   RefinedSurface surface_;
-  Points vertices_;  // of surface_, now
-  Solid solid_;      // that these bound
+  EdgeImages edges_;  // of surface_, now
+  Points vertices_;   // of surface_, now
+  Solid solid_;       // that these bound
   // By count and number. A step goes on from where the one before has taken them: carried all the
   // way each time they cost more than the fits.
   std::map<std::pair<std::size_t, std::uint64_t>, Draw> draws_;

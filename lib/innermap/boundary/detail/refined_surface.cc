@@ -23,26 +23,34 @@ std::uint64_t keyOf(int a, int b) {
          static_cast<std::uint64_t>(std::max(a, b));
 }
 
+// The places that are looked at along each edge that is not known.
 struct Edges {
   std::vector<std::array<int, 2>> ends;
   std::vector<SurfacePoint> places;  // three an edge
 };
 
-// Each edge once but for those that are known to be straight.
-Edges edgesOf(const RefinedSurface& surface, const std::unordered_set<std::uint64_t>& straight) {
+Edges unknownEdges(const RefinedSurface& surface, const EdgeImages& known) {
   Edges out;
   std::unordered_set<std::uint64_t> seen;
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
     for (int e = 0; e < 3; ++e) {
-      const int next = (e + 1) % 3;
-      const int a = surface.triangles[t][e], b = surface.triangles[t][next];
-      if (straight.count(keyOf(a, b)) > 0 || !seen.insert(keyOf(a, b)).second) continue;
+      const Triangle& corners = surface.triangles[t];
+      int from = e, to = (e + 1) % 3;
+      if (corners[from] > corners[to]) std::swap(from, to);
+      const std::array<int, 2> ends{corners[from], corners[to]};
+      if (!seen.insert(keyOf(ends[0], ends[1])).second || known.count(ends) > 0) continue;
       const RefinedSurface::Part& part = surface.parts[t];
-      out.ends.push_back({a, b});
+      out.ends.push_back(ends);
       for (const double along : kAlong)
-        out.places.push_back({part.triangle, between(part.corners[e], part.corners[next], along)});
+        out.places.push_back({part.triangle, between(part.corners[from], part.corners[to], along)});
     }
   return out;
+}
+
+void lookAt(const Edges& edges, const PlacesToPoints& imagesOf, EdgeImages& known) {
+  const Points on = imagesOf(edges.places);
+  for (std::size_t i = 0; i < edges.ends.size(); ++i)
+    known.emplace(edges.ends[i], std::array<Vec3, 3>{on[3 * i], on[3 * i + 1], on[3 * i + 2]});
 }
 
 // The edge of a triangle, named by the corner before it, that is longest on the mesh.
@@ -99,58 +107,72 @@ void split(const RefinedSurface& from, std::size_t t, const Middles& middles, Re
   }
 }
 
-// The vertices in the middles of the edges that are bent, new ones at the end of the surface's and
-// of `images`; the others go into `straight`.
-Middles splitBentEdges(RefinedSurface& surface, Points& images, const PlacesToPoints& imagesOf,
-                       double chord, std::unordered_set<std::uint64_t>& straight) {
-  const Edges edges = edgesOf(surface, straight);
-  const Points on = imagesOf(edges.places);
-  Middles out;
-  for (std::size_t i = 0; i < edges.ends.size(); ++i) {
-    const auto [a, b] = edges.ends[i];
-    const std::size_t first = kAlong.size() * i;
-    double bent = 0;
-    for (std::size_t k = 0; k < kAlong.size(); ++k) {
-      const Vec3 line = images[a] + kAlong[k] * (images[b] - images[a]);
-      bent = std::max(bent, norm(on[first + k] - line));
-    }
-    if (bent > chord && norm(surface.positions[b] - surface.positions[a]) > chord) {
-      out.emplace(keyOf(a, b), static_cast<int>(surface.vertices.size()));
-      surface.vertices.push_back(edges.places[first]);
-      surface.positions.push_back(0.5 * (surface.positions[a] + surface.positions[b]));
-      images.push_back(on[first]);
-    } else {
-      straight.insert(keyOf(a, b));
-    }
-  }
-  return out;
+bool isBent(const RefinedSurface& surface, const Points& images, const EdgeImages::value_type& edge,
+            double chord) {
+  const auto& [ends, on] = edge;
+  const auto [a, b] = ends;
+  if (!(norm(surface.positions[b] - surface.positions[a]) > chord)) return false;
+  double bent = 0;
+  for (std::size_t k = 0; k < kAlong.size(); ++k)
+    bent = std::max(bent, norm(on[k] - (images[a] + kAlong[k] * (images[b] - images[a]))));
+  return bent > chord;
 }
 
-// Where an edge of a triangle is split, its longest one is too.
-void splitLongestEdges(RefinedSurface& surface, Points& images, const PlacesToPoints& imagesOf,
-                       Middles& middles) {
-  std::vector<SurfacePoint> places;
-  const std::size_t first = surface.vertices.size();
-  for (bool more = true; more;) {
-    more = false;
-    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-      const Triangle& corners = surface.triangles[t];
-      const int e = longestEdge(surface, corners), next = (e + 1) % 3;
-      const bool any = middleOf(middles, corners, 0) >= 0 || middleOf(middles, corners, 1) >= 0 ||
-                       middleOf(middles, corners, 2) >= 0;
-      if (!any || middleOf(middles, corners, e) >= 0) continue;
-      middles.emplace(keyOf(corners[e], corners[next]), static_cast<int>(first + places.size()));
-      const RefinedSurface::Part& part = surface.parts[t];
-      places.push_back({part.triangle, between(part.corners[e], part.corners[next], 0.5)});
-      surface.positions.push_back(
-          0.5 * (surface.positions[corners[e]] + surface.positions[corners[next]]));
-      more = true;
+// The middles of edges that are split: vertices at the end of the surface's and of the images.
+class Splitting {
+ public:
+  // All edges are known; those that are split are known no more.
+  Splitting(RefinedSurface& surface, Points& images, EdgeImages& known)
+      : surface_(surface), images_(images), known_(known) {}
+
+  void splitBentEdges(double chord) {
+    std::unordered_set<std::uint64_t> bent;
+    for (const auto& edge : known_)
+      if (isBent(surface_, images_, edge, chord)) bent.insert(keyOf(edge.first[0], edge.first[1]));
+    for (std::size_t t = 0; t < surface_.triangles.size(); ++t)
+      for (int e = 0; e < 3; ++e) {
+        const Triangle& corners = surface_.triangles[t];
+        if (bent.count(keyOf(corners[e], corners[(e + 1) % 3])) > 0) add(t, e);
+      }
+  }
+
+  // Where an edge of a triangle is split, its longest one is too.
+  void splitLongestEdges() {
+    for (bool more = true; more;) {
+      more = false;
+      for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
+        const Triangle& corners = surface_.triangles[t];
+        const bool any = middleOf(middles_, corners, 0) >= 0 ||
+                         middleOf(middles_, corners, 1) >= 0 || middleOf(middles_, corners, 2) >= 0;
+        if (any && add(t, longestEdge(surface_, corners))) more = true;
+      }
     }
   }
-  const Points on = imagesOf(places);
-  images.insert(images.end(), on.begin(), on.end());
-  surface.vertices.insert(surface.vertices.end(), places.begin(), places.end());
-}
+
+  const Middles& middles() const { return middles_; }
+
+ private:
+  // False where it is there already.
+  bool add(std::size_t t, int e) {
+    const Triangle& corners = surface_.triangles[t];
+    const int next = (e + 1) % 3, a = corners[e], b = corners[next];
+    if (!middles_.emplace(keyOf(a, b), static_cast<int>(surface_.vertices.size())).second)
+      return false;
+    const RefinedSurface::Part& part = surface_.parts[t];
+    surface_.vertices.push_back(
+        {part.triangle, between(part.corners[e], part.corners[next], kAlong[0])});
+    surface_.positions.push_back(0.5 * (surface_.positions[a] + surface_.positions[b]));
+    const auto known = known_.find({std::min(a, b), std::max(a, b)});
+    images_.push_back(known->second[0]);
+    known_.erase(known);
+    return true;
+  }
+
+  RefinedSurface& surface_;
+  Points& images_;
+  EdgeImages& known_;
+  Middles middles_;
+};
 
 }  // namespace
 
@@ -163,17 +185,19 @@ RefinedSurface::RefinedSurface(const Mesh& mesh)
   }
 }
 
-void refine(RefinedSurface& surface, Points& images, const PlacesToPoints& imagesOf, double chord,
-            std::size_t most) {
-  std::unordered_set<std::uint64_t> straight;
+void refine(RefinedSurface& surface, Points& images, EdgeImages& edges,
+            const PlacesToPoints& imagesOf, double chord, std::size_t most) {
   while (surface.triangles.size() < most) {
-    Middles middles = splitBentEdges(surface, images, imagesOf, chord, straight);
-    if (middles.empty()) return;
-    splitLongestEdges(surface, images, imagesOf, middles);
+    lookAt(unknownEdges(surface, edges), imagesOf, edges);
+    Splitting splitting(surface, images, edges);
+    splitting.splitBentEdges(chord);
+    if (splitting.middles().empty()) return;
+    splitting.splitLongestEdges();
     RefinedSurface next = surface;
     next.triangles.clear();
     next.parts.clear();
-    for (std::size_t t = 0; t < surface.triangles.size(); ++t) split(surface, t, middles, next);
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+      split(surface, t, splitting.middles(), next);
     surface = std::move(next);
   }
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <map>
 #include <vector>
 
 #include "innermap/mesh/mesh.h"
@@ -26,15 +27,20 @@ struct RefinedSurface {
   std::vector<Part> parts;
 };
 
+// Images of three places along each edge that was looked at and left whole, by its vertices, the
+// lesser first. Moved along with the images of the vertices they spare a refinement that goes on
+// from there the way from the mesh to them.
+using EdgeImages = std::map<std::array<int, 2>, std::array<Vec3, 3>>;
+
 using PlacesToPoints = std::function<Points(const std::vector<SurfacePoint>&)>;
 
 // Splits edges at their middle where the image of one is farther than `chord` from the straight
 // line between the images of its ends, and the triangles beside them (by their longest edges, which
 // keeps angles from shrinking: Rivara, "Algorithms for refining triangular grids", 1984); again, as
 // long as there are any and no more than `most` triangles. Edges that are shorter than `chord` on
-// the mesh stay whole: what is bent there is torn. images: of the vertices, in and out; imagesOf:
-// of places on the mesh. chord in the units of both.
-void refine(RefinedSurface& surface, Points& images, const PlacesToPoints& imagesOf, double chord,
-            std::size_t most);
+// the mesh stay whole: what is bent there is torn. images: of the vertices, in and out; edges: in,
+// those that are known, and out; imagesOf: of places on the mesh. chord in the units of all.
+void refine(RefinedSurface& surface, Points& images, EdgeImages& edges,
+            const PlacesToPoints& imagesOf, double chord, std::size_t most);
 
 }  // namespace innermap

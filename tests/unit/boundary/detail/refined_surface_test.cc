@@ -18,17 +18,18 @@ struct Refined {
   Mesh mesh;
   RefinedSurface surface;
   Points images;
+  EdgeImages edges;
 };
 
 Refined refined(double chord, std::size_t most = 1'000'000) {
-  Refined out{shapes::icosphere(2), RefinedSurface(shapes::icosphere(2)), {}};
+  Refined out{shapes::icosphere(2), RefinedSurface(shapes::icosphere(2)), {}, {}};
   const auto images = [&](const std::vector<SurfacePoint>& places) {
     Points points = interpolate(out.mesh.vertices, out.mesh.triangles, places);
     for (Vec3& p : points) p = bent(p);
     return points;
   };
   out.images = images(out.surface.vertices);
-  refine(out.surface, out.images, images, chord, most);
+  refine(out.surface, out.images, out.edges, images, chord, most);
   return out;
 }
 
@@ -37,6 +38,38 @@ double areaOf(const Points& vertices, const std::vector<Triangle>& triangles) {
   for (const Triangle& t : triangles)
     sum += norm(cross(vertices[t[1]] - vertices[t[0]], vertices[t[2]] - vertices[t[0]])) / 2;
   return sum;
+}
+
+// Bent once more: what is known of the edges goes along and is not asked for again.
+TEST(Refine, GoesOnWithWhatIsKnown) {
+  const double chord = 2e-3;
+  Refined r = refined(chord), fresh = r;
+  const auto twice = [&](const std::vector<SurfacePoint>& places) {
+    Points points = interpolate(r.mesh.vertices, r.mesh.triangles, places);
+    for (Vec3& p : points) p = bent(bent(p));
+    return points;
+  };
+  std::size_t asked[2] = {0, 0};
+  for (Refined* one : {&r, &fresh}) {
+    for (Vec3& p : one->images) p = bent(p);
+    if (one == &r)
+      for (auto& edge : one->edges)
+        for (Vec3& p : edge.second) p = bent(p);
+    else
+      one->edges.clear();
+    refine(
+        one->surface, one->images, one->edges,
+        [&](const std::vector<SurfacePoint>& places) {
+          asked[one == &r ? 0 : 1] += places.size();
+          return twice(places);
+        },
+        chord, 1'000'000);
+  }
+  EXPECT_GT(r.surface.triangles.size(), refined(chord).surface.triangles.size());
+  EXPECT_EQ(r.surface.triangles, fresh.surface.triangles);
+  for (std::size_t v = 0; v < r.images.size(); ++v)
+    EXPECT_LT(norm(r.images[v] - fresh.images[v]), 1e-14);
+  EXPECT_LT(asked[0], asked[1]);
 }
 
 TEST(RefinedSurface, StartsAsTheMesh) {
@@ -96,7 +129,8 @@ TEST(Refine, EndsAtATear) {
     return points;
   };
   Points at = images(surface.vertices);
-  refine(surface, at, images, 0.02, 1'000'000);
+  EdgeImages edges;
+  refine(surface, at, edges, images, 0.02, 1'000'000);
   EXPECT_LT(surface.triangles.size(), 20000u);
 }
 
