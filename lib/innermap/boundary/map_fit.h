@@ -31,11 +31,13 @@ std::size_t shellCollocation(const ShellSettings& shell);
 
 // What is done about folds. automatic: steps, where one harmonic map folds more than kManyFolds of
 // the inside or takes more than kManyOutside of it out of the target; where its first charges fold
-// twice that share, it is not fitted to the end. on: steps until no point that is checked is
-// folded. off: one harmonic map, of which folds are counted.
+// twice that share, it is not fitted to the end. Steps then fold at most kFewFolds of the points
+// inside that are checked: single points beside the surface fold where charges are near them, which
+// smaller steps seldom cure. on: steps until no such point is folded. off: one harmonic map, of
+// which folds are counted.
 enum class OneToOne { automatic, on, off };
 
-constexpr double kManyFolds = 5e-3, kManyOutside = 1e-2;
+constexpr double kManyFolds = 5e-3, kManyOutside = 1e-2, kFewFolds = 4e-4;
 
 // What maps in steps take beside a single one in bytes: the most that was measured between
 // unrelated solids of some 10,000 triangles, where 0.3e9 is as common.

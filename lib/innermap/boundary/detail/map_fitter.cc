@@ -15,9 +15,6 @@ namespace {
 
 constexpr std::size_t kTrialSources = 200;  // of a fit to vertices
 constexpr std::size_t kInside = 20000, kPlaces = 16;
-// Single points beside the surface fold where charges are near them; smaller steps do not cure
-// that.
-constexpr double kFewFolds = 4e-4;
 // What a thousand charges fold is near what the whole fit does, where that is so much: no need to
 // go on to it.
 constexpr double kHopelessFolds = 2 * kManyFolds;
