@@ -168,6 +168,7 @@ void reportOuter(const std::string& key, const std::optional<OuterSurface>& take
   report.set(key + ".left_out_share", outer.leftOutShare);
   report.set(key + ".apart_p99", outer.apartP99);
   report.set(key + ".apart_max", outer.apartMax);
+  reportCaps(key, outer.caps, report);
   report.setColumn(key + ".cuts.x", outer.cuts, [](auto& c) { return c.place.x; });
   report.setColumn(key + ".cuts.y", outer.cuts, [](auto& c) { return c.place.y; });
   report.setColumn(key + ".cuts.z", outer.cuts, [](auto& c) { return c.place.z; });
@@ -183,7 +184,7 @@ LaidOutMesh layOut(Mesh mesh, const SurfaceOptions& options, Context& context) {
 
 ReportMesh reportOf(const LaidOutMesh& laid) {
   ReportMesh out = reportOf(laid.mesh, laid.volume());
-  out.boundaryLoops = out.caps = laid.shells().caps;
+  out.boundaryLoops = out.caps = static_cast<int>(laid.caps().size());
   out.genus = laid.handles();
   return out;
 }
@@ -212,6 +213,8 @@ MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const CorrespondOptions& opt
   LaidOutMesh laidB = layOut(std::move(b), options.surfaces, context);
   context.report().source = reportOf(laidA);
   context.report().target = reportOf(laidB);
+  reportCaps("source", laidA.caps(), context.report());
+  reportCaps("target", laidB.caps(), context.report());
   MeshCorrespondence map = innermap::correspondMeshes(std::move(laidA), std::move(laidB), settings);
   context.tell(map);
   reportMap(map, context.report());

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "html/contents.h"
+#include "innermap/mesh/cap_boxes.h"
 
 namespace innermap::tool {
 namespace {
@@ -20,6 +21,7 @@ ReportMesh reportOf(const Mesh& mesh, const MeshReport& check, int caps, double 
 void fillSource(const SourceBoundary& source, Report& report) {
   report.source =
       reportOf(source.mesh, source.check, source.solid.repaired().caps, source.solid.volume());
+  reportCaps("source", capBoxes(source.solid.repaired()), report);
   report.set("source.self_intersections", source.check.selfIntersections);
 }
 
@@ -143,6 +145,20 @@ ReportMesh reportOf(const Mesh& mesh, double volume) {
   return out;
 }
 
+void reportCaps(const std::string& key, const std::vector<Box3>& caps, Report& report) {
+  if (caps.empty()) return;
+  report.setColumn(key + ".cap_places.x", caps, [](auto& c) { return c.center().x; });
+  report.setColumn(key + ".cap_places.y", caps, [](auto& c) { return c.center().y; });
+  report.setColumn(key + ".cap_places.z", caps, [](auto& c) { return c.center().z; });
+  report.setColumn(key + ".cap_places.size", caps, [](auto& c) { return c.diagonal(); });
+}
+
+void reportSolid(const Mesh& mesh, const Solid& solid, Report& report) {
+  report.source = reportOf(mesh, solid.volume());
+  report.source->caps = report.source->boundaryLoops = solid.repaired().caps;
+  reportCaps("source", capBoxes(solid.repaired()), report);
+}
+
 void reportSource(const SourceBoundary& source, Context& context) {
   context.tell(source);
   fillSource(source, context.report());
@@ -154,6 +170,7 @@ void reportBoundaries(const BoundaryPair& pair, Context& context) {
   fillSource(pair.source, report);
   report.target =
       reportOf(pair.targetMesh, pair.targetCheck, pair.solid().repaired().caps, pair.target.volume);
+  reportCaps("target", capBoxes(pair.solid().repaired(), pair.target.moved), report);
   report.set("target.self_intersections", pair.targetCheck.selfIntersections);
 }
 

@@ -6,6 +6,7 @@
 #include "innermap/core/memory.h"
 #include "innermap/mesh/write.h"
 #include "inputs.h"
+#include "map_report.h"
 
 namespace innermap::tool {
 namespace {
@@ -29,6 +30,7 @@ void run(const Options& options, Context& context) {
   context.requireMemory("the layout", need, "use a coarser mesh");
   const LaidOutMesh laid = layOut(std::move(mesh), options.surface, context);
   context.report().source = reportOf(laid);
+  reportCaps("source", laid.caps(), context.report());
   const MeshOnSphere sphere = onSphere(laid);
   const LayoutQuality& quality = sphere.quality;
   Report& report = context.report();

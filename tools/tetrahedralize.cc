@@ -58,8 +58,7 @@ void drawCut(const TetrahedralizeOptions& options, const CellMesh& mesh, const C
 void fillReport(const Tetrahedralization& result, const Mesh& mesh, const Solid& solid,
                 Context& context) {
   Report& report = context.report();
-  report.source = reportOf(mesh, solid.volume());
-  report.source->caps = report.source->boundaryLoops = solid.repaired().caps;
+  reportSolid(mesh, solid, report);
   report.set("topology.components", result.topology.components);
   report.set("topology.cavities", result.topology.cavities);
   report.set("topology.handles", result.topology.handles);

@@ -21,8 +21,7 @@ struct VoxelizeOptions {
 
 void fillReport(const openvdb::FloatGrid& levelSet, const Solid& solid, const Mesh& mesh,
                 Report& report) {
-  report.source = reportOf(mesh, solid.volume());
-  report.source->caps = report.source->boundaryLoops = solid.repaired().caps;
+  reportSolid(mesh, solid, report);
   ReportGrid g;
   g.voxelSize = levelSet.voxelSize().x();
   g.activeVoxels = levelSet.activeVoxelCount();

@@ -296,6 +296,8 @@ def test_holes_of_open_meshes_are_closed():
     assert len(rows) == 642 and len(out) == len(faces) - 3  # no cap in the file
     check_on_target(rows, "b.obj")
     assert any("capped" in note for note in report["notes"]), report["notes"]
+    assert len(report["source"]["cap_places"]["x"]) == report["source"]["caps"] == 3, report["source"]
+    assert "cap_places" not in report["target"], report["target"]
     # And as a target: what lands on a cap has the closest triangle of the file.
     corresponded("b.obj", "open.obj")
     for row in read_ply("out.ply")[0]:

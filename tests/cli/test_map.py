@@ -163,6 +163,10 @@ def test_open_mesh_is_capped_on_both_sides():
     write_obj("target.obj", [(x, y, z + 0.3 * x * x) for x, y, z in vertices], faces)
     report = mapped()
     assert report["source"]["boundary_loops"] == 1 and report["source"]["caps"] == 1
+    for side in ("source", "target"):  # the rim is a level circle: its cap's middle is on the axis
+        caps = report[side]["cap_places"]
+        assert len(caps["x"]) == 1 and abs(caps["x"][0]) < 0.02 and abs(caps["y"][0]) < 0.02, caps
+        assert 0.6 < caps["z"][0] < 1 and 0.8 < caps["size"][0] < 2.2, caps
     assert report["boundary_error"]["p99"] < 5e-3, report["boundary_error"]
     assert any("capped" in note for note in report["notes"]), report["notes"]
 

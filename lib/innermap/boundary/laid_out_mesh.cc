@@ -6,6 +6,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/stage_seconds.h"
+#include "innermap/mesh/cap_boxes.h"
 #include "innermap/mesh/repair.h"
 #include "innermap/mesh/self_intersection.h"
 #include "innermap/mesh/triangle_tree.h"
@@ -84,6 +85,9 @@ std::vector<std::string> notesOn(const OuterSurface& outer, const std::string& n
       "{}: the outer surface of its solid is mapped: {} vertices, {}; 99% of the mesh's "
       "visible part lies within {:.2g} of the diagonal of it, all of that within {:.2g}",
       name, outer.mesh.vertices.size(), describe(t), outer.apartP99, outer.apartMax));
+  if (!outer.caps.empty())
+    notes.push_back(fmt::format("{}: {} hole{} capped", name, outer.caps.size(),
+                                outer.caps.size() == 1 ? "" : "s"));
   if (outer.leftOut > 0)
     notes.push_back(fmt::format("{}: {} part{} of it left out, {:.2g}% of the volume", name,
                                 outer.leftOut, outer.leftOut == 1 ? " is" : "s are",
@@ -128,6 +132,12 @@ Points placesOf(const LaidOutMesh& laid, std::size_t count) {
 }
 
 }  // namespace
+
+std::vector<Box3> LaidOutMesh::caps() const {
+  if (outer) return outer->caps;
+  const Mesh& capped = shells().mesh;
+  return capBoxes(capped.vertices, capped.triangles, mesh.vertices.size(), mesh.triangles.size());
+}
 
 int LaidOutMesh::handles() const {
   int sum = 0;

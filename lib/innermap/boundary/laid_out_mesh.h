@@ -38,8 +38,9 @@ struct LaidOutMesh {
   const SurfaceShells& shells() const { return embedded.surfaces(); }
   // Whether vertex and triangle numbers of the mesh are those of shells().mesh.
   bool ownNumbers() const { return !outer; }
-  int handles() const;    // of all shells
-  double volume() const;  // inside the shells, world units cubed
+  std::vector<Box3> caps() const;  // that close the mesh where it is open; world units
+  int handles() const;             // of all shells
+  double volume() const;           // inside the shells, world units cubed
 };
 
 // What stands for a mesh wherever a clean closed surface is needed.

@@ -20,6 +20,7 @@
 #include "innermap/lattice/detail/thin_parts.h"
 #include "innermap/lattice/stuffing_need.h"
 #include "innermap/levelset/level_set.h"
+#include "innermap/mesh/cap_boxes.h"
 #include "innermap/mesh/self_intersection.h"
 #include "innermap/mesh/triangle_tree.h"
 
@@ -214,6 +215,7 @@ OuterSurface enlargedOuterSurface(const Solid& solid, const OuterSurfaceSettings
   OuterSurface out = outerSurface(Solid(mesh, solidSettings), settings);
   out.edge /= scale;
   for (Vec3& v : out.mesh.vertices) v = centre + v / scale;
+  for (Box3& cap : out.caps) cap = {centre + cap.lower / scale, centre + cap.upper / scale};
   for (SurfaceCut& cut : out.cuts) cut = {centre + cut.place / scale, cut.size / scale};
   return out;
 }
@@ -233,6 +235,7 @@ OuterSurface outerSurface(const Solid& solid, const OuterSurfaceSettings& settin
     throw DataError(name +
                     ": has no outer surface, all parts are thinner than a cell of the lattice; "
                     "give a finer one (surface resolution)");
+  out.caps = capBoxes(solid.repaired());
   out.leftOut = parts.leftOut;
   out.leftOutShare = parts.leftOutShare;
   const std::vector<int> handles = wantedHandles(solid, signs, parts, settings);

@@ -36,6 +36,7 @@ struct OuterSurface {
   double edge = 0;         // of the lattice's cells, world units
   SolidTopology topology;  // of the mesh
   std::vector<SurfaceCut> cuts;
+  std::vector<Box3> caps;  // of the mesh, where it was open; world units
   // Parts of less than a thousandth of the volume of the largest, or all others; and their share of
   // the volume.
   std::size_t leftOut = 0;

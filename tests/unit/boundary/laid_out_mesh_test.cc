@@ -36,6 +36,7 @@ TEST(LayOutMesh, ClosesTheHolesOfAnOpenMesh) {
   const LaidOutMesh laid = layOutMesh(opened(blob("open.obj", 2, 0.5), 6));
   EXPECT_FALSE(laid.outer);
   EXPECT_GT(laid.shells().caps, 0);
+  EXPECT_EQ(static_cast<int>(laid.caps().size()), laid.shells().caps);
   EXPECT_TRUE(anyHas(laid.notes, "open.obj: ")) << "what was capped";
 }
 
@@ -52,6 +53,15 @@ TEST(LayOutMesh, TakesTheOuterSurfaceOfPartsThatOverlap) {
   EXPECT_EQ(laid.mesh.vertices.size(), mesh.vertices.size());
   EXPECT_LT(laid.volume(), signedVolume(mesh)) << "what is in both balls counts once";
   EXPECT_TRUE(anyHas(laid.notes, "two.obj: "));
+}
+
+TEST(LayOutMesh, KnowsTheCapsOfAnOpenMeshThatOverlaps) {
+  LayOutSettings settings;
+  settings.outerResolution = 20;
+  const LaidOutMesh laid = layOutMesh(opened(overlapping("two.obj"), 6), settings);
+  ASSERT_TRUE(laid.outer);
+  EXPECT_FALSE(laid.caps().empty());
+  EXPECT_TRUE(anyHas(laid.notes, "capped"));
 }
 
 // A coil that closes on itself is a ball still: one piece, whose union with itself is a ring.

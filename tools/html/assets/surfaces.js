@@ -60,6 +60,9 @@ function marksOf(panels) {
   add("one_to_one.source_crossings_at", "source crosses itself", 0);
   add("one_to_one.target_crossings_at", "target crosses itself", 1);
   add("tolerance.worst_at", "largest error", 0);
+  add("source.cap_places", "cap", 0);
+  add("target.cap_places", "cap of the target", 1);
+  add("outer_surface.cap_places", "cap", 0);
   add("outer_surface.cuts", "cut", 0);
   add("correspondence.source_outer_surface.cuts", "source is cut", 0);
   add("correspondence.target_outer_surface.cuts", "target is cut", 1);
