@@ -81,6 +81,11 @@ std::string qualityText(const MapQuality& q, ModelSpace space, bool outer) {
       q.targetSelfIntersections, outer ? "(of the outer surface)\n" : "");
 }
 
+void tell(const LaidOutMesh& laid, Context& context) {
+  for (const std::string& note : laid.notes) context.note(note);
+  addSeconds(context.report().seconds, laid.seconds);
+}
+
 }  // namespace
 
 void addSurfaceOptions(Command& c, SurfaceOptions& o) {
@@ -177,8 +182,7 @@ void reportOuter(const std::string& key, const std::optional<OuterSurface>& take
 
 LaidOutMesh layOut(Mesh mesh, const SurfaceOptions& options, Context& context) {
   LaidOutMesh laid = layOutMesh(std::move(mesh), context.settings(options.layOut));
-  for (const std::string& note : laid.notes) context.note(note);
-  addSeconds(context.report().seconds, laid.seconds);
+  tell(laid, context);
   return laid;
 }
 
@@ -209,8 +213,10 @@ MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const CorrespondOptions& opt
                         "use coarser meshes");
   auto settings = correspondSettings(options, context);
   if (!options.landmarks.empty()) settings.landmarks = readLandmarks(options.landmarks);
-  LaidOutMesh laidA = layOut(std::move(a), options.surfaces, context);
-  LaidOutMesh laidB = layOut(std::move(b), options.surfaces, context);
+  auto [laidA, laidB] =
+      layOutMeshes(std::move(a), std::move(b), context.settings(options.surfaces.layOut));
+  tell(laidA, context);
+  tell(laidB, context);
   context.report().source = reportOf(laidA);
   context.report().target = reportOf(laidB);
   reportCaps("source", laidA.caps(), context.report());

@@ -105,6 +105,40 @@ std::vector<std::string> notesOn(const OuterSurface& outer, const std::string& n
   return notes;
 }
 
+CleanSurface checked(const Mesh& mesh, const LayOutSettings& settings, StageSeconds& seconds) {
+  return timed(seconds, "check", [&] { return cleanSurface(mesh, settings); });
+}
+
+// Where the mesh has the handles of a union and the other has fewer: those of the other.
+void makeAlike(const Mesh& mesh, const Mesh& other, LayOutSettings settings, CleanSurface& clean,
+               const CleanSurface& like, StageSeconds& seconds) {
+  if (!clean.handlesOfUnion || !clean.handles || !like.handles || *clean.handles <= *like.handles)
+    return;
+  settings.handles = like.handles;
+  CleanSurface cut = checked(mesh, settings, seconds);
+  cut.notes.push_back(fmt::format(
+      "{}: its parts together have {} handle{}, it is cut until it has {} as {} has", mesh.name,
+      *clean.handles, *clean.handles == 1 ? "" : "s", *like.handles, other.name));
+  clean = std::move(cut);
+}
+
+LaidOutMesh laidOut(Mesh mesh, CleanSurface clean, StageSeconds seconds, Progress* progress) {
+  EmbeddingSettings how;
+  how.closeHoles = true;
+  how.progress = progress;
+  const EmbeddedSurface embedded = timed(seconds, "lay out", [&] {
+    return EmbeddedSurface(clean.outer ? clean.outer->mesh : mesh, how);
+  });
+  LaidOutMesh laid(std::move(mesh), embedded);
+  laid.outer = std::move(clean.outer);
+  laid.notes = std::move(clean.notes);
+  laid.seconds = std::move(seconds);
+  if (!laid.outer)
+    for (const std::string& note : laid.shells().notes)
+      laid.notes.push_back(laid.mesh.name + ": " + note);
+  return laid;
+}
+
 // Places on the sphere of the first `count` vertices of the shells' mesh.
 Points placesOf(const LaidOutMesh& laid, std::size_t count) {
   const SurfaceShells& shells = laid.shells();
@@ -154,38 +188,32 @@ double LaidOutMesh::volume() const {
 
 CleanSurface cleanSurface(const Mesh& mesh, const LayOutSettings& settings) {
   const Obstacle obstacle = obstacleOf(mesh, settings.progress);
-  if (obstacle.why.empty()) return {};
   CleanSurface out;
+  out.handles = obstacle.handles;
+  if (obstacle.why.empty()) return out;
   out.outer = outerSurfaceOf(mesh, obstacle, settings);
+  const SolidTopology& topology = out.outer->topology;
+  out.handles.reset();
+  if (topology.components == 1 && topology.cavities == 0) out.handles = topology.handles;
+  out.handlesOfUnion = !settings.handles && !obstacle.handles;
   out.notes = notesOn(*out.outer, mesh.name);
   out.notes.insert(out.notes.begin(), obstacle.why);
   return out;
 }
 
 LaidOutMesh layOutMesh(Mesh mesh, const LayOutSettings& settings) {
-  Progress* progress = settings.progress;
   StageSeconds seconds;
-  const auto embed = [&](const Mesh& surface) {
-    EmbeddingSettings how;
-    how.closeHoles = true;
-    how.progress = progress;
-    return timed(seconds, "lay out", [&] { return EmbeddedSurface(surface, how); });
-  };
-  CleanSurface clean = timed(seconds, "check", [&] { return cleanSurface(mesh, settings); });
-  if (!clean.outer) {
-    const EmbeddedSurface embedded = embed(mesh);
-    LaidOutMesh laid(std::move(mesh), embedded);
-    laid.seconds = std::move(seconds);
-    for (const std::string& note : laid.shells().notes)
-      laid.notes.push_back(laid.mesh.name + ": " + note);
-    return laid;
-  }
-  const EmbeddedSurface embedded = embed(clean.outer->mesh);
-  LaidOutMesh laid(std::move(mesh), embedded);
-  laid.outer = std::move(clean.outer);
-  laid.notes = std::move(clean.notes);
-  laid.seconds = std::move(seconds);
-  return laid;
+  CleanSurface clean = checked(mesh, settings, seconds);
+  return laidOut(std::move(mesh), std::move(clean), std::move(seconds), settings.progress);
+}
+
+std::pair<LaidOutMesh, LaidOutMesh> layOutMeshes(Mesh a, Mesh b, const LayOutSettings& settings) {
+  StageSeconds secondsA, secondsB;
+  CleanSurface cleanA = checked(a, settings, secondsA), cleanB = checked(b, settings, secondsB);
+  makeAlike(a, b, settings, cleanA, cleanB, secondsA);
+  makeAlike(b, a, settings, cleanB, cleanA, secondsB);
+  return {laidOut(std::move(a), std::move(cleanA), std::move(secondsA), settings.progress),
+          laidOut(std::move(b), std::move(cleanB), std::move(secondsB), settings.progress)};
 }
 
 std::uint64_t layOutMemory(std::size_t vertices) {

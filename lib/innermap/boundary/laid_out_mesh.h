@@ -47,6 +47,9 @@ struct LaidOutMesh {
 struct CleanSurface {
   std::optional<OuterSurface> outer;  // without: the mesh itself, holes capped
   std::vector<std::string> notes;     // why the outer surface, and what was done, a line each
+  std::optional<int> handles;         // of a surface of one piece
+  bool handlesOfUnion =
+      false;  // nobody asked for them, and the mesh has none: it has several pieces
 };
 
 // Throws as layOutMesh().
@@ -55,6 +58,12 @@ CleanSurface cleanSurface(const Mesh& mesh, const LayOutSettings& settings = {})
 // Throws DataError where there is no solid at all, and what outerSurface() throws; SettingError,
 // MemoryError, Cancelled.
 LaidOutMesh layOutMesh(Mesh mesh, const LayOutSettings& settings = {});
+
+// Two meshes that are to be mapped onto each other. An outer surface that has the handles of a
+// union is given those of the other mesh where these are fewer: it is cut further, as is the one
+// piece of a body whose parts touch. Throws as layOutMesh().
+std::pair<LaidOutMesh, LaidOutMesh> layOutMeshes(Mesh a, Mesh b,
+                                                 const LayOutSettings& settings = {});
 
 // Bytes of laying out surfaces of so many vertices in all: about what is needed.
 std::uint64_t layOutMemory(std::size_t vertices);

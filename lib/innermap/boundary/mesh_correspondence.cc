@@ -149,8 +149,7 @@ MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const MeshCorrespondenceSett
   surfaces.handles = settings.handles;
   surfaces.maxMemory = settings.maxMemory;
   surfaces.progress = settings.progress;
-  LaidOutMesh laidA = layOutMesh(std::move(a), surfaces);
-  LaidOutMesh laidB = layOutMesh(std::move(b), surfaces);
+  auto [laidA, laidB] = layOutMeshes(std::move(a), std::move(b), surfaces);
   return correspondMeshes(std::move(laidA), std::move(laidB), settings);
 }
 

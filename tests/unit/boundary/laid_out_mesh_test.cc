@@ -64,6 +64,33 @@ TEST(LayOutMesh, KnowsTheCapsOfAnOpenMeshThatOverlaps) {
   EXPECT_TRUE(anyHas(laid.notes, "capped"));
 }
 
+// A ring of four rods that overlap has a handle as a union; onto a ball it goes as a rod.
+TEST(LayOutMeshes, CutsTheUnionOfSeveralPiecesAsTheOtherHas) {
+  Mesh ring = shapes::box({0, 0, 0}, {4, 1, 1});
+  ring.name = "ring.obj";
+  for (const Mesh& rod : {shapes::box({0.1, 3.1, 0.1}, {4.1, 4.1, 1.1}),
+                          shapes::box({0.05, 0.2, 0.2}, {1.05, 3.9, 0.8}),
+                          shapes::box({2.95, 0.3, 0.15}, {3.95, 3.8, 0.85})}) {
+    const int first = static_cast<int>(ring.vertices.size());
+    ring.vertices.insert(ring.vertices.end(), rod.vertices.begin(), rod.vertices.end());
+    for (const auto& [a, b, c] : rod.triangles)
+      ring.triangles.push_back({a + first, b + first, c + first});
+  }
+  const Mesh ball = blob("ball.obj", 2, 0.5);
+  LayOutSettings coarse;
+  coarse.outerResolution = 16;
+  const auto [a, b] = layOutMeshes(ball, ring, coarse);
+  EXPECT_EQ(a.handles(), 0);
+  EXPECT_EQ(b.handles(), 0);
+  ASSERT_TRUE(b.outer);
+  EXPECT_FALSE(b.outer->cuts.empty());
+  EXPECT_TRUE(anyHas(b.notes, "cut until it has 0 as ball.obj"));
+  coarse.handles = 1;
+  const CleanSurface asked = cleanSurface(ring, coarse);
+  EXPECT_FALSE(asked.handlesOfUnion) << "what is asked for stays";
+  EXPECT_EQ(asked.handles, 1);
+}
+
 // A coil that closes on itself is a ball still: one piece, whose union with itself is a ring.
 TEST(LayOutMesh, KeepsTheHandlesOfAMeshThatRunsThroughItself) {
   const Mesh mesh = shapes::coil(2.2 * kPi);
