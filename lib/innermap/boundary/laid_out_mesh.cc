@@ -115,7 +115,12 @@ void makeAlike(const Mesh& mesh, const Mesh& other, LayOutSettings settings, Cle
   if (!clean.handlesOfUnion || !clean.handles || !like.handles || *clean.handles <= *like.handles)
     return;
   settings.handles = like.handles;
-  CleanSurface cut = checked(mesh, settings, seconds);
+  CleanSurface cut;
+  try {
+    cut = checked(mesh, settings, seconds);
+  } catch (const DataError&) {
+    return;  // no part has so many: the two are refused for what they have
+  }
   cut.notes.push_back(fmt::format(
       "{}: its parts together have {} handle{}, it is cut until it has {} as {} has", mesh.name,
       *clean.handles, *clean.handles == 1 ? "" : "s", *like.handles, other.name));
