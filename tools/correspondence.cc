@@ -188,7 +188,7 @@ LaidOutMesh layOut(Mesh mesh, const SurfaceOptions& options, Context& context) {
 
 ReportMesh reportOf(const LaidOutMesh& laid) {
   ReportMesh out = reportOf(laid.mesh, laid.volume());
-  out.boundaryLoops = out.caps = static_cast<int>(laid.caps().size());
+  out.boundaryLoops = out.caps = laid.shells().caps;
   out.genus = laid.handles();
   return out;
 }
@@ -219,8 +219,8 @@ MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const CorrespondOptions& opt
   tell(laidB, context);
   context.report().source = reportOf(laidA);
   context.report().target = reportOf(laidB);
-  reportCaps("source", laidA.caps(), context.report());
-  reportCaps("target", laidB.caps(), context.report());
+  if (!laidA.outer) reportCaps("source", laidA.caps(), context.report());
+  if (!laidB.outer) reportCaps("target", laidB.caps(), context.report());
   MeshCorrespondence map = innermap::correspondMeshes(std::move(laidA), std::move(laidB), settings);
   context.tell(map);
   reportMap(map, context.report());

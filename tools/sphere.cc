@@ -30,7 +30,7 @@ void run(const Options& options, Context& context) {
   context.requireMemory("the layout", need, "use a coarser mesh");
   const LaidOutMesh laid = layOut(std::move(mesh), options.surface, context);
   context.report().source = reportOf(laid);
-  reportCaps("source", laid.caps(), context.report());
+  if (!laid.outer) reportCaps("source", laid.caps(), context.report());
   const MeshOnSphere sphere = onSphere(laid);
   const LayoutQuality& quality = sphere.quality;
   Report& report = context.report();

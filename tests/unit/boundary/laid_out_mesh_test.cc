@@ -10,6 +10,7 @@ namespace innermap {
 namespace {
 
 using shapes::blob;
+using shapes::joined;
 using shapes::opened;
 using shapes::overlapping;
 
@@ -66,16 +67,11 @@ TEST(LayOutMesh, KnowsTheCapsOfAnOpenMeshThatOverlaps) {
 
 // A ring of four rods that overlap has a handle as a union; onto a ball it goes as a rod.
 TEST(LayOutMeshes, CutsTheUnionOfSeveralPiecesAsTheOtherHas) {
-  Mesh ring = shapes::box({0, 0, 0}, {4, 1, 1});
+  Mesh ring = joined(
+      joined(shapes::box({0, 0, 0}, {4, 1, 1}), shapes::box({0.1, 3.1, 0.1}, {4.1, 4.1, 1.1})),
+      joined(shapes::box({0.05, 0.2, 0.2}, {1.05, 3.9, 0.8}),
+             shapes::box({2.95, 0.3, 0.15}, {3.95, 3.8, 0.85})));
   ring.name = "ring.obj";
-  for (const Mesh& rod : {shapes::box({0.1, 3.1, 0.1}, {4.1, 4.1, 1.1}),
-                          shapes::box({0.05, 0.2, 0.2}, {1.05, 3.9, 0.8}),
-                          shapes::box({2.95, 0.3, 0.15}, {3.95, 3.8, 0.85})}) {
-    const int first = static_cast<int>(ring.vertices.size());
-    ring.vertices.insert(ring.vertices.end(), rod.vertices.begin(), rod.vertices.end());
-    for (const auto& [a, b, c] : rod.triangles)
-      ring.triangles.push_back({a + first, b + first, c + first});
-  }
   const Mesh ball = blob("ball.obj", 2, 0.5);
   LayOutSettings coarse;
   coarse.outerResolution = 16;

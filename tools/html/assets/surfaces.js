@@ -63,6 +63,8 @@ function marksOf(panels) {
   add("source.cap_places", "cap", 0);
   add("target.cap_places", "cap of the target", 1);
   add("outer_surface.cap_places", "cap", 0);
+  add("correspondence.source_outer_surface.cap_places", "cap", 0);
+  add("correspondence.target_outer_surface.cap_places", "cap of the target", 1);
   add("outer_surface.cuts", "cut", 0);
   add("correspondence.source_outer_surface.cuts", "source is cut", 0);
   add("correspondence.target_outer_surface.cuts", "target is cut", 1);
