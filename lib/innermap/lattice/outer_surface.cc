@@ -15,6 +15,7 @@
 #include "innermap/lattice/detail/grow_solid.h"
 #include "innermap/lattice/detail/inside_distances.h"
 #include "innermap/lattice/detail/lattice_topology.h"
+#include "innermap/lattice/detail/simple_changes.h"
 #include "innermap/lattice/detail/stuffing.h"
 #include "innermap/lattice/detail/surface_cuts.h"
 #include "innermap/lattice/detail/thin_parts.h"
@@ -56,12 +57,16 @@ double spacingFor(const Solid& solid, const OuterSurfaceSettings& settings) {
   return longestSide(solid) / settings.resolution;
 }
 
-// Each node inside or outside; thin walls are inside, narrow gaps outside.
+// Each node inside or outside. Thin walls are inside, narrow gaps outside as far as they are opened
+// from outside without a hole in the walls beside them: a hole would be cut to the wall's rim.
 LatticeSigns signsOf(const Solid& solid, double spacing, Progress* progress) {
   LatticeSigns signs = latticeSigns(solid, spacing, progress);
   const ThinParts thin = thinParts(solid, signs, progress);
   for (const std::size_t node : thin.walls) signs.side[node] = NodeSide::inside;
-  for (const std::size_t node : thin.gaps) signs.side[node] = NodeSide::outside;
+  Sides wanted = signs.side;
+  for (const std::size_t node : thin.gaps) wanted[node] = NodeSide::outside;
+  fillPockets(signs.lattice, signs.side);
+  changeWithoutPiercing(signs, wanted, NodeSide::outside, signs.distance, progress);
   return signs;
 }
 
@@ -95,6 +100,7 @@ std::vector<int> wantedHandles(const Solid& solid, const LatticeSigns& signs,
   }
   std::vector<int> handles = handlesOf(signs, parts);
   for (const double factor : kOtherResolutions) {
+    if (std::all_of(handles.begin(), handles.end(), [](int h) { return h == 0; })) break;
     const LatticeSigns other = signsOf(solid, signs.lattice.spacing() / factor, settings.progress);
     const SolidParts there = partsOf(other, settings.onePiece, settings.progress);
     if (there.parts.size() != parts.parts.size()) continue;

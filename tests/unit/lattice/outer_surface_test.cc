@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "innermap/core/detail/pi.h"
+#include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/mesh/self_intersection.h"
@@ -62,6 +63,27 @@ TEST(OuterSurface, SizeAndPlaceDoNotMatter) {
     EXPECT_EQ(made.cuts.size(), 1u);
     EXPECT_GT(made.cuts[0].place.y, scale);
     expectEmbedded(made.mesh);
+  }
+}
+
+// Two plates a cell or two thick, joined along one side, as the rim of an ear over its shell. The
+// gap between them is narrower than a cell: opened without care, it takes holes with it out of the
+// plates.
+TEST(OuterSurface, NarrowGapsPierceNoThinWalls) {
+  for (const int seed : {1, 3, 6}) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Mesh upper = shapes::box({0, 0, 0}, {0.7, 1, 0.05});
+    for (Vec3& v : upper.vertices) v.z += 0.055 + 0.03 * v.x;
+    Mesh mesh = shapes::joined(shapes::box({-0.2, 0, 0}, {1, 1, 0.05}), upper);
+    mesh = shapes::joined(mesh, shapes::box({-0.2, 0, 0.03}, {0.02, 1, 0.3}));
+    const Vec3 axis = shapes::randomPoint(CounterRandom(seed, 5), 1);
+    const Vec3 x = axis / norm(axis), helper = cross(x, {0.31, 0.62, 0.53});
+    const Vec3 y = helper / norm(helper), z = cross(x, y);
+    for (Vec3& v : mesh.vertices) v = v.x * x + v.y * y + v.z * z;
+    const OuterSurface made = outer(mesh, 40, 0);
+    EXPECT_EQ(made.topology, (SolidTopology{1, 0, 0}));
+    EXPECT_TRUE(made.cuts.empty());
+    EXPECT_LT(made.apartP99 * Solid(mesh).diagonal(), 0.5 * made.edge);
   }
 }
 

@@ -51,19 +51,6 @@ class Middle {
   const BccLattice& lattice_;
 };
 
-// Everything that the outside does not reach.
-void fillPockets(const BccLattice& lattice, Sides& sides) {
-  const Middle middle(lattice);
-  std::vector<bool> seen(sides.size(), false);
-  const std::size_t corner =
-      1 + lattice.size()[0] * (1 + static_cast<std::size_t>(lattice.size()[1]));
-  reached(
-      lattice, corner, [&](std::size_t n) { return sides[n] != NodeSide::inside && middle(n); },
-      seen);
-  for (std::size_t n = 0; n < sides.size(); ++n)
-    sides[n] = seen[n] || !middle(n) ? NodeSide::outside : NodeSide::inside;
-}
-
 Sides sidesOf(std::size_t nodes, const std::vector<std::size_t>& inside) {
   Sides sides(nodes, NodeSide::outside);
   for (const std::size_t n : inside) sides[n] = NodeSide::inside;
@@ -91,6 +78,18 @@ std::vector<float> coresOf(const Sides& part, const std::vector<float>& order) {
 }
 
 }  // namespace
+
+void fillPockets(const BccLattice& lattice, Sides& sides) {
+  const Middle middle(lattice);
+  std::vector<bool> seen(sides.size(), false);
+  const std::size_t corner =
+      1 + lattice.size()[0] * (1 + static_cast<std::size_t>(lattice.size()[1]));
+  reached(
+      lattice, corner, [&](std::size_t n) { return sides[n] != NodeSide::inside && middle(n); },
+      seen);
+  for (std::size_t n = 0; n < sides.size(); ++n)
+    sides[n] = seen[n] || !middle(n) ? NodeSide::outside : NodeSide::inside;
+}
 
 std::vector<std::vector<std::size_t>> piecesInside(const LatticeSigns& signs, Progress* progress) {
   std::vector<bool> seen(signs.side.size(), false);

@@ -19,6 +19,9 @@ struct SolidParts {
 // The nodes inside in pieces that hang together, the largest first.
 std::vector<std::vector<std::size_t>> piecesInside(const LatticeSigns& signs, Progress* progress);
 
+// Makes inside what the outside does not reach.
+void fillPockets(const BccLattice& lattice, Sides& sides);
+
 // What hangs together inside; of that the largest alone with `onePiece`.
 SolidParts partsOf(const LatticeSigns& signs, bool onePiece, Progress* progress);
 

@@ -6,11 +6,17 @@
 namespace innermap {
 namespace {
 
-class SimpleChanges {
+// Of nodes that have the side `to` in one place around them; simple: and the other side too.
+class Changes {
  public:
-  SimpleChanges(LatticeSigns& signs, const Sides& wanted, NodeSide to,
-                const std::vector<float>& order)
-      : signs_(signs), wanted_(wanted), to_(to), order_(order), link_(BccLink::get()) {}
+  Changes(LatticeSigns& signs, const Sides& wanted, NodeSide to, const std::vector<float>& order,
+          bool simple)
+      : signs_(signs),
+        wanted_(wanted),
+        to_(to),
+        order_(order),
+        simple_(simple),
+        link_(BccLink::get()) {}
 
   void run(Progress* progress) {
     for (std::size_t node = 0; node < signs_.lattice.nodes(); ++node) push(node);
@@ -19,7 +25,7 @@ class SimpleChanges {
       if (++polled % 65536 == 0) throwIfCancelled(progress);
       const std::size_t node = queue_.top().second;
       queue_.pop();
-      if (signs_.side[node] == to_ || !simple(node)) continue;
+      if (signs_.side[node] == to_ || !possible(node)) continue;
       signs_.side[node] = to_;
       for (const std::ptrdiff_t offset : signs_.lattice.offsets(signs_.lattice.second(node)))
         push(node + static_cast<std::size_t>(offset));
@@ -31,18 +37,20 @@ class SimpleChanges {
     if (wanted_[node] == to_ && signs_.side[node] != to_) queue_.push({order_[node], node});
   }
 
-  bool simple(std::size_t node) const {
-    int inside = 0;
+  bool possible(std::size_t node) const {
+    int there = 0;
     const auto& offsets = signs_.lattice.offsets(signs_.lattice.second(node));
     for (int d = 0; d < kDirections; ++d)
-      inside |= (signs_.side[node + static_cast<std::size_t>(offsets[d])] == NodeSide::inside) << d;
-    return link_.connected[inside] && link_.connected[inside ^ ((1 << kDirections) - 1)];
+      there |= (signs_.side[node + static_cast<std::size_t>(offsets[d])] == to_) << d;
+    return link_.connected[there] &&
+           (!simple_ || link_.connected[there ^ ((1 << kDirections) - 1)]);
   }
 
   LatticeSigns& signs_;
   const Sides& wanted_;
   NodeSide to_;
   const std::vector<float>& order_;
+  bool simple_;
   const BccLink& link_;
   std::priority_queue<std::pair<float, std::size_t>> queue_;
 };
@@ -51,7 +59,12 @@ class SimpleChanges {
 
 void changeSimply(LatticeSigns& signs, const Sides& wanted, NodeSide to,
                   const std::vector<float>& order, Progress* progress) {
-  SimpleChanges(signs, wanted, to, order).run(progress);
+  Changes(signs, wanted, to, order, true).run(progress);
+}
+
+void changeWithoutPiercing(LatticeSigns& signs, const Sides& wanted, NodeSide to,
+                           const std::vector<float>& order, Progress* progress) {
+  Changes(signs, wanted, to, order, false).run(progress);
 }
 
 }  // namespace innermap

@@ -16,4 +16,9 @@ using Sides = std::vector<NodeSide>;  // #nodes
 void changeSimply(LatticeSigns& signs, const Sides& wanted, NodeSide to,
                   const std::vector<float>& order, Progress* progress);
 
+// The same as far as no node joins what is apart on the side `to` around it: what lies between may
+// be divided, but is not pierced.
+void changeWithoutPiercing(LatticeSigns& signs, const Sides& wanted, NodeSide to,
+                           const std::vector<float>& order, Progress* progress);
+
 }  // namespace innermap
