@@ -183,12 +183,17 @@ void drawView(const PictureSurface& surface, const View& view, int x0, int y0, i
                              static_cast<std::size_t>(width) +
                          static_cast<std::size_t>(x / kSubsamples));
       }
-    const std::vector<Vec3> colours = surface.colours(points);
+    std::vector<Vec3> colours = surface.colours(points);
     if (colours.size() != points.size())
       throw DataError(surface.label + ": not as many colours as points");
+    parallelBlocks(points.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto& b = points[i].barycentric;
+        colours[i] = light(normals.at(points[i].triangle, b[1], b[2]), view) * colours[i];
+      }
+    });
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const auto& b = points[i].barycentric;
-      sum[pixels[i]] += light(normals.at(points[i].triangle, b[1], b[2]), view) * colours[i];
+      sum[pixels[i]] += colours[i];
       ++covered[pixels[i]];
     }
   }

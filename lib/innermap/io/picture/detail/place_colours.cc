@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "innermap/core/parallel.h"
+
 namespace innermap {
 namespace {
 
@@ -26,9 +28,10 @@ Vec3 colourOf(const Vec3& p, const Box3& box) {
 }  // namespace
 
 std::vector<Vec3> placeColours(const Points& points, const Box3& box) {
-  std::vector<Vec3> colours;
-  colours.reserve(points.size());
-  for (const Vec3& p : points) colours.push_back(colourOf(p, box));
+  std::vector<Vec3> colours(points.size());
+  parallelBlocks(points.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) colours[i] = colourOf(points[i], box);
+  });
   return colours;
 }
 
