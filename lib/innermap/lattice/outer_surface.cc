@@ -15,6 +15,7 @@
 #include "innermap/lattice/detail/grow_solid.h"
 #include "innermap/lattice/detail/inside_distances.h"
 #include "innermap/lattice/detail/lattice_topology.h"
+#include "innermap/lattice/detail/sharp_edges.h"
 #include "innermap/lattice/detail/simple_changes.h"
 #include "innermap/lattice/detail/stuffing.h"
 #include "innermap/lattice/detail/surface_cuts.h"
@@ -34,6 +35,8 @@ constexpr std::array<double, 2> kOtherResolutions = {0.8, 1.25};
 constexpr std::size_t kCompared = 20000;  // points of the solid's surface
 constexpr int kMostHandles = 64;          // that nobody asked for
 constexpr int kUncrossings = 8;
+constexpr double kSharp = 40;      // degrees between the normals of triangles; such edges are kept
+constexpr double kLeastCurve = 3;  // spacings
 // Bytes of a node beyond what tetrahedra take: sides, orders, queues.
 constexpr double kNodeBytes = 60;
 
@@ -157,13 +160,35 @@ void uncross(const Points& before, Mesh& mesh, Progress* progress) {
   }
 }
 
+// Those that the lattice can follow, and the corners at their ends.
+SharpEdges longSharpEdges(const Mesh& surface, double spacing) {
+  const SharpEdges all = sharpEdges(surface, kSharp);
+  SharpEdges out;
+  std::vector<int> corner(all.corners.size(), -1);
+  for (SharpCurve curve : all.curves) {
+    if (curve.length < kLeastCurve * spacing) continue;
+    for (int& c : curve.corners) {
+      if (c < 0) continue;
+      if (corner[c] < 0) {
+        corner[c] = static_cast<int>(out.corners.size());
+        out.corners.push_back(all.corners[c]);
+      }
+      c = corner[c];
+    }
+    out.curves.push_back(std::move(curve));
+  }
+  return out;
+}
+
 // The lattice's boundary as a mesh.
 Mesh surfaceOf(const Solid& solid, LatticeSigns& signs, Progress* progress) {
+  const double spacing = signs.lattice.spacing();
   warpNodes(signs, progress);
   StuffedMesh stuffing = stuffed(signs, progress);
   holdWarped(stuffing, progress);
   const Points before(stuffing.vertices.begin() + stuffing.firstBoundary, stuffing.vertices.end());
-  fitBoundary(solid, signs.lattice.spacing(), stuffing, progress);
+  fitBoundary(solid, spacing, stuffing, progress);
+  fitSharpEdges(solid, longSharpEdges(solid.surface(), spacing), spacing, stuffing, progress);
   Mesh mesh;
   mesh.name = solid.repaired().mesh.name;
   mesh.triangles = boundaryOf(stuffing);

@@ -10,9 +10,9 @@
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
+#include "innermap/lattice/detail/sharp_edges.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/tetra/detail/hex_shaping.h"
-#include "innermap/tetra/detail/sharp_edges.h"
 
 namespace innermap {
 namespace {

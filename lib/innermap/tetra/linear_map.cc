@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "innermap/core/error.h"
-#include "innermap/evaluate/untangle.h"
+#include "innermap/lattice/untangle.h"
 
 namespace innermap {
 namespace {

@@ -10,9 +10,9 @@
 #include "innermap/lattice/detail/fit_boundary.h"
 #include "innermap/lattice/detail/keep_topology.h"
 #include "innermap/lattice/detail/lattice_signs.h"
+#include "innermap/lattice/detail/sharp_edges.h"
 #include "innermap/lattice/detail/stuffing.h"
 #include "innermap/levelset/level_set.h"
-#include "innermap/tetra/detail/sharp_edges.h"
 
 namespace innermap {
 namespace {

@@ -39,6 +39,19 @@ TEST(OuterSurface, UnitesPartsThatOverlap) {
   EXPECT_LT(made.apartMax, 0.02);
 }
 
+TEST(OuterSurface, KeepsSharpEdges) {
+  const Mesh cross = shapes::joined(shapes::box({-1, -0.31, -0.3}, {1.03, 0.3, 0.3}),
+                                    shapes::box({-0.3, -0.3, -1}, {0.3, 0.3, 1}));
+  const OuterSurface made = outer(cross, 40);
+  expectEmbedded(made.mesh);
+  for (const Vec3& corner : cross.vertices) {
+    double least = 1e300;
+    for (const Vec3& v : made.mesh.vertices) least = std::min(least, norm(v - corner));
+    EXPECT_LT(least, 0.05 * made.edge);
+  }
+  EXPECT_LT(made.apartMax * Solid(cross).diagonal(), 0.5 * made.edge);
+}
+
 // Its ends run into one another: a ring as a union, a ball as a mesh.
 TEST(OuterSurface, CutsWhereAMeshMeetsItself) {
   const Mesh coil = shapes::coil(2.2 * kPi);

@@ -15,7 +15,7 @@
 
 #include "innermap/core/detail/kuhn_cells.h"
 #include "innermap/core/parallel.h"
-#include "innermap/evaluate/untangle.h"
+#include "innermap/lattice/untangle.h"
 
 namespace innermap {
 namespace {

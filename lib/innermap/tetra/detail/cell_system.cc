@@ -6,7 +6,7 @@
 
 #include "innermap/core/detail/disjoint_sets.h"
 #include "innermap/core/parallel.h"
-#include "innermap/evaluate/untangle.h"
+#include "innermap/lattice/untangle.h"
 
 namespace innermap {
 namespace {

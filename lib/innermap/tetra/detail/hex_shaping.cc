@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "innermap/core/parallel.h"
-#include "innermap/evaluate/untangle.h"
+#include "innermap/lattice/untangle.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/sample/surface_samples.h"
 #include "innermap/tetra/detail/guide_surface.h"

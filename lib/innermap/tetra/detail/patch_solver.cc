@@ -6,7 +6,7 @@
 #include <unordered_map>
 
 #include "innermap/core/parallel.h"
-#include "innermap/evaluate/untangle.h"
+#include "innermap/lattice/untangle.h"
 
 namespace innermap {
 namespace {

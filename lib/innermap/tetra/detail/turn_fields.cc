@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "innermap/evaluate/untangle.h"
+#include "innermap/lattice/untangle.h"
 
 namespace innermap {
 namespace {

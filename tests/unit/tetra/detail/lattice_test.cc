@@ -6,9 +6,9 @@
 #include "innermap/core/detail/random.h"
 #include "innermap/lattice/detail/fit_boundary.h"
 #include "innermap/lattice/detail/lattice_topology.h"
+#include "innermap/lattice/detail/sharp_edges.h"
 #include "innermap/lattice/detail/stuffing.h"
 #include "innermap/tetra/cell_quality.h"
-#include "innermap/tetra/detail/sharp_edges.h"
 #include "mesh/shapes.h"
 
 namespace innermap {

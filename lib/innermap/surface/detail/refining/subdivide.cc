@@ -19,8 +19,8 @@ namespace {
 
 constexpr double kMargin = 0.8;  // of the tolerance: points between those looked at deviate more
 constexpr int kRounds = 60;
-constexpr int kUncrossings = 20;         // rounds that split what crosses
-constexpr double kMostCrossing = 0.02;   // share of the triangles; more make the map dear to fit
+constexpr int kUncrossings = 20;        // rounds that split what crosses
+constexpr double kMostCrossing = 0.02;  // share of the triangles; more make the map dear to fit
 
 std::uint64_t keyOf(int i, int j) {
   return static_cast<std::uint64_t>(std::min(i, j)) << 32 |

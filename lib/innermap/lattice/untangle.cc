@@ -1,4 +1,4 @@
-#include "innermap/evaluate/untangle.h"
+#include "innermap/lattice/untangle.h"
 
 #include <lbfgs.h>
 

@@ -1,25 +1,23 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <queue>
 #include <set>
 
-#include "innermap/evaluate/untangle.h"
 #include "innermap/lattice/cell_mesh.h"
 #include "innermap/lattice/detail/fit_boundary.h"
+#include "innermap/lattice/detail/sharp_edges.h"
+#include "innermap/lattice/untangle.h"
 #include "innermap/mesh/triangle_tree.h"
-#include "innermap/tetra/detail/sharp_edges.h"
 
 namespace innermap {
 namespace {
 
-constexpr double kReach = 2;      // spacings: how far from its curve a path may go
+constexpr double kReach =
+    2;  // spacings: how far from its curve a path, or a vertex from the surface
 constexpr double kDetour = 0.05;  // what a path's length costs beside its distance
 constexpr int kRings = 3;         // of vertices about the paths that may move
 constexpr double kStiffness = 60;
-
-constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 
 // Distances from a curve: its segments as flat triangles.
 TriangleTree treeOf(const SharpCurve& curve) {
@@ -230,7 +228,7 @@ class SharpFitter {
     setSprings(patch);
     UntangleSettings settings;
     settings.volumeShare = 0.05;
-    settings.rounds = 6;
+    settings.rounds = 3;
     settings.stepsARound = 30;
     settings.afterRound = [this](TetPatch& p, int) { setSprings(p); };
     settings.progress = progress_;
@@ -258,7 +256,11 @@ class SharpFitter {
         patch.springs.push_back({static_cast<int>(l), place / spacing_, normal, kStiffness});
       };
       if (role == target_.end()) {
-        const Solid::Closest found = solid_.closest(p, kAnywhere);
+        const Solid::Closest found = solid_.closest(p, kReach * spacing_);
+        if (found.onSurface.triangle < 0) {
+          add(p, {0, 0, 0});
+          continue;
+        }
         const Vec3 area = areaVector(solid_.surface(), found.onSurface.triangle);
         if (norm(area) > 0) add(found.position, area / norm(area));
         continue;
@@ -282,8 +284,12 @@ class SharpFitter {
       Vec3& p = mesh_.vertices[v];
       const auto role = target_.find(v);
       Vec3 direction;
-      p = role == target_.end() ? solid_.closest(p, kAnywhere).position
-                                : placeOf(role->second, p, direction);
+      if (role != target_.end()) {
+        p = placeOf(role->second, p, direction);
+        continue;
+      }
+      const Solid::Closest found = solid_.closest(p, kReach * spacing_);
+      if (found.onSurface.triangle >= 0) p = found.position;
     }
   }
 

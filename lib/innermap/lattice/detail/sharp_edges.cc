@@ -1,4 +1,4 @@
-#include "innermap/tetra/detail/sharp_edges.h"
+#include "innermap/lattice/detail/sharp_edges.h"
 
 #include <algorithm>
 #include <cmath>
