@@ -203,6 +203,7 @@ void run(const MapOptions& options, Context& context) {
   requireFittingMemory(fitting, vertices, context);
   requireEvaluationMemory(pair.solid(), options.evaluation.grid, context,
                           {1, needsLocalMap(pair.target.moved, fitting.tolerance)});
+  requireInterior(pair.solid(), gridSettings<LevelSetSettings>(options.evaluation.grid, context));
   context.phase("fitting");
   context.spend(1, later);
   const MapFit fit = fitMap(std::move(pair), fitting);

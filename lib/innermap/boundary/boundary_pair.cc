@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "innermap/boundary/detail/tangle.h"
 #include "innermap/core/error.h"
 
 namespace innermap {
@@ -65,6 +66,7 @@ SourceBoundary makeSourceBoundary(Mesh mesh, const BoundarySettings& settings) {
   StageSeconds seconds;
   const MeshReport checked =
       timed(seconds, "check", [&] { return check(mesh, settings.progress); });
+  refuseTangle(mesh, checked.selfIntersections);
   SolidSettings solidSettings;
   solidSettings.progress = settings.progress;
   const Solid solid = timed(seconds, "solid", [&] { return Solid(mesh, solidSettings); });
@@ -129,6 +131,7 @@ BoundaryPair makeBoundaryPair(Mesh source, Mesh target, const BoundarySettings& 
   StageSeconds seconds = from.seconds;
   const MeshReport checked =
       timed(seconds, "check", [&] { return check(target, settings.progress); });
+  refuseTangle(target, checked.selfIntersections);
   TargetBoundary to = makeTargetBoundary(from.solid, target, settings);
   addSeconds(seconds, to.seconds);
   std::vector<std::string> notes = from.notes, warnings = from.warnings;

@@ -29,7 +29,8 @@ struct SourceBoundary {
   StageSeconds seconds;               // "check", "solid"
 };
 
-// Throws DataError when the mesh has no inside, as Solid does; Cancelled.
+// Throws DataError when the mesh has no inside, as Solid does, or crosses itself nearly everywhere;
+// Cancelled.
 SourceBoundary makeSourceBoundary(Mesh mesh, const BoundarySettings& settings = {});
 
 // Where one target, a pose or a frame, takes the boundary of a source.
@@ -65,7 +66,8 @@ struct BoundaryPair {
   }
 };
 
-// Throws as the two above; DataError when the connectivity differs.
+// Throws as the two above; DataError when the connectivity differs, or the target crosses itself
+// nearly everywhere.
 BoundaryPair makeBoundaryPair(Mesh source, Mesh target, const BoundarySettings& settings = {});
 
 // The solid that the target bounds. Throws DataError when it has no inside; Cancelled.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "innermap/boundary/detail/tangle.h"
 #include "innermap/core/error.h"
 #include "innermap/core/stage_seconds.h"
 #include "innermap/mesh/cap_boxes.h"
@@ -17,6 +18,16 @@ namespace {
 // Measured, bytes: what coarsened surfaces take, and a vertex of meshes of up to 160,000.
 constexpr std::uint64_t kCoarse = 24'000'000, kBytesPerVertex = 2200;
 
+std::size_t crossings(const Points& vertices, const std::vector<Triangle>& triangles,
+                      Progress* progress) {
+  std::size_t count = 0;
+  SelfIntersectionSettings settings;
+  settings.progress = progress;
+  forEachSelfIntersection(
+      vertices, triangles, [&](const Crossing&) { ++count; }, settings);
+  return count;
+}
+
 // How many pairs of triangles pass through each other.
 std::size_t crossings(const SurfaceShells& shells, Progress* progress) {
   Points vertices;
@@ -27,12 +38,7 @@ std::size_t crossings(const SurfaceShells& shells, Progress* progress) {
     for (const auto& [a, b, c] : surface.triangles)
       triangles.push_back({a + first, b + first, c + first});
   }
-  std::size_t count = 0;
-  SelfIntersectionSettings settings;
-  settings.progress = progress;
-  forEachSelfIntersection(
-      vertices, triangles, [&](const Crossing&) { ++count; }, settings);
-  return count;
+  return crossings(vertices, triangles, progress);
 }
 
 // Why the mesh itself cannot be mapped, if so, and the handles of a mesh that is of one piece.
@@ -65,6 +71,7 @@ Obstacle obstacleOf(const Mesh& mesh, Progress* progress) {
 
 OuterSurface outerSurfaceOf(const Mesh& mesh, const Obstacle& obstacle,
                             const LayOutSettings& settings) {
+  refuseTangle(mesh, crossings(mesh.vertices, mesh.triangles, settings.progress));
   SolidSettings solidSettings;
   solidSettings.progress = settings.progress;
   OuterSurfaceSettings how;

@@ -139,6 +139,13 @@ void requireInterior(std::uint64_t interiorVoxels, const Solid& solid, const std
                   (thicknessOf(solid) > 0 ? ": " + thinNeed(solid) : ""));
 }
 
+void requireInterior(const Solid& solid, const LevelSetSettings& settings) {
+  const double thickness = thicknessOf(solid);
+  if (!(thickness > 0) || thickness >= voxelSizeFor(solid, settings)) return;
+  requireInterior(interiorVoxels(*makeLevelSet(solid, settings)), solid,
+                  solid.repaired().mesh.name);
+}
+
 openvdb::math::Transform::Ptr transformFor(const Solid& solid, double voxelSize) {
   return latticeTransform(latticeOrigin(solid.box(), voxelSize), voxelSize);
 }

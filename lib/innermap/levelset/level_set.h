@@ -75,6 +75,10 @@ std::uint64_t interiorVoxels(const openvdb::FloatGrid& levelSet);
 // Throws DataError, saying what `name` is and which resolution would do, when there is none.
 void requireInterior(std::uint64_t interiorVoxels, const Solid& solid, const std::string& name);
 
+// The same for the level set that the settings give, before anything long is done: made only for a
+// solid that is thinner than a voxel on average.
+void requireInterior(const Solid& solid, const LevelSetSettings& settings);
+
 struct AttributeSettings {
   Progress* progress = nullptr;
 };
