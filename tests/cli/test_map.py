@@ -3,6 +3,7 @@
 
 import math
 import os
+import random
 import signal
 import subprocess
 
@@ -214,6 +215,19 @@ def test_thinner_than_a_voxel():
     write_obj("plate.obj", [(x, y, 0.002 * z) for x, y, z in vertices], faces)
     fails(1, "map", "plate.obj", "plate.obj", "-o", "out", "--resolution", "32",
           says=["plate.obj", "a resolution of 1"])
+
+
+def test_nothing_but_crossings():
+    """A ball of paper is refused at once, as either side and whatever the other is."""
+    chosen = random.Random(5)
+    vertices, faces = icosphere_arrays(3)
+    write_obj("paper.obj", [tuple(x + chosen.gauss(0, 0.5) for x in v) for v in vertices], faces)
+    icosphere("like.obj", subdivisions=3)
+    icosphere("ball.obj", subdivisions=2)
+    for other in ["like.obj", "ball.obj"]:
+        for meshes in [("paper.obj", other), (other, "paper.obj")]:
+            fails(1, "map", *meshes, "-o", "out", says=["paper.obj"])
+            no_leftovers()
 
 
 def test_needle():
