@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <unordered_map>
 
 #include "innermap/core/parallel.h"
@@ -21,6 +22,9 @@ constexpr double kMargin = 0.8;  // of the tolerance: points between those looke
 constexpr int kRounds = 60;
 constexpr int kUncrossings = 20;        // rounds that split what crosses
 constexpr double kMostCrossing = 0.02;  // share of the triangles; more make the map dear to fit
+// As many as there were at the fewest, and some: where the map itself is at fault, splitting makes
+// ever more.
+constexpr double kMoreCrossing = 1.5, kSomeCrossing = 4;
 
 std::uint64_t keyOf(int i, int j) {
   return static_cast<std::uint64_t>(std::min(i, j)) << 32 |
@@ -155,15 +159,18 @@ class Subdivision {
     return uncrossings_++ < kUncrossings;
   }
 
-  // Triangles whose flat images pass through each other; none where these are so many that the map
-  // itself is at fault.
-  std::vector<char> crossing() const {
+  // Triangles whose flat images pass through each other; none where these are so many, or become so
+  // many, that the map itself is at fault.
+  std::vector<char> crossing() {
     std::vector<char> out(surface_.triangles.size(), 0);
     for (const Crossing& c :
          selfIntersections(positions_, surface_.triangles, {settings_.progress}))
       out[c.first] = out[c.second] = 1;
     const auto count = static_cast<double>(std::count(out.begin(), out.end(), 1));
-    if (count > kMostCrossing * static_cast<double>(out.size())) out.assign(out.size(), 0);
+    fewestCrossing_ = std::min(fewestCrossing_, count);
+    if (count > kMostCrossing * static_cast<double>(out.size()) ||
+        count > kMoreCrossing * fewestCrossing_ + kSomeCrossing)
+      out.assign(out.size(), 0);
     return out;
   }
 
@@ -304,7 +311,8 @@ class Subdivision {
   const SubdivideSettings& settings_;
   const TriangleTree tree_;
   const double limit_;
-  int uncrossings_ = 0;  // so far
+  int uncrossings_ = 0;
+  double fewestCrossing_ = std::numeric_limits<double>::infinity();  // so far
   Points positions_;
   Neighbours neighbours_;
   Midpoints vertices_, uvs_;
