@@ -35,7 +35,7 @@ constexpr std::array<double, 2> kOtherResolutions = {0.8, 1.25};
 constexpr std::size_t kCompared = 20000;  // points of the solid's surface
 constexpr int kMostHandles = 64;          // that nobody asked for
 constexpr int kUncrossings = 8;
-constexpr double kSharp = 40;  // degrees between the normals of triangles; such edges are kept
+constexpr double kSharp = 60;  // degrees between the normals of triangles; such edges are kept
 // Spacings: curves are at least so long, and points no farther from what shows belong to it.
 constexpr double kLeastCurve = 3, kOnSurface = 1e-3;
 // Bytes of a node beyond what tetrahedra take: sides, orders, queues.
