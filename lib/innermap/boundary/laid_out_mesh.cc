@@ -44,6 +44,7 @@ std::size_t crossings(const SurfaceShells& shells, Progress* progress) {
 // Why the mesh itself cannot be mapped, if so, and the handles of a mesh that is of one piece.
 struct Obstacle {
   std::string why;
+  std::size_t crossings = 0;  // pairs of triangles
   std::optional<int> handles;
 };
 
@@ -58,20 +59,21 @@ Obstacle obstacleOf(const Mesh& mesh, Progress* progress) {
   try {
     const SurfaceShells shells = closedSurfaces(mesh, settings);
     Obstacle out;
-    if (const std::size_t pairs = crossings(shells, progress))
+    out.crossings = crossings(shells, progress);
+    if (out.crossings > 0)
       out.why = fmt::format("{}: runs through itself, {} pair{} of triangles cross", mesh.name,
-                            pairs, pairs == 1 ? "" : "s");
+                            out.crossings, out.crossings == 1 ? "" : "s");
     if (shells.shells.size() == 1) out.handles = shells.shells[0].genus;
     return out;
   } catch (const DataError& error) {
     const std::string why = error.what();
-    return {why.substr(0, why.rfind("; ")), {}};
+    return {why.substr(0, why.rfind("; ")), crossings(mesh.vertices, mesh.triangles, progress), {}};
   }
 }
 
 OuterSurface outerSurfaceOf(const Mesh& mesh, const Obstacle& obstacle,
                             const LayOutSettings& settings) {
-  refuseTangle(mesh, crossings(mesh.vertices, mesh.triangles, settings.progress));
+  refuseTangle(mesh, obstacle.crossings);
   SolidSettings solidSettings;
   solidSettings.progress = settings.progress;
   OuterSurfaceSettings how;

@@ -16,6 +16,7 @@
 #include "innermap/lattice/detail/inside_distances.h"
 #include "innermap/lattice/detail/lattice_topology.h"
 #include "innermap/lattice/detail/sharp_edges.h"
+#include "innermap/lattice/detail/shown_sharp_edges.h"
 #include "innermap/lattice/detail/simple_changes.h"
 #include "innermap/lattice/detail/stuffing.h"
 #include "innermap/lattice/detail/surface_cuts.h"
@@ -36,8 +37,6 @@ constexpr std::size_t kCompared = 20000;  // points of the solid's surface
 constexpr int kMostHandles = 64;          // that nobody asked for
 constexpr int kUncrossings = 8;
 constexpr double kSharp = 60;  // degrees between the normals of triangles; such edges are kept
-// Spacings: curves are at least so long, and points no farther from what shows belong to it.
-constexpr double kLeastCurve = 3, kOnSurface = 1e-3;
 // Bytes of a node beyond what tetrahedra take: sides, orders, queues.
 constexpr double kNodeBytes = 60;
 
@@ -161,78 +160,6 @@ void uncross(const Points& before, Mesh& mesh, Progress* progress) {
   }
 }
 
-// The mesh's sharp edges as far as they show, and the corners at their ends: of its surface, which
-// is in pieces where parts cross, they are not whole.
-class ShownSharpEdges {
- public:
-  ShownSharpEdges(const Solid& solid, double spacing)
-      : solid_(solid),
-        spacing_(spacing),
-        all_(sharpEdges(solid.repaired().mesh, kSharp)),
-        corner_(all_.corners.size(), -1) {}
-
-  SharpEdges run() {
-    for (const SharpCurve& curve : all_.curves)
-      if (curve.length >= kLeastCurve * spacing_) add(curve);
-    return std::move(out_);
-  }
-
- private:
-  void add(const SharpCurve& curve) {
-    const Points points = finer(curve.points);
-    const std::size_t last = points.size() - 1;
-    std::size_t begin = 0;
-    bool shown = false;
-    for (std::size_t i = 0; i <= points.size(); ++i) {
-      const bool shows = i <= last && visible(points[i]);
-      if (shows && !shown) begin = i;
-      if (!shows && shown) {
-        SharpCurve part;
-        part.points.assign(points.begin() + static_cast<std::ptrdiff_t>(begin),
-                           points.begin() + static_cast<std::ptrdiff_t>(i));
-        const bool closed = begin == 0 && i > last && curve.corners[0] < 0;
-        if (!closed)
-          part.corners = {
-              begin == 0 && curve.corners[0] >= 0 ? known(curve.corners[0]) : fresh(points[begin]),
-              i > last && curve.corners[1] >= 0 ? known(curve.corners[1]) : fresh(points[i - 1])};
-        for (std::size_t k = 1; k < part.points.size(); ++k)
-          part.length += norm(part.points[k] - part.points[k - 1]);
-        if (part.length >= kLeastCurve * spacing_) out_.curves.push_back(std::move(part));
-      }
-      shown = shows;
-    }
-  }
-
-  Points finer(const Points& curve) const {
-    Points out{curve.front()};
-    for (std::size_t i = 1; i < curve.size(); ++i) {
-      const Vec3 way = curve[i] - curve[i - 1];
-      const int n = std::max(1, static_cast<int>(std::ceil(norm(way) / spacing_)));
-      for (int k = 1; k <= n; ++k) out.push_back(curve[i - 1] + (static_cast<double>(k) / n) * way);
-    }
-    return out;
-  }
-
-  bool visible(const Vec3& p) const {
-    return solid_.closest(p, kOnSurface * spacing_).onSurface.triangle >= 0;
-  }
-
-  int known(int corner) {
-    if (corner_[corner] < 0) corner_[corner] = fresh(all_.corners[corner]);
-    return corner_[corner];
-  }
-
-  int fresh(const Vec3& p) {
-    out_.corners.push_back(p);
-    return static_cast<int>(out_.corners.size()) - 1;
-  }
-
-  const Solid& solid_;
-  double spacing_;
-  SharpEdges all_, out_;
-  std::vector<int> corner_;  // of all_, in out_
-};
-
 // The lattice's boundary as a mesh.
 Mesh surfaceOf(const Solid& solid, LatticeSigns& signs, Progress* progress) {
   const double spacing = signs.lattice.spacing();
@@ -241,7 +168,8 @@ Mesh surfaceOf(const Solid& solid, LatticeSigns& signs, Progress* progress) {
   holdWarped(stuffing, progress);
   const Points before(stuffing.vertices.begin() + stuffing.firstBoundary, stuffing.vertices.end());
   fitBoundary(solid, spacing, stuffing, progress);
-  fitSharpEdges(solid, ShownSharpEdges(solid, spacing).run(), spacing, stuffing, progress);
+  fitSharpEdges(solid, shownSharpEdges(solid, kSharp, spacing, progress), spacing, stuffing,
+                progress);
   Mesh mesh;
   mesh.name = solid.repaired().mesh.name;
   mesh.triangles = boundaryOf(stuffing);

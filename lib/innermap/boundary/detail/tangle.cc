@@ -5,12 +5,6 @@
 #include "innermap/core/error.h"
 
 namespace innermap {
-namespace {
-
-constexpr std::size_t kMostCrossings = 16;  // a triangle
-
-}  // namespace
-
 void refuseTangle(const Mesh& mesh, std::size_t crossings) {
   if (crossings <= kMostCrossings * mesh.triangles.size()) return;
   throw DataError(

@@ -7,9 +7,11 @@
 
 namespace innermap {
 
-// Throws DataError where more than 16 pairs of triangles a triangle pass through each other (a body
-// in clothes that cross its skin has 0.2): a ball of paper has no shape that a map could keep, and
-// taking it apart takes minutes.
+// Pairs that cross, a triangle: a body in clothes that cross its skin has 0.2.
+constexpr std::size_t kMostCrossings = 16;
+
+// Throws DataError where more cross: a ball of paper has no shape that a map could keep, and taking
+// it apart takes minutes. crossings: pairs of its triangles that pass through each other.
 void refuseTangle(const Mesh& mesh, std::size_t crossings);
 
 }  // namespace innermap

@@ -13,8 +13,8 @@
 namespace innermap {
 namespace {
 
-constexpr double kReach =
-    2;  // spacings: how far from its curve a path, or a vertex from the surface
+// Spacings: how far a path goes from its curve, and from how far a vertex comes to the surface.
+constexpr double kReach = 2;
 constexpr double kDetour = 0.05;  // what a path's length costs beside its distance
 constexpr int kRings = 3;         // of vertices about the paths that may move
 constexpr double kStiffness = 60;

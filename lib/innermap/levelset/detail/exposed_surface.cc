@@ -15,7 +15,7 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kMaxPieces = 400'000;
+constexpr std::size_t kMaxPieces = 1'500'000;
 
 // Patches: sets of triangles that are connected over edges of exactly two triangles and that
 // nothing cuts. The winding number is constant along either side of a patch. In ascending order of

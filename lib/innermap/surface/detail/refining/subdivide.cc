@@ -311,7 +311,7 @@ class Subdivision {
   const SubdivideSettings& settings_;
   const TriangleTree tree_;
   const double limit_;
-  int uncrossings_ = 0;
+  int uncrossings_ = 0;                                              // so far
   double fewestCrossing_ = std::numeric_limits<double>::infinity();  // so far
   Points positions_;
   Neighbours neighbours_;
