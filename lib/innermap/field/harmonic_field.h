@@ -19,10 +19,11 @@
 
 namespace innermap {
 
-// A matrix of three columns as points: #rows.
-inline Points pointsOf(const Matrix& m) {
+// Three columns of a matrix, from `first` on, as points: #rows.
+inline Points pointsOf(const Matrix& m, std::size_t first = 0) {
   Points out(m.rows());
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = {m(i, 0), m(i, 1), m(i, 2)};
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = {m(i, first), m(i, first + 1), m(i, first + 2)};
   return out;
 }
 

@@ -15,8 +15,6 @@
 #include "innermap/lattice/detail/grow_solid.h"
 #include "innermap/lattice/detail/inside_distances.h"
 #include "innermap/lattice/detail/lattice_topology.h"
-#include "innermap/lattice/detail/sharp_edges.h"
-#include "innermap/lattice/detail/shown_sharp_edges.h"
 #include "innermap/lattice/detail/simple_changes.h"
 #include "innermap/lattice/detail/stuffing.h"
 #include "innermap/lattice/detail/surface_cuts.h"
@@ -36,7 +34,6 @@ constexpr std::array<double, 2> kOtherResolutions = {0.8, 1.25};
 constexpr std::size_t kCompared = 20000;  // points of the solid's surface
 constexpr int kMostHandles = 64;          // that nobody asked for
 constexpr int kUncrossings = 8;
-constexpr double kSharp = 60;  // degrees between the normals of triangles; such edges are kept
 // Bytes of a node beyond what tetrahedra take: sides, orders, queues.
 constexpr double kNodeBytes = 60;
 
@@ -168,8 +165,6 @@ Mesh surfaceOf(const Solid& solid, LatticeSigns& signs, Progress* progress) {
   holdWarped(stuffing, progress);
   const Points before(stuffing.vertices.begin() + stuffing.firstBoundary, stuffing.vertices.end());
   fitBoundary(solid, spacing, stuffing, progress);
-  fitSharpEdges(solid, shownSharpEdges(solid, kSharp, spacing, progress), spacing, stuffing,
-                progress);
   Mesh mesh;
   mesh.name = solid.repaired().mesh.name;
   mesh.triangles = boundaryOf(stuffing);

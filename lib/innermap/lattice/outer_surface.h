@@ -51,8 +51,7 @@ struct OuterSurface {
 // through one another the union has handles that the body has not. The solid is grown again on a
 // lattice, node by node from its deepest part, by nodes that change no topology (Bertrand 1994);
 // what cannot be taken is a cut. Then as tetrahedralization(): isosurface stuffing, boundary
-// vertices on the solid's surface, those along edges sharper than 60 degrees on them. Pockets that
-// are enclosed are filled.
+// vertices on the solid's surface. Sharp edges are cut across. Pockets that are enclosed are filled.
 //
 // Deterministic. Throws SettingError, MemoryError (before allocating), Cancelled; DataError where
 // nothing is inside at the resolution, no part of the solid has the handles that are asked for, or

@@ -7,7 +7,6 @@
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/mesh/self_intersection.h"
-#include "innermap/mesh/triangle_tree.h"
 #include "mesh/shapes.h"
 
 namespace innermap {
@@ -38,17 +37,6 @@ TEST(OuterSurface, UnitesPartsThatOverlap) {
   const double lens = 2 * kPi * 0.4 * 0.4 * (3 - 0.4) / 3;
   EXPECT_NEAR(signedVolume(made.mesh), 8 * kPi / 3 - lens, 0.02 * 8 * kPi / 3);
   EXPECT_LT(made.apartMax, 0.02);
-}
-
-TEST(OuterSurface, KeepsSharpEdges) {
-  const Mesh cross = shapes::joined(shapes::box({-1, -0.31, -0.3}, {1.03, 0.3, 0.3}),
-                                    shapes::box({-0.3, -0.3, -1}, {0.3, 0.3, 1}));
-  const OuterSurface made = outer(cross, 40);
-  expectEmbedded(made.mesh);
-  const TriangleTree tree(made.mesh.vertices, made.mesh.triangles);
-  for (double x = 0.4; x < 1; x += 0.07)
-    for (const Vec3& onEdge : {Vec3{x, 0.3, 0.3}, Vec3{-x, -0.31, 0.3}, Vec3{0.3, -0.3, x}})
-      EXPECT_LT(tree.closest(onEdge).distance, 0.05 * made.edge) << x;
 }
 
 // Its ends run into one another: a ring as a union, a ball as a mesh.

@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "innermap/boundary/boundary_pair.h"
+#include "innermap/boundary/detail/problem_samples.h"
 #include "innermap/boundary/detail/streams.h"
+#include "innermap/core/parallel.h"
 #include "innermap/sample/surface_samples.h"
 
 namespace innermap {
@@ -14,6 +16,7 @@ constexpr double kPieces = 1.0 / 256;
 // A mesh about an intermediate shape has at most so many triangles more than the source, or so
 // many times as many.
 constexpr std::size_t kMoreTriangles = 100000, kTimesTriangles = 4;
+constexpr double kExact = 0.4;  // of a charge's distance, that the mesh may be off at its foot
 
 // At places on solid.surface(), from values at the vertices that the solid was made of.
 Matrix interpolated(const Points& vertices, const Solid& solid,
@@ -108,6 +111,24 @@ void CarriedBoundary::advance(const HarmonicMap& step, bool last) {
   solid_ = Solid(now, solid);
 }
 
+// Those that stand where the mesh about the present solid is as good as exact at their distance
+// from it: elsewhere a charge could touch the exact images, or stand inside of them.
+Points CarriedBoundary::known(const Points& charges, double distance, const PlacesToValues& values) {
+  std::vector<SurfacePoint> feet(charges.size());
+  parallelBlocks(
+      charges.size(), 64,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          feet[i] = solid_.closest(charges[i], solid_.diagonal()).onSurface;
+      },
+      settings_.progress);
+  const Points on = positionsOf(solid_, feet), exact = carried(pointsOf(values(feet)), 0);
+  Points out;
+  for (std::size_t i = 0; i < charges.size(); ++i)
+    if (norm(exact[i] - on[i]) <= kExact * distance) out.push_back(charges[i]);
+  return out;
+}
+
 AdaptiveProblem CarriedBoundary::problem(const Points& ways, double unit) {
   AdaptiveProblemSettings s;
   s.seed = settings_.seed;
@@ -126,13 +147,13 @@ AdaptiveProblem CarriedBoundary::problem(const Points& ways, double unit) {
       };
   AdaptiveProblem out = adaptiveProblem(solid_, values, unit, s);
   const auto carry = [this](const BoundarySamples& samples) {
-    Points from(samples.points.size()), way(from.size());
-    for (std::size_t i = 0; i < from.size(); ++i) {
-      from[i] = {samples.values(i, 0), samples.values(i, 1), samples.values(i, 2)};
-      way[i] = {samples.values(i, 3), samples.values(i, 4), samples.values(i, 5)};
-    }
-    return samplesFrom(carried(std::move(from), 0), way);
+    return samplesFrom(carried(pointsOf(samples.values), 0), pointsOf(samples.values, 3));
   };
+  if (!steps_.empty())
+    out.placeSources = [this, values, diagonal = out.diagonal, place = out.placeSources](
+                           const PlacementRequest& request, double distance) {
+      return known(place(request, distance), distance * diagonal, values);
+    };
   out.placeCollocation = [carry, place = out.placeCollocation](const PlacementRequest& request) {
     return carry(place(request));
   };

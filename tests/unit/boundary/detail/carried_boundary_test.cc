@@ -23,6 +23,13 @@ HarmonicMap bending(const Vec3& shift, double weight) {
   return HarmonicMap(HarmonicField({{0, 0, 2}}, weights, affine));
 }
 
+// By fixed point iterations: of maps that are a shift and a little more.
+Vec3 preimage(const HarmonicMap& map, const Vec3& y) {
+  Vec3 x = y;
+  for (int i = 0; i < 200; ++i) x = x + (y - map(x));
+  return x;
+}
+
 class Carried : public ::testing::Test {
  protected:
   Carried() : solid(shapes::icosphere(3)) { settings.chord = 1e-3; }
@@ -52,17 +59,33 @@ TEST_F(Carried, LaterOnesAreOfTheImage) {
   boundary.advance(second, false);
   EXPECT_EQ(boundary.steps().size(), 2u);
   const AdaptiveProblem problem = boundary.problem(ways({0, 0, 1}), solid.diagonal());
-  // Back by a few fixed point iterations: both maps are a shift and a little more.
-  const auto back = [](const HarmonicMap& map, const Vec3& y) {
-    Vec3 x = y;
-    for (int i = 0; i < 200; ++i) x = x + (y - map(x));
-    return x;
-  };
   const BoundarySamples samples = problem.draw(300, 2);
   for (std::size_t i = 0; i < samples.points.size(); ++i) {
-    const Vec3 source = back(first, back(second, samples.points[i]));
+    const Vec3 source = preimage(first, preimage(second, samples.points[i]));
     EXPECT_LT(solid.distance(source), 1e-6);
     EXPECT_NEAR(samples.values(i, 2), samples.points[i].z + 1, 1e-12);
+  }
+}
+
+// The mesh about the image is coarse: where it lies within the image, charges as near to it as it is
+// off would stand inside.
+TEST_F(Carried, NoChargeStandsInsideTheExactImage) {
+  settings.chord = 10;
+  const Solid coarse(shapes::icosphere(2));
+  CarriedBoundary boundary(coarse, settings);
+  const HarmonicMap map = bending({0, 0, 0}, 0.4);
+  boundary.advance(map, false);
+  const Points still(coarse.repaired().mesh.vertices.size());
+  const AdaptiveProblem problem = boundary.problem(still, coarse.diagonal());
+  for (const double distance : {0.02, 0.004, 0.0012}) {
+    PlacementRequest request;
+    request.most = 100000;
+    request.spacing = std::max(0.02, distance);
+    request.reach = distance;
+    const Points charges = problem.placeSources(request, distance);
+    EXPECT_FALSE(charges.empty()) << "where the image is straight";
+    for (const Vec3& charge : charges)
+      EXPECT_FALSE(coarse.inside(preimage(map, charge))) << distance;
   }
 }
 
