@@ -19,6 +19,8 @@ constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32;
 // Of what is left of the tolerance for the way that is left: errors of steps add up, but do not all
 // point the same way. The last step has to do with what is left.
 constexpr double kShare = 1.3, kLastShare = 1, kLeastShare = 0.5;
+// Of the error, once it is over the tolerance: what a step may add where no step can mend that.
+constexpr double kOfMissed = 0.25;
 // Of the folds that are left: after a step, and after its first charges.
 constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
 constexpr double kOfTolerance = 0.9;  // is given to the steps
@@ -108,7 +110,9 @@ class StepFitter {
     const double part = (end - at_) / (1 - at_);
     const double left = kOfTolerance * settings_.tolerance - error_.p99;
     const double tolerance = (end < 1 ? kShare : kLastShare) * part * left;
-    return std::max({tolerance, kLeastShare * part * settings_.tolerance, kSmallestTolerance});
+    const double missed = error_.p99 > settings_.tolerance ? kOfMissed * error_.p99 : 0;
+    return std::max(
+        {tolerance, kLeastShare * part * settings_.tolerance, missed, kSmallestTolerance});
   }
 
   std::size_t mostSources() const {
