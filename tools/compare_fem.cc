@@ -274,10 +274,8 @@ void run(const CompareOptions& options, Context& context) {
         context.timed("solid", [&] { return Solid(source, context.settings<SolidSettings>()); });
   } else {
     requireMeshMemory(options.target, context);
-    const Mesh target = context.timed("read", [&] {
-      return readMeshLike(options.target, source, context.settings<ReadSettings>());
-    });
-    pair = makeBoundaryPair(source, target, context.settings<BoundarySettings>());
+    const Mesh target = context.timed("read", [&] { return readMeshLike(options.target, source); });
+    pair = makeBoundaryPair(source, target);
     context.tell(*pair);
   }
   const Solid& solid = pair ? pair->solid() : *alone;

@@ -39,8 +39,6 @@ void Context::noteTime() {
   warning("stopped by --max-time: another run may differ");
 }
 
-Progress* Context::progress() const { return &progress_; }
-
 void Context::setPart(const std::string& part) { progress_.setPart(part); }
 
 void Context::expect(const std::vector<JobPhase>& phases) {

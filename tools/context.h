@@ -13,7 +13,7 @@
 
 #include "innermap/core/file.h"
 #include "innermap/core/memory.h"
-#include "innermap/core/progress.h"
+#include "innermap/core/run.h"
 #include "innermap/core/stage_seconds.h"
 #include "innermap/io/report.h"
 #include "job_clock.h"
@@ -46,15 +46,13 @@ struct CommonOptions {
   std::map<std::string, std::string> given;
 };
 
-// A command calls it from one thread; progress() may be used from any.
+// A command calls it from one thread.
 class Context {
  public:
   Context(const CommonOptions& options, TerminalProgress& progress);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
-
-  Progress* progress() const;
 
   // For commands that do the same for several things, say frames: which one is under way, shown
   // with the progress. Empty: none.
@@ -75,11 +73,10 @@ class Context {
   // be spent on improving what comes next.
   void spend(double share, double later = 0);
 
-  // The settings of the library with the limit on memory, where they have one, and the progress.
+  // The settings of the library with the limit on memory, where they have one.
   template <class Settings>
   Settings settings(Settings given = {}) const {
     if constexpr (HasMaxMemory<Settings>::value) given.maxMemory = maxMemory_;
-    given.progress = progress();
     return given;
   }
 
@@ -116,7 +113,7 @@ class Context {
   // What `body` returns; adds its wall time to the report's "seconds" under `stage`.
   template <class Body>
   decltype(auto) timed(const std::string& stage, Body&& body) {
-    throwIfCancelled(progress());
+    throwIfCancelled();
     noteMemory();
     return innermap::timed(report_.seconds, stage, std::forward<Body>(body));
   }

@@ -46,13 +46,11 @@ std::string settingsText(const DeformOptions& o) {
 // Tells which inputs and settings an output was made from.
 class Inputs {
  public:
-  Inputs(const DeformOptions& options, const Frames& frames, const Context& context)
+  Inputs(const DeformOptions& options, const Frames& frames)
       : frames_(frames),
         neighbours_(options.velocity),
-        settings_(context.settings<FingerprintSettings>()),
-        common_(fmt::format(
-            "rest {}, volume {}, settings {:016x}", fingerprintOf(options.rest, settings_),
-            fingerprintOf(options.volume, settings_), hashOf(settingsText(options)))) {}
+        common_(fmt::format("rest {}, volume {}, settings {:016x}", fingerprintOf(options.rest),
+                            fingerprintOf(options.volume), hashOf(settingsText(options)))) {}
 
   std::string of(std::size_t index) const {
     std::string text = common_ + ", frame " + fingerprint(index);
@@ -64,7 +62,7 @@ class Inputs {
 
  private:
   std::string fingerprint(std::size_t index) const {
-    return fingerprintOf(frames_.all[index].path, settings_);
+    return fingerprintOf(frames_.all[index].path);
   }
   // A neighbour that cannot be read plays no part.
   std::string numbered(std::size_t index) const try {
@@ -75,7 +73,6 @@ class Inputs {
 
   const Frames& frames_;
   const bool neighbours_;
-  const FingerprintSettings settings_;
   const std::string common_;
 };
 
@@ -290,7 +287,7 @@ void run(const DeformOptions& options, Context& context) {
   std::optional<Inputs> inputs;
   Frames left;
   context.timed("compare", [&] {
-    inputs.emplace(options, frames, context);
+    inputs.emplace(options, frames);
     left = framesLeft(options, frames, pattern, *inputs, context);
   });
   if (left.wanted.empty()) return;

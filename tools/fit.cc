@@ -21,13 +21,10 @@ void run(const FitOptions& options, Context& context) {
   context.output(options.output);
   Mesh source = readMeshFile(options.source, context);
   requireMeshMemory(options.target, context);
-  Mesh target = context.timed("read", [&] {
-    return readMeshLike(options.target, source, context.settings<ReadSettings>());
-  });
+  Mesh target = context.timed("read", [&] { return readMeshLike(options.target, source); });
   const FitMapSettings settings = fitMapSettings(options.fitting, source.vertices.size(), context);
   const double places = bentPlaces(source, target.vertices, settings.tolerance);
-  BoundaryPair pair =
-      makeBoundaryPair(std::move(source), std::move(target), context.settings<BoundarySettings>());
+  BoundaryPair pair = makeBoundaryPair(std::move(source), std::move(target));
   reportBoundaries(pair, context);
   const std::size_t vertices = pair.source.mesh.vertices.size();
   context.expect(fittingPhases(settings, places, false));

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "html/page.h"
+#include "innermap/core/run.h"
 
 namespace innermap::tool {
 namespace {
@@ -71,9 +72,8 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
       result.file = frames.all[index];
       context.setPart(fmt::format("frame {} ({} of {})", result.file.number, results.size() + 1,
                                   frames.wanted.size()));
-      reportProgress(
-          context.progress(), "frames",
-          static_cast<double>(results.size()) / static_cast<double>(frames.wanted.size()));
+      reportProgress("frames", static_cast<double>(results.size()) /
+                                   static_cast<double>(frames.wanted.size()));
       if (Page* page = context.page())
         page->frame = PageFrame{result.file.number, results.size(), frames.wanted.size()};
       const auto start = Clock::now();

@@ -90,8 +90,7 @@ std::vector<std::string> framePaths(const FramePattern& pattern, const Frames& f
 }
 
 SourceBoundary readRest(const std::string& rest, Context& context) {
-  SourceBoundary source =
-      makeSourceBoundary(readMeshFile(rest, context), context.settings<BoundarySettings>());
+  SourceBoundary source = makeSourceBoundary(readMeshFile(rest, context));
   reportSource(source, context);
   return source;
 }
@@ -112,15 +111,13 @@ FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context
     shown = std::make_shared<PageFrames>(*context.page(), fitter.rest().mesh, frames.wanted.size());
   return {std::move(numbers), [&, shown](std::size_t index) {
             const FrameFile& frame = frames.all[index];
-            const Mesh mesh = context.timed("read", [&] {
-              return readMeshLike(frame.path, fitter.rest().mesh, context.settings<ReadSettings>());
-            });
-            FrameFit fit = fitter.fit(mesh, context.settings<BoundarySettings>());
+            const Mesh mesh =
+                context.timed("read", [&] { return readMeshLike(frame.path, fitter.rest().mesh); });
+            FrameFit fit = fitter.fit(mesh);
             addSeconds(context.report().seconds, fit.seconds);
             for (const std::string& warning : fit.warnings)
               context.warning(fmt::format("frame {}: {}", frame.number, warning));
-            if (shown)
-              shown->add(frame.number, mesh.vertices, fit, context.settings<PageSettings>());
+            if (shown) shown->add(frame.number, mesh.vertices, fit);
             return fit;
           }};
 }

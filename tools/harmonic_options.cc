@@ -121,8 +121,7 @@ void runHarmonic(const HarmonicOptions& options,
                       100 * share));
   }
   const std::size_t vertices = mesh.vertices.size();
-  const SourceBoundary boundary =
-      makeSourceBoundary(std::move(mesh), context.settings<BoundarySettings>());
+  const SourceBoundary boundary = makeSourceBoundary(std::move(mesh));
   reportSource(boundary, context);
   HarmonicFitSettings settings = context.settings(options.fit);
   FitMapSettings like;

@@ -59,8 +59,8 @@ std::string mapInfo(const InfoOptions& options) {
   return text;
 }
 
-std::string vdbInfo(const InfoOptions& options, const Context& context) {
-  const VdbInfo info = readVdbInfo(options.file, context.settings<VdbInfoSettings>());
+std::string vdbInfo(const InfoOptions& options) {
+  const VdbInfo info = readVdbInfo(options.file);
   return options.json ? infoJson(options.file, info)
                       : describe(info, options.file, options.metadata);
 }
@@ -75,7 +75,7 @@ std::string exrInfo(const InfoOptions& options) {
 void run(const InfoOptions& options, Context& context) {
   const std::string e = extension(options.file);
   // A dry run reads too, as only what is in the file tells what it takes.
-  const std::string text = e == ".vdb"                 ? vdbInfo(options, context)
+  const std::string text = e == ".vdb"                 ? vdbInfo(options)
                            : e == ".exr"               ? exrInfo(options)
                            : isFieldFile(options.file) ? mapInfo(options)
                                                        : meshInfo(options, context);

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "html/contents.h"
+#include "innermap/core/run.h"
 #include "innermap/io/vdb/vdb_file.h"
 #include "innermap/mesh/read.h"
 #include "map_report.h"
@@ -20,8 +21,7 @@ void requireMeshMemory(const std::string& path, const Context& context) {
 
 Mesh readMeshFile(const std::string& path, Context& context) {
   requireMeshMemory(path, context);
-  Mesh mesh =
-      context.timed("read", [&] { return readMesh(path, context.settings<ReadSettings>()); });
+  Mesh mesh = context.timed("read", [&] { return readMesh(path); });
   if (context.page()) addMesh(*context.page(), mesh);
   return mesh;
 }
@@ -30,8 +30,7 @@ openvdb::GridPtrVec readGridFile(const std::string& path, const std::vector<std:
                                  Context& context) {
   auto settings = context.settings<VdbReadSettings>();
   settings.names = names;
-  context.requireMemory("reading " + path,
-                        readMemory(readVdbInfo(path, context.settings<VdbInfoSettings>()), names),
+  context.requireMemory("reading " + path, readMemory(readVdbInfo(path), names),
                         "read fewer of its grids or raise --max-memory");
   openvdb::GridPtrVec grids = context.timed("read", [&] { return readVdb(path, settings).grids; });
   if (context.page()) addGrids(*context.page(), grids);
@@ -39,17 +38,15 @@ openvdb::GridPtrVec readGridFile(const std::string& path, const std::vector<std:
 }
 
 MappedSolid readMapFile(const std::string& path, Context& context) {
-  throwIfCancelled(context.progress());
-  MappedSolid mapped = readMap(path, context.settings<BoundarySettings>());
+  throwIfCancelled();
+  MappedSolid mapped = readMap(path);
   reportBoundaries(mapped.boundary, context);
-  if (context.page()) showMap(*context.page(), mapped, context.settings<PageSettings>());
+  if (context.page()) showMap(*context.page(), mapped);
   return mapped;
 }
 
 Solid targetSolid(const MappedSolid& mapped, Context& context) {
-  return context.timed("solid", [&] {
-    return makeTargetSolid(mapped.boundary, context.settings<BoundarySettings>());
-  });
+  return context.timed("solid", [&] { return makeTargetSolid(mapped.boundary); });
 }
 
 }  // namespace innermap::tool

@@ -12,6 +12,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/file.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/core/version.h"
 #include "run_record.h"
 #include "signals.h"
@@ -90,6 +91,7 @@ void runCommand(const std::vector<std::string>& arguments) {
   static TerminalProgress progress(TerminalProgress::styleFor(common.quiet));
   progress.expect(usualPhases(command.name()));
   handleSignals(progress);
+  const RunScope scope(progress);
   try {
     execute(command, common, progress);
   } catch (const SettingError& error) {

@@ -60,21 +60,19 @@ struct Meshes {
 Meshes readMeshes(const MapOptions& options, Context& context) {
   if (options.target.empty() && options.correspondence.empty())
     throw UsageError("TARGET is missing; give it, or --correspond (see 'innermap map --help')");
-  const auto settings = context.settings<ReadSettings>();
   Meshes meshes;
   meshes.source = readMeshFile(options.source, context);
   if (!options.correspondence.empty()) {
-    meshes.target = context.timed("read", [&] {
-      return readCorrespondence(options.correspondence, meshes.source, settings);
-    });
+    meshes.target = context.timed(
+        "read", [&] { return readCorrespondence(options.correspondence, meshes.source); });
     if (!options.target.empty())
       requireOnTarget(meshes.target, readMeshFile(options.target, context));
     return meshes;
   }
   requireMeshMemory(options.target, context);
   try {
-    meshes.target = context.timed(
-        "read", [&] { return readMeshLike(options.target, meshes.source, settings); });
+    meshes.target =
+        context.timed("read", [&] { return readMeshLike(options.target, meshes.source); });
   } catch (const DataError&) {
     meshes.target = readMeshFile(options.target, context);
     meshes.related = false;
@@ -133,7 +131,7 @@ double expectPhases(const MapOptions& options, const Meshes& meshes, Context& co
 }
 
 void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
-  const auto source = makeSourceBoundary(meshes.source, context.settings<BoundarySettings>());
+  const auto source = makeSourceBoundary(meshes.source);
   reportSource(source, context);
   const std::size_t vertices = meshes.source.vertices.size();
   const FitMapSettings fitting = fitMapSettings(fittingFor(options, meshes), vertices, context);
@@ -159,9 +157,7 @@ void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
 // Lays the source onto the target where they are not related, and puts that into the folder.
 BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& folder,
                       Context& context) {
-  const auto progress = context.settings<BoundarySettings>();
-  if (meshes.related)
-    return makeBoundaryPair(std::move(meshes.source), std::move(meshes.target), progress);
+  if (meshes.related) return makeBoundaryPair(std::move(meshes.source), std::move(meshes.target));
   context.inFolder(options.output, {"correspondence.ply", "correspondence.source.ply",
                                     "correspondence.png", "correspondence.other.png"});
   context.note(correspondPlan(options) + "; --correspond takes one made before");
@@ -182,7 +178,7 @@ BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& f
         "correspondence.png", moved,
         [&](const std::string& file, const auto& write) { folder.write(file, write); }, context);
   });
-  return makeBoundaryPair(moved.source, target, progress);
+  return makeBoundaryPair(moved.source, target);
 }
 
 void run(const MapOptions& options, Context& context) {

@@ -177,7 +177,7 @@ void reportBoundaries(const BoundaryPair& pair, Context& context) {
 void reportFit(const MapFit& fit, const FitMapSettings& settings, bool bestEffort,
                Context& context) {
   context.tell(fit);
-  if (context.page()) showMap(*context.page(), fit, context.settings<PageSettings>());
+  if (context.page()) showMap(*context.page(), fit);
   Report& report = context.report();
   if (fit.verticesRms) report.set("boundary_error.vertices_rms", *fit.verticesRms);
   if (fit.tolerance) reportTolerance(fit, settings, bestEffort, context);

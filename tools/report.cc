@@ -10,6 +10,7 @@
 
 #include "commands.h"
 #include "html/contents.h"
+#include "innermap/core/run.h"
 #include "innermap/field/field_file.h"
 #include "innermap/io/vdb/vdb_file.h"
 #include "innermap/mesh/read.h"
@@ -79,42 +80,35 @@ std::string found(const std::string& path, const fs::path& folder) {
   return fs::exists(beside) ? beside.string() : path;
 }
 
-void addFrames(Page& page, const Json& report, const Mesh& rest, const fs::path& folder,
-               Context& context) {
+void addFrames(Page& page, const Json& report, const Mesh& rest, const fs::path& folder) {
   const Json *files = at(report, "frames", "file"), *numbers = at(report, "frames", "number");
   if (!files || !numbers || !files->is_array() || !numbers->is_array()) return;
   const std::size_t count = std::min(files->size(), numbers->size());
   PageFrames frames(page, rest, count);
   for (std::size_t i = 0; i < count; ++i) {
-    throwIfCancelled(context.progress());
+    throwIfCancelled();
     const Json &file = (*files)[i], &number = (*numbers)[i];
     if (!file.is_string() || !number.is_number()) continue;
     tried(page, [&] {
-      const Mesh mesh = readMeshLike(found(file.get<std::string>(), folder), rest,
-                                     context.settings<ReadSettings>());
+      const Mesh mesh = readMeshLike(found(file.get<std::string>(), folder), rest);
       frames.add(static_cast<std::int64_t>(std::llround(number.get<double>())), mesh.vertices);
     });
   }
 }
 
-void addSurfaces(Page& page, const Json& report, const fs::path& folder, Context& context) {
+void addSurfaces(Page& page, const Json& report, const fs::path& folder) {
   const std::string map = (folder / "map.ply").string();
-  if (fs::exists(map) && tried(page, [&] {
-        showMap(page, readMap(map, context.settings<BoundarySettings>()),
-                context.settings<PageSettings>());
-      }))
-    return;
+  if (fs::exists(map) && tried(page, [&] { showMap(page, readMap(map)); })) return;
   const std::string source = textAt(report, "source", "path");
   const std::string target = textAt(report, "target", "path");
-  const auto settings = context.settings<ReadSettings>();
   if (source.empty()) return page.missing.push_back("surfaces: the report names no mesh");
   Mesh rest;
-  if (!tried(page, [&] { rest = readMesh(found(source, folder), settings); })) return;
-  if (at(report, "frames", "file")) return addFrames(page, report, rest, folder, context);
+  if (!tried(page, [&] { rest = readMesh(found(source, folder)); })) return;
+  if (at(report, "frames", "file")) return addFrames(page, report, rest, folder);
   addMesh(page, rest);
   if (target.empty()) return;
   tried(page, [&] {
-    const Mesh other = readMesh(found(target, folder), settings);
+    const Mesh other = readMesh(found(target, folder));
     if (other.triangles == rest.triangles && other.vertices.size() == rest.vertices.size())
       showPair(page, rest, other.vertices);
     else
@@ -172,15 +166,12 @@ void addGridsOf(Page& page, const Json& report, const fs::path& folder, Context&
 }
 
 // Of the largest grid file and of all surfaces, as they are read, and of the page.
-std::uint64_t memoryOf(const Json& report, const fs::path& folder, const Context& context) {
+std::uint64_t memoryOf(const Json& report, const fs::path& folder) {
   std::uint64_t grids = 0;
   double surfaces = 0;
   Page unsaid;
   for (const GridFile& file : gridFiles(report, folder))
-    tried(unsaid, [&] {
-      grids = std::max(grids,
-                       readMemory(readVdbInfo(file.path, context.settings<VdbInfoSettings>()), {}));
-    });
+    tried(unsaid, [&] { grids = std::max(grids, readMemory(readVdbInfo(file.path), {})); });
   for (const std::string& path :
        {(folder / "map.ply").string(), found(textAt(report, "source", "path"), folder),
         found(textAt(report, "target", "path"), folder)}) {
@@ -201,10 +192,9 @@ void run(const ReportOptions& options, Context& context) {
   const Json report = readReport(json);
   context.output(output);
   if (context.dryRun())
-    return context.plan({"write the page of " + json + " to " + output},
-                        memoryOf(report, folder, context));
+    return context.plan({"write the page of " + json + " to " + output}, memoryOf(report, folder));
   Page page;
-  context.timed("surfaces", [&] { addSurfaces(page, report, folder, context); });
+  context.timed("surfaces", [&] { addSurfaces(page, report, folder); });
   context.timed("sections", [&] { addGridsOf(page, report, folder, context); });
   context.timed("write", [&] {
     writePage(output, page, report.dump(-1, ' ', false, Json::error_handler_t::replace));

@@ -11,11 +11,12 @@
 #include <new>
 
 #include "innermap/core/file.h"
+#include "innermap/core/run.h"
 
 namespace innermap::tool {
 namespace {
 
-std::atomic<Progress*> cancelled{nullptr};
+std::atomic<RunContext*> cancelled{nullptr};
 std::atomic<int> requests{0}, expected{0};
 std::atomic<bool> done{false}, kept{false};
 
@@ -57,7 +58,7 @@ void onTimer(int) {
 void onRequest(int) {
   if (done) return;
   if (++requests > 1) return endNow();
-  if (Progress* const progress = cancelled) progress->cancel();
+  if (RunContext* const run = cancelled) run->cancel();
   startTimer(800000);
 }
 
@@ -134,9 +135,9 @@ const char* reasonOf(const std::exception& error) noexcept {
   return error.what();
 }
 
-void handleSignals(Progress& progress) {
-  cancelled = &progress;
-  if (requests > 0) progress.cancel();
+void handleSignals(RunContext& run) {
+  cancelled = &run;
+  if (requests > 0) run.cancel();
 }
 
 void ignoreSignals() {

@@ -3,16 +3,16 @@
 
 #include <exception>
 
-#include "innermap/core/progress.h"
+#include "innermap/core/run.h"
 
 namespace innermap::tool {
 
-// SIGINT, SIGTERM and SIGHUP cancel `progress`, which must live as long as the process; one that
+// SIGINT, SIGTERM and SIGHUP cancel `run`, which must live as long as the process; one that
 // came earlier, since the process began, cancels it now. If the process has not ended 0.8 s later
 // (inside a long LAPACK call, say), or at a second signal, it removes its unfinished files, says
 // what is in place and ends with exit code 130, or 0 when all outputs are. Broken pipes and file
 // size limits become write errors.
-void handleSignals(Progress& progress);
+void handleSignals(RunContext& run);
 
 // Before the process ends by another signal (a crash, SIGQUIT) it removes its unfinished files too.
 // So does it where an exception cannot be caught, as in functions of libraries that may not throw

@@ -83,7 +83,7 @@ void run(const SliceOptions& options, Context& context) {
         "see 'innermap slice --help'");
   for (const std::string* path : {&options.output, &options.picture})
     if (!path->empty()) context.output(*path);
-  const VdbInfo info = readVdbInfo(options.file, context.settings<VdbInfoSettings>());
+  const VdbInfo info = readVdbInfo(options.file);
   const openvdb::GridPtrVec grids = readGridFile(options.file, namesToRead(options, info), context);
   const std::uint64_t need = memoryOf(options, grids);
   if (context.dryRun()) {

@@ -12,6 +12,7 @@
 #include "commands.h"
 #include "innermap/boundary/mesh_correspondence.h"
 #include "innermap/core/memory.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/read.h"
 #include "inputs.h"
 #include "job_cost.h"
@@ -83,14 +84,11 @@ BoundaryPair readPair(const StudyOptions& options, Context& context) {
   if (options.target.empty() == options.correspondence.empty())
     throw UsageError("give a TARGET of SOURCE's connectivity, or --correspond (not both)");
   Mesh source = readMeshFile(options.source, context);
-  const auto reading = context.settings<ReadSettings>();
   Mesh target = context.timed("read", [&] {
-    return options.correspondence.empty()
-               ? readMeshLike(options.target, source, reading)
-               : readCorrespondence(options.correspondence, source, reading);
+    return options.correspondence.empty() ? readMeshLike(options.target, source)
+                                          : readCorrespondence(options.correspondence, source);
   });
-  BoundaryPair pair =
-      makeBoundaryPair(std::move(source), std::move(target), context.settings<BoundarySettings>());
+  BoundaryPair pair = makeBoundaryPair(std::move(source), std::move(target));
   reportBoundaries(pair, context);
   return pair;
 }
@@ -137,7 +135,7 @@ void expectRuns(const std::vector<double>& work, Context& context) {
   JobSize size;
   size.items = work.back();
   JobPhase runs = stageOf("runs", size);
-  runs.seconds = std::min(runs.seconds, context.progress()->secondsLeft());
+  runs.seconds = std::min(runs.seconds, currentRun()->secondsLeft());
   context.expect({runs});
 }
 
@@ -154,7 +152,7 @@ Study makeRuns(const BoundaryPair& pair, const StudySettings& settings,
           finished = done;
           if (row) noteKeptWork();
           runs = all;
-          if (work.back() > 0) reportProgress(context.progress(), "runs", work[done] / work.back());
+          if (work.back() > 0) reportProgress("runs", work[done] / work.back());
           context.setPart(done < all ? fmt::format("run {} of {}", done + 1, all) : std::string());
         });
     context.setPart("");

@@ -6,12 +6,12 @@
 #include <set>
 #include <string>
 
-#include "innermap/core/progress.h"
+#include "innermap/core/run.h"
 #include "job_clock.h"
 
 namespace innermap::tool {
 
-class TerminalProgress : public Progress {
+class TerminalProgress : public RunContext {
  public:
   enum class Style { none, lines, bar };
 

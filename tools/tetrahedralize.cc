@@ -113,8 +113,7 @@ void run(const TetrahedralizeOptions& options, Context& context) {
   for (const std::string& note : result.notes) context.note(note);
   for (const std::string& warning : result.warnings) context.warning(warning);
   fillReport(result, mesh, solid, context);
-  const CellQuality quality = context.timed(
-      "quality", [&] { return cellQuality(result.mesh, context.settings<CellQualitySettings>()); });
+  const CellQuality quality = context.timed("quality", [&] { return cellQuality(result.mesh); });
   reportCells(result.mesh, quality, context);
   const BoundaryFit fit = context.timed("boundary", [&] {
     return boundaryFit(result.mesh, solid, context.settings<BoundaryFitSettings>());

@@ -37,9 +37,7 @@ openvdb::GridPtrVec makeGrids(const VoxelizeOptions& options, const Solid& solid
   if (options.fog) context.timed("fog", [&] { grids.push_back(makeFog(*levelSet)); });
   if (options.attributes)
     context.timed("attributes", [&] {
-      for (const auto& grid :
-           makeAttributeGrids(*levelSet, solid, mesh, context.settings<AttributeSettings>()))
-        grids.push_back(grid);
+      for (const auto& grid : makeAttributeGrids(*levelSet, solid, mesh)) grids.push_back(grid);
     });
   context.timed("check", [&] {
     const LevelSetCheck check = checkLevelSet(*levelSet, solid);

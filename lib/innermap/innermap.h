@@ -6,8 +6,8 @@
 //
 // Lengths among settings are fractions of the source's bounding-box diagonal unless a name says
 // voxel or world; errors are fractions of the target's. All functions throw exceptions derived from
-// innermap::Error; every settings struct ends with a pointer to a Progress that reports and
-// cancels.
+// innermap::Error. Progress, cancelling and time limits are a RunContext's, which the caller enters
+// (core/run.h).
 #pragma once
 
 #include "innermap/boundary/certificate.h"
@@ -18,7 +18,6 @@
 #include "innermap/boundary/surface_problem.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
-#include "innermap/core/progress.h"
 #include "innermap/core/version.h"
 #include "innermap/evaluate/map_grids.h"
 #include "innermap/io/cells/cell_file.h"

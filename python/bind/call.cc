@@ -14,6 +14,7 @@
 #include "bind/keywords.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 
 namespace py = pybind11;
 
@@ -23,7 +24,7 @@ namespace {
 constexpr std::chrono::milliseconds kPoll{50};
 constexpr std::chrono::seconds kLongestEnd{10};
 
-class CallProgress : public Progress {
+class CallRun : public RunContext {
  public:
   using Stage = std::pair<std::string, double>;
 
@@ -59,19 +60,19 @@ class CallProgress : public Progress {
   std::optional<py::error_already_set> error_;
 };
 
-void tell(CallProgress& progress, const py::object& callable) {
+void tell(CallRun& run, const py::object& callable) {
   if (callable.is_none()) return;
-  for (const auto& [stage, fraction] : progress.take()) callable(stage, fraction);
+  for (const auto& [stage, fraction] : run.take()) callable(stage, fraction);
 }
 
 // Signals and progress, in the thread that called. With the lock of the interpreter.
-void look(CallProgress& progress, const py::object& callable) {
-  if (progress.failed()) return;
+void look(CallRun& run, const py::object& callable) {
+  if (run.failed()) return;
   try {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    tell(progress, callable);
+    tell(run, callable);
   } catch (const py::error_already_set& error) {
-    progress.keep(error);
+    run.keep(error);
   }
 }
 
@@ -84,13 +85,13 @@ class ActiveCalls {
     return *calls;
   }
 
-  void add(CallProgress* call) {
+  void add(CallRun* call) {
     const std::lock_guard<std::mutex> guard(mutex_);
     forgetOthers();
     if (ended_) throw Cancelled();
     calls_.insert(call);
   }
-  void remove(CallProgress* call) {
+  void remove(CallRun* call) {
     {
       const std::lock_guard<std::mutex> guard(mutex_);
       calls_.erase(call);
@@ -102,7 +103,7 @@ class ActiveCalls {
     std::unique_lock<std::mutex> lock(mutex_);
     forgetOthers();
     ended_ = true;
-    for (CallProgress* call : calls_) call->cancel();
+    for (CallRun* call : calls_) call->cancel();
     fewer_.wait_for(lock, kLongestEnd, [&] { return calls_.empty(); });
   }
 
@@ -115,7 +116,7 @@ class ActiveCalls {
 
   std::mutex mutex_;
   std::condition_variable fewer_;
-  std::set<CallProgress*> calls_;
+  std::set<CallRun*> calls_;
   pid_t process_ = getpid();
   bool ended_ = false;
 };
@@ -124,13 +125,13 @@ class ActiveCalls {
 // interpreter ends is torn down in the midst of C++.
 class ActiveCall {
  public:
-  explicit ActiveCall(CallProgress& call) : call_(call) { ActiveCalls::instance().add(&call_); }
+  explicit ActiveCall(CallRun& call) : call_(call) { ActiveCalls::instance().add(&call_); }
   ~ActiveCall() { ActiveCalls::instance().remove(&call_); }
   ActiveCall(const ActiveCall&) = delete;
   ActiveCall& operator=(const ActiveCall&) = delete;
 
  private:
-  CallProgress& call_;
+  CallRun& call_;
 };
 
 // A thread that works, and says when it is done.
@@ -189,35 +190,36 @@ void bindCalls() {
   }));
 }
 
-void keepPythonError(Progress* progress, const py::error_already_set& error) {
-  static_cast<CallProgress*>(progress)->keep(error);
+void keepPythonError(const py::error_already_set& error) {
+  static_cast<CallRun&>(currentRun()->whole()).keep(error);
 }
 
-void runCall(const CallOptions& options, const std::function<void(Progress*)>& work) {
-  CallProgress progress;
+void runCall(const CallOptions& options, const std::function<void()>& work) {
+  CallRun run;
   if (options.maxTime) {
     const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - options.began;
-    progress.setSecondsLeft(options.timeShare * (*options.maxTime - gone.count()));
+    run.setSecondsLeft(options.timeShare * (*options.maxTime - gone.count()));
   }
-  const ActiveCall active(progress);
+  const ActiveCall active(run);
   std::exception_ptr error;
   {
     const py::gil_scoped_release unlocked;
     Worker worker([&] {
       std::optional<ThreadLimit> limit;
       if (options.threads > 0) limit.emplace(options.threads);
-      work(&progress);
+      const RunScope scope(run);
+      work();
     });
     while (!worker.doneWithin(kPoll)) {
       const py::gil_scoped_acquire locked;
-      look(progress, options.progress);
+      look(run, options.progress);
     }
     error = worker.error();
   }
-  if (!error) look(progress, options.progress);
-  progress.rethrow();
+  if (!error) look(run, options.progress);
+  run.rethrow();
   if (error) std::rethrow_exception(error);
-  if (progress.endedByTime() &&
+  if (run.endedByTime() &&
       PyErr_WarnEx(PyExc_RuntimeWarning, "stopped by max_time: another call may differ", 1) != 0)
     throw py::error_already_set();
 }

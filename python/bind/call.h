@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "innermap/core/progress.h"
+#include "innermap/core/error.h"
 
 namespace innermap::python {
 
@@ -40,18 +40,17 @@ void bindCalls();
 // Calls `work` in a thread of its own, with the lock of the interpreter released, while this one
 // waits: it looks for signals and calls `progress` some twenty times a second. What a signal
 // handler or `progress` raises cancels the work and comes out here; so does what `work` throws.
-void runCall(const CallOptions& options, const std::function<void(Progress*)>& work);
+void runCall(const CallOptions& options, const std::function<void()>& work);
 
 // The same, with what `work` gives.
 template <class Work>
-auto call(const CallOptions& options, Work&& work)
-    -> decltype(work(static_cast<Progress*>(nullptr))) {
-  std::optional<decltype(work(static_cast<Progress*>(nullptr)))> out;
-  runCall(options, [&](Progress* progress) { out.emplace(work(progress)); });
+auto call(const CallOptions& options, Work&& work) -> decltype(work()) {
+  std::optional<decltype(work())> out;
+  runCall(options, [&] { out.emplace(work()); });
   return std::move(*out);
 }
 
-// Settings of the library with the limit on memory, where they have one, and the progress.
+// Settings of the library with the limit on memory, where they have one.
 template <class Settings, class = void>
 struct HasMaxMemory : std::false_type {};
 template <class Settings>
@@ -59,24 +58,23 @@ struct HasMaxMemory<Settings, std::void_t<decltype(std::declval<Settings&>().max
     : std::true_type {};
 
 template <class Settings>
-Settings with(const CallOptions& options, Progress* progress, Settings settings = {}) {
+Settings with(const CallOptions& options, Settings settings = {}) {
   if constexpr (HasMaxMemory<Settings>::value) settings.maxMemory = options.maxMemory;
-  settings.progress = progress;
   return settings;
 }
 
 // The error of Python that a callable raised: the call ends with it.
-void keepPythonError(Progress* progress, const pybind11::error_already_set& error);
+void keepPythonError(const pybind11::error_already_set& error);
 
 // For callables of Python within `work`, from any of the library's threads: with the lock, and what
 // Python raises comes out of runCall(). body: gives nothing that holds an object of Python.
 template <class Body>
-auto inPython(Progress* progress, Body&& body) -> decltype(body()) {
+auto inPython(Body&& body) -> decltype(body()) {
   const pybind11::gil_scoped_acquire lock;
   try {
     return body();
   } catch (pybind11::error_already_set& error) {
-    keepPythonError(progress, error);
+    keepPythonError(error);
   }
   throw Cancelled();
 }

@@ -66,21 +66,19 @@ class Job {
     PullResult pulled;
   };
 
-  void carryGrids(const openvdb::GridPtrVec& given, const CarrySettings& carry, Grids& out,
-                  Progress* progress) const;
+  void carryGrids(const openvdb::GridPtrVec& given, const CarrySettings& carry, Grids& out) const;
   template <class Settings>
-  Settings settings(const CarrySettings& carry, const ThroughMap* through,
-                    Progress* progress) const {
-    auto out = with<Settings>(o_.call, progress);
+  Settings settings(const CarrySettings& carry, const ThroughMap* through) const {
+    auto out = with<Settings>(o_.call);
     out.carry = carry;
     out.outside = outside_;
     out.accuracy = sumAccuracy(*map_.mapped);
     out.through = through;
     return out;
   }
-  PointCarry carryOf(Progress* progress) const;
-  CarriedPoints carryPoints(const Points& points, bool jacobians, Progress* progress) const {
-    return carryOf(progress)(points, jacobians);
+  PointCarry carryOf() const;
+  CarriedPoints carryPoints(const Points& points, bool jacobians) const {
+    return carryOf()(points, jacobians);
   }
 
   const bool push_;
@@ -90,14 +88,14 @@ class Job {
   std::optional<LinearCellMap> through_;
 };
 
-void Job::carryGrids(const openvdb::GridPtrVec& given, const CarrySettings& carry, Grids& out,
-                     Progress* progress) const {
+void Job::carryGrids(const openvdb::GridPtrVec& given, const CarrySettings& carry,
+                     Grids& out) const {
   const MappedSolid& mapped = *map_.mapped;
   const Solid& source = mapped.solid();
-  const Solid target = makeTargetSolid(mapped.boundary, {progress});
+  const Solid target = makeTargetSolid(mapped.boundary);
   const double from = push_ ? source.volume() : target.volume(),
                to = push_ ? target.volume() : source.volume();
-  const LevelSetSettings output = o_.output(given, voxelGrowth(from, to), progress);
+  const LevelSetSettings output = o_.output(given, voxelGrowth(from, to));
   requireMemory("carrying the grids",
                 processMemory(carryMemory(push_ ? target : source, given, output, outside_, carry,
                                           {push_, 0})),
@@ -107,12 +105,12 @@ void Job::carryGrids(const openvdb::GridPtrVec& given, const CarrySettings& carr
   const ThroughMap* way = through ? &*through : nullptr;
   const openvdb::FloatGrid::Ptr levelSet = makeLevelSet(push_ ? target : source, output);
   if (push_) {
-    out.pushed = VolumePusher(source, given, settings<PushSettings>(carry, way, progress))
-                     .push(mapped.map, *levelSet);
+    out.pushed =
+        VolumePusher(source, given, settings<PushSettings>(carry, way)).push(mapped.map, *levelSet);
     out.made = out.pushed.grids;
   } else {
-    auto pulling = settings<PullSettings>(carry, way, progress);
-    auto own = with<LevelSetSettings>(o_.call, progress);
+    auto pulling = settings<PullSettings>(carry, way);
+    auto own = with<LevelSetSettings>(o_.call);
     own.voxelSize = finestVoxel(given);
     const openvdb::FloatGrid::Ptr ofTarget = makeLevelSet(target, own);
     pulling.targetLevelSet = ofTarget.get();
@@ -127,12 +125,11 @@ py::object Job::grids(const py::object& what, const py::object& path) const {
   const std::string to = path.is_none() ? "" : pathFrom(path, "path");
   const CarrySettings carry = o_.carry();
   Grids out;
-  runCall(o_.call, [&](Progress* progress) {
-    carryGrids(given, carry, out, progress);
+  runCall(o_.call, [&]() {
+    carryGrids(given, carry, out);
     if (to.empty()) return;
     VdbWriteSettings writing;
     writing.names = o_.names;
-    writing.progress = progress;
     writeVdb(to, out.made, {}, writing);
   });
   py::dict totals;
@@ -145,9 +142,9 @@ py::object Job::grids(const py::object& what, const py::object& path) const {
   return gridsObject(std::move(out.made), totals, o_.call);
 }
 
-PointCarry Job::carryOf(Progress* progress) const {
+PointCarry Job::carryOf() const {
   const MappedSolid& mapped = *map_.mapped;
-  auto settings = with<CarryPointsSettings>(o_.call, progress);
+  auto settings = with<CarryPointsSettings>(o_.call);
   settings.outside = outside_;
   settings.accuracy = std::min(sumAccuracy(mapped), kPointAccuracy);
   if (through_) return carryThrough(*through_, push_, settings);
@@ -155,16 +152,15 @@ PointCarry Job::carryOf(Progress* progress) const {
     return
         [pusher = PointPusher(mapped.solid(), settings), map = mapped.map](
             const Points& points, bool jacobians) { return pusher.push(map, points, jacobians); };
-  const Solid target = makeTargetSolid(mapped.boundary, {progress});
+  const Solid target = makeTargetSolid(mapped.boundary);
   return [puller = PointPuller(mapped.map, mapped.solid(), target, settings)](
              const Points& points, bool jacobians) { return puller.pull(points, jacobians); };
 }
 
 py::object Job::points(const py::object& what) const {
   const Points points = pointsFrom(what, push_ ? "X" : "Y");
-  return carriedTuple(
-      call(o_.call, [&](Progress* progress) { return carryPoints(points, o_.jacobian, progress); }),
-      o_.jacobian);
+  return carriedTuple(call(o_.call, [&]() { return carryPoints(points, o_.jacobian); }),
+                      o_.jacobian);
 }
 
 // Meshes and cells are whole: all of their points have a place, or none.
@@ -177,8 +173,8 @@ void requireAll(const CarriedPoints& carried, const std::string& what) {
 
 py::object Job::mesh(const Mesh& given) const {
   auto out = std::make_shared<Mesh>(given);
-  runCall(o_.call, [&](Progress* progress) {
-    CarriedPoints carried = carryPoints(out->vertices, false, progress);
+  runCall(o_.call, [&]() {
+    CarriedPoints carried = carryPoints(out->vertices, false);
     requireAll(carried, "mesh");
     out->vertices = std::move(carried.points);
   });
@@ -217,8 +213,8 @@ py::object Job::cells(CellMesh mesh) const {
     for (const Hexahedron& cell : mesh.hexahedra) points.push_back(middle(mesh.vertices, cell));
   }
   const bool jacobians = points.size() > own || turns(mesh.vertexFields);
-  runCall(o_.call, [&](Progress* progress) {
-    const CarriedPoints carried = carryPoints(points, jacobians, progress);
+  runCall(o_.call, [&]() {
+    const CarriedPoints carried = carryPoints(points, jacobians);
     requireAll(carried, "cells");
     for (CellField& field : mesh.vertexFields) turn(field, carried, 0);
     for (CellField& field : mesh.cellFields) turn(field, carried, own);
@@ -234,10 +230,8 @@ py::object Job::file(const std::string& from, const py::object& path) const {
   const double diagonal = push_ ? boundingBox(map_.mapped->boundary.target.moved).diagonal()
                                 : map_.mapped->solid().diagonal();
   ReadGeometrySettings reading = geometrySettings(o_);
-  return dictOf(call(o_.call, [&](Progress* progress) {
-    reading.progress = progress;
-    return carryFile(from, to, reading, o_.subdivide * diagonal, carryOf(progress));
-  }));
+  return dictOf(call(
+      o_.call, [&]() { return carryFile(from, to, reading, o_.subdivide * diagonal, carryOf()); }));
 }
 
 py::object carry(bool push, const Arguments& a, const WayOptions& o) {

@@ -95,9 +95,8 @@ OutsideSettings CarryOptions::outsideSettings(const Points& from, const Points& 
   return out;
 }
 
-LevelSetSettings CarryOptions::output(const openvdb::GridPtrVec& carried, double growth,
-                                      Progress* progress) const {
-  auto out = with<LevelSetSettings>(call, progress);
+LevelSetSettings CarryOptions::output(const openvdb::GridPtrVec& carried, double growth) const {
+  auto out = with<LevelSetSettings>(call);
   out.resolution = resolution.value_or(0);
   out.voxelSize = voxelSize.value_or(resolution ? 0 : growth * finestVoxel(carried));
   return out;
@@ -149,7 +148,6 @@ FileFigures carryFile(const std::string& from, const std::string& to,
   CarryGeometrySettings settings;
   settings.subdivide = subdivide;
   settings.maxMemory = reading.maxMemory;
-  settings.progress = reading.progress;
   const CarriedGeometry carried = carryGeometry(file->geometry, carry, settings);
   FileFigures out;
   out.lost = writeGeometry(to, *file, carried);

@@ -35,8 +35,7 @@ struct CarryOptions {
   // from, to: corresponding points of the two solids.
   OutsideSettings outsideSettings(const Points& from, const Points& to) const;
   // Voxels of the output: as asked for, else those of the grids times `growth`.
-  LevelSetSettings output(const openvdb::GridPtrVec& carried, double growth,
-                          Progress* progress) const;
+  LevelSetSettings output(const openvdb::GridPtrVec& carried, double growth) const;
 };
 
 // What became of grids, for Grids.totals.

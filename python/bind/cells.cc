@@ -158,9 +158,7 @@ CellMesh bareCells(const py::object& object, const std::string& name, const Call
   if (py::isinstance<PyCells>(object)) return py::cast<const PyCells&>(object).mesh;
   if (isPath(object)) {
     const std::string path = pathFrom(object, name);
-    return call(options, [&](Progress* progress) {
-      return readCells(path, with<ReadCellsSettings>(options, progress)).mesh;
-    });
+    return call(options, [&]() { return readCells(path, with<ReadCellsSettings>(options)).mesh; });
   }
   if (py::isinstance<py::tuple>(object)) {
     const py::tuple pair(object);
@@ -237,8 +235,7 @@ struct LongOptions {
 
 py::object quality(const Arguments& a, LongOptions& o) {
   const auto& cells = py::cast<const PyCells&>(a[0]);
-  const CellQuality found =
-      call(o.call, [&](Progress* progress) { return cellQuality(cells.mesh, {progress}); });
+  const CellQuality found = call(o.call, [&]() { return cellQuality(cells.mesh); });
   py::dict out;
   out["least_dihedral"] = arrayOf(found.leastDihedral);
   out["greatest_dihedral"] = arrayOf(found.greatestDihedral);

@@ -27,10 +27,10 @@ py::object check(const Arguments& a, CheckOptions& o) {
   std::size_t at = 0;
   const Mesh mesh = takeMesh(a, at, "mesh");
   if (at < a.size()) throw py::type_error("check() takes one mesh");
-  return py::cast(call(o.call, [&](Progress* progress) {
+  return py::cast(call(o.call, [&]() {
     requireMemory("checking the mesh", processMemory(checkMemory(mesh)), o.call.maxMemory,
                   "raise max_memory");
-    auto settings = with<CheckSettings>(o.call, progress);
+    auto settings = with<CheckSettings>(o.call);
     settings.selfIntersections = o.selfIntersections;
     return checkMesh(mesh, settings);
   }));

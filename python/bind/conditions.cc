@@ -153,9 +153,8 @@ void ConditionsFrom::fixGroups() {
 
 void ConditionsFrom::takeValues() {
   if (isCallable(given_.values)) {
-    conditions_.function = [values = given_.values, progress = progress_](const Points& points) {
-      return inPython(*progress,
-                      [&] { return rowsFrom(values(arrayOf(points)), "values", points.size()); });
+    conditions_.function = [values = given_.values](const Points& points) {
+      return inPython([&] { return rowsFrom(values(arrayOf(points)), "values", points.size()); });
     };
     conditions_.free.assign(mesh_.triangles.size(), 0);
   } else {
@@ -184,11 +183,9 @@ void ConditionsFrom::takeFluxes() {
       wrongValue("flux",
                  "is a callable, but there are values on all triangles; name those with "
                  "values by `fix`");
-    conditions_.fluxFunction = [flux = given_.flux, progress = progress_](const Points& points,
-                                                                          const Points& normals) {
-      return inPython(*progress, [&] {
-        return rowsFrom(flux(arrayOf(points), arrayOf(normals)), "flux", points.size());
-      });
+    conditions_.fluxFunction = [flux = given_.flux](const Points& points, const Points& normals) {
+      return inPython(
+          [&] { return rowsFrom(flux(arrayOf(points), arrayOf(normals)), "flux", points.size()); });
     };
     return;
   }

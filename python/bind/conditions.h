@@ -8,7 +8,6 @@
 
 #include "bind/keywords.h"
 #include "innermap/boundary/boundary_conditions.h"
-#include "innermap/core/progress.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap::python {
@@ -39,13 +38,11 @@ struct GivenConditions {
                    groups = pybind11::none();
 };
 
-// Calls of callables go on in the thread of the fit: setProgress() before it.
 class ConditionsFrom {
  public:
   ConditionsFrom(const Mesh& mesh, const GivenConditions& given);
 
   BoundaryConditions& conditions() { return conditions_; }
-  void setProgress(Progress* progress) { *progress_ = progress; }
 
  private:
   void fixGroups();
@@ -57,7 +54,6 @@ class ConditionsFrom {
   const GivenConditions& given_;
   Groups groups_;
   BoundaryConditions conditions_;
-  std::shared_ptr<Progress*> progress_ = std::make_shared<Progress*>(nullptr);
 };
 
 }  // namespace innermap::python

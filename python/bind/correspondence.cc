@@ -7,6 +7,7 @@
 #include "bind/arrays.h"
 #include "bind/errors.h"
 #include "bind/meshes.h"
+#include "innermap/core/error.h"
 #include "innermap/io/geometry/surface_data.h"
 #include "innermap/mesh/write.h"
 
@@ -140,11 +141,10 @@ py::object save(const Arguments& a, NoOptions&) {
 }
 
 // A file of the program has addresses beside the places; any other mesh may serve too.
-std::vector<SurfacePoint> addressesIn(const std::string& path, const Mesh& source,
-                                      Progress* progress) {
+std::vector<SurfacePoint> addressesIn(const std::string& path, const Mesh& source) {
   Matrix values;
   try {
-    values = readVertexProperties(path, {"triangle", "b0", "b1", "b2"}, source, {progress});
+    values = readVertexProperties(path, {"triangle", "b0", "b1", "b2"}, source);
   } catch (const FileError&) {
     return {};
   }
@@ -168,9 +168,9 @@ py::object loadCorrespondence(const Arguments& a, LoadOptions& o) {
   std::size_t at = 1;
   auto out = std::make_shared<PyCorrespondence>();
   out->source = takeMesh(a, at, "source");
-  runCall(o.call, [&](Progress* progress) {
-    out->positions = readCorrespondence(path, out->source, {progress}).vertices;
-    out->onTarget = addressesIn(path, out->source, progress);
+  runCall(o.call, [&]() {
+    out->positions = readCorrespondence(path, out->source).vertices;
+    out->onTarget = addressesIn(path, out->source);
   });
   return py::cast(out);
 }
@@ -215,9 +215,8 @@ MeshCorrespondenceSettings CorrespondOptions::settings() const {
 std::shared_ptr<PyCorrespondence> correspondMeshes(const Mesh& a, const Mesh& b,
                                                    const MeshCorrespondenceSettings& settings,
                                                    const CallOptions& options) {
-  const MeshCorrespondence made = call(options, [&](Progress* progress) {
-    return innermap::correspondMeshes(a, b, with(options, progress, settings));
-  });
+  const MeshCorrespondence made =
+      call(options, [&]() { return innermap::correspondMeshes(a, b, with(options, settings)); });
   auto out = std::make_shared<PyCorrespondence>();
   out->source = made.source;
   out->positions = made.positions;

@@ -53,8 +53,8 @@ class Deformation {
   py::object file(const std::string& from, const FramePattern& pattern) const;
 
  private:
-  PointPusher pusherFor(const FrameFitter& fitter, const Points& moved, Progress* progress) const {
-    auto settings = with<CarryPointsSettings>(o_.call, progress);
+  PointPusher pusherFor(const FrameFitter& fitter, const Points& moved) const {
+    auto settings = with<CarryPointsSettings>(o_.call);
     settings.outside = outside_;
     if (fadeToFitted_)
       settings.outside.fadeTo = bestRigidMotion(fitter.solid().repaired().mesh.vertices, moved);
@@ -64,18 +64,16 @@ class Deformation {
 
   // carry: of a frame's number and the carry to it.
   template <class Carry>
-  void forFrames(std::uint64_t memory, FrameTable& table, Progress* progress,
-                 const Carry& carry) const {
-    const FrameFitter fitter = fitterOf(rest_, o_.fitting, o_.call, memory, progress);
-    FrameFits fits = frames_.fits(fitter, progress);
+  void forFrames(std::uint64_t memory, FrameTable& table, const Carry& carry) const {
+    const FrameFitter fitter = fitterOf(rest_, o_.fitting, o_.call, memory);
+    FrameFits fits = frames_.fits(fitter);
     std::optional<PointPusher> shared;
-    if (!fadeToFitted_) shared = pusherFor(fitter, {}, progress);
+    if (!fadeToFitted_) shared = pusherFor(fitter, {});
     for (const std::size_t index : frames_.wanted()) {
       const std::int64_t number = frames_.numbers()[index];
       table.add(number, [&] {
         const std::shared_ptr<const FrameFit> fit = fits.at(index);
-        const PointPusher pusher =
-            shared ? *shared : pusherFor(fitter, fit->boundary.moved, progress);
+        const PointPusher pusher = shared ? *shared : pusherFor(fitter, fit->boundary.moved);
         const ComposedMap map = HarmonicMap(fit->field);
         carry(number, [&](const Points& points, bool jacobians) {
           return pusher.push(map, points, jacobians);
@@ -103,15 +101,15 @@ py::object Deformation::grids(const py::object& what,
   settings.fadeToFitted = fadeToFitted_;
   FrameTable table;
   std::vector<PushResult> results;
-  runCall(o_.call, [&](Progress* progress) {
-    settings.push = with(o_.call, progress, settings.push);
-    settings.output = o_.output(given, 1, progress);
-    const FrameFitter fitter = fitterOf(rest_, o_.fitting, o_.call, 0, progress);
+  runCall(o_.call, [&]() {
+    settings.push = with(o_.call, settings.push);
+    settings.output = o_.output(given, 1);
+    const FrameFitter fitter = fitterOf(rest_, o_.fitting, o_.call, 0);
     requireMemory("carrying the grids",
                   processMemory(carryMemory(fitter.solid(), given, settings.output, outside_,
                                             settings.push.carry, {true, o_.velocity ? 1 : 0})),
                   o_.call.maxMemory, "use a lower resolution");
-    FrameFits fits = frames_.fits(fitter, progress);
+    FrameFits fits = frames_.fits(fitter);
     const FramePusher pusher(fitter, given, settings);
     for (const std::size_t index : frames_.wanted()) {
       const std::int64_t number = frames_.numbers()[index];
@@ -127,7 +125,6 @@ py::object Deformation::grids(const py::object& what,
         row["voxels"] = static_cast<double>(result.statistics.voxels);
         VdbWriteSettings writing;
         writing.names = o_.names;
-        writing.progress = progress;
         if (pattern)
           writeVdb(pattern->path(number), result.grids, {}, writing);
         else
@@ -150,8 +147,8 @@ py::object Deformation::points(const Points& points) const {
   FrameTable table;
   std::vector<Points> places;
   std::vector<char> found(points.size(), 1);
-  runCall(o_.call, [&](Progress* progress) {
-    forFrames(0, table, progress, [&](std::int64_t, const PointCarry& carry) {
+  runCall(o_.call, [&]() {
+    forFrames(0, table, [&](std::int64_t, const PointCarry& carry) {
       CarriedPoints carried = carry(points, false);
       for (std::size_t i = 0; i < points.size(); ++i)
         if (carried.fates[i] != PointFate::carried) {
@@ -179,12 +176,10 @@ py::object Deformation::file(const std::string& from, const FramePattern& patter
   ReadGeometrySettings reading = geometrySettings(o_);
   requireWritableAs(from, pattern.path(0));
   FrameTable table;
-  runCall(o_.call, [&](Progress* progress) {
-    reading.progress = progress;
-    forFrames(geometryMemory(from), table, progress,
-              [&](std::int64_t number, const PointCarry& carry) {
-                carryFile(from, pattern.path(number), reading, 0, carry);
-              });
+  runCall(o_.call, [&]() {
+    forFrames(geometryMemory(from), table, [&](std::int64_t number, const PointCarry& carry) {
+      carryFile(from, pattern.path(number), reading, 0, carry);
+    });
   });
   return table.dict();
 }

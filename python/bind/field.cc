@@ -34,11 +34,10 @@ struct SampleOptions {
 
 FieldSamples samplesOf(const PyField& field, const Points& points, bool gradients,
                        const SampleOptions& o) {
-  return call(o.call, [&](Progress* progress) {
+  return call(o.call, [&]() {
     EvaluateFieldSettings settings;
     settings.accuracy = o.accuracy * field.span;
     settings.gradients = gradients;
-    settings.progress = progress;
     return field.solid->field.evaluate(points, settings);
   });
 }
@@ -77,8 +76,8 @@ struct FieldGridOptions {
 
 HarmonicGrids gridsOf(const PyField& field, const FieldGridOptions& o) {
   const SolidField& solid = *field.solid;
-  HarmonicGrids grids = call(o.call, [&](Progress* progress) {
-    auto settings = o.grid.with(with(o.call, progress, o.settings));
+  HarmonicGrids grids = call(o.call, [&]() {
+    auto settings = o.grid.with(with(o.call, o.settings));
     settings.span = field.span;
     requireMemory(
         "evaluating the field on a grid",

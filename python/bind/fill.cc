@@ -43,13 +43,11 @@ py::object tetrahedra(const Arguments& a, TetrahedralizeOptions& o) {
   std::size_t at = 0;
   const Mesh mesh = takeMesh(a, at, "mesh");
   o.settings.edge = o.edge.value_or(0);
-  Tetrahedralization made = call(o.call, [&](Progress* progress) {
+  Tetrahedralization made = call(o.call, [&]() {
     SolidSettings solid;
-    solid.progress = progress;
-    return tetrahedralization(Solid(mesh, solid), with(o.call, progress, o.settings));
+    return tetrahedralization(Solid(mesh, solid), with(o.call, o.settings));
   });
-  const CellQuality quality =
-      call(o.call, [&](Progress* progress) { return cellQuality(made.mesh, {progress}); });
+  const CellQuality quality = call(o.call, [&]() { return cellQuality(made.mesh); });
   setQualityFields(made.mesh, quality);
   py::dict figures;
   figures["edge"] = made.edge;
@@ -78,8 +76,8 @@ struct BlockOptions {
     call.describe(k);
   }
 
-  Mesh surfaceToFill(Mesh mesh, Progress* progress) const {
-    CleanSurface clean = cleanSurface(mesh, with(call, progress, surface));
+  Mesh surfaceToFill(Mesh mesh) const {
+    CleanSurface clean = cleanSurface(mesh, with(call, surface));
     return clean.outer ? std::move(clean.outer->mesh) : std::move(mesh);
   }
 };
@@ -113,9 +111,9 @@ py::object hexahedra(const Arguments& a, HexahedralizeOptions& o) {
   std::size_t at = 0;
   const Mesh mesh = takeMesh(a, at, "mesh");
   o.settings.blocks = o.blocks;
-  Hexahedralization made = call(o.call, [&](Progress* progress) {
-    const HexahedralizeSettings settings = with(o.call, progress, o.settings);
-    const Mesh surface = o.surfaceToFill(mesh, progress);
+  Hexahedralization made = call(o.call, [&]() {
+    const HexahedralizeSettings settings = with(o.call, o.settings);
+    const Mesh surface = o.surfaceToFill(mesh);
     requireMemory("hexahedra", processMemory(hexahedralizeMemory(surface, settings)),
                   settings.maxMemory, "use fewer blocks or pieces");
     return hexahedralize(surface, settings);
@@ -149,10 +147,10 @@ py::object polycube(const Arguments& a, PolycubeOptions& o) {
   std::size_t at = 0;
   const Mesh mesh = takeMesh(a, at, "mesh");
   Mesh surface;
-  const Polycube made = call(o.call, [&](Progress* progress) {
-    auto settings = with<PolycubeSettings>(o.call, progress);
+  const Polycube made = call(o.call, [&]() {
+    auto settings = with<PolycubeSettings>(o.call);
     settings.blocks = o.blocks;
-    const Mesh toFill = o.surfaceToFill(mesh, progress);
+    const Mesh toFill = o.surfaceToFill(mesh);
     requireMemory("a polycube", processMemory(polycubeMemory(toFill, settings)), settings.maxMemory,
                   "use fewer blocks");
     Polycube cube = makePolycube(toFill, settings);

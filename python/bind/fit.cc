@@ -123,11 +123,11 @@ Mesh likeSource(const Mesh& source, Points vertices, const std::string& name) {
 }
 
 void readTarget(const std::string& path, const CallOptions& options, Job& job) {
-  runCall(options, [&](Progress* progress) {
+  runCall(options, [&]() {
     try {
-      job.target = readMeshLike(path, job.source, {progress});
+      job.target = readMeshLike(path, job.source);
     } catch (const DataError&) {
-      job.target = readMesh(path, {progress});
+      job.target = readMesh(path);
       job.related = false;
     }
   });
@@ -174,8 +174,8 @@ py::object fit(const Arguments& a, FitOptions& o) {
     job.source = laid->source;
     job.target = likeSource(laid->source, laid->positions, job.target.name);
   }
-  return py::cast(std::make_shared<PyMap>(call(o.call, [&](Progress* progress) {
-    const FitMapSettings with = python::with(o.call, progress, settings);
+  return py::cast(std::make_shared<PyMap>(call(o.call, [&]() {
+    const FitMapSettings with = python::with(o.call, settings);
     requireMemory("fitting the map", processMemory(fitMapMemory(with, job.source.vertices.size())),
                   with.maxMemory, "use fewer sources or raise max_memory");
     return fitMap(job.source, job.target, with);

@@ -32,8 +32,8 @@ void FittingOptions::describe(Keywords& k) {
   k.count("seed", &fitting.seed, {0, 1e15}, "of all random points");
 }
 
-FrameFitterSettings FittingOptions::settings(const CallOptions& call, Progress* progress) const {
-  FrameFitterSettings out = with(call, progress, fitting);
+FrameFitterSettings FittingOptions::settings(const CallOptions& call) const {
+  FrameFitterSettings out = with(call, fitting);
   out.collocation = collocation.value_or(0);
   return out;
 }
@@ -50,20 +50,16 @@ FrameSet::FrameSet(const py::object& given, const py::object& only, const Mesh& 
   choose(only);
 }
 
-Mesh FrameSet::mesh(std::size_t index, Progress* progress) const {
-  if (!files_.empty()) return readMeshLike(files_[index].path, rest_, {progress});
+Mesh FrameSet::mesh(std::size_t index) const {
+  if (!files_.empty()) return readMeshLike(files_[index].path, rest_);
   Mesh out = rest_;
   out.name = fmt::format("frame {}", numbers_[index]);
   out.vertices = places_[index];
   return out;
 }
 
-FrameFits FrameSet::fits(const FrameFitter& fitter, Progress* progress) const {
-  return {numbers_, [&fitter, this, progress](std::size_t index) {
-            BoundarySettings settings;
-            settings.progress = progress;
-            return fitter.fit(mesh(index, progress), settings);
-          }};
+FrameFits FrameSet::fits(const FrameFitter& fitter) const {
+  return {numbers_, [&fitter, this](std::size_t index) { return fitter.fit(mesh(index)); }};
 }
 
 void FrameSet::takeFiles(const py::object& given, bool oneText) {
@@ -135,14 +131,12 @@ std::map<std::string, double> rowOf(const FrameFit& fit) {
 }
 
 FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, const CallOptions& call,
-                     std::uint64_t others, Progress* progress) {
-  const FrameFitterSettings settings = o.settings(call, progress);
+                     std::uint64_t others) {
+  const FrameFitterSettings settings = o.settings(call);
   requireMemory(fmt::format("a sequence with {} charges", settings.sources),
                 processMemory(frameFitterMemory(settings, others)), call.maxMemory,
                 "use fewer sources");
-  BoundarySettings boundary;
-  boundary.progress = progress;
-  return FrameFitter(makeSourceBoundary(rest, boundary), settings);
+  return FrameFitter(makeSourceBoundary(rest), settings);
 }
 
 }  // namespace innermap::python

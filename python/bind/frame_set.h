@@ -26,7 +26,7 @@ struct FittingOptions {
   pybind11::object only;  // which frames
 
   void describe(Keywords& k);
-  FrameFitterSettings settings(const CallOptions& call, Progress* progress) const;
+  FrameFitterSettings settings(const CallOptions& call) const;
 };
 
 // From files or from arrays.
@@ -39,9 +39,9 @@ class FrameSet {
   const std::vector<std::size_t>& wanted() const { return wanted_; }
 
   // Without the lock of the interpreter.
-  Mesh mesh(std::size_t index, Progress* progress) const;
+  Mesh mesh(std::size_t index) const;
   // All references must outlive them.
-  FrameFits fits(const FrameFitter& fitter, Progress* progress) const;
+  FrameFits fits(const FrameFitter& fitter) const;
 
  private:
   void takeFiles(const pybind11::object& given, bool oneText);
@@ -70,6 +70,6 @@ std::map<std::string, double> rowOf(const FrameFit& fit);
 
 // others: memory that is needed beside it, bytes.
 FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, const CallOptions& call,
-                     std::uint64_t others, Progress* progress);
+                     std::uint64_t others);
 
 }  // namespace innermap::python

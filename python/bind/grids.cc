@@ -175,10 +175,9 @@ void describeNames(Keywords& k, NamingScheme* names) {
 
 py::object writeGrids(const std::string& path, const openvdb::GridPtrVec& grids, NamingScheme names,
                       const CallOptions& call) {
-  runCall(call, [&](Progress* progress) {
+  runCall(call, [&]() {
     VdbWriteSettings settings;
     settings.names = names;
-    settings.progress = progress;
     writeVdb(path, grids, {}, settings);
   });
   return py::none();
@@ -214,11 +213,10 @@ openvdb::GridPtrVec takeGrids(const py::object& grids, const std::string& argume
   }
   if (!isPath(grids)) wrongType(argument, "expects an innermap.Grids or the path of a .vdb file");
   const std::string path = pathFrom(grids, argument);
-  openvdb::GridPtrVec out = call(options, [&](Progress* progress) {
-    auto settings = with<VdbReadSettings>(options, progress);
+  openvdb::GridPtrVec out = call(options, [&]() {
+    auto settings = with<VdbReadSettings>(options);
     settings.names = names;
-    requireMemory("reading " + path,
-                  processMemory(readMemory(readVdbInfo(path, {progress}), names)),
+    requireMemory("reading " + path, processMemory(readMemory(readVdbInfo(path), names)),
                   options.maxMemory, "read fewer of its grids");
     return readVdb(path, settings).grids;
   });

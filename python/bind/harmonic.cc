@@ -83,13 +83,11 @@ std::vector<std::string> namesFrom(const py::object& given, std::size_t channels
 
 // unitSum: see withUnitSum.
 std::shared_ptr<PyField> fitted(const Mesh& mesh, BoundaryConditions& conditions,
-                                const py::object& names, bool unitSum, const FieldFitOptions& o,
-                                const std::function<void(Progress*)>& begin) {
+                                const py::object& names, bool unitSum, const FieldFitOptions& o) {
   if (!conditions.function) namesFrom(names, conditions.values.columns());  // before the work
   conditions.creaseAngle = o.creaseAngle;
-  auto made = call(o.call, [&](Progress* progress) {
-    begin(progress);
-    const auto settings = with(o.call, progress, o.fit);
+  auto made = call(o.call, [&]() {
+    const auto settings = with(o.call, o.fit);
     FitMapSettings like;
     like.tolerance = settings.tolerance;
     requireMemory("the harmonic field", processMemory(fitMapMemory(like, mesh.vertices.size())),
@@ -97,7 +95,7 @@ std::shared_ptr<PyField> fitted(const Mesh& mesh, BoundaryConditions& conditions
     const bool corners =
         !conditions.function && conditions.values.rows() == 3 * mesh.triangles.size();
     const double joined = corners ? removeJumps(mesh, conditions) : 0;
-    SourceBoundary boundary = makeSourceBoundary(mesh, {progress});
+    SourceBoundary boundary = makeSourceBoundary(mesh);
     HarmonicFit fit = fitHarmonic(boundary, conditions, settings);
     if (unitSum) fit.field = withUnitSum(fit.field);
     if (joined > 0)
@@ -125,8 +123,7 @@ py::object harmonic(const Arguments& a, HarmonicOptions& o) {
   }
   if (at < a.size()) throw py::type_error("harmonic() takes a mesh and values, no more");
   ConditionsFrom conditions(mesh, o.given);
-  return py::cast(fitted(mesh, conditions.conditions(), o.names, false, o.fit,
-                         [&](Progress* progress) { conditions.setProgress(progress); }));
+  return py::cast(fitted(mesh, conditions.conditions(), o.names, false, o.fit));
 }
 
 struct WeightOptions {
@@ -154,7 +151,7 @@ py::object weights(const Arguments& a, WeightOptions& o) {
   py::list names;
   for (const SurfaceGroup& group : groups) names.append(group.name);
   BoundaryConditions conditions = weightConditions(mesh, groups);
-  return py::cast(fitted(mesh, conditions, names, true, o.fit, [](Progress*) {}));
+  return py::cast(fitted(mesh, conditions, names, true, o.fit));
 }
 
 }  // namespace

@@ -18,12 +18,9 @@ struct LoadOptions {
 
 py::object loadAny(const Arguments& a, LoadOptions& o) {
   const std::string path = pathFrom(a[0], "path");
-  const bool field = call(o.call, [&](Progress*) { return tellOfField(readField(path).facts); });
-  if (field)
-    return py::cast(fieldOf(
-        call(o.call, [&](Progress* progress) { return readSolidField(path, {progress}); })));
-  return py::cast(std::make_shared<PyMap>(
-      call(o.call, [&](Progress* progress) { return readMap(path, {progress}); })));
+  const bool field = call(o.call, [&]() { return tellOfField(readField(path).facts); });
+  if (field) return py::cast(fieldOf(call(o.call, [&]() { return readSolidField(path); })));
+  return py::cast(std::make_shared<PyMap>(call(o.call, [&]() { return readMap(path); })));
 }
 
 }  // namespace

@@ -36,11 +36,10 @@ struct CallMapOptions {
 py::object callMap(const Arguments& a, CallMapOptions& o) {
   const auto& map = py::cast<const PyMap&>(a[0]);
   const Points points = pointsFrom(a[1], "X");
-  FieldSamples samples = call(o.call, [&](Progress* progress) {
+  FieldSamples samples = call(o.call, [&]() {
     EvaluateFieldSettings settings;
     settings.accuracy = o.accuracy * map.diagonal();
     settings.gradients = o.jacobian;
-    settings.progress = progress;
     return map.mapped->map.evaluate(points, settings);
   });
   if (!o.jacobian) return arrayOf(std::move(samples.values));
@@ -61,10 +60,7 @@ struct InverseOptions {
 py::object inverseMap(const Arguments& a, InverseOptions& o) {
   const auto& map = py::cast<const PyMap&>(a[0]);
   const Points points = pointsFrom(a[1], "Y");
-  return carriedTuple(call(o.call,
-                           [&](Progress* progress) {
-                             return map.puller(o.call, progress).pull(points, o.jacobian);
-                           }),
+  return carriedTuple(call(o.call, [&]() { return map.puller(o.call).pull(points, o.jacobian); }),
                       o.jacobian);
 }
 
@@ -104,16 +100,15 @@ Mesh targetOf(const PyMap& map) { return map.mapped->boundary.targetMesh; }
 
 }  // namespace
 
-PointPuller PyMap::puller(const CallOptions& options, Progress* progress) const {
+PointPuller PyMap::puller(const CallOptions& options) const {
   const std::lock_guard<std::mutex> guard(inverse_->making);
   if (!inverse_->made) {
-    auto settings = with<CarryPointsSettings>(options, progress);
+    auto settings = with<CarryPointsSettings>(options);
     settings.accuracy = kUsualAccuracy;
-    const Solid target = makeTargetSolid(mapped->boundary, {progress});
-    inverse_->made =
-        PointPuller(mapped->map, mapped->solid(), target, settings).reportingTo(nullptr);
+    const Solid target = makeTargetSolid(mapped->boundary);
+    inverse_->made = PointPuller(mapped->map, mapped->solid(), target, settings);
   }
-  return inverse_->made->reportingTo(progress);
+  return *inverse_->made;
 }
 
 py::tuple carriedTuple(CarriedPoints carried, bool jacobians) {

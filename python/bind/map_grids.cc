@@ -53,8 +53,8 @@ void requireGridMemory(const PyMap& map, const MapGridSettings& settings) {
 }
 
 SolidGrids gridsOf(const PyMap& map, const MapGridOptions& o) {
-  return call(o.call, [&](Progress* progress) {
-    auto settings = o.grid.with(with<MapGridSettings>(o.call, progress));
+  return call(o.call, [&]() {
+    auto settings = o.grid.with(with<MapGridSettings>(o.call));
     settings.lame = o.lame;
     settings.repair = o.repair;
     requireGridMemory(map, settings);
@@ -101,12 +101,11 @@ struct FoldOptions {
   }
 };
 
-Folds foldsOf(const PyMap& map, const FoldOptions& o, Progress* progress) {
+Folds foldsOf(const PyMap& map, const FoldOptions& o) {
   const MappedSolid& mapped = *map.mapped;
-  requireGridMemory(map, o.grid.with(with<MapGridSettings>(o.call, progress)));
-  const auto levelSet =
-      makeLevelSet(mapped.solid(), o.grid.with(with<LevelSetSettings>(o.call, progress)));
-  auto settings = with<EvaluateSettings>(o.call, progress);
+  requireGridMemory(map, o.grid.with(with<MapGridSettings>(o.call)));
+  const auto levelSet = makeLevelSet(mapped.solid(), o.grid.with(with<LevelSetSettings>(o.call)));
+  auto settings = with<EvaluateSettings>(o.call);
   settings.map = settings.harmonicEnergy = settings.deformationEnergy = false;
   const MapGrids grids = evaluateMap(mapped.map, mapped.solid(), *levelSet, settings);
   Folds out{grids.foldedFraction, grids.jacobianMin, grids.foldedVoxels, grids.interiorVoxels, {}};
@@ -157,9 +156,7 @@ void bindMapGrids(py::module_& m) {
                        "inside the solid. Raises MemoryError."},
                       [](const Arguments& a, FoldOptions& o) {
                         const auto& self = py::cast<const PyMap&>(a[0]);
-                        return py::cast(call(o.call, [&](Progress* progress) {
-                          return foldsOf(self, o, progress);
-                        }));
+                        return py::cast(call(o.call, [&]() { return foldsOf(self, o); }));
                       });
 }
 

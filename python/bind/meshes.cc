@@ -88,7 +88,7 @@ Mesh meshFrom(const py::object& object, const std::string& name) {
   if (py::isinstance<Mesh>(object)) return py::cast<const Mesh&>(object);
   if (isPath(object)) {
     const std::string path = pathFrom(object, name);
-    return call(CallOptions(), [&](Progress* progress) { return readMesh(path, {progress}); });
+    return call(CallOptions(), [&]() { return readMesh(path); });
   }
   if (py::isinstance<py::tuple>(object)) {
     const py::tuple pair(object);
@@ -148,8 +148,7 @@ void bindMeshes(py::module_& m) {
        "FileError."},
       [](const Arguments& a, ReadOptions& o) {
         const std::string path = pathFrom(a[0], "path");
-        return py::cast(std::make_shared<Mesh>(
-            call(o.call, [&](Progress* progress) { return readMesh(path, {progress}); })));
+        return py::cast(std::make_shared<Mesh>(call(o.call, [&]() { return readMesh(path); })));
       });
   define<NoOptions>(
       m,

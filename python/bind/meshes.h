@@ -6,7 +6,6 @@
 #include <string>
 
 #include "bind/keywords.h"
-#include "innermap/core/progress.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap::python {

@@ -49,10 +49,10 @@ py::object remesh(const Arguments& a, RemeshOptions& o) {
   std::optional<Mesh> surface;
   if (!o.surface.is_none()) surface = meshFrom(o.surface, "surface");
   if (surface) o.settings.surface = &*surface;
-  Remesh made = call(o.call, [&](Progress* progress) {
+  Remesh made = call(o.call, [&]() {
     requireMemory("carrying the cells", processMemory(remeshMemory(cells)), o.call.maxMemory,
                   "use a coarser mesh");
-    return remeshCells(cells, *map.mapped, with(o.call, progress, o.settings));
+    return remeshCells(cells, *map.mapped, with(o.call, o.settings));
   });
   py::dict figures;
   figures["inverted"] = made.inverted;
@@ -133,18 +133,15 @@ py::object compareFem(const Arguments& a, CompareOptions& o) {
   std::optional<Mesh> target;
   if (at < a.size()) target = takeTarget(a, at, source);
   if (at < a.size()) throw py::type_error("compare_fem() takes a source and a target");
-  return tableOf(call(o.call, [&](Progress* progress) {
-    const CompareFemSettings settings = with(o.call, progress, o.settings);
+  return tableOf(call(o.call, [&]() {
+    const CompareFemSettings settings = with(o.call, o.settings);
     if (target) {
-      BoundarySettings boundary;
-      boundary.progress = progress;
-      const BoundaryPair pair = makeBoundaryPair(source, *target, boundary);
+      const BoundaryPair pair = makeBoundaryPair(source, *target);
       requireMemory("finite elements", processMemory(compareFemMemory(pair.solid(), settings)),
                     settings.maxMemory, "use lower resolutions");
       return compareFemOnMap(pair, settings);
     }
     SolidSettings ofSolid;
-    ofSolid.progress = progress;
     const Solid solid(source, ofSolid);
     requireMemory("finite elements", processMemory(compareFemMemory(solid, settings)),
                   settings.maxMemory, "use lower resolutions");

@@ -62,12 +62,12 @@ py::object sequence(const Arguments& a, SequenceOptions& o) {
   if (!pattern && !names.empty()) wrongValue("grids", "is for output; give it too");
   if (pattern && names.empty()) names = {"harmonic_energy", "deformation_energy"};
   FrameTable table;
-  runCall(o.call, [&](Progress* progress) {
-    auto settings = o.grid.with(with<MapGridSettings>(o.call, progress));
+  runCall(o.call, [&]() {
+    auto settings = o.grid.with(with<MapGridSettings>(o.call));
     settings.lame = o.lame;
-    const FrameFitter fitter = fitterOf(rest, o.fitting, o.call, 0, progress);
+    const FrameFitter fitter = fitterOf(rest, o.fitting, o.call, 0);
     const FrameEvaluator evaluator(fitter, names, settings);
-    FrameFits fits = frames.fits(fitter, progress);
+    FrameFits fits = frames.fits(fitter);
     for (const std::size_t index : frames.wanted()) {
       const std::int64_t number = frames.numbers()[index];
       table.add(number, [&] {
@@ -75,7 +75,6 @@ py::object sequence(const Arguments& a, SequenceOptions& o) {
         const MapGrids grids = evaluator.evaluate(*fit);
         VdbWriteSettings writing;
         writing.names = o.names;
-        writing.progress = progress;
         if (pattern)
           writeVdb(pattern->path(number), evaluator.grids({fit.get(), number}, grids), {}, writing);
         return measuresOf(*fit, grids);

@@ -74,8 +74,8 @@ py::object texture(const Arguments& a, TextureOptions& o) {
   if (o.texture.seams == TextureSeams::blend &&
       (image.empty() || o.texture.mode != TextureMode::coordinates))
     wrongValue("seams", "'blend' needs an image and mode 'uv'");
-  SolidTexture made = call(o.call, [&](Progress* progress) {
-    SolidTextureSettings settings = with(o.call, progress, o.texture);
+  SolidTexture made = call(o.call, [&]() {
+    SolidTextureSettings settings = with(o.call, o.texture);
     settings.resolution = o.grid.resolution.value_or(0);
     settings.voxelSize = o.grid.voxelSize.value_or(0);
     if (image.empty()) settings.mode = TextureMode::vertexColours;
@@ -89,7 +89,7 @@ py::object texture(const Arguments& a, TextureOptions& o) {
         settings.maxMemory, "use larger voxels or fewer sources");
     TextureLookup lookup;
     if (!image.empty())
-      lookup = [images = TextureImages(image, tiles, with(o.call, progress, o.images))](
+      lookup = [images = TextureImages(image, tiles, with(o.call, o.images))](
                    const Vec2& uv, const Vec2& u, const Vec2& v) { return images.at(uv, u, v); };
     return makeSolidTexture(plan, lookup);
   });

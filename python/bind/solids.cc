@@ -27,14 +27,14 @@ void defineContains(py::handle scope, const std::function<Solid(const py::object
         const Points points = pointsFrom(a[1], "X");
         py::array_t<bool> out(static_cast<py::ssize_t>(points.size()));
         bool* is = out.mutable_data();
-        runCall(o.call, [&](Progress* progress) {
+        runCall(o.call, [&]() {
           constexpr std::size_t kBlock = 256;
           parallelBlocks(
               points.size(), kBlock,
               [&](std::size_t begin, std::size_t end) {
                 for (std::size_t i = begin; i < end; ++i) is[i] = solid.inside(points[i]);
               },
-              progress, "looking at points");
+              "looking at points");
         });
         return std::move(out);
       });

@@ -26,10 +26,10 @@ py::object sphere(const Arguments& a, SphereOptions& o) {
   std::size_t at = 0;
   const Mesh mesh = takeMesh(a, at, "mesh");
   if (at < a.size()) throw py::type_error("sphere() takes one mesh");
-  MeshOnSphere made = call(o.call, [&](Progress* progress) {
+  MeshOnSphere made = call(o.call, [&]() {
     requireMemory("the layout", processMemory(layOutMemory(mesh.vertices.size())), o.call.maxMemory,
                   "use a coarser mesh");
-    return onSphere(layOutMesh(mesh, with(o.call, progress, o.settings)));
+    return onSphere(layOutMesh(mesh, with(o.call, o.settings)));
   });
   py::dict figures;
   figures["flips"] = made.quality.flips;

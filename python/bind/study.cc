@@ -95,11 +95,8 @@ py::object study(const Arguments& a, StudyOptions& o) {
   takeNumbers(o.distances, "distances", o.study.distances);
   takeNumbers(o.radiusRatios, "radius_ratios", o.study.radiusRatios);
   if (!o.folder.is_none()) o.study.folder = pathFrom(o.folder, "folder");
-  const Study made = call(o.call, [&](Progress* progress) {
-    BoundarySettings boundary;
-    boundary.progress = progress;
-    return runStudy(makeBoundaryPair(source, target, boundary), with(o.call, progress, o.study));
-  });
+  const Study made = call(
+      o.call, [&]() { return runStudy(makeBoundaryPair(source, target), with(o.call, o.study)); });
   return py::make_tuple(tableOf(made), findingsOf(made, o.study));
 }
 

@@ -65,9 +65,8 @@ py::object write(const Arguments& a, WriteOptions& o) {
   const openvdb::GridPtrVec grids = takeGrids(a[1], "grids", textsFrom(o.names, "names"), o.call);
   o.texture.axis = parseAxis("axis", o.axis);
   if (!o.tiles.is_none()) o.texture.tiles = tilesFrom(o.tiles);
-  const VolumeTextureResult made = call(o.call, [&](Progress* progress) {
-    return writeVolumeTexture(path, grids, with(o.call, progress, o.texture));
-  });
+  const VolumeTextureResult made =
+      call(o.call, [&]() { return writeVolumeTexture(path, grids, with(o.call, o.texture)); });
   py::dict out;
   out["files"] = made.files;
   out["channels"] = made.channels;
@@ -119,8 +118,8 @@ py::object read(const Arguments& a, ReadOptions& o) {
     if (corner.size() != 3) wrongValue("lower_corner", "expects three numbers");
     s.lowerCorner = {corner[0], corner[1], corner[2]};
   }
-  VolumeTextureContents contents = call(o.call, [&](Progress* progress) {
-    VolumeTextureReadSettings settings = with(o.call, progress, s);
+  VolumeTextureContents contents = call(o.call, [&]() {
+    VolumeTextureReadSettings settings = with(o.call, s);
     settings.maxMemory = memoryLeft(settings.maxMemory);  // the grids grow as they are read
     return readVolumeTexture(path, settings);
   });

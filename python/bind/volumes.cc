@@ -163,12 +163,11 @@ py::object voxelize(const Arguments& a, VoxelizeOptions& o) {
   std::size_t at = 0;
   const Mesh mesh = takeMesh(a, at, "mesh");
   openvdb::GridPtrVec made;
-  const LevelSetCheck check = call(o.call, [&](Progress* progress) {
-    LevelSetSettings settings = with(o.call, progress, o.levelSet);
+  const LevelSetCheck check = call(o.call, [&]() {
+    LevelSetSettings settings = with(o.call, o.levelSet);
     settings.resolution = o.grid.resolution.value_or(0);
     settings.voxelSize = o.grid.voxelSize.value_or(0);
     SolidSettings ofSolid;
-    ofSolid.progress = progress;
     const Solid solid(mesh, ofSolid);
     requireMemory("voxelizing",
                   processMemory(voxelizeMemory(solid, settings, mesh, o.fog, o.attributes)),
@@ -177,8 +176,7 @@ py::object voxelize(const Arguments& a, VoxelizeOptions& o) {
     made.push_back(surface);
     if (o.fog) made.push_back(makeFog(*surface));
     if (o.attributes)
-      for (const auto& grid : makeAttributeGrids(*surface, solid, mesh, {progress}))
-        made.push_back(grid);
+      for (const auto& grid : makeAttributeGrids(*surface, solid, mesh)) made.push_back(grid);
     return checkLevelSet(*surface, solid);
   });
   py::dict totals;
@@ -203,11 +201,11 @@ struct DistanceOptions {
 py::object distance(const Arguments& a, DistanceOptions& o) {
   if (!py::isinstance<PyMap>(a[0])) wrongType("map", "expects an innermap.Map");
   const MappedSolid& mapped = *py::cast<const PyMap&>(a[0]).mapped;
-  const DistanceTransfer made = call(o.call, [&](Progress* progress) {
-    auto settings = o.grid.with(with<DistanceTransferSettings>(o.call, progress));
+  const DistanceTransfer made = call(o.call, [&]() {
+    auto settings = o.grid.with(with<DistanceTransferSettings>(o.call));
     settings.resolution = o.grid.resolution.value_or(0);
     settings.accuracy = sumAccuracy(mapped);
-    const Solid target = makeTargetSolid(mapped.boundary, {progress});
+    const Solid target = makeTargetSolid(mapped.boundary);
     requireMemory("transferring the distance",
                   processMemory(distanceTransferMemory(mapped.solid(), target, settings)),
                   settings.maxMemory, "use a lower resolution");
@@ -246,8 +244,8 @@ py::object writeSlices(const Arguments& a, SliceOptions& o) {
   const std::string path = pathFrom(a[0], "path");
   const openvdb::GridPtrVec given = takeGrids(a[1], "grids", textsFrom(o.names, "names"), o.call);
   o.slices.axis = axisFrom(o.axis);
-  const ExrSliceResult made = call(o.call, [&](Progress* progress) {
-    const ExrSliceSettings settings = with(o.call, progress, o.slices);
+  const ExrSliceResult made = call(o.call, [&]() {
+    const ExrSliceSettings settings = with(o.call, o.slices);
     requireMemory("slices", processMemory(exrSliceMemory(given, settings)), settings.maxMemory,
                   "slice fewer grids");
     return writeExrSlices(path, given, settings);
@@ -289,9 +287,8 @@ py::object writeSection(const Arguments& a, SectionOptions& o) {
   const auto shown = textsFrom(o.grid, "grid");
   if (!shown.empty()) o.section.grid = shown.front();
   if (!o.range.is_none()) o.section.range = pairFrom(o.range, "range");
-  const SectionResult made = call(o.call, [&](Progress* progress) {
-    return writeSectionImage(path, given, with(o.call, progress, o.section));
-  });
+  const SectionResult made =
+      call(o.call, [&]() { return writeSectionImage(path, given, with(o.call, o.section)); });
   py::dict out;
   out["grid"] = made.grid;
   out["position"] = made.position;

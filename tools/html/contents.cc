@@ -44,10 +44,9 @@ std::vector<double> distances(const Points& a, const Points& b, double unit) {
   return out;
 }
 
-EvaluateFieldSettings forDrawing(double diagonal, const PageSettings& settings) {
+EvaluateFieldSettings forDrawing(double diagonal) {
   EvaluateFieldSettings out;
   out.accuracy = 1e-6 * diagonal;  // far below any error that is shown
-  out.progress = settings.progress;
   return out;
 }
 
@@ -70,14 +69,13 @@ void showPair(Page& page, const Mesh& before, const Points& after) {
   page.shapes.push_back(std::move(shape));
 }
 
-void showMap(Page& page, const MappedSolid& mapped, const PageSettings& settings) {
+void showMap(Page& page, const MappedSolid& mapped) {
   const BoundaryPair& pair = mapped.boundary;
   PageShape shape = shapeOf(pair.source.mesh, "source: " + fileName(pair.source.mesh.name));
   const std::vector<int> kept = simplify(shape, verticesForPlaces(3));
   const Points target = pick(pair.targetMesh.vertices, kept);
   const double unit = pair.target.diagonal;
-  const FieldSamples samples =
-      mapped.map.evaluate(shape.places.front().points, forDrawing(unit, settings));
+  const FieldSamples samples = mapped.map.evaluate(shape.places.front().points, forDrawing(unit));
   const Points image = pointsOf(samples.values);
   const std::vector<double> error = distances(image, target, unit);
   scalarOf(shape, "boundary_error").values = {error};
@@ -108,14 +106,12 @@ void PageFrames::add(std::int64_t number, const Points& positions) {
   if (wanted()) addPlace(number, pick(positions, kept_));
 }
 
-void PageFrames::add(std::int64_t number, const Points& positions, const FrameFit& fit,
-                     const PageSettings& settings) {
+void PageFrames::add(std::int64_t number, const Points& positions, const FrameFit& fit) {
   if (!wanted()) return;
   PageShape& shape = page_.shapes.front();
   const Points given = pick(positions, kept_);
   const double unit = fit.boundary.diagonal;
-  Points image =
-      pointsOf(fit.field.evaluate(shape.places.front().points, forDrawing(unit, settings)).values);
+  Points image = pointsOf(fit.field.evaluate(shape.places.front().points, forDrawing(unit)).values);
   scalarOf(shape, "boundary_error").values.push_back(distances(image, given, unit));
   addPlace(number, std::move(image));
 }

@@ -11,10 +11,6 @@
 
 namespace innermap::tool {
 
-struct PageSettings {
-  Progress* progress = nullptr;
-};
-
 // A surface by itself. Not when a map is shown already.
 void addMesh(Page& page, const Mesh& mesh);
 
@@ -23,7 +19,7 @@ void showPair(Page& page, const Mesh& before, const Points& after);
 
 // The source, where the map takes it and the target as given, coloured by boundary error and
 // stretch; in place of others.
-void showMap(Page& page, const MappedSolid& mapped, const PageSettings& settings = {});
+void showMap(Page& page, const MappedSolid& mapped);
 
 // The rest pose and its frames, of which so many are expected; in place of others. Frames beyond
 // what a page can hold are left out evenly.
@@ -34,8 +30,7 @@ class PageFrames {
   // Once a frame. positions: of all the rest pose's vertices. Coloured by stretch.
   void add(std::int64_t number, const Points& positions);
   // The same where its fit takes them, coloured by boundary error too.
-  void add(std::int64_t number, const Points& positions, const FrameFit& fit,
-           const PageSettings& settings = {});
+  void add(std::int64_t number, const Points& positions, const FrameFit& fit);
 
  private:
   bool wanted();

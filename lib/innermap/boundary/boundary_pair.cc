@@ -14,10 +14,9 @@ constexpr double kNoVolume = 1e-9;     // of the diagonal cubed
 constexpr double kFlat = 1e-9;         // of the diagonal
 constexpr std::size_t kListed = 4096;  // crossings that are placed
 
-MeshReport check(const Mesh& mesh, Progress* progress) {
+MeshReport check(const Mesh& mesh) {
   CheckSettings settings;
   settings.listed = kListed;
-  settings.progress = progress;
   return checkMesh(mesh, settings);
 }
 
@@ -62,13 +61,11 @@ void warnOfCrossings(const std::string& what, const MeshReport& report, const st
 
 }  // namespace
 
-SourceBoundary makeSourceBoundary(Mesh mesh, const BoundarySettings& settings) {
+SourceBoundary makeSourceBoundary(Mesh mesh) {
   StageSeconds seconds;
-  const MeshReport checked =
-      timed(seconds, "check", [&] { return check(mesh, settings.progress); });
+  const MeshReport checked = timed(seconds, "check", [&] { return check(mesh); });
   refuseTangle(mesh, checked.selfIntersections);
   SolidSettings solidSettings;
-  solidSettings.progress = settings.progress;
   const Solid solid = timed(seconds, "solid", [&] { return Solid(mesh, solidSettings); });
   SourceBoundary out{std::move(mesh), checked, solid, {}, {}, std::move(seconds)};
   for (const std::string& note : solid.repaired().notes)
@@ -98,8 +95,7 @@ Mesh TargetBoundary::mesh(const Solid& source, const std::string& name) const {
   return out;
 }
 
-TargetBoundary makeTargetBoundary(const Solid& source, const Mesh& target,
-                                  const BoundarySettings& settings) {
+TargetBoundary makeTargetBoundary(const Solid& source, const Mesh& target) {
   TargetBoundary out;
   out.moved = repairedPositions(source.repaired(), target.vertices);
   const Mesh moved = out.mesh(source, target.name);
@@ -110,7 +106,6 @@ TargetBoundary makeTargetBoundary(const Solid& source, const Mesh& target,
   if (isFlat(moved))
     throw DataError(target.name + ": lies in a plane, so it has no inside; give another target");
   SolidSettings solidSettings;
-  solidSettings.progress = settings.progress;
   out.volume = timed(out.seconds, "solid",
                      [&] { return volumeOf(moved, source.overlaps(), solidSettings); });
   if (!(out.volume > kNoVolume * std::pow(out.diagonal, 3))) {
@@ -123,16 +118,15 @@ TargetBoundary makeTargetBoundary(const Solid& source, const Mesh& target,
   return out;
 }
 
-BoundaryPair makeBoundaryPair(Mesh source, Mesh target, const BoundarySettings& settings) {
+BoundaryPair makeBoundaryPair(Mesh source, Mesh target) {
   if (source.triangles != target.triangles)
     throw DataError(target.name + ": has other triangles than " + source.name +
                     "; lay the one onto the other first (mesh_correspondence.h)");
-  SourceBoundary from = makeSourceBoundary(std::move(source), settings);
+  SourceBoundary from = makeSourceBoundary(std::move(source));
   StageSeconds seconds = from.seconds;
-  const MeshReport checked =
-      timed(seconds, "check", [&] { return check(target, settings.progress); });
+  const MeshReport checked = timed(seconds, "check", [&] { return check(target); });
   refuseTangle(target, checked.selfIntersections);
-  TargetBoundary to = makeTargetBoundary(from.solid, target, settings);
+  TargetBoundary to = makeTargetBoundary(from.solid, target);
   addSeconds(seconds, to.seconds);
   std::vector<std::string> notes = from.notes, warnings = from.warnings;
   warnings.insert(warnings.end(), to.warnings.begin(), to.warnings.end());
@@ -142,9 +136,8 @@ BoundaryPair makeBoundaryPair(Mesh source, Mesh target, const BoundarySettings& 
           std::move(notes), std::move(warnings), std::move(seconds)};
 }
 
-Solid makeTargetSolid(const BoundaryPair& pair, const BoundarySettings& settings) {
+Solid makeTargetSolid(const BoundaryPair& pair) {
   SolidSettings solidSettings;
-  solidSettings.progress = settings.progress;
   return Solid(pair.target.mesh(pair.solid(), pair.targetMesh.name), solidSettings);
 }
 

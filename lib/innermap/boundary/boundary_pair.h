@@ -15,10 +15,6 @@
 
 namespace innermap {
 
-struct BoundarySettings {
-  Progress* progress = nullptr;
-};
-
 // A mesh and the solid that it bounds; serves any number of targets.
 struct SourceBoundary {
   Mesh mesh;         // as it was given
@@ -31,7 +27,7 @@ struct SourceBoundary {
 
 // Throws DataError when the mesh has no inside, as Solid does, or crosses itself nearly everywhere;
 // Cancelled.
-SourceBoundary makeSourceBoundary(Mesh mesh, const BoundarySettings& settings = {});
+SourceBoundary makeSourceBoundary(Mesh mesh);
 
 // Where one target, a pose or a frame, takes the boundary of a source.
 struct TargetBoundary {
@@ -49,8 +45,7 @@ struct TargetBoundary {
 
 // target: of the source's connectivity (#vertices alike, as readMeshLike sees to). Throws DataError
 // when that is not so, when the target has no extent, or is flat; Cancelled.
-TargetBoundary makeTargetBoundary(const Solid& source, const Mesh& target,
-                                  const BoundarySettings& settings = {});
+TargetBoundary makeTargetBoundary(const Solid& source, const Mesh& target);
 
 struct BoundaryPair {
   SourceBoundary source;
@@ -68,9 +63,9 @@ struct BoundaryPair {
 
 // Throws as the two above; DataError when the connectivity differs, or the target crosses itself
 // nearly everywhere.
-BoundaryPair makeBoundaryPair(Mesh source, Mesh target, const BoundarySettings& settings = {});
+BoundaryPair makeBoundaryPair(Mesh source, Mesh target);
 
 // The solid that the target bounds. Throws DataError when it has no inside; Cancelled.
-Solid makeTargetSolid(const BoundaryPair& pair, const BoundarySettings& settings = {});
+Solid makeTargetSolid(const BoundaryPair& pair);
 
 }  // namespace innermap

@@ -75,16 +75,12 @@ class Search {
     for (std::size_t i = 0; i < from.size() * about; ++i)
       wanted.push_back(from[i / about].position + radius * inBall(random, 3 * i));
     std::vector<SurfacePoint> places(wanted.size());
-    parallelBlocks(
-        wanted.size(), 8,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) {
-            const Solid::Closest closest = solid_.closest(wanted[i], 2 * radius);
-            places[i] =
-                closest.onSurface.triangle >= 0 ? closest.onSurface : from[i / about].onSurface;
-          }
-        },
-        settings_.progress);
+    parallelBlocks(wanted.size(), 8, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Solid::Closest closest = solid_.closest(wanted[i], 2 * radius);
+        places[i] = closest.onSurface.triangle >= 0 ? closest.onSurface : from[i / about].onSurface;
+      }
+    });
     measure(places);
     // What is not among the largest is of no more use.
     keepLargest(4 * kPeaks * kAbout);
@@ -142,7 +138,6 @@ BoundaryError certify(const Solid& solid, const SurfaceErrors& errors,
     throw SettingError("samples", "must lie in [1, 1e7]");
   SampleSettings sample;
   sample.seed = seedOf(settings.seed, Stream::fresh);
-  sample.progress = settings.progress;
   Search search(solid, errors, settings);
   const std::vector<double> random =
       search.measure(randomSamples(solid.surface(), settings.samples, sample));

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "innermap/boundary/surface_problem.h"
-#include "innermap/core/progress.h"
 #include "innermap/field/boundary_error.h"
 #include "innermap/levelset/solid.h"
 
@@ -28,7 +27,6 @@ struct CertificateSettings {
   std::size_t samples = kFreshSamples;  // uniform by area: those of freshSamples; in [1, 1e7]
   std::uint64_t seed = 1;               // that of the fit, in [0, 1e15]
   double tolerance = 0;                 // for BoundaryError::missed, in the units of `errors`
-  Progress* progress = nullptr;
 };
 
 // rms, p99, sumOfSquares and samples of the random points alone; p99Bound and bound hold with

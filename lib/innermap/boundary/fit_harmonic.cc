@@ -26,7 +26,6 @@ AdaptiveProblemSettings problemSettings(const SurfaceConditions& conditions,
                                         const HarmonicFitSettings& settings) {
   AdaptiveProblemSettings s;
   s.seed = settings.seed;
-  s.progress = settings.progress;
   if (conditions.anyFree())
     s.directions = [&conditions](const auto& at) { return conditions.directions(at); };
   return s;
@@ -75,7 +74,6 @@ Fitted fittedWhereNeeded(const SourceBoundary& boundary, const SurfaceConditions
   s.tolerance = settings.tolerance;
   s.maxSources = settings.maxSources;
   s.maxMemory = memoryLeft(settings.maxMemory);
-  s.progress = settings.progress;
   const AdaptiveResult fit = fitToTolerance(problemOf(boundary, conditions, span, settings), s);
   return {fit.field, fit.end, fit.collocation};
 }
@@ -90,20 +88,17 @@ std::optional<Fitted> fittedByFew(const SourceBoundary& boundary,
   points.heldOut = kFewSources;
   points.directions = problemSettings(conditions, settings).directions;
   points.seed = settings.seed;
-  points.progress = settings.progress;
   const FitProblem problem = surfaceProblem(
       boundary.solid, [&conditions](const auto& at) { return conditions.rows(at); }, points);
   FitSettings s;
   s.sources = kFewSources;
   s.interpolation = Interpolation::linear;
   s.maxMemory = memoryLeft(settings.maxMemory);
-  s.progress = settings.progress;
   const FitResult fit = fitField(problem, s);
   const BoundarySamples fresh =
       problemOf(boundary, conditions, span, settings).draw(kFreshSamples, 0);
-  const BoundaryError error =
-      measureBoundaryError(fit.field, fresh.collocation(), fresh.values, span,
-                           {accuracyOf(settings, span), settings.progress});
+  const BoundaryError error = measureBoundaryError(fit.field, fresh.collocation(), fresh.values,
+                                                   span, {accuracyOf(settings, span)});
   if (error.p99 > settings.tolerance) return std::nullopt;
   return Fitted{fit.field, AdaptiveEnd::met, problem.surface.points.size()};
 }
@@ -119,11 +114,10 @@ Certified certifyField(const SourceBoundary& boundary, const SurfaceConditions& 
   Certified out;
   CertificateSettings s;
   s.seed = settings.seed;
-  s.progress = settings.progress;
   const auto errors = [&](const std::vector<SurfacePoint>& places) {
     const Collocation at(positionsOf(boundary.solid, places), conditions.directions(places));
-    const std::vector<double> found = boundaryErrors(
-        field, at, conditions.rows(places), span, {accuracyOf(settings, span), settings.progress});
+    const std::vector<double> found =
+        boundaryErrors(field, at, conditions.rows(places), span, {accuracyOf(settings, span)});
     for (std::size_t i = 0; i < found.size(); ++i)
       if (!at.derivative(i)) out.values = std::max(out.values, found[i]);
     return found;
@@ -164,8 +158,8 @@ double comparisonBound(const SourceBoundary& boundary, const SurfaceConditions& 
   const BoundarySamples samples =
       problemOf(boundary, conditions, span, settings).draw(kFreshSamples, 0);
   const Collocation at = samples.collocation();
-  const std::vector<double> errors = boundaryErrors(
-      field, at, samples.values, span, {accuracyOf(settings, span), settings.progress});
+  const std::vector<double> errors =
+      boundaryErrors(field, at, samples.values, span, {accuracyOf(settings, span)});
   Points places;
   std::vector<double> known;
   double largest = certified.values;
@@ -189,11 +183,10 @@ double comparisonBound(const SourceBoundary& boundary, const SurfaceConditions& 
   coarse.maxSources = kMostOfComparison;
   coarse.outlierRounds = 0;
   coarse.maxMemory = memoryLeft(settings.maxMemory);
-  coarse.progress = settings.progress;
   const AdaptiveProblem problem =
       adaptiveProblem(boundary.solid, rows, largest, problemSettings(conditions, settings));
   const AdaptiveResult fit = fitToTolerance(problem, coarse);
-  const Matrix found = fit.field.evaluate(at.points, {0, false, settings.progress}).values;
+  const Matrix found = fit.field.evaluate(at.points, {0, false}).values;
   const double most = *std::max_element(found.data(), found.data() + found.rows());
   return std::max(certified.values, most + fit.error.p99 * largest);
 }

@@ -164,9 +164,7 @@ MapFit fitMap(BoundaryPair boundary, const FitMapSettings& settings) {
 }
 
 MapFit fitMap(const Mesh& source, const Mesh& target, const FitMapSettings& settings) {
-  BoundarySettings boundary;
-  boundary.progress = settings.progress;
-  MapFit fit = fitMap(makeBoundaryPair(source, target, boundary), settings);
+  MapFit fit = fitMap(makeBoundaryPair(source, target), settings);
   fit.notes.insert(fit.notes.begin(), fit.boundary.notes.begin(), fit.boundary.notes.end());
   fit.warnings.insert(fit.warnings.begin(), fit.boundary.warnings.begin(),
                       fit.boundary.warnings.end());

@@ -53,7 +53,6 @@ std::vector<SourceLevel> levelsOf(const Solid& solid, const FrameFitterSettings&
                     kMostDenseSources));
   SourceSettings source;
   source.seed = seedOf(settings.seed, Stream::sources);
-  source.progress = settings.progress;
   std::vector<SourceLevel> levels;
   if (many) {
     const std::size_t coarse = std::clamp<std::size_t>(settings.sources / 8, 300, 2500);
@@ -101,12 +100,11 @@ FrameFitter::FrameFitter(SourceBoundary rest, const FrameFitterSettings& setting
     : rest_(std::move(rest)) {
   std::vector<SourceLevel> levels = timed(seconds_, "sample", [&] {
     SampleSettings sample;
-    sample.progress = settings.progress;
     sample.seed = seedOf(settings.seed, Stream::collocation);
     collocation_ =
         samplesAt(blueNoiseSamples(solid().surface(), frameCollocation(settings), sample));
     seed_ = settings.seed;
-    inside_ = pointsInside(solid(), kInside, settings.progress);
+    inside_ = pointsInside(solid(), kInside);
     return levelsOf(solid(), settings);
   });
   levels_ = levels.size();
@@ -115,7 +113,6 @@ FrameFitter::FrameFitter(SourceBoundary rest, const FrameFitterSettings& setting
     IterativeSettings solving;
     solving.accuracy = kProducts;
     solving.maxMemory = settings.maxMemory;
-    solving.progress = settings.progress;
     solver_.emplace(collocation_.points, levels, solving);
   });
 }
@@ -127,8 +124,8 @@ FrameFitter::Samples FrameFitter::samplesAt(std::vector<SurfacePoint> onSurface)
   return out;
 }
 
-FrameFit FrameFitter::fit(const Mesh& frame, const BoundarySettings& settings) const {
-  TargetBoundary boundary = makeTargetBoundary(solid(), frame, settings);
+FrameFit FrameFitter::fit(const Mesh& frame) const {
+  TargetBoundary boundary = makeTargetBoundary(solid(), frame);
   StageSeconds seconds = boundary.seconds;
   IterativeSolution solution = timed(seconds, "solve", [&] {
     return solver_->solve(boundary.targetsOf(solid(), collocation_.onSurface));
@@ -138,10 +135,8 @@ FrameFit FrameFitter::fit(const Mesh& frame, const BoundarySettings& settings) c
     BoundaryErrorSettings e;
     // By fast sums, to a hundredth of what is measured.
     e.accuracy = std::max(1e-2 * solution.residuals.back(), 1e-12 * boundary.diagonal);
-    e.progress = settings.progress;
     CertificateSettings certificate;
     certificate.seed = seed_;
-    certificate.progress = settings.progress;
     return certify(
         solid(),
         [&](const std::vector<SurfacePoint>& places) {
@@ -153,10 +148,10 @@ FrameFit FrameFitter::fit(const Mesh& frame, const BoundarySettings& settings) c
   double folded = 0, outside = 0;
   timed(seconds, "inside", [&] {
     const MappedPoints mapped =
-        mapPoints(HarmonicMap(field), inside_, kSumAccuracy * boundary.diagonal, settings.progress);
+        mapPoints(HarmonicMap(field), inside_, kSumAccuracy * boundary.diagonal);
     folded = foldedShare(mapped.determinants);
-    outside = outsideShare(mapped.points, TargetShape(solid(), boundary),
-                           error.p99 * boundary.diagonal, settings.progress);
+    outside =
+        outsideShare(mapped.points, TargetShape(solid(), boundary), error.p99 * boundary.diagonal);
   });
   std::vector<std::string> warnings = boundary.warnings;
   if (error.max > kDoubtfulError)

@@ -29,7 +29,6 @@ struct FrameFitterSettings {
                                    // 4 spacings for over kMostDenseSources charges
   std::uint64_t seed = 1;          // of all random points, in [0, 1e15]
   std::uint64_t maxMemory = 0;     // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 // Boundary points of these settings: `collocation`, or its default.
@@ -69,7 +68,7 @@ class FrameFitter {
   // What a frame gives depends on the rest pose, the settings and the frame alone, not on which
   // frames came before. frame: of the rest pose's connectivity. Throws DataError for a frame that
   // cannot be used, as makeTargetBoundary does; Cancelled.
-  FrameFit fit(const Mesh& frame, const BoundarySettings& settings = {}) const;
+  FrameFit fit(const Mesh& frame) const;
 
  private:
   // Points of the boundary that move with it.

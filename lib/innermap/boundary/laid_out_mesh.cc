@@ -18,18 +18,14 @@ namespace {
 // Measured, bytes: what coarsened surfaces take, and a vertex of meshes of up to 160,000.
 constexpr std::uint64_t kCoarse = 24'000'000, kBytesPerVertex = 2200;
 
-std::size_t crossings(const Points& vertices, const std::vector<Triangle>& triangles,
-                      Progress* progress) {
+std::size_t crossings(const Points& vertices, const std::vector<Triangle>& triangles) {
   std::size_t count = 0;
-  SelfIntersectionSettings settings;
-  settings.progress = progress;
-  forEachSelfIntersection(
-      vertices, triangles, [&](const Crossing&) { ++count; }, settings);
+  forEachSelfIntersection(vertices, triangles, [&](const Crossing&) { ++count; });
   return count;
 }
 
 // How many pairs of triangles pass through each other.
-std::size_t crossings(const SurfaceShells& shells, Progress* progress) {
+std::size_t crossings(const SurfaceShells& shells) {
   Points vertices;
   std::vector<Triangle> triangles;
   for (const ClosedSurface& surface : shells.shells) {
@@ -38,7 +34,7 @@ std::size_t crossings(const SurfaceShells& shells, Progress* progress) {
     for (const auto& [a, b, c] : surface.triangles)
       triangles.push_back({a + first, b + first, c + first});
   }
-  return crossings(vertices, triangles, progress);
+  return crossings(vertices, triangles);
 }
 
 // Why the mesh itself cannot be mapped, if so, and the handles of a mesh that is of one piece.
@@ -49,17 +45,14 @@ struct Obstacle {
 };
 
 // Throws DataError when there is no solid.
-Obstacle obstacleOf(const Mesh& mesh, Progress* progress) {
-  RepairSettings repairSettings;
-  repairSettings.progress = progress;
-  repair(mesh, repairSettings);
+Obstacle obstacleOf(const Mesh& mesh) {
+  repair(mesh);
   ClosedSurfaceSettings settings;
   settings.closeHoles = true;
-  settings.progress = progress;
   try {
     const SurfaceShells shells = closedSurfaces(mesh, settings);
     Obstacle out;
-    out.crossings = crossings(shells, progress);
+    out.crossings = crossings(shells);
     if (out.crossings > 0)
       out.why = fmt::format("{}: runs through itself, {} pair{} of triangles cross", mesh.name,
                             out.crossings, out.crossings == 1 ? "" : "s");
@@ -67,7 +60,7 @@ Obstacle obstacleOf(const Mesh& mesh, Progress* progress) {
     return out;
   } catch (const DataError& error) {
     const std::string why = error.what();
-    return {why.substr(0, why.rfind("; ")), crossings(mesh.vertices, mesh.triangles, progress), {}};
+    return {why.substr(0, why.rfind("; ")), crossings(mesh.vertices, mesh.triangles), {}};
   }
 }
 
@@ -75,13 +68,11 @@ OuterSurface outerSurfaceOf(const Mesh& mesh, const Obstacle& obstacle,
                             const LayOutSettings& settings) {
   refuseTangle(mesh, obstacle.crossings);
   SolidSettings solidSettings;
-  solidSettings.progress = settings.progress;
   OuterSurfaceSettings how;
   how.resolution = settings.outerResolution;
   how.handles = settings.handles ? settings.handles : obstacle.handles;
   how.onePiece = obstacle.handles.has_value();
   how.maxMemory = settings.maxMemory;
-  how.progress = settings.progress;
   return outerSurface(Solid(mesh, solidSettings), how);
 }
 
@@ -136,10 +127,9 @@ void makeAlike(const Mesh& mesh, const Mesh& other, LayOutSettings settings, Cle
   clean = std::move(cut);
 }
 
-LaidOutMesh laidOut(Mesh mesh, CleanSurface clean, StageSeconds seconds, Progress* progress) {
+LaidOutMesh laidOut(Mesh mesh, CleanSurface clean, StageSeconds seconds) {
   EmbeddingSettings how;
   how.closeHoles = true;
-  how.progress = progress;
   const EmbeddedSurface embedded = timed(seconds, "lay out", [&] {
     return EmbeddedSurface(clean.outer ? clean.outer->mesh : mesh, how);
   });
@@ -201,7 +191,7 @@ double LaidOutMesh::volume() const {
 }
 
 CleanSurface cleanSurface(const Mesh& mesh, const LayOutSettings& settings) {
-  const Obstacle obstacle = obstacleOf(mesh, settings.progress);
+  const Obstacle obstacle = obstacleOf(mesh);
   CleanSurface out;
   out.handles = obstacle.handles;
   if (obstacle.why.empty()) return out;
@@ -218,7 +208,7 @@ CleanSurface cleanSurface(const Mesh& mesh, const LayOutSettings& settings) {
 LaidOutMesh layOutMesh(Mesh mesh, const LayOutSettings& settings) {
   StageSeconds seconds;
   CleanSurface clean = checked(mesh, settings, seconds);
-  return laidOut(std::move(mesh), std::move(clean), std::move(seconds), settings.progress);
+  return laidOut(std::move(mesh), std::move(clean), std::move(seconds));
 }
 
 std::pair<LaidOutMesh, LaidOutMesh> layOutMeshes(Mesh a, Mesh b, const LayOutSettings& settings) {
@@ -226,8 +216,8 @@ std::pair<LaidOutMesh, LaidOutMesh> layOutMeshes(Mesh a, Mesh b, const LayOutSet
   CleanSurface cleanA = checked(a, settings, secondsA), cleanB = checked(b, settings, secondsB);
   makeAlike(a, b, settings, cleanA, cleanB, secondsA);
   makeAlike(b, a, settings, cleanB, cleanA, secondsB);
-  return {laidOut(std::move(a), std::move(cleanA), std::move(secondsA), settings.progress),
-          laidOut(std::move(b), std::move(cleanB), std::move(secondsB), settings.progress)};
+  return {laidOut(std::move(a), std::move(cleanA), std::move(secondsA)),
+          laidOut(std::move(b), std::move(cleanB), std::move(secondsB))};
 }
 
 std::uint64_t layOutMemory(std::size_t vertices) {

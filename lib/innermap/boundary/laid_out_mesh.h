@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/lattice/outer_surface.h"
 #include "innermap/mesh/mesh.h"
 #include "innermap/surface/correspond.h"
@@ -21,7 +20,6 @@ struct LayOutSettings {
   int outerResolution = 0;
   std::optional<int> handles;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 struct LaidOutMesh {

@@ -106,7 +106,7 @@ const char kLandmarkFormat[] =
     "nearest vertex.";
 
 LandmarkList readLandmarks(const std::string& path) {
-  const FileBytes file = readFileBytes(path, "a text file of landmarks", nullptr);
+  const FileBytes file = readFileBytes(path, "a text file of landmarks");
   LandmarkList list;
   list.name = path;
   std::string_view rest = file.bytes;

@@ -54,7 +54,6 @@ struct FitMapSettings {
   int maxSteps = 16;                        // in [1, 256]
   std::uint64_t seed = 1;                   // of all random points, in [0, 1e15]
   std::uint64_t maxMemory = 0;              // bytes, of the process; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 // How the charges were placed and their weights found. Lengths are fractions of the source's

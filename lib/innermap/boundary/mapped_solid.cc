@@ -25,7 +25,7 @@ void writeMap(const std::string& path, const MappedSolid& mapped) {
   writeField(path, file);
 }
 
-MappedSolid readMap(const std::string& path, const BoundarySettings& settings) {
+MappedSolid readMap(const std::string& path) {
   StageSeconds seconds;
   FieldFile file = timed(seconds, "read", [&] { return readField(path); });
   if (file.steps.front().channels() != 3)
@@ -45,7 +45,7 @@ MappedSolid readMap(const std::string& path, const BoundarySettings& settings) {
   }
   validate(source);
   validate(target);
-  BoundaryPair pair = makeBoundaryPair(std::move(source), std::move(target), settings);
+  BoundaryPair pair = makeBoundaryPair(std::move(source), std::move(target));
   addSeconds(seconds, pair.seconds);
   pair.seconds = std::move(seconds);
   std::vector<HarmonicMap> steps;

@@ -41,7 +41,7 @@ void writeMap(const std::string& path, const MappedSolid& mapped);
 
 // Reads it and makes the solid again. Throws FileError for what is not the file of a map with its
 // boundary, DataError as makeBoundaryPair does, Cancelled.
-MappedSolid readMap(const std::string& path, const BoundarySettings& settings = {});
+MappedSolid readMap(const std::string& path);
 
 // How accurate sums of charges have to be, a fraction of the target's diagonal, in [1e-9, 1e-5]:
 // well below the map's own error as its facts state that.

@@ -42,13 +42,11 @@ std::vector<SurfacePoint> onGiven(const LaidOutMesh& b, const std::vector<Surfac
 }
 
 // Fills source, changed, positions, onTarget, farthestFromOuter.
-void carryBack(MeshCorrespondence& out, bool toOwnVertices, Progress* progress) {
+void carryBack(MeshCorrespondence& out, bool toOwnVertices) {
   const LaidOutMesh &a = out.a, &b = out.b;
   std::vector<SurfacePoint> onTarget;
   if (a.outer && toOwnVertices) {
-    SurfaceImageSettings settings;
-    settings.progress = progress;
-    const SurfaceImages images = imagesOf(a.mesh.vertices, out.map, b.shells(), settings);
+    const SurfaceImages images = imagesOf(a.mesh.vertices, out.map, b.shells());
     out.source = a.mesh;
     out.positions = images.positions;
     onTarget = images.onTarget;
@@ -66,8 +64,7 @@ void carryBack(MeshCorrespondence& out, bool toOwnVertices, Progress* progress) 
 }
 
 // By the inside, where the shells have one.
-std::shared_ptr<const MapJudge> judgeOf(const ClosedSurface& a, const ClosedSurface& b,
-                                        Progress* progress) {
+std::shared_ptr<const MapJudge> judgeOf(const ClosedSurface& a, const ClosedSurface& b) {
   const auto volume = [](const ClosedSurface& s) {
     Mesh mesh;
     mesh.vertices = s.vertices;
@@ -76,7 +73,7 @@ std::shared_ptr<const MapJudge> judgeOf(const ClosedSurface& a, const ClosedSurf
   };
   if (!(volume(a) > 0 && volume(b) > 0)) return nullptr;
   try {
-    const auto judge = std::make_shared<const VolumeJudge>(a, volume(b), progress);
+    const auto judge = std::make_shared<const VolumeJudge>(a, volume(b));
     return std::make_shared<const MapJudge>(
         MapJudge{judge->at(), [judge](const Points& images) { return judge->score(images); }});
   } catch (const DataError&) {  // too thin for charges: the surfaces' energy must do
@@ -91,13 +88,10 @@ CorrespondSettings settingsOf(const MeshCorrespondenceSettings& settings) {
   out.way = settings.way;
   out.refine = settings.refine;
   if (settings.byInside)
-    out.judge = [progress = settings.progress](const ClosedSurface& a, const ClosedSurface& b) {
-      return judgeOf(a, b, progress);
-    };
+    out.judge = [](const ClosedSurface& a, const ClosedSurface& b) { return judgeOf(a, b); };
   out.seed = settings.seed;
   out.subdivide = settings.subdivide;
   out.maxMemory = settings.maxMemory;
-  out.progress = settings.progress;
   return out;
 }
 
@@ -148,7 +142,6 @@ MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const MeshCorrespondenceSett
   surfaces.outerResolution = settings.outerResolution;
   surfaces.handles = settings.handles;
   surfaces.maxMemory = settings.maxMemory;
-  surfaces.progress = settings.progress;
   auto [laidA, laidB] = layOutMeshes(std::move(a), std::move(b), surfaces);
   return correspondMeshes(std::move(laidA), std::move(laidB), settings);
 }
@@ -166,9 +159,8 @@ MeshCorrespondence correspondMeshes(LaidOutMesh a, LaidOutMesh b,
   out.map = correspond(out.a.embedded, out.b.embedded, how);
   for (const auto& [stage, seconds] : out.map.seconds) addSeconds(out.seconds, stage, seconds);
   out.notes.insert(out.notes.end(), out.map.notes.begin(), out.map.notes.end());
-  timed(out.seconds, "carry back", [&] { carryBack(out, settings.carryBack, settings.progress); });
+  timed(out.seconds, "carry back", [&] { carryBack(out, settings.carryBack); });
   MapQualitySettings measure;
-  measure.progress = settings.progress;
   out.quality = timed(out.seconds, "measure", [&] { return mapQuality(out.map, measure); });
   out.landmarks = how.landmarks.size();
   out.landmarkError = landmarkErrorOf(out, how.landmarks);
@@ -212,9 +204,9 @@ void writeCorrespondence(const std::string& path, const Mesh& source, const Poin
   writePly(path, moved, extras);
 }
 
-Mesh readCorrespondence(const std::string& path, const Mesh& source, const ReadSettings& settings) {
+Mesh readCorrespondence(const std::string& path, const Mesh& source) {
   try {
-    return readMeshLike(path, source, settings);
+    return readMeshLike(path, source);
   } catch (const DataError& error) {
     throw DataError(std::string(error.what()) +
                     "; where triangles were split for it, the source is the .source.ply beside it");

@@ -10,7 +10,6 @@
 
 #include "innermap/boundary/laid_out_mesh.h"
 #include "innermap/boundary/landmarks.h"
-#include "innermap/core/progress.h"
 #include "innermap/mesh/mesh.h"
 #include "innermap/mesh/read.h"
 #include "innermap/surface/correspond.h"
@@ -35,7 +34,6 @@ struct MeshCorrespondenceSettings {
                            // [0, 1); 0: never
   std::uint64_t seed = 1;  // of all random choices
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 struct MeshCorrespondence {
@@ -109,8 +107,7 @@ void writeCorrespondence(const std::string& path, const Mesh& source, const Poin
 
 // Where that file, or any mesh of its connectivity, puts the vertices of `source`. Throws as
 // readMeshLike does.
-Mesh readCorrespondence(const std::string& path, const Mesh& source,
-                        const ReadSettings& settings = {});
+Mesh readCorrespondence(const std::string& path, const Mesh& source);
 
 // Throws DataError when half of the vertices of `moved` are farther from `target` than a hundredth
 // of its diagonal: the two do not belong together.

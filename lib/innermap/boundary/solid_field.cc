@@ -58,7 +58,7 @@ void writeSolidField(const std::string& path, const SolidField& field) {
   writeField(path, file);
 }
 
-SolidField readSolidField(const std::string& path, const BoundarySettings& settings) {
+SolidField readSolidField(const std::string& path) {
   FieldFile file = readField(path);
   if (!tellOfField(file.facts) || file.steps.size() != 1)
     throw FileError(path, "is the file of a map, not of a field");
@@ -77,7 +77,7 @@ SolidField readSolidField(const std::string& path, const BoundarySettings& setti
     throw FileError(path,
                     fmt::format("names {} channels and has {}", names.size(), field.channels()));
   validate(mesh);
-  return {std::move(field), makeSourceBoundary(std::move(mesh), settings), std::move(names),
+  return {std::move(field), makeSourceBoundary(std::move(mesh)), std::move(names),
           std::move(file.facts)};
 }
 

@@ -32,7 +32,7 @@ void writeSolidField(const std::string& path, const SolidField& field);
 
 // Reads it and makes the solid again. Throws FileError for what is not the file of a field with its
 // boundary, DataError as makeSourceBoundary does, Cancelled.
-SolidField readSolidField(const std::string& path, const BoundarySettings& settings = {});
+SolidField readSolidField(const std::string& path);
 
 // Whether facts are those of a field, and not of a map.
 bool tellOfField(const Facts& facts);

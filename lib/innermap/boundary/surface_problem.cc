@@ -17,14 +17,12 @@ BoundarySamples withValues(const Solid& solid, const SurfaceValues& values,
   return out;
 }
 
-PatchSettings patchSettings(const PlacementRequest& request, std::uint64_t seed,
-                            Progress* progress) {
+PatchSettings patchSettings(const PlacementRequest& request, std::uint64_t seed) {
   PatchSettings s;
   s.spacing = request.spacing;
   s.reach = request.reach;
   s.most = request.most;
   s.seed = seed;
-  s.progress = progress;
   return s;
 }
 
@@ -35,8 +33,8 @@ FitProblem surfaceProblem(const Solid& solid, const SurfaceValues& values,
   PointCounts counts;
   counts.collocation = settings.collocation;
   counts.heldOut = settings.heldOut;
-  const ProblemSamples samples = drawSamples(solid, counts, settings.seed, settings.progress);
-  FitProblem problem = problemOf(solid, values, samples, settings.seed, settings.progress);
+  const ProblemSamples samples = drawSamples(solid, counts, settings.seed);
+  FitProblem problem = problemOf(solid, values, samples, settings.seed);
   if (settings.directions) {
     problem.surface.directions = settings.directions(samples.collocation);
     problem.surface.heldOutDirections = settings.directions(samples.heldOut);
@@ -46,7 +44,6 @@ FitProblem surfaceProblem(const Solid& solid, const SurfaceValues& values,
 
 AdaptiveProblem adaptiveProblem(const Solid& solid, const SurfaceValues& values, double unit,
                                 const AdaptiveProblemSettings& settings) {
-  Progress* const progress = settings.progress;
   const auto seed = [first = settings.seed](Stream stream, std::uint64_t index) {
     return seedOf(first, stream, index);
   };
@@ -58,18 +55,17 @@ AdaptiveProblem adaptiveProblem(const Solid& solid, const SurfaceValues& values,
   problem.draw = [=](std::size_t count, std::uint64_t draw) {
     SampleSettings sample;
     sample.seed = seed(Stream::fresh, draw);
-    sample.progress = progress;
     return withValues(solid, values, directions, randomSamples(solid.surface(), count, sample));
   };
   problem.placeSources = [=](const PlacementRequest& request, double distance) {
     return patchSources(solid, request.marks, distance, request.existing,
-                        patchSettings(request, seed(Stream::sources, request.index), progress));
+                        patchSettings(request, seed(Stream::sources, request.index)));
   };
   problem.placeCollocation = [=](const PlacementRequest& request) {
     return withValues(
         solid, values, directions,
         patchSamples(solid, request.marks, request.existing,
-                     patchSettings(request, seed(Stream::collocation, request.index), progress)));
+                     patchSettings(request, seed(Stream::collocation, request.index))));
   };
   return problem;
 }
@@ -78,7 +74,6 @@ BoundarySamples freshSamples(const Solid& solid, const SurfaceValues& values,
                              const FreshSampleSettings& settings) {
   SampleSettings sample;
   sample.seed = seedOf(settings.seed, Stream::fresh);
-  sample.progress = settings.progress;
   return withValues(solid, values, settings.directions,
                     randomSamples(solid.surface(), settings.count, sample));
 }

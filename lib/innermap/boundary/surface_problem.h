@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "innermap/core/matrix.h"
-#include "innermap/core/progress.h"
 #include "innermap/field/adaptive_fit.h"
 #include "innermap/field/fit.h"
 #include "innermap/levelset/solid.h"
@@ -26,7 +25,6 @@ struct SurfaceProblemSettings {
   std::size_t heldOut = 2000;      // random boundary points that choose between fits
   SurfaceDirections directions;    // none: values everywhere
   std::uint64_t seed = 1;          // of all random points, in [0, 1e15]
-  Progress* progress = nullptr;    // must outlive the problem
 };
 
 // For fitField: a number of charges on a shell about the solid. Throws DataError, Cancelled.
@@ -36,7 +34,6 @@ FitProblem surfaceProblem(const Solid& solid, const SurfaceValues& values,
 struct AdaptiveProblemSettings {
   SurfaceDirections directions;  // none: values everywhere
   std::uint64_t seed = 1;        // as above
-  Progress* progress = nullptr;  // must outlive the problem
 };
 
 // For fitToTolerance: charges where the error is. unit: what errors are fractions of, the values'
@@ -51,7 +48,6 @@ struct FreshSampleSettings {
   SurfaceDirections directions;  // none: values everywhere
   std::size_t count = kFreshSamples;
   std::uint64_t seed = 1;  // that of the fit: no point of its problem is among these
-  Progress* progress = nullptr;
 };
 
 // Random points of the boundary, uniform by area, that no problem of the same seed has: for an

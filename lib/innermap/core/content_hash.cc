@@ -5,6 +5,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/file.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -44,13 +45,13 @@ class Hash {
   std::uint64_t size_ = 0;
 };
 
-Hash hashFile(const std::string& path, Progress* progress) {
+Hash hashFile(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw FileError(path, "cannot be opened; check the path");
   std::vector<char> block(kBlock);
   Hash hash;
   while (file) {
-    throwIfCancelled(progress);
+    throwIfCancelled();
     file.read(block.data(), static_cast<std::streamsize>(block.size()));
     hash.add({block.data(), static_cast<std::size_t>(file.gcount())});
   }
@@ -66,8 +67,8 @@ std::uint64_t hashOf(std::string_view bytes) {
   return hash.value();
 }
 
-std::string fingerprintOf(const std::string& path, const FingerprintSettings& settings) {
-  const Hash hash = hashFile(path, settings.progress);
+std::string fingerprintOf(const std::string& path) {
+  const Hash hash = hashFile(path);
   return fmt::format("{}-{:016x}", hash.size(), hash.value());
 }
 

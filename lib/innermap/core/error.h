@@ -37,7 +37,7 @@ class MemoryError : public Error {
   using Error::Error;
 };
 
-// Thrown out of a computation whose Progress was cancelled. No partial result exists.
+// Thrown out of a computation whose run was cancelled (core/run.h). No partial result exists.
 class Cancelled : public Error {
  public:
   Cancelled() : Error("cancelled") {}

@@ -10,8 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "innermap/core/progress.h"
-
 namespace innermap {
 
 // A file being written: it has a temporary name beside the final one until commit() renames it.
@@ -104,13 +102,9 @@ bool makeFolder(const std::string& path);
 // (Fowler, Noll, Vo, "The FNV Non-Cryptographic Hash Algorithm", 1991), finished as SplitMix64.
 std::uint64_t hashOf(std::string_view bytes);
 
-struct FingerprintSettings {
-  Progress* progress = nullptr;
-};
-
 // Tells whether a file is still the one that a result was made from; not cryptographic.
 // "558589-9f86d081884c7d65": its size and the hash of its content. Throws FileError when it cannot
 // be read, Cancelled.
-std::string fingerprintOf(const std::string& path, const FingerprintSettings& settings = {});
+std::string fingerprintOf(const std::string& path);
 
 }  // namespace innermap

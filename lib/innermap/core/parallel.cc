@@ -14,6 +14,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -60,19 +61,21 @@ ThreadLimit::ThreadLimit(int threads) {
 ThreadLimit::~ThreadLimit() { delete static_cast<tbb::global_control*>(control_); }
 
 void parallelBlocks(std::size_t count, std::size_t blockSize,
-                    const std::function<void(std::size_t, std::size_t)>& body, Progress* progress,
+                    const std::function<void(std::size_t, std::size_t)>& body,
                     std::string_view stage) {
   const std::size_t size = std::max<std::size_t>(1, blockSize);
   const std::size_t blocks = (count + size - 1) / size;
   std::atomic<std::size_t> done{0};
+  RunContext* const run = currentRun();
   tbb::parallel_for(std::size_t(0), blocks, [&](std::size_t block) {
-    throwIfCancelled(progress);
+    const RunScope scope(run);
+    throwIfCancelled();
     body(block * size, std::min(count, (block + 1) * size));
     const std::size_t finished = ++done;
-    if (progress && !stage.empty() && finished * 100 / blocks != (finished - 1) * 100 / blocks)
-      progress->report(stage, static_cast<double>(finished) / static_cast<double>(blocks));
+    if (run && !stage.empty() && finished * 100 / blocks != (finished - 1) * 100 / blocks)
+      run->report(stage, static_cast<double>(finished) / static_cast<double>(blocks));
   });
-  throwIfCancelled(progress);
+  throwIfCancelled();
 }
 
 }  // namespace innermap

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string_view>
 
-#include "innermap/core/progress.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 
@@ -25,10 +25,10 @@ class ThreadLimit {
 };
 
 // Calls body(begin, end) for consecutive blocks of `blockSize` indices that cover [0, count).
-// Polls `progress` between blocks and throws Cancelled; reports the share done as `stage` when
-// `stage` is not empty. Exceptions thrown by body come out here.
+// All belong to the caller's run: it is polled between blocks (Cancelled), and told the share done
+// when `stage` is not empty. Exceptions thrown by body come out here.
 void parallelBlocks(std::size_t count, std::size_t blockSize,
                     const std::function<void(std::size_t, std::size_t)>& body,
-                    Progress* progress = nullptr, std::string_view stage = {});
+                    std::string_view stage = {});
 
 }  // namespace innermap

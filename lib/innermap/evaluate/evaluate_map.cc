@@ -6,6 +6,7 @@
 #include <map>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/evaluate/detail/active_region.h"
 #include "innermap/evaluate/detail/fold_repair.h"
 #include "innermap/evaluate/detail/topology.h"
@@ -173,10 +174,11 @@ void Evaluation::repair(const openvdb::MaskGrid& region, std::vector<LeafTotals>
                         MapGrids& out) const {
   FoldRepairSettings s;
   s.growth = std::pow(unitVolumeScale_, -0.5);
-  PartOfStage moving(settings_.progress, 0, kMoving), evaluating(settings_.progress, kMoving, 1);
-  s.progress = &moving;
-  reportProgress(&moving, kRepairing, 0);
-  const FoldRepair repair = repairFolds(*out.map, *out.jacobian, levelSet_, s);
+  const FoldRepair repair = [&] {
+    const PartOfStage moving(0, kMoving);
+    reportProgress(kRepairing, 0);
+    return repairFolds(*out.map, *out.jacobian, levelSet_, s);
+  }();
   if (repair.voxels.empty() && out.foldedVoxels == 0) return;
   out.repairedFarthest = repair.farthest;
   out.repaired = named(openvdb::FloatGrid::create(), "repaired");
@@ -195,12 +197,13 @@ void Evaluation::repair(const openvdb::MaskGrid& region, std::vector<LeafTotals>
   }
   std::vector<openvdb::Coord> origins;
   for (auto leaf = again->tree().cbeginLeaf(); leaf; ++leaf) origins.push_back(leaf->origin());
+  const PartOfStage evaluating(kMoving, 1);
   visitField(map_, solid_, levelSet_, *again,
              [&](std::size_t leaf, const LeafValues& values) {
                totals[numbers.at(origins[leaf])] =
                    store(RepairedLeaf(values, repair, settings_.origin).leaf(), out);
              },
-             {accuracy_, kRepairing, &evaluating});
+             {accuracy_, kRepairing});
 }
 
 MapGrids Evaluation::run() {
@@ -210,7 +213,6 @@ MapGrids Evaluation::run() {
   RegionSettings where;
   where.skin = settings_.skin;
   where.maxMemory = settings_.maxMemory;
-  where.progress = settings_.progress;
   where.bytesPerVoxel = kMaskBytes + (wantsMap ? 12 : 0) + (wantsJacobian ? 4 : 0) +
                         (settings_.harmonicEnergy ? 4 : 0) + (settings_.deformationEnergy ? 4 : 0);
   const openvdb::MaskGrid::Ptr region = activeRegion(levelSet_, where);
@@ -227,7 +229,7 @@ MapGrids Evaluation::run() {
   std::vector<LeafTotals> totals(region->tree().leafCount());
   visitField(map_, solid_, levelSet_, *region,
              [&](std::size_t leaf, const LeafValues& values) { totals[leaf] = store(values, out); },
-             {accuracy_, "evaluating the map", settings_.progress});
+             {accuracy_, "evaluating the map"});
   std::uint64_t interior = 0;
   for (const LeafTotals& t : totals) {
     out.foldedVoxels += t.foldedVoxels;

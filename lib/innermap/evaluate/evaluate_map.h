@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/evaluate/energy.h"
 #include "innermap/field/harmonic_map.h"
 #include "innermap/levelset/solid.h"
@@ -29,7 +28,6 @@ struct EvaluateSettings {
   // extent, in [1e-12, 1e-3]. The default is what float grids hold.
   double accuracy = 1e-7;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 // Value grids have the level set's transform; active where the signed distance is at most the skin.

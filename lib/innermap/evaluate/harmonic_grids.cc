@@ -119,7 +119,6 @@ HarmonicGrids evaluateHarmonic(const HarmonicField& field, const Solid& solid,
   RegionSettings where;
   where.skin = kSkin;
   where.maxMemory = settings.maxMemory;
-  where.progress = settings.progress;
   where.bytesPerVoxel = 1 + bytesPerVoxel(names.size(), settings);
   timed(out.seconds, "evaluate", [&] {
     const openvdb::MaskGrid::Ptr region = activeRegion(*out.surface, where);
@@ -135,7 +134,7 @@ HarmonicGrids evaluateHarmonic(const HarmonicField& field, const Solid& solid,
         }
     };
     visitField(field, solid, *out.surface, *region, store,
-               {settings.accuracy * settings.span, "evaluating the field", settings.progress});
+               {settings.accuracy * settings.span, "evaluating the field"});
     for (const ChannelGrids& grids : channels) grids.append(out.fields);
   });
   return out;

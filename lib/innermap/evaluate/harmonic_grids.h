@@ -21,7 +21,6 @@ struct HarmonicGridSettings {
   double accuracy = 1e-7;       // of the sums, fraction of `span`, in [1e-12, 1e-3]
   double span = 1;              // of the values, in their units, above 0
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 struct HarmonicGrids {

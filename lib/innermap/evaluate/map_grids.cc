@@ -31,7 +31,6 @@ EvaluateSettings evaluateSettings(double targetVolume, double accuracy,
   out.targetVolume = targetVolume;
   out.accuracy = accuracy;
   out.maxMemory = settings.maxMemory;
-  out.progress = settings.progress;
   return out;
 }
 
@@ -67,12 +66,10 @@ double boundaryErrorOf(const MappedSolid& mapped) {
          mapped.boundary.target.diagonal;
 }
 
-void findOutside(const MappedSolid& mapped, const TargetShape& target, Progress* progress,
-                 SolidGrids& out) {
+void findOutside(const MappedSolid& mapped, const TargetShape& target, SolidGrids& out) {
   OutsideVoxelsSettings settings;
   settings.slack = boundaryErrorOf(mapped);
   settings.origin = out.localOrigin;
-  settings.progress = progress;
   out.outside = outsideVoxels(*out.values.map, *out.surface, target, settings);
   if (!out.outside) return;
   out.outsideFraction = static_cast<double>(out.outside->activeVoxelCount()) /
@@ -81,7 +78,7 @@ void findOutside(const MappedSolid& mapped, const TargetShape& target, Progress*
 
 // What voxels and the cells between them tell, beside what is known of the map.
 Injectivity injectivityOf(const MappedSolid& mapped, const SolidGrids& grids,
-                          const TargetShape& target, Progress* progress) {
+                          const TargetShape& target) {
   const MapGrids& values = grids.values;
   const double error = boundaryErrorOf(mapped);
   Injectivity out = mapped.injectivity;
@@ -99,7 +96,7 @@ Injectivity injectivityOf(const MappedSolid& mapped, const SolidGrids& grids,
       if (target.runsThroughItself(origin + Vec3{p.x(), p.y(), p.z()}, error))
         ++out.voxels.foldedAtOverlap;
     }
-  out.cells = checkCells(*values.map, *grids.surface, target, error, progress, origin);
+  out.cells = checkCells(*values.map, *grids.surface, target, error, origin);
   out.cells.share = static_cast<double>(out.cells.checked) / 6 * std::pow(grids.voxelSize, 3) /
                     mapped.solid().volume();
   return out;
@@ -188,9 +185,8 @@ SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& sett
   });
   out.voxelSize = out.surface->voxelSize()[0];
   const TargetShape target(mapped.boundary);
-  timed(out.seconds, "outside", [&] { findOutside(mapped, target, settings.progress, out); });
-  out.injectivity = timed(out.seconds, "cells",
-                          [&] { return injectivityOf(mapped, out, target, settings.progress); });
+  timed(out.seconds, "outside", [&] { findOutside(mapped, target, out); });
+  out.injectivity = timed(out.seconds, "cells", [&] { return injectivityOf(mapped, out, target); });
   splitMap(mapped, out);
   const openvdb::GridPtrVec all = out.all();
   if (out.mapLocal)

@@ -27,7 +27,6 @@ struct MapGridSettings {
   LameConstants lame;
   RepairFolds repair = RepairFolds::automatic;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 constexpr double kUsualTolerance = 1e-3;

@@ -8,6 +8,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
+#include "innermap/core/run.h"
 #include "innermap/field/detail/refinement_marks.h"
 #include "innermap/solve/iterative_solver.h"
 
@@ -145,7 +146,6 @@ void AdaptiveFitting::first() {
                 "raise the limit of memory");
   IterativeSettings s;
   s.accuracy = std::clamp(kErrorAccuracy * settings_.tolerance, 1e-12, s.accuracy);
-  s.progress = settings_.progress;
   solver_.emplace(collocation_,
                   std::vector<SourceLevel>{{coarse.sources, coarse.spacing * problem_.diagonal,
                                             coarse.distance * problem_.diagonal}},
@@ -285,8 +285,7 @@ AdaptiveResult AdaptiveFitting::run() {
   first();
   const BoundarySamples checks = problem_.draw(settings_.checkSamples, 0);
   const auto errorsAtChecks = [&](const HarmonicField& field) {
-    return boundaryErrors(field, checks.collocation(), checks.values, problem_.unit,
-                          {0, settings_.progress});
+    return boundaryErrors(field, checks.collocation(), checks.values, problem_.unit, {0});
   };
   int outliers = 0;
   for (std::uint64_t round = 1;; ++round) {
@@ -295,12 +294,12 @@ AdaptiveResult AdaptiveFitting::run() {
     const BoundarySamples fresh = problem_.draw(kMarkSamples, round);
     std::vector<double> errors =
         boundaryErrors(*field_, fresh.collocation(), fresh.values, problem_.unit,
-                       {kErrorAccuracy * settings_.tolerance * problem_.unit, settings_.progress});
+                       {kErrorAccuracy * settings_.tolerance * problem_.unit});
     const BoundaryError error = marks_->awayFromJumps(fresh.points, errors);
     rounds_.push_back(
         {solver_->sources().size(), collocation_.size(), solution_.iterations, error});
     keepIfBest();
-    reportProgress(settings_.progress, "meeting the tolerance", workDone());
+    reportProgress("meeting the tolerance", workDone());
     if (settings_.goOn && !settings_.goOn(*field_, static_cast<int>(round))) {
       end_ = AdaptiveEnd::stopped;
       break;
@@ -315,7 +314,7 @@ AdaptiveResult AdaptiveFitting::run() {
       end_ = AdaptiveEnd::noGain;
       break;
     }
-    if (outOfTime(settings_.progress, kNextRound * secondsSince(began))) {
+    if (outOfTime(kNextRound * secondsSince(began))) {
       end_ = AdaptiveEnd::time;
       break;
     }

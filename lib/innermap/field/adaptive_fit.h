@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "innermap/core/matrix.h"
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/field/boundary_error.h"
 #include "innermap/field/harmonic_field.h"
@@ -73,11 +72,10 @@ struct AdaptiveSettings {
   // Where the answer is no the fit ends there (AdaptiveEnd::stopped).
   std::function<bool(const HarmonicField& field, int round)> goOn;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 // Why an adaptive fit ended; jumps: the tolerance holds but about them; time: at the deadline of
-// its progress.
+// the run.
 enum class AdaptiveEnd { met, maxSources, maxMemory, noGain, jumps, stopped, time };
 
 struct AdaptiveRound {

@@ -20,7 +20,6 @@ std::vector<double> boundaryErrors(const HarmonicField& field, const Collocation
   if (lengths.empty()) return lengths;
   EvaluateFieldSettings evaluation;
   evaluation.accuracy = settings.accuracy;
-  evaluation.progress = settings.progress;
   Matrix got = field.evaluate(at.points, evaluation).values;
   const std::vector<std::size_t> derivatives = derivativeRows(at);
   if (!derivatives.empty()) {

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/field/harmonic_field.h"
 #include "innermap/solve/collocation.h"
@@ -32,7 +31,6 @@ constexpr double kDoubtfulError = 0.1;
 
 struct BoundaryErrorSettings {
   double accuracy = 0;  // of the field's values, as HarmonicField::evaluate takes it; 0: plain sums
-  Progress* progress = nullptr;
 };
 
 // The Euclidean length of the error over all channels at each point, divided by `unit`. Arguments

@@ -7,6 +7,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
+#include "innermap/core/run.h"
 #include "innermap/field/boundary_error.h"
 
 namespace innermap {
@@ -183,7 +184,6 @@ Solved Fitting::solve(const BoundaryData& data, std::size_t count, std::size_t p
   for (std::size_t k = 0; k < values.columns(); ++k)
     std::copy_n(data.values.column(k), used, values.column(k));
   DenseSettings dense;
-  dense.progress = settings_.progress;
   const DenseSolver solver(collocation, out.sources, {data.heldOut, data.heldOutDirections}, dense);
   out.solution =
       solver.solve(values, settings_.method, data.heldOutValues, settings_.regularization);
@@ -200,8 +200,8 @@ Trial Fitting::makeTrial(bool smooth) {
   const int steps = static_cast<int>(std::ceil(std::log2(farthest / out.nearest)));
   for (int step = 0; step <= steps; ++step) {
     const double ratio = steps ? 1.0 * step / steps : 0;
-    reportProgress(settings_.progress, "choosing the distance", ratio);
-    if (out.best && outOfTime(settings_.progress)) break;
+    reportProgress("choosing the distance", ratio);
+    if (out.best && outOfTime()) break;
     try {
       Solved solved = solve(data, few, kTrialPointsPerSource * few + 16,
                             out.nearest * std::pow(farthest / out.nearest, ratio));
@@ -234,9 +234,8 @@ bool Fitting::chooseSmooth() {
   if (!linear.best) return true;
   const HarmonicField field(linear.best->sources, linear.best->solution.weights,
                             linear.best->solution.affine);
-  const double linearRms = measureBoundaryError(field, vertices.heldOut, vertices.heldOutValues, 1,
-                                                {0, settings_.progress})
-                               .rms;
+  const double linearRms =
+      measureBoundaryError(field, vertices.heldOut, vertices.heldOutValues, 1, {0}).rms;
   return smooth.best->solution.heldOutRms < kSmoothGain * linearRms;
 }
 
@@ -252,7 +251,6 @@ FitResult Fitting::iterative() {
   if (settings_.distance) far = std::max(distance, far);
   const SourceLevel levels[2] = {level(coarse, far), level(fine, distance)};
   IterativeSettings s;
-  s.progress = settings_.progress;
   const IterativeSolver solver({problem_.surface.points, problem_.surface.directions},
                                {levels[0], levels[1]}, s);
   IterativeSolution solution = solver.solve(problem_.surface.values);

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "innermap/core/matrix.h"
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/field/harmonic_field.h"
 #include "innermap/solve/dense_solver.h"
@@ -59,7 +58,6 @@ struct FitSettings {
   Regularization method = Regularization::tikhonov;
   std::optional<double> regularization;  // relative, in [0, 1]; chosen when absent
   std::uint64_t maxMemory = 0;           // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 struct DistanceTrial {

@@ -34,7 +34,6 @@ FastSumSettings sumSettings(const EvaluateFieldSettings& settings) {
   sums.absolute = settings.accuracy;
   sums.gradients = settings.gradients;
   if (settings.accuracy == 0) sums.method = SumMethod::direct;
-  sums.progress = settings.progress;
   return sums;
 }
 
@@ -73,9 +72,9 @@ void HarmonicField::evaluate(const Vec3* points, std::size_t count, double* valu
 FieldSamples HarmonicField::evaluate(const Points& points,
                                      const EvaluateFieldSettings& settings) const {
   const FastSumSettings sums = sumSettings(settings);
-  FieldSamples out = settings.accuracy > 0 ? data_->sum.at(points, sums)
-                                           : sumCharges(data_->sum.plain(), points,
-                                                        settings.gradients, {settings.progress});
+  FieldSamples out = settings.accuracy > 0
+                         ? data_->sum.at(points, sums)
+                         : sumCharges(data_->sum.plain(), points, settings.gradients);
   addAffine(data_->affine, points, out);
   return out;
 }

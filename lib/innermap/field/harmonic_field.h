@@ -11,7 +11,6 @@
 #include <string_view>
 
 #include "innermap/core/matrix.h"
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/solve/affine.h"
 #include "innermap/solve/fast_sum.h"
@@ -33,7 +32,6 @@ struct EvaluateFieldSettings {
   // units of rounding times the number of sources. Not negative.
   double accuracy = 0;
   bool gradients = false;
-  Progress* progress = nullptr;
 };
 
 // Immutable; copies share their data; safe from any number of threads. World units.

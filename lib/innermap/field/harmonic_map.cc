@@ -18,23 +18,19 @@ Points rowsOf(const Matrix& values) {
 }
 
 // gradients (of `before`) become those of `after` o before.
-void chain(const Matrix& after, Matrix& gradients, Progress* progress) {
-  parallelBlocks(
-      gradients.rows(), kBlock,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          double product[9];
-          for (std::size_t r = 0; r < 3; ++r)
-            for (std::size_t a = 0; a < 3; ++a) {
-              double sum = 0;
-              for (std::size_t m = 0; m < 3; ++m)
-                sum += after(i, 3 * r + m) * gradients(i, 3 * m + a);
-              product[3 * r + a] = sum;
-            }
-          for (std::size_t k = 0; k < 9; ++k) gradients(i, k) = product[k];
+void chain(const Matrix& after, Matrix& gradients) {
+  parallelBlocks(gradients.rows(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      double product[9];
+      for (std::size_t r = 0; r < 3; ++r)
+        for (std::size_t a = 0; a < 3; ++a) {
+          double sum = 0;
+          for (std::size_t m = 0; m < 3; ++m) sum += after(i, 3 * r + m) * gradients(i, 3 * m + a);
+          product[3 * r + a] = sum;
         }
-      },
-      progress);
+      for (std::size_t k = 0; k < 9; ++k) gradients(i, k) = product[k];
+    }
+  });
 }
 
 }  // namespace
@@ -115,7 +111,7 @@ void ComposedMap::finish(FieldSamples& samples, const EvaluateFieldSettings& set
   for (std::size_t s = 1; s < steps_.size(); ++s) {
     FieldSamples next = steps_[s].field().evaluate(rowsOf(samples.values), settings);
     samples.values = std::move(next.values);
-    if (settings.gradients) chain(next.gradients, samples.gradients, settings.progress);
+    if (settings.gradients) chain(next.gradients, samples.gradients);
   }
 }
 

@@ -59,14 +59,14 @@ double spacingFor(const Solid& solid, const OuterSurfaceSettings& settings) {
 
 // Each node inside or outside. Thin walls are inside, narrow gaps outside as far as they are opened
 // from outside without a hole in the walls beside them: a hole would be cut to the wall's rim.
-LatticeSigns signsOf(const Solid& solid, double spacing, Progress* progress) {
-  LatticeSigns signs = latticeSigns(solid, spacing, progress);
-  const ThinParts thin = thinParts(solid, signs, progress);
+LatticeSigns signsOf(const Solid& solid, double spacing) {
+  LatticeSigns signs = latticeSigns(solid, spacing);
+  const ThinParts thin = thinParts(solid, signs);
   for (const std::size_t node : thin.walls) signs.side[node] = NodeSide::inside;
   Sides wanted = signs.side;
   for (const std::size_t node : thin.gaps) wanted[node] = NodeSide::outside;
   fillPockets(signs.lattice, signs.side);
-  changeWithoutPiercing(signs, wanted, NodeSide::outside, signs.distance, progress);
+  changeWithoutPiercing(signs, wanted, NodeSide::outside, signs.distance);
   return signs;
 }
 
@@ -101,8 +101,8 @@ std::vector<int> wantedHandles(const Solid& solid, const LatticeSigns& signs,
   std::vector<int> handles = handlesOf(signs, parts);
   for (const double factor : kOtherResolutions) {
     if (std::all_of(handles.begin(), handles.end(), [](int h) { return h == 0; })) break;
-    const LatticeSigns other = signsOf(solid, signs.lattice.spacing() / factor, settings.progress);
-    const SolidParts there = partsOf(other, settings.onePiece, settings.progress);
+    const LatticeSigns other = signsOf(solid, signs.lattice.spacing() / factor);
+    const SolidParts there = partsOf(other, settings.onePiece);
     if (there.parts.size() != parts.parts.size()) continue;
     const std::vector<int> found = handlesOf(other, there);
     for (std::size_t p = 0; p < handles.size(); ++p) handles[p] = std::min(handles[p], found[p]);
@@ -122,10 +122,10 @@ Sides united(const std::vector<Sides>& parts) {
 // Sets the sides. A part that cannot be grown with its handles keeps those it has, unless they were
 // asked for. order: of growingOrder().
 void grow(const Solid& solid, const SolidParts& parts, const std::vector<int>& handles, bool asked,
-          const std::vector<float>& order, LatticeSigns& signs, Progress* progress) {
+          const std::vector<float>& order, LatticeSigns& signs) {
   std::vector<Sides> grown;
   for (std::size_t p = 0; p < parts.parts.size(); ++p) {
-    if (!growWithHandles(signs, parts.parts[p], handles[p], order, progress) && asked)
+    if (!growWithHandles(signs, parts.parts[p], handles[p], order) && asked)
       throw DataError(fmt::format(
           "{}: its outer surface cannot be given {} handle{}: no part of what it encloses has that "
           "many; give another number (genus) or a finer lattice (surface resolution)",
@@ -137,20 +137,15 @@ void grow(const Solid& solid, const SolidParts& parts, const std::vector<int>& h
 
 // Vertices that were moved onto the solid's surface go back where that made triangles cross, as in
 // gaps narrower than a cell; where they were, none do.
-void uncross(const Points& before, Mesh& mesh, Progress* progress) {
-  SelfIntersectionSettings settings;
-  settings.progress = progress;
+void uncross(const Points& before, Mesh& mesh) {
   for (int pass = 0; pass < kUncrossings; ++pass) {
     std::vector<bool> back(mesh.vertices.size(), pass + 1 == kUncrossings);
     bool any = false;
-    forEachSelfIntersection(
-        mesh.vertices, mesh.triangles,
-        [&](const Crossing& c) {
-          any = true;
-          for (const int t : {c.first, c.second})
-            for (const int v : mesh.triangles[t]) back[v] = true;
-        },
-        settings);
+    forEachSelfIntersection(mesh.vertices, mesh.triangles, [&](const Crossing& c) {
+      any = true;
+      for (const int t : {c.first, c.second})
+        for (const int v : mesh.triangles[t]) back[v] = true;
+    });
     if (!any) return;
     for (std::size_t v = 0; v < back.size(); ++v)
       if (back[v]) mesh.vertices[v] = before[v];
@@ -158,24 +153,24 @@ void uncross(const Points& before, Mesh& mesh, Progress* progress) {
 }
 
 // The lattice's boundary as a mesh.
-Mesh surfaceOf(const Solid& solid, LatticeSigns& signs, Progress* progress) {
+Mesh surfaceOf(const Solid& solid, LatticeSigns& signs) {
   const double spacing = signs.lattice.spacing();
-  warpNodes(signs, progress);
-  StuffedMesh stuffing = stuffed(signs, progress);
-  holdWarped(stuffing, progress);
+  warpNodes(signs);
+  StuffedMesh stuffing = stuffed(signs);
+  holdWarped(stuffing);
   const Points before(stuffing.vertices.begin() + stuffing.firstBoundary, stuffing.vertices.end());
-  fitBoundary(solid, spacing, stuffing, progress);
+  fitBoundary(solid, spacing, stuffing);
   Mesh mesh;
   mesh.name = solid.repaired().mesh.name;
   mesh.triangles = boundaryOf(stuffing);
   mesh.vertices.assign(stuffing.vertices.begin() + stuffing.firstBoundary, stuffing.vertices.end());
   for (Triangle& t : mesh.triangles)
     for (int& v : t) v -= stuffing.firstBoundary;
-  uncross(before, mesh, progress);
+  uncross(before, mesh);
   return mesh;
 }
 
-void compare(const Solid& solid, OuterSurface& out, Progress* progress) {
+void compare(const Solid& solid, OuterSurface& out) {
   const Mesh& surface = solid.surface();
   std::vector<double> sums{0};
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
@@ -198,7 +193,7 @@ void compare(const Solid& solid, OuterSurface& out, Progress* progress) {
               tree.closest((1 - s) * v[t[0]] + s * (1 - u) * v[t[1]] + s * u * v[t[2]]).distance;
         }
       },
-      progress, "comparing the surfaces");
+      "comparing the surfaces");
   std::sort(apart.begin(), apart.end());
   out.apartP99 = apart[kCompared * 99 / 100] / solid.diagonal();
   out.apartMax = apart.back() / solid.diagonal();
@@ -218,7 +213,6 @@ OuterSurface enlargedOuterSurface(const Solid& solid, const OuterSurfaceSettings
   Mesh mesh = solid.repaired().mesh;
   for (Vec3& v : mesh.vertices) v = scale * (v - centre);
   SolidSettings solidSettings;
-  solidSettings.progress = settings.progress;
   OuterSurface out = outerSurface(Solid(mesh, solidSettings), settings);
   out.edge /= scale;
   for (Vec3& v : out.mesh.vertices) v = centre + v / scale;
@@ -236,8 +230,8 @@ OuterSurface outerSurface(const Solid& solid, const OuterSurfaceSettings& settin
   out.edge = spacingFor(solid, settings);
   requireMemory("the outer surface of " + name, memoryFor(solid, settings), settings.maxMemory,
                 "a coarser lattice takes less (surface resolution)");
-  LatticeSigns signs = signsOf(solid, out.edge, settings.progress);
-  const SolidParts parts = partsOf(signs, settings.onePiece, settings.progress);
+  LatticeSigns signs = signsOf(solid, out.edge);
+  const SolidParts parts = partsOf(signs, settings.onePiece);
   if (parts.parts.empty())
     throw DataError(name +
                     ": has no outer surface, all parts are thinner than a cell of the lattice; "
@@ -248,21 +242,21 @@ OuterSurface outerSurface(const Solid& solid, const OuterSurfaceSettings& settin
   const std::vector<int> handles = wantedHandles(solid, signs, parts, settings);
   const Sides all = united(parts.parts);
   signs.side = all;
-  const std::vector<float> depth = depthsInside(signs, settings.progress);
-  grow(solid, parts, handles, settings.handles.has_value(),
-       growingOrder(solid, signs, depth, settings.progress), signs, settings.progress);
+  const std::vector<float> depth = depthsInside(signs);
+  grow(solid, parts, handles, settings.handles.has_value(), growingOrder(solid, signs, depth),
+       signs);
   const std::vector<std::size_t> cut = cutNodes(all, signs);
-  for (const Box3& box : cutBoxes(cut, signs, settings.progress))
+  for (const Box3& box : cutBoxes(cut, signs))
     out.cuts.push_back({box.center(), norm(box.extent()) + signs.lattice.spacing()});
-  openCuts(cut, depth, signs, settings.progress);
-  out.mesh = surfaceOf(solid, signs, settings.progress);
+  openCuts(cut, depth, signs);
+  out.mesh = surfaceOf(solid, signs);
   const BoundaryTopology made = boundaryTopology(out.mesh.vertices, out.mesh.triangles);
   out.topology = made.solid;
   if (!made.manifold() || !(made.solid == latticeTopology(signs)))
     throw DataError(name +
                     ": its outer surface is no manifold at this resolution; give another "
                     "one (surface resolution)");
-  compare(solid, out, settings.progress);
+  compare(solid, out);
   return out;
 }
 

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/lattice/boundary_topology.h"
 #include "innermap/levelset/solid.h"
 #include "innermap/mesh/mesh.h"
@@ -22,7 +21,6 @@ struct OuterSurfaceSettings {
   std::optional<int> handles;
   bool onePiece = false;        // the largest part alone
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 // Where the surface was cut apart: the solid's parts meet there, and would make a handle.
@@ -51,7 +49,8 @@ struct OuterSurface {
 // through one another the union has handles that the body has not. The solid is grown again on a
 // lattice, node by node from its deepest part, by nodes that change no topology (Bertrand 1994);
 // what cannot be taken is a cut. Then as tetrahedralization(): isosurface stuffing, boundary
-// vertices on the solid's surface. Sharp edges are cut across. Pockets that are enclosed are filled.
+// vertices on the solid's surface. Sharp edges are cut across. Pockets that are enclosed are
+// filled.
 //
 // Deterministic. Throws SettingError, MemoryError (before allocating), Cancelled; DataError where
 // nothing is inside at the resolution, no part of the solid has the handles that are asked for, or

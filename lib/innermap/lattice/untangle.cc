@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -117,7 +118,7 @@ class Energy {
     // gained anything.
     lbfgs(static_cast<int>(size()), x, nullptr, &evaluate, &keepOn, this, &settings);
     write(x);
-    throwIfCancelled(settings_.progress);
+    throwIfCancelled();
   }
 
  private:
@@ -192,10 +193,10 @@ class Energy {
   }
 
   // No exception may pass through the optimiser, which is C.
-  static int keepOn(void* self, const lbfgsfloatval_t*, const lbfgsfloatval_t*, lbfgsfloatval_t,
+  static int keepOn(void*, const lbfgsfloatval_t*, const lbfgsfloatval_t*, lbfgsfloatval_t,
                     lbfgsfloatval_t, lbfgsfloatval_t, lbfgsfloatval_t, int, int, int) {
-    Progress* progress = static_cast<Energy*>(self)->settings_.progress;
-    return progress && (progress->cancelled() || outOfTime(progress)) ? 1 : 0;
+    const RunContext* run = currentRun();
+    return run && (run->cancelled() || outOfTime()) ? 1 : 0;
   }
 
   TetPatch& patch_;
@@ -249,7 +250,7 @@ double untangle(TetPatch& patch, const UntangleSettings& settings) {
     energy.minimise(eps, x.get());
     const double gain = 1 - energy.at(eps) / before;
     least = energy.leastDeterminant();
-    if ((least > 0 && gain < kLeastGain) || outOfTime(settings.progress)) break;
+    if ((least > 0 && gain < kLeastGain) || outOfTime()) break;
     const double mu = (1 - std::max(gain, kLeastSigma)) * Lifted(least, eps).value;
     eps = least < mu ? 2 * std::sqrt(mu * (mu - least)) : kSmallest;
     if (settings.afterRound) settings.afterRound(patch, round);

@@ -9,7 +9,6 @@
 #include <functional>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 
 namespace innermap {
@@ -42,7 +41,6 @@ struct UntangleSettings {
   // Called after each round, with its number from 0: may change the springs' places, normals and
   // stiffness, and the weights.
   std::function<void(TetPatch& patch, int round)> afterRound;
-  Progress* progress = nullptr;
 };
 
 // The inverse of the matrix of a tetrahedron's edges from its first vertex: what `rest` holds, but

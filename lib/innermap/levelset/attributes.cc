@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 
+#include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/mesh/triangle_tree.h"
@@ -80,8 +81,7 @@ class Carrier {
   bool any_ = false;
 };
 
-openvdb::GridBase::Ptr carry(const FloatGrid& levelSet, const Carrier& carrier, const char* name,
-                             Progress* progress) {
+openvdb::GridBase::Ptr carry(const FloatGrid& levelSet, const Carrier& carrier, const char* name) {
   auto tree = std::make_shared<Vec3SGrid::TreeType>(levelSet.tree(), Vec3f(0), Vec3f(0),
                                                     openvdb::TopologyCopy());
   openvdb::tree::LeafManager<Vec3SGrid::TreeType> leaves(*tree);
@@ -95,7 +95,7 @@ openvdb::GridBase::Ptr carry(const FloatGrid& levelSet, const Carrier& carrier, 
           }
         }
       },
-      progress, "attributes");
+      "attributes");
   auto grid = Vec3SGrid::create(tree);
   grid->setTransform(levelSet.transform().copy());
   grid->setName(name);
@@ -115,8 +115,7 @@ void checkFits(const Solid& solid, const Mesh& mesh) {
 }  // namespace
 
 std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const FloatGrid& levelSet,
-                                                       const Solid& solid, const Mesh& mesh,
-                                                       const AttributeSettings& settings) {
+                                                       const Solid& solid, const Mesh& mesh) {
   checkFits(solid, mesh);
   std::vector<openvdb::GridBase::Ptr> grids;
   const AttributeAt uv = [&](int t, const std::array<double, 3>& w) -> std::optional<Vec3> {
@@ -138,7 +137,7 @@ std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const FloatGrid& levelSet
   };
   const auto add = [&](const AttributeAt& attribute, const char* name) {
     const Carrier carrier(solid, mesh, attribute);
-    if (carrier.any()) grids.push_back(carry(levelSet, carrier, name, settings.progress));
+    if (carrier.any()) grids.push_back(carry(levelSet, carrier, name));
   };
   if (!mesh.uvTriangles.empty()) add(uv, "uv");
   if (!mesh.colours.empty()) add(colour, "Cd");

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <vector>
 
+#include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 
 namespace innermap {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/levelset/detail/band.h"
 #include "innermap/levelset/detail/narrow_band.h"
@@ -160,7 +161,7 @@ std::uint64_t levelSetMemory(const Solid& solid, const LevelSetSettings& setting
   checkHalfWidth(settings);
   const double h = voxelSizeFor(solid, settings);
   const Band band(solid.body(), latticeOrigin(solid.box(), h), h, 0, settings.halfWidth * h);
-  const double leaves = band.estimateLeaves(settings.progress);  // an over-estimate
+  const double leaves = band.estimateLeaves();  // an over-estimate
   const double leafBytes = sizeof(Leaf) + Band::kLeafVoxels * sizeof(float) + 3 * sizeof(Coord);
   // Nodes of 128 voxels a side hold 256 leaves of a flat surface; half of that is common.
   const double middleNodes = leaves / 100 + 8;
@@ -181,7 +182,7 @@ FloatGrid::Ptr makeLevelSet(const Solid& solid, const LevelSetSettings& settings
   }
   const Vec3 origin = settings.origin.value_or(latticeOrigin(solid.box(), h));
   checkReach(solid, origin, h);
-  return narrowBand(solid.body(), origin, h, settings.halfWidth * h, settings.progress);
+  return narrowBand(solid.body(), origin, h, settings.halfWidth * h);
 }
 
 }  // namespace innermap

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/levelset/fog.h"
 #include "innermap/levelset/solid.h"
 
@@ -26,7 +25,6 @@ struct LevelSetSettings {
   // sequence), at most 1e9 voxels away from the solid; near its lower corner without.
   std::optional<Vec3> origin;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 constexpr int kUsualResolution = 128;
@@ -79,17 +77,12 @@ void requireInterior(std::uint64_t interiorVoxels, const Solid& solid, const std
 // solid that is thinner than a voxel on average.
 void requireInterior(const Solid& solid, const LevelSetSettings& settings);
 
-struct AttributeSettings {
-  Progress* progress = nullptr;
-};
-
 // Attributes of the closest triangle carried onto the active voxels of `levelSet`: "uv" (Vec3f,
 // third component 0) when the mesh has texture coordinates, "Cd" (Vec3f) when it has vertex
 // colours. `mesh` is the mesh that `solid` was made of. Voxels whose closest point lies on a cap
 // take the nearest triangle that has the attribute. Throws DataError for another mesh, Cancelled.
 std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const openvdb::FloatGrid& levelSet,
-                                                       const Solid& solid, const Mesh& mesh,
-                                                       const AttributeSettings& settings = {});
+                                                       const Solid& solid, const Mesh& mesh);
 
 // Need in bytes of a level set of those settings with a fog (fog.h) and attributes of the mesh.
 std::uint64_t voxelizeMemory(const Solid& solid, const LevelSetSettings& settings, const Mesh& mesh,

@@ -5,6 +5,7 @@
 #include <limits>
 #include <mutex>
 
+#include "innermap/core/error.h"
 #include "innermap/levelset/detail/exposed_surface.h"
 #include "innermap/levelset/detail/narrow_band.h"
 #include "innermap/levelset/detail/solid_body.h"
@@ -33,10 +34,8 @@ void checkSettings(const SolidSettings& settings) {
 Solid::Solid(const Mesh& mesh, const SolidSettings& settings) {
   checkSettings(settings);
   requireNearOrigin(mesh);
-  RepairSettings repairSettings;
-  repairSettings.progress = settings.progress;
-  RepairedMesh repaired = repair(mesh, repairSettings);
-  ExposedSurface exposed = exposedSurface(repaired.mesh, settings.pieceSize, settings.progress);
+  RepairedMesh repaired = repair(mesh);
+  ExposedSurface exposed = exposedSurface(repaired.mesh, settings.pieceSize);
   implementation_ = std::make_shared<const Implementation>(std::move(repaired), std::move(exposed));
 }
 

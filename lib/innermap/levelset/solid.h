@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/mesh/mesh.h"
 #include "innermap/mesh/repair.h"
@@ -18,7 +17,6 @@ struct SolidSettings {
   // are no longer than this, and each piece is told exposed or buried as a whole; fraction of the
   // diagonal, in (0, 1). Doubled as often as it takes to stay under some millions of pieces.
   double pieceSize = 1.0 / 2048;
-  Progress* progress = nullptr;
 };
 
 class SolidBody;

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "innermap/core/detail/disjoint_sets.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/detail/clean_triangles.h"
 #include "innermap/mesh/detail/orientation.h"
 #include "innermap/mesh/detail/topology.h"
@@ -181,7 +182,7 @@ void checkCrossings(const Mesh& mesh, const CheckSettings& settings, MeshReport&
     listed.push_back(crossing);
     std::push_heap(listed.begin(), listed.end(), before);
   };
-  forEachSelfIntersection(mesh.vertices, mesh.triangles, visit, {settings.progress});
+  forEachSelfIntersection(mesh.vertices, mesh.triangles, visit);
   std::sort(listed.begin(), listed.end(), before);
 }
 
@@ -198,7 +199,7 @@ void checkSides(const Mesh& mesh, MeshReport& report) {
 
 MeshReport checkMesh(const Mesh& mesh, const CheckSettings& settings) {
   validate(mesh);
-  reportProgress(settings.progress, "checking", 0);
+  reportProgress("checking", 0);
   MeshReport report;
   report.vertices = mesh.vertices.size();
   report.triangles = mesh.triangles.size();
@@ -207,18 +208,18 @@ MeshReport checkMesh(const Mesh& mesh, const CheckSettings& settings) {
   report.box = boundingBox(mesh);
   report.area = surfaceArea(mesh);
 
-  throwIfCancelled(settings.progress);
+  throwIfCancelled();
   const std::vector<EdgeUse> edges = sortedEdges(mesh.triangles);
   checkEdges(edges, mesh, report);
   checkTriangles(mesh, report);
   report.nonManifoldVertices = verticesOfSeveralFans(mesh.triangles, edges, mesh.vertices.size());
   checkComponents(mesh, report);
-  throwIfCancelled(settings.progress);
+  throwIfCancelled();
   checkSolid(mesh, report);
   checkSides(mesh, report);
-  reportProgress(settings.progress, "checking", 0.5);
+  reportProgress("checking", 0.5);
   if (settings.selfIntersections) checkCrossings(mesh, settings, report);
-  reportProgress(settings.progress, "checking", 1);
+  reportProgress("checking", 1);
   return report;
 }
 

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/mesh/mesh.h"
 #include "innermap/mesh/self_intersection.h"
 
@@ -50,7 +49,6 @@ struct MeshReport {
 struct CheckSettings {
   bool selfIntersections = true;
   std::size_t listed = 20;  // crossings that are placed; all are counted
-  Progress* progress = nullptr;
 };
 
 // Throws Cancelled; DataError as validate().

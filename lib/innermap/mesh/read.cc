@@ -7,7 +7,7 @@
 namespace innermap {
 namespace {
 
-using Reader = PolygonMesh (*)(const FileBytes&, Progress*);
+using Reader = PolygonMesh (*)(const FileBytes&);
 
 Reader readerOf(const std::string& path) {
   const std::string extension = extensionOf(path);
@@ -20,21 +20,21 @@ Reader readerOf(const std::string& path) {
                 "; meshes are read from .obj, .ply, .off and .stl files");
 }
 
-PolygonMesh readPolygons(const std::string& path, Progress* progress) {
+PolygonMesh readPolygons(const std::string& path) {
   const Reader reader = readerOf(path);
-  return reader(readFileBytes(path, "a mesh file", progress), progress);
+  return reader(readFileBytes(path, "a mesh file"));
 }
 
 }  // namespace
 
-Mesh readMesh(const std::string& path, const ReadSettings& settings) {
-  Mesh mesh = toMesh(readPolygons(path, settings.progress), path, settings.progress);
+Mesh readMesh(const std::string& path) {
+  Mesh mesh = toMesh(readPolygons(path), path);
   requireNearOrigin(mesh);
   return mesh;
 }
 
-Mesh readMeshLike(const std::string& path, const Mesh& reference, const ReadSettings& settings) {
-  Mesh mesh = toMeshLike(readPolygons(path, settings.progress), path, reference, settings.progress);
+Mesh readMeshLike(const std::string& path, const Mesh& reference) {
+  Mesh mesh = toMeshLike(readPolygons(path), path, reference);
   requireNearOrigin(mesh);
   return mesh;
 }

@@ -8,14 +8,9 @@
 
 #include <string>
 
-#include "innermap/core/progress.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {
-
-struct ReadSettings {
-  Progress* progress = nullptr;
-};
 
 // Reads by the extension (case-insensitive) .obj, .ply, .off, .stl.
 //
@@ -32,14 +27,13 @@ struct ReadSettings {
 // Throws FileError: missing file, unknown extension, wrong or truncated content (with the line or
 // byte), counts beyond the file's size, indices out of range, NaN or infinite coordinates, no
 // vertices or no faces. Colours are clamped to [0, 1].
-Mesh readMesh(const std::string& path, const ReadSettings& settings = {});
+Mesh readMesh(const std::string& path);
 
 // Reads a mesh that must have the connectivity of `reference` (a pose, the target of a map) and
 // takes over the reference's triangulation, so that a polygon is cut alike in all frames.
 // Throws as readMesh; DataError when the number of vertices or any polygon differs, naming the
 // first difference and saying that meshes of other connectivity need a correspondence first
 // (surface/correspond.h).
-Mesh readMeshLike(const std::string& path, const Mesh& reference,
-                  const ReadSettings& settings = {});
+Mesh readMeshLike(const std::string& path, const Mesh& reference);
 
 }  // namespace innermap

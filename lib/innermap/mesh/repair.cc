@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/detail/clean_triangles.h"
 #include "innermap/mesh/detail/orientation.h"
 #include "innermap/mesh/detail/shells.h"
@@ -50,20 +51,20 @@ std::vector<ShellEdge> cappingEdgesOfShells(const ClosedShells& shells) {
 // triangles, oriented, then the caps. The mesh handed out has the file's own vertices again.
 class Repair {
  public:
-  Repair(const Mesh& mesh, Progress* progress) : mesh_(mesh), progress_(progress) {}
+  explicit Repair(const Mesh& mesh) : mesh_(mesh) {}
 
   RepairedMesh run() {
-    reportProgress(progress_, "repairing", 0);
+    reportProgress("repairing", 0);
     clean();
-    reportProgress(progress_, "repairing", 0.3);
+    reportProgress("repairing", 0.3);
     orientTriangles();
-    reportProgress(progress_, "repairing", 0.5);
+    reportProgress("repairing", 0.5);
     cap();
-    reportProgress(progress_, "repairing", 0.7);
+    reportProgress("repairing", 0.7);
     turnInverted();
     requireInside();
     build();
-    reportProgress(progress_, "repairing", 1);
+    reportProgress("repairing", 1);
     return std::move(result_);
   }
 
@@ -123,7 +124,7 @@ class Repair {
     const std::vector<ShellEdge> open = cappingEdgesOfShells(closed_);
     std::vector<DirectedEdge> edges;
     for (std::size_t i = 0; i < open.size();) {
-      throwIfCancelled(progress_);
+      throwIfCancelled();
       const int shell = open[i].shell;
       edges.clear();
       for (; i < open.size() && open[i].shell == shell; ++i) edges.push_back(open[i].edge);
@@ -153,7 +154,7 @@ class Repair {
   }
 
   void turnInverted() {
-    const std::vector<bool> inverted = invertedShells(closed_, progress_);
+    const std::vector<bool> inverted = invertedShells(closed_);
     const std::size_t count =
         static_cast<std::size_t>(std::count(inverted.begin(), inverted.end(), true));
     if (count == 0) return;
@@ -220,7 +221,6 @@ class Repair {
   }
 
   const Mesh& mesh_;
-  Progress* progress_;
   RepairedMesh result_;
   ClosedShells closed_;
   std::vector<int> kept_;     // triangles of mesh_
@@ -229,9 +229,9 @@ class Repair {
 
 }  // namespace
 
-RepairedMesh repair(const Mesh& mesh, const RepairSettings& settings) {
+RepairedMesh repair(const Mesh& mesh) {
   validate(mesh);
-  return Repair(mesh, settings.progress).run();
+  return Repair(mesh).run();
 }
 
 Points repairedPositions(const RepairedMesh& repaired, const Points& vertices) {

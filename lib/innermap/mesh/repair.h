@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {
@@ -28,10 +27,6 @@ struct RepairedMesh {
   std::vector<std::string> notes;  // what was repaired, a line each; empty when nothing was
 };
 
-struct RepairSettings {
-  Progress* progress = nullptr;
-};
-
 // Caps: the boundary of the oriented triangles is a sum of directed loops (each edge counted as
 // often as it runs one way more than the other), also on non-manifold meshes. A loop of three edges
 // gets one triangle, longer ones a fan about their length-weighted centroid. Orientation:
@@ -44,7 +39,7 @@ struct RepairSettings {
 // Triangles without area but with three vertices are kept: they hold the surface together. Seams,
 // where files double vertices along texture borders, are joined where two boundary edges coincide
 // bit by bit; caps never close them.
-RepairedMesh repair(const Mesh& mesh, const RepairSettings& settings = {});
+RepairedMesh repair(const Mesh& mesh);
 
 // The same repair on other positions of the same connectivity (a target, a frame): positions of
 // all vertices of repaired.mesh, cap vertices included. `vertices` has as many entries as the mesh

@@ -18,8 +18,7 @@ constexpr std::size_t kBatch = 1 << 17, kBlock = 1 << 12;
 }  // namespace
 
 void forEachSelfIntersection(const Points& vertices, const std::vector<Triangle>& triangles,
-                             const std::function<void(const Crossing&)>& visit,
-                             const SelfIntersectionSettings& settings) {
+                             const std::function<void(const Crossing&)>& visit) {
   // Scaled by a power of two, which changes no bit of a mantissa: products of far too large or too
   // small coordinates stay in range.
   Box3 box;
@@ -36,16 +35,13 @@ void forEachSelfIntersection(const Points& vertices, const std::vector<Triangle>
     return TriangleCorners{scaled[triangle[0]], scaled[triangle[1]], scaled[triangle[2]]};
   };
   const auto flush = [&] {
-    parallelBlocks(
-        pairs.size(), kBlock,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t k = begin; k < end; ++k) {
-            Vec3 place;
-            if (passThrough(corners(pairs[k][0]), corners(pairs[k][1]), place))
-              found[begin / kBlock].push_back({pairs[k][0], pairs[k][1], frame.inverse * place});
-          }
-        },
-        settings.progress);
+    parallelBlocks(pairs.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        Vec3 place;
+        if (passThrough(corners(pairs[k][0]), corners(pairs[k][1]), place))
+          found[begin / kBlock].push_back({pairs[k][0], pairs[k][1], frame.inverse * place});
+      }
+    });
     for (std::vector<Crossing>& block : found) {
       for (const Crossing& crossing : block) visit(crossing);
       block.clear();
@@ -61,12 +57,10 @@ void forEachSelfIntersection(const Points& vertices, const std::vector<Triangle>
 }
 
 std::vector<Crossing> selfIntersections(const Points& vertices,
-                                        const std::vector<Triangle>& triangles,
-                                        const SelfIntersectionSettings& settings) {
+                                        const std::vector<Triangle>& triangles) {
   std::vector<Crossing> crossings;
-  forEachSelfIntersection(
-      vertices, triangles, [&](const Crossing& crossing) { crossings.push_back(crossing); },
-      settings);
+  forEachSelfIntersection(vertices, triangles,
+                          [&](const Crossing& crossing) { crossings.push_back(crossing); });
   std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
     return a.first != b.first ? a.first < b.first : a.second < b.second;
   });

@@ -4,7 +4,6 @@
 #include <functional>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {
@@ -12,10 +11,6 @@ namespace innermap {
 struct Crossing {
   int first = 0, second = 0;  // triangles that intersect each other
   Vec3 place;                 // a point near the intersection, world units
-};
-
-struct SelfIntersectionSettings {
-  Progress* progress = nullptr;
 };
 
 // All pairs (first < second, sorted) of triangles that intersect in more than what they share:
@@ -26,13 +21,11 @@ struct SelfIntersectionSettings {
 // Interval overlap method, Moller, "A Fast Triangle-Triangle Intersection Test" (1997), in double
 // precision. Throws Cancelled.
 std::vector<Crossing> selfIntersections(const Points& vertices,
-                                        const std::vector<Triangle>& triangles,
-                                        const SelfIntersectionSettings& settings = {});
+                                        const std::vector<Triangle>& triangles);
 
 // The same, one at a time in an order that is the same for any number of threads, for meshes whose
 // crossings would not fit in memory.
 void forEachSelfIntersection(const Points& vertices, const std::vector<Triangle>& triangles,
-                             const std::function<void(const Crossing&)>& visit,
-                             const SelfIntersectionSettings& settings = {});
+                             const std::function<void(const Crossing&)>& visit);
 
 }  // namespace innermap

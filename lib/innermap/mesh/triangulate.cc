@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "innermap/core/run.h"
+
 namespace innermap {
 namespace {
 
@@ -80,11 +82,11 @@ class EarClipping {
     budget_ = 1000 + 8 * static_cast<long>(count) * count;
   }
 
-  bool run(std::vector<Triangle>& triangles, Progress* progress) {
+  bool run(std::vector<Triangle>& triangles) {
     triangles.clear();
     int left = static_cast<int>(flat_.size());
     while (left > 3) {
-      throwIfCancelled(progress);
+      throwIfCancelled();
       if (!advanceToEar(left, false) && !advanceToEar(left, true)) return false;
       if (budget_ < 0) return false;  // made to be slow
       triangles.push_back({previous_[current_], current_, next_[current_]});
@@ -129,7 +131,7 @@ class EarClipping {
 }  // namespace
 
 void triangulatePolygon(const Points& vertices, const int* corners, int count,
-                        std::vector<Triangle>& triangles, Progress* progress) {
+                        std::vector<Triangle>& triangles) {
   if (count == 3) {
     triangles.assign(1, Triangle{0, 1, 2});
     return;
@@ -137,8 +139,7 @@ void triangulatePolygon(const Points& vertices, const int* corners, int count,
   const int lowest = static_cast<int>(std::min_element(corners, corners + count) - corners);
   if (count <= kMostCorners) {
     const std::vector<Vec2> flat = project(vertices, corners, count);
-    if (!flat.empty() && !isConvex(flat) && EarClipping(flat, lowest).run(triangles, progress))
-      return;
+    if (!flat.empty() && !isConvex(flat) && EarClipping(flat, lowest).run(triangles)) return;
   }
   fan(count, lowest, triangles);
 }

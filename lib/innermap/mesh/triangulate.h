@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {
@@ -14,6 +13,6 @@ namespace innermap {
 // at the lowest index too, so that the cut does not depend on where the file begins the polygon.
 // Where that fails (self-crossing or flat polygons, more than 2048 corners) the fan is taken.
 void triangulatePolygon(const Points& vertices, const int* corners, int count,
-                        std::vector<Triangle>& triangles, Progress* progress = nullptr);
+                        std::vector<Triangle>& triangles);
 
 }  // namespace innermap

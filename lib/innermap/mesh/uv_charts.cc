@@ -10,6 +10,7 @@
 
 #include "innermap/core/detail/disjoint_sets.h"
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/detail/topology.h"
 
 namespace innermap {
@@ -117,7 +118,7 @@ class ChartGraph {
     int triangle;
     char mark;
   };
-  void spread(const std::vector<Start>& starts, const std::vector<int>& piece, Progress* progress) {
+  void spread(const std::vector<Start>& starts, const std::vector<int>& piece) {
     using Entry = std::pair<double, int>;
     for (const int t : reached) distance[t] = kFar;
     reached.clear();
@@ -131,7 +132,7 @@ class ChartGraph {
     for (const Start& s : starts)
       if (distance[s.triangle] == kFar) reach(s.triangle, 0, s.mark);
     for (std::size_t steps = 0; !queue.empty(); ++steps) {
-      if (steps % 4096 == 0) throwIfCancelled(progress);
+      if (steps % 4096 == 0) throwIfCancelled();
       const auto [d, t] = queue.top();
       queue.pop();
       if (d > distance[t]) continue;
@@ -157,12 +158,8 @@ class ChartGraph {
 // Divides charts until no piece meets itself along a seam.
 class Division {
  public:
-  Division(const Mesh& mesh, const UvCharts& charts, Progress* progress)
-      : charts_(charts),
-        graph_(mesh),
-        progress_(progress),
-        piece(charts.chart),
-        count(charts.count) {}
+  Division(const Mesh& mesh, const UvCharts& charts)
+      : charts_(charts), graph_(mesh), piece(charts.chart), count(charts.count) {}
 
   void run() {
     bool divided = true;
@@ -184,14 +181,14 @@ class Division {
   // Which side of each seam is which is told by the distance from one side of
   // the first.
   void divide(const std::vector<const UvSeam*>& seams) {
-    graph_.spread({{seams[0]->triangle, 0}}, piece, progress_);
+    graph_.spread({{seams[0]->triangle, 0}}, piece);
     std::vector<ChartGraph::Start> starts{{seams[0]->triangle, 0}, {seams[0]->other, 1}};
     for (const UvSeam* s : seams) {
       const bool nearer = graph_.distance[s->triangle] <= graph_.distance[s->other];
       starts.push_back({nearer ? s->triangle : s->other, 0});
       starts.push_back({nearer ? s->other : s->triangle, 1});
     }
-    graph_.spread(starts, piece, progress_);
+    graph_.spread(starts, piece);
     for (const int t : graph_.reached)
       if (graph_.mark[t]) piece[t] = count;
     ++count;
@@ -199,7 +196,6 @@ class Division {
 
   const UvCharts& charts_;
   ChartGraph graph_;
-  Progress* progress_;
 
  public:
   std::vector<int> piece;
@@ -237,7 +233,7 @@ std::vector<int> colouring(const Mesh& mesh, const UvCharts& charts, const std::
 
 }  // namespace
 
-UvCharts uvCharts(const Mesh& mesh, const UvChartSettings& settings) {
+UvCharts uvCharts(const Mesh& mesh) {
   validate(mesh);
   if (mesh.uvTriangles.empty())
     throw DataError(mesh.name +
@@ -255,7 +251,7 @@ UvCharts uvCharts(const Mesh& mesh, const UvChartSettings& settings) {
           out.seams.push_back({a.triangle, a.corner, b.triangle, b.corner});
       },
       &out.edgeLength);
-  throwIfCancelled(settings.progress);
+  throwIfCancelled();
   out.chart.assign(count, -1);
   std::vector<int> number(count, -1);
   for (std::size_t t = 0; t < count; ++t) {
@@ -272,7 +268,7 @@ UvGroups uvGroups(const Mesh& mesh, const UvCharts& charts, const UvGroupSetting
   const int most = settings.most;
   if (most < kFewestGroups || most > kMostGroups)
     throw SettingError("UV groups", "must lie in 2 to 64");
-  Division division(mesh, charts, settings.progress);
+  Division division(mesh, charts);
   division.run();
   UvGroups out;
   out.pieces = division.count;

@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {
@@ -26,17 +25,13 @@ struct UvCharts {
          edgeLength = 0;  // of the seams and of all edges, world units
 };
 
-struct UvChartSettings {
-  Progress* progress = nullptr;
-};
-
 // Coordinates agree when they have the same index or differ by less than a
 // millionth of their extent. Vertices that the file split along a seam count as
 // one. An edge of more than two triangles is a seam between those of its
 // neighbouring uses that differ; a border of the part that has coordinates is
 // none. Throws DataError as validate() does, and when the mesh has no texture
 // coordinates at all; Cancelled.
-UvCharts uvCharts(const Mesh& mesh, const UvChartSettings& settings = {});
+UvCharts uvCharts(const Mesh& mesh);
 
 // Charts in groups, so that one continuous pair of functions may hold the
 // coordinates of a group.
@@ -49,7 +44,6 @@ struct UvGroups {
 
 struct UvGroupSettings {
   int most = 16;  // groups, in [2, 64]
-  Progress* progress = nullptr;
 };
 
 // A chart that meets itself along a seam (an unrolled cylinder) is divided:

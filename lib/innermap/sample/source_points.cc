@@ -6,6 +6,7 @@
 
 #include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/random.h"
+#include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/levelset/detail/offset_surface.h"
 #include "innermap/sample/detail/sample_elimination.h"
@@ -44,7 +45,7 @@ bool settle(const Solid& solid, const Mesh& shell, int t, double distance, Vec3&
 
 // Those of the samples that settle, in their order.
 Points settled(const Solid& solid, const Mesh& shell, double distance,
-               const std::vector<SurfacePoint>& samples, Progress* progress) {
+               const std::vector<SurfacePoint>& samples) {
   Points points(samples.size());
   std::vector<char> good(samples.size(), 0);
   parallelBlocks(
@@ -55,7 +56,7 @@ Points settled(const Solid& solid, const Mesh& shell, double distance,
           good[i] = settle(solid, shell, samples[i].triangle, distance, points[i]);
         }
       },
-      progress, "placing sources");
+      "placing sources");
   Points kept;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (good[i]) kept.push_back(points[i]);
@@ -72,10 +73,8 @@ Points settledEvenly(const Solid& solid, const Mesh& shell, double distance,
   constexpr double kReserve = 1.02, kMore = 1.3;
   SampleSettings sampling;
   sampling.seed = settings.seed;
-  sampling.progress = settings.progress;
   const std::size_t probed = std::min(kProbe, 5 * settings.count);
-  const Points probe =
-      settled(solid, shell, distance, randomSamples(shell, probed, sampling), settings.progress);
+  const Points probe = settled(solid, shell, distance, randomSamples(shell, probed, sampling));
   const double share = static_cast<double>(probe.size() + 1) / static_cast<double>(probed + 1);
   const auto rounds =
       std::clamp<std::size_t>(static_cast<std::size_t>(0.8 / share + 1), 1, kMostRounds);
@@ -88,30 +87,26 @@ Points settledEvenly(const Solid& solid, const Mesh& shell, double distance,
     const std::size_t wanted = most < static_cast<double>(samples.size())
                                    ? static_cast<std::size_t>(most)
                                    : samples.size();
-    for (const std::size_t i :
-         eliminateSamples(places, wanted, surfaceArea(shell), settings.progress)) {
+    for (const std::size_t i : eliminateSamples(places, wanted, surfaceArea(shell))) {
       even.push_back(samples[i]);
     }
-    Points points = settled(solid, shell, distance, even, settings.progress);
+    Points points = settled(solid, shell, distance, even);
     if (points.size() >= settings.count || wanted == samples.size()) return points;
   }
 }
 
-void requireOutside(const Solid& solid, const Points& points, double least, Progress* progress) {
-  parallelBlocks(
-      points.size(), 256,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const bool near = solid.closest(points[i], least).onSurface.triangle >= 0;
-          if (near || solid.inside(points[i])) {
-            throw DataError(
-                fmt::format("source {} at ({:.6g}, {:.6g}, {:.6g}) stands inside the "
-                            "solid or too near; choose another distance",
-                            i, points[i].x, points[i].y, points[i].z));
-          }
-        }
-      },
-      progress);
+void requireOutside(const Solid& solid, const Points& points, double least) {
+  parallelBlocks(points.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const bool near = solid.closest(points[i], least).onSurface.triangle >= 0;
+      if (near || solid.inside(points[i])) {
+        throw DataError(
+            fmt::format("source {} at ({:.6g}, {:.6g}, {:.6g}) stands inside the "
+                        "solid or too near; choose another distance",
+                        i, points[i].x, points[i].y, points[i].z));
+      }
+    }
+  });
 }
 
 }  // namespace
@@ -120,7 +115,6 @@ Points sourceShell(const Solid& solid, double distance, const SourceSettings& se
   checkCount(settings);
   OffsetSettings offset;
   offset.distance = distance;
-  offset.progress = settings.progress;
   const Mesh shell = offsetSurface(solid, offset);
   const double world = distance * solid.diagonal();
   const auto noRoom = [&] {
@@ -135,11 +129,11 @@ Points sourceShell(const Solid& solid, double distance, const SourceSettings& se
   if (candidates.size() < settings.count) throw noRoom();
   Points points;
   points.reserve(settings.count);
-  for (const std::size_t i : eliminateSamples(relativeTo(candidates, solid.box().center()),
-                                              settings.count, area, settings.progress)) {
+  for (const std::size_t i :
+       eliminateSamples(relativeTo(candidates, solid.box().center()), settings.count, area)) {
     points.push_back(candidates[i]);
   }
-  requireOutside(solid, points, 0.9 * world, settings.progress);
+  requireOutside(solid, points, 0.9 * world);
   return points;
 }
 
@@ -150,27 +144,23 @@ Points sourceSphere(const Solid& solid, double ratio, const SourceSettings& sett
   }
   const CounterRandom random(settings.seed, 0x737068657265);
   Points candidates(5 * settings.count);
-  parallelBlocks(
-      candidates.size(), 4096,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const double z = 2 * random.uniform(2 * i) - 1;
-          const double angle = 2 * kPi * random.uniform(2 * i + 1);
-          const double r = std::sqrt(1 - z * z);
-          candidates[i] = {r * std::cos(angle), r * std::sin(angle), z};
-        }
-      },
-      settings.progress);
+  parallelBlocks(candidates.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double z = 2 * random.uniform(2 * i) - 1;
+      const double angle = 2 * kPi * random.uniform(2 * i + 1);
+      const double r = std::sqrt(1 - z * z);
+      candidates[i] = {r * std::cos(angle), r * std::sin(angle), z};
+    }
+  });
   const double area = 4 * kPi;
   const double radius = 0.5 * ratio * solid.diagonal();
   const Vec3 center = solid.box().center();
   Points points;
   points.reserve(settings.count);
-  for (const std::size_t i :
-       eliminateSamples(candidates, settings.count, area, settings.progress)) {
+  for (const std::size_t i : eliminateSamples(candidates, settings.count, area)) {
     points.push_back(center + radius * candidates[i]);
   }
-  requireOutside(solid, points, 0, settings.progress);
+  requireOutside(solid, points, 0);
   return points;
 }
 

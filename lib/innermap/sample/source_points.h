@@ -3,7 +3,6 @@
 
 #include <cstdint>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/levelset/solid.h"
 
@@ -12,7 +11,6 @@ namespace innermap {
 struct SourceSettings {
   std::size_t count = 2000;  // in [1, 1e7]
   std::uint64_t seed = 1;
-  Progress* progress = nullptr;
 };
 
 // Blue noise on the offset surface at `distance` (fraction of the solid's diagonal, in [1e-4, 2];

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "innermap/core/detail/random.h"
+#include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/sample/detail/sample_elimination.h"
 
@@ -41,23 +42,20 @@ std::vector<SurfacePoint> randomSamples(const Mesh& mesh, std::size_t count,
   const std::vector<double> cumulative = cumulativeAreas(mesh);
   const CounterRandom random(settings.seed, kStream);
   std::vector<SurfacePoint> samples(count);
-  parallelBlocks(
-      count, kBlock,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const double u = random.uniform(3 * i);
-          // The first triangle whose sum exceeds u: never one without area.
-          std::size_t t =
-              std::upper_bound(cumulative.begin(), cumulative.end(), u) - cumulative.begin();
-          if (t == cumulative.size()) {
-            t = std::lower_bound(cumulative.begin(), cumulative.end(), cumulative.back()) -
-                cumulative.begin();
-          }
-          const double r = std::sqrt(random.uniform(3 * i + 1)), s = random.uniform(3 * i + 2);
-          samples[i] = {static_cast<int>(t), {1 - r, r * (1 - s), r * s}};
-        }
-      },
-      settings.progress);
+  parallelBlocks(count, kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double u = random.uniform(3 * i);
+      // The first triangle whose sum exceeds u: never one without area.
+      std::size_t t =
+          std::upper_bound(cumulative.begin(), cumulative.end(), u) - cumulative.begin();
+      if (t == cumulative.size()) {
+        t = std::lower_bound(cumulative.begin(), cumulative.end(), cumulative.back()) -
+            cumulative.begin();
+      }
+      const double r = std::sqrt(random.uniform(3 * i + 1)), s = random.uniform(3 * i + 2);
+      samples[i] = {static_cast<int>(t), {1 - r, r * (1 - s), r * s}};
+    }
+  });
   return samples;
 }
 
@@ -80,8 +78,7 @@ std::vector<SurfacePoint> blueNoiseSamples(const Mesh& mesh, std::size_t count,
       points[i] = p;
     }
   });
-  const std::vector<std::size_t> kept =
-      eliminateSamples(points, count, surfaceArea(mesh), settings.progress);
+  const std::vector<std::size_t> kept = eliminateSamples(points, count, surfaceArea(mesh));
   std::vector<SurfacePoint> samples;
   samples.reserve(kept.size());
   for (const std::size_t i : kept) samples.push_back(candidates[i]);

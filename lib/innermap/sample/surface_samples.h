@@ -4,14 +4,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {
 
 struct SampleSettings {
   std::uint64_t seed = 1;
-  Progress* progress = nullptr;
 };
 
 // Exactly `count` independent samples, uniform by area. Sample i depends on (seed, i) alone.

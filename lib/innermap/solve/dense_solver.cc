@@ -9,6 +9,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
+#include "innermap/core/run.h"
 #include "innermap/solve/detail/affine_fit.h"
 #include "innermap/solve/detail/blocked_qr.h"
 #include "innermap/solve/detail/lapack_status.h"
@@ -80,9 +81,9 @@ class DenseSolver::Factors {
 
  private:
   struct Projected;
-  Matrix factor(const Collocation& at, const Points& sources, const DenseSettings& settings);
+  Matrix factor(const Collocation& at, const Points& sources);
   void decompose(Matrix& r22);
-  void prepareHeldOut(const Collocation& at, const Points& sources, const DenseSettings& settings);
+  void prepareHeldOut(const Collocation& at, const Points& sources);
   Projected project(const Matrix& values) const;
   Matrix heldOutResidual(const Projected& rhs, const Matrix& heldOutValues) const;
   double chooseRegularization(const Projected& rhs, Regularization method, const Matrix& values,
@@ -125,23 +126,21 @@ DenseSolver::Factors::Factors(const Collocation& collocation, const Points& sour
   scale_ = box.diagonal() > 0 ? box.diagonal() : 1;
 
   const Points normalisedSources = normalised(sources, center_, scale_);
-  Matrix r22 = factor(collocation.normalised(center_, scale_), normalisedSources, settings);
-  reportProgress(settings.progress, "singular values", 0);
+  Matrix r22 = factor(collocation.normalised(center_, scale_), normalisedSources);
+  reportProgress("singular values", 0);
   decompose(r22);
-  reportProgress(settings.progress, "singular values", 1);
-  if (heldOut.size() > 0)
-    prepareHeldOut(heldOut.normalised(center_, scale_), normalisedSources, settings);
+  reportProgress("singular values", 1);
+  if (heldOut.size() > 0) prepareHeldOut(heldOut.normalised(center_, scale_), normalisedSources);
 }
 
 // QR of [P A]; keeps what belongs to the affine part and gives R22.
-Matrix DenseSolver::Factors::factor(const Collocation& at, const Points& sources,
-                                    const DenseSettings& settings) {
+Matrix DenseSolver::Factors::factor(const Collocation& at, const Points& sources) {
   const std::size_t m = at.size(), n = sources.size(), columns = n + kAffine;
   Matrix a(m, columns);
   fillAffineRows(at, a.data(), m);
-  fillKernelMatrix(at.points, sources, 1, a.column(kAffine), m, {settings.progress});
+  fillKernelMatrix(at.points, sources, 1, a.column(kAffine), m);
   fillDerivativeRows(at, sources, a.column(kAffine), m);
-  qr_ = BlockedQr(std::move(a), settings.progress);
+  qr_ = BlockedQr(std::move(a));
   const Matrix r = qr_.upperTriangle();
   Matrix r22(n, n);
   affineBlock_ = Matrix(kAffine, kAffine);
@@ -168,19 +167,18 @@ void DenseSolver::Factors::decompose(Matrix& r22) {
     for (std::size_t i = 0; i < sources_; ++i) leftTransposed_(j, i) = u(i, j);
 }
 
-void DenseSolver::Factors::prepareHeldOut(const Collocation& at, const Points& sources,
-                                          const DenseSettings& settings) {
+void DenseSolver::Factors::prepareHeldOut(const Collocation& at, const Points& sources) {
   const std::size_t n = sources.size();
   heldOutAffine_ = Matrix(at.size(), kAffine);
   fillAffineRows(at, heldOutAffine_.data(), at.size());
   Matrix kernel(at.size(), n), right(n, n);
-  fillKernelMatrix(at.points, sources, 1, kernel.data(), at.size(), {settings.progress});
+  fillKernelMatrix(at.points, sources, 1, kernel.data(), at.size());
   fillDerivativeRows(at, sources, kernel.data(), at.size());
-  multiply(false, -1, heldOutAffine_, coupling_, 1, kernel, settings.progress);
+  multiply(false, -1, heldOutAffine_, coupling_, 1, kernel);
   for (std::size_t j = 0; j < n; ++j)
     for (std::size_t i = 0; i < n; ++i) right(i, j) = rightTransposed_(j, i);
   heldOutModes_ = Matrix(at.size(), n);
-  multiply(false, 1, kernel, right, 0, heldOutModes_, settings.progress);
+  multiply(false, 1, kernel, right, 0, heldOutModes_);
 }
 
 DenseSolver::Factors::Projected DenseSolver::Factors::project(const Matrix& values) const {

@@ -16,7 +16,6 @@
 #include <optional>
 
 #include "innermap/core/matrix.h"
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/solve/affine.h"
 #include "innermap/solve/collocation.h"
@@ -27,7 +26,6 @@ enum class Regularization { truncatedSvd, tikhonov };
 
 struct DenseSettings {
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 struct DenseSolution {

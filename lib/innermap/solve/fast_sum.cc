@@ -102,7 +102,7 @@ class Hierarchy {
   Hierarchy(const ChargeTree& tree, const FarFieldPlan& plan, const FastSumSettings& settings)
       : tree_(tree),
         settings_(settings),
-        proxies_(tree, ExpansionBasis::get(plan.order), settings.progress),
+        proxies_(tree, ExpansionBasis::get(plan.order)),
         field_(proxies_, plan) {}
 
   FieldSamples at(const Points& points) const;
@@ -135,7 +135,7 @@ FieldSamples Hierarchy::at(const Points& points) const {
               for (std::size_t i = 0; i < leaf.count(); ++i)
                 out.gradients(order[i], k) = sums.gradients()[k * sums.stride() + i];
           },
-          settings_.progress, {});
+          {});
   return out;
 }
 
@@ -165,7 +165,7 @@ void Hierarchy::onLattice(const LatticeBlocks& lattice, const BlockVisitor& visi
                           work.near, settings_.gradients);
         visit(b, work.sums.values(), work.sums.gradients());
       },
-      settings_.progress, stage);
+      stage);
 }
 
 // A hierarchy, and how well it did at the points that are checked.
@@ -230,7 +230,7 @@ FieldSamples directAt(const Charges& charges, const LatticeBlocks& lattice,
   Points points;
   for (const Block& b : lattice.blocks)
     for (const std::uint16_t place : placesOf(b)) points.push_back(pointOf(lattice, b, place));
-  return sumCharges(charges, points, settings.gradients, {settings.progress});
+  return sumCharges(charges, points, settings.gradients);
 }
 
 // The wanted points of all blocks, in the order of directAt.
@@ -277,7 +277,7 @@ void directOnLattice(const Charges& charges, const LatticeBlocks& lattice,
             gradients[kPoints * k + places[i]] = slopes[n * k + i];
         visit(b, values.data(), settings.gradients ? gradients.data() : nullptr);
       },
-      settings.progress, stage);
+      stage);
 }
 
 }  // namespace
@@ -288,7 +288,7 @@ FieldSamples FastSum::at(const Points& points, const FastSumSettings& settings) 
     if (!isFinite(points[i]))
       throw DataError("sums: point " + std::to_string(i) + " is not finite");
   const auto plain = [&](const Points& some) {
-    return sumCharges(data_->direct, some, settings.gradients, {settings.progress});
+    return sumCharges(data_->direct, some, settings.gradients);
   };
   if (count() == 0 || channels() == 0 || points.empty()) return plain(points);
   const std::vector<std::size_t> sample = evenly(kSampled, points.size());
@@ -309,9 +309,7 @@ FieldSamples FastSum::at(const Points& points, const FastSumSettings& settings) 
     }
     return got;
   };
-  const auto atSome = [&](const Charges& charges) {
-    return sumCharges(charges, some, false, {settings.progress});
-  };
+  const auto atSome = [&](const Charges& charges) { return sumCharges(charges, some, false); };
   const Checked best = mostAccurate(data_->tree, data_->direct, atSome, size, settings, reference,
                                     sampled, [&] { out = std::move(tried); });
   if (!best.hierarchy) return plain(points);

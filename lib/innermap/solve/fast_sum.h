@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "innermap/core/matrix.h"
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/solve/kernel_sum.h"
 
@@ -32,7 +31,6 @@ struct FastSumSettings {
   double absolute = 0;
   bool gradients = false;
   SumMethod method = SumMethod::cheapest;
-  Progress* progress = nullptr;
 };
 
 // 8 x 8 x 8 points of a lattice: point (x, y, z), x, y, z in 0..7, is at origin + spacing * (first

@@ -9,6 +9,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
+#include "innermap/core/run.h"
 #include "innermap/solve/detail/affine_fit.h"
 #include "innermap/solve/detail/coarse_solver.h"
 #include "innermap/solve/detail/directions.h"
@@ -149,7 +150,7 @@ IterativeSolver::Levels::Levels(const Collocation& collocation,
   coarseRows_.resize(kAffine);
   std::iota(coarseRows_.begin(), coarseRows_.end(), 0);
   for (const std::size_t i : addSources(levels.front().sources)) coarseRows_.push_back(kAffine + i);
-  coarse_ = CoarseSolver(collocation_, coarseSources_, settings_.seed, settings_.progress);
+  coarse_ = CoarseSolver(collocation_, coarseSources_, settings_.seed);
   for (std::size_t l = 1; l < levels.size(); ++l) addLevel(levels[l]);
 }
 
@@ -208,7 +209,7 @@ void IterativeSolver::Levels::addLevel(const SourceLevel& level) {
   });
   if (at == levels_.end() || at->solver.spacing() < spacing * (1 - kSameSpacing))
     at = levels_.insert(at, Level{LocalSolver(spacing, level.distance / scale_), {}});
-  at->solver.add(normalised(level.sources), collocation_, settings_.progress);
+  at->solver.add(normalised(level.sources), collocation_);
   const std::vector<std::size_t> added = addSources(level.sources);
   at->sources.insert(at->sources.end(), added.begin(), added.end());
 }
@@ -301,7 +302,6 @@ FieldSamples IterativeSolver::Levels::image(const Matrix& weights, const Points&
                                             const Collocation& at, double accuracy) const {
   FastSumSettings s;
   s.accuracy = std::clamp(accuracy, kFinestProduct, kCoarsestProduct);
-  s.progress = settings_.progress;
   const FastSum sum(sources, weights);
   FieldSamples out = sum.at(at.points, s);
   const std::vector<std::size_t> rows = derivativeRows(at);
@@ -335,7 +335,7 @@ void IterativeSolver::Levels::takeDirections(const Matrix& weights,
       images(i, k) += affineValue(collocation_, i, z.column(k));
   }
   const std::size_t first = directions.count();
-  directions.add(std::move(z), std::move(images), settings_.progress);
+  directions.add(std::move(z), std::move(images));
   directions.project(first, residual, x);
 }
 
@@ -346,8 +346,8 @@ void IterativeSolver::Levels::runLevels(OrthogonalDirections& directions, Matrix
   for (const Level& level : levels_) {
     std::vector<std::size_t> rows = level.sources;
     for (std::size_t& i : rows) i += kAffine;
-    takeDirections(level.solver.correction(residual, settings_.progress), rows,
-                   level.solver.sources(), directions, residual, x, out);
+    takeDirections(level.solver.correction(residual), rows, level.solver.sources(), directions,
+                   residual, x, out);
   }
 }
 
@@ -359,12 +359,11 @@ IterativeSolution IterativeSolver::Levels::iterate(const Scaled& values, Matrix&
   out.residuals.push_back(values.size * rms(residual));
   bool left = rms(residual) > values.rounding;
   while (left && out.iterations < settings_.maxIterations) {
-    reportProgress(settings_.progress, "solving",
-                   static_cast<double>(out.iterations) / settings_.maxIterations);
+    reportProgress("solving", static_cast<double>(out.iterations) / settings_.maxIterations);
     runLevels(directions, residual, x, out);
     ++out.iterations;
     out.residuals.push_back(values.size * rms(residual));
-    left = !littleIsLeft(out.residuals) && !outOfTime(settings_.progress);
+    left = !littleIsLeft(out.residuals) && !outOfTime();
   }
   unscale(values, residual, x, out);
   return out;

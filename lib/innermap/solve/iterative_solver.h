@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "innermap/core/matrix.h"
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/solve/affine.h"
 #include "innermap/solve/collocation.h"
@@ -37,7 +36,6 @@ struct IterativeSettings {
   double accuracy = 1e-7;       // of products, fraction of the values' span; in [1e-12, 1e-3]
   std::uint64_t seed = 1;       // of the rows that the first level sees
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 struct IterativeSolution {

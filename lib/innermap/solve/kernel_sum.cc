@@ -93,30 +93,25 @@ void Charges::addTo(const Vec3* points, std::size_t count, double* values,
   }
 }
 
-FieldSamples sumCharges(const Charges& charges, const Points& points, bool gradients,
-                        const KernelSumSettings& settings) {
+FieldSamples sumCharges(const Charges& charges, const Points& points, bool gradients) {
   const std::size_t n = points.size(), channels = charges.channels();
   FieldSamples out;
   out.values = Matrix(n, channels);
   if (gradients) out.gradients = Matrix(n, 3 * channels);
-  parallelBlocks(
-      n, kBlock,
-      [&](std::size_t begin, std::size_t end) {
-        const std::size_t size = end - begin;
-        std::vector<double> values(size * channels), slopes(gradients ? size * 3 * channels : 0);
-        charges.addTo(points.data() + begin, size, values.data(),
-                      gradients ? slopes.data() : nullptr);
-        for (std::size_t k = 0; k < channels; ++k)
-          std::copy_n(values.data() + k * size, size, out.values.column(k) + begin);
-        for (std::size_t k = 0; gradients && k < 3 * channels; ++k)
-          std::copy_n(slopes.data() + k * size, size, out.gradients.column(k) + begin);
-      },
-      settings.progress);
+  parallelBlocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
+    const std::size_t size = end - begin;
+    std::vector<double> values(size * channels), slopes(gradients ? size * 3 * channels : 0);
+    charges.addTo(points.data() + begin, size, values.data(), gradients ? slopes.data() : nullptr);
+    for (std::size_t k = 0; k < channels; ++k)
+      std::copy_n(values.data() + k * size, size, out.values.column(k) + begin);
+    for (std::size_t k = 0; gradients && k < 3 * channels; ++k)
+      std::copy_n(slopes.data() + k * size, size, out.gradients.column(k) + begin);
+  });
   return out;
 }
 
 void fillKernelMatrix(const Points& points, const Points& sources, double scale, double* out,
-                      std::size_t rowStride, const KernelSumSettings& settings) {
+                      std::size_t rowStride) {
   if (points.empty() || sources.empty()) return;
   const TargetBlock targets(points.data(), points.size(), Vec3{}, 1);
   parallelBlocks(
@@ -126,7 +121,7 @@ void fillKernelMatrix(const Points& points, const Points& sources, double scale,
           simd::kernelColumn(targets.x.data(), targets.y.data(), targets.z.data(), points.size(),
                              sources[j].x, sources[j].y, sources[j].z, scale, out + j * rowStride);
       },
-      settings.progress, "filling the kernel matrix");
+      "filling the kernel matrix");
 }
 
 const char* instructionSet() { return simd::targetName(); }

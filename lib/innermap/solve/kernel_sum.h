@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "innermap/core/matrix.h"
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 
 namespace innermap {
@@ -53,18 +52,13 @@ struct FieldSamples {
   double error = 0;  // of values by fast sums: see FastSum::at; 0: plain sums
 };
 
-struct KernelSumSettings {
-  Progress* progress = nullptr;
-};
-
 // Sums at many points, on all threads; the same values for any number of them. Throws Cancelled.
-FieldSamples sumCharges(const Charges& charges, const Points& points, bool gradients,
-                        const KernelSumSettings& settings = {});
+FieldSamples sumCharges(const Charges& charges, const Points& points, bool gradients);
 
 // Fills `column`-major block: out[j * rowStride + i] = scale / |points[i] - sources[j]|.
 // #points x #sources. On all threads. Throws Cancelled.
 void fillKernelMatrix(const Points& points, const Points& sources, double scale, double* out,
-                      std::size_t rowStride, const KernelSumSettings& settings = {});
+                      std::size_t rowStride);
 
 // The instruction set in use ("AVX3_ZEN4", say), for reports.
 const char* instructionSet();

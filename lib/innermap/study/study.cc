@@ -8,6 +8,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
+#include "innermap/core/run.h"
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/study/detail/kept_runs.h"
@@ -134,7 +135,6 @@ FitMapSettings fitSettings(const StudyRun& run, const StudySettings& settings) {
   fit.oneToOne = OneToOne::off;
   fit.seed = settings.seed;
   fit.maxMemory = settings.maxMemory;
-  fit.progress = settings.progress;
   return fit;
 }
 
@@ -182,7 +182,6 @@ class Runner {
     LevelSetSettings grid;
     grid.resolution = settings_.resolution;
     grid.maxMemory = settings_.maxMemory;
-    grid.progress = settings_.progress;
     levelSet_ = makeLevelSet(pair_.solid(), grid);
     requireInterior(interiorVoxels(*levelSet_), pair_.solid(), pair_.source.mesh.name);
   }
@@ -194,7 +193,6 @@ class Runner {
     evaluate.targetVolume = pair_.target.volume;
     evaluate.accuracy = sumAccuracy(fit);
     evaluate.maxMemory = settings_.maxMemory;
-    evaluate.progress = settings_.progress;
     const MapGrids grids = evaluateMap(fit.map, fit.solid(), *levelSet_, evaluate);
     row.harmonicEnergy = grids.harmonicTotal;
     if (grids.volume > 0) row.deformationEnergy = grids.deformationTotal / grids.volume;
@@ -266,14 +264,14 @@ Study runStudy(const BoundaryPair& pair, const StudySettings& settings,
   const std::uint64_t most = memoryLeft(settings.maxMemory);
   if (visitor) visitor(nullptr, 0, runs.size());
   for (const StudyRun& run : runs) {
-    throwIfCancelled(settings.progress);
+    throwIfCancelled();
     std::optional<StudyRow> row = keptRuns.find(run);
     const std::uint64_t need = studyMemory(run);
     if (row) {
       ++study.kept;
     } else if (most > 0 && need > most) {
       row = tooLarge(run, need, settings.maxMemory);
-    } else if (outOfTime(settings.progress)) {
+    } else if (outOfTime()) {
       ++study.left;
       continue;
     } else {

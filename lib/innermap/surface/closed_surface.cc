@@ -8,6 +8,7 @@
 
 #include "innermap/core/detail/disjoint_sets.h"
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/detail/connectivity.h"
 #include "innermap/mesh/repair.h"
 #include "innermap/surface/detail/topology/nesting.h"
@@ -55,23 +56,21 @@ class ShellBuilder {
       : mesh_(mesh), settings_(settings) {}
 
   SurfaceShells run() {
-    RepairSettings repairSettings;
-    repairSettings.progress = settings_.progress;
-    repaired_ = repair(mesh_, repairSettings);
+    repaired_ = repair(mesh_);
     joinVertices();
     requireManifold();
     if (repaired_.caps > 0 && !settings_.closeHoles) refuseHoles();
-    reportProgress(settings_.progress, "taking the surface apart", 0);
+    reportProgress("taking the surface apart", 0);
     result_.caps = repaired_.caps;
     result_.notes = repaired_.notes;
     makeMesh();
     findFans();
     makeShells();
-    reportProgress(settings_.progress, "taking the surface apart", 0.5);
+    reportProgress("taking the surface apart", 0.5);
     if (result_.shells.empty())
       throw DataError(nameOf(mesh_) + ": no part of it encloses anything; give a closed mesh");
-    result_.parent = parentShells(result_.shells, settings_.progress);
-    reportProgress(settings_.progress, "taking the surface apart", 1);
+    result_.parent = parentShells(result_.shells);
+    reportProgress("taking the surface apart", 1);
     return std::move(result_);
   }
 
@@ -186,7 +185,7 @@ class ShellBuilder {
     local_.assign(corner_.size(), -1);
     result_.shellVertex.assign(result_.mesh.vertices.size(), {});
     for (const std::vector<int>& members : parts) {
-      throwIfCancelled(settings_.progress);
+      throwIfCancelled();
       ClosedSurface shell = makeShell(members);
       if (!enclosesSomething(shell)) {
         ++empty;

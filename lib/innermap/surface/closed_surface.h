@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/mesh/mesh.h"
 #include "innermap/surface/layout.h"
 
@@ -36,7 +35,6 @@ struct SurfaceShells {
 
 struct ClosedSurfaceSettings {
   bool closeHoles = false;  // cap boundary loops (mesh/repair.h); otherwise they are an error
-  Progress* progress = nullptr;
 };
 
 // Throws DataError: holes (their number and the longest) without consent to close them, edges of

@@ -121,13 +121,10 @@ EmbeddedSurface::EmbeddedSurface(const Mesh& mesh, const EmbeddingSettings& sett
   timed(seconds, "layout", [&] {
     ClosedSurfaceSettings closing;
     closing.closeHoles = settings.closeHoles;
-    closing.progress = settings.progress;
     out->surfaces = closedSurfaces(mesh, closing);
     for (const ClosedSurface& s : out->surfaces.shells) {
-      out->laidOut.push_back(s.genus > 1 ? nullptr
-                                         : std::make_unique<LaidOutShell>(s, settings.progress));
-      out->handles.push_back(
-          s.genus > 1 ? std::make_unique<HandleLoops>(handleLoops(s, settings.progress)) : nullptr);
+      out->laidOut.push_back(s.genus > 1 ? nullptr : std::make_unique<LaidOutShell>(s));
+      out->handles.push_back(s.genus > 1 ? std::make_unique<HandleLoops>(handleLoops(s)) : nullptr);
     }
   });
   out->seconds = seconds.front().second;
@@ -211,7 +208,6 @@ class Corresponder {
     s.refine = settings_.refine;
     s.wanted = settings_.way;
     s.seed = settings_.seed;
-    s.progress = settings_.progress;
     return s;
   }
 
@@ -264,13 +260,11 @@ class Corresponder {
     CutAlikeSettings cutting;
     cutting.aligned = settings_.aligned;
     cutting.landmarks = out.exact;
-    cutting.progress = settings_.progress;
     CutPair pair = cutAlike(*handlesA_[out.map.source], *handlesB_[out.map.target], cutting);
     if (!pair.note.empty()) out_.notes.push_back(pair.note);
     GluedMapSettings how;
     how.landmarks = std::move(out.exact);
     how.refine = settings_.refine;
-    how.progress = settings_.progress;
     GluedMap map = gluedMap(pair, how);
     out.exact = std::move(map.exact);
     out.onShell = std::move(map.onTarget);
@@ -292,7 +286,6 @@ class Corresponder {
     }
     SubdivideSettings how;
     how.tolerance = settings_.subdivide;
-    how.progress = settings_.progress;
     ShellCorrespondence& map = shell.map;
     if (settings_.maxMemory > 0)
       how.triangles = std::min<std::size_t>(

@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/mesh/mesh.h"
 #include "innermap/surface/closed_surface.h"
 #include "innermap/surface/layout.h"
@@ -25,7 +24,6 @@ struct CorrespondSettings;
 
 struct EmbeddingSettings {
   bool closeHoles = false;  // cap the boundary loops of an open mesh; otherwise it is refused
-  Progress* progress = nullptr;
 };
 
 // A mesh with its shells laid out: what any number of partners can be mapped onto. Immutable, cheap
@@ -66,7 +64,6 @@ struct CorrespondSettings {
   std::uint64_t seed = 1;
   double subdivide = 0;  // split A until it follows B within this share of B's diagonal; 0: never
   std::uint64_t maxMemory = 0;  // bytes, of the process, that splitting ends at; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 struct CutSurface;
@@ -119,21 +116,17 @@ struct SurfaceImages {
   double farthest = 0;                 // of the points from A's surface, world units
 };
 
-struct SurfaceImageSettings {
-  Progress* progress = nullptr;
-};
-
 // Where points near A's surface lie on B: each goes where the closest point of A's shells goes, by
 // the map through the model space, which is one-to-one (not by chords between moved vertices).
 // `target`: the shells that the map was made onto (b.surfaces()). Same result for any number of
 // threads. Throws Cancelled.
-SurfaceImages imagesOf(const Points& points, const Correspondence& map, const SurfaceShells& target,
-                       const SurfaceImageSettings& settings = {});
+SurfaceImages imagesOf(const Points& points, const Correspondence& map,
+                       const SurfaceShells& target);
 
 // The way back: the points of A (world units) that lie on points of B, given by triangle of
 // target.mesh. Points of triangles that are in no shell go with the closest shell. Throws
 // Cancelled.
 Points preimagesOf(const std::vector<SurfacePoint>& onTarget, const Correspondence& map,
-                   const SurfaceShells& target, const SurfaceImageSettings& settings = {});
+                   const SurfaceShells& target);
 
 }  // namespace innermap

@@ -8,6 +8,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/self_intersection.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/surface/detail/refining/area_samples.h"
@@ -102,7 +103,7 @@ class Measurement {
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) body(i);
         },
-        settings_.progress, kStage);
+        kStage);
   }
 
   Stretches scaled(Stretches s) const { return {scale_ * s.s1, scale_ * s.s2}; }
@@ -256,7 +257,7 @@ class Measurement {
   std::size_t crossingsOf(const JoinedShells& surfaces) {
     std::size_t count = 0;
     forEachSelfIntersection(surfaces.vertices, surfaces.triangles,
-                            [&](const Crossing&) { ++count; }, {settings_.progress});
+                            [&](const Crossing&) { ++count; });
     return count;
   }
 
@@ -275,7 +276,7 @@ class Measurement {
 MapQuality mapQuality(const Correspondence& map, const MapQualitySettings& settings) {
   if (settings.samples < 1 || settings.samples > 100000000)
     throw SettingError("samples", "must be from 1 to 1e8");
-  reportProgress(settings.progress, kStage, 0);
+  reportProgress(kStage, 0);
   return Measurement(map, settings).run();
 }
 

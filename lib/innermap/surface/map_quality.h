@@ -3,7 +3,6 @@
 
 #include <cstddef>
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/correspond.h"
 
 namespace innermap {
@@ -48,7 +47,6 @@ struct MapQualitySettings {
   std::size_t samples = 100000;  // on each surface, spread by area; in [1, 1e8]. Each triangle has
                                  // one at least
   bool selfIntersections = true;
-  Progress* progress = nullptr;
 };
 
 // Same result for any number of threads. Throws SettingError, Cancelled.

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/surface/correspond.h"
 #include "innermap/surface/detail/refining/joined_shells.h"
@@ -28,10 +29,10 @@ struct ShellMap {
 
 using ShellMaps = std::vector<std::unique_ptr<ShellMap>>;
 
-ShellMaps mapsOf(const Correspondence& map, Progress* progress) {
+ShellMaps mapsOf(const Correspondence& map) {
   ShellMaps maps;
   for (const ShellCorrespondence& shell : map.shells) {
-    throwIfCancelled(progress);
+    throwIfCancelled();
     maps.push_back(std::make_unique<ShellMap>(shell));
   }
   return maps;
@@ -39,9 +40,9 @@ ShellMaps mapsOf(const Correspondence& map, Progress* progress) {
 
 }  // namespace
 
-SurfaceImages imagesOf(const Points& points, const Correspondence& map, const SurfaceShells& target,
-                       const SurfaceImageSettings& settings) {
-  const ShellMaps maps = mapsOf(map, settings.progress);
+SurfaceImages imagesOf(const Points& points, const Correspondence& map,
+                       const SurfaceShells& target) {
+  const ShellMaps maps = mapsOf(map);
   JoinedShells shells;
   for (const ShellCorrespondence& shell : map.shells)
     shells.add(shell.surface.vertices, shell.surface.triangles);
@@ -66,7 +67,7 @@ SurfaceImages imagesOf(const Points& points, const Correspondence& map, const Su
           distance[i] = closest.distance;
         }
       },
-      settings.progress, kStage);
+      kStage);
   for (std::size_t s = 0; s < map.shells.size(); ++s) {
     std::vector<std::size_t> members;
     std::vector<SurfacePoint> here;
@@ -83,8 +84,8 @@ SurfaceImages imagesOf(const Points& points, const Correspondence& map, const Su
 }
 
 Points preimagesOf(const std::vector<SurfacePoint>& onTarget, const Correspondence& map,
-                   const SurfaceShells& target, const SurfaceImageSettings& settings) {
-  const ShellMaps maps = mapsOf(map, settings.progress);
+                   const SurfaceShells& target) {
+  const ShellMaps maps = mapsOf(map);
   JoinedShells shells;
   std::vector<JoinedShells::Place> places(target.mesh.triangles.size(), {0, -1});
   for (std::size_t s = 0; s < map.shells.size(); ++s) {
@@ -109,7 +110,7 @@ Points preimagesOf(const std::vector<SurfacePoint>& onTarget, const Corresponden
           result[i] = maps[place.shell]->composed.of(place.triangle, point.barycentric).position;
         }
       },
-      settings.progress, kStage);
+      kStage);
   return result;
 }
 

@@ -21,7 +21,6 @@ SurfaceDistance distanceOf(const Mesh& from, double diagonal, const BoundaryFitS
                            const std::function<double(const Vec3&)>& distance) {
   SampleSettings sampling;
   sampling.seed = settings.seed;
-  sampling.progress = settings.progress;
   const std::vector<SurfacePoint> samples = randomSamples(from, settings.samples, sampling);
   std::vector<double> found(samples.size());
   parallelBlocks(
@@ -30,7 +29,7 @@ SurfaceDistance distanceOf(const Mesh& from, double diagonal, const BoundaryFitS
         for (std::size_t i = begin; i < end; ++i)
           found[i] = distance(positionOf(from, samples[i])) / diagonal;
       },
-      settings.progress, kStage);
+      kStage);
   SurfaceDistance result;
   for (const double d : found) {
     result.rms += d * d;
@@ -40,7 +39,7 @@ SurfaceDistance distanceOf(const Mesh& from, double diagonal, const BoundaryFitS
   return result;
 }
 
-std::size_t inwardFaces(const Mesh& boundary, const Solid& solid, Progress* progress) {
+std::size_t inwardFaces(const Mesh& boundary, const Solid& solid) {
   std::atomic<std::size_t> count{0};
   parallelBlocks(
       boundary.triangles.size(), 64,
@@ -56,7 +55,7 @@ std::size_t inwardFaces(const Mesh& boundary, const Solid& solid, Progress* prog
         }
         count += own;
       },
-      progress, kStage);
+      kStage);
   return count;
 }
 
@@ -76,7 +75,7 @@ BoundaryFit boundaryFit(const CellMesh& mesh, const Solid& solid,
                              [&](const Vec3& p) { return solid.distance(p); });
   fit.fromSurface = distanceOf(solid.surface(), solid.diagonal(), settings,
                                [&](const Vec3& p) { return tree.closest(p).distance; });
-  fit.inward = inwardFaces(boundary, solid, settings.progress);
+  fit.inward = inwardFaces(boundary, solid);
   return fit;
 }
 

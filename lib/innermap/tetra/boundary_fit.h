@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "innermap/core/progress.h"
 #include "innermap/lattice/cell_mesh.h"
 #include "innermap/levelset/solid.h"
 
@@ -25,7 +24,6 @@ struct BoundaryFit {
 struct BoundaryFitSettings {
   std::size_t samples = 20000;  // each way, at least 1
   std::uint64_t seed = 1;
-  Progress* progress = nullptr;
 };
 
 // Distances are exact at the samples, which are uniform by area. The mesh must be valid. Throws

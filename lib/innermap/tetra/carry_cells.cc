@@ -139,7 +139,7 @@ CellCarry carry(const CellMesh& mesh, const BoundaryWay& way, const CarryCellsSe
         for (std::size_t b = begin; b < end; ++b)
           found[b] = surface.closest(mesh.vertices[boundary.vertices[b]]);
       },
-      settings.progress, "placing the boundary");
+      "placing the boundary");
   CellCarry out;
   measure(mesh, found, way.diagonal, settings, out);
   out.readdressed = readdress(mesh, boundary, surface, found);
@@ -179,7 +179,6 @@ CellCarry carryCells(const CellMesh& mesh, const MappedSolid& mapped,
     if (from.empty()) return Points{};
     EvaluateFieldSettings evaluating;
     evaluating.accuracy = sumAccuracy(mapped) * mapped.boundary.target.diagonal;
-    evaluating.progress = settings.progress;
     return pointsOf(mapped.map.evaluate(from, evaluating).values);
   });
 }
@@ -202,7 +201,7 @@ CellCarry carryCellsBack(const CellMesh& mesh, const MappedSolid& mapped, const 
                         : valueAt(map.mesh->vertices, map.mesh->tetrahedra, clamped(at));
           }
         },
-        settings.progress, "locating vertices");
+        "locating vertices");
     return to;
   });
 }

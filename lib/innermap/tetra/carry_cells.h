@@ -5,7 +5,6 @@
 #include <cstddef>
 
 #include "innermap/boundary/mapped_solid.h"
-#include "innermap/core/progress.h"
 #include "innermap/lattice/cell_mesh.h"
 #include "innermap/tetra/cell_locator.h"
 
@@ -15,7 +14,6 @@ struct CarryCellsSettings {
   // Farthest that a vertex of the boundary may be from the solid's surface, fraction of its
   // diagonal, in (0, 1]: a mesh that fills something else is refused.
   double farthest = 0.05;
-  Progress* progress = nullptr;
 };
 
 struct CellCarry {

@@ -80,7 +80,7 @@ double scaledJacobian(const Points& vertices, const Hexahedron& cell) {
   return least;
 }
 
-CellQuality cellQuality(const CellMesh& mesh, const CellQualitySettings& settings) {
+CellQuality cellQuality(const CellMesh& mesh) {
   CellQuality q;
   q.leastDihedral.resize(mesh.tetrahedra.size());
   q.greatestDihedral.resize(mesh.tetrahedra.size());
@@ -98,7 +98,7 @@ CellQuality cellQuality(const CellMesh& mesh, const CellQualitySettings& setting
         }
         tetrahedra += inverted;
       },
-      settings.progress, kStage);
+      kStage);
   parallelBlocks(
       mesh.hexahedra.size(), kBlock,
       [&](std::size_t begin, std::size_t end) {
@@ -113,7 +113,7 @@ CellQuality cellQuality(const CellMesh& mesh, const CellQualitySettings& setting
         }
         hexahedra += inverted;
       },
-      settings.progress, kStage);
+      kStage);
   q.invertedTetrahedra = tetrahedra;
   q.invertedHexahedra = hexahedra;
   q.dihedral = summaryOf(q.leastDihedral, 0, 5, 15);

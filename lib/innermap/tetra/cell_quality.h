@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/lattice/cell_mesh.h"
 
 namespace innermap {
@@ -40,12 +39,8 @@ struct CellQuality {
   QualitySummary jacobian;                             // of scaledJacobian; bins of 0.1 from -1
 };
 
-struct CellQualitySettings {
-  Progress* progress = nullptr;
-};
-
 // The mesh must be valid. The same for any number of threads. Throws Cancelled.
-CellQuality cellQuality(const CellMesh& mesh, const CellQualitySettings& settings = {});
+CellQuality cellQuality(const CellMesh& mesh);
 
 // Makes it fields of the mesh's cells, in place of those of an earlier quality: "least_dihedral"
 // and "greatest_dihedral" where there are tetrahedra, "scaled_jacobian" where there are hexahedra;

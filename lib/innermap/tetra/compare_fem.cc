@@ -170,7 +170,6 @@ Samples compareElements(const Task& task, const CompareFemSettings& settings, Co
     ElementsSettings solving;
     solving.resolution = resolution;
     solving.maxMemory = settings.maxMemory;
-    solving.progress = settings.progress;
     const auto elements =
         std::make_shared<const FiniteElements>(solveElements(task.solid, task.boundary, solving));
     ComparedRow row;
@@ -241,7 +240,6 @@ CompareFem compareFemOnFunctions(const Solid& solid, const CompareFemSettings& s
     problem.collocation = 4 * count;
     problem.heldOut = std::max<std::size_t>(500, count / 2);
     problem.seed = settings.seed;
-    problem.progress = settings.progress;
     const SurfaceValues values = [&](const std::vector<SurfacePoint>& at) {
       Matrix m(at.size(), 3);
       for (std::size_t i = 0; i < at.size(); ++i) {
@@ -254,7 +252,6 @@ CompareFem compareFemOnFunctions(const Solid& solid, const CompareFemSettings& s
     fitting.sources = count;
     fitting.interpolation = Interpolation::linear;  // the values are exact between vertices too
     fitting.maxMemory = settings.maxMemory;
-    fitting.progress = settings.progress;
     const FitResult fit = fitField(surfaceProblem(solid, values, problem), fitting);
     row.seconds = watch.seconds();
     row.charges = true;
@@ -275,7 +272,6 @@ CompareFem compareFemOnMap(const BoundaryPair& pair, const CompareFemSettings& s
   fitting.interpolation = Interpolation::linear;
   fitting.seed = settings.seed;
   fitting.maxMemory = settings.maxMemory;
-  fitting.progress = settings.progress;
   fitting.tolerance = settings.referenceTolerance;
   const Watch watch;
   const MapFit reference = fitMap(pair, fitting);

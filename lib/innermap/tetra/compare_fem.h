@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "innermap/boundary/fit_map.h"
-#include "innermap/core/progress.h"
 #include "innermap/levelset/solid.h"
 
 namespace innermap {
@@ -26,7 +25,6 @@ struct CompareFemSettings {
   std::size_t samples = 20000;       // points inside, in [100, 1e6]
   std::uint64_t seed = 1;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 // Positions, and the same of all three channels: gradients[3 k + axis].

@@ -9,6 +9,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -34,22 +35,19 @@ class Solver {
       for (std::size_t k = 0; k < given_.columns() && fixed_[v]; ++k)
         result.values(v, k) = given_(v, k);
     if (result.unknowns == 0) return result;
-    throwIfCancelled(settings_.progress);
+    throwIfCancelled();
     Factor factor(matrix_);
     if (factor.info() != Eigen::Success)
       throw DataError(mesh_.name + ": the finite elements' matrix cannot be factored");
     std::vector<int> iterations(given_.columns());
     std::vector<double> residuals(given_.columns());
-    parallelBlocks(
-        given_.columns(), 1,
-        [&](std::size_t k, std::size_t) {
-          Eigen::VectorXd x = startOf(k);
-          residuals[k] = conjugateGradients(factor, right_.col(static_cast<Eigen::Index>(k)), x,
-                                            iterations[k]);
-          for (std::size_t v = 0; v < mesh_.vertices.size(); ++v)
-            if (unknown_[v] >= 0) result.values(v, k) = x[unknown_[v]];
-        },
-        settings_.progress);
+    parallelBlocks(given_.columns(), 1, [&](std::size_t k, std::size_t) {
+      Eigen::VectorXd x = startOf(k);
+      residuals[k] =
+          conjugateGradients(factor, right_.col(static_cast<Eigen::Index>(k)), x, iterations[k]);
+      for (std::size_t v = 0; v < mesh_.vertices.size(); ++v)
+        if (unknown_[v] >= 0) result.values(v, k) = x[unknown_[v]];
+    });
     result.iterations = *std::max_element(iterations.begin(), iterations.end());
     result.residual = *std::max_element(residuals.begin(), residuals.end());
     if (!(result.residual <= settings_.residual))
@@ -79,7 +77,7 @@ class Solver {
     std::vector<Eigen::Triplet<double, int>> entries;
     entries.reserve(10 * mesh_.tetrahedra.size());
     for (std::size_t t = 0; t < mesh_.tetrahedra.size(); ++t) {
-      if (t % 65536 == 0) throwIfCancelled(settings_.progress);
+      if (t % 65536 == 0) throwIfCancelled();
       const Tetrahedron& c = mesh_.tetrahedra[t];
       const double volume = signedVolume(mesh_.vertices, c);
       if (!(volume > 0))
@@ -130,7 +128,6 @@ class Solver {
     for (iterations = 0;
          residual.norm() > settings_.residual * norm && iterations < settings_.maxIterations;
          ++iterations) {
-      throwIfCancelled(settings_.progress);
       const Eigen::VectorXd applied = times(direction);
       const double step = rz / direction.dot(applied);
       x += step * direction;
@@ -139,10 +136,9 @@ class Solver {
       const double next = residual.dot(z);
       direction = z + next / rz * direction;
       rz = next;
-      if (settings_.progress)
-        settings_.progress->report(
-            kStage,
-            std::clamp(std::log(residual.norm() / norm) / std::log(settings_.residual), 0.0, 1.0));
+      reportProgress(
+          kStage,
+          std::clamp(std::log(residual.norm() / norm) / std::log(settings_.residual), 0.0, 1.0));
     }
     return residual.norm() / norm;
   }

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "innermap/core/matrix.h"
-#include "innermap/core/progress.h"
 #include "innermap/lattice/cell_mesh.h"
 
 namespace innermap {
@@ -14,7 +13,6 @@ namespace innermap {
 struct HarmonicCellsSettings {
   double residual = 1e-9;    // relative, at which conjugate gradients end, in (0, 1)
   int maxIterations = 5000;  // at least 1
-  Progress* progress = nullptr;
 };
 
 struct HarmonicCells {

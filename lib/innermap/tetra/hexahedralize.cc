@@ -10,6 +10,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/lattice/detail/sharp_edges.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/tetra/detail/hex_shaping.h"
@@ -56,9 +57,8 @@ Carried carry(const Mesh& mesh, const HexahedralizeSettings& settings, Hexahedra
   laying.aligned = true;
   laying.seed = settings.seed;
   laying.maxMemory = settings.maxMemory;
-  PartOfTime layingTime(settings.progress, kLayingTimeShare);
-  laying.progress = &layingTime;
   const MeshCorrespondence map = timed(out.seconds, "boundary map", [&] {
+    const PartOfTime time(kLayingTimeShare);
     return correspondMeshes(blockSurface(out.polycube.blocks, surfacePieces(out.polycube.blocks)),
                             mesh, laying);
   });
@@ -75,20 +75,18 @@ Carried carry(const Mesh& mesh, const HexahedralizeSettings& settings, Hexahedra
     fitting.oneToOne = OneToOne::off;
     fitting.seed = settings.seed;
     fitting.maxMemory = settings.maxMemory;
-    PartOfTime fittingTime(settings.progress, kFittingShare);
-    fitting.progress = &fittingTime;
-    const MapFit fit = fitMap(map.source, map.target("polycube on " + mesh.name), fitting);
+    const MapFit fit = [&] {
+      const PartOfTime time(kFittingShare);
+      return fitMap(map.source, map.target("polycube on " + mesh.name), fitting);
+    }();
     EvaluateFieldSettings evaluating;
     evaluating.accuracy = 1e-5 * fit.solid().diagonal();
-    evaluating.progress = settings.progress;
     Points& at = carried.hexes.mesh.vertices;
     const Matrix moved = fit.map.evaluate(at, evaluating).values;
     for (std::size_t v = 0; v < at.size(); ++v) at[v] = {moved(v, 0), moved(v, 1), moved(v, 2)};
     Points skin;
     for (const auto& s : carried.hexes.skin) skin.push_back(out.inBlocks.vertices[s.outer]);
-    SurfaceImageSettings imaging;
-    imaging.progress = settings.progress;
-    SurfaceImages images = imagesOf(skin, map.map, map.b.shells(), imaging);
+    SurfaceImages images = imagesOf(skin, map.map, map.b.shells());
     for (std::size_t s = 0; s < skin.size(); ++s)
       at[carried.hexes.skin[s].outer] = images.positions[s];
     carried.onSurface = std::move(images.onTarget);
@@ -118,12 +116,9 @@ void measureFeatures(const Mesh& surface, const HexahedralizeSettings& settings,
   if (samples.empty()) return;
   const TriangleTree tree(out.mesh.vertices, boundaryTriangles(out.mesh));
   std::vector<double> lengths(samples.size());
-  parallelBlocks(
-      samples.size(), kBlock,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) lengths[i] = tree.closest(samples[i]).distance;
-      },
-      settings.progress);
+  parallelBlocks(samples.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) lengths[i] = tree.closest(samples[i]).distance;
+  });
   const double diagonal = boundingBox(surface).diagonal();
   double squares = 0;
   for (const double length : lengths) {
@@ -135,17 +130,12 @@ void measureFeatures(const Mesh& surface, const HexahedralizeSettings& settings,
 
 void measure(const Mesh& surface, const HexahedralizeSettings& settings, Hexahedralization& out) {
   HexahedronCheckSettings checking;
-  checking.progress = settings.progress;
   out.after = checkHexahedra(out.mesh, checking);
-  CellQualitySettings quality;
-  quality.progress = settings.progress;
-  out.quality = cellQuality(out.mesh, quality);
+  out.quality = cellQuality(out.mesh);
   setQualityFields(out.mesh, out.quality);
   SolidSettings making;
-  making.progress = settings.progress;
   BoundaryFitSettings fitting;
   fitting.seed = settings.seed + 1;  // other points than those that shaped the hexahedra
-  fitting.progress = settings.progress;
   out.boundary = boundaryFit(out.mesh, Solid(surface, making), fitting);
   measureFeatures(surface, settings, out);
 }
@@ -171,17 +161,14 @@ Hexahedralization attempt(const Mesh& mesh, const HexahedralizeSettings& setting
   PolycubeSettings cubes;
   cubes.blocks = blocks;
   cubes.maxMemory = settings.maxMemory;
-  cubes.progress = settings.progress;
   out.polycube = timed(out.seconds, "polycube", [&] { return makePolycube(mesh, cubes); });
   out.notes = out.polycube.notes;
   out.pieces = settings.pieces;
   Carried carried = carry(mesh, settings, out);
   HexahedronCheckSettings checking;
-  checking.progress = settings.progress;
   out.before = checkHexahedra(carried.hexes.mesh, checking);
   HexShapingSettings shaping;
   shaping.seed = settings.seed;
-  shaping.progress = settings.progress;
   timed(out.seconds, "shape",
         [&] { shapeHexahedra(carried.hexes, carried.surface, carried.onSurface, shaping); });
   out.mesh = std::move(carried.hexes.mesh);
@@ -200,7 +187,7 @@ Hexahedralization hexahedralize(const Mesh& mesh, const HexahedralizeSettings& s
   Hexahedralization best = attempt(mesh, settings, settings.blocks);
   for (int retry = 0; retry < kRetries && settings.blocks == 0 && !best.after.proven(); ++retry) {
     const int more = static_cast<int>(std::ceil(kMoreBlocks * best.polycube.across));
-    if (more > kMostAcross || outOfTime(settings.progress)) break;
+    if (more > kMostAcross || outOfTime()) break;
     try {
       Hexahedralization other = attempt(mesh, settings, more);
       const auto bad = [](const Hexahedralization& h) {

@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/stage_seconds.h"
 #include "innermap/lattice/cell_mesh.h"
 #include "innermap/mesh/mesh.h"
@@ -31,7 +30,6 @@ struct HexahedralizeSettings {
       30;                  // degrees between faces over which an edge counts as sharp, in (0, 180)
   std::uint64_t seed = 1;  // of all random choices
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 struct Hexahedralization {

@@ -120,7 +120,7 @@ HexahedronCheck checkHexahedra(const CellMesh& mesh, const HexahedronCheckSettin
             }
         }
       },
-      settings.progress, "checking hexahedra");
+      "checking hexahedra");
   HexahedronCheck out;
   for (const HexahedronCheck& part : parts) {
     out.inverted += part.inverted;

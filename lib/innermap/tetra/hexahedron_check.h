@@ -9,7 +9,6 @@
 
 #include <cstddef>
 
-#include "innermap/core/progress.h"
 #include "innermap/lattice/cell_mesh.h"
 
 namespace innermap {
@@ -33,7 +32,6 @@ struct HexahedronCheck {
 
 struct HexahedronCheckSettings {
   int halvings = 5;  // in [0, 10]
-  Progress* progress = nullptr;
 };
 
 // Of all hexahedra of the mesh. Throws SettingError, Cancelled.

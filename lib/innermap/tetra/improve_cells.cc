@@ -128,7 +128,6 @@ CellImprovement improveCells(CellMesh& mesh, const Mesh& surface, CarriedCells& 
   passes.least = std::sin(settings.angle * kPi / 180);
   passes.connect = settings.connect;
   passes.passes = settings.passes;
-  passes.progress = settings.progress;
   const CellSystem system(mesh, RestShape::own);
   const GuideSurface guide(surface.vertices, surface.triangles);
   const std::vector<char> off = offSurface(system, guide, boundingBox(surface).diagonal(), carried);
@@ -154,7 +153,7 @@ CellImprovement improveCells(CellMesh& mesh, const Mesh& surface, CarriedCells& 
           results[p] = improveShapes(guide, passes, locals[p]);
         }
       },
-      settings.progress, "improving shapes");
+      "improving shapes");
   for (std::size_t p = 0; p < patches.size(); ++p) {
     out.swaps += results[p].swaps;
     out.collapses += results[p].collapses;

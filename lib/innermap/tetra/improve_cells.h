@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/lattice/cell_mesh.h"
 #include "innermap/mesh/mesh.h"
 
@@ -15,7 +14,6 @@ struct ImproveCellsSettings {
                       // worked on; in [1, 30]
   bool connect = true;  // change the connectivity; else vertices move alone
   int passes = 6;       // at most, in [1, 100]
-  Progress* progress = nullptr;
 };
 
 struct CellImprovement {

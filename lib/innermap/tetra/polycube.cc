@@ -24,10 +24,9 @@ constexpr double kWorthTelling = 1e-4;  // of the solid's volume
 constexpr std::uint64_t kBytesABlock = 400, kLevelSet = 16'000'000, kBytesATriangle = 850;
 
 // Handles of the outer boundary, then of those of cavities, ascending.
-std::vector<int> handlesOf(const Mesh& mesh, const PolycubeSettings& polycube) {
+std::vector<int> handlesOf(const Mesh& mesh) {
   ClosedSurfaceSettings settings;
   settings.closeHoles = true;
-  settings.progress = polycube.progress;
   const SurfaceShells shells = closedSurfaces(mesh, settings);
   std::size_t outer = 0, bodies = 0;
   for (std::size_t s = 0; s < shells.shells.size(); ++s)
@@ -126,8 +125,8 @@ struct Search {
   const PolycubeSettings& settings;
 
   std::optional<Polycube> at(int across) const {
-    const BlockShares shares(solid, across, settings.maxMemory, settings.progress);
-    std::optional<FoundBlocks> found = findBlocks(shares, handles, settings.progress);
+    const BlockShares shares(solid, across, settings.maxMemory);
+    std::optional<FoundBlocks> found = findBlocks(shares, handles);
     if (!found) return {};
     Polycube out;
     out.across = across;
@@ -183,9 +182,8 @@ Polycube makePolycube(const Mesh& mesh, const PolycubeSettings& settings) {
     throw SettingError("blocks",
                        fmt::format("must be from {} to {}, or 0 to have it chosen", kLeast, kMost));
   StageSeconds seconds;
-  const std::vector<int> handles = handlesOf(mesh, settings);
+  const std::vector<int> handles = handlesOf(mesh);
   SolidSettings solidSettings;
-  solidSettings.progress = settings.progress;
   const Solid solid = timed(seconds, "solid", [&] { return Solid(mesh, solidSettings); });
   const Search search{solid, handles, settings};
   std::optional<Polycube> out = timed(seconds, "blocks", [&] {

@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/stage_seconds.h"
 #include "innermap/mesh/mesh.h"
 #include "innermap/tetra/block_set.h"
@@ -23,7 +22,6 @@ struct PolycubeSettings {
   // all, or a few more where those have not the mesh's topology.
   int blocks = 0;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 // A part of the solid that no block covers.

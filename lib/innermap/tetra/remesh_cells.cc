@@ -9,6 +9,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/tetra/carry_cells.h"
 #include "innermap/tetra/detail/cell_system.h"
 #include "innermap/tetra/detail/coarse_start.h"
@@ -66,7 +67,6 @@ class Remesher {
   CarryCellsSettings carrySettings() const {
     CarryCellsSettings carrying;
     carrying.farthest = settings_.farthest;
-    carrying.progress = settings_.progress;
     return carrying;
   }
 
@@ -94,13 +94,11 @@ class Remesher {
     filling.resolution = resolution;
     filling.keepTopology = false;
     filling.maxMemory = settings_.maxMemory;
-    filling.progress = settings_.progress;
     return filling;
   }
 
   CellRepair repaired(const CellMesh& mesh, const Mesh& surface, CarriedCells& cells) const {
     RepairCellsSettings repairing;
-    repairing.progress = settings_.progress;
     return repairCells(mesh, surface, cells, repairing);
   }
 
@@ -124,7 +122,7 @@ class Remesher {
     std::optional<CoarseLevel> level;
     const auto most = static_cast<std::size_t>(cellCount()) + 4 * given_.hexahedra.size();
     for (int resolution = settings_.coarse; resolution <= 1024; resolution *= 2) {
-      if (outOfTime(settings_.progress)) break;
+      if (outOfTime()) break;
       CellMesh mesh = tetrahedralize(mapped_.solid(), fillSettings(resolution));
       if (3 * mesh.tetrahedra.size() > most) break;
       CarriedCells moved = carried(mesh);
@@ -157,7 +155,7 @@ class Remesher {
       out_.repair.poorAfter = repair.poorAfter;
       out_.repair.notLanded = repair.notLanded;
       out_.repair.farthestOff = repair.farthestOff;
-      if (!mesh.hexahedra.empty() || outOfTime(settings_.progress)) break;
+      if (!mesh.hexahedra.empty() || outOfTime()) break;
       if (turn + 1 == kTurns && repair.invertedAfter == 0 && repair.notLanded == 0) break;
       const CellImprovement improved =
           timed(out_.seconds, "shapes", [&] { return improve(mesh, cells); });
@@ -171,7 +169,6 @@ class Remesher {
     ImproveCellsSettings improving;
     improving.angle = settings_.angle;
     improving.connect = !settings_.keepConnectivity;
-    improving.progress = settings_.progress;
     CellImprovement improved = improveCells(mesh, surface_, cells, improving);
     out_.swaps += improved.swaps;
     out_.collapses += improved.collapses;
@@ -230,9 +227,7 @@ class Remesher {
       rows.push_back(static_cast<int>(given_.tetrahedra.size() + h));
     turnFields(given_, kept, rows, source, made);
     addSource(source);
-    CellQualitySettings judging;
-    judging.progress = settings_.progress;
-    out_.quality = cellQuality(made, judging);
+    out_.quality = cellQuality(made);
     setQualityFields(made, out_.quality);
     warn();
   }

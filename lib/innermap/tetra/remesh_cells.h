@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "innermap/boundary/mapped_solid.h"
-#include "innermap/core/progress.h"
 #include "innermap/core/stage_seconds.h"
 #include "innermap/lattice/cell_mesh.h"
 #include "innermap/tetra/cell_quality.h"
@@ -32,7 +31,6 @@ struct RemeshSettings {
   // first (0: none), and back, of the mesh that stands for the inverse map (0: 64).
   int coarse = 32;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 struct Remesh {

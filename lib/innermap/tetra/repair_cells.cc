@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/tetra/detail/cell_system.h"
 #include "innermap/tetra/detail/guide_surface.h"
 #include "innermap/tetra/detail/landing.h"
@@ -52,7 +53,6 @@ class Repair {
     patch_.least = settings.least;
     patch_.anchor = settings.anchor;
     patch_.anchors = &carried_;
-    patch_.progress = settings.progress;
     // Vertices of the boundary without a place stay where they are.
     for (std::size_t v = 0; v < system_.vertices(); ++v)
       if (system_.onBoundary[v] && cells.onSurface[v].triangle < 0)
@@ -75,7 +75,7 @@ class Repair {
       poor = untangleWith(kRings, false, std::move(poor), first);
     }
     if (settings_.slide) poor = untangleWith(kSlidingRings, true, std::move(poor), first);
-    reportProgress(settings_.progress, "landing", 0);
+    reportProgress("landing", 0);
     const std::vector<int> off = land(system_, surface_, offSurface(), landed_, patch_, cells_);
     measure(off, out);
     return out;
@@ -86,8 +86,8 @@ class Repair {
   std::vector<int> untangleWith(const Rings& rings, bool slide, std::vector<int> poor,
                                 std::size_t first) {
     for (const int count : rings) {
-      if (poor.empty() || outOfTime(settings_.progress)) break;
-      reportProgress(settings_.progress, slide ? "repairing the boundary" : "repairing",
+      if (poor.empty() || outOfTime()) break;
+      reportProgress(slide ? "repairing the boundary" : "repairing",
                      1 - static_cast<double>(poor.size()) / static_cast<double>(first + 1));
       const std::size_t before = poor.size();
       const auto patches = growPatches(system_, poor, count, slide);

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/lattice/cell_mesh.h"
 #include "innermap/mesh/mesh.h"
 
@@ -24,7 +23,6 @@ struct RepairCellsSettings {
   // a cell's energy: 0 lets them slide freely along the surface. Not negative.
   double anchor = 0;
   bool slide = true;  // vertices of the boundary may move at all
-  Progress* progress = nullptr;
 };
 
 struct CellRepair {

@@ -55,7 +55,6 @@ Tetrahedralization tetrahedralizeScaled(const Solid& solid, double spacing,
   for (const Vec3& v : solid.repaired().mesh.vertices)
     mesh.vertices.push_back(scale * (v - centre));
   SolidSettings solidSettings;
-  solidSettings.progress = settings.progress;
   settings.edge = scale * spacing;
   Tetrahedralization result = tetrahedralization(Solid(mesh, solidSettings), settings);
   result.edge /= scale;
@@ -91,8 +90,8 @@ void requireMemoryFor(const Solid& solid, double spacing, std::uint64_t limit) {
     if (finer > kMostAcross ||
         (settings.maxMemory > 0 && memoryFor(solid, step) > settings.maxMemory))
       break;
-    LatticeSigns signs = latticeSigns(solid, step, settings.progress);
-    if (!keepTopology(solid, &wanted, signs, settings.progress).kept) continue;
+    LatticeSigns signs = latticeSigns(solid, step);
+    if (!keepTopology(solid, &wanted, signs).kept) continue;
     advice = fmt::format("a resolution of {:.0f} would do", finer);
     break;
   }
@@ -106,9 +105,8 @@ LatticeSigns signsOf(const Solid& solid, double spacing, const TetrahedralizeSet
                      Tetrahedralization& result) {
   const SurfaceTopology surface = surfaceTopology(solid);
   if (surface.clean) result.solidTopology = surface.solid;
-  LatticeSigns signs = latticeSigns(solid, spacing, settings.progress);
-  const KeptTopology kept =
-      keepTopology(solid, surface.clean ? &surface.solid : nullptr, signs, settings.progress);
+  LatticeSigns signs = latticeSigns(solid, spacing);
+  const KeptTopology kept = keepTopology(solid, surface.clean ? &surface.solid : nullptr, signs);
   result.topology = kept.found;
   result.changedNodes = kept.changed;
   if (kept.lost > kMostLost * static_cast<double>(kept.points))
@@ -122,9 +120,8 @@ LatticeSigns signsOf(const Solid& solid, double spacing, const TetrahedralizeSet
                                           describe(kept.found), describe(surface.solid)));
   }
   if (!surface.clean) {
-    LatticeSigns finer =
-        latticeSigns(solid, std::max(spacing / 2, kSmallestVoxel), settings.progress);
-    const KeptTopology fine = keepTopology(solid, nullptr, finer, settings.progress);
+    LatticeSigns finer = latticeSigns(solid, std::max(spacing / 2, kSmallestVoxel));
+    const KeptTopology fine = keepTopology(solid, nullptr, finer);
     if (!(fine.found == kept.found))
       result.warnings.push_back(fmt::format(
           "the tetrahedra have {}; a lattice twice as fine has {} (the mesh's own surface is open, "
@@ -153,7 +150,7 @@ void checkBoundary(const Solid& solid, const StuffedMesh& mesh,
 void keepSharpEdges(const Solid& solid, const TetrahedralizeSettings& settings, StuffedMesh& mesh,
                     Tetrahedralization& result) {
   const SharpEdges sharp = sharpEdges(solid.surface(), *settings.features);
-  const SharpFit fit = fitSharpEdges(solid, sharp, result.edge, mesh, settings.progress);
+  const SharpFit fit = fitSharpEdges(solid, sharp, result.edge, mesh);
   result.sharpCurves = fit.curves;
   result.keptCurves = fit.kept;
   result.sharpRms = fit.rms;
@@ -186,12 +183,12 @@ Tetrahedralization tetrahedralization(const Solid& solid, const TetrahedralizeSe
         fmt::format("{} nodes of the lattice, in walls and gaps too thin for "
                     "it, were taken to be inside or outside all the same",
                     result.changedNodes));
-  warpNodes(signs, settings.progress);
-  StuffedMesh stuffing = stuffed(signs, settings.progress);
+  warpNodes(signs);
+  StuffedMesh stuffing = stuffed(signs);
   signs = {};
   checkBoundary(solid, stuffing, settings, result);
-  holdWarped(stuffing, settings.progress);
-  fitBoundary(solid, spacing, stuffing, settings.progress);
+  holdWarped(stuffing);
+  fitBoundary(solid, spacing, stuffing);
   if (settings.features) keepSharpEdges(solid, settings, stuffing, result);
   result.mesh.name = solid.repaired().mesh.name;
   result.mesh.vertices = std::move(stuffing.vertices);

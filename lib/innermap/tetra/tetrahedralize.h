@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/lattice/boundary_topology.h"
 #include "innermap/lattice/cell_mesh.h"
 #include "innermap/lattice/stuffing_need.h"
@@ -24,7 +23,6 @@ struct TetrahedralizeSettings {
   // Whether to throw where the solid's topology cannot be kept; else there is a warning.
   bool keepTopology = true;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 struct Tetrahedralization {

@@ -12,16 +12,12 @@ constexpr std::size_t kBlock = 512;
 constexpr double kApart = 0.1;     // of the diagonal, boxes of the mesh and of the solid
 constexpr double kOutside = 1e-6;  // of the diagonal: counted as outside
 
-std::vector<LinearSample> samplesOf(const LinearCellMap& map, bool push, const Points& points,
-                                    Progress* progress) {
+std::vector<LinearSample> samplesOf(const LinearCellMap& map, bool push, const Points& points) {
   std::vector<LinearSample> out(points.size());
-  parallelBlocks(
-      points.size(), kBlock,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-          out[i] = push ? map.push(points[i]) : map.pull(points[i]);
-      },
-      progress);
+  parallelBlocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      out[i] = push ? map.push(points[i]) : map.pull(points[i]);
+  });
   return out;
 }
 
@@ -43,7 +39,7 @@ LinearCellMap linearMapOf(const CellMesh& carried, const MappedSolid& mapped) {
 ThroughMap throughMap(const LinearCellMap& map) {
   const auto way = [map](bool push) {
     return [map, push](const Points& points, Points& images, std::vector<Mat3>& jacobians) {
-      for (const LinearSample& s : samplesOf(map, push, points, nullptr)) {
+      for (const LinearSample& s : samplesOf(map, push, points)) {
         images.push_back(s.image);
         jacobians.push_back(s.jacobian);
       }
@@ -55,10 +51,9 @@ ThroughMap throughMap(const LinearCellMap& map) {
 PointCarry carryThrough(const LinearCellMap& map, bool push, const CarryPointsSettings& settings) {
   const double diagonal = push ? map.sourceDiagonal() : map.targetDiagonal();
   const double most = std::max(settings.skin, settings.outside.distance) * diagonal;
-  Progress* progress = settings.progress;
   return [=](const Points& points, bool jacobians) {
     CarriedPoints out;
-    for (const LinearSample& s : samplesOf(map, push, points, progress)) {
+    for (const LinearSample& s : samplesOf(map, push, points)) {
       const bool cut = s.outside > most;
       out.points.push_back(s.image);
       out.fates.push_back(cut ? PointFate::cut : PointFate::carried);

@@ -17,7 +17,7 @@ LinearCellMap linearMapOf(const CellMesh& carried, const MappedSolid& mapped);
 ThroughMap throughMap(const LinearCellMap& map);
 
 // Points, from the source (push) or to it. Those farther from the mesh than settings.outside and
-// the skin say are cut. settings.progress: must outlive it.
+// the skin say are cut.
 PointCarry carryThrough(const LinearCellMap& map, bool push, const CarryPointsSettings& settings);
 
 }  // namespace innermap

@@ -78,12 +78,10 @@ std::uint64_t memoryOf(const SolidTexturePlan& plan) {
 }
 
 void findCharts(SolidTexturePlan::Parts& parts, SolidTexturePlan& plan) {
-  Progress* const progress = parts.settings.progress;
-  parts.charts = uvCharts(parts.mesh, {progress});
+  parts.charts = uvCharts(parts.mesh);
   if (parts.settings.seams != TextureSeams::blend) return;
   UvGroupSettings grouping;
   grouping.most = kMostGroups;
-  grouping.progress = progress;
   parts.groups = uvGroups(parts.mesh, *parts.charts, grouping);
   plan.pieces = parts.groups->pieces;
   plan.groups = parts.groups->count;
@@ -144,7 +142,6 @@ class Maker {
     sample.collocation = collocationFor(plan_.sources);
     sample.heldOut = kHeldOut;
     sample.seed = settings_.seed;
-    sample.progress = settings_.progress;
     const SurfaceValues values = [&](const std::vector<SurfacePoint>& points) {
       return surface_.values(points, spacingOf(sample.collocation));
     };
@@ -155,7 +152,6 @@ class Maker {
     settings.solver = FitSolver::iterative;
     settings.interpolation = Interpolation::linear;
     settings.maxMemory = settings_.maxMemory;
-    settings.progress = settings_.progress;
     std::optional<FitResult> result;
     timed("fit", [&] { result.emplace(fitField(problem, settings)); });
     out_.fit.sources = result->field.sources().size();
@@ -171,11 +167,9 @@ class Maker {
   BoundaryError errorOf(const HarmonicField& field, const SurfaceValues& values) const {
     FreshSampleSettings fresh;
     fresh.seed = settings_.seed;
-    fresh.progress = settings_.progress;
     const BoundarySamples samples = freshSamples(solid_, values, fresh);
     EvaluateFieldSettings sums;
     sums.accuracy = kSumAccuracy;
-    sums.progress = settings_.progress;
     const Matrix found = field.evaluate(samples.points, sums).values;
     const std::size_t counted =
         settings_.mode == TextureMode::coordinates ? surface_.channels() : 3;
@@ -201,7 +195,6 @@ class Maker {
     settings.spacing = spacingOf(plan_.sources);
     settings.accuracy = kSumAccuracy;
     settings.maxMemory = settings_.maxMemory;
-    settings.progress = settings_.progress;
     const BoundaryValues boundary = [&](const Solid::Closest& at, double* values) {
       surface_.values(at.onSurface, plan_.voxelSize, values);
     };
@@ -217,12 +210,12 @@ class Maker {
       const std::vector<Vec2> centres = surface_.groupCentres();
       for (std::size_t g = 0; g < continued.size(); ++g)
         groups.push_back({std::move(continued[g]), centres[g]});
-      const BlendedTexture blended = blendChartGroups(groups, image_, settings_.progress);
+      const BlendedTexture blended = blendChartGroups(groups, image_);
       out_.colour = blended.colour;
       out_.uv = blended.uv;
     } else {
       out_.uv = continued[0];
-      out_.colour = lookUpColours(*out_.uv, image_, settings_.progress);
+      out_.colour = lookUpColours(*out_.uv, image_);
     }
     out_.colour->setName("Cd");
     if (out_.uv) out_.uv->setName("uv");
@@ -235,7 +228,7 @@ class Maker {
       out_.seams = seamFigures(*parts_.charts, seams);
     }
     const ColourErrors errors =
-        colourErrors(solid_, seams, surface_, *out_.colour, settings_.seed + 1, settings_.progress);
+        colourErrors(solid_, seams, surface_, *out_.colour, settings_.seed + 1);
     out_.colourError = errors.all;
     out_.colourErrorAtSeams = errors.atSeams;
   }
@@ -247,9 +240,9 @@ class Maker {
     f.edges = charts.seams.size();
     f.length = charts.seamLength;
     if (charts.edgeLength > 0) f.lengthShare = charts.seamLength / charts.edgeLength;
-    f.voxelShare = static_cast<double>(voxelsAlong(seams, *out_.surface, settings_.progress)) /
+    f.voxelShare = static_cast<double>(voxelsAlong(seams, *out_.surface)) /
                    static_cast<double>(out_.interiorVoxels);
-    f.areaShare = areaShareAlong(seams, solid_, voxel, settings_.progress);
+    f.areaShare = areaShareAlong(seams, solid_, voxel);
     f.colourDifference = seamDifferences(parts_.mesh, charts, surface_, voxel);
     return f;
   }
@@ -297,7 +290,6 @@ SolidTexturePlan planSolidTexture(Mesh mesh, const SolidTextureSettings& setting
   parts->mesh = std::move(mesh);
   timed(plan.seconds, "solid", [&] {
     SolidSettings solid;
-    solid.progress = settings.progress;
     parts->solid.emplace(parts->mesh, solid);
   });
   for (const std::string& note : parts->solid->repaired().notes)

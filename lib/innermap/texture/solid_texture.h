@@ -16,7 +16,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/stage_seconds.h"
 #include "innermap/field/boundary_error.h"
 #include "innermap/levelset/solid.h"
@@ -45,7 +44,6 @@ struct SolidTextureSettings {
   std::function<double(double)> decode;
   std::uint64_t seed = 1;       // of all random points, in [0, 1e15]
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 // What a mesh's texture will take, known before any image is read.

@@ -8,6 +8,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -51,7 +52,7 @@ std::vector<Edge> bentEdges(const Geometry& geometry, const std::vector<Edge>& e
 void subdivide(Geometry& geometry, const PointCarry& carry, const CarryGeometrySettings& settings) {
   std::vector<Edge> straight;  // known to need no split
   for (int round = 0; round < kMostRounds; ++round) {
-    throwIfCancelled(settings.progress);
+    throwIfCancelled();
     const std::vector<Edge> all = edgesOf(geometry);
     std::vector<Edge> fresh, bent;
     std::set_difference(all.begin(), all.end(), straight.begin(), straight.end(),

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/transfer/carry_points.h"
 #include "innermap/transfer/geometry.h"
 
@@ -16,7 +15,6 @@ struct CarryGeometrySettings {
   // them: world units of what is carried to; 0 splits none. Not negative.
   double subdivide = 0;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 struct CarriedGeometry {

@@ -7,6 +7,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/evaluate/detail/active_region.h"
 #include "innermap/evaluate/detail/extended_places.h"
 #include "innermap/evaluate/evaluate_map.h"
@@ -36,14 +37,14 @@ void requireFinite(const Points& points) {
 
 // Passes over parts of the points, so that what they need on the way does not grow.
 template <class Part>
-CarriedPoints inParts(const Points& points, bool jacobians, Progress* progress, const Part& part) {
+CarriedPoints inParts(const Points& points, bool jacobians, const Part& part) {
   requireFinite(points);
   CarriedPoints out;
   out.points.resize(points.size());
   out.fates.resize(points.size());
   if (jacobians) out.jacobians.resize(points.size());
   for (std::size_t begin = 0; begin < points.size(); begin += kTogether) {
-    reportProgress(progress, "carrying points",
+    reportProgress("carrying points",
                    static_cast<double>(begin) / static_cast<double>(points.size()));
     part(begin, std::min(points.size(), begin + kTogether), out);
   }
@@ -77,7 +78,6 @@ openvdb::FloatGrid::Ptr coarseLevelSet(const Solid& solid, const CarryPointsSett
   LevelSetSettings levelSet;
   levelSet.resolution = resolution;
   levelSet.maxMemory = settings.maxMemory;
-  levelSet.progress = settings.progress;
   return makeLevelSet(solid, levelSet);
 }
 
@@ -93,12 +93,11 @@ SourceLattice latticeOf(const Solid& source, const CarryPointsSettings& settings
   out.levelSet = coarseLevelSet(source, settings, resolutionOf(settings));
   RegionSettings region;
   region.maxMemory = settings.maxMemory;
-  region.progress = settings.progress;
   out.region = activeRegion(*out.levelSet, region);
   constexpr std::uint64_t kVoxelBytes = 64;
   if (settings.outside.distance > 0)
     addAround(*out.region, source, settings.outside.distance * source.diagonal(), kVoxelBytes,
-              settings.maxMemory, settings.progress);
+              settings.maxMemory);
   return out;
 }
 
@@ -135,29 +134,25 @@ CarriedPoints PointPusher::push(const ComposedMap& map, const Points& points,
   const Limits limits(data_->source, s);
   const double accuracy = s.accuracy * targetExtent(map, data_->source);
   const ExtendedMap extended(map, data_->source, *data_->levelSet, s.outside, accuracy);
-  return inParts(points, jacobians, s.progress,
-                 [&](std::size_t begin, std::size_t end, CarriedPoints& out) {
-                   const Points part(points.begin() + static_cast<std::ptrdiff_t>(begin),
-                                     points.begin() + static_cast<std::ptrdiff_t>(end));
-                   // Inside, the derivative is not needed for the place.
-                   const ExtendedPlaces places =
-                       placeExtended(data_->source, *data_->levelSet, part, s.progress);
-                   Points inside, outside;
-                   std::vector<std::size_t> insideAt, outsideAt;
-                   for (std::size_t i = 0; i < part.size(); ++i) {
-                     const bool away = jacobians || squaredNorm(places.beyond[i]) > 0;
-                     (away ? outside : inside).push_back(part[i]);
-                     (away ? outsideAt : insideAt).push_back(i);
-                   }
-                   const Points images = extended.imagesInside(inside, s.progress);
-                   for (std::size_t n = 0; n < images.size(); ++n)
-                     out.points[begin + insideAt[n]] = images[n];
-                   const std::vector<ExtendedSample> samples = extended.at(outside, s.progress);
-                   for (std::size_t n = 0; n < samples.size(); ++n)
-                     keep(samples[n], begin + outsideAt[n], out);
-                   for (std::size_t i = 0; i < part.size(); ++i)
-                     limits.judge(norm(places.beyond[i]), begin + i, out);
-                 });
+  return inParts(points, jacobians, [&](std::size_t begin, std::size_t end, CarriedPoints& out) {
+    const Points part(points.begin() + static_cast<std::ptrdiff_t>(begin),
+                      points.begin() + static_cast<std::ptrdiff_t>(end));
+    // Inside, the derivative is not needed for the place.
+    const ExtendedPlaces places = placeExtended(data_->source, *data_->levelSet, part);
+    Points inside, outside;
+    std::vector<std::size_t> insideAt, outsideAt;
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      const bool away = jacobians || squaredNorm(places.beyond[i]) > 0;
+      (away ? outside : inside).push_back(part[i]);
+      (away ? outsideAt : insideAt).push_back(i);
+    }
+    const Points images = extended.imagesInside(inside);
+    for (std::size_t n = 0; n < images.size(); ++n) out.points[begin + insideAt[n]] = images[n];
+    const std::vector<ExtendedSample> samples = extended.at(outside);
+    for (std::size_t n = 0; n < samples.size(); ++n) keep(samples[n], begin + outsideAt[n], out);
+    for (std::size_t i = 0; i < part.size(); ++i)
+      limits.judge(norm(places.beyond[i]), begin + i, out);
+  });
 }
 
 struct PointPuller::Data {
@@ -185,7 +180,6 @@ struct PointPuller::Data {
     inverse.skin = kSkinVoxels;
     inverse.accuracy = std::max(settings.accuracy, 1e-7);  // starts, no more
     inverse.maxMemory = settings.maxMemory;
-    inverse.progress = settings.progress;
     return invertMap(map, source, lattice,
                      *coarseLevelSet(target, settings, resolutionOf(settings)), inverse);
   }
@@ -217,13 +211,6 @@ PointPuller::PointPuller(const ComposedMap& map, const Solid& source, const Soli
                          const CarryPointsSettings& settings) {
   requireInRange(settings);
   data_ = std::make_shared<Data>(map, source, target, settings);
-  progress_ = settings.progress;
-}
-
-PointPuller PointPuller::reportingTo(Progress* progress) const {
-  PointPuller out = *this;
-  out.progress_ = progress;
-  return out;
 }
 
 CarriedPoints PointPuller::pull(const Points& points, bool jacobians) const {
@@ -235,54 +222,51 @@ CarriedPoints PointPuller::pull(const Points& points, bool jacobians) const {
   NewtonSettings newton;
   newton.tolerance = std::max(4 * accuracy, 1e-9 * d.diagonal);
   newton.longestStep = 4 * d.lattice.levelSet->voxelSize()[0];
-  newton.progress = progress_;
-  return inParts(points, jacobians, progress_,
-                 [&](std::size_t begin, std::size_t end, CarriedPoints& out) {
-                   Points targets, sources;
-                   std::vector<std::size_t> at;
-                   for (std::size_t i = begin; i < end; ++i) {
-                     Vec3 start;
-                     if (d.startOf(points[i], start)) {
-                       targets.push_back(points[i]);
-                       sources.push_back(start);
-                       at.push_back(i);
-                     } else {
-                       out.points[i] = points[i];
-                       out.fates[i] = PointFate::cut;
-                       ++out.cut;
-                       ++out.outside;
-                     }
-                   }
-                   const Points starts = sources;
-                   NewtonResult found = solveNewton(extended, targets, sources, newton);
-                   if (d.map.steps().size() > 1) {
-                     Points again, from;
-                     std::vector<std::size_t> which;
-                     for (std::size_t n = 0; n < at.size(); ++n)
-                       if (!(found.residuals[n] <= kInverted * d.diagonal)) {
-                         again.push_back(targets[n]);
-                         from.push_back(starts[n]);
-                         which.push_back(n);
-                       }
-                     if (!which.empty() && which.size() <= kMostStepByStep) {
-                       from = invertStepByStep(d.map, again, from, {newton.tolerance, progress_});
-                       const NewtonResult second = solveNewton(extended, again, from, newton);
-                       for (std::size_t k = 0; k < which.size(); ++k) {
-                         sources[which[k]] = from[k];
-                         found.at[which[k]] = second.at[k];
-                         found.residuals[which[k]] = second.residuals[k];
-                       }
-                     }
-                   }
-                   for (std::size_t n = 0; n < at.size(); ++n) {
-                     const std::size_t i = at[n];
-                     out.points[i] = sources[n];
-                     if (jacobians) out.jacobians[i] = inverse(found.at[n].jacobian);
-                     if (!(found.residuals[n] <= kInverted * d.diagonal))
-                       out.fates[i] = PointFate::failed;
-                     limits.judge(found.at[n].outside, i, out);
-                   }
-                 });
+  return inParts(points, jacobians, [&](std::size_t begin, std::size_t end, CarriedPoints& out) {
+    Points targets, sources;
+    std::vector<std::size_t> at;
+    for (std::size_t i = begin; i < end; ++i) {
+      Vec3 start;
+      if (d.startOf(points[i], start)) {
+        targets.push_back(points[i]);
+        sources.push_back(start);
+        at.push_back(i);
+      } else {
+        out.points[i] = points[i];
+        out.fates[i] = PointFate::cut;
+        ++out.cut;
+        ++out.outside;
+      }
+    }
+    const Points starts = sources;
+    NewtonResult found = solveNewton(extended, targets, sources, newton);
+    if (d.map.steps().size() > 1) {
+      Points again, from;
+      std::vector<std::size_t> which;
+      for (std::size_t n = 0; n < at.size(); ++n)
+        if (!(found.residuals[n] <= kInverted * d.diagonal)) {
+          again.push_back(targets[n]);
+          from.push_back(starts[n]);
+          which.push_back(n);
+        }
+      if (!which.empty() && which.size() <= kMostStepByStep) {
+        from = invertStepByStep(d.map, again, from, {newton.tolerance});
+        const NewtonResult second = solveNewton(extended, again, from, newton);
+        for (std::size_t k = 0; k < which.size(); ++k) {
+          sources[which[k]] = from[k];
+          found.at[which[k]] = second.at[k];
+          found.residuals[which[k]] = second.residuals[k];
+        }
+      }
+    }
+    for (std::size_t n = 0; n < at.size(); ++n) {
+      const std::size_t i = at[n];
+      out.points[i] = sources[n];
+      if (jacobians) out.jacobians[i] = inverse(found.at[n].jacobian);
+      if (!(found.residuals[n] <= kInverted * d.diagonal)) out.fates[i] = PointFate::failed;
+      limits.judge(found.at[n].outside, i, out);
+    }
+  });
 }
 
 std::uint64_t carryPointsMemory(std::uint64_t points, bool jacobians) {

@@ -6,7 +6,6 @@
 #include <memory>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/field/harmonic_map.h"
 #include "innermap/levelset/solid.h"
@@ -22,7 +21,6 @@ struct CarryPointsSettings {
   double skin = 1e-3;
   double accuracy = 1e-7;       // of the sums of charges, as EvaluateSettings::accuracy
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 // Throws SettingError for a number out of its range.
@@ -75,14 +73,9 @@ class PointPuller {
   // Throws as PointPusher::push.
   CarriedPoints pull(const Points& points, bool jacobians) const;
 
-  // The same inverse, reporting to another than that of the settings, which must outlive the
-  // puller's use.
-  PointPuller reportingTo(Progress* progress) const;
-
  private:
   struct Data;
   std::shared_ptr<const Data> data_;
-  Progress* progress_ = nullptr;
 };
 
 // Peak need in bytes of carrying so many points, beyond the points given: with Jacobians or

@@ -58,7 +58,7 @@ class DepthWalk {
 
 // A grid with one float leaf for each leaf of `region`: fill(source leaf, result leaf).
 template <class Grid, class Fill>
-openvdb::FloatGrid::Ptr leafByLeaf(const Grid& region, const Fill& fill, Progress* progress) {
+openvdb::FloatGrid::Ptr leafByLeaf(const Grid& region, const Fill& fill) {
   std::vector<const typename Grid::TreeType::LeafNodeType*> from;
   region.tree().getNodes(from);
   std::vector<std::unique_ptr<FloatLeaf>> leaves(from.size());
@@ -70,7 +70,7 @@ openvdb::FloatGrid::Ptr leafByLeaf(const Grid& region, const Fill& fill, Progres
           fill(*from[i], *leaves[i]);
         }
       },
-      progress, "distances");
+      "distances");
   auto grid = openvdb::FloatGrid::create(0.0f);
   for (auto& leaf : leaves) grid->tree().addLeaf(leaf.release());
   grid->setTransform(region.transform().copy());
@@ -85,7 +85,6 @@ SolidDepths depthsOf(const Solid& solid, const DistanceTransferSettings& setting
   const LevelSetSettings levelSet = levelSetSettings(settings);
   DepthSettings depth;
   depth.maxMemory = settings.maxMemory;
-  depth.progress = settings.progress;
   SolidDepths out;
   timed(seconds, "voxelize", [&] { out.surface = makeLevelSet(solid, levelSet); });
   timed(seconds, "distance", [&] { out.depth = depthInside(solid, *out.surface, depth); });
@@ -101,33 +100,24 @@ openvdb::FloatGrid::Ptr depthInside(const Solid& solid, const openvdb::FloatGrid
   where.skin = settings.skin;
   where.bytesPerVoxel = sizeof(float);
   where.maxMemory = settings.maxMemory;
-  where.progress = settings.progress;
   const openvdb::MaskGrid::Ptr region = activeRegion(levelSet, where);
-  return leafByLeaf(
-      *region,
-      [&](const auto& from, FloatLeaf& leaf) {
-        DepthWalk walk(solid);
-        const auto signs = levelSet.getConstUnsafeAccessor();
-        for (auto voxel = from.cbeginValueOn(); voxel; ++voxel) {
-          const openvdb::Coord at = voxel.getCoord();
-          const double d = walk.distanceAt(vec3(levelSet.indexToWorld(at)));
-          leaf.setValueOn(voxel.pos(), static_cast<float>(signs.getValue(at) < 0 ? d : -d));
-        }
-      },
-      settings.progress);
+  return leafByLeaf(*region, [&](const auto& from, FloatLeaf& leaf) {
+    DepthWalk walk(solid);
+    const auto signs = levelSet.getConstUnsafeAccessor();
+    for (auto voxel = from.cbeginValueOn(); voxel; ++voxel) {
+      const openvdb::Coord at = voxel.getCoord();
+      const double d = walk.distanceAt(vec3(levelSet.indexToWorld(at)));
+      leaf.setValueOn(voxel.pos(), static_cast<float>(signs.getValue(at) < 0 ? d : -d));
+    }
+  });
 }
 
-openvdb::FloatGrid::Ptr depthThrough(const openvdb::Vec3fGrid& map, const Solid& target,
-                                     const DepthThroughSettings& settings) {
-  return leafByLeaf(
-      map,
-      [&](const auto& from, FloatLeaf& leaf) {
-        DepthWalk walk(target);
-        for (auto voxel = from.cbeginValueOn(); voxel; ++voxel)
-          leaf.setValueOn(voxel.pos(),
-                          static_cast<float>(walk.depthAt(vec3(openvdb::Vec3d(*voxel)))));
-      },
-      settings.progress);
+openvdb::FloatGrid::Ptr depthThrough(const openvdb::Vec3fGrid& map, const Solid& target) {
+  return leafByLeaf(map, [&](const auto& from, FloatLeaf& leaf) {
+    DepthWalk walk(target);
+    for (auto voxel = from.cbeginValueOn(); voxel; ++voxel)
+      leaf.setValueOn(voxel.pos(), static_cast<float>(walk.depthAt(vec3(openvdb::Vec3d(*voxel)))));
+  });
 }
 
 DepthFigures depthFigures(const openvdb::FloatGrid& distance, const openvdb::FloatGrid& levelSet) {
@@ -152,13 +142,11 @@ DistanceTransfer transferDistance(const ComposedMap& map, const Solid& source, c
   evaluate.jacobian = evaluate.harmonicEnergy = evaluate.deformationEnergy = false;
   evaluate.accuracy = settings.accuracy;
   evaluate.maxMemory = settings.maxMemory;
-  evaluate.progress = settings.progress;
   MapGrids grids;
   timed(out.seconds, "evaluate",
         [&] { grids = evaluateMap(map, source, *out.source.surface, evaluate); });
   requireInterior(grids.interiorVoxels, source, "the source");
-  timed(out.seconds, "transfer",
-        [&] { out.through = depthThrough(*grids.map, target, {settings.progress}); });
+  timed(out.seconds, "transfer", [&] { out.through = depthThrough(*grids.map, target); });
   out.throughFigures = depthFigures(*out.through, *out.source.surface);
   out.outsideFraction = static_cast<double>(out.throughFigures.negative) /
                         std::max<double>(1, static_cast<double>(out.throughFigures.voxels));

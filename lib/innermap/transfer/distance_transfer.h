@@ -7,7 +7,6 @@
 
 #include <cstdint>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/stage_seconds.h"
 #include "innermap/field/harmonic_map.h"
 #include "innermap/levelset/solid.h"
@@ -21,7 +20,6 @@ namespace innermap {
 struct DepthSettings {
   double skin = 2;              // active voxels outside the surface, in [0, 3]
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 // levelSet: of `solid`, half-width at least the skin; its transform is that of the result, which is
@@ -30,15 +28,10 @@ struct DepthSettings {
 openvdb::FloatGrid::Ptr depthInside(const Solid& solid, const openvdb::FloatGrid& levelSet,
                                     const DepthSettings& settings = {});
 
-struct DepthThroughSettings {
-  Progress* progress = nullptr;
-};
-
 // map: at each active voxel a position in the target's space, world units, as MapGrids::map has
 // them. The result has the map's transform and active voxels: how deep its value lies in `target`.
 // No interpolation. Named "distance", background 0. Throws Cancelled.
-openvdb::FloatGrid::Ptr depthThrough(const openvdb::Vec3fGrid& map, const Solid& target,
-                                     const DepthThroughSettings& settings = {});
+openvdb::FloatGrid::Ptr depthThrough(const openvdb::Vec3fGrid& map, const Solid& target);
 
 // Of voxels whose centre is inside the solid.
 struct DepthFigures {
@@ -55,7 +48,6 @@ struct DistanceTransferSettings {
   int resolution = 0;           // voxels along the longest side
   double accuracy = 1e-7;       // of the map's sums: as in EvaluateSettings
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 // A solid's level set "surface", how deep its voxels lie in it, and the figures of that.

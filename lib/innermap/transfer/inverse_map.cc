@@ -7,6 +7,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
+#include "innermap/core/run.h"
 #include "innermap/evaluate/detail/active_region.h"
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/transfer/detail/cell_images.h"
@@ -91,7 +92,6 @@ void Inversion::chooseRegion(const openvdb::FloatGrid& targetLevelSet,
   region.skin = settings_.skin;
   region.bytesPerVoxel = kVoxelBytes;
   region.maxMemory = settings_.maxMemory;
-  region.progress = settings_.progress;
   solid_ = activeRegion(targetLevelSet, region);
   region_ = solid_;
   if (!(settings_.outside.distance > 0)) return;
@@ -126,7 +126,6 @@ NewtonResult Inversion::solve(const Points& targets, Points& sources) const {
   NewtonSettings newton;
   newton.tolerance = settings_.tolerance * voxel_;
   newton.longestStep = kLongestStep * lattice_.levelSet->voxelSize()[0];
-  newton.progress = settings_.progress;
   return solveNewton(map_, targets, sources, newton);
 }
 
@@ -149,7 +148,7 @@ void Inversion::invert(const std::vector<LeafStarts>& starts, InvertedMap& out) 
       }
     }
     solve(batch, out);
-    reportProgress(settings_.progress, "inverting the map",
+    reportProgress("inverting the map",
                    static_cast<double>(l) / static_cast<double>(leaves.size()));
   }
 }
@@ -208,8 +207,8 @@ std::size_t Inversion::invertFailures(const LeafIndex& leaves,
   }
   if (stepByStep) {
     if (batch.targets.size() > kMostStepByStep) return 0;
-    batch.sources = invertStepByStep(map_.map(), batch.targets, batch.sources,
-                                     {settings_.tolerance * voxel_, settings_.progress});
+    batch.sources =
+        invertStepByStep(map_.map(), batch.targets, batch.sources, {settings_.tolerance * voxel_});
   }
   const std::size_t inverted = solve(batch, out);
   fillFailures(leaves, out);
@@ -238,9 +237,9 @@ void Inversion::count(const LeafIndex& leaves, const openvdb::FloatGrid& targetL
 }
 
 InvertedMap Inversion::run(const openvdb::FloatGrid& targetLevelSet) {
-  const LatticeImages images = imagesOf(map_, *lattice_.region, target_, settings_.progress);
+  const LatticeImages images = imagesOf(map_, *lattice_.region, target_);
   chooseRegion(targetLevelSet, images);
-  std::vector<LeafStarts> starts = findStarts(images, *region_, settings_.progress);
+  std::vector<LeafStarts> starts = findStarts(images, *region_);
   if (region_ != solid_) dropUncovered(starts);
   spreadStarts(*region_, starts);
   InvertedMap out;

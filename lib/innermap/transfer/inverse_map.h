@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/field/harmonic_map.h"
 #include "innermap/levelset/solid.h"
 #include "innermap/transfer/outside.h"
@@ -21,7 +20,6 @@ struct InverseSettings {
   double tolerance = 1e-3;      // of f(p) = q, target voxels, in [1e-6, 0.01]
   double accuracy = 1e-7;       // of the sums of charges, as EvaluateSettings::accuracy
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 // Throws SettingError for a number out of its range.

@@ -39,11 +39,10 @@ openvdb::MaskGrid::Ptr Pull::region(const openvdb::GridPtrVec& grids) const {
   inside.skin = settings_.skin;
   inside.bytesPerVoxel = outputBytesPerVoxel(grids);
   inside.maxMemory = settings_.maxMemory;
-  inside.progress = settings_.progress;
   openvdb::MaskGrid::Ptr region = activeRegion(map_.levelSet(), inside);
   if (!(settings_.outside.distance > 0)) return region;
   addAround(*region, map_.solid(), map_.reach(), outputBytesPerVoxel(grids) + 16,
-            settings_.maxMemory, settings_.progress);
+            settings_.maxMemory);
   return region;
 }
 
@@ -59,28 +58,24 @@ Points Pull::movedBack(const Points& positions) const {
     throw DataError(
         "pull: positions (contravariant absolute vectors) need the "
         "target's level set");
-  const SourceLattice lattice =
-      makeSourceLattice(map_.solid(), {}, {}, settings_.maxMemory, settings_.progress);
+  const SourceLattice lattice = makeSourceLattice(map_.solid(), {}, {}, settings_.maxMemory);
   InverseSettings inverse;
   inverse.accuracy = settings_.accuracy;
   inverse.maxMemory = settings_.maxMemory;
-  inverse.progress = settings_.progress;
   const InvertedMap inverted =
       invertMap(map_.map(), map_.solid(), lattice, *settings_.targetLevelSet, inverse);
   return invertAt(map_.map(), map_.solid(), lattice, inverted, positions, inverse);
 }
 
 void Pull::carryThrough(const openvdb::MaskGrid& region, CarryOutput& output) const {
-  forLeavesThrough(
-      region, settings_.through->push,
-      [&](std::size_t, const openvdb::Coord& origin, const Points& images,
-          const std::vector<Mat3>& jacobians) {
-        std::vector<Site> sites;
-        for (std::size_t i = 0; i < images.size(); ++i)
-          sites.push_back({images[i], images[i], inverse(jacobians[i])});
-        output.carry(origin, sites.data());
-      },
-      settings_.progress);
+  forLeavesThrough(region, settings_.through->push,
+                   [&](std::size_t, const openvdb::Coord& origin, const Points& images,
+                       const std::vector<Mat3>& jacobians) {
+                     std::vector<Site> sites;
+                     for (std::size_t i = 0; i < images.size(); ++i)
+                       sites.push_back({images[i], images[i], inverse(jacobians[i])});
+                     output.carry(origin, sites.data());
+                   });
 }
 
 ResamplingFigures Pull::carryByMap(const openvdb::MaskGrid& region,
@@ -100,7 +95,7 @@ ResamplingFigures Pull::carryByMap(const openvdb::MaskGrid& region,
         }
         output.carry(leaf.origin, sites.data());
       },
-      "pulling the grids", settings_.progress);
+      "pulling the grids");
   for (const ResamplingFigures& part : parts) all.add(part);
   all.finish();
   return all;
@@ -109,10 +104,8 @@ ResamplingFigures Pull::carryByMap(const openvdb::MaskGrid& region,
 PullResult Pull::run(const openvdb::GridPtrVec& grids) {
   PullResult out;
   if (settings_.targetLevelSet && !(settings_.outside.distance > 0))
-    requireMeeting(grids, *settings_.targetLevelSet, "of the map's target", out.warnings,
-                   settings_.progress);
-  const Carriers carriers =
-      makeCarriers(grids, settings_.carry, settings_.targetLevelSet, settings_.progress);
+    requireMeeting(grids, *settings_.targetLevelSet, "of the map's target", out.warnings);
+  const Carriers carriers = makeCarriers(grids, settings_.carry, settings_.targetLevelSet);
   const openvdb::MaskGrid::Ptr active = region(grids);
   CarryOutput output(carriers, *active, map_.levelSet());
   if (settings_.through)
@@ -120,8 +113,7 @@ PullResult Pull::run(const openvdb::GridPtrVec& grids) {
   else
     out.resampling = carryByMap(*active, grids, output);
   out.grids.resize(grids.size());
-  output.finish([&](const Points& points) { return movedBack(points); }, out.grids,
-                settings_.progress);
+  output.finish([&](const Points& points) { return movedBack(points); }, out.grids);
   noteOutside(out.grids, settings_.outside);
   out.voxels = active->activeVoxelCount();
   return out;

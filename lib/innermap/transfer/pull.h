@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/field/harmonic_map.h"
 #include "innermap/levelset/solid.h"
 #include "innermap/transfer/carry.h"
@@ -28,7 +27,6 @@ struct PullSettings {
   // Goes this way instead of by the map. Null: by the map.
   const ThroughMap* through = nullptr;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 struct PullResult {

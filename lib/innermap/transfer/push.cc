@@ -30,7 +30,6 @@ InverseSettings inverseSettings(const PushSettings& s) {
   out.tolerance = s.tolerance;
   out.accuracy = s.accuracy;
   out.maxMemory = s.maxMemory;
-  out.progress = s.progress;
   return out;
 }
 
@@ -91,21 +90,19 @@ VolumePusher::VolumePusher(const Solid& source, const openvdb::GridPtrVec& grids
                            const PushSettings& settings) {
   requireInRange(inverseSettings(settings));
   auto data = std::make_shared<Data>(Data{source, grids, settings, {}, {}, {}, {}});
-  data->lattice =
-      makeSourceLattice(source, settings.outside, grids, settings.maxMemory, settings.progress);
+  data->lattice = makeSourceLattice(source, settings.outside, grids, settings.maxMemory);
   const openvdb::FloatGrid& levelSet = *data->lattice.levelSet;
   if (!grids.empty() && !(settings.outside.distance > 0))
-    requireMeeting(grids, levelSet, source.surface().name, data->warnings, settings.progress);
-  for (auto& carrier : makeCarriers(grids, settings.carry, &levelSet, settings.progress)) {
+    requireMeeting(grids, levelSet, source.surface().name, data->warnings);
+  for (auto& carrier : makeCarriers(grids, settings.carry, &levelSet)) {
     if (carrier->isDensity()) {
       const std::size_t place = carrier->places().front();
       if (settings.through)
         throw DataError("grid " + grids[place]->getName() +
                         ": densities go by the map alone, not through a mesh; leave it out or let "
                         "it be sampled");
-      data->densities.emplace_back(
-          place, densityVoxels(grids[place], source, levelSet, settings.outside, settings.maxMemory,
-                               settings.progress));
+      data->densities.emplace_back(place, densityVoxels(grids[place], source, levelSet,
+                                                        settings.outside, settings.maxMemory));
     } else {
       data->sampled.push_back(std::move(carrier));
     }
@@ -118,7 +115,6 @@ openvdb::MaskGrid::Ptr VolumePusher::Data::regionOf(const openvdb::FloatGrid& ta
   region.skin = settings.skin;
   region.bytesPerVoxel = outputBytesPerVoxel(grids);
   region.maxMemory = settings.maxMemory;
-  region.progress = settings.progress;
   return activeRegion(target, region);
 }
 
@@ -159,7 +155,7 @@ void VolumePusher::Data::carrySampled(const ComposedMap& map, const openvdb::Flo
           output.carry(origins[l], sites.data());
         }
       },
-      settings.progress, "carrying the grids");
+      "carrying the grids");
   output.finish(
       [&](const Points& points) {
         Points images;
@@ -168,11 +164,10 @@ void VolumePusher::Data::carrySampled(const ComposedMap& map, const openvdb::Flo
           settings.through->push(points, images, jacobians);
           return images;
         }
-        for (const ExtendedSample& s : extended(map).at(points, settings.progress))
-          images.push_back(s.image);
+        for (const ExtendedSample& s : extended(map).at(points)) images.push_back(s.image);
         return images;
       },
-      out, settings.progress);
+      out);
 }
 
 void VolumePusher::Data::carryDensities(const ComposedMap& map, const openvdb::FloatGrid& target,
@@ -184,7 +179,6 @@ void VolumePusher::Data::carryDensities(const ComposedMap& map, const openvdb::F
     carry.limit = settings.carry.densityLimit;
     carry.constant = settings.carry.sampling == Sampling::nearest;
     carry.maxMemory = settings.maxMemory;
-    carry.progress = settings.progress;
     out.masses.emplace_back();
     out.grids[place] = carryDensity(voxels, extendedMap, region, out.masses.back(), carry);
   }
@@ -203,7 +197,7 @@ PushResult VolumePusher::push(const ComposedMap& map, const openvdb::FloatGrid& 
   } else {
     const InvertedMap inverted =
         d.settings.through
-            ? invertThrough(*d.settings.through, d.regionOf(targetLevelSet), d.settings.progress)
+            ? invertThrough(*d.settings.through, d.regionOf(targetLevelSet))
             : invertMap(map, d.source, d.lattice, targetLevelSet, inverseSettings(d.settings));
     region = inverted.region;
     out.inverted = true;
@@ -213,8 +207,7 @@ PushResult VolumePusher::push(const ComposedMap& map, const openvdb::FloatGrid& 
     if (!d.grids.empty()) out.resampling = resamplingOf(inverted, targetLevelSet, d.grids);
     d.carrySampled(map, targetLevelSet, inverted, out.grids);
     for (const CarriedField& field : fields)
-      out.grids.push_back(fieldGrid(field, d.source, d.lattice, inverted, d.settings.accuracy,
-                                    d.settings.progress));
+      out.grids.push_back(fieldGrid(field, d.source, d.lattice, inverted, d.settings.accuracy));
   }
   d.carryDensities(map, targetLevelSet, *region, out);
   noteOutside(out.grids, d.settings.outside);
@@ -241,7 +234,6 @@ FramePush FramePusher::push(const NumberedFit& frame,
   FramePush out;
   const openvdb::FloatGrid::Ptr target = timed(out.seconds, "level set", [&] {
     SolidSettings solid;
-    solid.progress = settings_.push.progress;
     const std::string name = fmt::format("frame {}", frame.number);
     return makeLevelSet(Solid(fit.boundary.mesh(fitter_.solid(), name), solid), settings_.output);
   });

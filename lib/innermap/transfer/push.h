@@ -25,7 +25,6 @@
 #include <vector>
 
 #include "innermap/boundary/frame_fitter.h"
-#include "innermap/core/progress.h"
 #include "innermap/field/harmonic_map.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/levelset/solid.h"
@@ -45,7 +44,6 @@ struct PushSettings {
   // Goes this way instead of by the map; for what is sampled, not for densities. Null: by the map.
   const ThroughMap* through = nullptr;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 struct PushResult {

@@ -15,8 +15,7 @@ void forLeavesThrough(
     const openvdb::MaskGrid& region,
     const std::function<void(const Points&, Points&, std::vector<Mat3>&)>& way,
     const std::function<void(std::size_t leaf, const openvdb::Coord& origin, const Points& images,
-                             const std::vector<Mat3>& jacobians)>& use,
-    Progress* progress) {
+                             const std::vector<Mat3>& jacobians)>& use) {
   std::vector<const openvdb::MaskTree::LeafNodeType*> leaves;
   for (auto leaf = region.tree().cbeginLeaf(); leaf; ++leaf) leaves.push_back(&*leaf);
   parallelBlocks(
@@ -33,11 +32,10 @@ void forLeavesThrough(
           use(l, leaves[l]->origin(), images, jacobians);
         }
       },
-      progress, "carrying voxels");
+      "carrying voxels");
 }
 
-InvertedMap invertThrough(const ThroughMap& through, const openvdb::MaskGrid::Ptr& region,
-                          Progress* progress) {
+InvertedMap invertThrough(const ThroughMap& through, const openvdb::MaskGrid::Ptr& region) {
   InvertedMap out;
   out.region = region;
   out.first = {0};
@@ -46,18 +44,17 @@ InvertedMap invertThrough(const ThroughMap& through, const openvdb::MaskGrid::Pt
   const std::size_t count = out.first.back();
   out.sources.resize(count);
   out.jacobians.resize(count);
-  forLeavesThrough(
-      *region, through.pull,
-      [&](std::size_t leaf, const openvdb::Coord&, const Points& images,
-          const std::vector<Mat3>& jacobians) {
-        for (std::size_t i = 0; i < images.size(); ++i) {
-          out.sources[out.first[leaf] + i] = images[i];
-          const Mat3 j = inverse(jacobians[i]);
-          for (std::size_t k = 0; k < 9; ++k)
-            out.jacobians[out.first[leaf] + i][k] = static_cast<float>(j[k / 3][k % 3]);
-        }
-      },
-      progress);
+  forLeavesThrough(*region, through.pull,
+                   [&](std::size_t leaf, const openvdb::Coord&, const Points& images,
+                       const std::vector<Mat3>& jacobians) {
+                     for (std::size_t i = 0; i < images.size(); ++i) {
+                       out.sources[out.first[leaf] + i] = images[i];
+                       const Mat3 j = inverse(jacobians[i]);
+                       for (std::size_t k = 0; k < 9; ++k)
+                         out.jacobians[out.first[leaf] + i][k] =
+                             static_cast<float>(j[k / 3][k % 3]);
+                     }
+                   });
   out.statistics.voxels = out.statistics.inverted = count;
   return out;
 }

@@ -6,7 +6,6 @@
 
 #include <functional>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/transfer/inverse_map.h"
 
@@ -26,11 +25,9 @@ void forLeavesThrough(
     const openvdb::MaskGrid& region,
     const std::function<void(const Points&, Points&, std::vector<Mat3>&)>& way,
     const std::function<void(std::size_t leaf, const openvdb::Coord& origin, const Points& images,
-                             const std::vector<Mat3>& jacobians)>& use,
-    Progress* progress);
+                             const std::vector<Mat3>& jacobians)>& use);
 
 // The inverse at the voxels of a region of the target.
-InvertedMap invertThrough(const ThroughMap& through, const openvdb::MaskGrid::Ptr& region,
-                          Progress* progress = nullptr);
+InvertedMap invertThrough(const ThroughMap& through, const openvdb::MaskGrid::Ptr& region);
 
 }  // namespace innermap

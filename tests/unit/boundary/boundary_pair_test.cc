@@ -6,6 +6,7 @@
 
 #include "boundary/test_pairs.h"
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -88,11 +89,10 @@ TEST(BoundaryPair, RefusesTargetsWithoutExtentFlatOnesAndOtherConnectivity) {
 }
 
 TEST(BoundaryPair, Cancels) {
-  Progress progress;
-  progress.cancel();
-  BoundarySettings settings;
-  settings.progress = &progress;
-  EXPECT_THROW(makeBoundaryPair(ball(2), ball(2), settings), Cancelled);
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(makeBoundaryPair(ball(2), ball(2)), Cancelled);
 }
 
 }  // namespace

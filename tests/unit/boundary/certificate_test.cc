@@ -13,6 +13,7 @@
 #include "innermap/boundary/fit_map.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/sample/surface_samples.h"
 
 namespace innermap {
@@ -193,10 +194,10 @@ TEST(Certificate, RefusesAndCancels) {
   EXPECT_EQ(certify(solid, none).bound, 0);
   settings.samples = 0;
   EXPECT_THROW(certify(solid, none, settings), SettingError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   settings.samples = 1000;
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(certify(solid, none, settings), Cancelled);
 }
 

@@ -8,6 +8,7 @@
 #include "boundary/test_pairs.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -264,10 +265,10 @@ TEST(FitMap, CountsItsMemory) {
 }
 
 TEST(FitMap, Cancels) {
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   FitMapSettings settings;
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(fitMap(ball(2), ball(2), settings), Cancelled);
 }
 

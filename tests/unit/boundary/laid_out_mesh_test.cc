@@ -4,6 +4,7 @@
 
 #include "boundary/blobs.h"
 #include "innermap/core/detail/pi.h"
+#include "innermap/core/run.h"
 #include "mesh/test_meshes.h"
 
 namespace innermap {
@@ -112,10 +113,10 @@ TEST(LayOutMesh, RefusesSettingsOutOfRange) {
 }
 
 TEST(LayOutMesh, CanBeCancelled) {
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   LayOutSettings settings;
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(layOutMesh(blob("a.obj", 1, 0.5), settings), Cancelled);
 }
 

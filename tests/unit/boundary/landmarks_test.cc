@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "boundary/blobs.h"
+#include "innermap/core/error.h"
 #include "mesh/test_meshes.h"
 
 namespace innermap {

@@ -10,6 +10,7 @@
 
 #include "boundary/blobs.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/read.h"
 #include "mesh/test_meshes.h"
 
@@ -161,9 +162,9 @@ TEST(CorrespondMeshes, RefusesWhatHasNoMap) {
   settings.candidates = 0;
   EXPECT_THROW(correspondMeshes(kA, kB, settings), SettingError);
   settings = quick();
-  Progress progress;
-  progress.cancel();
-  settings.progress = &progress;
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
   EXPECT_THROW(correspondMeshes(kA, kB, settings), Cancelled);
 }
 

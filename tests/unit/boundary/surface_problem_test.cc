@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "innermap/core/run.h"
 #include "innermap/field/boundary_error.h"
 #include "mesh/shapes.h"
 
@@ -84,10 +85,10 @@ TEST(SurfaceProblem, FreshSamplesAreTheFirstDrawOfTheAdaptiveProblem) {
 }
 
 TEST(SurfaceProblem, Cancels) {
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   SurfaceProblemSettings settings;
-  settings.progress = &progress;
+  const RunScope scope(run);
   const Solid solid(shapes::icosphere(2));
   EXPECT_THROW(surfaceProblem(solid, polynomial(solid), settings), Cancelled);
 }

@@ -8,6 +8,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/file.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -51,9 +52,10 @@ TEST(ContentHash, FilesAreHashedAsTheirBytes) {
 
 TEST(ContentHash, CanBeCancelled) {
   const std::string path = writeFile("abc");
-  Progress progress;
-  progress.cancel();
-  EXPECT_THROW(fingerprintOf(path, {&progress}), Cancelled);
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(fingerprintOf(path), Cancelled);
   std::filesystem::remove(path);
 }
 

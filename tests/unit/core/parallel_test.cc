@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -31,21 +32,20 @@ TEST(Parallel, ExceptionsComeOut) {
 }
 
 TEST(Parallel, CancellingFromABlockStopsTheRest) {
-  Progress progress;
+  RunContext run;
+  const RunScope scope(run);
   std::atomic<int> ran{0};
-  EXPECT_THROW(parallelBlocks(
-                   100000, 1,
-                   [&](std::size_t, std::size_t) {
-                     ++ran;
-                     progress.cancel();
-                   },
-                   &progress),
+  EXPECT_THROW(parallelBlocks(100000, 1,
+                              [&](std::size_t, std::size_t) {
+                                ++ran;
+                                run.cancel();
+                              }),
                Cancelled);
   EXPECT_LT(ran, 1000);
 }
 
 TEST(Parallel, ProgressEndsAtOne) {
-  struct Recorder : Progress {
+  struct Recorder : RunContext {
     void report(std::string_view, double fraction) override {
       const std::lock_guard<std::mutex> lock(mutex);
       largest = std::max(largest, fraction);
@@ -53,9 +53,21 @@ TEST(Parallel, ProgressEndsAtOne) {
     std::mutex mutex;
     double largest = 0;
   } recorder;
+  const RunScope scope(recorder);
   parallelBlocks(
-      1000, 3, [](std::size_t, std::size_t) {}, &recorder, "test");
+      1000, 3, [](std::size_t, std::size_t) {}, "test");
   EXPECT_DOUBLE_EQ(recorder.largest, 1);
+}
+
+TEST(Parallel, BlocksBelongToTheRunOfTheCaller) {
+  RunContext run;
+  const RunScope scope(run);
+  std::atomic<int> others{0};
+  parallelBlocks(1000, 1, [&](std::size_t, std::size_t) {
+    if (currentRun() != &run) ++others;
+  });
+  EXPECT_EQ(others, 0);
+  EXPECT_EQ(currentRun(), &run);
 }
 
 TEST(Parallel, ThreadLimitHolds) {

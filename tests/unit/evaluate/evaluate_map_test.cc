@@ -5,6 +5,7 @@
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"
 
@@ -289,10 +290,10 @@ TEST(EvaluateMap, RefusesBadSettingsAndStopsWhenCancelled) {
   settings = {};
   settings.maxMemory = 1000;
   EXPECT_THROW(evaluateMap(chargedMap(), solid, *surface, settings), MemoryError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   settings = {};
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(evaluateMap(chargedMap(), solid, *surface, settings), Cancelled);
 }
 

@@ -28,9 +28,9 @@ class Lattice {
     }
   }
 
-  CellFigures check(Progress* progress = nullptr) const {
+  CellFigures check() const {
     static const Mesh mesh = ball(1);
-    return checkCells(*map, *levelSet, TargetShape(makeBoundaryPair(mesh, mesh)), 0, progress);
+    return checkCells(*map, *levelSet, TargetShape(makeBoundaryPair(mesh, mesh)), 0);
   }
 
   openvdb::FloatGrid::Ptr levelSet = openvdb::FloatGrid::create(1);

@@ -7,6 +7,7 @@
 #include "innermap/core/detail/point_grid.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -149,9 +150,9 @@ TEST(AdaptiveFit, EndsWhereItIsToldToAfterAnyRound) {
 TEST(AdaptiveFit, EndsAtTheDeadlineWithWhatThereIs) {
   Ball ball;
   ball.settings.tolerance = 2e-4;
-  Progress late;
+  RunContext late;
   late.setSecondsLeft(0);
-  ball.settings.progress = &late;
+  const RunScope scope(late);
   const AdaptiveResult r = fitToTolerance(ball.problem, ball.settings);
   EXPECT_EQ(r.end, AdaptiveEnd::time);
   EXPECT_EQ(r.rounds.size(), 1u);

@@ -6,6 +6,7 @@
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/self_intersection.h"
 #include "mesh/shapes.h"
 
@@ -119,10 +120,10 @@ TEST(OuterSurface, RefusesWhatCannotBe) {
   OuterSurfaceSettings settings;
   settings.maxMemory = 1000;
   EXPECT_THROW(outerSurface(Solid(ball), settings), MemoryError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   settings = {};
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(outerSurface(Solid(ball), settings), Cancelled);
 }
 

@@ -13,9 +13,9 @@ TEST(StuffingNeed, IsAboveWhatIsMadeAndNear) {
     for (const double spacing : {0.1, 0.05}) {
       const Solid solid(mesh);
       const StuffingNeed need = stuffingNeed(solid, spacing);
-      LatticeSigns signs = latticeSigns(solid, spacing, nullptr);
-      warpNodes(signs, nullptr);
-      const StuffedMesh made = stuffed(signs, nullptr);
+      LatticeSigns signs = latticeSigns(solid, spacing);
+      warpNodes(signs);
+      const StuffedMesh made = stuffed(signs);
       EXPECT_GE(need.tetrahedra, made.tetrahedra.size());
       EXPECT_LE(need.tetrahedra, 1.3 * static_cast<double>(made.tetrahedra.size()));
       EXPECT_GE(need.vertices, made.vertices.size());

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "innermap/core/detail/random.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -119,10 +120,10 @@ TEST(Untangle, NothingToMove) {
 
 TEST(Untangle, IsCancelled) {
   TetPatch patch = lattice();
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   UntangleSettings settings;
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(untangle(patch, settings), Cancelled);
 }
 

@@ -5,6 +5,7 @@
 
 #include "innermap/core/detail/random.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "mesh/shapes.h"
 
 namespace innermap {
@@ -185,9 +186,12 @@ TEST(LevelSet, SettingsOutOfRange) {
   EXPECT_THROW(with([](S& s) { s.halfWidth = 1.9; }), SettingError);
   EXPECT_THROW(with([](S& s) { s.halfWidth = 101; }), SettingError);
   EXPECT_THROW(with([](S& s) { s.maxMemory = 1000; }), MemoryError);
-  Progress progress;
-  progress.cancel();
-  EXPECT_THROW(with([&](S& s) { s.progress = &progress; }), Cancelled);
+  RunContext run;
+  run.cancel();
+  {
+    const RunScope scope(run);
+    EXPECT_THROW(with([](S&) {}), Cancelled);
+  }
   LevelSetSettings coarse;
   coarse.voxelSize = 0.5;
   EXPECT_EQ(voxelSizeFor(solid, coarse), 0.5);

@@ -24,7 +24,7 @@ TEST_P(Models, LevelSetHoldsTheSolid) {
   for (const std::string& warning : check.warnings) ADD_FAILURE() << warning;
 
   const double d = 0.0125;
-  const Mesh offset = offsetSurface(solid, {d, nullptr});
+  const Mesh offset = offsetSurface(solid, {d});
   for (std::size_t v = 0; v < offset.vertices.size(); v += 17) {
     EXPECT_FALSE(solid.inside(offset.vertices[v]));
     EXPECT_NEAR(solid.distance(offset.vertices[v]), d * solid.diagonal(),

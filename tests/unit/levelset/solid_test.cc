@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "innermap/core/detail/random.h"
+#include "innermap/core/run.h"
 #include "mesh/shapes.h"
 
 namespace innermap {
@@ -190,10 +191,10 @@ TEST(Solid, SettingsAndCancelling) {
     settings.pieceSize = size;
     EXPECT_THROW(Solid(mesh, settings), SettingError);
   }
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   settings = {};
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(Solid(mesh, settings), Cancelled);
 }
 

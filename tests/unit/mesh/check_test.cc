@@ -6,6 +6,7 @@
 
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/read.h"
 #include "mesh/test_meshes.h"
 
@@ -166,10 +167,10 @@ TEST(Check, RefusesInvalidMeshesAndCancels) {
   Mesh mesh = cube();
   mesh.triangles[0][0] = 99;
   EXPECT_THROW(checkMesh(mesh), DataError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   CheckSettings settings;
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(checkMesh(cube(), settings), Cancelled);
 }
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "mesh/test_meshes.h"
 
 namespace innermap {
@@ -227,10 +228,11 @@ TEST_F(Read, LikeNamesTheFirstDifference) {
 }
 
 TEST_F(Read, CancelledReadsThrow) {
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
   const std::string path = folder_.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  EXPECT_THROW(readMesh(path, {&progress}), Cancelled);
+  EXPECT_THROW(readMesh(path), Cancelled);
 }
 
 TEST(ReadModels, AllOfThemWithTheirCounts) {

@@ -8,6 +8,7 @@
 #include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/check.h"
 #include "innermap/mesh/detail/winding_number.h"
 #include "innermap/mesh/read.h"
@@ -288,9 +289,10 @@ TEST(Repair, RandomSoupsHaveWholeWindingNumbers) {
 }
 
 TEST(Repair, CanBeCancelled) {
-  Progress progress;
-  progress.cancel();
-  EXPECT_THROW(repair(cube(), {&progress}), Cancelled);
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(repair(cube()), Cancelled);
 }
 
 TEST(RepairModels, AreSensibleSolids) {

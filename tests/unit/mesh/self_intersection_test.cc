@@ -8,6 +8,7 @@
 #include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/check.h"
 #include "mesh/test_meshes.h"
 
@@ -158,9 +159,10 @@ TEST(SelfIntersection, CountsManyWithoutKeepingThemAndCanBeCancelled) {
   EXPECT_GT(report.selfIntersections, 3000000u);
   EXPECT_EQ(report.crossings.size(), 20u);
   EXPECT_EQ(report.crossings[0].first, 0);
-  Progress progress;
-  progress.cancel();
-  EXPECT_THROW(selfIntersections(mesh.vertices, mesh.triangles, {&progress}), Cancelled);
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(selfIntersections(mesh.vertices, mesh.triangles), Cancelled);
 }
 
 }  // namespace

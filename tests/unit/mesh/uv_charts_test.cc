@@ -7,6 +7,7 @@
 #include <set>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "mesh/shapes.h"
 
 namespace innermap {
@@ -181,9 +182,10 @@ TEST(UvCharts, RandomCutsAreResolved) {
 }
 
 TEST(UvCharts, CanBeCancelled) {
-  Progress progress;
-  progress.cancel();
-  EXPECT_THROW(uvCharts(tube(12, 4), {&progress}), Cancelled);
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(uvCharts(tube(12, 4)), Cancelled);
 }
 
 }  // namespace

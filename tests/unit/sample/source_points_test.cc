@@ -4,6 +4,7 @@
 
 #include "innermap/core/detail/random.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "mesh/shapes.h"
 
 namespace innermap {
@@ -83,10 +84,10 @@ TEST(SourceShell, SettingsAndCancelling) {
   EXPECT_THROW(sourceShell(solid, 0, sources(10)), SettingError);
   EXPECT_THROW(sourceShell(solid, 3, sources(10)), SettingError);
   EXPECT_EQ(sourceShell(solid, 0.05, sources(1)).size(), 1u);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   SourceSettings settings;
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(sourceShell(solid, 0.05, settings), Cancelled);
   EXPECT_THROW(sourceSphere(solid, 2, settings), Cancelled);
 }

@@ -7,6 +7,7 @@
 
 #include "innermap/core/detail/random.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/sample/detail/sample_elimination.h"
 #include "mesh/shapes.h"
 
@@ -80,9 +81,10 @@ TEST(RandomSamples, Refusals) {
   EXPECT_THROW(randomSamples(Mesh{}, 10), DataError);
   EXPECT_THROW(randomSamples(shapes::icosphere(1), 100'000'001), SettingError);
   EXPECT_THROW(blueNoiseSamples(shapes::icosphere(1), 100'000'001), SettingError);
-  Progress progress;
-  progress.cancel();
-  EXPECT_THROW(blueNoiseSamples(shapes::icosphere(1), 1000, {1, &progress}), Cancelled);
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(blueNoiseSamples(shapes::icosphere(1), 1000, {1}), Cancelled);
 }
 
 TEST(BlueNoise, SamplesKeepTheirDistance) {

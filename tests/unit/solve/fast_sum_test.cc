@@ -6,6 +6,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "solve/points.h"
 
 namespace innermap {
@@ -355,10 +356,10 @@ TEST(FastSum, BadSettingsAndPoints) {
 
 TEST(FastSum, CanBeCancelled) {
   const Points points = testing::randomPoints(20000, 1), sources = testing::randomPoints(3000, 2);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   FastSumSettings settings = hierarchical(1e-6);
-  settings.progress = &progress;
+  const RunScope scope(run);
   const FastSum sum(sources, testing::randomWeights(3000, 3, 1));
   EXPECT_THROW(sum.at(points, settings), Cancelled);
   EXPECT_THROW(sum.onLattice(

@@ -6,6 +6,7 @@
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/solve/dense_solver.h"
 #include "innermap/solve/kernel_sum.h"
 #include "solve/points.h"
@@ -194,10 +195,10 @@ TEST(IterativeSolver, RefusesWhatCannotBe) {
   EXPECT_THROW(IterativeSolver(p.collocation, {}), SettingError);
   EXPECT_THROW(IterativeSolver(p.collocation, {p.coarse, {{}, 1, 1}}), SettingError);
   EXPECT_THROW(IterativeSolver(p.coarse.sources, {p.coarse, p.fine}), SettingError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   s.maxMemory = 0;
-  s.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(p.solver(s), Cancelled);
   p.fine.spacing = 0;
   EXPECT_THROW(p.solver(), SettingError);

@@ -4,6 +4,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "solve/points.h"
 
 namespace innermap {
@@ -94,10 +95,10 @@ TEST(KernelSum, RefusesWrongSizesAndNan) {
 }
 
 TEST(KernelSum, CancelStopsIt) {
-  Progress progress;
-  progress.cancel();
-  EXPECT_THROW(sumCharges(Charges(Points(1), Matrix(1, 1)), Points(10), false, {&progress}),
-               Cancelled);
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(sumCharges(Charges(Points(1), Matrix(1, 1)), Points(10), false), Cancelled);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "mesh/shapes.h"
 
 namespace innermap {
@@ -199,11 +200,12 @@ TEST(Study, GoesOnWhereItWasStopped) {
                           if (done == 2) throw Stop("");
                         }),
                Stop);
-  Progress cancelled;
-  cancelled.cancel();
-  s.progress = &cancelled;
-  EXPECT_THROW(runStudy(pair, s), Cancelled);
-  s.progress = nullptr;
+  {
+    RunContext cancelled;
+    cancelled.cancel();
+    const RunScope scope(cancelled);
+    EXPECT_THROW(runStudy(pair, s), Cancelled);
+  }
   std::vector<std::size_t> told;
   const Study study = runStudy(
       pair, s, [&](const StudyRow*, std::size_t done, std::size_t) { told.push_back(done); });
@@ -217,13 +219,14 @@ TEST(Study, LimitsLeaveRunsOut) {
   StudySettings s = quick();
   s.folder = folder.path.string();
   const BoundaryPair pair = pairOf();
-  Progress late;
-  late.setSecondsLeft(0);
-  s.progress = &late;
-  const Study none = runStudy(pair, s);
+  const Study none = [&] {
+    RunContext late;
+    late.setSecondsLeft(0);
+    const RunScope scope(late);
+    return runStudy(pair, s);
+  }();
   EXPECT_EQ(none.left, 6u);
   EXPECT_TRUE(none.rows.empty());
-  s.progress = nullptr;
   s.maxMemory = 1000;
   const Study small = runStudy(pair, s);
   ASSERT_EQ(small.rows.size(), 6u);

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/read.h"
 #include "mesh/test_meshes.h"
 
@@ -254,10 +255,10 @@ TEST(ClosedSurfaces, RealModels) {
 }
 
 TEST(ClosedSurfaces, CanBeCancelled) {
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   ClosedSurfaceSettings settings;
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(closedSurfaces(cube(), settings), Cancelled);
 }
 

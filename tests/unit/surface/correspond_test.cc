@@ -8,6 +8,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/read.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/surface/map_quality.h"
@@ -250,10 +251,10 @@ TEST(Correspond, SettingsAreChecked) {
   settings = {};
   settings.subdivide = -1;
   EXPECT_THROW(correspond(ball, ball, settings), SettingError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   settings = {};
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(correspond(ball, ball, settings), Cancelled);
 }
 

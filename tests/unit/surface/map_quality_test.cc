@@ -7,6 +7,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/surface/detail/refining/locate.h"
 #include "mesh/test_meshes.h"
 
@@ -228,13 +229,13 @@ TEST(MapQuality, CanBeCancelledAndChecksItsSettings) {
   const SurfaceShells a = closedSurfaces(shapes::icosphere(1));
   const Layout layout = onSphere(a.shells[0].vertices);
   const Correspondence map = through(a, layout, a, layout);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   MapQualitySettings settings;
   settings.samples = 0;
   EXPECT_THROW(mapQuality(map, settings), SettingError);
   settings.samples = 10;
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(mapQuality(map, settings), Cancelled);
 }
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/surface/correspond.h"
 #include "innermap/surface/detail/refining/locate.h"
 #include "mesh/test_meshes.h"
@@ -83,12 +84,11 @@ TEST(PreimagesOf, OfTrianglesThatAreInNoShellComeFromTheClosestOne) {
 
 TEST(ImagesOf, CanBeCancelled) {
   const Balls balls;
-  Progress progress;
-  progress.cancel();
-  SurfaceImageSettings settings;
-  settings.progress = &progress;
-  EXPECT_THROW(preimagesOf({{0, {1, 0, 0}}}, balls.map, balls.b, settings), Cancelled);
-  EXPECT_THROW(imagesOf({{1, 0, 0}}, balls.map, balls.b, settings), Cancelled);
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(preimagesOf({{0, {1, 0, 0}}}, balls.map, balls.b), Cancelled);
+  EXPECT_THROW(imagesOf({{1, 0, 0}}, balls.map, balls.b), Cancelled);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "mesh/shapes.h"
 
 namespace innermap {
@@ -49,10 +50,10 @@ TEST(BoundaryFit, RefusesNothing) {
   BoundaryFitSettings settings;
   settings.samples = 0;
   EXPECT_THROW(boundaryFit(cube(0, 1), solid, settings), SettingError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   settings.samples = 100;
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(boundaryFit(cube(0, 1), solid, settings), Cancelled);
 }
 

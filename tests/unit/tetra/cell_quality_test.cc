@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -74,11 +75,10 @@ TEST(CellQuality, EmptyAndCancelled) {
   EXPECT_TRUE(mesh.cellFields.empty());
   mesh.vertices = cube();
   mesh.hexahedra = {kUnit};
-  Progress progress;
-  progress.cancel();
-  CellQualitySettings settings;
-  settings.progress = &progress;
-  EXPECT_THROW(cellQuality(mesh, settings), Cancelled);
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(cellQuality(mesh), Cancelled);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "mesh/shapes.h"
 
 namespace innermap {
@@ -70,9 +71,9 @@ TEST(CompareFem, RefusesNonsense) {
   EXPECT_THROW(compareFemOnFunctions(solid, settings), SettingError);
   settings.charges = {100};
   EXPECT_GT(compareFemMemory(solid, settings), 0u);
-  Progress progress;
-  progress.cancel();
-  settings.progress = &progress;
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
   EXPECT_THROW(compareFemOnFunctions(solid, settings), Cancelled);
 }
 

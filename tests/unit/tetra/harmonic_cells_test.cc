@@ -6,6 +6,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/tetra/tetrahedralize.h"
 #include "mesh/shapes.h"
 
@@ -84,10 +85,10 @@ TEST(HarmonicCells, RefusesWhatIsNoMeshOfTetrahedra) {
   EXPECT_THROW(harmonicOnCells(mesh, valuesOf(mesh, f), settings), DataError);
   settings.residual = 2;
   EXPECT_THROW(harmonicOnCells(mesh, valuesOf(mesh, f), settings), SettingError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   settings = {};
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(harmonicOnCells(mesh, valuesOf(mesh, f), settings), Cancelled);
   std::swap(mesh.tetrahedra[5][0], mesh.tetrahedra[5][1]);
   EXPECT_THROW(harmonicOnCells(mesh, valuesOf(mesh, f)), DataError);

@@ -4,6 +4,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/tetra/block_set.h"
 #include "mesh/shapes.h"
 
@@ -75,10 +76,10 @@ TEST(Hexahedralize, RefusesSettingsOutOfRangeAndStops) {
   HexahedralizeSettings settings = across(4, 1);
   settings.maxMemory = 1000;
   EXPECT_THROW(hexahedralize(ball, settings), MemoryError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   settings.maxMemory = 0;
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(hexahedralize(ball, settings), Cancelled);
 }
 

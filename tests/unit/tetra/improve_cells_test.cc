@@ -7,6 +7,7 @@
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/tetra/cell_quality.h"
 #include "tetra/kuhn_mesh.h"
@@ -128,10 +129,10 @@ TEST(ImproveCells, SaysWhatIsWrongAndIsCancelled) {
   settings = {};
   settings.passes = 0;
   EXPECT_THROW(improveCells(c.mesh, c.surface, c.cells, settings), SettingError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   settings = {};
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(improveCells(c.mesh, c.surface, c.cells, settings), Cancelled);
   c.cells.onSurface.pop_back();
   EXPECT_THROW(improveCells(c.mesh, c.surface, c.cells), DataError);

@@ -6,6 +6,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/tetra/carry_cells.h"
 #include "innermap/tetra/linear_map.h"
 #include "innermap/tetra/tetrahedralize.h"
@@ -150,9 +151,9 @@ TEST(RemeshCells, RefusesSettingsAndIsCancelled) {
   settings.coarse = 3;
   EXPECT_THROW(remeshCells(mesh, mapped, settings), SettingError);
   settings = {};
-  Progress progress;
-  progress.cancel();
-  settings.progress = &progress;
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
   EXPECT_THROW(remeshCells(mesh, mapped, settings), Cancelled);
 }
 

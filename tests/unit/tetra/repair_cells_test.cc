@@ -7,6 +7,7 @@
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "tetra/kuhn_mesh.h"
 
@@ -163,10 +164,10 @@ TEST(RepairCells, SaysWhatIsWrongAndIsCancelled) {
   RepairCellsSettings settings;
   settings.least = 0;
   EXPECT_THROW(repairCells(mesh, surface, cells, settings), SettingError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   settings = {};
-  settings.progress = &progress;
+  const RunScope scope(run);
   shake(cells, 0.5, 1);
   EXPECT_THROW(repairCells(mesh, surface, cells, settings), Cancelled);
 }

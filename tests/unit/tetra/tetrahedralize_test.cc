@@ -8,6 +8,7 @@
 #include "innermap/core/detail/pi.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/tetra/cell_quality.h"
 #include "mesh/shapes.h"
 
@@ -252,10 +253,10 @@ TEST(Tetrahedralize, RefusesNonsenseAndCancels) {
   EXPECT_THROW(tetrahedralize(solid, settings), SettingError);
   settings.edge = -0.1;
   EXPECT_THROW(tetrahedralize(solid, settings), SettingError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   settings = across(32);
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(tetrahedralize(solid, settings), Cancelled);
 }
 

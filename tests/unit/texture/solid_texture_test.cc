@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "mesh/shapes.h"
 
 namespace innermap {
@@ -226,9 +227,9 @@ TEST(SolidTexture, MemoryAndCancellingAreMinded) {
   s.maxMemory = 1000;
   EXPECT_THROW(makeSolidTexture(colouredBall(), {}, s), MemoryError);
   s.maxMemory = 0;
-  Progress progress;
-  progress.cancel();
-  s.progress = &progress;
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
   EXPECT_THROW(makeSolidTexture(colouredBall(), {}, s), Cancelled);
 }
 

@@ -6,6 +6,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "transfer/test_maps.h"
 
 namespace innermap {
@@ -60,20 +61,20 @@ TEST(CarryPointsRelease, PullBringsBack) {
   }
 }
 
-TEST(CarryPoints, OneInverseServesCallsWithProgressOfTheirOwn) {
+TEST(CarryPoints, OneInverseServesCallsWithRunsOfTheirOwn) {
   const ComposedMap map(chargedMap());
   const Solid source(ball()), target(moved(ball(), map));
-  CarryPointsSettings settings;
-  PointPuller puller = [&] {
-    Progress over;  // gone before the first call
-    settings.progress = &over;
-    return PointPuller(map, source, target, settings).reportingTo(nullptr);
+  const PointPuller puller = [&] {
+    RunContext over;  // gone before the first call
+    const RunScope scope(over);
+    return PointPuller(map, source, target);
   }();
   const Points images = {map({0.1, 0.2, 0.3})};
   EXPECT_LE(norm(puller.pull(images, false).points[0] - Vec3{0.1, 0.2, 0.3}), 1e-5);
-  Progress cancelled;
+  RunContext cancelled;
   cancelled.cancel();
-  EXPECT_THROW(puller.reportingTo(&cancelled).pull(images, false), Cancelled);
+  const RunScope scope(cancelled);
+  EXPECT_THROW(puller.pull(images, false), Cancelled);
 }
 
 TEST(CarryPointsRelease, OutsideIsCutExtendedOrFaded) {
@@ -134,12 +135,10 @@ TEST(CarryPoints, BadInput) {
   CarryPointsSettings settings;
   settings.skin = 1;
   EXPECT_THROW(PointPusher(Solid(ball()), settings), SettingError);
-  Progress progress;
-  settings = {};
-  settings.progress = &progress;
-  const PointPusher cancelled(Solid(ball()), settings);
-  progress.cancel();
-  EXPECT_THROW(cancelled.push(chargedMap(), randomPoints(10, 0.5), false), Cancelled);
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(pusher.push(chargedMap(), randomPoints(10, 0.5), false), Cancelled);
   EXPECT_GT(carryPointsMemory(1000000, true), 72000000u);
 }
 

@@ -7,6 +7,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"
@@ -159,9 +160,9 @@ TEST(DistanceTransfer, MemoryAndCancellingAreMinded) {
   settings.skin = 30;
   EXPECT_THROW(depthInside(solid, *surface, settings), SettingError);
   settings = {};
-  Progress progress;
-  progress.cancel();
-  settings.progress = &progress;
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
   EXPECT_THROW(depthInside(solid, *surface, settings), Cancelled);
 }
 

@@ -4,6 +4,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/evaluate/detail/active_region.h"
 #include "transfer/test_maps.h"
 
@@ -196,10 +197,10 @@ TEST(InverseMap, RefusesBadSettingsAndObeysCancel) {
   settings = {};
   settings.outside.distance = -1;
   EXPECT_THROW(invert(chargedMap(), ball(), 16, settings), SettingError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   settings = {};
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(invert(chargedMap(), ball(), 16, settings), Cancelled);
   settings = {};
   settings.maxMemory = 1000;

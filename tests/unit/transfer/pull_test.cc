@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/transfer/push.h"
 #include "transfer/test_maps.h"
 
@@ -77,10 +78,10 @@ TEST(Pull, RefusesWhatItCannotDo) {
   // Positions without the target's level set.
   const auto positions = sampledVector(*from, "P", openvdb::VEC_CONTRAVARIANT_ABSOLUTE);
   EXPECT_THROW(pullGrids(map, source, *from, {positions}), DataError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   settings = {};
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(pullGrids(map, source, *from, {sampledScalar(*from, "s")}, settings), Cancelled);
 }
 

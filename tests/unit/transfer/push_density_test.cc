@@ -9,6 +9,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/transfer/push.h"
 #include "transfer/test_maps.h"
 
@@ -256,7 +257,7 @@ TEST(PushDensity, SameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(one.masses[0].largestCompression, four.masses[0].largestCompression);
 }
 
-class CancelIn : public Progress {
+class CancelIn : public RunContext {
  public:
   explicit CancelIn(std::string stage) : stage_(std::move(stage)) {}
   void report(std::string_view stage, double) override {
@@ -278,8 +279,8 @@ TEST(PushDensity, MemoryAndCancellingAreMinded) {
   settings.maxMemory = 0;
   for (const char* stage :
        {"finding what is in the solid", "mapping the densities", "carrying the densities"}) {
-    CancelIn progress(stage);
-    settings.progress = &progress;
+    CancelIn run(stage);
+    const RunScope scope(run);
     EXPECT_THROW(pushed(map, source, *to, grid, settings), Cancelled) << stage;
   }
 }

@@ -20,7 +20,6 @@ Points imagesOf(const ComposedMap& map, const Points& points,
                 const BoundaryCheckSettings& settings) {
   EvaluateFieldSettings sums;
   sums.accuracy = settings.accuracy;
-  sums.progress = settings.progress;
   const Matrix values = map.evaluate(points, sums).values;
   Points out(points.size());
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = {values(i, 0), values(i, 1), values(i, 2)};
@@ -48,12 +47,11 @@ DeterminantFigures boundaryDeterminants(const ComposedMap& map, const BoundaryPa
                                         const BoundaryCheckSettings& settings) {
   SampleSettings sample;
   sample.seed = seedOf(settings.seed, Stream::fresh);
-  sample.progress = settings.progress;
   const Mesh& surface = pair.solid().surface();
   return determinantsOf(mapPoints(map,
                                   interpolate(surface.vertices, surface.triangles,
                                               randomSamples(surface, kBoundary, sample)),
-                                  settings.accuracy, settings.progress),
+                                  settings.accuracy),
                         target, settings.error);
 }
 
@@ -62,18 +60,14 @@ DegreeFigures boundaryDegree(const ComposedMap& map, const BoundaryPair& pair,
   const WindingNumber image = imageOf(map, pair.solid().surface(), settings);
   const Box3 box = boundingBox(pair.target.mesh(pair.solid(), ""));
   const double volume = std::max(target.volume(), kThinnest * std::pow(box.diagonal(), 3));
-  const Points deep = latticePoints(
-      box, std::cbrt(volume / kInTarget),
-      [&](const Vec3& p) { return target.inside(p) && !target.near(p, settings.error); },
-      settings.progress);
+  const Points deep = latticePoints(box, std::cbrt(volume / kInTarget), [&](const Vec3& p) {
+    return target.inside(p) && !target.near(p, settings.error);
+  });
   std::vector<int> windings(deep.size());
-  parallelBlocks(
-      deep.size(), 64,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-          windings[i] = target.orientation() * static_cast<int>(std::lround(image.at(deep[i])));
-      },
-      settings.progress);
+  parallelBlocks(deep.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      windings[i] = target.orientation() * static_cast<int>(std::lround(image.at(deep[i])));
+  });
   DegreeFigures out;
   out.checked = deep.size();
   if (deep.empty()) return out;

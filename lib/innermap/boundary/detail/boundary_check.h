@@ -14,7 +14,6 @@ struct BoundaryCheckSettings {
   double error = 0;        // the boundary's largest, world units
   double accuracy = 1e-7;  // of the sums, world units
   std::uint64_t seed = 1;  // that of the fit
-  Progress* progress = nullptr;
 };
 
 // At 10,000 of the points that the boundary's error is measured at. Charges stand outside, so the

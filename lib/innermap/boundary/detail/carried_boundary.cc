@@ -47,7 +47,6 @@ CarriedBoundary::CarriedBoundary(const Solid& source, const CarriedSettings& set
 Points CarriedBoundary::carried(Points points, std::size_t firstStep) const {
   EvaluateFieldSettings sums;
   sums.accuracy = settings_.accuracy;
-  sums.progress = settings_.progress;
   for (std::size_t s = firstStep; s < steps_.size(); ++s)
     points = pointsOf(steps_[s].field().evaluate(points, sums).values);
   return points;
@@ -61,7 +60,6 @@ Points CarriedBoundary::onSource(const Points& vertices,
 std::vector<SurfacePoint> CarriedBoundary::placesOf(std::size_t count, std::uint64_t draw) const {
   SampleSettings sample;
   sample.seed = seedOf(settings_.seed, Stream::fresh, draw);
-  sample.progress = settings_.progress;
   std::vector<SurfacePoint> places = randomSamples(source_.surface(), count, sample);
   for (SurfacePoint& p : places) p = source_.address(p);
   return places;
@@ -107,21 +105,18 @@ void CarriedBoundary::advance(const HarmonicMap& step, bool last) {
   now.triangles = surface_.triangles;
   SolidSettings solid;
   solid.pieceSize = kPieces;
-  solid.progress = settings_.progress;
   solid_ = Solid(now, solid);
 }
 
 // Those that stand where the mesh about the present solid is as good as exact at their distance
 // from it: elsewhere a charge could touch the exact images, or stand inside of them.
-Points CarriedBoundary::known(const Points& charges, double distance, const PlacesToValues& values) {
+Points CarriedBoundary::known(const Points& charges, double distance,
+                              const PlacesToValues& values) {
   std::vector<SurfacePoint> feet(charges.size());
-  parallelBlocks(
-      charges.size(), 64,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-          feet[i] = solid_.closest(charges[i], solid_.diagonal()).onSurface;
-      },
-      settings_.progress);
+  parallelBlocks(charges.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      feet[i] = solid_.closest(charges[i], solid_.diagonal()).onSurface;
+  });
   const Points on = positionsOf(solid_, feet), exact = carried(pointsOf(values(feet)), 0);
   Points out;
   for (std::size_t i = 0; i < charges.size(); ++i)
@@ -132,7 +127,6 @@ Points CarriedBoundary::known(const Points& charges, double distance, const Plac
 AdaptiveProblem CarriedBoundary::problem(const Points& ways, double unit) {
   AdaptiveProblemSettings s;
   s.seed = settings_.seed;
-  s.progress = settings_.progress;
   // Columns: the point of the source, and its way.
   const auto values =
       [solid = solid_, from = surface_.positions,

@@ -19,7 +19,6 @@ struct CarriedSettings {
   double accuracy = 1e-7;  // of the sums, world units
   double chord = 1e-3;     // of the mesh about the present solid, world units; see refine
   std::uint64_t seed = 1;
-  Progress* progress = nullptr;
 };
 
 class CarriedBoundary {

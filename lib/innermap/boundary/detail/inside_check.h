@@ -13,11 +13,10 @@ namespace innermap {
 
 // Points of a cubic lattice in the box of which `wanted` is true, in a fixed order. step: world
 // units. wanted: may be called from any thread. Throws Cancelled.
-Points latticePoints(const Box3& box, double step, const std::function<bool(const Vec3&)>& wanted,
-                     Progress* progress = nullptr);
+Points latticePoints(const Box3& box, double step, const std::function<bool(const Vec3&)>& wanted);
 
 // Those that lie inside the solid, about so many. Throws Cancelled.
-Points pointsInside(const Solid& solid, std::size_t count, Progress* progress = nullptr);
+Points pointsInside(const Solid& solid, std::size_t count);
 
 // Images and Jacobian determinants of points.
 struct MappedPoints {
@@ -27,12 +26,10 @@ struct MappedPoints {
 
 // Through one step: determinants are those of the whole way, if `before` has those of the way here.
 // accuracy: of the sums, world units. Throws Cancelled.
-MappedPoints mapPoints(const HarmonicMap& step, const MappedPoints& before, double accuracy,
-                       Progress* progress = nullptr);
+MappedPoints mapPoints(const HarmonicMap& step, const MappedPoints& before, double accuracy);
 
 // Through all steps.
-MappedPoints mapPoints(const ComposedMap& map, Points points, double accuracy,
-                       Progress* progress = nullptr);
+MappedPoints mapPoints(const ComposedMap& map, Points points, double accuracy);
 
 // Those of the whole way. error: the boundary's largest, world units.
 DeterminantFigures determinantsOf(const MappedPoints& mapped, const TargetShape& target,
@@ -43,7 +40,6 @@ double foldedShare(const std::vector<double>& determinants);
 
 // Share of the points that are outside the target by more than `slack`, world units; 0 of a target
 // that bounds nothing. Throws Cancelled.
-double outsideShare(const Points& points, const TargetShape& target, double slack,
-                    Progress* progress = nullptr);
+double outsideShare(const Points& points, const TargetShape& target, double slack);
 
 }  // namespace innermap

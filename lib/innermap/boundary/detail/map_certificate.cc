@@ -23,11 +23,9 @@ constexpr double kTriangleMargin = 1.5;
 constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
 
 std::vector<double> errorsAt(const ComposedMap& map, const BoundaryPair& pair,
-                             const std::vector<SurfacePoint>& places, double accuracy,
-                             Progress* progress) {
+                             const std::vector<SurfacePoint>& places, double accuracy) {
   EvaluateFieldSettings sums;
   sums.accuracy = accuracy;
-  sums.progress = progress;
   const Matrix wanted = pair.targetsOf(places),
                got = map.evaluate(positionsOf(pair.solid(), places), sums).values;
   std::vector<double> out(places.size());
@@ -59,13 +57,11 @@ std::vector<SurfacePoint> ownVertices(const Solid& solid) {
   return out;
 }
 
-double trianglesOff(const ComposedMap& map, const BoundaryPair& pair, double accuracy,
-                    Progress* progress) {
+double trianglesOff(const ComposedMap& map, const BoundaryPair& pair, double accuracy) {
   const auto slopes = [&](const Points& at, const Points& normals) {
     EvaluateFieldSettings sums;
     sums.accuracy = accuracy;
     sums.gradients = true;
-    sums.progress = progress;
     const Matrix g = map.evaluate(at, sums).gradients;
     std::vector<Vec3> out(at.size());
     for (std::size_t i = 0; i < at.size(); ++i)
@@ -76,20 +72,17 @@ double trianglesOff(const ComposedMap& map, const BoundaryPair& pair, double acc
     return out;
   };
   TriangleErrorSettings s;
-  s.progress = progress;
   return triangleError(pair.solid().repaired().mesh, pair.target.moved, slopes, s) /
          pair.target.diagonal;
 }
 
 // Of sums, world units of the target: changes no digit that counts of errors as large as the map's.
-double certificateAccuracy(const ComposedMap& map, const BoundaryPair& pair, std::uint64_t seed,
-                           Progress* progress) {
+double certificateAccuracy(const ComposedMap& map, const BoundaryPair& pair, std::uint64_t seed) {
   SampleSettings sample;
   sample.seed = seedOf(seed, Stream::fresh);
-  sample.progress = progress;
   const std::vector<SurfacePoint> places =
       randomSamples(pair.solid().surface(), kFirstLook, sample);
-  const double rms = summarizeErrors(errorsAt(map, pair, places, 0, progress)).rms;
+  const double rms = summarizeErrors(errorsAt(map, pair, places, 0)).rms;
   return std::max(kOfTheError * rms, kLeastAccuracy) * pair.target.diagonal;
 }
 
@@ -97,14 +90,13 @@ double certificateAccuracy(const ComposedMap& map, const BoundaryPair& pair, std
 
 MapCertificate certifyMap(const ComposedMap& map, const BoundaryPair& pair,
                           const MapCertificateSettings& settings) {
-  const double accuracy = certificateAccuracy(map, pair, settings.seed, settings.progress);
+  const double accuracy = certificateAccuracy(map, pair, settings.seed);
   const auto errors = [&](const std::vector<SurfacePoint>& places) {
-    return errorsAt(map, pair, places, accuracy, settings.progress);
+    return errorsAt(map, pair, places, accuracy);
   };
   CertificateSettings s;
   s.seed = settings.seed;
   s.tolerance = settings.tolerance;
-  s.progress = settings.progress;
   MapCertificate out;
   out.accuracy = accuracy;
   out.error = certify(pair.solid(), errors, s);
@@ -115,7 +107,7 @@ MapCertificate certifyMap(const ComposedMap& map, const BoundaryPair& pair,
       out.verticesMax = std::max(out.verticesMax, e);
     out.smoothBound = kBetweenVertices * out.verticesMax + rounding;
   } else {
-    out.triangles = trianglesOff(map, pair, accuracy, settings.progress);
+    out.triangles = trianglesOff(map, pair, accuracy);
     out.smoothBound = out.error.bound + kTriangleMargin * out.triangles;
   }
   return out;

@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "innermap/boundary/boundary_pair.h"
-#include "innermap/core/progress.h"
 #include "innermap/field/boundary_error.h"
 #include "innermap/field/harmonic_map.h"
 
@@ -14,7 +13,6 @@ struct MapCertificateSettings {
   bool smooth = false;   // the map was fitted to the vertices, not to the triangles
   double tolerance = 0;  // as CertificateSettings has it, fraction of the target's diagonal
   std::uint64_t seed = 1;
-  Progress* progress = nullptr;
 };
 
 // Fractions of the target's diagonal.

@@ -9,6 +9,7 @@
 #include "innermap/boundary/detail/pair_problem.h"
 #include "innermap/boundary/detail/step_fit.h"
 #include "innermap/core/memory.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -80,7 +81,6 @@ FitSettings fitSettings(const ShellSettings& shell, const FitMapSettings& settin
   fit.method = shell.method;
   fit.regularization = shell.regularization;
   fit.maxMemory = settings.maxMemory;
-  fit.progress = settings.progress;
   return fit;
 }
 
@@ -138,7 +138,7 @@ void MapFitter::check(FitOutcome& out) {
   if (out.inside.folded <= (on ? 0 : kManyFolds) && out.inside.outside <= kManyOutside) return;
   singleFolded = out.inside.folded;
   singleSources = out.solve.sources;
-  if (!roomForSteps() || outOfTime(settings_.progress)) return finishSingle(out);
+  if (!roomForSteps() || outOfTime()) return finishSingle(out);
   FitOutcome steps = inSteps();
   if (steps.inside.folded <= (on ? 1 : kWorthIt) * singleFolded)
     out = std::move(steps);
@@ -154,7 +154,6 @@ Injectivity MapFitter::injectivityOf(const FitOutcome& out) {
   s.error = out.error.p99 * pair_.target.diagonal;
   s.accuracy = kSumAccuracy * pair_.target.diagonal;
   s.seed = settings_.seed;
-  s.progress = settings_.progress;
   timed(seconds, "inside", [&] {
     known.inside = out.inside.determinants;
     known.outside = out.inside.outside;
@@ -171,12 +170,12 @@ bool MapFitter::mayTakeSteps() const {
 }
 
 const Points& MapFitter::inside() {
-  if (inside_.empty()) inside_ = pointsInside(pair_.solid(), kInside, settings_.progress);
+  if (inside_.empty()) inside_ = pointsInside(pair_.solid(), kInside);
   return inside_;
 }
 
 MappedPoints MapFitter::insideOf(const ComposedMap& map) {
-  return mapPoints(map, inside(), kSumAccuracy * pair_.target.diagonal, settings_.progress);
+  return mapPoints(map, inside(), kSumAccuracy * pair_.target.diagonal);
 }
 
 bool MapFitter::roomForSteps() {
@@ -199,13 +198,11 @@ void MapFitter::finishSingle(FitOutcome& out) {
 AdaptiveProblem MapFitter::problem(double tolerance) {
   AdaptiveProblemSettings s;
   s.seed = settings_.seed;
-  s.progress = settings_.progress;
   AdaptiveProblem out = adaptiveProblem(
       pair_.solid(),
       [this](const std::vector<SurfacePoint>& points) { return pair_.targetsOf(points); },
       pair_.target.diagonal, s);
-  jumps = valueJumps(pair_.solid(), pair_.target.moved, tolerance * pair_.target.diagonal,
-                     settings_.progress);
+  jumps = valueJumps(pair_.solid(), pair_.target.moved, tolerance * pair_.target.diagonal);
   for (const ValueJump& jump : jumps) out.jumps.push_back(jump.place);
   return out;
 }
@@ -216,7 +213,6 @@ FitProblem MapFitter::problemOf(const PointCounts& counts) {
   s.vertices = settings_.interpolation != Interpolation::linear;
   if (settings_.shell) s.radiusRatio = settings_.shell->radiusRatio;
   s.seed = settings_.seed;
-  s.progress = settings_.progress;
   return timed(seconds, "sample", [&] { return pairProblem(pair_, s); });
 }
 
@@ -226,7 +222,6 @@ AdaptiveSettings MapFitter::adaptiveSettings(double tolerance) const {
   s.maxSources = settings_.maxSources;
   s.checkSamples = kFreshSamples;
   s.maxMemory = memoryLeft(settings_.maxMemory);
-  s.progress = settings_.progress;
   return s;
 }
 
@@ -239,7 +234,7 @@ InsideFigures MapFitter::figuresOf(const FitOutcome& out) {
   figures.determinants = determinantsOf(here, *target_, slack);
   for (std::size_t i = 0; i < inside_.size() && figures.foldedAt.size() < kPlaces; ++i)
     if (!(here.determinants[i] > 0)) figures.foldedAt.push_back(inside_[i]);
-  figures.outside = outsideShare(here.points, *target_, slack, settings_.progress);
+  figures.outside = outsideShare(here.points, *target_, slack);
   return figures;
 }
 
@@ -251,7 +246,6 @@ FitOutcome MapFitter::inSteps() {
   s.maxSources = settings_.maxSources;
   s.seed = settings_.seed;
   s.maxMemory = memoryLeft(settings_.maxMemory);
-  s.progress = settings_.progress;
   StepFit fit = timed(seconds, "steps", [&] { return fitInSteps(pair_, inside(), s); });
   FitOutcome out{std::move(fit.map), fit.error, {}, 0, false, {}, {}, {}, {}, std::move(fit.steps)};
   out.solve.method = out.solve.placement = "steps";
@@ -287,7 +281,6 @@ void MapFitter::measure(const FitProblem& problem, FitOutcome& out) {
   timed(seconds, "certificate", [&] {
     BoundaryErrorSettings e;
     e.accuracy = out.certificate.accuracy;
-    e.progress = settings_.progress;
     const auto error = [&](const Points& points, const Matrix& values) {
       return measureBoundaryError(out.map.steps().front().field(), points, values,
                                   pair_.target.diagonal, e);
@@ -304,7 +297,6 @@ void MapFitter::certify(FitOutcome& out) {
   s.smooth = out.smooth;
   s.tolerance = settings_.tolerance;
   s.seed = settings_.seed;
-  s.progress = settings_.progress;
   out.certificate = timed(seconds, "certificate", [&] { return certifyMap(out.map, pair_, s); });
   BoundaryError error = out.certificate.error;
   if (out.error.samples > 0) {

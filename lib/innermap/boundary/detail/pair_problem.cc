@@ -67,17 +67,15 @@ BoundaryData vertexData(const BoundaryPair& pair, std::uint64_t seed, const Poin
 
 FitProblem pairProblem(const BoundaryPair& pair, const PairProblemSettings& settings) {
   const Solid& solid = pair.solid();
-  const ProblemSamples samples =
-      drawSamples(solid, settings.counts, settings.seed, settings.progress);
+  const ProblemSamples samples = drawSamples(solid, settings.counts, settings.seed);
   FitProblem problem = problemOf(
       solid, [&pair](const Samples& points) { return pair.targetsOf(points); }, samples,
-      settings.seed, settings.progress);
+      settings.seed);
   if (settings.vertices)
     problem.vertices = vertexData(pair, settings.seed, settings.counts, samples.collocation);
   if (settings.radiusRatio) {
     SourceSettings source;
     source.seed = seedOf(settings.seed, Stream::sources);
-    source.progress = settings.progress;
     problem.placeSources = [solid, ratio = *settings.radiusRatio, source](std::size_t count,
                                                                           double) mutable {
       source.count = count;

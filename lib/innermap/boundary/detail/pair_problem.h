@@ -14,7 +14,6 @@ struct PairProblemSettings {
   bool vertices = true;               // the mesh's own vertices too
   std::optional<double> radiusRatio;  // charges on a sphere of that many half diagonals
   std::uint64_t seed = 1;
-  Progress* progress = nullptr;
 };
 
 // Holds a reference to the pair.

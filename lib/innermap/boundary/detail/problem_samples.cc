@@ -10,10 +10,8 @@ Points positionsOf(const Solid& solid, const std::vector<SurfacePoint>& onSurfac
   return interpolate(solid.surface().vertices, solid.surface().triangles, onSurface);
 }
 
-ProblemSamples drawSamples(const Solid& solid, const PointCounts& counts, std::uint64_t seed,
-                           Progress* progress) {
+ProblemSamples drawSamples(const Solid& solid, const PointCounts& counts, std::uint64_t seed) {
   SampleSettings sample;
-  sample.progress = progress;
   sample.seed = seedOf(seed, Stream::collocation);
   ProblemSamples out;
   out.collocation = blueNoiseSamples(solid.surface(), counts.collocation, sample);
@@ -24,7 +22,7 @@ ProblemSamples drawSamples(const Solid& solid, const PointCounts& counts, std::u
 
 FitProblem problemOf(const Solid& solid,
                      const std::function<Matrix(const std::vector<SurfacePoint>&)>& values,
-                     const ProblemSamples& samples, std::uint64_t seed, Progress* progress) {
+                     const ProblemSamples& samples, std::uint64_t seed) {
   FitProblem problem;
   problem.surface = {positionsOf(solid, samples.collocation), positionsOf(solid, samples.heldOut),
                      values(samples.collocation), values(samples.heldOut)};
@@ -32,7 +30,6 @@ FitProblem problemOf(const Solid& solid,
   problem.area = solid.area();
   SourceSettings source;
   source.seed = seedOf(seed, Stream::sources);
-  source.progress = progress;
   problem.placeSources = [solid, source](std::size_t count, double distance) mutable {
     source.count = count;
     return sourceShell(solid, distance, source);

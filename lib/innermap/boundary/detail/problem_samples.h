@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "innermap/core/matrix.h"
-#include "innermap/core/progress.h"
 #include "innermap/field/fit.h"
 #include "innermap/levelset/solid.h"
 
@@ -20,13 +19,12 @@ struct PointCounts {
   std::size_t sources = 0, collocation = 0, heldOut = 0;
 };
 
-ProblemSamples drawSamples(const Solid& solid, const PointCounts& counts, std::uint64_t seed,
-                           Progress* progress);
+ProblemSamples drawSamples(const Solid& solid, const PointCounts& counts, std::uint64_t seed);
 
 // values: as SurfaceValues in surface_problem.h.
 FitProblem problemOf(const Solid& solid,
                      const std::function<Matrix(const std::vector<SurfacePoint>&)>& values,
-                     const ProblemSamples& samples, std::uint64_t seed, Progress* progress);
+                     const ProblemSamples& samples, std::uint64_t seed);
 
 Points positionsOf(const Solid& solid, const std::vector<SurfacePoint>& onSurface);
 

@@ -9,6 +9,7 @@
 #include "innermap/boundary/detail/inside_check.h"
 #include "innermap/boundary/detail/shape_path.h"
 #include "innermap/boundary/mesh_correspondence.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -65,8 +66,8 @@ class StepFitter {
     bool hurries = false;  // one step does the rest of the way, for lack of time
     double seconds = 0;    // of the last step, taken or not
     while (!ends.empty()) {
-      reportProgress(settings_.progress, "going in steps", std::pow(at_, kWorkPower));
-      if (!hurries && outOfTime(settings_.progress, seconds)) {
+      reportProgress("going in steps", std::pow(at_, kWorkPower));
+      if (!hurries && outOfTime(seconds)) {
         hurries = true;
         ends = {1};
       }
@@ -96,7 +97,6 @@ class StepFitter {
     s.accuracy = std::min(kSumAccuracy, 1e-3 * settings_.tolerance) * unit_;
     s.chord = std::min(kChord, settings_.tolerance) * unit_;
     s.seed = settings_.seed;
-    s.progress = settings_.progress;
     return s;
   }
 
@@ -139,7 +139,6 @@ class StepFitter {
                allowed(round == 1 ? kCoarseFoldShare : kFoldShare);
       };
     s.maxMemory = settings_.maxMemory;
-    s.progress = settings_.progress;
     AdaptiveResult fit = fitToTolerance(boundary_.problem(ways, unit_), s);
     if (fit.end == AdaptiveEnd::maxSources && s.maxSources < settings_.maxSources)
       fit.end = AdaptiveEnd::noGain;
@@ -151,7 +150,7 @@ class StepFitter {
   }
 
   MappedPoints insideAfter(const HarmonicMap& step) const {
-    return mapPoints(step, inside_, kSumAccuracy * unit_, settings_.progress);
+    return mapPoints(step, inside_, kSumAccuracy * unit_);
   }
 
   void take(Step step, bool last) {

@@ -17,7 +17,6 @@ struct StepFitSettings {
   std::size_t maxSources = 100000;  // of one step
   std::uint64_t seed = 1;
   std::uint64_t maxMemory = 0;
-  Progress* progress = nullptr;
 };
 
 struct StepFit {

@@ -161,12 +161,9 @@ double triangleError(const Mesh& mesh, const Points& values, const NormalDerivat
     const Points rest = lessAffine(mesh, values);
     const Triangles coarse(mesh, rest);
     std::vector<double> misses(order.size());
-    parallelBlocks(
-        order.size(), 256,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t t = begin; t < end; ++t) misses[t] = coarse.miss(t, {});
-        },
-        settings.progress);
+    parallelBlocks(order.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) misses[t] = coarse.miss(t, {});
+    });
     std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(settings.triangles),
                      order.end(), [&](std::size_t a, std::size_t b) {
                        return misses[a] != misses[b] ? misses[a] > misses[b] : a < b;
@@ -183,12 +180,9 @@ double triangleError(const Mesh& mesh, const Points& values, const NormalDerivat
   }
   const std::vector<Vec3> slopes = derivatives(at, normals);
   std::vector<double> misses(order.size());
-  parallelBlocks(
-      order.size(), 256,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) misses[i] = triangles.miss(order[i], slopes[i]);
-      },
-      settings.progress);
+  parallelBlocks(order.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) misses[i] = triangles.miss(order[i], slopes[i]);
+  });
   return misses.empty() ? 0 : *std::max_element(misses.begin(), misses.end());
 }
 

@@ -4,7 +4,6 @@
 #include <functional>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/mesh/mesh.h"
 
@@ -15,7 +14,6 @@ using NormalDerivatives = std::function<std::vector<Vec3>(const Points& at, cons
 
 struct TriangleErrorSettings {
   std::size_t triangles = 4000;  // that are looked at: those where vertices around miss the most
-  Progress* progress = nullptr;
 };
 
 // A map that is known at the vertices, linear on the triangles, against one that is smooth: about

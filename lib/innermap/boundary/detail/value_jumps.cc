@@ -54,14 +54,10 @@ std::array<Vec3, 2> lineOf(const Corners& a, const Corners& b, const Vec3& middl
 
 }  // namespace
 
-std::vector<ValueJump> valueJumps(const Solid& solid, const Points& values, double least,
-                                  Progress* progress) {
+std::vector<ValueJump> valueJumps(const Solid& solid, const Points& values, double least) {
   if (!solid.overlaps()) return {};
   const Mesh& mesh = solid.repaired().mesh;
-  SelfIntersectionSettings settings;
-  settings.progress = progress;
-  const std::vector<Crossing> crossings =
-      selfIntersections(mesh.vertices, mesh.triangles, settings);
+  const std::vector<Crossing> crossings = selfIntersections(mesh.vertices, mesh.triangles);
   std::vector<std::vector<ValueJump>> found(crossings.size());
   const double apart = kApart * solid.diagonal(),
                exposed = solid.gap() + kExposed * solid.diagonal();
@@ -90,7 +86,7 @@ std::vector<ValueJump> valueJumps(const Solid& solid, const Points& values, doub
           }
         }
       },
-      progress, "looking for parts that slide along each other");
+      "looking for parts that slide along each other");
   std::vector<ValueJump> out;
   for (const std::vector<ValueJump>& part : found) out.insert(out.end(), part.begin(), part.end());
   return out;

@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/levelset/solid.h"
 
 namespace innermap {
@@ -17,7 +16,6 @@ struct ValueJump {
 // surface, no farther apart than a five-hundredth of the diagonal, at which the values differ by
 // more than `least`. values: at the vertices of solid.repaired().mesh, linear on triangles. Empty
 // where nothing overlaps. Throws Cancelled.
-std::vector<ValueJump> valueJumps(const Solid& solid, const Points& values, double least,
-                                  Progress* progress);
+std::vector<ValueJump> valueJumps(const Solid& solid, const Points& values, double least);
 
 }  // namespace innermap

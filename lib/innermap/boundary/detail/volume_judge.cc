@@ -27,9 +27,9 @@ Mesh meshOf(const ClosedSurface& surface) {
   return mesh;
 }
 
-Points deepOnes(const Solid& solid, double depth, Progress* progress) {
+Points deepOnes(const Solid& solid, double depth) {
   Points out;
-  for (const Vec3& p : pointsInside(solid, 2 * kInside, progress))
+  for (const Vec3& p : pointsInside(solid, 2 * kInside))
     if (solid.distance(p) > depth) out.push_back(p);
   const std::size_t every = out.size() / kInside + 1;
   Points some;
@@ -59,35 +59,32 @@ struct VolumeJudge::Placed {
   std::vector<SurfacePoint> at;
   Points collocation, sources, inside;
 
-  Placed(const ClosedSurface& surface, Progress* progress);
+  explicit Placed(const ClosedSurface& surface);
 };
 
-VolumeJudge::Placed::Placed(const ClosedSurface& surface, Progress* progress) {
+VolumeJudge::Placed::Placed(const ClosedSurface& surface) {
   const Mesh mesh = meshOf(surface);
   SolidSettings solidSettings;
-  solidSettings.progress = progress;
   const Solid solid(mesh, solidSettings);
   const double spacing = std::sqrt(solid.area() / static_cast<double>(kCharges));
   SampleSettings sampling;
-  sampling.progress = progress;
   at = blueNoiseSamples(mesh, kCollocation, sampling);
   collocation = interpolate(mesh.vertices, mesh.triangles, at);
   SourceSettings charges;
   charges.count = kCharges;
-  charges.progress = progress;
   sources = sourceShell(solid, std::clamp(spacing / solid.diagonal(), 1e-4, 2.0), charges);
-  inside = deepOnes(solid, kDepth * spacing, progress);
+  inside = deepOnes(solid, kDepth * spacing);
   if (inside.empty()) throw DataError(surface.name + ": is too thin to judge its inside");
 }
 
-VolumeJudge::VolumeJudge(Placed placed, Progress* progress)
+VolumeJudge::VolumeJudge(Placed placed)
     : at_(std::move(placed.at)),
       sources_(std::move(placed.sources)),
       inside_(std::move(placed.inside)),
-      solver_(placed.collocation, sources_, {}, DenseSettings{0, progress}) {}
+      solver_(placed.collocation, sources_, {}, DenseSettings{0}) {}
 
-VolumeJudge::VolumeJudge(const ClosedSurface& surface, double targetVolume, Progress* progress)
-    : VolumeJudge(Placed(surface, progress), progress) {
+VolumeJudge::VolumeJudge(const ClosedSurface& surface, double targetVolume)
+    : VolumeJudge(Placed(surface)) {
   scale_ = std::cbrt(std::abs(signedVolume(meshOf(surface))) / targetVolume);
 }
 

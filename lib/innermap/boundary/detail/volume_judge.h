@@ -7,7 +7,6 @@
 
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/solve/dense_solver.h"
 #include "innermap/surface/layout.h"
 
@@ -17,7 +16,7 @@ class VolumeJudge {
  public:
   // surface: closed and outward. targetVolume: world units cubed, above 0. Throws DataError where
   // there is no inside or no room for charges; Cancelled.
-  VolumeJudge(const ClosedSurface& surface, double targetVolume, Progress* progress = nullptr);
+  VolumeJudge(const ClosedSurface& surface, double targetVolume);
 
   // Points of the surface whose images are judged.
   const std::vector<SurfacePoint>& at() const { return at_; }
@@ -30,7 +29,7 @@ class VolumeJudge {
 
  private:
   struct Placed;
-  VolumeJudge(Placed placed, Progress* progress);
+  explicit VolumeJudge(Placed placed);
 
   std::vector<SurfacePoint> at_;
   Points sources_, inside_;

@@ -11,6 +11,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -22,7 +23,7 @@ struct Descriptor {
 
 }  // namespace
 
-FileBytes readFileBytes(const std::string& path, const std::string& what, Progress* progress) {
+FileBytes readFileBytes(const std::string& path, const std::string& what) {
   // Without O_NONBLOCK, opening a pipe that nobody writes to would wait for ever.
   const int number = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (number < 0)
@@ -40,7 +41,7 @@ FileBytes readFileBytes(const std::string& path, const std::string& what, Progre
   std::string bytes(size, '\0');
   constexpr std::size_t kChunk = std::size_t(16) << 20;
   for (std::size_t done = 0; done < size;) {
-    throwIfCancelled(progress);
+    throwIfCancelled();
     const ssize_t got = read(number, &bytes[done], std::min(kChunk, size - done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0)

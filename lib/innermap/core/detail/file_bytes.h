@@ -4,8 +4,6 @@
 #include <string>
 #include <string_view>
 
-#include "innermap/core/progress.h"
-
 namespace innermap {
 
 struct FileBytes {
@@ -16,7 +14,7 @@ struct FileBytes {
 // what: what kind of file it should be, for messages: "a mesh file". Throws FileError for what is
 // no regular file, is empty or cannot be read; MemoryError when it is larger than the machine's
 // memory; Cancelled.
-FileBytes readFileBytes(const std::string& path, const std::string& what, Progress* progress);
+FileBytes readFileBytes(const std::string& path, const std::string& what);
 
 // ".obj" of "a/b.obj"; empty when there is none.
 std::string extensionOf(const std::string& path);

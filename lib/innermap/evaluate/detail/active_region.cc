@@ -8,6 +8,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -15,22 +16,18 @@ namespace {
 using Leaf = openvdb::MaskTree::LeafNodeType;
 using Lower = openvdb::MaskTree::RootNodeType::ChildNodeType::ChildNodeType;
 
-std::vector<std::unique_ptr<Leaf>> leavesBelow(const openvdb::FloatTree& distances, float iso,
-                                               Progress* progress) {
+std::vector<std::unique_ptr<Leaf>> leavesBelow(const openvdb::FloatTree& distances, float iso) {
   std::vector<const openvdb::FloatTree::LeafNodeType*> from;
   distances.getNodes(from);
   std::vector<std::unique_ptr<Leaf>> out(from.size());
-  parallelBlocks(
-      from.size(), 64,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t l = begin; l < end; ++l) {
-          auto leaf = std::make_unique<Leaf>(from[l]->origin(), false);
-          for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
-            if (from[l]->getValue(i) < iso) leaf->setValueOn(i);
-          if (!leaf->isEmpty()) out[l] = std::move(leaf);
-        }
-      },
-      progress);
+  parallelBlocks(from.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t l = begin; l < end; ++l) {
+      auto leaf = std::make_unique<Leaf>(from[l]->origin(), false);
+      for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
+        if (from[l]->getValue(i) < iso) leaf->setValueOn(i);
+      if (!leaf->isEmpty()) out[l] = std::move(leaf);
+    }
+  });
   return out;
 }
 
@@ -49,10 +46,9 @@ std::uint64_t fillTiles(Node& node, const openvdb::FloatTree& distances, float i
 
 // As openvdb::tools::sdfInteriorMask, whose header takes seconds to compile. Returns the number of
 // leaves that the mask has once its tiles are voxels.
-std::uint64_t maskBelow(const openvdb::FloatTree& distances, float iso, openvdb::MaskTree& out,
-                        Progress* progress) {
+std::uint64_t maskBelow(const openvdb::FloatTree& distances, float iso, openvdb::MaskTree& out) {
   std::uint64_t leaves = 0;
-  for (std::unique_ptr<Leaf>& leaf : leavesBelow(distances, iso, progress)) {
+  for (std::unique_ptr<Leaf>& leaf : leavesBelow(distances, iso)) {
     if (!leaf) continue;
     out.addLeaf(leaf.release());
     ++leaves;
@@ -80,9 +76,8 @@ openvdb::MaskGrid::Ptr activeRegion(const openvdb::FloatGrid& levelSet,
                               background - openvdb::math::Tolerance<float>::value());
   auto region = openvdb::MaskGrid::create();
   region->setTransform(levelSet.transform().copy());
-  const std::uint64_t leaves =
-      maskBelow(levelSet.tree(), std::min(iso, most), region->tree(), settings.progress);
-  throwIfCancelled(settings.progress);
+  const std::uint64_t leaves = maskBelow(levelSet.tree(), std::min(iso, most), region->tree());
+  throwIfCancelled();
   requireMemory("evaluating " + std::to_string(leaves) + " blocks of 8^3 voxels",
                 leaves * Leaf::SIZE * settings.bytesPerVoxel, settings.maxMemory,
                 "use a larger --voxel-size or a lower --resolution (memory grows with its cube)");

@@ -5,15 +5,12 @@
 
 #include <cstdint>
 
-#include "innermap/core/progress.h"
-
 namespace innermap {
 
 struct RegionSettings {
   double skin = 2;                  // voxels outside the surface, from 0 to the band's half-width
   std::uint64_t bytesPerVoxel = 1;  // that the caller will need, at least 1
   std::uint64_t maxMemory = 0;      // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 // All voxels whose signed distance is at most `skin` voxels, as leaf voxels (no active tiles).

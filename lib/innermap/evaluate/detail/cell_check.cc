@@ -123,8 +123,7 @@ class Cells {
 };
 
 std::vector<LeafCells> allCells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
-                                const TargetShape& target, double error, Progress* progress,
-                                const Vec3& origin) {
+                                const TargetShape& target, double error, const Vec3& origin) {
   std::vector<const MapLeaf*> leaves;
   for (auto leaf = map.tree().cbeginLeaf(); leaf; ++leaf) leaves.push_back(&*leaf);
   std::vector<LeafCells> out(leaves.size());
@@ -134,7 +133,7 @@ std::vector<LeafCells> allCells(const openvdb::Vec3fGrid& map, const openvdb::Fl
         const Cells cells(map, levelSet, target, error, origin);
         for (std::size_t i = begin; i < end; ++i) out[i] = cells.of(*leaves[i]);
       },
-      progress, "checking cells");
+      "checking cells");
   return out;
 }
 
@@ -195,10 +194,9 @@ struct OuterImage {
   }
 };
 
-std::int64_t overlapsOf(const OuterImage& image, Progress* progress) {
+std::int64_t overlapsOf(const OuterImage& image) {
   std::int64_t out = 0;
-  forEachSelfIntersection(image.vertices, image.triangles, [&](const Crossing&) { ++out; },
-                          {progress});
+  forEachSelfIntersection(image.vertices, image.triangles, [&](const Crossing&) { ++out; });
   const WindingNumber winding(image.vertices, image.triangles);
   for (const std::size_t t : image.partRepresentatives()) {
     const Triangle& corners = image.triangles[t];
@@ -212,9 +210,8 @@ std::int64_t overlapsOf(const OuterImage& image, Progress* progress) {
 }  // namespace
 
 CellFigures checkCells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
-                       const TargetShape& target, double error, Progress* progress,
-                       const Vec3& origin) {
-  std::vector<LeafCells> leaves = allCells(map, levelSet, target, error, progress, origin);
+                       const TargetShape& target, double error, const Vec3& origin) {
+  std::vector<LeafCells> leaves = allCells(map, levelSet, target, error, origin);
   CellFigures out;
   std::size_t faces = 0;
   for (const LeafCells& leaf : leaves) {
@@ -222,7 +219,7 @@ CellFigures checkCells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& 
     faces += leaf.faces.size();
   }
   if (out.checked > 0 && out.folded == 0 && faces <= kMostFaces)
-    out.overlaps = overlapsOf(OuterImage(leaves, map), progress);
+    out.overlaps = overlapsOf(OuterImage(leaves, map));
   return out;
 }
 

@@ -15,7 +15,6 @@ namespace innermap {
 // injectivity.h): an image that does not run through itself, and winds once about what lies just
 // inside each of its parts, bounds cells that do not overlap. Double precision. Throws Cancelled.
 CellFigures checkCells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
-                       const TargetShape& target, double error, Progress* progress = nullptr,
-                       const Vec3& origin = {});
+                       const TargetShape& target, double error, const Vec3& origin = {});
 
 }  // namespace innermap

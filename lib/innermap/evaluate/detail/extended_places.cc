@@ -39,25 +39,22 @@ bool SideOfSurface::inside(const Vec3& p, const Solid::Closest& closest) const {
 }
 
 ExtendedPlaces placeExtended(const Solid& solid, const openvdb::FloatGrid& levelSet,
-                             const Points& points, Progress* progress) {
+                             const Points& points) {
   constexpr std::size_t kBlock = 256;
   ExtendedPlaces out{points, Points(points.size())};
-  parallelBlocks(
-      points.size(), kBlock,
-      [&](std::size_t begin, std::size_t end) {
-        const SideOfSurface side(solid, levelSet);
-        for (std::size_t i = begin; i < end; ++i) {
-          const Vec3& p = points[i];
-          if (!isFinite(p)) throw DataError("points: a coordinate is not finite");
-          const int sign = side.sure(p);
-          if (sign < 0) continue;
-          const Solid::Closest closest = solid.closest(p, std::numeric_limits<double>::infinity());
-          if (sign == 0 && side.inside(p, closest)) continue;
-          out.at[i] = closest.position;
-          out.beyond[i] = p - closest.position;
-        }
-      },
-      progress);
+  parallelBlocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    const SideOfSurface side(solid, levelSet);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3& p = points[i];
+      if (!isFinite(p)) throw DataError("points: a coordinate is not finite");
+      const int sign = side.sure(p);
+      if (sign < 0) continue;
+      const Solid::Closest closest = solid.closest(p, std::numeric_limits<double>::infinity());
+      if (sign == 0 && side.inside(p, closest)) continue;
+      out.at[i] = closest.position;
+      out.beyond[i] = p - closest.position;
+    }
+  });
   return out;
 }
 

@@ -4,7 +4,6 @@
 
 #include <openvdb/openvdb.h>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/levelset/solid.h"
 
@@ -37,6 +36,6 @@ struct ExtendedPlaces {
 // levelSet only tells which points are near the surface. Throws DataError for a point that is not
 // finite, Cancelled.
 ExtendedPlaces placeExtended(const Solid& solid, const openvdb::FloatGrid& levelSet,
-                             const Points& points, Progress* progress);
+                             const Points& points);
 
 }  // namespace innermap

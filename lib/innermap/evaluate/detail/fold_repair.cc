@@ -15,6 +15,7 @@
 
 #include "innermap/core/detail/kuhn_cells.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/lattice/untangle.h"
 
 namespace innermap {
@@ -206,10 +207,9 @@ class Patch {
   bool tooLarge() const { return moving_ > kMostMoved; }
 
   // Whether no tetrahedron is left inside out.
-  bool repair(Progress* progress) {
+  bool repair() {
     keepShapes();
     UntangleSettings settings;
-    settings.progress = progress;
     return untangle(tets_, settings) > 0;
   }
 
@@ -357,23 +357,19 @@ std::vector<Coord> repairWith(std::size_t pass, const std::vector<Coord>& folded
   const auto pastCluster = [&](std::size_t c) {
     const double share =
         static_cast<double>(passed += clusters[c].size()) / static_cast<double>(folded.size());
-    reportProgress(settings.progress, kRepairing,
-                   (static_cast<double>(pass) + share) / kRings.size());
+    reportProgress(kRepairing, (static_cast<double>(pass) + share) / kRings.size());
   };
-  parallelBlocks(
-      clusters.size(), 1,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t c = begin; c < end; ++c) {
-          if (clusters[c].size() > kMost) continue;
-          const Voxels voxels(map, levelSet, moved);
-          Patch patch(voxels, clusters[c], rings, settings.growth * levelSet.voxelSize()[0]);
-          if (patch.tooLarge()) continue;
-          done[c] = patch.repair(settings.progress);
-          patch.collect(parts[c]);
-          pastCluster(c);
-        }
-      },
-      settings.progress);
+  parallelBlocks(clusters.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      if (clusters[c].size() > kMost) continue;
+      const Voxels voxels(map, levelSet, moved);
+      Patch patch(voxels, clusters[c], rings, settings.growth * levelSet.voxelSize()[0]);
+      if (patch.tooLarge()) continue;
+      done[c] = patch.repair();
+      patch.collect(parts[c]);
+      pastCluster(c);
+    }
+  });
   std::vector<Coord> left;
   for (std::size_t c = 0; c < clusters.size(); ++c) {
     for (const auto& [at, position] : parts[c]) moved[at] = position;
@@ -385,30 +381,27 @@ std::vector<Coord> repairWith(std::size_t pass, const std::vector<Coord>& folded
 // Voxels inside whose Jacobian is not above 0, and the corners of cells that are inside out; each
 // once, in order.
 std::vector<Coord> foldedVoxels(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& jacobian,
-                                const openvdb::FloatGrid& levelSet, Progress* progress) {
+                                const openvdb::FloatGrid& levelSet) {
   std::vector<const openvdb::Vec3STree::LeafNodeType*> leaves;
   for (auto leaf = map.tree().cbeginLeaf(); leaf; ++leaf) leaves.push_back(&*leaf);
   std::vector<std::vector<Coord>> parts(leaves.size());
-  parallelBlocks(
-      leaves.size(), kLeaves,
-      [&](std::size_t begin, std::size_t end) {
-        const Positions none;
-        const Voxels voxels(map, levelSet, none);
-        auto determinants = jacobian.getConstAccessor();
-        for (std::size_t l = begin; l < end; ++l)
-          for (auto voxel = leaves[l]->cbeginValueOn(); voxel; ++voxel) {
-            const Coord at = voxel.getCoord();
-            if (!voxels.inside(at)) continue;
-            if (!(determinants.getValue(at) > 0)) parts[l].push_back(at);
-            voxels.forTets(at, [&](std::size_t, const std::array<Coord, 4>& corners) {
-              const Vec3 p = voxels.original(corners[0]);
-              const auto edge = [&](std::size_t i) { return voxels.original(corners[i]) - p; };
-              if (!(dot(cross(edge(1), edge(2)), edge(3)) > 0))
-                parts[l].insert(parts[l].end(), corners.begin(), corners.end());
-            });
-          }
-      },
-      progress);
+  parallelBlocks(leaves.size(), kLeaves, [&](std::size_t begin, std::size_t end) {
+    const Positions none;
+    const Voxels voxels(map, levelSet, none);
+    auto determinants = jacobian.getConstAccessor();
+    for (std::size_t l = begin; l < end; ++l)
+      for (auto voxel = leaves[l]->cbeginValueOn(); voxel; ++voxel) {
+        const Coord at = voxel.getCoord();
+        if (!voxels.inside(at)) continue;
+        if (!(determinants.getValue(at) > 0)) parts[l].push_back(at);
+        voxels.forTets(at, [&](std::size_t, const std::array<Coord, 4>& corners) {
+          const Vec3 p = voxels.original(corners[0]);
+          const auto edge = [&](std::size_t i) { return voxels.original(corners[i]) - p; };
+          if (!(dot(cross(edge(1), edge(2)), edge(3)) > 0))
+            parts[l].insert(parts[l].end(), corners.begin(), corners.end());
+        });
+      }
+  });
   std::set<Coord> all;
   for (const std::vector<Coord>& part : parts) all.insert(part.begin(), part.end());
   return {all.begin(), all.end()};
@@ -421,17 +414,15 @@ FoldRepair repairFolds(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& 
   Positions moved;
   const Voxels voxels(map, levelSet, moved);
   const auto repair = [&](std::vector<Coord> seeds, double from, double to) {
-    PartOfStage part(settings.progress, from, to);
+    PartOfStage part(from, to);
     FoldRepairSettings s = settings;
-    s.progress = &part;
     for (std::size_t pass = 0; pass < kRings.size() && !seeds.empty(); ++pass) {
-      if (outOfTime(settings.progress)) break;
+      if (outOfTime()) break;
       seeds = repairWith(pass, seeds, map, levelSet, s, moved);
     }
     return seeds;
   };
-  const std::vector<Coord> left =
-      repair(foldedVoxels(map, jacobian, levelSet, settings.progress), 0, 0.8);
+  const std::vector<Coord> left = repair(foldedVoxels(map, jacobian, levelSet), 0, 0.8);
   // Where cells that are inside out are too many, there may be few voxels that are.
   std::vector<Coord> worst;
   auto determinants = jacobian.getConstAccessor();

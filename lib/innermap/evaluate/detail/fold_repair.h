@@ -6,7 +6,6 @@
 
 #include <unordered_map>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 
 namespace innermap {
@@ -29,7 +28,6 @@ constexpr const char* kRepairing = "repairing folds";  // the stage
 
 struct FoldRepairSettings {
   double growth = 1;  // cube root of the volumes' ratio, target to source
-  Progress* progress = nullptr;
 };
 
 // map, jacobian: of evaluateMap, with the level set of the solid. Folded voxels inside, and corners

@@ -4,14 +4,12 @@
 #include <openvdb/openvdb.h>
 
 #include "innermap/boundary/detail/target_shape.h"
-#include "innermap/core/progress.h"
 
 namespace innermap {
 
 struct OutsideVoxelsSettings {
   double slack = 0;  // world units of the target: what is less far outside does not count
   Vec3 origin;       // that the map's positions are relative to
-  Progress* progress = nullptr;
 };
 
 // Active at the voxels inside (levelSet < 0) whose position in `map` is outside the target by more

@@ -7,6 +7,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/evaluate/detail/extended_places.h"
 #include "innermap/evaluate/detail/leaf_plan.h"
 
@@ -128,12 +129,9 @@ void finishInside(const ComposedMap& map, std::vector<LeafBuffer>& buffers,
   all.values = Matrix(first.back(), 3);
   if (settings.gradients) all.gradients = Matrix(first.back(), 9);
   const auto exchange = [&](const auto& how) {
-    parallelBlocks(
-        buffers.size(), 16,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t l = begin; l < end; ++l) buffers[l].forInside(all, first[l], how);
-        },
-        settings.progress);
+    parallelBlocks(buffers.size(), 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t l = begin; l < end; ++l) buffers[l].forInside(all, first[l], how);
+    });
   };
   exchange([](double& voxel, double& row) { row = voxel; });
   map.finish(all, settings);
@@ -146,13 +144,10 @@ void visitLeaves(const HarmonicField& field, const ComposedMap* map, const Solid
                  std::size_t end, const LeafVisitor& visit, const VisitSettings& settings) {
   const std::size_t count = end - begin;
   std::vector<LeafPlan> plans(count);
-  parallelBlocks(
-      count, 4,
-      [&](std::size_t first, std::size_t last) {
-        for (std::size_t l = first; l < last; ++l)
-          plans[l] = planLeaf(leaves.leaf(begin + l), levelSet, solid);
-      },
-      settings.progress);
+  parallelBlocks(count, 4, [&](std::size_t first, std::size_t last) {
+    for (std::size_t l = first; l < last; ++l)
+      plans[l] = planLeaf(leaves.leaf(begin + l), levelSet, solid);
+  });
   Points onSkin;
   std::vector<std::size_t> firstRow;
   LatticeBlocks lattice;
@@ -166,11 +161,10 @@ void visitLeaves(const HarmonicField& field, const ComposedMap* map, const Solid
     for (const LeafPlan::Skin& voxel : plans[l].skin) onSkin.push_back(voxel.at);
   }
   const auto leafCount = static_cast<double>(leaves.leafCount());
-  PartOfStage part(settings.progress, static_cast<double>(begin) / leafCount,
-                   static_cast<double>(end) / leafCount);
-  const EvaluateFieldSettings all{settings.accuracy, true, settings.progress},
-      wanted{settings.accuracy, settings.gradients, settings.progress},
-      reporting{settings.accuracy, settings.gradients, &part};
+  const PartOfStage part(static_cast<double>(begin) / leafCount,
+                         static_cast<double>(end) / leafCount);
+  const EvaluateFieldSettings all{settings.accuracy, true},
+      wanted{settings.accuracy, settings.gradients};
   FieldSamples skin = field.evaluate(onSkin, all);
   const auto gather = [&](LeafBuffer& buffer, std::size_t l, const double* values,
                           const double* gradients) {
@@ -184,7 +178,7 @@ void visitLeaves(const HarmonicField& field, const ComposedMap* map, const Solid
           gather(buffer, l, values, gradients);
           visit(begin + l, buffer.leaf());
         },
-        reporting, settings.stage);
+        wanted, settings.stage);
   map->finish(skin, all);
   std::vector<LeafBuffer> buffers(count, LeafBuffer(field.channels()));
   field.onLattice(
@@ -192,14 +186,11 @@ void visitLeaves(const HarmonicField& field, const ComposedMap* map, const Solid
       [&](std::size_t l, const double* values, const double* gradients) {
         gather(buffers[l], l, values, gradients);
       },
-      reporting, settings.stage);
+      wanted, settings.stage);
   finishInside(*map, buffers, wanted);
-  parallelBlocks(
-      count, 1,
-      [&](std::size_t first, std::size_t last) {
-        for (std::size_t l = first; l < last; ++l) visit(begin + l, buffers[l].leaf());
-      },
-      settings.progress);
+  parallelBlocks(count, 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t l = first; l < last; ++l) visit(begin + l, buffers[l].leaf());
+  });
 }
 
 void requireAccuracy(const VisitSettings& settings) {
@@ -225,10 +216,10 @@ ExtendedSamples extendedSamples(const Function& f, const Solid& solid,
                                 const openvdb::FloatGrid& levelSet, const Points& points,
                                 const VisitSettings& settings) {
   requireAccuracy(settings);
-  ExtendedPlaces places = placeExtended(solid, levelSet, points, settings.progress);
+  ExtendedPlaces places = placeExtended(solid, levelSet, points);
   ExtendedSamples out;
   out.beyond = std::move(places.beyond);
-  out.samples = f.evaluate(places.at, {settings.accuracy, true, settings.progress});
+  out.samples = f.evaluate(places.at, {settings.accuracy, true});
   Matrix& values = out.samples.values;
   for (std::size_t k = 0; k < values.columns(); ++k)
     for (int a = 0; a < 3; ++a) {

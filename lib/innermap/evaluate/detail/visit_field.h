@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/field/harmonic_map.h"
 #include "innermap/levelset/solid.h"
 
@@ -36,7 +35,6 @@ using LeafVisitor = std::function<void(std::size_t leaf, const LeafValues& value
 struct VisitSettings {
   double accuracy = 0;  // of the sums: root mean square error, units of the values, above 0
   std::string_view stage = "evaluating";
-  Progress* progress = nullptr;
   bool gradients = true;  // without them LeafValues::gradients is null
 };
 

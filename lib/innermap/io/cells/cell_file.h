@@ -14,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/lattice/cell_mesh.h"
 
 namespace innermap {
@@ -24,7 +23,6 @@ bool isCellFile(const std::string& path);
 
 struct ReadCellsSettings {
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 struct CellFile {

@@ -83,7 +83,7 @@ CellFile CellCollector::finish() {
          std::string(leftOut_.empty() ? "" : ", only " + leftOut_.begin()->first) +
          "; give a mesh of a solid's inside");
   validate(file.mesh);
-  if (const std::uint64_t hanging = countHangingVertices(file.mesh, settings_.progress))
+  if (const std::uint64_t hanging = countHangingVertices(file.mesh))
     note(fmt::format(
         "{}: {} vertices hang in the middle of edges or faces of other cells; the cells "
         "do not fit together there",
@@ -113,7 +113,7 @@ CellFile readCells(const std::string& path, const ReadCellsSettings& settings) {
   const Format& format = formatOf(path);
   const std::uint64_t limit = settings.maxMemory ? settings.maxMemory : availableMemory();
   requireMemory("reading " + path, readCellsMemory(path), limit, "use a smaller file");
-  return format.read(readFileBytes(path, "a file of cells", settings.progress), settings);
+  return format.read(readFileBytes(path, "a file of cells"), settings);
 }
 
 std::uint64_t readCellsMemory(const std::string& path) {

@@ -21,8 +21,8 @@ std::vector<ExrPart> readExrInfo(const std::string& path) {
   if (!std::ifstream(path))
     throw FileError(path, std::string("cannot be opened (") + std::strerror(errno) + ")");
   std::vector<ExrPart> parts;
-  withExrErrors(path, "read", "", nullptr, [&] {
-    ExrInputStream stream(path, nullptr);
+  withExrErrors(path, "read", "", [&] {
+    ExrInputStream stream(path);
     const Imf::MultiPartInputFile file(stream, 0, /*reconstructChunkOffsetTable=*/false);
     for (int i = 0; i < file.parts(); ++i) {
       const Imf::Header& header = file.header(i);

@@ -21,6 +21,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/file.h"
 #include "innermap/core/memory.h"
+#include "innermap/core/run.h"
 #include "innermap/core/version.h"
 #include "innermap/io/exr/detail/exr_stream.h"
 #include "innermap/io/slice.h"
@@ -112,11 +113,10 @@ class Pixels {
   std::size_t clamped_ = 0;
 };
 
-Pixels pixelsOf(const openvdb::GridPtrVec& grids, const SliceFrame& frame, int layer, bool asHalf,
-                const Progress* progress) {
+Pixels pixelsOf(const openvdb::GridPtrVec& grids, const SliceFrame& frame, int layer, bool asHalf) {
   Pixels pixels(frame, asHalf);
   for (const auto& grid : grids) {
-    throwIfCancelled(progress);
+    throwIfCancelled();
     for (SliceChannel& channel : sliceGrid(*grid, frame, layer))
       pixels.add(channel.name, std::move(channel.values));
   }
@@ -158,14 +158,14 @@ ExrSliceResult writeExrSlices(const std::string& path, const openvdb::GridPtrVec
   result.columns = frame.columns();
   result.rows = frame.rows();
   writeWholeFile(path, [&](std::ostream& file) {
-    withExrErrors(path, "written", "; free some space", settings.progress, [&] {
-      ExrOutputStream stream(path, file, settings.progress);
+    withExrErrors(path, "written", "; free some space", [&] {
+      ExrOutputStream stream(path, file);
       auto output = std::make_unique<Imf::MultiPartOutputFile>(stream, headers.data(),
                                                                static_cast<int>(headers.size()));
       for (std::size_t i = 0; i < layers.size(); ++i) {
-        reportProgress(settings.progress, "writing slices",
+        reportProgress("writing slices",
                        static_cast<double>(i) / static_cast<double>(layers.size()));
-        const Pixels pixels = pixelsOf(grids, frame, layers[i], settings.half, settings.progress);
+        const Pixels pixels = pixelsOf(grids, frame, layers[i], settings.half);
         Imf::OutputPart part(*output, static_cast<int>(i));
         part.setFrameBuffer(pixels.buffer());
         part.writePixels(static_cast<int>(frame.rows()));
@@ -174,7 +174,7 @@ ExrSliceResult writeExrSlices(const std::string& path, const openvdb::GridPtrVec
       output.reset();
       stream.requireComplete();
     });
-    reportProgress(settings.progress, "writing slices", 1);
+    reportProgress("writing slices", 1);
   });
   return result;
 }

@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
-
 namespace innermap {
 
 struct ExrSliceSettings {
@@ -16,7 +14,6 @@ struct ExrSliceSettings {
   int count = 16;               // slices, in [1, 65536]
   bool half = false;            // half floats: half the size, 3 digits, values clamped to 65,504
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 struct ExrSliceResult {

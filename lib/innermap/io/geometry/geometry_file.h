@@ -21,7 +21,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/transfer/carry_geometry.h"
 #include "innermap/transfer/geometry.h"
 
@@ -32,7 +31,6 @@ struct ReadGeometrySettings {
   // those that the file's format knows as such.
   std::vector<std::string> vectors, normals;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 // A geometry and the file that it came from.

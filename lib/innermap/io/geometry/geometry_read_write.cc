@@ -68,7 +68,7 @@ std::unique_ptr<GeometryFile> readGeometry(const std::string& path,
                     "unknown extension " + inQuotes(extensionOf(path)) +
                         "; geometry is read from .obj, .ply, .off, .stl, .vtu, .msh and .mesh "
                         "files");
-  auto file = format->read(readFileBytes(path, "a file of geometry", settings.progress), settings);
+  auto file = format->read(readFileBytes(path, "a file of geometry"), settings);
   if (file->geometry.points.empty()) throw FileError(path, "has no points");
   return file;
 }

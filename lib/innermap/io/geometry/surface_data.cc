@@ -12,6 +12,7 @@
 #include "innermap/core/detail/ply_header.h"
 #include "innermap/core/detail/text_scanner.h"
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/io/geometry/detail/ply_body.h"
 
 namespace innermap {
@@ -73,11 +74,10 @@ std::size_t propertyNamed(const PlyElement& element, const std::string& name,
                                     inQuotes(name), fmt::join(known, ", ")));
 }
 
-Matrix valuesOf(PlyBody& body, const PlyElement& element, const std::vector<std::size_t>& wanted,
-                Progress* progress) {
+Matrix valuesOf(PlyBody& body, const PlyElement& element, const std::vector<std::size_t>& wanted) {
   Matrix out(element.count, wanted.size());
   for (std::uint64_t row = 0; row < element.count; ++row) {
-    if (row % 65536 == 0) throwIfCancelled(progress);
+    if (row % 65536 == 0) throwIfCancelled();
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const PlyProperty& property = element.properties[p];
       if (property.list) {
@@ -110,11 +110,10 @@ bool isNumber(std::string_view text) {
 
 }  // namespace
 
-std::vector<SurfaceGroup> readGroups(const std::string& path, const Mesh& mesh,
-                                     const ReadSurfaceDataSettings& settings) {
+std::vector<SurfaceGroup> readGroups(const std::string& path, const Mesh& mesh) {
   if (!equalsIgnoringCase(extensionOf(path), ".obj"))
     throw FileError(path, "holds no groups; those of .obj files are read (g, o, usemtl)");
-  const FileBytes file = readFileBytes(path, "a mesh file", settings.progress);
+  const FileBytes file = readFileBytes(path, "a mesh file");
   TextScanner scanner(file, {true, true});
   const PolygonTriangles polygons(mesh);
   Groups groups;
@@ -122,7 +121,7 @@ std::vector<SurfaceGroup> readGroups(const std::string& path, const Mesh& mesh,
   int triangle = 0;
   std::string_view keyword;
   for (std::size_t lines = 0; scanner.nextLine(); ++lines) {
-    if (lines % 65536 == 0) throwIfCancelled(settings.progress);
+    if (lines % 65536 == 0) throwIfCancelled();
     if (!scanner.token(keyword)) continue;
     if (keyword == "g" || keyword == "o" || keyword == "usemtl") {
       const std::string kind(keyword);
@@ -140,10 +139,10 @@ std::vector<SurfaceGroup> readGroups(const std::string& path, const Mesh& mesh,
 }
 
 Matrix readVertexProperties(const std::string& path, const std::vector<std::string>& names,
-                            const Mesh& mesh, const ReadSurfaceDataSettings& settings) {
+                            const Mesh& mesh) {
   if (!equalsIgnoringCase(extensionOf(path), ".ply"))
     throw FileError(path, "holds no properties of vertices; those of .ply files are read");
-  const FileBytes file = readFileBytes(path, "a mesh file", settings.progress);
+  const FileBytes file = readFileBytes(path, "a mesh file");
   const PlyHeader header = readPlyHeader(file);
   PlyBody body(file, header);
   for (const PlyElement& element : header.elements) {
@@ -153,26 +152,25 @@ Matrix readVertexProperties(const std::string& path, const std::vector<std::stri
         throw FileError(path, "has other vertices than the mesh that was read from it");
       std::vector<std::size_t> wanted;
       for (const std::string& name : names) wanted.push_back(propertyNamed(element, name, path));
-      return valuesOf(body, element, wanted, settings.progress);
+      return valuesOf(body, element, wanted);
     }
     for (std::uint64_t row = 0; row < element.count; ++row) {
-      if (row % 65536 == 0) throwIfCancelled(settings.progress);
+      if (row % 65536 == 0) throwIfCancelled();
       body.skipRow(element);
     }
   }
   throw FileError(path, "has no vertices");
 }
 
-VertexTable readVertexTable(const std::string& path, const Mesh& mesh,
-                            const ReadSurfaceDataSettings& settings) {
-  FileBytes file = readFileBytes(path, "a table of vertices", settings.progress);
+VertexTable readVertexTable(const std::string& path, const Mesh& mesh) {
+  FileBytes file = readFileBytes(path, "a table of vertices");
   std::replace_if(
       file.bytes.begin(), file.bytes.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
   TextScanner scanner(file, {true, false});
   VertexTable out;
   std::vector<bool> given(mesh.vertices.size(), false);
   for (std::size_t lines = 0; scanner.nextLine(); ++lines) {
-    if (lines % 65536 == 0) throwIfCancelled(settings.progress);
+    if (lines % 65536 == 0) throwIfCancelled();
     const std::vector<std::string_view> tokens = tokensOf(scanner);
     if (tokens.empty()) continue;
     if (tokens.size() < 2) scanner.fail("a line needs a vertex and at least one value");

@@ -141,7 +141,6 @@ void writeCellPicture(const std::string& path, const CellMesh& mesh,
   const Vec3 aside = std::abs(d.y) > 0.9 ? Vec3{0.3, 0, 0.25} : cross(Vec3{0, 1, 0}, d) * 0.35;
   picture.from = {d + aside + Vec3{0, std::abs(d.y) > 0.9 ? 0 : 0.2, 0}};
   picture.caption = settings.caption;
-  picture.progress = settings.progress;
   writeMeshPicture(path, {cut.surface}, picture);
 }
 

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/io/picture/colormap.h"
 #include "innermap/lattice/cell_mesh.h"
@@ -20,7 +19,6 @@ struct CellPictureSettings {
   std::string label;    // above it
   std::string caption;  // below it
   int pixels = 900;     // height of the view, in [64, 4096]
-  Progress* progress = nullptr;
 };
 
 // Draws the cells, whole, each in the colour of its value, with their edges, to a PNG. values: #T +

@@ -21,14 +21,12 @@ void writeCorrespondencePicture(const std::string& path, const MeshCorrespondenc
                                 const MeshPictureSettings& settings) {
   const Mesh& meshA = map.a.shells().mesh;
   const Box3 box = boundingBox(meshA);
-  SurfaceImageSettings back;
-  back.progress = settings.progress;
   std::vector<PictureSurface> surfaces{surfaceOf(map.a), surfaceOf(map.b)};
   surfaces[0].colours = [&](const std::vector<VisiblePoint>& seen) {
     return placeColours(interpolate(meshA.vertices, meshA.triangles, addresses(seen)), box);
   };
   surfaces[1].colours = [&](const std::vector<VisiblePoint>& seen) {
-    return placeColours(preimagesOf(addresses(seen), map.map, map.b.shells(), back), box);
+    return placeColours(preimagesOf(addresses(seen), map.map, map.b.shells()), box);
   };
   writeMeshPicture(path, surfaces, settings);
 }

@@ -16,6 +16,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/io/exr/detail/exr_verify.h"
 #include "innermap/io/picture/detail/image_library.h"
 
@@ -175,10 +176,10 @@ std::uint64_t memoryOf(const ImageInfo& info, const Channels& channels) {
 }
 
 bool stopWhenCancelled(void* opaque, float done) {
-  auto* progress = static_cast<Progress*>(opaque);
-  if (!progress) return false;
-  if (!progress->cancelled()) progress->report("reading the image", done);
-  return progress->cancelled();
+  auto* run = static_cast<RunContext*>(opaque);
+  if (!run) return false;
+  if (!run->cancelled()) run->report("reading the image", done);
+  return run->cancelled();
 }
 
 // From the file's pixels, `stride` floats each, to the picture's place in the display window.
@@ -248,23 +249,21 @@ ImageFile readImage(const std::string& path, const ImageSettings& settings) {
   std::vector<float> raw(std::size_t(info.width) * info.height * stride);
   std::string why;
   const bool whole = input->read(channels.begin(), channels.end(), raw.data(), stopWhenCancelled,
-                                 settings.progress, why);
-  throwIfCancelled(settings.progress);
+                                 currentRun(), why);
+  throwIfCancelled();
   if (!whole) throw FileError(path, fmt::format("is damaged or cut short ({})", firstLine(why)));
   out.pixels.width = info.fullWidth;
   out.pixels.height = info.fullHeight;
   out.pixels.rgb.assign(std::size_t(3) * info.fullWidth * info.fullHeight, 0.0f);
   const Placing placing(info, channels, decoding);
   std::atomic<std::size_t> broken{0};
-  parallelBlocks(
-      static_cast<std::size_t>(info.height), 16,
-      [&](std::size_t begin, std::size_t end) {
-        std::size_t count = 0;
-        for (std::size_t y = begin; y < end; ++y)
-          placing.row(raw, static_cast<int>(y), out.pixels, count);
-        broken += count;
-      },
-      settings.progress);
+  parallelBlocks(static_cast<std::size_t>(info.height), 16,
+                 [&](std::size_t begin, std::size_t end) {
+                   std::size_t count = 0;
+                   for (std::size_t y = begin; y < end; ++y)
+                     placing.row(raw, static_cast<int>(y), out.pixels, count);
+                   broken += count;
+                 });
   if (broken > 0)
     out.notes.push_back(fmt::format("{} numbers are not finite; taken as 0", broken.load()));
   if (channels.alpha >= 0) out.notes.emplace_back("its alpha channel is left out");

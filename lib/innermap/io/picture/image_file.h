@@ -5,8 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
-
 namespace innermap {
 
 // How a file's numbers are to be read. automatic: as its metadata says (sRGB, linear, Rec. 709, a
@@ -23,7 +21,6 @@ double linearFromSrgb(double encoded);
 struct ImageSettings {
   ColourSpace colourSpace = ColourSpace::automatic;
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 // Linear colours, rows from the top. #height * #width * 3 floats.

@@ -6,6 +6,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/io/picture/detail/picture.h"
 
 namespace innermap {
@@ -84,8 +85,7 @@ void drawTriangle(const std::array<Vec3, 3>& c, int number, int firstRow, int en
     }
 }
 
-Seen rasterise(const PictureSurface& surface, const View& view, int width, int height,
-               Progress* progress) {
+Seen rasterise(const PictureSurface& surface, const View& view, int width, int height) {
   Seen seen;
   seen.width = width;
   seen.height = height;
@@ -95,18 +95,15 @@ Seen rasterise(const PictureSurface& surface, const View& view, int width, int h
   seen.v.assign(count, 0);
   std::vector<double> depth(count, -std::numeric_limits<double>::infinity());
   const Flat flat = project(surface, view, width, height);
-  parallelBlocks(
-      static_cast<std::size_t>(height), 48,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-          const auto& [a, b, c] = surface.triangles[t];
-          const auto [low, high] = std::minmax({flat.at[a].y, flat.at[b].y, flat.at[c].y});
-          if (high < static_cast<double>(begin) - 1 || low > static_cast<double>(end) + 1) continue;
-          drawTriangle({flat.at[a], flat.at[b], flat.at[c]}, static_cast<int>(t),
-                       static_cast<int>(begin), static_cast<int>(end), seen, depth);
-        }
-      },
-      progress);
+  parallelBlocks(static_cast<std::size_t>(height), 48, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+      const auto& [a, b, c] = surface.triangles[t];
+      const auto [low, high] = std::minmax({flat.at[a].y, flat.at[b].y, flat.at[c].y});
+      if (high < static_cast<double>(begin) - 1 || low > static_cast<double>(end) + 1) continue;
+      drawTriangle({flat.at[a], flat.at[b], flat.at[c]}, static_cast<int>(t),
+                   static_cast<int>(begin), static_cast<int>(end), seen, depth);
+    }
+  });
   return seen;
 }
 
@@ -160,8 +157,8 @@ double light(Vec3 normal, const View& view) {
 }
 
 void drawView(const PictureSurface& surface, const View& view, int x0, int y0, int width,
-              int height, Progress* progress, Picture& picture) {
-  const Seen seen = rasterise(surface, view, width * kSubsamples, height * kSubsamples, progress);
+              int height, Picture& picture) {
+  const Seen seen = rasterise(surface, view, width * kSubsamples, height * kSubsamples);
   const Normals normals(surface);
   std::vector<Vec3> sum(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   std::vector<int> covered(sum.size(), 0);
@@ -259,11 +256,11 @@ void writeMeshPicture(const std::string& path, const std::vector<PictureSurface>
   int x = kMargin;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     for (int r = 0; r < rows; ++r) {
-      reportProgress(settings.progress, kStage,
+      reportProgress(kStage,
                      static_cast<double>(s * settings.from.size() + static_cast<std::size_t>(r)) /
                          static_cast<double>(surfaces.size() * settings.from.size()));
       drawView(surfaces[s], View(settings.from[static_cast<std::size_t>(r)]), x,
-               kTitle + r * (height + kMargin), widths[s], height, settings.progress, picture);
+               kTitle + r * (height + kMargin), widths[s], height, picture);
     }
     picture.text(x + widths[s] / 2, 32, surfaces[s].label, 20, kInk, Align::centre);
     x += widths[s] + kMargin;

@@ -8,7 +8,6 @@
 
 #include "innermap/boundary/mapped_solid.h"
 #include "innermap/boundary/mesh_correspondence.h"
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 
 namespace innermap {
@@ -33,7 +32,6 @@ struct MeshPictureSettings {
   // views each; y is up. More than one direction shows what is hidden from the first.
   std::vector<Vec3> from{{0.6, 0.35, 1}, {-0.6, 0.35, -1}};
   std::string caption;  // below all
-  Progress* progress = nullptr;
 };
 
 // Draws the surfaces side by side, each fitted to its place, in parallel projection, to a PNG.

@@ -62,7 +62,6 @@ void writePlanePicture(const std::string& path, const Box3& box,
   from[settings.axis] = 1;
   picture.from = {from};
   picture.caption = settings.caption;
-  picture.progress = settings.progress;
   writeMeshPicture(path, surfaces, picture);
 }
 

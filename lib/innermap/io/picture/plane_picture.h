@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/io/picture/colormap.h"
 
@@ -24,7 +23,6 @@ struct PlanePictureSettings {
   Colormap colormap = Colormap::redBlue;
   std::string caption;  // below all
   int pixels = 480;     // each view's height, in [64, 4096]
-  Progress* progress = nullptr;
 };
 
 // Writes a PNG; the file appears whole or not at all. Throws DataError when there is no function or

@@ -221,7 +221,7 @@ void drawSection(const SectionCut& cut, const Layout& l, const SectionResult& r,
             picture.set(l.x + px, l.y + py, colour);
           }
       },
-      settings.progress, "drawing the section");
+      "drawing the section");
 }
 
 // Round numbers between the ends of the range.

@@ -10,7 +10,6 @@
 #include <string>
 #include <utility>
 
-#include "innermap/core/progress.h"
 #include "innermap/io/picture/colormap.h"
 
 namespace innermap {
@@ -44,7 +43,6 @@ struct SectionSettings {
   Colormap colormap = Colormap::redBlue;
   int pixels = 900;             // longer side of the section itself, in [64, 8192]
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 struct SectionResult {

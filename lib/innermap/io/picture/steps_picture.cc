@@ -29,7 +29,6 @@ void writeStepsPicture(const std::string& path, const MappedSolid& mapped,
     chosen.insert((2 * i * steps + kShown - 1) / (2 * (kShown - 1)));
   EvaluateFieldSettings evaluate;
   evaluate.accuracy = kAccuracy * box.diagonal();
-  evaluate.progress = settings.progress;
   std::vector<PictureSurface> surfaces;
   Points now = mesh.vertices;
   for (std::size_t step = 0; step <= steps; ++step) {

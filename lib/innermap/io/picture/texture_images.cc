@@ -31,14 +31,13 @@ struct TextureImages::Data {
     ImageSettings image;
     image.colourSpace = settings.colourSpace;
     image.maxMemory = settings.maxMemory;
-    image.progress = settings.progress;
     ImageFile file = readImage(path, image);
     for (const std::string& note : file.notes) notes.push_back(path + ": " + note);
     width = file.pixels.width;
     height = file.pixels.height;
     colourSpace = file.colourSpace;
     channels = file.channels;
-    tiles.emplace(tile, Image(std::move(file.pixels), wrap, settings.progress));
+    tiles.emplace(tile, Image(std::move(file.pixels), wrap));
   }
 };
 

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/io/picture/image_file.h"
 
@@ -20,7 +19,6 @@ struct TextureImageSettings {
   ColourSpace colourSpace = ColourSpace::automatic;
   Wrap wrap = Wrap::repeat;     // of a single image
   std::uint64_t maxMemory = 0;  // bytes, of each image; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 // Whether the path has "<UDIM>" in it, which stands for the number of each tile.

@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
-
 namespace innermap {
 
 // What the grids are called in the file. innermap's own names (surface, density, map, jacobian,
@@ -25,7 +23,6 @@ enum class VdbCompression { none, zip, blosc };  // OpenVDB drops zip for level 
 struct VdbWriteSettings {
   NamingScheme names = NamingScheme::innermap;
   VdbCompression compression = VdbCompression::blosc;  // beside the active mask's compression
-  Progress* progress = nullptr;
 };
 
 // Writes the grids, which are not changed, with statistics metadata (active voxels, box, memory),
@@ -38,7 +35,6 @@ void writeVdb(const std::string& path, const openvdb::GridPtrVec& grids,
 struct VdbReadSettings {
   std::vector<std::string> names;  // of the grids to read; empty means all
   std::uint64_t maxMemory = 0;     // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 struct VdbContents {
@@ -69,12 +65,8 @@ struct VdbInfo {
   std::string version;  // "10.0/224"
 };
 
-struct VdbInfoSettings {
-  Progress* progress = nullptr;
-};
-
 // Without reading voxels; throws as readVdb does.
-VdbInfo readVdbInfo(const std::string& path, const VdbInfoSettings& settings = {});
+VdbInfo readVdbInfo(const std::string& path);
 
 // What the file at `path` holds, for a terminal: a few lines a grid, with all its metadata or only
 // innermap's own; what all grids say alike stands once, before them.

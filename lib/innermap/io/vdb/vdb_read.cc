@@ -9,6 +9,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
+#include "innermap/core/run.h"
 #include "innermap/io/vdb/detail/vdb_stream.h"
 #include "innermap/io/vdb/detail/vdb_verify.h"
 #include "innermap/io/vdb/vdb_file.h"
@@ -28,8 +29,7 @@ std::string listed(const std::vector<GridDescriptor>& grids) {
 // Reads through our own stream: io::File would map the file, and trust it.
 class InputArchive : public openvdb::io::Archive {
  public:
-  InputArchive(const std::string& path, const Progress* progress)
-      : path_(path), buffer_(path, progress), stream_(&buffer_) {
+  explicit InputArchive(const std::string& path) : path_(path), buffer_(path), stream_(&buffer_) {
     stream_.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
     verified_ = verifyVdb(path, stream_, buffer_.size());
     stream_.seekg(0);
@@ -150,7 +150,7 @@ auto translating(const std::string& path, const Body& body) {
 
 VdbContents readVdb(const std::string& path, const VdbReadSettings& settings) {
   return translating(path, [&] {
-    InputArchive archive(path, settings.progress);
+    InputArchive archive(path);
     VdbContents contents;
     contents.metadata = archive.metadata();
     const std::vector<std::size_t> indices = chosen(path, archive, settings.names);
@@ -159,18 +159,18 @@ VdbContents readVdb(const std::string& path, const VdbReadSettings& settings) {
     requireMemory("reading " + path, need, settings.maxMemory,
                   "read fewer of its grids or raise the limit");
     for (std::size_t i : indices) {
-      reportProgress(settings.progress, "reading the VDB file",
+      reportProgress("reading the VDB file",
                      static_cast<double>(contents.grids.size()) / indices.size());
       contents.grids.push_back(archive.grid(i));
     }
-    reportProgress(settings.progress, "reading the VDB file", 1);
+    reportProgress("reading the VDB file", 1);
     return contents;
   });
 }
 
-VdbInfo readVdbInfo(const std::string& path, const VdbInfoSettings& settings) {
+VdbInfo readVdbInfo(const std::string& path) {
   return translating(path, [&] {
-    InputArchive archive(path, settings.progress);
+    InputArchive archive(path);
     VdbInfo info;
     info.metadata = archive.metadata();
     info.version = archive.version();

@@ -8,6 +8,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/file.h"
+#include "innermap/core/run.h"
 #include "innermap/core/version.h"
 #include "innermap/io/vdb/detail/vdb_stream.h"
 #include "innermap/io/vdb/vdb_file.h"
@@ -73,9 +74,9 @@ void writeVdb(const std::string& path, const openvdb::GridPtrVec& grids,
   const openvdb::GridCPtrVec copies = named(path, grids, settings.names);
   openvdb::MetaMap metadata(fileMetadata);
   setMetadata(metadata, "creator", openvdb::StringMetadata(creator()));
-  reportProgress(settings.progress, "writing the VDB file", 0);
+  reportProgress("writing the VDB file", 0);
   writeWholeFile(path, [&](std::ostream& file) {
-    PollingOutputBuffer buffer(*file.rdbuf(), settings.progress);
+    PollingOutputBuffer buffer(*file.rdbuf());
     std::ostream stream(&buffer);
     stream.exceptions(std::ios::badbit | std::ios::failbit);
     errno = 0;
@@ -87,7 +88,7 @@ void writeVdb(const std::string& path, const openvdb::GridPtrVec& grids,
     } catch (const openvdb::Exception& error) {
       throw FileError(path, fmt::format("cannot be written ({})", error.what()));
     }
-    reportProgress(settings.progress, "writing the VDB file", 1);
+    reportProgress("writing the VDB file", 1);
   });
 }
 

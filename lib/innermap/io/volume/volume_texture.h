@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 
 namespace innermap {
@@ -44,7 +43,6 @@ struct VolumeTextureSettings {
       false;  // the box grows: slices, their sides and the picture's are powers of two
   std::optional<std::pair<int, int>> tiles;  // columns and rows of the atlas; unset: near a square
   std::uint64_t maxMemory = 0;               // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 struct VolumeTextureResult {
@@ -132,7 +130,6 @@ struct VolumeTextureReadSettings {
   std::optional<double> background;      // of all grids
   std::optional<std::string> gridClass;  // "level set", "fog volume", "unknown", ...
   std::uint64_t maxMemory = 0;           // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 struct VolumeTextureContents {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "innermap/core/memory.h"
+#include "innermap/core/run.h"
 #include "innermap/io/exr/detail/exr_stream.h"
 #include "innermap/io/volume/detail/volume_builder.h"
 #include "innermap/io/volume/detail/volume_source.h"
@@ -77,13 +78,12 @@ class Reading {
     for (int first = 0; first < lattice.slices(); first = slabEnd(lattice, first)) {
       const int end = slabEnd(lattice, first);
       for (int slice = first; slice < end; ++slice) {
-        reportProgress(settings_.progress, "reading the volume texture",
-                       static_cast<double>(slice) / lattice.slices());
+        reportProgress("reading the volume texture", static_cast<double>(slice) / lattice.slices());
         source_.read(slice, slab.slice(slice - first));
       }
       build(slab, first, end - first);
     }
-    reportProgress(settings_.progress, "reading the volume texture", 1);
+    reportProgress("reading the volume texture", 1);
     return notFinite_;
   }
 
@@ -109,8 +109,7 @@ class Reading {
       for (const auto& builder : builders_) bytes += builder->memory();
       need(bytes);
       const std::size_t channels = channelCount(source_.grids()[g]);
-      notFinite_ +=
-          builders_[g]->add({first, count, slab.channels(channel, channels)}, settings_.progress);
+      notFinite_ += builders_[g]->add({first, count, slab.channels(channel, channels)});
       channel += channels;
     }
   }

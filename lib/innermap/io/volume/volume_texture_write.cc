@@ -18,6 +18,7 @@
 #include "innermap/core/frame_files.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/io/exr/detail/exr_stream.h"
 #include "innermap/io/slice.h"
 #include "innermap/io/volume/detail/volume_plan.h"
@@ -31,9 +32,8 @@ constexpr int kStripe = 64;  // rows of pixels that are made at once; compressio
 // Makes rows of pixels, a stripe at a time, and hands them to OpenEXR.
 class StripeWriter {
  public:
-  StripeWriter(const VolumePlan& plan, Progress* progress)
+  StripeWriter(const VolumePlan& plan)
       : plan_(plan),
-        progress_(progress),
         bytes_(plan.half ? sizeof(half) : sizeof(float)),
         total_(double(plan.lattice.slices()) * plan.lattice.height()),
         buffers_(plan.channels.size()) {
@@ -52,7 +52,7 @@ class StripeWriter {
       output.setFrameBuffer(frameBuffer(begin));
       output.writePixels(end - begin);
       done_ += double(end - begin) * plan_.lattice.tileColumns;
-      reportProgress(progress_, "writing the volume texture", std::min(1.0, done_ / total_));
+      reportProgress("writing the volume texture", std::min(1.0, done_ / total_));
     }
   }
 
@@ -65,19 +65,17 @@ class StripeWriter {
     // Blocks of a row of tiles at least, so that short rows are not work of their own.
     const std::size_t block = std::max<std::size_t>(
         1, 4096 / static_cast<std::size_t>(std::max(1, plan_.lattice.width())));
-    parallelBlocks(
-        static_cast<std::size_t>(end - begin) * columns, block,
-        [&](std::size_t from, std::size_t to) {
-          PixelCounts counts;
-          std::vector<float> row(static_cast<std::size_t>(plan_.lattice.width()) *
-                                 plan_.channels.size());
-          for (std::size_t i = from; i < to; ++i)
-            makeRow(first, begin, static_cast<int>(i / columns), static_cast<int>(i % columns), row,
-                    counts);
-          clamped_ += counts.clamped;
-          inexact_ += counts.inexact;
-        },
-        progress_);
+    parallelBlocks(static_cast<std::size_t>(end - begin) * columns, block,
+                   [&](std::size_t from, std::size_t to) {
+                     PixelCounts counts;
+                     std::vector<float> row(static_cast<std::size_t>(plan_.lattice.width()) *
+                                            plan_.channels.size());
+                     for (std::size_t i = from; i < to; ++i)
+                       makeRow(first, begin, static_cast<int>(i / columns),
+                               static_cast<int>(i % columns), row, counts);
+                     clamped_ += counts.clamped;
+                     inexact_ += counts.inexact;
+                   });
   }
 
   // One row of one tile, to all channels.
@@ -133,7 +131,6 @@ class StripeWriter {
   }
 
   const VolumePlan& plan_;
-  Progress* progress_;
   std::size_t bytes_;
   double total_, done_ = 0;  // rows of tiles
   std::vector<std::vector<char>> buffers_;
@@ -156,32 +153,29 @@ Imf::Header sliceHeader(Imf::Header header, const VolumeLattice& lattice, int sl
   return header;
 }
 
-void withStream(const std::string& path, Progress* progress,
-                const std::function<void(Imf::OStream&)>& body) {
+void withStream(const std::string& path, const std::function<void(Imf::OStream&)>& body) {
   writeWholeFile(path, [&](std::ostream& file) {
-    withExrErrors(path, "written", "; free some space", progress, [&] {
-      ExrOutputStream stream(path, file, progress);
+    withExrErrors(path, "written", "; free some space", [&] {
+      ExrOutputStream stream(path, file);
       body(stream);
       stream.requireComplete();
     });
   });
 }
 
-void writeAtlas(const std::string& path, const VolumePlan& plan, StripeWriter& writer,
-                Progress* progress) {
-  withStream(path, progress, [&](Imf::OStream& stream) {
+void writeAtlas(const std::string& path, const VolumePlan& plan, StripeWriter& writer) {
+  withStream(path, [&](Imf::OStream& stream) {
     Imf::OutputFile output(stream, headerFor(plan, VolumeLayout::atlas));
     writer.write(output, 0);
   });
 }
 
-void writeParts(const std::string& path, const VolumePlan& plan, StripeWriter& writer,
-                Progress* progress) {
+void writeParts(const std::string& path, const VolumePlan& plan, StripeWriter& writer) {
   const Imf::Header common = headerFor(plan, VolumeLayout::parts);
   std::vector<Imf::Header> headers;
   for (int i = 0; i < plan.lattice.slices(); ++i)
     headers.push_back(sliceHeader(common, plan.lattice, i));
-  withStream(path, progress, [&](Imf::OStream& stream) {
+  withStream(path, [&](Imf::OStream& stream) {
     Imf::MultiPartOutputFile output(stream, headers.data(), static_cast<int>(headers.size()));
     for (int i = 0; i < plan.lattice.slices(); ++i) {
       Imf::OutputPart part(output, i);
@@ -191,15 +185,15 @@ void writeParts(const std::string& path, const VolumePlan& plan, StripeWriter& w
 }
 
 void writeSliceFiles(const std::vector<std::string>& paths, const VolumePlan& plan,
-                     StripeWriter& writer, Progress* progress) {
+                     StripeWriter& writer) {
   const Imf::Header common = headerFor(plan, VolumeLayout::slices);
   const std::filesystem::path parent = std::filesystem::path(paths.front()).parent_path();
   PendingFolder folder(parent.empty() ? "." : parent.string());
   for (int i = 0; i < plan.lattice.slices(); ++i) {
-    throwIfCancelled(progress);
+    throwIfCancelled();
     const auto name = std::filesystem::path(paths[static_cast<std::size_t>(i)]).filename();
     folder.write(name.string(), [&](const std::string& temporary) {
-      withStream(temporary, progress, [&](Imf::OStream& stream) {
+      withStream(temporary, [&](Imf::OStream& stream) {
         Imf::OutputFile output(stream, sliceHeader(common, plan.lattice, i));
         writer.write(output, i);
       });
@@ -271,15 +265,15 @@ VolumeTextureResult writeVolumeTexture(const std::string& path, const openvdb::G
   requireMemory("the volume texture " + path, memoryFor(plan, settings.layout), settings.maxMemory,
                 "export fewer grids or at a lower resolution");
   VolumeTextureResult result = resultOf(path, plan, settings.layout);
-  reportProgress(settings.progress, "writing the volume texture", 0);
+  reportProgress("writing the volume texture", 0);
   const ExrThreads threads;
-  StripeWriter writer(plan, settings.progress);
+  StripeWriter writer(plan);
   if (settings.layout == VolumeLayout::atlas)
-    writeAtlas(path, plan, writer, settings.progress);
+    writeAtlas(path, plan, writer);
   else if (settings.layout == VolumeLayout::parts)
-    writeParts(path, plan, writer, settings.progress);
+    writeParts(path, plan, writer);
   else
-    writeSliceFiles(result.files, plan, writer, settings.progress);
+    writeSliceFiles(result.files, plan, writer);
   result.clamped = writer.clamped();
   result.inexact = writer.inexact();
   return result;

@@ -7,6 +7,7 @@
 
 #include "innermap/core/detail/disjoint_sets.h"
 #include "innermap/core/detail/random.h"
+#include "innermap/core/run.h"
 #include "innermap/lattice/detail/inside_distances.h"
 
 namespace innermap {
@@ -30,7 +31,7 @@ struct Sample {
   float order;
 };
 
-std::vector<Sample> samplesOf(const Mesh& mesh, double apart, Progress* progress) {
+std::vector<Sample> samplesOf(const Mesh& mesh, double apart) {
   double all = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     all += norm(areaVector(mesh, static_cast<int>(t)));
@@ -39,7 +40,7 @@ std::vector<Sample> samplesOf(const Mesh& mesh, double apart, Progress* progress
   std::vector<Sample> samples;
   std::uint64_t drawn = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (t % 65536 == 0) throwIfCancelled(progress);
+    if (t % 65536 == 0) throwIfCancelled();
     const auto& [a, b, c] = mesh.triangles[t];
     const Vec3 &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
     const double area = 0.5 * norm(cross(q - p, r - p));
@@ -91,11 +92,11 @@ std::vector<int> patchesOf(const std::vector<Sample>& samples, const Mesh& mesh,
 
 // The samples of exposed sheets and those of patches that are buried deep, with their orders.
 std::vector<Sample> sheets(const Solid& solid, const LatticeSigns& signs,
-                           const std::vector<float>& depth, Progress* progress) {
+                           const std::vector<float>& depth) {
   const Mesh& mesh = solid.repaired().mesh;
   const double spacing = signs.lattice.spacing();
   std::vector<Sample> exposed, buried;
-  for (const Sample& s : samplesOf(mesh, kApart * spacing, progress)) {
+  for (const Sample& s : samplesOf(mesh, kApart * spacing)) {
     const std::size_t node = signs.lattice.nearest(s.at);
     const bool inside = signs.side[node] == NodeSide::inside;
     (inside && static_cast<double>(depth[node]) > kBuried ? buried : exposed).push_back(s);
@@ -124,11 +125,11 @@ std::vector<Sample> sheets(const Solid& solid, const LatticeSigns& signs,
 }  // namespace
 
 std::vector<float> growingOrder(const Solid& solid, const LatticeSigns& signs,
-                                const std::vector<float>& depth, Progress* progress) {
-  reportProgress(progress, kStage, 0);
+                                const std::vector<float>& depth) {
+  reportProgress(kStage, 0);
   const BccLattice& lattice = signs.lattice;
   std::vector<float> nearest(signs.side.size(), kFar), order(signs.side.size(), kFar);
-  for (const Sample& s : sheets(solid, signs, depth, progress)) {
+  for (const Sample& s : sheets(solid, signs, depth)) {
     const std::size_t at = lattice.nearest(s.at);
     for (int d = -1; d < kDirections; ++d) {
       const std::size_t node = d < 0 ? at : lattice.neighbour(at, d);
@@ -140,11 +141,11 @@ std::vector<float> growingOrder(const Solid& solid, const LatticeSigns& signs,
       order[node] = s.order;
     }
   }
-  reportProgress(progress, kStage, 0.5);
-  const std::vector<float> away = distancesInside(signs, std::move(nearest), progress);
+  reportProgress(kStage, 0.5);
+  const std::vector<float> away = distancesInside(signs, std::move(nearest));
   for (std::size_t n = 0; n < order.size(); ++n)
     if (order[n] == kFar) order[n] = away[n];
-  reportProgress(progress, kStage, 1);
+  reportProgress(kStage, 1);
   return order;
 }
 

@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/lattice/detail/lattice_signs.h"
 #include "innermap/levelset/solid.h"
 
@@ -18,6 +17,6 @@ namespace innermap {
 // than some three spacings, where parts touch, do not count: there the shallowest nodes come last.
 // depth: #nodes, of depthsInside().
 std::vector<float> growingOrder(const Solid& solid, const LatticeSigns& signs,
-                                const std::vector<float>& depth, Progress* progress);
+                                const std::vector<float>& depth);
 
 }  // namespace innermap

@@ -40,7 +40,7 @@ class Shape {
 }  // namespace
 
 void boundVertices(const Points& before, double leastDihedral, double greatestDihedral,
-                   StuffedMesh& mesh, Progress* progress) {
+                   StuffedMesh& mesh) {
   const Shape shape(leastDihedral, greatestDihedral);
   const Points wanted = mesh.vertices;
   std::vector<std::uint8_t> moves(before.size());
@@ -56,17 +56,14 @@ void boundVertices(const Points& before, double leastDihedral, double greatestDi
   std::vector<std::atomic<bool>> back(before.size());
   for (bool changed = true; changed;) {
     for (auto& b : back) b.store(false, std::memory_order_relaxed);
-    parallelBlocks(
-        suspects.size(), 4096,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t k = begin; k < end; ++k) {
-            const Tetrahedron& c = mesh.tetrahedra[suspects[k]];
-            if (shape.good(mesh.vertices, c)) continue;
-            for (const int v : c)
-              if (moves[v]) back[v].store(true, std::memory_order_relaxed);
-          }
-        },
-        progress);
+    parallelBlocks(suspects.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const Tetrahedron& c = mesh.tetrahedra[suspects[k]];
+        if (shape.good(mesh.vertices, c)) continue;
+        for (const int v : c)
+          if (moves[v]) back[v].store(true, std::memory_order_relaxed);
+      }
+    });
     changed = false;
     for (std::size_t v = 0; v < before.size(); ++v) {
       if (!back[v].load(std::memory_order_relaxed) || halvings[v] > kHalvings) continue;
@@ -85,14 +82,14 @@ void boundVertices(const Points& before, double leastDihedral, double greatestDi
   }
 }
 
-void holdWarped(StuffedMesh& mesh, Progress* progress) {
+void holdWarped(StuffedMesh& mesh) {
   Points before = mesh.vertices;
   std::copy(mesh.unwarped.begin(), mesh.unwarped.end(), before.begin() + mesh.firstBoundary);
-  boundVertices(before, kLeastDihedral, kGreatestDihedral, mesh, progress);
+  boundVertices(before, kLeastDihedral, kGreatestDihedral, mesh);
   mesh.unwarped = {};
 }
 
-void fitBoundary(const Solid& solid, double spacing, StuffedMesh& mesh, Progress* progress) {
+void fitBoundary(const Solid& solid, double spacing, StuffedMesh& mesh) {
   const auto first = static_cast<std::size_t>(mesh.firstBoundary);
   const Points before = mesh.vertices;
   parallelBlocks(
@@ -103,8 +100,8 @@ void fitBoundary(const Solid& solid, double spacing, StuffedMesh& mesh, Progress
           if (found.onSurface.triangle >= 0) mesh.vertices[i] = found.position;
         }
       },
-      progress, kStage);
-  boundVertices(before, kLeastDihedral, kGreatestDihedral, mesh, progress);
+      kStage);
+  boundVertices(before, kLeastDihedral, kGreatestDihedral, mesh);
 }
 
 }  // namespace innermap

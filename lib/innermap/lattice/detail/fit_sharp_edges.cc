@@ -4,6 +4,7 @@
 #include <queue>
 #include <set>
 
+#include "innermap/core/run.h"
 #include "innermap/lattice/cell_mesh.h"
 #include "innermap/lattice/detail/fit_boundary.h"
 #include "innermap/lattice/detail/sharp_edges.h"
@@ -107,9 +108,8 @@ class PathFinder {
 
 class SharpFitter {
  public:
-  SharpFitter(const Solid& solid, const SharpEdges& sharp, double spacing, StuffedMesh& mesh,
-              Progress* progress)
-      : solid_(solid), sharp_(sharp), spacing_(spacing), mesh_(mesh), progress_(progress) {
+  SharpFitter(const Solid& solid, const SharpEdges& sharp, double spacing, StuffedMesh& mesh)
+      : solid_(solid), sharp_(sharp), spacing_(spacing), mesh_(mesh) {
     for (const SharpCurve& curve : sharp.curves) trees_.push_back(treeOf(curve));
   }
 
@@ -122,7 +122,7 @@ class SharpFitter {
     const Points before = mesh_.vertices;
     shape();
     land();
-    boundVertices(before, kLeastSharpDihedral, kGreatestSharpDihedral, mesh_, progress_);
+    boundVertices(before, kLeastSharpDihedral, kGreatestSharpDihedral, mesh_);
     measure(fit);
     return fit;
   }
@@ -133,7 +133,7 @@ class SharpFitter {
     PathFinder finder(boundary, spacing_);
     std::vector<int> cornerVertex(sharp_.corners.size(), -1);
     for (std::size_t c = 0; c < sharp_.corners.size(); ++c) {
-      throwIfCancelled(progress_);
+      throwIfCancelled();
       const int v = cornerVertex[c] = finder.nearest(sharp_.corners[c]);
       if (v >= 0) finder.taken[v] = -1 - static_cast<int>(c);
     }
@@ -144,7 +144,7 @@ class SharpFitter {
     });
     paths_.resize(order.size());
     for (const int c : order) {
-      throwIfCancelled(progress_);
+      throwIfCancelled();
       paths_[c] = pathAlong(finder, cornerVertex, c);
       for (const int v : paths_[c]) finder.taken.try_emplace(v, c);
     }
@@ -231,7 +231,6 @@ class SharpFitter {
     settings.rounds = 3;
     settings.stepsARound = 30;
     settings.afterRound = [this](TetPatch& p, int) { setSprings(p); };
-    settings.progress = progress_;
     untangle(patch, settings);
     for (std::size_t l = 0; l < global_.size(); ++l)
       if (patch.free[l]) mesh_.vertices[global_[l]] = spacing_ * patch.vertices[l];
@@ -318,7 +317,6 @@ class SharpFitter {
   const SharpEdges& sharp_;
   double spacing_;
   StuffedMesh& mesh_;
-  Progress* progress_;
   std::vector<TriangleTree> trees_;      // of each curve
   std::vector<std::vector<int>> paths_;  // of each curve; empty: none
   std::map<int, int> target_;            // of each vertex on a path: as PathFinder::taken
@@ -328,9 +326,9 @@ class SharpFitter {
 }  // namespace
 
 SharpFit fitSharpEdges(const Solid& solid, const SharpEdges& sharp, double spacing,
-                       StuffedMesh& mesh, Progress* progress) {
-  reportProgress(progress, "drawing the sharp edges", 0);
-  return SharpFitter(solid, sharp, spacing, mesh, progress).run();
+                       StuffedMesh& mesh) {
+  reportProgress("drawing the sharp edges", 0);
+  return SharpFitter(solid, sharp, spacing, mesh).run();
 }
 
 }  // namespace innermap

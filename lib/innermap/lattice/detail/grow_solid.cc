@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "innermap/core/run.h"
 #include "innermap/lattice/detail/lattice_topology.h"
 
 namespace innermap {
@@ -91,12 +92,12 @@ void fillPockets(const BccLattice& lattice, Sides& sides) {
     sides[n] = seen[n] || !middle(n) ? NodeSide::outside : NodeSide::inside;
 }
 
-std::vector<std::vector<std::size_t>> piecesInside(const LatticeSigns& signs, Progress* progress) {
+std::vector<std::vector<std::size_t>> piecesInside(const LatticeSigns& signs) {
   std::vector<bool> seen(signs.side.size(), false);
   std::vector<std::vector<std::size_t>> found;
   for (std::size_t n = 0; n < signs.side.size(); ++n) {
     if (seen[n] || signs.side[n] != NodeSide::inside) continue;
-    throwIfCancelled(progress);
+    throwIfCancelled();
     found.push_back(reached(
         signs.lattice, n, [&](std::size_t m) { return signs.side[m] == NodeSide::inside; }, seen));
   }
@@ -105,8 +106,8 @@ std::vector<std::vector<std::size_t>> piecesInside(const LatticeSigns& signs, Pr
   return found;
 }
 
-SolidParts partsOf(const LatticeSigns& signs, bool onePiece, Progress* progress) {
-  const std::vector<std::vector<std::size_t>> found = piecesInside(signs, progress);
+SolidParts partsOf(const LatticeSigns& signs, bool onePiece) {
+  const std::vector<std::vector<std::size_t>> found = piecesInside(signs);
   SolidParts out;
   std::size_t all = 0, left = 0;
   for (const auto& nodes : found) {
@@ -125,7 +126,7 @@ SolidParts partsOf(const LatticeSigns& signs, bool onePiece, Progress* progress)
 }
 
 bool growWithHandles(LatticeSigns& signs, const Sides& part, int handles,
-                     const std::vector<float>& order, Progress* progress) {
+                     const std::vector<float>& order) {
   const SolidTopology wanted{1, 0, handles};
   signs.side = part;
   if (latticeTopology(signs) == wanted) return true;
@@ -135,7 +136,7 @@ bool growWithHandles(LatticeSigns& signs, const Sides& part, int handles,
         (part[deepest] != NodeSide::inside || order[n] > order[deepest]))
       deepest = n;
   for (const float core : coresOf(part, order)) {
-    throwIfCancelled(progress);
+    throwIfCancelled();
     if (!(core <= order[deepest])) break;
     std::vector<bool> seen(part.size(), false);
     signs.side = sidesOf(
@@ -145,7 +146,7 @@ bool growWithHandles(LatticeSigns& signs, const Sides& part, int handles,
             [&](std::size_t n) { return part[n] == NodeSide::inside && order[n] >= core; }, seen));
     fillPockets(signs.lattice, signs.side);
     if (!(latticeTopology(signs) == wanted)) continue;
-    changeSimply(signs, part, NodeSide::inside, order, progress);
+    changeSimply(signs, part, NodeSide::inside, order);
     return true;
   }
   signs.side = part;

@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/lattice/boundary_topology.h"
 #include "innermap/lattice/detail/simple_changes.h"
 
@@ -17,18 +16,18 @@ struct SolidParts {
 };
 
 // The nodes inside in pieces that hang together, the largest first.
-std::vector<std::vector<std::size_t>> piecesInside(const LatticeSigns& signs, Progress* progress);
+std::vector<std::vector<std::size_t>> piecesInside(const LatticeSigns& signs);
 
 // Makes inside what the outside does not reach.
 void fillPockets(const BccLattice& lattice, Sides& sides);
 
 // What hangs together inside; of that the largest alone with `onePiece`.
-SolidParts partsOf(const LatticeSigns& signs, bool onePiece, Progress* progress);
+SolidParts partsOf(const LatticeSigns& signs, bool onePiece);
 
 // Sets the sides to what is grown of `part` by `order` (highest first) from the largest of its
 // cores {order at least some value} that has so many handles. False where no core has: the sides
 // are the part's then.
 bool growWithHandles(LatticeSigns& signs, const Sides& part, int handles,
-                     const std::vector<float>& order, Progress* progress);
+                     const std::vector<float>& order);
 
 }  // namespace innermap

@@ -5,6 +5,8 @@
 #include <queue>
 #include <utility>
 
+#include "innermap/core/run.h"
+
 namespace innermap {
 namespace {
 
@@ -12,15 +14,14 @@ constexpr float kFar = std::numeric_limits<float>::max();
 
 }  // namespace
 
-std::vector<float> distancesInside(const LatticeSigns& signs, std::vector<float> from,
-                                   Progress* progress) {
+std::vector<float> distancesInside(const LatticeSigns& signs, std::vector<float> from) {
   using Entry = std::pair<float, std::size_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   for (std::size_t n = 0; n < from.size(); ++n)
     if (from[n] < kFar) queue.push({from[n], n});
   std::size_t polled = 0;
   while (!queue.empty()) {
-    if (++polled % 65536 == 0) throwIfCancelled(progress);
+    if (++polled % 65536 == 0) throwIfCancelled();
     const auto [distance, node] = queue.top();
     queue.pop();
     if (distance > from[node]) continue;
@@ -37,13 +38,13 @@ std::vector<float> distancesInside(const LatticeSigns& signs, std::vector<float>
   return from;
 }
 
-std::vector<float> depthsInside(const LatticeSigns& signs, Progress* progress) {
+std::vector<float> depthsInside(const LatticeSigns& signs) {
   const auto spacing = static_cast<float>(signs.lattice.spacing());
   std::vector<float> near(signs.side.size(), kFar);
   for (std::size_t n = 0; n < near.size(); ++n)
     if (signs.side[n] == NodeSide::inside && signs.distance[n] > -1.9f * spacing)
       near[n] = std::max(0.0f, -signs.distance[n] / spacing);
-  return distancesInside(signs, std::move(near), progress);
+  return distancesInside(signs, std::move(near));
 }
 
 }  // namespace innermap

@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/lattice/detail/lattice_signs.h"
 
 namespace innermap {
@@ -11,11 +10,10 @@ namespace innermap {
 // From each node inside to the nearest start, along edges between nodes inside, in spacings. from:
 // #nodes, what the path has behind it at a start, and the largest float elsewhere; the result has
 // that where no start is reached. Dijkstra's method.
-std::vector<float> distancesInside(const LatticeSigns& signs, std::vector<float> from,
-                                   Progress* progress);
+std::vector<float> distancesInside(const LatticeSigns& signs, std::vector<float> from);
 
 // From each node inside to the solid's surface, in spacings: beyond the band too, where the
 // distances are cut off.
-std::vector<float> depthsInside(const LatticeSigns& signs, Progress* progress);
+std::vector<float> depthsInside(const LatticeSigns& signs);
 
 }  // namespace innermap

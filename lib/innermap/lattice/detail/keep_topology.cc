@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/lattice/detail/lattice_topology.h"
 #include "innermap/lattice/detail/simple_changes.h"
 #include "innermap/lattice/detail/thin_parts.h"
@@ -31,9 +32,8 @@ int complexity(const SolidTopology& t) { return t.components + t.cavities + t.ha
 
 class TopologyKeeper {
  public:
-  TopologyKeeper(const SolidTopology& wanted, LatticeSigns& signs, const ThinParts& parts,
-                 Progress* progress)
-      : wanted_(wanted), signs_(signs), parts_(parts), plain_(signs.side), progress_(progress) {}
+  TopologyKeeper(const SolidTopology& wanted, LatticeSigns& signs, const ThinParts& parts)
+      : wanted_(wanted), signs_(signs), parts_(parts), plain_(signs.side) {}
 
   // Walls that are lost are worse than a cut at an unlucky place.
   bool run() {
@@ -62,7 +62,7 @@ class TopologyKeeper {
 
   // From the nodes below `level` to those that are desired.
   void tryFrom(double level, NodeSide to) {
-    throwIfCancelled(progress_);
+    throwIfCancelled();
     signs_.side = sidesBelow(signs_, level * signs_.lattice.spacing());
     // Growing adds to what is desired anyway, thinning takes away from more.
     for (std::size_t n = 0; n < desired_.size(); ++n)
@@ -71,7 +71,7 @@ class TopologyKeeper {
     std::vector<float> order = signs_.distance;
     if (to == NodeSide::inside)
       for (float& distance : order) distance = -distance;
-    changeSimply(signs_, desired_, to, order, progress_);
+    changeSimply(signs_, desired_, to, order);
     const std::size_t changed = differing(signs_.side, desired_);
     if (best_ && changed >= leastChanged_) return;
     best_ = signs_.side;
@@ -85,18 +85,16 @@ class TopologyKeeper {
   Sides desired_;
   std::optional<Sides> best_;
   std::size_t leastChanged_ = 0;
-  Progress* progress_;
 };
 
 }  // namespace
 
-KeptTopology keepTopology(const Solid& solid, const SolidTopology* wanted, LatticeSigns& signs,
-                          Progress* progress) {
-  const ThinParts parts = thinParts(solid, signs, progress);
+KeptTopology keepTopology(const Solid& solid, const SolidTopology* wanted, LatticeSigns& signs) {
+  const ThinParts parts = thinParts(solid, signs);
   const Sides plain = signs.side;
   KeptTopology result;
   if (wanted) {
-    TopologyKeeper(*wanted, signs, parts, progress).run();
+    TopologyKeeper(*wanted, signs, parts).run();
   } else {
     const SolidTopology before = latticeTopology(signs);
     for (const std::size_t node : parts.walls) signs.side[node] = NodeSide::inside;
@@ -106,7 +104,7 @@ KeptTopology keepTopology(const Solid& solid, const SolidTopology* wanted, Latti
   result.kept = wanted && result.found == *wanted;
   result.changed = differing(plain, signs.side);
   result.points = parts.points;
-  result.lost = parts.lost > 0 || result.changed > 0 ? thinParts(solid, signs, progress).lost : 0;
+  result.lost = parts.lost > 0 || result.changed > 0 ? thinParts(solid, signs).lost : 0;
   return result;
 }
 

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 
-#include "innermap/core/progress.h"
 #include "innermap/lattice/boundary_topology.h"
 #include "innermap/lattice/detail/lattice_signs.h"
 #include "innermap/levelset/solid.h"
@@ -24,7 +23,6 @@ struct KeptTopology {
 // "Simple points, topological numbers and geodesic neighborhoods in cubic grids", 1994), whichever
 // changes fewer. Where nothing helps the signs stay those of the distances. Without `wanted` only
 // thin walls are seen to.
-KeptTopology keepTopology(const Solid& solid, const SolidTopology* wanted, LatticeSigns& signs,
-                          Progress* progress);
+KeptTopology keepTopology(const Solid& solid, const SolidTopology* wanted, LatticeSigns& signs);
 
 }  // namespace innermap

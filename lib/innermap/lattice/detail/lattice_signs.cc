@@ -14,13 +14,12 @@ namespace {
 constexpr int kPadding = 3;      // cells around the box
 constexpr double kShift = 0.37;  // cells: keeps flat faces along the axes off the nodes
 
-void fillDistances(const Solid& solid, LatticeSigns& signs, int second, Progress* progress) {
+void fillDistances(const Solid& solid, LatticeSigns& signs, int second) {
   const BccLattice& lattice = signs.lattice;
   LevelSetSettings settings;
   settings.voxelSize = lattice.spacing();
   settings.halfWidth = 2;
   settings.origin = lattice.position(second ? lattice.cells() : 0);
-  settings.progress = progress;
   const openvdb::FloatGrid::Ptr grid = makeLevelSet(solid, settings);
   const auto& n = lattice.size();
   const openvdb::CoordBBox box(0, 0, 0, n[0] - 1, n[1] - 1, n[2] - 1);
@@ -122,7 +121,7 @@ constexpr int kBlock = 8;  // cells; nodes of two blocks that are one apart neve
 
 }  // namespace
 
-LatticeSigns latticeSigns(const Solid& solid, double spacing, Progress* progress) {
+LatticeSigns latticeSigns(const Solid& solid, double spacing) {
   const Box3& box = solid.box();
   std::array<int, 3> size{};
   for (int a = 0; a < 3; ++a)
@@ -132,7 +131,7 @@ LatticeSigns latticeSigns(const Solid& solid, double spacing, Progress* progress
   signs.lattice = BccLattice(box.lower - Vec3{before, before, before}, spacing, size);
   const std::size_t nodes = signs.lattice.nodes();
   signs.distance.resize(nodes);
-  for (int second = 0; second < 2; ++second) fillDistances(solid, signs, second, progress);
+  for (int second = 0; second < 2; ++second) fillDistances(solid, signs, second);
   signs.side.resize(nodes);
   signs.onEdge.assign(nodes, -1);
   parallelBlocks(nodes, 1 << 16, [&](std::size_t begin, std::size_t end) {
@@ -151,7 +150,7 @@ double cutShare(const LatticeSigns& signs, std::size_t node, int direction) {
   return (a < 0) == inside ? 1 : 0;
 }
 
-void warpNodes(LatticeSigns& signs, Progress* progress) {
+void warpNodes(LatticeSigns& signs) {
   const BccLattice& lattice = signs.lattice;
   std::array<int, 3> blocks{};
   for (int a = 0; a < 3; ++a) blocks[a] = (lattice.size()[a] + kBlock - 1) / kBlock;
@@ -159,33 +158,30 @@ void warpNodes(LatticeSigns& signs, Progress* progress) {
   Warper warper(signs);
   // Eight rounds; the blocks of one round stand apart, so that their order does not matter.
   for (int colour = 0; colour < 8; ++colour)
-    parallelBlocks(
-        count, 4,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t b = begin; b < end; ++b) {
-            const std::array<int, 3> block{static_cast<int>(b % blocks[0]),
-                                           static_cast<int>(b / blocks[0] % blocks[1]),
-                                           static_cast<int>(b / blocks[0] / blocks[1])};
-            if (((block[0] & 1) | (block[1] & 1) << 1 | (block[2] & 1) << 2) != colour) continue;
-            std::array<int, 3> from{}, to{};
-            for (int a = 0; a < 3; ++a) {
-              from[a] = std::max(kBlock * block[a], 2);
-              to[a] = std::min(kBlock * (block[a] + 1), lattice.size()[a] - 2);
-            }
-            const double near = lattice.spacing();
-            for (int second = 0; second < 2; ++second)
-              for (int k = from[2]; k < to[2]; ++k)
-                for (int j = from[1]; j < to[1]; ++j)
-                  for (int i = from[0]; i < to[0]; ++i) {
-                    const std::size_t node =
-                        (second ? lattice.cells() : 0) + i +
-                        lattice.size()[0] * (j + lattice.size()[1] * static_cast<std::size_t>(k));
-                    if (std::abs(static_cast<double>(signs.distance[node])) < near)
-                      warper.tryWarp(node);
-                  }
-          }
-        },
-        progress);
+    parallelBlocks(count, 4, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) {
+        const std::array<int, 3> block{static_cast<int>(b % blocks[0]),
+                                       static_cast<int>(b / blocks[0] % blocks[1]),
+                                       static_cast<int>(b / blocks[0] / blocks[1])};
+        if (((block[0] & 1) | (block[1] & 1) << 1 | (block[2] & 1) << 2) != colour) continue;
+        std::array<int, 3> from{}, to{};
+        for (int a = 0; a < 3; ++a) {
+          from[a] = std::max(kBlock * block[a], 2);
+          to[a] = std::min(kBlock * (block[a] + 1), lattice.size()[a] - 2);
+        }
+        const double near = lattice.spacing();
+        for (int second = 0; second < 2; ++second)
+          for (int k = from[2]; k < to[2]; ++k)
+            for (int j = from[1]; j < to[1]; ++j)
+              for (int i = from[0]; i < to[0]; ++i) {
+                const std::size_t node =
+                    (second ? lattice.cells() : 0) + i +
+                    lattice.size()[0] * (j + lattice.size()[1] * static_cast<std::size_t>(k));
+                if (std::abs(static_cast<double>(signs.distance[node])) < near)
+                  warper.tryWarp(node);
+              }
+      }
+    });
 }
 
 }  // namespace innermap

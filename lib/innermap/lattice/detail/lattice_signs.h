@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/lattice/detail/bcc_lattice.h"
 #include "innermap/levelset/solid.h"
 
@@ -23,7 +22,7 @@ struct LatticeSigns {
 inline double leastCut(int direction) { return direction < kLongDirections ? 0.24999 : 0.41189; }
 
 // The lattice over the solid's box and signed distances at its nodes, each inside or outside.
-LatticeSigns latticeSigns(const Solid& solid, double spacing, Progress* progress);
+LatticeSigns latticeSigns(const Solid& solid, double spacing);
 
 // Where the surface cuts the edge from `node`, as the distances say, as a share of the edge; 1 or 0
 // where sides and distances disagree, from a node inside or outside to one on the other side.
@@ -31,6 +30,6 @@ double cutShare(const LatticeSigns& signs, std::size_t node, int direction);
 
 // Moves nodes that have a cut too near onto the nearest one (side becomes `on`), where what is
 // inside stays a manifold and keeps its topology.
-void warpNodes(LatticeSigns& signs, Progress* progress);
+void warpNodes(LatticeSigns& signs);
 
 }  // namespace innermap

@@ -4,6 +4,7 @@
 
 #include "innermap/core/detail/disjoint_sets.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/lattice/detail/stuffing.h"
 #include "innermap/levelset/solid.h"
 #include "innermap/mesh/mesh.h"
@@ -39,6 +38,6 @@ constexpr double kLeastSharpDihedral = 5, kGreatestSharpDihedral = 170;  // degr
 // are drawn onto them while the shapes about them are kept good (untangle.h), as far as the angles
 // allow. After fitBoundary().
 SharpFit fitSharpEdges(const Solid& solid, const SharpEdges& sharp, double spacing,
-                       StuffedMesh& mesh, Progress* progress);
+                       StuffedMesh& mesh);
 
 }  // namespace innermap

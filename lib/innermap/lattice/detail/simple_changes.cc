@@ -3,6 +3,8 @@
 #include <queue>
 #include <utility>
 
+#include "innermap/core/run.h"
+
 namespace innermap {
 namespace {
 
@@ -18,11 +20,11 @@ class Changes {
         simple_(simple),
         link_(BccLink::get()) {}
 
-  void run(Progress* progress) {
+  void run() {
     for (std::size_t node = 0; node < signs_.lattice.nodes(); ++node) push(node);
     std::size_t polled = 0;
     while (!queue_.empty()) {
-      if (++polled % 65536 == 0) throwIfCancelled(progress);
+      if (++polled % 65536 == 0) throwIfCancelled();
       const std::size_t node = queue_.top().second;
       queue_.pop();
       if (signs_.side[node] == to_ || !possible(node)) continue;
@@ -58,13 +60,13 @@ class Changes {
 }  // namespace
 
 void changeSimply(LatticeSigns& signs, const Sides& wanted, NodeSide to,
-                  const std::vector<float>& order, Progress* progress) {
-  Changes(signs, wanted, to, order, true).run(progress);
+                  const std::vector<float>& order) {
+  Changes(signs, wanted, to, order, true).run();
 }
 
 void changeWithoutPiercing(LatticeSigns& signs, const Sides& wanted, NodeSide to,
-                           const std::vector<float>& order, Progress* progress) {
-  Changes(signs, wanted, to, order, false).run(progress);
+                           const std::vector<float>& order) {
+  Changes(signs, wanted, to, order, false).run();
 }
 
 }  // namespace innermap

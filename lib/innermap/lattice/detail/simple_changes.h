@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/lattice/detail/lattice_signs.h"
 
 namespace innermap {
@@ -14,11 +13,11 @@ using Sides = std::vector<NodeSide>;  // #nodes
 // (Bertrand, "Simple points, topological numbers and geodesic neighborhoods in cubic grids", 1994):
 // the highest of `order` first, of those that can. wanted, order: #nodes.
 void changeSimply(LatticeSigns& signs, const Sides& wanted, NodeSide to,
-                  const std::vector<float>& order, Progress* progress);
+                  const std::vector<float>& order);
 
 // The same as far as no node joins what is apart on the side `to` around it: what lies between may
 // be divided, but is not pierced.
 void changeWithoutPiercing(LatticeSigns& signs, const Sides& wanted, NodeSide to,
-                           const std::vector<float>& order, Progress* progress);
+                           const std::vector<float>& order);
 
 }  // namespace innermap

@@ -138,8 +138,7 @@ using Counts = std::array<std::int64_t, 4>;
 
 class Stuffer {
  public:
-  Stuffer(const LatticeSigns& signs, Progress* progress)
-      : signs_(signs), lattice_(signs.lattice), progress_(progress) {
+  explicit Stuffer(const LatticeSigns& signs) : signs_(signs), lattice_(signs.lattice) {
     const auto shapes = bccTetrahedra(lattice_);
     for (const BccTetrahedron& shape : shapes) {
       shapes_.push_back(shape);
@@ -199,7 +198,7 @@ class Stuffer {
             c[3] += __builtin_popcount(static_cast<unsigned>(cuts));
           });
         },
-        progress_, kStage);
+        kStage);
     std::int64_t next = 0;
     for (int kind = 0; kind < 4; ++kind) {
       if (kind == 2) mesh_.firstBoundary = static_cast<int>(next);
@@ -238,7 +237,7 @@ class Stuffer {
               if (cuts >> d & 1) mesh_.vertices[at[3]++] = onEdge(node, d, heldShare(node, d));
           });
         },
-        progress_, kStage);
+        kStage);
   }
 
   // Cuts that are too near to a node that could not be warped are kept off it, a little farther
@@ -294,7 +293,7 @@ class Stuffer {
           forFilled(begin + margin, end + margin,
                     [&](std::size_t, std::size_t, const Filling& f) { count += f.count; });
         },
-        progress_, kStage);
+        kStage);
     for (std::size_t b = 1; b < starts.size(); ++b) starts[b] += starts[b - 1];
     mesh_.tetrahedra.resize(starts.back());
     parallelBlocks(
@@ -308,12 +307,11 @@ class Stuffer {
                           (*out)[i] = vertexOf(shapes_[s], c, f.tetrahedra[k][i]);
                     });
         },
-        progress_, kStage);
+        kStage);
   }
 
   const LatticeSigns& signs_;
   const BccLattice& lattice_;
-  Progress* progress_;
   std::vector<BccTetrahedron> shapes_;
   std::vector<FillingTable> tables_;
   std::vector<Counts> starts_;
@@ -343,8 +341,6 @@ std::vector<Triangle> boundaryOf(const StuffedMesh& mesh) {
   return triangles;
 }
 
-StuffedMesh stuffed(const LatticeSigns& signs, Progress* progress) {
-  return Stuffer(signs, progress).run();
-}
+StuffedMesh stuffed(const LatticeSigns& signs) { return Stuffer(signs).run(); }
 
 }  // namespace innermap

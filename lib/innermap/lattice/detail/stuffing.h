@@ -20,7 +20,7 @@ struct StuffedMesh {
 // Dihedral angles lie in 12.7 to 155 degrees when no node is warped; when some are, rarely (some in
 // 1e8 cells of random data) in less than 10 to 165, see holdWarped(). Throws MemoryError when there
 // are more vertices than an index can name.
-StuffedMesh stuffed(const LatticeSigns& signs, Progress* progress);
+StuffedMesh stuffed(const LatticeSigns& signs);
 
 // The boundary's triangles, seen from outside counter-clockwise: boundaryTriangles(), but of the
 // cells along the boundary alone.

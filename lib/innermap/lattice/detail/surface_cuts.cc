@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "innermap/core/run.h"
 #include "innermap/core/vec3.h"
 #include "innermap/lattice/detail/grow_solid.h"
 
@@ -76,13 +77,12 @@ std::vector<std::size_t> cutNodes(const Sides& all, const LatticeSigns& signs) {
   return cut;
 }
 
-std::vector<Box3> cutBoxes(const std::vector<std::size_t>& cut, const LatticeSigns& signs,
-                           Progress* progress) {
+std::vector<Box3> cutBoxes(const std::vector<std::size_t>& cut, const LatticeSigns& signs) {
   LatticeSigns alone = signs;
   std::fill(alone.side.begin(), alone.side.end(), NodeSide::outside);
   for (const std::size_t n : cut) alone.side[n] = NodeSide::inside;
   std::vector<Box3> boxes;
-  for (const std::vector<std::size_t>& nodes : piecesInside(alone, progress)) {
+  for (const std::vector<std::size_t>& nodes : piecesInside(alone)) {
     boxes.emplace_back();
     for (const std::size_t n : nodes) boxes.back().add(signs.lattice.position(n));
   }
@@ -90,20 +90,19 @@ std::vector<Box3> cutBoxes(const std::vector<std::size_t>& cut, const LatticeSig
 }
 
 void openCuts(const std::vector<std::size_t>& cut, const std::vector<float>& depth,
-              LatticeSigns& signs, Progress* progress) {
+              LatticeSigns& signs) {
   if (cut.empty()) return;
   Opening opening(depth, signs);
   for (std::size_t k = 0; k < cut.size(); ++k) {
     if (k % 256 == 0)
-      reportProgress(progress, "opening the cuts",
-                     static_cast<double>(k) / static_cast<double>(cut.size()));
+      reportProgress("opening the cuts", static_cast<double>(k) / static_cast<double>(cut.size()));
     opening.add(cut[k]);
   }
   const std::vector<float>& within = opening.within();
   Sides wanted(signs.side.size(), NodeSide::inside);
   for (std::size_t n = 0; n < wanted.size(); ++n)
     if (within[n] >= 0) wanted[n] = NodeSide::outside;
-  changeSimply(signs, wanted, NodeSide::outside, within, progress);
+  changeSimply(signs, wanted, NodeSide::outside, within);
   const auto spacing = static_cast<float>(signs.lattice.spacing());
   for (std::size_t n = 0; n < within.size(); ++n) {
     const bool inside = signs.side[n] == NodeSide::inside;

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -68,7 +69,7 @@ class Finder {
 
 }  // namespace
 
-ThinParts thinParts(const Solid& solid, const LatticeSigns& signs, Progress* progress) {
+ThinParts thinParts(const Solid& solid, const LatticeSigns& signs) {
   const Mesh& surface = solid.surface();
   const Finder finder(solid, signs);
   const double step = 0.5 * signs.lattice.spacing();
@@ -88,7 +89,7 @@ ThinParts thinParts(const Solid& solid, const LatticeSigns& signs, Progress* pro
           const double longest = std::max({norm(u), norm(v), norm(u - v)});
           const int n = std::max(1, static_cast<int>(std::ceil(longest / step)));
           for (int i = 0; i < n; ++i) {
-            throwIfCancelled(progress);
+            throwIfCancelled();
             for (int j = 0; j < n - i; ++j) {
               const Vec3 x = a + ((i + 1.0 / 3) / n) * u + ((j + 1.0 / 3) / n) * v;
               ++own.points;
@@ -106,7 +107,7 @@ ThinParts thinParts(const Solid& solid, const LatticeSigns& signs, Progress* pro
         parts.walls.insert(parts.walls.end(), own.walls.begin(), own.walls.end());
         parts.gaps.insert(parts.gaps.end(), own.gaps.begin(), own.gaps.end());
       },
-      progress, kStage);
+      kStage);
   for (auto* nodes : {&parts.walls, &parts.gaps}) {
     std::sort(nodes->begin(), nodes->end());
     nodes->erase(std::unique(nodes->begin(), nodes->end()), nodes->end());

@@ -2,7 +2,6 @@
 // outside.
 #pragma once
 
-#include "innermap/core/progress.h"
 #include "innermap/lattice/detail/lattice_signs.h"
 #include "innermap/levelset/solid.h"
 
@@ -18,6 +17,6 @@ struct ThinParts {
 // Looks for them from points of the surface, about half a spacing apart: the node nearest to the
 // point that lies 0.56 of a spacing deeper (no point is farther from all nodes) is inside unless
 // the wall is thinner than that.
-ThinParts thinParts(const Solid& solid, const LatticeSigns& signs, Progress* progress);
+ThinParts thinParts(const Solid& solid, const LatticeSigns& signs);
 
 }  // namespace innermap

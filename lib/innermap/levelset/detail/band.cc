@@ -63,22 +63,19 @@ Band::Level Band::firstLevel() const {
   return level;
 }
 
-Band::Level Band::refined(const Level& level, Progress* progress) const {
+Band::Level Band::refined(const Level& level) const {
   const int half = level.size / 2;
   const auto child = [&](std::size_t block, int c) {
     return level.corners[block].offsetBy(c & 4 ? half : 0, c & 2 ? half : 0, c & 1 ? half : 0);
   };
   std::vector<unsigned char> kept(level.corners.size(), 0);
-  parallelBlocks(
-      kept.size(), 64,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t b = begin; b < end; ++b) {
-          for (int c = 0; c < 8; ++c) {
-            if (mayTouch(child(b, c), half)) kept[b] |= static_cast<unsigned char>(1 << c);
-          }
-        }
-      },
-      progress);
+  parallelBlocks(kept.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      for (int c = 0; c < 8; ++c) {
+        if (mayTouch(child(b, c), half)) kept[b] |= static_cast<unsigned char>(1 << c);
+      }
+    }
+  });
   Level finer;
   finer.size = half;
   for (std::size_t b = 0; b < kept.size(); ++b) {
@@ -89,15 +86,15 @@ Band::Level Band::refined(const Level& level, Progress* progress) const {
   return finer;
 }
 
-std::vector<Coord> Band::leaves(Progress* progress) const {
+std::vector<Coord> Band::leaves() const {
   Level level = firstLevel();
-  while (level.size > kLeaf) level = refined(level, progress);
+  while (level.size > kLeaf) level = refined(level);
   return std::move(level.corners);
 }
 
-double Band::estimateLeaves(Progress* progress) const {
+double Band::estimateLeaves() const {
   Level level = firstLevel();
-  while (level.size > kLeaf && level.corners.size() < 4000) level = refined(level, progress);
+  while (level.size > kLeaf && level.corners.size() < 4000) level = refined(level);
   // Blocks of side s fill the band and about 1.7 s beyond it, whose volume is what stays when they
   // are divided.
   const double band = 2 * (upper_ - lower_) / voxelSize_;

@@ -6,7 +6,6 @@
 
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/levelset/detail/solid_body.h"
 
 namespace innermap {
@@ -22,10 +21,10 @@ class Band {
   Band(const SolidBody& body, const Vec3& origin, double voxelSize, double lower, double upper);
 
   // Origins of the leaves (multiples of 8) that may have voxels in the band, in a fixed order.
-  std::vector<openvdb::Coord> leaves(Progress* progress) const;
+  std::vector<openvdb::Coord> leaves() const;
 
   // Number of leaves, over-estimated by at most about a half, without going down to them.
-  double estimateLeaves(Progress* progress) const;
+  double estimateLeaves() const;
 
   // Distances at a leaf's voxels, in the order of leaf storage: exact in the band, infinity where
   // farther, 0 where nearer.
@@ -36,7 +35,7 @@ class Band {
  private:
   struct Level;
   Level firstLevel() const;
-  Level refined(const Level& level, Progress* progress) const;
+  Level refined(const Level& level) const;
   bool mayTouch(const openvdb::Coord& corner, int size) const;
   void fill(const openvdb::Coord& leaf, const openvdb::Coord& corner, int size, double bound,
             double* values) const;

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <unordered_map>
 
+#include "innermap/core/run.h"
+
 namespace innermap {
 namespace {
 
@@ -94,7 +96,7 @@ bool halveLongEdges(Points& vertices, std::vector<Triangle>& triangles, double e
 
 }  // namespace
 
-Mesh displacedSurface(const Solid& solid, double distance, double edge, Progress* progress) {
+Mesh displacedSurface(const Solid& solid, double distance, double edge) {
   const Mesh& surface = solid.surface();
   Mesh mesh;
   mesh.vertices = surface.vertices;
@@ -104,7 +106,7 @@ Mesh displacedSurface(const Solid& solid, double distance, double edge, Progress
     mesh.triangles.push_back({welded[t[0]], welded[t[1]], welded[t[2]]});
   }
   for (int pass = 0; pass < 32; ++pass) {
-    throwIfCancelled(progress);
+    throwIfCancelled();
     if (!halveLongEdges(mesh.vertices, mesh.triangles, edge)) break;
   }
   std::vector<int> own(mesh.vertices.size());

@@ -7,7 +7,9 @@
 #include <unordered_map>
 
 #include "innermap/core/detail/disjoint_sets.h"
+#include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/detail/connectivity.h"
 #include "innermap/mesh/detail/winding_number.h"
 #include "innermap/mesh/self_intersection.h"
@@ -55,41 +57,34 @@ std::array<Vec3, 3> cornersOf(const Work& work, int t) {
   return {work.local[i], work.local[j], work.local[k]};
 }
 
-void classifyPatches(Work& work, const std::vector<char>& cut, Progress* progress) {
+void classifyPatches(Work& work, const std::vector<char>& cut) {
   const std::vector<std::vector<int>> patches = patchesOf(work.mesh.triangles, cut);
   std::vector<char> mixed(patches.size(), 0);
   const auto sideOf = [&](int t) {
     return classify(work.winding, cornersOf(work, t), work.diagonal);
   };
-  parallelBlocks(
-      patches.size(), 1,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p < end; ++p) {
-          // The largest triangle and some spread over the patch.
-          const std::vector<int>& members = patches[p];
-          const auto area = [&](int t) { return norm(areaVector(work.mesh, t)); };
-          const int largest = *std::max_element(members.begin(), members.end(),
-                                                [&](int s, int t) { return area(s) < area(t); });
-          const Side side = sideOf(largest);
-          const double enough = 1e-6 * area(largest);  // slivers tell nothing
-          const std::size_t step = std::max<std::size_t>(1, members.size() / 6);
-          for (std::size_t i = step / 2; i < members.size(); i += step) {
-            if (area(members[i]) >= enough && !(sideOf(members[i]) == side)) mixed[p] = 1;
-          }
-          for (const int t : members) work.sides[t] = side;
-        }
-      },
-      progress);
+  parallelBlocks(patches.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      // The largest triangle and some spread over the patch.
+      const std::vector<int>& members = patches[p];
+      const auto area = [&](int t) { return norm(areaVector(work.mesh, t)); };
+      const int largest = *std::max_element(members.begin(), members.end(),
+                                            [&](int s, int t) { return area(s) < area(t); });
+      const Side side = sideOf(largest);
+      const double enough = 1e-6 * area(largest);  // slivers tell nothing
+      const std::size_t step = std::max<std::size_t>(1, members.size() / 6);
+      for (std::size_t i = step / 2; i < members.size(); i += step) {
+        if (area(members[i]) >= enough && !(sideOf(members[i]) == side)) mixed[p] = 1;
+      }
+      for (const int t : members) work.sides[t] = side;
+    }
+  });
   // Something passes exactly along edges: each triangle for itself.
   for (std::size_t p = 0; p < patches.size(); ++p) {
     if (!mixed[p]) continue;
-    parallelBlocks(
-        patches[p].size(), 64,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i)
-            work.sides[patches[p][i]] = sideOf(patches[p][i]);
-        },
-        progress);
+    parallelBlocks(patches[p].size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) work.sides[patches[p][i]] = sideOf(patches[p][i]);
+    });
   }
 }
 
@@ -112,45 +107,37 @@ Partners partnersOf(const std::vector<Crossing>& crossings) {
 }
 
 // False when more than kMaxPieces result.
-bool splitAll(Work& work, const Partners& partners, double pieceLength, Progress* progress) {
+bool splitAll(Work& work, const Partners& partners, double pieceLength) {
   std::atomic<std::size_t> count{0};
-  parallelBlocks(
-      partners.size(), 1,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end && count <= kMaxPieces; ++i) {
-          std::vector<std::array<Vec3, 3>> others;
-          for (const int other : partners[i].second) others.push_back(cornersOf(work, other));
-          const int t = partners[i].first;
-          work.pieces[t] = splitTriangle(cornersOf(work, t), others, pieceLength,
-                                         1e-12 * work.diagonal, kMaxPieces, progress);
-          count += work.pieces[t].size();
-        }
-      },
-      progress);
+  parallelBlocks(partners.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end && count <= kMaxPieces; ++i) {
+      std::vector<std::array<Vec3, 3>> others;
+      for (const int other : partners[i].second) others.push_back(cornersOf(work, other));
+      const int t = partners[i].first;
+      work.pieces[t] =
+          splitTriangle(cornersOf(work, t), others, pieceLength, 1e-12 * work.diagonal, kMaxPieces);
+      count += work.pieces[t].size();
+    }
+  });
   return count <= kMaxPieces;
 }
 
-void classifyPieces(Work& work, const Partners& partners, Progress* progress) {
-  parallelBlocks(
-      partners.size(), 1,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const int t = partners[i].first;
-          const auto corners = cornersOf(work, t);
-          std::vector<Piece>& pieces = work.pieces[t];
-          for (std::size_t p = 0; p < pieces.size(); ++p) {
-            if (p % 1024 == 0) throwIfCancelled(progress);
-            pieces[p].side =
-                classify(work.winding, pieceTriangle(corners, pieces[p]), work.diagonal);
-          }
-          const bool alike = std::all_of(pieces.begin(), pieces.end(), [&](const Piece& p) {
-            return p.side == pieces.front().side;
-          });
-          work.sides[t] = pieces.front().side;
-          if (alike) pieces.clear();
-        }
-      },
-      progress);
+void classifyPieces(Work& work, const Partners& partners) {
+  parallelBlocks(partners.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const int t = partners[i].first;
+      const auto corners = cornersOf(work, t);
+      std::vector<Piece>& pieces = work.pieces[t];
+      for (std::size_t p = 0; p < pieces.size(); ++p) {
+        if (p % 1024 == 0) throwIfCancelled();
+        pieces[p].side = classify(work.winding, pieceTriangle(corners, pieces[p]), work.diagonal);
+      }
+      const bool alike = std::all_of(pieces.begin(), pieces.end(),
+                                     [&](const Piece& p) { return p.side == pieces.front().side; });
+      work.sides[t] = pieces.front().side;
+      if (alike) pieces.clear();
+    }
+  });
 }
 
 // Sheets that lie on each other: a whole triangle whose winding number jumps by two or more is left
@@ -245,7 +232,7 @@ void assemble(const Work& work, const std::vector<char>& dropped, ExposedSurface
 
 }  // namespace
 
-ExposedSurface exposedSurface(const Mesh& mesh, double pieceSize, Progress* progress) {
+ExposedSurface exposedSurface(const Mesh& mesh, double pieceSize) {
   const Box3 box = boundingBox(mesh);
   const Vec3 center = box.center();
   Points local;
@@ -256,14 +243,14 @@ ExposedSurface exposedSurface(const Mesh& mesh, double pieceSize, Progress* prog
   work.sides.resize(mesh.triangles.size());
   work.pieces.resize(mesh.triangles.size());
 
-  throwIfCancelled(progress);
-  const Partners partners = partnersOf(selfIntersections(work.local, mesh.triangles, {progress}));
+  throwIfCancelled();
+  const Partners partners = partnersOf(selfIntersections(work.local, mesh.triangles));
   std::vector<char> cut(mesh.triangles.size(), 0);
   for (const auto& [t, others] : partners) cut[t] = 1;
-  classifyPatches(work, cut, progress);
+  classifyPatches(work, cut);
   double length = pieceSize * work.diagonal;
-  while (!splitAll(work, partners, length, progress)) length *= 2;
-  classifyPieces(work, partners, progress);
+  while (!splitAll(work, partners, length)) length *= 2;
+  classifyPieces(work, partners);
 
   ExposedSurface result;
   std::vector<char> dropped(mesh.triangles.size(), 0);

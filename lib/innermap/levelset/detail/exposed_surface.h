@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/levelset/detail/piece_splitting.h"
 #include "innermap/mesh/mesh.h"
 
@@ -21,6 +20,6 @@ struct ExposedSurface {
 
 // `mesh` has whole winding numbers, as repair() makes them. pieceSize is a fraction of the
 // diagonal. Throws DataError when nothing is exposed; Cancelled.
-ExposedSurface exposedSurface(const Mesh& mesh, double pieceSize, Progress* progress);
+ExposedSurface exposedSurface(const Mesh& mesh, double pieceSize);
 
 }  // namespace innermap

@@ -5,7 +5,7 @@
 
 namespace innermap {
 
-// settings: of any job that has resolution, voxelSize, maxMemory and progress as LevelSetSettings
+// settings: of any job that has resolution, voxelSize, and maxMemory as LevelSetSettings
 // has them.
 template <class Settings>
 LevelSetSettings levelSetSettings(const Settings& settings) {
@@ -13,7 +13,6 @@ LevelSetSettings levelSetSettings(const Settings& settings) {
   out.resolution = settings.resolution;
   out.voxelSize = settings.voxelSize;
   out.maxMemory = settings.maxMemory;
-  out.progress = settings.progress;
   return out;
 }
 

@@ -11,6 +11,7 @@
 #include "innermap/core/detail/disjoint_sets.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/levelset/detail/band.h"
 #include "innermap/levelset/fog.h"
 
@@ -122,12 +123,12 @@ openvdb::math::Transform::Ptr latticeTransform(const Vec3& origin, double voxelS
   return transform;
 }
 
-FloatGrid::Ptr narrowBand(const SolidBody& body, const Vec3& origin, double voxelSize, double width,
-                          Progress* progress) {
+FloatGrid::Ptr narrowBand(const SolidBody& body, const Vec3& origin, double voxelSize,
+                          double width) {
   openvdb::initialize();
   const float background = backgroundOf(width);
   const Band band(body, origin, voxelSize, 0, background);
-  const std::vector<Coord> origins = band.leaves(progress);
+  const std::vector<Coord> origins = band.leaves();
   std::vector<std::unique_ptr<Leaf>> leaves(origins.size());
   parallelBlocks(
       origins.size(), 16,
@@ -136,7 +137,7 @@ FloatGrid::Ptr narrowBand(const SolidBody& body, const Vec3& origin, double voxe
           leaves[i] = makeLeaf(body, band, origins[i], voxelSize, background);
         }
       },
-      progress, "level set");
+      "level set");
   auto grid = FloatGrid::create(background);
   for (std::unique_ptr<Leaf>& leaf : leaves) {
     if (leaf) grid->tree().addLeaf(leaf.release());
@@ -145,14 +146,13 @@ FloatGrid::Ptr narrowBand(const SolidBody& body, const Vec3& origin, double voxe
   grid->setTransform(latticeTransform(origin, voxelSize));
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
   grid->setName("surface");
-  throwIfCancelled(progress);
+  throwIfCancelled();
   return grid;
 }
 
 double gridVolume(const SolidBody& body, int resolution) {
   const double h = voxelSizeAcross(body.box(), resolution);
-  return insideVolume(
-      *narrowBand(body, latticeOrigin(body.box(), h), h, kUsualHalfWidth * h, nullptr));
+  return insideVolume(*narrowBand(body, latticeOrigin(body.box(), h), h, kUsualHalfWidth * h));
 }
 
 }  // namespace innermap

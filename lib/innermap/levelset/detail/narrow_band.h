@@ -3,7 +3,6 @@
 
 #include <openvdb/openvdb.h>
 
-#include "innermap/core/progress.h"
 #include "innermap/levelset/detail/solid_body.h"
 
 namespace innermap {
@@ -22,7 +21,7 @@ openvdb::math::Transform::Ptr latticeTransform(const Vec3& origin, double voxelS
 
 // Level set with exact distances up to `width` (world units). Throws Cancelled.
 openvdb::FloatGrid::Ptr narrowBand(const SolidBody& body, const Vec3& origin, double voxelSize,
-                                   double width, Progress* progress);
+                                   double width);
 
 // Volume of the body in world units cubed, from the fog of a level set `resolution` voxels along
 // the longest side.

@@ -8,7 +8,9 @@
 #include <memory>
 
 #include "innermap/core/detail/disjoint_sets.h"
+#include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/levelset/detail/band.h"
 #include "innermap/levelset/detail/displaced_surface.h"
 
@@ -28,9 +30,9 @@ constexpr double kTolerance = 0.05;   // of the distance, for vertices that stay
 constexpr double kBand = 1.25;
 
 // Distance minus `level`, in voxels, exact in the band; index space is band's lattice.
-FloatGrid::Ptr distanceGrid(const Band& band, double level, double voxelSize, Progress* progress) {
+FloatGrid::Ptr distanceGrid(const Band& band, double level, double voxelSize) {
   constexpr float kBackground = static_cast<float>(kBand);
-  const std::vector<Coord> origins = band.leaves(progress);
+  const std::vector<Coord> origins = band.leaves();
   std::vector<std::unique_ptr<Leaf>> leaves(origins.size());
   parallelBlocks(
       origins.size(), 16,
@@ -51,7 +53,7 @@ FloatGrid::Ptr distanceGrid(const Band& band, double level, double voxelSize, Pr
           if (any) leaves[l] = std::move(leaf);
         }
       },
-      progress, "offset surface");
+      "offset surface");
   auto grid = FloatGrid::create(kBackground);
   for (auto& leaf : leaves) {
     if (leaf) grid->tree().addLeaf(leaf.release());
@@ -85,7 +87,7 @@ Mesh isosurface(const FloatGrid& grid, const Vec3& origin, double voxelSize) {
   return mesh;
 }
 
-Mesh fromGrid(const Solid& solid, double distance, Progress* progress) {
+Mesh fromGrid(const Solid& solid, double distance) {
   const double diagonal = solid.diagonal();
   const double voxelSize =
       std::min(distance, std::clamp(0.5 * distance, kFinest * diagonal, kCoarsest * diagonal));
@@ -97,16 +99,15 @@ Mesh fromGrid(const Solid& solid, double distance, Progress* progress) {
   const double width = kBand * voxelSize;
   const Band band(solid.body(), origin, voxelSize, std::max(0.0, distance - width),
                   distance + width);
-  const FloatGrid::Ptr grid = distanceGrid(band, distance, voxelSize, progress);
-  throwIfCancelled(progress);
+  const FloatGrid::Ptr grid = distanceGrid(band, distance, voxelSize);
+  throwIfCancelled();
   return isosurface(*grid, origin, voxelSize);
 }
 
 // Vertices outside the solid. Two neighbours are on the same side when the balls about them that
 // are free of surface meet; one winding number settles each set of vertices so connected.
 std::vector<char> outsideVertices(const Solid& solid, const Mesh& mesh,
-                                  const std::vector<char>& atDistance, double distance,
-                                  Progress* progress) {
+                                  const std::vector<char>& atDistance, double distance) {
   DisjointSets sets(mesh.vertices.size());
   const double reach = 2 * ((1 - kTolerance) * distance - solid.gap());
   for (const Triangle& t : mesh.triangles) {
@@ -122,14 +123,11 @@ std::vector<char> outsideVertices(const Solid& solid, const Mesh& mesh,
     if (atDistance[v] && root[v] == static_cast<int>(v)) roots.push_back(root[v]);
   }
   std::vector<char> outside(root.size(), 0);
-  parallelBlocks(
-      roots.size(), 64,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          outside[roots[i]] = !solid.inside(mesh.vertices[roots[i]]);
-        }
-      },
-      progress);
+  parallelBlocks(roots.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      outside[roots[i]] = !solid.inside(mesh.vertices[roots[i]]);
+    }
+  });
   for (std::size_t v = 0; v < root.size(); ++v) {
     if (atDistance[v]) outside[v] = outside[root[v]];
   }
@@ -149,8 +147,8 @@ Mesh offsetSurface(const Solid& solid, const OffsetSettings& settings) {
   }
   const double distance = settings.distance * solid.diagonal();
   Mesh mesh = settings.distance >= kFinest
-                  ? fromGrid(solid, distance, settings.progress)
-                  : displacedSurface(solid, distance, kPiece * solid.diagonal(), settings.progress);
+                  ? fromGrid(solid, distance)
+                  : displacedSurface(solid, distance, kPiece * solid.diagonal());
   std::vector<char> atDistance(mesh.vertices.size(), 0);
   parallelBlocks(
       atDistance.size(), 128,
@@ -160,9 +158,8 @@ Mesh offsetSurface(const Solid& solid, const OffsetSettings& settings) {
               moveToDistance(solid, distance, mesh.vertices[v]) <= kTolerance * distance;
         }
       },
-      settings.progress, "offset surface");
-  const std::vector<char> good =
-      outsideVertices(solid, mesh, atDistance, distance, settings.progress);
+      "offset surface");
+  const std::vector<char> good = outsideVertices(solid, mesh, atDistance, distance);
   Mesh result;
   result.name = solid.surface().name + " at a distance";
   std::vector<int> moved(good.size(), -1);

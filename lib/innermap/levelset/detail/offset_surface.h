@@ -1,14 +1,12 @@
 // The surface at a given distance outside a solid.
 #pragma once
 
-#include "innermap/core/progress.h"
 #include "innermap/levelset/solid.h"
 
 namespace innermap {
 
 struct OffsetSettings {
   double distance = 0.05;  // fraction of the solid's diagonal, in [1e-4, 2]
-  Progress* progress = nullptr;
 };
 
 // Surface of the points outside the solid at `distance` from solid.surface(); triangles, oriented

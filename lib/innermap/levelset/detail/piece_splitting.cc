@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "innermap/core/run.h"
+
 namespace innermap {
 namespace {
 
@@ -108,8 +110,7 @@ Corners pieceTriangle(const Corners& parent, const Piece& piece) {
 }
 
 std::vector<Piece> splitTriangle(const Corners& triangle, const std::vector<Corners>& others,
-                                 double length, double tolerance, std::size_t limit,
-                                 Progress* progress) {
+                                 double length, double tolerance, std::size_t limit) {
   struct Task {
     Piece piece;
     std::vector<int> others;
@@ -118,7 +119,7 @@ std::vector<Piece> splitTriangle(const Corners& triangle, const std::vector<Corn
   for (std::size_t i = 0; i < others.size(); ++i) stack[0].others.push_back(static_cast<int>(i));
   std::vector<Piece> done;
   for (std::size_t step = 0; !stack.empty(); ++step) {
-    if (step % 1024 == 0) throwIfCancelled(progress);
+    if (step % 1024 == 0) throwIfCancelled();
     Task task = std::move(stack.back());
     stack.pop_back();
     const Corners corners = pieceTriangle(triangle, task.piece);

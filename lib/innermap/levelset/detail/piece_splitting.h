@@ -4,7 +4,6 @@
 #include <array>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/mesh/detail/winding_number.h"
 
@@ -38,6 +37,6 @@ std::array<Vec3, 3> pieceTriangle(const std::array<Vec3, 3>& parent, const Piece
 // result, when there are more than `limit` pieces.
 std::vector<Piece> splitTriangle(const std::array<Vec3, 3>& triangle,
                                  const std::vector<std::array<Vec3, 3>>& others, double length,
-                                 double tolerance, std::size_t limit, Progress* progress);
+                                 double tolerance, std::size_t limit);
 
 }  // namespace innermap

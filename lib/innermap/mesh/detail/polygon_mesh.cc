@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/triangulate.h"
 
 namespace innermap {
@@ -95,7 +96,7 @@ void requireCountable(const std::string& path, std::size_t count) {
     throw FileError(path, "has more than 2147483646 vertices or corners; use a coarser mesh");
 }
 
-Mesh toMesh(PolygonMesh&& polygons, const std::string& path, Progress* progress) {
+Mesh toMesh(PolygonMesh&& polygons, const std::string& path) {
   if (polygons.vertices.empty())
     throw FileError(path, "has no vertices; give a triangle or polygon mesh");
   if (polygons.polygons() == 0)
@@ -107,10 +108,10 @@ Mesh toMesh(PolygonMesh&& polygons, const std::string& path, Progress* progress)
   const bool uvs = !polygons.uvCorners.empty();
   std::vector<Triangle> local;
   for (std::size_t p = 0; p < polygons.polygons(); ++p) {
-    if (p % 1024 == 0) throwIfCancelled(progress);
+    if (p % 1024 == 0) throwIfCancelled();
     const int begin = polygons.start[p], count = polygons.start[p + 1] - begin;
     const int* corners = polygons.corners.data() + begin;
-    triangulatePolygon(mesh.vertices, corners, count, local, progress);
+    triangulatePolygon(mesh.vertices, corners, count, local);
     for (const Triangle& t : local) {
       mesh.triangles.push_back({corners[t[0]], corners[t[1]], corners[t[2]]});
       if (uvs)
@@ -128,8 +129,7 @@ Mesh toMesh(PolygonMesh&& polygons, const std::string& path, Progress* progress)
   return mesh;
 }
 
-Mesh toMeshLike(PolygonMesh&& polygons, const std::string& path, const Mesh& reference,
-                Progress* progress) {
+Mesh toMeshLike(PolygonMesh&& polygons, const std::string& path, const Mesh& reference) {
   const bool uvs = !polygons.uvCorners.empty();
   PolygonMesh kept;
   if (uvs) {
@@ -137,7 +137,7 @@ Mesh toMeshLike(PolygonMesh&& polygons, const std::string& path, const Mesh& ref
     kept.corners = polygons.corners;
     kept.uvCorners = polygons.uvCorners;
   }
-  Mesh mesh = toMesh(std::move(polygons), path, progress);
+  Mesh mesh = toMesh(std::move(polygons), path);
   const bool comparePolygons = !mesh.polygonStart.empty() && !reference.polygonStart.empty();
   requireEqual(mesh, reference, comparePolygons);
   if (comparePolygons && mesh.triangles != reference.triangles) {

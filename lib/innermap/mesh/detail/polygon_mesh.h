@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "innermap/core/detail/text_scanner.h"
-#include "innermap/core/progress.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {
@@ -24,10 +23,10 @@ struct PolygonMesh {
 
 // Each throws FileError. Vertices are finite, indices in range, polygons have three corners or
 // more.
-PolygonMesh readObj(const FileBytes& file, Progress* progress);
-PolygonMesh readPly(const FileBytes& file, Progress* progress);
-PolygonMesh readOff(const FileBytes& file, Progress* progress);
-PolygonMesh readStl(const FileBytes& file, Progress* progress);
+PolygonMesh readObj(const FileBytes& file);
+PolygonMesh readPly(const FileBytes& file);
+PolygonMesh readOff(const FileBytes& file);
+PolygonMesh readStl(const FileBytes& file);
 
 // Clamps to [0, 1]; NaN becomes 0.
 std::array<float, 3> clampedColour(double red, double green, double blue);
@@ -36,10 +35,9 @@ std::array<float, 3> clampedColour(double red, double green, double blue);
 void requireCountable(const std::string& path, std::size_t count);
 
 // Cuts the polygons into triangles.
-Mesh toMesh(PolygonMesh&& polygons, const std::string& path, Progress* progress);
+Mesh toMesh(PolygonMesh&& polygons, const std::string& path);
 
 // Takes over the reference's polygons and triangles. Throws DataError, as readMeshLike.
-Mesh toMeshLike(PolygonMesh&& polygons, const std::string& path, const Mesh& reference,
-                Progress* progress);
+Mesh toMeshLike(PolygonMesh&& polygons, const std::string& path, const Mesh& reference);
 
 }  // namespace innermap

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/detail/polygon_mesh.h"
 
 namespace innermap {
@@ -20,13 +21,12 @@ struct Highest {
 
 class ObjReader {
  public:
-  ObjReader(const FileBytes& file, Progress* progress)
-      : file_(file), scanner_(file, {true, true}), progress_(progress) {}
+  explicit ObjReader(const FileBytes& file) : file_(file), scanner_(file, {true, true}) {}
 
   PolygonMesh read() {
     std::string_view keyword;
     for (std::size_t lines = 0; scanner_.nextLine(); ++lines) {
-      if (lines % 65536 == 0) reportProgress(progress_, "reading", fraction());
+      if (lines % 65536 == 0) reportProgress("reading", fraction());
       if (!scanner_.token(keyword)) continue;
       if (keyword == "v")
         vertex();
@@ -127,7 +127,6 @@ class ObjReader {
 
   const FileBytes& file_;
   TextScanner scanner_;
-  Progress* progress_;
   PolygonMesh mesh_;
   Highest highestVertex_, highestUv_;
   bool anyUv_ = false;
@@ -135,8 +134,6 @@ class ObjReader {
 
 }  // namespace
 
-PolygonMesh readObj(const FileBytes& file, Progress* progress) {
-  return ObjReader(file, progress).read();
-}
+PolygonMesh readObj(const FileBytes& file) { return ObjReader(file).read(); }
 
 }  // namespace innermap

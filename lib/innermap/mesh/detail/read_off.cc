@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/detail/polygon_mesh.h"
 
 namespace innermap {
@@ -11,8 +12,7 @@ namespace {
 
 class OffReader {
  public:
-  OffReader(const FileBytes& file, Progress* progress)
-      : file_(file), scanner_(file, {true, false}), progress_(progress) {}
+  explicit OffReader(const FileBytes& file) : file_(file), scanner_(file, {true, false}) {}
 
   PolygonMesh read() {
     readHeader();
@@ -72,7 +72,7 @@ class OffReader {
   }
 
   void poll(std::int64_t index) const {
-    if (index % 65536 == 0) throwIfCancelled(progress_);
+    if (index % 65536 == 0) throwIfCancelled();
   }
 
   void readVertex(std::int64_t index) {
@@ -132,7 +132,6 @@ class OffReader {
 
   const FileBytes& file_;
   TextScanner scanner_;
-  Progress* progress_;
   PolygonMesh mesh_;
   Points rawColours_;
   std::int64_t vertexCount_ = 0, faceCount_ = 0;
@@ -141,8 +140,6 @@ class OffReader {
 
 }  // namespace
 
-PolygonMesh readOff(const FileBytes& file, Progress* progress) {
-  return OffReader(file, progress).read();
-}
+PolygonMesh readOff(const FileBytes& file) { return OffReader(file).read(); }
 
 }  // namespace innermap

@@ -8,6 +8,7 @@
 
 #include "innermap/core/detail/ply_header.h"
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/detail/polygon_mesh.h"
 
 namespace innermap {
@@ -152,8 +153,8 @@ double colourScale(PlyType type) {
 template <class Body>
 class PlyReader {
  public:
-  PlyReader(const FileBytes& file, const PlyHeader& header, Progress* progress)
-      : file_(file), header_(header), progress_(progress), body_(file, header) {}
+  PlyReader(const FileBytes& file, const PlyHeader& header)
+      : file_(file), header_(header), body_(file, header) {}
 
   PolygonMesh read() {
     for (const PlyElement& element : header_.elements) {
@@ -186,7 +187,7 @@ class PlyReader {
   }
 
   void poll(std::uint64_t index) const {
-    if (index % 65536 == 0) throwIfCancelled(progress_);
+    if (index % 65536 == 0) throwIfCancelled();
   }
 
   std::uint64_t listSize(const PlyProperty& property) {
@@ -340,7 +341,6 @@ class PlyReader {
 
   const FileBytes& file_;
   const PlyHeader& header_;
-  Progress* progress_;
   Body body_;
   PolygonMesh mesh_;
   std::vector<Vec2> vertexUvs_;
@@ -350,10 +350,10 @@ class PlyReader {
 
 }  // namespace
 
-PolygonMesh readPly(const FileBytes& file, Progress* progress) {
+PolygonMesh readPly(const FileBytes& file) {
   const PlyHeader header = readPlyHeader(file);
-  if (header.format == PlyFormat::ascii) return PlyReader<AsciiBody>(file, header, progress).read();
-  return PlyReader<BinaryBody>(file, header, progress).read();
+  if (header.format == PlyFormat::ascii) return PlyReader<AsciiBody>(file, header).read();
+  return PlyReader<BinaryBody>(file, header).read();
 }
 
 }  // namespace innermap

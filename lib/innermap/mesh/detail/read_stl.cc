@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/detail/polygon_mesh.h"
 
 namespace innermap {
@@ -77,13 +78,13 @@ void endTriangle(const std::string& path, PolygonMesh& mesh) {
   mesh.start.push_back(static_cast<int>(mesh.corners.size()));
 }
 
-PolygonMesh readBinary(const FileBytes& file, Progress* progress) {
+PolygonMesh readBinary(const FileBytes& file) {
   PolygonMesh mesh;
   Welder welder(file.path, mesh.vertices);
   const std::size_t count = (file.bytes.size() - kHeader) / kRecord;
   mesh.corners.reserve(3 * count);
   for (std::size_t t = 0; t < count; ++t) {
-    if (t % 65536 == 0) throwIfCancelled(progress);
+    if (t % 65536 == 0) throwIfCancelled();
     const char* record = file.bytes.data() + kHeader + t * kRecord;
     for (int c = 0; c < 3; ++c) {
       const char* at = record + 12 * (c + 1);
@@ -99,7 +100,7 @@ PolygonMesh readBinary(const FileBytes& file, Progress* progress) {
   return mesh;
 }
 
-PolygonMesh readText(const FileBytes& file, Progress* progress) {
+PolygonMesh readText(const FileBytes& file) {
   PolygonMesh mesh;
   Welder welder(file.path, mesh.vertices);
   TextScanner scanner(file, {});
@@ -107,7 +108,7 @@ PolygonMesh readText(const FileBytes& file, Progress* progress) {
   int corners = 0;
   bool ended = false;
   while (scanner.nextFilledLine(keyword)) {
-    if (scanner.line() % 65536 == 0) throwIfCancelled(progress);
+    if (scanner.line() % 65536 == 0) throwIfCancelled();
     if (equalsIgnoringCase(keyword, "vertex")) {
       const double x = scanner.nextNumber("x"), y = scanner.nextNumber("y");
       mesh.corners.push_back(welder.number({x, y, scanner.nextNumber("z")}));
@@ -130,14 +131,14 @@ PolygonMesh readText(const FileBytes& file, Progress* progress) {
 
 }  // namespace
 
-PolygonMesh readStl(const FileBytes& file, Progress* progress) {
+PolygonMesh readStl(const FileBytes& file) {
   const std::size_t size = file.bytes.size();
   const std::uint64_t promised = size >= kHeader ? littleEndian(file.bytes.data() + 80) : 0;
   // Many binary files begin with "solid" too, so the size decides.
-  if (size >= kHeader && size == kHeader + promised * kRecord) return readBinary(file, progress);
+  if (size >= kHeader && size == kHeader + promised * kRecord) return readBinary(file);
   const std::size_t first = file.bytes.find_first_not_of(" \t\r\n");
   if (first != file.bytes.npos && equalsIgnoringCase(file.bytes.substr(first, 5), "solid"))
-    return readText(file, progress);
+    return readText(file);
   if (size < kHeader)
     throw FileError(file.path, "is neither text nor binary STL; give an STL file");
   throw FileError(

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "innermap/core/detail/pi.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/detail/topology.h"
 #include "innermap/mesh/detail/winding_number.h"
 
@@ -88,7 +89,7 @@ std::vector<double> shellVolumes(const ClosedShells& shells) {
   return volumes;
 }
 
-std::vector<bool> invertedShells(const ClosedShells& shells, Progress* progress) {
+std::vector<bool> invertedShells(const ClosedShells& shells) {
   std::vector<double> volumes = shellVolumes(shells);
   const double total = std::accumulate(volumes.begin(), volumes.end(), 0.0);
   std::vector<bool> inverted(volumes.size(), total < 0);
@@ -108,7 +109,7 @@ std::vector<bool> invertedShells(const ClosedShells& shells, Progress* progress)
   const ClosedShells upright{shells.positions, triangles, shells.shell, shells.shells};
   const WindingNumber all(upright.positions, upright.triangles);
   for (std::size_t s = 0; s < volumes.size(); ++s) {
-    throwIfCancelled(progress);
+    throwIfCancelled();
     if (volumes[s] < -least && !insideOthers(upright, members[s], all)) inverted[s] = !inverted[s];
   }
   return inverted;

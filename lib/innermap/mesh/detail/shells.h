@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {
@@ -20,6 +19,6 @@ std::vector<double> shellVolumes(const ClosedShells& shells);
 
 // Which shells must be turned: all where the sum of the volumes is negative, and then those of
 // negative volume that do not lie inside the others, where they would bound a cavity.
-std::vector<bool> invertedShells(const ClosedShells& shells, Progress* progress);
+std::vector<bool> invertedShells(const ClosedShells& shells);
 
 }  // namespace innermap

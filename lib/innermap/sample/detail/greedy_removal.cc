@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -53,10 +54,9 @@ struct Cube {
 
 class Removal {
  public:
-  Removal(const NeighbourGrid& grid, const NeighbourWeight& weight, Progress* progress)
+  Removal(const NeighbourGrid& grid, const NeighbourWeight& weight)
       : grid_(grid),
         weightOf_(weight),
-        progress_(progress),
         weight_(grid.size(), 0),
         shown_(grid.size()),
         cubeOf_(grid.size()) {
@@ -85,7 +85,7 @@ class Removal {
       while (round(threshold)) continue;
       gone = 0;
       for (const Cube& cube : cubes_) gone += cube.removed.size();
-      reportProgress(progress_, "placing samples",
+      reportProgress("placing samples",
                      std::min(1.0, static_cast<double>(gone) / static_cast<double>(wanted)));
     }
     restoreLightest(wanted);
@@ -102,8 +102,7 @@ class Removal {
   };
 
   void forCubes(const std::function<void(std::size_t)>& body) {
-    parallelBlocks(
-        cubes_.size(), 1, [&](std::size_t begin, std::size_t) { body(begin); }, progress_);
+    parallelBlocks(cubes_.size(), 1, [&](std::size_t begin, std::size_t) { body(begin); });
   }
 
   Weight given(double squared) const { return static_cast<Weight>(kUnit * weightOf_(squared)); }
@@ -204,7 +203,6 @@ class Removal {
 
   const NeighbourGrid& grid_;
   const NeighbourWeight& weightOf_;
-  Progress* progress_;
   std::vector<Weight> weight_, shown_;  // shown_: to other cubes, as of the round's beginning
   std::vector<std::uint32_t> cubeOf_;
   std::vector<Cube> cubes_;
@@ -213,8 +211,8 @@ class Removal {
 }  // namespace
 
 std::vector<std::size_t> heaviestRemoved(const NeighbourGrid& grid, std::size_t count,
-                                         const NeighbourWeight& weight, Progress* progress) {
-  return Removal(grid, weight, progress).run(count);
+                                         const NeighbourWeight& weight) {
+  return Removal(grid, weight).run(count);
 }
 
 }  // namespace innermap

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/sample/detail/neighbour_grid.h"
 
 namespace innermap {
@@ -31,6 +30,6 @@ struct NeighbourWeight {
 // The `count` points (ascending, in the grid's order) that are left. Of points of equal weight the
 // lower index goes.
 std::vector<std::size_t> heaviestRemoved(const NeighbourGrid& grid, std::size_t count,
-                                         const NeighbourWeight& weight, Progress* progress);
+                                         const NeighbourWeight& weight);
 
 }  // namespace innermap

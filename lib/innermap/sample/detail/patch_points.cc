@@ -29,10 +29,10 @@ struct Candidate {
 // The triangles that come within reach of a mark, for random samples by area.
 class Patch {
  public:
-  Patch(const Solid& solid, const Points& marks, double reach, Progress* progress)
+  Patch(const Solid& solid, const Points& marks, double reach)
       : surface_(solid.surface()), marks_(marks, 2 * reach), reach_(reach), all_(marks.empty()) {
     std::vector<char> near(surface_.triangles.size(), 1);
-    if (!all_) findNear(near, progress);
+    if (!all_) findNear(near);
     double sum = 0;
     for (std::size_t t = 0; t < near.size(); ++t) {
       const double area = near[t] ? norm(areaVector(surface_, static_cast<int>(t))) : 0;
@@ -55,17 +55,14 @@ class Patch {
   bool holds(const Vec3& p) const { return all_ || marks_.anyNearer(p, reach_); }
 
  private:
-  void findNear(std::vector<char>& near, Progress* progress) const {
-    parallelBlocks(
-        near.size(), 1024,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t t = begin; t < end; ++t) {
-            Box3 box;
-            for (const int v : surface_.triangles[t]) box.add(surface_.vertices[v]);
-            near[t] = marks_.anyNearer(box.center(), reach_ + 0.5 * box.diagonal());
-          }
-        },
-        progress);
+  void findNear(std::vector<char>& near) const {
+    parallelBlocks(near.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        Box3 box;
+        for (const int v : surface_.triangles[t]) box.add(surface_.vertices[v]);
+        near[t] = marks_.anyNearer(box.center(), reach_ + 0.5 * box.diagonal());
+      }
+    });
   }
 
   const Mesh& surface_;
@@ -99,7 +96,7 @@ std::vector<Candidate> throwDarts(
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) candidates[i] = propose(drawn + i, taken);
         },
-        settings.progress, "placing points");
+        "placing points");
     std::size_t fresh = 0;
     for (const Candidate& c : candidates) {
       if (!c.good || taken.anyNearer(c.position, spacing)) continue;
@@ -129,7 +126,7 @@ Points patchSources(const Solid& solid, const Points& marks, double distance,
   const Mesh& surface = solid.surface();
   const double diagonal = solid.diagonal(), away = distance * diagonal,
                spacing = settings.spacing * diagonal;
-  const Patch patch(solid, marks, settings.reach * diagonal, settings.progress);
+  const Patch patch(solid, marks, settings.reach * diagonal);
   const CounterRandom random(settings.seed, 21);
   const auto propose = [&](std::size_t i, const PointGrid& taken) {
     const auto uniform = [&](std::size_t k) { return random.uniform(6 * i + k); };
@@ -160,7 +157,7 @@ std::vector<SurfacePoint> patchSamples(const Solid& solid, const Points& marks,
                                        const Points& existing, const PatchSettings& settings) {
   check(settings);
   const double diagonal = solid.diagonal(), spacing = settings.spacing * diagonal;
-  const Patch patch(solid, marks, settings.reach * diagonal, settings.progress);
+  const Patch patch(solid, marks, settings.reach * diagonal);
   const CounterRandom random(settings.seed, 22);
   const auto propose = [&](std::size_t i, const PointGrid& taken) {
     const auto uniform = [&](std::size_t k) { return random.uniform(3 * i + k); };

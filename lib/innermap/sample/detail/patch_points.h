@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/levelset/solid.h"
 
@@ -22,7 +21,6 @@ struct PatchSettings {
   double reach = 0.02;
   std::size_t most = 10'000'000;  // points; when there are more, a random choice of them
   std::uint64_t seed = 1;
-  Progress* progress = nullptr;
 };
 
 // Points outside the solid whose distance from its boundary is `distance`, in [1e-6, 2], to 3%:

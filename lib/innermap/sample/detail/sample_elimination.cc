@@ -51,22 +51,19 @@ double largestRadius(const Points& points, std::size_t count, double area) {
   return 0.5 * spread / n;
 }
 
-std::vector<std::size_t> thin(const NeighbourGrid& grid, std::size_t count, double radius,
-                              Progress* progress) {
+std::vector<std::size_t> thin(const NeighbourGrid& grid, std::size_t count, double radius) {
   // Yuksel's weight limiting, gamma = 1.5 and beta = 0.65.
   const double ratio = static_cast<double>(count) / static_cast<double>(grid.size());
   const NeighbourWeight weight{2 * radius, 2 * radius * (1 - std::pow(ratio, 1.5)) * 0.65};
   std::vector<std::size_t> kept;
   kept.reserve(count);
-  for (const std::size_t i : heaviestRemoved(grid, count, weight, progress))
-    kept.push_back(grid.index(i));
+  for (const std::size_t i : heaviestRemoved(grid, count, weight)) kept.push_back(grid.index(i));
   return kept;
 }
 
 }  // namespace
 
-std::vector<std::size_t> eliminateSamples(const Points& points, std::size_t count, double area,
-                                          Progress* progress) {
+std::vector<std::size_t> eliminateSamples(const Points& points, std::size_t count, double area) {
   std::vector<std::size_t> all(points.size());
   std::iota(all.begin(), all.end(), std::size_t(0));
   if (count >= points.size()) return all;
@@ -82,12 +79,12 @@ std::vector<std::size_t> eliminateSamples(const Points& points, std::size_t coun
   if (spread.size() == count) {
     kept = spread;
   } else if (spread.size() == points.size()) {
-    kept = thin(grid, count, radius, progress);
+    kept = thin(grid, count, radius);
   } else {
     Points fewer;
     fewer.reserve(spread.size());
     for (const std::size_t i : spread) fewer.push_back(points[i]);
-    for (const std::size_t i : thin(NeighbourGrid(fewer, 2 * radius), count, radius, progress)) {
+    for (const std::size_t i : thin(NeighbourGrid(fewer, 2 * radius), count, radius)) {
       kept.push_back(spread[i]);
     }
   }

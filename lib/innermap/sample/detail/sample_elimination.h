@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 
 namespace innermap {
@@ -12,7 +11,6 @@ namespace innermap {
 // Weighted sample elimination (Yuksel, "Sample Elimination for Generating Poisson Disk Sample
 // Sets", Eurographics 2015): indices (ascending) of the `count` of `points` that are kept,
 // the points lying on a surface of area `area`.
-std::vector<std::size_t> eliminateSamples(const Points& points, std::size_t count, double area,
-                                          Progress* progress = nullptr);
+std::vector<std::size_t> eliminateSamples(const Points& points, std::size_t count, double area);
 
 }  // namespace innermap

@@ -8,6 +8,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/solve/detail/blas_kernels.h"
 #include "innermap/solve/detail/blas_memory.h"
 
@@ -46,7 +47,7 @@ SingleThreadedBlas::SingleThreadedBlas() : before_(openblas_get_num_threads()) {
 }
 SingleThreadedBlas::~SingleThreadedBlas() { openblas_set_num_threads(before_); }
 
-BlockedQr::BlockedQr(Matrix a, Progress* progress)
+BlockedQr::BlockedQr(Matrix a)
     : factors_(std::move(a)), triangularBlocks_(kPanel, factors_.columns()) {
   const std::size_t m = factors_.rows(), n = factors_.columns();
   if (m < n)
@@ -60,15 +61,12 @@ BlockedQr::BlockedQr(Matrix a, Progress* progress)
                         factors_.column(k) + k, toLapack(m), triangularBlocks_.column(k),
                         toLapack(kPanel), work.data());
     const std::size_t rest = k + width;
-    parallelBlocks(
-        n - rest, kColumnBlock,
-        [&](std::size_t begin, std::size_t end) {
-          applyPanel(factors_, triangularBlocks_, k, width, factors_.column(rest + begin),
-                     end - begin, m);
-        },
-        progress);
+    parallelBlocks(n - rest, kColumnBlock, [&](std::size_t begin, std::size_t end) {
+      applyPanel(factors_, triangularBlocks_, k, width, factors_.column(rest + begin), end - begin,
+                 m);
+    });
     const double left = static_cast<double>(n - rest) / static_cast<double>(n);
-    reportProgress(progress, "factoring", 1 - left * left);
+    reportProgress("factoring", 1 - left * left);
   }
 }
 
@@ -90,20 +88,16 @@ Matrix BlockedQr::upperTriangle() const {
 }
 
 void multiply(bool transposeA, double alpha, const Matrix& a, const Matrix& b, double beta,
-              Matrix& c, Progress* progress) {
+              Matrix& c) {
   const SingleThreadedBlas guard;
   const std::size_t inner = transposeA ? a.rows() : a.columns();
   if (inner == 0 || c.rows() == 0) return;
-  parallelBlocks(
-      c.columns(), kColumnBlock,
-      [&](std::size_t begin, std::size_t end) {
-        cblas_dgemm(CblasColMajor, transposeA ? CblasTrans : CblasNoTrans, CblasNoTrans,
-                    static_cast<int>(c.rows()), static_cast<int>(end - begin),
-                    static_cast<int>(inner), alpha, a.data(), static_cast<int>(a.rows()),
-                    b.column(begin), static_cast<int>(b.rows()), beta, c.column(begin),
-                    static_cast<int>(c.rows()));
-      },
-      progress);
+  parallelBlocks(c.columns(), kColumnBlock, [&](std::size_t begin, std::size_t end) {
+    cblas_dgemm(CblasColMajor, transposeA ? CblasTrans : CblasNoTrans, CblasNoTrans,
+                static_cast<int>(c.rows()), static_cast<int>(end - begin), static_cast<int>(inner),
+                alpha, a.data(), static_cast<int>(a.rows()), b.column(begin),
+                static_cast<int>(b.rows()), beta, c.column(begin), static_cast<int>(c.rows()));
+  });
 }
 
 }  // namespace innermap

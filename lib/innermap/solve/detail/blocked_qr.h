@@ -5,7 +5,6 @@
 #pragma once
 
 #include "innermap/core/matrix.h"
-#include "innermap/core/progress.h"
 
 namespace innermap {
 
@@ -14,7 +13,7 @@ class BlockedQr {
   BlockedQr() = default;
 
   // Factors `a` (m x n, m >= n) in place of its storage. Throws SettingError when m < n.
-  explicit BlockedQr(Matrix a, Progress* progress = nullptr);
+  explicit BlockedQr(Matrix a);
 
   // Q^T b, in place; b has m rows. Its first n rows then belong to R.
   void applyTransposedQ(Matrix& b) const;
@@ -41,6 +40,6 @@ class SingleThreadedBlas {
 // c = alpha * op(a) * b + beta * c on all threads, over fixed blocks of columns of c.
 // op transposes when transposeA. Shapes must agree.
 void multiply(bool transposeA, double alpha, const Matrix& a, const Matrix& b, double beta,
-              Matrix& c, Progress* progress = nullptr);
+              Matrix& c);
 
 }  // namespace innermap

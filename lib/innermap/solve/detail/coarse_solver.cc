@@ -41,17 +41,17 @@ std::uint64_t coarseSolverMemory(std::size_t sources) {
 }
 
 CoarseSolver::CoarseSolver(const Collocation& collocation, const Points& sources,
-                           std::uint64_t seed, Progress* progress)
+                           std::uint64_t seed)
     : rows_(drawn(collocation.size(), kPointsPerSource * sources.size() + kAffine, seed)) {
   const std::size_t rows = rows_.size(), count = sources.size();
   const Collocation seen = collocation.subset(rows_);
   Matrix a(rows + count, kAffine + count);
   fillAffineRows(seen, a.data(), a.rows());
-  fillKernelMatrix(seen.points, sources, 1, a.column(kAffine), a.rows(), {progress});
+  fillKernelMatrix(seen.points, sources, 1, a.column(kAffine), a.rows());
   fillDerivativeRows(seen, sources, a.column(kAffine), a.rows());
   const double lambda = kLambda * std::sqrt(meanSquaredNorm(a, kAffine, rows));
   for (std::size_t j = 0; j < count; ++j) a(rows + j, kAffine + j) = lambda;
-  qr_ = BlockedQr(std::move(a), progress);
+  qr_ = BlockedQr(std::move(a));
   triangle_ = qr_.upperTriangle();
 }
 

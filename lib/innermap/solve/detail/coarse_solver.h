@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "innermap/core/matrix.h"
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/solve/collocation.h"
 #include "innermap/solve/detail/blocked_qr.h"
@@ -20,8 +19,7 @@ class CoarseSolver {
   CoarseSolver() = default;
 
   // Over at most kPointsPerSource collocation points a charge, drawn at random by `seed`.
-  CoarseSolver(const Collocation& collocation, const Points& sources, std::uint64_t seed,
-               Progress* progress);
+  CoarseSolver(const Collocation& collocation, const Points& sources, std::uint64_t seed);
 
   // (4 + #sources) x #K: the affine part, then the weights, for residual (#collocation x #K, or
   // more rows, which play no part).

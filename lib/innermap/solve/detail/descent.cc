@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -17,9 +18,8 @@ struct Subtree {
 
 class Descent {
  public:
-  Descent(const FarField& field, const BallTree& targets, const LeafVisitor& atLeaf,
-          Progress* progress)
-      : field_(field), nodes_(targets.nodes()), atLeaf_(atLeaf), progress_(progress) {}
+  Descent(const FarField& field, const BallTree& targets, const LeafVisitor& atLeaf)
+      : field_(field), nodes_(targets.nodes()), atLeaf_(atLeaf) {}
 
   void run(std::string_view stage) {
     std::vector<Subtree> subtrees{
@@ -32,31 +32,28 @@ class Descent {
           DescentWorkspace work;
           visit(subtrees[i].root, *subtrees[i].parent, *subtrees[i].nodes, work);
         },
-        progress_, stage);
+        stage);
   }
 
  private:
   // Replaces subtrees by those of their children; false when all are leaves.
   bool widen(std::vector<Subtree>& subtrees) const {
     std::vector<std::vector<Subtree>> parts(subtrees.size());
-    parallelBlocks(
-        subtrees.size(), 1,
-        [&](std::size_t i, std::size_t) {
-          const Subtree& s = subtrees[i];
-          const BallTree::Node& node = nodes_[s.root];
-          if (node.leaf()) {
-            parts[i] = {s};
-            return;
-          }
-          std::vector<std::uint32_t> left;
-          FarFieldWorkspace work;
-          const auto expansion = std::make_shared<const Expansion>(
-              field_.expand(node.ball, *s.parent, *s.nodes, left, work));
-          const auto shared = std::make_shared<const std::vector<std::uint32_t>>(std::move(left));
-          for (std::uint32_t c = 0; c < node.children; ++c)
-            parts[i].push_back({node.firstChild + c, expansion, shared});
-        },
-        progress_);
+    parallelBlocks(subtrees.size(), 1, [&](std::size_t i, std::size_t) {
+      const Subtree& s = subtrees[i];
+      const BallTree::Node& node = nodes_[s.root];
+      if (node.leaf()) {
+        parts[i] = {s};
+        return;
+      }
+      std::vector<std::uint32_t> left;
+      FarFieldWorkspace work;
+      const auto expansion = std::make_shared<const Expansion>(
+          field_.expand(node.ball, *s.parent, *s.nodes, left, work));
+      const auto shared = std::make_shared<const std::vector<std::uint32_t>>(std::move(left));
+      for (std::uint32_t c = 0; c < node.children; ++c)
+        parts[i].push_back({node.firstChild + c, expansion, shared});
+    });
     const std::size_t before = subtrees.size();
     subtrees.clear();
     for (auto& p : parts) subtrees.insert(subtrees.end(), p.begin(), p.end());
@@ -67,7 +64,7 @@ class Descent {
              DescentWorkspace& work) const {
     const BallTree::Node& node = nodes_[n];
     if (node.leaf()) {
-      throwIfCancelled(progress_);
+      throwIfCancelled();
       atLeaf_(node, field_.expandLast(node.ball, parent, nodes, work.near, work.farField), work);
       return;
     }
@@ -80,14 +77,13 @@ class Descent {
   const FarField& field_;
   const std::vector<BallTree::Node>& nodes_;
   const LeafVisitor& atLeaf_;
-  Progress* progress_;
 };
 
 }  // namespace
 
 void descend(const FarField& field, const BallTree& targets, const LeafVisitor& visit,
-             Progress* progress, std::string_view stage) {
-  if (!targets.empty()) Descent(field, targets, visit, progress).run(stage);
+             std::string_view stage) {
+  if (!targets.empty()) Descent(field, targets, visit).run(stage);
 }
 
 }  // namespace innermap

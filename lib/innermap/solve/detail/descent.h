@@ -4,7 +4,6 @@
 #include <functional>
 #include <string_view>
 
-#include "innermap/core/progress.h"
 #include "innermap/solve/detail/far_field.h"
 #include "innermap/solve/detail/leaf_sums.h"
 
@@ -22,6 +21,6 @@ using LeafVisitor = std::function<void(const BallTree::Node& leaf, const Expansi
 
 // Visits each leaf of `targets` once, from many threads. What a leaf gets never depends on those.
 void descend(const FarField& field, const BallTree& targets, const LeafVisitor& visit,
-             Progress* progress, std::string_view stage);
+             std::string_view stage);
 
 }  // namespace innermap

@@ -25,19 +25,16 @@ void addScaled(double* to, double factor, const double* from, std::size_t n) {
 }
 
 // a^T b over fixed blocks of rows, summed in their order.
-Matrix innerProducts(const Matrix& a, const Matrix& b, Progress* progress) {
+Matrix innerProducts(const Matrix& a, const Matrix& b) {
   const std::size_t blocks = (a.rows() + kRows - 1) / kRows;
   std::vector<Matrix> parts(blocks, Matrix(a.columns(), b.columns()));
-  parallelBlocks(
-      a.rows(), kRows,
-      [&](std::size_t begin, std::size_t end) {
-        Matrix& part = parts[begin / kRows];
-        cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, static_cast<int>(a.columns()),
-                    static_cast<int>(b.columns()), static_cast<int>(end - begin), 1,
-                    a.data() + begin, static_cast<int>(a.rows()), b.data() + begin,
-                    static_cast<int>(b.rows()), 0, part.data(), static_cast<int>(part.rows()));
-      },
-      progress);
+  parallelBlocks(a.rows(), kRows, [&](std::size_t begin, std::size_t end) {
+    Matrix& part = parts[begin / kRows];
+    cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, static_cast<int>(a.columns()),
+                static_cast<int>(b.columns()), static_cast<int>(end - begin), 1, a.data() + begin,
+                static_cast<int>(a.rows()), b.data() + begin, static_cast<int>(b.rows()), 0,
+                part.data(), static_cast<int>(part.rows()));
+  });
   Matrix sum(a.columns(), b.columns());
   for (const Matrix& part : parts)
     for (std::size_t i = 0; i < sum.rows() * sum.columns(); ++i) sum.data()[i] += part.data()[i];
@@ -45,24 +42,21 @@ Matrix innerProducts(const Matrix& a, const Matrix& b, Progress* progress) {
 }
 
 // b -= a c.
-void subtractProduct(const Matrix& a, const Matrix& c, Matrix& b, Progress* progress) {
-  parallelBlocks(
-      a.rows(), kRows,
-      [&](std::size_t begin, std::size_t end) {
-        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, static_cast<int>(end - begin),
-                    static_cast<int>(c.columns()), static_cast<int>(c.rows()), -1, a.data() + begin,
-                    static_cast<int>(a.rows()), c.data(), static_cast<int>(c.rows()), 1,
-                    b.data() + begin, static_cast<int>(b.rows()));
-      },
-      progress);
+void subtractProduct(const Matrix& a, const Matrix& c, Matrix& b) {
+  parallelBlocks(a.rows(), kRows, [&](std::size_t begin, std::size_t end) {
+    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, static_cast<int>(end - begin),
+                static_cast<int>(c.columns()), static_cast<int>(c.rows()), -1, a.data() + begin,
+                static_cast<int>(a.rows()), c.data(), static_cast<int>(c.rows()), 1,
+                b.data() + begin, static_cast<int>(b.rows()));
+  });
 }
 
 }  // namespace
 
-void OrthogonalDirections::removeParts(const Block& old, Block& fresh, Progress* progress) const {
-  const Matrix parts = innerProducts(old.images, fresh.images, progress);
-  subtractProduct(old.images, parts, fresh.images, progress);
-  subtractProduct(old.directions, parts, fresh.directions, progress);
+void OrthogonalDirections::removeParts(const Block& old, Block& fresh) const {
+  const Matrix parts = innerProducts(old.images, fresh.images);
+  subtractProduct(old.images, parts, fresh.images);
+  subtractProduct(old.directions, parts, fresh.directions);
 }
 
 // Makes a column orthogonal to those before it in its block; false when little else is left.
@@ -83,7 +77,7 @@ bool OrthogonalDirections::normalise(Block& block, std::size_t column) const {
   return kept;
 }
 
-void OrthogonalDirections::add(Matrix directions, Matrix images, Progress* progress) {
+void OrthogonalDirections::add(Matrix directions, Matrix images) {
   const SingleThreadedBlas guard;
   Block fresh{std::move(directions), std::move(images)};
   const std::size_t columns = fresh.images.columns();
@@ -91,7 +85,7 @@ void OrthogonalDirections::add(Matrix directions, Matrix images, Progress* progr
   for (std::size_t c = 0; c < columns; ++c)
     before[c] = std::sqrt(dot(fresh.images.column(c), fresh.images.column(c), images_));
   for (int pass = 0; pass < 2; ++pass)
-    for (const Block& old : blocks_) removeParts(old, fresh, progress);
+    for (const Block& old : blocks_) removeParts(old, fresh);
   for (std::size_t c = 0; c < columns; ++c) {
     double* q = fresh.images.column(c);
     const bool dependent = !(std::sqrt(dot(q, q, images_)) > kDependent * before[c]);

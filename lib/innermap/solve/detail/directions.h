@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "innermap/core/matrix.h"
-#include "innermap/core/progress.h"
 
 namespace innermap {
 
@@ -16,7 +15,7 @@ class OrthogonalDirections {
   // Adds the columns of `directions` (#unknowns x n) and of their `images` (#images x n), made
   // orthonormal to all that are there (Gram-Schmidt, twice); columns that depend on those are left
   // out (rounding and little else). The same for any number of threads.
-  void add(Matrix directions, Matrix images, Progress* progress = nullptr);
+  void add(Matrix directions, Matrix images);
 
   // Removes from `residual` (#images x #K) its part along each direction from number `first` on,
   // and adds the same multiple of the direction to `x` (#unknowns x #K). Skips a direction that
@@ -35,7 +34,7 @@ class OrthogonalDirections {
     double step;  // length of the direction
   };
 
-  void removeParts(const Block& old, Block& fresh, Progress* progress) const;
+  void removeParts(const Block& old, Block& fresh) const;
   bool normalise(Block& block, std::size_t column) const;
 
   std::size_t images_, unknowns_;

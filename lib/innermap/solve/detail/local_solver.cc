@@ -73,7 +73,7 @@ std::uint64_t localSolverMemory(std::size_t collocation, std::size_t sources, bo
   return refined ? 2 * seen : seen * 3 / 2;
 }
 
-void LocalSolver::add(const Points& sources, const Collocation& collocation, Progress* progress) {
+void LocalSolver::add(const Points& sources, const Collocation& collocation) {
   const std::size_t before = sources_.size(), first = clusters_.size();
   sources_.insert(sources_.end(), sources.begin(), sources.end());
   for (auto& indices : clusterPoints(sources, kClusterSize, kWidest * spacing_)) {
@@ -91,7 +91,7 @@ void LocalSolver::add(const Points& sources, const Collocation& collocation, Pro
         cluster.rows = points.within(box, reach);
         if (!cluster.rows.empty()) factor(cluster, charges.within(box, overlap), collocation);
       },
-      progress, "factoring clusters");
+      "factoring clusters");
 }
 
 void LocalSolver::factor(Cluster& cluster, const std::vector<std::size_t>& around,
@@ -113,30 +113,27 @@ void LocalSolver::factor(Cluster& cluster, const std::vector<std::size_t>& aroun
   cluster.solve.assign(solve.data(), solve.data() + a.rows() * own);
 }
 
-Matrix LocalSolver::correction(const Matrix& residual, Progress* progress) const {
+Matrix LocalSolver::correction(const Matrix& residual) const {
   const std::size_t channels = residual.columns();
   Matrix out(sources_.size(), channels);
   const SingleThreadedBlas guard;
-  parallelBlocks(
-      clusters_.size(), 4,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t c = begin; c < end; ++c) {
-          const Cluster& cluster = clusters_[c];
-          const std::size_t m = cluster.rows.size(), own = cluster.sources.size();
-          if (m == 0) continue;
-          std::vector<float> seen(m * channels), weights(own * channels);
-          for (std::size_t k = 0; k < channels; ++k)
-            for (std::size_t i = 0; i < m; ++i)
-              seen[k * m + i] = static_cast<float>(residual(cluster.rows[i], k));
-          cblas_sgemm(CblasColMajor, CblasTrans, CblasNoTrans, static_cast<int>(own),
-                      static_cast<int>(channels), static_cast<int>(m), 1, cluster.solve.data(),
-                      static_cast<int>(m), seen.data(), static_cast<int>(m), 0, weights.data(),
-                      static_cast<int>(own));
-          for (std::size_t k = 0; k < channels; ++k)
-            for (std::size_t j = 0; j < own; ++j) out(cluster.sources[j], k) = weights[k * own + j];
-        }
-      },
-      progress);
+  parallelBlocks(clusters_.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const Cluster& cluster = clusters_[c];
+      const std::size_t m = cluster.rows.size(), own = cluster.sources.size();
+      if (m == 0) continue;
+      std::vector<float> seen(m * channels), weights(own * channels);
+      for (std::size_t k = 0; k < channels; ++k)
+        for (std::size_t i = 0; i < m; ++i)
+          seen[k * m + i] = static_cast<float>(residual(cluster.rows[i], k));
+      cblas_sgemm(CblasColMajor, CblasTrans, CblasNoTrans, static_cast<int>(own),
+                  static_cast<int>(channels), static_cast<int>(m), 1, cluster.solve.data(),
+                  static_cast<int>(m), seen.data(), static_cast<int>(m), 0, weights.data(),
+                  static_cast<int>(own));
+      for (std::size_t k = 0; k < channels; ++k)
+        for (std::size_t j = 0; j < own; ++j) out(cluster.sources[j], k) = weights[k * own + j];
+    }
+  });
   return out;
 }
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "innermap/core/matrix.h"
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/solve/collocation.h"
 
@@ -21,11 +20,11 @@ class LocalSolver {
   // Takes more charges and factors clusters of them, which see the charges of this level that are
   // there and all collocation points; the clusters that are there stay as they are. `collocation`
   // is that of earlier calls with points added at the end.
-  void add(const Points& sources, const Collocation& collocation, Progress* progress);
+  void add(const Points& sources, const Collocation& collocation);
 
   // Weights (#charges of the level x #K) that lower the residual (#collocation x #K); rows beyond
   // what a cluster has seen play no part in it.
-  Matrix correction(const Matrix& residual, Progress* progress) const;
+  Matrix correction(const Matrix& residual) const;
 
   const Points& sources() const { return sources_; }
   double spacing() const { return spacing_; }

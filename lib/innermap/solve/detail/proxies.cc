@@ -8,19 +8,18 @@
 
 namespace innermap {
 
-Proxies::Proxies(const ChargeTree& charges, std::shared_ptr<const ExpansionBasis> basis,
-                 Progress* progress)
+Proxies::Proxies(const ChargeTree& charges, std::shared_ptr<const ExpansionBasis> basis)
     : charges_(charges),
       basis_(std::move(basis)),
       slot_(balls().nodes().size(), kNone),
       packed_(charges.groups()) {
   for (std::size_t n = 0; n < slot_.size(); ++n)
     if (balls().nodes()[n].count() > basis_->pointCount()) slot_[n] = slots_++;
-  build(progress);
+  build();
 }
 
 // From the deepest level up.
-void Proxies::build(Progress* progress) {
+void Proxies::build() {
   const auto& nodes = balls().nodes();
   std::vector<std::size_t> levels;  // first node of each depth: nodes stand by depth
   for (std::size_t n = 0; n < nodes.size(); ++n)
@@ -30,13 +29,10 @@ void Proxies::build(Progress* progress) {
     packed_[g].resize(slots_ * basis_->pointCount() * (3 + width(g)));
   const SingleThreadedBlas guard;
   for (std::size_t level = levels.size() - 1; level-- > 0;)
-    parallelBlocks(
-        levels[level + 1] - levels[level], 4,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t n = levels[level] + begin; n < levels[level] + end; ++n)
-            for (std::size_t g = 0; has(n) && g < packed_.size(); ++g) buildNode(n, g);
-        },
-        progress);
+    parallelBlocks(levels[level + 1] - levels[level], 4, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = levels[level] + begin; n < levels[level] + end; ++n)
+        for (std::size_t g = 0; has(n) && g < packed_.size(); ++g) buildNode(n, g);
+    });
 }
 
 ChargeSpan Proxies::of(std::size_t node, std::size_t group) const {

@@ -8,7 +8,6 @@
 #include <memory>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/solve/detail/charge_tree.h"
 #include "innermap/solve/detail/expansion_basis.h"
 
@@ -17,8 +16,7 @@ namespace innermap {
 class Proxies {
  public:
   // For the nodes with more charges than the basis has points.
-  Proxies(const ChargeTree& charges, std::shared_ptr<const ExpansionBasis> basis,
-          Progress* progress);
+  Proxies(const ChargeTree& charges, std::shared_ptr<const ExpansionBasis> basis);
 
   const BallTree& balls() const { return charges_.balls(); }
   const std::shared_ptr<const ExpansionBasis>& basis() const { return basis_; }
@@ -32,7 +30,7 @@ class Proxies {
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
-  void build(Progress* progress);
+  void build();
   void buildNode(std::size_t node, std::size_t group);
   void addMoments(const ChargeSpan& part, const Ball& ball, std::size_t width,
                   double* moments) const;

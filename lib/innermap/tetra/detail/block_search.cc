@@ -164,21 +164,17 @@ std::optional<FoundBlocks> best(const BlockShares& shares, int shift,
 
 }  // namespace
 
-std::optional<FoundBlocks> findBlocks(const BlockShares& shares, const std::vector<int>& handles,
-                                      Progress* progress) {
+std::optional<FoundBlocks> findBlocks(const BlockShares& shares, const std::vector<int>& handles) {
   std::optional<FoundBlocks> out;
   // Growth makes no handles and no cavities.
   const bool plain = handles == std::vector<int>{0};
   for (const bool grow : {false, true}) {
     if (grow && (out || !plain)) break;
     std::vector<std::optional<FoundBlocks>> found(kShifts);
-    parallelBlocks(
-        kShifts, 1,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t s = begin; s < end; ++s)
-            found[s] = best(shares, static_cast<int>(s), handles, grow);
-        },
-        progress);
+    parallelBlocks(kShifts, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t s = begin; s < end; ++s)
+        found[s] = best(shares, static_cast<int>(s), handles, grow);
+    });
     for (auto& f : found)
       if (f && (!out || f->cost < out->cost)) out = std::move(f);
   }

@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/tetra/detail/block_shares.h"
 
 namespace innermap {
@@ -19,7 +18,6 @@ struct FoundBlocks {
 
 // handles: of the outer boundary, then of those of cavities, ascending. Nothing where none is
 // found.
-std::optional<FoundBlocks> findBlocks(const BlockShares& shares, const std::vector<int>& handles,
-                                      Progress* progress);
+std::optional<FoundBlocks> findBlocks(const BlockShares& shares, const std::vector<int>& handles);
 
 }  // namespace innermap

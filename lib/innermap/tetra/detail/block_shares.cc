@@ -22,11 +22,9 @@ LevelSetSettings voxelsFor(const Solid& solid, int across) {
 
 }  // namespace
 
-BlockShares::BlockShares(const Solid& solid, int across, std::uint64_t maxMemory,
-                         Progress* progress) {
+BlockShares::BlockShares(const Solid& solid, int across, std::uint64_t maxMemory) {
   LevelSetSettings settings = voxelsFor(solid, across);
   settings.maxMemory = maxMemory;
-  settings.progress = progress;
   const int n = voxelsAHalf(across);
   const double voxel = settings.voxelSize;
   edge_ = 2 * n * voxel;
@@ -42,24 +40,21 @@ BlockShares::BlockShares(const Solid& solid, int across, std::uint64_t maxMemory
   settings.origin = first;
   const openvdb::FloatGrid::Ptr levelSet = makeLevelSet(solid, settings);
   share_.assign(static_cast<std::size_t>(halves_[0]) * halves_[1] * halves_[2], 0);
-  parallelBlocks(
-      static_cast<std::size_t>(halves_[2]), 1,
-      [&](std::size_t begin, std::size_t end) {
-        auto values = levelSet->getConstAccessor();
-        for (int z = static_cast<int>(begin); z < static_cast<int>(end); ++z)
-          for (int y = 0; y < halves_[1]; ++y)
-            for (int x = 0; x < halves_[0]; ++x) {
-              double sum = 0;
-              for (int k = 0; k < n; ++k)
-                for (int j = 0; j < n; ++j)
-                  for (int i = 0; i < n; ++i)
-                    sum += std::clamp(
-                        0.5 - values.getValue({x * n + i, y * n + j, z * n + k}) / voxel, 0.0, 1.0);
-              share_[(static_cast<std::size_t>(z) * halves_[1] + y) * halves_[0] + x] =
-                  static_cast<float>(sum / (n * n * n));
-            }
-      },
-      progress);
+  parallelBlocks(static_cast<std::size_t>(halves_[2]), 1, [&](std::size_t begin, std::size_t end) {
+    auto values = levelSet->getConstAccessor();
+    for (int z = static_cast<int>(begin); z < static_cast<int>(end); ++z)
+      for (int y = 0; y < halves_[1]; ++y)
+        for (int x = 0; x < halves_[0]; ++x) {
+          double sum = 0;
+          for (int k = 0; k < n; ++k)
+            for (int j = 0; j < n; ++j)
+              for (int i = 0; i < n; ++i)
+                sum += std::clamp(0.5 - values.getValue({x * n + i, y * n + j, z * n + k}) / voxel,
+                                  0.0, 1.0);
+          share_[(static_cast<std::size_t>(z) * halves_[1] + y) * halves_[0] + x] =
+              static_cast<float>(sum / (n * n * n));
+        }
+  });
 }
 
 BlockSet BlockShares::lattice(int shift) const {

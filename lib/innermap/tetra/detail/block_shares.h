@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/levelset/solid.h"
 #include "innermap/tetra/block_set.h"
 
@@ -14,7 +13,7 @@ namespace innermap {
 class BlockShares {
  public:
   // across: blocks along the longest side of the solid's box, at least 1.
-  BlockShares(const Solid& solid, int across, std::uint64_t maxMemory, Progress* progress);
+  BlockShares(const Solid& solid, int across, std::uint64_t maxMemory);
 
   // The lattice shifted by that many half blocks along each axis (bits of shift), in [0, 8): an
   // empty set, and the share of each of its blocks.

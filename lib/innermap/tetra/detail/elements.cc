@@ -76,9 +76,7 @@ FiniteElements solveElements(const Solid& solid, const std::function<Vec3(const 
   cells.resolution = settings.resolution;
   cells.keepTopology = false;
   cells.maxMemory = settings.maxMemory;
-  cells.progress = settings.progress;
   HarmonicCellsSettings solving;
-  solving.progress = settings.progress;
   const auto start = std::chrono::steady_clock::now();
   FiniteElements e;
   Tetrahedralization made = tetrahedralization(solid, cells);
@@ -89,16 +87,13 @@ FiniteElements solveElements(const Solid& solid, const std::function<Vec3(const 
                   e.memory, settings.maxMemory, "leave out the finest resolution");
   const std::vector<bool> fixed = boundaryVertices(e.mesh);
   Matrix given(e.mesh.vertices.size(), 3);
-  parallelBlocks(
-      fixed.size(), 1024,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v) {
-          if (!fixed[v]) continue;
-          const Vec3 value = boundary(e.mesh.vertices[v]);
-          for (int k = 0; k < 3; ++k) given(v, static_cast<std::size_t>(k)) = value[k];
-        }
-      },
-      settings.progress);
+  parallelBlocks(fixed.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      if (!fixed[v]) continue;
+      const Vec3 value = boundary(e.mesh.vertices[v]);
+      for (int k = 0; k < 3; ++k) given(v, static_cast<std::size_t>(k)) = value[k];
+    }
+  });
   HarmonicCells solved = harmonicOnCells(e.mesh, given, solving);
   e.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   e.edge = made.edge;

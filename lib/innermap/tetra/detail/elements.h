@@ -7,7 +7,6 @@
 #include <memory>
 
 #include "innermap/core/matrix.h"
-#include "innermap/core/progress.h"
 #include "innermap/lattice/cell_mesh.h"
 #include "innermap/levelset/solid.h"
 #include "innermap/tetra/cell_locator.h"
@@ -28,7 +27,6 @@ struct FiniteElements {
 struct ElementsSettings {
   int resolution = 64;          // as TetrahedralizeSettings
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 // With the values of `boundary` at the vertices of the boundary.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/lattice/untangle.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/sample/surface_samples.h"
@@ -46,7 +47,6 @@ class Shaping {
     makePatch();
     SampleSettings sampling;
     sampling.seed = settings.seed;
-    sampling.progress = settings.progress;
     for (const SurfacePoint& p :
          randomSamples(surface, kPointsAVertex * hexes.skin.size(), sampling)) {
       points_.push_back(toLocal(positionOf(surface, p)));
@@ -58,9 +58,8 @@ class Shaping {
     placeSprings();
     UntangleSettings first;
     first.rounds = kUntangling;
-    first.progress = settings_.progress;
     first.afterRound = [&](TetPatch&, int round) {
-      reportProgress(settings_.progress, "untangling hexahedra", (round + 1.0) / kUntangling);
+      reportProgress("untangling hexahedra", (round + 1.0) / kUntangling);
       if (leastCorner() > 0) return;
       placeSprings();
       weigh();
@@ -69,8 +68,8 @@ class Shaping {
     // Up to twice as many where some are not right side out by then.
     for (int round = 0; round < 2 * settings_.rounds; ++round) {
       if (round >= settings_.rounds && unproven_ == 0) break;
-      if (outOfTime(settings_.progress)) break;
-      reportProgress(settings_.progress, "shaping hexahedra",
+      if (outOfTime()) break;
+      reportProgress("shaping hexahedra",
                      std::min(1.0, static_cast<double>(round) / settings_.rounds));
       if (round < kGrowing) stiffness_ *= kGrowth;
       placeSprings();
@@ -78,7 +77,6 @@ class Shaping {
       UntangleSettings more;
       more.keep = leastCorner() > 0;
       more.rounds = 1;
-      more.progress = settings_.progress;
       untangle(patch_, more);
       weighInverted();
     }
@@ -114,19 +112,16 @@ class Shaping {
   void placeSprings() {
     const std::size_t skins = hexes_.skin.size();
     patch_.springs.assign(skins, {});
-    parallelBlocks(
-        skins, kBlock,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t s = begin; s < end; ++s) {
-            const int v = hexes_.skin[s].outer;
-            const ClosestPoint found =
-                guide_.closestFrom(onSurface_[s].triangle, toWorld(patch_.vertices[v]));
-            onSurface_[s] = found.address;
-            patch_.springs[s] = {v, toLocal(found.position), guide_.normal(found.address.triangle),
-                                 stiffness_};
-          }
-        },
-        settings_.progress);
+    parallelBlocks(skins, kBlock, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t s = begin; s < end; ++s) {
+        const int v = hexes_.skin[s].outer;
+        const ClosestPoint found =
+            guide_.closestFrom(onSurface_[s].triangle, toWorld(patch_.vertices[v]));
+        onSurface_[s] = found.address;
+        patch_.springs[s] = {v, toLocal(found.position), guide_.normal(found.address.triangle),
+                             stiffness_};
+      }
+    });
     addPulls();
   }
 
@@ -136,12 +131,9 @@ class Shaping {
     const Points& at = patch_.vertices;
     const TriangleTree faces(at, boundary_);
     std::vector<ClosestPoint> feet(points_.size());
-    parallelBlocks(
-        points_.size(), kBlock,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t p = begin; p < end; ++p) feet[p] = faces.closest(points_[p]);
-        },
-        settings_.progress);
+    parallelBlocks(points_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) feet[p] = faces.closest(points_[p]);
+    });
     std::vector<double> weight(at.size(), 0);
     Points way(at.size());
     for (std::size_t p = 0; p < points_.size(); ++p) {

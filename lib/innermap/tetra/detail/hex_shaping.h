@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/mesh/mesh.h"
 #include "innermap/tetra/block_set.h"
 
@@ -15,7 +14,6 @@ struct HexShapingSettings {
   double goal = 0.4;  // least scaled Jacobian of a corner that is worked for, in (0, 1)
   int rounds = 16;    // of evening out, after untangling
   std::uint64_t seed = 1;
-  Progress* progress = nullptr;
 };
 
 // Moves hexes.mesh.vertices, which a map carried. surface: the solid's boundary, closed, world

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "innermap/core/run.h"
+
 namespace innermap {
 namespace {
 
@@ -84,7 +86,7 @@ std::vector<int> land(const CellSystem& system, const GuideSurface& surface, std
   Lander lander(system, surface, settings.least, cells);
   std::vector<int> off;
   for (int pass = 0; pass < kPasses; ++pass) {
-    throwIfCancelled(settings.progress);
+    throwIfCancelled();
     off.clear();
     for (const int v : slid)
       if (!lander.land(v, tolerance)) off.push_back(v);

@@ -114,7 +114,6 @@ PatchResult solvePatch(const CellSystem& system, const GuideSurface& surface,
   UntangleSettings untangling;
   untangling.volumeShare = settings.volumeShare;
   untangling.rounds = settings.rounds;
-  untangling.progress = settings.progress;
   if (!local.sliding.empty())
     untangling.afterRound = [&](TetPatch&, int round) {
       placeSprings(surface, first * std::min(settings.most, std::pow(settings.growth, round + 1)),
@@ -142,13 +141,10 @@ std::size_t solvePatches(const CellSystem& system, const GuideSurface& surface,
                          const std::vector<CellPatch>& patches, const PatchSolverSettings& settings,
                          bool always, CarriedCells& cells) {
   std::atomic<std::size_t> poor{0};
-  parallelBlocks(
-      patches.size(), 1,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p < end; ++p)
-          poor += solvePatch(system, surface, patches[p], settings, always, cells).poorAfter;
-      },
-      settings.progress);
+  parallelBlocks(patches.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p)
+      poor += solvePatch(system, surface, patches[p], settings, always, cells).poorAfter;
+  });
   return poor;
 }
 

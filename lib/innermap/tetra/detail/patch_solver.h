@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/tetra/detail/cell_system.h"
 #include "innermap/tetra/detail/guide_surface.h"
 
@@ -19,7 +18,6 @@ struct PatchSolverSettings {
   // Vertices of the boundary that this is true of stay on their places by anchors besides.
   double anchor = 0;
   const Points* anchors = nullptr;  // #V
-  Progress* progress = nullptr;
 };
 
 struct PatchResult {

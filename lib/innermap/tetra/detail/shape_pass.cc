@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <deque>
 
+#include "innermap/core/run.h"
+
 namespace innermap {
 namespace {
 
@@ -21,7 +23,7 @@ class Shaper {
       for (std::size_t v = 0; v < cells_.off.size(); ++v)
         if (cells_.off[v]) drawIn(static_cast<int>(v));
     for (int pass = 0; pass < settings_.passes; ++pass) {
-      throwIfCancelled(settings_.progress);
+      throwIfCancelled();
       std::vector<int> poor = poorTets();
       if (poor.empty()) break;
       bool changed = false;

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 
-#include "innermap/core/progress.h"
 #include "innermap/tetra/detail/guide_surface.h"
 #include "innermap/tetra/detail/local_cells.h"
 
@@ -13,7 +12,6 @@ struct ShapePassSettings {
   double least = 0.2;  // sine; below it a tetrahedron is poor
   bool connect = true;
   int passes = 6;
-  Progress* progress = nullptr;
 };
 
 struct ShapePassResult {

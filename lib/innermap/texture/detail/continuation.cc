@@ -8,6 +8,7 @@
 #include "innermap/core/detail/pi.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/evaluate/detail/active_region.h"
 #include "innermap/evaluate/detail/visit_field.h"
 
@@ -56,13 +57,12 @@ class Continuation {
     where.skin = settings_.skin;
     where.bytesPerVoxel = 1 + 12 * count;
     where.maxMemory = settings_.maxMemory;
-    where.progress = settings_.progress;
     const openvdb::MaskGrid::Ptr region = activeRegion(levelSet_, where);
     for (std::size_t g = 0; g < count; ++g) grids_.push_back(gridOn(*region));
     evaluate(settings_.spacing > 0 ? *insideOf(*region) : *region);
     const Leaves leaves(region->tree());
     for (std::size_t begin = 0; begin < leaves.leafCount(); begin += kLeavesTogether) {
-      reportProgress(settings_.progress, "meeting the surface",
+      reportProgress("meeting the surface",
                      static_cast<double>(begin) / static_cast<double>(leaves.leafCount()));
       meetBoundary(leaves, begin, std::min(begin + kLeavesTogether, leaves.leafCount()));
     }
@@ -96,7 +96,6 @@ class Continuation {
     VisitSettings visit;
     visit.accuracy = settings_.accuracy;
     visit.stage = "continuing inwards";
-    visit.progress = settings_.progress;
     visit.gradients = false;
     visitField(
         field_, solid_, levelSet_, region,
@@ -142,12 +141,9 @@ class Continuation {
   // value += factor (boundary - field at the closest point); outside: = boundary.
   void meetBoundary(const Leaves& leaves, std::size_t begin, std::size_t end) {
     std::vector<std::vector<Near>> near(end - begin);
-    parallelBlocks(
-        near.size(), 2,
-        [&](std::size_t first, std::size_t last) {
-          for (std::size_t i = first; i < last; ++i) near[i] = nearIn(leaves, begin + i);
-        },
-        settings_.progress);
+    parallelBlocks(near.size(), 2, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) near[i] = nearIn(leaves, begin + i);
+    });
     Points points;
     for (std::vector<Near>& leaf : near)
       for (Near& n : leaf) {
@@ -156,15 +152,11 @@ class Continuation {
         points.push_back(n.closest.position);
       }
     Matrix fitted;
-    if (!points.empty())
-      fitted = field_.evaluate(points, {settings_.accuracy, false, settings_.progress}).values;
-    parallelBlocks(
-        near.size(), 8,
-        [&](std::size_t first, std::size_t last) {
-          for (std::size_t i = first; i < last; ++i)
-            correct(leaves.leaf(begin + i).origin(), near[i], fitted);
-        },
-        settings_.progress);
+    if (!points.empty()) fitted = field_.evaluate(points, {settings_.accuracy, false}).values;
+    parallelBlocks(near.size(), 8, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i)
+        correct(leaves.leaf(begin + i).origin(), near[i], fitted);
+    });
   }
 
   void correct(const openvdb::Coord& origin, const std::vector<Near>& near, const Matrix& fitted) {

@@ -15,7 +15,6 @@
 #include <functional>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/field/harmonic_field.h"
 #include "innermap/levelset/solid.h"
 
@@ -31,7 +30,6 @@ struct ContinuationSettings {
   double skin = 2;              // active voxels outside the surface, in [0, 3]
   double accuracy = 1e-5;       // of sums: root mean square error, units of the values, positive
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 // A Vec3f grid (vector type invariant, background 0) for each three channels of the field, whose

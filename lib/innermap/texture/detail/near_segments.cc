@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 
@@ -15,8 +16,7 @@ double Segment::distance(const Vec3& p) const {
 }
 
 openvdb::MaskGrid::Ptr voxelsNear(const std::vector<Segment>& segments,
-                                  const openvdb::FloatGrid& levelSet, double reach,
-                                  Progress* progress) {
+                                  const openvdb::FloatGrid& levelSet, double reach) {
   if (!(reach > 0) || !std::isfinite(reach)) throw SettingError("reach", "must be positive");
   auto out = openvdb::MaskGrid::create();
   out->setTransform(levelSet.transform().copy());
@@ -28,7 +28,7 @@ openvdb::MaskGrid::Ptr voxelsNear(const std::vector<Segment>& segments,
     return openvdb::Coord::round(levelSet.worldToIndex(openvdb::Vec3d(p.x, p.y, p.z)));
   };
   for (const Segment& s : segments) {
-    throwIfCancelled(progress);
+    throwIfCancelled();
     const Vec3 along = s.to - s.from;
     const int steps = std::max(1, static_cast<int>(std::ceil(norm(along) / (4 * voxel))));
     for (int i = 0; i < steps; ++i) {

@@ -5,7 +5,6 @@
 
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 
 namespace innermap {
@@ -19,7 +18,6 @@ struct Segment {
 // The voxels inside the solid of `levelSet` whose centres are no farther than `reach` (world units,
 // positive) from a segment. Throws SettingError, Cancelled.
 openvdb::MaskGrid::Ptr voxelsNear(const std::vector<Segment>& segments,
-                                  const openvdb::FloatGrid& levelSet, double reach,
-                                  Progress* progress = nullptr);
+                                  const openvdb::FloatGrid& levelSet, double reach);
 
 }  // namespace innermap

@@ -33,10 +33,9 @@ BoundaryError summaryOf(std::vector<double> lengths) {
   return lengths.empty() ? BoundaryError() : summarizeErrors(std::move(lengths));
 }
 
-std::vector<SurfacePoint> freshPoints(const Solid& solid, std::uint64_t seed, Progress* progress) {
+std::vector<SurfacePoint> freshPoints(const Solid& solid, std::uint64_t seed) {
   SampleSettings settings;
   settings.seed = seed;
-  settings.progress = progress;
   return randomSamples(solid.surface(), kSamples, settings);
 }
 
@@ -51,18 +50,16 @@ std::vector<Segment> segmentsOf(const Mesh& mesh, const std::vector<UvSeam>& sea
   return segments;
 }
 
-std::uint64_t voxelsAlong(const std::vector<Segment>& segments, const openvdb::FloatGrid& levelSet,
-                          Progress* progress) {
+std::uint64_t voxelsAlong(const std::vector<Segment>& segments,
+                          const openvdb::FloatGrid& levelSet) {
   if (segments.empty()) return 0;
-  return voxelsNear(segments, levelSet, kSeamReach * levelSet.voxelSize()[0], progress)
-      ->activeVoxelCount();
+  return voxelsNear(segments, levelSet, kSeamReach * levelSet.voxelSize()[0])->activeVoxelCount();
 }
 
-double areaShareAlong(const std::vector<Segment>& segments, const Solid& solid, double voxel,
-                      Progress* progress) {
+double areaShareAlong(const std::vector<Segment>& segments, const Solid& solid, double voxel) {
   const PointGrid along(alongSegments(segments, 0.25 * voxel), kSeamReach * voxel);
   std::size_t near = 0;
-  for (const SurfacePoint& p : freshPoints(solid, 1, progress))
+  for (const SurfacePoint& p : freshPoints(solid, 1))
     if (along.anyNearer(positionOf(solid.surface(), p), kSeamReach * voxel)) ++near;
   return static_cast<double>(near) / static_cast<double>(kSamples);
 }
@@ -89,27 +86,23 @@ BoundaryError seamDifferences(const Mesh& mesh, const UvCharts& charts,
 
 ColourErrors colourErrors(const Solid& solid, const std::vector<Segment>& seams,
                           const SurfaceTexture& surface, const openvdb::Vec3fGrid& colour,
-                          std::uint64_t seed, Progress* progress) {
+                          std::uint64_t seed) {
   const double voxel = colour.voxelSize()[0];
-  const std::vector<SurfacePoint> points = freshPoints(solid, seed, progress);
+  const std::vector<SurfacePoint> points = freshPoints(solid, seed);
   const PointGrid along(alongSegments(seams, 0.25 * voxel), kSeamReach * voxel);
   std::vector<double> errors(points.size());
   std::vector<char> onSeam(points.size(), 0);
-  parallelBlocks(
-      points.size(), 256,
-      [&](std::size_t begin, std::size_t end) {
-        const auto access = colour.getConstAccessor();  // the sampler keeps a pointer to it
-        const openvdb::tools::GridSampler<openvdb::Vec3fGrid::ConstAccessor,
-                                          openvdb::tools::BoxSampler>
-            sampler(access, colour.transform());
-        for (std::size_t i = begin; i < end; ++i) {
-          const Vec3 p = positionOf(solid.surface(), points[i]);
-          const openvdb::Vec3f c = sampler.wsSample(openvdb::Vec3d(p.x, p.y, p.z));
-          errors[i] = norm(Vec3{c[0], c[1], c[2]} - surface.colour(points[i], voxel));
-          onSeam[i] = along.anyNearer(p, kSeamReach * voxel);
-        }
-      },
-      progress);
+  parallelBlocks(points.size(), 256, [&](std::size_t begin, std::size_t end) {
+    const auto access = colour.getConstAccessor();  // the sampler keeps a pointer to it
+    const openvdb::tools::GridSampler<openvdb::Vec3fGrid::ConstAccessor, openvdb::tools::BoxSampler>
+        sampler(access, colour.transform());
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3 p = positionOf(solid.surface(), points[i]);
+      const openvdb::Vec3f c = sampler.wsSample(openvdb::Vec3d(p.x, p.y, p.z));
+      errors[i] = norm(Vec3{c[0], c[1], c[2]} - surface.colour(points[i], voxel));
+      onSeam[i] = along.anyNearer(p, kSeamReach * voxel);
+    }
+  });
   std::vector<double> seamErrors;
   for (std::size_t i = 0; i < points.size(); ++i)
     if (onSeam[i]) seamErrors.push_back(errors[i]);

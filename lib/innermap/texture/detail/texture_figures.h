@@ -19,12 +19,10 @@ constexpr double kSeamReach = 2;  // voxels
 std::vector<Segment> segmentsOf(const Mesh& mesh, const std::vector<UvSeam>& seams);
 
 // Voxels inside along the segments.
-std::uint64_t voxelsAlong(const std::vector<Segment>& segments, const openvdb::FloatGrid& levelSet,
-                          Progress* progress);
+std::uint64_t voxelsAlong(const std::vector<Segment>& segments, const openvdb::FloatGrid& levelSet);
 
 // Share of the surface's area along the segments, by random points.
-double areaShareAlong(const std::vector<Segment>& segments, const Solid& solid, double voxel,
-                      Progress* progress);
+double areaShareAlong(const std::vector<Segment>& segments, const Solid& solid, double voxel);
 
 // Of the texture's own colours between the two sides of seams, about each voxel along them.
 BoundaryError seamDifferences(const Mesh& mesh, const UvCharts& charts,
@@ -37,6 +35,6 @@ struct ColourErrors {
 // Of the grid's colours, interpolated at random points of the surface, to the texture's there.
 ColourErrors colourErrors(const Solid& solid, const std::vector<Segment>& seams,
                           const SurfaceTexture& surface, const openvdb::Vec3fGrid& colour,
-                          std::uint64_t seed, Progress* progress);
+                          std::uint64_t seed);
 
 }  // namespace innermap

@@ -122,8 +122,7 @@ Mixture mixture(const Coord& ijk, const std::vector<GroupReader>& groups,
 
 }  // namespace
 
-Vec3fGrid::Ptr lookUpColours(const Vec3fGrid& uv, const TextureLookup& texture,
-                             Progress* progress) {
+Vec3fGrid::Ptr lookUpColours(const Vec3fGrid& uv, const TextureLookup& texture) {
   const Vec3fGrid::Ptr out = gridLike(uv, "Cd");
   const Leaves leaves(uv.tree());
   parallelBlocks(
@@ -144,12 +143,12 @@ Vec3fGrid::Ptr lookUpColours(const Vec3fGrid& uv, const TextureLookup& texture,
           }
         }
       },
-      progress, "looking up colours");
+      "looking up colours");
   return out;
 }
 
 BlendedTexture blendChartGroups(const std::vector<ChartGroupGrid>& groups,
-                                const TextureLookup& texture, Progress* progress) {
+                                const TextureLookup& texture) {
   if (groups.empty()) throw DataError("texture: there is no group of charts");
   const Vec3fGrid& first = *groups.front().weighted;
   for (const ChartGroupGrid& g : groups)
@@ -172,7 +171,7 @@ BlendedTexture blendChartGroups(const std::vector<ChartGroupGrid>& groups,
           }
         }
       },
-      progress, "blending charts");
+      "blending charts");
   return out;
 }
 

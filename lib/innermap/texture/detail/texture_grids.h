@@ -5,7 +5,6 @@
 
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/texture/texture_lookup.h"
 
 namespace innermap {
@@ -14,8 +13,7 @@ namespace innermap {
 // covers: its neighbours' coordinates tell how much that is, the nearer of the two on each axis, so
 // that a jump of the coordinates on one side does not count. Same active voxels and transform,
 // background 0, named "Cd". Throws Cancelled. Not a tile may be active.
-openvdb::Vec3fGrid::Ptr lookUpColours(const openvdb::Vec3fGrid& uv, const TextureLookup& texture,
-                                      Progress* progress = nullptr);
+openvdb::Vec3fGrid::Ptr lookUpColours(const openvdb::Vec3fGrid& uv, const TextureLookup& texture);
 
 // Groups of charts continued each for itself: in grid g the vectors (w, w (u - c.x), w (v - c.y)),
 // where w is the continuation of 1 on the group's part of the surface and 0 on the rest, and c a
@@ -36,6 +34,6 @@ struct BlendedTexture {
 // All grids with the same active voxels and transform, at least one. Where all weights are nothing,
 // the largest counts. Throws DataError, Cancelled.
 BlendedTexture blendChartGroups(const std::vector<ChartGroupGrid>& groups,
-                                const TextureLookup& texture, Progress* progress = nullptr);
+                                const TextureLookup& texture);
 
 }  // namespace innermap

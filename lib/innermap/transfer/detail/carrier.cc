@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -71,8 +72,7 @@ bool isDensity(const openvdb::GridBase& grid, const CarrySettings& settings) {
 
 std::vector<std::unique_ptr<Carrier>> makeCarriers(const openvdb::GridPtrVec& grids,
                                                    const CarrySettings& settings,
-                                                   const openvdb::FloatGrid* solid,
-                                                   Progress* progress) {
+                                                   const openvdb::FloatGrid* solid) {
   requireDensities(grids, settings);
   std::vector<std::unique_ptr<Carrier>> out;
   std::vector<char> taken(grids.size(), 0);
@@ -89,7 +89,7 @@ std::vector<std::unique_ptr<Carrier>> makeCarriers(const openvdb::GridPtrVec& gr
       out.push_back(makeTensorCarrier(parts, places, stress, settings.sampling, solid));
     }
   for (std::size_t i = 0; i < grids.size(); ++i) {
-    throwIfCancelled(progress);
+    throwIfCancelled();
     if (taken[i]) continue;
     std::optional<double> limit;
     if (isDensity(*grids[i], settings)) limit = settings.densityLimit;

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/transfer/carry.h"
 
@@ -63,8 +62,7 @@ class Carrier {
 // whose parts are missing or doubled.
 std::vector<std::unique_ptr<Carrier>> makeCarriers(const openvdb::GridPtrVec& grids,
                                                    const CarrySettings& settings,
-                                                   const openvdb::FloatGrid* solid,
-                                                   Progress* progress);
+                                                   const openvdb::FloatGrid* solid);
 
 // In grid_carrier.cc: one grid. densityLimit: CarrySettings::densityLimit of a density; none: it is
 // no density. solid: as above.

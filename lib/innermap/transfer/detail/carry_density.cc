@@ -8,6 +8,7 @@
 #include "innermap/core/detail/kuhn_cells.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/evaluate/detail/topology.h"
 #include "innermap/transfer/detail/cell_deposit.h"
 #include "innermap/transfer/detail/cell_nodes.h"
@@ -67,7 +68,7 @@ class DensityCarry {
         map_(map),
         settings_(settings),
         lattice_(region.transform()),
-        nodes_(*source.carried, source.grid->transform(), settings.parts, settings.progress),
+        nodes_(*source.carried, source.grid->transform(), settings.parts),
         deposit_(voxelVolume(source.grid->transform()) / std::pow(settings.parts, 3),
                  voxelVolume(region.transform())) {
     requireMemory("carrying the density \"" + source.grid->getName() + "\"",
@@ -167,17 +168,13 @@ void DensityCarry::carryTorn(const std::vector<Coord>& torn) {
   Points middles;
   for (const Coord& cell : torn)
     middles.push_back(nodes_.worldOf(cell.asVec3d() + openvdb::Vec3d(0.5)));
-  const std::vector<ExtendedSample> samples = map_.at(middles, settings_.progress);
+  const std::vector<ExtendedSample> samples = map_.at(middles);
   std::vector<Part> parts((torn.size() + kBlock - 1) / kBlock);
-  parallelBlocks(
-      torn.size(), kBlock,
-      [&](std::size_t begin, std::size_t end) {
-        const std::unique_ptr<DensityReader> densities =
-            readerOf(*source_.grid, settings_.constant);
-        for (std::size_t i = begin; i < end; ++i)
-          addTorn(torn[i], samples[i], *densities, parts[begin / kBlock]);
-      },
-      settings_.progress);
+  parallelBlocks(torn.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    const std::unique_ptr<DensityReader> densities = readerOf(*source_.grid, settings_.constant);
+    for (std::size_t i = begin; i < end; ++i)
+      addTorn(torn[i], samples[i], *densities, parts[begin / kBlock]);
+  });
   take(parts);
 }
 
@@ -191,17 +188,16 @@ void DensityCarry::take(std::vector<Part>& parts) {
 }
 
 void DensityCarry::run() {
-  nodes_.map(map_, lattice_, settings_.progress);
+  nodes_.map(map_, lattice_);
   const std::size_t count = nodes_.leaves().size();
   std::vector<Coord> torn;
   for (std::size_t begin = 0; begin < count; begin += kTogether) {
     std::vector<Part> parts(std::min(kTogether, count - begin));
-    parallelBlocks(
-        parts.size(), 1, [&](std::size_t i, std::size_t) { addLeaf(begin + i, parts[i]); },
-        settings_.progress);
+    parallelBlocks(parts.size(), 1,
+                   [&](std::size_t i, std::size_t) { addLeaf(begin + i, parts[i]); });
     for (const Part& part : parts) torn.insert(torn.end(), part.torn.begin(), part.torn.end());
     take(parts);
-    reportProgress(settings_.progress, kStage,
+    reportProgress(kStage,
                    static_cast<double>(begin + kTogether) / static_cast<double>(count + kTogether));
   }
   carryTorn(torn);

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <limits>
 
-#include "innermap/core/progress.h"
 #include "innermap/transfer/carry.h"
 #include "innermap/transfer/detail/density_voxels.h"
 #include "innermap/transfer/detail/extended_map.h"
@@ -19,7 +18,6 @@ struct CarryDensitySettings {
   double limit = std::numeric_limits<double>::infinity();  // of a density's growth, above 0
   bool constant = false;        // densities are constant in each voxel of the source, not linear
   std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-  Progress* progress = nullptr;
 };
 
 // A grid like the source's on the lattice of `region`, active there and where mass comes to; and

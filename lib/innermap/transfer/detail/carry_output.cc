@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/evaluate/detail/topology.h"
 #include "innermap/levelset/detail/set_metadata.h"
 
@@ -30,7 +31,7 @@ bool movePositionsOf(openvdb::GridBase& base,
 }
 
 // Whether an active voxel lies in the solid or within its level set's band.
-bool meets(const openvdb::GridBase& grid, const openvdb::FloatGrid& solid, Progress* progress) {
+bool meets(const openvdb::GridBase& grid, const openvdb::FloatGrid& solid) {
   auto distances = solid.getConstAccessor();
   const openvdb::math::Transform &from = grid.transform(), &to = solid.transform();
   const auto isNear = [&](const openvdb::Vec3d& ijk) {
@@ -40,7 +41,7 @@ bool meets(const openvdb::GridBase& grid, const openvdb::FloatGrid& solid, Progr
   std::uint64_t polled = 0;
   const openvdb::MaskTree active = activeTopology(grid);
   for (auto value = active.cbeginValueOn(); value; ++value) {
-    if ((++polled & 0xffff) == 0) throwIfCancelled(progress);
+    if ((++polled & 0xffff) == 0) throwIfCancelled();
     openvdb::CoordBBox box;
     value.getBoundingBox(box);
     if (value.isVoxelValue() ? isNear(box.min().asVec3d()) : [&] {
@@ -70,9 +71,9 @@ void CarryOutput::carry(const openvdb::Coord& origin, const Site* sites) const {
 }
 
 void CarryOutput::finish(const std::function<Points(const Points&)>& movePositions,
-                         openvdb::GridPtrVec& grids, Progress* progress) {
+                         openvdb::GridPtrVec& grids) {
   for (std::size_t c = 0; c < carriers_.size(); ++c) {
-    throwIfCancelled(progress);
+    throwIfCancelled();
     if (openvdb::GridBase* positions = carriers_[c]->positions(outputs_[c]))
       movePositionsOf<openvdb::Vec3SGrid>(*positions, movePositions) ||
           movePositionsOf<openvdb::Vec3DGrid>(*positions, movePositions);
@@ -83,12 +84,11 @@ void CarryOutput::finish(const std::function<Points(const Points&)>& movePositio
 }
 
 void requireMeeting(const openvdb::GridPtrVec& grids, const openvdb::FloatGrid& solid,
-                    const std::string& solidName, std::vector<std::string>& warnings,
-                    Progress* progress) {
+                    const std::string& solidName, std::vector<std::string>& warnings) {
   std::string apart;
   std::size_t count = 0;
   for (const openvdb::GridBase::Ptr& grid : grids) {
-    if (meets(*grid, solid, progress)) continue;
+    if (meets(*grid, solid)) continue;
     ++count;
     apart += (apart.empty() ? "" : ", ") + grid->getName();
   }

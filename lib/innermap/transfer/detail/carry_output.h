@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/transfer/detail/carrier.h"
 #include "innermap/transfer/outside.h"
 
@@ -26,8 +25,8 @@ class CarryOutput {
   void carry(const openvdb::Coord& origin, const Site* sites) const;
 
   // Each at its place in `grids`. movePositions: of values that are positions.
-  void finish(const std::function<Points(const Points&)>& movePositions, openvdb::GridPtrVec& grids,
-              Progress* progress);
+  void finish(const std::function<Points(const Points&)>& movePositions,
+              openvdb::GridPtrVec& grids);
 
  private:
   const Carriers& carriers_;
@@ -38,8 +37,7 @@ class CarryOutput {
 // Throws DataError when no grid has an active voxel within `skin` voxels of the solid; warns of
 // single ones that have none.
 void requireMeeting(const openvdb::GridPtrVec& grids, const openvdb::FloatGrid& solid,
-                    const std::string& solidName, std::vector<std::string>& warnings,
-                    Progress* progress);
+                    const std::string& solidName, std::vector<std::string>& warnings);
 
 // Says in the grids' metadata what lies outside the solid.
 void noteOutside(const openvdb::GridPtrVec& grids, const OutsideSettings& outside);

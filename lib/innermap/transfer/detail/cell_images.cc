@@ -109,7 +109,7 @@ void forEachCell(const LatticeImages& lattice, const openvdb::Vec3STree::LeafNod
 
 // Sorted by target leaf, then by cell.
 std::vector<Touch> touchesOf(const LatticeImages& lattice, const Leaves& leaves,
-                             const LeafIndex& target, Progress* progress) {
+                             const LeafIndex& target) {
   std::vector<std::vector<Touch>> found(leaves.size());
   parallelBlocks(
       leaves.size(), 8,
@@ -123,7 +123,7 @@ std::vector<Touch> touchesOf(const LatticeImages& lattice, const Leaves& leaves,
             });
           });
       },
-      progress, "mapping the lattice");
+      "mapping the lattice");
   std::vector<std::size_t> start(target.size() + 1, 0);
   for (const auto& touches : found)
     for (const Touch& t : touches) ++start[t.target + 1];
@@ -214,7 +214,7 @@ class LeafRaster {
 }  // namespace
 
 LatticeImages imagesOf(const ExtendedMap& map, const openvdb::MaskGrid& region,
-                       const openvdb::math::Transform& target, Progress* progress) {
+                       const openvdb::math::Transform& target) {
   LatticeImages out;
   out.images = vectorGridOn(region);
   out.outside = floatGridOn(region);
@@ -232,7 +232,7 @@ LatticeImages imagesOf(const ExtendedMap& map, const openvdb::MaskGrid& region,
           if (values.inside[i]) ++turned[leaf][determinant(samples[i].jacobian) < 0];
         }
       },
-      "mapping the lattice", progress);
+      "mapping the lattice");
   std::uint64_t kept = 0, mirrored = 0;
   for (const auto& [plus, minus] : turned) {
     kept += plus;
@@ -259,11 +259,10 @@ openvdb::MaskGrid::Ptr touchedLeaves(const LatticeImages& lattice, double mostOu
   return out;
 }
 
-std::vector<LeafStarts> findStarts(const LatticeImages& lattice, const openvdb::MaskGrid& region,
-                                   Progress* progress) {
+std::vector<LeafStarts> findStarts(const LatticeImages& lattice, const openvdb::MaskGrid& region) {
   const LeafIndex target(region.tree());
   const Leaves leaves = leavesOf(lattice);
-  const std::vector<Touch> touches = touchesOf(lattice, leaves, target, progress);
+  const std::vector<Touch> touches = touchesOf(lattice, leaves, target);
   std::vector<LeafStarts> out(target.size());
   parallelBlocks(
       target.size(), 4,
@@ -286,7 +285,7 @@ std::vector<LeafStarts> findStarts(const LatticeImages& lattice, const openvdb::
           }
         }
       },
-      progress, "covering the target");
+      "covering the target");
   return out;
 }
 

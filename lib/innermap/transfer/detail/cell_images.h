@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/transfer/detail/extended_map.h"
 
 namespace innermap {
@@ -31,7 +30,7 @@ struct LatticeImages {
   bool mirrored = false;            // the map turns most of the inside over
 };
 LatticeImages imagesOf(const ExtendedMap& map, const openvdb::MaskGrid& region,
-                       const openvdb::math::Transform& target, Progress* progress);
+                       const openvdb::math::Transform& target);
 
 // Leaves of the target's lattice that images of cells no farther outside than `mostOutside` (world
 // units of the source) may touch, all voxels on. Throws MemoryError when they are too many.
@@ -41,8 +40,7 @@ openvdb::MaskGrid::Ptr touchedLeaves(const LatticeImages& lattice, double mostOu
 // One for each leaf of `region` in its order. Where several images cover a voxel (folds, parts that
 // the target lets overlap) the one nearest to the source's inside is taken, of those one turned
 // like the whole (`mirrored`: with a negative Jacobian), of those the first.
-std::vector<LeafStarts> findStarts(const LatticeImages& lattice, const openvdb::MaskGrid& region,
-                                   Progress* progress);
+std::vector<LeafStarts> findStarts(const LatticeImages& lattice, const openvdb::MaskGrid& region);
 
 // Voxels of `region` that nothing covers start where their nearest covered neighbour does. They
 // stay uncovered, but for a start; returns for each leaf which voxels have one.

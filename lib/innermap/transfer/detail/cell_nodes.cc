@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -17,7 +18,7 @@ constexpr std::size_t kTogether = std::size_t{1} << 18;  // points that are mapp
 int floorDivide(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
 // Corners of the cells of some voxels.
-openvdb::MaskTree nodesOf(const openvdb::MaskTree& voxels, int parts, Progress* progress) {
+openvdb::MaskTree nodesOf(const openvdb::MaskTree& voxels, int parts) {
   openvdb::MaskTree out;
   for (auto leaf = voxels.cbeginLeaf(); leaf; ++leaf) {
     openvdb::CoordBBox box;
@@ -31,27 +32,24 @@ openvdb::MaskTree nodesOf(const openvdb::MaskTree& voxels, int parts, Progress* 
   }
   std::vector<Leaf*> leaves;
   out.getNodes(leaves);
-  parallelBlocks(
-      leaves.size(), 8,
-      [&](std::size_t begin, std::size_t end) {
-        const openvdb::tree::ValueAccessor<const openvdb::MaskTree, false> at(voxels);
-        const auto isNode = [&](const Coord& n) {
-          Coord from, to;
-          for (int a = 0; a < 3; ++a) {
-            from[a] = floorDivide(n[a] - 1, parts);
-            to[a] = floorDivide(n[a], parts);
-          }
-          for (int x = from.x(); x <= to.x(); ++x)
-            for (int y = from.y(); y <= to.y(); ++y)
-              for (int z = from.z(); z <= to.z(); ++z)
-                if (at.isValueOn(Coord(x, y, z))) return true;
-          return false;
-        };
-        for (std::size_t l = begin; l < end; ++l)
-          for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
-            leaves[l]->setActiveState(i, isNode(leaves[l]->offsetToGlobalCoord(i)));
-      },
-      progress);
+  parallelBlocks(leaves.size(), 8, [&](std::size_t begin, std::size_t end) {
+    const openvdb::tree::ValueAccessor<const openvdb::MaskTree, false> at(voxels);
+    const auto isNode = [&](const Coord& n) {
+      Coord from, to;
+      for (int a = 0; a < 3; ++a) {
+        from[a] = floorDivide(n[a] - 1, parts);
+        to[a] = floorDivide(n[a], parts);
+      }
+      for (int x = from.x(); x <= to.x(); ++x)
+        for (int y = from.y(); y <= to.y(); ++y)
+          for (int z = from.z(); z <= to.z(); ++z)
+            if (at.isValueOn(Coord(x, y, z))) return true;
+      return false;
+    };
+    for (std::size_t l = begin; l < end; ++l)
+      for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
+        leaves[l]->setActiveState(i, isNode(leaves[l]->offsetToGlobalCoord(i)));
+  });
   return out;
 }
 
@@ -98,12 +96,8 @@ Lattice::Lattice(const openvdb::math::Transform& transform) {
 }
 
 CellNodes::CellNodes(const openvdb::MaskTree& voxels, const openvdb::math::Transform& grid,
-                     int parts, Progress* progress)
-    : grid_(grid),
-      parts_(parts),
-      nodes_(nodesOf(voxels, parts, progress)),
-      leaves_(nodes_),
-      first_{0} {
+                     int parts)
+    : grid_(grid), parts_(parts), nodes_(nodesOf(voxels, parts)), leaves_(nodes_), first_{0} {
   for (std::size_t l = 0; l < leaves_.size(); ++l)
     first_.push_back(first_.back() + leaves_[l].onVoxelCount());
   for (int a = 0; a < 3; ++a) {
@@ -129,7 +123,7 @@ Vec3 CellNodes::worldOf(const openvdb::Vec3d& node) const {
   return {p.x(), p.y(), p.z()};
 }
 
-void CellNodes::map(const ExtendedMap& map, const Lattice& target, Progress* progress) {
+void CellNodes::map(const ExtendedMap& map, const Lattice& target) {
   images_.resize(size());
   stretch_.assign(size(), std::numeric_limits<float>::infinity());
   // From there no edge of a cell leads out of the solid.
@@ -146,9 +140,9 @@ void CellNodes::map(const ExtendedMap& map, const Lattice& target, Progress* pro
         points[which].push_back(p);
         places[which].push_back(i++);
       }
-    const Points deep = map.imagesInside(points[0], progress);
+    const Points deep = map.imagesInside(points[0]);
     for (std::size_t n = 0; n < deep.size(); ++n) images_[places[0][n]] = shifted(target, deep[n]);
-    const std::vector<ExtendedSample> samples = map.at(points[1], progress);
+    const std::vector<ExtendedSample> samples = map.at(points[1]);
     for (std::size_t n = 0; n < samples.size(); ++n) {
       images_[places[1][n]] = shifted(target, samples[n].image);
       double longest = 0;
@@ -156,7 +150,7 @@ void CellNodes::map(const ExtendedMap& map, const Lattice& target, Progress* pro
         longest = std::max(longest, norm(target.linear * (samples[n].jacobian * edge)));
       stretch_[places[1][n]] = static_cast<float>(longest);
     }
-    reportProgress(progress, "mapping the densities",
+    reportProgress("mapping the densities",
                    static_cast<double>(l) / static_cast<double>(leaves_.size()));
   }
 }

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/transfer/detail/extended_map.h"
 #include "innermap/transfer/detail/leaf_index.h"
 
@@ -29,8 +28,7 @@ class CellNodes {
   static constexpr int kSide = 9;  // nodes along the cells of one leaf
 
   // Of the cells in the voxels of `voxels`, whose transform is `grid`.
-  CellNodes(const openvdb::MaskTree& voxels, const openvdb::math::Transform& grid, int parts,
-            Progress* progress);
+  CellNodes(const openvdb::MaskTree& voxels, const openvdb::math::Transform& grid, int parts);
 
   std::size_t size() const { return first_.back(); }
   const LeafIndex& leaves() const { return leaves_; }
@@ -42,7 +40,7 @@ class CellNodes {
 
   // Finds the images: in the target's index space, shifted by half a voxel so that voxel (i, j, k)
   // spans [i, i + 1] and so on.
-  void map(const ExtendedMap& map, const Lattice& target, Progress* progress);
+  void map(const ExtendedMap& map, const Lattice& target);
 
   // Of the nodes (9^3, z fastest) of the cells whose lowest corner is in a leaf. stretch: how long,
   // in voxels of the target, the map's derivative makes the longest of a cell's three edges;

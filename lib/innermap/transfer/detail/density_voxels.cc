@@ -119,7 +119,7 @@ class Carried {
 // Switches off what is not carried; the sum of what is.
 template <class Grid>
 double keepCarried(openvdb::MaskTree& active, const Grid& grid, const Solid& solid,
-                   const openvdb::FloatGrid& levelSet, double margin, Progress* progress) {
+                   const openvdb::FloatGrid& levelSet, double margin) {
   std::vector<Leaf*> leaves;
   active.getNodes(leaves);
   std::vector<double> sums(leaves.size(), 0);
@@ -137,7 +137,7 @@ double keepCarried(openvdb::MaskTree& active, const Grid& grid, const Solid& sol
               leaves[l]->setValueOff(voxel.pos());
           }
       },
-      progress, "finding what is in the solid");
+      "finding what is in the solid");
   double sum = 0;
   for (const double s : sums) sum += s;
   return sum;
@@ -147,7 +147,7 @@ double keepCarried(openvdb::MaskTree& active, const Grid& grid, const Solid& sol
 
 DensityVoxels densityVoxels(const openvdb::GridBase::ConstPtr& grid, const Solid& solid,
                             const openvdb::FloatGrid& levelSet, const OutsideSettings& outside,
-                            std::uint64_t maxMemory, Progress* progress) {
+                            std::uint64_t maxMemory) {
   if (!grid->transform().isLinear())
     throw DataError("density \"" + grid->getName() +
                     "\": has a frustum for transform; resample it to voxels of one size");
@@ -167,7 +167,7 @@ DensityVoxels densityVoxels(const openvdb::GridBase::ConstPtr& grid, const Solid
   DensityVoxels out;
   out.grid = grid;
   asScalars(*grid, [&](const auto& typed) {
-    out.mass = keepCarried(*active, typed, solid, levelSet, margin, progress);
+    out.mass = keepCarried(*active, typed, solid, levelSet, margin);
   });
   out.mass *= voxelVolume(*grid);
   out.left = massOf(*grid) - out.mass;

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <memory>
 
-#include "innermap/core/progress.h"
 #include "innermap/levelset/solid.h"
 #include "innermap/transfer/outside.h"
 
@@ -25,7 +24,7 @@ struct DensityVoxels {
 // linear, MemoryError (maxMemory in bytes, 0: no limit), Cancelled.
 DensityVoxels densityVoxels(const openvdb::GridBase::ConstPtr& grid, const Solid& solid,
                             const openvdb::FloatGrid& levelSet, const OutsideSettings& outside,
-                            std::uint64_t maxMemory, Progress* progress);
+                            std::uint64_t maxMemory);
 
 // In one voxel, as a function of the index minus the voxel's.
 struct LinearDensity {

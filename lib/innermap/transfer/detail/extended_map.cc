@@ -32,7 +32,7 @@ bool ExtendedMap::isRigidAt(const Vec3& p) const {
   return squared > reach() * reach();
 }
 
-std::vector<ExtendedSample> ExtendedMap::at(const Points& points, Progress* progress) const {
+std::vector<ExtendedSample> ExtendedMap::at(const Points& points) const {
   std::vector<ExtendedSample> out(points.size());
   Points near;
   std::vector<std::size_t> index;
@@ -44,42 +44,38 @@ std::vector<ExtendedSample> ExtendedMap::at(const Points& points, Progress* prog
       index.push_back(i);
     }
   }
-  const std::vector<ExtendedSample> found = nearAt(near, progress);
+  const std::vector<ExtendedSample> found = nearAt(near);
   for (std::size_t n = 0; n < index.size(); ++n) out[index[n]] = found[n];
   return out;
 }
 
-Points ExtendedMap::imagesInside(const Points& points, Progress* progress) const {
-  const FieldSamples samples = map_.evaluate(points, {accuracy_, false, progress});
+Points ExtendedMap::imagesInside(const Points& points) const {
+  const FieldSamples samples = map_.evaluate(points, {accuracy_, false});
   Points out(points.size());
   for (std::size_t i = 0; i < out.size(); ++i)
     for (int r = 0; r < 3; ++r) out[i][r] = samples.values(i, r);
   return out;
 }
 
-std::vector<ExtendedSample> ExtendedMap::nearAt(const Points& points, Progress* progress) const {
-  const ExtendedSamples extended =
-      sampleExtended(map_, solid_, levelSet_, points, {accuracy_, {}, progress});
+std::vector<ExtendedSample> ExtendedMap::nearAt(const Points& points) const {
+  const ExtendedSamples extended = sampleExtended(map_, solid_, levelSet_, points, {accuracy_, {}});
   std::vector<ExtendedSample> out(points.size());
   constexpr std::size_t kBlock = 4096;
-  parallelBlocks(
-      points.size(), kBlock,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          for (int r = 0; r < 3; ++r) {
-            out[i].image[r] = extended.samples.values(i, r);
-            for (int a = 0; a < 3; ++a)
-              out[i].jacobian[r][a] = extended.samples.gradients(i, 3 * r + a);
-          }
-          fade(points[i], extended.beyond[i], out[i]);
-        }
-      },
-      progress);
+  parallelBlocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      for (int r = 0; r < 3; ++r) {
+        out[i].image[r] = extended.samples.values(i, r);
+        for (int a = 0; a < 3; ++a)
+          out[i].jacobian[r][a] = extended.samples.gradients(i, 3 * r + a);
+      }
+      fade(points[i], extended.beyond[i], out[i]);
+    }
+  });
   return out;
 }
 
 void ExtendedMap::visit(const openvdb::MaskGrid& region, const Visitor& visit,
-                        std::string_view stage, Progress* progress) const {
+                        std::string_view stage) const {
   visitField(map_, solid_, levelSet_, region,
              [&](std::size_t leaf, const LeafValues& values) {
                std::vector<ExtendedSample> samples(values.count);
@@ -97,7 +93,7 @@ void ExtendedMap::visit(const openvdb::MaskGrid& region, const Visitor& visit,
                }
                visit(leaf, values, samples);
              },
-             {accuracy_, stage, progress});
+             {accuracy_, stage});
 }
 
 }  // namespace innermap

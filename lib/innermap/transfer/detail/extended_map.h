@@ -7,7 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/evaluate/detail/visit_field.h"
 #include "innermap/field/harmonic_map.h"
 #include "innermap/levelset/solid.h"
@@ -30,16 +29,15 @@ class ExtendedMap {
               const OutsideSettings& outside, double accuracy)
       : map_(map), solid_(solid), levelSet_(levelSet), outside_(outside), accuracy_(accuracy) {}
 
-  std::vector<ExtendedSample> at(const Points& points, Progress* progress) const;
+  std::vector<ExtendedSample> at(const Points& points) const;
 
   // Images of points that are inside the solid.
-  Points imagesInside(const Points& points, Progress* progress) const;
+  Points imagesInside(const Points& points) const;
 
   // The same at lattice voxels; sample i of `samples` is that of the i-th active voxel of a leaf.
   using Visitor = std::function<void(std::size_t leaf, const LeafValues& values,
                                      const std::vector<ExtendedSample>& samples)>;
-  void visit(const openvdb::MaskGrid& region, const Visitor& visit, std::string_view stage,
-             Progress* progress) const;
+  void visit(const openvdb::MaskGrid& region, const Visitor& visit, std::string_view stage) const;
 
   const ComposedMap& map() const { return map_; }
   const Solid& solid() const { return solid_; }
@@ -52,7 +50,7 @@ class ExtendedMap {
  private:
   // Surely beyond the reach, where only the rigid motion is left.
   bool isRigidAt(const Vec3& p) const;
-  std::vector<ExtendedSample> nearAt(const Points& points, Progress* progress) const;
+  std::vector<ExtendedSample> nearAt(const Points& points) const;
   void fade(const Vec3& p, const Vec3& beyond, ExtendedSample& sample) const;
 
   const ComposedMap map_;  // by value: often made of one harmonic map for the call

@@ -38,12 +38,12 @@ openvdb::GridBase::Ptr filled(const std::shared_ptr<Grid>& grid, const std::stri
 
 openvdb::GridBase::Ptr fieldGrid(const CarriedField& field, const Solid& source,
                                  const SourceLattice& lattice, const InvertedMap& inverted,
-                                 double accuracy, Progress* progress) {
+                                 double accuracy) {
   if (field.field.channels() != 1 && field.field.channels() != 3)
     throw DataError("field \"" + field.name + "\": must have one channel or three");
   const ExtendedSamples found =
       sampleExtended(field.field, source, *lattice.levelSet, inverted.sources,
-                     {accuracy * sizeOf(field.field, source), {}, progress});
+                     {accuracy * sizeOf(field.field, source), {}});
   const Matrix& v = found.samples.values;
   if (field.field.channels() == 1)
     return filled(floatGridOn(*inverted.region), field.name,

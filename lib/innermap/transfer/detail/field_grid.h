@@ -8,6 +8,6 @@ namespace innermap {
 
 openvdb::GridBase::Ptr fieldGrid(const CarriedField& field, const Solid& source,
                                  const SourceLattice& lattice, const InvertedMap& inverted,
-                                 double accuracy, Progress* progress);
+                                 double accuracy);
 
 }  // namespace innermap

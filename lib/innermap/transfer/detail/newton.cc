@@ -35,13 +35,10 @@ class Newton {
     for (int step = 0; step <= kMostSteps && !open_.empty(); ++step) {
       Points trial(open_.size());
       for (std::size_t n = 0; n < open_.size(); ++n) trial[n] = best_[open_[n]] + steps_[open_[n]];
-      const std::vector<ExtendedSample> samples = map_.at(trial, settings_.progress);
-      parallelBlocks(
-          open_.size(), kBlock,
-          [&](std::size_t begin, std::size_t end) {
-            for (std::size_t n = begin; n < end; ++n) judge(open_[n], trial[n], samples[n]);
-          },
-          settings_.progress);
+      const std::vector<ExtendedSample> samples = map_.at(trial);
+      parallelBlocks(open_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) judge(open_[n], trial[n], samples[n]);
+      });
       std::vector<std::size_t> open;
       for (const std::size_t i : open_)
         if (out_.residuals[i] > settings_.tolerance && squaredNorm(steps_[i]) > 0)

@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/transfer/detail/extended_map.h"
 
 namespace innermap {
@@ -11,7 +10,6 @@ namespace innermap {
 struct NewtonSettings {
   double tolerance = 0;    // of |f(p) - q|, world units of the target
   double longestStep = 0;  // world units of the source
-  Progress* progress = nullptr;
 };
 
 struct NewtonResult {

@@ -10,6 +10,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/evaluate/detail/active_region.h"
 #include "innermap/evaluate/detail/topology.h"
 #include "innermap/levelset/level_set.h"
@@ -56,12 +57,12 @@ openvdb::CoordBBox onLattice(const openvdb::CoordBBox& box, const openvdb::math:
 
 // Lattice voxels about the grids' active ones, by whole blocks; at most `most` of them.
 openvdb::MaskTree around(const openvdb::GridPtrVec& grids, const openvdb::math::Transform& lattice,
-                         std::uint64_t most, Progress* progress) {
+                         std::uint64_t most) {
   openvdb::MaskTree mask;
   for (const openvdb::GridBase::Ptr& grid : grids) {
     const openvdb::MaskTree active = activeTopology(*grid);
     const auto add = [&](const openvdb::CoordBBox& box) {
-      throwIfCancelled(progress);
+      throwIfCancelled();
       mask.fill(onLattice(box, grid->transform(), lattice), true, true);
       if (mask.leafCount() * 512 > most)
         throw MemoryError(
@@ -123,7 +124,7 @@ int latticeResolution(const Solid& solid, const OutsideSettings& outside,
 }  // namespace
 
 void addAround(openvdb::MaskGrid& region, const Solid& solid, double distance,
-               std::uint64_t bytesPerVoxel, std::uint64_t maxMemory, Progress* progress) {
+               std::uint64_t bytesPerVoxel, std::uint64_t maxMemory) {
   const openvdb::MaskTree inner = region.tree();
   const int layers = static_cast<int>(std::ceil(distance / region.voxelSize()[0]));
   openvdb::CoordBBox box = region.evalActiveVoxelBoundingBox();
@@ -146,30 +147,27 @@ void addAround(openvdb::MaskGrid& region, const Solid& solid, double distance,
               leaves[l]->setValueOff(voxel.pos());
           }
       },
-      progress, "finding what is around the solid");
+      "finding what is around the solid");
 }
 
 SourceLattice makeSourceLattice(const Solid& solid, const OutsideSettings& outside,
-                                const openvdb::GridPtrVec& grids, std::uint64_t maxMemory,
-                                Progress* progress) {
+                                const openvdb::GridPtrVec& grids, std::uint64_t maxMemory) {
   if (!(outside.distance >= 0 && outside.distance <= 1))
     throw SettingError("outside", "must lie in [0, 1] of the diagonal");
   SourceLattice out;
   LevelSetSettings settings;
   settings.resolution = latticeResolution(solid, outside, grids);
   settings.maxMemory = maxMemory;
-  settings.progress = progress;
   out.levelSet = makeLevelSet(solid, settings);
   RegionSettings inside;
   inside.skin = kSkin;
   inside.bytesPerVoxel = kVoxelBytes;
   inside.maxMemory = maxMemory;
-  inside.progress = progress;
   out.region = activeRegion(*out.levelSet, inside);
   if (!(outside.distance > 0)) return out;
   const double voxel = out.levelSet->voxelSize()[0];
   const std::uint64_t most = maxMemory ? maxMemory / kVoxelBytes : ~std::uint64_t{0};
-  openvdb::MaskTree more = around(grids, out.levelSet->transform(), most, progress);
+  openvdb::MaskTree more = around(grids, out.levelSet->transform(), most);
   if (!outside.fadeTo) {
     const int layers = static_cast<int>(std::ceil(outside.distance * solid.diagonal() / voxel)) + 1;
     openvdb::MaskTree within = out.region->tree();

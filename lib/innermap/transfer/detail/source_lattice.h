@@ -5,7 +5,6 @@
 
 #include <cstdint>
 
-#include "innermap/core/progress.h"
 #include "innermap/levelset/solid.h"
 #include "innermap/transfer/inverse_map.h"
 #include "innermap/transfer/outside.h"
@@ -16,12 +15,11 @@ namespace innermap {
 // within the distance, or anywhere when the map fades to a rigid motion. Throws SettingError,
 // MemoryError, Cancelled.
 SourceLattice makeSourceLattice(const Solid& solid, const OutsideSettings& outside,
-                                const openvdb::GridPtrVec& grids, std::uint64_t maxMemory,
-                                Progress* progress);
+                                const openvdb::GridPtrVec& grids, std::uint64_t maxMemory);
 
 // Adds all voxels around the solid up to `distance` (world units) from it to a region on the level
 // set's lattice. Throws MemoryError when it takes more than maxMemory (bytes; 0: no limit).
 void addAround(openvdb::MaskGrid& region, const Solid& solid, double distance,
-               std::uint64_t bytesPerVoxel, std::uint64_t maxMemory, Progress* progress);
+               std::uint64_t bytesPerVoxel, std::uint64_t maxMemory);
 
 }  // namespace innermap

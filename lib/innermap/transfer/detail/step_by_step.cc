@@ -51,13 +51,10 @@ Vec3 invertedAll(const ComposedMap& map, const Vec3& target, const Vec3& start, 
 Points invertStepByStep(const ComposedMap& map, const Points& targets, const Points& starts,
                         const StepByStepSettings& settings) {
   Points out(targets.size());
-  parallelBlocks(
-      targets.size(), 4,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-          out[i] = invertedAll(map, targets[i], starts[i], settings.tolerance);
-      },
-      settings.progress);
+  parallelBlocks(targets.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      out[i] = invertedAll(map, targets[i], starts[i], settings.tolerance);
+  });
   return out;
 }
 

@@ -1,14 +1,12 @@
 // A map in steps inverted step by step, the last one first.
 #pragma once
 
-#include "innermap/core/progress.h"
 #include "innermap/field/harmonic_map.h"
 
 namespace innermap {
 
 struct StepByStepSettings {
   double tolerance = 0;  // of each step, world units
-  Progress* progress = nullptr;
 };
 
 // For each target q a point p with f(p) = q: each step is inverted by Newton's method, with steps

@@ -6,6 +6,7 @@
 #include "innermap/boundary/fit_map.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -91,9 +92,9 @@ TEST(BoundaryCheck, SameForAnyNumberOfThreadsAndCancels) {
     return boundaryDeterminants(fit.map, fit.boundary, target, settings).least;
   };
   EXPECT_EQ(least(1), least(3));
-  Progress progress;
-  progress.cancel();
-  settings.progress = &progress;
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
   EXPECT_THROW(boundaryDeterminants(fit.map, fit.boundary, target, settings), Cancelled);
   EXPECT_THROW(boundaryDegree(fit.map, fit.boundary, target, settings), Cancelled);
 }

@@ -67,8 +67,8 @@ TEST_F(Carried, LaterOnesAreOfTheImage) {
   }
 }
 
-// The mesh about the image is coarse: where it lies within the image, charges as near to it as it is
-// off would stand inside.
+// The mesh about the image is coarse: where it lies within the image, charges as near to it as it
+// is off would stand inside.
 TEST_F(Carried, NoChargeStandsInsideTheExactImage) {
   settings.chord = 10;
   const Solid coarse(shapes::icosphere(2));

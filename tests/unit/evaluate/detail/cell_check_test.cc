@@ -7,6 +7,7 @@
 #include "evaluate/test_lattice.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -98,9 +99,10 @@ TEST(CellCheck, SameForAnyNumberOfThreadsAndCancels) {
     return lattice.check().least;
   };
   EXPECT_EQ(least(1), least(3));
-  Progress progress;
-  progress.cancel();
-  EXPECT_THROW(lattice.check(&progress), Cancelled);
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(lattice.check(), Cancelled);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "evaluate/test_lattice.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -61,7 +62,7 @@ TEST(FoldRepair, WhatTheMapStretchesStaysStretched) {
 }
 
 TEST(FoldRepair, SaysHowFarItIs) {
-  struct Recorder : Progress {
+  struct Recorder : RunContext {
     void report(std::string_view stage, double fraction) override {
       EXPECT_EQ(stage, kRepairing);
       EXPECT_GE(fraction, last);
@@ -71,7 +72,7 @@ TEST(FoldRepair, SaysHowFarItIs) {
     }
     double last = 0;
     int reports = 0;
-  } progress;
+  } run;
   test::Lattice lattice;
   lattice.addBox(Coord(0), Coord(40, 10, 10), stay);
   for (const int x : {5, 35}) {
@@ -79,12 +80,12 @@ TEST(FoldRepair, SaysHowFarItIs) {
     lattice.map->tree().setValue(Coord(x, 5, 5), {at + 1.7f, 5.2f, 5.1f});
   }
   FoldRepairSettings settings;
-  settings.progress = &progress;
+  const RunScope scope(run);
   const auto jacobian = ones(lattice);
   repairFolds(*lattice.map, *jacobian, *lattice.levelSet, settings);
-  EXPECT_GE(progress.reports, 2);
-  EXPECT_GT(progress.last, 0);
-  progress.cancel();
+  EXPECT_GE(run.reports, 2);
+  EXPECT_GT(run.last, 0);
+  run.cancel();
   EXPECT_THROW(repairFolds(*lattice.map, *jacobian, *lattice.levelSet, settings), Cancelled);
 }
 

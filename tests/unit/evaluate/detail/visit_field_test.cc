@@ -6,6 +6,7 @@
 
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/evaluate/detail/active_region.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"
@@ -68,7 +69,7 @@ TEST(VisitField, MapsInSteps) {
                  ++visited;
                }
              },
-             {1e-9, {}, nullptr});
+             {1e-9, {}});
   EXPECT_EQ(visited, scene.region->activeVoxelCount());
   EXPECT_LT(*std::max_element(error.begin(), error.end()), 1e-7);
 }
@@ -103,7 +104,7 @@ TEST(VisitField, ValuesInsideAndBeyond) {
                }
                visited += v.count;
              },
-             {1e-10, "test", nullptr});
+             {1e-10, "test"});
   EXPECT_EQ(visited, scene.region->activeVoxelCount());
   EXPECT_GT(outside, 100u);
   for (const double e : error) EXPECT_LT(e, 1e-8);
@@ -137,7 +138,7 @@ TEST(VisitField, PointsAgreeWithVoxels) {
   Points points;
   for (std::uint64_t i = 0; i < 500; ++i) points.push_back(shapes::randomPoint(random, i));
   const ExtendedSamples found =
-      sampleExtended(field, scene.solid, *scene.levelSet, points, {1e-10, {}, nullptr});
+      sampleExtended(field, scene.solid, *scene.levelSet, points, {1e-10, {}});
   std::size_t outside = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const bool inside = scene.solid.inside(points[i]);
@@ -156,16 +157,16 @@ TEST(VisitField, RefusesOtherLattices) {
   const auto other = scene.region->deepCopy();
   other->setTransform(openvdb::math::Transform::createLinearTransform(0.3));
   const auto nothing = [](std::size_t, const LeafValues&) {};
-  EXPECT_THROW(
-      visitField(twoChannels(), scene.solid, *scene.levelSet, *other, nothing, {1e-8, {}, nullptr}),
-      DataError);
+  EXPECT_THROW(visitField(twoChannels(), scene.solid, *scene.levelSet, *other, nothing, {1e-8, {}}),
+               DataError);
   EXPECT_THROW(visitField(twoChannels(), scene.solid, *scene.levelSet, *scene.region, nothing, {}),
                SettingError);
-  Progress progress;
-  progress.cancel();
-  EXPECT_THROW(visitField(twoChannels(), scene.solid, *scene.levelSet, *scene.region, nothing,
-                          {1e-8, {}, &progress}),
-               Cancelled);
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(
+      visitField(twoChannels(), scene.solid, *scene.levelSet, *scene.region, nothing, {1e-8, {}}),
+      Cancelled);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include <sys/resource.h>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/io/slice.h"
 #include "io/test_files.h"
 
@@ -119,10 +120,10 @@ TEST(ExrSlices, RefusesBeforeItWrites) {
   settings = {};
   settings.count = 0;
   EXPECT_THROW(writeExrSlices(folder.file("s.exr"), twoGrids(), settings), SettingError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   settings = {};
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(writeExrSlices(folder.file("s.exr"), twoGrids(), settings), Cancelled);
   EXPECT_EQ(folder.count(), 0u);
 }

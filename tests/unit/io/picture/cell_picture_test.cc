@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/io/picture/image_file.h"
 #include "io/test_files.h"
 
@@ -64,11 +65,11 @@ TEST(CellPicture, RefusesNonsense) {
   settings = {};
   settings.red = settings.blue;
   EXPECT_THROW(writeCellPicture(path, tower(1), {1}, settings), SettingError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   settings = {};
   settings.at = 1;
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(writeCellPicture(path, tower(1), {1}, settings), Cancelled);
 }
 

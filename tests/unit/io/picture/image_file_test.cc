@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "io/test_files.h"
 
 #if defined(__has_feature)
@@ -226,10 +227,10 @@ TEST(ImageFile, MemoryAndCancelling) {
   ImageSettings settings;
   settings.maxMemory = 1000;
   EXPECT_THROW(readImage(folder.file("a.png"), settings), MemoryError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   settings = {};
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(readImage(folder.file("a.png"), settings), Cancelled);
 }
 

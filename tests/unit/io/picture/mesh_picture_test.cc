@@ -7,6 +7,7 @@
 #include "innermap/boundary/boundary_pair.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/io/picture/image_file.h"
 #include "io/test_files.h"
 #include "mesh/shapes.h"
@@ -120,10 +121,10 @@ TEST(MeshPicture, RefusesWhatCannotBeShown) {
   MeshPictureSettings settings = frontal();
   settings.from = {{0, 0, 0}};
   EXPECT_THROW(writeMeshPicture(path, {square()}, settings), SettingError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   settings = frontal();
-  settings.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(writeMeshPicture(path, {square()}, settings), Cancelled);
   EXPECT_FALSE(std::filesystem::exists(path));
   EXPECT_THROW(writeMeshPicture("/nowhere/a.png", {square()}, frontal()), FileError);

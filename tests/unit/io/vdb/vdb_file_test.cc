@@ -10,6 +10,7 @@
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
+#include "innermap/core/run.h"
 #include "io/test_files.h"
 
 namespace innermap {
@@ -223,14 +224,11 @@ TEST(VdbFileLimits, Cancels) {
   const TemporaryFolder folder;
   const openvdb::GridPtrVec grids = everyType();
   writeVdb(folder.file("a.vdb"), grids);
-  Progress progress;
-  progress.cancel();
-  VdbReadSettings read;
-  read.progress = &progress;
-  EXPECT_THROW(readVdb(folder.file("a.vdb"), read), Cancelled);
-  VdbWriteSettings write;
-  write.progress = &progress;
-  EXPECT_THROW(writeVdb(folder.file("b.vdb"), grids, {}, write), Cancelled);
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(readVdb(folder.file("a.vdb")), Cancelled);
+  EXPECT_THROW(writeVdb(folder.file("b.vdb"), grids), Cancelled);
   EXPECT_EQ(folder.count(), 1u);
 }
 

@@ -14,6 +14,7 @@
 #include <limits>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/io/volume/volume_texture.h"
 #include "io/test_files.h"
 
@@ -379,9 +380,9 @@ TEST(VolumeTextureRead, MemoryAndCancellingAreMinded) {
   settings.maxMemory = 1000;
   EXPECT_THROW(readVolumeTexture(folder.file("a.exr"), settings), MemoryError);
   settings = {};
-  Progress progress;
-  progress.cancel();
-  settings.progress = &progress;
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
   EXPECT_THROW(readVolumeTexture(folder.file("a.exr"), settings), Cancelled);
 }
 

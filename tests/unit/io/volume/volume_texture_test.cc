@@ -18,6 +18,7 @@
 #include <cmath>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "io/test_files.h"
 
 namespace innermap {
@@ -300,13 +301,13 @@ TEST(VolumeTexture, RefusesBeforeItWrites) {
   auto other = scalar("other");
   other->setTransform(openvdb::math::Transform::createLinearTransform(2));
   EXPECT_THROW(writeVolumeTexture(path, {scalar(), other}, {}), DataError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   for (const VolumeLayout layout :
        {VolumeLayout::atlas, VolumeLayout::slices, VolumeLayout::parts}) {
     settings = {};
     settings.layout = layout;
-    settings.progress = &progress;
+    const RunScope scope(run);
     EXPECT_THROW(writeVolumeTexture(path, {scalar()}, settings), Cancelled);
   }
   EXPECT_EQ(folder.count(), 0u);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "innermap/core/run.h"
 #include "mesh/shapes.h"
 
 namespace innermap {
@@ -20,7 +21,7 @@ TEST(OffsetSurfaceRelease, OfABallIsABall) {
   const Solid solid(shapes::icosphere(4));
   for (const double d : {1e-4, 0.0024, 0.0026, 0.05, 0.3, 2.0}) {
     SCOPED_TRACE(d);
-    const Mesh mesh = offsetSurface(solid, {d, nullptr});
+    const Mesh mesh = offsetSurface(solid, {d});
     const double distance = d * solid.diagonal();
     expectAtDistance(solid, mesh, distance);
     const double r = 1 + distance;
@@ -35,7 +36,7 @@ TEST(OffsetSurface, BetweenPartsOnlyWhereThereIsRoom) {
   const Solid solid(
       shapes::joined(shapes::box({0, 0, 0}, {1, 1, 1}), shapes::box({1.2, 0, 0}, {2.2, 1, 1})));
   const auto between = [&](double world) {
-    const Mesh mesh = offsetSurface(solid, {world / solid.diagonal(), nullptr});
+    const Mesh mesh = offsetSurface(solid, {world / solid.diagonal()});
     expectAtDistance(solid, mesh, world);
     int count = 0;
     for (const Vec3& p : mesh.vertices) {
@@ -50,7 +51,7 @@ TEST(OffsetSurface, BetweenPartsOnlyWhereThereIsRoom) {
 TEST(OffsetSurface, InsideSheetsAreLeftOutCavitiesAreNot) {
   const Solid hollow(
       shapes::joined(shapes::icosphere(4), shapes::flipped(shapes::icosphere(4, 0.5))));
-  const Mesh mesh = offsetSurface(hollow, {0.02, nullptr});
+  const Mesh mesh = offsetSurface(hollow, {0.02});
   const double distance = 0.02 * hollow.diagonal();
   expectAtDistance(hollow, mesh, distance);
   std::size_t cavity = 0;
@@ -63,7 +64,7 @@ TEST(OffsetSurface, PartsThatOverlapGiveTheUnion) {
   const Solid solid(
       shapes::joined(shapes::icosphere(3), shapes::icosphere(3, 0.8, {0.9, 0.1, 0.2})));
   for (const double d : {0.001, 0.02}) {
-    expectAtDistance(solid, offsetSurface(solid, {d, nullptr}), d * solid.diagonal());
+    expectAtDistance(solid, offsetSurface(solid, {d}), d * solid.diagonal());
   }
 }
 
@@ -79,12 +80,13 @@ TEST(OffsetSurface, MovePointsToTheDistance) {
 TEST(OffsetSurface, SettingsAndCancelling) {
   const Solid solid(shapes::icosphere(2));
   for (const double d : {0.0, 9e-5, 2.1, -1.0, std::nan("")}) {
-    EXPECT_THROW(offsetSurface(solid, {d, nullptr}), SettingError);
+    EXPECT_THROW(offsetSurface(solid, {d}), SettingError);
   }
-  Progress progress;
-  progress.cancel();
-  EXPECT_THROW(offsetSurface(solid, {0.05, &progress}), Cancelled);
-  EXPECT_THROW(offsetSurface(solid, {0.001, &progress}), Cancelled);
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(offsetSurface(solid, {0.05}), Cancelled);
+  EXPECT_THROW(offsetSurface(solid, {0.001}), Cancelled);
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ TEST(GreedyRemovalRelease, IsTheLoopOneByOneForAnyNumberOfThreads) {
       const std::vector<std::size_t> expected = oneByOne(grid, count, weight);
       for (const int threads : {1, 4}) {
         const ThreadLimit limit(threads);
-        EXPECT_EQ(heaviestRemoved(grid, count, weight, nullptr), expected);
+        EXPECT_EQ(heaviestRemoved(grid, count, weight), expected);
       }
     }
   }

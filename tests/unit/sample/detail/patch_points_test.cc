@@ -4,6 +4,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/read.h"
 
 namespace innermap {
@@ -121,10 +122,10 @@ TEST(PatchPoints, RefusesBadSettings) {
   s = {};
   s.reach = -1;
   EXPECT_THROW(patchSamples(solid, {}, {}, s), SettingError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   s = {};
-  s.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(patchSources(solid, {}, 0.01, {}, s), Cancelled);
 }
 

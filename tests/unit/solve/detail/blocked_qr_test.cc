@@ -7,6 +7,7 @@
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -42,9 +43,10 @@ TEST(BlockedQr, SameBitsForAnyNumberOfThreads) {
 TEST(BlockedQr, RefusesWideMatrices) { EXPECT_THROW(BlockedQr(Matrix(3, 4)), SettingError); }
 
 TEST(BlockedQr, CancelStopsIt) {
-  Progress progress;
-  progress.cancel();
-  EXPECT_THROW(BlockedQr(randomMatrix(200, 100, 1), &progress), Cancelled);
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(BlockedQr(randomMatrix(200, 100, 1)), Cancelled);
 }
 
 TEST(Multiply, EqualsThePlainLoop) {

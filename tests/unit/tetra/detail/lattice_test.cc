@@ -79,9 +79,9 @@ TEST(Stuffing, AnySignsGiveAManifoldOfTheirTopology) {
     LatticeSigns signs = randomSigns(seed, 0.1 + 0.05 * static_cast<double>(seed % 16));
     const SolidTopology wanted = latticeTopology(signs);
     for (const bool warp : {false, true}) {
-      if (warp) warpNodes(signs, nullptr);
-      StuffedMesh mesh = stuffed(signs, nullptr);
-      holdWarped(mesh, nullptr);
+      if (warp) warpNodes(signs);
+      StuffedMesh mesh = stuffed(signs);
+      holdWarped(mesh);
       const BoundaryTopology made = boundaryTopology(mesh.vertices, boundaryOf(mesh));
       EXPECT_TRUE(made.manifold()) << seed;
       EXPECT_TRUE(made.solid == wanted)

@@ -6,6 +6,7 @@
 
 #include "innermap/core/detail/pi.h"
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"
 
@@ -137,10 +138,10 @@ TEST(Continuation, BadSettings) {
   s.maxMemory = 1000;
   EXPECT_THROW(continueInside(field, ball.solid, *ball.levelSet, boundary, s), MemoryError);
   EXPECT_THROW(continueInside(fieldOf(4), ball.solid, *ball.levelSet, boundary, {}), DataError);
-  Progress progress;
-  progress.cancel();
+  RunContext run;
+  run.cancel();
   s = {};
-  s.progress = &progress;
+  const RunScope scope(run);
   EXPECT_THROW(continueInside(field, ball.solid, *ball.levelSet, boundary, s), Cancelled);
 }
 

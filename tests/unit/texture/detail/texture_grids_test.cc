@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -111,10 +112,11 @@ TEST(TextureGrids, BadGroups) {
   auto groups = twoGroups();
   groups[1].weighted = block([](int, int, int) { return Vec3f(1); }, 5);
   EXPECT_THROW(blendChartGroups(groups, texture), DataError);
-  Progress progress;
-  progress.cancel();
-  EXPECT_THROW(blendChartGroups(twoGroups(), texture, &progress), Cancelled);
-  EXPECT_THROW(lookUpColours(*twoGroups()[0].weighted, texture, &progress), Cancelled);
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(blendChartGroups(twoGroups(), texture), Cancelled);
+  EXPECT_THROW(lookUpColours(*twoGroups()[0].weighted, texture), Cancelled);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "innermap/core/detail/file_bytes.h"
+#include "innermap/core/run.h"
 #include "innermap/io/cells/cell_file.h"
 
 namespace innermap {
@@ -31,11 +32,9 @@ class CellCollector {
   void claim(std::uint64_t bytes);
   // For loops over items: polls for cancelling now and then.
   void poll(std::uint64_t index) const {
-    if (index % 65536 == 0) throwIfCancelled(settings_.progress);
+    if (index % 65536 == 0) throwIfCancelled();
   }
-  void report(double fraction) const {
-    reportProgress(settings_.progress, "reading cells", fraction);
-  }
+  void report(double fraction) const { reportProgress("reading cells", fraction); }
   void leaveOut(const std::string& kind, std::uint64_t count = 1) { leftOut_[kind] += count; }
   void note(const std::string& text) { file.notes.push_back(text); }
   // Throws FileError when one more vertex or cell would exceed what an int counts.

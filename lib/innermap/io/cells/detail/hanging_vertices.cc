@@ -24,14 +24,11 @@ class Search {
       : mesh_(mesh), grid_(mesh.vertices, meanEdge(mesh)), hangs_(mesh.vertices.size()) {}
 
   template <class Cells, std::size_t N>
-  void among(const Cells& cells, const int (&edges)[N][2], Progress* progress) {
-    parallelBlocks(
-        cells.size(), kBlock,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t c = begin; c < end; ++c)
-            for (const auto& [a, b] : edges) middle(cells[c][a], cells[c][b]);
-        },
-        progress);
+  void among(const Cells& cells, const int (&edges)[N][2]) {
+    parallelBlocks(cells.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t c = begin; c < end; ++c)
+        for (const auto& [a, b] : edges) middle(cells[c][a], cells[c][b]);
+    });
   }
 
   std::uint64_t count() const {
@@ -73,10 +70,10 @@ class Search {
 
 }  // namespace
 
-std::uint64_t countHangingVertices(const CellMesh& mesh, Progress* progress) {
+std::uint64_t countHangingVertices(const CellMesh& mesh) {
   Search search(mesh);
-  search.among(mesh.tetrahedra, kTetEdges, progress);
-  search.among(mesh.hexahedra, kHexEdges, progress);
+  search.among(mesh.tetrahedra, kTetEdges);
+  search.among(mesh.hexahedra, kHexEdges);
   return search.count();
 }
 

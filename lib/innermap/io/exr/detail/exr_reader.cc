@@ -19,15 +19,14 @@ constexpr std::uint64_t kMostLines = 256;  // that a compression takes together
 
 }  // namespace
 
-ExrReader::ExrReader(const std::string& path, const Progress* progress)
-    : path_(path), progress_(progress) {
+ExrReader::ExrReader(const std::string& path) : path_(path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
     throw FileError(path, "does not exist; give the path of an .exr file");
   if (std::filesystem::is_directory(path, ignored))
     throw FileError(path, "is a folder; give the path of an .exr file");
-  withExrErrors(path, "read", "", progress, [&] {
-    stream_ = std::make_unique<ExrInputStream>(path, progress);
+  withExrErrors(path, "read", "", [&] {
+    stream_ = std::make_unique<ExrInputStream>(path);
     file_ = std::make_unique<Imf::MultiPartInputFile>(*stream_, Imf::globalThreadCount(),
                                                       /*reconstructChunkOffsetTable=*/false);
   });
@@ -81,7 +80,7 @@ std::uint64_t ExrReader::memory(int part) const {
 
 void ExrReader::read(int part, int begin, int count, const std::vector<std::string>& channels,
                      const std::vector<float*>& outputs) {
-  withExrErrors(path_, "read", "", progress_, [&] {
+  withExrErrors(path_, "read", "", [&] {
     if (openPart_ != part) {
       open_ = std::make_unique<Imf::InputPart>(*file_, part);
       openPart_ = part;

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/io/exr/detail/exr_stream.h"
 
 namespace innermap {
@@ -18,7 +17,7 @@ namespace innermap {
 class ExrReader {
  public:
   // Throws FileError, Cancelled.
-  ExrReader(const std::string& path, const Progress* progress);
+  explicit ExrReader(const std::string& path);
 
   const std::string& path() const { return path_; }
   int parts() const { return file_->parts(); }
@@ -40,7 +39,6 @@ class ExrReader {
 
  private:
   std::string path_;
-  const Progress* progress_;
   std::unique_ptr<ExrInputStream> stream_;
   std::unique_ptr<Imf::MultiPartInputFile> file_;
   std::unique_ptr<Imf::InputPart> open_;

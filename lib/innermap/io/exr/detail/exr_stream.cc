@@ -10,12 +10,13 @@
 #include <new>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/io/exr/detail/exr_verify.h"
 
 namespace innermap {
 
 void ExrOutputStream::write(const char data[], int count) {
-  throwIfCancelled(progress_);
+  throwIfCancelled();
   errno = 0;
   stream_.write(data, count);
   if (!stream_)
@@ -36,8 +37,8 @@ void ExrOutputStream::requireComplete() const {
   if (missing_) throw FileError(path_, "cannot be written whole: OpenEXR ran out of memory");
 }
 
-ExrInputStream::ExrInputStream(const std::string& path, const Progress* progress)
-    : IStream(path.c_str()), buffer_(path, progress), stream_(&buffer_) {
+ExrInputStream::ExrInputStream(const std::string& path)
+    : IStream(path.c_str()), buffer_(path), stream_(&buffer_) {
   // Exceptions of the buffer come through the stream.
   stream_.exceptions(std::ios::badbit | std::ios::failbit);
   verifyExr(path, stream_, buffer_.size());
@@ -50,7 +51,7 @@ bool ExrInputStream::read(char data[], int count) {
 }
 
 void withExrErrors(const std::string& path, const std::string& done, const std::string& hint,
-                   const Progress* progress, const std::function<void()>& body) {
+                   const std::function<void()>& body) {
   try {
     body();
   } catch (const Error&) {
@@ -58,7 +59,7 @@ void withExrErrors(const std::string& path, const std::string& done, const std::
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
-    throwIfCancelled(progress);
+    throwIfCancelled();
     throw FileError(path, fmt::format("cannot be {} ({}){}", done, error.what(), hint));
   }
 }

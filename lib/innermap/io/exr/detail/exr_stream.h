@@ -9,7 +9,6 @@
 #include <ostream>
 #include <string>
 
-#include "innermap/core/progress.h"
 #include "innermap/io/vdb/detail/vdb_stream.h"
 
 namespace innermap {
@@ -19,8 +18,8 @@ namespace innermap {
 // Cancelled.
 class ExrOutputStream : public Imf::OStream {
  public:
-  ExrOutputStream(const std::string& path, std::ostream& stream, const Progress* progress)
-      : OStream(path.c_str()), path_(path), stream_(stream), progress_(progress) {}
+  ExrOutputStream(const std::string& path, std::ostream& stream)
+      : OStream(path.c_str()), path_(path), stream_(stream) {}
 
   void write(const char data[], int count) override;
   std::uint64_t tellp() override { return static_cast<std::uint64_t>(stream_.tellp()); }
@@ -32,7 +31,6 @@ class ExrOutputStream : public Imf::OStream {
  private:
   std::string path_;
   std::ostream& stream_;
-  const Progress* progress_;
   std::uint64_t end_ = 0;  // of what is written
   bool back_ = false;      // in what was written before: the tables of the chunks' places, at last
   bool missing_ = false;
@@ -43,7 +41,7 @@ class ExrInputStream : public Imf::IStream {
  public:
   // Throws FileError when the file cannot be opened or is no EXR file, or when a size in its
   // headers is beyond the file's: OpenEXR allocates by them.
-  ExrInputStream(const std::string& path, const Progress* progress);
+  explicit ExrInputStream(const std::string& path);
 
   bool read(char data[], int count) override;
   std::uint64_t tellg() override { return static_cast<std::uint64_t>(stream_.tellg()); }
@@ -60,7 +58,7 @@ class ExrInputStream : public Imf::IStream {
 
 // Runs `body`; what OpenEXR throws becomes a FileError: "PATH: cannot be DONE (...)HINT".
 void withExrErrors(const std::string& path, const std::string& done, const std::string& hint,
-                   const Progress* progress, const std::function<void()>& body);
+                   const std::function<void()>& body);
 
 // OpenEXR compresses on as many threads as the process may use while this lives; by itself it uses
 // one. What is written does not depend on it.

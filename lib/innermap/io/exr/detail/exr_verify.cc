@@ -205,7 +205,7 @@ void verifyExr(const std::string& path, std::istream& stream, std::uint64_t size
 }
 
 void verifyExr(const std::string& path) {
-  CheckedInputBuffer buffer(path, nullptr);
+  CheckedInputBuffer buffer(path);
   std::istream stream(&buffer);
   stream.exceptions(std::ios::badbit | std::ios::failbit);
   verifyExr(path, stream, buffer.size());

@@ -7,8 +7,6 @@
 #include <istream>
 #include <string>
 
-#include "innermap/core/progress.h"
-
 namespace innermap {
 
 // `stream` throws at every access beyond the end. Throws FileError: no EXR file, an attribute

@@ -171,7 +171,6 @@ std::unique_ptr<GeometryFile> readCellGeometry(const std::string& path,
                                                const ReadGeometrySettings& settings) {
   ReadCellsSettings cells;
   cells.maxMemory = settings.maxMemory;
-  cells.progress = settings.progress;
   return std::make_unique<CellGeometry>(readCells(path, cells), settings);
 }
 

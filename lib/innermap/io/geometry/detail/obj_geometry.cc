@@ -5,6 +5,7 @@
 
 #include "innermap/core/detail/text_scanner.h"
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/io/geometry/detail/geometry_formats.h"
 
 namespace innermap {
@@ -24,9 +25,7 @@ using Numbers = std::vector<double>;
 
 class ObjGeometry : public GeometryFile {
  public:
-  ObjGeometry(FileBytes file, const ReadGeometrySettings& settings) : file_(std::move(file)) {
-    read(settings.progress);
-  }
+  explicit ObjGeometry(FileBytes file) : file_(std::move(file)) { read(); }
 
   std::vector<std::string> write(const std::string&, const CarriedGeometry& carried,
                                  std::ostream& stream) const override;
@@ -38,7 +37,7 @@ class ObjGeometry : public GeometryFile {
     int id;
   };
 
-  void read(Progress* progress);
+  void read();
   void readElement(LineWords& words, std::string_view keyword, std::size_t line);
   Corner readCorner(std::string_view word, std::size_t line);
   int index(std::string_view word, std::size_t count, const char* what, std::int64_t& highest,
@@ -77,14 +76,14 @@ Vec3 ObjGeometry::three(LineWords& words, std::size_t line) const {
   return p;
 }
 
-void ObjGeometry::read(Progress* progress) {
+void ObjGeometry::read() {
   TextLines lines(file_, true);
   geometry.cornerDirections = true;
   std::size_t begin = 0, end = 0;
   std::string_view keyword;
   for (std::size_t count = 0; lines.next(begin, end); ++count) {
     if (count % 65536 == 0)
-      reportProgress(progress, "reading",
+      reportProgress("reading",
                      static_cast<double>(begin) / static_cast<double>(file_.bytes.size()));
     LineWords words(file_, begin, end, true);
     if (!words.next(keyword)) continue;
@@ -357,9 +356,8 @@ std::vector<std::string> ObjGeometry::write(const std::string&, const CarriedGeo
 
 }  // namespace
 
-std::unique_ptr<GeometryFile> readObjGeometry(FileBytes file,
-                                              const ReadGeometrySettings& settings) {
-  return std::make_unique<ObjGeometry>(std::move(file), settings);
+std::unique_ptr<GeometryFile> readObjGeometry(FileBytes file, const ReadGeometrySettings&) {
+  return std::make_unique<ObjGeometry>(std::move(file));
 }
 
 }  // namespace innermap

@@ -3,6 +3,7 @@
 
 #include "innermap/core/detail/text_scanner.h"
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/io/geometry/detail/geometry_formats.h"
 
 namespace innermap {
@@ -10,16 +11,16 @@ namespace {
 
 class OffGeometry : public GeometryFile {
  public:
-  explicit OffGeometry(FileBytes file, Progress* progress) : file_(std::move(file)) {
+  explicit OffGeometry(FileBytes file) : file_(std::move(file)) {
     geometry.splittable = false;
-    read(progress);
+    read();
   }
 
   std::vector<std::string> write(const std::string&, const CarriedGeometry& carried,
                                  std::ostream& stream) const override;
 
  private:
-  void read(Progress* progress);
+  void read();
   // The next line with words on it.
   bool filled(TextLines& lines, std::size_t& begin, std::size_t& end) const {
     std::string_view word;
@@ -74,14 +75,14 @@ void OffGeometry::readCounts(TextLines& lines) {
                fmt::format("{} vertices and {} faces do not fit in the file", vertices_, faces_));
 }
 
-void OffGeometry::read(Progress* progress) {
+void OffGeometry::read() {
   TextLines lines(file_, false);
   readCounts(lines);
   requireCountable(file_, static_cast<std::size_t>(vertices_), "vertices");
   if (normals_) geometry.directions.push_back({"normals", DirectionKind::normal, {}, {}});
   std::size_t begin = 0, end = 0;
   const auto next = [&](std::int64_t i) {
-    if (i % 65536 == 0) throwIfCancelled(progress);
+    if (i % 65536 == 0) throwIfCancelled();
     if (!filled(lines, begin, end))
       failAtLine(file_, lines.line(), "the file is cut short or its counts are wrong");
     return LineWords(file_, begin, end, true);
@@ -173,9 +174,8 @@ std::vector<std::string> OffGeometry::write(const std::string&, const CarriedGeo
 
 }  // namespace
 
-std::unique_ptr<GeometryFile> readOffGeometry(FileBytes file,
-                                              const ReadGeometrySettings& settings) {
-  return std::make_unique<OffGeometry>(std::move(file), settings.progress);
+std::unique_ptr<GeometryFile> readOffGeometry(FileBytes file, const ReadGeometrySettings&) {
+  return std::make_unique<OffGeometry>(std::move(file));
 }
 
 }  // namespace innermap

@@ -6,6 +6,7 @@
 
 #include "innermap/core/detail/text_scanner.h"
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 
@@ -83,9 +84,8 @@ void PlyGeometry::read(const ReadGeometrySettings& settings) {
     if (role == PlyRole::strips && element.count > 0) geometry.splittable = false;
     for (std::uint64_t row = 0; row < element.count; ++row) {
       if (row % 65536 == 0)
-        reportProgress(
-            settings.progress, "reading",
-            static_cast<double>(body.position()) / static_cast<double>(file_.bytes.size()));
+        reportProgress("reading", static_cast<double>(body.position()) /
+                                      static_cast<double>(file_.bytes.size()));
       if (role == PlyRole::other)
         body.skipRow(element);
       else

@@ -4,6 +4,7 @@
 
 #include "innermap/core/detail/text_scanner.h"
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/io/geometry/detail/geometry_formats.h"
 
 namespace innermap {
@@ -13,7 +14,7 @@ constexpr std::size_t kHeader = 84, kTriangle = 50;  // bytes
 
 class StlGeometry : public GeometryFile {
  public:
-  explicit StlGeometry(FileBytes file, Progress* progress) : file_(std::move(file)) {
+  explicit StlGeometry(FileBytes file) : file_(std::move(file)) {
     geometry.splittable = false;
     geometry.directions.push_back({"normals", DirectionKind::normal, {}, {}});
     std::uint32_t count = 0;
@@ -24,9 +25,9 @@ class StlGeometry : public GeometryFile {
       throw FileError(file_.path,
                       fmt::format("{} triangles do not fit in the file; it is cut short", count));
     if (binary_)
-      readBinary(count, progress);
+      readBinary(count);
     else
-      readText(progress);
+      readText();
     addCentres();
   }
 
@@ -63,9 +64,9 @@ class StlGeometry : public GeometryFile {
     }
   }
 
-  void readBinary(std::uint32_t count, Progress* progress) {
+  void readBinary(std::uint32_t count) {
     for (std::size_t t = 0; t < count; ++t) {
-      if (t % 65536 == 0) throwIfCancelled(progress);
+      if (t % 65536 == 0) throwIfCancelled();
       float numbers[12];
       std::memcpy(numbers, file_.bytes.data() + kHeader + kTriangle * t, sizeof numbers);
       Vec3 rows[4];
@@ -74,14 +75,14 @@ class StlGeometry : public GeometryFile {
     }
   }
 
-  void readText(Progress* progress) {
+  void readText() {
     TextLines lines(file_, false);
     std::size_t begin = 0, end = 0, corners = 0;
     bool within = false;
     Vec3 normal, at[3];
     std::string_view word;
     for (std::size_t n = 0; lines.next(begin, end); ++n) {
-      if (n % 65536 == 0) throwIfCancelled(progress);
+      if (n % 65536 == 0) throwIfCancelled();
       LineWords words(file_, begin, end, false);
       if (!words.next(word)) continue;
       if (equalsIgnoringCase(word, "facet")) {
@@ -170,9 +171,8 @@ class StlGeometry : public GeometryFile {
 
 }  // namespace
 
-std::unique_ptr<GeometryFile> readStlGeometry(FileBytes file,
-                                              const ReadGeometrySettings& settings) {
-  return std::make_unique<StlGeometry>(std::move(file), settings.progress);
+std::unique_ptr<GeometryFile> readStlGeometry(FileBytes file, const ReadGeometrySettings&) {
+  return std::make_unique<StlGeometry>(std::move(file));
 }
 
 }  // namespace innermap

@@ -35,31 +35,28 @@ std::vector<Shares> sharesFor(int n, int m) {
   return out;
 }
 
-Pixels halved(const Pixels& from, Progress* progress) {
+Pixels halved(const Pixels& from) {
   Pixels to;
   to.width = std::max(1, from.width / 2);
   to.height = std::max(1, from.height / 2);
   to.rgb.resize(std::size_t(3) * to.width * to.height);
   const std::vector<Shares> columns = sharesFor(from.width, to.width),
                             rows = sharesFor(from.height, to.height);
-  parallelBlocks(
-      rows.size(), 16,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t y = begin; y < end; ++y)
-          for (std::size_t x = 0; x < columns.size(); ++x) {
-            float sum[3] = {0, 0, 0};
-            for (int j = 0; j < rows[y].count; ++j)
-              for (int i = 0; i < columns[x].count; ++i) {
-                const std::size_t p = std::size_t(rows[y].first + j) * from.width +
-                                      static_cast<std::size_t>(columns[x].first + i);
-                const float w = rows[y].share[static_cast<std::size_t>(j)] *
-                                columns[x].share[static_cast<std::size_t>(i)];
-                for (std::size_t c = 0; c < 3; ++c) sum[c] += w * from.rgb[3 * p + c];
-              }
-            std::copy_n(sum, 3, &to.rgb[3 * (y * columns.size() + x)]);
+  parallelBlocks(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y)
+      for (std::size_t x = 0; x < columns.size(); ++x) {
+        float sum[3] = {0, 0, 0};
+        for (int j = 0; j < rows[y].count; ++j)
+          for (int i = 0; i < columns[x].count; ++i) {
+            const std::size_t p = std::size_t(rows[y].first + j) * from.width +
+                                  static_cast<std::size_t>(columns[x].first + i);
+            const float w = rows[y].share[static_cast<std::size_t>(j)] *
+                            columns[x].share[static_cast<std::size_t>(i)];
+            for (std::size_t c = 0; c < 3; ++c) sum[c] += w * from.rgb[3 * p + c];
           }
-      },
-      progress);
+        std::copy_n(sum, 3, &to.rgb[3 * (y * columns.size() + x)]);
+      }
+  });
   return to;
 }
 
@@ -114,7 +111,7 @@ struct Image::Data {
   Wrap wrap;
 };
 
-Image::Image(Pixels pixels, Wrap wrap, Progress* progress) {
+Image::Image(Pixels pixels, Wrap wrap) {
   if (pixels.width < 1 || pixels.height < 1 ||
       pixels.rgb.size() != std::size_t(3) * pixels.width * pixels.height)
     throw DataError("image: its size does not fit its pixels");
@@ -122,7 +119,7 @@ Image::Image(Pixels pixels, Wrap wrap, Progress* progress) {
   data->wrap = wrap;
   data->levels.push_back({std::move(pixels)});
   while (data->levels.back().width > 1 || data->levels.back().height > 1)
-    data->levels.push_back({halved(data->levels.back(), progress)});
+    data->levels.push_back({halved(data->levels.back())});
   data_ = std::move(data);
 }
 

@@ -3,7 +3,6 @@
 
 #include <memory>
 
-#include "innermap/core/progress.h"
 #include "innermap/core/vec3.h"
 #include "innermap/io/picture/image_file.h"
 
@@ -15,7 +14,7 @@ class Image {
  public:
   // Throws DataError when the sizes disagree or are not positive. Takes a third more memory than
   // the pixels.
-  explicit Image(Pixels pixels, Wrap wrap = Wrap::repeat, Progress* progress = nullptr);
+  explicit Image(Pixels pixels, Wrap wrap = Wrap::repeat);
 
   int width() const;
   int height() const;

@@ -4,16 +4,19 @@
 #include <cstring>
 #include <filesystem>
 
+#include "innermap/core/error.h"
+#include "innermap/core/run.h"
+
 namespace innermap {
 
 PollingOutputBuffer::int_type PollingOutputBuffer::overflow(int_type c) {
-  throwIfCancelled(progress_);
+  throwIfCancelled();
   if (traits_type::eq_int_type(c, traits_type::eof())) return traits_type::not_eof(c);
   return to_.sputc(traits_type::to_char_type(c));
 }
 
 std::streamsize PollingOutputBuffer::xsputn(const char* data, std::streamsize count) {
-  throwIfCancelled(progress_);
+  throwIfCancelled();
   return to_.sputn(data, count);
 }
 
@@ -28,8 +31,7 @@ PollingOutputBuffer::pos_type PollingOutputBuffer::seekpos(pos_type position,
   return to_.pubseekpos(position, which);
 }
 
-CheckedInputBuffer::CheckedInputBuffer(const std::string& path, const Progress* progress)
-    : path_(path), progress_(progress) {
+CheckedInputBuffer::CheckedInputBuffer(const std::string& path) : path_(path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status))
@@ -49,7 +51,7 @@ void CheckedInputBuffer::fail() const {
 }
 
 void CheckedInputBuffer::require(std::streamoff position, std::streamoff count) const {
-  throwIfCancelled(progress_);
+  throwIfCancelled();
   if (count < 0 || position < 0 || position > size_ || count > size_ - position) fail();
 }
 

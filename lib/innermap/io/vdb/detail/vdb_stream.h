@@ -7,16 +7,13 @@
 #include <streambuf>
 #include <string>
 
-#include "innermap/core/progress.h"
-
 namespace innermap {
 
-// Hands everything to `to`, throwing Cancelled when `progress` was cancelled. A stream over it
+// Hands everything to `to`, throwing Cancelled as the run is polled. A stream over it
 // passes exceptions on when its exception mask has badbit.
 class PollingOutputBuffer : public std::streambuf {
  public:
-  PollingOutputBuffer(std::streambuf& to, const Progress* progress)
-      : to_(to), progress_(progress) {}
+  explicit PollingOutputBuffer(std::streambuf& to) : to_(to) {}
 
  protected:
   int_type overflow(int_type c) override;
@@ -28,14 +25,13 @@ class PollingOutputBuffer : public std::streambuf {
 
  private:
   std::streambuf& to_;
-  const Progress* progress_;
 };
 
 // Reads a file. Throws FileError ("is truncated or damaged") for reads and seeks beyond the end,
-// Cancelled when `progress` was cancelled.
+// Cancelled.
 class CheckedInputBuffer : public std::streambuf {
  public:
-  CheckedInputBuffer(const std::string& path, const Progress* progress);
+  explicit CheckedInputBuffer(const std::string& path);
 
   std::uint64_t size() const { return static_cast<std::uint64_t>(size_); }
 
@@ -52,7 +48,6 @@ class CheckedInputBuffer : public std::streambuf {
   [[noreturn]] void fail() const;
 
   std::string path_;
-  const Progress* progress_;
   std::filebuf file_;
   std::streamoff size_ = 0, position_ = 0;
 };

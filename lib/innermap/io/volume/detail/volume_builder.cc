@@ -62,17 +62,13 @@ class TypedBuilder : public VolumeBuilder {
     levelSet_ = std::is_floating_point_v<Value> && grid_->getGridClass() == openvdb::GRID_LEVEL_SET;
   }
 
-  std::size_t add(const VolumeSlab& slab, Progress* progress) override {
+  std::size_t add(const VolumeSlab& slab) override {
     const std::vector<openvdb::Coord> origins = leafOrigins(slab);
     std::vector<Block> blocks(origins.size());
     std::atomic<std::size_t> notFinite{0};
-    parallelBlocks(
-        origins.size(), 16,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i)
-            notFinite += makeBlock(slab, origins[i], blocks[i]);
-        },
-        progress);
+    parallelBlocks(origins.size(), 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) notFinite += makeBlock(slab, origins[i], blocks[i]);
+    });
     for (std::size_t i = 0; i < origins.size(); ++i) insert(origins[i], blocks[i]);
     return notFinite;
   }

@@ -8,7 +8,6 @@
 #include <memory>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/io/volume/detail/volume_attributes.h"
 #include "innermap/io/volume/detail/volume_lattice.h"
 
@@ -26,7 +25,7 @@ class VolumeBuilder {
   virtual ~VolumeBuilder() = default;
 
   // Slabs in order, each once. Returns the number of values that are not finite.
-  virtual std::size_t add(const VolumeSlab& slab, Progress* progress) = 0;
+  virtual std::size_t add(const VolumeSlab& slab) = 0;
   virtual std::uint64_t memory() const = 0;     // of what was built, bytes
   virtual std::uint64_t leafBytes() const = 0;  // of a leaf
   virtual openvdb::GridBase::Ptr finish() = 0;

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/io/slice.h"
 #include "innermap/io/volume/detail/volume_builder.h"
 
@@ -73,7 +74,7 @@ VolumeSource::VolumeSource(const std::string& path, const VolumeTextureReadSetti
 void VolumeSource::openFirst(const std::string& path) {
   patternGiven_ = isPattern(path);
   if (!patternGiven_) {
-    reader_ = std::make_unique<ExrReader>(path, settings_.progress);
+    reader_ = std::make_unique<ExrReader>(path);
     return;
   }
   const FrameList list = findFrames({path}, {".exr"});
@@ -83,7 +84,7 @@ void VolumeSource::openFirst(const std::string& path) {
   if (first < 0 || first > kFarthest)
     throw FileError(list.frames.front().path, "has a number that no slice can have");
   firstFile_ = static_cast<int>(first);
-  reader_ = std::make_unique<ExrReader>(files_->path(firstFile_), settings_.progress);
+  reader_ = std::make_unique<ExrReader>(files_->path(firstFile_));
 }
 
 void VolumeSource::fixLayout(const VolumeAttributes& a) {
@@ -121,8 +122,7 @@ void VolumeSource::findFiles(const std::string& path, const VolumeAttributes& a)
                                       "its name",
                                       number));
   firstFile_ = static_cast<int>(first);
-  if (first != number)
-    reader_ = std::make_unique<ExrReader>(files_->path(first), settings_.progress);
+  if (first != number) reader_ = std::make_unique<ExrReader>(files_->path(first));
 }
 
 int VolumeSource::countFiles() const {
@@ -306,11 +306,10 @@ void VolumeSource::checkSlice(int slice, int part) const {
 }
 
 void VolumeSource::read(int slice, const std::vector<float*>& outputs) {
-  throwIfCancelled(settings_.progress);
+  throwIfCancelled();
   if (layout_ == VolumeLayout::atlas) return readTile(slice, outputs);
   if (layout_ == VolumeLayout::slices && slice > 0)
-    reader_ = std::make_unique<ExrReader>(files_->path(std::int64_t(firstFile_) + slice),
-                                          settings_.progress);
+    reader_ = std::make_unique<ExrReader>(files_->path(std::int64_t(firstFile_) + slice));
   const int part = layout_ == VolumeLayout::parts ? slice : 0;
   checkSlice(slice, part);
   reader_->read(part, 0, lattice_.height(), channels_, outputs);

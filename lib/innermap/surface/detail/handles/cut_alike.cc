@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 
+#include "innermap/core/run.h"
 #include "innermap/surface/detail/refining/target_metric.h"
 #include "innermap/surface/detail/sphere/sphere_layout.h"
 #include "innermap/surface/detail/topology/edge_distance.h"
@@ -31,7 +32,7 @@ struct LoopFeatures {
 };
 
 LoopFeatures featuresOf(const HandleLoops& loops, std::size_t count,
-                        const std::vector<int>& landmarks, Progress* progress) {
+                        const std::vector<int>& landmarks) {
   const ClosedSurface& surface = loops.uncut.surface;
   const EdgeDistance distanceFrom(surface);
   const double scale = unitAreaScale(surface.vertices, surface.triangles);
@@ -39,7 +40,7 @@ LoopFeatures featuresOf(const HandleLoops& loops, std::size_t count,
   const Box3 box = boundingBox(surface.vertices);
   LoopFeatures out;
   for (std::size_t i = 0; i < count; ++i) {
-    throwIfCancelled(progress);
+    throwIfCancelled();
     const std::vector<int>& loop = loops.loops[i];
     const std::vector<double> distance = distanceFrom(loop);
     out.distance.emplace_back();
@@ -185,7 +186,7 @@ CutPair cutAlike(const HandleLoops& a, const HandleLoops& b, const CutAlikeSetti
   std::vector<int> first(a.handles);
   std::iota(first.begin(), first.end(), 0);
   out.a = cutAlong(a, first);
-  out.layoutOfA = layOutSphere(out.a.surface, {settings.progress});
+  out.layoutOfA = layOutSphere(out.a.surface);
 
   std::vector<SurfacePoint> onB;
   std::vector<int> ofA, nearB;
@@ -196,8 +197,8 @@ CutPair cutAlike(const HandleLoops& a, const HandleLoops& b, const CutAlikeSetti
   for (const SurfacePoint& p : onCut(b.uncut, onB))
     nearB.push_back(nearestVertex(b.uncut.surface, p));
   std::vector<std::vector<int>> systems =
-      SystemSearch(featuresOf(a, a.handles, ofA, settings.progress),
-                   featuresOf(b, b.loops.size(), nearB, settings.progress), b, settings.aligned)
+      SystemSearch(featuresOf(a, a.handles, ofA), featuresOf(b, b.loops.size(), nearB), b,
+                   settings.aligned)
           .best(std::max<std::size_t>(settings.systems, 1) - 1);
   if (std::find(systems.begin(), systems.end(), first) == systems.end()) systems.push_back(first);
 
@@ -205,10 +206,9 @@ CutPair cutAlike(const HandleLoops& a, const HandleLoops& b, const CutAlikeSetti
   std::vector<Outcome> outcomes;
   for (const std::vector<int>& system : systems) {
     CutSurface cut = cutAlong(b, system);
-    Layout layout = layOutSphere(cut.surface, {settings.progress});
+    Layout layout = layOutSphere(cut.surface);
     HandleSearch search;
     search.aligned = settings.aligned;
-    search.progress = settings.progress;
     const std::vector<SurfacePoint> there = onCut(cut, onB);
     // The first copy of a vertex has its own number.
     for (std::size_t i = 0; i < there.size(); ++i)

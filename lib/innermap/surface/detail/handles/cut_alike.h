@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/detail/handles/cut_handles.h"
 #include "innermap/surface/detail/handles/match_handles.h"
 
@@ -15,7 +14,6 @@ struct CutAlikeSettings {
   bool aligned = false;                                 // the surfaces stand in the same pose
   std::vector<std::pair<int, SurfacePoint>> landmarks;  // vertices of A, points of B (uncut)
   std::size_t systems = 5;                              // of B's loops that are tried, at most
-  Progress* progress = nullptr;
 };
 
 struct CutPair {

@@ -11,6 +11,7 @@
 #include <unordered_map>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/surface/detail/topology/half_edges.h"
 #include "innermap/surface/detail/topology/homology.h"
 #include "innermap/surface/detail/topology/knot.h"
@@ -132,33 +133,31 @@ struct Meridians {
   IntegerMatrix classes;
 };
 
-bool boundsDisc(const ClosedSurface& surface, const HalfEdges& edges, const Loop& loop,
-                Progress* progress) {
+bool boundsDisc(const ClosedSurface& surface, const HalfEdges& edges, const Loop& loop) {
   Points polygon;
   for (const int h : loop) polygon.push_back(surface.vertices[edges.tail(h)]);
-  return !isKnotted(polygon, progress);
+  return !isKnotted(polygon);
 }
 
 // Fewer than handles where edges leave no room.
-Meridians disjointMeridians(const ClosedSurface& surface, const HalfEdges& edges,
-                            Progress* progress) {
-  const HomologyBasis basis = homologyBasis(surface, edges, progress);
+Meridians disjointMeridians(const ClosedSurface& surface, const HalfEdges& edges) {
+  const HomologyBasis basis = homologyBasis(surface, edges);
   const std::size_t handles = basis.size() / 2, most = std::max(handles, 3 * handles - 3);
   MeridianQuery query;
-  if (handles > 0) query.bounding = boundingClasses(surface, edges, basis, progress).inside;
+  if (handles > 0) query.bounding = boundingClasses(surface, edges, basis).inside;
   query.blocked.assign(surface.vertices.size(), 0);
   Meridians out;
   double longest = 0;
   while (out.loops.size() < most && handles > 0) {
-    reportProgress(progress, "cutting handles",
+    reportProgress("cutting handles",
                    static_cast<double>(out.loops.size()) / static_cast<double>(most));
     query.independent = out.loops.size() < handles;
     query.longest = query.independent ? 0 : kLongest * longest;
-    MeridianLoop found = shortestMeridian(surface.vertices, edges, basis, query, progress);
+    MeridianLoop found = shortestMeridian(surface.vertices, edges, basis, query);
     if (found.loop.empty()) break;
     for (const int h : found.loop) query.blocked[edges.tail(h)] = 1;
     query.taken.push_back(found.cycle);
-    if (!boundsDisc(surface, edges, found.loop, progress)) {
+    if (!boundsDisc(surface, edges, found.loop)) {
       if (!query.independent) continue;
       const Vec3& p = surface.vertices[edges.tail(found.loop[0])];
       throw DataError(fmt::format(
@@ -175,13 +174,13 @@ Meridians disjointMeridians(const ClosedSurface& surface, const HalfEdges& edges
 
 }  // namespace
 
-HandleLoops handleLoops(const ClosedSurface& surface, Progress* progress) {
+HandleLoops handleLoops(const ClosedSurface& surface) {
   HandleLoops out;
   out.uncut = uncut(surface);
   out.handles = static_cast<std::size_t>(surface.genus);
   for (int refinement = 0;; ++refinement) {
     const HalfEdges edges(out.uncut.surface.triangles);
-    const Meridians found = disjointMeridians(out.uncut.surface, edges, progress);
+    const Meridians found = disjointMeridians(out.uncut.surface, edges);
     if (found.loops.size() >= out.handles) {
       for (const Loop& loop : found.loops) {
         out.loops.emplace_back();
@@ -218,8 +217,8 @@ CutSurface cutAlong(const HandleLoops& loops, const std::vector<int>& chosen) {
   return cut;
 }
 
-CutSurface cutHandles(const ClosedSurface& surface, Progress* progress) {
-  const HandleLoops loops = handleLoops(surface, progress);
+CutSurface cutHandles(const ClosedSurface& surface) {
+  const HandleLoops loops = handleLoops(surface);
   std::vector<int> first(loops.handles);
   std::iota(first.begin(), first.end(), 0);
   return cutAlong(loops, first);

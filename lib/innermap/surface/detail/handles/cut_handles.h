@@ -5,7 +5,6 @@
 #include <array>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/layout.h"
 
 namespace innermap {
@@ -43,14 +42,14 @@ struct HandleLoops {
 // Triangles are cut in four twice at most. Throws DataError, naming the surface, where no system of
 // meridians is found: handles that are knotted or linked so that no discs close them, a surface
 // that passes through itself; Cancelled.
-HandleLoops handleLoops(const ClosedSurface& surface, Progress* progress = nullptr);
+HandleLoops handleLoops(const ClosedSurface& surface);
 
 // Along the loops chosen (numbers in loops.loops; as many as handles, independent).
 CutSurface cutAlong(const HandleLoops& loops, const std::vector<int>& chosen);
 
 // Along the first, which are the shortest. Throws as handleLoops(). A surface without handles comes
 // back as it is.
-CutSurface cutHandles(const ClosedSurface& surface, Progress* progress = nullptr);
+CutSurface cutHandles(const ClosedSurface& surface);
 
 // Points to put in on edges of a cut surface.
 struct EdgeSplit {

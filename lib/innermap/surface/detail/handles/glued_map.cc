@@ -136,14 +136,12 @@ class GluedMapper {
     decimation.layout = &turned;
     decimation.keep.assign(surface.vertices.size(), 0);
     for (const Anchor& a : fixed) decimation.keep[a.vertex] = 1;
-    decimation.progress = settings_.progress;
     decimate(mesh, surface.vertices, decimation);
     const CoarseSurface coarse = coarseSurface(surface, mesh);
     Layout start;
     for (const int v : coarse.vertex) start.place.push_back(turned.place[v]);
     CoarseMapSettings relax;
     for (const Anchor& a : fixed) relax.fixed.push_back({coarse.index[a.vertex], a.target});
-    relax.progress = settings_.progress;
     std::optional<CoarseMap> map = relaxCoarse(coarse, start, target_, relax);
     if (!map) {
       map.emplace();
@@ -161,7 +159,6 @@ class GluedMapper {
     PullbackEnergy energy(surface, mesh, start_, target_, kSamples);
     RelaxSettings unrelaxed;
     unrelaxed.sweeps = unrelaxed.lastSweeps = 0;
-    unrelaxed.progress = settings_.progress;
     CoarseToFine fine(mesh, start_, energy, decimation.keep, unrelaxed);
     fine.relaxAll(0);
     if (fine.refine(surface.vertices.size()) >= 0) fail();
@@ -208,7 +205,6 @@ class GluedMapper {
       decimation.vertices =
           kCoarse + static_cast<std::size_t>(1.3 * static_cast<double>(anchors_.size()));
       decimation.layout = &seam_.layout;
-      decimation.progress = settings_.progress;
       decimate(again, surface.vertices, decimation);
       const double before = energy_;
       refineWith(again, settings_.refine || cycle > 0 ? 12 : 2);
@@ -221,7 +217,6 @@ class GluedMapper {
     PullbackEnergy energy(seam_.cut.surface, mesh, seam_.layout, target_, kFineSamples);
     RelaxSettings relax;
     relax.stage = "refining the map";
-    relax.progress = settings_.progress;
     relax.sweeps = std::min(sweeps, 4);
     relax.lastSweeps = std::min(sweeps, 8);
     CoarseToFine fine(mesh, seam_.layout, energy, placed_, relax);
@@ -269,7 +264,6 @@ class GluedMapper {
       decimation.vertices = kCoarse + landmarks_.size() +
                             static_cast<std::size_t>((1 + kBeside) * static_cast<double>(onRims));
       decimation.layout = &seam_.layout;
-      decimation.progress = settings_.progress;
       decimate(mesh, surface.vertices, decimation);
       stops.push_back(mesh.vertexCount());
       thinner = false;
@@ -286,7 +280,6 @@ class GluedMapper {
     PullbackEnergy energy(seam_.cut.surface, mesh, seam_.layout, target_, kSamples);
     RelaxSettings relax;
     relax.lastSweeps = 2;
-    relax.progress = settings_.progress;
     if (CoarseToFine(mesh, seam_.layout, energy, placed_, relax).refine(vertices) >= 0) fail();
   }
 
@@ -312,7 +305,6 @@ class GluedMapper {
     PullbackEnergy energy(surface, mesh, layout, target_, kSamples);
     RelaxSettings relax;
     relax.lastSweeps = 4;
-    relax.progress = settings_.progress;
     std::vector<char> placed(surface.vertices.size(), 0);
     for (const Anchor& a : anchors) placed[a.vertex] = 1;
     CoarseToFine holding(mesh, layout, energy, placed, relax);
@@ -345,7 +337,6 @@ class GluedMapper {
     decimation.vertices = before / 2;
     decimation.keep = held;
     decimation.layout = &layout;
-    decimation.progress = settings_.progress;
     decimate(mesh, surface.vertices, decimation);
     relaxer.relaxAll(4);
     if (relaxer.refine(before) >= 0) fail();

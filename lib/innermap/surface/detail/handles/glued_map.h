@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/detail/handles/cut_alike.h"
 #include "innermap/surface/layout.h"
 
@@ -13,7 +12,6 @@ struct GluedMapSettings {
   // Vertices of A's uncut surface and points of B's, met exactly.
   std::vector<std::pair<int, SurfacePoint>> landmarks;
   bool refine = true;  // lower the energy of the finest map, too
-  Progress* progress = nullptr;
 };
 
 struct GluedMap {

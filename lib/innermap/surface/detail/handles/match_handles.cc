@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "innermap/core/detail/random.h"
+#include "innermap/core/run.h"
 #include "innermap/surface/detail/refining/target_metric.h"
 #include "innermap/surface/detail/sphere/rotation_search.h"
 #include "innermap/surface/detail/topology/edge_distance.h"
@@ -24,7 +25,7 @@ struct Caps {
   Points position;                            // about the box's centre, over its diagonal
 };
 
-Caps capsOf(const CutSurface& cut, const Layout& layout, Progress* progress) {
+Caps capsOf(const CutSurface& cut, const Layout& layout) {
   const ClosedSurface& surface = cut.surface;
   const EdgeDistance distanceFrom(surface);
   const double scale = unitAreaScale(surface.vertices, surface.triangles);
@@ -32,7 +33,7 @@ Caps capsOf(const CutSurface& cut, const Layout& layout, Progress* progress) {
   Caps caps;
   for (const CutHandle& handle : cut.handles) {
     for (std::size_t side = 0; side < 2; ++side) {
-      throwIfCancelled(progress);
+      throwIfCancelled();
       const std::vector<int>& rim = handle.loop[side];
       const std::vector<double> distance = distanceFrom(rim);
       std::vector<double> row;
@@ -105,7 +106,7 @@ class HandleMatcher {
     std::iota(m.target.begin(), m.target.end(), 0);
     if (g <= kExhaustive) {
       do {
-        throwIfCancelled(settings_.progress);
+        throwIfCancelled();
         for (unsigned sides = 0; sides < 1u << g; ++sides) {
           for (std::size_t i = 0; i < g; ++i) m.swapped[i] = (sides >> i & 1u) != 0;
           judge(m);
@@ -140,7 +141,7 @@ class HandleMatcher {
     for (std::size_t i = 0; i < g; ++i) m.swapped[i] = static_cast<char>(random.bits(g + i) & 1);
     judge(m);
     for (bool better = true; better;) {
-      throwIfCancelled(settings_.progress);
+      throwIfCancelled();
       better = false;
       const auto take = [&](HandleMatch& next) {
         judge(next);
@@ -171,9 +172,7 @@ class HandleMatcher {
 std::vector<HandleMatch> matchHandles(const CutSurface& a, const Layout& layoutOfA,
                                       const CutSurface& b, const Layout& layoutOfB,
                                       const HandleSearch& settings) {
-  return HandleMatcher(capsOf(a, layoutOfA, settings.progress),
-                       capsOf(b, layoutOfB, settings.progress), settings)
-      .run();
+  return HandleMatcher(capsOf(a, layoutOfA), capsOf(b, layoutOfB), settings).run();
 }
 
 }  // namespace innermap

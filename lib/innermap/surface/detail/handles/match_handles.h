@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/detail/handles/cut_handles.h"
 #include "innermap/surface/layout.h"
 
@@ -24,7 +23,6 @@ struct HandleSearch {
   bool aligned = false;   // the surfaces stand in the same pose: prefer handles at the same place
   // Points of A's layout on the sphere and the points of B's where they belong: they decide.
   std::vector<std::pair<Vec3, Vec3>> landmarks;
-  Progress* progress = nullptr;
 };
 
 // The best first. Any assignment of handles and sides extends to the solids, as discs close the

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "innermap/core/run.h"
 #include "innermap/surface/detail/sphere/star_kernel.h"
 
 namespace innermap {
@@ -118,7 +119,7 @@ int pullAnchors(const ProgressiveMesh& mesh, Layout& layout, const std::vector<A
   double nearest = 1e300;
   int farthest = 0, stuck = 0;
   for (int i = 0; i < kSteps && stuck < settings.patience; ++i) {
-    throwIfCancelled(settings.progress);
+    throwIfCancelled();
     double longest = 0, sum = 0;
     bool arrived = true;
     for (std::size_t k = 0; k < anchors.size(); ++k) {

@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/detail/refining/coarse_to_fine.h"
 #include "innermap/surface/detail/refining/progressive_mesh.h"
 #include "innermap/surface/layout.h"
@@ -23,7 +22,6 @@ struct FlowSettings {
   std::size_t exact = 0;  // the first so many anchors must arrive exactly
   double near = 0.1;      // the others so near, radians
   int patience = 20;      // steps without headway until the way counts as blocked
-  Progress* progress = nullptr;
 };
 
 // Flows all vertices that are present along a smooth velocity field that carries the anchors to

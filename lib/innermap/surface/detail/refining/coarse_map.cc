@@ -34,7 +34,6 @@ std::optional<CoarseMap> relaxCoarse(const CoarseSurface& coarse, const Layout& 
   PullbackEnergy energy(coarse.surface, mesh, out.image, target, settings.samples);
   RelaxSettings relax;
   relax.steps = 1;
-  relax.progress = settings.progress;
   std::vector<char> fixed(vertices, 0), held(vertices, 0);
   for (const Anchor& a : settings.fixed) fixed[a.vertex] = held[a.vertex] = 1;
   for (const Anchor& a : settings.drawn) held[a.vertex] = 1;
@@ -45,7 +44,6 @@ std::optional<CoarseMap> relaxCoarse(const CoarseSurface& coarse, const Layout& 
   flow.exact = settings.fixed.size();
   flow.near = settings.near;
   flow.patience = settings.patience;
-  flow.progress = settings.progress;
   const int stuck = pullAnchors(mesh, out.image, anchors, holding, flow);
   if (stuck >= 0) {
     if (blocked) *blocked = stuck;

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/detail/refining/anchor_flow.h"
 #include "innermap/surface/detail/refining/progressive_mesh.h"
 #include "innermap/surface/detail/refining/target_metric.h"
@@ -37,7 +36,6 @@ struct CoarseMapSettings {
   int sweeps = 8;             // that lower it
   double near = 0.01;         // how far `drawn` may stay away, radians
   int patience = 20;          // FlowSettings
-  Progress* progress = nullptr;
 };
 
 // Pulls the anchors, then lowers the energy. Empty where the way of `drawn` is blocked; where that

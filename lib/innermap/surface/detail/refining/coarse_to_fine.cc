@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "innermap/core/run.h"
+
 namespace innermap {
 
 // Backtracking; the share of the energy that was won.
@@ -54,8 +56,8 @@ void CoarseToFine::relaxAll(int sweeps) {
     std::fill(next.begin(), next.end(), 0);
     for (int v = 0; v < static_cast<int>(mesh_.capacity()); ++v) {
       if (v % 512 == 0) {
-        throwIfCancelled(settings_.progress);
-        if (outOfTime(settings_.progress)) return;
+        throwIfCancelled();
+        if (outOfTime()) return;
       }
       if (!mesh_.present(v) || !active[v]) continue;
       if (!(relax(v, settings_.steps) > settings_.enough)) continue;
@@ -90,7 +92,7 @@ bool CoarseToFine::insert(int v, int into) {
     least = e;
     place = candidate;
   }
-  if (outOfTime(settings_.progress)) return true;
+  if (outOfTime()) return true;
   relax(v, settings_.steps + 1);
   for (const RingVertex& r : ring_) relax(r.vertex, 1);
   return true;
@@ -107,9 +109,8 @@ int CoarseToFine::refine(std::size_t vertices) {
     if (static_cast<double>(mesh_.vertexCount()) < next && !last) continue;
     next = settings_.growth * static_cast<double>(mesh_.vertexCount());
     relaxAll(last ? settings_.lastSweeps : settings_.sweeps);
-    reportProgress(
-        settings_.progress, settings_.stage,
-        static_cast<double>(mesh_.vertexCount()) / static_cast<double>(mesh_.capacity()));
+    reportProgress(settings_.stage, static_cast<double>(mesh_.vertexCount()) /
+                                        static_cast<double>(mesh_.capacity()));
   }
   return -1;
 }

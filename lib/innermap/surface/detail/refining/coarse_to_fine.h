@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/detail/refining/progressive_mesh.h"
 #include "innermap/surface/detail/sphere/star_kernel.h"
 #include "innermap/surface/layout.h"
@@ -49,7 +48,6 @@ struct RelaxSettings {
   int steps = 2;         // most, at each vertex of a sweep
   double enough = 5e-3;  // share of its energy that a star must win for its neighbours to go on
   std::string_view stage = "relaxing";
-  Progress* progress = nullptr;
 };
 
 class CoarseToFine {

@@ -6,6 +6,8 @@
 #include <limits>
 #include <queue>
 
+#include "innermap/core/run.h"
+
 namespace innermap {
 namespace {
 
@@ -69,9 +71,8 @@ class Decimator {
       apply(top.vertex);
       retried = false;
       if (mesh_.collapses() % 256 == 0)
-        reportProgress(
-            settings_.progress, "coarsening",
-            static_cast<double>(start - mesh_.vertexCount()) / static_cast<double>(start));
+        reportProgress("coarsening", static_cast<double>(start - mesh_.vertexCount()) /
+                                         static_cast<double>(start));
     }
   }
 

@@ -3,7 +3,6 @@
 
 #include <functional>
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/detail/refining/progressive_mesh.h"
 
 namespace innermap {
@@ -12,7 +11,6 @@ struct DecimateSettings {
   std::size_t vertices = 4;        // to keep; more stay where no collapse is possible
   std::vector<char> keep;          // #V or empty: vertices that must stay
   const Layout* layout = nullptr;  // when given, its triangles stay positive in it
-  Progress* progress = nullptr;
 };
 
 // Half-edge collapses by quadric error (Garland and Heckbert, "Surface simplification using quadric

@@ -6,6 +6,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/surface/detail/refining/layout_map.h"
 #include "innermap/surface/detail/refining/ways_round.h"
 
@@ -88,7 +89,7 @@ class JudgedMaps {
             maps_[i].firstScore = maps_[i].judged.score;
           }
         },
-        settings_.progress, "judging first maps");
+        "judging first maps");
     std::stable_sort(maps_.begin(), maps_.end(),
                      [](const auto& x, const auto& y) { return x.firstScore < y.firstScore; });
   }
@@ -102,19 +103,16 @@ class JudgedMaps {
     if (other - maps_.begin() >= static_cast<std::ptrdiff_t>(count) && other != maps_.end() &&
         asGood(other->judged, maps_.front().judged))
       std::rotate(maps_.begin() + static_cast<std::ptrdiff_t>(count++), other, other + 1);
-    if (!settings_.refine || outOfTime(settings_.progress)) count = std::min<std::size_t>(count, 1);
+    if (!settings_.refine || outOfTime()) count = std::min<std::size_t>(count, 1);
     std::vector<char> good(count, 1);
     if (count > 1)
-      parallelBlocks(
-          count, 1,
-          [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-              if ((good[i] = refine(i, std::min(kMiddle, a_.surface.vertices.size())))) {
-                const RefinedSoFar map = maps_[i].refiner->soFar();
-                judge(maps_[i], map.surface, map.image);
-              }
-          },
-          settings_.progress);
+      parallelBlocks(count, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          if ((good[i] = refine(i, std::min(kMiddle, a_.surface.vertices.size())))) {
+            const RefinedSoFar map = maps_[i].refiner->soFar();
+            judge(maps_[i], map.surface, map.image);
+          }
+      });
     for (std::size_t i = count; i-- > 0;)  // those that got stuck
       if (!good[i]) {
         maps_.erase(maps_.begin() + static_cast<std::ptrdiff_t>(i));

@@ -8,24 +8,20 @@
 namespace innermap {
 namespace {
 
-Layout layOut(const ClosedSurface& surface, Progress* progress) {
-  if (surface.genus == 1) return layOutTorus(surface, progress);
-  SphereLayoutSettings settings;
-  settings.progress = progress;
-  return layOutSphere(surface, settings);
+Layout layOut(const ClosedSurface& surface) {
+  if (surface.genus == 1) return layOutTorus(surface);
+  return layOutSphere(surface);
 }
 
 }  // namespace
 
-LaidOutShell::LaidOutShell(const ClosedSurface& shell, Progress* progress)
-    : LaidOutShell(shell, layOut(shell, progress), progress) {}
+LaidOutShell::LaidOutShell(const ClosedSurface& shell) : LaidOutShell(shell, layOut(shell)) {}
 
-LaidOutShell::LaidOutShell(const ClosedSurface& shell, Layout laidOut, Progress* progress)
+LaidOutShell::LaidOutShell(const ClosedSurface& shell, Layout laidOut)
     : surface(shell),
       layout(std::move(laidOut)),
       metric(surface, layout),
-      tips(layout.space == ModelSpace::sphere ? limbTips(surface, layout, 800, progress)
-                                              : LimbTips{}) {}
+      tips(layout.space == ModelSpace::sphere ? limbTips(surface, layout, 800) : LimbTips{}) {}
 
 DataError noMapWithoutFlips(const ClosedSurface& surface) {
   return DataError(surface.name +

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "innermap/core/error.h"
-#include "innermap/core/progress.h"
 #include "innermap/surface/detail/refining/anchor_flow.h"
 #include "innermap/surface/detail/refining/target_metric.h"
 #include "innermap/surface/detail/sphere/limb_tips.h"
@@ -18,9 +17,9 @@ namespace innermap {
 // A surface with its layout and what maps from it and onto it need. Cannot be copied or moved.
 struct LaidOutShell {
   // Lays the surface out, which must outlive it. Throws as layOutSphere() and layOutTorus().
-  explicit LaidOutShell(const ClosedSurface& surface, Progress* progress = nullptr);
+  explicit LaidOutShell(const ClosedSurface& surface);
   // With a layout at hand, which is copied.
-  LaidOutShell(const ClosedSurface& surface, Layout layout, Progress* progress = nullptr);
+  LaidOutShell(const ClosedSurface& surface, Layout layout);
   LaidOutShell(const LaidOutShell&) = delete;
   LaidOutShell& operator=(const LaidOutShell&) = delete;
 
@@ -38,7 +37,6 @@ struct ShellMapSettings {
   const MapJudge* judge = nullptr;  // none: the least energy decides
   WantedWay wanted;                 // with a judge
   std::uint64_t seed = 1;
-  Progress* progress = nullptr;
 };
 
 struct ShellMap {

@@ -16,7 +16,6 @@ RelaxSettings relaxation(const RefineSettings& settings) {
   relax.steps = 1;
   relax.enough = 2e-3;
   relax.stage = "refining the map";
-  relax.progress = settings.progress;
   return relax;
 }
 

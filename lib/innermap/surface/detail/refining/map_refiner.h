@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/detail/refining/coarse_map.h"
 #include "innermap/surface/detail/refining/coarse_to_fine.h"
 #include "innermap/surface/detail/refining/pullback_energy.h"
@@ -14,7 +13,6 @@ namespace innermap {
 struct RefineSettings {
   std::vector<char> fixed;  // #V of the fine surface or empty: vertices that stay where they are
   bool relax = true;        // otherwise vertices return to where their rings let them, no more
-  Progress* progress = nullptr;
 };
 
 // The vertices there are, and where the map has them.

@@ -7,6 +7,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/surface/detail/refining/decimate.h"
 #include "innermap/surface/detail/refining/judged_maps.h"
 #include "innermap/surface/detail/refining/map_refiner.h"
@@ -27,18 +28,15 @@ constexpr std::size_t kCoarseTarget = 2000;
 using Refiners = std::vector<std::unique_ptr<MapRefiner>>;
 
 // Refines all to so many vertices; those that get stuck are left out, the best come first.
-void refineAll(Refiners& refiners, std::size_t vertices, Progress* progress) {
+void refineAll(Refiners& refiners, std::size_t vertices) {
   std::vector<double> energy(refiners.size());
   std::vector<char> good(refiners.size(), 0);
-  parallelBlocks(
-      refiners.size(), 1,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          good[i] = refiners[i]->refineTo(vertices);
-          energy[i] = refiners[i]->energy();
-        }
-      },
-      progress);
+  parallelBlocks(refiners.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      good[i] = refiners[i]->refineTo(vertices);
+      energy[i] = refiners[i]->energy();
+    }
+  });
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < refiners.size(); ++i)
     if (good[i]) order.push_back(i);
@@ -83,11 +81,11 @@ ShellMap bestOf(Refiners refiners, const LaidOutShell& a, const LaidOutShell& b,
   const std::size_t vertices = a.surface.vertices.size();
   const auto kept = static_cast<std::size_t>(settings.candidates);
   if (refiners.size() > kept) {
-    refineAll(refiners, std::min(kMiddle, vertices), settings.progress);
+    refineAll(refiners, std::min(kMiddle, vertices));
     if (refiners.size() > kept) refiners.resize(kept);
   }
-  if (refiners.size() > 1 && outOfTime(settings.progress)) refiners.resize(1);
-  refineAll(refiners, vertices, settings.progress);
+  if (refiners.size() > 1 && outOfTime()) refiners.resize(1);
+  refineAll(refiners, vertices);
   if (refiners.empty()) throw noMapWithoutFlips(a.surface);
   return choose(refiners, a, b, settings);
 }
@@ -95,7 +93,6 @@ ShellMap bestOf(Refiners refiners, const LaidOutShell& a, const LaidOutShell& b,
 RefineSettings refining(const ClosedSurface& surface, const ShellMapSettings& settings) {
   RefineSettings out;
   out.relax = settings.refine;
-  out.progress = settings.progress;
   if (settings.landmarks.empty()) return out;
   out.fixed.assign(surface.vertices.size(), 0);
   for (const Anchor& a : settings.landmarks) out.fixed[a.vertex] = 1;
@@ -104,17 +101,16 @@ RefineSettings refining(const ClosedSurface& surface, const ShellMapSettings& se
 
 // B with fewer vertices, each where B's layout has it.
 struct CoarseTarget {
-  explicit CoarseTarget(const LaidOutShell& b, Progress* progress)
-      : shape(coarsened(b, progress)), metric(shape.surface, layoutOf(b, shape)) {}
+  explicit CoarseTarget(const LaidOutShell& b)
+      : shape(coarsened(b)), metric(shape.surface, layoutOf(b, shape)) {}
 
-  static CoarseSurface coarsened(const LaidOutShell& b, Progress* progress) {
+  static CoarseSurface coarsened(const LaidOutShell& b) {
     ProgressiveMesh mesh(b.surface.vertices.size(), b.surface.triangles);
     DecimateSettings settings;
     settings.vertices = kCoarseTarget;
     settings.layout = &b.layout;
     settings.keep.assign(b.surface.vertices.size(), 0);
     for (const int v : b.tips.vertices) settings.keep[v] = 1;
-    settings.progress = progress;
     decimate(mesh, b.surface.vertices, settings);
     return coarseSurface(b.surface, mesh);
   }
@@ -139,8 +135,7 @@ Candidates firstMaps(const LaidOutShell& a, const LaidOutShell& b,
                 : settings.refine ? std::max(kTried, static_cast<std::size_t>(settings.candidates))
                                   : 1;
   search.seed = settings.seed;
-  search.progress = settings.progress;
-  const CoarseTarget target(b, settings.progress);
+  const CoarseTarget target(b);
   return sphereCandidates(a.surface, a.layout, a.tips, target.shape.surface, target.metric, b.tips,
                           search);
 }
@@ -166,7 +161,6 @@ std::unique_ptr<MapRefiner> startTorus(const LaidOutShell& a, const LaidOutShell
   coarsening.layout = &candidate.image;
   coarsening.keep.assign(a.surface.vertices.size(), 0);
   for (const Anchor& l : settings.landmarks) coarsening.keep[l.vertex] = 1;
-  coarsening.progress = settings.progress;
   decimate(mesh, a.surface.vertices, coarsening);
   const CoarseSurface coarse = coarseSurface(a.surface, mesh);
   Layout start = candidate.image;
@@ -176,7 +170,6 @@ std::unique_ptr<MapRefiner> startTorus(const LaidOutShell& a, const LaidOutShell
   CoarseMapSettings relax;
   for (const Anchor& l : settings.landmarks)
     relax.fixed.push_back({coarse.index[l.vertex], l.target});
-  relax.progress = settings.progress;
   std::optional<CoarseMap> map = relaxCoarse(coarse, start, b.metric, relax);
   if (!map) return nullptr;
   map->origin = fmt::format("twist {}{}", candidate.twist, candidate.reversed ? ", reversed" : "");
@@ -191,7 +184,6 @@ ShellMap mapTorus(const LaidOutShell& a, const LaidOutShell& b, const ShellMapSe
   for (const Anchor& l : settings.landmarks)
     search.landmarks.push_back({a.layout.place[l.vertex], l.target});
   search.seed = settings.seed;
-  search.progress = settings.progress;
   const std::vector<TorusCandidate> candidates =
       torusCandidates(a.surface, a.layout, b.surface, b.layout, search);
   Refiners all(candidates.size()), refiners;
@@ -201,7 +193,7 @@ ShellMap mapTorus(const LaidOutShell& a, const LaidOutShell& b, const ShellMapSe
         for (std::size_t i = begin; i < end; ++i)
           all[i] = startTorus(a, b, candidates[i], settings);
       },
-      settings.progress, "trying first maps");
+      "trying first maps");
   for (std::unique_ptr<MapRefiner>& r : all)
     if (r) refiners.push_back(std::move(r));
   if (refiners.empty() && !settings.landmarks.empty())

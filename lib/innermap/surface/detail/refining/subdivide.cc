@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/self_intersection.h"
 #include "innermap/mesh/triangle_tree.h"
 #include "innermap/surface/detail/refining/coarse_to_fine.h"
@@ -63,8 +64,7 @@ class Subdivision {
     const std::size_t before = surface_.vertices.size();
     std::vector<char> look(surface_.triangles.size(), 1);
     for (int round = 0; round < kRounds; ++round) {
-      reportProgress(settings_.progress, "splitting the source",
-                     static_cast<double>(round) / kRounds);
+      reportProgress("splitting the source", static_cast<double>(round) / kRounds);
       std::vector<char> marked = deviating(look);
       std::vector<std::pair<int, int>> edges =
           edgesToSplit(marked, [this](int t, int k) { return modelLength(t, k); });
@@ -73,8 +73,7 @@ class Subdivision {
         edges = edgesToSplit(marked, [this](int t, int k) { return imageLength(t, k); });
       }
       if (edges.empty()) break;
-      if (outOfTime(settings_.progress) ||
-          surface_.triangles.size() + 2 * edges.size() > settings_.triangles) {
+      if (outOfTime() || surface_.triangles.size() + 2 * edges.size() > settings_.triangles) {
         out.enough = false;
         break;
       }
@@ -107,13 +106,10 @@ class Subdivision {
         positions_[v] = onTarget(target_.locator(), image_.place[v]);
     });
     std::vector<char> out(triangles, 0);
-    parallelBlocks(
-        triangles, 256,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t t = begin; t < end; ++t)
-            if (look[t] && leavesTarget(static_cast<int>(t))) out[t] = 1;
-        },
-        settings_.progress);
+    parallelBlocks(triangles, 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t)
+        if (look[t] && leavesTarget(static_cast<int>(t))) out[t] = 1;
+    });
     markMissed(out);
     return out;
   }
@@ -134,18 +130,15 @@ class Subdivision {
     const Locator locator(surface_.triangles, image_);
     const Points& vertices = shell_.target.vertices;
     std::vector<int> missed(vertices.size(), -1);
-    parallelBlocks(
-        vertices.size(), 256,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t v = begin; v < end; ++v) {
-            const int t = locator.find(shell_.targetLayout.place[v]).triangle;
-            const Triangle& tri = surface_.triangles[t];
-            const TriangleTree own({positions_[tri[0]], positions_[tri[1]], positions_[tri[2]]},
-                                   {Triangle{0, 1, 2}});
-            if (!(own.closest(vertices[v]).distance < limit_)) missed[v] = t;
-          }
-        },
-        settings_.progress);
+    parallelBlocks(vertices.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        const int t = locator.find(shell_.targetLayout.place[v]).triangle;
+        const Triangle& tri = surface_.triangles[t];
+        const TriangleTree own({positions_[tri[0]], positions_[tri[1]], positions_[tri[2]]},
+                               {Triangle{0, 1, 2}});
+        if (!(own.closest(vertices[v]).distance < limit_)) missed[v] = t;
+      }
+    });
     for (const int t : missed)
       if (t >= 0) marked[t] = 1;
   }
@@ -153,8 +146,7 @@ class Subdivision {
   // Flat triangles cut across what is thin. Smaller ones do not, unless the target crosses itself.
   bool mayUncross() {
     if (uncrossings_ == 0 &&
-        !selfIntersections(shell_.target.vertices, shell_.target.triangles, {settings_.progress})
-             .empty())
+        !selfIntersections(shell_.target.vertices, shell_.target.triangles).empty())
       uncrossings_ = kUncrossings;
     return uncrossings_++ < kUncrossings;
   }
@@ -163,8 +155,7 @@ class Subdivision {
   // many, that the map itself is at fault.
   std::vector<char> crossing() {
     std::vector<char> out(surface_.triangles.size(), 0);
-    for (const Crossing& c :
-         selfIntersections(positions_, surface_.triangles, {settings_.progress}))
+    for (const Crossing& c : selfIntersections(positions_, surface_.triangles))
       out[c.first] = out[c.second] = 1;
     const auto count = static_cast<double>(std::count(out.begin(), out.end(), 1));
     fewestCrossing_ = std::min(fewestCrossing_, count);
@@ -292,7 +283,6 @@ class Subdivision {
     PullbackEnergy energy(surface_, mesh, image_, target_, 0);
     RelaxSettings relax;
     relax.steps = 1;
-    relax.progress = settings_.progress;
     std::vector<char> fixed(surface_.vertices.size(), 0);
     std::fill(fixed.begin(), fixed.begin() + first, 1);
     CoarseToFine(mesh, image_, energy, fixed, relax).relaxAll(2);

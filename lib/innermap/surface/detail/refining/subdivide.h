@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/closed_surface.h"
 #include "innermap/surface/detail/refining/target_metric.h"
 
@@ -29,7 +28,6 @@ struct SplitShell {
 struct SubdivideSettings {
   double tolerance = 0.005;         // of the target's diagonal, above 0
   std::size_t triangles = 4000000;  // most
-  Progress* progress = nullptr;
 };
 
 struct Subdivided {

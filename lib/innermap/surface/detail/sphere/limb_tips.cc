@@ -156,12 +156,10 @@ class Matcher {
 
 }  // namespace
 
-LimbTips limbTips(const ClosedSurface& surface, const Layout& layout, std::size_t vertices,
-                  Progress* progress) {
+LimbTips limbTips(const ClosedSurface& surface, const Layout& layout, std::size_t vertices) {
   ProgressiveMesh mesh(surface.vertices.size(), surface.triangles, layout.shift);
   DecimateSettings coarse;
   coarse.vertices = vertices;
-  coarse.progress = progress;
   decimate(mesh, surface.vertices, coarse);
   Points points = surface.vertices;
   const double scale = unitAreaScale(surface.vertices, surface.triangles);
@@ -180,7 +178,7 @@ LimbTips limbTips(const ClosedSurface& surface, const Layout& layout, std::size_
           for (std::size_t w = 0; w < n; ++w) average[v] += graph.area[w] * distance[v][w] / area;
         }
       },
-      progress, "finding limbs");
+      "finding limbs");
   std::vector<int> order(n);
   for (std::size_t v = 0; v < n; ++v) order[v] = static_cast<int>(v);
   std::stable_sort(order.begin(), order.end(),

@@ -4,7 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/layout.h"
 
 namespace innermap {
@@ -19,8 +18,7 @@ struct LimbTips {
 // Local maxima of the average geodesic distance (Hilaga, Shinagawa, Kohmura, Kunii, "Topology
 // matching for fully automatic similarity estimation of 3D shapes", SIGGRAPH 2001), on the surface
 // coarsened to `vertices`; distances along edges and across pairs of triangles.
-LimbTips limbTips(const ClosedSurface& surface, const Layout& layout, std::size_t vertices = 800,
-                  Progress* progress = nullptr);
+LimbTips limbTips(const ClosedSurface& surface, const Layout& layout, std::size_t vertices = 800);
 
 using TipPairs = std::vector<std::pair<int, int>>;  // tip of A, tip of B
 

@@ -117,7 +117,7 @@ std::vector<RotationCandidate> searchRotations(const std::vector<MapSample>& sam
           all[i].cost = costOf(all[i].rotation, samples, target, settings);
         }
       },
-      settings.progress, "trying rotations");
+      "trying rotations");
   const auto better = [](const RotationCandidate& x, const RotationCandidate& y) {
     return x.cost < y.cost;
   };
@@ -128,7 +128,7 @@ std::vector<RotationCandidate> searchRotations(const std::vector<MapSample>& sam
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) descend(all[i], samples, target, settings);
       },
-      settings.progress, "turning the best");
+      "turning the best");
   std::stable_sort(all.begin(), all.end(), better);
   std::vector<RotationCandidate> kept;
   for (const RotationCandidate& c : all) {

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/detail/refining/map_samples.h"
 
 namespace innermap {
@@ -21,7 +20,6 @@ struct RotationSearchSettings {
   double apart = 0.35;           // radians between those kept, at least
   const Points* targetNormals = nullptr;  // unit, #triangles of the target: normals should agree
   Points from, to;  // unit vectors that should go to one another, of two landmarks each
-  Progress* progress = nullptr;
 };
 
 // The best first. Cost: mean of ln^2 s1 + ln^2 s2 of the composed map over the samples, plus with

@@ -9,6 +9,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/surface/detail/refining/decimate.h"
 #include "innermap/surface/detail/refining/map_samples.h"
 #include "innermap/surface/detail/sphere/rotation_search.h"
@@ -107,7 +108,7 @@ class Trial {
     Maps found(starts.size());
     std::atomic<bool> some{false};
     parallel(starts.size(), [&](std::size_t i) {
-      if (some && outOfTime(settings_.progress)) return;
+      if (some && outOfTime()) return;
       CoarseMapSettings drawing = how;
       drawing.drawn = coarseAnchors(starts[i].drawn, coarse);
       found[i] = relax(rotatedCoarse(coarse, la_, starts[i].rotation), coarse, drawing);
@@ -126,7 +127,7 @@ class Trial {
     Maps found(2 * maps.size());
     std::atomic<bool> some{settings_.landmarks.empty()};
     parallel(found.size(), [&](std::size_t i) {
-      if (some && outOfTime(settings_.progress)) return;
+      if (some && outOfTime()) return;
       const CoarseMap& from = maps[i / 2];
       CoarseMapSettings how;
       how.fixed = coarseAnchors(settings_.landmarks, coarse);
@@ -158,7 +159,7 @@ class Trial {
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) body(i);
         },
-        settings_.progress, "trying first maps");
+        "trying first maps");
   }
 
   std::optional<CoarseMap> relax(const Layout& start, const CoarseSurface& coarse,
@@ -169,7 +170,6 @@ class Trial {
                          [&](const Anchor& f) { return f.vertex == d.vertex; });
     };
     how.drawn.erase(std::remove_if(how.drawn.begin(), how.drawn.end(), isFixed), how.drawn.end());
-    how.progress = settings_.progress;
     int blocked = -1;
     std::optional<CoarseMap> out = relaxCoarse(coarse, start, target_, how, &blocked);
     if (out && settings_.aligned) out->energy += normalCost(coarse, *out, target_, normals_);
@@ -193,12 +193,11 @@ class Trial {
 };
 
 CoarseSurface coarsened(const ClosedSurface& a, const Layout& la, ProgressiveMesh& mesh,
-                        const std::vector<char>& keep, std::size_t vertices, Progress* progress) {
+                        const std::vector<char>& keep, std::size_t vertices) {
   DecimateSettings settings;
   settings.vertices = vertices;
   settings.layout = &la;
   settings.keep = keep;
-  settings.progress = progress;
   decimate(mesh, a.vertices, settings);
   return coarseSurface(a, mesh);
 }
@@ -225,7 +224,6 @@ std::vector<MapStart> startsFor(const ClosedSurface& a, const Layout& la, const 
   if (settings.aligned) search.targetNormals = &normals;
   landmarkPlaces(settings.landmarks, la, search.from, search.to);
   requireOrientation(search.from, search.to);
-  search.progress = settings.progress;
   std::vector<MapStart> starts =
       sphereStarts(searchRotations(sampleSource(a, la, kSamples, settings.seed), target, search),
                    tipsA, tipsB, search.from, search.to);
@@ -245,11 +243,10 @@ Candidates sphereCandidates(const ClosedSurface& a, const Layout& la, const Limb
   for (const int v : tipsA.vertices) keep[v] = 1;
   for (const Anchor& l : settings.landmarks) keep[l.vertex] = 1;
   Candidates out{ProgressiveMesh(a.vertices.size(), a.triangles), {}, {}};
-  out.coarse =
-      coarsened(a, la, out.mesh, keep, kCoarse + 12 * settings.landmarks.size(), settings.progress);
+  out.coarse = coarsened(a, la, out.mesh, keep, kCoarse + 12 * settings.landmarks.size());
   ProgressiveMesh tinyMesh = out.mesh;
   const CoarseSurface tiny =
-      coarsened(a, la, tinyMesh, keep, kTiny + 4 * settings.landmarks.size(), settings.progress);
+      coarsened(a, la, tinyMesh, keep, kTiny + 4 * settings.landmarks.size());
 
   const Points normals = settings.aligned ? unitNormals(b) : Points{};
   std::vector<MapStart> starts = startsFor(a, la, tipsA, target, tipsB, normals, settings);

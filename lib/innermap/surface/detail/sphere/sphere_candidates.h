@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/detail/refining/coarse_map.h"
 #include "innermap/surface/detail/sphere/limb_tips.h"
 
@@ -16,7 +15,6 @@ struct SphereCandidateSettings {
   bool thorough = true;           // otherwise only rotations and the most promising limbs are tried
   std::size_t kept = 3;
   std::uint64_t seed = 1;
-  Progress* progress = nullptr;
 };
 
 // A surface coarsened, and maps of it; `mesh` is the surface's, coarsened.

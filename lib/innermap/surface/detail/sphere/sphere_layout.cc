@@ -100,10 +100,9 @@ void placeTetrahedron(const ProgressiveMesh& mesh, Layout& layout) {
 
 }  // namespace
 
-Layout layOutSphere(const ClosedSurface& surface, const SphereLayoutSettings& settings) {
+Layout layOutSphere(const ClosedSurface& surface) {
   ProgressiveMesh mesh(surface.vertices.size(), surface.triangles);
   DecimateSettings coarse;
-  coarse.progress = settings.progress;
   decimate(mesh, surface.vertices, coarse);
   if (mesh.vertexCount() != 4)
     throw DataError(surface.name +
@@ -115,7 +114,6 @@ Layout layOutSphere(const ClosedSurface& surface, const SphereLayoutSettings& se
   SphereEnergy energy(surface, mesh, layout);
   RelaxSettings relax;
   relax.stage = "laying out on the sphere";
-  relax.progress = settings.progress;
   CoarseToFine fine(mesh, layout, energy, {}, relax);
   fine.relaxAll(1);
   const int stuck = fine.refine(surface.vertices.size());

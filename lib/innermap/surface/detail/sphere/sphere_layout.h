@@ -1,14 +1,9 @@
 // A closed surface of genus 0 laid out on the unit sphere.
 #pragma once
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/layout.h"
 
 namespace innermap {
-
-struct SphereLayoutSettings {
-  Progress* progress = nullptr;
-};
 
 // One-to-one: every triangle has a positive tripleProduct, and areas are kept near their share (no
 // shrinking of limbs, as conformal maps have it). The surface is coarsened to a tetrahedron, whose
@@ -19,6 +14,6 @@ struct SphereLayoutSettings {
 //
 // Deterministic. Throws DataError when the surface is not of genus 0, or so degenerate that
 // rounding leaves no valid place for a vertex; Cancelled.
-Layout layOutSphere(const ClosedSurface& surface, const SphereLayoutSettings& settings = {});
+Layout layOutSphere(const ClosedSurface& surface);
 
 }  // namespace innermap

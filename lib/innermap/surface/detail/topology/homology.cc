@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "innermap/core/detail/disjoint_sets.h"
+#include "innermap/core/run.h"
 #include "innermap/surface/detail/topology/edge_distance.h"
 
 namespace innermap {
@@ -161,15 +162,14 @@ IntegerMatrix crossingsOf(const HomologyBasis& basis, const HalfEdges& edges) {
 
 }  // namespace
 
-HomologyBasis homologyBasis(const ClosedSurface& surface, const HalfEdges& edges,
-                            Progress* progress) {
-  throwIfCancelled(progress);
+HomologyBasis homologyBasis(const ClosedSurface& surface, const HalfEdges& edges) {
+  throwIfCancelled();
   const PathTree tree = shortestPaths(surface, 0);
-  throwIfCancelled(progress);
+  throwIfCancelled();
   const Cotree cotree = cotreeOf(edges, tree, surface.vertices);
   HomologyBasis basis;
   for (const int h : cotree.chords) {
-    throwIfCancelled(progress);
+    throwIfCancelled();
     basis.loops.push_back(treeLoop(tree.reachedBy, edges, h));
     basis.forms.push_back(dualCycle(cotree, edges, h));
   }

@@ -6,7 +6,6 @@
 
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/detail/topology/half_edges.h"
 #include "innermap/surface/layout.h"
 
@@ -31,8 +30,7 @@ struct HomologyBasis {
 };
 
 // Near linear in the number of triangles for few handles.
-HomologyBasis homologyBasis(const ClosedSurface& surface, const HalfEdges& edges,
-                            Progress* progress = nullptr);
+HomologyBasis homologyBasis(const ClosedSurface& surface, const HalfEdges& edges);
 
 // sum_i coefficients[i] form_i, for each half-edge.
 std::vector<int> combinedForm(const HomologyBasis& basis, const Integers& coefficients,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "innermap/core/detail/random.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -35,11 +36,11 @@ bool crosses(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const V
 }
 
 // Takes out corners as long as the triangles that go with them are empty.
-void shrink(Points& polygon, Progress* progress) {
+void shrink(Points& polygon) {
   for (bool changed = true; changed && polygon.size() > 3;) {
     changed = false;
     for (std::size_t i = 0; i < polygon.size() && polygon.size() > 3;) {
-      throwIfCancelled(progress);
+      throwIfCancelled();
       const std::size_t n = polygon.size(), before = (i + n - 1) % n, after = (i + 1) % n;
       bool empty = true;
       for (std::size_t j = (after + 1) % n; j != before && empty; j = (j + 1) % n) {
@@ -130,7 +131,7 @@ std::uint64_t alexander(const std::vector<Crossing>& crossings, std::uint64_t t)
 
 }  // namespace
 
-bool isKnotted(const Points& polygon, Progress* progress) {
+bool isKnotted(const Points& polygon) {
   // In general position: nothing coplanar, no crossing above a corner.
   Points points = polygon;
   const double size = boundingBox(polygon).diagonal();
@@ -141,7 +142,7 @@ bool isKnotted(const Points& polygon, Progress* progress) {
     for (int axis = 0; axis < 3; ++axis) p[axis] += 1e-10 * size * (random.uniform(drawn++) - 0.5);
     p = turn * p;
   }
-  shrink(points, progress);
+  shrink(points);
   if (points.size() <= 5) return false;  // knots have six sides or more
   const std::vector<Crossing> crossings = crossingsOf(points);
   if (crossings.size() < 3) return false;

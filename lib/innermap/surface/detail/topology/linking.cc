@@ -72,7 +72,7 @@ double gaussIntegral(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3&
 }
 
 LinkingNumbers linkingNumbers(const Points& vertices, const HalfEdges& edges,
-                              const std::vector<Loop>& loops, Progress* progress) {
+                              const std::vector<Loop>& loops) {
   const std::size_t n = loops.size();
   std::vector<std::vector<int>> paths;
   for (const Loop& loop : loops) paths.push_back(leftPath(edges, loop));
@@ -81,7 +81,7 @@ LinkingNumbers linkingNumbers(const Points& vertices, const HalfEdges& edges,
     for (std::size_t k = begin; k < end; ++k)
       integral[k] = linkingIntegral(vertices, edges, loops[k / n], paths[k % n]);
   };
-  parallelBlocks(n * n, 1, body, progress, "telling what bounds inside");
+  parallelBlocks(n * n, 1, body, "telling what bounds inside");
   LinkingNumbers out{IntegerMatrix(n, Integers(n, 0)), 0};
   for (std::size_t k = 0; k < n * n; ++k) {
     if (!std::isfinite(integral[k])) {

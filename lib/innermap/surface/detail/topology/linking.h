@@ -24,6 +24,6 @@ struct LinkingNumbers {
   double residual = 0;
 };
 LinkingNumbers linkingNumbers(const Points& vertices, const HalfEdges& edges,
-                              const std::vector<Loop>& loops, Progress* progress = nullptr);
+                              const std::vector<Loop>& loops);
 
 }  // namespace innermap

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/surface/detail/topology/linking.h"
 
 namespace innermap {
@@ -47,15 +48,15 @@ Points smoothed(const Points& vertices, const HalfEdges& edges) {
 }  // namespace
 
 BoundingClasses boundingClasses(const ClosedSurface& surface, const HalfEdges& edges,
-                                const HomologyBasis& basis, Progress* progress) {
+                                const HomologyBasis& basis) {
   Points vertices = surface.vertices;
   for (int attempt = 0, steps = 0; attempt <= kSmoothings; ++attempt) {
-    const LinkingNumbers linking = linkingNumbers(vertices, edges, basis.loops, progress);
+    const LinkingNumbers linking = linkingNumbers(vertices, edges, basis.loops);
     const BoundingClasses classes{leftKernel(linking.matrix),
                                   leftKernel(transposed(linking.matrix))};
     if (consistent(linking, basis, classes)) return classes;
     for (const int until = 1 << attempt; steps < until; ++steps) {
-      throwIfCancelled(progress);
+      throwIfCancelled();
       vertices = smoothed(vertices, edges);
     }
   }
@@ -66,8 +67,8 @@ BoundingClasses boundingClasses(const ClosedSurface& surface, const HalfEdges& e
 }
 
 TorusClasses torusClasses(const ClosedSurface& surface, const HalfEdges& edges,
-                          const HomologyBasis& basis, Progress* progress) {
-  const BoundingClasses classes = boundingClasses(surface, edges, basis, progress);
+                          const HomologyBasis& basis) {
+  const BoundingClasses classes = boundingClasses(surface, edges, basis);
   TorusClasses out{classes.inside[0], classes.outside[0]};
   const long long crossing = crossingNumber(basis, out.meridian, out.longitude);
   if (std::abs(crossing) != 1)

@@ -18,7 +18,7 @@ struct BoundingClasses {
 // consistent, a smoothed copy is asked.
 // Throws DataError, naming the surface, when no copy gives an answer.
 BoundingClasses boundingClasses(const ClosedSurface& surface, const HalfEdges& edges,
-                                const HomologyBasis& basis, Progress* progress = nullptr);
+                                const HomologyBasis& basis);
 
 // Genus 1: the meridian bounds inside, the longitude outside; the longitude crosses the meridian
 // once from right to left, seen from outside.
@@ -26,6 +26,6 @@ struct TorusClasses {
   Integers meridian, longitude;
 };
 TorusClasses torusClasses(const ClosedSurface& surface, const HalfEdges& edges,
-                          const HomologyBasis& basis, Progress* progress = nullptr);
+                          const HomologyBasis& basis);
 
 }  // namespace innermap

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "innermap/core/run.h"
 #include "innermap/mesh/detail/winding_number.h"
 
 namespace innermap {
@@ -39,7 +40,7 @@ bool contains(const Box3& outer, const Box3& inner) {
 
 }  // namespace
 
-std::vector<int> parentShells(const std::vector<ClosedSurface>& shells, Progress* progress) {
+std::vector<int> parentShells(const std::vector<ClosedSurface>& shells) {
   const std::size_t count = shells.size();
   std::vector<int> parent(count, -1);
   if (count < 2) return parent;
@@ -62,7 +63,7 @@ std::vector<int> parentShells(const std::vector<ClosedSurface>& shells, Progress
     for (std::size_t j = i + 1; j < count; ++j) {
       const std::size_t inner = order[j];
       if (!contains(boxes[outer], boxes[inner])) continue;
-      throwIfCancelled(progress);
+      throwIfCancelled();
       if (!winding) winding.emplace(shells[outer].vertices, shells[outer].triangles);
       std::size_t inside = 0;
       for (const Vec3& p : probes[inner])

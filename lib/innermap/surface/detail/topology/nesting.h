@@ -3,13 +3,12 @@
 
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/layout.h"
 
 namespace innermap {
 
 // #shells: the shell directly around each (the one of least volume that most of it is inside of),
 // or -1.
-std::vector<int> parentShells(const std::vector<ClosedSurface>& shells, Progress* progress);
+std::vector<int> parentShells(const std::vector<ClosedSurface>& shells);
 
 }  // namespace innermap

@@ -8,6 +8,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "innermap/core/run.h"
+
 namespace innermap {
 namespace {
 
@@ -212,15 +214,14 @@ class MeridianSearch {
 }  // namespace
 
 MeridianLoop shortestMeridian(const Points& vertices, const HalfEdges& edges,
-                              const HomologyBasis& basis, const MeridianQuery& query,
-                              Progress* progress) {
+                              const HomologyBasis& basis, const MeridianQuery& query) {
   MeridianSearch search(vertices, edges, basis, query);
   std::vector<char> source(vertices.size(), 0);
   for (const Loop& loop : basis.loops)
     for (const int h : loop) source[edges.tail(h)] = 1;
   for (int v = 0; v < static_cast<int>(vertices.size()); ++v) {
     if (!source[v] || query.blocked[v]) continue;
-    throwIfCancelled(progress);
+    throwIfCancelled();
     search.from(v);
   }
   MeridianLoop found = search.take();

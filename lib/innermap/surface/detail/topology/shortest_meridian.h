@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/detail/topology/homology.h"
 
 namespace innermap {
@@ -28,7 +27,6 @@ struct MeridianQuery {
 // Shortest paths on the covering surface on which exactly those combinations close, from all
 // vertices of the basis' loops, one of which every such loop meets (after Erickson and Whittlesey).
 MeridianLoop shortestMeridian(const Points& vertices, const HalfEdges& edges,
-                              const HomologyBasis& basis, const MeridianQuery& query,
-                              Progress* progress = nullptr);
+                              const HomologyBasis& basis, const MeridianQuery& query);
 
 }  // namespace innermap

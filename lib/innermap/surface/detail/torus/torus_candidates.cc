@@ -101,7 +101,7 @@ class Search {
           [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) descend(trials[i]);
           },
-          settings_.progress, "moving the best");
+          "moving the best");
       sort(trials);
     }
     std::vector<Trial> kept;
@@ -198,7 +198,7 @@ class Search {
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) trials[i].cost = costOf(trials[i]);
         },
-        settings_.progress, stage);
+        stage);
   }
 
   // The grid's best that are not next to a better one.

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/layout.h"
 
 namespace innermap {
@@ -19,7 +18,6 @@ struct TorusSearch {
   int grid = 24;              // translations along each period
   std::size_t samples = 250;  // on either surface
   std::uint64_t seed = 1;
-  Progress* progress = nullptr;
 };
 
 struct TorusCandidate {

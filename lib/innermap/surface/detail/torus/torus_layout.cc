@@ -47,16 +47,16 @@ void normalize(Layout& layout) {
 
 }  // namespace
 
-Layout layOutTorus(const ClosedSurface& surface, Progress* progress) {
+Layout layOutTorus(const ClosedSurface& surface) {
   const HalfEdges edges(surface.triangles);
-  const HomologyBasis basis = homologyBasis(surface, edges, progress);
+  const HomologyBasis basis = homologyBasis(surface, edges);
   if (basis.size() != 2)
     throw DataError(fmt::format("{}: has {} handles, not one", surface.name, basis.size() / 2));
-  const TorusClasses classes = torusClasses(surface, edges, basis, progress);
-  Layout layout = relaxedTorus(surface, cornerShifts(basis, classes, edges), progress);
+  const TorusClasses classes = torusClasses(surface, edges, basis);
+  Layout layout = relaxedTorus(surface, cornerShifts(basis, classes, edges));
   normalize(layout);
   moveIntoCell(surface.triangles, layout);
-  if (isKnotted(meridianCurve(surface, layout), progress))
+  if (isKnotted(meridianCurve(surface, layout)))
     throw DataError(fmt::format(
         "{}: no loop around its handle bounds a disc inside the solid, as the tunnel is knotted; "
         "such solids cannot be mapped without cutting the tunnel open",

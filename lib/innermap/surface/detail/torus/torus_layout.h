@@ -1,7 +1,6 @@
 // A closed surface of genus 1 laid out on the plane modulo a lattice.
 #pragma once
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/layout.h"
 
 namespace innermap {
@@ -21,7 +20,7 @@ namespace innermap {
 // Deterministic. Throws DataError when the surface is not of genus 1, when no loop around its
 // handle bounds a disc inside the solid (a tunnel that is knotted), or when it passes through
 // itself so that this cannot be told; Cancelled.
-Layout layOutTorus(const ClosedSurface& surface, Progress* progress = nullptr);
+Layout layOutTorus(const ClosedSurface& surface);
 
 // Brings the places of all vertices into one cell of the lattice; the first corners' shifts are 0
 // then. The map stays what it is.

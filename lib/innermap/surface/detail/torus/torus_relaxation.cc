@@ -214,12 +214,10 @@ Layout harmonicTorus(std::size_t vertices, const std::vector<Triangle>& triangle
   return layout;
 }
 
-Layout relaxedTorus(const ClosedSurface& surface, const std::vector<CornerShifts>& shift,
-                    Progress* progress) {
+Layout relaxedTorus(const ClosedSurface& surface, const std::vector<CornerShifts>& shift) {
   ProgressiveMesh mesh(surface.vertices.size(), surface.triangles, shift);
   DecimateSettings coarse;
   coarse.vertices = kCoarsest;
-  coarse.progress = progress;
   decimate(mesh, surface.vertices, coarse);
   Layout layout = coarseLayout(mesh, shift);
   TorusEnergy energy(surface, mesh, layout);
@@ -233,7 +231,6 @@ Layout relaxedTorus(const ClosedSurface& surface, const std::vector<CornerShifts
   RelaxSettings relax;
   relax.enough = 1e-2;
   relax.stage = "laying out on the torus";
-  relax.progress = progress;
   CoarseToFine fine(mesh, layout, energy, {}, relax);
   fine.relaxAll(kFirstSweeps);
   const int stuck = fine.refine(mesh.capacity());

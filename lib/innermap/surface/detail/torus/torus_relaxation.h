@@ -1,14 +1,12 @@
 // The hierarchical layout of a torus whose periods are known.
 #pragma once
 
-#include "innermap/core/progress.h"
 #include "innermap/surface/layout.h"
 
 namespace innermap {
 
 // shift: the periods that the corners of each triangle stand apart (layout.h). See torus_layout.h.
-Layout relaxedTorus(const ClosedSurface& surface, const std::vector<CornerShifts>& shift,
-                    Progress* progress);
+Layout relaxedTorus(const ClosedSurface& surface, const std::vector<CornerShifts>& shift);
 
 // The triangles `alive` (all when empty) laid out by the harmonic map with equal weights: each
 // vertex at the mean of its neighbours. The lattice is the unit square's.

@@ -32,7 +32,7 @@ void writeRows(ExrOutputStream& stream, int rows) {
 
 TEST(ExrOutputStream, KnowsWhenAChunkIsMissing) {
   std::ostringstream whole, part;
-  ExrOutputStream first("whole.exr", whole, nullptr), second("part.exr", part, nullptr);
+  ExrOutputStream first("whole.exr", whole), second("part.exr", part);
   writeRows(first, 64);
   EXPECT_NO_THROW(first.requireComplete());
   writeRows(second, 63);

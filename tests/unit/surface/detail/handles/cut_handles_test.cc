@@ -5,6 +5,7 @@
 #include <set>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/surface/detail/handles/cut_alike.h"
 #include "innermap/surface/detail/handles/match_handles.h"
 #include "innermap/surface/detail/sphere/sphere_layout.h"
@@ -155,9 +156,10 @@ TEST(CutHandles, KnottedTunnelsAreRefused) {
   } catch (const DataError& error) {
     EXPECT_NE(std::string(error.what()).find("knotted"), std::string::npos) << error.what();
   }
-  Progress progress;
-  progress.cancel();
-  EXPECT_THROW(cutHandles(plate(2), &progress), Cancelled);
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(cutHandles(plate(2)), Cancelled);
 }
 
 struct Laid {

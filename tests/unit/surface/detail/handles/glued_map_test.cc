@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/surface/detail/refining/target_metric.h"
 #include "surface/handle_shapes.h"
 
@@ -128,9 +129,9 @@ TEST(GluedMapRelease, MeetsLandmarks) {
 TEST(GluedMap, CanBeCancelled) {
   const CutPair pair = cutAlike(handleLoops(plate(2)), handleLoops(plate(2, 2)));
   GluedMapSettings settings;
-  Progress progress;
-  progress.cancel();
-  settings.progress = &progress;
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
   EXPECT_THROW(gluedMap(pair, settings), Cancelled);
 }
 

@@ -7,6 +7,7 @@
 
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/read.h"
 #include "innermap/surface/closed_surface.h"
 #include "mesh/shapes.h"
@@ -83,11 +84,10 @@ TEST(SphereLayout, OtherTopologyIsRefused) {
 }
 
 TEST(SphereLayout, Cancels) {
-  Progress progress;
-  progress.cancel();
-  SphereLayoutSettings settings;
-  settings.progress = &progress;
-  EXPECT_THROW(layOutSphere(shapes::closed(shapes::icosphere(3), 0), settings), Cancelled);
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(layOutSphere(shapes::closed(shapes::icosphere(3), 0)), Cancelled);
 }
 
 TEST(SphereLayout, RealMeshes) {

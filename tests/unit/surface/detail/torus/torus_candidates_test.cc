@@ -6,6 +6,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/read.h"
 #include "innermap/surface/detail/refining/locate.h"
 #include "innermap/surface/detail/torus/torus_layout.h"
@@ -139,9 +140,9 @@ TEST(TorusCandidates, SameForAnyNumberOfThreadsAndCancelled) {
     const ThreadLimit one(1);
     EXPECT_EQ(torusCandidates(a, onA, b, onB, settings).at(0).cost, cost);
   }
-  Progress progress;
-  progress.cancel();
-  settings.progress = &progress;
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
   EXPECT_THROW(torusCandidates(a, onA, b, onB, settings), Cancelled);
 }
 

@@ -6,6 +6,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/mesh/read.h"
 #include "surface/handle_shapes.h"
 
@@ -144,9 +145,10 @@ TEST(TorusLayout, SameForAnyNumberOfThreads) {
 
 TEST(TorusLayout, OtherGeneraAreRefused) {
   EXPECT_THROW(layOutTorus(closed(shapes::icosphere(2), 0)), DataError);
-  Progress progress;
-  progress.cancel();
-  EXPECT_THROW(layOutTorus(closed(shapes::torus(30, 20), 1), &progress), Cancelled);
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(layOutTorus(closed(shapes::torus(30, 20), 1)), Cancelled);
 }
 
 TEST(MeridianCurve, ClosesAfterOneMeridian) {
