@@ -85,12 +85,12 @@ TEST(SurfaceProblem, FreshSamplesAreTheFirstDrawOfTheAdaptiveProblem) {
 }
 
 TEST(SurfaceProblem, Cancels) {
+  const Solid solid(shapes::icosphere(2));
+  const auto values = polynomial(solid);
   RunContext run;
   run.cancel();
-  SurfaceProblemSettings settings;
   const RunScope scope(run);
-  const Solid solid(shapes::icosphere(2));
-  EXPECT_THROW(surfaceProblem(solid, polynomial(solid), settings), Cancelled);
+  EXPECT_THROW(surfaceProblem(solid, values, {}), Cancelled);
 }
 
 }  // namespace

@@ -358,9 +358,9 @@ TEST(FastSum, CanBeCancelled) {
   const Points points = testing::randomPoints(20000, 1), sources = testing::randomPoints(3000, 2);
   RunContext run;
   run.cancel();
-  FastSumSettings settings = hierarchical(1e-6);
-  const RunScope scope(run);
+  const FastSumSettings settings = hierarchical(1e-6);
   const FastSum sum(sources, testing::randomWeights(3000, 3, 1));
+  const RunScope scope(run);
   EXPECT_THROW(sum.at(points, settings), Cancelled);
   EXPECT_THROW(sum.onLattice(
                    ballOfBlocks(16), [](std::size_t, const double*, const double*) {}, settings),

@@ -195,11 +195,13 @@ TEST(IterativeSolver, RefusesWhatCannotBe) {
   EXPECT_THROW(IterativeSolver(p.collocation, {}), SettingError);
   EXPECT_THROW(IterativeSolver(p.collocation, {p.coarse, {{}, 1, 1}}), SettingError);
   EXPECT_THROW(IterativeSolver(p.coarse.sources, {p.coarse, p.fine}), SettingError);
-  RunContext run;
-  run.cancel();
   s.maxMemory = 0;
-  const RunScope scope(run);
-  EXPECT_THROW(p.solver(s), Cancelled);
+  {
+    RunContext run;
+    run.cancel();
+    const RunScope scope(run);
+    EXPECT_THROW(p.solver(s), Cancelled);
+  }
   p.fine.spacing = 0;
   EXPECT_THROW(p.solver(), SettingError);
 }

@@ -85,11 +85,13 @@ TEST(HarmonicCells, RefusesWhatIsNoMeshOfTetrahedra) {
   EXPECT_THROW(harmonicOnCells(mesh, valuesOf(mesh, f), settings), DataError);
   settings.residual = 2;
   EXPECT_THROW(harmonicOnCells(mesh, valuesOf(mesh, f), settings), SettingError);
-  RunContext run;
-  run.cancel();
   settings = {};
-  const RunScope scope(run);
-  EXPECT_THROW(harmonicOnCells(mesh, valuesOf(mesh, f), settings), Cancelled);
+  {
+    RunContext run;
+    run.cancel();
+    const RunScope scope(run);
+    EXPECT_THROW(harmonicOnCells(mesh, valuesOf(mesh, f), settings), Cancelled);
+  }
   std::swap(mesh.tetrahedra[5][0], mesh.tetrahedra[5][1]);
   EXPECT_THROW(harmonicOnCells(mesh, valuesOf(mesh, f)), DataError);
 }

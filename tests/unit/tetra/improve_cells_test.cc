@@ -129,11 +129,13 @@ TEST(ImproveCells, SaysWhatIsWrongAndIsCancelled) {
   settings = {};
   settings.passes = 0;
   EXPECT_THROW(improveCells(c.mesh, c.surface, c.cells, settings), SettingError);
-  RunContext run;
-  run.cancel();
   settings = {};
-  const RunScope scope(run);
-  EXPECT_THROW(improveCells(c.mesh, c.surface, c.cells, settings), Cancelled);
+  {
+    RunContext run;
+    run.cancel();
+    const RunScope scope(run);
+    EXPECT_THROW(improveCells(c.mesh, c.surface, c.cells, settings), Cancelled);
+  }
   c.cells.onSurface.pop_back();
   EXPECT_THROW(improveCells(c.mesh, c.surface, c.cells), DataError);
 }

@@ -197,11 +197,13 @@ TEST(InverseMap, RefusesBadSettingsAndObeysCancel) {
   settings = {};
   settings.outside.distance = -1;
   EXPECT_THROW(invert(chargedMap(), ball(), 16, settings), SettingError);
-  RunContext run;
-  run.cancel();
   settings = {};
-  const RunScope scope(run);
-  EXPECT_THROW(invert(chargedMap(), ball(), 16, settings), Cancelled);
+  {
+    RunContext run;
+    run.cancel();
+    const RunScope scope(run);
+    EXPECT_THROW(invert(chargedMap(), ball(), 16, settings), Cancelled);
+  }
   settings = {};
   settings.maxMemory = 1000;
   EXPECT_THROW(invert(chargedMap(), ball(), 16, settings), MemoryError);

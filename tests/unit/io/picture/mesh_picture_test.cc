@@ -121,11 +121,13 @@ TEST(MeshPicture, RefusesWhatCannotBeShown) {
   MeshPictureSettings settings = frontal();
   settings.from = {{0, 0, 0}};
   EXPECT_THROW(writeMeshPicture(path, {square()}, settings), SettingError);
-  RunContext run;
-  run.cancel();
   settings = frontal();
-  const RunScope scope(run);
-  EXPECT_THROW(writeMeshPicture(path, {square()}, settings), Cancelled);
+  {
+    RunContext run;
+    run.cancel();
+    const RunScope scope(run);
+    EXPECT_THROW(writeMeshPicture(path, {square()}, settings), Cancelled);
+  }
   EXPECT_FALSE(std::filesystem::exists(path));
   EXPECT_THROW(writeMeshPicture("/nowhere/a.png", {square()}, frontal()), FileError);
 }

@@ -145,10 +145,11 @@ TEST(TorusLayout, SameForAnyNumberOfThreads) {
 
 TEST(TorusLayout, OtherGeneraAreRefused) {
   EXPECT_THROW(layOutTorus(closed(shapes::icosphere(2), 0)), DataError);
+  const ClosedSurface torus = closed(shapes::torus(30, 20), 1);
   RunContext run;
   run.cancel();
   const RunScope scope(run);
-  EXPECT_THROW(layOutTorus(closed(shapes::torus(30, 20), 1)), Cancelled);
+  EXPECT_THROW(layOutTorus(torus), Cancelled);
 }
 
 TEST(MeridianCurve, ClosesAfterOneMeridian) {
