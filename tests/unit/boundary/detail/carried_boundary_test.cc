@@ -71,9 +71,9 @@ TEST_F(Carried, LaterOnesAreOfTheImage) {
 // is off would stand inside.
 TEST_F(Carried, NoChargeStandsInsideTheExactImage) {
   settings.chord = 10;
-  const Solid coarse(shapes::icosphere(2));
+  const Solid coarse(shapes::icosphere(1));
   CarriedBoundary boundary(coarse, settings);
-  const HarmonicMap map = bending({0, 0, 0}, 0.4);
+  const HarmonicMap map = bending({0, 0, 0}, 0.8);
   boundary.advance(map, false);
   const Points still(coarse.repaired().mesh.vertices.size());
   const AdaptiveProblem problem = boundary.problem(still, coarse.diagonal());
