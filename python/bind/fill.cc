@@ -43,10 +43,8 @@ py::object tetrahedra(const Arguments& a, TetrahedralizeOptions& o) {
   std::size_t at = 0;
   const Mesh mesh = takeMesh(a, at, "mesh");
   o.settings.edge = o.edge.value_or(0);
-  Tetrahedralization made = call(o.call, [&]() {
-    SolidSettings solid;
-    return tetrahedralization(Solid(mesh, solid), with(o.call, o.settings));
-  });
+  Tetrahedralization made =
+      call(o.call, [&]() { return tetrahedralization(Solid(mesh), with(o.call, o.settings)); });
   const CellQuality quality = call(o.call, [&]() { return cellQuality(made.mesh); });
   setQualityFields(made.mesh, quality);
   py::dict figures;

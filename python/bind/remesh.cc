@@ -141,8 +141,7 @@ py::object compareFem(const Arguments& a, CompareOptions& o) {
                     settings.maxMemory, "use lower resolutions");
       return compareFemOnMap(pair, settings);
     }
-    SolidSettings ofSolid;
-    const Solid solid(source, ofSolid);
+    const Solid solid(source);
     requireMemory("finite elements", processMemory(compareFemMemory(solid, settings)),
                   settings.maxMemory, "use lower resolutions");
     return compareFemOnFunctions(solid, settings);

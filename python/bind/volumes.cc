@@ -167,8 +167,7 @@ py::object voxelize(const Arguments& a, VoxelizeOptions& o) {
     LevelSetSettings settings = with(o.call, o.levelSet);
     settings.resolution = o.grid.resolution.value_or(0);
     settings.voxelSize = o.grid.voxelSize.value_or(0);
-    SolidSettings ofSolid;
-    const Solid solid(mesh, ofSolid);
+    const Solid solid(mesh);
     requireMemory("voxelizing",
                   processMemory(voxelizeMemory(solid, settings, mesh, o.fog, o.attributes)),
                   settings.maxMemory, "use larger voxels");

@@ -39,10 +39,10 @@ bool isFlat(const Mesh& mesh) {
 }
 
 // Of the union where parts overlap; 0 where they cancel.
-double volumeOf(const Mesh& closed, bool overlaps, const SolidSettings& settings) {
+double volumeOf(const Mesh& closed, bool overlaps) {
   if (!overlaps) return std::abs(signedVolume(closed));
   try {
-    return Solid(closed, settings).volume();
+    return Solid(closed).volume();
   } catch (const DataError&) {
     return 0;
   }
@@ -65,8 +65,7 @@ SourceBoundary makeSourceBoundary(Mesh mesh) {
   StageSeconds seconds;
   const MeshReport checked = timed(seconds, "check", [&] { return check(mesh); });
   refuseTangle(mesh, checked.selfIntersections);
-  SolidSettings solidSettings;
-  const Solid solid = timed(seconds, "solid", [&] { return Solid(mesh, solidSettings); });
+  const Solid solid = timed(seconds, "solid", [&] { return Solid(mesh); });
   SourceBoundary out{std::move(mesh), checked, solid, {}, {}, std::move(seconds)};
   for (const std::string& note : solid.repaired().notes)
     out.notes.push_back(out.mesh.name + ": " + note);
@@ -105,9 +104,7 @@ TargetBoundary makeTargetBoundary(const Solid& source, const Mesh& target) {
     throw DataError(target.name + ": all vertices are in one place; give a target with extent");
   if (isFlat(moved))
     throw DataError(target.name + ": lies in a plane, so it has no inside; give another target");
-  SolidSettings solidSettings;
-  out.volume = timed(out.seconds, "solid",
-                     [&] { return volumeOf(moved, source.overlaps(), solidSettings); });
+  out.volume = timed(out.seconds, "solid", [&] { return volumeOf(moved, source.overlaps()); });
   if (!(out.volume > kNoVolume * std::pow(out.diagonal, 3))) {
     out.volume = 0;
     out.warnings.push_back(
@@ -137,8 +134,7 @@ BoundaryPair makeBoundaryPair(Mesh source, Mesh target) {
 }
 
 Solid makeTargetSolid(const BoundaryPair& pair) {
-  SolidSettings solidSettings;
-  return Solid(pair.target.mesh(pair.solid(), pair.targetMesh.name), solidSettings);
+  return Solid(pair.target.mesh(pair.solid(), pair.targetMesh.name));
 }
 
 }  // namespace innermap

@@ -67,13 +67,12 @@ Obstacle obstacleOf(const Mesh& mesh) {
 OuterSurface outerSurfaceOf(const Mesh& mesh, const Obstacle& obstacle,
                             const LayOutSettings& settings) {
   refuseTangle(mesh, obstacle.crossings);
-  SolidSettings solidSettings;
   OuterSurfaceSettings how;
   how.resolution = settings.outerResolution;
   how.handles = settings.handles ? settings.handles : obstacle.handles;
   how.onePiece = obstacle.handles.has_value();
   how.maxMemory = settings.maxMemory;
-  return outerSurface(Solid(mesh, solidSettings), how);
+  return outerSurface(Solid(mesh), how);
 }
 
 constexpr std::size_t kNotedCuts = 3;

@@ -212,8 +212,7 @@ OuterSurface enlargedOuterSurface(const Solid& solid, const OuterSurfaceSettings
   const Vec3 centre = solid.box().center();
   Mesh mesh = solid.repaired().mesh;
   for (Vec3& v : mesh.vertices) v = scale * (v - centre);
-  SolidSettings solidSettings;
-  OuterSurface out = outerSurface(Solid(mesh, solidSettings), settings);
+  OuterSurface out = outerSurface(Solid(mesh), settings);
   out.edge /= scale;
   for (Vec3& v : out.mesh.vertices) v = centre + v / scale;
   for (Box3& cap : out.caps) cap = {centre + cap.lower / scale, centre + cap.upper / scale};

@@ -129,14 +129,12 @@ void measureFeatures(const Mesh& surface, const HexahedralizeSettings& settings,
 }
 
 void measure(const Mesh& surface, const HexahedralizeSettings& settings, Hexahedralization& out) {
-  HexahedronCheckSettings checking;
-  out.after = checkHexahedra(out.mesh, checking);
+  out.after = checkHexahedra(out.mesh);
   out.quality = cellQuality(out.mesh);
   setQualityFields(out.mesh, out.quality);
-  SolidSettings making;
   BoundaryFitSettings fitting;
   fitting.seed = settings.seed + 1;  // other points than those that shaped the hexahedra
-  out.boundary = boundaryFit(out.mesh, Solid(surface, making), fitting);
+  out.boundary = boundaryFit(out.mesh, Solid(surface), fitting);
   measureFeatures(surface, settings, out);
 }
 
@@ -165,8 +163,7 @@ Hexahedralization attempt(const Mesh& mesh, const HexahedralizeSettings& setting
   out.notes = out.polycube.notes;
   out.pieces = settings.pieces;
   Carried carried = carry(mesh, settings, out);
-  HexahedronCheckSettings checking;
-  out.before = checkHexahedra(carried.hexes.mesh, checking);
+  out.before = checkHexahedra(carried.hexes.mesh);
   HexShapingSettings shaping;
   shaping.seed = settings.seed;
   timed(out.seconds, "shape",

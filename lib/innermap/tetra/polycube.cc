@@ -183,8 +183,7 @@ Polycube makePolycube(const Mesh& mesh, const PolycubeSettings& settings) {
                        fmt::format("must be from {} to {}, or 0 to have it chosen", kLeast, kMost));
   StageSeconds seconds;
   const std::vector<int> handles = handlesOf(mesh);
-  SolidSettings solidSettings;
-  const Solid solid = timed(seconds, "solid", [&] { return Solid(mesh, solidSettings); });
+  const Solid solid = timed(seconds, "solid", [&] { return Solid(mesh); });
   const Search search{solid, handles, settings};
   std::optional<Polycube> out = timed(seconds, "blocks", [&] {
     return settings.blocks ? search.at(settings.blocks) : search.chosen();

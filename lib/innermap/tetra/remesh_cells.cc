@@ -98,8 +98,7 @@ class Remesher {
   }
 
   CellRepair repaired(const CellMesh& mesh, const Mesh& surface, CarriedCells& cells) const {
-    RepairCellsSettings repairing;
-    return repairCells(mesh, surface, cells, repairing);
+    return repairCells(mesh, surface, cells);
   }
 
   CarriedCells broughtBack() {

@@ -54,9 +54,8 @@ Tetrahedralization tetrahedralizeScaled(const Solid& solid, double spacing,
   mesh.triangles = solid.repaired().mesh.triangles;
   for (const Vec3& v : solid.repaired().mesh.vertices)
     mesh.vertices.push_back(scale * (v - centre));
-  SolidSettings solidSettings;
   settings.edge = scale * spacing;
-  Tetrahedralization result = tetrahedralization(Solid(mesh, solidSettings), settings);
+  Tetrahedralization result = tetrahedralization(Solid(mesh), settings);
   result.edge /= scale;
   result.sharpRms /= scale;
   result.sharpMax /= scale;

@@ -110,8 +110,7 @@ void CarriedBoundary::advance(const HarmonicMap& step, bool last) {
 
 // Those that stand where the mesh about the present solid is as good as exact at their distance
 // from it: elsewhere a charge could touch the exact images, or stand inside of them.
-Points CarriedBoundary::known(const Points& charges, double distance,
-                              const PlacesToValues& values) {
+Points CarriedBoundary::known(const Points& charges, double distance, const SurfaceValues& values) {
   std::vector<SurfacePoint> feet(charges.size());
   parallelBlocks(charges.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)

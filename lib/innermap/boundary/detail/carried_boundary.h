@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <utility>
 #include <vector>
@@ -48,10 +47,8 @@ class CarriedBoundary {
     std::size_t steps = 0;
   };
 
-  using PlacesToValues = std::function<Matrix(const std::vector<SurfacePoint>&)>;
-
   Points carried(Points points, std::size_t firstStep) const;
-  Points known(const Points& charges, double distance, const PlacesToValues& values);
+  Points known(const Points& charges, double distance, const SurfaceValues& values);
   void carrySurface();  // by the last step
   // Random places on the source's repaired mesh, uniform by its area; those of draw 0 are
   // freshSamples'.

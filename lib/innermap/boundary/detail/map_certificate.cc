@@ -71,8 +71,7 @@ double trianglesOff(const ComposedMap& map, const BoundaryPair& pair, double acc
       }
     return out;
   };
-  TriangleErrorSettings s;
-  return triangleError(pair.solid().repaired().mesh, pair.target.moved, slopes, s) /
+  return triangleError(pair.solid().repaired().mesh, pair.target.moved, slopes) /
          pair.target.diagonal;
 }
 

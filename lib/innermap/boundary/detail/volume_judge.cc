@@ -64,11 +64,9 @@ struct VolumeJudge::Placed {
 
 VolumeJudge::Placed::Placed(const ClosedSurface& surface) {
   const Mesh mesh = meshOf(surface);
-  SolidSettings solidSettings;
-  const Solid solid(mesh, solidSettings);
+  const Solid solid(mesh);
   const double spacing = std::sqrt(solid.area() / static_cast<double>(kCharges));
-  SampleSettings sampling;
-  at = blueNoiseSamples(mesh, kCollocation, sampling);
+  at = blueNoiseSamples(mesh, kCollocation);
   collocation = interpolate(mesh.vertices, mesh.triangles, at);
   SourceSettings charges;
   charges.count = kCharges;

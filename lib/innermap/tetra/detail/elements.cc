@@ -76,7 +76,6 @@ FiniteElements solveElements(const Solid& solid, const std::function<Vec3(const 
   cells.resolution = settings.resolution;
   cells.keepTopology = false;
   cells.maxMemory = settings.maxMemory;
-  HarmonicCellsSettings solving;
   const auto start = std::chrono::steady_clock::now();
   FiniteElements e;
   Tetrahedralization made = tetrahedralization(solid, cells);
@@ -94,7 +93,7 @@ FiniteElements solveElements(const Solid& solid, const std::function<Vec3(const 
       for (int k = 0; k < 3; ++k) given(v, static_cast<std::size_t>(k)) = value[k];
     }
   });
-  HarmonicCells solved = harmonicOnCells(e.mesh, given, solving);
+  HarmonicCells solved = harmonicOnCells(e.mesh, given);
   e.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   e.edge = made.edge;
   e.unknowns = solved.unknowns;
