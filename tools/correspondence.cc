@@ -169,6 +169,7 @@ void reportOuter(const std::string& key, const std::optional<OuterSurface>& take
   report.set(key + ".edge", outer.edge);
   report.set(key + ".vertices", outer.mesh.vertices.size());
   report.set(key + ".handles", outer.topology.handles);
+  report.set(key + ".inside_out", outer.insideOut);
   report.set(key + ".left_out", outer.leftOut);
   report.set(key + ".left_out_share", outer.leftOutShare);
   report.set(key + ".apart_p99", outer.apartP99);

@@ -76,6 +76,7 @@ OuterSurface outerSurfaceOf(const Mesh& mesh, const Obstacle& obstacle,
 }
 
 constexpr std::size_t kNotedCuts = 3;
+constexpr double kFewInsideOut = 0.005;  // of the surface: slivers where parts cross
 
 std::vector<std::string> notesOn(const OuterSurface& outer, const std::string& name) {
   std::vector<std::string> notes;
@@ -87,6 +88,11 @@ std::vector<std::string> notesOn(const OuterSurface& outer, const std::string& n
   if (!outer.caps.empty())
     notes.push_back(fmt::format("{}: {} hole{} capped", name, outer.caps.size(),
                                 outer.caps.size() == 1 ? "" : "s"));
+  if (outer.insideOut > kFewInsideOut)
+    notes.push_back(fmt::format(
+        "{}: {:.2g}% of its surface is turned inside out (winding number -1), and what that "
+        "encloses is left out; turn those faces round, or move that part back",
+        name, 100 * outer.insideOut));
   if (outer.leftOut > 0)
     notes.push_back(fmt::format("{}: {} part{} of it left out, {:.2g}% of the volume", name,
                                 outer.leftOut, outer.leftOut == 1 ? " is" : "s are",

@@ -247,7 +247,8 @@ MapGrids Evaluation::run() {
   for (const LeafTotals& t : totals) sum.add(t);
   const double cell = voxel_ * voxel_ * voxel_;
   out.volume = sum.volume * cell;
-  out.harmonicTotal = sum.harmonic * cell / solid_.volume();
+  // By the volume that the voxels sum to, so that a rigid map has 3 at every resolution.
+  out.harmonicTotal = sum.volume > 0 ? sum.harmonic / sum.volume : 0;
   out.deformationTotal = sum.deformation * cell;
   out.foldedFraction = sum.volume > 0 ? sum.folded / sum.volume : 0;
   out.jacobianMin = sum.interior ? sum.jacobianMin : 0;

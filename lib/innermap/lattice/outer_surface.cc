@@ -236,6 +236,7 @@ OuterSurface outerSurface(const Solid& solid, const OuterSurfaceSettings& settin
                     ": has no outer surface, all parts are thinner than a cell of the lattice; "
                     "give a finer one (surface resolution)");
   out.caps = capBoxes(solid.repaired());
+  out.insideOut = solid.insideOut();
   out.leftOut = parts.leftOut;
   out.leftOutShare = parts.leftOutShare;
   const std::vector<int> handles = wantedHandles(solid, signs, parts, settings);

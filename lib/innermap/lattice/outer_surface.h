@@ -39,6 +39,7 @@ struct OuterSurface {
   // the volume.
   std::size_t leftOut = 0;
   double leftOutShare = 0;
+  double insideOut = 0;  // as Solid::insideOut()
   // Of the solid's surface (Solid::surface()) from the mesh, fractions of the diagonal; the cuts
   // are part of the mesh alone.
   double apartP99 = 0, apartMax = 0;

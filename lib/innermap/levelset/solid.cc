@@ -57,6 +57,7 @@ SurfacePoint Solid::address(const SurfacePoint& onSurface) const {
 }
 
 bool Solid::overlaps() const { return !body().exposed().whole; }
+double Solid::insideOut() const { return body().exposed().negativeShare; }
 const Box3& Solid::box() const { return body().box(); }
 double Solid::diagonal() const { return body().box().diagonal(); }
 double Solid::area() const { return body().area(); }

@@ -36,7 +36,10 @@ class Solid {
   // The address on repaired().mesh of a point given on surface(), and so on any target.
   SurfacePoint address(const SurfacePoint& onSurface) const;
 
-  bool overlaps() const;    // some of the mesh is buried in other parts
+  bool overlaps() const;  // some of the mesh is buried in other parts
+  // Share of the repaired mesh's area that bounds regions of winding number below 0: parts turned
+  // inside out, which are no part of the solid.
+  double insideOut() const;
   const Box3& box() const;  // of surface()
   double diagonal() const;  // of box(); the unit of all length settings
   double area() const;      // of surface(), world units squared

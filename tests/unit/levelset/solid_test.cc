@@ -220,5 +220,26 @@ TEST(Solid, ManyCrossingTrianglesStayBounded) {
   EXPECT_NEAR(solid.volume(), 8.0 * inside / 20000, 0.12);
 }
 
+// A ball whose cap beyond x = 0.5 is drawn through itself, so that its winding number there is -1.
+TEST(Solid, TellsWhatIsInsideOut) {
+  EXPECT_EQ(Solid(shapes::icosphere(3)).insideOut(), 0);
+  Mesh mesh = shapes::icosphere(4);
+  for (Vec3& v : mesh.vertices) v.y *= 0.5 - v.x;
+  double all = 0, turned = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& corners = mesh.triangles[t];
+    const double area = norm(areaVector(mesh, static_cast<int>(t)));
+    all += area;
+    if (mesh.vertices[corners[0]].x + mesh.vertices[corners[1]].x + mesh.vertices[corners[2]].x >
+        1.5)
+      turned += area;
+  }
+  const Solid solid(mesh);
+  EXPECT_NEAR(solid.insideOut(), turned / all, 0.01);  // a row of triangles at the crossing: 0.02
+  EXPECT_GT(solid.insideOut(), 0.05);
+  EXPECT_FALSE(solid.inside({0.75, 0, 0}));
+  EXPECT_TRUE(solid.inside({0, 0, 0}));
+}
+
 }  // namespace
 }  // namespace innermap

@@ -3,7 +3,7 @@
 const schema = JSON.parse(document.getElementById("schema").textContent);
 
 const groups = [
-  ["boundary_error", "Boundary error", "How far the map takes the boundary from where it was to go. Inside it is nowhere larger."],
+  ["boundary_error", "Boundary error", "How far the map takes the boundary from where it was to go. Inside a map of one step it is nowhere larger."],
   ["worst_boundary_error", "Boundary error of the worst frame", ""],
   ["tolerance", "Tolerance", ""],
   ["one_to_one", "Is it one-to-one?", ""],

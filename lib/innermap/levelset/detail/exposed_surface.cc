@@ -52,6 +52,10 @@ struct Work {
   std::vector<std::vector<Piece>> pieces;  // of cut triangles
 };
 
+double areaOf(const std::array<Vec3, 3>& corners) {
+  return 0.5 * norm(cross(corners[1] - corners[0], corners[2] - corners[0]));
+}
+
 std::array<Vec3, 3> cornersOf(const Work& work, int t) {
   const auto [i, j, k] = work.mesh.triangles[t];
   return {work.local[i], work.local[j], work.local[k]};
@@ -160,8 +164,7 @@ void dropDoubles(const Work& work, ExposedSurface& result, std::vector<char>& dr
     const int t = static_cast<int>(i);
     for (const Piece& p : work.pieces[t]) {
       if (!p.side.exposed || p.side.covers < 2) continue;
-      const auto [a, b, c] = pieceTriangle(cornersOf(work, t), p);
-      result.doubledArea += 0.5 * norm(cross(b - a, c - a));
+      result.doubledArea += areaOf(pieceTriangle(cornersOf(work, t), p));
     }
     if (!work.pieces[t].empty() || !work.sides[t].exposed || work.sides[t].covers < 2) continue;
     const Vec3 m = centroid(t);
@@ -230,6 +233,18 @@ void assemble(const Work& work, const std::vector<char>& dropped, ExposedSurface
   }
 }
 
+double negativeShareOf(const Work& work) {
+  double all = 0, negative = 0;
+  for (std::size_t t = 0; t < work.pieces.size(); ++t) {
+    const auto corners = cornersOf(work, static_cast<int>(t));
+    all += areaOf(corners);
+    if (work.pieces[t].empty() && work.sides[t].negative) negative += areaOf(corners);
+    for (const Piece& piece : work.pieces[t])
+      if (piece.side.negative) negative += areaOf(pieceTriangle(corners, piece));
+  }
+  return all > 0 ? negative / all : 0;
+}
+
 }  // namespace
 
 ExposedSurface exposedSurface(const Mesh& mesh, double pieceSize) {
@@ -262,6 +277,7 @@ ExposedSurface exposedSurface(const Mesh& mesh, double pieceSize) {
     if (split || !work.sides[t].exposed || work.sides[t].reversed) result.whole = false;
     if (split) result.gap = length;
   }
+  result.negativeShare = negativeShareOf(work);
   if (!anyExposed) {
     throw DataError(mesh.name +
                     ": has no inside: no part of its surface bounds a region of winding "

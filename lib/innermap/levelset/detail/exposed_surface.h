@@ -14,8 +14,9 @@ struct ExposedSurface {
   Mesh mesh;          // pieces, outward; vertices of the input first
   std::vector<int> parent;
   std::vector<PieceCorners> corners;
-  double gap = 0;          // longest edge of a piece that a cut runs through, world units
-  double doubledArea = 0;  // of sheets kept although another lies on them, world units squared
+  double gap = 0;            // longest edge of a piece that a cut runs through, world units
+  double doubledArea = 0;    // of sheets kept although another lies on them, world units squared
+  double negativeShare = 0;  // of the mesh's area: bounds regions of winding number below 0
 };
 
 // `mesh` has whole winding numbers, as repair() makes them. pieceSize is a fraction of the

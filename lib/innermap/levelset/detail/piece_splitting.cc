@@ -96,6 +96,7 @@ Side classify(const WindingNumber& winding, const Corners& t, double diagonal) {
   const int in = winding.wholeAt(m - (offset / area) * n);
   side.exposed = (in > 0) != (out > 0);
   side.reversed = side.exposed && out > 0;
+  side.negative = std::min(in, out) < 0 && std::max(in, out) <= 0;
   side.covers = std::abs(in - out);
   return side;
 }

@@ -15,10 +15,12 @@ using PieceCorners = std::array<std::array<double, 3>, 3>;  // barycentric, on t
 struct Side {
   bool exposed = true;    // just one side has winding number over one half
   bool reversed = false;  // and it is the side the normal points to
+  bool negative = false;  // one side has winding number below 0, none above
   int covers = 1;         // jump of the winding number across the piece
 
   friend bool operator==(const Side& x, const Side& y) {
-    return x.exposed == y.exposed && x.reversed == y.reversed && x.covers == y.covers;
+    return x.exposed == y.exposed && x.reversed == y.reversed && x.negative == y.negative &&
+           x.covers == y.covers;
   }
 };
 
