@@ -118,9 +118,8 @@ void fillReport(const Mesh& mesh, const MeshReport& r, const std::vector<Finding
 void writeOuter(const CheckOptions& options, Mesh mesh, Context& context) {
   ClosedSurfaceSettings closing;
   closing.closeHoles = true;
-  const Mesh outer = closedSurfaces(takeCleanSurface(std::move(mesh), options.layOut, context),
-                                    context.settings(closing))
-                         .mesh;
+  const Mesh outer =
+      closedSurfaces(takeCleanSurface(std::move(mesh), options.layOut, context), closing).mesh;
   if (context.page()) addMesh(*context.page(), outer);
   context.timed("write", [&] { writeMesh(options.outer, outer); });
 }
@@ -134,8 +133,7 @@ void run(const CheckOptions& options, Context& context) {
         {"check " + options.mesh + fmt::format(" ({} triangles)", mesh.triangles.size())}, need);
   context.requireMemory("checking " + options.mesh, need,
                         "raise --max-memory or simplify the mesh");
-  const MeshReport report =
-      context.timed("check", [&] { return checkMesh(mesh, context.settings(options.check)); });
+  const MeshReport report = context.timed("check", [&] { return checkMesh(mesh, options.check); });
   const std::vector<Finding> found = findings(report);
   fillReport(mesh, report, found, context.report());
   context.print(options.json ? checkJson(options.mesh, report, found)

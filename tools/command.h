@@ -4,8 +4,7 @@
 // make function in commands.h and commands.cc. --help, docs/commands.md, did-you-mean, range checks
 // and the common options (--threads, --max-memory, --dry-run, --report, --quiet, --help) come by
 // themselves. Throw innermap's errors; they become one line on stderr and exit code 1 (UsageError:
-// 2, Cancelled: 130). Give the library context.settings(...), which hold the limit on memory and
-// the progress.
+// 2, Cancelled: 130). The run that main.cc enters has the progress and the limits.
 #pragma once
 
 #include <functional>

@@ -40,8 +40,8 @@ std::vector<double> numbers(const std::string& option, const std::string& list) 
   return parseNumbers(option, list, count, "a list of numbers");
 }
 
-CompareFemSettings settingsOf(const CompareOptions& options, const Context& context) {
-  CompareFemSettings settings = context.settings(options.settings);
+CompareFemSettings settingsOf(const CompareOptions& options) {
+  CompareFemSettings settings = options.settings;
   settings.resolutions.clear();
   for (const double n : numbers("--resolutions", options.resolutions))
     settings.resolutions.push_back(static_cast<int>(std::clamp(n, -1.0, 1e6)));
@@ -167,8 +167,8 @@ Chart chartOf(const CompareFem& result, const CompareOptions& options) {
 
 // |gradient|^2, of three functions the sum, in the middle's size.
 void writeSection(const std::string& path, const CompareFem& result, const Solid& solid,
-                  const CompareOptions& options, Context& context) {
-  LevelSetSettings grid = context.settings<LevelSetSettings>();
+                  const CompareOptions& options) {
+  LevelSetSettings grid;
   grid.resolution = 256;
   const openvdb::FloatGrid::Ptr distance = makeLevelSet(solid, grid);
   const auto density = [distance](const InsideFunction& function) {
@@ -217,7 +217,7 @@ void writeSection(const std::string& path, const CompareFem& result, const Solid
       std::remove_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }),
       values.end());
   std::sort(values.begin(), values.end());
-  auto settings = context.settings<PlanePictureSettings>();
+  PlanePictureSettings settings;
   settings.colormap = options.colormap;
   settings.axis = options.axis;
   settings.at = options.at;
@@ -265,13 +265,12 @@ void run(const CompareOptions& options, Context& context) {
     throw UsageError("give a TARGET to compare on its map, or --functions (not both)");
   const auto folder = context.outputFolder(
       options.output, {"comparison.csv", "curves.png", "section.png", "report.json"});
-  const CompareFemSettings settings = settingsOf(options, context);
+  const CompareFemSettings settings = settingsOf(options);
   const Mesh source = readMeshFile(options.source, context);
   std::optional<BoundaryPair> pair;
   std::optional<Solid> alone;
   if (options.functions) {
-    alone =
-        context.timed("solid", [&] { return Solid(source, context.settings<SolidSettings>()); });
+    alone = context.timed("solid", [&] { return Solid(source); });
   } else {
     requireMeshMemory(options.target, context);
     const Mesh target = context.timed("read", [&] { return readMeshLike(options.target, source); });
@@ -301,9 +300,8 @@ void run(const CompareOptions& options, Context& context) {
     folder->write("comparison.csv", [&](const std::string& path) { writeTable(path, result); });
     folder->write("curves.png",
                   [&](const std::string& path) { writeChart(path, chartOf(result, options)); });
-    folder->write("section.png", [&](const std::string& path) {
-      writeSection(path, result, solid, options, context);
-    });
+    folder->write("section.png",
+                  [&](const std::string& path) { writeSection(path, result, solid, options); });
   });
   context.finish(*folder);
 }

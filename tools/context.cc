@@ -22,6 +22,7 @@ Context::Context(const CommonOptions& options, TerminalProgress& progress)
   maxMemory_ = options.maxMemory.empty() ? availableMemory() / 10 * 8
                                          : parseBytes("--max-memory", options.maxMemory);
   if (!options.html.empty()) page_ = std::make_unique<Page>();
+  progress_.setMaxMemory(maxMemory_);
   if (maxMemory_ == 0) throw SettingError("--max-memory", "must be above 0; write for example 4GB");
 }
 

@@ -64,21 +64,11 @@ class Context {
   // One of those that the library does not report begins.
   void phase(const std::string& stage);
 
-  // Bytes: --max-memory, or 80% of the machine's.
-  std::uint64_t maxMemory() const { return maxMemory_; }
-
   // Beside measuring and writing, which take a tenth of what trying and refining do, or less.
   static constexpr double kMostOfTime = 0.9;
   // Of what --max-time leaves now, less `later` seconds for what has to come after, this share may
   // be spent on improving what comes next.
   void spend(double share, double later = 0);
-
-  // The settings of the library with the limit on memory, where they have one.
-  template <class Settings>
-  Settings settings(Settings given = {}) const {
-    if constexpr (HasMaxMemory<Settings>::value) given.maxMemory = maxMemory_;
-    return given;
-  }
 
   bool dryRun() const { return options_.dryRun; }
   // What --dry-run says: a line for each thing that would be done, the seconds that expect() knows
@@ -163,11 +153,6 @@ class Context {
   void finishPage();
 
  private:
-  template <class Settings, class = void>
-  struct HasMaxMemory : std::false_type {};
-  template <class Settings>
-  struct HasMaxMemory<Settings, std::void_t<decltype(Settings::maxMemory)>> : std::true_type {};
-
   void sayWhatIsThere(const std::string& path, const std::vector<std::string>& names);
   void requireProgram() const;
 

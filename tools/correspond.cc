@@ -61,9 +61,8 @@ void run(const Options& options, Context& context) {
   });
   if (!options.picture.empty())
     context.timed("picture", [&] {
-      writeCorrespondencePictures(
-          options.picture, moved, [](const std::string& path, const auto& write) { write(path); },
-          context);
+      writeCorrespondencePictures(options.picture, moved,
+                                  [](const std::string& path, const auto& write) { write(path); });
     });
   if (moved.changed)
     context.note(fmt::format("{} has A with the same {} vertices: give both to innermap map",

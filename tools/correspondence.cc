@@ -137,9 +137,8 @@ void addCorrespondOptions(Command& c, CorrespondOptions& o) {
   addSurfaceOptions(c, o.surfaces);
 }
 
-MeshCorrespondenceSettings correspondSettings(const CorrespondOptions& options,
-                                              const Context& context) {
-  auto settings = context.settings(options.map);
+MeshCorrespondenceSettings correspondSettings(const CorrespondOptions& options) {
+  auto settings = options.map;
   settings.refine = !options.noRefine;
   return settings;
 }
@@ -151,8 +150,7 @@ void requirePly(const std::string& option, const std::string& path) {
 }
 
 Mesh takeCleanSurface(Mesh mesh, const LayOutSettings& settings, Context& context) {
-  CleanSurface clean =
-      context.timed("surface", [&] { return cleanSurface(mesh, context.settings(settings)); });
+  CleanSurface clean = context.timed("surface", [&] { return cleanSurface(mesh, settings); });
   for (const std::string& note : clean.notes) context.note(note);
   reportOuter("outer_surface", clean.outer, context.report());
   return clean.outer ? std::move(clean.outer->mesh) : std::move(mesh);
@@ -182,7 +180,7 @@ void reportOuter(const std::string& key, const std::optional<OuterSurface>& take
 }
 
 LaidOutMesh layOut(Mesh mesh, const SurfaceOptions& options, Context& context) {
-  LaidOutMesh laid = layOutMesh(std::move(mesh), context.settings(options.layOut));
+  LaidOutMesh laid = layOutMesh(std::move(mesh), options.layOut);
   tell(laid, context);
   return laid;
 }
@@ -195,8 +193,8 @@ ReportMesh reportOf(const LaidOutMesh& laid) {
 }
 
 void writeCorrespondencePictures(const std::string& path, const MeshCorrespondence& map,
-                                 const WritePicture& write, const Context& context) {
-  const auto settings = context.settings<MeshPictureSettings>();
+                                 const WritePicture& write) {
+  const MeshPictureSettings settings;
   write(path, [&](const std::string& to) { writeCorrespondencePicture(to, map, settings); });
   if (const std::optional<MeshCorrespondence> other = map.otherWay())
     write(otherPicture(path),
@@ -212,10 +210,9 @@ MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const CorrespondOptions& opt
   context.requireMemory("the correspondence",
                         correspondMemory(a.vertices.size(), b.vertices.size()),
                         "use coarser meshes");
-  auto settings = correspondSettings(options, context);
+  auto settings = correspondSettings(options);
   if (!options.landmarks.empty()) settings.landmarks = readLandmarks(options.landmarks);
-  auto [laidA, laidB] =
-      layOutMeshes(std::move(a), std::move(b), context.settings(options.surfaces.layOut));
+  auto [laidA, laidB] = layOutMeshes(std::move(a), std::move(b), options.surfaces.layOut);
   tell(laidA, context);
   tell(laidB, context);
   context.report().source = reportOf(laidA);

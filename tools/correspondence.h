@@ -28,8 +28,7 @@ void addOuterOptions(Command& command, LayOutSettings& settings);
 void addCorrespondOptions(Command& command, CorrespondOptions& options);
 
 // The landmarks are not read yet.
-MeshCorrespondenceSettings correspondSettings(const CorrespondOptions& options,
-                                              const Context& context);
+MeshCorrespondenceSettings correspondSettings(const CorrespondOptions& options);
 
 // Throws UsageError unless `path`, the value of `option`, ends in .ply.
 void requirePly(const std::string& option, const std::string& path);
@@ -51,7 +50,7 @@ ReportMesh reportOf(const LaidOutMesh& mesh);
 using WritePicture =
     std::function<void(const std::string& path, const std::function<void(const std::string&)>&)>;
 void writeCorrespondencePictures(const std::string& path, const MeshCorrespondence& map,
-                                 const WritePicture& write, const Context& context);
+                                 const WritePicture& write);
 // picture.png -> picture.other.png
 std::string otherPicture(const std::string& path);
 

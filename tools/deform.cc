@@ -105,19 +105,18 @@ class Deformer {
       : options_(options),
         context_(context),
         frames_(frames),
-        fitter_(
-            makeFrameFitter(std::move(rest), context.settings(options.frames.fitting), context)),
+        fitter_(makeFrameFitter(std::move(rest), options.frames.fitting, context)),
         fits_(makeFrameFits(fitter_, frames, context)),
         grids_(std::move(grids)) {
     requireNoVelocity();
     FramePushSettings settings;
-    settings.push = context.settings<PushSettings>();
+    settings.push = PushSettings{};
     settings.push.carry = carrySettings(options.transfer);
     settings.push.accuracy = kAccuracy;
     settings.fadeToFitted = options.transfer.fadeTo == "fitted";
     if (!settings.fadeToFitted) settings.push.outside = outsideSettings(options.transfer, {}, {});
     settings.push.outside.distance = options.transfer.outside;
-    settings.output = outputSettings(grids_, options.transfer.grid, context);
+    settings.output = outputSettings(grids_, options.transfer.grid);
     pusher_.emplace(fitter_, grids_, settings);
   }
 
@@ -244,14 +243,14 @@ Frames framesLeft(const DeformOptions& options, const Frames& frames, const Fram
 
 // In bytes, beside what is read.
 std::uint64_t memoryOf(const DeformOptions& options, const Solid& solid,
-                       const openvdb::GridPtrVec& grids, const Context& context) {
-  return transferMemory(solid, grids, options.transfer, context, {true, options.velocity ? 1 : 0});
+                       const openvdb::GridPtrVec& grids) {
+  return transferMemory(solid, grids, options.transfer, {true, options.velocity ? 1 : 0});
 }
 
 void expectFrames(const DeformOptions& options, const Solid& solid,
                   const openvdb::GridPtrVec& grids, const Frames& frames, Context& context) {
   const std::size_t charges = options.frames.fitting.sources;
-  JobSize size = jobSize(solid, outputSettings(grids, options.transfer.grid, context), charges);
+  JobSize size = jobSize(solid, outputSettings(grids, options.transfer.grid), charges);
   size.items = static_cast<double>(grids.size()) * size.inside;
   context.expect(framePhases(charges, frames.wanted.size(), stageOf("frames: volume", size)));
 }
@@ -259,7 +258,7 @@ void expectFrames(const DeformOptions& options, const Solid& solid,
 void plan(const DeformOptions& options, const Frames& frames, const FramePattern& pattern,
           std::uint64_t others, Context& context) {
   const auto path = [&](std::size_t i) { return pattern.path(frames.all[i].number); };
-  const FrameFitterSettings settings = context.settings(options.frames.fitting);
+  const FrameFitterSettings settings = options.frames.fitting;
   context.plan({framesPlan(settings, frames), "carry " + options.volume + " to " +
                                                   path(frames.wanted.front()) + " to " +
                                                   path(frames.wanted.back())},
@@ -282,7 +281,7 @@ void run(const DeformOptions& options, Context& context) {
     const SourceBoundary rest = readRest(options.rest, context);
     const openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
     expectFrames(options, rest.solid, grids, frames, context);
-    return plan(options, frames, pattern, memoryOf(options, rest.solid, grids, context), context);
+    return plan(options, frames, pattern, memoryOf(options, rest.solid, grids), context);
   }
   std::optional<Inputs> inputs;
   Frames left;
@@ -293,8 +292,7 @@ void run(const DeformOptions& options, Context& context) {
   if (left.wanted.empty()) return;
   SourceBoundary rest = readRest(options.rest, context);
   openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
-  requireFrameMemory(context.settings(options.frames.fitting),
-                     memoryOf(options, rest.solid, grids, context), context);
+  requireFrameMemory(options.frames.fitting, memoryOf(options, rest.solid, grids), context);
   expectFrames(options, rest.solid, grids, left, context);
   Deformer deformer(options, left, std::move(rest), std::move(grids), context);
   std::map<std::size_t, DeformRow> rows;

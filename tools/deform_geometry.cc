@@ -22,8 +22,7 @@ class Deformer {
       : job_(job),
         context_(context),
         frames_(frames),
-        fitter_(makeFrameFitter(readRest(job.rest, context), context.settings(job.frames.fitting),
-                                context)),
+        fitter_(makeFrameFitter(readRest(job.rest, context), job.frames.fitting, context)),
         fits_(makeFrameFits(fitter_, frames, context)),
         file_(readGeometryFile(job.input, job.geometry, context)) {
     if (job.transfer.fadeTo != "fitted") pusher_ = pusherFor({});
@@ -63,7 +62,7 @@ class Deformer {
   PointPusher pusherFor(const Points& moved) const {
     const OutsideSettings outside =
         outsideSettings(job_.transfer, fitter_.solid().repaired().mesh.vertices, moved);
-    return PointPusher(fitter_.solid(), carryPointsSettings(outside, kAccuracy, context_));
+    return PointPusher(fitter_.solid(), carryPointsSettings(outside, kAccuracy));
   }
 
   const DeformGeometry& job_;
@@ -88,13 +87,13 @@ void deformGeometry(const DeformGeometry& job, const Frames& frames, const Frame
   context.expect(framePhases(job.frames.fitting.sources, frames.wanted.size(),
                              stageOf("frames: geometry", size)));
   if (context.dryRun()) {
-    const FrameFitterSettings settings = context.settings(job.frames.fitting);
+    const FrameFitterSettings settings = job.frames.fitting;
     return context.plan(
         {framesPlan(settings, frames), "carry " + job.input + " to " + path(frames.wanted.front()) +
                                            " to " + path(frames.wanted.back())},
         frameFitterMemory(settings, need));
   }
-  requireFrameMemory(context.settings(job.frames.fitting), need, context);
+  requireFrameMemory(job.frames.fitting, need, context);
   Deformer deformer(job, frames, context);
   std::map<std::size_t, BoundaryError> errors;
   std::vector<JudgedFrame> judged;

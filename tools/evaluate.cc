@@ -18,7 +18,7 @@ struct EvaluateOptions {
 void run(const EvaluateOptions& options, Context& context) {
   context.output(options.output);
   const MappedSolid mapped = readMapFile(options.map, context);
-  const MapGridSettings settings = mapGridSettings(options.evaluation, context);
+  const MapGridSettings settings = mapGridSettings(options.evaluation);
   context.expect(evaluationPhases(jobSize(mapped.solid(), settings, mapped.map.sources())));
   if (context.dryRun())
     return context.plan({"evaluate " + options.map, "write grids to " + options.output},

@@ -17,8 +17,8 @@ struct ExportOptions {
   VolumeTextureSettings texture;
 };
 
-VolumeTextureSettings settingsOf(const ExportOptions& options, Context& context) {
-  auto s = context.settings(options.texture);
+VolumeTextureSettings settingsOf(const ExportOptions& options) {
+  auto s = options.texture;
   if (!options.tiles.empty()) s.tiles = parseTiles("--tiles", options.tiles);
   return s;
 }
@@ -40,7 +40,7 @@ void fillReport(const VolumeTextureResult& r, const ExportOptions& options, Cont
 }
 
 void run(const ExportOptions& options, Context& context) {
-  const VolumeTextureSettings settings = settingsOf(options, context);
+  const VolumeTextureSettings settings = settingsOf(options);
   if (settings.layout == VolumeLayout::slices) {
     const FramePattern slices("--output", options.output);
     context.output(slices.path(0));

@@ -22,7 +22,7 @@ void run(const FitOptions& options, Context& context) {
   Mesh source = readMeshFile(options.source, context);
   requireMeshMemory(options.target, context);
   Mesh target = context.timed("read", [&] { return readMeshLike(options.target, source); });
-  const FitMapSettings settings = fitMapSettings(options.fitting, source.vertices.size(), context);
+  const FitMapSettings settings = fitMapSettings(options.fitting, source.vertices.size());
   const double places = bentPlaces(source, target.vertices, settings.tolerance);
   BoundaryPair pair = makeBoundaryPair(std::move(source), std::move(target));
   reportBoundaries(pair, context);

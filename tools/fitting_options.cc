@@ -156,9 +156,8 @@ void addFittingOptions(Command& command, FittingOptions& o) {
   command.option("--seed", "N", &o.fit.seed, "of all random points").range(0, 1e15).advanced();
 }
 
-FitMapSettings fitMapSettings(const FittingOptions& options, std::size_t vertices,
-                              const Context& context) {
-  auto settings = context.settings(options.fit);
+FitMapSettings fitMapSettings(const FittingOptions& options, std::size_t vertices) {
+  auto settings = options.fit;
   if (const auto tolerance = toleranceOf(options))
     settings.tolerance = *tolerance;
   else

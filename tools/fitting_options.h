@@ -24,8 +24,7 @@ void addFittingOptions(Command& command, FittingOptions& options);
 
 // What the options mean for a source of so many vertices. Throws UsageError for a tolerance that
 // cannot be and for options that exclude each other.
-FitMapSettings fitMapSettings(const FittingOptions& options, std::size_t vertices,
-                              const Context& context);
+FitMapSettings fitMapSettings(const FittingOptions& options, std::size_t vertices);
 
 // Throws what fitMapSettings throws for any mesh, before one is read.
 void checkFittingOptions(const FittingOptions& options);

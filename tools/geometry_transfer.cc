@@ -55,7 +55,7 @@ void requireFitting(const std::string& input, const std::string& output,
 
 std::unique_ptr<GeometryFile> readGeometryFile(const std::string& path,
                                                const GeometryOptions& options, Context& context) {
-  auto settings = context.settings<ReadGeometrySettings>();
+  ReadGeometrySettings settings;
   settings.vectors = commaList(options.vectors);
   settings.normals = commaList(options.normals);
   auto file = context.timed("read", [&] { return readGeometry(path, settings); });
@@ -63,9 +63,8 @@ std::unique_ptr<GeometryFile> readGeometryFile(const std::string& path,
   return file;
 }
 
-CarryPointsSettings carryPointsSettings(const OutsideSettings& outside, double accuracy,
-                                        const Context& context) {
-  auto settings = context.settings<CarryPointsSettings>();
+CarryPointsSettings carryPointsSettings(const OutsideSettings& outside, double accuracy) {
+  CarryPointsSettings settings;
   settings.outside = outside;
   // Points are kept in double precision and may go there and back; their sums cost little.
   settings.accuracy = std::min(accuracy, kPointAccuracy);
@@ -76,7 +75,7 @@ CarriedGeometry carryFile(GeometryFile& file, const PointCarry& carry, double su
                           Context& context) {
   context.requireMemory("carrying the geometry", carryGeometryMemory(file.geometry),
                         "cut the file into parts");
-  auto settings = context.settings<CarryGeometrySettings>();
+  CarryGeometrySettings settings;
   settings.subdivide = subdivide;
   return carryGeometry(file.geometry, carry, settings);
 }

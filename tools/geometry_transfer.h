@@ -29,8 +29,7 @@ void requireFitting(const std::string& input, const std::string& output,
 std::unique_ptr<GeometryFile> readGeometryFile(const std::string& path,
                                                const GeometryOptions& options, Context& context);
 
-CarryPointsSettings carryPointsSettings(const OutsideSettings& outside, double accuracy,
-                                        const Context& context);
+CarryPointsSettings carryPointsSettings(const OutsideSettings& outside, double accuracy);
 
 // subdivide: world units.
 CarriedGeometry carryFile(GeometryFile& file, const PointCarry& carry, double subdivide,

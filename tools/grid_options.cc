@@ -45,7 +45,7 @@ void addNamesOption(Command& command, NamingScheme& names) {
 void writeGridFile(const std::string& path, const openvdb::GridPtrVec& grids,
                    const NamingScheme& names, Context& context, const openvdb::MetaMap& metadata) {
   if (context.page()) addGrids(*context.page(), grids);
-  auto settings = context.settings<VdbWriteSettings>();
+  VdbWriteSettings settings;
   settings.names = names;
   context.timed("write", [&] { writeVdb(path, grids, metadata, settings); });
 }
@@ -67,8 +67,8 @@ void addEvaluationOptions(Command& c, EvaluationOptions& o) {
   addNamesOption(c, o.names);
 }
 
-MapGridSettings mapGridSettings(const EvaluationOptions& options, const Context& context) {
-  auto settings = gridSettings<MapGridSettings>(options.grid, context);
+MapGridSettings mapGridSettings(const EvaluationOptions& options) {
+  auto settings = gridSettings<MapGridSettings>(options.grid);
   settings.lame = options.lame;
   settings.repair = options.repair;
   return settings;
@@ -77,7 +77,7 @@ MapGridSettings mapGridSettings(const EvaluationOptions& options, const Context&
 void requireEvaluationMemory(const Solid& solid, const GridOptions& options, const Context& context,
                              const MapGridKind& kind) {
   requireGridMemory("evaluating the map on a grid", options, context, [&](const GridOptions& o) {
-    return mapGridMemory(solid, gridSettings<MapGridSettings>(o, context), kind);
+    return mapGridMemory(solid, gridSettings<MapGridSettings>(o), kind);
   });
 }
 

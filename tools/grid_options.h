@@ -28,8 +28,7 @@ void addGridOptions(Command& command, GridOptions& options, const std::string& o
 
 // Settings of the library that have a resolution and a voxel size.
 template <class Settings>
-Settings gridSettings(const GridOptions& options, const Context& context, Settings settings = {}) {
-  settings = context.settings(settings);
+Settings gridSettings(const GridOptions& options, Settings settings = {}) {
   settings.resolution = options.resolution.value_or(settings.resolution);
   settings.voxelSize = options.voxelSize.value_or(0);
   return settings;
@@ -56,7 +55,7 @@ struct EvaluationOptions {
 
 void addEvaluationOptions(Command& command, EvaluationOptions& options);
 
-MapGridSettings mapGridSettings(const EvaluationOptions& options, const Context& context);
+MapGridSettings mapGridSettings(const EvaluationOptions& options);
 
 void requireEvaluationMemory(const Solid& solid, const GridOptions& options, const Context& context,
                              const MapGridKind& kind);

@@ -47,8 +47,8 @@ void reportHarmonic(const HarmonicFit& fit, const HarmonicOptions& options, Cont
     context.failAfterwards(text + "; what is written is marked so (--best-effort: exit code 0)");
 }
 
-HarmonicGridSettings gridSettingsOf(const HarmonicOptions& options, const Context& context) {
-  auto out = gridSettings<HarmonicGridSettings>(options.grid, context);
+HarmonicGridSettings gridSettingsOf(const HarmonicOptions& options) {
+  auto out = gridSettings<HarmonicGridSettings>(options.grid);
   out.values = out.gradients = out.directions = out.magnitudes = false;
   for (const std::string& name : commaList(options.grids)) {
     if (name == "value")
@@ -106,7 +106,7 @@ void addHarmonicOptions(Command& command, HarmonicOptions& o, const std::string&
 void runHarmonic(const HarmonicOptions& options,
                  const std::function<NamedConditions(const Mesh& mesh)>& conditionsOf, bool unitSum,
                  Context& context) {
-  const HarmonicGridSettings grids = gridSettingsOf(options, context);
+  const HarmonicGridSettings grids = gridSettingsOf(options);
   context.output(options.output);
   if (!options.field.empty()) context.output(options.field);
   Mesh mesh = readMeshFile(options.mesh, context);
@@ -123,7 +123,7 @@ void runHarmonic(const HarmonicOptions& options,
   const std::size_t vertices = mesh.vertices.size();
   const SourceBoundary boundary = makeSourceBoundary(std::move(mesh));
   reportSource(boundary, context);
-  HarmonicFitSettings settings = context.settings(options.fit);
+  HarmonicFitSettings settings = options.fit;
   FitMapSettings like;
   like.tolerance = settings.tolerance;
   const std::uint64_t need = std::max(

@@ -74,8 +74,8 @@ void fillReport(const Hexahedralization& result, Context& context) {
                     result.featureLength, result.fromFeatures.rms, result.fromFeatures.max));
 }
 
-void drawCut(const Options& options, const Hexahedralization& result, Context& context) {
-  auto settings = context.settings<CellPictureSettings>();
+void drawCut(const Options& options, const Hexahedralization& result) {
+  CellPictureSettings settings;
   settings.colormap = options.colormap;
   settings.direction = {0, 0, 0};
   settings.direction[options.axis] = 1;
@@ -100,16 +100,16 @@ void writeAll(const Options& options, const Mesh& mesh, const Hexahedralization&
       writeMesh(options.cubes, blockSurface(result.polycube.blocks, result.pieces));
   });
   context.timed("picture", [&] {
-    if (!options.picture.empty()) drawCut(options, result, context);
+    if (!options.picture.empty()) drawCut(options, result);
     if (!options.cubesPicture.empty())
-      drawPolycube(options.cubesPicture, mesh, result.polycube.blocks, context);
+      drawPolycube(options.cubesPicture, mesh, result.polycube.blocks);
   });
 }
 
 void run(const Options& options, Context& context) {
   claimOutputs(options, context);
   const Mesh mesh = readCleanSurface(options.mesh, options.surface, context);
-  const HexahedralizeSettings settings = context.settings(options.settings);
+  const HexahedralizeSettings settings = options.settings;
   const std::uint64_t need = hexahedralizeMemory(mesh, settings);
   JobSize size;
   const double blocks = expectedBlocks(mesh, settings.blocks);

@@ -15,10 +15,9 @@ struct ImportOptions {
   VolumeTextureReadSettings texture;
 };
 
-VolumeTextureReadSettings settingsOf(const ImportOptions& options, Context& context) {
-  auto s = context.settings(options.texture);
+VolumeTextureReadSettings settingsOf(const ImportOptions& options) {
+  auto s = options.texture;
   s.names = commaList(options.grids);
-  s.maxMemory = memoryLeft(s.maxMemory);  // the grids grow as they are read
   if (!options.tiles.empty()) s.tiles = parseTiles("--tiles", options.tiles);
   if (!options.lowerCorner.empty()) {
     if (!s.voxelSize) throw UsageError("--lower-corner: has a meaning with --voxel-size only");
@@ -40,7 +39,7 @@ std::string summary(const VolumeTextureContents& contents, const ImportOptions& 
 }
 
 void run(const ImportOptions& options, Context& context) {
-  const VolumeTextureReadSettings settings = settingsOf(options, context);
+  const VolumeTextureReadSettings settings = settingsOf(options);
   context.output(options.output);
   if (context.dryRun()) {
     const VolumeTextureNeed need = volumeTextureReadNeed(options.file, settings);

@@ -28,7 +28,7 @@ Mesh readMeshFile(const std::string& path, Context& context) {
 
 openvdb::GridPtrVec readGridFile(const std::string& path, const std::vector<std::string>& names,
                                  Context& context) {
-  auto settings = context.settings<VdbReadSettings>();
+  VdbReadSettings settings;
   settings.names = names;
   context.requireMemory("reading " + path, readMemory(readVdbInfo(path), names),
                         "read fewer of its grids or raise --max-memory");

@@ -28,7 +28,6 @@ JobSize jobSize(const Solid& solid, const Settings& settings, std::size_t charge
   LevelSetSettings voxels;
   voxels.resolution = settings.resolution;
   voxels.voxelSize = settings.voxelSize;
-  voxels.maxMemory = settings.maxMemory;
   return jobSize(solid.volume(), solid.area(), voxelSizeFor(solid, voxels), charges);
 }
 

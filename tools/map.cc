@@ -35,20 +35,16 @@ struct MapOptions {
 };
 
 void writePictures(const SolidGrids& solidGrids, const MapFit& fit, PendingFolder& folder,
-                   const MapOptions& options, Context& context) {
+                   const MapOptions& options) {
   const openvdb::GridPtrVec grids = solidGrids.all();
-  folder.write("slices.exr", [&](const std::string& path) {
-    writeExrSlices(path, grids, context.settings(options.slices));
-  });
-  SectionSettings section =
-      sectionSettings(options.section, fit.solid(), *solidGrids.density, context);
+  folder.write("slices.exr",
+               [&](const std::string& path) { writeExrSlices(path, grids, options.slices); });
+  SectionSettings section = sectionSettings(options.section, fit.solid(), *solidGrids.density);
   section.grid = options.sectionGrid;
   folder.write("section.png",
                [&](const std::string& path) { writeSectionImage(path, grids, section); });
   if (fit.steps.empty()) return;
-  folder.write("steps.png", [&](const std::string& path) {
-    writeStepsPicture(path, fit, context.settings<MeshPictureSettings>());
-  });
+  folder.write("steps.png", [&](const std::string& path) { writeStepsPicture(path, fit); });
 }
 
 // Both meshes as the files have them; `related` tells whether they have the same connectivity.
@@ -113,7 +109,7 @@ double expectPhases(const MapOptions& options, const Meshes& meshes, Context& co
   const bool strangers = laidOn(options, meshes);
   std::vector<JobPhase> phases;
   if (!meshes.related) phases = correspondPhases(vertices + meshes.target.vertices.size());
-  const FitMapSettings fitting = fitMapSettings(fittingFor(options, meshes), vertices, context);
+  const FitMapSettings fitting = fitMapSettings(fittingFor(options, meshes), vertices);
   const double places = meshes.related
                             ? bentPlaces(meshes.source, meshes.target.vertices, fitting.tolerance)
                             : likelyPlaces(vertices, fitting.tolerance);
@@ -134,13 +130,13 @@ void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
   const auto source = makeSourceBoundary(meshes.source);
   reportSource(source, context);
   const std::size_t vertices = meshes.source.vertices.size();
-  const FitMapSettings fitting = fitMapSettings(fittingFor(options, meshes), vertices, context);
+  const FitMapSettings fitting = fitMapSettings(fittingFor(options, meshes), vertices);
   std::vector<std::string> lines;
   const bool steps = laidOn(options, meshes) && fitting.oneToOne != OneToOne::off;
   std::uint64_t need = std::max(
       fitMapMemory(fitting, vertices) + (steps ? kStepsMemory : 0),
       mapGridMemory(
-          source.solid, mapGridSettings(options.evaluation, context),
+          source.solid, mapGridSettings(options.evaluation),
           {steps ? std::size_t{2} : 1, needsLocalMap(meshes.target.vertices, fitting.tolerance)}));
   std::string files = "map.ply, map.vdb, slices.exr, section.png";
   if (!meshes.related) {
@@ -176,7 +172,7 @@ BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& f
   context.timed("picture", [&] {
     writeCorrespondencePictures(
         "correspondence.png", moved,
-        [&](const std::string& file, const auto& write) { folder.write(file, write); }, context);
+        [&](const std::string& file, const auto& write) { folder.write(file, write); });
   });
   return makeBoundaryPair(moved.source, target);
 }
@@ -195,18 +191,18 @@ void run(const MapOptions& options, Context& context) {
   BoundaryPair pair = makePair(options, std::move(meshes), *folder, context);
   reportBoundaries(pair, context);
   const std::size_t vertices = pair.source.mesh.vertices.size();
-  const FitMapSettings fitting = fitMapSettings(fitOptions, vertices, context);
+  const FitMapSettings fitting = fitMapSettings(fitOptions, vertices);
   requireFittingMemory(fitting, vertices, context);
   requireEvaluationMemory(pair.solid(), options.evaluation.grid, context,
                           {1, needsLocalMap(pair.target.moved, fitting.tolerance)});
-  requireInterior(pair.solid(), gridSettings<LevelSetSettings>(options.evaluation.grid, context));
+  requireInterior(pair.solid(), gridSettings<LevelSetSettings>(options.evaluation.grid));
   context.phase("fitting");
   context.spend(1, later);
   const MapFit fit = fitMap(std::move(pair), fitting);
   reportFit(fit, fitting, options.fitting.bestEffort, context);
   context.phase("evaluating");
   context.spend(kRepairShare);
-  const SolidGrids grids = evaluateOnGrid(fit, mapGridSettings(options.evaluation, context));
+  const SolidGrids grids = evaluateOnGrid(fit, mapGridSettings(options.evaluation));
   reportGrids(grids, options.evaluation.lame, context);
   judgeMap(fit, &grids, options.verdict, laid ? MapOrigin::laidOn : MapOrigin::related, context);
   folder->write("map.vdb", [&](const std::string& path) {
@@ -214,7 +210,7 @@ void run(const MapOptions& options, Context& context) {
   });
   context.timed("write", [&] {
     folder->write("map.ply", [&](const std::string& path) { writeMap(path, fit); });
-    writePictures(grids, fit, *folder, options, context);
+    writePictures(grids, fit, *folder, options);
   });
   context.finish(*folder);
 }

@@ -28,7 +28,7 @@ void run(const PolycubeOptions& options, Context& context) {
   context.output(options.output);
   if (!options.picture.empty()) context.output(options.picture);
   const Mesh mesh = readCleanSurface(options.mesh, options.surface, context);
-  const PolycubeSettings settings = context.settings(options.settings);
+  const PolycubeSettings settings = options.settings;
   const std::uint64_t need = polycubeMemory(mesh, settings);
   if (context.dryRun())
     return context.plan(
@@ -43,7 +43,7 @@ void run(const PolycubeOptions& options, Context& context) {
   context.report().set("polycube.vertices", surface.vertices.size());
   context.timed("write", [&] { writeMesh(options.output, surface); });
   if (!options.picture.empty())
-    context.timed("picture", [&] { drawPolycube(options.picture, mesh, cube.blocks, context); });
+    context.timed("picture", [&] { drawPolycube(options.picture, mesh, cube.blocks); });
 }
 
 }  // namespace

@@ -70,13 +70,12 @@ void reportPolycube(const Polycube& cube, Context& context) {
                     100 * p.volume, p.centre.x, p.centre.y, p.centre.z));
 }
 
-void drawPolycube(const std::string& path, const Mesh& mesh, const BlockSet& blocks,
-                  Context& context) {
+void drawPolycube(const std::string& path, const Mesh& mesh, const BlockSet& blocks) {
   writeMeshPicture(
       path,
       {flat(mesh, "mesh", {0.55, 0.6, 0.68}),
        flat(blockSurface(blocks, 1), fmt::format("{} blocks", blocks.count()), {0.85, 0.5, 0.22})},
-      context.settings<MeshPictureSettings>());
+      MeshPictureSettings{});
 }
 
 }  // namespace innermap::tool

@@ -18,7 +18,6 @@ void requireMeshFile(const std::string& option, const std::string& path);
 // "polycube"; a line, and one for each part that is missed.
 void reportPolycube(const Polycube& cube, Context& context);
 
-void drawPolycube(const std::string& path, const Mesh& mesh, const BlockSet& blocks,
-                  Context& context);
+void drawPolycube(const std::string& path, const Mesh& mesh, const BlockSet& blocks);
 
 }  // namespace innermap::tool

@@ -36,8 +36,7 @@ struct Job {
 };
 
 LinearCellMap readThrough(const std::string& path, const MappedSolid& mapped, Context& context) {
-  const CellMesh mesh = context.timed(
-      "read", [&] { return readCells(path, context.settings<ReadCellsSettings>()).mesh; });
+  const CellMesh mesh = context.timed("read", [&] { return readCells(path).mesh; });
   return linearMapOf(mesh, mapped);
 }
 
@@ -68,7 +67,7 @@ void expectCarrying(Way way, const Job& job, const TransferOptions& options, dou
   given.voxelSize = asGiven;
   const Solid& source = job.mapped.solid();
   const Solid& to = way == Way::push ? job.target : source;
-  JobSize made = sizeOf(to, outputSettings(job.grids, options.grid, context, growth));
+  JobSize made = sizeOf(to, outputSettings(job.grids, options.grid, growth));
   made.items = static_cast<double>(job.grids.size()) * made.inside;
   const JobSize from = sizeOf(way == Way::push ? source : job.target, given);
   JobPhase levelSets = stageOf("level set", made, 2);
@@ -110,7 +109,7 @@ void noteVoxelSize(const openvdb::GridPtrVec& grids, const TransferOptions& opti
 }
 
 openvdb::GridPtrVec push(const Job& job, const TransferOptions& options, Context& context) {
-  auto settings = context.settings<PushSettings>();
+  PushSettings settings;
   settings.carry = carrySettings(options);
   settings.outside = job.outside;
   settings.accuracy = sumAccuracy(job.mapped);
@@ -131,7 +130,7 @@ openvdb::GridPtrVec push(const Job& job, const TransferOptions& options, Context
 }
 
 openvdb::GridPtrVec pull(const Job& job, const TransferOptions& options, Context& context) {
-  auto settings = context.settings<PullSettings>();
+  PullSettings settings;
   settings.carry = carrySettings(options);
   settings.outside = job.outside;
   settings.accuracy = sumAccuracy(job.mapped);
@@ -193,7 +192,7 @@ void runGeometry(Way way, const CarryOptions& options, Context& context) {
                         need);
   context.requireMemory("carrying " + options.volume, need, "cut the file into parts");
   const auto file = readGeometryFile(options.volume, options.geometry, context);
-  const CarryPointsSettings settings = carryPointsSettings(outside, sumAccuracy(mapped), context);
+  const CarryPointsSettings settings = carryPointsSettings(outside, sumAccuracy(mapped));
   const PointCarry carry =
       options.through.empty()
           ? carryOf(way, mapped, settings, context)
@@ -222,7 +221,7 @@ void run(Way way, const CarryOptions& options, Context& context) {
     return context.plan({fmt::format("{} {} grids of {} by {}", way == Way::push ? "push" : "pull",
                                      job.grids.size(), options.volume, options.map),
                          "write " + options.output},
-                        transferMemory(solid, job.grids, options.transfer, context, kind, growth));
+                        transferMemory(solid, job.grids, options.transfer, kind, growth));
   requireTransferMemory(solid, job.grids, options.transfer, context, kind, growth);
   noteVoxelSize(job.grids, options.transfer, growth, context);
   const openvdb::GridPtrVec grids =

@@ -49,8 +49,8 @@ void reportRemesh(const Remesh& result, double diagonal, Context& context) {
       result.boundaryMax));
 }
 
-void drawCut(const RemeshOptions& options, const Remesh& result, Context& context) {
-  auto settings = context.settings<CellPictureSettings>();
+void drawCut(const RemeshOptions& options, const Remesh& result) {
+  CellPictureSettings settings;
   settings.colormap = options.colormap;
   settings.direction = {0, 0, 0};
   settings.direction[options.axis] = 1;
@@ -83,8 +83,7 @@ void run(const RemeshOptions& options, Context& context) {
   const MappedSolid mapped = readMapFile(options.map, context);
   const std::uint64_t reading = readCellsMemory(options.cells);
   context.requireMemory("reading " + options.cells, reading, "use a coarser mesh");
-  CellFile file = context.timed(
-      "read", [&] { return readCells(options.cells, context.settings<ReadCellsSettings>()); });
+  CellFile file = context.timed("read", [&] { return readCells(options.cells); });
   for (const std::string& note : file.notes) context.note(note);
   const std::uint64_t need = std::max(reading, remeshMemory(file.mesh));
   JobSize size;
@@ -101,7 +100,7 @@ void run(const RemeshOptions& options, Context& context) {
                          "write " + options.output},
                         need);
   context.requireMemory("carrying " + options.cells, need, "use a coarser mesh");
-  RemeshSettings settings = context.settings(options.settings);
+  RemeshSettings settings = options.settings;
   std::optional<Mesh> surface;
   if (!options.surface.empty()) {
     surface = readMeshFile(options.surface, context);
@@ -115,13 +114,10 @@ void run(const RemeshOptions& options, Context& context) {
   for (const std::string& warning : result.warnings) context.warning(warning);
   reportRemesh(result, boundingBox(onto).diagonal(), context);
   reportCells(result.mesh, result.quality, context);
-  const BoundaryFit fit = context.timed("boundary", [&] {
-    return boundaryFit(result.mesh, Solid(onto, context.settings<SolidSettings>()),
-                       context.settings<BoundaryFitSettings>());
-  });
+  const BoundaryFit fit = context.timed(
+      "boundary", [&] { return boundaryFit(result.mesh, Solid(onto), BoundaryFitSettings{}); });
   reportBoundaryFit(fit, context);
-  if (!options.picture.empty())
-    context.timed("picture", [&] { drawCut(options, result, context); });
+  if (!options.picture.empty()) context.timed("picture", [&] { drawCut(options, result); });
   write(options, result, context);
 }
 

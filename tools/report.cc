@@ -153,14 +153,13 @@ std::vector<GridFile> gridFiles(const Json& report, const fs::path& folder) {
   return shown;
 }
 
-void addGridsOf(Page& page, const Json& report, const fs::path& folder, Context& context) {
+void addGridsOf(Page& page, const Json& report, const fs::path& folder) {
   const std::vector<GridFile> files = gridFiles(report, folder);
   if (files.empty()) page.missing.push_back("sections: the folder has no .vdb file");
   // Grids of one name are shown once, or once a frame.
   for (const GridFile& file : files) {
     page.frame = file.frame;
-    tried(page,
-          [&] { addGrids(page, readVdb(file.path, context.settings<VdbReadSettings>()).grids); });
+    tried(page, [&] { addGrids(page, readVdb(file.path).grids); });
   }
   page.frame.reset();
 }
@@ -195,7 +194,7 @@ void run(const ReportOptions& options, Context& context) {
     return context.plan({"write the page of " + json + " to " + output}, memoryOf(report, folder));
   Page page;
   context.timed("surfaces", [&] { addSurfaces(page, report, folder); });
-  context.timed("sections", [&] { addGridsOf(page, report, folder, context); });
+  context.timed("sections", [&] { addGridsOf(page, report, folder); });
   context.timed("write", [&] {
     writePage(output, page, report.dump(-1, ' ', false, Json::error_handler_t::replace));
   });

@@ -36,8 +36,8 @@ void addSectionOptions(Command& c, SectionOptions& o) {
 }
 
 SectionSettings sectionSettings(const SectionOptions& options, const Solid& solid,
-                                const openvdb::FloatGrid& density, const Context& context) {
-  auto section = context.settings<SectionSettings>();
+                                const openvdb::FloatGrid& density) {
+  SectionSettings section;
   section.colormap = options.colormap;
   section.scale = options.scale;
   section.axis = options.axis ? *options.axis : thinnestAxis(solid.box().extent());

@@ -26,6 +26,6 @@ void addSectionOptions(Command& command, SectionOptions& options);
 
 // density: fog of the solid's inside.
 SectionSettings sectionSettings(const SectionOptions& options, const Solid& solid,
-                                const openvdb::FloatGrid& density, const Context& context);
+                                const openvdb::FloatGrid& density);
 
 }  // namespace innermap::tool

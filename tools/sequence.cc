@@ -66,8 +66,7 @@ std::vector<std::string> gridsToMake(const SequenceOptions& options, Context& co
 
 FrameEvaluator makeEvaluator(const SequenceOptions& options, const FrameFitter& fitter,
                              Context& context) {
-  FrameEvaluator made(fitter, gridsToMake(options, context),
-                      mapGridSettings(options.evaluation, context));
+  FrameEvaluator made(fitter, gridsToMake(options, context), mapGridSettings(options.evaluation));
   addSeconds(context.report().seconds, made.seconds());
   for (const std::string& warning : made.warnings()) context.warning(warning);
   context.report().set("grid.voxel_size", made.voxelSize());
@@ -83,12 +82,11 @@ void run(const SequenceOptions& options, Context& context) {
   const auto folder =
       context.outputFolder(options.output, {"energies.csv", "energies.png", "report.json"});
   if (options.grids) context.outputs(framePaths(pattern, frames));
-  const FrameFitterSettings settings = context.settings(options.frames.fitting);
+  const FrameFitterSettings settings = options.frames.fitting;
   SourceBoundary rest = readRest(options.rest, context);
   const std::uint64_t gridsNeed =
-      mapGridMemory(rest.solid, mapGridSettings(options.evaluation, context), {1, false, false});
-  const JobSize size =
-      jobSize(rest.solid, mapGridSettings(options.evaluation, context), settings.sources);
+      mapGridMemory(rest.solid, mapGridSettings(options.evaluation), {1, false, false});
+  const JobSize size = jobSize(rest.solid, mapGridSettings(options.evaluation), settings.sources);
   std::vector<JobPhase> phases = framePhases(settings.sources, frames.wanted.size(),
                                              stageOf("frames: grids", withNearSums(size)));
   phases.insert(phases.end() - 1, stageOf("level set", size));

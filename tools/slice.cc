@@ -36,7 +36,7 @@ std::vector<std::string> namesToRead(const SliceOptions& options, const VdbInfo&
 }
 
 void writeSlices(const SliceOptions& options, const openvdb::GridPtrVec& grids, Context& context) {
-  auto settings = context.settings(options.slices);
+  auto settings = options.slices;
   settings.axis = options.axis;
   const ExrSliceResult r = writeExrSlices(options.output, grids, settings);
   if (r.slices < settings.count)
@@ -53,7 +53,7 @@ void writeSlices(const SliceOptions& options, const openvdb::GridPtrVec& grids, 
 }
 
 void writeSection(const SliceOptions& options, const openvdb::GridPtrVec& grids, Context& context) {
-  auto settings = context.settings(options.section);
+  auto settings = options.section;
   settings.axis = options.axis;
   const SectionResult r = writeSectionImage(options.picture, grids, settings);
   context.report().set("section.grid", r.grid);

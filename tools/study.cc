@@ -65,8 +65,8 @@ std::vector<double> studyList(const std::string& option, const std::string& text
   return out;
 }
 
-StudySettings settingsOf(const StudyOptions& options, const Context& context) {
-  StudySettings settings = context.settings(options.settings);
+StudySettings settingsOf(const StudyOptions& options) {
+  StudySettings settings = options.settings;
   settings.sources.clear();
   for (const double n : studyList("--sources", options.sources)) {
     const auto count = static_cast<std::size_t>(std::round(std::clamp(n, 0.0, 1e9)));
@@ -98,7 +98,7 @@ void plan(const StudyOptions& options, const BoundaryPair& pair, const StudySett
   const std::vector<StudyRun> runs = studyRuns(pair.solid(), settings);
   std::vector<std::string> lines;
   std::uint64_t most = 0;
-  const std::uint64_t room = memoryLeft(settings.maxMemory);
+  const std::uint64_t room = memoryLeft();
   std::size_t kept = 0;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const std::uint64_t need = studyMemory(runs[i]);
@@ -210,7 +210,7 @@ void writeFiles(const Study& study, const StudyFindings& findings, const StudySe
 }
 
 void run(const StudyOptions& options, Context& context) {
-  const StudySettings settings = settingsOf(options, context);
+  const StudySettings settings = settingsOf(options);
   std::vector<std::string> names{"study.csv", "study.json", "study.html", "report.json"};
   for (const std::string& name : studyChartNames()) names.push_back(name);
   const auto folder = context.outputFolder(options.output, names);

@@ -40,9 +40,9 @@ std::uint64_t memoryFor(const TetrahedralizeOptions& options, const Solid& solid
   return std::max({need.memory, drawing, need.tetrahedra * kBytesACell + need.vertices * 40});
 }
 
-void drawCut(const TetrahedralizeOptions& options, const CellMesh& mesh, const CellQuality& quality,
-             Context& context) {
-  auto settings = context.settings<CellPictureSettings>();
+void drawCut(const TetrahedralizeOptions& options, const CellMesh& mesh,
+             const CellQuality& quality) {
+  CellPictureSettings settings;
   settings.colormap = options.colormap;
   settings.direction = {0, 0, 0};
   settings.direction[options.axis] = 1;
@@ -88,10 +88,9 @@ void run(const TetrahedralizeOptions& options, Context& context) {
   context.output(options.output);
   if (!options.picture.empty()) context.output(options.picture);
   const Mesh mesh = readMeshFile(options.mesh, context);
-  const Solid solid =
-      context.timed("solid", [&] { return Solid(mesh, context.settings<SolidSettings>()); });
+  const Solid solid = context.timed("solid", [&] { return Solid(mesh); });
   for (const std::string& note : solid.repaired().notes) context.note(options.mesh + ": " + note);
-  TetrahedralizeSettings settings = context.settings(options.settings);
+  TetrahedralizeSettings settings = options.settings;
   settings.keepTopology = !options.anyTopology;
   const std::uint64_t need = memoryFor(options, solid, settings);
   JobSize size;
@@ -115,12 +114,11 @@ void run(const TetrahedralizeOptions& options, Context& context) {
   fillReport(result, mesh, solid, context);
   const CellQuality quality = context.timed("quality", [&] { return cellQuality(result.mesh); });
   reportCells(result.mesh, quality, context);
-  const BoundaryFit fit = context.timed("boundary", [&] {
-    return boundaryFit(result.mesh, solid, context.settings<BoundaryFitSettings>());
-  });
+  const BoundaryFit fit =
+      context.timed("boundary", [&] { return boundaryFit(result.mesh, solid); });
   reportBoundaryFit(fit, context);
   if (!options.picture.empty())
-    context.timed("picture", [&] { drawCut(options, result.mesh, quality, context); });
+    context.timed("picture", [&] { drawCut(options, result.mesh, quality); });
   context.timed("write", [&] {
     setQualityFields(result.mesh, quality);
     const std::vector<std::string> left = writeCells(options.output, result.mesh);

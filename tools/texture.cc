@@ -29,14 +29,14 @@ struct TextureOptions {
   bool blends() const { return texture.seams == TextureSeams::blend; }
 };
 
-SolidTextureSettings settingsOf(const TextureOptions& o, const Context& context) {
+SolidTextureSettings settingsOf(const TextureOptions& o) {
   if (o.blends() && o.image.empty())
     throw UsageError("--seams blend needs an IMAGE: vertex colours have no seams");
   if (o.blends() && o.texture.mode != TextureMode::coordinates)
     throw UsageError(
         "--seams blend is for --mode uv: colours continued by --mode colour show no seams; leave "
         "one of the two out");
-  auto s = gridSettings(o.grid, context, o.texture);
+  auto s = gridSettings(o.grid, o.texture);
   if (o.image.empty()) s.mode = TextureMode::vertexColours;
   if (o.images.colourSpace == ColourSpace::srgb) s.decode = linearFromSrgb;
   return s;
@@ -44,8 +44,8 @@ SolidTextureSettings settingsOf(const TextureOptions& o, const Context& context)
 
 TextureImages readImages(const TextureOptions& o, const std::vector<UdimTile>& tiles,
                          Context& context) {
-  TextureImages images = context.timed(
-      "image", [&] { return TextureImages(o.image, tiles, context.settings(o.images)); });
+  TextureImages images =
+      context.timed("image", [&] { return TextureImages(o.image, tiles, o.images); });
   for (const std::string& note : images.notes()) context.note(note);
   Report& report = context.report();
   report.set("texture.image", o.image);
@@ -122,7 +122,7 @@ void expectPhases(const TextureOptions& o, const SolidTextureSettings& settings,
 }
 
 void run(const TextureOptions& o, Context& context) {
-  const SolidTextureSettings settings = settingsOf(o, context);
+  const SolidTextureSettings settings = settingsOf(o);
   context.output(o.output);
   const SolidTexturePlan plan = planSolidTexture(readMeshFile(o.mesh, context), settings);
   context.tell(plan);

@@ -22,12 +22,11 @@ struct TransferDistanceOptions {
 
 void writeSection(const std::string& path, const std::string& title, const Solid& solid,
                   const openvdb::FloatGrid& distance, const openvdb::FloatGrid& surface,
-                  const NumberPair& range, const TransferDistanceOptions& options,
-                  Context& context) {
+                  const NumberPair& range, const TransferDistanceOptions& options) {
   const openvdb::GridBase::Ptr shown = distance.deepCopyGrid();
   shown->setName(title);
   const openvdb::GridBase::Ptr solidGrid = surface.deepCopyGrid();
-  SectionSettings section = sectionSettings(options.section, solid, *makeFog(surface), context);
+  SectionSettings section = sectionSettings(options.section, solid, *makeFog(surface));
   section.grid = title;
   section.range = range;
   writeSectionImage(path, {shown, solidGrid}, section);
@@ -71,7 +70,7 @@ std::string textOf(const DistanceTransfer& made) {
 // The target's distances, then the source's through the map and its own.
 void expectPhases(const TransferDistanceOptions& options, const MappedSolid& mapped,
                   const Solid& target, Context& context) {
-  const auto settings = gridSettings<LevelSetSettings>(options.grid, context);
+  const auto settings = gridSettings<LevelSetSettings>(options.grid);
   const JobSize there = jobSize(target, settings);
   const JobSize here = jobSize(mapped.solid(), settings, mapped.map.sources());
   JobPhase source = stageOf("level set", here);
@@ -89,7 +88,7 @@ void run(const TransferDistanceOptions& options, Context& context) {
   const Solid target = targetSolid(mapped, context);
   const auto need = [&](const GridOptions& grid) {
     return distanceTransferMemory(mapped.solid(), target,
-                                  gridSettings<DistanceTransferSettings>(grid, context));
+                                  gridSettings<DistanceTransferSettings>(grid));
   };
   expectPhases(options, mapped, target, context);
   if (context.dryRun())
@@ -99,7 +98,7 @@ void run(const TransferDistanceOptions& options, Context& context) {
              options.output},
         need(options.grid));
   requireGridMemory("transferring the distance", options.grid, context, need);
-  auto settings = gridSettings<DistanceTransferSettings>(options.grid, context);
+  auto settings = gridSettings<DistanceTransferSettings>(options.grid);
   settings.accuracy = sumAccuracy(mapped);
   const DistanceTransfer made = transferDistance(mapped.map, mapped.solid(), target, settings);
   addSeconds(context.report().seconds, made.seconds);
@@ -108,11 +107,11 @@ void run(const TransferDistanceOptions& options, Context& context) {
   context.timed("write", [&] {
     folder->write("target.png", [&](const std::string& path) {
       writeSection(path, "distance in the target", target, *made.target.depth, *made.target.surface,
-                   range, options, context);
+                   range, options);
     });
     folder->write("source.png", [&](const std::string& path) {
       writeSection(path, "the target's distance, through the map", mapped.solid(), *made.through,
-                   *made.source.surface, range, options, context);
+                   *made.source.surface, range, options);
     });
   });
   writeVdbs(made, mapped, *folder, context);

@@ -104,18 +104,17 @@ openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& o
 }
 
 LevelSetSettings outputSettings(const openvdb::GridPtrVec& grids, const GridOptions& options,
-                                const Context& context, double growth) {
-  auto settings = gridSettings<LevelSetSettings>(options, context);
+                                double growth) {
+  auto settings = gridSettings<LevelSetSettings>(options);
   if (!options.voxelSize && !options.resolution) settings.voxelSize = growth * finestVoxel(grids);
   return settings;
 }
 
 std::uint64_t transferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                             const TransferOptions& options, const Context& context,
-                             const CarryKind& kind, double growth) {
+                             const TransferOptions& options, const CarryKind& kind, double growth) {
   OutsideSettings outside;
   outside.distance = options.outside;
-  return carryMemory(solid, grids, outputSettings(grids, options.grid, context, growth), outside,
+  return carryMemory(solid, grids, outputSettings(grids, options.grid, growth), outside,
                      carrySettings(options), kind);
 }
 
@@ -125,7 +124,7 @@ void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
   requireGridMemory("carrying the volume", options.grid, context, [&](const GridOptions& grid) {
     TransferOptions other = options;
     other.grid = grid;
-    return transferMemory(solid, grids, other, context, kind, growth);
+    return transferMemory(solid, grids, other, kind, growth);
   });
 }
 
@@ -133,7 +132,7 @@ openvdb::FloatGrid::Ptr outputLevelSet(const Solid& solid, const openvdb::GridPt
                                        const TransferOptions& options, Context& context,
                                        double growth) {
   return context.timed("level set", [&] {
-    return makeLevelSet(solid, outputSettings(grids, options.grid, context, growth));
+    return makeLevelSet(solid, outputSettings(grids, options.grid, growth));
   });
 }
 

@@ -37,8 +37,8 @@ openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& o
 
 // Need in bytes of pushing or pulling the grids, read already, to the solid's voxels.
 std::uint64_t transferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                             const TransferOptions& options, const Context& context,
-                             const CarryKind& kind, double growth = 1);
+                             const TransferOptions& options, const CarryKind& kind,
+                             double growth = 1);
 
 void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
                            const TransferOptions& options, const Context& context,
@@ -47,7 +47,7 @@ void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
 // Of the output's solid: by --voxel-size or --resolution, else with the finest voxels of the grids,
 // times `growth`.
 LevelSetSettings outputSettings(const openvdb::GridPtrVec& grids, const GridOptions& options,
-                                const Context& context, double growth = 1);
+                                double growth = 1);
 
 openvdb::FloatGrid::Ptr outputLevelSet(const Solid& solid, const openvdb::GridPtrVec& grids,
                                        const TransferOptions& options, Context& context,

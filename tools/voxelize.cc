@@ -55,13 +55,12 @@ openvdb::GridPtrVec makeGrids(const VoxelizeOptions& options, const Solid& solid
 void run(const VoxelizeOptions& options, Context& context) {
   context.output(options.output);
   const Mesh mesh = readMeshFile(options.mesh, context);
-  const Solid solid =
-      context.timed("solid", [&] { return Solid(mesh, context.settings<SolidSettings>()); });
+  const Solid solid = context.timed("solid", [&] { return Solid(mesh); });
   for (const std::string& note : solid.repaired().notes) context.note(options.mesh + ": " + note);
   if (options.attributes && mesh.uvs.empty() && mesh.colours.empty())
     context.warning(options.mesh +
                     " has neither texture coordinates nor vertex colours to carry over");
-  const auto settings = gridSettings(options.grid, context, options.levelSet);
+  const auto settings = gridSettings(options.grid, options.levelSet);
   const double voxelSize = voxelSizeFor(solid, settings);
   if (const std::string note = voxelSizeNote(solid, settings); !note.empty()) context.note(note);
   const std::uint64_t need = voxelizeMemory(solid, settings, mesh, options.fog, options.attributes);

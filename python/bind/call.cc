@@ -194,8 +194,14 @@ void keepPythonError(const py::error_already_set& error) {
   static_cast<CallRun&>(currentRun()->whole()).keep(error);
 }
 
+void requireMemory(const CallOptions& options, const std::string& what, std::uint64_t bytes,
+                   const std::string& advice) {
+  innermap::requireMemory(what, processMemory(bytes), options.maxMemory, advice);
+}
+
 void runCall(const CallOptions& options, const std::function<void()>& work) {
   CallRun run;
+  run.setMaxMemory(options.maxMemory);
   if (options.maxTime) {
     const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - options.began;
     run.setSecondsLeft(options.timeShare * (*options.maxTime - gone.count()));

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <type_traits>
+#include <string>
 #include <utility>
 
 #include "innermap/core/error.h"
@@ -50,18 +50,9 @@ auto call(const CallOptions& options, Work&& work) -> decltype(work()) {
   return std::move(*out);
 }
 
-// Settings of the library with the limit on memory, where they have one.
-template <class Settings, class = void>
-struct HasMaxMemory : std::false_type {};
-template <class Settings>
-struct HasMaxMemory<Settings, std::void_t<decltype(std::declval<Settings&>().maxMemory)>>
-    : std::true_type {};
-
-template <class Settings>
-Settings with(const CallOptions& options, Settings settings = {}) {
-  if constexpr (HasMaxMemory<Settings>::value) settings.maxMemory = options.maxMemory;
-  return settings;
-}
+// Throws MemoryError where a job that takes as many bytes would take the process over the limit.
+void requireMemory(const CallOptions& options, const std::string& what, std::uint64_t bytes,
+                   const std::string& advice);
 
 // The error of Python that a callable raised: the call ends with it.
 void keepPythonError(const pybind11::error_already_set& error);

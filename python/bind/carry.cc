@@ -69,7 +69,7 @@ class Job {
   void carryGrids(const openvdb::GridPtrVec& given, const CarrySettings& carry, Grids& out) const;
   template <class Settings>
   Settings settings(const CarrySettings& carry, const ThroughMap* through) const {
-    auto out = with<Settings>(o_.call);
+    Settings out;
     out.carry = carry;
     out.outside = outside_;
     out.accuracy = sumAccuracy(*map_.mapped);
@@ -96,10 +96,9 @@ void Job::carryGrids(const openvdb::GridPtrVec& given, const CarrySettings& carr
   const double from = push_ ? source.volume() : target.volume(),
                to = push_ ? target.volume() : source.volume();
   const LevelSetSettings output = o_.output(given, voxelGrowth(from, to));
-  requireMemory("carrying the grids",
-                processMemory(carryMemory(push_ ? target : source, given, output, outside_, carry,
-                                          {push_, 0})),
-                o_.call.maxMemory, "use a lower resolution");
+  requireMemory(o_.call, "carrying the grids",
+                carryMemory(push_ ? target : source, given, output, outside_, carry, {push_, 0}),
+                "use a lower resolution");
   std::optional<ThroughMap> through;
   if (through_) through = throughMap(*through_);
   const ThroughMap* way = through ? &*through : nullptr;
@@ -110,7 +109,7 @@ void Job::carryGrids(const openvdb::GridPtrVec& given, const CarrySettings& carr
     out.made = out.pushed.grids;
   } else {
     auto pulling = settings<PullSettings>(carry, way);
-    auto own = with<LevelSetSettings>(o_.call);
+    LevelSetSettings own;
     own.voxelSize = finestVoxel(given);
     const openvdb::FloatGrid::Ptr ofTarget = makeLevelSet(target, own);
     pulling.targetLevelSet = ofTarget.get();
@@ -144,7 +143,7 @@ py::object Job::grids(const py::object& what, const py::object& path) const {
 
 PointCarry Job::carryOf() const {
   const MappedSolid& mapped = *map_.mapped;
-  auto settings = with<CarryPointsSettings>(o_.call);
+  CarryPointsSettings settings;
   settings.outside = outside_;
   settings.accuracy = std::min(sumAccuracy(mapped), kPointAccuracy);
   if (through_) return carryThrough(*through_, push_, settings);

@@ -96,7 +96,7 @@ OutsideSettings CarryOptions::outsideSettings(const Points& from, const Points& 
 }
 
 LevelSetSettings CarryOptions::output(const openvdb::GridPtrVec& carried, double growth) const {
-  auto out = with<LevelSetSettings>(call);
+  LevelSetSettings out;
   out.resolution = resolution.value_or(0);
   out.voxelSize = voxelSize.value_or(resolution ? 0 : growth * finestVoxel(carried));
   return out;
@@ -135,7 +135,6 @@ ReadGeometrySettings geometrySettings(const CarryOptions& o) {
   ReadGeometrySettings out;
   out.vectors = textsFrom(o.vectors, "vectors");
   out.normals = textsFrom(o.normals, "normals");
-  out.maxMemory = o.call.maxMemory;
   return out;
 }
 
@@ -143,11 +142,11 @@ FileFigures carryFile(const std::string& from, const std::string& to,
                       const ReadGeometrySettings& reading, double subdivide,
                       const PointCarry& carry) {
   const auto file = readGeometry(from, reading);
-  requireMemory("carrying the geometry", processMemory(carryGeometryMemory(file->geometry)),
-                reading.maxMemory, "cut the file into parts");
+  innermap::requireMemory("carrying the geometry",
+                          processMemory(carryGeometryMemory(file->geometry)),
+                          "cut the file into parts");
   CarryGeometrySettings settings;
   settings.subdivide = subdivide;
-  settings.maxMemory = reading.maxMemory;
   const CarriedGeometry carried = carryGeometry(file->geometry, carry, settings);
   FileFigures out;
   out.lost = writeGeometry(to, *file, carried);

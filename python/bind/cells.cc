@@ -158,7 +158,7 @@ CellMesh bareCells(const py::object& object, const std::string& name, const Call
   if (py::isinstance<PyCells>(object)) return py::cast<const PyCells&>(object).mesh;
   if (isPath(object)) {
     const std::string path = pathFrom(object, name);
-    return call(options, [&]() { return readCells(path, with<ReadCellsSettings>(options)).mesh; });
+    return call(options, [&]() { return readCells(path).mesh; });
   }
   if (py::isinstance<py::tuple>(object)) {
     const py::tuple pair(object);

@@ -28,9 +28,8 @@ py::object check(const Arguments& a, CheckOptions& o) {
   const Mesh mesh = takeMesh(a, at, "mesh");
   if (at < a.size()) throw py::type_error("check() takes one mesh");
   return py::cast(call(o.call, [&]() {
-    requireMemory("checking the mesh", processMemory(checkMemory(mesh)), o.call.maxMemory,
-                  "raise max_memory");
-    auto settings = with<CheckSettings>(o.call);
+    requireMemory(o.call, "checking the mesh", checkMemory(mesh), "raise max_memory");
+    CheckSettings settings;
     settings.selfIntersections = o.selfIntersections;
     return checkMesh(mesh, settings);
   }));

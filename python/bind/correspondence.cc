@@ -216,7 +216,7 @@ std::shared_ptr<PyCorrespondence> correspondMeshes(const Mesh& a, const Mesh& b,
                                                    const MeshCorrespondenceSettings& settings,
                                                    const CallOptions& options) {
   const MeshCorrespondence made =
-      call(options, [&]() { return innermap::correspondMeshes(a, b, with(options, settings)); });
+      call(options, [&]() { return innermap::correspondMeshes(a, b, settings); });
   auto out = std::make_shared<PyCorrespondence>();
   out->source = made.source;
   out->positions = made.positions;

@@ -54,7 +54,7 @@ class Deformation {
 
  private:
   PointPusher pusherFor(const FrameFitter& fitter, const Points& moved) const {
-    auto settings = with<CarryPointsSettings>(o_.call);
+    CarryPointsSettings settings;
     settings.outside = outside_;
     if (fadeToFitted_)
       settings.outside.fadeTo = bestRigidMotion(fitter.solid().repaired().mesh.vertices, moved);
@@ -102,13 +102,12 @@ py::object Deformation::grids(const py::object& what,
   FrameTable table;
   std::vector<PushResult> results;
   runCall(o_.call, [&]() {
-    settings.push = with(o_.call, settings.push);
     settings.output = o_.output(given, 1);
     const FrameFitter fitter = fitterOf(rest_, o_.fitting, o_.call, 0);
-    requireMemory("carrying the grids",
-                  processMemory(carryMemory(fitter.solid(), given, settings.output, outside_,
-                                            settings.push.carry, {true, o_.velocity ? 1 : 0})),
-                  o_.call.maxMemory, "use a lower resolution");
+    requireMemory(o_.call, "carrying the grids",
+                  carryMemory(fitter.solid(), given, settings.output, outside_, settings.push.carry,
+                              {true, o_.velocity ? 1 : 0}),
+                  "use a lower resolution");
     FrameFits fits = frames_.fits(fitter);
     const FramePusher pusher(fitter, given, settings);
     for (const std::size_t index : frames_.wanted()) {

@@ -77,12 +77,11 @@ struct FieldGridOptions {
 HarmonicGrids gridsOf(const PyField& field, const FieldGridOptions& o) {
   const SolidField& solid = *field.solid;
   HarmonicGrids grids = call(o.call, [&]() {
-    auto settings = o.grid.with(with(o.call, o.settings));
+    auto settings = o.grid.with(o.settings);
     settings.span = field.span;
-    requireMemory(
-        "evaluating the field on a grid",
-        processMemory(harmonicGridMemory(solid.boundary.solid, solid.names.size(), settings)),
-        settings.maxMemory, "use a lower resolution");
+    requireMemory(o.call, "evaluating the field on a grid",
+                  harmonicGridMemory(solid.boundary.solid, solid.names.size(), settings),
+                  "use a lower resolution");
     return evaluateHarmonic(solid.field, solid.boundary.solid, solid.names, settings);
   });
   describeField(grids.all(), solid.facts);

@@ -44,7 +44,7 @@ py::object tetrahedra(const Arguments& a, TetrahedralizeOptions& o) {
   const Mesh mesh = takeMesh(a, at, "mesh");
   o.settings.edge = o.edge.value_or(0);
   Tetrahedralization made =
-      call(o.call, [&]() { return tetrahedralization(Solid(mesh), with(o.call, o.settings)); });
+      call(o.call, [&]() { return tetrahedralization(Solid(mesh), o.settings); });
   const CellQuality quality = call(o.call, [&]() { return cellQuality(made.mesh); });
   setQualityFields(made.mesh, quality);
   py::dict figures;
@@ -75,7 +75,7 @@ struct BlockOptions {
   }
 
   Mesh surfaceToFill(Mesh mesh) const {
-    CleanSurface clean = cleanSurface(mesh, with(call, surface));
+    CleanSurface clean = cleanSurface(mesh, surface);
     return clean.outer ? std::move(clean.outer->mesh) : std::move(mesh);
   }
 };
@@ -110,10 +110,10 @@ py::object hexahedra(const Arguments& a, HexahedralizeOptions& o) {
   const Mesh mesh = takeMesh(a, at, "mesh");
   o.settings.blocks = o.blocks;
   Hexahedralization made = call(o.call, [&]() {
-    const HexahedralizeSettings settings = with(o.call, o.settings);
+    const HexahedralizeSettings settings = o.settings;
     const Mesh surface = o.surfaceToFill(mesh);
-    requireMemory("hexahedra", processMemory(hexahedralizeMemory(surface, settings)),
-                  settings.maxMemory, "use fewer blocks or pieces");
+    requireMemory(o.call, "hexahedra", hexahedralizeMemory(surface, settings),
+                  "use fewer blocks or pieces");
     return hexahedralize(surface, settings);
   });
   py::dict figures;
@@ -146,11 +146,10 @@ py::object polycube(const Arguments& a, PolycubeOptions& o) {
   const Mesh mesh = takeMesh(a, at, "mesh");
   Mesh surface;
   const Polycube made = call(o.call, [&]() {
-    auto settings = with<PolycubeSettings>(o.call);
+    PolycubeSettings settings;
     settings.blocks = o.blocks;
     const Mesh toFill = o.surfaceToFill(mesh);
-    requireMemory("a polycube", processMemory(polycubeMemory(toFill, settings)), settings.maxMemory,
-                  "use fewer blocks");
+    requireMemory(o.call, "a polycube", polycubeMemory(toFill, settings), "use fewer blocks");
     Polycube cube = makePolycube(toFill, settings);
     surface = blockSurface(cube.blocks, o.pieces.value_or(usualPieces(cube.blocks)));
     return cube;

@@ -175,9 +175,9 @@ py::object fit(const Arguments& a, FitOptions& o) {
     job.target = likeSource(laid->source, laid->positions, job.target.name);
   }
   return py::cast(std::make_shared<PyMap>(call(o.call, [&]() {
-    const FitMapSettings with = python::with(o.call, settings);
-    requireMemory("fitting the map", processMemory(fitMapMemory(with, job.source.vertices.size())),
-                  with.maxMemory, "use fewer sources or raise max_memory");
+    const FitMapSettings with = settings;
+    requireMemory(o.call, "fitting the map", fitMapMemory(with, job.source.vertices.size()),
+                  "use fewer sources or raise max_memory");
     return fitMap(job.source, job.target, with);
   })));
 }

@@ -32,8 +32,8 @@ void FittingOptions::describe(Keywords& k) {
   k.count("seed", &fitting.seed, {0, 1e15}, "of all random points");
 }
 
-FrameFitterSettings FittingOptions::settings(const CallOptions& call) const {
-  FrameFitterSettings out = with(call, fitting);
+FrameFitterSettings FittingOptions::settings() const {
+  FrameFitterSettings out = fitting;
   out.collocation = collocation.value_or(0);
   return out;
 }
@@ -132,10 +132,9 @@ std::map<std::string, double> rowOf(const FrameFit& fit) {
 
 FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, const CallOptions& call,
                      std::uint64_t others) {
-  const FrameFitterSettings settings = o.settings(call);
-  requireMemory(fmt::format("a sequence with {} charges", settings.sources),
-                processMemory(frameFitterMemory(settings, others)), call.maxMemory,
-                "use fewer sources");
+  const FrameFitterSettings settings = o.settings();
+  requireMemory(call, fmt::format("a sequence with {} charges", settings.sources),
+                frameFitterMemory(settings, others), "use fewer sources");
   return FrameFitter(makeSourceBoundary(rest), settings);
 }
 

@@ -26,7 +26,7 @@ struct FittingOptions {
   pybind11::object only;  // which frames
 
   void describe(Keywords& k);
-  FrameFitterSettings settings(const CallOptions& call) const;
+  FrameFitterSettings settings() const;
 };
 
 // From files or from arrays.

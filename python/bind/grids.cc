@@ -71,7 +71,7 @@ py::array arrayNamed(const PyGrids& grids, const std::string& name) {
   py::array out;
   const bool known = grid.apply<ArrayGrids>([&](const auto& typed) {
     using Value = typename std::decay_t<decltype(typed)>::ValueType;
-    requireMemory(
+    innermap::requireMemory(
         fmt::format("the array of '{}', {} x {} x {} voxels,", name, size.x(), size.y(), size.z()),
         processMemory(grids.box.volume() * sizeof(Value)), grids.maxMemory,
         "use a lower resolution, or write_vdb()");
@@ -214,10 +214,10 @@ openvdb::GridPtrVec takeGrids(const py::object& grids, const std::string& argume
   if (!isPath(grids)) wrongType(argument, "expects an innermap.Grids or the path of a .vdb file");
   const std::string path = pathFrom(grids, argument);
   openvdb::GridPtrVec out = call(options, [&]() {
-    auto settings = with<VdbReadSettings>(options);
+    VdbReadSettings settings;
     settings.names = names;
-    requireMemory("reading " + path, processMemory(readMemory(readVdbInfo(path), names)),
-                  options.maxMemory, "read fewer of its grids");
+    requireMemory(options, "reading " + path, readMemory(readVdbInfo(path), names),
+                  "read fewer of its grids");
     return readVdb(path, settings).grids;
   });
   if (out.empty()) throw FileError(path, "holds no grid");

@@ -87,11 +87,11 @@ std::shared_ptr<PyField> fitted(const Mesh& mesh, BoundaryConditions& conditions
   if (!conditions.function) namesFrom(names, conditions.values.columns());  // before the work
   conditions.creaseAngle = o.creaseAngle;
   auto made = call(o.call, [&]() {
-    const auto settings = with(o.call, o.fit);
+    const auto settings = o.fit;
     FitMapSettings like;
     like.tolerance = settings.tolerance;
-    requireMemory("the harmonic field", processMemory(fitMapMemory(like, mesh.vertices.size())),
-                  settings.maxMemory, "raise max_memory");
+    requireMemory(o.call, "the harmonic field", fitMapMemory(like, mesh.vertices.size()),
+                  "raise max_memory");
     const bool corners =
         !conditions.function && conditions.values.rows() == 3 * mesh.triangles.size();
     const double joined = corners ? removeJumps(mesh, conditions) : 0;

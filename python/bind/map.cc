@@ -60,7 +60,7 @@ struct InverseOptions {
 py::object inverseMap(const Arguments& a, InverseOptions& o) {
   const auto& map = py::cast<const PyMap&>(a[0]);
   const Points points = pointsFrom(a[1], "Y");
-  return carriedTuple(call(o.call, [&]() { return map.puller(o.call).pull(points, o.jacobian); }),
+  return carriedTuple(call(o.call, [&]() { return map.puller().pull(points, o.jacobian); }),
                       o.jacobian);
 }
 
@@ -100,10 +100,10 @@ Mesh targetOf(const PyMap& map) { return map.mapped->boundary.targetMesh; }
 
 }  // namespace
 
-PointPuller PyMap::puller(const CallOptions& options) const {
+PointPuller PyMap::puller() const {
   const std::lock_guard<std::mutex> guard(inverse_->making);
   if (!inverse_->made) {
-    auto settings = with<CarryPointsSettings>(options);
+    CarryPointsSettings settings;
     settings.accuracy = kUsualAccuracy;
     const Solid target = makeTargetSolid(mapped->boundary);
     inverse_->made = PointPuller(mapped->map, mapped->solid(), target, settings);

@@ -23,7 +23,7 @@ struct PyMap {
 
   double diagonal() const { return mapped->boundary.target.diagonal; }  // of the target
   // The inverse on a grid, made once. Without the lock of the interpreter.
-  PointPuller puller(const CallOptions& options) const;
+  PointPuller puller() const;
 
  private:
   explicit PyMap(std::shared_ptr<const MapFit> made) : mapped(made), fit(std::move(made)) {}

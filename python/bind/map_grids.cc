@@ -45,19 +45,18 @@ struct WriteMapOptions : MapGridOptions {
   }
 };
 
-void requireGridMemory(const PyMap& map, const MapGridSettings& settings) {
-  requireMemory(
-      "evaluating the map on a grid",
-      processMemory(mapGridMemory(map.mapped->solid(), settings, mapGridKind(*map.mapped))),
-      settings.maxMemory, "use a lower resolution");
+void requireGridMemory(const PyMap& map, const MapGridSettings& settings, const CallOptions& call) {
+  requireMemory(call, "evaluating the map on a grid",
+                mapGridMemory(map.mapped->solid(), settings, mapGridKind(*map.mapped)),
+                "use a lower resolution");
 }
 
 SolidGrids gridsOf(const PyMap& map, const MapGridOptions& o) {
   return call(o.call, [&]() {
-    auto settings = o.grid.with(with<MapGridSettings>(o.call));
+    auto settings = o.grid.with(MapGridSettings{});
     settings.lame = o.lame;
     settings.repair = o.repair;
-    requireGridMemory(map, settings);
+    requireGridMemory(map, settings, o.call);
     return evaluateOnGrid(*map.mapped, settings);
   });
 }
@@ -103,9 +102,9 @@ struct FoldOptions {
 
 Folds foldsOf(const PyMap& map, const FoldOptions& o) {
   const MappedSolid& mapped = *map.mapped;
-  requireGridMemory(map, o.grid.with(with<MapGridSettings>(o.call)));
-  const auto levelSet = makeLevelSet(mapped.solid(), o.grid.with(with<LevelSetSettings>(o.call)));
-  auto settings = with<EvaluateSettings>(o.call);
+  requireGridMemory(map, o.grid.with(MapGridSettings{}), o.call);
+  const auto levelSet = makeLevelSet(mapped.solid(), o.grid.with(LevelSetSettings{}));
+  EvaluateSettings settings;
   settings.map = settings.harmonicEnergy = settings.deformationEnergy = false;
   const MapGrids grids = evaluateMap(mapped.map, mapped.solid(), *levelSet, settings);
   Folds out{grids.foldedFraction, grids.jacobianMin, grids.foldedVoxels, grids.interiorVoxels, {}};

@@ -50,9 +50,8 @@ py::object remesh(const Arguments& a, RemeshOptions& o) {
   if (!o.surface.is_none()) surface = meshFrom(o.surface, "surface");
   if (surface) o.settings.surface = &*surface;
   Remesh made = call(o.call, [&]() {
-    requireMemory("carrying the cells", processMemory(remeshMemory(cells)), o.call.maxMemory,
-                  "use a coarser mesh");
-    return remeshCells(cells, *map.mapped, with(o.call, o.settings));
+    requireMemory(o.call, "carrying the cells", remeshMemory(cells), "use a coarser mesh");
+    return remeshCells(cells, *map.mapped, o.settings);
   });
   py::dict figures;
   figures["inverted"] = made.inverted;
@@ -134,16 +133,16 @@ py::object compareFem(const Arguments& a, CompareOptions& o) {
   if (at < a.size()) target = takeTarget(a, at, source);
   if (at < a.size()) throw py::type_error("compare_fem() takes a source and a target");
   return tableOf(call(o.call, [&]() {
-    const CompareFemSettings settings = with(o.call, o.settings);
+    const CompareFemSettings settings = o.settings;
     if (target) {
       const BoundaryPair pair = makeBoundaryPair(source, *target);
-      requireMemory("finite elements", processMemory(compareFemMemory(pair.solid(), settings)),
-                    settings.maxMemory, "use lower resolutions");
+      requireMemory(o.call, "finite elements", compareFemMemory(pair.solid(), settings),
+                    "use lower resolutions");
       return compareFemOnMap(pair, settings);
     }
     const Solid solid(source);
-    requireMemory("finite elements", processMemory(compareFemMemory(solid, settings)),
-                  settings.maxMemory, "use lower resolutions");
+    requireMemory(o.call, "finite elements", compareFemMemory(solid, settings),
+                  "use lower resolutions");
     return compareFemOnFunctions(solid, settings);
   }));
 }

@@ -63,7 +63,7 @@ py::object sequence(const Arguments& a, SequenceOptions& o) {
   if (pattern && names.empty()) names = {"harmonic_energy", "deformation_energy"};
   FrameTable table;
   runCall(o.call, [&]() {
-    auto settings = o.grid.with(with<MapGridSettings>(o.call));
+    auto settings = o.grid.with(MapGridSettings{});
     settings.lame = o.lame;
     const FrameFitter fitter = fitterOf(rest, o.fitting, o.call, 0);
     const FrameEvaluator evaluator(fitter, names, settings);

@@ -75,7 +75,7 @@ py::object texture(const Arguments& a, TextureOptions& o) {
       (image.empty() || o.texture.mode != TextureMode::coordinates))
     wrongValue("seams", "'blend' needs an image and mode 'uv'");
   SolidTexture made = call(o.call, [&]() {
-    SolidTextureSettings settings = with(o.call, o.texture);
+    SolidTextureSettings settings = o.texture;
     settings.resolution = o.grid.resolution.value_or(0);
     settings.voxelSize = o.grid.voxelSize.value_or(0);
     if (image.empty()) settings.mode = TextureMode::vertexColours;
@@ -83,13 +83,12 @@ py::object texture(const Arguments& a, TextureOptions& o) {
     const SolidTexturePlan plan = planSolidTexture(std::move(mesh), settings);
     std::vector<UdimTile> tiles;
     if (isTiled(image)) tiles = udimTiles(plan.mesh());
-    requireMemory(
-        "the solid texture",
-        processMemory(plan.memory + (image.empty() ? 0 : textureImageMemory(image, tiles))),
-        settings.maxMemory, "use larger voxels or fewer sources");
+    requireMemory(o.call, "the solid texture",
+                  plan.memory + (image.empty() ? 0 : textureImageMemory(image, tiles)),
+                  "use larger voxels or fewer sources");
     TextureLookup lookup;
     if (!image.empty())
-      lookup = [images = TextureImages(image, tiles, with(o.call, o.images))](
+      lookup = [images = TextureImages(image, tiles, o.images)](
                    const Vec2& uv, const Vec2& u, const Vec2& v) { return images.at(uv, u, v); };
     return makeSolidTexture(plan, lookup);
   });

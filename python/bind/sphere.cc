@@ -27,9 +27,8 @@ py::object sphere(const Arguments& a, SphereOptions& o) {
   const Mesh mesh = takeMesh(a, at, "mesh");
   if (at < a.size()) throw py::type_error("sphere() takes one mesh");
   MeshOnSphere made = call(o.call, [&]() {
-    requireMemory("the layout", processMemory(layOutMemory(mesh.vertices.size())), o.call.maxMemory,
-                  "use a coarser mesh");
-    return onSphere(layOutMesh(mesh, with(o.call, o.settings)));
+    requireMemory(o.call, "the layout", layOutMemory(mesh.vertices.size()), "use a coarser mesh");
+    return onSphere(layOutMesh(mesh, o.settings));
   });
   py::dict figures;
   figures["flips"] = made.quality.flips;

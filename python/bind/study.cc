@@ -95,8 +95,8 @@ py::object study(const Arguments& a, StudyOptions& o) {
   takeNumbers(o.distances, "distances", o.study.distances);
   takeNumbers(o.radiusRatios, "radius_ratios", o.study.radiusRatios);
   if (!o.folder.is_none()) o.study.folder = pathFrom(o.folder, "folder");
-  const Study made = call(
-      o.call, [&]() { return runStudy(makeBoundaryPair(source, target), with(o.call, o.study)); });
+  const Study made =
+      call(o.call, [&]() { return runStudy(makeBoundaryPair(source, target), o.study); });
   return py::make_tuple(tableOf(made), findingsOf(made, o.study));
 }
 

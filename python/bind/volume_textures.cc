@@ -66,7 +66,7 @@ py::object write(const Arguments& a, WriteOptions& o) {
   o.texture.axis = parseAxis("axis", o.axis);
   if (!o.tiles.is_none()) o.texture.tiles = tilesFrom(o.tiles);
   const VolumeTextureResult made =
-      call(o.call, [&]() { return writeVolumeTexture(path, grids, with(o.call, o.texture)); });
+      call(o.call, [&]() { return writeVolumeTexture(path, grids, o.texture); });
   py::dict out;
   out["files"] = made.files;
   out["channels"] = made.channels;
@@ -118,11 +118,7 @@ py::object read(const Arguments& a, ReadOptions& o) {
     if (corner.size() != 3) wrongValue("lower_corner", "expects three numbers");
     s.lowerCorner = {corner[0], corner[1], corner[2]};
   }
-  VolumeTextureContents contents = call(o.call, [&]() {
-    VolumeTextureReadSettings settings = with(o.call, s);
-    settings.maxMemory = memoryLeft(settings.maxMemory);  // the grids grow as they are read
-    return readVolumeTexture(path, settings);
-  });
+  VolumeTextureContents contents = call(o.call, [&]() { return readVolumeTexture(path, s); });
   py::dict totals;
   totals["layout"] = volumeLayoutName(contents.layout);
   totals["not_finite"] = contents.notFinite;

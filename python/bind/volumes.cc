@@ -164,13 +164,12 @@ py::object voxelize(const Arguments& a, VoxelizeOptions& o) {
   const Mesh mesh = takeMesh(a, at, "mesh");
   openvdb::GridPtrVec made;
   const LevelSetCheck check = call(o.call, [&]() {
-    LevelSetSettings settings = with(o.call, o.levelSet);
+    LevelSetSettings settings = o.levelSet;
     settings.resolution = o.grid.resolution.value_or(0);
     settings.voxelSize = o.grid.voxelSize.value_or(0);
     const Solid solid(mesh);
-    requireMemory("voxelizing",
-                  processMemory(voxelizeMemory(solid, settings, mesh, o.fog, o.attributes)),
-                  settings.maxMemory, "use larger voxels");
+    requireMemory(o.call, "voxelizing", voxelizeMemory(solid, settings, mesh, o.fog, o.attributes),
+                  "use larger voxels");
     const openvdb::FloatGrid::Ptr surface = makeLevelSet(solid, settings);
     made.push_back(surface);
     if (o.fog) made.push_back(makeFog(*surface));
@@ -201,13 +200,13 @@ py::object distance(const Arguments& a, DistanceOptions& o) {
   if (!py::isinstance<PyMap>(a[0])) wrongType("map", "expects an innermap.Map");
   const MappedSolid& mapped = *py::cast<const PyMap&>(a[0]).mapped;
   const DistanceTransfer made = call(o.call, [&]() {
-    auto settings = o.grid.with(with<DistanceTransferSettings>(o.call));
+    auto settings = o.grid.with(DistanceTransferSettings{});
     settings.resolution = o.grid.resolution.value_or(0);
     settings.accuracy = sumAccuracy(mapped);
     const Solid target = makeTargetSolid(mapped.boundary);
-    requireMemory("transferring the distance",
-                  processMemory(distanceTransferMemory(mapped.solid(), target, settings)),
-                  settings.maxMemory, "use a lower resolution");
+    requireMemory(o.call, "transferring the distance",
+                  distanceTransferMemory(mapped.solid(), target, settings),
+                  "use a lower resolution");
     return transferDistance(mapped.map, mapped.solid(), target, settings);
   });
   const openvdb::GridPtrVec source{made.source.surface, made.through, made.source.depth},
@@ -244,9 +243,8 @@ py::object writeSlices(const Arguments& a, SliceOptions& o) {
   const openvdb::GridPtrVec given = takeGrids(a[1], "grids", textsFrom(o.names, "names"), o.call);
   o.slices.axis = axisFrom(o.axis);
   const ExrSliceResult made = call(o.call, [&]() {
-    const ExrSliceSettings settings = with(o.call, o.slices);
-    requireMemory("slices", processMemory(exrSliceMemory(given, settings)), settings.maxMemory,
-                  "slice fewer grids");
+    const ExrSliceSettings settings = o.slices;
+    requireMemory(o.call, "slices", exrSliceMemory(given, settings), "slice fewer grids");
     return writeExrSlices(path, given, settings);
   });
   py::dict out;
@@ -287,7 +285,7 @@ py::object writeSection(const Arguments& a, SectionOptions& o) {
   if (!shown.empty()) o.section.grid = shown.front();
   if (!o.range.is_none()) o.section.range = pairFrom(o.range, "range");
   const SectionResult made =
-      call(o.call, [&]() { return writeSectionImage(path, given, with(o.call, o.section)); });
+      call(o.call, [&]() { return writeSectionImage(path, given, o.section); });
   py::dict out;
   out["grid"] = made.grid;
   out["position"] = made.position;

@@ -4,7 +4,9 @@
 
 #include <sstream>
 
+#include "core/memory_limit.h"
 #include "innermap/boundary/landmarks.h"
+#include "innermap/core/memory.h"
 #include "innermap/field/field_file.h"
 #include "innermap/io/exr/exr_slices.h"
 #include "innermap/io/geometry/geometry_file.h"
@@ -42,10 +44,8 @@ void table(const std::string& path) { readVertexTable(path, octahedron()); }
 
 // Also written again, with all where it was, which uses every index that was read.
 void geometry(const std::string& path) {
-  ReadGeometrySettings settings;
-  settings.maxMemory = kMemory;
-  settings.maxMemory += 160000000;  // what readGeometry plans for carrying
-  const auto file = readGeometry(path, settings);
+  const MemoryLimit limit(kMemory + 160000000);  // what readGeometry plans for carrying
+  const auto file = readGeometry(path);
   CarriedGeometry carried;
   const Geometry& g = file->geometry;
   carried.points.points = g.points;
@@ -72,24 +72,22 @@ void field(const std::string& path) {
 
 void vdb(const std::string& path) {
   describe(readVdbInfo(path), path, /*metadata=*/true);
-  VdbReadSettings settings;
-  settings.maxMemory = kMemory;
-  readVdb(path, settings);
+  const MemoryLimit limit(kMemory);
+  readVdb(path);
 }
 
 void exrInfo(const std::string& path) { describe(readExrInfo(path), path); }
 
 // By what the file says, or else by what the options of `innermap import` would.
 void volumeTexture(const std::string& path) {
-  VolumeTextureReadSettings settings;
-  settings.maxMemory = kMemory;
-  volumeTextureReadNeed(path, settings);
-  readVolumeTexture(path, settings);
+  const MemoryLimit limit(processMemory(kMemory));
+  volumeTextureReadNeed(path, {});
+  readVolumeTexture(path);
 }
 
 void foreignVolumeTexture(const std::string& path) {
+  const MemoryLimit limit(processMemory(kMemory));
   VolumeTextureReadSettings settings;
-  settings.maxMemory = kMemory;
   settings.names = {"a"};
   settings.layout = VolumeLayout::atlas;
   settings.tiles = {2, 2};
@@ -99,9 +97,8 @@ void foreignVolumeTexture(const std::string& path) {
 }
 
 void image(const std::string& path) {
-  ImageSettings settings;
-  settings.maxMemory = kMemory;
-  readImage(path, settings);
+  const MemoryLimit limit(kMemory);
+  readImage(path);
 }
 
 }  // namespace

@@ -73,7 +73,6 @@ Fitted fittedWhereNeeded(const SourceBoundary& boundary, const SurfaceConditions
   AdaptiveSettings s;
   s.tolerance = settings.tolerance;
   s.maxSources = settings.maxSources;
-  s.maxMemory = memoryLeft(settings.maxMemory);
   const AdaptiveResult fit = fitToTolerance(problemOf(boundary, conditions, span, settings), s);
   return {fit.field, fit.end, fit.collocation};
 }
@@ -93,7 +92,6 @@ std::optional<Fitted> fittedByFew(const SourceBoundary& boundary,
   FitSettings s;
   s.sources = kFewSources;
   s.interpolation = Interpolation::linear;
-  s.maxMemory = memoryLeft(settings.maxMemory);
   const FitResult fit = fitField(problem, s);
   const BoundarySamples fresh =
       problemOf(boundary, conditions, span, settings).draw(kFreshSamples, 0);
@@ -182,7 +180,6 @@ double comparisonBound(const SourceBoundary& boundary, const SurfaceConditions& 
   coarse.tolerance = kOfComparison;
   coarse.maxSources = kMostOfComparison;
   coarse.outlierRounds = 0;
-  coarse.maxMemory = memoryLeft(settings.maxMemory);
   const AdaptiveProblem problem =
       adaptiveProblem(boundary.solid, rows, largest, problemSettings(conditions, settings));
   const AdaptiveResult fit = fitToTolerance(problem, coarse);

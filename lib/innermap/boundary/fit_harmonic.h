@@ -24,7 +24,6 @@ struct HarmonicFitSettings {
                                     // [kSmallestTolerance, 1]
   std::size_t maxSources = 100000;  // in [1000, 1000000]
   std::uint64_t seed = 1;           // of all random points, in [0, 1e15]
-  std::uint64_t maxMemory = 0;      // bytes, of the process; 0 means no limit
 };
 
 struct HarmonicFit {

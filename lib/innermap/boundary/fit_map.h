@@ -21,7 +21,7 @@ namespace innermap {
 // Need in bytes of a fit to so many vertices of the source, beside their boundaries, and of looking
 // at what it gives; with a tolerance, of its first level of charges. How many follow, and whether
 // the map goes in steps, is not known beforehand: charges are added while the process stays within
-// maxMemory, and where steps do not fit the single map is kept.
+// the limit on memory, and where steps do not fit the single map is kept.
 std::uint64_t fitMapMemory(const FitMapSettings& settings, std::size_t vertices);
 
 // A tolerance that cannot be met is no error: see MapFit::tolerance. Throws SettingError, DataError

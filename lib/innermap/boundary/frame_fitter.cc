@@ -112,7 +112,6 @@ FrameFitter::FrameFitter(SourceBoundary rest, const FrameFitterSettings& setting
   timed(seconds_, "factor", [&] {
     IterativeSettings solving;
     solving.accuracy = kProducts;
-    solving.maxMemory = settings.maxMemory;
     solver_.emplace(collocation_.points, levels, solving);
   });
 }

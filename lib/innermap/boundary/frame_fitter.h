@@ -28,7 +28,6 @@ struct FrameFitterSettings {
                                    // [1e-4, 2]; 1.25 spacings of the charges when absent; at most
                                    // 4 spacings for over kMostDenseSources charges
   std::uint64_t seed = 1;          // of all random points, in [0, 1e15]
-  std::uint64_t maxMemory = 0;     // bytes; 0 means no limit
 };
 
 // Boundary points of these settings: `collocation`, or its default.

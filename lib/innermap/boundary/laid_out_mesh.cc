@@ -71,7 +71,6 @@ OuterSurface outerSurfaceOf(const Mesh& mesh, const Obstacle& obstacle,
   how.resolution = settings.outerResolution;
   how.handles = settings.handles ? settings.handles : obstacle.handles;
   how.onePiece = obstacle.handles.has_value();
-  how.maxMemory = settings.maxMemory;
   return outerSurface(Solid(mesh), how);
 }
 

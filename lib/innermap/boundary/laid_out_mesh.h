@@ -19,7 +19,6 @@ struct LayOutSettings {
   // of the mesh's own.
   int outerResolution = 0;
   std::optional<int> handles;
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
 };
 
 struct LaidOutMesh {

@@ -53,7 +53,6 @@ struct FitMapSettings {
   OneToOne oneToOne = OneToOne::automatic;  // with `shell` folds are counted, no more
   int maxSteps = 16;                        // in [1, 256]
   std::uint64_t seed = 1;                   // of all random points, in [0, 1e15]
-  std::uint64_t maxMemory = 0;              // bytes, of the process; 0 means no limit
 };
 
 // How the charges were placed and their weights found. Lengths are fractions of the source's

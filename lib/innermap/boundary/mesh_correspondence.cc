@@ -18,10 +18,9 @@ namespace {
 constexpr std::uint64_t kJudged = 24'000'000;  // bytes: the insides of the ways that are tried
 constexpr double kOffTarget = 0.01;            // of the target's diagonal
 
-void requireCorrespondMemory(const Mesh& a, const Mesh& b,
-                             const MeshCorrespondenceSettings& settings) {
+void requireCorrespondMemory(const Mesh& a, const Mesh& b) {
   requireMemory("the correspondence", correspondMemory(a.vertices.size(), b.vertices.size()),
-                settings.maxMemory, "use coarser meshes");
+                "use coarser meshes");
 }
 
 // Addresses on the shells' mesh become addresses on the mesh as given.
@@ -91,7 +90,6 @@ CorrespondSettings settingsOf(const MeshCorrespondenceSettings& settings) {
     out.judge = [](const ClosedSurface& a, const ClosedSurface& b) { return judgeOf(a, b); };
   out.seed = settings.seed;
   out.subdivide = settings.subdivide;
-  out.maxMemory = settings.maxMemory;
   return out;
 }
 
@@ -137,18 +135,17 @@ std::optional<MeshCorrespondence> MeshCorrespondence::otherWay() const {
 }
 
 MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const MeshCorrespondenceSettings& settings) {
-  requireCorrespondMemory(a, b, settings);
+  requireCorrespondMemory(a, b);
   LayOutSettings surfaces;
   surfaces.outerResolution = settings.outerResolution;
   surfaces.handles = settings.handles;
-  surfaces.maxMemory = settings.maxMemory;
   auto [laidA, laidB] = layOutMeshes(std::move(a), std::move(b), surfaces);
   return correspondMeshes(std::move(laidA), std::move(laidB), settings);
 }
 
 MeshCorrespondence correspondMeshes(LaidOutMesh a, LaidOutMesh b,
                                     const MeshCorrespondenceSettings& settings) {
-  requireCorrespondMemory(a.shells().mesh, b.shells().mesh, settings);
+  requireCorrespondMemory(a.shells().mesh, b.shells().mesh);
   MeshCorrespondence out(std::move(a), std::move(b));
   CorrespondSettings how = settingsOf(settings);
   if (!settings.landmarks.pairs.empty()) {

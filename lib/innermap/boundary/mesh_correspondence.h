@@ -33,7 +33,6 @@ struct MeshCorrespondenceSettings {
   double subdivide = 0;    // split A until it follows B within this fraction of B's diagonal, in
                            // [0, 1); 0: never
   std::uint64_t seed = 1;  // of all random choices
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
 };
 
 struct MeshCorrespondence {

@@ -14,12 +14,30 @@
 #include <string>
 
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 
+namespace {
+
+constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
+
+}  // namespace
+
+std::uint64_t memoryLimit() {
+  RunContext* const run = currentRun();
+  return run && run->maxMemory() > 0 ? run->maxMemory() : kNoLimit;
+}
+
+bool limitsMemory() { return memoryLimit() < kNoLimit; }
+
+void requireMemory(const std::string& what, std::uint64_t bytes, const std::string& advice) {
+  requireMemory(what, bytes, memoryLimit(), advice);
+}
+
 void requireMemory(const std::string& what, std::uint64_t bytes, std::uint64_t limit,
                    const std::string& advice) {
-  if (limit == 0 || bytes <= limit) return;
+  if (bytes <= limit) return;
   throw MemoryError(fmt::format("{} needs {} of memory, more than the limit of {}; {}", what,
                                 formatBytes(bytes), formatBytes(limit), advice));
 }
@@ -67,8 +85,9 @@ std::uint64_t processMemory(std::uint64_t bytes) {
   return std::max(peakMemory() + kLibrariesAtWork, bytes > most - before ? most : before + bytes);
 }
 
-std::uint64_t memoryLeft(std::uint64_t limit) {
-  if (limit == 0) return 0;
+std::uint64_t memoryLeft() {
+  if (!limitsMemory()) return kNoLimit;
+  const std::uint64_t limit = memoryLimit();
   // So many bytes are above any peak so far.
   const std::uint64_t many = std::uint64_t(1) << 62, held = processMemory(many) - many;
   return limit > held ? limit - held : 1;

@@ -7,8 +7,17 @@
 
 namespace innermap {
 
-// Throws MemoryError when `bytes` exceeds `limit` (bytes; 0 means no limit). The message names
-// `what`, the need, the limit, and ends with `advice`: settings that would fit.
+// Bytes that the process may hold, of the run that was entered (core/run.h); the largest number
+// where that has no limit.
+std::uint64_t memoryLimit();
+bool limitsMemory();
+
+// For work that alone takes `bytes`: throws MemoryError when they exceed memoryLimit(). The message
+// names `what`, the need, the limit, and ends with `advice`: settings that would fit. What a job
+// takes in all, beside what the process holds, is for its caller to ask for: processMemory().
+void requireMemory(const std::string& what, std::uint64_t bytes, const std::string& advice);
+
+// The same for another limit, in bytes.
 void requireMemory(const std::string& what, std::uint64_t bytes, std::uint64_t limit,
                    const std::string& advice);
 
@@ -43,8 +52,9 @@ constexpr std::uint64_t kLibrariesAtWork = 24'000'000;
 // bytes; limits of programs are on the sum.
 std::uint64_t processMemory(std::uint64_t bytes);
 
-// The most bytes that processMemory() puts within `limit`, at least 1; 0, no limit, stays 0.
-std::uint64_t memoryLeft(std::uint64_t limit);
+// The most bytes that processMemory() puts within memoryLimit(), at least 1; the largest number
+// where there is no limit.
+std::uint64_t memoryLeft();
 
 // "1.5 GB": three significant digits, powers of 1000.
 std::string formatBytes(std::uint64_t bytes);

@@ -1,5 +1,5 @@
-// What a call of the library shares with its caller, all the way down: progress, cancelling, a time
-// limit. The caller enters a RunContext once, for the thread that calls:
+// What a call of the library shares with its caller, all the way down: progress, cancelling, limits
+// on time and memory. The caller enters a RunContext once, for the thread that calls:
 //
 //   RunContext run;  // or a class of one's own that shows what is reported
 //   const RunScope scope(run);
@@ -12,10 +12,14 @@
 // A deadline is softer: what tries, refines, repairs or goes in steps ends at it with what has been
 // reached, and what a result cannot be without runs to its end. Such a result depends on the
 // machine, and may differ from run to run; endedByTime() tells.
+//
+// What is known to take more memory than the limit is refused with a MemoryError before it begins;
+// core/memory.h has the functions that look at the limit.
 #pragma once
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <limits>
 #include <string_view>
 
@@ -53,6 +57,10 @@ class RunContext {
   virtual void endByTime() noexcept { endedByTime_.store(true, std::memory_order_relaxed); }
   bool endedByTime() const noexcept { return endedByTime_.load(std::memory_order_relaxed); }
 
+  // Bytes that the process may hold; 0: no limit. To be set before work begins.
+  void setMaxMemory(std::uint64_t bytes) noexcept { maxMemory_ = bytes; }
+  std::uint64_t maxMemory() noexcept { return whole().maxMemory_; }
+
   // What the caller entered, of a part of it.
   virtual RunContext& whole() noexcept { return *this; }
 
@@ -63,6 +71,7 @@ class RunContext {
   }
 
   std::atomic<bool> cancelled_{false}, endedByTime_{false};
+  std::uint64_t maxMemory_ = 0;
   std::atomic<double> deadline_{std::numeric_limits<double>::infinity()};
 };
 

@@ -212,7 +212,6 @@ MapGrids Evaluation::run() {
   const bool wantsMap = settings_.map || mayRepair, wantsJacobian = settings_.jacobian || mayRepair;
   RegionSettings where;
   where.skin = settings_.skin;
-  where.maxMemory = settings_.maxMemory;
   where.bytesPerVoxel = kMaskBytes + (wantsMap ? 12 : 0) + (wantsJacobian ? 4 : 0) +
                         (settings_.harmonicEnergy ? 4 : 0) + (settings_.deformationEnergy ? 4 : 0);
   const openvdb::MaskGrid::Ptr region = activeRegion(levelSet_, where);

@@ -27,7 +27,6 @@ struct EvaluateSettings {
   // Of the sums of charges: root mean square error of positions as a fraction of the target's
   // extent, in [1e-12, 1e-3]. The default is what float grids hold.
   double accuracy = 1e-7;
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
 };
 
 // Value grids have the level set's transform; active where the signed distance is at most the skin.

@@ -118,7 +118,6 @@ HarmonicGrids evaluateHarmonic(const HarmonicField& field, const Solid& solid,
   requireInterior(out.interiorVoxels, solid, solid.repaired().mesh.name);
   RegionSettings where;
   where.skin = kSkin;
-  where.maxMemory = settings.maxMemory;
   where.bytesPerVoxel = 1 + bytesPerVoxel(names.size(), settings);
   timed(out.seconds, "evaluate", [&] {
     const openvdb::MaskGrid::Ptr region = activeRegion(*out.surface, where);

@@ -18,9 +18,8 @@ struct HarmonicGridSettings {
   int resolution = 128;  // voxels along the longest side of the solid, in [4, 4096]
   double voxelSize = 0;  // world units; above 0: in place of the resolution
   bool values = true, gradients = true, directions = true, magnitudes = true;
-  double accuracy = 1e-7;       // of the sums, fraction of `span`, in [1e-12, 1e-3]
-  double span = 1;              // of the values, in their units, above 0
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  double accuracy = 1e-7;  // of the sums, fraction of `span`, in [1e-12, 1e-3]
+  double span = 1;         // of the values, in their units, above 0
 };
 
 struct HarmonicGrids {

@@ -30,7 +30,6 @@ EvaluateSettings evaluateSettings(double targetVolume, double accuracy,
                                                                : 0;
   out.targetVolume = targetVolume;
   out.accuracy = accuracy;
-  out.maxMemory = settings.maxMemory;
   return out;
 }
 

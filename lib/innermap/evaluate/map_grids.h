@@ -26,7 +26,6 @@ struct MapGridSettings {
   double voxelSize = 0;  // world units; above 0: in place of the resolution
   LameConstants lame;
   RepairFolds repair = RepairFolds::automatic;
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
 };
 
 constexpr double kUsualTolerance = 1e-3;

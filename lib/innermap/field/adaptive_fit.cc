@@ -85,6 +85,7 @@ class AdaptiveFitting {
   std::vector<AdaptiveRound> rounds_;
   AdaptiveEnd end_ = AdaptiveEnd::met;
   std::uint64_t requests_ = 0;
+  const std::uint64_t room_ = memoryLeft();  // bytes
 };
 
 void AdaptiveFitting::check() const {
@@ -142,8 +143,7 @@ void AdaptiveFitting::first() {
   BoundarySamples samples = problem_.placeCollocation(request);
   collocation_ = samples.collocation();
   values_ = std::move(samples.values);
-  requireMemory("the first level of charges", memory(), settings_.maxMemory,
-                "raise the limit of memory");
+  requireMemory("the first level of charges", memory(), "raise the limit of memory");
   IterativeSettings s;
   s.accuracy = std::clamp(kErrorAccuracy * settings_.tolerance, 1e-12, s.accuracy);
   solver_.emplace(collocation_,
@@ -179,7 +179,7 @@ bool AdaptiveFitting::refineOnce(const std::vector<Points>& marks) {
     append(values, more.values);
   }
   if (added.empty()) return false;
-  if (settings_.maxMemory > 0 && memory() > settings_.maxMemory) {
+  if (memory() > room_) {
     end_ = AdaptiveEnd::maxMemory;
     return false;
   }

@@ -71,7 +71,6 @@ struct AdaptiveSettings {
   // Asked with the field of each round, if given; that of the first has the first level alone.
   // Where the answer is no the fit ends there (AdaptiveEnd::stopped).
   std::function<bool(const HarmonicField& field, int round)> goOn;
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
 };
 
 // Why an adaptive fit ended; jumps: the tolerance holds but about them; time: at the deadline of

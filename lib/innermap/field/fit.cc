@@ -168,7 +168,7 @@ void Fitting::check() const {
   requireMemory("fitting " + std::to_string(settings_.sources) + " sources",
                 fitMemory(problem_.surface.points.size(), settings_.sources,
                           problem_.surface.heldOut.size(), solver()),
-                settings_.maxMemory, "use fewer sources");
+                "use fewer sources");
 }
 
 Solved Fitting::solve(const BoundaryData& data, std::size_t count, std::size_t points,
@@ -183,8 +183,7 @@ Solved Fitting::solve(const BoundaryData& data, std::size_t count, std::size_t p
   Matrix values(used, data.values.columns());
   for (std::size_t k = 0; k < values.columns(); ++k)
     std::copy_n(data.values.column(k), used, values.column(k));
-  DenseSettings dense;
-  const DenseSolver solver(collocation, out.sources, {data.heldOut, data.heldOutDirections}, dense);
+  const DenseSolver solver(collocation, out.sources, {data.heldOut, data.heldOutDirections});
   out.solution =
       solver.solve(values, settings_.method, data.heldOutValues, settings_.regularization);
   return out;

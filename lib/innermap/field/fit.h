@@ -57,7 +57,6 @@ struct FitSettings {
   Interpolation interpolation = Interpolation::automatic;
   Regularization method = Regularization::tikhonov;
   std::optional<double> regularization;  // relative, in [0, 1]; chosen when absent
-  std::uint64_t maxMemory = 0;           // bytes; 0 means no limit
 };
 
 struct DistanceTrial {

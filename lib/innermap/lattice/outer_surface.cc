@@ -227,7 +227,7 @@ OuterSurface outerSurface(const Solid& solid, const OuterSurfaceSettings& settin
   const std::string& name = solid.repaired().mesh.name;
   OuterSurface out;
   out.edge = spacingFor(solid, settings);
-  requireMemory("the outer surface of " + name, memoryFor(solid, settings), settings.maxMemory,
+  requireMemory("the outer surface of " + name, memoryFor(solid, settings),
                 "a coarser lattice takes less (surface resolution)");
   LatticeSigns signs = signsOf(solid, out.edge);
   const SolidParts parts = partsOf(signs, settings.onePiece);

@@ -19,8 +19,7 @@ struct OuterSurfaceSettings {
   // Of all handles of the surface, at least 0. Without: those that the solid has at three
   // resolutions.
   std::optional<int> handles;
-  bool onePiece = false;        // the largest part alone
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  bool onePiece = false;  // the largest part alone
 };
 
 // Where the surface was cut apart: the solid's parts meet there, and would make a handle.

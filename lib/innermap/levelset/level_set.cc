@@ -43,11 +43,11 @@ double gridBytes(const Solid& solid, double voxel) {
   return kVoxel * (solid.volume() / std::pow(voxel, 3) + kReach * solid.area() / (voxel * voxel));
 }
 
-double automaticVoxel(const Solid& solid, std::uint64_t maxMemory) {
+double automaticVoxel(const Solid& solid) {
   constexpr double kFiner = 0.9, kMostBytes = 4e9, kHopeless = 3;
   const double usual = voxelSizeAcross(solid.box(), kUsualResolution), thin = thinVoxel(solid);
   if (!(thin > 0 && thin < usual)) return usual;
-  const double room = maxMemory > 0 ? 0.5 * static_cast<double>(maxMemory) : kMostBytes;
+  const double room = limitsMemory() ? 0.5 * static_cast<double>(memoryLimit()) : kMostBytes;
   double voxel = std::max(thin, voxelSizeAcross(solid.box(), kMaxAcross));
   while (voxel < usual && gridBytes(solid, voxel) > room) voxel /= kFiner;
   return voxel > kHopeless * thicknessOf(solid) ? usual : std::min(voxel, usual);
@@ -87,8 +87,7 @@ static_assert(kSmallestVoxel == kLeastVoxel);
 
 double voxelSizeFor(const Solid& solid, const LevelSetSettings& settings) {
   const double longest = longestSide(solid);
-  if (settings.voxelSize == 0 && settings.resolution == 0)
-    return automaticVoxel(solid, settings.maxMemory);
+  if (settings.voxelSize == 0 && settings.resolution == 0) return automaticVoxel(solid);
   if (settings.voxelSize == 0) {
     if (settings.resolution < kMinAcross || settings.resolution > kMaxAcross) {
       throw SettingError("resolution", "must lie between 4 and 4096 voxels");
@@ -176,10 +175,8 @@ std::uint64_t levelSetMemory(const Solid& solid, const LevelSetSettings& setting
 FloatGrid::Ptr makeLevelSet(const Solid& solid, const LevelSetSettings& settings) {
   checkHalfWidth(settings);
   const double h = voxelSizeFor(solid, settings);
-  if (settings.maxMemory > 0) {
-    requireMemory("level set", levelSetMemory(solid, settings), settings.maxMemory,
-                  "a larger voxel size, a lower resolution or a smaller half width would fit");
-  }
+  requireMemory("level set", levelSetMemory(solid, settings),
+                "a larger voxel size, a lower resolution or a smaller half width would fit");
   const Vec3 origin = settings.origin.value_or(latticeOrigin(solid.box(), h));
   checkReach(solid, origin, h);
   return narrowBand(solid.body(), origin, h, settings.halfWidth * h);

@@ -16,7 +16,8 @@ namespace innermap {
 struct LevelSetSettings {
   double voxelSize = 0;  // world units; 0 means: resolution decides
   // Voxels along the longest side of the solid's box, in [4, 4096]; 0: kUsualResolution, and more
-  // where the solid is thinner than these on average, as far as half of maxMemory holds them.
+  // where the solid is thinner than these on average, as far as half of the limit on memory holds
+  // them.
   int resolution = 0;
   // Of the narrow band, voxels, in [2, 100]. Three hold the skin of two voxels that grids of values
   // have outside, and one more for interpolation.
@@ -24,7 +25,6 @@ struct LevelSetSettings {
   // Centre of voxel (0, 0, 0), world units, so that several grids have one lattice (the frames of a
   // sequence), at most 1e9 voxels away from the solid; near its lower corner without.
   std::optional<Vec3> origin;
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
 };
 
 constexpr int kUsualResolution = 128;

@@ -72,8 +72,7 @@ std::uint64_t denseSolverMemory(std::size_t collocation, std::size_t sources, st
 
 class DenseSolver::Factors {
  public:
-  Factors(const Collocation& collocation, const Points& sources, const Collocation& heldOut,
-          const DenseSettings& settings);
+  Factors(const Collocation& collocation, const Points& sources, const Collocation& heldOut);
 
   DenseSolution solve(const Matrix& values, Regularization method, const Matrix& heldOutValues,
                       std::optional<double> regularization) const;
@@ -109,7 +108,7 @@ struct DenseSolver::Factors::Projected {
 };
 
 DenseSolver::Factors::Factors(const Collocation& collocation, const Points& sources,
-                              const Collocation& heldOut, const DenseSettings& settings)
+                              const Collocation& heldOut)
     : sources_(sources.size()) {
   const std::size_t m = collocation.size(), n = sources.size(), columns = n + kAffine;
   if (n == 0) throw SettingError("sources", "there are none; use at least 1");
@@ -119,7 +118,7 @@ DenseSolver::Factors::Factors(const Collocation& collocation, const Points& sour
                                                  std::to_string(columns));
   requireMemory("the dense solver with " + std::to_string(n) + " sources and " + std::to_string(m) +
                     " collocation points",
-                denseSolverMemory(m, n, heldOut.size()), settings.maxMemory,
+                denseSolverMemory(m, n, heldOut.size()),
                 "use fewer sources (memory grows with their square)");
   const Box3 box = boundingBox(collocation.points);
   center_ = box.center();
@@ -293,8 +292,8 @@ DenseSolution DenseSolver::Factors::solve(const Matrix& values, Regularization m
 }
 
 DenseSolver::DenseSolver(const Collocation& collocation, const Points& sources,
-                         const Collocation& heldOut, const DenseSettings& settings)
-    : factors_(std::make_shared<const Factors>(collocation, sources, heldOut, settings)) {}
+                         const Collocation& heldOut)
+    : factors_(std::make_shared<const Factors>(collocation, sources, heldOut)) {}
 
 DenseSolution DenseSolver::solve(const Matrix& values, Regularization method,
                                  const Matrix& heldOutValues,

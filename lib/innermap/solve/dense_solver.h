@@ -24,10 +24,6 @@ namespace innermap {
 
 enum class Regularization { truncatedSvd, tikhonov };
 
-struct DenseSettings {
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-};
-
 struct DenseSolution {
   Matrix weights;             // #sources x #K, for kernel 1/r in world units
   Affine affine;              // world units
@@ -45,8 +41,7 @@ class DenseSolver {
   // collocation: at least #sources + 4 points; heldOut: points that choose the regularisation, may
   // be empty. Throws SettingError, MemoryError (before allocating), Cancelled (within one panel;
   // but the SVD itself is one LAPACK call and finishes first).
-  DenseSolver(const Collocation& collocation, const Points& sources, const Collocation& heldOut,
-              const DenseSettings& settings = {});
+  DenseSolver(const Collocation& collocation, const Points& sources, const Collocation& heldOut);
 
   // values: #collocation x #K, the rows' (see Collocation). Without `regularization` it is chosen
   // by the rms error at the held-out points (heldOutValues: #heldOut x #K, required then): of all

@@ -181,7 +181,7 @@ void IterativeSolver::Levels::check(const Collocation& collocation,
                                                  std::to_string(sources) +
                                                  " sources; use 2 to 4 a source");
   requireMemory("the iterative solver with " + std::to_string(sources) + " sources",
-                iterativeSolverMemory(points, sources - coarse, coarse), settings_.maxMemory,
+                iterativeSolverMemory(points, sources - coarse, coarse),
                 "use fewer sources (memory grows in proportion)");
 }
 

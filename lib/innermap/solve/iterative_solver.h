@@ -32,10 +32,9 @@ struct SourceLevel {
 };
 
 struct IterativeSettings {
-  int maxIterations = 8;        // in [1, 100]
-  double accuracy = 1e-7;       // of products, fraction of the values' span; in [1e-12, 1e-3]
-  std::uint64_t seed = 1;       // of the rows that the first level sees
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  int maxIterations = 8;   // in [1, 100]
+  double accuracy = 1e-7;  // of products, fraction of the values' span; in [1e-12, 1e-3]
+  std::uint64_t seed = 1;  // of the rows that the first level sees
 };
 
 struct IterativeSolution {

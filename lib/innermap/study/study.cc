@@ -134,7 +134,6 @@ FitMapSettings fitSettings(const StudyRun& run, const StudySettings& settings) {
   fit.interpolation = settings.interpolation;
   fit.oneToOne = OneToOne::off;
   fit.seed = settings.seed;
-  fit.maxMemory = settings.maxMemory;
   return fit;
 }
 
@@ -181,7 +180,6 @@ class Runner {
   void voxelize() {
     LevelSetSettings grid;
     grid.resolution = settings_.resolution;
-    grid.maxMemory = settings_.maxMemory;
     levelSet_ = makeLevelSet(pair_.solid(), grid);
     requireInterior(interiorVoxels(*levelSet_), pair_.solid(), pair_.source.mesh.name);
   }
@@ -192,7 +190,6 @@ class Runner {
     evaluate.lame = settings_.lame;
     evaluate.targetVolume = pair_.target.volume;
     evaluate.accuracy = sumAccuracy(fit);
-    evaluate.maxMemory = settings_.maxMemory;
     const MapGrids grids = evaluateMap(fit.map, fit.solid(), *levelSet_, evaluate);
     row.harmonicEnergy = grids.harmonicTotal;
     if (grids.volume > 0) row.deformationEnergy = grids.deformationTotal / grids.volume;
@@ -205,12 +202,12 @@ class Runner {
   openvdb::FloatGrid::Ptr levelSet_;
 };
 
-StudyRow tooLarge(const StudyRun& run, std::uint64_t need, std::uint64_t limit) {
+StudyRow tooLarge(const StudyRun& run, std::uint64_t need) {
   StudyRow row;
   static_cast<StudyRun&>(row) = run;
   row.points = collocationOf(run);
   row.failure = fmt::format("needs about {}, more than the limit of {}", formatBytes(need),
-                            formatBytes(limit));
+                            formatBytes(memoryLimit()));
   return row;
 }
 
@@ -261,7 +258,7 @@ Study runStudy(const BoundaryPair& pair, const StudySettings& settings,
   study.spacing = spacingOfOne(pair.solid());
   const KeptRuns keptRuns(pair, settings);
   Runner runner(pair, settings);
-  const std::uint64_t most = memoryLeft(settings.maxMemory);
+  const std::uint64_t most = memoryLeft();
   if (visitor) visitor(nullptr, 0, runs.size());
   for (const StudyRun& run : runs) {
     throwIfCancelled();
@@ -269,8 +266,8 @@ Study runStudy(const BoundaryPair& pair, const StudySettings& settings,
     const std::uint64_t need = studyMemory(run);
     if (row) {
       ++study.kept;
-    } else if (most > 0 && need > most) {
-      row = tooLarge(run, need, settings.maxMemory);
+    } else if (need > most) {
+      row = tooLarge(run, need);
     } else if (outOfTime()) {
       ++study.left;
       continue;

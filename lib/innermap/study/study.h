@@ -44,10 +44,10 @@ bool isKept(const BoundaryPair& pair, const StudyRun& run, const StudySettings& 
 // finished, taken from the folder or left.
 using StudyVisitor = std::function<void(const StudyRow* row, std::size_t done, std::size_t all)>;
 
-// Makes the runs, one after another. A run that is over maxMemory, or whose charges find no place,
-// is a row with a failure. Throws SettingError, FileError (the folder), Cancelled, and what the
-// visitor throws: finished runs stay in the folder. Apart from seconds, deterministic for a seed
-// and for any number of threads.
+// Makes the runs, one after another. A run that is over the limit on memory, or whose charges find
+// no place, is a row with a failure. Throws SettingError, FileError (the folder), Cancelled, and
+// what the visitor throws: finished runs stay in the folder. Apart from seconds, deterministic for
+// a seed and for any number of threads.
 Study runStudy(const BoundaryPair& pair, const StudySettings& settings = {},
                const StudyVisitor& visitor = {});
 

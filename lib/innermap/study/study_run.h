@@ -55,7 +55,6 @@ struct StudySettings {
   // Where finished runs are kept, a file each, to be taken from there by the next study of the same
   // boundaries, settings and version; made when missing. Empty: nowhere.
   std::string folder;
-  std::uint64_t maxMemory = 0;  // bytes, of each run; 0 means no limit
 };
 
 // What became of a run. Errors are fractions of the target's diagonal; what is not known is NaN.

@@ -287,10 +287,8 @@ class Corresponder {
     SubdivideSettings how;
     how.tolerance = settings_.subdivide;
     ShellCorrespondence& map = shell.map;
-    if (settings_.maxMemory > 0)
-      how.triangles = std::min<std::size_t>(
-          how.triangles,
-          map.surface.triangles.size() + memoryLeft(settings_.maxMemory) / kBytesATriangle);
+    how.triangles = std::min<std::size_t>(
+        how.triangles, map.surface.triangles.size() + memoryLeft() / kBytesATriangle);
     const Subdivided done = timed(out_.seconds, "subdivide", [&] {
       return subdivide({map.source, map.surface, map.image, map.targetSurface, map.targetLayout},
                        laidOutB_[map.target]->metric, split_, how);

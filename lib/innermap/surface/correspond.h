@@ -63,7 +63,6 @@ struct CorrespondSettings {
   WantedWay way;     // another than the best: with a judge, of shells of genus 0 and 1
   std::uint64_t seed = 1;
   double subdivide = 0;  // split A until it follows B within this share of B's diagonal; 0: never
-  std::uint64_t maxMemory = 0;  // bytes, of the process, that splitting ends at; 0 means no limit
 };
 
 struct CutSurface;

@@ -169,7 +169,6 @@ Samples compareElements(const Task& task, const CompareFemSettings& settings, Co
   for (const int resolution : settings.resolutions) {
     ElementsSettings solving;
     solving.resolution = resolution;
-    solving.maxMemory = settings.maxMemory;
     const auto elements =
         std::make_shared<const FiniteElements>(solveElements(task.solid, task.boundary, solving));
     ComparedRow row;
@@ -251,7 +250,6 @@ CompareFem compareFemOnFunctions(const Solid& solid, const CompareFemSettings& s
     FitSettings fitting;
     fitting.sources = count;
     fitting.interpolation = Interpolation::linear;  // the values are exact between vertices too
-    fitting.maxMemory = settings.maxMemory;
     const FitResult fit = fitField(surfaceProblem(solid, values, problem), fitting);
     row.seconds = watch.seconds();
     row.charges = true;
@@ -271,7 +269,6 @@ CompareFem compareFemOnMap(const BoundaryPair& pair, const CompareFemSettings& s
   fitting.oneToOne = OneToOne::off;
   fitting.interpolation = Interpolation::linear;
   fitting.seed = settings.seed;
-  fitting.maxMemory = settings.maxMemory;
   fitting.tolerance = settings.referenceTolerance;
   const Watch watch;
   const MapFit reference = fitMap(pair, fitting);

@@ -24,7 +24,6 @@ struct CompareFemSettings {
   double referenceTolerance = 2e-4;  // of the fit that real maps are compared with
   std::size_t samples = 20000;       // points inside, in [100, 1e6]
   std::uint64_t seed = 1;
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
 };
 
 // Positions, and the same of all three channels: gradients[3 k + axis].

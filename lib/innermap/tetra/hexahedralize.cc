@@ -56,7 +56,6 @@ Carried carry(const Mesh& mesh, const HexahedralizeSettings& settings, Hexahedra
   MeshCorrespondenceSettings laying;
   laying.aligned = true;
   laying.seed = settings.seed;
-  laying.maxMemory = settings.maxMemory;
   const MeshCorrespondence map = timed(out.seconds, "boundary map", [&] {
     const PartOfTime time(kLayingTimeShare);
     return correspondMeshes(blockSurface(out.polycube.blocks, surfacePieces(out.polycube.blocks)),
@@ -74,7 +73,6 @@ Carried carry(const Mesh& mesh, const HexahedralizeSettings& settings, Hexahedra
     fitting.maxSources = kMaxSources;
     fitting.oneToOne = OneToOne::off;
     fitting.seed = settings.seed;
-    fitting.maxMemory = settings.maxMemory;
     const MapFit fit = [&] {
       const PartOfTime time(kFittingShare);
       return fitMap(map.source, map.target("polycube on " + mesh.name), fitting);
@@ -158,7 +156,6 @@ Hexahedralization attempt(const Mesh& mesh, const HexahedralizeSettings& setting
   Hexahedralization out;
   PolycubeSettings cubes;
   cubes.blocks = blocks;
-  cubes.maxMemory = settings.maxMemory;
   out.polycube = timed(out.seconds, "polycube", [&] { return makePolycube(mesh, cubes); });
   out.notes = out.polycube.notes;
   out.pieces = settings.pieces;
@@ -180,7 +177,7 @@ Hexahedralization attempt(const Mesh& mesh, const HexahedralizeSettings& setting
 Hexahedralization hexahedralize(const Mesh& mesh, const HexahedralizeSettings& settings) {
   requireSettings(settings);
   requireMemory("hexahedra of " + mesh.name, hexahedralizeMemory(mesh, settings),
-                settings.maxMemory, "use fewer blocks, or fewer pieces a block");
+                "use fewer blocks, or fewer pieces a block");
   Hexahedralization best = attempt(mesh, settings, settings.blocks);
   for (int retry = 0; retry < kRetries && settings.blocks == 0 && !best.after.proven(); ++retry) {
     const int more = static_cast<int>(std::ceil(kMoreBlocks * best.polycube.across));

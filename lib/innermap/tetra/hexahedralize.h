@@ -29,7 +29,6 @@ struct HexahedralizeSettings {
   double featureAngle =
       30;                  // degrees between faces over which an edge counts as sharp, in (0, 180)
   std::uint64_t seed = 1;  // of all random choices
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
 };
 
 struct Hexahedralization {

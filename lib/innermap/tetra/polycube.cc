@@ -125,7 +125,7 @@ struct Search {
   const PolycubeSettings& settings;
 
   std::optional<Polycube> at(int across) const {
-    const BlockShares shares(solid, across, settings.maxMemory);
+    const BlockShares shares(solid, across);
     std::optional<FoundBlocks> found = findBlocks(shares, handles);
     if (!found) return {};
     Polycube out;

@@ -21,7 +21,6 @@ struct PolycubeSettings {
   // Along the longest side of the mesh's box, in [2, 64]; 0: as many as give about 900 blocks in
   // all, or a few more where those have not the mesh's topology.
   int blocks = 0;
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
 };
 
 // A part of the solid that no block covers.

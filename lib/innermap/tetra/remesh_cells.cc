@@ -93,7 +93,6 @@ class Remesher {
     TetrahedralizeSettings filling;
     filling.resolution = resolution;
     filling.keepTopology = false;
-    filling.maxMemory = settings_.maxMemory;
     return filling;
   }
 

@@ -30,7 +30,6 @@ struct RemeshSettings {
   // Cells along the longest side of the source, in [8, 256]: of the coarse mesh that is repaired
   // first (0: none), and back, of the mesh that stands for the inverse map (0: 64).
   int coarse = 32;
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
 };
 
 struct Remesh {

@@ -67,28 +67,26 @@ std::uint64_t memoryFor(const Solid& solid, double spacing) {
   return stuffingNeed(solid, spacing).memory;
 }
 
-void requireMemoryFor(const Solid& solid, double spacing, std::uint64_t limit) {
-  if (limit == 0) return;
+void requireMemoryFor(const Solid& solid, double spacing) {
+  if (!limitsMemory()) return;
+  const std::uint64_t limit = memoryLimit();
   const std::uint64_t need = memoryFor(solid, spacing);
   if (need <= limit) return;
   double fits = spacing;
   while (memoryFor(solid, fits) > limit && longestSide(solid) / fits > kLeastAcross) fits *= 1.02;
-  requireMemory("tetrahedra of " + solid.repaired().mesh.name, need, limit,
+  requireMemory("tetrahedra of " + solid.repaired().mesh.name, need,
                 fmt::format("a resolution of {:.0f} (an edge of {:.4g}) would fit",
                             std::floor(longestSide(solid) / fits), fits));
 }
 
 [[noreturn]] void refuse(const Solid& solid, const SolidTopology& wanted,
-                         const SolidTopology& found, double spacing,
-                         const TetrahedralizeSettings& settings) {
+                         const SolidTopology& found, double spacing) {
   const double across = longestSide(solid) / spacing;
   std::string advice = "no resolution up to " + std::to_string(kMostAcross) + " that fits would do";
   for (const double factor : {1.25, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0}) {
     const double finer = std::ceil(across * factor);
     const double step = longestSide(solid) / finer;
-    if (finer > kMostAcross ||
-        (settings.maxMemory > 0 && memoryFor(solid, step) > settings.maxMemory))
-      break;
+    if (finer > kMostAcross || memoryFor(solid, step) > memoryLimit()) break;
     LatticeSigns signs = latticeSigns(solid, step);
     if (!keepTopology(solid, &wanted, signs).kept) continue;
     advice = fmt::format("a resolution of {:.0f} would do", finer);
@@ -114,7 +112,7 @@ LatticeSigns signsOf(const Solid& solid, double spacing, const TetrahedralizeSet
         "this lattice: use a higher resolution",
         100.0 * static_cast<double>(kept.lost) / static_cast<double>(kept.points)));
   if (surface.clean && !kept.kept) {
-    if (settings.keepTopology) refuse(solid, surface.solid, kept.found, spacing, settings);
+    if (settings.keepTopology) refuse(solid, surface.solid, kept.found, spacing);
     result.warnings.push_back(fmt::format("the tetrahedra have {} where the solid has {}",
                                           describe(kept.found), describe(surface.solid)));
   }
@@ -168,7 +166,7 @@ Tetrahedralization tetrahedralization(const Solid& solid, const TetrahedralizeSe
   if (settings.features && !(*settings.features > 0 && *settings.features < 180))
     throw SettingError("features", "must lie between 0 and 180 degrees");
   const double spacing = spacingFor(solid, settings);
-  requireMemoryFor(solid, spacing, settings.maxMemory);
+  requireMemoryFor(solid, spacing);
   if (spacing < kSmallestVoxel) return tetrahedralizeScaled(solid, spacing, settings);
   Tetrahedralization result;
   result.edge = spacing;

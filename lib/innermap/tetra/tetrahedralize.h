@@ -22,7 +22,6 @@ struct TetrahedralizeSettings {
   std::optional<double> features;
   // Whether to throw where the solid's topology cannot be kept; else there is a warning.
   bool keepTopology = true;
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
 };
 
 struct Tetrahedralization {

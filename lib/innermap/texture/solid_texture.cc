@@ -151,7 +151,6 @@ class Maker {
     settings.sources = plan_.sources;
     settings.solver = FitSolver::iterative;
     settings.interpolation = Interpolation::linear;
-    settings.maxMemory = settings_.maxMemory;
     std::optional<FitResult> result;
     timed("fit", [&] { result.emplace(fitField(problem, settings)); });
     out_.fit.sources = result->field.sources().size();
@@ -194,7 +193,6 @@ class Maker {
     ContinuationSettings settings;
     settings.spacing = spacingOf(plan_.sources);
     settings.accuracy = kSumAccuracy;
-    settings.maxMemory = settings_.maxMemory;
     const BoundaryValues boundary = [&](const Solid::Closest& at, double* values) {
       surface_.values(at.onSurface, plan_.voxelSize, values);
     };
@@ -309,7 +307,7 @@ SolidTexturePlan planSolidTexture(Mesh mesh, const SolidTextureSettings& setting
 SolidTexture makeSolidTexture(const SolidTexturePlan& plan, const TextureLookup& image) {
   const SolidTextureSettings& settings = plan.parts->settings;
   if (usesImage(settings) && !image) throw SettingError("image", "is missing; give a lookup");
-  requireMemory("the solid texture", plan.memory, settings.maxMemory,
+  requireMemory("the solid texture", plan.memory,
                 "use larger voxels, fewer sources or raise the limit");
   return Maker(plan, image).run();
 }

@@ -42,8 +42,7 @@ struct SolidTextureSettings {
   std::size_t sources = 0;
   // Of vertex colours, from what the mesh has to linear ones; none: they are linear.
   std::function<double(double)> decode;
-  std::uint64_t seed = 1;       // of all random points, in [0, 1e15]
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  std::uint64_t seed = 1;  // of all random points, in [0, 1e15]
 };
 
 // What a mesh's texture will take, known before any image is read.

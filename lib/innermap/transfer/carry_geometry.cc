@@ -60,7 +60,7 @@ void subdivide(Geometry& geometry, const PointCarry& carry, const CarryGeometryS
     bent = bentEdges(geometry, fresh, carry, settings.subdivide);
     if (bent.empty()) return;
     requireMemory(fmt::format("splitting {} edges", bent.size()),
-                  kPointBytes * (geometry.points.size() + bent.size()), settings.maxMemory,
+                  kPointBytes * (geometry.points.size() + bent.size()),
                   "take a larger --subdivide");
     straight.clear();
     std::set_difference(all.begin(), all.end(), bent.begin(), bent.end(),

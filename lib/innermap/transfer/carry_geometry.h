@@ -14,7 +14,6 @@ struct CarryGeometrySettings {
   // are nowhere (at a quarter, a half, three quarters) farther than this from where the map brings
   // them: world units of what is carried to; 0 splits none. Not negative.
   double subdivide = 0;
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
 };
 
 struct CarriedGeometry {

@@ -73,11 +73,9 @@ struct Limits {
   }
 };
 
-openvdb::FloatGrid::Ptr coarseLevelSet(const Solid& solid, const CarryPointsSettings& settings,
-                                       int resolution = kUsualResolution) {
+openvdb::FloatGrid::Ptr coarseLevelSet(const Solid& solid, int resolution = kUsualResolution) {
   LevelSetSettings levelSet;
   levelSet.resolution = resolution;
-  levelSet.maxMemory = settings.maxMemory;
   return makeLevelSet(solid, levelSet);
 }
 
@@ -90,14 +88,12 @@ int resolutionOf(const CarryPointsSettings& settings) {
 // Through the source and what is around it.
 SourceLattice latticeOf(const Solid& source, const CarryPointsSettings& settings) {
   SourceLattice out;
-  out.levelSet = coarseLevelSet(source, settings, resolutionOf(settings));
+  out.levelSet = coarseLevelSet(source, resolutionOf(settings));
   RegionSettings region;
-  region.maxMemory = settings.maxMemory;
   out.region = activeRegion(*out.levelSet, region);
   constexpr std::uint64_t kVoxelBytes = 64;
   if (settings.outside.distance > 0)
-    addAround(*out.region, source, settings.outside.distance * source.diagonal(), kVoxelBytes,
-              settings.maxMemory);
+    addAround(*out.region, source, settings.outside.distance * source.diagonal(), kVoxelBytes);
   return out;
 }
 
@@ -125,7 +121,7 @@ struct PointPusher::Data {
 
 PointPusher::PointPusher(const Solid& source, const CarryPointsSettings& settings) {
   requireInRange(settings);
-  data_ = std::make_shared<Data>(Data{source, settings, coarseLevelSet(source, settings)});
+  data_ = std::make_shared<Data>(Data{source, settings, coarseLevelSet(source)});
 }
 
 CarriedPoints PointPusher::push(const ComposedMap& map, const Points& points,
@@ -179,9 +175,8 @@ struct PointPuller::Data {
     inverse.outside = settings.outside;
     inverse.skin = kSkinVoxels;
     inverse.accuracy = std::max(settings.accuracy, 1e-7);  // starts, no more
-    inverse.maxMemory = settings.maxMemory;
-    return invertMap(map, source, lattice,
-                     *coarseLevelSet(target, settings, resolutionOf(settings)), inverse);
+    return invertMap(map, source, lattice, *coarseLevelSet(target, resolutionOf(settings)),
+                     inverse);
   }
 
   // Where the search for a point begins; false when nothing comes there.

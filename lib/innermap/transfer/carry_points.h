@@ -19,8 +19,7 @@ struct CarryPointsSettings {
   // `outside` says: fraction of the source's diagonal, in [0, 0.1]. Two surfaces that are meant to
   // be one differ by that much.
   double skin = 1e-3;
-  double accuracy = 1e-7;       // of the sums of charges, as EvaluateSettings::accuracy
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  double accuracy = 1e-7;  // of the sums of charges, as EvaluateSettings::accuracy
 };
 
 // Throws SettingError for a number out of its range.

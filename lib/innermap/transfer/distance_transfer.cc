@@ -84,7 +84,6 @@ SolidDepths depthsOf(const Solid& solid, const DistanceTransferSettings& setting
                      StageSeconds& seconds) {
   const LevelSetSettings levelSet = levelSetSettings(settings);
   DepthSettings depth;
-  depth.maxMemory = settings.maxMemory;
   SolidDepths out;
   timed(seconds, "voxelize", [&] { out.surface = makeLevelSet(solid, levelSet); });
   timed(seconds, "distance", [&] { out.depth = depthInside(solid, *out.surface, depth); });
@@ -99,7 +98,6 @@ openvdb::FloatGrid::Ptr depthInside(const Solid& solid, const openvdb::FloatGrid
   RegionSettings where;
   where.skin = settings.skin;
   where.bytesPerVoxel = sizeof(float);
-  where.maxMemory = settings.maxMemory;
   const openvdb::MaskGrid::Ptr region = activeRegion(levelSet, where);
   return leafByLeaf(*region, [&](const auto& from, FloatLeaf& leaf) {
     DepthWalk walk(solid);
@@ -141,7 +139,6 @@ DistanceTransfer transferDistance(const ComposedMap& map, const Solid& source, c
   EvaluateSettings evaluate;
   evaluate.jacobian = evaluate.harmonicEnergy = evaluate.deformationEnergy = false;
   evaluate.accuracy = settings.accuracy;
-  evaluate.maxMemory = settings.maxMemory;
   MapGrids grids;
   timed(out.seconds, "evaluate",
         [&] { grids = evaluateMap(map, source, *out.source.surface, evaluate); });

@@ -18,8 +18,7 @@ namespace innermap {
 // rounded to float), not only in a band, for any solid: inside is told by the winding number.
 
 struct DepthSettings {
-  double skin = 2;              // active voxels outside the surface, in [0, 3]
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  double skin = 2;  // active voxels outside the surface, in [0, 3]
 };
 
 // levelSet: of `solid`, half-width at least the skin; its transform is that of the result, which is
@@ -44,10 +43,9 @@ DepthFigures depthFigures(const openvdb::FloatGrid& distance, const openvdb::Flo
 
 struct DistanceTransferSettings {
   // Of each of the two solids' grids: as in LevelSetSettings.
-  double voxelSize = 0;         // world units; 0 means: resolution decides
-  int resolution = 0;           // voxels along the longest side
-  double accuracy = 1e-7;       // of the map's sums: as in EvaluateSettings
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  double voxelSize = 0;    // world units; 0 means: resolution decides
+  int resolution = 0;      // voxels along the longest side
+  double accuracy = 1e-7;  // of the map's sums: as in EvaluateSettings
 };
 
 // A solid's level set "surface", how deep its voxels lie in it, and the figures of that.

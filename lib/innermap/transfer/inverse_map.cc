@@ -91,12 +91,10 @@ void Inversion::chooseRegion(const openvdb::FloatGrid& targetLevelSet,
   RegionSettings region;
   region.skin = settings_.skin;
   region.bytesPerVoxel = kVoxelBytes;
-  region.maxMemory = settings_.maxMemory;
   solid_ = activeRegion(targetLevelSet, region);
   region_ = solid_;
   if (!(settings_.outside.distance > 0)) return;
-  const std::uint64_t most =
-      settings_.maxMemory ? settings_.maxMemory / (512 * kVoxelBytes) : ~std::uint64_t{0};
+  const std::uint64_t most = memoryLimit() / (512 * kVoxelBytes);
   const double reach = map_.endless() ? std::numeric_limits<double>::infinity() : map_.reach();
   region_ = touchedLeaves(images, reach, most);
   region_->setTransform(target_.copy());

@@ -16,10 +16,9 @@ namespace innermap {
 
 struct InverseSettings {
   OutsideSettings outside;
-  double skin = 2;              // voxels outside the target's surface, in [0, 3]
-  double tolerance = 1e-3;      // of f(p) = q, target voxels, in [1e-6, 0.01]
-  double accuracy = 1e-7;       // of the sums of charges, as EvaluateSettings::accuracy
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  double skin = 2;          // voxels outside the target's surface, in [0, 3]
+  double tolerance = 1e-3;  // of f(p) = q, target voxels, in [1e-6, 0.01]
+  double accuracy = 1e-7;   // of the sums of charges, as EvaluateSettings::accuracy
 };
 
 // Throws SettingError for a number out of its range.

@@ -38,11 +38,9 @@ openvdb::MaskGrid::Ptr Pull::region(const openvdb::GridPtrVec& grids) const {
   RegionSettings inside;
   inside.skin = settings_.skin;
   inside.bytesPerVoxel = outputBytesPerVoxel(grids);
-  inside.maxMemory = settings_.maxMemory;
   openvdb::MaskGrid::Ptr region = activeRegion(map_.levelSet(), inside);
   if (!(settings_.outside.distance > 0)) return region;
-  addAround(*region, map_.solid(), map_.reach(), outputBytesPerVoxel(grids) + 16,
-            settings_.maxMemory);
+  addAround(*region, map_.solid(), map_.reach(), outputBytesPerVoxel(grids) + 16);
   return region;
 }
 
@@ -58,10 +56,9 @@ Points Pull::movedBack(const Points& positions) const {
     throw DataError(
         "pull: positions (contravariant absolute vectors) need the "
         "target's level set");
-  const SourceLattice lattice = makeSourceLattice(map_.solid(), {}, {}, settings_.maxMemory);
+  const SourceLattice lattice = makeSourceLattice(map_.solid(), {}, {});
   InverseSettings inverse;
   inverse.accuracy = settings_.accuracy;
-  inverse.maxMemory = settings_.maxMemory;
   const InvertedMap inverted =
       invertMap(map_.map(), map_.solid(), lattice, *settings_.targetLevelSet, inverse);
   return invertAt(map_.map(), map_.solid(), lattice, inverted, positions, inverse);

@@ -26,7 +26,6 @@ struct PullSettings {
   const openvdb::FloatGrid* targetLevelSet = nullptr;
   // Goes this way instead of by the map. Null: by the map.
   const ThroughMap* through = nullptr;
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
 };
 
 struct PullResult {

@@ -29,7 +29,6 @@ InverseSettings inverseSettings(const PushSettings& s) {
   out.skin = s.skin;
   out.tolerance = s.tolerance;
   out.accuracy = s.accuracy;
-  out.maxMemory = s.maxMemory;
   return out;
 }
 
@@ -90,7 +89,7 @@ VolumePusher::VolumePusher(const Solid& source, const openvdb::GridPtrVec& grids
                            const PushSettings& settings) {
   requireInRange(inverseSettings(settings));
   auto data = std::make_shared<Data>(Data{source, grids, settings, {}, {}, {}, {}});
-  data->lattice = makeSourceLattice(source, settings.outside, grids, settings.maxMemory);
+  data->lattice = makeSourceLattice(source, settings.outside, grids);
   const openvdb::FloatGrid& levelSet = *data->lattice.levelSet;
   if (!grids.empty() && !(settings.outside.distance > 0))
     requireMeeting(grids, levelSet, source.surface().name, data->warnings);
@@ -101,8 +100,8 @@ VolumePusher::VolumePusher(const Solid& source, const openvdb::GridPtrVec& grids
         throw DataError("grid " + grids[place]->getName() +
                         ": densities go by the map alone, not through a mesh; leave it out or let "
                         "it be sampled");
-      data->densities.emplace_back(place, densityVoxels(grids[place], source, levelSet,
-                                                        settings.outside, settings.maxMemory));
+      data->densities.emplace_back(place,
+                                   densityVoxels(grids[place], source, levelSet, settings.outside));
     } else {
       data->sampled.push_back(std::move(carrier));
     }
@@ -114,7 +113,6 @@ openvdb::MaskGrid::Ptr VolumePusher::Data::regionOf(const openvdb::FloatGrid& ta
   RegionSettings region;
   region.skin = settings.skin;
   region.bytesPerVoxel = outputBytesPerVoxel(grids);
-  region.maxMemory = settings.maxMemory;
   return activeRegion(target, region);
 }
 
@@ -178,7 +176,6 @@ void VolumePusher::Data::carryDensities(const ComposedMap& map, const openvdb::F
     carry.parts = partsOf(*voxels.grid, source, target);
     carry.limit = settings.carry.densityLimit;
     carry.constant = settings.carry.sampling == Sampling::nearest;
-    carry.maxMemory = settings.maxMemory;
     out.masses.emplace_back();
     out.grids[place] = carryDensity(voxels, extendedMap, region, out.masses.back(), carry);
   }

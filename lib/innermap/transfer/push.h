@@ -43,7 +43,6 @@ struct PushSettings {
   double accuracy = 1e-7;   // of the sums of charges, as EvaluateSettings::accuracy
   // Goes this way instead of by the map; for what is sampled, not for densities. Null: by the map.
   const ThroughMap* through = nullptr;
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
 };
 
 struct PushResult {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "boundary/test_pairs.h"
+#include "core/memory_limit.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
@@ -108,7 +109,7 @@ TEST(FitMap, StepsThatDoNotFitAreLeft) {
   const Mesh source = ball(4);
   FitMapSettings settings;
   settings.tolerance = 1e-2;
-  settings.maxMemory = kStepsMemory;
+  const MemoryLimit limit(kStepsMemory);
   const MapFit fit = fitMap(source, moved(source, dented), settings);
   EXPECT_EQ(fit.map.steps().size(), 1u);
   EXPECT_GT(fit.inside.folded, kManyFolds);

@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "boundary/blobs.h"
+#include "core/memory_limit.h"
 #include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
 #include "innermap/mesh/read.h"
@@ -156,8 +157,10 @@ TEST(CorrespondMeshes, CarriesValuesOfOuterSurfacesBackToTheMeshesAsGiven) {
 TEST(CorrespondMeshes, RefusesWhatHasNoMap) {
   EXPECT_THROW(correspondMeshes(kA, shapes::torus(12, 8), quick()), DataError);
   MeshCorrespondenceSettings settings = quick();
-  settings.maxMemory = 1'000'000;
-  EXPECT_THROW(correspondMeshes(kA, kB, settings), MemoryError);
+  {
+    const MemoryLimit limit(1'000'000);
+    EXPECT_THROW(correspondMeshes(kA, kB, settings), MemoryError);
+  }
   settings = quick();
   settings.candidates = 0;
   EXPECT_THROW(correspondMeshes(kA, kB, settings), SettingError);

@@ -4,7 +4,9 @@
 
 #include <vector>
 
+#include "core/memory_limit.h"
 #include "innermap/core/error.h"
+#include "innermap/core/parallel.h"
 
 namespace innermap {
 namespace {
@@ -34,7 +36,7 @@ TEST(Memory, SizesAreSaidInThreeDigits) {
 
 TEST(Memory, OverTheLimitIsRefusedWithAdvice) {
   EXPECT_NO_THROW(requireMemory("x", 100, 100, ""));
-  EXPECT_NO_THROW(requireMemory("x", ~0ull, 0, ""));
+  EXPECT_NO_THROW(requireMemory("x", ~0ull, ""));
   try {
     requireMemory("the grid", 2000000000, 1000000000, "use larger voxels");
     FAIL();
@@ -65,9 +67,24 @@ TEST(Memory, ThatOfTheProcessCountsWhatItHolds) {
   // What was freed is there to be used again.
   EXPECT_LT(processMemory(1'000'000'000), 1'000'000'000u + before + (1u << 27));
   EXPECT_EQ(processMemory(~0ull), ~0ull);
-  EXPECT_EQ(memoryLeft(0), 0u);
-  EXPECT_EQ(memoryLeft(1000), 1u);
-  const std::uint64_t left = memoryLeft(8'000'000'000);
+}
+
+TEST(Memory, TheLimitIsTheRuns) {
+  EXPECT_FALSE(limitsMemory());
+  EXPECT_EQ(memoryLeft(), ~0ull);
+  {
+    const MemoryLimit limit(1000);
+    EXPECT_TRUE(limitsMemory());
+    EXPECT_EQ(memoryLimit(), 1000u);
+    EXPECT_EQ(memoryLeft(), 1u);
+    EXPECT_THROW(requireMemory("x", 1001, ""), MemoryError);
+    EXPECT_NO_THROW(requireMemory("x", 1000, ""));
+    const PartOfStage part(0, 0.5);
+    EXPECT_EQ(memoryLimit(), 1000u);
+    parallelBlocks(64, 1, [](std::size_t, std::size_t) { EXPECT_EQ(memoryLimit(), 1000u); });
+  }
+  const MemoryLimit limit(8'000'000'000);
+  const std::uint64_t left = memoryLeft();
   EXPECT_GT(left, 7'000'000'000u);
   EXPECT_NEAR(double(processMemory(left)), 8e9, 1e7);
 }

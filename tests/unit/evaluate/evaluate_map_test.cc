@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/memory_limit.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
@@ -288,8 +289,10 @@ TEST(EvaluateMap, RefusesBadSettingsAndStopsWhenCancelled) {
   settings.skin = 7;
   EXPECT_THROW(evaluateMap(chargedMap(), solid, *surface, settings), SettingError);
   settings = {};
-  settings.maxMemory = 1000;
-  EXPECT_THROW(evaluateMap(chargedMap(), solid, *surface, settings), MemoryError);
+  {
+    const MemoryLimit limit(1000);
+    EXPECT_THROW(evaluateMap(chargedMap(), solid, *surface, settings), MemoryError);
+  }
   RunContext run;
   run.cancel();
   settings = {};

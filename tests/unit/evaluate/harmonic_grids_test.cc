@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/memory_limit.h"
 #include "innermap/core/error.h"
 #include "mesh/shapes.h"
 
@@ -71,8 +72,10 @@ TEST(HarmonicGrids, RefusesBadNamesAndSettings) {
   settings.accuracy = 1;
   EXPECT_THROW(evaluateHarmonic(affineField(), solid, {"a", "b"}, settings), SettingError);
   settings = {};
-  settings.maxMemory = 1000;
-  EXPECT_THROW(evaluateHarmonic(affineField(), solid, {"a", "b"}, settings), MemoryError);
+  {
+    const MemoryLimit limit(1000);
+    EXPECT_THROW(evaluateHarmonic(affineField(), solid, {"a", "b"}, settings), MemoryError);
+  }
 }
 
 }  // namespace

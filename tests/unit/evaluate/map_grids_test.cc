@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "boundary/test_pairs.h"
+#include "core/memory_limit.h"
 #include "innermap/boundary/fit_map.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
@@ -167,8 +168,10 @@ TEST(MapGrids, CountTheirMemory) {
   EXPECT_LT(need({1, false, false}), coarse);
   settings.resolution = 512;
   EXPECT_GT(need({}), 10 * coarse);
-  settings.maxMemory = 1000;
-  EXPECT_THROW(evaluateOnGrid(affineFit(), settings), MemoryError);
+  {
+    const MemoryLimit limit(1000);
+    EXPECT_THROW(evaluateOnGrid(affineFit(), settings), MemoryError);
+  }
 }
 
 // A plate between two layers of voxel centres, wherever the lattice begins: ten would fit between.

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "core/memory_limit.h"
 #include "field/sphere_problem.h"
 #include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/point_grid.h"
 #include "innermap/core/error.h"
+#include "innermap/core/memory.h"
 #include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
 
@@ -118,11 +120,16 @@ TEST(AdaptiveFit, SaysWhichLimitItReached) {
   EXPECT_LE(r.field.sources().size(), 400u);
   EXPECT_GT(r.error.p99, ball.settings.tolerance);
   ball.settings.maxSources = 100000;
-  ball.settings.maxMemory = 9'000'000;
-  r = fitToTolerance(ball.problem, ball.settings);
+  {
+    const std::uint64_t many = std::uint64_t(1) << 62, held = processMemory(many) - many;
+    const MemoryLimit limit(held + 9'000'000);
+    r = fitToTolerance(ball.problem, ball.settings);
+  }
   EXPECT_EQ(r.end, AdaptiveEnd::maxMemory);
-  ball.settings.maxMemory = 1000;
-  EXPECT_THROW(fitToTolerance(ball.problem, ball.settings), MemoryError);
+  {
+    const MemoryLimit limit(1000);
+    EXPECT_THROW(fitToTolerance(ball.problem, ball.settings), MemoryError);
+  }
 }
 
 TEST(AdaptiveFit, EndsWhereItIsToldToAfterAnyRound) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/memory_limit.h"
 #include "field/sphere_problem.h"
 #include "innermap/core/error.h"
 #include "innermap/field/boundary_error.h"
@@ -158,8 +159,10 @@ TEST(Fit, RefusesBadSettings) {
   s.distance = -1;
   EXPECT_THROW(fitField(p, s), SettingError);
   s.distance.reset();
-  s.maxMemory = 1000;
-  EXPECT_THROW(fitField(p, s), MemoryError);
+  {
+    const MemoryLimit limit(1000);
+    EXPECT_THROW(fitField(p, s), MemoryError);
+  }
 }
 
 }  // namespace

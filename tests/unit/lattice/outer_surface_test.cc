@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/memory_limit.h"
 #include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
@@ -118,8 +119,10 @@ TEST(OuterSurface, RefusesWhatCannotBe) {
   EXPECT_THROW(outer(ball, 40, -1), SettingError);
   EXPECT_THROW(outer(ball, 40, 1), DataError);
   OuterSurfaceSettings settings;
-  settings.maxMemory = 1000;
-  EXPECT_THROW(outerSurface(Solid(ball), settings), MemoryError);
+  {
+    const MemoryLimit limit(1000);
+    EXPECT_THROW(outerSurface(Solid(ball), settings), MemoryError);
+  }
   RunContext run;
   run.cancel();
   settings = {};

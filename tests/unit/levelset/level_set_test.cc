@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <openvdb/tools/Diagnostics.h>
 
+#include "core/memory_limit.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
@@ -185,7 +186,10 @@ TEST(LevelSet, SettingsOutOfRange) {
   EXPECT_THROW(with([](S& s) { s.voxelSize = 1e-9; }), SettingError);
   EXPECT_THROW(with([](S& s) { s.halfWidth = 1.9; }), SettingError);
   EXPECT_THROW(with([](S& s) { s.halfWidth = 101; }), SettingError);
-  EXPECT_THROW(with([](S& s) { s.maxMemory = 1000; }), MemoryError);
+  {
+    const MemoryLimit limit(1000);
+    EXPECT_THROW(with([](S&) {}), MemoryError);
+  }
   RunContext run;
   run.cancel();
   {
@@ -233,12 +237,15 @@ TEST(AutomaticVoxels, AreFineEnoughForThinSolids) {
 
 TEST(AutomaticVoxels, HeedTheMemoryLimit) {
   const Solid plate(shapes::box({0, 0, 0}, {1, 1, 2e-3}));
-  LevelSetSettings small, large;
-  small.maxMemory = 200'000'000;
-  large.maxMemory = 1'000'000'000;
-  EXPECT_GT(voxelSizeFor(plate, small), 1.5 * voxelSizeFor(plate, large));
-  EXPECT_LE(levelSetMemory(plate, small), small.maxMemory);
-  const std::string note = voxelSizeNote(plate, small);
+  const double fine = [&] {
+    const MemoryLimit large(1'000'000'000);
+    return voxelSizeFor(plate, {});
+  }();
+  constexpr std::uint64_t kSmall = 200'000'000;
+  const MemoryLimit small(kSmall);
+  EXPECT_GT(voxelSizeFor(plate, {}), 1.5 * fine);
+  EXPECT_LE(levelSetMemory(plate, {}), kSmall);
+  const std::string note = voxelSizeNote(plate, {});
   EXPECT_NE(note.find("75"), std::string::npos) << note;
 }
 

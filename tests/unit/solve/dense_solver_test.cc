@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/memory_limit.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/solve/kernel_sum.h"
@@ -149,8 +150,10 @@ TEST(DenseSolver, RefusesWhatCannotBe) {
   EXPECT_THROW(DenseSolver(p.collocation, {}, {}), SettingError);
   EXPECT_THROW(DenseSolver(p.sources, p.sources, {}), SettingError);
   DenseSettings tight;
-  tight.maxMemory = 100000;
-  EXPECT_THROW(DenseSolver(p.collocation, p.sources, p.heldOut, tight), MemoryError);
+  {
+    const MemoryLimit limit(100000);
+    EXPECT_THROW(DenseSolver(p.collocation, p.sources, p.heldOut, tight), MemoryError);
+  }
   const DenseSolver solver(p.collocation, p.sources, {});
   const Matrix b = harmonicValues(p.collocation);
   EXPECT_THROW(solver.solve(b, Regularization::tikhonov, {}), SettingError);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/memory_limit.h"
 #include "innermap/core/detail/pi.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
@@ -190,12 +191,13 @@ TEST(IterativeSolver, OneLevelIsEnough) {
 TEST(IterativeSolver, RefusesWhatCannotBe) {
   Problem p;
   IterativeSettings s;
-  s.maxMemory = 10000;
-  EXPECT_THROW(p.solver(s), MemoryError);
+  {
+    const MemoryLimit limit(10000);
+    EXPECT_THROW(p.solver(s), MemoryError);
+  }
   EXPECT_THROW(IterativeSolver(p.collocation, {}), SettingError);
   EXPECT_THROW(IterativeSolver(p.collocation, {p.coarse, {{}, 1, 1}}), SettingError);
   EXPECT_THROW(IterativeSolver(p.coarse.sources, {p.coarse, p.fine}), SettingError);
-  s.maxMemory = 0;
   {
     RunContext run;
     run.cancel();

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/memory_limit.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "mesh/shapes.h"
@@ -227,8 +228,10 @@ TEST(Study, LimitsLeaveRunsOut) {
   }();
   EXPECT_EQ(none.left, 6u);
   EXPECT_TRUE(none.rows.empty());
-  s.maxMemory = 1000;
-  const Study small = runStudy(pair, s);
+  const Study small = [&] {
+    const MemoryLimit limit(1000);
+    return runStudy(pair, s);
+  }();
   ASSERT_EQ(small.rows.size(), 6u);
   for (const StudyRow& row : small.rows) EXPECT_NE(row.failure.find("limit"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(folder.path));  // with more memory they may be made

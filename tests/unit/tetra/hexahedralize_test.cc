@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/memory_limit.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
@@ -74,11 +75,12 @@ TEST(Hexahedralize, RefusesSettingsOutOfRangeAndStops) {
   EXPECT_THROW(hexahedralize(ball, across(4, 0)), SettingError);
   EXPECT_THROW(hexahedralize(ball, across(4, 17)), SettingError);
   HexahedralizeSettings settings = across(4, 1);
-  settings.maxMemory = 1000;
-  EXPECT_THROW(hexahedralize(ball, settings), MemoryError);
+  {
+    const MemoryLimit limit(1000);
+    EXPECT_THROW(hexahedralize(ball, settings), MemoryError);
+  }
   RunContext run;
   run.cancel();
-  settings.maxMemory = 0;
   const RunScope scope(run);
   EXPECT_THROW(hexahedralize(ball, settings), Cancelled);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "core/memory_limit.h"
 #include "innermap/core/detail/pi.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
@@ -217,8 +218,10 @@ TEST(Tetrahedralize, SaysItsMemory) {
   EXPECT_LT(static_cast<double>(need.tetrahedra),
             1.3 * static_cast<double>(mesh.tetrahedra.size()));
   TetrahedralizeSettings settings = across(1024);
-  settings.maxMemory = 100'000'000;
-  EXPECT_THROW(tetrahedralize(solid, settings), MemoryError);
+  {
+    const MemoryLimit limit(100'000'000);
+    EXPECT_THROW(tetrahedralize(solid, settings), MemoryError);
+  }
 }
 
 TEST(Tetrahedralize, UnitsDoNotMatter) {

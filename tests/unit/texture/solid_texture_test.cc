@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/memory_limit.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "mesh/shapes.h"
@@ -224,9 +225,10 @@ TEST(SolidTexture, BadInputIsRefused) {
 
 TEST(SolidTexture, MemoryAndCancellingAreMinded) {
   SolidTextureSettings s = coarse(TextureMode::vertexColours);
-  s.maxMemory = 1000;
-  EXPECT_THROW(makeSolidTexture(colouredBall(), {}, s), MemoryError);
-  s.maxMemory = 0;
+  {
+    const MemoryLimit limit(1000);
+    EXPECT_THROW(makeSolidTexture(colouredBall(), {}, s), MemoryError);
+  }
   RunContext run;
   run.cancel();
   const RunScope scope(run);

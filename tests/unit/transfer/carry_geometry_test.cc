@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/memory_limit.h"
 #include "innermap/core/error.h"
 
 namespace innermap {
@@ -62,8 +63,10 @@ TEST(CarryGeometry, Limits) {
   Geometry g = line(2);
   CarryGeometrySettings settings;
   settings.subdivide = 1e-12;
-  settings.maxMemory = 100000;
-  EXPECT_THROW(carryGeometry(g, bend, settings), MemoryError);
+  {
+    const MemoryLimit limit(100000);
+    EXPECT_THROW(carryGeometry(g, bend, settings), MemoryError);
+  }
   settings.subdivide = -1;
   EXPECT_THROW(carryGeometry(g, bend, settings), SettingError);
   g.splittable = false;

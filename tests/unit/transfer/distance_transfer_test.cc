@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/memory_limit.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
@@ -154,8 +155,10 @@ TEST(DistanceTransfer, MemoryAndCancellingAreMinded) {
   const Solid solid(shapes::box(kLower, kUpper));
   const auto surface = levelSet(solid);
   DepthSettings settings;
-  settings.maxMemory = 1000;
-  EXPECT_THROW(depthInside(solid, *surface, settings), MemoryError);
+  {
+    const MemoryLimit limit(1000);
+    EXPECT_THROW(depthInside(solid, *surface, settings), MemoryError);
+  }
   settings = {};
   settings.skin = 30;
   EXPECT_THROW(depthInside(solid, *surface, settings), SettingError);

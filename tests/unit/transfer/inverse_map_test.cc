@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/memory_limit.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
@@ -205,8 +206,10 @@ TEST(InverseMap, RefusesBadSettingsAndObeysCancel) {
     EXPECT_THROW(invert(chargedMap(), ball(), 16, settings), Cancelled);
   }
   settings = {};
-  settings.maxMemory = 1000;
-  EXPECT_THROW(invert(chargedMap(), ball(), 16, settings), MemoryError);
+  {
+    const MemoryLimit limit(1000);
+    EXPECT_THROW(invert(chargedMap(), ball(), 16, settings), MemoryError);
+  }
 }
 
 TEST(InverseStatistics, SaysSharesAndWarnsOfMany) {

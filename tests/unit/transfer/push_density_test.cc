@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/memory_limit.h"
 #include "innermap/core/error.h"
 #include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
@@ -274,9 +275,10 @@ TEST(PushDensity, MemoryAndCancellingAreMinded) {
   const auto to = levelSetOf(Solid(moved(ball(), map)), 32);
   const auto grid = sampledScalar(*levelSetOf(source, 32), "density");
   PushSettings settings;
-  settings.maxMemory = 50'000'000;
-  EXPECT_THROW(pushed(map, source, *to, grid, settings), MemoryError);
-  settings.maxMemory = 0;
+  {
+    const MemoryLimit limit(50'000'000);
+    EXPECT_THROW(pushed(map, source, *to, grid, settings), MemoryError);
+  }
   for (const char* stage :
        {"finding what is in the solid", "mapping the densities", "carrying the densities"}) {
     CancelIn run(stage);

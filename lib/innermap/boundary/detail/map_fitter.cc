@@ -80,7 +80,6 @@ FitSettings fitSettings(const ShellSettings& shell, const FitMapSettings& settin
   }
   fit.method = shell.method;
   fit.regularization = shell.regularization;
-  fit.maxMemory = settings.maxMemory;
   return fit;
 }
 
@@ -180,11 +179,11 @@ MappedPoints MapFitter::insideOf(const ComposedMap& map) {
 
 bool MapFitter::roomForSteps() {
   const std::uint64_t need = processMemory(kStepsMemory);
-  if (settings_.maxMemory == 0 || need <= settings_.maxMemory) return true;
+  if (need <= memoryLimit()) return true;
   warnings.push_back(
       fmt::format("one harmonic map folds {:.2g}% of the inside; going in steps may need about "
                   "{}, more than the limit of {}, so that is left",
-                  100 * singleFolded, formatBytes(need), formatBytes(settings_.maxMemory)));
+                  100 * singleFolded, formatBytes(need), formatBytes(memoryLimit())));
   return false;
 }
 
@@ -221,7 +220,6 @@ AdaptiveSettings MapFitter::adaptiveSettings(double tolerance) const {
   s.tolerance = tolerance;
   s.maxSources = settings_.maxSources;
   s.checkSamples = kFreshSamples;
-  s.maxMemory = memoryLeft(settings_.maxMemory);
   return s;
 }
 
@@ -245,7 +243,6 @@ FitOutcome MapFitter::inSteps() {
   s.maxSteps = settings_.maxSteps;
   s.maxSources = settings_.maxSources;
   s.seed = settings_.seed;
-  s.maxMemory = memoryLeft(settings_.maxMemory);
   StepFit fit = timed(seconds, "steps", [&] { return fitInSteps(pair_, inside(), s); });
   FitOutcome out{std::move(fit.map), fit.error, {}, 0, false, {}, {}, {}, {}, std::move(fit.steps)};
   out.solve.method = out.solve.placement = "steps";

@@ -138,7 +138,6 @@ class StepFitter {
         return foldedShare(insideAfter(HarmonicMap(field)).determinants) <=
                allowed(round == 1 ? kCoarseFoldShare : kFoldShare);
       };
-    s.maxMemory = settings_.maxMemory;
     AdaptiveResult fit = fitToTolerance(boundary_.problem(ways, unit_), s);
     if (fit.end == AdaptiveEnd::maxSources && s.maxSources < settings_.maxSources)
       fit.end = AdaptiveEnd::noGain;

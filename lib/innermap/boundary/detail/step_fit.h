@@ -16,7 +16,6 @@ struct StepFitSettings {
   int maxSteps = 16;
   std::size_t maxSources = 100000;  // of one step
   std::uint64_t seed = 1;
-  std::uint64_t maxMemory = 0;
 };
 
 struct StepFit {

@@ -79,7 +79,7 @@ VolumeJudge::VolumeJudge(Placed placed)
     : at_(std::move(placed.at)),
       sources_(std::move(placed.sources)),
       inside_(std::move(placed.inside)),
-      solver_(placed.collocation, sources_, {}, DenseSettings{0}) {}
+      solver_(placed.collocation, sources_, {}) {}
 
 VolumeJudge::VolumeJudge(const ClosedSurface& surface, double targetVolume)
     : VolumeJudge(Placed(surface)) {

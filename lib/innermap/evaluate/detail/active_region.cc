@@ -79,7 +79,7 @@ openvdb::MaskGrid::Ptr activeRegion(const openvdb::FloatGrid& levelSet,
   const std::uint64_t leaves = maskBelow(levelSet.tree(), std::min(iso, most), region->tree());
   throwIfCancelled();
   requireMemory("evaluating " + std::to_string(leaves) + " blocks of 8^3 voxels",
-                leaves * Leaf::SIZE * settings.bytesPerVoxel, settings.maxMemory,
+                leaves * Leaf::SIZE * settings.bytesPerVoxel,
                 "use a larger --voxel-size or a lower --resolution (memory grows with its cube)");
   region->tree().voxelizeActiveTiles();
   return region;

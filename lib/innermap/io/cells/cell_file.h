@@ -21,10 +21,6 @@ namespace innermap {
 // Whether the path ends as one of these files does, in any case of letters.
 bool isCellFile(const std::string& path);
 
-struct ReadCellsSettings {
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
-};
-
 struct CellFile {
   CellMesh mesh;
   // What the file has and the mesh does not (triangles of the boundary, names of groups), one line
@@ -47,7 +43,7 @@ struct CellFile {
 // coordinates that are not finite, no tetrahedra or hexahedra; DataError as validate(); MemoryError
 // when what the file holds, as its size or its compressed arrays tell, exceeds the limit;
 // Cancelled.
-CellFile readCells(const std::string& path, const ReadCellsSettings& settings = {});
+CellFile readCells(const std::string& path);
 
 // Peak need in bytes of reading the file, from its size; compressed ones may need more, which
 // readCells then checks. Throws FileError when there is no such file.

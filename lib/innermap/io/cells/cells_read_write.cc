@@ -18,7 +18,7 @@ namespace {
 
 struct Format {
   const char* extension;
-  CellFile (*read)(const FileBytes&, const ReadCellsSettings&);
+  CellFile (*read)(const FileBytes&);
   LostFields (*write)(std::ostream&, const CellMesh&);
 };
 
@@ -44,9 +44,7 @@ void CellCollector::fail(const std::string& what) const { throw FileError(path_,
 
 void CellCollector::claim(std::uint64_t bytes) {
   claimed_ += bytes;
-  const std::uint64_t available = availableMemory();
-  const std::uint64_t limit =
-      settings_.maxMemory ? std::min(settings_.maxMemory, available) : available;
+  const std::uint64_t limit = std::min(memoryLimit(), availableMemory());
   requireMemory("reading " + path_, claimed_, limit, "use a smaller file");
 }
 
@@ -109,11 +107,11 @@ const CellField* findField(const std::vector<CellField>& fields, std::string_vie
 
 bool isCellFile(const std::string& path) { return findFormat(path) != nullptr; }
 
-CellFile readCells(const std::string& path, const ReadCellsSettings& settings) {
+CellFile readCells(const std::string& path) {
   const Format& format = formatOf(path);
-  const std::uint64_t limit = settings.maxMemory ? settings.maxMemory : availableMemory();
+  const std::uint64_t limit = std::min(memoryLimit(), availableMemory());
   requireMemory("reading " + path, readCellsMemory(path), limit, "use a smaller file");
-  return format.read(readFileBytes(path, "a file of cells"), settings);
+  return format.read(readFileBytes(path, "a file of cells"));
 }
 
 std::uint64_t readCellsMemory(const std::string& path) {

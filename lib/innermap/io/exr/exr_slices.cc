@@ -147,7 +147,7 @@ ExrSliceResult writeExrSlices(const std::string& path, const openvdb::GridPtrVec
   const SliceFrame frame = sliceFrame(grids, settings.axis);
   const std::vector<std::string> channels = allChannels(grids);
   requireMemory("slicing to " + path, memoryFor(frame, channels.size(), settings.count),
-                settings.maxMemory, "slice fewer grids or along another axis");
+                "slice fewer grids or along another axis");
   const std::vector<int> layers = sliceLayers(frame, settings.count);
   std::vector<Imf::Header> headers;
   for (std::size_t i = 0; i < layers.size(); ++i)

@@ -10,10 +10,9 @@
 namespace innermap {
 
 struct ExrSliceSettings {
-  int axis = 2;                 // 0, 1, 2: x, y, z
-  int count = 16;               // slices, in [1, 65536]
-  bool half = false;            // half floats: half the size, 3 digits, values clamped to 65,504
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  int axis = 2;       // 0, 1, 2: x, y, z
+  int count = 16;     // slices, in [1, 65536]
+  bool half = false;  // half floats: half the size, 3 digits, values clamped to 65,504
 };
 
 struct ExrSliceResult {

@@ -30,7 +30,6 @@ struct ReadGeometrySettings {
   // Names of vectors and of normals among the properties or fields of points and cells, beside
   // those that the file's format knows as such.
   std::vector<std::string> vectors, normals;
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
 };
 
 // A geometry and the file that it came from.

@@ -59,7 +59,7 @@ void requireWritableAs(const std::string& input, const std::string& output) {
 
 std::unique_ptr<GeometryFile> readGeometry(const std::string& path,
                                            const ReadGeometrySettings& settings) {
-  const std::uint64_t limit = settings.maxMemory ? settings.maxMemory : availableMemory();
+  const std::uint64_t limit = std::min(memoryLimit(), availableMemory());
   requireMemory("carrying " + path, geometryMemory(path), limit, "cut the file into parts");
   if (isCellFile(path)) return readCellGeometry(path, settings);
   const Format* format = findFormat(path);

@@ -236,7 +236,7 @@ ImageFile readImage(const std::string& path, const ImageSettings& settings) {
   const std::unique_ptr<ImageReader> input = open(path);
   const ImageInfo& info = input->info();
   const Channels channels = channelsOf(path, info);
-  requireMemory("the image " + path, memoryOf(info, channels), settings.maxMemory,
+  requireMemory("the image " + path, memoryOf(info, channels),
                 "make it smaller or raise --max-memory");
   ImageFile out;
   const Decoding decoding = decodingOf(info, settings.colourSpace, out.notes);

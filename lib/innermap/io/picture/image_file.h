@@ -20,7 +20,6 @@ double linearFromSrgb(double encoded);
 
 struct ImageSettings {
   ColourSpace colourSpace = ColourSpace::automatic;
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
 };
 
 // Linear colours, rows from the top. #height * #width * 3 floats.

@@ -344,7 +344,7 @@ SectionResult writeSectionImage(const std::string& path, const openvdb::GridPtrV
                                 const SectionSettings& settings) {
   checkSettings(settings);
   const Shown shown = shownOf(grids, settings);
-  requireMemory("the section " + path, memoryFor(shown), settings.maxMemory,
+  requireMemory("the section " + path, memoryFor(shown),
                 "cut along another axis or ask for fewer pixels");
   const auto& [grid, needed, frame, layout] = shown;
   const SectionCut cut = cutThrough(grid, needed, frame, layerFor(frame, settings),

@@ -41,8 +41,7 @@ struct SectionSettings {
   double outliers = 0.005;  // share of values cut off at each end when the range is unset, [0, 0.5)
   SectionScale scale = SectionScale::automatic;
   Colormap colormap = Colormap::redBlue;
-  int pixels = 900;             // longer side of the section itself, in [64, 8192]
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  int pixels = 900;  // longer side of the section itself, in [64, 8192]
 };
 
 struct SectionResult {

@@ -30,7 +30,6 @@ struct TextureImages::Data {
             const TextureImageSettings& settings) {
     ImageSettings image;
     image.colourSpace = settings.colourSpace;
-    image.maxMemory = settings.maxMemory;
     ImageFile file = readImage(path, image);
     for (const std::string& note : file.notes) notes.push_back(path + ": " + note);
     width = file.pixels.width;

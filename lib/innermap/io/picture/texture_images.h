@@ -17,8 +17,7 @@ using UdimTile = std::pair<int, int>;
 
 struct TextureImageSettings {
   ColourSpace colourSpace = ColourSpace::automatic;
-  Wrap wrap = Wrap::repeat;     // of a single image
-  std::uint64_t maxMemory = 0;  // bytes, of each image; 0 means no limit
+  Wrap wrap = Wrap::repeat;  // of a single image
 };
 
 // Whether the path has "<UDIM>" in it, which stands for the number of each tile.

@@ -34,7 +34,6 @@ void writeVdb(const std::string& path, const openvdb::GridPtrVec& grids,
 
 struct VdbReadSettings {
   std::vector<std::string> names;  // of the grids to read; empty means all
-  std::uint64_t maxMemory = 0;     // bytes; 0 means no limit
 };
 
 struct VdbContents {

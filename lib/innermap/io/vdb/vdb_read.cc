@@ -156,8 +156,7 @@ VdbContents readVdb(const std::string& path, const VdbReadSettings& settings) {
     const std::vector<std::size_t> indices = chosen(path, archive, settings.names);
     std::uint64_t need = 0;
     for (std::size_t i : indices) need += archive.verified()[i].memory;
-    requireMemory("reading " + path, need, settings.maxMemory,
-                  "read fewer of its grids or raise the limit");
+    requireMemory("reading " + path, need, "read fewer of its grids or raise the limit");
     for (std::size_t i : indices) {
       reportProgress("reading the VDB file",
                      static_cast<double>(contents.grids.size()) / indices.size());

@@ -42,7 +42,6 @@ struct VolumeTextureSettings {
   bool powerOfTwo =
       false;  // the box grows: slices, their sides and the picture's are powers of two
   std::optional<std::pair<int, int>> tiles;  // columns and rows of the atlas; unset: near a square
-  std::uint64_t maxMemory = 0;               // bytes; 0 means no limit
 };
 
 struct VolumeTextureResult {
@@ -129,7 +128,6 @@ struct VolumeTextureReadSettings {
   Vec3 lowerCorner;                      // world position of the box's least corner, with voxelSize
   std::optional<double> background;      // of all grids
   std::optional<std::string> gridClass;  // "level set", "fog volume", "unknown", ...
-  std::uint64_t maxMemory = 0;           // bytes; 0 means no limit
 };
 
 struct VolumeTextureContents {

@@ -95,7 +95,7 @@ class Reading {
 
  private:
   void need(std::uint64_t bytes) const {
-    requireMemory("reading " + path_, bytes, settings_.maxMemory,
+    requireMemory("reading " + path_, bytes, room_,
                   "read fewer grids by --grid or raise --max-memory");
   }
 
@@ -117,6 +117,7 @@ class Reading {
   const std::string& path_;
   VolumeSource& source_;
   const VolumeTextureReadSettings& settings_;
+  const std::uint64_t room_ = memoryLeft();  // bytes: the grids grow as they are read
   std::uint64_t fixed_ = 0;
   std::vector<std::unique_ptr<VolumeBuilder>> builders_;
   std::size_t notFinite_ = 0;

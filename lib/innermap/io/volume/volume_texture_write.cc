@@ -262,7 +262,7 @@ VolumeTextureResult planVolumeTexture(const std::string& path, const openvdb::Gr
 VolumeTextureResult writeVolumeTexture(const std::string& path, const openvdb::GridPtrVec& grids,
                                        const VolumeTextureSettings& settings) {
   const VolumePlan plan = makeVolumePlan(grids, settings);
-  requireMemory("the volume texture " + path, memoryFor(plan, settings.layout), settings.maxMemory,
+  requireMemory("the volume texture " + path, memoryFor(plan, settings.layout),
                 "export fewer grids or at a lower resolution");
   VolumeTextureResult result = resultOf(path, plan, settings.layout);
   reportProgress("writing the volume texture", 0);

@@ -5,14 +5,13 @@
 
 namespace innermap {
 
-// settings: of any job that has resolution, voxelSize, and maxMemory as LevelSetSettings
+// settings: of any job that has resolution and voxelSize as LevelSetSettings
 // has them.
 template <class Settings>
 LevelSetSettings levelSetSettings(const Settings& settings) {
   LevelSetSettings out;
   out.resolution = settings.resolution;
   out.voxelSize = settings.voxelSize;
-  out.maxMemory = settings.maxMemory;
   return out;
 }
 

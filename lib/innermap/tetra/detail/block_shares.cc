@@ -22,9 +22,8 @@ LevelSetSettings voxelsFor(const Solid& solid, int across) {
 
 }  // namespace
 
-BlockShares::BlockShares(const Solid& solid, int across, std::uint64_t maxMemory) {
+BlockShares::BlockShares(const Solid& solid, int across) {
   LevelSetSettings settings = voxelsFor(solid, across);
-  settings.maxMemory = maxMemory;
   const int n = voxelsAHalf(across);
   const double voxel = settings.voxelSize;
   edge_ = 2 * n * voxel;

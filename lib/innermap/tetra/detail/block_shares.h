@@ -13,7 +13,7 @@ namespace innermap {
 class BlockShares {
  public:
   // across: blocks along the longest side of the solid's box, at least 1.
-  BlockShares(const Solid& solid, int across, std::uint64_t maxMemory);
+  BlockShares(const Solid& solid, int across);
 
   // The lattice shifted by that many half blocks along each axis (bits of shift), in [0, 8): an
   // empty set, and the share of each of its blocks.

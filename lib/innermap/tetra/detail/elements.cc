@@ -75,15 +75,13 @@ FiniteElements solveElements(const Solid& solid, const std::function<Vec3(const 
   TetrahedralizeSettings cells;
   cells.resolution = settings.resolution;
   cells.keepTopology = false;
-  cells.maxMemory = settings.maxMemory;
   const auto start = std::chrono::steady_clock::now();
   FiniteElements e;
   Tetrahedralization made = tetrahedralization(solid, cells);
   e.mesh = std::move(made.mesh);
   e.memory = harmonicCellsMemory(e.mesh.vertices.size(), e.mesh.tetrahedra.size());
-  if (settings.maxMemory > 0)
-    requireMemory(fmt::format("finite elements at a resolution of {}", settings.resolution),
-                  e.memory, settings.maxMemory, "leave out the finest resolution");
+  requireMemory(fmt::format("finite elements at a resolution of {}", settings.resolution), e.memory,
+                "leave out the finest resolution");
   const std::vector<bool> fixed = boundaryVertices(e.mesh);
   Matrix given(e.mesh.vertices.size(), 3);
   parallelBlocks(fixed.size(), 1024, [&](std::size_t begin, std::size_t end) {

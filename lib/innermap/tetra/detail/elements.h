@@ -25,8 +25,7 @@ struct FiniteElements {
 };
 
 struct ElementsSettings {
-  int resolution = 64;          // as TetrahedralizeSettings
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  int resolution = 64;  // as TetrahedralizeSettings
 };
 
 // With the values of `boundary` at the vertices of the boundary.

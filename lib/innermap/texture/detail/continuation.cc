@@ -56,7 +56,6 @@ class Continuation {
     RegionSettings where;
     where.skin = settings_.skin;
     where.bytesPerVoxel = 1 + 12 * count;
-    where.maxMemory = settings_.maxMemory;
     const openvdb::MaskGrid::Ptr region = activeRegion(levelSet_, where);
     for (std::size_t g = 0; g < count; ++g) grids_.push_back(gridOn(*region));
     evaluate(settings_.spacing > 0 ? *insideOf(*region) : *region);

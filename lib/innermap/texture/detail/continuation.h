@@ -27,9 +27,8 @@ struct ContinuationSettings {
   // World units: the spacing of the field's charges. 0: the field alone is taken, and outside the
   // solid its value at the closest boundary point.
   double spacing = 0;
-  double skin = 2;              // active voxels outside the surface, in [0, 3]
-  double accuracy = 1e-5;       // of sums: root mean square error, units of the values, positive
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  double skin = 2;         // active voxels outside the surface, in [0, 3]
+  double accuracy = 1e-5;  // of sums: root mean square error, units of the values, positive
 };
 
 // A Vec3f grid (vector type invariant, background 0) for each three channels of the field, whose

@@ -74,7 +74,7 @@ class DensityCarry {
     requireMemory("carrying the density \"" + source.grid->getName() + "\"",
                   CellNodes::memory(nodes_.size()) + kParts +
                       sizeof(VoxelSums::LeafSums) * region.tree().leafCount(),
-                  settings.maxMemory, "use larger voxels, or cut the volume off around the solid");
+                  "use larger voxels, or cut the volume off around the solid");
   }
 
   void run();

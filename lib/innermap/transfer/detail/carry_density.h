@@ -16,8 +16,7 @@ namespace innermap {
 struct CarryDensitySettings {
   int parts = 1;  // cells along each edge of a voxel of the source, at least 1
   double limit = std::numeric_limits<double>::infinity();  // of a density's growth, above 0
-  bool constant = false;        // densities are constant in each voxel of the source, not linear
-  std::uint64_t maxMemory = 0;  // bytes; 0 means no limit
+  bool constant = false;  // densities are constant in each voxel of the source, not linear
 };
 
 // A grid like the source's on the lattice of `region`, active there and where mass comes to; and

@@ -146,8 +146,7 @@ double keepCarried(openvdb::MaskTree& active, const Grid& grid, const Solid& sol
 }  // namespace
 
 DensityVoxels densityVoxels(const openvdb::GridBase::ConstPtr& grid, const Solid& solid,
-                            const openvdb::FloatGrid& levelSet, const OutsideSettings& outside,
-                            std::uint64_t maxMemory) {
+                            const openvdb::FloatGrid& levelSet, const OutsideSettings& outside) {
   if (!grid->transform().isLinear())
     throw DataError("density \"" + grid->getName() +
                     "\": has a frustum for transform; resample it to voxels of one size");
@@ -162,7 +161,7 @@ DensityVoxels densityVoxels(const openvdb::GridBase::ConstPtr& grid, const Solid
     active->topologyIntersection(within);
   }
   requireMemory("the density \"" + grid->getName() + "\"", active->activeVoxelCount() / 4,
-                maxMemory, "cut the volume off around the solid");
+                "cut the volume off around the solid");
   active->voxelizeActiveTiles();
   DensityVoxels out;
   out.grid = grid;

@@ -21,10 +21,9 @@ struct DensityVoxels {
 // Carried are those of its active voxels whose centre is inside the solid; of a fog volume, whose
 // values along the surface are shares, those that touch the solid; with `outside` also those up to
 // its distance, or all. levelSet: of the solid. Throws DataError for a transform that is not
-// linear, MemoryError (maxMemory in bytes, 0: no limit), Cancelled.
+// linear, MemoryError, Cancelled.
 DensityVoxels densityVoxels(const openvdb::GridBase::ConstPtr& grid, const Solid& solid,
-                            const openvdb::FloatGrid& levelSet, const OutsideSettings& outside,
-                            std::uint64_t maxMemory);
+                            const openvdb::FloatGrid& levelSet, const OutsideSettings& outside);
 
 // In one voxel, as a function of the index minus the voxel's.
 struct LinearDensity {

@@ -124,12 +124,12 @@ int latticeResolution(const Solid& solid, const OutsideSettings& outside,
 }  // namespace
 
 void addAround(openvdb::MaskGrid& region, const Solid& solid, double distance,
-               std::uint64_t bytesPerVoxel, std::uint64_t maxMemory) {
+               std::uint64_t bytesPerVoxel) {
   const openvdb::MaskTree inner = region.tree();
   const int layers = static_cast<int>(std::ceil(distance / region.voxelSize()[0]));
   openvdb::CoordBBox box = region.evalActiveVoxelBoundingBox();
   box.expand(layers);
-  requireMemory("the space around the solid", box.volume() * bytesPerVoxel, maxMemory,
+  requireMemory("the space around the solid", box.volume() * bytesPerVoxel,
                 "use larger voxels or a smaller --outside");
   openvdb::tools::dilateActiveValues(region.tree(), layers, openvdb::tools::NN_FACE_EDGE_VERTEX,
                                      openvdb::tools::EXPAND_TILES);
@@ -151,22 +151,20 @@ void addAround(openvdb::MaskGrid& region, const Solid& solid, double distance,
 }
 
 SourceLattice makeSourceLattice(const Solid& solid, const OutsideSettings& outside,
-                                const openvdb::GridPtrVec& grids, std::uint64_t maxMemory) {
+                                const openvdb::GridPtrVec& grids) {
   if (!(outside.distance >= 0 && outside.distance <= 1))
     throw SettingError("outside", "must lie in [0, 1] of the diagonal");
   SourceLattice out;
   LevelSetSettings settings;
   settings.resolution = latticeResolution(solid, outside, grids);
-  settings.maxMemory = maxMemory;
   out.levelSet = makeLevelSet(solid, settings);
   RegionSettings inside;
   inside.skin = kSkin;
   inside.bytesPerVoxel = kVoxelBytes;
-  inside.maxMemory = maxMemory;
   out.region = activeRegion(*out.levelSet, inside);
   if (!(outside.distance > 0)) return out;
   const double voxel = out.levelSet->voxelSize()[0];
-  const std::uint64_t most = maxMemory ? maxMemory / kVoxelBytes : ~std::uint64_t{0};
+  const std::uint64_t most = memoryLimit() / kVoxelBytes;
   openvdb::MaskTree more = around(grids, out.levelSet->transform(), most);
   if (!outside.fadeTo) {
     const int layers = static_cast<int>(std::ceil(outside.distance * solid.diagonal() / voxel)) + 1;

@@ -15,11 +15,11 @@ namespace innermap {
 // within the distance, or anywhere when the map fades to a rigid motion. Throws SettingError,
 // MemoryError, Cancelled.
 SourceLattice makeSourceLattice(const Solid& solid, const OutsideSettings& outside,
-                                const openvdb::GridPtrVec& grids, std::uint64_t maxMemory);
+                                const openvdb::GridPtrVec& grids);
 
 // Adds all voxels around the solid up to `distance` (world units) from it to a region on the level
-// set's lattice. Throws MemoryError when it takes more than maxMemory (bytes; 0: no limit).
+// set's lattice. Throws MemoryError when it takes more than memoryLimit().
 void addAround(openvdb::MaskGrid& region, const Solid& solid, double distance,
-               std::uint64_t bytesPerVoxel, std::uint64_t maxMemory);
+               std::uint64_t bytesPerVoxel);
 
 }  // namespace innermap

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/memory_limit.h"
 #include "innermap/core/error.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"
@@ -34,8 +35,10 @@ TEST(ActiveRegion, RefusesASkinBeyondTheBandAndTooMuchMemory) {
   EXPECT_THROW(activeRegion(*grid, wide), SettingError);
   RegionSettings large;
   large.bytesPerVoxel = 100;
-  large.maxMemory = 100000;
-  EXPECT_THROW(activeRegion(*grid, large), MemoryError);
+  {
+    const MemoryLimit limit(100000);
+    EXPECT_THROW(activeRegion(*grid, large), MemoryError);
+  }
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <limits>
 #include <sstream>
 
+#include "core/memory_limit.h"
 #include "innermap/core/error.h"
 
 namespace innermap {
@@ -269,8 +270,10 @@ TEST(CellFile, MemoryIsLimited) {
   const std::string path = pathOf("mixed.vtu");
   writeCells(path, mixed());
   ReadCellsSettings settings;
-  settings.maxMemory = 1000;
-  EXPECT_THROW(readCells(path, settings), MemoryError);
+  {
+    const MemoryLimit limit(1000);
+    EXPECT_THROW(readCells(path, settings), MemoryError);
+  }
   EXPECT_THROW(readCells("nowhere.vtu"), FileError);
   EXPECT_THROW(readCells("nowhere.vtk"), FileError);
 }

@@ -13,6 +13,7 @@
 #include <signal.h>
 #include <sys/resource.h>
 
+#include "core/memory_limit.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/io/slice.h"
@@ -114,8 +115,10 @@ TEST(ExrSlices, HalfFloatsAreClampedAndCounted) {
 TEST(ExrSlices, RefusesBeforeItWrites) {
   const TemporaryFolder folder;
   ExrSliceSettings settings;
-  settings.maxMemory = 100;
-  EXPECT_THROW(writeExrSlices(folder.file("s.exr"), twoGrids(), settings), MemoryError);
+  {
+    const MemoryLimit limit(100);
+    EXPECT_THROW(writeExrSlices(folder.file("s.exr"), twoGrids(), settings), MemoryError);
+  }
   EXPECT_GT(exrSliceMemory(twoGrids(), settings), 18u * 8 * 5 * 4);
   settings = {};
   settings.count = 0;

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "core/memory_limit.h"
 #include "innermap/core/error.h"
 #include "innermap/io/cells/cell_file.h"
 #include "innermap/mesh/read.h"
@@ -237,8 +238,10 @@ TEST(GeometryFile, BadInput) {
   EXPECT_THROW(requireWritableAs("a.vtu", "b.ply"), FileError);
   EXPECT_NO_THROW(requireWritableAs("a.VTU", "b.mesh"));
   ReadGeometrySettings settings;
-  settings.maxMemory = 1000;
-  EXPECT_THROW(readGeometry(write("y.ply", kPly), settings), MemoryError);
+  {
+    const MemoryLimit limit(1000);
+    EXPECT_THROW(readGeometry(write("y.ply", kPly), settings), MemoryError);
+  }
 }
 
 TEST(GeometryFile, DamagedBytesNeverCrash) {

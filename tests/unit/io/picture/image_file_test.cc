@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/memory_limit.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "io/test_files.h"
@@ -225,8 +226,10 @@ TEST(ImageFile, MemoryAndCancelling) {
   write(folder.file("a.png"), specOf({"R", "G", "B"}, OIIO::TypeDesc::UINT8, 64, 64), {1, 0, 1});
   EXPECT_GE(imageMemory(folder.file("a.png")), 64u * 64 * 12);
   ImageSettings settings;
-  settings.maxMemory = 1000;
-  EXPECT_THROW(readImage(folder.file("a.png"), settings), MemoryError);
+  {
+    const MemoryLimit limit(1000);
+    EXPECT_THROW(readImage(folder.file("a.png"), settings), MemoryError);
+  }
   RunContext run;
   run.cancel();
   settings = {};

@@ -3,6 +3,7 @@
 #include <OpenImageIO/imagebuf.h>
 #include <gtest/gtest.h>
 
+#include "core/memory_limit.h"
 #include "innermap/core/error.h"
 #include "io/test_files.h"
 
@@ -183,8 +184,10 @@ TEST(SectionImage, RefusesWithAReason) {
   settings.at = 0;  // the band outside the solid
   EXPECT_THROW(writeSectionImage(path, grids, settings), DataError);
   settings = {};
-  settings.maxMemory = 1000;
-  EXPECT_THROW(writeSectionImage(path, grids, settings), MemoryError);
+  {
+    const MemoryLimit limit(1000);
+    EXPECT_THROW(writeSectionImage(path, grids, settings), MemoryError);
+  }
   EXPECT_THROW(writeSectionImage(folder.file("no/s.png"), grids, {}), FileError);
   EXPECT_EQ(folder.count(), 0u);
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstring>
 
+#include "core/memory_limit.h"
 #include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
@@ -216,8 +217,10 @@ TEST(VdbFileLimits, RefusesWhatDoesNotFit) {
   const TemporaryFolder folder;
   writeVdb(folder.file("a.vdb"), everyType());
   VdbReadSettings settings;
-  settings.maxMemory = 100000;
-  EXPECT_THROW(readVdb(folder.file("a.vdb"), settings), MemoryError);
+  {
+    const MemoryLimit limit(100000);
+    EXPECT_THROW(readVdb(folder.file("a.vdb"), settings), MemoryError);
+  }
 }
 
 TEST(VdbFileLimits, Cancels) {

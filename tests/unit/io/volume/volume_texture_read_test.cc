@@ -13,7 +13,9 @@
 #include <functional>
 #include <limits>
 
+#include "core/memory_limit.h"
 #include "innermap/core/error.h"
+#include "innermap/core/memory.h"
 #include "innermap/core/run.h"
 #include "innermap/io/volume/volume_texture.h"
 #include "io/test_files.h"
@@ -354,14 +356,13 @@ TEST(VolumeTextureRead, TruncatedAndDamagedFilesAreRefused) {
       EXPECT_NE(errorOf(bad), "") << length;
     }
     // Any byte of the headers may be anything: an error or grids, no crash and no hoard of memory.
-    VolumeTextureReadSettings read;
-    read.maxMemory = 50'000'000;
+    const MemoryLimit limit(processMemory(0) + 50'000'000);
     for (std::size_t at = 4; at < std::min<std::size_t>(whole.size(), 6000); at += 7) {
       std::string broken = whole;
       broken[at] = static_cast<char>(broken[at] ^ 0xA5);
       write(bad, broken);
       try {
-        readVolumeTexture(bad, read);
+        readVolumeTexture(bad);
       } catch (const Error&) {
       }
     }
@@ -377,8 +378,10 @@ TEST(VolumeTextureRead, MemoryAndCancellingAreMinded) {
   const TemporaryFolder folder;
   writeVolumeTexture(folder.file("a.exr"), {scalar()});
   VolumeTextureReadSettings settings;
-  settings.maxMemory = 1000;
-  EXPECT_THROW(readVolumeTexture(folder.file("a.exr"), settings), MemoryError);
+  {
+    const MemoryLimit limit(1000);
+    EXPECT_THROW(readVolumeTexture(folder.file("a.exr"), settings), MemoryError);
+  }
   settings = {};
   RunContext run;
   run.cancel();

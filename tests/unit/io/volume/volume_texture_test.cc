@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/memory_limit.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "io/test_files.h"
@@ -283,8 +284,10 @@ TEST(VolumeTexture, RefusesBeforeItWrites) {
   const TemporaryFolder folder;
   const std::string path = folder.file("a.exr");
   VolumeTextureSettings settings;
-  settings.maxMemory = 100;
-  EXPECT_THROW(writeVolumeTexture(path, {scalar()}, settings), MemoryError);
+  {
+    const MemoryLimit limit(100);
+    EXPECT_THROW(writeVolumeTexture(path, {scalar()}, settings), MemoryError);
+  }
   EXPECT_GT(volumeTextureMemory({scalar()}, {}), 18u * 8 * 12 * 4);
   settings = {};
   settings.resolution = -1;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/memory_limit.h"
 #include "innermap/core/detail/pi.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
@@ -135,8 +136,10 @@ TEST(Continuation, BadSettings) {
   s.skin = 4;
   EXPECT_THROW(continueInside(field, ball.solid, *ball.levelSet, boundary, s), SettingError);
   s = {};
-  s.maxMemory = 1000;
-  EXPECT_THROW(continueInside(field, ball.solid, *ball.levelSet, boundary, s), MemoryError);
+  {
+    const MemoryLimit limit(1000);
+    EXPECT_THROW(continueInside(field, ball.solid, *ball.levelSet, boundary, s), MemoryError);
+  }
   EXPECT_THROW(continueInside(fieldOf(4), ball.solid, *ball.levelSet, boundary, {}), DataError);
   RunContext run;
   run.cancel();

@@ -21,10 +21,7 @@ enum class CellUse { tetrahedron, hexahedron, leftOut, refused };
 // What the readers fill; tells of what is left out at the end.
 class CellCollector {
  public:
-  CellCollector(const std::string& path, const ReadCellsSettings& settings)
-      : path_(path), settings_(settings) {
-    file.mesh.name = path;
-  }
+  CellCollector(const std::string& path) : path_(path) { file.mesh.name = path; }
 
   CellFile file;
 
@@ -50,7 +47,6 @@ class CellCollector {
   [[noreturn]] void fail(const std::string& what) const;
 
   const std::string& path_;
-  const ReadCellsSettings& settings_;
   std::map<std::string, std::uint64_t> leftOut_;
   std::uint64_t claimed_ = 0;
 };
@@ -58,9 +54,9 @@ class CellCollector {
 // Throws FileError: "path: line 12: what", by the lines before the byte.
 [[noreturn]] void failAt(const FileBytes& file, std::size_t byte, const std::string& what);
 
-CellFile readVtu(const FileBytes& file, const ReadCellsSettings& settings);
-CellFile readMsh(const FileBytes& file, const ReadCellsSettings& settings);
-CellFile readMedit(const FileBytes& file, const ReadCellsSettings& settings);
+CellFile readVtu(const FileBytes& file);
+CellFile readMsh(const FileBytes& file);
+CellFile readMedit(const FileBytes& file);
 
 using LostFields = std::vector<std::string>;
 // By the path's ending, which is one of the three.

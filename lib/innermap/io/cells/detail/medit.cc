@@ -35,8 +35,7 @@ constexpr Section kSections[] = {{"Triangles", 4, "triangles"},
 
 class MeditReader {
  public:
-  MeditReader(const FileBytes& file, const ReadCellsSettings& settings)
-      : collector_(file.path, settings), scanner_(file, {true, false}) {}
+  MeditReader(const FileBytes& file) : collector_(file.path), scanner_(file, {true, false}) {}
 
   CellFile read() {
     std::string_view word;
@@ -168,9 +167,7 @@ void writeCells(OutputBuffer& out, const char* section, const Cells& cells, cons
 
 }  // namespace
 
-CellFile readMedit(const FileBytes& file, const ReadCellsSettings& settings) {
-  return MeditReader(file, settings).read();
-}
+CellFile readMedit(const FileBytes& file) { return MeditReader(file).read(); }
 
 LostFields writeMedit(std::ostream& stream, const CellMesh& mesh) {
   const CellField* ofVertices = findField(mesh.vertexFields, kMeditReference);

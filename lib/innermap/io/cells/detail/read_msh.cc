@@ -28,8 +28,8 @@ constexpr MshCell kCells[] = {
 
 class MshReader {
  public:
-  MshReader(const FileBytes& file, const ReadCellsSettings& settings)
-      : file_(file), collector_(file.path, settings), in_(file), fields_(collector_, in_) {}
+  MshReader(const FileBytes& file)
+      : file_(file), collector_(file.path), in_(file), fields_(collector_, in_) {}
 
   CellFile read() {
     readFormat();
@@ -280,8 +280,6 @@ class MshReader {
 
 }  // namespace
 
-CellFile readMsh(const FileBytes& file, const ReadCellsSettings& settings) {
-  return MshReader(file, settings).read();
-}
+CellFile readMsh(const FileBytes& file) { return MshReader(file).read(); }
 
 }  // namespace innermap

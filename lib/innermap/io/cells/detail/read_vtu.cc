@@ -32,8 +32,7 @@ constexpr VtkCell kCells[] = {
 
 class VtuReader {
  public:
-  VtuReader(const FileBytes& file, const ReadCellsSettings& settings)
-      : file_(file), collector_(file.path, settings) {}
+  VtuReader(const FileBytes& file) : file_(file), collector_(file.path) {}
 
   CellFile read() {
     readTags();
@@ -246,8 +245,6 @@ class VtuReader {
 
 }  // namespace
 
-CellFile readVtu(const FileBytes& file, const ReadCellsSettings& settings) {
-  return VtuReader(file, settings).read();
-}
+CellFile readVtu(const FileBytes& file) { return VtuReader(file).read(); }
 
 }  // namespace innermap

@@ -169,9 +169,7 @@ std::vector<std::string> CellGeometry::write(const std::string& path,
 
 std::unique_ptr<GeometryFile> readCellGeometry(const std::string& path,
                                                const ReadGeometrySettings& settings) {
-  ReadCellsSettings cells;
-  cells.maxMemory = settings.maxMemory;
-  return std::make_unique<CellGeometry>(readCells(path, cells), settings);
+  return std::make_unique<CellGeometry>(readCells(path), settings);
 }
 
 }  // namespace innermap
