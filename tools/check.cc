@@ -160,7 +160,7 @@ Command makeCheckCommand() {
            "also write the closed surface that stands for MESH where it is laid onto another solid "
            "or filled: its outer surface if it runs through itself, else MESH; .ply or .obj")
       .writes({".ply", ".obj"});
-  addOuterOptions(c, o->layOut);
+  c.settings(describe(o->layOut));
   c.example("innermap check horse.obj");
   c.example("innermap check posed.obj --outer outer.ply --html");
   c.example("innermap check horse.obj --json > findings.json");

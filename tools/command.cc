@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <numeric>
+#include <type_traits>
 
 #include "spelling.h"
 
@@ -55,6 +56,7 @@ struct Given {
 CLI::Option* declare(CLI::App& app, Given& given) {
   const Option& o = *given.option;
   std::string names = fmt::format("{}", fmt::join(spellings(o.name), ","));
+  if (!o.formerName.empty()) names += "," + o.formerName;
   if (!o.shortName.empty()) names = o.shortName + "," + names;
   if (o.isFlag()) return app.add_flag(names, given.flag);
   if (!o.impliedValue.empty())
@@ -98,7 +100,7 @@ void refuseLeftOvers(const Command& command, const std::vector<Option>& all,
 void take(const Command& command, const Given& given, CommonOptions& common) {
   const Option& o = *given.option;
   if (o.isFlag()) {
-    if (given.flag) *std::get<bool*>(o.target) = true;
+    if (given.flag) *std::get<bool*>(o.target) = o.sets;
     return;
   }
   if (given.values.size() > 1 && !o.isList()) refuse(command, o.name + " is given more than once");
@@ -141,6 +143,49 @@ OptionBuilder Command::option(const std::string& name, const std::string& placeh
   return {options_, options_.size() - 1};
 }
 
+std::string optionName(const std::string& setting) {
+  std::string name = "--" + setting;
+  std::replace(name.begin(), name.end(), '_', '-');
+  return name;
+}
+
+void Command::settings(const std::vector<Setting>& described) {
+  for (const Setting& s : described) setting(s);
+}
+
+OptionBuilder Command::setting(const Setting& s) {
+  std::string name = optionName(s.name);
+  const bool* const* flagged = std::get_if<bool*>(&s.value);
+  const bool off = flagged && **flagged;
+  if (off) name = optionName("no_" + s.name);
+  const auto* choice = std::get_if<SettingChoice>(&s.value);
+  const Target target = std::visit(
+      [](const auto& value) -> Target {
+        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, SettingChoice>) {
+          return std::function<void(const std::string&)>([value](const std::string& word) {
+            value.take(static_cast<std::size_t>(
+                std::find(value.words.begin(), value.words.end(), word) - value.words.begin()));
+          });
+        } else {
+          return value;
+        }
+      },
+      s.value);
+  OptionBuilder added = option(name, s.placeholder, target, withNames(s.help, optionName));
+  Option& made = options_.back();
+  made.sets = !off;
+  if (!s.formerName.empty()) made.formerName = optionName(s.formerName);
+  made.unit = s.unit;
+  made.range = s.range;
+  made.automatic = s.automatic;
+  made.advanced = s.advanced;
+  if (!s.fallback.empty()) made.defaultText = withNames(s.fallback, optionName);
+  if (!choice) return added;
+  made.choices = choice->words;
+  if (s.fallback.empty()) made.defaultText = choice->words[choice->now()];
+  return added;
+}
+
 OptionBuilder Command::flag(const std::string& name, bool* target, const std::string& help) {
   return option(name, "", target, help);
 }
@@ -174,6 +219,16 @@ std::vector<Option> commonOptionTable(CommonOptions& common) {
   return c.options();
 }
 
+namespace {
+
+bool usesName(const std::vector<std::string>& arguments, const std::string& name) {
+  return std::any_of(arguments.begin(), arguments.end(), [&](const std::string& text) {
+    return text == name || text.rfind(name + "=", 0) == 0;
+  });
+}
+
+}  // namespace
+
 void parseArguments(const Command& command, CommonOptions& common,
                     const std::vector<std::string>& arguments) {
   common.arguments = arguments;
@@ -203,6 +258,9 @@ void parseArguments(const Command& command, CommonOptions& common,
   if (common.help || common.helpAll || common.version) return;
   refuseLeftOvers(command, all, app.remaining());
   for (const Given& g : given) take(command, g, common);
+  for (const Option& o : all)
+    if (!o.formerName.empty() && usesName(arguments, o.formerName))
+      common.notes.push_back(o.formerName + " is now called " + o.name);
 }
 
 std::string didYouMean(const std::string& typed, const std::vector<std::string>& known) {

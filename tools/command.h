@@ -65,6 +65,10 @@ class Command {
     return option(name, placeholder, take, help).choices(names).defaults(chosen);
   }
   OptionBuilder flag(const std::string& name, bool* target, const std::string& help);
+  // An option for each setting of the library: max_sources is --max-charges; a flag that is on is
+  // turned off by --no-NAME.
+  void settings(const std::vector<Setting>& described);
+  OptionBuilder setting(const Setting& described);
   // The title in the help of the options that follow; "": plain "options".
   void group(const std::string& title) { group_ = title; }
 
@@ -90,6 +94,9 @@ class Command {
   std::function<void(Context&)> body_;
   std::unique_ptr<std::optional<double>> maxTime_ = std::make_unique<std::optional<double>>();
 };
+
+// "max_charges": "--max-charges".
+std::string optionName(const std::string& setting);
 
 // The options that every command has, bound to `common`.
 std::vector<Option> commonOptionTable(CommonOptions& common);

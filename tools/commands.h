@@ -48,6 +48,7 @@ std::vector<Topic> commandTopics();  // each command is in one
 Command findCommand(const std::string& name);
 
 // The commands' texts come from their tables.
+std::string shortHelp();  // of `innermap` alone: what most people need
 std::string generalHelp();
 std::string commandHelp(const Command& command, bool all);  // all: also what is advanced
 std::string markdownHelp();                                 // docs/commands.md

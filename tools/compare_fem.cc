@@ -10,6 +10,7 @@
 
 #include "commands.h"
 #include "correspondence.h"
+#include "cut_options.h"
 #include "innermap/core/memory.h"
 #include "innermap/evaluate/energy.h"
 #include "innermap/io/picture/chart.h"
@@ -29,9 +30,7 @@ struct CompareOptions {
   bool functions = false;
   std::string resolutions = "16,32,64", charges = "250,500,1000", tolerances = "4e-3,1e-3,4e-4";
   CompareFemSettings settings;
-  int axis = 2;
-  double at = 0.5;
-  Colormap colormap = Colormap::redBlue;
+  CutOptions cut;
 };
 
 std::vector<double> numbers(const std::string& option, const std::string& list) {
@@ -205,9 +204,10 @@ void writeSection(const std::string& path, const CompareFem& result, const Solid
   for (int i = 0; i < 64; ++i)
     for (int j = 0; j < 64; ++j) {
       Vec3 p;
-      p[options.axis] = box.lower[options.axis] + options.at * box.extent()[options.axis];
+      p[options.cut.axis] =
+          box.lower[options.cut.axis] + options.cut.at * box.extent()[options.cut.axis];
       for (int k = 1; k < 3; ++k) {
-        const int a = (options.axis + k) % 3;
+        const int a = (options.cut.axis + k) % 3;
         p[a] = box.lower[a] + ((k == 1 ? i : j) + 0.5) / 64 * box.extent()[a];
       }
       probe.push_back(p);
@@ -218,9 +218,9 @@ void writeSection(const std::string& path, const CompareFem& result, const Solid
       values.end());
   std::sort(values.begin(), values.end());
   PlanePictureSettings settings;
-  settings.colormap = options.colormap;
-  settings.axis = options.axis;
-  settings.at = options.at;
+  settings.colormap = options.cut.colormap;
+  settings.axis = options.cut.axis;
+  settings.at = options.cut.at;
   if (!values.empty()) {
     settings.blue = values[values.size() / 100];
     settings.red = std::max(values[values.size() - 1 - values.size() / 100],
@@ -334,21 +334,8 @@ Command makeCompareFemCommand() {
   c.option(
       "--tolerances", "LIST", &o->tolerances,
       "for a map: tolerances of the fits of charges, fractions of TARGET's diagonal, 1e-12 to 1");
-  c.option("--reference", "T", &o->settings.referenceTolerance,
-           "tolerance of the fit that maps are compared with")
-      .unit("fraction of TARGET's diagonal")
-      .range(1e-12, 1)
-      .advanced();
-  c.option("--samples", "N", &o->settings.samples, "points inside at which errors are measured")
-      .range(100, 1000000)
-      .advanced();
-  addColormapOption(c, o->colormap);
-  c.choice("--axis", "AXIS", &o->axis, {{"x", 0}, {"y", 1}, {"z", 2}},
-           "direction across the section");
-  c.option("--at", "T", &o->at, "where the section cuts")
-      .unit("fraction of the box along the axis")
-      .range(0, 1);
-  c.option("--seed", "N", &o->settings.seed, "of all random choices").range(0, 1e15).advanced();
+  c.settings(describe(o->settings));
+  c.settings(describe(o->cut));
   c.example("innermap compare-fem spot.obj --functions -o spot-fem");
   c.example("innermap compare-fem rest.obj pose.obj -o pose-fem --resolutions 24,48,96");
   c.run([o](Context& context) { run(*o, context); });

@@ -44,6 +44,7 @@ struct CommonOptions {
   // As they stood on the command line: all of them, and the last value of each option by its name.
   std::vector<std::string> arguments;
   std::map<std::string, std::string> given;
+  std::vector<std::string> notes;  // of former names that were used
 };
 
 // A command calls it from one thread.

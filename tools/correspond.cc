@@ -102,9 +102,7 @@ Command makeCorrespondCommand() {
       .advanced();
   c.limitTime("after which trying and refining end");
   addCorrespondOptions(c, o->correspond);
-  c.option("--seed", "N", &o->correspond.map.seed, "of all random choices")
-      .range(0, 1e15)
-      .advanced();
+  c.setting(seedSetting(&o->correspond.map.seed));
   c.option("--picture", "FILE", &o->picture,
            "a .png with SOURCE's coordinates as colours, on both; where another way is about as "
            "good, that goes to the same name with .other.png")

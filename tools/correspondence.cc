@@ -86,61 +86,23 @@ void tell(const LaidOutMesh& laid, Context& context) {
   addSeconds(context.report().seconds, laid.seconds);
 }
 
+void addClose(Command& c, bool& close) {
+  c.flag("--close", &close, "no longer needed: the holes of an open mesh are closed by caps")
+      .advanced();
+}
+
 }  // namespace
 
 void addSurfaceOptions(Command& c, SurfaceOptions& o) {
-  c.flag("--close", &o.close, "no longer needed: the holes of an open mesh are closed by caps")
-      .advanced();
-  addOuterOptions(c, o.layOut);
-}
-
-void addOuterOptions(Command& c, LayOutSettings& o) {
-  c.option("--surface-resolution", "N", &o.outerResolution,
-           "cells across of the outer surface, which is taken for a mesh that runs through itself, "
-           "overlaps or is not manifold")
-      .range(8, 1024)
-      .defaults("80, more for thin solids")
-      .advanced();
-  c.option("--genus", "N", &o.handles, "handles of that outer surface")
-      .range(0, 1000)
-      .defaults("the mesh's own; of several pieces, those that stay at other resolutions")
-      .advanced();
+  addClose(c, o.close);
+  c.settings(describe(o.layOut));
 }
 
 void addCorrespondOptions(Command& c, CorrespondOptions& o) {
   c.group("laying SOURCE onto TARGET");
   c.option("--landmarks", "FILE", &o.landmarks, "pairs of places that are kept exactly").reads();
-  c.flag("--aligned", &o.map.aligned,
-         "the two stand in the same pose and orientation: prefer agreeing normals and places");
-  c.option("--candidates", "N", &o.map.candidates,
-           "ways to lay SOURCE on TARGET that are refined: those whose coarse harmonic maps of the "
-           "inside "
-           "stretch and fold it least; of them the one that does so least is taken")
-      .range(1, 64)
-      .advanced();
-  c.option("--choose", "N", &o.map.way.choose,
-           "of the ways to lay SOURCE on TARGET that differ, the one of this number by preference; "
-           "a note tells where the second is about as good as the first")
-      .range(1, 64);
-  c.flag("--mirror", &o.map.way.mirror,
-         "the best way that turns left into right of what is taken otherwise, for bodies that are "
-         "the same on both sides");
-  c.flag("--no-refine", &o.noRefine,
-         "only the best way to lay SOURCE on TARGET, not refined: fast, rough")
-      .advanced();
-  c.option("--subdivide", "T", &o.map.subdivide,
-           "split SOURCE's triangles until they follow TARGET within T, and write it so split too; "
-           "0: never")
-      .unit("fraction of TARGET's diagonal")
-      .range(0, 1)
-      .advanced();
-  addSurfaceOptions(c, o.surfaces);
-}
-
-MeshCorrespondenceSettings correspondSettings(const CorrespondOptions& options) {
-  auto settings = options.map;
-  settings.refine = !options.noRefine;
-  return settings;
+  c.settings(without(describe(o.map), {"seed"}));
+  addClose(c, o.close);
 }
 
 void requirePly(const std::string& option, const std::string& path) {
@@ -210,9 +172,9 @@ MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const CorrespondOptions& opt
   context.requireMemory("the correspondence",
                         correspondMemory(a.vertices.size(), b.vertices.size()),
                         "use coarser meshes");
-  auto settings = correspondSettings(options);
+  MeshCorrespondenceSettings settings = options.map;
   if (!options.landmarks.empty()) settings.landmarks = readLandmarks(options.landmarks);
-  auto [laidA, laidB] = layOutMeshes(std::move(a), std::move(b), options.surfaces.layOut);
+  auto [laidA, laidB] = layOutMeshes(std::move(a), std::move(b), settings.layOut);
   tell(laidA, context);
   tell(laidB, context);
   context.report().source = reportOf(laidA);

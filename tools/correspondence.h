@@ -16,19 +16,14 @@ struct SurfaceOptions {
 };
 
 struct CorrespondOptions {
-  SurfaceOptions surfaces;
-  MeshCorrespondenceSettings map;
+  MeshCorrespondenceSettings map;  // the landmarks are not read yet
   std::string landmarks;
-  bool noRefine = false;
+  bool close = false;  // holes are closed anyway
 };
 
 void addSurfaceOptions(Command& command, SurfaceOptions& options);
-// Those of the outer surface alone.
-void addOuterOptions(Command& command, LayOutSettings& settings);
+// Without --seed.
 void addCorrespondOptions(Command& command, CorrespondOptions& options);
-
-// The landmarks are not read yet.
-MeshCorrespondenceSettings correspondSettings(const CorrespondOptions& options);
 
 // Throws UsageError unless `path`, the value of `option`, ends in .ply.
 void requirePly(const std::string& option, const std::string& path);

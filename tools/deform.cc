@@ -297,7 +297,7 @@ void run(const DeformOptions& options, Context& context) {
   Deformer deformer(options, left, std::move(rest), std::move(grids), context);
   std::map<std::size_t, DeformRow> rows;
   context.print(fmt::format("{:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "frame", "voxels",
-                            "inverted %", "error rms", "error 99%", "seconds"));
+                            "found %", "error rms", "error 99%", "seconds"));
   const auto results = runFrames(left, true, context, [&](std::size_t index) {
     const FrameFile& frame = frames.all[index];
     StageSeconds seconds;

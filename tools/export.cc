@@ -67,15 +67,6 @@ void run(const ExportOptions& options, Context& context) {
 }
 
 void addShapeOptions(Command& c, ExportOptions& o) {
-  c.option("--resolution", "N", &o.texture.resolution,
-           "resample to N voxels along the longest side: linear, the mean where voxels grow")
-      .range(1, 8192)
-      .defaults("the grids' own voxels");
-  c.option("--pad", "N", &o.texture.pad, "voxels about the active box").range(0, 4096).advanced();
-  c.flag("--cube", &o.texture.cube, "widen the box to a cube").advanced();
-  c.flag("--power-of-two", &o.texture.powerOfTwo,
-         "widen the box so that the slices' number and sides and the picture's are powers of two")
-      .advanced();
   c.option("--tiles", "CxR", &o.tiles, "columns and rows of the atlas, such as 8x8")
       .defaults("near a square")
       .advanced();
@@ -100,28 +91,16 @@ Command makeExportCommand() {
       .shortName("-o")
       .required()
       .writes({".exr"});
-  c.choice("--layout", "NAME", &o->texture.layout,
-           {{"atlas", VolumeLayout::atlas},
-            {"slices", VolumeLayout::slices},
-            {"parts", VolumeLayout::parts}},
-           "atlas: one picture of tiles; slices: a file each; parts: one multi-part file");
-  c.option("--grid", "LIST", &o->grids, "grids to write, with commas between").defaults("all");
-  c.flag("--half", &o->texture.half, "half floats: half the size, three digits");
-  c.choice("--channels", "NAMES", &o->texture.channels,
-           {{"auto", VolumeChannels::automatic},
-            {"rgba", VolumeChannels::rgba},
-            {"layers", VolumeChannels::layers}},
-           "rgba: Y or R, G, B, A; layers: by the grids' names; auto: rgba where four are enough")
-      .advanced();
+  c.option("--grids", "LIST", &o->grids, "grids to write, with commas between")
+      .was("--grid")
+      .defaults("all");
+  c.settings(describe(o->texture));
   addShapeOptions(c, *o);
-  c.choice("--axis", "AXIS", &o->texture.axis, {{"x", 0}, {"y", 1}, {"z", 2}},
-           "direction across the slices");
   c.choice("--rows", "ORDER", &o->texture.rowsUp, {{"down", false}, {"up", true}},
            "down: a slice's first row has the least index (Direct3D, Unreal); up: the largest "
            "(OpenGL, Unity)");
-  c.flag("--active", &o->texture.active, "also NAME.active: 1 where a voxel is active").advanced();
-  c.example("innermap export smoke.vdb -o smoke.exr --grid density --resolution 64 --cube --half");
-  c.example("innermap export map.vdb -o 'slices/map.####.exr' --layout slices --grid map,density");
+  c.example("innermap export smoke.vdb -o smoke.exr --grids density --resolution 64 --cube --half");
+  c.example("innermap export map.vdb -o 'slices/map.####.exr' --layout slices --grids map,density");
   c.run([o](Context& context) { run(*o, context); });
   return c;
 }

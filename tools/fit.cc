@@ -59,7 +59,7 @@ Command makeFitCommand() {
   addVerdictOptions(c, o->verdict);
   c.example("innermap fit rest.obj pose.obj -o map.ply");
   c.example("innermap fit rest.obj pose.obj -o map.ply --tolerance 1e-4 --best-effort");
-  c.example("innermap fit rest.obj pose.obj -o map.ply --sources 4000 --distance 0.02");
+  c.example("innermap fit rest.obj pose.obj -o map.ply --charges 4000 --distance 0.02");
   c.run([o](Context& context) { run(*o, context); });
   return c;
 }

@@ -7,29 +7,27 @@
 #include <vector>
 
 #include "command.h"
+#include "innermap/boundary/fit_choices.h"
 #include "innermap/boundary/fit_map.h"
 
 namespace innermap::tool {
 
-struct FittingOptions {
-  FitMapSettings fit;
-  ShellSettings shell;
-  std::optional<double> tolerance;
+struct FittingOptions : FitChoices {
   bool bestEffort = false;
-  std::optional<std::uint64_t> sources, collocation;
   std::optional<double> sourceRatio, collocationRatio;  // per vertex of the source mesh
 };
 
 void addFittingOptions(Command& command, FittingOptions& options);
 
-// What the options mean for a source of so many vertices. Throws UsageError for a tolerance that
+// What the options mean for a source of so many vertices. Throws SettingError for a tolerance that
 // cannot be and for options that exclude each other.
-FitMapSettings fitMapSettings(const FittingOptions& options, std::size_t vertices);
+FitMapSettings fitMapSettings(const FittingOptions& options, std::size_t vertices,
+                              bool laidOn = false);
 
 // Throws what fitMapSettings throws for any mesh, before one is read.
 void checkFittingOptions(const FittingOptions& options);
 
-// Throws MemoryError, with the largest --sources that would fit, when the need is over the limit.
+// Throws MemoryError, with the largest --charges that would fit, when the need is over the limit.
 void requireFittingMemory(const FitMapSettings& settings, std::size_t vertices,
                           const Context& context);
 

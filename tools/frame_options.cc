@@ -32,20 +32,7 @@ void addFrameOptions(Command& command, FrameOptions& o) {
   command.group("frames");
   command.option("--frames", "LIST", &o.ranges, "which frames: 12, 1-48, 1-48x2 (every second)")
       .defaults("all");
-  command.option("--sources", "N", &o.fitting.sources, "number of charges, the same for all frames")
-      .range(1, static_cast<double>(kMostSources))
-      .advanced();
-  command
-      .option("--collocation", "N", &o.fitting.collocation,
-              "boundary points that frames are fitted to")
-      .range(8, 1e7)
-      .defaults("3 a source")
-      .advanced();
-  command.option("--distance", "D", &o.fitting.distance, "of the charges from the surface")
-      .unit("fraction of the rest pose's diagonal")
-      .range(1e-4, 2)
-      .defaults("1.25 spacings of the charges")
-      .advanced();
+  command.settings(describe(o.fitting));
   command
       .option(
           "--tolerance", "T", &o.tolerance,
@@ -54,7 +41,6 @@ void addFrameOptions(Command& command, FrameOptions& o) {
       .unit("fraction of the frame's diagonal")
       .range(1e-12, 1);
   addVerdictOptions(command, o.verdict, true);
-  command.option("--seed", "N", &o.fitting.seed, "of all random points").range(0, 1e15).advanced();
 }
 
 Frames listFrames(const FrameOptions& options, const std::string& rest, Context& context) {
@@ -138,7 +124,7 @@ void requireFrameMemory(const FrameFitterSettings& settings, std::uint64_t other
     return frameFitterMemory(fewer, others);
   };
   context.requireMemory(fmt::format("a sequence with {} charges", settings.sources),
-                        frameFitterMemory(settings, others), {"--sources", 1, kMostSources, need},
+                        frameFitterMemory(settings, others), {"--charges", 1, kMostSources, need},
                         "use a lower --resolution or raise --max-memory");
 }
 

@@ -50,7 +50,7 @@ FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context
 // "fit 8000 charges to 24000 boundary points for 48 frames, 1 to 48", for --dry-run.
 std::string framesPlan(const FrameFitterSettings& settings, const Frames& frames);
 
-// Throws MemoryError, with the largest --sources that would fit beside `others` bytes, when the
+// Throws MemoryError, with the largest --charges that would fit beside `others` bytes, when the
 // need of all together is over the limit.
 void requireFrameMemory(const FrameFitterSettings& settings, std::uint64_t others,
                         const Context& context);

@@ -23,12 +23,7 @@ void addGeometryOptions(Command& c, GeometryOptions& o, bool subdivide) {
   c.option("--normals", "LIST", &o.normals,
            "likewise those that are normals of surfaces, turned by its inverse transpose")
       .defaults("nx, ny, nz; those that the file declares");
-  if (!subdivide) return;
-  c.option("--subdivide", "T", &o.subdivide,
-           "of geometry: split edges of meshes and curves (.obj, .ply) until their straight images "
-           "are nowhere farther than this from the curved ones; 0 splits none")
-      .unit("fraction of the diagonal of the solid carried to")
-      .range(0, 1);
+  if (subdivide) c.setting(subdivideSetting(&o.subdivide));
 }
 
 void requireFitting(const std::string& input, const std::string& output,

@@ -12,34 +12,16 @@
 #include "command.h"
 #include "innermap/evaluate/map_grids.h"
 #include "innermap/io/vdb/vdb_file.h"
+#include "innermap/levelset/lattice_choice.h"
 #include "innermap/levelset/level_set.h"
 
 namespace innermap::tool {
 
-struct GridOptions {
-  std::optional<int> resolution;  // without: the library's
-  std::optional<double> voxelSize;
-};
-
-// of: what --resolution is along the longest side of.
-void addGridOptions(Command& command, GridOptions& options, const std::string& of = "the solid",
-                    const std::string& defaults = fmt::format("{}, more for a thin solid",
-                                                              kUsualResolution));
-
-// Settings of the library that have a resolution and a voxel size.
-template <class Settings>
-Settings gridSettings(const GridOptions& options, Settings settings = {}) {
-  settings.resolution = options.resolution.value_or(settings.resolution);
-  settings.voxelSize = options.voxelSize.value_or(0);
-  return settings;
-}
-
 // Throws MemoryError, with the highest --resolution that would fit, when the need is over the
 // limit. doing: "evaluating the map on a grid". need: bytes.
-void requireGridMemory(const std::string& doing, const GridOptions& options, const Context& context,
-                       const std::function<std::uint64_t(const GridOptions&)>& need);
-
-void addNamesOption(Command& command, NamingScheme& names);
+void requireGridMemory(const std::string& doing, const LatticeChoice& options,
+                       const Context& context,
+                       const std::function<std::uint64_t(const LatticeChoice&)>& need);
 
 void writeGridFile(const std::string& path, const openvdb::GridPtrVec& grids,
                    const NamingScheme& names, Context& context,
@@ -47,7 +29,7 @@ void writeGridFile(const std::string& path, const openvdb::GridPtrVec& grids,
 
 // What `evaluate`, `map` and `sequence` share.
 struct EvaluationOptions {
-  GridOptions grid;
+  LatticeChoice grid;
   LameConstants lame;
   RepairFolds repair = RepairFolds::automatic;
   NamingScheme names = NamingScheme::innermap;
@@ -57,7 +39,7 @@ void addEvaluationOptions(Command& command, EvaluationOptions& options);
 
 MapGridSettings mapGridSettings(const EvaluationOptions& options);
 
-void requireEvaluationMemory(const Solid& solid, const GridOptions& options, const Context& context,
-                             const MapGridKind& kind);
+void requireEvaluationMemory(const Solid& solid, const LatticeChoice& options,
+                             const Context& context, const MapGridKind& kind);
 
 }  // namespace innermap::tool

@@ -48,7 +48,7 @@ void reportHarmonic(const HarmonicFit& fit, const HarmonicOptions& options, Cont
 }
 
 HarmonicGridSettings gridSettingsOf(const HarmonicOptions& options) {
-  auto out = gridSettings<HarmonicGridSettings>(options.grid);
+  auto out = options.grid.in<HarmonicGridSettings>();
   out.values = out.gradients = out.directions = out.magnitudes = false;
   for (const std::string& name : commaList(options.grids)) {
     if (name == "value")
@@ -79,28 +79,15 @@ void addHarmonicOptions(Command& command, HarmonicOptions& o, const std::string&
       .option("--field", "FILE", &o.field,
               "also the field itself in double precision, a .ply file of charges and weights")
       .writes({".ply"});
-  command
-      .option("--tolerance", "T", &o.fit.tolerance,
-              "charges are added until 99% of the boundary lies within it; fraction of the values' "
-              "span")
-      .range(kSmallestTolerance, 1);
-  command
-      .option("--crease-angle", "DEGREES", &o.creaseAngle,
-              "triangles that meet at less stand for a smooth surface: what flows through it is "
-              "counted along interpolated normals; 0: along each triangle's own")
-      .range(0, 90)
-      .advanced();
-  command.option("--max-sources", "N", &o.fit.maxSources, "charges that the tolerance may take")
-      .range(1000, 1000000)
-      .advanced();
+  command.settings(describe(o.fit));
+  command.setting(creaseSetting(&o.creaseAngle));
   command.flag("--best-effort", &o.bestEffort, "a tolerance that is not met is a warning");
-  command.option("--seed", "N", &o.fit.seed, "of all random points").range(0, 1e15).advanced();
-  addGridOptions(command, o.grid);
+  command.settings(describe(o.grid));
   command.option(
       "--grids", "LIST", &o.grids,
       "what is written of each channel, of value, gradient, direction (unit vectors) and "
       "magnitude");
-  addNamesOption(command, o.names);
+  command.setting(namesSetting(&o.names));
 }
 
 void runHarmonic(const HarmonicOptions& options,

@@ -16,7 +16,7 @@ struct HarmonicOptions {
   HarmonicFitSettings fit;
   double creaseAngle = BoundaryConditions{}.creaseAngle;
   bool bestEffort = false;
-  GridOptions grid;
+  LatticeChoice grid;
   std::string grids;  // comma list
   NamingScheme names = NamingScheme::innermap;
 };

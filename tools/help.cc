@@ -46,7 +46,7 @@ std::string valueText(const Option& o) {
   std::vector<std::string> parts;
   if (!o.choices.empty()) parts.push_back(fmt::format("{}", fmt::join(o.choices, ", ")));
   if (!o.unit.empty()) parts.push_back(o.unit);
-  if (o.hasRange()) parts.push_back(rangeText(o));
+  if (o.range.bounded()) parts.push_back(o.range.text());
   if (o.required && !o.isPositional()) parts.push_back("required");
   if (!o.defaultText.empty()) parts.push_back("default: " + o.defaultText);
   return fmt::format("{}", fmt::join(parts, "; "));
@@ -119,6 +119,25 @@ struct HelpOptions {
   bool markdown = false, all = false, man = false;
 };
 
+std::string titleAndUsage() {
+  return fmt::format(
+      "innermap {}: harmonic maps of solids, into OpenVDB and EXR\n\n"
+      "usage: innermap COMMAND [options]\n",
+      versionText());
+}
+
+std::string commandLine(const std::string& name) {
+  return fmt::format("  {:<19}{}\n", name, wrapped(findCommand(name).summary(), 21, 21));
+}
+
+// "options of every command: --threads, ..."
+std::string namesOnly(const std::vector<Option>& options) {
+  std::vector<std::string> names;
+  for (const Option& o : options) names.push_back(o.name);
+  return "\n" +
+         wrapped(fmt::format("{}: {}", options.front().group, fmt::join(names, ", ")), 4, 0) + "\n";
+}
+
 // What an installation takes.
 void writePages(const std::string& path, Context& context) {
   std::vector<std::pair<std::string, std::string>> files = {{"innermap.1", generalManPage()}};
@@ -149,15 +168,19 @@ void run(const HelpOptions& o, Context& context) {
 
 }  // namespace
 
+std::string shortHelp() {
+  std::string text = titleAndUsage() + "\n";
+  for (const char* name : {"map", "deform", "push", "voxelize", "check", "info"})
+    text += commandLine(name);
+  return text +
+         "\nmore: innermap --help lists all commands, innermap COMMAND --help tells of one\n";
+}
+
 std::string generalHelp() {
-  std::string text = fmt::format(
-      "innermap {}: harmonic maps of solids, into OpenVDB and EXR\n\n"
-      "usage: innermap COMMAND [options]\n",
-      versionText());
+  std::string text = titleAndUsage();
   for (const Topic& topic : commandTopics()) {
     text += "\n" + topic.title + ":\n";
-    for (const std::string& name : topic.commands)
-      text += fmt::format("  {:<19}{}\n", name, wrapped(findCommand(name).summary(), 21, 21));
+    for (const std::string& name : topic.commands) text += commandLine(name);
   }
   CommonOptions common;
   text += "\noptions of every command:\n";
@@ -176,14 +199,14 @@ std::string commandHelp(const Command& command, bool all) {
   text += optionGroups(command.options(), all);
   std::vector<Option> shared = commonOptionTable(common);
   for (Option& o : shared) o.group = "options of every command";
-  text += optionGroups(shared, all);
+  text += all ? optionGroups(shared, true) : namesOnly(shared);
   if (!command.examples().empty()) text += "\nexample:\n";
   for (const std::string& line : command.examples()) text += "  " + line + "\n";
   const auto hidden = std::count_if(command.options().begin(), command.options().end(),
                                     [](const Option& o) { return o.advanced; });
   if (!all && hidden > 0)
-    text += fmt::format("\n{} more option{}: innermap {} --help-all\n", hidden,
-                        hidden == 1 ? "" : "s", command.name());
+    text += fmt::format("\n{} more option{}, and those of every command: innermap {} --help-all\n",
+                        hidden, hidden == 1 ? "" : "s", command.name());
   return text;
 }
 

@@ -7,6 +7,7 @@
 
 #include "cell_report.h"
 #include "commands.h"
+#include "cut_options.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/cells/cell_file.h"
 #include "innermap/io/picture/cell_picture.h"
@@ -23,9 +24,7 @@ struct Options {
   std::string mesh, output, picture, cubes, cubesPicture, inBlocks;
   HexahedralizeSettings settings;
   SurfaceOptions surface;
-  int axis = 2;
-  double at = 0.5;
-  Colormap colormap = Colormap::redBlue;
+  CutOptions cut;
 };
 
 void claimOutputs(const Options& options, Context& context) {
@@ -75,14 +74,9 @@ void fillReport(const Hexahedralization& result, Context& context) {
 }
 
 void drawCut(const Options& options, const Hexahedralization& result) {
-  CellPictureSettings settings;
-  settings.colormap = options.colormap;
-  settings.direction = {0, 0, 0};
-  settings.direction[options.axis] = 1;
-  settings.at = options.at;
+  CellPictureSettings settings = options.cut.cellPicture(options.mesh);
   settings.blue = 1;
   settings.red = 0;
-  settings.label = std::filesystem::path(options.mesh).filename().string() + ", cut";
   settings.caption = fmt::format("scaled Jacobian of each of {} cells: red 0, blue 1",
                                  result.mesh.hexahedra.size());
   const std::vector<float>& jacobians = result.quality.scaledJacobian;
@@ -112,7 +106,7 @@ void run(const Options& options, Context& context) {
   const HexahedralizeSettings settings = options.settings;
   const std::uint64_t need = hexahedralizeMemory(mesh, settings);
   JobSize size;
-  const double blocks = expectedBlocks(mesh, settings.blocks);
+  const double blocks = expectedBlocks(mesh, settings.polycube.blocks);
   size.items = blocks * std::pow(settings.pieces, 3) / 1000;
   std::vector<JobPhase> phases = correspondPhases(mesh.vertices.size());
   for (const char* stage : {"meeting the tolerance: cubes", "checking hexahedra",
@@ -123,7 +117,7 @@ void run(const Options& options, Context& context) {
     return context.plan(
         {fmt::format("fill {} with hexahedra, {} along the edge of each of about {:.0f} blocks, to "
                      "{}",
-                     options.mesh, settings.pieces, expectedBlocks(mesh, settings.blocks),
+                     options.mesh, settings.pieces, expectedBlocks(mesh, settings.polycube.blocks),
                      options.output)},
         need);
   context.requireMemory("hexahedra of " + options.mesh, need, "use fewer --blocks or --pieces");
@@ -152,7 +146,7 @@ Command makeHexahedralizeCommand() {
       "which the Bernstein coefficients of each one's Jacobian prove. Sharp edges are drawn near, "
       "not followed. One closed body, whose mesh may have any number of handles and cavities. "
       "Ends with exit code 1 where some hexahedra could not be turned right.");
-  addFillOptions(c, o->mesh, o->settings.blocks, o->surface);
+  addFillOptions(c, o->mesh, o->settings.polycube, o->surface);
   c.option("--output", "FILE", &o->output,
            "the .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file to write, with each cell's "
            "scaled_jacobian (.vtu and .msh)")
@@ -160,13 +154,7 @@ Command makeHexahedralizeCommand() {
       .required()
       .writes({".vtu", ".msh", ".mesh"});
   c.limitTime("after which fitting, untangling and shaping end");
-  c.option("--pieces", "K", &o->settings.pieces, "hexahedra along a block's edge").range(1, 16);
-  c.option("--feature-angle", "A", &o->settings.featureAngle,
-           "edges whose faces' normals differ by more count as sharp in the report")
-      .unit("degrees")
-      .range(1, 179)
-      .advanced();
-  c.option("--seed", "N", &o->settings.seed, "of all random choices").range(0, 1e15).advanced();
+  c.settings(without(describe(o->settings), {"blocks"}));
   c.option("--polycube", "FILE", &o->cubes, "also write the polycube's surface, .obj or .ply")
       .writes({".obj", ".ply"})
       .advanced();
@@ -174,19 +162,11 @@ Command makeHexahedralizeCommand() {
            "also write the same hexahedra in the polycube, .vtu, .msh or .mesh")
       .writes({".vtu", ".msh", ".mesh"})
       .advanced();
-  c.group("picture");
-  c.option("--picture", "FILE", &o->picture,
-           "a .png of the hexahedra behind a cut, coloured by scaled Jacobian")
-      .writes({".png"});
+  addCellPicture(c, o->picture, o->cut,
+                 "a .png of the hexahedra behind a cut, coloured by scaled Jacobian");
   c.option("--polycube-picture", "FILE", &o->cubesPicture, "a .png of the mesh and the polycube")
       .writes({".png"})
       .advanced();
-  addColormapOption(c, o->colormap);
-  c.choice("--axis", "AXIS", &o->axis, {{"x", 0}, {"y", 1}, {"z", 2}},
-           "direction across the picture's cut");
-  c.option("--at", "T", &o->at, "where the picture cuts")
-      .unit("fraction of the box along the axis")
-      .range(0, 1);
   c.example("innermap hexahedralize spot.obj -o spot.vtu --picture spot.png");
   c.example("innermap hexahedralize part.obj -o part.msh --blocks 24 --polycube cubes.obj");
   c.run([o](Context& context) { run(*o, context); });

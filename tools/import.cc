@@ -88,41 +88,22 @@ Command makeImportCommand() {
       .shortName("-o")
       .required()
       .writes({".vdb"});
-  c.option("--grid", "LIST", &o->grids,
+  c.option("--grids", "LIST", &o->grids,
            "grids to read, with commas between; of a file that does not say what its channels are, "
            "their names: R, G, B together and X, Y, Z are a vector")
-      .defaults("all");
-  c.choice("--layout", "NAME", &o->texture.layout,
-           {{"atlas", VolumeLayout::atlas},
-            {"slices", VolumeLayout::slices},
-            {"parts", VolumeLayout::parts}},
-           "what the pictures are")
-      .defaults("from the file");
+      .defaults("all")
+      .was("--grid");
+  c.settings(describe(o->texture));
   c.option("--tiles", "CxR", &o->tiles, "columns and rows of an atlas, such as 8x8")
       .defaults("from the file")
       .advanced();
-  c.option("--slices", "N", &o->texture.slices, "slices, when fewer than tiles, parts or files")
-      .range(1, 65536)
-      .defaults("from the file, else all")
-      .advanced();
-  c.option("--voxel-size", "L", &o->texture.voxelSize,
-           "edge of a voxel, in place of the file's matrix")
-      .unit("world units")
-      .above(0)
-      .defaults("from the file");
   c.option("--lower-corner", "X,Y,Z", &o->lowerCorner, "least corner of the box, with --voxel-size")
       .unit("world units")
       .defaults("0,0,0")
       .advanced();
-  c.choice("--axis", "AXIS", &o->texture.axis, {{"x", 0}, {"y", 1}, {"z", 2}},
-           "direction across the slices")
-      .defaults("from the file, else z");
   c.choice("--rows", "ORDER", &o->texture.rowsUp, {{"down", false}, {"up", true}},
            "down: a slice's first row has the least index; up: the largest")
       .defaults("from the file, else down");
-  c.option("--background", "V", &o->texture.background, "value of what is not active")
-      .defaults("from the file, else 0")
-      .advanced();
   c.choice("--class", "NAME", &o->texture.gridClass,
            {{"level-set", "level set"}, {"fog", "fog volume"}, {"unknown", "unknown"}},
            "class of the grids")
@@ -130,7 +111,7 @@ Command makeImportCommand() {
       .advanced();
   c.example("innermap import smoke.exr -o smoke.vdb");
   c.example(
-      "innermap import cloud.exr -o cloud.vdb --tiles 12x12 --voxel-size 0.1 --grid density "
+      "innermap import cloud.exr -o cloud.vdb --tiles 12x12 --voxel-size 0.1 --grids density "
       "--class fog");
   c.run([o](Context& context) { run(*o, context); });
   return c;

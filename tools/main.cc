@@ -2,11 +2,13 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#include <regex>
 
 #include "commands.h"
 #include "innermap/core/error.h"
@@ -34,6 +36,7 @@ void execute(const Command& command, const CommonOptions& common, TerminalProgre
   static const auto* const threads = new ThreadLimit(common.threads);
   static_cast<void>(threads);
   recordRun(command, common, context.report());
+  for (const std::string& text : common.notes) context.note(text);
   try {
     command.execute(context);
   } catch (const CancelledLate&) {
@@ -52,6 +55,22 @@ void execute(const Command& command, const CommonOptions& common, TerminalProgre
   if (!context.failure().empty()) throw DataError(context.failure());
 }
 
+// Words with '_' that are names of settings become options.
+std::string withOptions(const Command& command, const std::string& text) {
+  static const std::regex kNames("\\b[a-z]+(_[a-z]+)+\\b");
+  std::string out;
+  auto at = text.begin();
+  for (std::sregex_iterator name(text.begin(), text.end(), kNames), end; name != end; ++name) {
+    out.append(at, (*name)[0].first);
+    const std::string option = optionName(name->str());
+    const bool known = std::any_of(command.options().begin(), command.options().end(),
+                                   [&](const Option& o) { return o.name == option; });
+    out += known ? option : name->str();
+    at = (*name)[0].second;
+  }
+  return out.append(at, text.end());
+}
+
 // The library's name of a setting becomes that of the option which gave it: "voxel size: ..." reads
 // "--voxel-size: ...".
 std::string inOptions(const Command& command, const std::string& error) {
@@ -65,12 +84,15 @@ std::string inOptions(const Command& command, const std::string& error) {
   const std::size_t colon = error.find(": ");
   for (const Option& o : command.options())
     if (!o.isPositional() && letters(o.name) == letters(error.substr(0, colon)))
-      return o.name + error.substr(colon);
+      return o.name + withOptions(command, error.substr(colon));
   return error;
 }
 
 void runCommand(const std::vector<std::string>& arguments) {
-  if (arguments.empty()) throw UsageError("no command given; see 'innermap --help'");
+  if (arguments.empty()) {
+    std::fputs(shortHelp().c_str(), stdout);
+    return;
+  }
   const std::string& first = arguments.front();
   const auto printVersion = [] { std::printf("innermap %s\n", versionText()); };
   if (first == "--version" || first == "-V") return printVersion();

@@ -83,7 +83,7 @@ std::string correspondPlan(const MapOptions& options) {
 
 // Before the solid is known: of the mesh as it was given.
 JobSize gridSize(const MapOptions& options, const Mesh& source) {
-  const GridOptions& grid = options.evaluation.grid;
+  const LatticeChoice& grid = options.evaluation.grid;
   const Vec3 size = boundingBox(source).extent();
   const double longest = std::max({size.x, size.y, size.z});
   const double voxel =
@@ -97,10 +97,8 @@ bool laidOn(const MapOptions& options, const Meshes& meshes) {
   return !meshes.related || !options.correspondence.empty();
 }
 
-FittingOptions fittingFor(const MapOptions& options, const Meshes& meshes) {
-  FittingOptions out = options.fitting;
-  if (laidOn(options, meshes)) out.fit.tolerance = kLaidOnTolerance;
-  return out;
+FitMapSettings fittingFor(const MapOptions& options, const Meshes& meshes) {
+  return fitMapSettings(options.fitting, meshes.source.vertices.size(), laidOn(options, meshes));
 }
 
 // The job after the meshes are read; the seconds from the evaluation on.
@@ -109,7 +107,7 @@ double expectPhases(const MapOptions& options, const Meshes& meshes, Context& co
   const bool strangers = laidOn(options, meshes);
   std::vector<JobPhase> phases;
   if (!meshes.related) phases = correspondPhases(vertices + meshes.target.vertices.size());
-  const FitMapSettings fitting = fitMapSettings(fittingFor(options, meshes), vertices);
+  const FitMapSettings fitting = fittingFor(options, meshes);
   const double places = meshes.related
                             ? bentPlaces(meshes.source, meshes.target.vertices, fitting.tolerance)
                             : likelyPlaces(vertices, fitting.tolerance);
@@ -130,7 +128,7 @@ void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
   const auto source = makeSourceBoundary(meshes.source);
   reportSource(source, context);
   const std::size_t vertices = meshes.source.vertices.size();
-  const FitMapSettings fitting = fitMapSettings(fittingFor(options, meshes), vertices);
+  const FitMapSettings fitting = fittingFor(options, meshes);
   std::vector<std::string> lines;
   const bool steps = laidOn(options, meshes) && fitting.oneToOne != OneToOne::off;
   std::uint64_t need = std::max(
@@ -186,16 +184,15 @@ void run(const MapOptions& options, Context& context) {
   const double later = expectPhases(options, meshes, context);
   if (context.dryRun()) return plan(options, meshes, context);
   const bool laid = laidOn(options, meshes);
-  const FittingOptions fitOptions = fittingFor(options, meshes);
   context.spend(kLayingTimeShare, later);
   BoundaryPair pair = makePair(options, std::move(meshes), *folder, context);
   reportBoundaries(pair, context);
   const std::size_t vertices = pair.source.mesh.vertices.size();
-  const FitMapSettings fitting = fitMapSettings(fitOptions, vertices);
+  const FitMapSettings fitting = fitMapSettings(options.fitting, vertices, laid);
   requireFittingMemory(fitting, vertices, context);
   requireEvaluationMemory(pair.solid(), options.evaluation.grid, context,
                           {1, needsLocalMap(pair.target.moved, fitting.tolerance)});
-  requireInterior(pair.solid(), gridSettings<LevelSetSettings>(options.evaluation.grid));
+  requireInterior(pair.solid(), options.evaluation.grid.in<LevelSetSettings>());
   context.phase("fitting");
   context.spend(1, later);
   const MapFit fit = fitMap(std::move(pair), fitting);
@@ -246,7 +243,10 @@ Command makeMapCommand() {
   c.group("slices and picture");
   c.choice("--slice-axis", "AXIS", &o->slices.axis, {{"x", 0}, {"y", 1}, {"z", 2}}, "of slices.exr")
       .advanced();
-  c.option("--slice-count", "N", &o->slices.count, "parts of slices.exr").range(1, 4096).advanced();
+  c.option("--slices", "N", &o->slices.count, "parts of slices.exr")
+      .range(1, 4096)
+      .advanced()
+      .was("--slice-count");
   c.option("--section-grid", "NAME", &o->sectionGrid, "grid shown in section.png")
       .choices(mapGridNames());
   addSectionOptions(c, o->section);

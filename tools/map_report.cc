@@ -35,16 +35,16 @@ void reportAdaptive(const MapSolve& solve, Report& report) {
 }
 
 void reportSolve(const MapSolve& solve, Report& report) {
-  report.solve = ReportSolve{solve.method, solve.sources,        solve.collocation,
-                             solve.rank,   solve.regularization, solve.iterations};
-  report.set("solve.placement", solve.placement);
+  report.solve = ReportSolve{wordOf(solve.method), solve.sources,        solve.collocation,
+                             solve.rank,           solve.regularization, solve.iterations};
+  report.set("solve.placement", wordOf(solve.placement));
   if (solve.radiusRatio > 0)
     report.set("solve.radius_ratio", solve.radiusRatio);
   else if (solve.distance > 0)
     report.set("solve.distance", solve.distance);
   const bool adaptive = !solve.levels.empty();
   if (adaptive) reportAdaptive(solve, report);
-  if (adaptive || solve.method == "iterative") {
+  if (adaptive || solve.method == SolveMethod::iterative) {
     report.set("solve.residuals", solve.residuals);
     report.set("solve.product_error", solve.productError);
   } else
@@ -119,7 +119,7 @@ void reportTolerance(const MapFit& fit, const FitMapSettings& settings, bool bes
 std::string whyEnded(AdaptiveEnd end, std::size_t maxSources) {
   switch (end) {
     case AdaptiveEnd::maxSources:
-      return fmt::format("--max-sources {} is reached", maxSources);
+      return fmt::format("--max-charges {} is reached", maxSources);
     case AdaptiveEnd::maxMemory:
       return "--max-memory is reached";
     case AdaptiveEnd::jumps:
@@ -200,9 +200,9 @@ void reportFit(const MapFit& fit, const FitMapSettings& settings, bool bestEffor
 
 void reportFitter(const FrameFitter& fitter, const FrameFitterSettings& settings, Report& report) {
   const std::size_t sources = fitter.sources().size();
-  report.solve = ReportSolve{fitter.iterative() ? "iterative" : "dense", sources,
+  report.solve = ReportSolve{fitter.iterative() ? wordOf(SolveMethod::iterative) : "dense", sources,
                              fitter.collocation(), sources};
-  report.set("solve.placement", std::string("shell"));
+  report.set("solve.placement", wordOf(MapPlacement::shell));
   report.set("solve.distance", fitter.distance());
   report.set("solve.seed", settings.seed);
 }

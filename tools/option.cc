@@ -21,8 +21,7 @@ std::string inUnit(const Option& option) {
 }
 
 [[noreturn]] void outOfRange(const Option& option, const std::string& text) {
-  throw SettingError(option.name, fmt::format("{} is out of range; give a number {}{}", text,
-                                              rangeText(option), inUnit(option)));
+  throw SettingError(option.name, option.range.refusal(text, option.unit));
 }
 
 // The whole text must be one number: no sign '+', no blanks, no nan or inf.
@@ -34,14 +33,13 @@ T parseNumber(const Option& option, const std::string& text, const char* what) {
   if (error == std::errc::result_out_of_range && stop == end)
     throw SettingError(option.name,
                        "'" + text + "' is too large or too small a number" +
-                           (option.hasRange() ? "; give one " + rangeText(option) : ""));
+                           (option.range.bounded() ? "; give one " + option.range.text() : ""));
   bool good = error == std::errc() && stop == end;
   if constexpr (std::is_floating_point_v<T>) good = good && std::isfinite(value);
   if (!good)
     throw UsageError(fmt::format("{}: '{}' is not {}{}", option.name, text, what, inUnit(option)));
-  const double v = static_cast<double>(value);
-  if (v < option.lower || v > option.upper || (option.lowerOpen && v == option.lower))
-    outOfRange(option, text);
+  const double number = static_cast<double>(value);
+  if (number != option.automatic && !option.range.holds(number)) outOfRange(option, text);
   return value;
 }
 
@@ -55,10 +53,10 @@ NumberPair parsePair(const Option& option, const std::string& text) {
 std::uint64_t parseCount(const Option& option, const std::string& text) {
   if (!text.empty() && text[0] == '-') {
     Option anyRange = option;
-    anyRange.lower = -1e300;
+    anyRange.range = {};
     parseNumber<std::int64_t>(anyRange, text, "a whole number");
     Option fromZero = option;
-    fromZero.lower = std::max(0.0, option.lower);
+    fromZero.range.lower = std::max(0.0, option.range.lower);
     outOfRange(fromZero, text);
   }
   return parseNumber<std::uint64_t>(option, text, "a whole number");
@@ -92,7 +90,7 @@ std::string parseText(const Option& option, const std::string& text) {
 struct Taker {
   const Option& option;
   const std::string& text;
-  void operator()(bool* to) const { *to = true; }
+  void operator()(bool* to) const { *to = option.sets; }
   void operator()(int* to) const { *to = parseNumber<int>(option, text, "a whole number"); }
   void operator()(std::uint64_t* to) const { *to = parseCount(option, text); }
   void operator()(double* to) const { *to = parseNumber<double>(option, text, "a number"); }
@@ -111,17 +109,6 @@ struct Taker {
 };
 
 }  // namespace
-
-std::string rangeText(const Option& option) {
-  const bool lower = option.lower > -1e300, upper = option.upper < 1e300;
-  const std::string low = fmt::format("{:.15g}", option.lower);
-  const std::string high = fmt::format("{:.15g}", option.upper);
-  if (lower && option.lowerOpen) return "above " + low + (upper ? " up to " + high : "");
-  if (lower && upper) return "from " + low + " to " + high;
-  if (lower) return "of at least " + low;
-  if (upper) return "of at most " + high;
-  return "";
-}
 
 void parseInto(const Option& option, const std::string& text) {
   std::visit(Taker{option, text}, option.target);

@@ -10,6 +10,8 @@
 #include <variant>
 #include <vector>
 
+#include "innermap/core/setting.h"
+
 namespace innermap::tool {
 
 // Two numbers, "LO,HI" on the command line.
@@ -24,6 +26,7 @@ using Target =
 
 struct Option {
   std::string name;         // "--voxel-size"; a positional argument's is in capitals: "MESH"
+  std::string formerName;   // is still taken, with a note; or empty
   std::string shortName;    // "-o", or empty
   std::string placeholder;  // "LENGTH"; empty for a flag
   std::string unit;         // "world units", or empty
@@ -34,10 +37,10 @@ struct Option {
   bool advanced = false;  // only --help-all tells of it
   std::vector<std::string> choices;
   std::vector<std::string> endings;  // ".vdb": of the file that is written
-  double lower = -std::numeric_limits<double>::infinity();
-  double upper = std::numeric_limits<double>::infinity();
-  bool isInput = false;    // names a file that is read
-  bool lowerOpen = false;  // the least value itself is not allowed
+  NumberRange range;
+  std::optional<double> automatic;  // this value is as if the option were left out
+  bool isInput = false;             // names a file that is read
+  bool sets = true;                 // what a flag sets its target to
   Target target;
 
   std::string impliedValue;  // "--html" alone means this, "--html=FILE" that; empty: needs a value
@@ -45,7 +48,6 @@ struct Option {
   bool isFlag() const { return std::holds_alternative<bool*>(target); }
   bool isList() const { return std::holds_alternative<std::vector<std::string>*>(target); }
   bool isPositional() const { return name[0] != '-'; }
-  bool hasRange() const { return lower > -1e300 || upper < 1e300; }
 };
 
 // Chained after Command::option(...): .unit("world units").above(0).defaults("from --resolution")
@@ -58,6 +60,7 @@ class OptionBuilder {
   OptionBuilder& shortName(std::string text) { return set(&Option::shortName, std::move(text)); }
   // By default the bound variable's value when registered is shown, if it is a number or text.
   OptionBuilder& defaults(std::string text) { return set(&Option::defaultText, std::move(text)); }
+  OptionBuilder& was(std::string name) { return set(&Option::formerName, std::move(name)); }
   OptionBuilder& choices(std::vector<std::string> names) {
     return set(&Option::choices, std::move(names));
   }
@@ -74,13 +77,21 @@ class OptionBuilder {
     return set(&Option::endings, std::move(endings));
   }
   OptionBuilder& range(double lower, double upper) {
-    return set(&Option::lower, lower).set(&Option::upper, upper);
+    table_[index_].range = {lower, upper, false};
+    return *this;
   }
-  OptionBuilder& atLeast(double lower) { return set(&Option::lower, lower); }
+  OptionBuilder& atLeast(double lower) {
+    return range(lower, std::numeric_limits<double>::infinity());
+  }
   OptionBuilder& above(double lower) {
-    return set(&Option::lower, lower).set(&Option::lowerOpen, true);
+    table_[index_].range.lower = lower;
+    table_[index_].range.lowerOpen = true;
+    return *this;
   }
-  OptionBuilder& atMost(double upper) { return set(&Option::upper, upper); }
+  OptionBuilder& atMost(double upper) {
+    table_[index_].range.upper = upper;
+    return *this;
+  }
 
  private:
   template <class T, class U>
@@ -91,9 +102,6 @@ class OptionBuilder {
   std::vector<Option>& table_;
   std::size_t index_;
 };
-
-// "above 0", "4 to 4096", "at least 2"; empty when there is no range.
-std::string rangeText(const Option& option);
 
 // Parses `text` into the option's target. Throws UsageError for what is not a number, a whole
 // number, one of the choices or a file's name with one of the endings, SettingError for a value out

@@ -57,7 +57,7 @@ Command makePolycubeCommand() {
       "cavities; where no such set is found the command fails and names a number of blocks that "
       "does. The surface's vertices stand close enough to be mapped (innermap map OUT MESH "
       "--aligned). One closed body, whose mesh may have any number of handles and cavities.");
-  addFillOptions(c, o->mesh, o->settings.blocks, o->surface);
+  addFillOptions(c, o->mesh, o->settings, o->surface);
   c.option("--output", "FILE", &o->output, "the surface of the cubes, a .obj or .ply file")
       .shortName("-o")
       .required()

@@ -29,11 +29,10 @@ PictureSurface flat(const Mesh& mesh, const std::string& label, const Vec3& colo
 
 }  // namespace
 
-void addFillOptions(Command& c, std::string& mesh, int& blocks, SurfaceOptions& surface) {
+void addFillOptions(Command& c, std::string& mesh, PolycubeSettings& polycube,
+                    SurfaceOptions& surface) {
   c.positional("MESH", &mesh, "mesh file: .obj, .ply, .off or .stl");
-  c.option("--blocks", "N", &blocks, "blocks along the longest side of the mesh's box; 0: chosen")
-      .range(0, kMostAcross)
-      .defaults("as many as give about 900 in all");
+  c.settings(describe(polycube));
   addSurfaceOptions(c, surface);
 }
 

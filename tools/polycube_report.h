@@ -10,7 +10,8 @@
 namespace innermap::tool {
 
 // MESH, --blocks and the options of its outer surface.
-void addFillOptions(Command& c, std::string& mesh, int& blocks, SurfaceOptions& surface);
+void addFillOptions(Command& c, std::string& mesh, PolycubeSettings& polycube,
+                    SurfaceOptions& surface);
 
 // Throws UsageError unless the path ends in .obj or .ply.
 void requireMeshFile(const std::string& option, const std::string& path);

@@ -7,6 +7,7 @@
 
 #include "cell_report.h"
 #include "commands.h"
+#include "cut_options.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/cells/cell_file.h"
 #include "innermap/io/picture/cell_picture.h"
@@ -22,9 +23,7 @@ namespace {
 struct RemeshOptions {
   std::string map, cells, surface, output, picture;
   RemeshSettings settings;
-  int axis = 2;
-  double at = 0.5;
-  Colormap colormap = Colormap::redBlue;
+  CutOptions cut;
 };
 
 void reportRemesh(const Remesh& result, double diagonal, Context& context) {
@@ -50,12 +49,7 @@ void reportRemesh(const Remesh& result, double diagonal, Context& context) {
 }
 
 void drawCut(const RemeshOptions& options, const Remesh& result) {
-  CellPictureSettings settings;
-  settings.colormap = options.colormap;
-  settings.direction = {0, 0, 0};
-  settings.direction[options.axis] = 1;
-  settings.at = options.at;
-  settings.label = std::filesystem::path(options.output).filename().string() + ", cut";
+  CellPictureSettings settings = options.cut.cellPicture(options.output);
   std::vector<double> values(result.quality.leastDihedral.begin(),
                              result.quality.leastDihedral.end());
   for (const float j : result.quality.scaledJacobian) values.push_back(60.0 * j);
@@ -146,32 +140,11 @@ Command makeRemeshCommand() {
       .required()
       .writes({".vtu", ".msh", ".mesh"});
   c.limitTime("after which repairing and improving end");
-  c.flag("--back", &o->settings.back,
-         "CELLS fill the map's target and are brought to its source; SURFACE is the source")
-      .advanced();
-  c.flag("--keep-connectivity", &o->settings.keepConnectivity,
-         "move vertices alone: cells and their numbers stay as they are");
-  c.option("--angle", "ANGLE", &o->settings.angle,
-           "tetrahedra with a dihedral angle below it, or as near to 180, are improved")
-      .unit("degrees")
-      .range(1, 30)
-      .advanced();
-  c.option("--coarse", "N", &o->settings.coarse,
-           "cells along the longest side of the mesh that is repaired first where many cells are "
-           "inverted, or with --back stands for the inverse map; 0: none, or 64 with --back")
-      .range(0, 256)
-      .advanced();
-  c.group("picture");
-  c.option("--picture", "FILE", &o->picture,
-           "a .png of the cells behind a cut, coloured by their least dihedral angle or scaled "
-           "Jacobian")
-      .writes({".png"});
-  addColormapOption(c, o->colormap);
-  c.choice("--axis", "AXIS", &o->axis, {{"x", 0}, {"y", 1}, {"z", 2}},
-           "direction across the picture's cut");
-  c.option("--at", "T", &o->at, "where the picture cuts")
-      .unit("fraction of the box along the axis")
-      .range(0, 1);
+  c.settings(describe(o->settings));
+  addCellPicture(
+      c, o->picture, o->cut,
+      "a .png of the cells behind a cut, coloured by their least dihedral angle or scaled "
+      "Jacobian");
   c.example("innermap remesh map.ply rest.vtu posed.obj -o posed.vtu");
   c.example("innermap remesh map.ply posed.vtu rest.obj -o back.vtu --back");
   c.run([o](Context& context) { run(*o, context); });

@@ -19,9 +19,6 @@ struct SectionOptions {
   SectionScale scale = SectionScale::automatic;
 };
 
-void addColormapOption(Command& command, Colormap& colormap);
-void addScaleOption(Command& command, SectionScale& scale);
-
 void addSectionOptions(Command& command, SectionOptions& options);
 
 // density: fog of the solid's inside.

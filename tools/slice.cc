@@ -115,39 +115,18 @@ Command makeSliceCommand() {
   c.option("--output", "FILE", &o->output, "the .exr file to write")
       .shortName("-o")
       .writes({".exr"});
-  c.choice("--axis", "AXIS", &o->axis, {{"x", 0}, {"y", 1}, {"z", 2}},
-           "direction across the slices");
-  c.option("--count", "N", &o->slices.count, "number of slices, evenly spaced").range(1, 65536);
+  c.setting(axisSetting("axis", &o->axis, "direction across the slices"));
+  c.settings(without(describe(o->slices), {"axis"}));
   c.option("--grids", "LIST", &o->grids, "grids to slice, with commas between").defaults("all");
-  c.flag("--half", &o->slices.half, "half floats: half the size, three digits");
   c.group("picture");
   c.option("--section", "FILE", &o->picture, "the .png picture to write").writes({".png"});
   c.option("--grid", "NAME", &o->section.grid, "grid that the picture shows")
       .defaults("jacobian, else the first energy, map, density or surface there is");
-  c.choice("--component", "PART", &o->section.component,
-           {{"x", Component::x},
-            {"y", Component::y},
-            {"z", Component::z},
-            {"length", Component::length}},
-           "of a vector grid in the picture")
-      .advanced();
-  c.flag("--colour", &o->section.colour,
-         "the picture shows a vector grid's values as red, green and blue; by default of Cd");
-  c.option("--at", "T", &o->section.at, "where the picture cuts")
-      .unit("fraction of the box along the axis")
-      .range(0, 1);
-  c.option("--position", "P", &o->section.position, "where the picture cuts, instead of --at")
-      .unit("world units")
-      .advanced();
+  c.settings(without(describe(o->section), {"axis"}));
   c.option("--range", "LO,HI", &o->section.range,
            "values at the ends of the colours; with --colour, black and white")
       .defaults("all but the outermost 0.5% on each side");
-  addColormapOption(c, o->section.colormap);
-  addScaleOption(c, o->section.scale);
-  c.option("--pixels", "N", &o->section.pixels, "longer side of the section in the picture")
-      .range(64, 8192)
-      .advanced();
-  c.example("innermap slice map.vdb --axis z --count 16 -o slices.exr");
+  c.example("innermap slice map.vdb --axis z --slices 16 -o slices.exr");
   c.example("innermap slice map.vdb --section section.png --grid jacobian --axis x --at 0.5");
   c.example("innermap slice texture.vdb --section section.png --colour --axis x");
   c.run([o](Context& context) { run(*o, context); });

@@ -68,7 +68,7 @@ std::vector<double> studyList(const std::string& option, const std::string& text
 StudySettings settingsOf(const StudyOptions& options) {
   StudySettings settings = options.settings;
   settings.sources.clear();
-  for (const double n : studyList("--sources", options.sources)) {
+  for (const double n : studyList("--charges", options.sources)) {
     const auto count = static_cast<std::size_t>(std::round(std::clamp(n, 0.0, 1e9)));
     if (settings.sources.empty() || settings.sources.back() != count)
       settings.sources.push_back(count);
@@ -248,9 +248,10 @@ void addListOptions(Command& c, StudyOptions& o) {
   o.collocation = listText(s.collocation);
   o.distances = listText(s.distances);
   o.radiusRatios = listText(s.radiusRatios);
-  c.option("--sources", "LIST", &o.sources,
+  c.option("--charges", "LIST", &o.sources,
            "numbers of charges, each 16 to 20000; all lists take numbers and ranges FROM:TO:COUNT "
-           "(so many in equal ratios), or 'none'");
+           "(so many in equal ratios), or 'none'")
+      .was("--sources");
   c.option("--points", "LIST", &o.collocation, "boundary points a charge, each 1 to 100");
   c.option("--distances", "LIST", &o.distances,
            "of the charges from the surface (O-Distance), fractions of the source's diagonal, each "
@@ -258,42 +259,11 @@ void addListOptions(Command& c, StudyOptions& o) {
   c.option("--radius-ratios", "LIST", &o.radiusRatios,
            "of spheres of charges, multiples of half the diagonal (R-Ratio), each above 1 up to "
            "100");
-  c.option("--base-sources", "N", &o.settings.baseSources, "charges while others are varied")
-      .range(16, 20000);
-  c.option("--base-points", "N", &o.settings.baseCollocation,
-           "boundary points a charge while others are varied")
-      .range(1, 100);
-  c.option("--base-distance", "D", &o.settings.baseDistance, "distance while others are varied")
-      .unit("fraction of the source's diagonal")
-      .range(1e-4, 2)
-      .defaults("the spacing of --base-sources charges");
-  c.option("--base-radius-ratio", "R", &o.settings.baseRadiusRatio,
-           "radius of the sphere while others are varied")
-      .above(1)
-      .atMost(100);
 }
 
 void addFitOptions(Command& c, StudyOptions& o) {
-  c.choice("--grid", "WHICH", &o.settings.grid,
-           {{"none", StudyGrid::none}, {"pairs", StudyGrid::pairs}, {"full", StudyGrid::full}},
-           "beside each list alone: nothing, each two together, all together");
-  c.choice("--interpolation", "HOW", &o.settings.interpolation,
-           {{"linear", Interpolation::linear}, {"smooth", Interpolation::smooth}},
-           "the target between its vertices: flat triangles, or a smooth deformation");
-  c.choice("--method", "HOW", &o.settings.method,
-           {{"tikhonov", Regularization::tikhonov}, {"tsvd", Regularization::truncatedSvd}},
-           "of regularisation; the paper's is tsvd");
-  c.option("--regularization", "R", &o.settings.regularization,
-           "relative to the largest singular value")
-      .range(0, 1)
-      .defaults("chosen for each run by the error at held-out points");
-  c.option("--resolution", "N", &o.settings.resolution,
-           "voxels along the longest side, for energies and folds")
-      .range(4, 1024);
-  c.option("--lame-lambda", "L", &o.settings.lame.lambda, "of the deformation energy").atLeast(0);
-  c.option("--lame-mu", "M", &o.settings.lame.mu, "of the deformation energy").atLeast(0);
+  c.settings(describe(o.settings));
   c.limitTime("no run begins later; the same command goes on another time");
-  c.option("--seed", "N", &o.settings.seed, "of all random choices").range(0, 1e15);
 }
 
 }  // namespace
@@ -321,7 +291,7 @@ Command makeStudyCommand() {
   addListOptions(c, *o);
   addFitOptions(c, *o);
   c.example("innermap study rest.obj pose.obj -o study");
-  c.example("innermap study rest.obj pose.obj -o study --sources 100:3200:6 --max-time 600");
+  c.example("innermap study rest.obj pose.obj -o study --charges 100:3200:6 --max-time 600");
   c.run([o](Context& context) { run(*o, context); });
   return c;
 }

@@ -8,6 +8,7 @@
 
 #include "cell_report.h"
 #include "commands.h"
+#include "cut_options.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/cells/cell_file.h"
 #include "innermap/io/picture/cell_picture.h"
@@ -23,9 +24,7 @@ struct TetrahedralizeOptions {
   std::string mesh, output, picture;
   TetrahedralizeSettings settings;
   bool anyTopology = false;
-  int axis = 2;
-  double at = 0.5;
-  Colormap colormap = Colormap::redBlue;
+  CutOptions cut;
 };
 
 // Measured: of a tetrahedron, the faces among which the boundary is found, its quality as fields
@@ -42,12 +41,7 @@ std::uint64_t memoryFor(const TetrahedralizeOptions& options, const Solid& solid
 
 void drawCut(const TetrahedralizeOptions& options, const CellMesh& mesh,
              const CellQuality& quality) {
-  CellPictureSettings settings;
-  settings.colormap = options.colormap;
-  settings.direction = {0, 0, 0};
-  settings.direction[options.axis] = 1;
-  settings.at = options.at;
-  settings.label = std::filesystem::path(options.mesh).filename().string() + ", cut";
+  CellPictureSettings settings = options.cut.cellPicture(options.mesh);
   settings.caption = fmt::format(
       "least dihedral angle of each of {} cells: red 0, yellow 30, blue 60 degrees and more",
       mesh.tetrahedra.size());
@@ -144,34 +138,12 @@ Command makeTetrahedralizeCommand() {
       .shortName("-o")
       .required()
       .writes({".vtu", ".msh", ".mesh"});
-  c.option("--resolution", "N", &o->settings.resolution,
-           "cells of the lattice along the longest side of the mesh's box; each takes twelve "
-           "tetrahedra")
-      .range(4, 1024);
-  c.option("--edge", "LENGTH", &o->settings.edge,
-           "side of a cell of the lattice, instead of --resolution")
-      .unit("world units")
-      .atLeast(0)
-      .defaults("from --resolution")
-      .advanced();
-  c.option("--features", "ANGLE", &o->settings.features,
-           "keep edges of the surface that are sharper than this, between the normals of their "
-           "triangles, as edges of tetrahedra; dihedral angles then lie in 5 to 170 degrees")
-      .unit("degrees")
-      .range(1, 179);
+  c.settings(without(describe(o->settings), {"keep_topology"}));
   c.flag("--any-topology", &o->anyTopology,
          "warn, and go on, where the solid's topology cannot be kept")
       .advanced();
-  c.group("picture");
-  c.option("--picture", "FILE", &o->picture,
-           "a .png of the cells behind a cut, coloured by their least dihedral angle")
-      .writes({".png"});
-  addColormapOption(c, o->colormap);
-  c.choice("--axis", "AXIS", &o->axis, {{"x", 0}, {"y", 1}, {"z", 2}},
-           "direction across the picture's cut");
-  c.option("--at", "T", &o->at, "where the picture cuts")
-      .unit("fraction of the box along the axis")
-      .range(0, 1);
+  addCellPicture(c, o->picture, o->cut,
+                 "a .png of the cells behind a cut, coloured by their least dihedral angle");
   c.example("innermap tetrahedralize part.obj -o part.msh --edge 0.02 --features 30");
   c.example("innermap tetrahedralize spot.obj -o spot.vtu --resolution 48 --picture spot.png");
   c.run([o](Context& context) { run(*o, context); });

@@ -3,6 +3,7 @@
 
 #include "commands.h"
 #include "grid_options.h"
+#include "innermap/boundary/map_fit.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/picture/texture_images.h"
 #include "innermap/texture/solid_texture.h"
@@ -21,7 +22,7 @@ const std::vector<std::pair<std::string, Wrap>> kWraps{{"repeat", Wrap::repeat},
 struct TextureOptions {
   std::string mesh, image, output;
   NamingScheme names = NamingScheme::innermap;
-  GridOptions grid;
+  LatticeChoice grid;
   SolidTextureSettings texture;
   TextureImageSettings images;
   double tolerance = kUsualTolerance;
@@ -36,7 +37,7 @@ SolidTextureSettings settingsOf(const TextureOptions& o) {
     throw UsageError(
         "--seams blend is for --mode uv: colours continued by --mode colour show no seams; leave "
         "one of the two out");
-  auto s = gridSettings(o.grid, o.texture);
+  auto s = o.grid.in(o.texture);
   if (o.image.empty()) s.mode = TextureMode::vertexColours;
   if (o.images.colourSpace == ColourSpace::srgb) s.decode = linearFromSrgb;
   return s;
@@ -68,7 +69,7 @@ void report(const std::string& key, const BoundaryError& error, Report& report) 
 
 void fillReport(const SolidTexture& made, const TextureOptions& options, Report& r) {
   ReportSolve solve;
-  solve.method = "iterative";
+  solve.method = wordOf(SolveMethod::iterative);
   solve.sources = solve.rank = made.fit.sources;
   solve.collocation = made.fit.collocation;
   solve.iterations = static_cast<int>(made.fit.residuals.size()) - 1;
@@ -142,7 +143,7 @@ void run(const TextureOptions& o, Context& context) {
                          "write surface, density, Cd and uv to " + o.output},
                         need);
   context.requireMemory("the solid texture", need,
-                        fmt::format("use a --voxel-size above {:.3g}, fewer --sources or raise "
+                        fmt::format("use a --voxel-size above {:.3g}, fewer --charges or raise "
                                     "--max-memory",
                                     1.5 * plan.voxelSize));
   TextureLookup lookup;
@@ -181,35 +182,15 @@ Command makeTextureCommand() {
       .shortName("-o")
       .required()
       .writes({".vdb"});
-  c.choice("--mode", "MODE", &o->texture.mode,
-           {{"uv", TextureMode::coordinates}, {"colour", TextureMode::imageColours}},
-           "uv: the texture coordinates are continued and the image is looked up at each voxel's; "
-           "colour: the colours themselves are");
-  c.choice(
-      "--seams", "WAY", &o->texture.seams,
-      {{"keep", TextureSeams::keep}, {"blend", TextureSeams::blend}},
-      "with --mode uv. keep: the coordinates are continued as they are and sweep through the "
-      "image below a seam; blend: those of each chart for themselves, and their colours mixed");
-  c.choice("--colour-space", "SPACE", &o->images.colourSpace,
-           {{"auto", ColourSpace::automatic},
-            {"linear", ColourSpace::linear},
-            {"srgb", ColourSpace::srgb}},
-           "of the image; auto: as the file says, else sRGB for 8 bits and linear for more; vertex "
-           "colours are linear unless srgb is given");
-  c.choice("--wrap", "WAY", &o->images.wrap, kWraps, "what stands beyond the image's borders")
-      .advanced();
-  addGridOptions(c, o->grid);
-  c.option("--sources", "N", &o->texture.sources, "number of charges")
-      .range(100, 1e6)
-      .defaults("one every two voxels of the surface, 1000 to 50000")
-      .advanced();
+  c.settings(describe(o->texture));
+  c.settings(describe(o->images));
+  c.settings(describe(o->grid));
   c.option("--tolerance", "T", &o->tolerance,
            "within which 99% of the surface should have its values; where it has not, that is "
            "warned of")
       .unit("of values in 0 to 1")
       .above(0);
-  c.option("--seed", "N", &o->texture.seed, "of all random points").range(0, 1e15).advanced();
-  addNamesOption(c, o->names);
+  c.setting(namesSetting(&o->names));
   c.example("innermap texture spot.obj spot_texture.png -o spot.vdb --mode colour");
   c.example("innermap texture spot.obj 'spot.<UDIM>.exr' -o spot.vdb --seams blend");
   c.run([o](Context& context) { run(*o, context); });

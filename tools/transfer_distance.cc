@@ -14,7 +14,7 @@ namespace {
 
 struct TransferDistanceOptions {
   std::string map, output;
-  GridOptions grid;
+  LatticeChoice grid;
   SectionOptions section;
   std::optional<NumberPair> range;
   VerdictOptions verdict;
@@ -70,7 +70,7 @@ std::string textOf(const DistanceTransfer& made) {
 // The target's distances, then the source's through the map and its own.
 void expectPhases(const TransferDistanceOptions& options, const MappedSolid& mapped,
                   const Solid& target, Context& context) {
-  const auto settings = gridSettings<LevelSetSettings>(options.grid);
+  const auto settings = options.grid.in<LevelSetSettings>();
   const JobSize there = jobSize(target, settings);
   const JobSize here = jobSize(mapped.solid(), settings, mapped.map.sources());
   JobPhase source = stageOf("level set", here);
@@ -86,9 +86,8 @@ void run(const TransferDistanceOptions& options, Context& context) {
       options.output, {"source.vdb", "target.vdb", "source.png", "target.png", "report.json"});
   const MappedSolid mapped = readMapFile(options.map, context);
   const Solid target = targetSolid(mapped, context);
-  const auto need = [&](const GridOptions& grid) {
-    return distanceTransferMemory(mapped.solid(), target,
-                                  gridSettings<DistanceTransferSettings>(grid));
+  const auto need = [&](const LatticeChoice& grid) {
+    return distanceTransferMemory(mapped.solid(), target, grid.in<DistanceTransferSettings>());
   };
   expectPhases(options, mapped, target, context);
   if (context.dryRun())
@@ -98,7 +97,7 @@ void run(const TransferDistanceOptions& options, Context& context) {
              options.output},
         need(options.grid));
   requireGridMemory("transferring the distance", options.grid, context, need);
-  auto settings = gridSettings<DistanceTransferSettings>(options.grid);
+  auto settings = options.grid.in<DistanceTransferSettings>();
   settings.accuracy = sumAccuracy(mapped);
   const DistanceTransfer made = transferDistance(mapped.map, mapped.solid(), target, settings);
   addSeconds(context.report().seconds, made.seconds);
@@ -135,7 +134,7 @@ Command makeTransferDistanceCommand() {
   c.option("--output", "FOLDER", &o->output, "where the five files go; made when missing")
       .shortName("-o")
       .required();
-  addGridOptions(c, o->grid, "each solid");
+  c.settings(describe(o->grid, "each solid"));
   addSectionOptions(c, o->section);
   c.option("--range", "LO,HI", &o->range, "distances that are blue and red")
       .defaults("0 to the largest in the target");

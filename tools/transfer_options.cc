@@ -34,11 +34,7 @@ RigidMotion parseMotion(const std::string& text) {
 void addTransferOptions(Command& c, TransferOptions& o) {
   c.group("grids that are carried");
   c.option("--grids", "LIST", &o.grids, "grids to carry, with commas between").defaults("all");
-  c.choice("--sampling", "WAY", &o.carry.sampling,
-           {{"nearest", Sampling::nearest},
-            {"linear", Sampling::linear},
-            {"quadratic", Sampling::quadratic}},
-           "between voxels; whole numbers are always taken from the nearest");
+  c.settings(only(describe(o.carry), {"sampling"}));
   c.flag(
       "--density", &o.carry.allDensities,
       "scalars are densities: divided by the change of volume; where they are pushed, their mass "
@@ -54,23 +50,17 @@ void addTransferOptions(Command& c, TransferOptions& o) {
   c.option("--strain", "LIST", &o.strain, "the same for covariant strains")
       .defaults("none")
       .advanced();
-  c.option("--outside", "D", &o.outside,
-           "carry also what is around the solid, up to this distance from it")
-      .unit("fraction of the diagonal")
-      .range(0, 1);
+  c.setting(outsideSetting(&o.outside));
   c.option("--fade-to", "MOTION", &o.fadeTo,
            "what the map fades to with --outside: cut (it ends there), identity, fitted (the best "
            "rigid motion of the surface), or twelve numbers, a rigid motion's 3 x 4 matrix by rows")
       .advanced();
-  c.option("--density-limit", "TIMES", &o.carry.densityLimit,
-           "that a density may grow at most; what comes together beyond it is left out, and how "
-           "much is said")
-      .above(0)
-      .defaults("none");
+  c.settings(only(describe(o.carry), {"density_limit"}));
   addCarryVerdictOptions(c, o.verdict);
-  addGridOptions(c, o.grid, "the solid",
-                 "voxels as fine as those of the grids, for the size of the solid that they go to");
-  addNamesOption(c, o.names);
+  c.settings(
+      describe(o.grid, "the solid",
+               "voxels as fine as those of the grids, for the size of the solid that they go to"));
+  c.setting(namesSetting(&o.names));
 }
 
 CarrySettings carrySettings(const TransferOptions& options) {
@@ -103,9 +93,9 @@ openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& o
   return grids;
 }
 
-LevelSetSettings outputSettings(const openvdb::GridPtrVec& grids, const GridOptions& options,
+LevelSetSettings outputSettings(const openvdb::GridPtrVec& grids, const LatticeChoice& options,
                                 double growth) {
-  auto settings = gridSettings<LevelSetSettings>(options);
+  auto settings = options.in<LevelSetSettings>();
   if (!options.voxelSize && !options.resolution) settings.voxelSize = growth * finestVoxel(grids);
   return settings;
 }
@@ -121,7 +111,7 @@ std::uint64_t transferMemory(const Solid& solid, const openvdb::GridPtrVec& grid
 void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
                            const TransferOptions& options, const Context& context,
                            const CarryKind& kind, double growth) {
-  requireGridMemory("carrying the volume", options.grid, context, [&](const GridOptions& grid) {
+  requireGridMemory("carrying the volume", options.grid, context, [&](const LatticeChoice& grid) {
     TransferOptions other = options;
     other.grid = grid;
     return transferMemory(solid, grids, other, kind, growth);
@@ -181,7 +171,9 @@ std::string pushText(const PushResult& result) {
   std::string text;
   if (result.inverted)
     text = fmt::format(
-        "inverse: {} voxels inside, {:.4f}% inverted, {} not; {} outside the surface, {} not\n",
+        "inverse: found for {1:.4f}% of {0} voxels inside, not for {2}; of {3} outside the "
+        "surface, "
+        "not for {4}\n",
         s.inside, 100 * s.invertedInside(), s.failedInside, s.voxels - s.inside,
         s.failed - s.failedInside);
   for (const CarriedMass& mass : result.masses)

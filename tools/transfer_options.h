@@ -17,7 +17,7 @@ struct TransferOptions {
   std::string densities, stress, strain;
   double outside = 0;
   std::string fadeTo = "cut";
-  GridOptions grid;
+  LatticeChoice grid;
   CarryVerdictOptions verdict;
   NamingScheme names = NamingScheme::innermap;
 };
@@ -46,7 +46,7 @@ void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
 
 // Of the output's solid: by --voxel-size or --resolution, else with the finest voxels of the grids,
 // times `growth`.
-LevelSetSettings outputSettings(const openvdb::GridPtrVec& grids, const GridOptions& options,
+LevelSetSettings outputSettings(const openvdb::GridPtrVec& grids, const LatticeChoice& options,
                                 double growth = 1);
 
 openvdb::FloatGrid::Ptr outputLevelSet(const Solid& solid, const openvdb::GridPtrVec& grids,

@@ -23,17 +23,6 @@ ReportFinding finding(std::string name, std::string statement, double value, dou
   return out;
 }
 
-std::string factOf(const MappedSolid& mapped, const std::string& name) {
-  for (const auto& [key, value] : mapped.facts)
-    if (key == name) return value;
-  return "";
-}
-
-double numberOf(const MappedSolid& mapped, const std::string& name, double otherwise) {
-  const std::string text = factOf(mapped, name);
-  return text.empty() ? otherwise : std::strtod(text.c_str(), nullptr);
-}
-
 bool usedOn(const Context& context, const std::string& setting) {
   const std::string* value = context.setting(setting);
   return value && *value == "on";
@@ -41,10 +30,10 @@ bool usedOn(const Context& context, const std::string& setting) {
 
 std::string boundaryAdvice(MapOrigin origin, bool toTolerance) {
   if (origin == MapOrigin::file)
-    return "fit the map again with a smaller --tolerance, or more --sources";
-  return toTolerance ? "more --max-sources or --max-memory, a finer or smoother mesh, or a larger "
+    return "fit the map again with a smaller --tolerance, or more --charges";
+  return toTolerance ? "more --max-charges or --max-memory, a finer or smoother mesh, or a larger "
                        "--tolerance"
-                     : "--tolerance in place of a number of charges, or more --sources";
+                     : "--tolerance in place of a number of charges, or more --charges";
 }
 
 std::string foldAdvice(MapOrigin origin, bool toTolerance, const Context& context) {
@@ -60,19 +49,19 @@ std::string foldAdvice(MapOrigin origin, bool toTolerance, const Context& contex
 }
 
 void judgeBoundary(const MappedSolid& mapped, MapOrigin origin, Context& context) {
-  const double p99 = numberOf(mapped, "boundary_error_p99", std::nan(""));
+  const double p99 = factNumber(mapped.facts, "boundary_error_p99").value_or(std::nan(""));
   if (std::isnan(p99)) return;
-  const bool toTolerance = !factOf(mapped, "tolerance").empty();
-  const double tolerance = numberOf(mapped, "tolerance", kUsualTolerance);
+  const bool toTolerance = factText(mapped.facts, "tolerance").has_value();
+  const double tolerance = factNumber(mapped.facts, "tolerance").value_or(kUsualTolerance);
   ReportFinding f = finding("boundary",
                             fmt::format("99% of the boundary is within {:.2e} of the target's "
                                         "diagonal (wanted: {:g})",
                                         p99, tolerance),
                             p99, tolerance, boundaryAdvice(origin, toTolerance));
   // Of vertices alone where a smooth deformation is fitted; the fit has said how it ended.
-  if (toTolerance && factOf(mapped, "tolerance_met") == "false" && f.met) {
+  if (toTolerance && factFlag(mapped.facts, "tolerance_met") == false && f.met) {
     f.met = false;
-    f.value = numberOf(mapped, "tolerance_reached", p99);
+    f.value = factNumber(mapped.facts, "tolerance_reached").value_or(p99);
     f.advice = boundaryAdvice(origin, toTolerance);
   }
   context.judge(std::move(f), toTolerance && origin != MapOrigin::file);
@@ -102,7 +91,7 @@ void judgeCrossings(const MappedSolid& mapped, const VerdictOptions& options, Co
   context.judge(finding("self_intersections", text, static_cast<double>(target.pairs),
                         static_cast<double>(options.maxCrossings),
                         "repair the target where `innermap check` places the crossings, or allow "
-                        "them by --max-crossings"),
+                        "them by --warn-crossings"),
                 true);  // reading the boundaries warned of it
 }
 
@@ -134,21 +123,24 @@ std::string listOf(const std::vector<std::int64_t>& numbers) {
 }  // namespace
 
 void addVerdictOptions(Command& c, VerdictOptions& o, bool frames) {
-  c.option("--max-folded", "SHARE", &o.maxFolded,
+  c.option("--warn-folded", "SHARE", &o.maxFolded,
            "of the inside that may be folded; more is warned of")
-      .range(0, 1);
-  c.option("--max-outside", "SHARE", &o.maxOutside,
+      .range(0, 1)
+      .was("--max-folded");
+  c.option("--warn-outside", "SHARE", &o.maxOutside,
            "of the inside that may land outside the target; more is warned of")
-      .range(0, 1);
+      .range(0, 1)
+      .was("--max-outside");
   if (frames) return;
-  c.option("--max-crossings", "N", &o.maxCrossings,
+  c.option("--warn-crossings", "N", &o.maxCrossings,
            "pairs of the target's triangles that may pass through each other; more is warned of")
-      .range(0, 1e15);
+      .range(0, 1e15)
+      .was("--max-crossings");
 }
 
 void judgeMap(const MappedSolid& mapped, const SolidGrids* grids, const VerdictOptions& options,
               MapOrigin origin, Context& context) {
-  const bool toTolerance = !factOf(mapped, "tolerance").empty();
+  const bool toTolerance = factText(mapped.facts, "tolerance").has_value();
   const std::string advice = foldAdvice(origin, toTolerance, context);
   judgeBoundary(mapped, origin, context);
   const Injectivity& known = grids ? grids->injectivity : mapped.injectivity;
@@ -191,8 +183,8 @@ void judgeFrames(const std::vector<JudgedFrame>& frames, double tolerance,
         "with {:.2e}",
         missed.size(), frames.size(), tolerance, listOf(missed), off.number, off.p99);
   context.judge(finding("boundary", text, off.p99, tolerance,
-                        "more --sources, another --distance, or a larger --tolerance"));
-  const std::string advice = "more --sources; map these frames by `innermap map --one-to-one on`";
+                        "more --charges, another --distance, or a larger --tolerance"));
+  const std::string advice = "more --charges; map these frames by `innermap map --one-to-one on`";
   const JudgedFrame folded = worst([](const JudgedFrame& f) { return f.folded; });
   text = folded.folded > 0 ? fmt::format(
                                  "up to {} of the inside is folded, in frame {} (at most: {}): not "
@@ -219,17 +211,19 @@ void judgeTexture(const BoundaryError& error, double tolerance, Context& context
                   "to 1)",
                   error.p99, tolerance),
       error.p99, tolerance,
-      "more --sources; across seams, where values jump, --seams blend; or a larger --tolerance"));
+      "more --charges; across seams, where values jump, --seams blend; or a larger --tolerance"));
 }
 
 void addCarryVerdictOptions(Command& c, CarryVerdictOptions& o) {
-  c.option("--max-density", "TIMES", &o.maxDensity,
+  c.option("--warn-density", "TIMES", &o.maxDensity,
            "that densities may grow, beyond what the solids' volumes explain; more is warned of")
-      .above(0);
-  c.option("--max-lost", "SHARE", &o.maxLost,
+      .above(0)
+      .was("--max-density");
+  c.option("--warn-lost", "SHARE", &o.maxLost,
            "of the inside where the output's voxels may be over 1.5 times as coarse as what comes "
            "there; more is warned of")
-      .range(0, 1);
+      .range(0, 1)
+      .was("--max-lost");
 }
 
 void judgeDensity(const JudgedDensity& d, const CarryVerdictOptions& options, Context& context) {

@@ -23,7 +23,7 @@ struct VerdictOptions {
   std::uint64_t maxCrossings = 0;  // pairs of triangles of the target
 };
 
-// --max-folded, --max-outside, and --max-crossings unless the targets are frames.
+// --warn-folded, --warn-outside, and --warn-crossings unless the targets are frames.
 void addVerdictOptions(Command& command, VerdictOptions& options, bool frames = false);
 
 // How a map came to be, which decides what to try.

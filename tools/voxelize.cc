@@ -14,7 +14,7 @@ namespace {
 struct VoxelizeOptions {
   std::string mesh, output;
   NamingScheme names = NamingScheme::innermap;
-  GridOptions grid;
+  LatticeChoice grid;
   LevelSetSettings levelSet;
   bool fog = false, attributes = false;
 };
@@ -60,7 +60,7 @@ void run(const VoxelizeOptions& options, Context& context) {
   if (options.attributes && mesh.uvs.empty() && mesh.colours.empty())
     context.warning(options.mesh +
                     " has neither texture coordinates nor vertex colours to carry over");
-  const auto settings = gridSettings(options.grid, options.levelSet);
+  const auto settings = options.grid.in(options.levelSet);
   const double voxelSize = voxelSizeFor(solid, settings);
   if (const std::string note = voxelSizeNote(solid, settings); !note.empty()) context.note(note);
   const std::uint64_t need = voxelizeMemory(solid, settings, mesh, options.fog, options.attributes);
@@ -90,16 +90,12 @@ Command makeVoxelizeCommand() {
       .shortName("-o")
       .required()
       .writes({".vdb"});
-  addGridOptions(c, o->grid, "the mesh's box");
-  c.option("--half-width", "W", &o->levelSet.halfWidth,
-           "width of the band on each side of the surface")
-      .unit("voxels")
-      .range(2, 100)
-      .advanced();
+  c.settings(describe(o->grid, "the mesh's box"));
+  c.settings(describe(o->levelSet));
   c.flag("--fog", &o->fog, "also write `density`: 1 inside, 0 outside, shares along the surface");
   c.flag("--attributes", &o->attributes,
          "also carry texture coordinates (`uv`) and vertex colours (`Cd`) onto the band");
-  addNamesOption(c, o->names);
+  c.setting(namesSetting(&o->names));
   c.example("innermap voxelize bunny.obj -o bunny.vdb --resolution 256 --fog");
   c.run([o](Context& context) { run(*o, context); });
   return c;

@@ -176,7 +176,7 @@ void CallOptions::describe(Keywords& k) {
   k.bytes("max_memory", &maxMemory,
           "of the process, in bytes or as '4GB'; a call that is known to need more raises "
           "MemoryError at once; 0.8 of the machine's if not given");
-  k.count("threads", &threads, {0, 4096}, "at most; 0: all cores. Results do not depend on it");
+  k.number("threads", &threads, {0, 4096}, "at most; 0: all cores. Results do not depend on it");
 }
 
 void CallOptions::describeTime(Keywords& k, const char* doc) {

@@ -35,9 +35,7 @@ struct WayOptions : CarryOptions {
     k.object("through", &through, "cells",
              "go by the piecewise linear map of the cells that remesh() made with the map instead: "
              "nowhere folded; not for densities");
-    k.number("subdivide", &subdivide, {0, 1},
-             "of files of meshes and curves: split edges until their straight images are nowhere "
-             "farther than this from the curved ones, a fraction of the diagonal; 0 splits none");
+    k.setting(subdivideSetting(&subdivide));
     CarryOptions::describe(k);
   }
 };

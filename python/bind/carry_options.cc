@@ -40,15 +40,8 @@ void CarryOptions::describe(Keywords& k) {
            "Cauchy stresses: NAME stands for the six grids NAME.xx, .yy, .zz, .xy, .yz, .xz or the "
            "rows NAME.x, .y, .z");
   k.object("strains", &strains, "str or Sequence[str]", "the same for covariant strains");
-  k.number("density_limit", &densityLimit, {1e-300, 1e300},
-           "times that a density may grow at most; totals say what is left out");
-  k.choice<Sampling>("sampling", &sampling,
-                     {{"nearest", Sampling::nearest},
-                      {"linear", Sampling::linear},
-                      {"quadratic", Sampling::quadratic}},
-                     "between voxels; whole numbers are always the nearest");
-  k.number("outside", &outside, {0, 1},
-           "carry also what is around the solid, up to this distance, a fraction of its diagonal");
+  k.settings(innermap::describe(carrySettings));
+  k.setting(outsideSetting(&outside));
   k.object("fade_to", &fadeTo, "str or array",
            "what the map fades to with outside: 'cut' (it ends there, the default), 'identity', "
            "'fitted' (the best rigid motion of the surface), or a rigid motion, (3, 4) or (4, 4)");
@@ -56,24 +49,19 @@ void CarryOptions::describe(Keywords& k) {
            "of geometry: properties or fields that are vectors, turned by the Jacobian");
   k.object("normals", &normals, "str or Sequence[str]",
            "of geometry: those that are normals, turned by its inverse transpose");
-  k.count("resolution", &resolution, {4, 4096},
-          "voxels along the longest side of the solid; as fine as those of the grids if not given");
-  k.number("voxel_size", &voxelSize, {1e-12, 1e12},
-           "edge of a voxel in world units, in place of the resolution");
-  describeNames(k, &names);
+  k.settings(innermap::describe(lattice, "the solid", "as fine as those of the grids"));
+  k.setting(namesSetting(&names));
   call.describe(k);
 }
 
 CarrySettings CarryOptions::carry() const {
-  CarrySettings out;
-  out.sampling = sampling;
+  CarrySettings out = carrySettings;
   if (py::isinstance<py::bool_>(densities))
     out.allDensities = py::cast<bool>(densities);
   else
     out.densities = textsFrom(densities, "densities");
   out.stresses = textsFrom(stresses, "stresses");
   out.strains = textsFrom(strains, "strains");
-  out.densityLimit = densityLimit.value_or(std::numeric_limits<double>::infinity());
   return out;
 }
 
@@ -96,9 +84,8 @@ OutsideSettings CarryOptions::outsideSettings(const Points& from, const Points& 
 }
 
 LevelSetSettings CarryOptions::output(const openvdb::GridPtrVec& carried, double growth) const {
-  LevelSetSettings out;
-  out.resolution = resolution.value_or(0);
-  out.voxelSize = voxelSize.value_or(resolution ? 0 : growth * finestVoxel(carried));
+  auto out = lattice.in<LevelSetSettings>();
+  if (!lattice.resolution && !lattice.voxelSize) out.voxelSize = growth * finestVoxel(carried);
   return out;
 }
 

@@ -21,11 +21,9 @@ void bindCarry(pybind11::module_& m);  // after bindMap, bindGrids and bindCells
 
 struct CarryOptions {
   pybind11::object grids, densities, stresses, strains, fadeTo, vectors, normals;
-  Sampling sampling = Sampling::linear;
+  CarrySettings carrySettings;  // but for the names
   double outside = 0;
-  std::optional<double> densityLimit;
-  std::optional<int> resolution;
-  std::optional<double> voxelSize;
+  LatticeChoice lattice;
   NamingScheme names = NamingScheme::innermap;
   CallOptions call;
 

@@ -105,7 +105,7 @@ struct CorrespondCall : CorrespondOptions {
   CallOptions call;
   void describe(Keywords& k) {
     CorrespondOptions::describe(k);
-    k.count("seed", &map.seed, {0, 1e15}, "of all random choices");
+    k.setting(seedSetting(&map.seed));
     call.describe(k);
     call.describeTime(k);
   }
@@ -192,18 +192,8 @@ void CorrespondOptions::describe(Keywords& k) {
   k.object("landmarks", &landmarks, "Sequence[tuple[place, place]] or path",
            "pairs that are kept exactly, a place on the source and one on the target: the number "
            "of a vertex, or three coordinates; or a file as the program reads it");
-  describeLayout(k, &close, &map.outerResolution, &map.handles);
-  k.flag("aligned", &map.aligned,
-         "the two stand in the same pose and orientation: prefer agreeing normals and places");
-  k.count("candidates", &map.candidates, {1, 64}, "ways to lay one on the other that are refined");
-  k.count("choose", &map.way.choose, {1, 64},
-          "of the ways to lay one on the other that differ, the one of this number by preference");
-  k.flag("mirror", &map.way.mirror,
-         "the best way that turns left into right of what is taken otherwise");
-  k.flag("refine", &map.refine, "False: only the best way, not refined: fast, rough");
-  k.number("subdivide", &map.subdivide, {0, 1},
-           "split the source's triangles until they follow the target within it, a fraction of "
-           "the target's diagonal; 0: never");
+  k.settings(without(innermap::describe(map), {"seed"}));
+  describeClose(k, &close);
 }
 
 MeshCorrespondenceSettings CorrespondOptions::settings() const {

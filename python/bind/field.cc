@@ -59,12 +59,12 @@ py::object gradientsAt(const Arguments& a, SampleOptions& o) {
 }
 
 struct FieldGridOptions {
-  GridOptions grid;
+  LatticeChoice grid;
   HarmonicGridSettings settings;
   CallOptions call;
 
   void describe(Keywords& k) {
-    grid.describe(k);
+    k.settings(innermap::describe(grid));
     k.flag("values", &settings.values, "grids NAME of the channels");
     k.flag("gradients", &settings.gradients,
            "grids NAME_gradient, vectors, values' units per world unit");
@@ -77,7 +77,7 @@ struct FieldGridOptions {
 HarmonicGrids gridsOf(const PyField& field, const FieldGridOptions& o) {
   const SolidField& solid = *field.solid;
   HarmonicGrids grids = call(o.call, [&]() {
-    auto settings = o.grid.with(o.settings);
+    auto settings = o.grid.in(o.settings);
     settings.span = field.span;
     requireMemory(o.call, "evaluating the field on a grid",
                   harmonicGridMemory(solid.boundary.solid, solid.names.size(), settings),
@@ -100,7 +100,7 @@ struct WriteFieldOptions : FieldGridOptions {
   NamingScheme names = NamingScheme::innermap;
 
   void describe(Keywords& k) {
-    describeNames(k, &names);
+    k.setting(namesSetting(&names));
     FieldGridOptions::describe(k);
   }
 };
@@ -118,12 +118,6 @@ py::object save(const Arguments& a, NoOptions&) {
     const py::gil_scoped_release unlocked;
     writeSolidField(path, *solid);
   }
-  return py::none();
-}
-
-py::object toleranceMet(const PyField& field) {
-  for (const auto& [key, value] : field.solid->facts)
-    if (key == "tolerance_met") return py::bool_(value == "true");
   return py::none();
 }
 
@@ -149,12 +143,13 @@ void bindProperties(py::class_<PyField, std::shared_ptr<PyField>>& field) {
           [](const PyField& self) {
             return self.fit
                        ? self.fit->bound
-                       : numberOf(self.solid->facts, "inside_error_bound").value_or(std::nan(""));
+                       : factNumber(self.solid->facts, "inside_error_bound").value_or(std::nan(""));
           },
           "About the largest error of a value anywhere inside, a fraction of the values' span.")
       .def_readonly("span", &PyField::span, "The largest of the channels' given values' spans.")
-      .def_property_readonly("tolerance_met", &toleranceMet,
-                             "Whether 99% of the boundary is within the tolerance.")
+      .def_property_readonly(
+          "tolerance_met", [](const PyField& self) { return toleranceMet(self.solid->facts); },
+          "Whether 99% of the boundary is within the tolerance.")
       .def_property_readonly(
           "facts", [](const PyField& self) { return factsOf(self.solid->facts); },
           "What the field's file says of it, as text by name.")
@@ -183,7 +178,7 @@ void bindProperties(py::class_<PyField, std::shared_ptr<PyField>>& field) {
 
 std::shared_ptr<PyField> fieldOf(SolidField solid) {
   auto out = std::make_shared<PyField>();
-  out->span = std::max(numberOf(solid.facts, "span").value_or(1.0), 1e-300);
+  out->span = std::max(factNumber(solid.facts, "span").value_or(1.0), 1e-300);
   out->solid = std::make_shared<const SolidField>(std::move(solid));
   return out;
 }

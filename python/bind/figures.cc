@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdlib>
 
 namespace py = pybind11;
 
@@ -15,19 +14,14 @@ py::dict factsOf(const Facts& facts) {
   return out;
 }
 
-std::optional<double> numberOf(const Facts& facts, const std::string& key) {
-  for (const auto& [name, value] : facts) {
-    if (name != key) continue;
-    char* end = nullptr;
-    const double number = std::strtod(value.c_str(), &end);
-    if (end != value.c_str() && *end == 0) return number;
-  }
-  return {};
+py::object toleranceMet(const Facts& facts) {
+  const std::optional<bool> met = factFlag(facts, "tolerance_met");
+  return met ? py::object(py::bool_(*met)) : py::none();
 }
 
 BoundaryError errorOf(const Facts& facts) {
   const auto number = [&](const char* key) {
-    return numberOf(facts, std::string("boundary_error_") + key).value_or(std::nan(""));
+    return factNumber(facts, std::string("boundary_error_") + key).value_or(std::nan(""));
   };
   BoundaryError out;
   out.rms = number("rms");

@@ -16,7 +16,8 @@ void bindFigures(pybind11::module_& m);
 
 // What a file says of itself.
 pybind11::dict factsOf(const Facts& facts);
-std::optional<double> numberOf(const Facts& facts, const std::string& key);
+// Of what a fit to a tolerance says; None where there was none.
+pybind11::object toleranceMet(const Facts& facts);
 // From a map's or a field's facts; NaN where they say nothing.
 BoundaryError errorOf(const Facts& facts);
 

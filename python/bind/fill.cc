@@ -20,21 +20,10 @@ namespace {
 
 struct TetrahedralizeOptions {
   TetrahedralizeSettings settings;
-  std::optional<double> edge;
   CallOptions call;
 
   void describe(Keywords& k) {
-    k.count(
-        "resolution", &settings.resolution, {4, 1024},
-        "cells of the lattice along the longest side of the mesh's box, twelve tetrahedra each");
-    k.number("edge", &edge, {1e-12, 1e12},
-             "side of a cell of the lattice, world units, in place of the resolution");
-    k.number("features", &settings.features, {1, 179},
-             "edges of the surface sharper than this, degrees between the normals of their "
-             "triangles, are kept as edges of tetrahedra");
-    k.flag("keep_topology", &settings.keepTopology,
-           "raise DataError where the solid's components, cavities and handles cannot be kept; "
-           "else there is a warning");
+    k.settings(innermap::describe(settings));
     call.describe(k);
   }
 };
@@ -42,7 +31,6 @@ struct TetrahedralizeOptions {
 py::object tetrahedra(const Arguments& a, TetrahedralizeOptions& o) {
   std::size_t at = 0;
   const Mesh mesh = takeMesh(a, at, "mesh");
-  o.settings.edge = o.edge.value_or(0);
   Tetrahedralization made =
       call(o.call, [&]() { return tetrahedralization(Solid(mesh), o.settings); });
   const CellQuality quality = call(o.call, [&]() { return cellQuality(made.mesh); });
@@ -62,15 +50,15 @@ py::object tetrahedra(const Arguments& a, TetrahedralizeOptions& o) {
 
 // What hexahedralize() and polycube() take.
 struct BlockOptions {
-  int blocks = 0;
+  PolycubeSettings polycube;
   bool close = false;
   LayOutSettings surface;
   CallOptions call;
 
   void describe(Keywords& k) {
-    k.count("blocks", &blocks, {0, static_cast<double>(kMostAcross)},
-            "blocks along the longest side of the mesh's box; 0: as many as give about 900 in all");
-    describeLayout(k, &close, &surface.outerResolution, &surface.handles);
+    k.settings(innermap::describe(polycube));
+    k.settings(innermap::describe(surface));
+    describeClose(k, &close);
     call.describe(k);
   }
 
@@ -98,8 +86,7 @@ struct HexahedralizeOptions : BlockOptions {
   HexahedralizeSettings settings;
 
   void describe(Keywords& k) {
-    k.count("pieces", &settings.pieces, {1, 16}, "hexahedra along a block's edge");
-    k.count("seed", &settings.seed, {0, 1e15}, "of all random choices");
+    k.settings(without(innermap::describe(settings), {"blocks"}));
     BlockOptions::describe(k);
     call.describeTime(k);
   }
@@ -108,7 +95,7 @@ struct HexahedralizeOptions : BlockOptions {
 py::object hexahedra(const Arguments& a, HexahedralizeOptions& o) {
   std::size_t at = 0;
   const Mesh mesh = takeMesh(a, at, "mesh");
-  o.settings.blocks = o.blocks;
+  o.settings.polycube = o.polycube;
   Hexahedralization made = call(o.call, [&]() {
     const HexahedralizeSettings settings = o.settings;
     const Mesh surface = o.surfaceToFill(mesh);
@@ -134,9 +121,9 @@ struct PolycubeOptions : BlockOptions {
   std::optional<int> pieces;
 
   void describe(Keywords& k) {
-    k.count("pieces", &pieces, {1, static_cast<double>(kMostBlockPieces)},
-            "squares along a block's edge, of two triangles each; as many as give about 3000 "
-            "vertices if not given");
+    k.number("pieces", &pieces, {1, static_cast<double>(kMostBlockPieces)},
+             "squares along a block's edge, of two triangles each; as many as give about 3000 "
+             "vertices if not given");
     BlockOptions::describe(k);
   }
 };
@@ -146,11 +133,9 @@ py::object polycube(const Arguments& a, PolycubeOptions& o) {
   const Mesh mesh = takeMesh(a, at, "mesh");
   Mesh surface;
   const Polycube made = call(o.call, [&]() {
-    PolycubeSettings settings;
-    settings.blocks = o.blocks;
     const Mesh toFill = o.surfaceToFill(mesh);
-    requireMemory(o.call, "a polycube", polycubeMemory(toFill, settings), "use fewer blocks");
-    Polycube cube = makePolycube(toFill, settings);
+    requireMemory(o.call, "a polycube", polycubeMemory(toFill, o.polycube), "use fewer blocks");
+    Polycube cube = makePolycube(toFill, o.polycube);
     surface = blockSurface(cube.blocks, o.pieces.value_or(usualPieces(cube.blocks)));
     return cube;
   });

@@ -6,6 +6,7 @@
 #include "bind/keywords.h"
 #include "bind/map.h"
 #include "bind/meshes.h"
+#include "innermap/boundary/fit_choices.h"
 #include "innermap/boundary/fit_map.h"
 #include "innermap/core/memory.h"
 #include "innermap/mesh/read.h"
@@ -16,98 +17,18 @@ namespace innermap::python {
 namespace {
 
 struct FitOptions {
-  FitMapSettings fit;
-  ShellSettings shell;
-  std::optional<double> tolerance;
-  std::optional<std::size_t> sources, collocation;
+  FitChoices fit;
   CorrespondOptions correspond;
   CallOptions call;
 
   FitOptions() { correspond.map.subdivide = kLaidOnSubdivide; }
-  void describe(Keywords& k);
-  void describeShell(Keywords& k);
-  // laidOn: the source is laid onto a stranger.
-  FitMapSettings settings(bool laidOn) const;
+  void describe(Keywords& k) {
+    k.settings(innermap::describe(fit));
+    correspond.describe(k);
+    call.describe(k);
+    call.describeTime(k);
+  }
 };
-
-void FitOptions::describe(Keywords& k) {
-  k.number("tolerance", &tolerance, {kSmallestTolerance, 1},
-           "charges are placed where the error is until 99% of the boundary lies within it, a "
-           "fraction of the target's diagonal; 0.001 if not given, 0.002 where one mesh is laid "
-           "onto the other first; not with what places a number of charges");
-  k.count("max_sources", &fit.maxSources, {1000, 1000000}, "charges that the tolerance may take");
-  k.choice<OneToOne>(
-      "one_to_one", &fit.oneToOne,
-      {{"auto", OneToOne::automatic}, {"on", OneToOne::on}, {"off", OneToOne::off}},
-      "go in steps through intermediate shapes where one harmonic map folds; auto: where it folds "
-      "over 0.5% of the inside or takes over 1% of it out of the target; on: until nothing that "
-      "is checked folds; off: one harmonic map");
-  k.count("max_steps", &fit.maxSteps, {1, 256}, "steps at most");
-  k.choice<Interpolation>("interpolation", &fit.interpolation,
-                          {{"auto", Interpolation::automatic},
-                           {"linear", Interpolation::linear},
-                           {"smooth", Interpolation::smooth}},
-                          "what the target is between vertices: linear, as its triangles; smooth, "
-                          "when vertices sample a smooth deformation; auto: by the error at "
-                          "held-out vertices");
-  k.count("seed", &fit.seed, {0, 1e15}, "of all random choices");
-  describeShell(k);
-  correspond.describe(k);
-  call.describe(k);
-  call.describeTime(k);
-}
-
-void FitOptions::describeShell(Keywords& k) {
-  k.count("sources", &sources, {1, 1000000},
-          "a number of charges on one shell, in place of the tolerance");
-  k.count("collocation", &collocation, {8, 1e7},
-          "boundary points that such a shell is fitted to, at least sources + 4; 4 a source if "
-          "not given, 3 above 3000");
-  k.number("distance", &shell.distance, {1e-4, 2},
-           "of such a shell from the surface, a fraction of the source's diagonal; chosen by "
-           "held-out error if not given");
-  k.number("radius_ratio", &shell.radiusRatio, {1, 100},
-           "charges on a sphere, in place of a shell: its radius as a multiple of half the "
-           "diagonal, above 1");
-  k.choice<FitSolver>("solver", &shell.solver,
-                      {{"auto", FitSolver::automatic},
-                       {"dense", FitSolver::dense},
-                       {"iterative", FitSolver::iterative}},
-                      "of such a shell: dense up to some 3000 charges, iterative for many");
-  k.choice<Regularization>(
-      "method", &shell.method,
-      {{"tikhonov", Regularization::tikhonov}, {"tsvd", Regularization::truncatedSvd}},
-      "regularisation of a dense solve: Tikhonov's, or truncation of "
-      "singular values");
-  k.number("regularization", &shell.regularization, {0, 1},
-           "its threshold, a fraction of the largest singular value; chosen by held-out error if "
-           "not given");
-}
-
-FitMapSettings FitOptions::settings(bool laidOn) const {
-  FitMapSettings out = fit;
-  const std::pair<bool, const char*> shells[] = {
-      {sources.has_value(), "sources"},
-      {collocation.has_value(), "collocation"},
-      {shell.distance.has_value(), "distance"},
-      {shell.radiusRatio.has_value(), "radius_ratio"},
-      {shell.solver != FitSolver::automatic, "solver"},
-      {shell.method != Regularization::tikhonov, "method"},
-      {shell.regularization.has_value(), "regularization"}};
-  for (const auto& [given, name] : shells) {
-    if (!given) continue;
-    if (tolerance) throw SettingError("tolerance", fmt::format("excludes {}; give one", name));
-    out.shell = shell;
-  }
-  if (shell.distance && shell.radiusRatio)
-    throw SettingError("distance", "excludes radius_ratio; give one");
-  if (out.shell) {
-    out.shell->sources = sources.value_or(shell.sources);
-    out.shell->collocation = collocation.value_or(0);
-  }
-  out.tolerance = tolerance.value_or(laidOn ? kLaidOnTolerance : fit.tolerance);
-  return out;
-}
 
 // What is to be mapped: a pair of one connectivity, or strangers.
 struct Job {
@@ -163,7 +84,7 @@ Job jobOf(const Arguments& a, const CallOptions& options) {
 
 py::object fit(const Arguments& a, FitOptions& o) {
   Job job = jobOf(a, o.call);
-  const FitMapSettings settings = o.settings(job.laidOn || !job.related);
+  const FitMapSettings settings = o.fit.settings(job.laidOn || !job.related);
   if (!job.related) {
     CorrespondOptions correspond = o.correspond;
     correspond.map.seed = settings.seed;

@@ -23,19 +23,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 void FittingOptions::describe(Keywords& k) {
   k.object("only", &only, "str", "which of the frames, by number: '12', '1-48', '1-48x2'; all");
-  k.count("sources", &fitting.sources, {1, 1000000}, "charges, the same for all frames");
-  k.count("collocation", &collocation, {8, 1e7},
-          "boundary points that frames are fitted to; 3 a charge if not given");
-  k.number("distance", &fitting.distance, {1e-4, 2},
-           "of the charges from the surface, a fraction of the rest pose's diagonal; 1.25 "
-           "spacings of the charges if not given");
-  k.count("seed", &fitting.seed, {0, 1e15}, "of all random points");
-}
-
-FrameFitterSettings FittingOptions::settings() const {
-  FrameFitterSettings out = fitting;
-  out.collocation = collocation.value_or(0);
-  return out;
+  k.settings(innermap::describe(fitting));
 }
 
 FrameSet::FrameSet(const py::object& given, const py::object& only, const Mesh& rest)
@@ -132,7 +120,7 @@ std::map<std::string, double> rowOf(const FrameFit& fit) {
 
 FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, const CallOptions& call,
                      std::uint64_t others) {
-  const FrameFitterSettings settings = o.settings();
+  const FrameFitterSettings settings = o.fitting;
   requireMemory(call, fmt::format("a sequence with {} charges", settings.sources),
                 frameFitterMemory(settings, others), "use fewer sources");
   return FrameFitter(makeSourceBoundary(rest), settings);

@@ -22,11 +22,9 @@ void bindSequence(pybind11::module_& m);
 
 struct FittingOptions {
   FrameFitterSettings fitting;
-  std::optional<std::uint64_t> collocation;
   pybind11::object only;  // which frames
 
   void describe(Keywords& k);
-  FrameFitterSettings settings() const;
 };
 
 // From files or from arrays.

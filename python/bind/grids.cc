@@ -145,7 +145,7 @@ struct WriteOptions {
   CallOptions call;
 
   void describe(Keywords& k) {
-    describeNames(k, &names);
+    k.setting(namesSetting(&names));
     call.describe(k);
   }
 };
@@ -157,21 +157,6 @@ py::object write(const Arguments& a, WriteOptions& o) {
 }
 
 }  // namespace
-
-void GridOptions::describe(Keywords& k) {
-  k.count("resolution", &resolution, {4, 4096},
-          "voxels along the longest side of the solid; 128 if not given, more for a thin solid");
-  k.number("voxel_size", &voxelSize, {1e-12, 1e12},
-           "edge of a voxel in world units, in place of the resolution");
-}
-
-void describeNames(Keywords& k, NamingScheme* names) {
-  k.choice<NamingScheme>("names", names,
-                         {{"innermap", NamingScheme::innermap},
-                          {"blender", NamingScheme::blender},
-                          {"houdini", NamingScheme::houdini}},
-                         "what the grids are called in the file");
-}
 
 py::object writeGrids(const std::string& path, const openvdb::GridPtrVec& grids, NamingScheme names,
                       const CallOptions& call) {

@@ -11,6 +11,7 @@
 
 #include "bind/call.h"
 #include "innermap/io/vdb/vdb_file.h"
+#include "innermap/levelset/lattice_choice.h"
 
 namespace innermap::python {
 
@@ -18,23 +19,6 @@ class Keywords;
 
 void bindGrids(pybind11::module_& m);
 
-// How fine grids are, of settings that have `resolution` and `voxelSize`.
-struct GridOptions {
-  std::optional<int> resolution;
-  std::optional<double> voxelSize;
-
-  void describe(Keywords& k);
-
-  template <class Settings>
-  Settings with(Settings settings) const {
-    settings.resolution = resolution.value_or(settings.resolution);
-    settings.voxelSize = voxelSize.value_or(0);
-    return settings;
-  }
-};
-
-// `names=` of functions that write .vdb files.
-void describeNames(Keywords& k, NamingScheme* names);
 // None, once the file is there. Throws as writeVdb().
 pybind11::object writeGrids(const std::string& path, const openvdb::GridPtrVec& grids,
                             NamingScheme names, const CallOptions& call);

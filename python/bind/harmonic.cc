@@ -24,15 +24,8 @@ struct FieldFitOptions {
   CallOptions call;
 
   void describe(Keywords& k) {
-    k.number("tolerance", &fit.tolerance, {kSmallestTolerance, 1},
-             "charges are added until 99% of the boundary is within it, a fraction of the values' "
-             "span");
-    k.count("max_sources", &fit.maxSources, {1000, 1000000}, "charges that the tolerance may take");
-    k.number(
-        "crease_angle", &creaseAngle, {0, 90},
-        "degrees: triangles that meet at less stand for a smooth surface, and fluxes are along "
-        "interpolated normals; 0: along each triangle's own");
-    k.count("seed", &fit.seed, {0, 1e15}, "of all random points");
+    k.settings(innermap::describe(fit));
+    k.setting(creaseSetting(&creaseAngle));
     call.describe(k);
   }
 };

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <type_traits>
 
 #include "bind/errors.h"
 #include "bind/lists.h"
@@ -18,35 +20,36 @@ std::string typeName(py::handle value) {
   return py::cast<std::string>(py::type::of(value).attr("__name__"));
 }
 
-std::string words(const Range& range) {
-  const bool below = std::isfinite(range.least), above = std::isfinite(range.most);
-  if (below && above) return fmt::format(", in [{:g}, {:g}]", range.least, range.most);
-  if (below) return fmt::format(", at least {:g}", range.least);
-  return above ? fmt::format(", at most {:g}", range.most) : "";
+std::string words(const NumberRange& range) { return range.bounded() ? ", " + range.text() : ""; }
+
+void requireInRange(const Setting& s, double value, const std::string& given) {
+  if (value != s.automatic && !s.range.holds(value))
+    throw SettingError(s.name, s.range.refusal(given, s.unit));
 }
 
-double numberFrom(const char* name, py::handle given, const Range& range) {
+double numberFrom(const Setting& s, py::handle given, double) {
   if (PyBool_Check(given.ptr()) || !PyNumber_Check(given.ptr()))
-    wrongType(name, "expects a number, got " + typeName(given));
+    wrongType(s.name, "expects a number, got " + typeName(given));
   const double value = PyFloat_AsDouble(given.ptr());
   if (PyErr_Occurred()) throw py::error_already_set();
-  if (!(value >= range.least && value <= range.most))
-    throw SettingError(name, fmt::format("must be a number{}, got {:g}", words(range), value));
+  requireInRange(s, value, fmt::format("{:g}", value));
   return value;
 }
 
-std::int64_t wholeFrom(const char* name, py::handle given, const Range& range) {
+template <class Integer>
+Integer numberFrom(const Setting& s, py::handle given, Integer) {
   if (PyBool_Check(given.ptr()) || !PyIndex_Check(given.ptr()))
-    wrongType(name, "expects a whole number, got " + typeName(given));
+    wrongType(s.name, "expects a whole number, got " + typeName(given));
   const py::object number = py::reinterpret_steal<py::object>(PyNumber_Index(given.ptr()));
   if (!number) throw py::error_already_set();
   int overflow = 0;
   const long long value = PyLong_AsLongLongAndOverflow(number.ptr(), &overflow);
-  if (overflow != 0 || !(static_cast<double>(value) >= range.least) ||
-      !(static_cast<double>(value) <= range.most))
-    throw SettingError(name, fmt::format("must be a whole number{}, got {}", words(range),
-                                         py::cast<std::string>(py::str(number))));
-  return value;
+  const double rough =
+      overflow ? overflow * std::numeric_limits<double>::infinity() : static_cast<double>(value);
+  const double most = static_cast<double>(std::numeric_limits<Integer>::max());
+  requireInRange(s, std::abs(rough) < most ? rough : rough * 1e300,
+                 py::cast<std::string>(py::str(number)));
+  return static_cast<Integer>(value);
 }
 
 bool isTrue(py::handle given) {
@@ -79,14 +82,22 @@ std::string nearest(const std::string& word, const std::vector<std::string>& nam
 
 }  // namespace
 
-py::object Keywords::take(const char* name) {
-  names_.emplace_back(name);
-  if (!sets_ || !given_.contains(name)) return py::none();
-  return given_[name];
+py::object Keywords::take(const std::string& name) {
+  names_.push_back(name);
+  if (!sets_ || !given_.contains(name.c_str())) return py::none();
+  return given_[name.c_str()];
 }
 
-void Keywords::entry(const char* name, const std::string& type, const std::string& literal,
-                     const std::string& range, const char* doc) {
+py::object Keywords::take(const Setting& s) {
+  if (s.formerName.empty() || !sets_ || !given_.contains(s.formerName.c_str())) return take(s.name);
+  const std::string text = fmt::format("'{}' is now called '{}'", s.formerName, s.name);
+  if (PyErr_WarnEx(PyExc_DeprecationWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+  names_.push_back(s.name);
+  return take(s.formerName);
+}
+
+void Keywords::entry(const std::string& name, const std::string& type, const std::string& literal,
+                     const std::string& range, const std::string& doc) {
   if (sets_) return;
   if (!signature_.empty()) signature_ += ", ";
   signature_ += fmt::format("{}={}", name, literal);
@@ -95,30 +106,52 @@ void Keywords::entry(const char* name, const std::string& type, const std::strin
   docs_ += wrapped(doc);
 }
 
-void Keywords::number(const char* name, double* value, Range range, const char* doc) {
-  const py::object given = take(name);
-  entry(name, "float", fmt::format("{:g}", *value), words(range), doc);
-  if (!given.is_none()) *value = numberFrom(name, given, range);
+template <class Number>
+void Keywords::takeNumber(const Setting& s, const std::string& doc, const Number* now,
+                          const std::function<void(Number)>& set) {
+  const bool chosen = !now || static_cast<double>(*now) == s.automatic;
+  const py::object given = take(s);
+  entry(s.name, std::is_integral_v<Number> ? "int" : "float",
+        chosen ? "None" : fmt::format(std::is_integral_v<Number> ? "{}" : "{:g}", *now),
+        words(s.range), doc);
+  if (!given.is_none()) set(numberFrom(s, given, Number{}));
 }
 
-void Keywords::number(const char* name, std::optional<double>* value, Range range,
-                      const char* doc) {
-  const py::object given = take(name);
-  entry(name, "float", *value ? fmt::format("{:g}", **value) : "None", words(range), doc);
-  if (!given.is_none()) *value = numberFrom(name, given, range);
+void Keywords::takeChoice(const Setting& s, const std::string& doc, const SettingChoice& choice) {
+  const py::object given = take(s);
+  const std::string all = fmt::format("'{}'", fmt::join(choice.words, "', '"));
+  entry(s.name, all, s.fallback.empty() ? "'" + choice.words[choice.now()] + "'" : "None", "", doc);
+  if (given.is_none()) return;
+  if (!py::isinstance<py::str>(given)) wrongType(s.name, "expects one of " + all);
+  const std::string text = textFrom(given, s.name);
+  const auto found = std::find(choice.words.begin(), choice.words.end(), text);
+  if (found == choice.words.end())
+    throw SettingError(s.name, fmt::format("must be one of {}, got '{}'", all, text));
+  choice.take(static_cast<std::size_t>(found - choice.words.begin()));
 }
 
-void Keywords::whole(const char* name, std::int64_t* value, Range range, const char* doc) {
-  const py::object given = take(name);
-  entry(name, "int", fmt::format("{}", *value), words(range), doc);
-  if (!given.is_none()) *value = wholeFrom(name, given, range);
-}
-
-void Keywords::whole(const char* name, std::optional<std::int64_t>* value, Range range,
-                     const char* doc) {
-  const py::object given = take(name);
-  entry(name, "int", *value ? fmt::format("{}", **value) : "None", words(range), doc);
-  if (!given.is_none()) *value = wholeFrom(name, given, range);
+void Keywords::setting(const Setting& s) {
+  const auto shown = [](const std::string& name) { return "`" + name + "`"; };
+  std::string doc = withNames(s.help, shown);
+  if (!s.unit.empty()) doc += " (" + s.unit + ")";
+  if (!s.fallback.empty()) doc += "; " + withNames(s.fallback, shown) + " if not given";
+  std::visit(
+      [&](const auto& value) {
+        using Value = std::decay_t<decltype(value)>;
+        if constexpr (std::is_same_v<Value, SettingChoice>) {
+          takeChoice(s, doc, value);
+        } else if constexpr (std::is_same_v<Value, bool*>) {
+          flag(s.name.c_str(), value, ((*value ? "False: " : "") + doc).c_str());
+        } else if constexpr (std::is_arithmetic_v<std::remove_pointer_t<Value>>) {
+          using Number = std::remove_pointer_t<Value>;
+          takeNumber<Number>(s, doc, value, [&](Number number) { *value = number; });
+        } else {
+          using Number = typename std::remove_pointer_t<Value>::value_type;
+          takeNumber<Number>(s, doc, *value ? &**value : nullptr,
+                             [&](Number number) { *value = number; });
+        }
+      },
+      s.value);
 }
 
 void Keywords::flag(const char* name, bool* value, const char* doc) {
@@ -148,7 +181,7 @@ void Keywords::bytes(const char* name, std::uint64_t* value, const char* doc) {
   else if (py::isinstance<py::str>(given))
     *value = parseBytes(name, textFrom(given, name));
   else
-    *value = static_cast<std::uint64_t>(wholeFrom(name, given, {1, 9e18}));
+    *value = numberFrom(Setting(name, "N", value, doc).from(1, 9e18), given, std::uint64_t{});
   if (*value == 0) throw SettingError(name, "must be above 0; write for example '4GB'");
 }
 
@@ -156,20 +189,6 @@ void Keywords::object(const char* name, py::object* value, const char* type, con
   const py::object given = take(name);
   entry(name, type, "None", "", doc);
   if (sets_) *value = given;
-}
-
-void Keywords::oneOf(const char* name, const std::vector<std::string>& choices, std::size_t* value,
-                     const char* doc) {
-  const py::object given = take(name);
-  const std::string all = fmt::format("'{}'", fmt::join(choices, "', '"));
-  entry(name, all, "'" + choices[*value] + "'", "", doc);
-  if (given.is_none()) return;
-  if (!py::isinstance<py::str>(given)) wrongType(name, "expects one of " + all);
-  const std::string text = textFrom(given, name);
-  const auto found = std::find(choices.begin(), choices.end(), text);
-  if (found == choices.end())
-    throw SettingError(name, fmt::format("must be one of {}, got '{}'", all, text));
-  *value = static_cast<std::size_t>(found - choices.begin());
 }
 
 void Keywords::finish() const {

@@ -5,20 +5,15 @@
 
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bind/call.h"
+#include "innermap/core/setting.h"
 
 namespace innermap::python {
-
-struct Range {
-  double least = -std::numeric_limits<double>::infinity();
-  double most = std::numeric_limits<double>::infinity();
-};
 
 // A function's Options struct has `void describe(Keywords& k)`, which names all its fields. Values
 // that are there when it is called are the defaults; None always means the default.
@@ -28,20 +23,18 @@ class Keywords {
   Keywords(std::string function, pybind11::dict given)
       : function_(std::move(function)), given_(std::move(given)), sets_(true) {}
 
-  void number(const char* name, double* value, Range range, const char* doc);
-  void number(const char* name, std::optional<double>* value, Range range, const char* doc);
-  template <class Integer>
-  void count(const char* name, Integer* value, Range range, const char* doc) {
-    std::int64_t number = static_cast<std::int64_t>(*value);
-    whole(name, &number, range, doc);
-    *value = static_cast<Integer>(number);
+  // Settings of the library, as they are described beside their structs.
+  void settings(const std::vector<Setting>& described) {
+    for (const Setting& s : described) setting(s);
   }
-  template <class Integer>
-  void count(const char* name, std::optional<Integer>* value, Range range, const char* doc) {
-    std::optional<std::int64_t> number;
-    if (*value) number = static_cast<std::int64_t>(**value);
-    whole(name, &number, range, doc);
-    if (number) *value = static_cast<Integer>(*number);
+  void setting(const Setting& described);
+
+  // Arguments that are no setting of the library. Value: of those that a Setting may have.
+  template <class Value>
+  void number(const char* name, Value* value, const NumberRange& range, const char* doc) {
+    Setting s(name, "", value, doc);
+    s.range = range;
+    setting(s);
   }
   void flag(const char* name, bool* value, const char* doc);
   void flag(const char* name, std::optional<bool>* value, const char* doc);
@@ -51,16 +44,9 @@ class Keywords {
   void object(const char* name, pybind11::object* value, const char* type, const char* doc);
   // One of some words.
   template <class Enum>
-  void choice(const char* name, Enum* value, const std::vector<std::pair<const char*, Enum>>& words,
+  void choice(const char* name, Enum* value, const std::vector<std::pair<std::string, Enum>>& words,
               const char* doc) {
-    std::vector<std::string> names;
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < words.size(); ++i) {
-      names.emplace_back(words[i].first);
-      if (words[i].second == *value) at = i;
-    }
-    oneOf(name, names, &at, doc);
-    *value = words[at].second;
+    setting({name, "", choiceOf<Enum>(value, words), doc});
   }
 
   // Once all are named: throws TypeError for a keyword that is none of them.
@@ -70,13 +56,14 @@ class Keywords {
   std::string docs() const;       // a paragraph each
 
  private:
-  pybind11::object take(const char* name);  // None if not given
-  void entry(const char* name, const std::string& type, const std::string& literal,
-             const std::string& range, const char* doc);
-  void whole(const char* name, std::int64_t* value, Range range, const char* doc);
-  void whole(const char* name, std::optional<std::int64_t>* value, Range range, const char* doc);
-  void oneOf(const char* name, const std::vector<std::string>& words, std::size_t* value,
-             const char* doc);
+  pybind11::object take(const std::string& name);  // None if not given
+  pybind11::object take(const Setting& s);         // by either of its names
+  void entry(const std::string& name, const std::string& type, const std::string& literal,
+             const std::string& range, const std::string& doc);
+  template <class Number>
+  void takeNumber(const Setting& s, const std::string& doc, const Number* now,
+                  const std::function<void(Number)>& set);
+  void takeChoice(const Setting& s, const std::string& doc, const SettingChoice& choice);
 
   std::string function_;
   pybind11::dict given_;

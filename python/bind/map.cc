@@ -90,12 +90,6 @@ std::vector<std::string> warningsOf(const PyMap& map) {
   return map.fit ? map.fit->warnings : map.mapped->boundary.warnings;
 }
 
-py::object toleranceMet(const PyMap& map) {
-  for (const auto& [key, value] : map.mapped->facts)
-    if (key == "tolerance_met") return py::bool_(value == "true");
-  return py::none();
-}
-
 Mesh targetOf(const PyMap& map) { return map.mapped->boundary.targetMesh; }
 
 }  // namespace
@@ -158,9 +152,10 @@ void bindMap(py::module_& m) {
          "boundary_error",
          [](const PyMap& self) { return self.fit ? self.fit->error : errorOf(self.mapped->facts); },
          "The certificate, a BoundaryError: fractions of the target's diagonal.")
-      .def_property_readonly("tolerance_met", &toleranceMet,
-                             "Whether 99% of the boundary is within the tolerance; None where the "
-                             "map was not fitted to one.")
+      .def_property_readonly(
+          "tolerance_met", [](const PyMap& self) { return toleranceMet(self.mapped->facts); },
+          "Whether 99% of the boundary is within the tolerance; None where the "
+          "map was not fitted to one.")
       .def_property_readonly(
           "statement",
           [](const PyMap& self) { return injectivityStatement(self.mapped->injectivity); },

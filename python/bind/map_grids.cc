@@ -18,20 +18,15 @@ namespace innermap::python {
 namespace {
 
 struct MapGridOptions {
-  GridOptions grid;
+  LatticeChoice grid;
   LameConstants lame;
   RepairFolds repair = RepairFolds::automatic;
   CallOptions call;
 
   void describe(Keywords& k) {
-    grid.describe(k);
-    k.number("lame_lambda", &lame.lambda, {0, 1e12}, "first elastic constant");
-    k.number("lame_mu", &lame.mu, {0, 1e12}, "second elastic constant (shear)");
-    k.choice<RepairFolds>(
-        "repair", &repair,
-        {{"auto", RepairFolds::automatic}, {"on", RepairFolds::on}, {"off", RepairFolds::off}},
-        "take folds out of the grids, where `repaired` says how far voxels were "
-        "moved; auto: where at most 0.5% of the voxels is folded");
+    k.settings(innermap::describe(grid));
+    k.settings(innermap::describe(lame));
+    k.setting(repairSetting(&repair));
     call.describe(k);
   }
 };
@@ -40,7 +35,7 @@ struct WriteMapOptions : MapGridOptions {
   NamingScheme names = NamingScheme::innermap;
 
   void describe(Keywords& k) {
-    describeNames(k, &names);
+    k.setting(namesSetting(&names));
     MapGridOptions::describe(k);
   }
 };
@@ -53,7 +48,7 @@ void requireGridMemory(const PyMap& map, const MapGridSettings& settings, const 
 
 SolidGrids gridsOf(const PyMap& map, const MapGridOptions& o) {
   return call(o.call, [&]() {
-    auto settings = o.grid.with(MapGridSettings{});
+    auto settings = o.grid.in(MapGridSettings{});
     settings.lame = o.lame;
     settings.repair = o.repair;
     requireGridMemory(map, settings, o.call);
@@ -91,19 +86,19 @@ struct Folds {
 };
 
 struct FoldOptions {
-  GridOptions grid;
+  LatticeChoice grid;
   CallOptions call;
 
   void describe(Keywords& k) {
-    grid.describe(k);
+    k.settings(innermap::describe(grid));
     call.describe(k);
   }
 };
 
 Folds foldsOf(const PyMap& map, const FoldOptions& o) {
   const MappedSolid& mapped = *map.mapped;
-  requireGridMemory(map, o.grid.with(MapGridSettings{}), o.call);
-  const auto levelSet = makeLevelSet(mapped.solid(), o.grid.with(LevelSetSettings{}));
+  requireGridMemory(map, o.grid.in(MapGridSettings{}), o.call);
+  const auto levelSet = makeLevelSet(mapped.solid(), o.grid.in(LevelSetSettings{}));
   EvaluateSettings settings;
   settings.map = settings.harmonicEnergy = settings.deformationEnergy = false;
   const MapGrids grids = evaluateMap(mapped.map, mapped.solid(), *levelSet, settings);

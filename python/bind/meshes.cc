@@ -128,14 +128,8 @@ Mesh takeTarget(const Arguments& arguments, std::size_t& at, const Mesh& source)
   return out;
 }
 
-void describeLayout(Keywords& k, bool* close, int* resolution, std::optional<int>* genus) {
+void describeClose(Keywords& k, bool* close) {
   k.flag("close", close, "no longer needed: the holes of an open mesh are closed by caps");
-  k.count("surface_resolution", resolution, {0, 1024},
-          "cells across of the outer surface, which is taken for a mesh that runs through itself, "
-          "overlaps or is not manifold, 8 or more; 0: 80, more for thin solids");
-  k.count("genus", genus, {0, 1000},
-          "handles of that outer surface; None: the mesh's own, or of several pieces those that "
-          "stay at other resolutions");
 }
 
 void bindMeshes(py::module_& m) {

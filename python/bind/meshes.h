@@ -14,8 +14,8 @@ void bindMeshes(pybind11::module_& m);
 void bindCheck(pybind11::module_& m);
 void bindSphere(pybind11::module_& m);
 
-// `surface_resolution=` and `genus=` of what is laid out, and `close=`, which nothing needs.
-void describeLayout(Keywords& k, bool* close, int* resolution, std::optional<int>* genus);
+// `close=` of what is laid out, which nothing needs.
+void describeClose(Keywords& k, bool* close);
 
 // One of
 //   V, F             two arguments, (n, 3) and (m, 3)

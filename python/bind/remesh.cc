@@ -24,14 +24,7 @@ struct RemeshOptions {
     k.object("surface", &surface, "mesh",
              "that the boundary goes onto, the solid's own but for how it is cut into triangles; "
              "if not given that of the map");
-    k.flag("back", &settings.back, "the cells fill the map's target and are brought to its source");
-    k.flag("keep_connectivity", &settings.keepConnectivity,
-           "move vertices alone: cells and their numbers stay");
-    k.number("angle", &settings.angle, {1, 30},
-             "tetrahedra with a dihedral angle below it, degrees, or as near to 180, are improved");
-    k.count("coarse", &settings.coarse, {0, 256},
-            "cells along the longest side of the mesh that is repaired first where many cells are "
-            "inverted, or with back stands for the inverse map; 0: none, or 64 with back");
+    k.settings(innermap::describe(settings));
     k.object("vectors", &vectors, "list[str]",
              "fields that are vectors, turned by the Jacobian, beside those that a file says are");
     k.object("normals", &normals, "list[str]",
@@ -80,10 +73,7 @@ struct CompareOptions {
     k.object("tolerances", &tolerances, "list[float]",
              "for a map: tolerances of the fits of charges, fractions of the target's diagonal; "
              "4e-3, 1e-3, 4e-4 if not given");
-    k.number("reference", &settings.referenceTolerance, {1e-12, 1},
-             "tolerance of the fit that maps are compared with");
-    k.count("samples", &settings.samples, {100, 1e6}, "points inside where errors are measured");
-    k.count("seed", &settings.seed, {0, 1e15}, "of all random choices");
+    k.settings(innermap::describe(settings));
     call.describe(k);
   }
 };

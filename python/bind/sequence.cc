@@ -20,7 +20,7 @@ namespace {
 
 struct SequenceOptions {
   FittingOptions fitting;
-  GridOptions grid;
+  LatticeChoice grid;
   LameConstants lame;
   py::object output, grids;
   NamingScheme names = NamingScheme::innermap;
@@ -33,10 +33,9 @@ struct SequenceOptions {
              "written to output: of surface, density, map, jacobian, harmonic_energy, "
              "deformation_energy; the two energies if not given");
     fitting.describe(k);
-    grid.describe(k);
-    k.number("lame_lambda", &lame.lambda, {0, 1e12}, "first elastic constant");
-    k.number("lame_mu", &lame.mu, {0, 1e12}, "second elastic constant (shear)");
-    describeNames(k, &names);
+    k.settings(innermap::describe(grid));
+    k.settings(innermap::describe(lame));
+    k.setting(namesSetting(&names));
     call.describe(k);
   }
 };
@@ -63,7 +62,7 @@ py::object sequence(const Arguments& a, SequenceOptions& o) {
   if (pattern && names.empty()) names = {"harmonic_energy", "deformation_energy"};
   FrameTable table;
   runCall(o.call, [&]() {
-    auto settings = o.grid.with(MapGridSettings{});
+    auto settings = o.grid.in(MapGridSettings{});
     settings.lame = o.lame;
     const FrameFitter fitter = fitterOf(rest, o.fitting, o.call, 0);
     const FrameEvaluator evaluator(fitter, names, settings);

@@ -22,36 +22,15 @@ struct TextureOptions {
   SolidTextureSettings texture;
   TextureImageSettings images;
   py::object colours;
-  GridOptions grid;
+  LatticeChoice grid;
   CallOptions call;
 
   void describe(Keywords& k) {
     k.object("colours", &colours, "array (n, 3)",
              "of the vertices, in place of those of the mesh's file; without an image");
-    k.choice<TextureMode>(
-        "mode", &texture.mode,
-        {{"uv", TextureMode::coordinates}, {"colour", TextureMode::imageColours}},
-        "uv: the texture coordinates are continued and the image is looked up at each voxel's; "
-        "colour: the colours themselves are");
-    k.choice<TextureSeams>("seams", &texture.seams,
-                           {{"keep", TextureSeams::keep}, {"blend", TextureSeams::blend}},
-                           "with mode 'uv'; blend: coordinates of each chart by themselves, and "
-                           "their colours are mixed");
-    k.choice<ColourSpace>("colour_space", &images.colourSpace,
-                          {{"auto", ColourSpace::automatic},
-                           {"linear", ColourSpace::linear},
-                           {"srgb", ColourSpace::srgb}},
-                          "of the image, or of the vertices' colours, where auto is linear");
-    k.choice<Wrap>("wrap", &images.wrap,
-                   {{"repeat", Wrap::repeat},
-                    {"clamp", Wrap::clamp},
-                    {"mirror", Wrap::mirror},
-                    {"black", Wrap::black}},
-                   "what stands beyond the image's borders");
-    k.count("sources", &texture.sources, {0, 1000000},
-            "charges; 0: one every two voxels of the surface, 1000 to 50000");
-    k.count("seed", &texture.seed, {0, 1e15}, "of all random points");
-    grid.describe(k);
+    k.settings(innermap::describe(texture));
+    k.settings(innermap::describe(images));
+    k.settings(innermap::describe(grid));
     call.describe(k);
   }
 };

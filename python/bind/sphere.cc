@@ -17,7 +17,8 @@ struct SphereOptions {
   CallOptions call;
 
   void describe(Keywords& k) {
-    describeLayout(k, &close, &settings.outerResolution, &settings.handles);
+    k.settings(innermap::describe(settings));
+    describeClose(k, &close);
     call.describe(k);
   }
 };

@@ -21,7 +21,7 @@ struct StudyOptions {
 
   void describe(Keywords& k) {
     k.object(
-        "sources", &sources, "Sequence[int]",
+        "charges", &sources, "Sequence[int]",
         "numbers of charges, 16 to 20000; 125 to 2000 if not given; an empty list: not varied");
     k.object("points", &collocation, "Sequence[float]",
              "boundary points a charge, 1 to 100; 1 to 6 if not given");
@@ -30,23 +30,7 @@ struct StudyOptions {
              "given");
     k.object("radius_ratios", &radiusRatios, "Sequence[float]",
              "of charges on a sphere, 1 to 100; 1.1 to 5 if not given");
-    k.count("base_sources", &study.baseSources, {16, 20000}, "charges while others are varied");
-    k.number("base_points", &study.baseCollocation, {1, 100}, "likewise points a charge");
-    k.number("base_distance", &study.baseDistance, {1e-4, 2},
-             "likewise the distance; a spacing of the charges if not given");
-    k.number("base_radius_ratio", &study.baseRadiusRatio, {1, 100}, "likewise the radius");
-    k.choice<StudyGrid>(
-        "grid", &study.grid,
-        {{"none", StudyGrid::none}, {"pairs", StudyGrid::pairs}, {"full", StudyGrid::full}},
-        "beside each list alone: nothing, products of two lists, of all");
-    k.choice<Interpolation>("interpolation", &study.interpolation,
-                            {{"linear", Interpolation::linear}, {"smooth", Interpolation::smooth}},
-                            "of the boundary between vertices");
-    k.number("regularization", &study.regularization, {0, 1},
-             "relative; chosen for each run if not given");
-    k.count("resolution", &study.resolution, {4, 1024},
-            "voxels that energies and folds are taken from");
-    k.count("seed", &study.seed, {0, 1e15}, "of all random points");
+    k.settings(innermap::describe(study));
     k.object("folder", &folder, "path", "where finished runs are kept, to be taken from there");
     call.describe(k);
     call.describeTime(k, "seconds after which no run begins; no limit if not given");
@@ -90,7 +74,7 @@ py::object study(const Arguments& a, StudyOptions& o) {
   const Mesh source = takeMesh(a, at, "source");
   if (at + 1 != a.size()) throw py::type_error("study() takes a source and a target");
   const Mesh target = takeTarget(a, at, source);
-  takeNumbers(o.sources, "sources", o.study.sources);
+  takeNumbers(o.sources, "charges", o.study.sources);
   takeNumbers(o.collocation, "points", o.study.collocation);
   takeNumbers(o.distances, "distances", o.study.distances);
   takeNumbers(o.radiusRatios, "radius_ratios", o.study.radiusRatios);

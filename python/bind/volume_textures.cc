@@ -17,10 +17,6 @@ namespace py = pybind11;
 namespace innermap::python {
 namespace {
 
-const std::vector<std::pair<const char*, VolumeLayout>> kLayouts{{"atlas", VolumeLayout::atlas},
-                                                                 {"slices", VolumeLayout::slices},
-                                                                 {"parts", VolumeLayout::parts}};
-
 std::pair<int, int> tilesFrom(const py::object& object) {
   const auto [columns, rows] = pairFrom(object, "tiles");
   if (!(columns >= 1 && columns <= 65536 && rows >= 1 && rows <= 65536))
@@ -30,30 +26,13 @@ std::pair<int, int> tilesFrom(const py::object& object) {
 
 struct WriteOptions {
   VolumeTextureSettings texture;
-  std::string axis = "z";
   py::object names, tiles;
   CallOptions call;
 
   void describe(Keywords& k) {
-    k.choice<VolumeLayout>("layout", &texture.layout, kLayouts,
-                           "atlas: one picture of tiles; slices: a file each, #### in the path for "
-                           "the number; parts: one multi-part file");
+    k.settings(innermap::describe(texture));
     k.object("names", &names, "str or Sequence[str]", "of the grids; all if not given");
-    k.text("axis", &axis, "'x', 'y' or 'z': across the slices");
     k.flag("rows_up", &texture.rowsUp, "the first row of a slice has the largest index");
-    k.choice<VolumeChannels>("channels", &texture.channels,
-                             {{"auto", VolumeChannels::automatic},
-                              {"rgba", VolumeChannels::rgba},
-                              {"layers", VolumeChannels::layers}},
-                             "how channels are called; auto: rgba where there are four at most");
-    k.flag("half", &texture.half, "half floats: half the size, three digits");
-    k.flag("active", &texture.active, "also NAME.active: 1 where a voxel is active");
-    k.count("resolution", &texture.resolution, {0, 8192},
-            "resample to so many voxels along the longest side; 0: the grids' own");
-    k.count("pad", &texture.pad, {0, 4096}, "voxels about the active box");
-    k.flag("cube", &texture.cube, "widen the box to a cube");
-    k.flag("power_of_two", &texture.powerOfTwo,
-           "widen the box so that all sides are powers of two");
     k.object("tiles", &tiles, "tuple[int, int]",
              "columns and rows of the atlas; near a square if not given");
     call.describe(k);
@@ -63,7 +42,6 @@ struct WriteOptions {
 py::object write(const Arguments& a, WriteOptions& o) {
   const std::string path = pathFrom(a[0], "path");
   const openvdb::GridPtrVec grids = takeGrids(a[1], "grids", textsFrom(o.names, "names"), o.call);
-  o.texture.axis = parseAxis("axis", o.axis);
   if (!o.tiles.is_none()) o.texture.tiles = tilesFrom(o.tiles);
   const VolumeTextureResult made =
       call(o.call, [&]() { return writeVolumeTexture(path, grids, o.texture); });
@@ -82,25 +60,19 @@ py::object write(const Arguments& a, WriteOptions& o) {
 
 struct ReadOptions {
   VolumeTextureReadSettings texture;
-  py::object names, layout, axis, tiles, lowerCorner;
+  py::object names, tiles, lowerCorner;
   CallOptions call;
 
   void describe(Keywords& k) {
     k.object(
         "names", &names, "str or Sequence[str]",
         "of the grids to read; of a file that does not say what its channels are, their names");
-    k.object("layout", &layout, "str", "'atlas', 'slices' or 'parts'; from the file if not given");
-    k.object("axis", &axis, "str", "'x', 'y' or 'z'; from the file if not given");
+    k.settings(innermap::describe(texture));
     k.object("tiles", &tiles, "tuple[int, int]",
              "columns and rows of an atlas; from the file if not given");
-    k.count("slices", &texture.slices, {1, 65536}, "when fewer than tiles, parts or files");
     k.flag("rows_up", &texture.rowsUp, "see write_volume_texture(); from the file if not given");
-    k.number("voxel_size", &texture.voxelSize, {1e-12, 1e12},
-             "edge of a voxel, world units, in place of the file's matrix");
     k.object("lower_corner", &lowerCorner, "array (3,)",
              "of the box, world units, with voxel_size; 0, 0, 0 if not given");
-    k.number("background", &texture.background, {-1e30, 1e30},
-             "of all grids; from the file if not given");
     call.describe(k);
   }
 };
@@ -109,8 +81,6 @@ py::object read(const Arguments& a, ReadOptions& o) {
   const std::string path = pathFrom(a[0], "path");
   VolumeTextureReadSettings& s = o.texture;
   s.names = textsFrom(o.names, "names");
-  if (!o.layout.is_none()) s.layout = parseVolumeLayout("layout", textOf(o.layout, "layout"));
-  if (!o.axis.is_none()) s.axis = parseAxis("axis", textOf(o.axis, "axis"));
   if (!o.tiles.is_none()) s.tiles = tilesFrom(o.tiles);
   if (!o.lowerCorner.is_none()) {
     if (!s.voxelSize) wrongValue("lower_corner", "has a meaning with voxel_size only");

@@ -142,15 +142,14 @@ struct ReadOptions {
 };
 
 struct VoxelizeOptions {
-  GridOptions grid;
+  LatticeChoice grid;
   LevelSetSettings levelSet;
   bool fog = false, attributes = false;
   CallOptions call;
 
   void describe(Keywords& k) {
-    grid.describe(k);
-    k.number("half_width", &levelSet.halfWidth, {2, 100},
-             "of the band on each side of the surface, voxels");
+    k.settings(innermap::describe(grid));
+    k.settings(innermap::describe(levelSet));
     k.flag("fog", &fog, "also density: 1 inside, 0 outside, shares along the surface");
     k.flag("attributes", &attributes,
            "also texture coordinates (uv) and vertex colours (Cd) of a mesh that was read from a "
@@ -187,11 +186,11 @@ py::object voxelize(const Arguments& a, VoxelizeOptions& o) {
 }
 
 struct DistanceOptions {
-  GridOptions grid;
+  LatticeChoice grid;
   CallOptions call;
 
   void describe(Keywords& k) {
-    grid.describe(k);
+    k.settings(innermap::describe(grid));
     call.describe(k);
   }
 };
@@ -200,7 +199,7 @@ py::object distance(const Arguments& a, DistanceOptions& o) {
   if (!py::isinstance<PyMap>(a[0])) wrongType("map", "expects an innermap.Map");
   const MappedSolid& mapped = *py::cast<const PyMap&>(a[0]).mapped;
   const DistanceTransfer made = call(o.call, [&]() {
-    auto settings = o.grid.with(DistanceTransferSettings{});
+    auto settings = o.grid.in(DistanceTransferSettings{});
     settings.resolution = o.grid.resolution.value_or(0);
     settings.accuracy = sumAccuracy(mapped);
     const Solid target = makeTargetSolid(mapped.boundary);
@@ -221,19 +220,14 @@ py::object distance(const Arguments& a, DistanceOptions& o) {
   return py::make_tuple(gridsObject(source, totals, o.call), gridsObject(target, {}, o.call));
 }
 
-int axisFrom(const std::string& text) { return parseAxis("axis", text); }
-
 struct SliceOptions {
   ExrSliceSettings slices;
-  std::string axis = "z";
   py::object names;
   CallOptions call;
 
   void describe(Keywords& k) {
-    k.text("axis", &axis, "'x', 'y' or 'z': across the slices");
-    k.count("count", &slices.count, {1, 65536}, "slices, evenly spaced");
+    k.settings(innermap::describe(slices));
     k.object("names", &names, "str or Sequence[str]", "of the grids; all if not given");
-    k.flag("half", &slices.half, "half floats: half the size, three digits");
     call.describe(k);
   }
 };
@@ -241,7 +235,6 @@ struct SliceOptions {
 py::object writeSlices(const Arguments& a, SliceOptions& o) {
   const std::string path = pathFrom(a[0], "path");
   const openvdb::GridPtrVec given = takeGrids(a[1], "grids", textsFrom(o.names, "names"), o.call);
-  o.slices.axis = axisFrom(o.axis);
   const ExrSliceResult made = call(o.call, [&]() {
     const ExrSliceSettings settings = o.slices;
     requireMemory(o.call, "slices", exrSliceMemory(given, settings), "slice fewer grids");
@@ -257,22 +250,16 @@ py::object writeSlices(const Arguments& a, SliceOptions& o) {
 
 struct SectionOptions {
   SectionSettings section;
-  std::string axis = "z";
   py::object grid, range;
   CallOptions call;
 
   void describe(Keywords& k) {
     k.object("grid", &grid, "str",
              "that is shown: jacobian, else the first energy, map, density or surface there is");
-    k.text("axis", &axis, "'x', 'y' or 'z': across the cut");
-    k.number("at", &section.at, {0, 1}, "where it cuts, a fraction of the box along the axis");
-    k.number("position", &section.position, {-1e12, 1e12}, "the same in world units");
+    k.settings(innermap::describe(section));
     k.object("range", &range, "tuple[float, float]",
              "values at the ends of the colours; all but the outermost 0.5% on each side if not "
              "given");
-    k.flag("colour", &section.colour,
-           "a vector grid's values as red, green and blue; by default of Cd");
-    k.count("pixels", &section.pixels, {64, 8192}, "longer side of the section");
     call.describe(k);
   }
 };
@@ -280,7 +267,6 @@ struct SectionOptions {
 py::object writeSection(const Arguments& a, SectionOptions& o) {
   const std::string path = pathFrom(a[0], "path");
   const openvdb::GridPtrVec given = takeGrids(a[1], "grids", {}, o.call);
-  o.section.axis = axisFrom(o.axis);
   const auto shown = textsFrom(o.grid, "grid");
   if (!shown.empty()) o.section.grid = shown.front();
   if (!o.range.is_none()) o.section.range = pairFrom(o.range, "range");

@@ -220,9 +220,9 @@ class Correspondence:
 
 def correspond(
     *meshes: Any, landmarks: Union[Sequence[Tuple[Place, Place]], Path, None] = None,
-    close: bool = False, surface_resolution: int = 0, genus: Optional[int] = None,
     aligned: bool = False, candidates: int = 3, choose: int = 1, mirror: bool = False,
-    refine: bool = True, subdivide: float = 0, seed: int = 1, progress: Optional[Progress] = None,
+    refine: bool = True, subdivide: float = 0, surface_resolution: Optional[int] = None,
+    genus: Optional[int] = None, close: bool = False, seed: int = 1, progress: Optional[Progress] = None,
     max_memory: Union[int, str, None] = None, threads: int = 0,
     max_time: Optional[float] = None) -> Correspondence: ...
 
@@ -231,24 +231,23 @@ def load_correspondence(
     max_memory: Union[int, str, None] = None, threads: int = 0) -> Correspondence: ...
 
 def sphere(
-    *mesh: AnyMesh, close: bool = False, surface_resolution: int = 0,
-    genus: Optional[int] = None, progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None, threads: int = 0
-) -> Tuple[Mesh, Dict[str, Any]]: ...
+    *mesh: AnyMesh, surface_resolution: Optional[int] = None, genus: Optional[int] = None,
+    close: bool = False, progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+    threads: int = 0) -> Tuple[Mesh, Dict[str, Any]]: ...
 
 def fit(
-    *meshes: Any, tolerance: Optional[float] = None, max_sources: int = 100000,
-    one_to_one: Literal['auto', 'on', 'off'] = 'auto', max_steps: int = 16,
-    interpolation: Literal['auto', 'linear', 'smooth'] = 'auto', seed: int = 1,
-    sources: Optional[int] = None, collocation: Optional[int] = None,
+    *meshes: Any, tolerance: Optional[float] = None, charges: Optional[int] = None,
+    collocation: Optional[int] = None, max_charges: int = 100000,
+    interpolation: Literal['auto', 'linear', 'smooth'] = 'auto',
+    one_to_one: Literal['auto', 'on', 'off'] = 'auto', max_steps: int = 16, seed: int = 1,
     distance: Optional[float] = None, radius_ratio: Optional[float] = None,
     solver: Literal['auto', 'dense', 'iterative'] = 'auto',
     method: Literal['tikhonov', 'tsvd'] = 'tikhonov', regularization: Optional[float] = None,
-    landmarks: Union[Sequence[Tuple[Place, Place]], Path, None] = None, close: bool = False,
-    surface_resolution: int = 0, genus: Optional[int] = None, aligned: bool = False,
+    landmarks: Union[Sequence[Tuple[Place, Place]], Path, None] = None, aligned: bool = False,
     candidates: int = 3, choose: int = 1, mirror: bool = False, refine: bool = True,
-    subdivide: float = 0.005, progress: Optional[Progress] = None,
-    max_memory: Union[int, str, None] = None, threads: int = 0,
-    max_time: Optional[float] = None) -> Map: ...
+    subdivide: float = 0.005, surface_resolution: Optional[int] = None, genus: Optional[int] = None,
+    close: bool = False, progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+    threads: int = 0, max_time: Optional[float] = None) -> Map: ...
 
 class Field:
     def __call__(
@@ -259,9 +258,9 @@ class Field:
         max_memory: Union[int, str, None] = None, threads: int = 0) -> Floats: ...
     def evaluate(
         self, *, resolution: Optional[int] = None, voxel_size: Optional[float] = None,
-        values: bool = True, gradients: bool = True, directions: bool = True,
-        magnitudes: bool = True, progress: Optional[Progress] = None,
-        max_memory: Union[int, str, None] = None, threads: int = 0) -> Grids: ...
+        values: bool = True, gradients: bool = True, directions: bool = True, magnitudes: bool = True,
+        progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+        threads: int = 0) -> Grids: ...
     def write_vdb(
         self, path: Path, *, names: Literal['innermap', 'blender', 'houdini'] = 'innermap',
         resolution: Optional[int] = None, voxel_size: Optional[float] = None, values: bool = True,
@@ -298,13 +297,15 @@ def harmonic(
     fix: Union[GroupValues, Triangles, None] = None,
     flux: Union[GroupValues, ArrayLike, Callable[[Floats, Floats], ArrayLike], None] = None,
     groups: Optional[Mapping[str, ArrayLike]] = None, names: Optional[Sequence[str]] = None,
-    tolerance: float = 0.001, max_sources: int = 100000, crease_angle: float = 30, seed: int = 1,
-    progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None, threads: int = 0) -> Field: ...
+    tolerance: float = 0.001, max_charges: int = 100000, seed: int = 1, crease_angle: float = 30,
+    progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+    threads: int = 0) -> Field: ...
 
 def weights(
     *mesh_and_groups: Any, groups: Union[Mapping[str, ArrayLike], Sequence[str], None] = None,
-    tolerance: float = 0.01, max_sources: int = 100000, crease_angle: float = 30, seed: int = 1,
-    progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None, threads: int = 0) -> Field: ...
+    tolerance: float = 0.01, max_charges: int = 100000, seed: int = 1, crease_angle: float = 30,
+    progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+    threads: int = 0) -> Field: ...
 
 def load(
     path: Path, *, progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
@@ -333,138 +334,161 @@ class Cells:
     def write(self, path: Path) -> List[str]: ...
 
 def read_cells(
-    path: Path, *, progress: Optional[Progress] = None, max_memory: Union[int, str, None] =
-    None, threads: int = 0) -> Cells: ...
+    path: Path, *, progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+    threads: int = 0) -> Cells: ...
 
 def tetrahedralize(
-    *mesh: AnyMesh, resolution: int = 64, edge: Optional[float] = None, features:
-    Optional[float] = None, keep_topology: bool = True, progress: Optional[Progress] = None,
+    *mesh: AnyMesh, resolution: int = 64, edge: Optional[float] = None, features: Optional[float] = None,
+    keep_topology: bool = True, progress: Optional[Progress] = None,
     max_memory: Union[int, str, None] = None, threads: int = 0) -> Cells: ...
 
 def hexahedralize(
-    *mesh: AnyMesh, pieces: int = 2, seed: int = 1, blocks: int = 0, close: bool = False,
-    surface_resolution: int = 0, genus: Optional[int] = None,
-    progress: Optional[Progress] = None, max_memory: Union[int,
-    str, None] = None, threads: int = 0,
-    max_time: Optional[float] = None) -> Cells: ...
+    *mesh: AnyMesh, pieces: int = 2, feature_angle: float = 30, seed: int = 1,
+    blocks: Optional[int] = None, surface_resolution: Optional[int] = None, genus: Optional[int] = None,
+    close: bool = False, progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+    threads: int = 0, max_time: Optional[float] = None) -> Cells: ...
 
 def polycube(
-    *mesh: AnyMesh, pieces: Optional[int] = None, blocks: int = 0, close: bool = False,
-    surface_resolution: int = 0, genus: Optional[int] = None,
-    progress: Optional[Progress] = None, max_memory: Union[int,
-    str, None] = None, threads: int = 0) -> Tuple[Mesh, Dict[str, Any]]: ...
+    *mesh: AnyMesh, pieces: Optional[int] = None, blocks: Optional[int] = None,
+    surface_resolution: Optional[int] = None, genus: Optional[int] = None, close: bool = False,
+    progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+    threads: int = 0) -> Tuple[Mesh, Dict[str, Any]]: ...
 
 def remesh(
     map: Map, cells: AnyCells, *, surface: Optional[AnyMesh] = None, back: bool = False,
-    keep_connectivity: bool = False, angle: int = 10, coarse: int = 32, vectors: Union[str,
-    Sequence[str], None] = None, normals: Union[str, Sequence[str], None] = None, progress:
-    Optional[Progress] = None, max_memory: Union[int, str, None] = None, threads: int = 0,
+    keep_connectivity: bool = False, angle: float = 10, coarse: int = 32,
+    vectors: Union[str, Sequence[str], None] = None, normals: Union[str, Sequence[str], None] = None,
+    progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None, threads: int = 0,
     max_time: Optional[float] = None) -> Cells: ...
 
 def compare_fem(
-    *meshes: Any, resolutions: Optional[Sequence[int]] = None, charges: Optional[Sequence[int]]
-    = None, tolerances: Optional[Sequence[float]] = None, reference: float = 0.0002, samples:
-    int = 20000, seed: int = 1, progress: Optional[Progress] = None, max_memory: Union[int, str,
-    None] = None, threads: int = 0) -> Dict[str, Any]: ...
+    *meshes: Any, resolutions: Optional[Sequence[int]] = None, charges: Optional[Sequence[int]] = None,
+    tolerances: Optional[Sequence[float]] = None, reference: float = 0.0002, samples: int = 20000,
+    seed: int = 1, progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+    threads: int = 0) -> Dict[str, Any]: ...
 
 def push(
-    map: Map, inside: Any, path: Optional[Path] = None, *, jacobian: bool = False, through:
-    Optional[AnyCells] = None, subdivide: float = 0, grids: Union[str, Sequence[str], None] =
-    None, densities: Union[bool, str, Sequence[str], None] = None, stresses: Union[str,
-    Sequence[str], None] = None, strains: Union[str, Sequence[str], None] = None, density_limit:
-    Optional[float] = None, sampling: str = 'linear', outside: float = 0, fade_to: Union[str,
-    ArrayLike, None] = None, vectors: Union[str, Sequence[str], None] = None, normals:
-    Union[str, Sequence[str], None] = None, resolution: Optional[int] = None, voxel_size:
-    Optional[float] = None, names: str = 'innermap', progress: Optional[Progress] = None,
-    max_memory: Union[int, str, None] = None, threads: int = 0) -> Any: ...
+    map: Map, inside: Any, path: Optional[Path]=None, *, jacobian: bool = False,
+    through: Optional[AnyCells] = None, subdivide: float = 0,
+    grids: Union[str, Sequence[str], None] = None,
+    densities: Union[bool, str, Sequence[str], None] = None,
+    stresses: Union[str, Sequence[str], None] = None, strains: Union[str, Sequence[str], None] = None,
+    sampling: Literal['nearest', 'linear', 'quadratic'] = 'linear',
+    density_limit: Optional[float] = None, outside: float = 0,
+    fade_to: Union[str, ArrayLike, None] = None, vectors: Union[str, Sequence[str], None] = None,
+    normals: Union[str, Sequence[str], None] = None, resolution: Optional[int] = None,
+    voxel_size: Optional[float] = None, names: Literal['innermap', 'blender', 'houdini'] = 'innermap',
+    progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+    threads: int = 0) -> Any: ...
 
 def pull(
-    map: Map, inside: Any, path: Optional[Path] = None, *, jacobian: bool = False, through:
-    Optional[AnyCells] = None, subdivide: float = 0, grids: Union[str, Sequence[str], None] =
-    None, densities: Union[bool, str, Sequence[str], None] = None, stresses: Union[str,
-    Sequence[str], None] = None, strains: Union[str, Sequence[str], None] = None, density_limit:
-    Optional[float] = None, sampling: str = 'linear', outside: float = 0, fade_to: Union[str,
-    ArrayLike, None] = None, vectors: Union[str, Sequence[str], None] = None, normals:
-    Union[str, Sequence[str], None] = None, resolution: Optional[int] = None, voxel_size:
-    Optional[float] = None, names: str = 'innermap', progress: Optional[Progress] = None,
-    max_memory: Union[int, str, None] = None, threads: int = 0) -> Any: ...
+    map: Map, inside: Any, path: Optional[Path]=None, *, jacobian: bool = False,
+    through: Optional[AnyCells] = None, subdivide: float = 0,
+    grids: Union[str, Sequence[str], None] = None,
+    densities: Union[bool, str, Sequence[str], None] = None,
+    stresses: Union[str, Sequence[str], None] = None, strains: Union[str, Sequence[str], None] = None,
+    sampling: Literal['nearest', 'linear', 'quadratic'] = 'linear',
+    density_limit: Optional[float] = None, outside: float = 0,
+    fade_to: Union[str, ArrayLike, None] = None, vectors: Union[str, Sequence[str], None] = None,
+    normals: Union[str, Sequence[str], None] = None, resolution: Optional[int] = None,
+    voxel_size: Optional[float] = None, names: Literal['innermap', 'blender', 'houdini'] = 'innermap',
+    progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+    threads: int = 0) -> Any: ...
 
 def deform(
-    source: AnyMesh, inside: Any, frames: Any, output: Optional[Path] = None, *, velocity: bool
-    = False, fps: int = 24, only: Optional[str] = None, sources: int = 8000, collocation:
-    Optional[int] = None, distance: Optional[float] = None, seed: int = 1, grids: Union[str,
-    Sequence[str], None] = None, densities: Union[bool, str, Sequence[str], None] = None,
-    stresses: Union[str, Sequence[str], None] = None, strains: Union[str, Sequence[str], None] =
-    None, density_limit: Optional[float] = None, sampling: str = 'linear', outside: float = 0,
-    fade_to: Union[str, ArrayLike, None] = None, vectors: Union[str, Sequence[str], None] =
-    None, normals: Union[str, Sequence[str], None] = None, resolution: Optional[int] = None,
-    voxel_size: Optional[float] = None, names: str = 'innermap', progress: Optional[Progress] =
-    None, max_memory: Union[int, str, None] = None, threads: int = 0) -> Any: ...
+    source: AnyMesh, inside: Any, frames: Any, output: Optional[Path]=None, *, velocity: bool = False,
+    fps: float = 24, only: Optional[str] = None, charges: int = 8000, collocation: Optional[int] = None,
+    distance: Optional[float] = None, seed: int = 1, grids: Union[str, Sequence[str], None] = None,
+    densities: Union[bool, str, Sequence[str], None] = None,
+    stresses: Union[str, Sequence[str], None] = None, strains: Union[str, Sequence[str], None] = None,
+    sampling: Literal['nearest', 'linear', 'quadratic'] = 'linear',
+    density_limit: Optional[float] = None, outside: float = 0,
+    fade_to: Union[str, ArrayLike, None] = None, vectors: Union[str, Sequence[str], None] = None,
+    normals: Union[str, Sequence[str], None] = None, resolution: Optional[int] = None,
+    voxel_size: Optional[float] = None, names: Literal['innermap', 'blender', 'houdini'] = 'innermap',
+    progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+    threads: int = 0) -> Any: ...
 
 def sequence(
-    source: AnyMesh, frames: Any, *, output: Optional[Path] = None, grids: Union[str,
-    Sequence[str], None] = None, only: Optional[str] = None, sources: int = 8000, collocation:
-    Optional[int] = None, distance: Optional[float] = None, seed: int = 1, resolution:
-    Optional[int] = None, voxel_size: Optional[float] = None, lame_lambda: float = 0.0335,
-    lame_mu: float = 0.0224, names: str = 'innermap', progress: Optional[Progress] = None,
-    max_memory: Union[int, str, None] = None, threads: int = 0) -> Dict[str, Any]: ...
+    source: AnyMesh, frames: Any, *, output: Optional[Path] = None,
+    grids: Union[str, Sequence[str], None] = None, only: Optional[str] = None, charges: int = 8000,
+    collocation: Optional[int] = None, distance: Optional[float] = None, seed: int = 1,
+    resolution: Optional[int] = None, voxel_size: Optional[float] = None, lame_lambda: float = 0.0335,
+    lame_mu: float = 0.0224, names: Literal['innermap', 'blender', 'houdini'] = 'innermap',
+    progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+    threads: int = 0) -> Dict[str, Any]: ...
 
 def grids(
     arrays: Mapping[str, ArrayLike], matrix: ArrayLike, *, background: Optional[float] = None,
-    tolerance: float = 0, level_sets: Union[str, Sequence[str], None] = None, fogs: Union[str,
-    Sequence[str], None] = None, progress: Optional[Progress] = None, max_memory: Union[int,
-    str, None] = None, threads: int = 0) -> Grids: ...
+    tolerance: float = 0, level_sets: Union[str, Sequence[str], None] = None,
+    fogs: Union[str, Sequence[str], None] = None, progress: Optional[Progress] = None,
+    max_memory: Union[int, str, None] = None, threads: int = 0) -> Grids: ...
 
 def read_vdb(
-    path: Path, *, names: Union[str, Sequence[str], None] = None, progress: Optional[Progress] =
-    None, max_memory: Union[int, str, None] = None, threads: int = 0) -> Grids: ...
+    path: Path, *, names: Union[str, Sequence[str], None] = None, progress: Optional[Progress] = None,
+    max_memory: Union[int, str, None] = None, threads: int = 0) -> Grids: ...
 
 def voxelize(
     *mesh: AnyMesh, resolution: Optional[int] = None, voxel_size: Optional[float] = None,
-    half_width: int = 3, fog: bool = False, attributes: bool = False, progress:
-    Optional[Progress] = None, max_memory: Union[int, str, None] = None, threads: int = 0) -> Grids: ...
-
-def transfer_distance(
-    map: Map, *, resolution: Optional[int] = None, voxel_size: Optional[float] = None, progress:
-    Optional[Progress] = None, max_memory: Union[int, str, None] = None, threads: int = 0) -> Tuple[Grids, Grids]: ...
-
-def write_slices(
-    path: Path, grids: Union[Grids, Path], *, axis: str = 'z', count: int = 16, names:
-    Union[str, Sequence[str], None] = None, half: bool = False, progress: Optional[Progress] =
-    None, max_memory: Union[int, str, None] = None, threads: int = 0) -> Dict[str, Any]: ...
-
-def write_section(
-    path: Path, grids: Union[Grids, Path], *, grid: Optional[str] = None, axis: str = 'z', at:
-    float = 0.5, position: Optional[float] = None, range: Optional[Tuple[float, float]] = None,
-    colour: bool = False, pixels: int = 900, progress: Optional[Progress] = None, max_memory:
-    Union[int, str, None] = None, threads: int = 0) -> Dict[str, Any]: ...
-
-def write_volume_texture(
-    path: Path, grids: Union[Grids, Path], *, layout: str = 'atlas', names: Union[str,
-    Sequence[str], None] = None, axis: str = 'z', rows_up: bool = False, channels: str = 'auto',
-    half: bool = False, active: bool = False, resolution: int = 0, pad: int = 0, cube: bool =
-    False, power_of_two: bool = False, tiles: Optional[Tuple[int, int]] = None, progress:
-    Optional[Progress] = None, max_memory: Union[int, str, None] = None, threads: int = 0) -> Dict[str, Any]: ...
-
-def read_volume_texture(
-    path: Path, *, names: Union[str, Sequence[str], None] = None, layout: Optional[str] = None,
-    axis: Optional[str] = None, tiles: Optional[Tuple[int, int]] = None, slices: Optional[int] =
-    None, rows_up: Optional[bool] = None, voxel_size: Optional[float] = None, lower_corner:
-    Optional[ArrayLike] = None, background: Optional[float] = None, progress: Optional[Progress]
-    = None, max_memory: Union[int, str, None] = None, threads: int = 0) -> Grids: ...
-
-def solid_texture(
-    mesh: AnyMesh, image: Optional[Path] = None, *, colours: Optional[ArrayLike] = None, mode:
-    str = 'uv', seams: str = 'keep', colour_space: str = 'auto', wrap: str = 'repeat', sources:
-    int = 0, seed: int = 1, resolution: Optional[int] = None, voxel_size: Optional[float] =
-    None, progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+    half_width: float = 3, fog: bool = False, attributes: bool = False,
+    progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
     threads: int = 0) -> Grids: ...
 
+def transfer_distance(
+    map: Map, *, resolution: Optional[int] = None, voxel_size: Optional[float] = None,
+    progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+    threads: int = 0) -> Tuple[Grids, Grids]: ...
+
+def write_slices(
+    path: Path, grids: Union[Grids, Path], *, axis: Literal['x', 'y', 'z'] = 'z', slices: int = 16,
+    half: bool = False, names: Union[str, Sequence[str], None] = None,
+    progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+    threads: int = 0) -> Dict[str, Any]: ...
+
+def write_section(
+    path: Path, grids: Union[Grids, Path], *, grid: Optional[str] = None,
+    component: Literal['x', 'y', 'z', 'length'] = 'length', colour: bool = False,
+    axis: Literal['x', 'y', 'z'] = 'z', at: float = 0.5, position: Optional[float] = None,
+    colormap: Literal['red-blue', 'viridis', 'cividis', 'inferno', 'grey'] = 'red-blue',
+    scale: Literal['auto', 'linear', 'log', 'about-1'] = 'auto', pixels: int = 900,
+    range: Optional[Tuple[float, float]] = None, progress: Optional[Progress] = None,
+    max_memory: Union[int, str, None] = None, threads: int = 0) -> Dict[str, Any]: ...
+
+def write_volume_texture(
+    path: Path, grids: Union[Grids, Path], *, layout: Literal['atlas', 'slices', 'parts'] = 'atlas',
+    half: bool = False, channels: Literal['auto', 'rgba', 'layers'] = 'auto',
+    resolution: Optional[int] = None, pad: int = 0, cube: bool = False, power_of_two: bool = False,
+    axis: Literal['x', 'y', 'z'] = 'z', active: bool = False,
+    names: Union[str, Sequence[str], None] = None, rows_up: bool = False,
+    tiles: Optional[Tuple[int, int]] = None, progress: Optional[Progress] = None,
+    max_memory: Union[int, str, None] = None, threads: int = 0) -> Dict[str, Any]: ...
+
+def read_volume_texture(
+    path: Path, *, names: Union[str, Sequence[str], None] = None,
+    layout: Optional[Literal['atlas', 'slices', 'parts']] = None, slices: Optional[int] = None,
+    voxel_size: Optional[float] = None, axis: Optional[Literal['x', 'y', 'z']] = None,
+    background: Optional[float] = None, tiles: Optional[Tuple[int, int]] = None,
+    rows_up: Optional[bool] = None, lower_corner: Optional[ArrayLike] = None,
+    progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+    threads: int = 0) -> Grids: ...
+
+def solid_texture(
+    mesh: AnyMesh, image: Optional[Path]=None, *, colours: Optional[ArrayLike] = None,
+    mode: Literal['uv', 'colour'] = 'uv', seams: Literal['keep', 'blend'] = 'keep',
+    charges: Optional[int] = None, seed: int = 1,
+    colour_space: Literal['auto', 'linear', 'srgb'] = 'auto',
+    wrap: Literal['repeat', 'clamp', 'mirror', 'black'] = 'repeat', resolution: Optional[int] = None,
+    voxel_size: Optional[float] = None, progress: Optional[Progress] = None,
+    max_memory: Union[int, str, None] = None, threads: int = 0) -> Grids: ...
+
 def study(
-    *meshes: Any, sources: Optional[Sequence[int]] = None, points: Optional[Sequence[float]] =
-    None, distances: Optional[Sequence[float]] = None, radius_ratios: Optional[Sequence[float]]
-    = None, base_sources: int = 1000, base_points: int = 4, base_distance: Optional[float] =
-    None, base_radius_ratio: float = 1.5, grid: str = 'pairs', interpolation: str = 'linear',
-    regularization: Optional[float] = None, resolution: int = 64, seed: int = 1, folder: Optional[Path] = None, progress: Optional[Progress] = None, max_memory:
-    Union[int, str, None] = None, threads: int = 0,
+    *meshes: Any, charges: Optional[Sequence[int]] = None, points: Optional[Sequence[float]] = None,
+    distances: Optional[Sequence[float]] = None, radius_ratios: Optional[Sequence[float]] = None,
+    base_charges: int = 1000, base_points: float = 4, base_distance: Optional[float] = None,
+    base_radius_ratio: float = 1.5, grid: Literal['none', 'pairs', 'full'] = 'pairs',
+    interpolation: Literal['linear', 'smooth'] = 'linear',
+    method: Literal['tikhonov', 'tsvd'] = 'tikhonov', regularization: Optional[float] = None,
+    resolution: int = 64, seed: int = 1, lame_lambda: float = 0.0335, lame_mu: float = 0.0224,
+    folder: Optional[Path] = None, progress: Optional[Progress] = None,
+    max_memory: Union[int, str, None] = None, threads: int = 0,
     max_time: Optional[float] = None) -> Tuple[Dict[str, Any], Dict[str, Any]]: ...

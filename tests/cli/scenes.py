@@ -19,7 +19,7 @@ def fitted_ball(function=swirl, *options, subdivisions=4, sources=400):
     vertices, faces = icosphere_arrays(subdivisions)
     write_obj("ball.obj", vertices, faces)
     write_obj("target.obj", [function(p) for p in vertices], faces)
-    innermap("fit", "ball.obj", "target.obj", "-o", "map.ply", "--sources", sources, *options,
+    innermap("fit", "ball.obj", "target.obj", "-o", "map.ply", "--charges", sources, *options,
              "--quiet")
 
 

@@ -121,7 +121,7 @@ def test_a_limit_on_address_space_is_no_trap():
     for size in [*range(450, 1000, 25), 1000, 1200, 1500, 2000, 4000]:
         limit = size << 20
         done = subprocess.run([cli.PROGRAM, "fit", "ball.obj", "bent.obj", "-o", "m.ply", "-q",
-                               "--sources", "800", "--threads", "4", "--best-effort"],
+                               "--charges", "800", "--threads", "4", "--best-effort"],
                               capture_output=True, text=True, timeout=120,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS,
                                                                     (limit, limit)))

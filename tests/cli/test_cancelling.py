@@ -94,9 +94,9 @@ def test_commands_that_write_frames():
             innermap("info", os.path.join("out", name))
         cli.no_leftovers("ball.obj", "in.vdb", "frames", "out")
 
-    stops(["sequence", "ball.obj", "frames", "-o", "out", "--grids", "--sources", 600], whole_frames,
+    stops(["sequence", "ball.obj", "frames", "-o", "out", "--grids", "--charges", 600], whole_frames,
           at=(1, 9))
-    stops(["deform", "ball.obj", "in.vdb", "frames", "-o", "out/d.vdb", "--sources", 600], whole_frames,
+    stops(["deform", "ball.obj", "in.vdb", "frames", "-o", "out/d.vdb", "--charges", 600], whole_frames,
           at=(1, 9))
 
 

@@ -137,7 +137,7 @@ def test_the_output_is_a_target_for_everything():
     blob("a.obj", 2, bump=0.8)
     blob("b.obj", 3, (1.2, 0.9, 1), 0.8)
     corresponded("a.obj", "b.obj")
-    innermap("fit", "a.obj", "out.ply", "-o", "map.ply", "--sources", "300", "--quiet")
+    innermap("fit", "a.obj", "out.ply", "-o", "map.ply", "--charges", "300", "--quiet")
     innermap("check", "out.ply", "--quiet")
 
 
@@ -231,7 +231,7 @@ def test_subdividing_writes_both():
     quality = report["correspondence"]
     assert quality["subdivided"] and quality["deviation"]["max"] <= 0.005, quality
     assert quality["inverted_share"] <= 1e-3, quality
-    innermap("fit", "out.source.ply", "out.ply", "-o", "map.ply", "--sources", "300", "--quiet")
+    innermap("fit", "out.source.ply", "out.ply", "-o", "map.ply", "--charges", "300", "--quiet")
     corresponded("a.obj", "b.obj", "--subdivide", "0.01", "--source-out", "a2.ply")
     assert os.path.exists("a2.ply")
 
@@ -366,7 +366,7 @@ def test_dry_runs_write_nothing():
 def test_map_lays_one_onto_the_other_by_itself():
     blob("a.obj", 3, bump=0.8)
     blob("b.obj", 4, (1.2, 0.9, 1), 0.8)
-    innermap("map", "a.obj", "b.obj", "-o", "out", "--sources", "400", "--resolution", "32")
+    innermap("map", "a.obj", "b.obj", "-o", "out", "--charges", "400", "--resolution", "32")
     expected = ["correspondence.ply", "correspondence.png", "map.ply", "map.vdb", "report.json",
                 "section.png", "slices.exr"]
     assert [f for f in sorted(os.listdir("out")) if f != "correspondence.source.ply"] == expected
@@ -378,7 +378,7 @@ def test_map_lays_one_onto_the_other_by_itself():
     source = "a.obj"
     if os.path.exists("out/correspondence.source.ply"):
         source = "out/correspondence.source.ply"
-    options = ["--sources", "400", "--resolution", "32", "--quiet"]
+    options = ["--charges", "400", "--resolution", "32", "--quiet"]
     innermap("map", source, "--correspond", "out/correspondence.ply", "-o", "again", *options)
     again = read_json("again/report.json")
     assert abs(again["boundary_error"]["rms"] - report["boundary_error"]["rms"]) < 1e-9, again
@@ -427,6 +427,14 @@ def test_left_stays_left_unless_told():
         assert report["correspondence"]["way"] == laid["other_way"]["way"], (options, report)
         assert read_ply("out.ply")[0][arm]["x"] < -1, options
     fails(1, "correspond", "a.obj", "b.obj", "-o", "no.ply", "--no-refine", "--choose", "60")
+
+
+def test_refining_is_turned_off():
+    doll("a.obj", 2)
+    doll("b.obj", 3)
+    refined, rough = (corresponded("a.obj", "b.obj", *o)["correspondence"]["energy_sum"]
+                      for o in ([], ["--no-refine"]))
+    assert rough > 1.01 * refined
 
 
 @alone

@@ -8,7 +8,7 @@ import cli
 from cli import alone, fails, innermap, interrupt, nightly, no_leftovers
 from frames import ball_frames, break_frame, moved, rigid, twisted
 
-SMALL = ["--sources", "400", "--quiet"]
+SMALL = ["--charges", "400", "--quiet"]
 PYTHON = "/usr/bin/python3"
 
 
@@ -46,7 +46,7 @@ def stamps(folder="out"):
 def test_frame_numbers_are_kept():
     ball_frames(rigid, {1: 0.1, 12: 0.5, 1234567: 1.0})
     volume()
-    innermap("deform", "rest.obj", "rest.vdb", "frames", "-o", "out/d.####.vdb", "--sources", "400",
+    innermap("deform", "rest.obj", "rest.vdb", "frames", "-o", "out/d.####.vdb", "--charges", "400",
              "--report", "r.json")
     assert sorted(os.listdir("out")) == ["d.0001.vdb", "d.0012.vdb", "d.1234567.vdb"]
     report = cli.read_json("r.json")
@@ -153,7 +153,7 @@ def test_finished_frames_are_skipped_until_something_changes():
     volume()
     deform("--frames", "1-3")
     first = stamps()
-    innermap("deform", "rest.obj", "rest.vdb", "frames/*.obj", "-o", "out/d.####.vdb", "--sources",
+    innermap("deform", "rest.obj", "rest.vdb", "frames/*.obj", "-o", "out/d.####.vdb", "--charges",
              "400", "--report", "r.json")
     assert cli.read_json("r.json")["frames"]["number"] == [4]
     second = stamps()
@@ -214,7 +214,7 @@ def test_a_broken_frame_is_reported_and_the_others_go_on():
     os.remove("frames/f.0004.obj")
     os.symlink("nowhere", "frames/f.0004.obj")
     done = innermap("deform", "rest.obj", "rest.vdb", "frames/*.obj", "-o", "out/d.vdb",
-                    "--sources", "400", exit_code=1)
+                    "--charges", "400", exit_code=1)
     assert "1 of 3 frames" in cli.error_line(done) and "f.0002.obj" in cli.error_line(done)
     assert sorted(os.listdir("out")) == ["d.0001.vdb", "d.0003.vdb"]
 
@@ -263,7 +263,7 @@ def test_cancelling_keeps_finished_frames():
     caught = 0
     for after in [0, 1, 6]:
         code, seconds = interrupt("deform", "rest.obj", "rest.vdb", "frames", "-o", "out/d.vdb",
-                                  "--sources", "3500", after=after)
+                                  "--charges", "3500", after=after)
         if code is None:
             continue
         assert code == 130, code

@@ -95,7 +95,7 @@ def stand_ins():
     innermap("evaluate", "map.ply", "-o", "smoke.vdb", "--resolution", "24")
     shutil.copy("smoke.vdb", "posed.vdb")
     innermap("texture", "spot.obj", "spot_texture.png", "-o", "spot.vdb", "--resolution", "16")
-    innermap("export", "smoke.vdb", "-o", "smoke.exr", "--grid", "density", "--resolution", "16", "--cube")
+    innermap("export", "smoke.vdb", "-o", "smoke.exr", "--grids", "density", "--resolution", "16", "--cube")
     innermap("tetrahedralize", "homer.obj", "-o", "homer.vtu", "--resolution", "12")
     innermap("remesh", "homer_spot/map.ply", "homer.vtu", "-o", "spot.vtu")
     innermap("map", "rest.obj", "pose.obj", "-o", "out", "--resolution", "16")

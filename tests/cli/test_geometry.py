@@ -192,7 +192,7 @@ def test_frames():
                   faces)
     write_obj("core.obj", [[0.5 * x for x in p] for p in vertices], faces)
     innermap("deform", "ball.obj", "core.obj", "walk.1.obj", "walk.2.obj", "-o", "core.####.obj",
-             "--sources", 500, "--report", "r.json")
+             "--charges", 500, "--report", "r.json")
     for frame in (1, 2):
         expected = [(0.5 * x + frame, 0.5 * y * (1 + 0.1 * frame), 0.5 * z) for x, y, z in vertices]
         assert largest(obj_rows(f"core.000{frame}.obj", "v"), expected) < 2e-3
@@ -232,7 +232,7 @@ def test_bones_of_a_horse():
         raise Skip("no numpy")
     assert made.returncode == 0, made.stderr
     vertices = obj_rows("bones.obj", "v")
-    innermap("fit", poses / "reference.obj", poses / "pose-03.obj", "-o", "map.ply", "--sources", 6000,
+    innermap("fit", poses / "reference.obj", poses / "pose-03.obj", "-o", "map.ply", "--charges", 6000,
              "--quiet")
     innermap("push", "map.ply", "bones.obj", "-o", "posed.obj", "--outside", 0.02, "--report", "r.json")
     report = read_json("r.json")["geometry"]

@@ -96,7 +96,7 @@ def test_same_file_content_for_any_number_of_threads():
 
 def test_slices_and_section():
     ball_grid()
-    innermap("slice", "ball.vdb", "--axis", "y", "--count", "5", "-o", "s.exr", "--section",
+    innermap("slice", "ball.vdb", "--axis", "y", "--slices", "5", "-o", "s.exr", "--section",
              "p.png", "--grid", "surface", "--at", "0.5", "--report", "r.json")
     text = innermap("info", "s.exr").stdout
     assert "5 parts" in text and "y_0004" in text and "density.V, surface.V" in text
@@ -108,10 +108,10 @@ def test_slices_and_section():
     assert head[:8] == b"\x89PNG\r\n\x1a\n"
     width, height = struct.unpack(">II", head[16:24])
     assert width >= 800 and height >= 800
-    innermap("slice", "ball.vdb", "-o", "h.exr", "--half", "--grids", "density", "--count", "2")
+    innermap("slice", "ball.vdb", "-o", "h.exr", "--half", "--grids", "density", "--slices", "2")
     assert os.path.getsize("h.exr") < os.path.getsize("s.exr")
     assert "density.V\n" in innermap("info", "h.exr").stdout
-    innermap("slice", "ball.vdb", "-o", "many.exr", "--count", "5000")
+    innermap("slice", "ball.vdb", "-o", "many.exr", "--slices", "5000")
     no_leftovers("ball.obj", "ball.vdb", "s.exr", "h.exr", "many.exr", "p.png", "r.json")
 
 
@@ -124,7 +124,7 @@ def test_grids_and_places_that_are_not_there():
     fails(1, "slice", "ball.vdb", "--section", "p.png", "--position", "50", says=["position"])
     fails(1, "slice", "ball.vdb", "--section", "p.png", "--range", "2,1", says=["range"])
     fails(1, "slice", "ball.vdb", "--section", "p.png", "--at", "1.5", says=["--at"])
-    fails(1, "slice", "ball.vdb", "-o", "s.exr", "--count", "0", says=["--count"])
+    fails(1, "slice", "ball.vdb", "-o", "s.exr", "--slices", "0", says=["--slices"])
     fails(2, "slice", "ball.vdb", "-o", "s.exr", "--axis", "w", says=["--axis"])
 
 

@@ -25,11 +25,18 @@ def test_help_has_the_usual_options_and_help_all_every_one():
         own = set(re.findall(r"^\| `(?:-\w, )?(--[\w-]+)", section, re.M))
         assert own <= names(every), command
         assert names(usual) <= names(every), command
-        hidden = len(names(every)) - len(names(usual))
-        said = re.search(r"^(\d+) more options?: innermap " + command + " --help-all$", usual, re.M)
+        hidden = len(own - names(usual))
+        said = re.search(r"^(\d+) more options?, .*: innermap " + command + " --help-all$", usual, re.M)
+        assert re.search(r"^options of every command: --threads, .*--dry-run, ", usual, re.M), command
         assert (int(said.group(1)) if said else 0) == hidden, command
     assert "--radius-ratio" not in innermap("map", "--help").stdout
     assert innermap("help", "map", "--all").stdout == innermap("map", "--help-all").stdout
+
+
+def test_the_program_alone_names_what_people_need_first():
+    done = innermap()
+    assert re.findall(r"^  ([\w-]+) ", done.stdout, re.M) == ["map", "deform", "push", "voxelize", "check", "info"]
+    assert "innermap --help" in done.stdout
 
 
 def test_usual_options_stand_in_groups_and_first():

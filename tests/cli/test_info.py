@@ -8,7 +8,7 @@ import zlib
 import cli
 from cli import cube, fails, innermap
 
-MAP = ["--sources", "200", "--resolution", "24"]
+MAP = ["--charges", "200", "--resolution", "24"]
 
 
 def mapped():
@@ -58,9 +58,9 @@ def test_volume_textures_show_tiling_bounds_and_voxel_size():
     cube()
     innermap("voxelize", "cube.obj", "-o", "a.vdb", "--resolution", "20", "--fog", "-q")
     for layout in ["atlas", "parts"]:
-        innermap("export", "a.vdb", "-o", "t.exr", "--grid", "density", "--layout", layout, "--tiles",
+        innermap("export", "a.vdb", "-o", "t.exr", "--grids", "density", "--layout", layout, "--tiles",
                  "5x5", "--pad", "1") if layout == "atlas" else \
-            innermap("export", "a.vdb", "-o", "t.exr", "--grid", "density", "--layout", layout)
+            innermap("export", "a.vdb", "-o", "t.exr", "--grids", "density", "--layout", layout)
         volume = read("t.exr")["volume_texture"]
         size, box = volume["voxel_size"], volume["world_box"]
         for k in range(3):

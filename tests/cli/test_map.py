@@ -28,7 +28,7 @@ def pair(function, subdivisions=4, scale=1.0, shift=0.0):
 
 
 def mapped(*options):
-    innermap("map", "ball.obj", "target.obj", "-o", "out", "--sources", "400", "--resolution", "32",
+    innermap("map", "ball.obj", "target.obj", "-o", "out", "--charges", "400", "--resolution", "32",
              "--quiet", *options)
     assert sorted(os.listdir("out")) == FILES, os.listdir("out")
     return read_json("out/report.json")
@@ -120,7 +120,7 @@ def test_report_has_all_keys():
 def test_parts_give_what_map_gives():
     pair(harmonic)
     whole = mapped()
-    innermap("fit", "ball.obj", "target.obj", "-o", "m.ply", "--sources", "400", "--quiet")
+    innermap("fit", "ball.obj", "target.obj", "-o", "m.ply", "--charges", "400", "--quiet")
     with open("m.ply", "rb") as one, open("out/map.ply", "rb") as two:
         assert one.read() == two.read()
     innermap("evaluate", "m.ply", "-o", "m.vdb", "--resolution", "32", "--quiet", "--report",
@@ -128,7 +128,7 @@ def test_parts_give_what_map_gives():
     parts = read_json("e.json")
     for section in ["energy", "jacobian", "grid"]:
         assert parts[section] == whole[section], section
-    innermap("slice", "m.vdb", "--axis", "z", "--count", "4", "-o", "s.exr", "--quiet")
+    innermap("slice", "m.vdb", "--axis", "z", "--slices", "4", "-o", "s.exr", "--quiet")
     told = innermap("info", "m.ply").stdout
     assert "400 charges" in told and "interpolation: smooth" in told, told
 
@@ -147,11 +147,11 @@ def test_same_files_for_any_number_of_threads():
 def test_settings_of_the_paper():
     pair(harmonic)
     vertices = 2562
-    for options, sources in [(("--source-ratio", "0.1"), round(0.1 * vertices)),
+    for options, sources in [(("--charge-ratio", "0.1"), round(0.1 * vertices)),
                              (("--distance", "0.2", "--method", "tsvd"), 400),
                              (("--radius-ratio", "2", "--regularization", "1e-12"), 400)]:
         innermap("fit", "ball.obj", "target.obj", "-o", "m.ply", "--quiet", "--report", "r.json",
-                 *(() if "--source-ratio" in options else ("--sources", "400")), *options)
+                 *(() if "--charge-ratio" in options else ("--charges", "400")), *options)
         report = read_json("r.json")
         assert report["solve"]["sources"] == sources, report["solve"]
         assert report["boundary_error"]["rms"] < 2e-3, report["boundary_error"]
@@ -188,17 +188,17 @@ def test_bad_input():
              (("nan.obj", "nan.obj"), ["nan.obj"])]
     for meshes, says in cases:
         fails(1, "map", *meshes, "-o", "out", says=says)
-    fails(1, "map", "ball.obj", "ball.obj", "-o", "out", "--sources", "0", says=["--sources"])
+    fails(1, "map", "ball.obj", "ball.obj", "-o", "out", "--charges", "0", says=["--charges"])
     fails(1, "map", "ball.obj", "ball.obj", "-o", "out", "--voxel-size", "-1",
           says=["--voxel-size"])
-    fails(1, "map", "ball.obj", "ball.obj", "-o", "out", "--max-memory", "300M", "--sources",
-          "20000", says=["--sources"])
+    fails(1, "map", "ball.obj", "ball.obj", "-o", "out", "--max-memory", "300M", "--charges",
+          "20000", says=["--charges"])
     fails(1, "map", "ball.obj", "ball.obj", "-o", "ball.obj", says=["ball.obj"])
     fails(1, "evaluate", "ball.obj", "-o", "a.vdb", says=["ball.obj", "map.ply"])
     fails(1, "fit", "ball.obj", "other.obj", "-o", "map.ply",
           says=["other.obj", "correspond"])
     fails(2, "map", "ball.obj", "-o", "out", says=["TARGET"])
-    fails(2, "map", "ball.obj", "ball.obj", "-o", "out", "--sorces", "4", says=["--sources"])
+    fails(2, "map", "ball.obj", "ball.obj", "-o", "out", "--sorces", "4", says=["--charges"])
 
 
 def test_all_points_in_one_place_as_target():
@@ -243,7 +243,7 @@ def test_needle():
 def test_full_disk_leaves_nothing():
     pair(harmonic, subdivisions=3)
     for size in [1000, 50000]:
-        fails(1, "map", "ball.obj", "target.obj", "-o", "out", "--sources", "200", "--resolution",
+        fails(1, "map", "ball.obj", "target.obj", "-o", "out", "--charges", "200", "--resolution",
               "64", says=["out/map."], preexec_fn=file_size_limit(size))
 
 
@@ -274,7 +274,7 @@ def test_interrupt_leaves_nothing():
     pair(lambda p: (p[0], p[1], p[2] + 0.2 * abs(p[0])), subdivisions=5)
     caught = 0
     for after in [0.1, 1, 6]:
-        code, seconds = interrupt("map", "ball.obj", "target.obj", "-o", "out", "--sources", "3000",
+        code, seconds = interrupt("map", "ball.obj", "target.obj", "-o", "out", "--charges", "3000",
                                   after=after, number=signal.SIGINT)
         if code is None:
             continue
@@ -290,7 +290,7 @@ def test_horse():
     if not MODELS.exists():
         raise Skip("no ../shared/models")
     poses = MODELS / "horse-poses"
-    innermap("map", poses / "reference.obj", poses / "pose-03.obj", "-o", "out", "--sources",
+    innermap("map", poses / "reference.obj", poses / "pose-03.obj", "-o", "out", "--charges",
              "2000", "--quiet")
     report = read_json("out/report.json")
     assert report["boundary_error"]["rms"] <= 1e-3, report["boundary_error"]
@@ -323,7 +323,7 @@ def test_every_model_gets_a_sound_map():
             for line in lines:
                 face = " ".join(corner.split("/")[0] for corner in line.split())
                 file.write("v %r %r %r\n" % next(moved) if line[0] == "v" else face + "\n")
-        innermap("map", MODELS / f"{name}.obj", "target.obj", "-o", "out", "--sources", "800",
+        innermap("map", MODELS / f"{name}.obj", "target.obj", "-o", "out", "--charges", "800",
                  "--resolution", "64", "--quiet")
         report = read_json("out/report.json")
         error = report["boundary_error"]

@@ -82,7 +82,7 @@ def frames(size):
 def fitted(_):
     """map.ply: a torus twisted."""
     pair(60)
-    innermap("fit", "torus.obj", "pose.obj", "-o", "map.ply", "--sources", 1000, "--quiet")
+    innermap("fit", "torus.obj", "pose.obj", "-o", "map.ply", "--charges", 1000, "--quiet")
 
 
 def volume(resolution):
@@ -187,28 +187,28 @@ CASES = [
     Case("correspond --subdivide", lambda _: stretched(3),
          "correspond ball.obj other.obj -o out.ply --subdivide {}", 0.01, 0.0002),
     Case("fit", pair, "fit torus.obj pose.obj -o out.ply --tolerance 1e-2", 60, 600),
-    Case("fit --sources", rough_pair, "fit torus.obj rough.obj -o out.ply --sources {}", 1000,
+    Case("fit --charges", rough_pair, "fit torus.obj rough.obj -o out.ply --charges {}", 1000,
          20000),
     Case("fit, dense", rough_pair,
-         "fit torus.obj rough.obj -o out.ply --solver dense --sources {}", 300, 2500),
+         "fit torus.obj rough.obj -o out.ply --solver dense --charges {}", 300, 2500),
     Case("evaluate", fitted, "evaluate map.ply -o out.vdb --resolution {}", 64, 400),
     Case("map", lambda _: pair(60), "map torus.obj pose.obj -o out --tolerance 1e-2 --resolution {}",
          64, 300),
     Case("map onto a stranger", lambda _: stretched(3), "map ball.obj other.obj -o out --resolution {}",
          48, 128, loose=True),
     Case("sequence", lambda _: frames(60),
-         "sequence torus.obj frames -o out --resolution 48 --sources {}", 1000, 20000),
+         "sequence torus.obj frames -o out --resolution 48 --charges {}", 1000, 20000),
     Case("sequence --grids", lambda _: frames(60),
-         "sequence torus.obj frames -o out --grids --sources 1000 --resolution {}", 48, 300),
+         "sequence torus.obj frames -o out --grids --charges 1000 --resolution {}", 48, 300),
     Case("deform of a volume", frames_and_volume,
-         "deform torus.obj in.vdb frames -o out.####.vdb --density --velocity --sources 1000", 48, 250),
+         "deform torus.obj in.vdb frames -o out.####.vdb --density --velocity --charges 1000", 48, 250),
     Case("deform of geometry", frames_and_geometry,
-         "deform torus.obj in.obj frames -o out.####.obj --sources 1000", 50, 900),
+         "deform torus.obj in.obj frames -o out.####.obj --charges 1000", 50, 900),
     Case("texture", textured, "texture torus.obj in.png -o out.vdb --resolution 64", 256, 8192),
     Case("texture, resolution", textured_little,
-         "texture torus.obj in.png -o out.vdb --sources 2000 --resolution {}", 64, 320),
-    Case("texture --sources", textured_little,
-         "texture torus.obj in.png -o out.vdb --resolution 64 --sources {}", 1000, 30000),
+         "texture torus.obj in.png -o out.vdb --charges 2000 --resolution {}", 64, 320),
+    Case("texture --charges", textured_little,
+         "texture torus.obj in.png -o out.vdb --resolution 64 --charges {}", 1000, 30000),
     Case("push", volume, "push map.ply in.vdb -o out.vdb", 64, 320),
     Case("push --density", volume,
          "push map.ply in.vdb -o out.vdb --grids density --density", 64, 320),
@@ -233,7 +233,7 @@ CASES = [
     Case("remesh", cells, "remesh map.ply in.vtu -o out.vtu", 24, 100),
     Case("compare-fem", lambda _: torus(60),
          "compare-fem torus.obj -o out --functions --charges 500 --resolutions {}", 16, 72),
-    Case("slice", volume, "slice in.vdb -o out.exr --count 64", 64, 600),
+    Case("slice", volume, "slice in.vdb -o out.exr --slices 64", 64, 600),
     Case("slice --section", volume, "slice in.vdb --grid surface --section out.png", 64, 600),
     Case("export", volume, "export in.vdb -o out.exr", 64, 400),
     Case("export --resolution", lambda _: volume(64), "export in.vdb -o out.exr --resolution {}", 64, 512),
@@ -245,8 +245,8 @@ CASES = [
          "--best-effort --resolution {}", 64, 256),
     Case("weights", groups, "weights torus.obj -o out.vdb --groups left,right --tolerance 0.02 "
          "--best-effort --resolution {}", 64, 256),
-    Case("study", lambda _: pair(60), "study torus.obj pose.obj -o out --sources none --points none "
-         "--distances none --radius-ratios none --base-sources {}", 1000, 3000),
+    Case("study", lambda _: pair(60), "study torus.obj pose.obj -o out --charges none --points none "
+         "--distances none --radius-ratios none --base-charges {}", 1000, 3000),
     Case("report", map_folder, "report made -o page.html", 64, 300),
     Case("check --html", torus, "check torus.obj --html=page.html", 60, 900),
     Case("map --html", lambda _: pair(60),

@@ -144,7 +144,7 @@ def test_what_cannot_be_one_to_one_is_said():
     assert "--one-to-one" in done.stderr, done.stderr
     assert len(read_json("out/report.json")["inside"]["folded_at"]) >= 3
     assert os.path.exists("out/map.vdb")
-    fails(1, "fit", "ball.obj", "dented.obj", "-o", "m.ply", "--one-to-one", "on", "--sources",
+    fails(1, "fit", "ball.obj", "dented.obj", "-o", "m.ply", "--one-to-one", "on", "--charges",
           "300", says=["--one-to-one"])
     no_leftovers("ball.obj", "dented.obj", "out")
 

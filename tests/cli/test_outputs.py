@@ -93,7 +93,7 @@ def test_folders_say_what_they_hold():
     for name in ["map.ply", "notes.txt", "thesis.doc"]:
         with open(f"out/{name}", "w", encoding="ascii") as file:
             file.write("mine")
-    command = ["map", "ball.obj", "egg.obj", "-o", "out", "--resolution", "8", "--sources", "100"]
+    command = ["map", "ball.obj", "egg.obj", "-o", "out", "--resolution", "8", "--charges", "100"]
     for dry in [["--dry-run"], []]:
         said = innermap(*command, *dry).stderr
         assert all(name in said for name in ("map.ply", "notes.txt", "thesis.doc")), said

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from cli import check_report, cube, icosphere, innermap, read_json, report_validator, run
 
-QUICK = ("--sources", 200, "--resolution", 24)
+QUICK = ("--charges", 200, "--resolution", 24)
 
 
 def sizes(report):
@@ -18,7 +18,7 @@ def test_says_what_ran_when_and_where():
     icosphere("a.obj")
     icosphere("b.obj", radius=2)
     before = datetime.datetime.utcnow().replace(microsecond=0)
-    done = innermap("fit", "a.obj", "b.obj", "-o", "map.ply", "--sources", 200, "--threads", 2,
+    done = innermap("fit", "a.obj", "b.obj", "-o", "map.ply", "--charges", 200, "--threads", 2,
                     "--report", "r.json")
     after = datetime.datetime.utcnow()
     r = read_json("r.json")

@@ -188,7 +188,7 @@ def test_folds_are_marked():
     # Half of it pushed in far beyond the middle.
     cli.write_obj("dent.obj", [(x, y, z if z < 0.2 else 0.2 - 2.0 * (z - 0.2) * math.exp(-4 * (x * x + y * y)))
                                for x, y, z in vertices], faces)
-    innermap("map", "ball.obj", "dent.obj", "-o", "out", "--resolution", "48", "--sources", "800",
+    innermap("map", "ball.obj", "dent.obj", "-o", "out", "--resolution", "48", "--charges", "800",
              "--repair", "off", "--best-effort", "--html", "--quiet")
     assert cli.read_json("out/report.json")["inside"]["folded"] > 0
     with Browser() as browser:
@@ -260,14 +260,14 @@ def check_sequence(path, frames, sections=True):
 
 def test_sequence():
     ball_frames(twisted, {1: 0.1, 2: 0.3, 5: 0.6, 7: 0.2})
-    innermap("sequence", "rest.obj", "frames", "-o", "out", "--sources", "400", "--resolution", "24",
+    innermap("sequence", "rest.obj", "frames", "-o", "out", "--charges", "400", "--resolution", "24",
              "--html", "--quiet")
     check_sequence("out/report.html", 4)
     # The same from the folder's files and the frames that the report names.
     innermap("report", "out", "-o", "again.html", "--quiet")
     check_sequence("again.html", 4, sections=False)
     # With grids, those of each frame come from its file.
-    innermap("sequence", "rest.obj", "frames", "-o", "grids", "--sources", "400", "--resolution", "24",
+    innermap("sequence", "rest.obj", "frames", "-o", "grids", "--charges", "400", "--resolution", "24",
              "--grids", "--grid-list", "surface,jacobian,deformation_energy", "--quiet")
     innermap("report", "grids", "-o", "grids.html", "--quiet")
     check_sequence("grids.html", 4)
@@ -371,7 +371,7 @@ def test_horse():
 def test_gallop():
     need_models()
     innermap("sequence", MODELS / "horse-poses" / "reference.obj", MODELS / "horse-gallop", "-o", "out",
-             "--sources", "2000", "--resolution", "48", "--html", "--quiet")
+             "--charges", "2000", "--resolution", "48", "--html", "--quiet")
     data_of("out/report.html")
     check_sequence("out/report.html", 48)
 

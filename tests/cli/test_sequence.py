@@ -9,7 +9,7 @@ import cli
 from cli import alone, fails, innermap, interrupt, nightly, no_leftovers
 from frames import FIGURES, ball_frames, break_frame, moved, read_energies, rigid, twisted
 
-SMALL = ["--sources", "400", "--resolution", "24", "--quiet"]
+SMALL = ["--charges", "400", "--resolution", "24", "--quiet"]
 
 
 def test_rigid_frames_have_no_energy():
@@ -27,7 +27,7 @@ def test_rigid_frames_have_no_energy():
 
 def test_energies_are_those_of_map():
     ball_frames(twisted, {4: 0.3, 5: 0.6, 6: 0.9})
-    innermap("sequence", "rest.obj", "frames", "-o", "out", "--sources", "1500",
+    innermap("sequence", "rest.obj", "frames", "-o", "out", "--charges", "1500",
              "--resolution", "48", "--quiet")
     rows = read_energies("out")
     assert rows[0]["deformation"] < rows[1]["deformation"] < rows[2]["deformation"]
@@ -41,7 +41,7 @@ def test_energies_are_those_of_map():
 
 def test_what_is_written():
     ball_frames(twisted, {1: 0.0, 2: 0.2, 3: 0.4})
-    innermap("sequence", "rest.obj", "frames/f.####.obj", "-o", "a/out", "--sources", "400",
+    innermap("sequence", "rest.obj", "frames/f.####.obj", "-o", "a/out", "--charges", "400",
              "--resolution", "24")
     assert sorted(os.listdir("a/out")) == ["energies.csv", "energies.png", "report.json"]
     with open("a/out/energies.png", "rb") as file:
@@ -89,7 +89,7 @@ def test_a_broken_frame_is_reported_and_the_others_go_on():
     vertices, faces = cli.icosphere_arrays(3)
     cli.write_obj("frames/f.0006.obj", [(1, 2, 3)] * len(vertices), faces)
     cli.write_obj("frames/f.0007.obj", [(v[0], v[1], 0) for v in vertices], faces)
-    done = innermap("sequence", "rest.obj", "frames/*.obj", "-o", "out", "--sources", "400",
+    done = innermap("sequence", "rest.obj", "frames/*.obj", "-o", "out", "--charges", "400",
                     "--resolution", "24", exit_code=1)
     assert "4 of 7 frames" in cli.error_line(done) and "2, 4, 6, 7" in cli.error_line(done)
     assert done.stderr.count("is left out") == 4
@@ -106,7 +106,7 @@ def test_a_broken_frame_is_reported_and_the_others_go_on():
 
 def test_a_frame_does_not_depend_on_the_others():
     ball_frames(twisted, {n: 0.1 * n for n in range(1, 7)})
-    options = ["--sources", "3500", "--resolution", "24", "--quiet"]  # iterative
+    options = ["--charges", "3500", "--resolution", "24", "--quiet"]  # iterative
     innermap("sequence", "rest.obj", "frames/*.obj", "-o", "all", *options)
     innermap("sequence", "rest.obj", "frames/*.obj", "-o", "some", "--frames", "2-6x3", *options,
              "--threads", "1")
@@ -147,7 +147,7 @@ def test_limits_and_dry_run():
     ball_frames(moved, {1: 0.1, 2: 0.2})
     assert "8000" in cli.dry_run("sequence", "rest.obj", "frames", "-o", "x").text
     fails(1, "sequence", "rest.obj", "frames", "-o", "x", "--max-memory", "270MB",
-          says=["--sources"])
+          says=["--charges"])
     fails(1, "sequence", "rest.obj", "frames", "-o", "x", "--distance", "0.5",
           says=["--distance", "4 spacings"])
     no_leftovers("rest.obj", "frames")
@@ -170,7 +170,7 @@ def test_cancelling_leaves_whole_files():
     caught = 0
     for after in [0, 0.5, 2.5]:
         code, seconds = interrupt("sequence", "rest.obj", "frames", "-o", "out", "--grids",
-                                  "--sources", "3500", "--resolution", "96", after=after)
+                                  "--charges", "3500", "--resolution", "96", after=after)
         if code is None:
             continue
         assert code == 130, code

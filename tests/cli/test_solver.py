@@ -13,7 +13,7 @@ def creased_pair():
 
 def fitted(*options):
     innermap("fit", "ball.obj", "target.obj", "-o", "m.ply", "--quiet", "--report", "r.json",
-             "--sources", "800", *options)
+             "--charges", "800", *options)
     return read_json("r.json")
 
 

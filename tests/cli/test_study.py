@@ -15,8 +15,8 @@ from pathlib import Path
 import cli
 from cli import MODELS, PROGRAM, Skip, fails, innermap, read_json
 
-SMALL = ["--sources", "40,80", "--points", "1,3", "--distances", "0.05:0.4:3", "--radius-ratios",
-         "1.5,3", "--base-sources", "80", "--base-points", "3", "--base-distance", "0.2",
+SMALL = ["--charges", "40,80", "--points", "1,3", "--distances", "0.05:0.4:3", "--radius-ratios",
+         "1.5,3", "--base-charges", "80", "--base-points", "3", "--base-distance", "0.2",
          "--resolution", "16"]
 RUNS = 20  # of SMALL: see test_dry_run
 CHARTS = ["figure5.svg", "errors.svg", "stability.svg", "energies.svg", "cost.svg", "grid.svg"]
@@ -230,16 +230,16 @@ def test_budgets():
     study("--max-time", "1e-6")
     assert read_json("out/report.json")["study"]["left"] == RUNS and table() == []
     # Too large for the limit: in the table, with the reason.
-    innermap("study", "ball.obj", "egg.obj", "-o", "more", "--sources", "40,5000", "--points", "none",
-             "--distances", "none", "--radius-ratios", "none", "--base-sources", "40", "--resolution",
+    innermap("study", "ball.obj", "egg.obj", "-o", "more", "--charges", "40,5000", "--points", "none",
+             "--distances", "none", "--radius-ratios", "none", "--base-charges", "40", "--resolution",
              "16", "--max-memory", "500MB")
     rows = table("more/study.csv")
     assert [bool(r["failure"]) for r in rows] == [False, True], rows
     assert "500 MB" in rows[1]["failure"] and rows[1]["rms"] == ""
     assert len(os.listdir("more/runs")) == 1
     Page(Path("more/study.html").read_text(encoding="utf-8"))
-    fails(1, "study", "ball.obj", "egg.obj", "-o", "none", "--sources", "5000,6000", "--points", "none",
-          "--distances", "none", "--radius-ratios", "none", "--base-sources", "5000", "--resolution",
+    fails(1, "study", "ball.obj", "egg.obj", "-o", "none", "--charges", "5000,6000", "--points", "none",
+          "--distances", "none", "--radius-ratios", "none", "--base-charges", "5000", "--resolution",
           "16", "--max-memory", "500MB")
 
 
@@ -247,8 +247,8 @@ def test_names_are_escaped():
     shapes()
     name = "<b>&'.obj"
     os.rename("egg.obj", name)
-    innermap("study", "ball.obj", name, "-o", "out", "--sources", "40", "--points", "none",
-             "--distances", "0.1,0.2", "--radius-ratios", "none", "--base-sources", "40",
+    innermap("study", "ball.obj", name, "-o", "out", "--charges", "40", "--points", "none",
+             "--distances", "0.1,0.2", "--radius-ratios", "none", "--base-charges", "40",
              "--resolution", "16")
     page = Page(Path("out/study.html").read_text(encoding="utf-8"))
     assert name in page.text and page.count["b"] == 6  # the verdicts
@@ -261,14 +261,14 @@ def test_refusals():
     shapes()
     both = ("study", "ball.obj", "egg.obj", "-o", "out")
     fails(2, "study", "ball.obj", "-o", "out", says=("TARGET",))
-    fails(2, *both, "--sources", "many", says=("--sources", "many"))
+    fails(2, *both, "--charges", "many", says=("--charges", "many"))
     fails(2, *both, "--distances", "0.1:0.2", says=("--distances",))
     fails(2, *both, "--distances", "0.2:0.1:3", says=("--distances",))
     fails(2, *both, "--points", "", says=("--points",))
-    fails(1, *both, "--sources", "3,100", says=("sources", "16"))
+    fails(1, *both, "--charges", "3,100", says=("sources", "16"))
     fails(1, *both, "--distances", "5", says=("distances",))
     fails(1, *both, "--radius-ratios", "1", says=("radius",))
-    fails(1, *both, "--sources", "100:200:100", "--distances", "0.01:0.1:200", says=("10000",))
+    fails(1, *both, "--charges", "100:200:100", "--distances", "0.01:0.1:200", says=("10000",))
     cli.cube("cube.obj")
     fails(1, "study", "ball.obj", "cube.obj", "-o", "out")
 
@@ -279,7 +279,7 @@ def test_horse_pose():
         raise Skip("no models here")
     poses = MODELS / "horse-poses"
     innermap("study", poses / "reference.obj", poses / "pose-02.obj", "-o", "out", "--grid", "none",
-             "--sources", "125:500:3", "--points", "1,4", "--base-sources", "500", "--distances",
+             "--charges", "125:500:3", "--points", "1,4", "--base-charges", "500", "--distances",
              "0.0025,0.02,0.16", "--radius-ratios", "1.1,3")
     verdicts = {s["text"]: s["verdict"] for s in read_json("out/study.json")["statements"]}
     assert verdicts["More charges give a smaller error"] == "holds", verdicts

@@ -339,7 +339,7 @@ def test_options_that_make_no_sense():
                             (["--mode", "rgb"], ["--mode"]), (["--wrap", "tile"], ["--wrap"]),
                             (["--colour-space", "aces"], ["--colour-space"])]:
         fails(2, "texture", "ball.obj", "good.png", "-o", "t.vdb", *arguments, says=says)
-    fails(1, "texture", "ball.obj", "good.png", "-o", "t.vdb", "--sources", "3", says=["--sources"])
+    fails(1, "texture", "ball.obj", "good.png", "-o", "t.vdb", "--charges", "3", says=["--charges"])
     fails(1, "texture", "ball.obj", "good.png", "-o", "no/t.vdb", says=["no/t.vdb"])
     fails(1, "texture", "ball.obj", "good.png", "-o", "t.vdb", "--max-memory", "5M", says=["5 MB"])
     text = innermap("texture", "ball.obj", "good.png", "-o", "t.vdb", "--dry-run").stdout

@@ -59,9 +59,9 @@ def test_smooth_vertices_stay_exact():
 def test_not_met_is_said_and_files_are_written():
     pair()
     # The error's line, also with --quiet; the files, marked.
-    options = ("--tolerance", "1e-6", "--max-sources", "1200", "--interpolation", "linear")
+    options = ("--tolerance", "1e-6", "--max-charges", "1200", "--interpolation", "linear")
     done, report = fit(*options, exit_code=1)
-    for text in ["--tolerance 1e-06 is not met", "--max-sources 1200", "--best-effort"]:
+    for text in ["--tolerance 1e-06 is not met", "--max-charges 1200", "--best-effort"]:
         assert text in error_line(done), done.stderr
     assert report["tolerance"]["met"] is False, report["tolerance"]
     assert report["tolerance"]["reached"] == report["boundary_error"]["p99"] > 1e-6, report
@@ -76,7 +76,7 @@ def test_map_marks_its_grids():
     pair()
     for wanted, met, code in [("1e-6", "false", 1), ("1e-3", "true", 0)]:
         innermap("map", "ball.obj", "target.obj", "-o", wanted, "--tolerance", wanted, "--quiet",
-                 "--max-sources", "1200", "--resolution", "24", exit_code=code)
+                 "--max-charges", "1200", "--resolution", "24", exit_code=code)
         assert sorted(os.listdir(wanted)) == ["map.ply", "map.vdb", "report.json", "section.png",
                                               "slices.exr"], os.listdir(wanted)
         told = innermap("info", f"{wanted}/map.vdb", "--metadata").stdout
@@ -88,20 +88,23 @@ def test_map_marks_its_grids():
 def test_bad_settings():
     pair(subdivisions=2)
     command = ("fit", "ball.obj", "target.obj", "-o", "m.ply")
-    for bad in ["0", "-1", "-1e-3", "1e-13", "2", "nan", "inf", "small"]:
+    for bad in ["0", "-1", "-1e-3", "1e-13", "2"]:
+        fails(1, *command, "--tolerance", bad, says=["--tolerance", "out of range"])
+    for bad in ["nan", "inf", "small"]:
         fails(2, *command, "--tolerance", bad, says=["--tolerance"])
-    for option, value in [("--sources", "300"), ("--source-ratio", "1"), ("--collocation", "900"),
+    fails(1, *command, "--distance", "0.1", "--radius-ratio", "2", says=["--distance", "--radius-ratio"])
+    for option, value in [("--charges", "300"), ("--charge-ratio", "1"), ("--collocation", "900"),
                           ("--collocation-ratio", "2"), ("--distance", "0.1"),
                           ("--radius-ratio", "2"), ("--solver", "dense"), ("--method", "tsvd"),
                           ("--regularization", "1e-3")]:
         fails(2, *command, "--tolerance", "1e-3", option, value, says=["--tolerance", option])
-    fails(1, *command, "--max-sources", "3", says=["--max-sources"])
+    fails(1, *command, "--max-charges", "3", says=["--max-charges"])
     fails(1, *command, "--max-memory", "70M", says=["--max-memory"])
 
 
 def test_options_of_the_uniform_way_need_no_tolerance():
     pair(subdivisions=3)
-    for options in [("--sources", "300"), ("--distance", "0.1", "--source-ratio", "0.3")]:
+    for options in [("--charges", "300"), ("--distance", "0.1", "--charge-ratio", "0.3")]:
         _, report = fit(*options)
         assert "tolerance" not in report and report["solve"]["placement"] == "shell", report
 

@@ -126,7 +126,7 @@ def test_strict_ends_with_1_and_writes_all_the_same():
     assert not r["verdict"]["met"]
     no_leftovers("a.obj", "pit.obj", "out")
     # Thresholds are settings.
-    done, r = mapped("pit.obj", "--strict", "--max-folded", 0.2, "--max-outside", 0.2)
+    done, r = mapped("pit.obj", "--strict", "--warn-folded", 0.2, "--warn-outside", 0.2)
     assert r["verdict"]["met"] and finding(r, "folds")["threshold"] == 0.2
     done = innermap("evaluate", "out/map.ply", "-o", "e.vdb", "--strict", exit_code=1)
     innermap("evaluate", "out/map.ply", "-o", "e.vdb")
@@ -138,9 +138,9 @@ def test_strict_ends_with_1_and_writes_all_the_same():
 def test_a_boundary_that_misses_the_tolerance():
     ball_with("b.obj", lambda x, y, z: (x, y, z + 0.4 * math.sin(9 * x) * math.cos(8 * y)))
     icosphere("a.obj", 3)
-    done = innermap("fit", "a.obj", "b.obj", "-o", "m.ply", "--sources", 60, "--report", "r.json")
+    done = innermap("fit", "a.obj", "b.obj", "-o", "m.ply", "--charges", 60, "--report", "r.json")
     f = told(done, read_json("r.json"), "boundary")
-    assert f["threshold"] == 0.001 and "--sources" in f["advice"]
+    assert f["threshold"] == 0.001 and "--charges" in f["advice"]
     done = innermap("transfer-distance", "m.ply", "-o", "d", "--resolution", 16)
     told(done, read_json("d/report.json"), "boundary")
 
@@ -152,7 +152,7 @@ def test_a_target_that_runs_through_itself():
     f = told(done, r, "self_intersections")
     assert f["value"] == r["target"]["self_intersections"] > 0
     assert "innermap check" in f["advice"]
-    done, r = mapped("pinched.obj", "--max-crossings", 100000)
+    done, r = mapped("pinched.obj", "--warn-crossings", 100000)
     assert finding(r, "self_intersections")["met"]
 
 
@@ -164,7 +164,7 @@ def density(path):
 def test_a_density_that_is_crushed():
     icosphere("a.obj", 3)
     ball_with("waist.obj", waist(0.05))
-    innermap("fit", "a.obj", "waist.obj", "-o", "m.ply", "--sources", 1000)
+    innermap("fit", "a.obj", "waist.obj", "-o", "m.ply", "--charges", 1000)
     density("d.vdb")
     push = ("push", "m.ply", "d.vdb", "--density", "--voxel-size", 0.04, "--report", "r.json")
     done = innermap(*push, "-o", "p.vdb")
@@ -184,7 +184,7 @@ def test_a_density_that_is_crushed():
     assert abs(mass["density_after"] + mass["density_cut"] - mass["density_before"]) < \
         1e-3 * mass["density_before"]
     # The other way: what was narrow is pulled out wide again, and a wide one crushed.
-    innermap("fit", "waist.obj", "a.obj", "-o", "back.ply", "--sources", 1000)
+    innermap("fit", "waist.obj", "a.obj", "-o", "back.ply", "--charges", 1000)
     pull = ("pull", "back.ply", "d.vdb", "--density", "--report", "r.json")
     told(innermap(*pull, "-o", "p.vdb"), read_json("r.json"), "density")
     innermap(*pull, "-o", "q.vdb", "--density-limit", 4)
@@ -195,7 +195,7 @@ def test_voxels_follow_the_size_of_the_solid():
     icosphere("a.obj", 3)
     for name, size in (("half", 0.5), ("twice", 2.0), ("alike", 1.02)):
         icosphere(f"{name}.obj", 3, radius=size)
-        innermap("fit", "a.obj", f"{name}.obj", "-o", f"{name}.ply", "--sources", 200)
+        innermap("fit", "a.obj", f"{name}.obj", "-o", f"{name}.ply", "--charges", 200)
     density("d.vdb")
     counts = {}
     for name, size in (("half", 0.5), ("twice", 2.0), ("alike", 1.0)):
@@ -214,7 +214,7 @@ def test_voxels_follow_the_size_of_the_solid():
 def test_what_resampling_loses():
     icosphere("a.obj", 3)
     icosphere("b.obj", 3, radius=0.5)
-    innermap("fit", "a.obj", "b.obj", "-o", "m.ply", "--sources", 200)
+    innermap("fit", "a.obj", "b.obj", "-o", "m.ply", "--charges", 200)
     density("d.vdb")
     done = innermap("push", "m.ply", "d.vdb", "-o", "p.vdb", "--voxel-size", 2 / 24, "--report",
                     "r.json")
@@ -236,7 +236,7 @@ def write_frames():
 
 def test_frames_that_miss_the_tolerance():
     write_frames()
-    done = innermap("sequence", "rest.obj", "f.####.obj", "-o", "s", "--sources", 400,
+    done = innermap("sequence", "rest.obj", "f.####.obj", "-o", "s", "--charges", 400,
                     "--resolution", 16, "--tolerance", 0.01)
     r = read_json("s/report.json")
     f = told(done, r, "boundary")
@@ -249,14 +249,14 @@ def test_frames_that_miss_the_tolerance():
     column = rows[0].index("tolerance_met")
     assert [row[column] for row in rows[1:]] == ["1", "1", "0", "1"]
     density("d.vdb")
-    done = innermap("deform", "rest.obj", "d.vdb", "f.####.obj", "-o", "o/d.####.vdb", "--sources",
+    done = innermap("deform", "rest.obj", "d.vdb", "f.####.obj", "-o", "o/d.####.vdb", "--charges",
                     400, "--tolerance", 0.01, "--strict", "--report", "r.json", exit_code=1)
     r = read_json("r.json")
     told(done, r, "boundary")
     assert r["frames"]["missed"] == [3] and len(r["outputs"]) == 4
     assert done.stdout.count("misses the tolerance") == 1
     done = innermap("deform", "rest.obj", "rest.obj", "f.####.obj", "-o", "o/g.####.obj",
-                    "--sources", 400, "--tolerance", 0.01, "--report", "r.json")
+                    "--charges", 400, "--tolerance", 0.01, "--report", "r.json")
     assert read_json("r.json")["frames"]["missed"] == [3]
     assert done.stdout.count("misses the tolerance") == 1
 

@@ -124,19 +124,19 @@ def test_deforms_through_frames_as_the_program_does():
     V, F, poses = frames()
     smoke()
     X = shapes.inside(50)
-    places, found = innermap.deform((V, F), X, poses, sources=800)
+    places, found = innermap.deform((V, F), X, poses, charges=800)
     assert places.shape == (3, 50, 3) and found.all()
     assert np.abs(places[0] - X).max() < 1e-6
-    table = innermap.deform("rest.obj", "smoke.vdb", "pose.*.obj", "module.####.vdb", sources=800,
+    table = innermap.deform("rest.obj", "smoke.vdb", "pose.*.obj", "module.####.vdb", charges=800,
                             grids="density", densities=True)
     cli.innermap("deform", "rest.obj", "smoke.vdb", "pose.*.obj", "-o", "program.####.vdb",
-                 "--sources", "800", "--grids", "density", "--density")
+                 "--charges", "800", "--grids", "density", "--density")
     assert list(table["frame"]) == [0, 1, 2] and table["error"] == ["", "", ""]
     assert (table["boundary_rms"] < 1e-2).all()
     for i in range(3):
         identical(innermap.read_vdb(f"module.{i:04d}.vdb"), innermap.read_vdb(f"program.{i:04d}.vdb"),
                   ["density"])
-    made = innermap.deform("rest.obj", "smoke.vdb", poses, sources=800, grids="density", only="1-2",
+    made = innermap.deform("rest.obj", "smoke.vdb", poses, charges=800, grids="density", only="1-2",
                            densities=True, velocity=True)
     assert len(made) == 2 and list(made[0]) == ["density", "velocity"]
 
@@ -144,17 +144,17 @@ def test_deforms_through_frames_as_the_program_does():
 def test_deforms_files_as_the_program_does():
     V, F, _ = frames()
     innermap.write_mesh("inner.obj", 0.5 * V, F)
-    innermap.deform("rest.obj", "inner.obj", "pose.*.obj", "module.####.obj", sources=800)
+    innermap.deform("rest.obj", "inner.obj", "pose.*.obj", "module.####.obj", charges=800)
     cli.innermap("deform", "rest.obj", "inner.obj", "pose.*.obj", "-o", "program.####.obj",
-                 "--sources", "800")
+                 "--charges", "800")
     assert open("module.0002.obj").read() == open("program.0002.obj").read()
 
 
 def test_measures_a_sequence_as_the_program_does():
     V, F, poses = frames()
-    table = innermap.sequence("rest.obj", "pose.*.obj", sources=800, resolution=32,
+    table = innermap.sequence("rest.obj", "pose.*.obj", charges=800, resolution=32,
                               output="module.####.vdb", grids="jacobian")
-    cli.innermap("sequence", "rest.obj", "pose.*.obj", "-o", "program", "--sources", "800",
+    cli.innermap("sequence", "rest.obj", "pose.*.obj", "-o", "program", "--charges", "800",
                  "--resolution", "32")
     report = cli.read_json("program/report.json")
     for name in ("harmonic", "deformation", "boundary_p99", "folded_fraction", "volume"):
@@ -162,7 +162,7 @@ def test_measures_a_sequence_as_the_program_does():
     assert abs(table["harmonic"][0] - 3) < 0.02 < table["harmonic"][2] - 3, table["harmonic"]
     assert list(innermap.read_vdb("module.0001.vdb")) == ["jacobian"]
     poses[1] = poses[1] * 0  # bounds no solid
-    table = innermap.sequence((V, F), poses, sources=800, resolution=32)
+    table = innermap.sequence((V, F), poses, charges=800, resolution=32)
     assert table["error"][1] and not table["error"][0] and np.isnan(table["harmonic"][1])
 
 

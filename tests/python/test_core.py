@@ -162,7 +162,7 @@ def test_takes_meshes_in_many_ways():
 
 def test_fits_a_number_of_charges():
     V, F = shapes.ball(2)
-    m = innermap.fit(V, F, shapes.twisted(V), sources=300, distance=0.2)
+    m = innermap.fit(V, F, shapes.twisted(V), charges=300, distance=0.2)
     assert m.charges == 300 and m.facts["distance"] == "0.2" and m.tolerance_met is None
     for wrong in ({"sources": 10, "tolerance": 1e-3}, {"distance": 1, "radius_ratio": 2}):
         try:

@@ -3,6 +3,7 @@
 import ast
 import builtins
 import inspect
+import subprocess
 from pathlib import Path
 
 import cli
@@ -101,6 +102,13 @@ def test_are_complete():
                     if isinstance(node, ast.Assign) and node.targets[0].id == "__all__")
     assert sorted(exported) == sorted(innermap.__all__)
     assert STUB.with_name("py.typed").exists()
+
+
+def test_keywords_are_as_the_module_describes_them():
+    script = cli.ROOT / "scripts" / "update-stubs"
+    done = subprocess.run([script, "--check", Path(innermap.__file__).parents[1]], capture_output=True,
+                          text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_everything_is_documented():

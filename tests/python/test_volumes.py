@@ -77,7 +77,7 @@ def test_voxelizes_as_the_program_does():
 def test_cuts_and_draws():
     V, F = shapes.ball(3)
     grids = innermap.voxelize(V, F, resolution=24, fog=True)
-    made = innermap.write_slices("slices.exr", grids, count=4, axis="x")
+    made = innermap.write_slices("slices.exr", grids, slices=4, axis="x")
     assert made["slices"] == 4
     assert "density.V" in cli.innermap("info", "slices.exr").stdout
     shown = innermap.write_section("section.png", grids, grid="density", range=(0, 1))
@@ -98,7 +98,7 @@ def test_transfers_the_distance():
 def test_continues_vertex_colours():
     V, F = shapes.ball(3)
     colours = 0.5 + 0.5 * V
-    grids = innermap.solid_texture((V, F), colours=colours, resolution=24, sources=400)
+    grids = innermap.solid_texture((V, F), colours=colours, resolution=24, charges=400)
     places = np.argwhere(grids["surface"] < -grids.voxel_size)
     found = grids["Cd"][tuple(places.T)]
     world = places @ grids.matrix[:3, :3].T + grids.matrix[:3, 3]
@@ -115,9 +115,9 @@ def test_continues_an_image_as_the_program_does():
             file.write("f %d/%d %d/%d %d/%d\n" % tuple(np.repeat(f, 2)))
     with open("image.ppm", "wb") as file:
         file.write(b"P6 4 4 255\n" + bytes(range(48)))
-    grids = innermap.solid_texture("uv.obj", "image.ppm", resolution=20, sources=300)
+    grids = innermap.solid_texture("uv.obj", "image.ppm", resolution=20, charges=300)
     cli.innermap("texture", "uv.obj", "image.ppm", "-o", "program.vdb", "--resolution", "20",
-                 "--sources", "300")
+                 "--charges", "300")
     program = innermap.read_vdb("program.vdb")
     assert list(grids) == list(program)
     assert np.array_equal(grids["Cd"], program["Cd"])
@@ -128,18 +128,18 @@ def test_studies_as_the_program_does():
     W = shapes.twisted(V)
     innermap.write_mesh("rest.obj", V, F)
     innermap.write_mesh("pose.obj", W, F)
-    table, findings = innermap.study(V, F, W, sources=[50, 100], points=[3], distances=[0.1],
-                                     radius_ratios=[], base_sources=50, base_distance=0.1,
+    table, findings = innermap.study(V, F, W, charges=[50, 100], points=[3], distances=[0.1],
+                                     radius_ratios=[], base_charges=50, base_distance=0.1,
                                      grid="none", resolution=16, folder="kept")
-    cli.innermap("study", "rest.obj", "pose.obj", "-o", "program", "--sources", "50,100",
+    cli.innermap("study", "rest.obj", "pose.obj", "-o", "program", "--charges", "50,100",
                  "--points", "3", "--distances", "0.1", "--radius-ratios", "none",
-                 "--base-sources", "50", "--base-distance", "0.1", "--grid", "none",
+                 "--base-charges", "50", "--base-distance", "0.1", "--grid", "none",
                  "--resolution", "16")
     rows = list(csv.DictReader(open("program/study.csv")))
     assert len(rows) == len(table["rms"]) > 1
     for name in ("sources", "points", "c_error", "rms", "p99", "harmonic_energy", "folded"):
         assert np.allclose(table[name], [float(r[name]) for r in rows], rtol=1e-4, atol=1e-9), name
-    assert findings["statements"] and "--sources" in findings["best"]
+    assert findings["statements"] and "--charges" in findings["best"]
 
 
 if __name__ == "__main__":

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <sstream>
+
+#include "innermap/core/base64.h"
 
 namespace innermap::tool {
 namespace {
@@ -21,18 +24,9 @@ std::string compressed(const std::string& bytes) {
 }
 
 std::string base64(const std::string& bytes) {
-  static const char* const digits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = (group << 8) | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      out += i + k <= bytes.size() ? digits[(group >> (18 - 6 * k)) & 63] : '=';
-  }
-  return out;
+  std::ostringstream out;
+  Base64Writer(out).addBytes(bytes);
+  return out.str();
 }
 
 template <class Number>

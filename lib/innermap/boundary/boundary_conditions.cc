@@ -162,4 +162,12 @@ double removeJumps(const Mesh& mesh, BoundaryConditions& conditions) {
   return changed / surfaceArea(mesh);
 }
 
+Setting creaseSetting(double* angle) {
+  return Setting("crease_angle", "DEGREES", angle,
+                 "triangles that meet at less stand for a smooth surface: what flows through it is "
+                 "counted along interpolated normals; 0: along each triangle's own")
+      .from(0, 90)
+      .rare();
+}
+
 }  // namespace innermap

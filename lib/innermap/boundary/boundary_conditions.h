@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "innermap/core/matrix.h"
+#include "innermap/core/setting.h"
 #include "innermap/core/vec3.h"
 #include "innermap/mesh/mesh.h"
 
@@ -31,6 +32,9 @@ struct BoundaryConditions {
   // there for nothing. 0: the triangles' own.
   double creaseAngle = 30;
 };
+
+// Of BoundaryConditions::creaseAngle.
+Setting creaseSetting(double* angle);
 
 // A part of a surface.
 struct SurfaceGroup {

@@ -9,6 +9,7 @@
 #include "innermap/boundary/certificate.h"
 #include "innermap/boundary/detail/problem_samples.h"
 #include "innermap/boundary/detail/surface_conditions.h"
+#include "innermap/boundary/map_fit.h"
 #include "innermap/core/detail/point_grid.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
@@ -233,6 +234,14 @@ HarmonicField withUnitSum(const HarmonicField& field) {
   };
   return {field.sources(), share(field.weights(), false),
           Affine{field.affine().center, share(field.affine().coefficients, true)}};
+}
+
+std::vector<Setting> describe(HarmonicFitSettings& s) {
+  return {Setting("tolerance", "T", &s.tolerance,
+                  "charges are added until 99% of the boundary lies within it")
+              .in("fraction of the values' span")
+              .from(kSmallestTolerance, 1),
+          maxSourcesSetting(&s.maxSources), seedSetting(&s.seed)};
 }
 
 }  // namespace innermap

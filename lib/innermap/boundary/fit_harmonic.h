@@ -15,16 +15,18 @@
 
 #include "innermap/boundary/boundary_conditions.h"
 #include "innermap/boundary/boundary_pair.h"
+#include "innermap/core/setting.h"
 #include "innermap/field/adaptive_fit.h"
 
 namespace innermap {
 
 struct HarmonicFitSettings {
-  double tolerance = 1e-3;          // of the largest span of a channel's values, in
-                                    // [kSmallestTolerance, 1]
-  std::size_t maxSources = 100000;  // in [1000, 1000000]
-  std::uint64_t seed = 1;           // of all random points, in [0, 1e15]
+  double tolerance = 1e-3;  // of the largest span of a channel's values
+  std::size_t maxSources = 100000;
+  std::uint64_t seed = 1;
 };
+
+std::vector<Setting> describe(HarmonicFitSettings& settings);
 
 struct HarmonicFit {
   HarmonicField field;

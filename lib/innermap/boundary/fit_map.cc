@@ -12,8 +12,6 @@
 namespace innermap {
 namespace {
 
-std::string number(double x) { return fmt::format("{:.9g}", x); }
-
 Facts factsOf(const BoundaryPair& pair, const FitOutcome& out, std::uint64_t seed) {
   const auto oneLine = [](std::string text) {
     std::replace_if(
@@ -23,34 +21,34 @@ Facts factsOf(const BoundaryPair& pair, const FitOutcome& out, std::uint64_t see
   Facts facts{{"version", versionText()},
               {"source", oneLine(pair.source.mesh.name)},
               {"target", oneLine(pair.targetMesh.name)},
-              {"method", out.solve.method},
+              {"method", wordOf(out.solve.method)},
               {"interpolation", out.smooth ? "smooth" : "linear"},
               {"seed", std::to_string(seed)},
-              {"regularization", number(out.solve.regularization)},
+              {"regularization", textOfFact(out.solve.regularization)},
               {"rank", std::to_string(out.solve.rank)},
-              {"boundary_error_rms", number(out.error.rms)},
-              {"boundary_error_p99", number(out.error.p99)},
-              {"boundary_error_max", number(out.error.max)},
+              {"boundary_error_rms", textOfFact(out.error.rms)},
+              {"boundary_error_p99", textOfFact(out.error.p99)},
+              {"boundary_error_max", textOfFact(out.error.max)},
               {"boundary_error_samples", std::to_string(out.error.samples)},
-              {"boundary_error_p99_bound", number(out.error.p99Bound)},
-              {"boundary_error_bound", number(out.error.bound)},
-              {"boundary_error_confidence", number(kCertificateConfidence)},
-              {"boundary_error_smooth_bound", number(out.certificate.smoothBound)},
-              {"c_error", number(out.collocationError)}};
+              {"boundary_error_p99_bound", textOfFact(out.error.p99Bound)},
+              {"boundary_error_bound", textOfFact(out.error.bound)},
+              {"boundary_error_confidence", textOfFact(kCertificateConfidence)},
+              {"boundary_error_smooth_bound", textOfFact(out.certificate.smoothBound)},
+              {"c_error", textOfFact(out.collocationError)}};
   if (out.solve.radiusRatio > 0)
-    facts.emplace_back("radius_ratio", number(out.solve.radiusRatio));
+    facts.emplace_back("radius_ratio", textOfFact(out.solve.radiusRatio));
   else
-    facts.emplace_back("distance", number(out.solve.distance));
+    facts.emplace_back("distance", textOfFact(out.solve.distance));
   if (out.smooth)
-    facts.emplace_back("boundary_error_vertices_max", number(out.certificate.verticesMax));
+    facts.emplace_back("boundary_error_vertices_max", textOfFact(out.certificate.verticesMax));
   else
-    facts.emplace_back("boundary_error_triangles", number(out.certificate.triangles));
+    facts.emplace_back("boundary_error_triangles", textOfFact(out.certificate.triangles));
   if (!out.steps.empty()) facts.emplace_back("steps", std::to_string(out.steps.size()));
-  if (out.inside.samples > 0) facts.emplace_back("folded", number(out.inside.folded));
+  if (out.inside.samples > 0) facts.emplace_back("folded", textOfFact(out.inside.folded));
   if (out.tolerance) {
-    facts.emplace_back("tolerance", number(out.tolerance->wanted));
-    facts.emplace_back("tolerance_reached", number(out.tolerance->reached));
-    facts.emplace_back("tolerance_met", out.tolerance->met ? "true" : "false");
+    facts.emplace_back("tolerance", textOfFact(out.tolerance->wanted));
+    facts.emplace_back("tolerance_reached", textOfFact(out.tolerance->reached));
+    facts.emplace_back("tolerance_met", textOfFact(out.tolerance->met));
   }
   return facts;
 }
@@ -93,27 +91,6 @@ void warnOfError(MapFit& fit) {
                     fit.error.max, fit.tolerance ? "a smaller tolerance" : "more charges"));
 }
 
-void validate(const FitMapSettings& settings) {
-  if (settings.maxSteps < 1 || settings.maxSteps > 256)
-    throw SettingError("maxSteps", "must lie in [1, 256]");
-  if (settings.shell && settings.oneToOne == OneToOne::on)
-    throw SettingError("oneToOne",
-                       "steps are fitted to a tolerance; leave out the number of charges");
-  if (!settings.shell) {
-    if (!(settings.tolerance >= kSmallestTolerance && settings.tolerance <= 1))
-      throw SettingError("tolerance", fmt::format("must lie in [{:g}, 1], not {:g}",
-                                                  kSmallestTolerance, settings.tolerance));
-    return;
-  }
-  const ShellSettings& shell = *settings.shell;
-  if (shell.distance && shell.radiusRatio)
-    throw SettingError("distance", "goes with a shell, radiusRatio with a sphere; give one");
-  if (shell.collocation > 0 && shell.collocation < shell.sources + 4)
-    throw SettingError("collocation",
-                       fmt::format("must be at least {} for {} charges, not {}", shell.sources + 4,
-                                   shell.sources, shell.collocation));
-}
-
 }  // namespace
 
 std::uint64_t fitMapMemory(const FitMapSettings& settings, std::size_t vertices) {
@@ -132,7 +109,7 @@ std::uint64_t fitMapMemory(const FitMapSettings& settings, std::size_t vertices)
 }
 
 MapFit fitMap(BoundaryPair boundary, const FitMapSettings& settings) {
-  validate(settings);
+  requireInRange(settings);
   MapFitter fitter(boundary, settings);
   FitOutcome out =
       settings.shell ? fitter.onShell(*settings.shell) : fitter.within(settings.tolerance);

@@ -9,6 +9,7 @@
 #include "innermap/boundary/detail/inside_check.h"
 #include "innermap/boundary/detail/problem_samples.h"
 #include "innermap/boundary/detail/streams.h"
+#include "innermap/boundary/map_fit.h"
 #include "innermap/boundary/surface_problem.h"
 #include "innermap/core/error.h"
 #include "innermap/field/fit.h"
@@ -216,6 +217,23 @@ HarmonicField FrameFits::velocity(std::size_t index, double framesPerSecond) {
   const std::shared_ptr<const FrameFit> here = at(index);
   return velocityAt({here.get(), numbers_[index]}, neighbour(index, -1), neighbour(index, 1),
                     framesPerSecond);
+}
+
+std::vector<Setting> describe(FrameFitterSettings& s) {
+  return {Setting("charges", "N", &s.sources, "charges, the same for all frames")
+              .from(1, kMaxCharges)
+              .was("sources")
+              .rare(),
+          Setting("collocation", "N", &s.collocation, "boundary points that frames are fitted to")
+              .from(8, 1e7)
+              .otherwise(0, "3 a charge")
+              .rare(),
+          Setting("distance", "D", &s.distance, "of the charges from the surface")
+              .in("fraction of the rest pose's diagonal")
+              .from(1e-4, 2)
+              .otherwise("1.25 spacings of the charges")
+              .rare(),
+          seedSetting(&s.seed)};
 }
 
 }  // namespace innermap

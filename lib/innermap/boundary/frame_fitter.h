@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "innermap/boundary/boundary_pair.h"
+#include "innermap/core/setting.h"
 #include "innermap/field/boundary_error.h"
 #include "innermap/field/harmonic_field.h"
 #include "innermap/solve/iterative_solver.h"
@@ -22,13 +23,13 @@
 namespace innermap {
 
 struct FrameFitterSettings {
-  std::size_t sources = 8000;      // charges, the same for all frames, in [1, 1000000]
+  std::size_t sources = 8000;      // charges, the same for all frames
   std::size_t collocation = 0;     // boundary points, at least sources + 4; 0: 3 a source
-  std::optional<double> distance;  // of the charges, fraction of the rest pose's diagonal, in
-                                   // [1e-4, 2]; 1.25 spacings of the charges when absent; at most
-                                   // 4 spacings for over kMostDenseSources charges
-  std::uint64_t seed = 1;          // of all random points, in [0, 1e15]
+  std::optional<double> distance;  // at most 4 spacings for over kMostDenseSources charges
+  std::uint64_t seed = 1;
 };
+
+std::vector<Setting> describe(FrameFitterSettings& settings);
 
 // Boundary points of these settings: `collocation`, or its default.
 std::size_t frameCollocation(const FrameFitterSettings& settings);

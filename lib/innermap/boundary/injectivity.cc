@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <string_view>
 #include <type_traits>
 
@@ -82,9 +81,8 @@ Facts injectivityFacts(const Injectivity& known) {
 
 void readInjectivity(const Facts& facts, Injectivity& known) {
   visitFigures(known, [&](const std::string& name, auto& value, bool) {
-    for (const auto& [key, text] : facts)
-      if (key == std::string(kPrefix) + name)
-        value = static_cast<std::decay_t<decltype(value)>>(std::strtod(text.c_str(), nullptr));
+    if (const auto number = factNumber(facts, std::string(kPrefix) + name))
+      value = static_cast<std::decay_t<decltype(value)>>(*number);
   });
 }
 

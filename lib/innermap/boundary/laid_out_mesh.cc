@@ -249,4 +249,17 @@ MeshOnSphere onSphere(const LaidOutMesh& laid) {
   return out;
 }
 
+std::vector<Setting> describe(LayOutSettings& s) {
+  return {Setting("surface_resolution", "N", &s.outerResolution,
+                  "cells across of the outer surface, which is taken for a mesh that runs through "
+                  "itself, overlaps or is not manifold")
+              .from(8, 1024)
+              .otherwise(0, "80, more for thin solids")
+              .rare(),
+          Setting("genus", "N", &s.handles, "handles of that outer surface")
+              .from(0, 1000)
+              .otherwise("the mesh's own; of several pieces, those that stay at other resolutions")
+              .rare()};
+}
+
 }  // namespace innermap

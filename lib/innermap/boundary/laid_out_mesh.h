@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "innermap/core/setting.h"
 #include "innermap/lattice/outer_surface.h"
 #include "innermap/mesh/mesh.h"
 #include "innermap/surface/correspond.h"
@@ -20,6 +21,8 @@ struct LayOutSettings {
   int outerResolution = 0;
   std::optional<int> handles;
 };
+
+std::vector<Setting> describe(LayOutSettings& settings);
 
 struct LaidOutMesh {
   LaidOutMesh(Mesh given, EmbeddedSurface laidOut)

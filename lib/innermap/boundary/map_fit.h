@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "innermap/boundary/mapped_solid.h"
+#include "innermap/core/setting.h"
 #include "innermap/field/adaptive_fit.h"
 #include "innermap/field/boundary_error.h"
 #include "innermap/field/fit.h"
@@ -15,16 +16,17 @@ namespace innermap {
 
 // A number of charges, whatever the error.
 struct ShellSettings {
-  std::size_t sources = 2000;  // in [1, 1000000]; dense: at most 20000
-  std::size_t collocation =
-      0;  // boundary points, at least sources + 4; 0: 4 a source (3 above 3000)
-  std::optional<double> distance;     // of the source's diagonal, in [1e-4, 2]; chosen when absent
-  std::optional<double> radiusRatio;  // in (1, 100]: charges on a sphere of that many half
-                                      // diagonals instead; not together with a distance
+  std::size_t sources = 2000;         // dense: at most 20000
+  std::size_t collocation = 0;        // boundary points, at least sources + 4; 0: chosen
+  std::optional<double> distance;     // of the source's diagonal
+  std::optional<double> radiusRatio;  // not together with a distance
   FitSolver solver = FitSolver::automatic;
   Regularization method = Regularization::tikhonov;
-  std::optional<double> regularization;  // relative, in [0, 1]; chosen when absent
+  std::optional<double> regularization;
 };
+
+// Without the numbers of charges and points.
+std::vector<Setting> describe(ShellSettings& settings);
 
 // Boundary points of these settings: `collocation`, or its default.
 std::size_t shellCollocation(const ShellSettings& shell);
@@ -37,6 +39,7 @@ std::size_t shellCollocation(const ShellSettings& shell);
 // which folds are counted.
 enum class OneToOne { automatic, on, off };
 
+constexpr double kMaxCharges = 1e6;
 constexpr double kManyFolds = 5e-3, kManyOutside = 1e-2, kFewFolds = 4e-4;
 
 // What maps in steps take beside a single one in bytes: the most that was measured between
@@ -47,20 +50,37 @@ struct FitMapSettings {
   // 99% of the boundary shall lie within it; fraction of the target's diagonal, in
   // [kSmallestTolerance, 1]. Not used with `shell`.
   double tolerance = 1e-3;
-  std::size_t maxSources = 100000;  // that the tolerance may take, in [1000, 1000000]
+  std::size_t maxSources = 100000;  // that the tolerance may take
   std::optional<ShellSettings> shell;
   Interpolation interpolation = Interpolation::automatic;
   OneToOne oneToOne = OneToOne::automatic;  // with `shell` folds are counted, no more
-  int maxSteps = 16;                        // in [1, 256]
-  std::uint64_t seed = 1;                   // of all random points, in [0, 1e15]
+  int maxSteps = 16;
+  std::uint64_t seed = 1;
 };
+
+// {tolerance}'s.
+Setting maxSourcesSetting(std::size_t* most);
+
+// Without the tolerance and the shell.
+std::vector<Setting> describe(FitMapSettings& settings);
+
+// Throws SettingError for what is out of range, or excludes something else.
+void requireInRange(const FitMapSettings& settings);
+
+// tikhonov, truncatedSvd: of a dense solve, by what regularises it. steps: each of a map's by
+// itself.
+enum class SolveMethod { adaptive, iterative, tikhonov, truncatedSvd, steps };
+enum class MapPlacement { adaptive, shell, sphere, steps };
+
+// As reports and files have them: "adaptive", "tsvd", ...
+std::string wordOf(SolveMethod method);
+std::string wordOf(MapPlacement placement);
 
 // How the charges were placed and their weights found. Lengths are fractions of the source's
 // diagonal.
 struct MapSolve {
-  std::string method;     // "adaptive", "iterative", or what a dense solve was regularised by:
-                          // "tikhonov", "tsvd"
-  std::string placement;  // "adaptive", "shell", "sphere"
+  SolveMethod method = SolveMethod::adaptive;
+  MapPlacement placement = MapPlacement::adaptive;
   std::size_t sources = 0, collocation = 0, heldOut = 0, rank = 0;
   double distance = 0;                       // of the charges, of the first level; none on a sphere
   double radiusRatio = 0;                    // of a sphere

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "innermap/core/error.h"
 
@@ -39,10 +38,8 @@ MappedSolid readMap(const std::string& path) {
   source.triangles = std::move(file.boundaryTriangles);
   Mesh target = source;
   target.vertices = std::move(file.boundaryTarget);
-  for (const auto& [key, value] : file.facts) {
-    if (key == "source") source.name = value;
-    if (key == "target") target.name = value;
-  }
+  source.name = factText(file.facts, "source").value_or(source.name);
+  target.name = factText(file.facts, "target").value_or(target.name);
   validate(source);
   validate(target);
   BoundaryPair pair = makeBoundaryPair(std::move(source), std::move(target));
@@ -58,12 +55,9 @@ MappedSolid readMap(const std::string& path) {
 }
 
 double sumAccuracy(const MappedSolid& mapped) {
-  double error = 0;
-  for (const auto& [key, value] : mapped.facts) {
-    // Fitted to the vertices alone, a map is far more exact than its error on triangles says.
-    if (key == "interpolation" && value == "smooth") return kFinestSum;
-    if (key == "boundary_error_rms") error = std::strtod(value.c_str(), nullptr);
-  }
+  // Fitted to the vertices alone, a map is far more exact than its error on triangles says.
+  if (factText(mapped.facts, "interpolation") == "smooth") return kFinestSum;
+  const double error = factNumber(mapped.facts, "boundary_error_rms").value_or(0);
   return error > 0 ? sumAccuracy(error) : kDefaultSum;
 }
 

@@ -136,10 +136,8 @@ std::optional<MeshCorrespondence> MeshCorrespondence::otherWay() const {
 
 MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const MeshCorrespondenceSettings& settings) {
   requireCorrespondMemory(a, b);
-  LayOutSettings surfaces;
-  surfaces.outerResolution = settings.outerResolution;
-  surfaces.handles = settings.handles;
-  auto [laidA, laidB] = layOutMeshes(std::move(a), std::move(b), surfaces);
+
+  auto [laidA, laidB] = layOutMeshes(std::move(a), std::move(b), settings.layOut);
   return correspondMeshes(std::move(laidA), std::move(laidB), settings);
 }
 
@@ -222,6 +220,36 @@ void requireOnTarget(const Mesh& moved, const Mesh& target) {
         "{}: does not lie on {}, half of its vertices are {:.2g} of the diagonal away or more; "
         "give the two that belong together",
         moved.name, target.name, share));
+}
+
+std::vector<Setting> describe(MeshCorrespondenceSettings& s) {
+  std::vector<Setting> out{
+      Setting("aligned", &s.aligned,
+              "the two stand in the same pose and orientation: prefer agreeing normals and places"),
+      Setting("candidates", "N", &s.candidates,
+              "ways to lay one on the other that are refined: those whose coarse harmonic maps of "
+              "the inside stretch and fold it least; of them the one that does so least is taken")
+          .from(1, 64)
+          .rare(),
+      Setting("choose", "N", &s.way.choose,
+              "of the ways to lay one on the other that differ, the one of this number by "
+              "preference; a note tells where the second is about as good as the first")
+          .from(1, 64),
+      Setting("mirror", &s.way.mirror,
+              "the best way that turns left into right of what is taken otherwise, for bodies that "
+              "are the same on both sides"),
+      Setting("refine", &s.refine,
+              "only the best way to lay one on the other, not refined: fast, rough")
+          .rare(),
+      Setting("subdivide", "T", &s.subdivide,
+              "split the source's triangles until they follow the target within it, and write it "
+              "so split too; 0: never")
+          .in("fraction of the target's diagonal")
+          .from(0, 1)
+          .rare(),
+      seedSetting(&s.seed)};
+  for (Setting& setting : describe(s.layOut)) out.push_back(std::move(setting));
+  return out;
 }
 
 }  // namespace innermap

@@ -18,22 +18,23 @@
 namespace innermap {
 
 struct MeshCorrespondenceSettings {
-  int outerResolution = 0;     // as in LayOutSettings, for both meshes
-  std::optional<int> handles;  // as in LayOutSettings, for both meshes
+  LayOutSettings layOut;  // of both meshes
   // Where A's outer surface was laid on B: values at A's own vertices, as at the closest points of
   // the outer surface; otherwise the source is the outer surface itself, which is what maps fit.
   bool carryBack = true;
   LandmarkList landmarks;  // kept exactly
-  bool aligned = false;    // the two stand in the same pose: prefer agreeing normals and places
-  int candidates = 3;      // ways to lay A on B that are refined, in [1, 64]
-  bool byInside = true;    // choose by a coarse harmonic map of the inside; otherwise, and where
-                           // there is none, by the surfaces' energy
-  WantedWay way;           // which of the ways to lay A on B that differ; needs byInside
-  bool refine = true;      // false: fast, rough
-  double subdivide = 0;    // split A until it follows B within this fraction of B's diagonal, in
-                           // [0, 1); 0: never
-  std::uint64_t seed = 1;  // of all random choices
+  bool aligned = false;
+  int candidates = 3;    // ways to lay A on B that are refined
+  bool byInside = true;  // choose by a coarse harmonic map of the inside; otherwise, and where
+                         // there is none, by the surfaces' energy
+  WantedWay way;         // which of the ways to lay A on B that differ; needs byInside
+  bool refine = true;    // false: fast, rough
+  double subdivide = 0;  // split A until it follows B within this fraction of B's diagonal
+  std::uint64_t seed = 1;
 };
+
+// Without the landmarks.
+std::vector<Setting> describe(MeshCorrespondenceSettings& settings);
 
 struct MeshCorrespondence {
   MeshCorrespondence(LaidOutMesh first, LaidOutMesh second)

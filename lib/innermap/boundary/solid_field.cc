@@ -23,8 +23,6 @@ std::vector<std::string> partsOf(const std::string& text) {
   return out;
 }
 
-std::string textOf(double value) { return fmt::format("{:.9g}", value); }
-
 }  // namespace
 
 Facts harmonicFacts(const HarmonicFit& fit, const HarmonicFitSettings& settings,
@@ -37,16 +35,16 @@ Facts harmonicFacts(const HarmonicFit& fit, const HarmonicFitSettings& settings,
   return {{"version", versionText()},
           {"source", source},
           {kChannels, fmt::format("{}", fmt::join(names, ","))},
-          {"span", textOf(fit.span)},
+          {"span", textOfFact(fit.span)},
           {"seed", fmt::format("{}", settings.seed)},
-          {"tolerance", textOf(settings.tolerance)},
-          {"tolerance_met", fit.met ? "true" : "false"},
-          {"boundary_error_rms", textOf(fit.error.rms)},
-          {"boundary_error_p99", textOf(fit.error.p99)},
-          {"boundary_error_max", textOf(fit.error.max)},
+          {"tolerance", textOfFact(settings.tolerance)},
+          {"tolerance_met", textOfFact(fit.met)},
+          {"boundary_error_rms", textOfFact(fit.error.rms)},
+          {"boundary_error_p99", textOfFact(fit.error.p99)},
+          {"boundary_error_max", textOfFact(fit.error.max)},
           {"boundary_error_samples", fmt::format("{}", fit.error.samples)},
-          {"inside_error_bound", textOf(fit.bound)},
-          {"free_share", textOf(fit.freeShare)}};
+          {"inside_error_bound", textOfFact(fit.bound)},
+          {"free_share", textOfFact(fit.freeShare)}};
 }
 
 void writeSolidField(const std::string& path, const SolidField& field) {
@@ -64,14 +62,10 @@ SolidField readSolidField(const std::string& path) {
     throw FileError(path, "is the file of a map, not of a field");
   if (file.boundaryTriangles.empty()) throw FileError(path, "holds no boundary");
   Mesh mesh;
-  mesh.name = path;
+  mesh.name = factText(file.facts, "source").value_or(path);
   mesh.vertices = std::move(file.boundary);
   mesh.triangles = std::move(file.boundaryTriangles);
-  std::vector<std::string> names;
-  for (const auto& [key, value] : file.facts) {
-    if (key == "source") mesh.name = value;
-    if (key == kChannels) names = partsOf(value);
-  }
+  std::vector<std::string> names = partsOf(factText(file.facts, kChannels).value_or(""));
   HarmonicField field = std::move(file.steps.front());
   if (names.size() != field.channels())
     throw FileError(path,

@@ -21,4 +21,9 @@ double deformationEnergyDensity(const Mat3& jacobian, const LameConstants& lame)
   return 0.5 * lame.lambda * trace * trace + lame.mu * square;
 }
 
+std::vector<Setting> describe(LameConstants& s) {
+  return {Setting("lame_lambda", "X", &s.lambda, "first elastic constant").from(0, 1e12).rare(),
+          Setting("lame_mu", "X", &s.mu, "second elastic constant (shear)").from(0, 1e12).rare()};
+}
+
 }  // namespace innermap

@@ -2,6 +2,9 @@
 // Mapping Using Fundamental Solution Methods" (IEEE T-ASE 2009), formulas (3) and (4).
 #pragma once
 
+#include <vector>
+
+#include "innermap/core/setting.h"
 #include "innermap/core/vec3.h"
 
 namespace innermap {
@@ -11,6 +14,8 @@ struct LameConstants {
   double lambda = 0.0335;
   double mu = 0.0224;
 };
+
+std::vector<Setting> describe(LameConstants& settings);
 
 // ||J||^2, the squared Frobenius norm: 3 for the identity and every rotation.
 double harmonicEnergyDensity(const Mat3& jacobian);

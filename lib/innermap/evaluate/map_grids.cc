@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <initializer_list>
 #include <string_view>
 #include <utility>
@@ -52,16 +51,10 @@ void insertTotals(const openvdb::GridPtrVec& grids, const MapGrids& values) {
   if (values.repaired) insert(grids, {{"repaired_farthest", values.repairedFarthest}});
 }
 
-double factOf(const MappedSolid& mapped, const char* name) {
-  for (const auto& [key, value] : mapped.facts)
-    if (key == name) return std::strtod(value.c_str(), nullptr);
-  return 0;
-}
-
 // Of 99% of the boundary, world units of the target.
 double boundaryErrorOf(const MappedSolid& mapped) {
   const double known = mapped.injectivity.boundaryError;
-  return (known > 0 ? known : factOf(mapped, "boundary_error_p99")) *
+  return (known > 0 ? known : factNumber(mapped.facts, "boundary_error_p99").value_or(0)) *
          mapped.boundary.target.diagonal;
 }
 
@@ -103,7 +96,7 @@ Injectivity injectivityOf(const MappedSolid& mapped, const SolidGrids& grids,
 
 // What the map was fitted to.
 double toleranceOf(const MappedSolid& mapped) {
-  const double tolerance = factOf(mapped, "tolerance");
+  const double tolerance = factNumber(mapped.facts, "tolerance").value_or(0);
   return tolerance > 0 ? tolerance : kUsualTolerance;
 }
 
@@ -304,6 +297,17 @@ void describeFrame(const openvdb::GridPtrVec& grids, const NumberedFit& frame) {
                  {"boundary_error_p99", error.p99},
                  {"boundary_error_max", error.max},
                  {"boundary_error_bound", error.bound}});
+}
+
+Setting repairSetting(RepairFolds* repair) {
+  return Setting("repair", "WHEN",
+                 choiceOf<RepairFolds>(repair, {{"auto", RepairFolds::automatic},
+                                                {"on", RepairFolds::on},
+                                                {"off", RepairFolds::off}}),
+                 fmt::format("take folds out of the grids, where `repaired` says how far voxels "
+                             "were moved; auto: where at most {:g}% of the voxels is folded",
+                             100 * kRepairedFolds))
+      .rare();
 }
 
 }  // namespace innermap

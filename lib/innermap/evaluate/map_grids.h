@@ -10,6 +10,7 @@
 
 #include "innermap/boundary/frame_fitter.h"
 #include "innermap/boundary/mapped_solid.h"
+#include "innermap/core/setting.h"
 #include "innermap/core/stage_seconds.h"
 #include "innermap/evaluate/energy.h"
 #include "innermap/evaluate/evaluate_map.h"
@@ -20,6 +21,7 @@ namespace innermap {
 // kRepairedFolds of the voxels inside is folded, and not in sequences.
 enum class RepairFolds { automatic, on, off };
 constexpr double kRepairedFolds = 5e-3;
+Setting repairSetting(RepairFolds* repair);
 
 struct MapGridSettings {
   int resolution = 0;    // voxels along the longest side, as in LevelSetSettings

@@ -18,11 +18,10 @@
 #include <utility>
 #include <vector>
 
+#include "innermap/field/facts.h"
 #include "innermap/field/harmonic_field.h"
 
 namespace innermap {
-
-using Facts = std::vector<std::pair<std::string, std::string>>;
 
 struct FieldFile {
   std::vector<HarmonicField> steps;  // one, unless it is a map composed of several; of each the

@@ -151,7 +151,7 @@ void checkShape(const BoundaryData& data) {
 void Fitting::check() const {
   const bool iterates = solver() == FitSolver::iterative;
   if (settings_.sources < 1 || settings_.sources > (iterates ? kMostSources : kMostDense))
-    throw SettingError("sources", iterates ? "must lie in 1 to 1000000"
+    throw SettingError("charges", iterates ? "must lie in 1 to 1000000"
                                            : "must lie in 1 to 20000 for the dense solver");
   if (settings_.distance && !(*settings_.distance >= 1e-4 && *settings_.distance <= 2))
     throw SettingError("distance", "must lie in 0.0001 to 2 of the diagonal");

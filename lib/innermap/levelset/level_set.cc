@@ -18,9 +18,6 @@ using openvdb::FloatGrid;
 using openvdb::FloatTree;
 using Leaf = FloatTree::LeafNodeType;
 
-constexpr int kMaxAcross = 4096;
-constexpr int kMinAcross = 4;
-
 std::string formatLength(double length) { return fmt::format("{:.4g}", length); }
 
 double longestSide(const Solid& solid) {
@@ -48,7 +45,7 @@ double automaticVoxel(const Solid& solid) {
   const double usual = voxelSizeAcross(solid.box(), kUsualResolution), thin = thinVoxel(solid);
   if (!(thin > 0 && thin < usual)) return usual;
   const double room = limitsMemory() ? 0.5 * static_cast<double>(memoryLimit()) : kMostBytes;
-  double voxel = std::max(thin, voxelSizeAcross(solid.box(), kMaxAcross));
+  double voxel = std::max(thin, voxelSizeAcross(solid.box(), kMostVoxels));
   while (voxel < usual && gridBytes(solid, voxel) > room) voxel /= kFiner;
   return voxel > kHopeless * thicknessOf(solid) ? usual : std::min(voxel, usual);
 }
@@ -63,14 +60,8 @@ std::string thinNeed(const Solid& solid) {
   const int across = acrossFor(solid, voxel);
   return fmt::format(
       "a resolution of {} would do{}, in about {} of memory", across,
-      across > kMaxAcross ? fmt::format(", more than the {} there are", kMaxAcross) : "",
+      across > kMostVoxels ? fmt::format(", more than the {} there are", kMostVoxels) : "",
       formatBytes(static_cast<std::uint64_t>(std::min(gridBytes(solid, voxel), 1e18))));
-}
-
-void checkHalfWidth(const LevelSetSettings& settings) {
-  if (!(settings.halfWidth >= 2 && settings.halfWidth <= 100)) {
-    throw SettingError("halfWidth", "must lie between 2 and 100 voxels");
-  }
 }
 
 void checkReach(const Solid& solid, const Vec3& origin, double voxelSize) {
@@ -89,8 +80,9 @@ double voxelSizeFor(const Solid& solid, const LevelSetSettings& settings) {
   const double longest = longestSide(solid);
   if (settings.voxelSize == 0 && settings.resolution == 0) return automaticVoxel(solid);
   if (settings.voxelSize == 0) {
-    if (settings.resolution < kMinAcross || settings.resolution > kMaxAcross) {
-      throw SettingError("resolution", "must lie between 4 and 4096 voxels");
+    if (settings.resolution < kLeastVoxels || settings.resolution > kMostVoxels) {
+      throw SettingError("resolution", NumberRange{kLeastVoxels, kMostVoxels}.refusal(
+                                           std::to_string(settings.resolution), "voxels"));
     }
     return voxelSizeAcross(solid.box(), settings.resolution);
   }
@@ -104,10 +96,10 @@ double voxelSizeFor(const Solid& solid, const LevelSetSettings& settings) {
                                          " world units; scale the mesh up or use larger voxels");
   }
   // Rounding aside, the size that a resolution of 4096 gives is allowed.
-  if (longest / settings.voxelSize > kMaxAcross * (1 + 1e-9)) {
+  if (longest / settings.voxelSize > kMostVoxels * (1 + 1e-9)) {
     throw SettingError("voxel size",
                        "gives more than 4096 voxels along the longest side; at least " +
-                           formatLength(longest / kMaxAcross) + " is needed");
+                           formatLength(longest / kMostVoxels) + " is needed");
   }
   return settings.voxelSize;
 }
@@ -157,7 +149,7 @@ LevelSetSettings onLatticeOf(const Solid& solid, LevelSetSettings settings) {
 }
 
 std::uint64_t levelSetMemory(const Solid& solid, const LevelSetSettings& settings) {
-  checkHalfWidth(settings);
+  requireDescribed(settings);
   const double h = voxelSizeFor(solid, settings);
   const Band band(solid.body(), latticeOrigin(solid.box(), h), h, 0, settings.halfWidth * h);
   const double leaves = band.estimateLeaves();  // an over-estimate
@@ -173,13 +165,20 @@ std::uint64_t levelSetMemory(const Solid& solid, const LevelSetSettings& setting
 }
 
 FloatGrid::Ptr makeLevelSet(const Solid& solid, const LevelSetSettings& settings) {
-  checkHalfWidth(settings);
+  requireDescribed(settings);
   const double h = voxelSizeFor(solid, settings);
   requireMemory("level set", levelSetMemory(solid, settings),
                 "a larger voxel size, a lower resolution or a smaller half width would fit");
   const Vec3 origin = settings.origin.value_or(latticeOrigin(solid.box(), h));
   checkReach(solid, origin, h);
   return narrowBand(solid.body(), origin, h, settings.halfWidth * h);
+}
+
+std::vector<Setting> describe(LevelSetSettings& s) {
+  return {Setting("half_width", "W", &s.halfWidth, "width of the band on each side of the surface")
+              .in("voxels")
+              .from(2, 100)
+              .rare()};
 }
 
 }  // namespace innermap

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "innermap/core/setting.h"
 #include "innermap/levelset/fog.h"
 #include "innermap/levelset/solid.h"
 
@@ -27,7 +28,11 @@ struct LevelSetSettings {
   std::optional<Vec3> origin;
 };
 
+// Without the size of voxels and the origin.
+std::vector<Setting> describe(LevelSetSettings& settings);
+
 constexpr int kUsualResolution = 128;
+constexpr int kLeastVoxels = 4, kMostVoxels = 4096;  // that may be asked for
 
 // OpenVDB takes no transform whose determinant is below 3e-15.
 constexpr double kSmallestVoxel = 1.45e-5;  // world units

@@ -20,7 +20,7 @@ constexpr std::size_t kMaxSources = 10'000'000;
 void checkCount(const SourceSettings& settings) {
   if (settings.count < 1 || settings.count > kMaxSources) {
     throw SettingError(
-        "sources", fmt::format("must lie between 1 and {}, not {}", kMaxSources, settings.count));
+        "charges", fmt::format("must lie between 1 and {}, not {}", kMaxSources, settings.count));
   }
 }
 

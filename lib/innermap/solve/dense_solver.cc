@@ -111,7 +111,7 @@ DenseSolver::Factors::Factors(const Collocation& collocation, const Points& sour
                               const Collocation& heldOut)
     : sources_(sources.size()) {
   const std::size_t m = collocation.size(), n = sources.size(), columns = n + kAffine;
-  if (n == 0) throw SettingError("sources", "there are none; use at least 1");
+  if (n == 0) throw SettingError("charges", "there are none; use at least 1");
   if (m < columns)
     throw SettingError("collocation points", std::to_string(m) + " for " + std::to_string(n) +
                                                  " sources; use at least " +

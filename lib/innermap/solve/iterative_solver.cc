@@ -164,14 +164,14 @@ void IterativeSolver::Levels::add(const Collocation& collocation,
 void IterativeSolver::Levels::check(const Collocation& collocation,
                                     const std::vector<SourceLevel>& levels, bool first) const {
   if (first && levels.empty())
-    throw SettingError("sources", "there are none; use at least one level of them");
+    throw SettingError("charges", "there are none; use at least one level of them");
   if (!(settings_.accuracy >= kFinestProduct && settings_.accuracy <= kCoarsestProduct))
     throw SettingError("accuracy", "must lie in 1e-12 to 1e-3");
   for (const SourceLevel& level : levels) {
     if (!(level.spacing > 0) || !(level.distance > 0))
       throw SettingError("iterative solver", "spacing and distance must be positive");
     if (level.sources.empty())
-      throw SettingError("sources", "there are none; use at least 1 of each level");
+      throw SettingError("charges", "there are none; use at least 1 of each level");
   }
   const std::size_t points = collocation_.size() + collocation.size(),
                     sources = sources_.size() + sourcesOf(levels),

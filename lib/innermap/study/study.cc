@@ -16,6 +16,8 @@
 namespace innermap {
 namespace {
 
+constexpr std::size_t kFewestSources = 16, kMostSources = 20000;
+
 // Of a run beside the solver: the certificate, the voxels;
 // measured.
 constexpr std::uint64_t kOther = 30'000'000;
@@ -52,8 +54,9 @@ StudyRun sphereRun(const StudyRun& base, const StudySettings& settings) {
 }
 
 void checkRun(const StudyRun& run) {
-  if (run.sources < 16 || run.sources > 20000)
-    throw SettingError("sources", "must lie between 16 and 20000");
+  if (run.sources < kFewestSources || run.sources > kMostSources)
+    throw SettingError("charges",
+                       fmt::format("must lie between {} and {}", kFewestSources, kMostSources));
   if (!(run.collocation >= 1 && run.collocation <= 100))
     throw SettingError("collocation", "must lie between 1 and 100 points a charge");
   if (run.placement == ChargePlacement::offset) {
@@ -67,14 +70,11 @@ void checkRun(const StudyRun& run) {
 void checkSettings(const StudySettings& settings) {
   if (settings.interpolation == Interpolation::automatic)
     throw SettingError("interpolation", "must be linear or smooth, the same for all runs");
-  if (settings.regularization && !(*settings.regularization >= 0 && *settings.regularization <= 1))
-    throw SettingError("regularization", "must lie between 0 and 1");
-  if (settings.resolution < 4 || settings.resolution > 1024)
-    throw SettingError("resolution", "must lie between 4 and 1024");
+  requireDescribed(settings);
   const auto ascend = [](const auto& list, const char* name) {
     if (!std::is_sorted(list.begin(), list.end())) throw SettingError(name, "must ascend");
   };
-  ascend(settings.sources, "sources");
+  ascend(settings.sources, "charges");
   ascend(settings.collocation, "collocation");
   ascend(settings.distances, "distances");
   ascend(settings.radiusRatios, "radius ratios");
@@ -280,6 +280,45 @@ Study runStudy(const BoundaryPair& pair, const StudySettings& settings,
     if (visitor) visitor(&study.rows.back(), study.rows.size() + study.left, runs.size());
   }
   return study;
+}
+
+std::vector<Setting> describe(StudySettings& s) {
+  std::vector<Setting> out{
+      Setting("base_charges", "N", &s.baseSources, "charges while others are varied")
+          .was("base_sources")
+          .from(kFewestSources, kMostSources),
+      Setting("base_points", "N", &s.baseCollocation,
+              "boundary points a charge while others are varied")
+          .from(1, 100),
+      Setting("base_distance", "D", &s.baseDistance, "distance while others are varied")
+          .in("fraction of the source's diagonal")
+          .from(1e-4, 2)
+          .otherwise("the spacing of {base_charges} charges"),
+      Setting("base_radius_ratio", "R", &s.baseRadiusRatio,
+              "radius of the sphere while others are varied, in half diagonals")
+          .above(1, 100),
+      Setting("grid", "WHICH",
+              choiceOf<StudyGrid>(&s.grid, {{"none", StudyGrid::none},
+                                            {"pairs", StudyGrid::pairs},
+                                            {"full", StudyGrid::full}}),
+              "beside each list alone: nothing, each two together, all together"),
+      Setting("interpolation", "HOW",
+              choiceOf<Interpolation>(&s.interpolation, {{"linear", Interpolation::linear},
+                                                         {"smooth", Interpolation::smooth}}),
+              "the target between its vertices: flat triangles, or a smooth deformation"),
+      Setting("method", "HOW",
+              choiceOf<Regularization>(&s.method, {{"tikhonov", Regularization::tikhonov},
+                                                   {"tsvd", Regularization::truncatedSvd}}),
+              "of regularisation; the paper's is tsvd"),
+      Setting("regularization", "R", &s.regularization, "relative to the largest singular value")
+          .from(0, 1)
+          .otherwise("chosen for each run by the error at held-out points"),
+      Setting("resolution", "N", &s.resolution,
+              "voxels along the longest side, for energies and folds")
+          .from(4, 1024),
+      seedSetting(&s.seed)};
+  for (Setting& setting : describe(s.lame)) out.push_back(std::move(setting));
+  return out;
 }
 
 }  // namespace innermap

@@ -273,7 +273,7 @@ std::string describeRun(const StudyRun& run) {
 
 std::string optionsOf(const StudyRun& run, const StudySettings& settings) {
   std::string text = fmt::format(
-      "--sources {} --collocation {} {} {} --solver dense --interpolation {} --seed {}",
+      "--charges {} --collocation {} {} {} --solver dense --interpolation {} --seed {}",
       run.sources, collocationOf(run),
       run.placement == ChargePlacement::sphere ? "--radius-ratio" : "--distance", run.at,
       settings.interpolation == Interpolation::smooth ? "smooth" : "linear", settings.seed);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "innermap/boundary/fit_map.h"
+#include "innermap/core/setting.h"
 #include "innermap/evaluate/energy.h"
 
 namespace innermap {
@@ -56,6 +57,9 @@ struct StudySettings {
   // boundaries, settings and version; made when missing. Empty: nowhere.
   std::string folder;
 };
+
+// Without the lists and the folder.
+std::vector<Setting> describe(StudySettings& settings);
 
 // What became of a run. Errors are fractions of the target's diagonal; what is not known is NaN.
 struct StudyRow : StudyRun {

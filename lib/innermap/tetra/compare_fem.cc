@@ -159,8 +159,7 @@ void checkSettings(const CompareFemSettings& settings) {
   for (const double t : settings.tolerances)
     if (!(t >= kSmallestTolerance && t <= 1))
       throw SettingError("tolerances", "must lie between 1e-12 and 1");
-  if (settings.samples < 100 || settings.samples > 1000000)
-    throw SettingError("samples", "must lie between 100 and 1000000");
+  requireDescribed(settings);
 }
 
 // Rows of the finite elements; the points are in the finest mesh.
@@ -336,6 +335,18 @@ std::uint64_t compareFemMemory(const Solid& solid, const CompareFemSettings& set
   }
   constexpr std::uint64_t kPicture = 170'000'000;
   return coarser + finest + finest / 8 + kPicture;
+}
+
+std::vector<Setting> describe(CompareFemSettings& s) {
+  return {Setting("reference", "T", &s.referenceTolerance,
+                  "tolerance of the fit that maps are compared with")
+              .in("fraction of the target's diagonal")
+              .from(kSmallestTolerance, 1)
+              .rare(),
+          Setting("samples", "N", &s.samples, "points inside at which errors are measured")
+              .from(100, 1e6)
+              .rare(),
+          seedSetting(&s.seed)};
 }
 
 }  // namespace innermap

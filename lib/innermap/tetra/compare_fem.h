@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "innermap/boundary/fit_map.h"
+#include "innermap/core/setting.h"
 #include "innermap/levelset/solid.h"
 
 namespace innermap {
@@ -25,6 +26,9 @@ struct CompareFemSettings {
   std::size_t samples = 20000;       // points inside, in [100, 1e6]
   std::uint64_t seed = 1;
 };
+
+// Without the lists.
+std::vector<Setting> describe(CompareFemSettings& settings);
 
 // Positions, and the same of all three channels: gradients[3 k + axis].
 struct InsideValues {

@@ -32,13 +32,6 @@ constexpr std::size_t kFeatureSamples = 20000, kBlock = 256;
 constexpr double kFittingShare = 0.4;
 constexpr std::uint64_t kBytesAHexahedron = 2560, kBeside = 30'000'000;
 
-void requireSettings(const HexahedralizeSettings& settings) {
-  if (settings.pieces < 1 || settings.pieces > kMostPieces)
-    throw SettingError("pieces", fmt::format("must be from 1 to {}", kMostPieces));
-  if (!(settings.featureAngle > 0 && settings.featureAngle < 180))
-    throw SettingError("featureAngle", "must be above 0 and below 180 degrees");
-}
-
 int surfacePieces(const BlockSet& blocks) {
   const double faces = static_cast<double>(blockSurface(blocks, 1).triangles.size()) / 2;
   return std::max(1, static_cast<int>(std::ceil(std::sqrt(kSurfaceVertices / faces))));
@@ -175,11 +168,12 @@ Hexahedralization attempt(const Mesh& mesh, const HexahedralizeSettings& setting
 }  // namespace
 
 Hexahedralization hexahedralize(const Mesh& mesh, const HexahedralizeSettings& settings) {
-  requireSettings(settings);
+  requireDescribed(settings);
   requireMemory("hexahedra of " + mesh.name, hexahedralizeMemory(mesh, settings),
                 "use fewer blocks, or fewer pieces a block");
-  Hexahedralization best = attempt(mesh, settings, settings.blocks);
-  for (int retry = 0; retry < kRetries && settings.blocks == 0 && !best.after.proven(); ++retry) {
+  Hexahedralization best = attempt(mesh, settings, settings.polycube.blocks);
+  for (int retry = 0; retry < kRetries && settings.polycube.blocks == 0 && !best.after.proven();
+       ++retry) {
     const int more = static_cast<int>(std::ceil(kMoreBlocks * best.polycube.across));
     if (more > kMostAcross || outOfTime()) break;
     try {
@@ -200,11 +194,11 @@ Hexahedralization hexahedralize(const Mesh& mesh, const HexahedralizeSettings& s
 
 std::uint64_t hexahedralizeMemory(const Mesh& mesh, const HexahedralizeSettings& settings) {
   PolycubeSettings cubes;
-  cubes.blocks = settings.blocks;
+  cubes.blocks = settings.polycube.blocks;
   FitMapSettings fitting;
   fitting.tolerance = kTolerance;
   fitting.maxSources = kMaxSources;
-  const double blocks = expectedBlocks(mesh, settings.blocks);
+  const double blocks = expectedBlocks(mesh, settings.polycube.blocks);
   const double pieces = settings.pieces;
   // Of the layer: one on each square of the boundary, of which a set of so many blocks has about
   // twice as many as a cube.
@@ -215,6 +209,20 @@ std::uint64_t hexahedralizeMemory(const Mesh& mesh, const HexahedralizeSettings&
                    fitMapMemory(fitting, static_cast<std::size_t>(2 * kSurfaceVertices)),
                    polycubeMemory(mesh, cubes)}) +
          kBeside + static_cast<std::uint64_t>(hexahedra) * kBytesAHexahedron;
+}
+
+std::vector<Setting> describe(HexahedralizeSettings& s) {
+  std::vector<Setting> out = describe(s.polycube);
+  out.insert(
+      out.end(),
+      {Setting("pieces", "K", &s.pieces, "hexahedra along a block's edge").from(1, kMostPieces),
+       Setting("feature_angle", "A", &s.featureAngle,
+               "edges whose faces' normals differ by more count as sharp in the report")
+           .in("degrees")
+           .from(1, 179)
+           .rare(),
+       seedSetting(&s.seed)});
+  return out;
 }
 
 }  // namespace innermap

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "innermap/core/setting.h"
 #include "innermap/core/stage_seconds.h"
 #include "innermap/lattice/cell_mesh.h"
 #include "innermap/mesh/mesh.h"
@@ -24,12 +25,13 @@
 namespace innermap {
 
 struct HexahedralizeSettings {
-  int blocks = 0;  // of the polycube, as in PolycubeSettings
-  int pieces = 2;  // hexahedra along a block's edge, in [1, 16]
-  double featureAngle =
-      30;                  // degrees between faces over which an edge counts as sharp, in (0, 180)
-  std::uint64_t seed = 1;  // of all random choices
+  PolycubeSettings polycube;
+  int pieces = 2;
+  double featureAngle = 30;
+  std::uint64_t seed = 1;
 };
+
+std::vector<Setting> describe(HexahedralizeSettings& settings);
 
 struct Hexahedralization {
   CellMesh mesh;      // hexahedra of the blocks first, in their order, then those of the layer

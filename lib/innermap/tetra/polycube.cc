@@ -178,9 +178,7 @@ struct Search {
 }  // namespace
 
 Polycube makePolycube(const Mesh& mesh, const PolycubeSettings& settings) {
-  if (settings.blocks != 0 && (settings.blocks < kLeast || settings.blocks > kMost))
-    throw SettingError("blocks",
-                       fmt::format("must be from {} to {}, or 0 to have it chosen", kLeast, kMost));
+  requireDescribed(settings);
   StageSeconds seconds;
   const std::vector<int> handles = handlesOf(mesh);
   const Solid solid = timed(seconds, "solid", [&] { return Solid(mesh); });
@@ -215,6 +213,12 @@ std::uint64_t polycubeMemory(const Mesh& mesh, const PolycubeSettings& settings)
     blocks *= std::ceil(extent[a] / longest * static_cast<double>(across)) + 4;
   return kLevelSet + kBytesATriangle * mesh.triangles.size() +
          kBytesABlock * static_cast<std::uint64_t>(blocks);
+}
+
+std::vector<Setting> describe(PolycubeSettings& s) {
+  return {Setting("blocks", "N", &s.blocks, "blocks along the longest side of the mesh's box")
+              .from(kLeast, kMost)
+              .otherwise(0, "as many as give about 900 in all")};
 }
 
 }  // namespace innermap

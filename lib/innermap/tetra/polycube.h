@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "innermap/core/setting.h"
 #include "innermap/core/stage_seconds.h"
 #include "innermap/mesh/mesh.h"
 #include "innermap/tetra/block_set.h"
@@ -18,10 +19,11 @@
 namespace innermap {
 
 struct PolycubeSettings {
-  // Along the longest side of the mesh's box, in [2, 64]; 0: as many as give about 900 blocks in
-  // all, or a few more where those have not the mesh's topology.
+  // 0: or a few more, where so many have not the mesh's topology.
   int blocks = 0;
 };
+
+std::vector<Setting> describe(PolycubeSettings& settings);
 
 // A part of the solid that no block covers.
 struct MissedPart {

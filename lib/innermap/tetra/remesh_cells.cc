@@ -290,7 +290,8 @@ class Remesher {
 
 Remesh remeshCells(const CellMesh& mesh, const MappedSolid& mapped,
                    const RemeshSettings& settings) {
-  if (settings.coarse != 0 && (settings.coarse < 8 || settings.coarse > 256))
+  requireDescribed(settings);
+  if (settings.coarse != 0 && settings.coarse < 8)
     throw SettingError("coarse", fmt::format("{} is neither 0 nor 8 to 256", settings.coarse));
   validate(mesh);
   return Remesher(mesh, mapped, settings).run();
@@ -299,6 +300,26 @@ Remesh remeshCells(const CellMesh& mesh, const MappedSolid& mapped,
 std::uint64_t remeshMemory(const CellMesh& mesh) {
   // Measured, of a cell: 175 to 210, less in larger meshes.
   return 16'000'000 + 200 * mesh.tetrahedra.size() + 1500 * mesh.hexahedra.size();
+}
+
+std::vector<Setting> describe(RemeshSettings& s) {
+  return {Setting("back", &s.back,
+                  "the cells fill the map's target and are brought to its source; a surface is the "
+                  "source's")
+              .rare(),
+          Setting("keep_connectivity", &s.keepConnectivity,
+                  "move vertices alone: cells and their numbers stay as they are"),
+          Setting("angle", "ANGLE", &s.angle,
+                  "tetrahedra with a dihedral angle below it, or as near to 180, are improved")
+              .in("degrees")
+              .from(1, 30)
+              .rare(),
+          Setting("coarse", "N", &s.coarse,
+                  "cells along the longest side of the mesh that is repaired first where many "
+                  "cells are inverted, or with {back} stands for the inverse map; 0: none, or 64 "
+                  "with {back}")
+              .from(0, 256)
+              .rare()};
 }
 
 }  // namespace innermap

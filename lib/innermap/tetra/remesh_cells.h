@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "innermap/boundary/mapped_solid.h"
+#include "innermap/core/setting.h"
 #include "innermap/core/stage_seconds.h"
 #include "innermap/lattice/cell_mesh.h"
 #include "innermap/tetra/cell_quality.h"
@@ -31,6 +32,9 @@ struct RemeshSettings {
   // first (0: none), and back, of the mesh that stands for the inverse map (0: 64).
   int coarse = 32;
 };
+
+// Without the surface and `farthest`.
+std::vector<Setting> describe(RemeshSettings& settings);
 
 struct Remesh {
   // Where the map takes it. Its vertices' fields have one more, "source": the places that they came

@@ -29,9 +29,7 @@ double longestSide(const Solid& solid) {
 double spacingFor(const Solid& solid, const TetrahedralizeSettings& settings) {
   const double longest = longestSide(solid);
   if (settings.edge == 0) {
-    if (settings.resolution < kLeastAcross || settings.resolution > kMostAcross)
-      throw SettingError(
-          "resolution", fmt::format("must lie between {} and {} cells", kLeastAcross, kMostAcross));
+    requireDescribed(settings);
     return longest / settings.resolution;
   }
   const double across = longest / settings.edge;
@@ -163,8 +161,7 @@ void keepSharpEdges(const Solid& solid, const TetrahedralizeSettings& settings, 
 }  // namespace
 
 Tetrahedralization tetrahedralization(const Solid& solid, const TetrahedralizeSettings& settings) {
-  if (settings.features && !(*settings.features > 0 && *settings.features < 180))
-    throw SettingError("features", "must lie between 0 and 180 degrees");
+  requireDescribed(settings);
   const double spacing = spacingFor(solid, settings);
   requireMemoryFor(solid, spacing);
   if (spacing < kSmallestVoxel) return tetrahedralizeScaled(solid, spacing, settings);
@@ -199,6 +196,29 @@ CellMesh tetrahedralize(const Solid& solid, const TetrahedralizeSettings& settin
 
 StuffingNeed tetrahedralizeNeed(const Solid& solid, const TetrahedralizeSettings& settings) {
   return stuffingNeed(solid, spacingFor(solid, settings));
+}
+
+std::vector<Setting> describe(TetrahedralizeSettings& s) {
+  return {
+      Setting("resolution", "N", &s.resolution,
+              "cells of the lattice along the longest side of the mesh's box; each takes twelve "
+              "tetrahedra")
+          .from(kLeastAcross, kMostAcross),
+      Setting("edge", "LENGTH", &s.edge, "side of a cell of the lattice, in place of {resolution}")
+          .in("world units")
+          .above(0)
+          .otherwise(0, "by {resolution}")
+          .rare(),
+      Setting("features", "ANGLE", &s.features,
+              "keep edges of the surface that are sharper than this, between the normals of "
+              "their triangles, as edges of tetrahedra; dihedral angles then lie in 5 to 170 "
+              "degrees")
+          .in("degrees")
+          .from(1, 179),
+      Setting("keep_topology", &s.keepTopology,
+              "warn, and go on, where the solid's components, cavities and handles cannot be "
+              "kept")
+          .rare()};
 }
 
 }  // namespace innermap

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "innermap/core/setting.h"
 #include "innermap/lattice/boundary_topology.h"
 #include "innermap/lattice/cell_mesh.h"
 #include "innermap/lattice/stuffing_need.h"
@@ -23,6 +24,8 @@ struct TetrahedralizeSettings {
   // Whether to throw where the solid's topology cannot be kept; else there is a warning.
   bool keepTopology = true;
 };
+
+std::vector<Setting> describe(TetrahedralizeSettings& settings);
 
 struct Tetrahedralization {
   CellMesh mesh;

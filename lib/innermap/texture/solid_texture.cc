@@ -39,7 +39,7 @@ bool usesImage(const SolidTextureSettings& s) { return s.mode != TextureMode::ve
 void check(const SolidTextureSettings& s, const Mesh& mesh) {
   if (s.seams == TextureSeams::blend && s.mode != TextureMode::coordinates)
     throw SettingError("seams", "are blended with continued coordinates only; colours show none");
-  if (s.sources > 1'000'000) throw SettingError("sources", "must lie in [1, 1000000]");
+  requireDescribed(s);
   if (!usesImage(s) && mesh.colours.empty())
     throw DataError(mesh.name +
                     ": has no vertex colours; give an image for its texture coordinates");
@@ -321,6 +321,28 @@ SolidTexture makeSolidTexture(const Mesh& mesh, const TextureLookup& image,
   addSeconds(plan.seconds, out.seconds);
   out.seconds = std::move(plan.seconds);
   return out;
+}
+
+std::vector<Setting> describe(SolidTextureSettings& s) {
+  return {
+      Setting(
+          "mode", "MODE",
+          choiceOf<TextureMode>(
+              &s.mode, {{"uv", TextureMode::coordinates}, {"colour", TextureMode::imageColours}}),
+          "uv: the texture coordinates are continued and the image is looked up at each voxel's; "
+          "colour: the colours themselves are"),
+      Setting("seams", "WAY",
+              choiceOf<TextureSeams>(
+                  &s.seams, {{"keep", TextureSeams::keep}, {"blend", TextureSeams::blend}}),
+              "with {mode} uv. keep: the coordinates are continued as they are and sweep through "
+              "the image below a seam; blend: those of each chart for themselves, and their "
+              "colours mixed"),
+      Setting("charges", "N", &s.sources, "number of charges")
+          .was("sources")
+          .from(100, 1e6)
+          .otherwise(0, "one every two voxels of the surface, 1000 to 50000")
+          .rare(),
+      seedSetting(&s.seed)};
 }
 
 }  // namespace innermap

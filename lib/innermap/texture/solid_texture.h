@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "innermap/core/setting.h"
 #include "innermap/core/stage_seconds.h"
 #include "innermap/field/boundary_error.h"
 #include "innermap/levelset/solid.h"
@@ -44,6 +45,9 @@ struct SolidTextureSettings {
   std::function<double(double)> decode;
   std::uint64_t seed = 1;  // of all random points, in [0, 1e15]
 };
+
+// Without the size of voxels and the decoding.
+std::vector<Setting> describe(SolidTextureSettings& settings);
 
 // What a mesh's texture will take, known before any image is read.
 struct SolidTexturePlan {

@@ -40,4 +40,17 @@ double voxelGrowth(double from, double to) {
   return std::abs(growth - 1) <= kAlike ? 1 : growth;
 }
 
+std::vector<Setting> describe(CarrySettings& s) {
+  return {Setting("sampling", "WAY",
+                  choiceOf<Sampling>(&s.sampling, {{"nearest", Sampling::nearest},
+                                                   {"linear", Sampling::linear},
+                                                   {"quadratic", Sampling::quadratic}}),
+                  "between voxels; whole numbers are always taken from the nearest"),
+          Setting("density_limit", "TIMES", &s.densityLimit,
+                  "that a density may grow at most; what comes together beyond it is left out, and "
+                  "how much is said")
+              .above(0)
+              .otherwise(std::numeric_limits<double>::infinity(), "none")};
+}
+
 }  // namespace innermap

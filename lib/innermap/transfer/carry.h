@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "innermap/core/setting.h"
 #include "innermap/field/harmonic_field.h"
 
 namespace innermap {
@@ -35,6 +36,9 @@ struct CarrySettings {
   // three Vec3 grids NAME.x, .y, .z, the rows.
   std::vector<std::string> stresses, strains;
 };
+
+// Of the sampling and the limit on densities.
+std::vector<Setting> describe(CarrySettings& settings);
 
 // Whether the settings make a density of a grid: scalars of a float or double grid that fill space.
 bool isDensity(const openvdb::GridBase& grid, const CarrySettings& settings);

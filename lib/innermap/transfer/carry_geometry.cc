@@ -130,4 +130,12 @@ std::uint64_t carryGeometryMemory(const Geometry& geometry) {
   return bytes + geometry.ownPoints * sizeof(int) + geometry.elements.size();
 }
 
+Setting subdivideSetting(double* share) {
+  return Setting("subdivide", "T", share,
+                 "of geometry: split edges of meshes and curves until their straight images are "
+                 "nowhere farther than this from the curved ones; 0 splits none")
+      .in("fraction of the diagonal of the solid carried to")
+      .from(0, 1);
+}
+
 }  // namespace innermap

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "innermap/core/setting.h"
 #include "innermap/transfer/carry_points.h"
 #include "innermap/transfer/geometry.h"
 
@@ -15,6 +16,9 @@ struct CarryGeometrySettings {
   // them: world units of what is carried to; 0 splits none. Not negative.
   double subdivide = 0;
 };
+
+// Of `subdivide`, as a share of the diagonal of the solid that is carried to.
+Setting subdivideSetting(double* share);
 
 struct CarriedGeometry {
   CarriedPoints points;            // of geometry.points, those of cells' values included

@@ -8,6 +8,7 @@
 #include <array>
 #include <optional>
 
+#include "innermap/core/setting.h"
 #include "innermap/core/vec3.h"
 
 namespace innermap {
@@ -34,5 +35,13 @@ struct OutsideSettings {
   // without one they are cut off there.
   std::optional<RigidMotion> fadeTo;
 };
+
+// Of OutsideSettings::distance.
+inline Setting outsideSetting(double* distance) {
+  return Setting("outside", "D", distance,
+                 "carry also what is around the solid, up to this distance from it")
+      .in("fraction of the diagonal")
+      .from(0, 1);
+}
 
 }  // namespace innermap

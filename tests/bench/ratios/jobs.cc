@@ -11,7 +11,7 @@ Tables jobs(const Options& options) {
     std::vector<std::string> command{
         "map",          pair.source,           pair.target, "-o", options.scratch + "/out",
         "--resolution", std::to_string(across)};
-    if (options.quick) command.insert(command.end(), {"--sources", "300"});
+    if (options.quick) command.insert(command.end(), {"--charges", "300"});
     const ProgramRun run = runProgram(command, options);
     table.add({{"across", across},
                {"voxels", run.report["grid"]["active_voxels"]},

@@ -33,7 +33,7 @@ struct Solved {
 Solved run(const Pair& pair, const Case& c, const Options& options) {
   const std::string file = options.scratch + "/map.ply";
   const ProgramRun done =
-      runProgram({"fit", pair.source, pair.target, "-o", file, "--sources",
+      runProgram({"fit", pair.source, pair.target, "-o", file, "--charges",
                   std::to_string(c.sources), "--collocation", std::to_string(c.points), "--solver",
                   c.solver, "--interpolation", "linear"},
                  options);

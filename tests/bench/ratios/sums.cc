@@ -48,7 +48,7 @@ Sources shells(const Solid& solid, std::size_t count) {
 
 Sources fittedSources(const Pair& pair, std::size_t count, const Options& options) {
   const std::string file = options.scratch + "/map.ply";
-  runProgram({"fit", pair.source, pair.target, "-o", file, "--sources", std::to_string(count),
+  runProgram({"fit", pair.source, pair.target, "-o", file, "--charges", std::to_string(count),
               "--collocation", std::to_string(2 * count)},
              options);
   const HarmonicField field = readField(file).steps.front();

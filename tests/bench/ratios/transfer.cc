@@ -17,7 +17,7 @@ Tables transfer(const Options& options) {
   const std::string map = options.scratch + "/map.ply", rest = options.scratch + "/rest.vdb",
                     posed = options.scratch + "/posed.vdb", back = options.scratch + "/back.vdb";
   std::vector<std::string> fit{"fit", pair.source, pair.target, "-o", map};
-  if (options.quick) fit.insert(fit.end(), {"--sources", "300"});
+  if (options.quick) fit.insert(fit.end(), {"--charges", "300"});
   const ProgramRun fitted = runProgram(fit, options);
   for (const int across : options.quick ? std::vector<int>{32} : std::vector<int>{128, 256, 512}) {
     runProgram({"evaluate", map, "-o", rest, "--resolution", std::to_string(across)}, options);

@@ -174,7 +174,7 @@ TEST(FitMap, ShellsOfMoreChargesAreMoreExact) {
     settings.shell->sources = sources;
     const MapFit fit = fitMap(source, target, settings);
     EXPECT_EQ(fit.solve.sources, sources);
-    EXPECT_EQ(fit.solve.placement, "shell");
+    EXPECT_EQ(fit.solve.placement, MapPlacement::shell);
     EXPECT_FALSE(fit.tolerance);
     EXPECT_LT(fit.error.rms, last);
     last = fit.error.rms;
@@ -189,8 +189,8 @@ TEST(FitMap, ChargesOnASphere) {
   settings.shell->method = Regularization::truncatedSvd;
   const Mesh source = ball();
   const MapFit fit = fitMap(source, moved(source, harmonicPolynomial), settings);
-  EXPECT_EQ(fit.solve.placement, "sphere");
-  EXPECT_EQ(fit.solve.method, "tsvd");
+  EXPECT_EQ(fit.solve.placement, MapPlacement::sphere);
+  EXPECT_EQ(fit.solve.method, SolveMethod::truncatedSvd);
   EXPECT_EQ(fit.solve.radiusRatio, 2);
   EXPECT_LT(errorInside(fit, harmonicPolynomial), 1e-3);
 }

@@ -131,7 +131,7 @@ TEST(StudyFindings, Words) {
   EXPECT_NE(describeRun(sphere).find("sphere of 1.5"), std::string::npos);
   StudySettings settings;
   EXPECT_EQ(optionsOf(offset, settings),
-            "--sources 1000 --collocation 4000 --distance 0.02 --solver dense --interpolation "
+            "--charges 1000 --collocation 4000 --distance 0.02 --solver dense --interpolation "
             "linear --seed 1");
   settings.method = Regularization::truncatedSvd;
   settings.regularization = 1e-6;

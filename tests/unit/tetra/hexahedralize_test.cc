@@ -18,7 +18,7 @@ double volumeOf(const CellMesh& mesh) {
 
 HexahedralizeSettings across(int blocks, int pieces) {
   HexahedralizeSettings settings;
-  settings.blocks = blocks;
+  settings.polycube.blocks = blocks;
   settings.pieces = pieces;
   return settings;
 }

@@ -27,10 +27,10 @@ FitOutcome outcomeOf(const FitResult& fit, const FitProblem& problem, const Shel
   const BoundaryData& data = fit.smooth ? problem.vertices : problem.surface;
   FitOutcome out{HarmonicMap(fit.field), {}, {}, 0, fit.smooth, {}, {}, {}, {}, {}};
   MapSolve& s = out.solve;
-  s.method = fit.iterative                                  ? "iterative"
-             : shell.method == Regularization::truncatedSvd ? "tsvd"
-                                                            : "tikhonov";
-  s.placement = shell.radiusRatio ? "sphere" : "shell";
+  s.method = fit.iterative                                  ? SolveMethod::iterative
+             : shell.method == Regularization::truncatedSvd ? SolveMethod::truncatedSvd
+                                                            : SolveMethod::tikhonov;
+  s.placement = shell.radiusRatio ? MapPlacement::sphere : MapPlacement::shell;
   s.sources = fit.field.sources().size();
   s.collocation = data.points.size();
   s.heldOut = data.heldOut.size();
@@ -55,7 +55,6 @@ FitOutcome outcomeOf(const AdaptiveResult& fit, double unit) {
   out.collocationError =
       std::pow(fit.residuals.back() / unit, 2) * static_cast<double>(fit.collocation);
   MapSolve& s = out.solve;
-  s.method = s.placement = "adaptive";
   s.sources = s.rank = fit.field.sources().size();
   s.collocation = fit.collocation;
   s.distance = fit.levels.front().distance;
@@ -245,7 +244,8 @@ FitOutcome MapFitter::inSteps() {
   s.seed = settings_.seed;
   StepFit fit = timed(seconds, "steps", [&] { return fitInSteps(pair_, inside(), s); });
   FitOutcome out{std::move(fit.map), fit.error, {}, 0, false, {}, {}, {}, {}, std::move(fit.steps)};
-  out.solve.method = out.solve.placement = "steps";
+  out.solve.method = SolveMethod::steps;
+  out.solve.placement = MapPlacement::steps;
   out.solve.sources = out.solve.rank = out.map.sources();
   certify(out);
   timed(seconds, "inside", [&] { out.inside = figuresOf(out); });

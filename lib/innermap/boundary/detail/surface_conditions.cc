@@ -32,9 +32,8 @@ SurfaceConditions::SurfaceConditions(const SourceBoundary& boundary,
 void SurfaceConditions::check() const {
   const Mesh& mesh = boundary_.mesh;
   const std::size_t triangles = mesh.triangles.size(), rows = conditions_.values.rows();
-  if (!(conditions_.creaseAngle >= 0 && conditions_.creaseAngle <= 90))
-    throw SettingError("creaseAngle",
-                       fmt::format("{} degrees are not in [0, 90]", conditions_.creaseAngle));
+  double angle = conditions_.creaseAngle;
+  requireInRange({creaseSetting(&angle)});
   if (!conditions_.function && rows != mesh.vertices.size() && rows != 3 * triangles)
     throw DataError(fmt::format(
         "harmonic field: {} rows of values for {} vertices; there must be one a vertex, or three a "

@@ -142,8 +142,7 @@ std::uint64_t exrSliceMemory(const openvdb::GridPtrVec& grids, const ExrSliceSet
 ExrSliceResult writeExrSlices(const std::string& path, const openvdb::GridPtrVec& grids,
                               const ExrSliceSettings& settings) {
   if (settings.axis < 0 || settings.axis > 2) throw SettingError("axis", "is not one of x, y, z");
-  if (settings.count < 1 || settings.count > 65536)
-    throw SettingError("count", "is out of range; give a number of slices from 1 to 65536");
+  requireDescribed(settings);
   const SliceFrame frame = sliceFrame(grids, settings.axis);
   const std::vector<std::string> channels = allChannels(grids);
   requireMemory("slicing to " + path, memoryFor(frame, channels.size(), settings.count),
@@ -177,6 +176,14 @@ ExrSliceResult writeExrSlices(const std::string& path, const openvdb::GridPtrVec
     reportProgress("writing slices", 1);
   });
   return result;
+}
+
+std::vector<Setting> describe(ExrSliceSettings& s) {
+  return {axisSetting("axis", &s.axis, "direction across the slices"),
+          Setting("slices", "N", &s.count, "number of slices, evenly spaced")
+              .from(1, 65536)
+              .was("count"),
+          Setting("half", &s.half, "half floats: half the size, three digits")};
 }
 
 }  // namespace innermap

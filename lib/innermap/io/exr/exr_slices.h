@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "innermap/core/setting.h"
+
 namespace innermap {
 
 struct ExrSliceSettings {
@@ -14,6 +16,8 @@ struct ExrSliceSettings {
   int count = 16;     // slices, in [1, 65536]
   bool half = false;  // half floats: half the size, 3 digits, values clamped to 65,504
 };
+
+std::vector<Setting> describe(ExrSliceSettings& settings);
 
 struct ExrSliceResult {
   int slices = 0;           // fewer than asked for when the box has fewer layers of voxels

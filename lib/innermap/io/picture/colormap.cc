@@ -62,4 +62,11 @@ Vec3 colormapColour(Colormap map, double t) {
   return ((1 - share) * stops[i] + share * stops[i + 1]) / 255;
 }
 
+Setting colormapSetting(Colormap* colormap) {
+  return {
+      "colormap", "NAME", choiceOf<Colormap>(colormap, colormapNames()),
+      "colours of the picture, from the least to the most; all are told apart by people who are "
+      "colour-blind"};
+}
+
 }  // namespace innermap

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "innermap/core/setting.h"
 #include "innermap/core/vec3.h"
 
 namespace innermap {
@@ -17,6 +18,8 @@ enum class Colormap { redBlue, viridis, cividis, inferno, grey };
 
 // Names as options have them, in the enumeration's order.
 const std::vector<std::pair<std::string, Colormap>>& colormapNames();
+
+Setting colormapSetting(Colormap* colormap);
 
 // sRGB, 0 to 1, at t in [0, 1]; beyond, that of the nearer end.
 Vec3 colormapColour(Colormap map, double t);

@@ -294,11 +294,7 @@ void drawText(const SectionCut& cut, const Layout& l, const SectionResult& r,
 
 void checkSettings(const SectionSettings& s) {
   if (s.axis < 0 || s.axis > 2) throw SettingError("axis", "is not one of x, y, z");
-  if (!(s.at >= 0 && s.at <= 1))
-    throw SettingError("at",
-                       fmt::format("{:g} is out of range; give a fraction from 0 to 1", s.at));
-  if (s.pixels < 64 || s.pixels > 8192)
-    throw SettingError("pixels", "is out of range; give a number from 64 to 8192");
+  requireDescribed(s);
   if (!(s.outliers >= 0 && s.outliers < 0.5))
     throw SettingError("outliers", "is out of range; give a share from 0 to below 0.5");
   if (s.range && !(std::isfinite(s.range->first) && s.range->first < s.range->second &&
@@ -364,6 +360,43 @@ SectionResult writeSectionImage(const std::string& path, const openvdb::GridPtrV
   if (!settings.colour) drawBar(layout, result, settings.colormap, picture);
   picture.write(path);
   return result;
+}
+
+Setting scaleSetting(SectionScale* scale) {
+  return Setting("scale", "HOW",
+                 choiceOf<SectionScale>(scale, {{"auto", SectionScale::automatic},
+                                                {"linear", SectionScale::linear},
+                                                {"log", SectionScale::logarithmic},
+                                                {"about-1", SectionScale::about1}}),
+                 "how values go along the colours: log and about-1, whose middle is 1, by their "
+                 "ratios; auto: about-1 for a jacobian, with folds in a colour of their own, log "
+                 "where values are over 100 times apart, linear with a range")
+      .rare();
+}
+
+std::vector<Setting> describe(SectionSettings& s) {
+  return {
+      Setting("component", "PART",
+              choiceOf<Component>(&s.component, {{"x", Component::x},
+                                                 {"y", Component::y},
+                                                 {"z", Component::z},
+                                                 {"length", Component::length}}),
+              "of a vector grid in the picture")
+          .rare(),
+      Setting("colour", &s.colour,
+              "the picture shows a vector grid's values as red, green and blue; by default of Cd"),
+      axisSetting("axis", &s.axis, "direction across the cut"),
+      Setting("at", "T", &s.at, "where the picture cuts")
+          .in("fraction of the box along the axis")
+          .from(0, 1),
+      Setting("position", "P", &s.position, "where the picture cuts, in place of {at}")
+          .in("world units")
+          .rare(),
+      colormapSetting(&s.colormap),
+      scaleSetting(&s.scale),
+      Setting("pixels", "N", &s.pixels, "longer side of the section in the picture")
+          .from(64, 8192)
+          .rare()};
 }
 
 }  // namespace innermap

@@ -9,7 +9,9 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "innermap/core/setting.h"
 #include "innermap/io/picture/colormap.h"
 
 namespace innermap {
@@ -43,6 +45,10 @@ struct SectionSettings {
   Colormap colormap = Colormap::redBlue;
   int pixels = 900;  // longer side of the section itself, in [64, 8192]
 };
+
+// Without the grid and the range.
+std::vector<Setting> describe(SectionSettings& settings);
+Setting scaleSetting(SectionScale* scale);
 
 struct SectionResult {
   std::string grid;

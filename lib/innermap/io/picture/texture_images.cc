@@ -74,4 +74,20 @@ std::uint64_t textureImageMemory(const std::string& path, const std::vector<Udim
   return tiles.empty() ? 0 : tiles.size() * imageMemory(tilePath(path, tiles.front()));
 }
 
+std::vector<Setting> describe(TextureImageSettings& s) {
+  return {Setting("colour_space", "SPACE",
+                  choiceOf<ColourSpace>(&s.colourSpace, {{"auto", ColourSpace::automatic},
+                                                         {"linear", ColourSpace::linear},
+                                                         {"srgb", ColourSpace::srgb}}),
+                  "of the image; auto: as the file says, else sRGB for 8 bits and linear for more; "
+                  "vertex colours are linear unless srgb is given"),
+          Setting("wrap", "WAY",
+                  choiceOf<Wrap>(&s.wrap, {{"repeat", Wrap::repeat},
+                                           {"clamp", Wrap::clamp},
+                                           {"mirror", Wrap::mirror},
+                                           {"black", Wrap::black}}),
+                  "what stands beyond the image's borders")
+              .rare()};
+}
+
 }  // namespace innermap

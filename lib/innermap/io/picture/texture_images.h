@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "innermap/core/setting.h"
 #include "innermap/core/vec3.h"
 #include "innermap/io/picture/image_file.h"
 
@@ -19,6 +20,8 @@ struct TextureImageSettings {
   ColourSpace colourSpace = ColourSpace::automatic;
   Wrap wrap = Wrap::repeat;  // of a single image
 };
+
+std::vector<Setting> describe(TextureImageSettings& settings);
 
 // Whether the path has "<UDIM>" in it, which stands for the number of each tile.
 bool isTiled(const std::string& path);

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "innermap/core/setting.h"
+
 namespace innermap {
 
 // What the grids are called in the file. innermap's own names (surface, density, map, jacobian,
@@ -14,6 +16,7 @@ namespace innermap {
 // those have one: the colour is `color` in Blender and Cycles and `Cd` otherwise, the velocity `v`
 // in Houdini and `velocity` otherwise.
 enum class NamingScheme { innermap, blender, houdini };
+Setting namesSetting(NamingScheme* names);
 
 // The name that the scheme has for one of innermap's own; other names stay.
 std::string gridName(const std::string& own, NamingScheme scheme);

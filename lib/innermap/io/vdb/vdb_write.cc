@@ -82,6 +82,9 @@ void writeVdb(const std::string& path, const openvdb::GridPtrVec& grids,
     errno = 0;
     try {
       OutputArchive(settings.compression).writeTo(stream, copies, metadata);
+      const std::string uuid = buffer.contentUuid();
+      stream.seekp(kUuidPlace);
+      stream.write(uuid.data(), static_cast<std::streamsize>(uuid.size()));
     } catch (const std::ios_base::failure&) {
       throw FileError(path, fmt::format("cannot be written ({}); free some space",
                                         errno ? std::strerror(errno) : "write error"));
@@ -90,6 +93,14 @@ void writeVdb(const std::string& path, const openvdb::GridPtrVec& grids,
     }
     reportProgress("writing the VDB file", 1);
   });
+}
+
+Setting namesSetting(NamingScheme* names) {
+  return {"names", "SCHEME",
+          choiceOf<NamingScheme>(names, {{"innermap", NamingScheme::innermap},
+                                         {"blender", NamingScheme::blender},
+                                         {"houdini", NamingScheme::houdini}}),
+          "what the grids are called in the file"};
 }
 
 }  // namespace innermap

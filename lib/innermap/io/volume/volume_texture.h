@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "innermap/core/setting.h"
 #include "innermap/core/vec3.h"
 
 namespace innermap {
@@ -43,6 +44,9 @@ struct VolumeTextureSettings {
       false;  // the box grows: slices, their sides and the picture's are powers of two
   std::optional<std::pair<int, int>> tiles;  // columns and rows of the atlas; unset: near a square
 };
+
+// Without the order of rows and the tiles.
+std::vector<Setting> describe(VolumeTextureSettings& settings);
 
 struct VolumeTextureResult {
   std::vector<std::string> files;     // one, or one a slice
@@ -129,6 +133,9 @@ struct VolumeTextureReadSettings {
   std::optional<double> background;      // of all grids
   std::optional<std::string> gridClass;  // "level set", "fog volume", "unknown", ...
 };
+
+// Without names, tiles, the order of rows, the lower corner and the class.
+std::vector<Setting> describe(VolumeTextureReadSettings& settings);
 
 struct VolumeTextureContents {
   openvdb::GridPtrVec grids;

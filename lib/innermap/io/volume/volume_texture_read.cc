@@ -96,7 +96,7 @@ class Reading {
  private:
   void need(std::uint64_t bytes) const {
     requireMemory("reading " + path_, bytes, room_,
-                  "read fewer grids by --grid or raise --max-memory");
+                  "read fewer grids by --grids or raise --max-memory");
   }
 
   void build(const Slab& slab, int first, int count) {

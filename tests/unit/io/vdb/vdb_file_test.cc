@@ -6,6 +6,9 @@
 
 #include <array>
 #include <cstring>
+#include <fstream>
+#include <iterator>
+#include <regex>
 
 #include "core/memory_limit.h"
 #include "innermap/core/detail/random.h"
@@ -139,6 +142,30 @@ TEST_P(VdbFile, ReadsWhatOpenVdbWrites) {
 INSTANTIATE_TEST_SUITE_P(Compressions, VdbFile,
                          ::testing::Values(VdbCompression::none, VdbCompression::zip,
                                            VdbCompression::blosc));
+
+std::string bytesOf(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(VdbFileBytes, AreThoseOfTheGrids) {
+  const TemporaryFolder folder;
+  writeVdb(folder.file("a.vdb"), everyType());
+  writeVdb(folder.file("b.vdb"), everyType());
+  const std::string first = bytesOf(folder.file("a.vdb"));
+  EXPECT_EQ(first, bytesOf(folder.file("b.vdb")));
+  openvdb::GridPtrVec changed = everyType();
+  auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(changed.front());
+  ASSERT_TRUE(grid);
+  grid->tree().setValue({1, 2, 3}, 4.5f);
+  writeVdb(folder.file("c.vdb"), changed);
+  const auto uuid = [](const std::string& bytes) { return bytes.substr(21, 36); };
+  const std::string other = uuid(bytesOf(folder.file("c.vdb")));
+  EXPECT_NE(uuid(first), other);
+  EXPECT_TRUE(std::regex_match(
+      other, std::regex("[0-9a-f]{8}-[0-9a-f]{4}-8[0-9a-f]{3}-a[0-9a-f]{3}-[0-9a-f]{12}")))
+      << other;
+}
 
 TEST(VdbFileNames, ReadsOnlyWhatIsAskedFor) {
   const TemporaryFolder folder;

@@ -268,9 +268,9 @@ TEST(VolumeTextureRead, OthersAtlasesNeedOptions) {
   says("indexToWorld", "--voxel-size");
   settings.voxelSize = 0.5;
   settings.lowerCorner = {-2.75, 0.75, 14.75};
-  says("gridCount", "--grid");
+  says("gridCount", "--grids");
   settings.names = {"v", "w"};
-  EXPECT_NE(errorOf(path, settings).find("--grid"), std::string::npos);
+  EXPECT_NE(errorOf(path, settings).find("--grids"), std::string::npos);
   settings.names = {"v"};
   settings.slices = 12;
   settings.gridClass = "fog volume";

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string_view>
 
+#include "innermap/core/base64.h"
 #include "innermap/core/detail/text_scanner.h"
 #include "innermap/core/error.h"
 
@@ -21,13 +22,6 @@ constexpr char kCutShort[] = "is cut short or says more than is there; export th
 
 [[noreturn]] void fail(const FileBytes& file, const VtuArray& array, const std::string& what) {
   throw FileError(file.path, array.label() + " " + what);
-}
-
-int digitOf(char c) {
-  if (c >= 'A' && c <= 'Z') return c - 'A';
-  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-  if (c >= '0' && c <= '9') return c - '0' + 52;
-  return c == '+' ? 62 : c == '/' ? 63 : -1;
 }
 
 // Bytes from raw or base64 text. Parts that were encoded one by one (VTK pads a compressed array's
@@ -68,7 +62,7 @@ class ByteSource {
     for (; count < 4 && position_ < text_.size(); ++position_) {
       const char c = text_[position_];
       if (c == ' ' || c == '\n' || c == '\r' || c == '\t') continue;
-      const int digit = c == '=' ? 0 : digitOf(c);
+      const int digit = c == '=' ? 0 : base64Digit(c);
       if (digit < 0 || (padding > 0 && c != '=')) return false;
       padding += c == '=';
       digits[count++] = digit;

@@ -1,53 +1,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstring>
 #include <functional>
 
+#include "innermap/core/base64.h"
 #include "innermap/io/cells/detail/cell_formats.h"
 #include "innermap/io/picture/svg_chart.h"
 
 namespace innermap {
 namespace {
-
-// Base64 of bytes that come in pieces.
-class Base64Writer {
- public:
-  explicit Base64Writer(std::ostream& stream) : stream_(stream) {}
-  ~Base64Writer() {
-    if (held_ > 0) put(held_);
-    stream_.write(text_.data(), static_cast<std::streamsize>(text_.size()));
-  }
-
-  template <class T>
-  void add(T value) {
-    unsigned char bytes[sizeof(T)];
-    std::memcpy(bytes, &value, sizeof(T));
-    for (const unsigned char byte : bytes) {
-      bits_ = bits_ << 8 | byte;
-      if (++held_ == 3) put(3);
-    }
-  }
-
- private:
-  void put(int bytes) {
-    static constexpr char kDigits[] =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const std::uint32_t bits = bits_ << (8 * (3 - bytes));
-    for (int k = 0; k < 4; ++k)
-      text_.push_back(k <= bytes ? kDigits[bits >> (18 - 6 * k) & 63] : '=');
-    bits_ = 0;
-    held_ = 0;
-    if (text_.size() < (1u << 20)) return;
-    stream_.write(text_.data(), static_cast<std::streamsize>(text_.size()));
-    text_.clear();
-  }
-
-  std::ostream& stream_;
-  std::string text_;
-  std::uint32_t bits_ = 0;
-  int held_ = 0;
-};
 
 // `add` puts `count` values of type T.
 template <class T>

@@ -1,10 +1,13 @@
 #include "innermap/io/vdb/detail/vdb_stream.h"
 
+#include <fmt/format.h>
+
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 
 #include "innermap/core/error.h"
+#include "innermap/core/file.h"
 #include "innermap/core/run.h"
 
 namespace innermap {
@@ -12,23 +15,50 @@ namespace innermap {
 PollingOutputBuffer::int_type PollingOutputBuffer::overflow(int_type c) {
   throwIfCancelled();
   if (traits_type::eq_int_type(c, traits_type::eof())) return traits_type::not_eof(c);
-  return to_.sputc(traits_type::to_char_type(c));
+  const char letter = traits_type::to_char_type(c);
+  hash(&letter, 1);
+  return to_.sputc(letter);
 }
 
 std::streamsize PollingOutputBuffer::xsputn(const char* data, std::streamsize count) {
   throwIfCancelled();
+  hash(data, count);
   return to_.sputn(data, count);
+}
+
+// All in front of the UUID's end is the same in every file, but for that.
+void PollingOutputBuffer::hash(const char* data, std::streamsize count) {
+  if (position_ >= kUuidPlace + kUuidSize) {
+    const std::uint64_t chunk = hashOf({data, static_cast<std::size_t>(count)});
+    for (std::uint64_t& h : hash_) {
+      const std::array<std::uint64_t, 3> all{h, static_cast<std::uint64_t>(position_), chunk};
+      h = hashOf({reinterpret_cast<const char*>(all.data()), sizeof(all)});
+    }
+  }
+  position_ += count;
+}
+
+std::string PollingOutputBuffer::contentUuid() const {
+  std::string hex = fmt::format("{:016x}{:016x}", hash_[0], hash_[1]);
+  hex[12] = '8';  // the version
+  hex[16] = 'a';  // the variant
+  return fmt::format("{}-{}-{}-{}-{}", hex.substr(0, 8), hex.substr(8, 4), hex.substr(12, 4),
+                     hex.substr(16, 4), hex.substr(20));
 }
 
 PollingOutputBuffer::pos_type PollingOutputBuffer::seekoff(off_type offset,
                                                            std::ios_base::seekdir from,
                                                            std::ios_base::openmode which) {
-  return to_.pubseekoff(offset, from, which);
+  const pos_type at = to_.pubseekoff(offset, from, which);
+  if (at != pos_type(off_type(-1))) position_ = at;
+  return at;
 }
 
 PollingOutputBuffer::pos_type PollingOutputBuffer::seekpos(pos_type position,
                                                            std::ios_base::openmode which) {
-  return to_.pubseekpos(position, which);
+  const pos_type at = to_.pubseekpos(position, which);
+  if (at != pos_type(off_type(-1))) position_ = at;
+  return at;
 }
 
 CheckedInputBuffer::CheckedInputBuffer(const std::string& path) : path_(path) {

@@ -2,6 +2,7 @@
 // every access beyond the file's end before a byte is copied.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <fstream>
 #include <streambuf>
@@ -9,11 +10,19 @@
 
 namespace innermap {
 
+// Where a .vdb file has the UUID that OpenVDB makes at random: 36 letters, after the magic number,
+// the versions and the flag for offsets.
+constexpr std::streamoff kUuidPlace = 21, kUuidSize = 36;
+
 // Hands everything to `to`, throwing Cancelled as the run is polled. A stream over it
 // passes exceptions on when its exception mask has badbit.
 class PollingOutputBuffer : public std::streambuf {
  public:
   explicit PollingOutputBuffer(std::streambuf& to) : to_(to) {}
+
+  // Of all that was written behind the UUID, and where to, as a UUID of version 8 (RFC 9562): the
+  // same for the same grids. Not cryptographic.
+  std::string contentUuid() const;
 
  protected:
   int_type overflow(int_type c) override;
@@ -24,7 +33,11 @@ class PollingOutputBuffer : public std::streambuf {
   int sync() override { return to_.pubsync(); }
 
  private:
+  void hash(const char* data, std::streamsize count);
+
   std::streambuf& to_;
+  std::streamoff position_ = 0;
+  std::array<std::uint64_t, 2> hash_{1, 2};
 };
 
 // Reads a file. Throws FileError ("is truncated or damaged") for reads and seeks beyond the end,

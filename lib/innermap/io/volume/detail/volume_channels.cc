@@ -52,7 +52,7 @@ std::vector<VolumeGrid> gridsOfChannels(const std::string& path, const Imf::Head
   std::vector<Names> found = groups(channels);
   if (names.empty())
     throw FileError(path, fmt::format("has no attribute 'gridCount' to say what its channels {} "
-                                      "are; give --grid NAME",
+                                      "are; give --grids NAME",
                                       fmt::join(channels, ", ")));
   if (names.size() == channels.size()) {
     found.clear();
@@ -60,7 +60,7 @@ std::vector<VolumeGrid> gridsOfChannels(const std::string& path, const Imf::Head
   }
   if (names.size() != found.size())
     throw FileError(
-        path, fmt::format("has the channels {}; give --grid {} name{} (a vector's "
+        path, fmt::format("has the channels {}; give --grids {} name{} (a vector's "
                           "channels together), or one for each channel",
                           fmt::join(channels, ", "), found.size(), found.size() == 1 ? "" : "s"));
   std::vector<VolumeGrid> grids;

@@ -19,10 +19,7 @@ constexpr std::int64_t kLongestAtlas = 1 << 20;  // pixels
 
 void checkSettings(const VolumeTextureSettings& s) {
   if (s.axis < 0 || s.axis > 2) throw SettingError("axis", "is not one of x, y, z");
-  if (s.pad < 0 || s.pad > 4096)
-    throw SettingError("pad", "is out of range; give a number of voxels from 0 to 4096");
-  if (s.resolution < 0 || s.resolution > 8192)
-    throw SettingError("resolution", "is out of range; give a number of voxels from 1 to 8192");
+  requireDescribed(s);
   if (s.tiles && (s.tiles->first < 1 || s.tiles->second < 1))
     throw SettingError("tiles", "must be 1 at least in each direction");
   if (s.tiles && s.layout != VolumeLayout::atlas)
@@ -206,6 +203,59 @@ VolumePlan makeVolumePlan(const openvdb::GridPtrVec& grids, const VolumeTextureS
   nameChannels(settings, plan.grids);
   listChannels(plan);
   return plan;
+}
+
+std::vector<Setting> describe(VolumeTextureSettings& s) {
+  return {
+      Setting("layout", "NAME",
+              choiceOf<VolumeLayout>(&s.layout, {{"atlas", VolumeLayout::atlas},
+                                                 {"slices", VolumeLayout::slices},
+                                                 {"parts", VolumeLayout::parts}}),
+              "atlas: one picture of tiles; slices: a file each; parts: one multi-part file"),
+      Setting("half", &s.half, "half floats: half the size, three digits"),
+      Setting(
+          "channels", "NAMES",
+          choiceOf<VolumeChannels>(&s.channels, {{"auto", VolumeChannels::automatic},
+                                                 {"rgba", VolumeChannels::rgba},
+                                                 {"layers", VolumeChannels::layers}}),
+          "rgba: Y or R, G, B, A; layers: by the grids' names; auto: rgba where four are enough")
+          .rare(),
+      Setting("resolution", "N", &s.resolution,
+              "resample to N voxels along the longest side: linear, the mean where voxels grow")
+          .from(1, 8192)
+          .otherwise(0, "the grids' own voxels"),
+      Setting("pad", "N", &s.pad, "voxels about the active box").from(0, 4096).rare(),
+      Setting("cube", &s.cube, "widen the box to a cube").rare(),
+      Setting("power_of_two", &s.powerOfTwo,
+              "widen the box so that the slices' number and sides and the picture's are powers of "
+              "two")
+          .rare(),
+      axisSetting("axis", &s.axis, "direction across the slices"),
+      Setting("active", &s.active, "also NAME.active: 1 where a voxel is active").rare()};
+}
+
+std::vector<Setting> describe(VolumeTextureReadSettings& s) {
+  return {
+      Setting("layout", "NAME",
+              choiceOf<std::optional<VolumeLayout>>(&s.layout, {{"atlas", VolumeLayout::atlas},
+                                                                {"slices", VolumeLayout::slices},
+                                                                {"parts", VolumeLayout::parts}}),
+              "what the pictures are")
+          .otherwise("from the file"),
+      Setting("slices", "N", &s.slices, "slices, when fewer than tiles, parts or files")
+          .from(1, 65536)
+          .otherwise("from the file, else all")
+          .rare(),
+      Setting("voxel_size", "L", &s.voxelSize, "edge of a voxel, in place of the file's matrix")
+          .in("world units")
+          .above(0)
+          .otherwise("from the file"),
+      Setting("axis", "AXIS", choiceOf<std::optional<int>>(&s.axis, {{"x", 0}, {"y", 1}, {"z", 2}}),
+              "direction across the slices")
+          .otherwise("from the file, else z"),
+      Setting("background", "V", &s.background, "value of what is not active")
+          .otherwise("from the file, else 0")
+          .rare()};
 }
 
 }  // namespace innermap

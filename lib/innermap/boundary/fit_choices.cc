@@ -1,0 +1,60 @@
+#include "innermap/boundary/fit_choices.h"
+
+#include <fmt/format.h>
+
+#include "innermap/boundary/mesh_correspondence.h"
+#include "innermap/core/error.h"
+
+namespace innermap {
+
+std::string FitChoices::placedBy() const {
+  const std::pair<bool, const char*> all[] = {{sources.has_value(), "charges"},
+                                              {collocation.has_value(), "collocation"},
+                                              {shell.distance.has_value(), "distance"},
+                                              {shell.radiusRatio.has_value(), "radius_ratio"},
+                                              {shell.solver != FitSolver::automatic, "solver"},
+                                              {shell.method != Regularization::tikhonov, "method"},
+                                              {shell.regularization.has_value(), "regularization"}};
+  for (const auto& [given, name] : all)
+    if (given) return name;
+  return "";
+}
+
+FitMapSettings FitChoices::settings(bool laidOn) const {
+  FitMapSettings out = fit;
+  if (const std::string name = placedBy(); !name.empty()) {
+    if (tolerance)
+      throw SettingError("tolerance", fmt::format("excludes {}; give one of them", name));
+    out.shell = shell;
+    out.shell->sources = sources.value_or(shell.sources);
+    out.shell->collocation = collocation.value_or(0);
+  }
+  out.tolerance = tolerance.value_or(laidOn ? kLaidOnTolerance : fit.tolerance);
+  requireInRange(out);
+  return out;
+}
+
+std::vector<Setting> describe(FitChoices& c) {
+  std::vector<Setting> out{
+      Setting("tolerance", "T", &c.tolerance,
+              "charges are placed where the error is until 99% of the boundary lies within it; not "
+              "with what places a number of charges")
+          .in("fraction of the target's diagonal")
+          .from(kSmallestTolerance, 1)
+          .otherwise(fmt::format("{:g}; {:g} where one mesh is laid onto the other first",
+                                 c.fit.tolerance, kLaidOnTolerance)),
+      Setting("charges", "N", &c.sources, "charges on one shell, in place of {tolerance}")
+          .from(1, kMaxCharges)
+          .was("sources")
+          .otherwise(fmt::format("{} where another choice asks for such a shell", c.shell.sources)),
+      Setting("collocation", "N", &c.collocation,
+              "boundary points that such a shell is fitted to, at least 4 more than charges")
+          .from(8, 1e7)
+          .otherwise("4 a charge; 3 a charge above 3000")
+          .rare()};
+  for (Setting& s : describe(c.fit)) out.push_back(std::move(s));
+  for (Setting& s : describe(c.shell)) out.push_back(std::move(s));
+  return out;
+}
+
+}  // namespace innermap
