@@ -33,6 +33,7 @@ void run(const FitOptions& options, Context& context) {
                         fitMapMemory(settings, vertices));
   requireFittingMemory(settings, vertices, context);
   context.phase("fitting");
+  context.spend(Context::kMostOfTime);
   const MapFit fit = fitMap(std::move(pair), settings);
   reportFit(fit, settings, options.fitting.bestEffort, context);
   reportInjectivity(fit.injectivity, context);
@@ -55,6 +56,7 @@ Command makeFitCommand() {
       .shortName("-o")
       .required()
       .writes({".ply"});
+  c.limitTime("after which refining and steps end");
   addFittingOptions(c, o->fitting);
   addVerdictOptions(c, o->verdict);
   c.example("innermap fit rest.obj pose.obj -o map.ply");

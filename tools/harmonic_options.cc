@@ -79,6 +79,7 @@ void addHarmonicOptions(Command& command, HarmonicOptions& o, const std::string&
       .option("--field", "FILE", &o.field,
               "also the field itself in double precision, a .ply file of charges and weights")
       .writes({".ply"});
+  command.limitTime("after which charges are no longer added");
   command.settings(describe(o.fit));
   command.setting(creaseSetting(&o.creaseAngle));
   command.flag("--best-effort", &o.bestEffort, "a tolerance that is not met is a warning");
@@ -129,6 +130,7 @@ void runHarmonic(const HarmonicOptions& options,
                         need);
   context.requireMemory("the harmonic field", need,
                         "use a lower --resolution or raise --max-memory");
+  context.spend(Context::kMostOfTime);
   HarmonicFit fit = fitHarmonic(boundary, known.conditions, settings);
   if (unitSum) fit.field = withUnitSum(fit.field);
   reportHarmonic(fit, options, context);

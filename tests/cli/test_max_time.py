@@ -26,6 +26,20 @@ def test_strangers_are_mapped():
     no_leftovers("out", "r.json")
 
 
+def test_fits_end():
+    pair = [ROOT / "samples" / name for name in ("gecko.obj", "gecko_step.obj")]
+    innermap("fit", *pair, "-o", "m.ply", "--tolerance", "1e-5", "--best-effort", *AT_ONCE)
+    assert stopped()["tolerance"]["ended"] == "--max-time is reached"
+    with open("halves.obj", "w", encoding="ascii") as file:
+        lines = (ROOT / "samples" / "sphere.obj").read_text(encoding="ascii").splitlines()
+        faces = [line for line in lines if line.startswith("f ")]
+        for line in [*(v for v in lines if v.startswith("v ")), "g a", *faces[::2], "g b", *faces[1::2]]:
+            file.write(line + "\n")
+    innermap("weights", "halves.obj", "-o", "w.vdb", "--groups", "a,b", "--resolution", 16, "--best-effort",
+             *AT_ONCE)
+    stopped()
+
+
 def test_correspondences_stay_one_to_one():
     innermap("correspond", *STRANGERS, "-o", "c.ply", *AT_ONCE)
     assert stopped()["correspondence"]["flips"] == 0
