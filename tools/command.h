@@ -65,7 +65,7 @@ class Command {
     return option(name, placeholder, take, help).choices(names).defaults(chosen);
   }
   OptionBuilder flag(const std::string& name, bool* target, const std::string& help);
-  // An option for each setting of the library: max_sources is --max-charges; a flag that is on is
+  // An option for each setting of the library: max_charges is --max-charges; a flag that is on is
   // turned off by --no-NAME.
   void settings(const std::vector<Setting>& described);
   OptionBuilder setting(const Setting& described);

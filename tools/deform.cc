@@ -110,7 +110,6 @@ class Deformer {
         grids_(std::move(grids)) {
     requireNoVelocity();
     FramePushSettings settings;
-    settings.push = PushSettings{};
     settings.push.carry = carrySettings(options.transfer);
     settings.push.accuracy = kAccuracy;
     settings.fadeToFitted = options.transfer.fadeTo == "fitted";

@@ -15,7 +15,7 @@ namespace {
 struct ValueOf {
   const Option& option;
   const CommonOptions& common;
-  ReportValue operator()(const bool* v) const { return *v; }
+  ReportValue operator()(const bool* v) const { return *v == option.sets; }
   ReportValue operator()(const int* v) const { return std::int64_t(*v); }
   ReportValue operator()(const std::uint64_t* v) const { return static_cast<std::int64_t>(*v); }
   ReportValue operator()(const double* v) const { return *v; }

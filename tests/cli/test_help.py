@@ -21,7 +21,7 @@ def test_help_has_the_usual_options_and_help_all_every_one():
     reference = innermap("help", "--markdown").stdout
     for command in commands():
         usual, every = (innermap(command, o).stdout for o in ["--help", "--help-all"])
-        section = reference.split(f"### innermap {command}\n")[1].split("### ")[0]
+        section = reference.split(f"### innermap {command}\n")[1].split("\n### ")[0]
         own = set(re.findall(r"^\| `(?:-\w, )?(--[\w-]+)", section, re.M))
         assert own <= names(every), command
         assert names(usual) <= names(every), command

@@ -198,7 +198,7 @@ def test_bad_input():
     fails(1, "fit", "ball.obj", "other.obj", "-o", "map.ply",
           says=["other.obj", "correspond"])
     fails(2, "map", "ball.obj", "-o", "out", says=["TARGET"])
-    fails(2, "map", "ball.obj", "ball.obj", "-o", "out", "--sorces", "4", says=["--charges"])
+    fails(2, "map", "ball.obj", "ball.obj", "-o", "out", "--chrages", "4", says=["--charges"])
 
 
 def test_all_points_in_one_place_as_target():

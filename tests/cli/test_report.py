@@ -42,7 +42,7 @@ def test_settings_are_those_used():
     s = read_json("r.json")["settings"]
     assert s["source"] == "a.obj" and s["target"] == "b.obj" and s["output"] == "map.ply"
     assert s["tolerance"] == 0.01 and s["one_to_one"] == "off" and s["interpolation"] == "auto"
-    assert s["best_effort"] is False and s["seed"] == 1 and s["sources"] is None
+    assert s["best_effort"] is False and s["seed"] == 1 and s["charges"] is None
     innermap("fit", "a.obj", "b.obj", "-o", "map.ply", "--report", "r.json")
     assert read_json("r.json")["settings"]["tolerance"] == 0.001
 

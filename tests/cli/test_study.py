@@ -265,7 +265,7 @@ def test_refusals():
     fails(2, *both, "--distances", "0.1:0.2", says=("--distances",))
     fails(2, *both, "--distances", "0.2:0.1:3", says=("--distances",))
     fails(2, *both, "--points", "", says=("--points",))
-    fails(1, *both, "--charges", "3,100", says=("sources", "16"))
+    fails(1, *both, "--charges", "3,100", says=("charges", "16"))
     fails(1, *both, "--distances", "5", says=("distances",))
     fails(1, *both, "--radius-ratios", "1", says=("radius",))
     fails(1, *both, "--charges", "100:200:100", "--distances", "0.01:0.1:200", says=("10000",))

@@ -50,7 +50,6 @@ def test_markdown_has_every_option():
 
 def test_mistyped_commands_and_options():
     cube()
-    fails(2)
     fails(2, "voxelis", says=["'voxelis'", "voxelize"])
     fails(2, "chekc", "cube.obj", says=["check"])
     fails(2, "frobnicate", says=["innermap --help"])

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string_view>
 
 #include "innermap/core/error.h"
 #include "innermap/core/file.h"
@@ -15,6 +16,9 @@ static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the file is little end
 
 namespace innermap {
 namespace {
+
+// And a number: 1 for a field, 2 for several, one after the other.
+constexpr std::string_view kFormatLine = "comment innermap field ";
 
 constexpr std::size_t kLongestHeader = 1 << 20;
 constexpr std::size_t kMostChannels = 4096, kMostSteps = 4096;
@@ -36,8 +40,7 @@ void writeAffine(std::ostream& out, const HarmonicField& field) {
 
 void writeHeader(std::ostream& out, const FieldFile& file) {
   const bool several = file.steps.size() > 1;
-  out << "ply\nformat binary_little_endian 1.0\ncomment innermap field " << (several ? 2 : 1)
-      << '\n';
+  out << "ply\nformat binary_little_endian 1.0\n" << kFormatLine << (several ? 2 : 1) << '\n';
   std::size_t sources = 0;
   std::string counts;
   for (const HarmonicField& step : file.steps) {
@@ -100,10 +103,8 @@ class HeaderReader {
   Header read() {
     expect("ply");
     expect("format binary_little_endian 1.0");
+    checkFormat(next());
     std::string line = next();
-    if (line != "comment innermap field 1" && line != "comment innermap field 2")
-      fail("expected 'comment innermap field 1' or 2");
-    line = next();
     for (; line.rfind("comment ", 0) == 0; line = next()) comment(line.substr(8));
     header_.sources = count(line, "element vertex ");
     for (const char* name : {"x", "y", "z"}) expect(std::string("property double ") + name);
@@ -133,6 +134,18 @@ class HeaderReader {
     if (used_ > kLongestHeader) fail("the header is too long");
     if (!line.empty() && line.back() == '\r') line.pop_back();
     return line;
+  }
+
+  void checkFormat(const std::string& line) const {
+    const std::string number =
+        line.rfind(kFormatLine, 0) == 0 ? line.substr(kFormatLine.size()) : "";
+    if (number == "1" || number == "2") return;
+    if (!number.empty() && number.size() < 6 &&
+        number.find_first_not_of("0123456789") == std::string::npos && number[0] != '0')
+      throw FileError(path_, "is of format " + number +
+                                 ", which a newer innermap wrote; this one reads formats 1 and 2: "
+                                 "update innermap, or write the map again");
+    fail("expected '" + std::string(kFormatLine) + "1' or 2");
   }
 
   void expect(const std::string& wanted) {

@@ -23,10 +23,9 @@ namespace innermap {
 namespace {
 
 constexpr std::size_t kTogether = std::size_t{1} << 18;  // points of one pass, for memory
-constexpr std::size_t kBlock = 4096;
-constexpr double kOutside = 1e-6;   // of the source's diagonal
-constexpr double kInverted = 1e-5;  // of the target's diagonal
-constexpr double kSkinVoxels = 3;   // of the target, where points are pulled
+constexpr double kOutside = 1e-6;                        // of the source's diagonal
+constexpr double kInverted = 1e-5;                       // of the target's diagonal
+constexpr double kSkinVoxels = 3;                        // of the target, where points are pulled
 constexpr std::size_t kMostStepByStep = 2000;
 
 void requireFinite(const Points& points) {

@@ -131,7 +131,7 @@ TEST(CorrespondMeshes, SplitsTheSourceWhereAsked) {
 
 TEST(CorrespondMeshes, CarriesValuesOfOuterSurfacesBackToTheMeshesAsGiven) {
   MeshCorrespondenceSettings settings = quick();
-  settings.outerResolution = 12;
+  settings.layOut.outerResolution = 12;
   settings.refine = false;
   const Mesh overlapping = shapes::overlapping("two.obj");
   const MeshCorrespondence from = correspondMeshes(overlapping, kB, settings);

@@ -136,6 +136,44 @@ TEST_F(FieldFileTest, CorruptBytesNeverCrash) {
   }
 }
 
+// Maps of version 0.1.0, as the fuzzers' corpus keeps them.
+TEST_F(FieldFileTest, FilesOfEarlierVersionsAreRead) {
+  const std::filesystem::path kept =
+      std::filesystem::path(INNERMAP_SAMPLES) / ".." / "tests" / "fuzz" / "corpus" / "map.ply";
+  const FieldFile one = readField(kept / "one.map.ply");
+  ASSERT_EQ(one.steps.size(), 1u);
+  EXPECT_EQ(one.steps[0].sources().size(), 4u);
+  EXPECT_EQ(one.steps[0].channels(), 3u);
+  EXPECT_EQ(one.boundary.size(), 6u);
+  EXPECT_EQ(one.boundaryTriangles.size(), 8u);
+  EXPECT_EQ(factText(one.facts, "source"), "a.obj");
+  EXPECT_DOUBLE_EQ(*factNumber(one.facts, "boundary_error_rms"), 1e-4);
+  const FieldFile composed = readField(kept / "composed.map.ply");
+  ASSERT_EQ(composed.steps.size(), 3u);
+  EXPECT_EQ(composed.steps[0].sources().size(), 3u);
+}
+
+TEST_F(FieldFileTest, NewerFormatsAreRefusedInWords) {
+  writeField(path_, sample());
+  std::string text = contents();
+  const std::string line = "comment innermap field ";
+  const auto refusal = [&](const std::string& format) {
+    std::string other = text;
+    other.replace(other.find(line) + line.size(), 1, format);
+    write(other);
+    try {
+      readField(path_);
+    } catch (const FileError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(refusal("3").find("newer"), std::string::npos);
+  EXPECT_NE(refusal("17").find("17"), std::string::npos);
+  for (const char* none : {"0", "", "x", "-1", "123456789"})
+    EXPECT_EQ(refusal(none).find("newer"), std::string::npos) << none;
+}
+
 TEST_F(FieldFileTest, MissingFolderAndBadSettingsAreRefused) {
   EXPECT_THROW(writeField((folder_ / "no" / "map.ply").string(), sample()), FileError);
   FieldFile bad = sample();

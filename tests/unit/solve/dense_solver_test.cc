@@ -149,10 +149,9 @@ TEST(DenseSolver, RefusesWhatCannotBe) {
   const Problem p;
   EXPECT_THROW(DenseSolver(p.collocation, {}, {}), SettingError);
   EXPECT_THROW(DenseSolver(p.sources, p.sources, {}), SettingError);
-  DenseSettings tight;
   {
     const MemoryLimit limit(100000);
-    EXPECT_THROW(DenseSolver(p.collocation, p.sources, p.heldOut, tight), MemoryError);
+    EXPECT_THROW(DenseSolver(p.collocation, p.sources, p.heldOut), MemoryError);
   }
   const DenseSolver solver(p.collocation, p.sources, {});
   const Matrix b = harmonicValues(p.collocation);

@@ -269,10 +269,9 @@ TEST(CellFile, HangingVerticesAreCounted) {
 TEST(CellFile, MemoryIsLimited) {
   const std::string path = pathOf("mixed.vtu");
   writeCells(path, mixed());
-  ReadCellsSettings settings;
   {
     const MemoryLimit limit(1000);
-    EXPECT_THROW(readCells(path, settings), MemoryError);
+    EXPECT_THROW(readCells(path), MemoryError);
   }
   EXPECT_THROW(readCells("nowhere.vtu"), FileError);
   EXPECT_THROW(readCells("nowhere.vtk"), FileError);
