@@ -102,6 +102,8 @@ std::string argumentSection(const std::vector<Option>& options) {
 
 std::string markdownRow(const Option& o) {
   std::string help = o.help, values = valueText(o);
+  if (!o.formerName.empty())
+    values += fmt::format("{}formerly {}", values.empty() ? "" : "; ", o.formerName);
   for (std::string* text : {&help, &values})
     for (std::size_t at = 0; (at = text->find('|', at)) != std::string::npos; at += 2)
       text->insert(at, "\\");

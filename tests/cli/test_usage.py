@@ -115,6 +115,20 @@ def test_spellings_of_both_sides_are_taken():
           "--regularization", "0.1")
 
 
+def test_former_names_are_taken_with_a_note():
+    cli.icosphere("a.obj", 2)
+    cli.icosphere("b.obj", 2, radius=2)
+    fit = ("fit", "a.obj", "b.obj", "-o", "m.ply", "--report", "r.json")
+    done = innermap(*fit, "--sources", "60")
+    assert "--sources is now called --charges" in done.stderr
+    assert cli.read_json("r.json")["settings"]["charges"] == 60
+    assert "now called" not in innermap(*fit, "--charges=60").stderr
+    assert "--max-folded is now called" in innermap(*fit, "--max-folded=0.5").stderr
+    fails(1, *fit, "--sources", "0", says=["--charges"])
+    fails(2, *fit, "--sources", "60", "--charges", "60", says=["more than once"])
+    assert "formerly --sources" in innermap("help", "--markdown").stdout
+
+
 def test_names_whose_ending_is_another_kinds_are_refused():
     cube()
     for command, ending in [(["voxelize", "cube.obj"], ".vdb"), (["sphere", "cube.obj"], ".ply"),

@@ -209,5 +209,16 @@ print("over")
         assert process.returncode == 0 and said == "over\n", (process.returncode, said, errors)
 
 
+def test_former_names_are_taken_with_a_warning():
+    V, F = shapes.ball(1)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        m = innermap.fit(V, F, 2 * V, sources=60)
+        innermap.fit(V, F, 2 * V, charges=60)
+    assert [str(w.message) for w in told if w.category is DeprecationWarning] == \
+        ["'sources' is now called 'charges'"], told
+    assert int(m.facts["rank"]) <= 64
+
+
 if __name__ == "__main__":
     cli.run(globals())
