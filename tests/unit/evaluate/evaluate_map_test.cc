@@ -121,9 +121,9 @@ TEST(EvaluateMap, TotalsConvergeAtSecondOrder) {
     deformationError[level] = std::abs(g.deformationTotal - deformation) / deformation;
   }
   // Two halvings at second order would give 16; grid alignment makes single figures noisy.
-  EXPECT_LT(harmonicError[1], harmonicError[0] / 6) << harmonicError[0];
   EXPECT_LT(deformationError[1], deformationError[0] / 6) << deformationError[0];
-  EXPECT_LT(harmonicError[1], 1e-3);
+  // A mean over the voxels' own volume: what is missed along the rim cancels (2e-6 measured).
+  for (const double error : harmonicError) EXPECT_LT(error, 1e-5);
   EXPECT_LT(deformationError[1], 1e-2);
 }
 
