@@ -93,9 +93,10 @@ std::vector<std::string> notesOn(const OuterSurface& outer, const std::string& n
         "encloses is left out; turn those faces round, or move that part back",
         name, 100 * outer.insideOut));
   if (outer.leftOut > 0)
-    notes.push_back(fmt::format("{}: {} part{} of it left out, {:.2g}% of the volume", name,
-                                outer.leftOut, outer.leftOut == 1 ? " is" : "s are",
-                                100 * outer.leftOutShare));
+    notes.push_back(
+        fmt::format("{}: {} left out, {:.2g}% of the volume", name,
+                    outer.leftOut == 1 ? "1 part is" : fmt::format("{} parts are", outer.leftOut),
+                    100 * outer.leftOutShare));
   if (outer.cuts.empty()) return notes;
   std::string places;
   for (std::size_t c = 0; c < std::min(kNotedCuts, outer.cuts.size()); ++c) {
