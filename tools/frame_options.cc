@@ -5,14 +5,13 @@
 #include "html/contents.h"
 #include "innermap/core/file.h"
 #include "innermap/core/memory.h"
+#include "innermap/field/fit.h"
 #include "innermap/mesh/read.h"
 #include "inputs.h"
 #include "map_report.h"
 
 namespace innermap::tool {
 namespace {
-
-constexpr std::uint64_t kMostSources = 1000000;
 
 std::string span(const std::vector<FrameFile>& frames) {
   return frames.size() == 1 ? fmt::format("the only one is {}", frames.front().number)
@@ -124,7 +123,7 @@ void requireFrameMemory(const FrameFitterSettings& settings, std::uint64_t other
     return frameFitterMemory(fewer, others);
   };
   context.requireMemory(fmt::format("a sequence with {} charges", settings.sources),
-                        frameFitterMemory(settings, others), {"--charges", 1, kMostSources, need},
+                        frameFitterMemory(settings, others), {"--charges", 1, kMaxCharges, need},
                         "use a lower --resolution or raise --max-memory");
 }
 

@@ -172,8 +172,7 @@ std::string pushText(const PushResult& result) {
   if (result.inverted)
     text = fmt::format(
         "inverse: found for {1:.4f}% of {0} voxels inside, not for {2}; of {3} outside the "
-        "surface, "
-        "not for {4}\n",
+        "surface, not for {4}\n",
         s.inside, 100 * s.invertedInside(), s.failedInside, s.voxels - s.inside,
         s.failed - s.failedInside);
   for (const CarriedMass& mass : result.masses)

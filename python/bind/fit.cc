@@ -98,7 +98,7 @@ py::object fit(const Arguments& a, FitOptions& o) {
   return py::cast(std::make_shared<PyMap>(call(o.call, [&]() {
     const FitMapSettings with = settings;
     requireMemory(o.call, "fitting the map", fitMapMemory(with, job.source.vertices.size()),
-                  "use fewer sources or raise max_memory");
+                  "use fewer charges or raise max_memory");
     return fitMap(job.source, job.target, with);
   })));
 }

@@ -122,7 +122,7 @@ FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, const CallOption
                      std::uint64_t others) {
   const FrameFitterSettings settings = o.fitting;
   requireMemory(call, fmt::format("a sequence with {} charges", settings.sources),
-                frameFitterMemory(settings, others), "use fewer sources");
+                frameFitterMemory(settings, others), "use fewer charges");
   return FrameFitter(makeSourceBoundary(rest), settings);
 }
 

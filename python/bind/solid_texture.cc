@@ -64,7 +64,7 @@ py::object texture(const Arguments& a, TextureOptions& o) {
     if (isTiled(image)) tiles = udimTiles(plan.mesh());
     requireMemory(o.call, "the solid texture",
                   plan.memory + (image.empty() ? 0 : textureImageMemory(image, tiles)),
-                  "use larger voxels or fewer sources");
+                  "use larger voxels or fewer charges");
     TextureLookup lookup;
     if (!image.empty())
       lookup = [images = TextureImages(image, tiles, o.images)](

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "innermap/boundary/mesh_correspondence.h"
 #include "innermap/core/error.h"
 
@@ -35,14 +37,13 @@ FitMapSettings FitChoices::settings(bool laidOn) const {
 }
 
 std::vector<Setting> describe(FitChoices& c) {
+  Setting tolerance = toleranceSetting(&c.tolerance)
+                          .otherwise(fmt::format("{:g}; {:g} where one mesh is laid onto the other "
+                                                 "first",
+                                                 c.fit.tolerance, kLaidOnTolerance));
+  tolerance.help += "; not with what places a number of charges";
   std::vector<Setting> out{
-      Setting("tolerance", "T", &c.tolerance,
-              "charges are placed where the error is until 99% of the boundary lies within it; not "
-              "with what places a number of charges")
-          .in("fraction of the target's diagonal")
-          .from(kSmallestTolerance, 1)
-          .otherwise(fmt::format("{:g}; {:g} where one mesh is laid onto the other first",
-                                 c.fit.tolerance, kLaidOnTolerance)),
+      std::move(tolerance),
       Setting("charges", "N", &c.sources, "charges on one shell, in place of {tolerance}")
           .from(1, kMaxCharges)
           .was("sources")

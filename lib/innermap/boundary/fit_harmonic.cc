@@ -237,10 +237,7 @@ HarmonicField withUnitSum(const HarmonicField& field) {
 }
 
 std::vector<Setting> describe(HarmonicFitSettings& s) {
-  return {Setting("tolerance", "T", &s.tolerance,
-                  "charges are added until 99% of the boundary lies within it")
-              .in("fraction of the values' span")
-              .from(kSmallestTolerance, 1),
+  return {toleranceSetting(&s.tolerance).in("fraction of the values' span"),
           maxSourcesSetting(&s.maxSources), seedSetting(&s.seed)};
 }
 

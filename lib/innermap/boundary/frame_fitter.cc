@@ -9,7 +9,6 @@
 #include "innermap/boundary/detail/inside_check.h"
 #include "innermap/boundary/detail/problem_samples.h"
 #include "innermap/boundary/detail/streams.h"
-#include "innermap/boundary/map_fit.h"
 #include "innermap/boundary/surface_problem.h"
 #include "innermap/core/error.h"
 #include "innermap/field/fit.h"

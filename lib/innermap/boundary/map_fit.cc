@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "innermap/core/error.h"
 
@@ -14,33 +15,26 @@ constexpr double kPointsPerSource = 4, kPointsPerManySources = 3;
 }  // namespace
 
 std::string wordOf(SolveMethod method) {
-  switch (method) {
-    case SolveMethod::adaptive:
-      return "adaptive";
-    case SolveMethod::iterative:
-      return "iterative";
-    case SolveMethod::tikhonov:
-      return "tikhonov";
-    case SolveMethod::truncatedSvd:
-      return "tsvd";
-    case SolveMethod::steps:
-      return "steps";
-  }
-  return {};
+  constexpr const char* kWords[] = {"adaptive", "iterative", "tikhonov", "tsvd", "steps"};
+  return kWords[static_cast<int>(method)];
 }
 
 std::string wordOf(MapPlacement placement) {
-  switch (placement) {
-    case MapPlacement::adaptive:
-      return "adaptive";
-    case MapPlacement::shell:
-      return "shell";
-    case MapPlacement::sphere:
-      return "sphere";
-    case MapPlacement::steps:
-      return "steps";
-  }
-  return {};
+  constexpr const char* kWords[] = {"adaptive", "shell", "sphere", "steps"};
+  return kWords[static_cast<int>(placement)];
+}
+
+SettingChoice regularizationChoice(Regularization* method) {
+  return choiceOf<Regularization>(
+      method, {{wordOf(SolveMethod::tikhonov), Regularization::tikhonov},
+               {wordOf(SolveMethod::truncatedSvd), Regularization::truncatedSvd}});
+}
+
+Setting toleranceSetting(SettingValue tolerance) {
+  return Setting("tolerance", "T", std::move(tolerance),
+                 "charges are placed where the error is until 99% of the boundary lies within it")
+      .in("fraction of the target's diagonal")
+      .from(kSmallestTolerance, 1);
 }
 
 std::size_t shellCollocation(const ShellSettings& shell) {
@@ -70,9 +64,7 @@ std::vector<Setting> describe(ShellSettings& s) {
               "of such a shell. dense: all at once, for up to some 3000 charges; iterative: for "
               "many; auto: by their number")
           .rare(),
-      Setting("method", "NAME",
-              choiceOf<Regularization>(&s.method, {{"tikhonov", Regularization::tikhonov},
-                                                   {"tsvd", Regularization::truncatedSvd}}),
+      Setting("method", "NAME", regularizationChoice(&s.method),
               "regularisation: Tikhonov's, or truncation of singular values (the paper's)")
           .rare(),
       Setting("regularization", "T", &s.regularization,
@@ -119,10 +111,8 @@ void requireInRange(const FitMapSettings& settings) {
     throw SettingError("one_to_one",
                        "steps are fitted to a tolerance; leave out the number of charges");
   if (!settings.shell) {
-    if (!NumberRange{kSmallestTolerance, 1}.holds(settings.tolerance))
-      throw SettingError("tolerance",
-                         NumberRange{kSmallestTolerance, 1}.refusal(
-                             fmt::format("{:g}", settings.tolerance), "of the target's diagonal"));
+    double tolerance = settings.tolerance;
+    requireInRange({toleranceSetting(&tolerance)});
     return;
   }
   const ShellSettings& shell = *settings.shell;

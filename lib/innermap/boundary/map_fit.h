@@ -27,6 +27,7 @@ struct ShellSettings {
 
 // Without the numbers of charges and points.
 std::vector<Setting> describe(ShellSettings& settings);
+SettingChoice regularizationChoice(Regularization* method);
 
 // Boundary points of these settings: `collocation`, or its default.
 std::size_t shellCollocation(const ShellSettings& shell);
@@ -39,7 +40,6 @@ std::size_t shellCollocation(const ShellSettings& shell);
 // which folds are counted.
 enum class OneToOne { automatic, on, off };
 
-constexpr double kMaxCharges = 1e6;
 constexpr double kManyFolds = 5e-3, kManyOutside = 1e-2, kFewFolds = 4e-4;
 
 // What maps in steps take beside a single one in bytes: the most that was measured between
@@ -58,7 +58,9 @@ struct FitMapSettings {
   std::uint64_t seed = 1;
 };
 
-// {tolerance}'s.
+// What settings of several structs share: the tolerance that 99% of the boundary is to meet, and
+// the charges that may be taken for it.
+Setting toleranceSetting(SettingValue tolerance);
 Setting maxSourcesSetting(std::size_t* most);
 
 // Without the tolerance and the shell.

@@ -136,7 +136,6 @@ std::optional<MeshCorrespondence> MeshCorrespondence::otherWay() const {
 
 MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const MeshCorrespondenceSettings& settings) {
   requireCorrespondMemory(a, b);
-
   auto [laidA, laidB] = layOutMeshes(std::move(a), std::move(b), settings.layOut);
   return correspondMeshes(std::move(laidA), std::move(laidB), settings);
 }

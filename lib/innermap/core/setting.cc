@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 
 #include "innermap/core/error.h"
@@ -42,7 +43,7 @@ void requireAll(const std::vector<Setting>& all, const std::vector<std::string>&
 }  // namespace
 
 bool NumberRange::holds(double value) const {
-  return value <= upper && (lowerOpen ? value > lower : value >= lower);
+  return std::isfinite(value) && value <= upper && (lowerOpen ? value > lower : value >= lower);
 }
 
 bool NumberRange::bounded() const { return lower > -kEndless || upper < kEndless; }
@@ -57,7 +58,8 @@ std::string NumberRange::text() const {
 }
 
 std::string NumberRange::refusal(const std::string& given, const std::string& unit) const {
-  return fmt::format("{} is out of range; give a number {}{}", given, text(),
+  return fmt::format("{} is out of range; give a {}{}", given,
+                     bounded() ? "number " + text() : "finite number",
                      unit.empty() ? "" : " (" + unit + ")");
 }
 

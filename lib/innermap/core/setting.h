@@ -26,7 +26,7 @@ struct NumberRange {
   double upper = std::numeric_limits<double>::infinity();
   bool lowerOpen = false;  // `lower` itself is not allowed
 
-  bool holds(double value) const;  // false for nan
+  bool holds(double value) const;  // false for what is not finite
   bool bounded() const;
   // "above 0", "from 4 to 4096", "of at least 2"; empty without a bound.
   std::string text() const;

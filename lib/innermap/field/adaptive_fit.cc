@@ -10,6 +10,7 @@
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"
 #include "innermap/field/detail/refinement_marks.h"
+#include "innermap/field/fit.h"
 #include "innermap/solve/iterative_solver.h"
 
 namespace innermap {
@@ -94,9 +95,9 @@ void AdaptiveFitting::check() const {
                        "must lie in 1e-12 (double precision holds no less) to 1 of the diagonal");
   if (settings_.firstSources < 10 || settings_.firstSources > 5000)
     throw SettingError("first sources", "must lie in 10 to 5000");
-  if (settings_.maxSources < settings_.firstSources || settings_.maxSources > 1000000)
-    throw SettingError("max sources",
-                       "must lie in " + std::to_string(settings_.firstSources) + " to 1000000");
+  if (settings_.maxSources < settings_.firstSources || settings_.maxSources > kMaxCharges)
+    throw SettingError("max sources", "must lie in " + std::to_string(settings_.firstSources) +
+                                          " to " + std::to_string(kMaxCharges));
   if (settings_.patience < 1) throw SettingError("patience", "must be at least 1");
   if (!(problem_.diagonal > 0) || !(problem_.area > 0) || !(problem_.unit > 0))
     throw DataError("fit: the boundary has no extent");
@@ -143,7 +144,7 @@ void AdaptiveFitting::first() {
   BoundarySamples samples = problem_.placeCollocation(request);
   collocation_ = samples.collocation();
   values_ = std::move(samples.values);
-  requireMemory("the first level of charges", memory(), "raise the limit of memory");
+  requireMemory("the first level of charges", memory(), room_, "raise the limit of memory");
   IterativeSettings s;
   s.accuracy = std::clamp(kErrorAccuracy * settings_.tolerance, 1e-12, s.accuracy);
   solver_.emplace(collocation_,

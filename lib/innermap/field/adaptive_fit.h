@@ -64,7 +64,7 @@ struct AdaptiveProblem {
 struct AdaptiveSettings {
   double tolerance = 1e-3;          // fraction of the unit, in [kSmallestTolerance, 1]
   std::size_t firstSources = 1000;  // about; of the first level, in [10, 5000]
-  std::size_t maxSources = 100000;  // in [firstSources, 1000000]
+  std::size_t maxSources = 100000;  // in [firstSources, kMaxCharges]
   std::size_t checkSamples = 20000;
   int patience = 6;       // rounds that may gain less than 3% in all, at least 1
   int outlierRounds = 6;  // at most, once the tolerance holds, for errors that stand out

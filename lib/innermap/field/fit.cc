@@ -22,7 +22,7 @@ constexpr double kGain = 0.8;
 constexpr double kClose = 1.25, kNextNearest = 1.6;
 constexpr std::size_t kTrialSources = 600;
 constexpr std::size_t kTrialPointsPerSource = 4;
-constexpr std::size_t kMostSources = 1000000, kMostDense = 20000;
+constexpr std::size_t kMostDense = 20000;
 // The iterative solver's shells: distances in spacings of their own sources.
 constexpr double kIterativeDistance = 0.9, kCoarseDistance = 1.25;
 constexpr double kIterativeGuard = 4;  // spacings; clusters see no farther
@@ -150,7 +150,7 @@ void checkShape(const BoundaryData& data) {
 
 void Fitting::check() const {
   const bool iterates = solver() == FitSolver::iterative;
-  if (settings_.sources < 1 || settings_.sources > (iterates ? kMostSources : kMostDense))
+  if (settings_.sources < 1 || settings_.sources > (iterates ? kMaxCharges : kMostDense))
     throw SettingError("charges", iterates ? "must lie in 1 to 1000000"
                                            : "must lie in 1 to 20000 for the dense solver");
   if (settings_.distance && !(*settings_.distance >= 1e-4 && *settings_.distance <= 2))
@@ -168,7 +168,7 @@ void Fitting::check() const {
   requireMemory("fitting " + std::to_string(settings_.sources) + " sources",
                 fitMemory(problem_.surface.points.size(), settings_.sources,
                           problem_.surface.heldOut.size(), solver()),
-                "use fewer sources");
+                memoryLeft(), "use fewer charges");
 }
 
 Solved Fitting::solve(const BoundaryData& data, std::size_t count, std::size_t points,

@@ -20,6 +20,8 @@
 
 namespace innermap {
 
+constexpr std::size_t kMaxCharges = 1'000'000;  // of any fit
+
 // Points in random order: any first part of them covers the boundary evenly. values: #points x #K.
 struct BoundaryData {
   Points points, heldOut;
@@ -50,7 +52,7 @@ enum class FitSolver { automatic, dense, iterative };
 constexpr std::size_t kMostDenseSources = 3000;
 
 struct FitSettings {
-  std::size_t sources = 2000;  // in [1, 1000000]; dense: at most 20000
+  std::size_t sources = 2000;  // in [1, kMaxCharges]; dense: at most 20000
   FitSolver solver = FitSolver::automatic;
   std::optional<double> distance;  // fraction of the diagonal, in [1e-4, 2]; chosen when absent
   std::size_t trialSources = 600;  // of trials of distances, at most; half the sources at most

@@ -13,7 +13,7 @@ std::vector<Setting> describe(LatticeChoice& c, const std::string& of, const std
                                        : usual),
           Setting("voxel_size", "LENGTH", &c.voxelSize, "edge of a voxel, in place of {resolution}")
               .in("world units")
-              .above(0)
+              .above(0, 1e12)
               .otherwise("by {resolution}")};
 }
 

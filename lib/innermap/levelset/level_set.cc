@@ -167,8 +167,9 @@ std::uint64_t levelSetMemory(const Solid& solid, const LevelSetSettings& setting
 FloatGrid::Ptr makeLevelSet(const Solid& solid, const LevelSetSettings& settings) {
   requireDescribed(settings);
   const double h = voxelSizeFor(solid, settings);
-  requireMemory("level set", levelSetMemory(solid, settings),
-                "a larger voxel size, a lower resolution or a smaller half width would fit");
+  if (limitsMemory())
+    requireMemory("level set", levelSetMemory(solid, settings),
+                  "a larger voxel size, a lower resolution or a smaller half width would fit");
   const Vec3 origin = settings.origin.value_or(latticeOrigin(solid.box(), h));
   checkReach(solid, origin, h);
   return narrowBand(solid.body(), origin, h, settings.halfWidth * h);

@@ -119,7 +119,7 @@ DenseSolver::Factors::Factors(const Collocation& collocation, const Points& sour
   requireMemory("the dense solver with " + std::to_string(n) + " sources and " + std::to_string(m) +
                     " collocation points",
                 denseSolverMemory(m, n, heldOut.size()),
-                "use fewer sources (memory grows with their square)");
+                "use fewer charges (memory grows with their square)");
   const Box3 box = boundingBox(collocation.points);
   center_ = box.center();
   scale_ = box.diagonal() > 0 ? box.diagonal() : 1;

@@ -182,7 +182,7 @@ void IterativeSolver::Levels::check(const Collocation& collocation,
                                                  " sources; use 2 to 4 a source");
   requireMemory("the iterative solver with " + std::to_string(sources) + " sources",
                 iterativeSolverMemory(points, sources - coarse, coarse),
-                "use fewer sources (memory grows in proportion)");
+                "use fewer charges (memory grows in proportion)");
 }
 
 Points IterativeSolver::Levels::normalised(const Points& points) const {

@@ -306,9 +306,7 @@ std::vector<Setting> describe(StudySettings& s) {
               choiceOf<Interpolation>(&s.interpolation, {{"linear", Interpolation::linear},
                                                          {"smooth", Interpolation::smooth}}),
               "the target between its vertices: flat triangles, or a smooth deformation"),
-      Setting("method", "HOW",
-              choiceOf<Regularization>(&s.method, {{"tikhonov", Regularization::tikhonov},
-                                                   {"tsvd", Regularization::truncatedSvd}}),
+      Setting("method", "HOW", regularizationChoice(&s.method),
               "of regularisation; the paper's is tsvd"),
       Setting("regularization", "R", &s.regularization, "relative to the largest singular value")
           .from(0, 1)

@@ -206,7 +206,7 @@ std::vector<Setting> describe(TetrahedralizeSettings& s) {
           .from(kLeastAcross, kMostAcross),
       Setting("edge", "LENGTH", &s.edge, "side of a cell of the lattice, in place of {resolution}")
           .in("world units")
-          .above(0)
+          .above(0, 1e12)
           .otherwise(0, "by {resolution}")
           .rare(),
       Setting("features", "ANGLE", &s.features,

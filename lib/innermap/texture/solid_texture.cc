@@ -308,7 +308,7 @@ SolidTexture makeSolidTexture(const SolidTexturePlan& plan, const TextureLookup&
   const SolidTextureSettings& settings = plan.parts->settings;
   if (usesImage(settings) && !image) throw SettingError("image", "is missing; give a lookup");
   requireMemory("the solid texture", plan.memory,
-                "use larger voxels, fewer sources or raise the limit");
+                "use larger voxels, fewer charges or raise the limit");
   return Maker(plan, image).run();
 }
 

@@ -49,7 +49,7 @@ std::vector<Setting> describe(CarrySettings& s) {
           Setting("density_limit", "TIMES", &s.densityLimit,
                   "that a density may grow at most; what comes together beyond it is left out, and "
                   "how much is said")
-              .above(0)
+              .above(0, 1e300)
               .otherwise(std::numeric_limits<double>::infinity(), "none")};
 }
 

@@ -48,6 +48,7 @@ TEST(NumberRange, HoldsItsBoundsButNoOpenOne) {
   EXPECT_FALSE(open.holds(1) || closed.holds(0.999) || closed.holds(2.001));
   EXPECT_FALSE(closed.holds(std::nan("")));
   EXPECT_FALSE(NumberRange{}.holds(std::nan("")));
+  EXPECT_FALSE(NumberRange{}.holds(std::numeric_limits<double>::infinity()));
   EXPECT_FALSE(NumberRange{}.bounded());
   EXPECT_TRUE(NumberRange{}.holds(-1e308));
 }
@@ -62,6 +63,7 @@ TEST(NumberRange, SaysItself) {
   EXPECT_EQ(NumberRange{}.text(), "");
   EXPECT_EQ((NumberRange{1, 2}).refusal("3", "degrees"),
             "3 is out of range; give a number from 1 to 2 (degrees)");
+  EXPECT_EQ(NumberRange{}.refusal("inf", ""), "inf is out of range; give a finite number");
 }
 
 TEST(Setting, WhatIsOutOfRangeIsNamed) {

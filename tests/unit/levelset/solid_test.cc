@@ -235,7 +235,7 @@ TEST(Solid, TellsWhatIsInsideOut) {
       turned += area;
   }
   const Solid solid(mesh);
-  EXPECT_NEAR(solid.insideOut(), turned / all, 0.01);  // a row of triangles at the crossing: 0.02
+  EXPECT_NEAR(solid.insideOut(), turned / all, 0.01);  // triangles across x = 0.5, narrow there
   EXPECT_GT(solid.insideOut(), 0.05);
   EXPECT_FALSE(solid.inside({0.75, 0, 0}));
   EXPECT_TRUE(solid.inside({0, 0, 0}));

@@ -391,6 +391,7 @@ std::vector<Setting> describe(SectionSettings& s) {
           .from(0, 1),
       Setting("position", "P", &s.position, "where the picture cuts, in place of {at}")
           .in("world units")
+          .from(-1e12, 1e12)
           .rare(),
       colormapSetting(&s.colormap),
       scaleSetting(&s.scale),

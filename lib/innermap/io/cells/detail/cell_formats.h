@@ -21,7 +21,7 @@ enum class CellUse { tetrahedron, hexahedron, leftOut, refused };
 // What the readers fill; tells of what is left out at the end.
 class CellCollector {
  public:
-  CellCollector(const std::string& path) : path_(path) { file.mesh.name = path; }
+  explicit CellCollector(const std::string& path) : path_(path) { file.mesh.name = path; }
 
   CellFile file;
 

@@ -35,7 +35,8 @@ constexpr Section kSections[] = {{"Triangles", 4, "triangles"},
 
 class MeditReader {
  public:
-  MeditReader(const FileBytes& file) : collector_(file.path), scanner_(file, {true, false}) {}
+  explicit MeditReader(const FileBytes& file)
+      : collector_(file.path), scanner_(file, {true, false}) {}
 
   CellFile read() {
     std::string_view word;

@@ -28,7 +28,7 @@ constexpr MshCell kCells[] = {
 
 class MshReader {
  public:
-  MshReader(const FileBytes& file)
+  explicit MshReader(const FileBytes& file)
       : file_(file), collector_(file.path), in_(file), fields_(collector_, in_) {}
 
   CellFile read() {

@@ -32,7 +32,7 @@ constexpr VtkCell kCells[] = {
 
 class VtuReader {
  public:
-  VtuReader(const FileBytes& file) : file_(file), collector_(file.path) {}
+  explicit VtuReader(const FileBytes& file) : file_(file), collector_(file.path) {}
 
   CellFile read() {
     readTags();

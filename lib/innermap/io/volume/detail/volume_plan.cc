@@ -248,12 +248,13 @@ std::vector<Setting> describe(VolumeTextureReadSettings& s) {
           .rare(),
       Setting("voxel_size", "L", &s.voxelSize, "edge of a voxel, in place of the file's matrix")
           .in("world units")
-          .above(0)
+          .above(0, 1e12)
           .otherwise("from the file"),
       Setting("axis", "AXIS", choiceOf<std::optional<int>>(&s.axis, {{"x", 0}, {"y", 1}, {"z", 2}}),
               "direction across the slices")
           .otherwise("from the file, else z"),
       Setting("background", "V", &s.background, "value of what is not active")
+          .from(-1e30, 1e30)
           .otherwise("from the file, else 0")
           .rare()};
 }
