@@ -35,7 +35,7 @@ def test_each_command_has_help_with_an_example_and_the_common_options():
 
 def test_help_shows_units_ranges_and_defaults():
     text = " ".join(innermap("voxelize", "--help").stdout.split())
-    assert "above 0; default: by --resolution]" in text
+    assert "above 0 up to " in text and "default: by --resolution]" in text
     assert "[from 4 to 4096; default: 128" in text
     assert "[innermap, blender, houdini; default: innermap]" in text
 
