@@ -62,8 +62,7 @@ int slabEnd(const VolumeLattice& lattice, int first) {
 
 class Reading {
  public:
-  Reading(const std::string& path, VolumeSource& source, const VolumeTextureReadSettings& settings)
-      : path_(path), source_(source), settings_(settings) {
+  Reading(const std::string& path, VolumeSource& source) : path_(path), source_(source) {
     const std::uint64_t fixed =
         source.memory() + Slab::memory(source.lattice(), source.channels().size());
     need(fixed);
@@ -116,7 +115,6 @@ class Reading {
 
   const std::string& path_;
   VolumeSource& source_;
-  const VolumeTextureReadSettings& settings_;
   const std::uint64_t room_ = memoryLeft();  // bytes: the grids grow as they are read
   std::uint64_t fixed_ = 0;
   std::vector<std::unique_ptr<VolumeBuilder>> builders_;
@@ -145,7 +143,7 @@ VolumeTextureContents readVolumeTexture(const std::string& path,
   openvdb::initialize();
   const ExrThreads threads;
   VolumeSource source(path, settings);
-  Reading reading(path, source, settings);
+  Reading reading(path, source);
   VolumeTextureContents contents;
   contents.notFinite = reading.run();
   contents.grids = reading.finish();
