@@ -19,7 +19,7 @@ std::string defaultOf(const Target& target) {
     std::string operator()(const std::uint64_t* v) const { return fmt::format("{}", *v); }
     std::string operator()(const double* v) const { return fmt::format("{:.6g}", *v); }
     std::string operator()(const std::string* v) const { return *v; }
-    std::string operator()(const std::function<void(const std::string&)>&) const { return ""; }
+    std::string operator()(const SettingChoice& v) const { return v.words[v.now()]; }
     std::string operator()(const void*) const { return ""; }  // flags, lists, what may be absent
   };
   return std::visit(Visitor{}, target);
@@ -42,6 +42,8 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
 
 void addOption(std::vector<Option>& table, Option option) {
   option.defaultText = defaultOf(option.target);
+  if (const auto* choice = std::get_if<SettingChoice>(&option.target))
+    option.choices = choice->words;
   table.push_back(std::move(option));
 }
 
@@ -158,19 +160,7 @@ OptionBuilder Command::setting(const Setting& s) {
   const bool* const* flagged = std::get_if<bool*>(&s.value);
   const bool off = flagged && **flagged;
   if (off) name = optionName("no_" + s.name);
-  const auto* choice = std::get_if<SettingChoice>(&s.value);
-  const Target target = std::visit(
-      [](const auto& value) -> Target {
-        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, SettingChoice>) {
-          return std::function<void(const std::string&)>([value](const std::string& word) {
-            value.take(static_cast<std::size_t>(
-                std::find(value.words.begin(), value.words.end(), word) - value.words.begin()));
-          });
-        } else {
-          return value;
-        }
-      },
-      s.value);
+  const Target target = std::visit([](const auto& value) -> Target { return value; }, s.value);
   OptionBuilder added = option(name, s.placeholder, target, withNames(s.help, optionName));
   Option& made = options_.back();
   made.sets = !off;
@@ -180,9 +170,6 @@ OptionBuilder Command::setting(const Setting& s) {
   made.automatic = s.automatic;
   made.advanced = s.advanced;
   if (!s.fallback.empty()) made.defaultText = withNames(s.fallback, optionName);
-  if (!choice) return added;
-  made.choices = choice->words;
-  if (s.fallback.empty()) made.defaultText = choice->words[choice->now()];
   return added;
 }
 

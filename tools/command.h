@@ -52,17 +52,7 @@ class Command {
   OptionBuilder choice(const std::string& name, const std::string& placeholder, Value* target,
                        const std::vector<std::pair<std::string, Value>>& values,
                        const std::string& help) {
-    std::vector<std::string> names;
-    std::string chosen;
-    for (const auto& [text, value] : values) {
-      names.push_back(text);
-      if (value == *target && chosen.empty()) chosen = text;
-    }
-    const auto take = [=](const std::string& text) {
-      for (const auto& [known, value] : values)
-        if (known == text) *target = value;
-    };
-    return option(name, placeholder, take, help).choices(names).defaults(chosen);
+    return option(name, placeholder, choiceOf(target, values), help);
   }
   OptionBuilder flag(const std::string& name, bool* target, const std::string& help);
   // An option for each setting of the library: max_charges is --max-charges; a flag that is on is

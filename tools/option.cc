@@ -95,8 +95,10 @@ struct Taker {
   void operator()(std::uint64_t* to) const { *to = parseCount(option, text); }
   void operator()(double* to) const { *to = parseNumber<double>(option, text, "a number"); }
   void operator()(std::string* to) const { *to = parseText(option, text); }
-  void operator()(const std::function<void(const std::string&)>& to) const {
-    to(parseText(option, text));
+  void operator()(const SettingChoice& to) const {
+    const std::vector<std::string>& words = to.words;
+    const auto found = std::find(words.begin(), words.end(), parseText(option, text));
+    to.take(static_cast<std::size_t>(found - words.begin()));
   }
   void operator()(NumberPair* to) const { *to = parsePair(option, text); }
   void operator()(std::vector<std::string>* to) const { to->push_back(parseText(option, text)); }

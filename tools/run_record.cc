@@ -11,7 +11,7 @@
 namespace innermap::tool {
 namespace {
 
-// A choice binds to a function: its value is what was given, or its default.
+// The value of a choice is what was given, or its default.
 struct ValueOf {
   const Option& option;
   const CommonOptions& common;
@@ -24,7 +24,7 @@ struct ValueOf {
     return *v;
   }
   ReportValue operator()(const std::vector<std::string>* v) const { return *v; }
-  ReportValue operator()(const std::function<void(const std::string&)>&) const {
+  ReportValue operator()(const SettingChoice&) const {
     const auto given = common.given.find(option.name);
     const std::string& text = given == common.given.end() ? option.defaultText : given->second;
     if (text.empty()) return leftToTheCommand();
