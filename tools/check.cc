@@ -13,6 +13,7 @@
 #include "innermap/surface/closed_surface.h"
 #include "inputs.h"
 #include "map_report.h"
+#include "report_figures.h"
 
 namespace innermap::tool {
 namespace {
@@ -108,10 +109,11 @@ std::string checkText(const std::string& path, const MeshReport& r,
 
 void fillReport(const Mesh& mesh, const MeshReport& r, const std::vector<Finding>& found,
                 Report& report) {
-  report.source = reportOf(mesh, r.volume);
-  report.source->boundaryLoops = static_cast<int>(r.boundaryLoops.size());
-  report.source->genus = r.genus;
-  for (const Finding& f : found) report.set("findings." + f.name, f.count);
+  ReportMesh source = reportOf(mesh, r.volume);
+  source.boundaryLoops = static_cast<int>(r.boundaryLoops.size());
+  source.genus = r.genus;
+  report.add("source", figures(source));
+  for (const Finding& f : found) report.add("findings", findingFigures(f.name, f.count));
 }
 
 // What stands for the mesh where it is mapped onto a stranger, filled or laid out.

@@ -17,6 +17,8 @@
 #include "innermap/io/picture/plane_picture.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/mesh/read.h"
+#include "innermap/report/figures.h"
+#include "innermap/report/table.h"
 #include "inputs.h"
 #include "lists.h"
 #include "map_report.h"
@@ -128,23 +130,6 @@ void printTable(const CompareFem& result, bool map, Context& context) {
                                 atEqualTime(result, r)));
 }
 
-void writeTable(const std::string& path, const CompareFem& result) {
-  PendingFile file(path);
-  std::ofstream out(file.temporaryPath());
-  out << "method,size,unknowns,seconds,memory_bytes,iterations,value_error,gradient_error,"
-         "largest_error,jump,harmonic_energy,deformation_energy,folded,inverted,boundary_rms\n";
-  const auto number = [](double v) { return std::isfinite(v) ? fmt::format("{:.6g}", v) : ""; };
-  for (const ComparedRow& r : result.rows)
-    out << fmt::format(
-        "{},{},{},{:.4f},{},{},{},{},{},{},{},{},{},{},{}\n", r.charges ? "charges" : "elements",
-        r.size, r.unknowns, r.seconds, r.memory, r.iterations, number(r.value), number(r.gradient),
-        number(r.largest), number(r.jump), number(r.harmonicEnergy), number(r.deformationEnergy),
-        number(r.folded), r.charges ? "" : std::to_string(r.inverted), number(r.boundaryRms));
-  out.close();
-  if (!out) throw FileError(path, "cannot be written");
-  file.commit();
-}
-
 Chart chartOf(const CompareFem& result, const CompareOptions& options) {
   Chart chart;
   chart.title = "Error against time";
@@ -231,35 +216,6 @@ void writeSection(const std::string& path, const CompareFem& result, const Solid
   writePlanePicture(path, box, functions, settings);
 }
 
-void fillReport(const CompareFem& result, Report& report) {
-  const auto column = [&](const char* key, auto of) {
-    report.setColumn(std::string("comparison.") + key, result.rows, of);
-  };
-  std::vector<std::string> methods;
-  for (const ComparedRow& r : result.rows) methods.push_back(r.charges ? "charges" : "elements");
-  report.set("comparison.method", methods);
-  column("size", [](const ComparedRow& r) { return r.size; });
-  column("unknowns", [](const ComparedRow& r) { return r.unknowns; });
-  column("seconds", [](const ComparedRow& r) { return r.seconds; });
-  column("memory_bytes", [](const ComparedRow& r) { return r.memory; });
-  column("iterations", [](const ComparedRow& r) { return r.iterations; });
-  column("value_error", [](const ComparedRow& r) { return r.value; });
-  column("gradient_error", [](const ComparedRow& r) { return r.gradient; });
-  column("largest_error", [](const ComparedRow& r) { return r.largest; });
-  column("jump", [](const ComparedRow& r) { return r.jump; });
-  column("harmonic_energy", [](const ComparedRow& r) { return r.harmonicEnergy; });
-  column("deformation_energy", [](const ComparedRow& r) { return r.deformationEnergy; });
-  column("folded", [](const ComparedRow& r) { return r.folded; });
-  column("inverted", [](const ComparedRow& r) { return r.inverted; });
-  column("boundary_rms", [](const ComparedRow& r) { return r.boundaryRms; });
-  report.set("comparison.value_order", result.valueOrder);
-  report.set("comparison.gradient_order", result.gradientOrder);
-  if (result.referenceRms > 0) {
-    report.set("comparison.reference.boundary_rms", result.referenceRms);
-    report.set("comparison.reference.seconds", result.referenceSeconds);
-  }
-}
-
 void run(const CompareOptions& options, Context& context) {
   if (options.functions != options.target.empty())
     throw UsageError("give a TARGET to compare on its map, or --functions (not both)");
@@ -295,9 +251,10 @@ void run(const CompareOptions& options, Context& context) {
   });
   for (const std::string& note : result.notes) context.note(note);
   printTable(result, pair.has_value(), context);
-  fillReport(result, context.report());
+  context.report().add("comparison", figures(result));
   context.timed("write", [&] {
-    folder->write("comparison.csv", [&](const std::string& path) { writeTable(path, result); });
+    folder->write("comparison.csv",
+                  [&](const std::string& path) { writeTable(path, rowFigures(result)); });
     folder->write("curves.png",
                   [&](const std::string& path) { writeChart(path, chartOf(result, options)); });
     folder->write("section.png",

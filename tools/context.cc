@@ -11,6 +11,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/picture/label_font.h"
+#include "report_figures.h"
 #include "run_record.h"
 #include "signals.h"
 #include "terminal_progress.h"
@@ -36,7 +37,7 @@ void Context::spend(double share, double later) {
 void Context::noteTime() {
   if (!progress_.endedByTime() || timeNoted_) return;
   timeNoted_ = true;
-  report_.set("stopped_by_time", true);
+  report_.add("", stoppedByTimeFigures());
   warning("stopped by --max-time: another run may differ");
 }
 
@@ -54,13 +55,11 @@ void Context::plan(const std::vector<std::string>& lines, std::uint64_t need) {
   for (const std::string& line : lines) print(line + "\n");
   if (expectedSeconds_ > 0) {
     print(fmt::format("time: about {:.0f} s\n", std::max(1.0, expectedSeconds_)));
-    report_.set("seconds_expected", expectedSeconds_);
   }
   print(fmt::format("memory: about {} of at most {}{}\n", formatBytes(bytes),
                     formatBytes(maxMemory_),
                     bytes > maxMemory_ ? ", so this would be refused" : ""));
-  report_.set("dry_run", true);
-  report_.set("memory_needed_bytes", bytes);
+  report_.add("", planFigures(expectedSeconds_, bytes));
   if (bytes > maxMemory_)
     failAfterwards(fmt::format("{} of memory are more than the limit of {}; raise --max-memory",
                                formatBytes(bytes), formatBytes(maxMemory_)));
@@ -365,7 +364,8 @@ const Report& Context::finishedReport() {
   report_.peakMemory = peakMemory();
   report_.outputs = outputsNow();
   noteMemory();
-  for (const auto& [stage, bytes] : memoryAfter_) report_.set("memory_after_bytes." + stage, bytes);
+  for (const auto& [stage, bytes] : memoryAfter_)
+    report_.add("memory_after_bytes", memoryFigures(stage, bytes));
   return report_;
 }
 

@@ -15,7 +15,7 @@
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"
 #include "innermap/core/stage_seconds.h"
-#include "innermap/io/report.h"
+#include "innermap/report/report.h"
 #include "job_clock.h"
 
 namespace innermap::tool {

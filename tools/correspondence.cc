@@ -4,67 +4,12 @@
 
 #include "innermap/core/memory.h"
 #include "innermap/io/picture/mesh_picture.h"
+#include "innermap/report/figures.h"
 #include "inputs.h"
 #include "map_report.h"
 
 namespace innermap::tool {
 namespace {
-
-void reportQuantiles(Report& report, const std::string& key, const Quantiles& q) {
-  report.set(key + ".median", q.median);
-  report.set(key + ".p99", q.p99);
-  report.set(key + ".max", q.max);
-}
-
-void reportMap(const MeshCorrespondence& map, Report& report) {
-  const MapQuality& q = map.quality;
-  const auto set = [&](const char* key, auto value) {
-    report.set(std::string("correspondence.") + key, value);
-  };
-  if (map.farthestFromOuter) set("farthest_from_outer_surface", *map.farthestFromOuter);
-  set("flips", q.flips);
-  set("degree", q.degree);
-  set("area_ratio_log10", q.areaRatioLog10);
-  set("energy_forward", q.energyForward);
-  set("energy_backward", q.energyBackward);
-  set("energy_sum", q.energyForward + q.energyBackward);
-  reportQuantiles(report, "correspondence.stretch", q.stretch);
-  reportQuantiles(report, "correspondence.triangle_stretch", q.triangleStretch);
-  set("unmeasured", q.unmeasured);
-  set("inverted_triangles", q.invertedTriangles);
-  set("inverted_share", q.invertedShare);
-  reportQuantiles(report, "correspondence.deviation", q.deviation);
-  reportQuantiles(report, "correspondence.deviation_of_target", q.backDeviation);
-  set("image_self_intersections", q.imageSelfIntersections);
-  set("target_self_intersections", q.targetSelfIntersections);
-  set("landmarks", map.landmarks);
-  if (map.landmarks > 0) set("landmark_error", map.landmarkError);
-  set("vertices", map.source.vertices.size());
-  set("target_vertices", map.b.mesh.vertices.size());
-  set("subdivided", map.changed);
-  reportOuter("correspondence.source_outer_surface", map.a.outer, report);
-  reportOuter("correspondence.target_outer_surface", map.b.outer, report);
-}
-
-// First maps of the first shell, which the inside chose between, best first; and the way taken.
-void reportConsidered(const ShellCorrespondence& shell, Report& report) {
-  const std::vector<ConsideredMap>& maps = shell.considered;
-  report.set("correspondence.way", shell.way);
-  if (shell.other) {
-    report.set("correspondence.other_way.way", shell.other->way);
-    report.setColumn("correspondence.other_way.score", shell.other->score,
-                     [](auto s) { return s; });
-    report.setColumn("correspondence.other_way.turn", shell.other->turn, [](auto t) { return t; });
-  }
-  if (maps.empty()) return;
-  std::vector<std::string> origins;
-  for (const ConsideredMap& m : maps) origins.push_back(m.origin);
-  report.set("correspondence.considered.origin", origins);
-  report.setColumn("correspondence.considered.energy", maps, [](auto& m) { return m.energy; });
-  report.setColumn("correspondence.considered.score", maps, [](auto& m) { return m.score; });
-  report.setColumn("correspondence.considered.turn", maps, [](auto& m) { return m.turn; });
-  report.setColumn("correspondence.considered.way", maps, [](auto& m) { return m.way; });
-}
 
 std::string qualityText(const MapQuality& q, ModelSpace space, bool outer) {
   return fmt::format(
@@ -114,31 +59,12 @@ void requirePly(const std::string& option, const std::string& path) {
 Mesh takeCleanSurface(Mesh mesh, const LayOutSettings& settings, Context& context) {
   CleanSurface clean = context.timed("surface", [&] { return cleanSurface(mesh, settings); });
   for (const std::string& note : clean.notes) context.note(note);
-  reportOuter("outer_surface", clean.outer, context.report());
+  context.report().add("outer_surface", outerSurfaceFigures(clean.outer));
   return clean.outer ? std::move(clean.outer->mesh) : std::move(mesh);
 }
 
 Mesh readCleanSurface(const std::string& path, const SurfaceOptions& options, Context& context) {
   return takeCleanSurface(readMeshFile(path, context), options.layOut, context);
-}
-
-void reportOuter(const std::string& key, const std::optional<OuterSurface>& taken, Report& report) {
-  report.set(key + ".taken", taken.has_value());
-  if (!taken) return;
-  const OuterSurface& outer = *taken;
-  report.set(key + ".edge", outer.edge);
-  report.set(key + ".vertices", outer.mesh.vertices.size());
-  report.set(key + ".handles", outer.topology.handles);
-  report.set(key + ".inside_out", outer.insideOut);
-  report.set(key + ".left_out", outer.leftOut);
-  report.set(key + ".left_out_share", outer.leftOutShare);
-  report.set(key + ".apart_p99", outer.apartP99);
-  report.set(key + ".apart_max", outer.apartMax);
-  reportCaps(key, outer.caps, report);
-  report.setColumn(key + ".cuts.x", outer.cuts, [](auto& c) { return c.place.x; });
-  report.setColumn(key + ".cuts.y", outer.cuts, [](auto& c) { return c.place.y; });
-  report.setColumn(key + ".cuts.z", outer.cuts, [](auto& c) { return c.place.z; });
-  report.setColumn(key + ".cuts.size", outer.cuts, [](auto& c) { return c.size; });
 }
 
 LaidOutMesh layOut(Mesh mesh, const SurfaceOptions& options, Context& context) {
@@ -147,11 +73,12 @@ LaidOutMesh layOut(Mesh mesh, const SurfaceOptions& options, Context& context) {
   return laid;
 }
 
-ReportMesh reportOf(const LaidOutMesh& laid) {
+void reportLaidOut(const std::string& section, const LaidOutMesh& laid, Report& report) {
   ReportMesh out = reportOf(laid.mesh, laid.volume());
+  if (!laid.outer) out.capPlaces = laid.caps();
   out.boundaryLoops = out.caps = laid.shells().caps;
   out.genus = laid.handles();
-  return out;
+  report.add(section, figures(out));
 }
 
 void writeCorrespondencePictures(const std::string& path, const MeshCorrespondence& map,
@@ -177,14 +104,11 @@ MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const CorrespondOptions& opt
   auto [laidA, laidB] = layOutMeshes(std::move(a), std::move(b), settings.layOut);
   tell(laidA, context);
   tell(laidB, context);
-  context.report().source = reportOf(laidA);
-  context.report().target = reportOf(laidB);
-  if (!laidA.outer) reportCaps("source", laidA.caps(), context.report());
-  if (!laidB.outer) reportCaps("target", laidB.caps(), context.report());
+  reportLaidOut("source", laidA, context.report());
+  reportLaidOut("target", laidB, context.report());
   MeshCorrespondence map = innermap::correspondMeshes(std::move(laidA), std::move(laidB), settings);
   context.tell(map);
-  reportMap(map, context.report());
-  reportConsidered(map.map.shells.front(), context.report());
+  context.report().add("correspondence", correspondenceFigures(&map));
   context.print(
       qualityText(map.quality, map.map.shells.front().image.space, map.a.outer || map.b.outer));
   return map;

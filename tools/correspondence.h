@@ -36,9 +36,8 @@ LaidOutMesh layOut(Mesh mesh, const SurfaceOptions& options, Context& context);
 Mesh takeCleanSurface(Mesh mesh, const LayOutSettings& settings, Context& context);
 Mesh readCleanSurface(const std::string& path, const SurfaceOptions& options, Context& context);
 
-// For the report.
-void reportOuter(const std::string& key, const std::optional<OuterSurface>& taken, Report& report);
-ReportMesh reportOf(const LaidOutMesh& mesh);
+// The report's "source" or "target".
+void reportLaidOut(const std::string& section, const LaidOutMesh& mesh, Report& report);
 
 // The picture of a correspondence at `path`; where there is another way that is about as good, its
 // picture at otherPicture(path). Both through `write`, which is given a path and what writes there.

@@ -13,6 +13,7 @@
 #include "innermap/io/vdb/vdb_file.h"
 #include "inputs.h"
 #include "job_cost.h"
+#include "report_figures.h"
 #include "transfer_options.h"
 
 namespace innermap::tool {
@@ -187,24 +188,6 @@ std::string lineOf(const FrameFile& frame, const DeformRow& row, double seconds,
                      missedMark(row.judged.misses(tolerance)));
 }
 
-// Figures of the frames that were made now; those of others are missing.
-void fillReport(const std::map<std::size_t, DeformRow>& rows, const Frames& frames,
-                Report& report) {
-  const auto set = [&](const char* key, auto of) {
-    report.setColumn(std::string("frames.") + key, frames.wanted, [&](std::size_t index) {
-      const auto row = rows.find(index);
-      return row == rows.end() ? std::nan("") : static_cast<double>(of(row->second));
-    });
-  };
-  set("voxels", [](const DeformRow& r) { return r.statistics.voxels; });
-  set("inverted_fraction", [](const DeformRow& r) { return r.statistics.invertedInside(); });
-  set("boundary_rms", [](const DeformRow& r) { return r.error.rms; });
-  set("boundary_p99", [](const DeformRow& r) { return r.error.p99; });
-  set("boundary_max", [](const DeformRow& r) { return r.error.max; });
-  set("folded_fraction", [](const DeformRow& r) { return r.judged.folded; });
-  set("outside_fraction", [](const DeformRow& r) { return r.judged.outside; });
-}
-
 void check(const DeformOptions& options, const Frames& frames) {
   std::string extension = std::filesystem::path(options.output).extension().string();
   requireFitting(options.volume, options.output, options.transfer, options.geometry);
@@ -233,7 +216,7 @@ Frames framesLeft(const DeformOptions& options, const Frames& frames, const Fram
     if (toDo) left.wanted.push_back(index);
   }
   const std::size_t finished = frames.wanted.size() - left.wanted.size();
-  context.report().set("frames.finished_before", finished);
+  context.report().add("frames", finishedFigures(finished));
   if (finished > 0)
     context.note(fmt::format("{} of {} frames are finished already; --force makes them again",
                              finished, frames.wanted.size()));
@@ -305,8 +288,14 @@ void run(const DeformOptions& options, Context& context) {
     });
     context.print(lineOf(frame, rows[index], seconds.front().second, options.frames.tolerance));
   });
-  context.report().set("grid.voxel_size", deformer.voxelSize());
-  fillReport(rows, left, context.report());
+  context.report().add("grid", voxelSizeFigures(deformer.voxelSize()));
+  // Of those that were made now; the others' are missing.
+  std::vector<DeformedFrame> made(left.wanted.size());
+  for (std::size_t i = 0; i < left.wanted.size(); ++i)
+    if (const auto row = rows.find(left.wanted[i]); row != rows.end())
+      made[i] = {row->second.statistics, row->second.error, row->second.judged.folded,
+                 row->second.judged.outside};
+  context.report().add("frames", deformedFigures(made));
   std::vector<JudgedFrame> judged;
   for (const auto& [index, row] : rows) judged.push_back(row.judged);
   judgeFrames(judged, options.frames.tolerance, options.frames.verdict, context);

@@ -9,6 +9,7 @@
 #include "frame_loop.h"
 #include "innermap/levelset/level_set.h"
 #include "job_cost.h"
+#include "report_figures.h"
 
 namespace innermap::tool {
 namespace {
@@ -112,15 +113,12 @@ void deformGeometry(const DeformGeometry& job, const Frames& frames, const Frame
     last = std::move(row.carried);
   });
   if (last) context.print(deformer.report(*last));
-  const auto set = [&](const char* key, auto of) {
-    context.report().setColumn(std::string("frames.") + key, frames.wanted, [&](std::size_t index) {
-      const auto found = errors.find(index);
-      return found == errors.end() ? std::nan("") : of(found->second);
-    });
-  };
-  set("boundary_rms", [](const BoundaryError& e) { return e.rms; });
-  set("boundary_p99", [](const BoundaryError& e) { return e.p99; });
-  set("boundary_max", [](const BoundaryError& e) { return e.max; });
+  std::vector<DeformedFrame> made(frames.wanted.size());
+  for (std::size_t i = 0; i < frames.wanted.size(); ++i)
+    if (const auto error = errors.find(frames.wanted[i]); error != errors.end())
+      made[i].error = error->second;
+  context.report().add(
+      "frames", only(deformedFigures(made), {"boundary_rms", "boundary_p99", "boundary_max"}));
   judgeFrames(judged, job.frames.tolerance, job.frames.verdict, context);
   context.print(secondsText(results, context));
 }

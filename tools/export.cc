@@ -6,8 +6,10 @@
 #include "innermap/io/slice.h"
 #include "innermap/io/vdb/vdb_file.h"
 #include "innermap/io/volume/volume_texture.h"
+#include "innermap/report/figures.h"
 #include "inputs.h"
 #include "lists.h"
+#include "report_figures.h"
 
 namespace innermap::tool {
 namespace {
@@ -25,18 +27,8 @@ VolumeTextureSettings settingsOf(const ExportOptions& options) {
 
 void fillReport(const VolumeTextureResult& r, const ExportOptions& options, Context& context) {
   Report& report = context.report();
-  report.set("texture.layout", volumeLayoutName(options.texture.layout));
-  report.set("texture.files", r.files.size());
-  report.set("texture.width", r.width);
-  report.set("texture.height", r.height);
-  report.set("texture.tiles", std::vector<double>{double(r.tileColumns), double(r.tileRows)});
-  report.set("texture.slices", r.slices);
-  report.set("texture.resolution",
-             std::vector<double>{double(r.resolution.x()), double(r.resolution.y()),
-                                 double(r.resolution.z())});
-  report.set("texture.channels", r.channels);
-  report.set("texture.clamped", r.clamped);
-  report.set("texture.rounded", r.inexact);
+  report.add("texture", layoutFigures(volumeLayoutName(options.texture.layout)));
+  report.add("texture", figures(r));
 }
 
 void run(const ExportOptions& options, Context& context) {

@@ -7,25 +7,12 @@
 
 #include "html/page.h"
 #include "innermap/core/run.h"
+#include "report_figures.h"
 
 namespace innermap::tool {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-void report(const std::vector<FrameResult>& results, Context& context) {
-  std::vector<std::string> files, failures;
-  for (const FrameResult& r : results) {
-    files.push_back(r.file.path);
-    if (!r.error.empty()) failures.push_back(fmt::format("{}: {}", r.file.number, r.error));
-  }
-  Report& report = context.report();
-  report.set("frames.count", results.size());
-  report.set("frames.broken", failures);
-  report.setColumn("frames.number", results, [](const FrameResult& r) { return r.file.number; });
-  report.set("frames.file", files);
-  report.setColumn("frames.seconds", results, [](const FrameResult& r) { return r.seconds; });
-}
 
 void sayBroken(const std::vector<FrameResult>& results, Context& context) {
   std::vector<std::int64_t> broken;
@@ -92,7 +79,7 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
   }
   context.setPart("");
   if (context.page()) context.page()->frame.reset();
-  report(results, context);
+  context.report().add("frames", frameFigures(results));
   sayBroken(results, context);
   return results;
 }
@@ -118,9 +105,7 @@ std::string secondsText(const std::vector<FrameResult>& results, Context& contex
     ++count;
   }
   if (count == 0) return "";
-  context.report().set("frames.seconds_mean", sum / count);
-  context.report().set("frames.seconds_least", least);
-  context.report().set("frames.seconds_most", most);
+  context.report().add("frames", frameSeconds(sum / count, least, most));
   return fmt::format("seconds a frame: mean {:.3g}, least {:.3g}, most {:.3g}\n", sum / count,
                      least, most);
 }

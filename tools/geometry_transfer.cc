@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "innermap/core/memory.h"
+#include "innermap/report/figures.h"
 #include "lists.h"
 
 namespace innermap::tool {
@@ -107,19 +108,9 @@ std::string reportGeometry(const GeometryFile& file, const CarriedGeometry& carr
   std::uint64_t directions = 0;
   for (const Points& values : carried.directions) directions += values.size();
   const GeometryFile::Inverted inverted = file.inverted(carried);
-  Report& report = context.report();
-  report.set("geometry.points", carried.ownPoints);
-  report.set("geometry.directions", directions);
-  report.set("geometry.points_added", carried.added);
-  report.set("geometry.points_outside", points.outside);
-  report.set("geometry.farthest_outside", points.farthest);
-  report.set("geometry.points_cut", points.cut);
-  report.set("geometry.elements_cut", carried.cutElements);
-  report.set("geometry.points_not_inverted", points.failed);
-  report.set("geometry.points_folded", carried.folded);
-  report.set("geometry.cells", inverted.cells);
-  report.set("geometry.cells_inverted_before", inverted.before);
-  report.set("geometry.cells_inverted_after", inverted.after);
+  context.report().add(
+      "geometry",
+      geometryFigures(carried, directions, {inverted.cells, inverted.before, inverted.after}));
   std::string text =
       fmt::format("{} points, {} directions carried\n", carried.ownPoints, directions);
   if (carried.added > 0) text += fmt::format("{} points added on split edges\n", carried.added);

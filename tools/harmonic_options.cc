@@ -8,6 +8,7 @@
 #include "innermap/boundary/fit_map.h"
 #include "innermap/boundary/solid_field.h"
 #include "innermap/core/memory.h"
+#include "innermap/report/figures.h"
 #include "inputs.h"
 #include "job_cost.h"
 #include "lists.h"
@@ -20,17 +21,11 @@ void reportHarmonic(const HarmonicFit& fit, const HarmonicOptions& options, Cont
   context.tell(fit);
   Report& report = context.report();
   const BoundaryError& e = fit.error;
-  report.solve = ReportSolve{"adaptive", fit.sources, fit.collocation, fit.sources, 0, 0};
-  report.set("solve.seed", options.fit.seed);
-  report.boundaryError = ReportBoundaryError{e.rms, e.p99, e.max, e.samples, e.sumOfSquares};
-  report.set("boundary_error.p99_bound", e.p99Bound);
-  report.set("boundary_error.bound", fit.bound);
-  report.set("boundary_error.confidence", kCertificateConfidence);
-  report.set("tolerance.wanted", options.fit.tolerance);
-  report.set("tolerance.reached", e.p99);
-  report.set("tolerance.met", fit.met);
-  report.set("field.span", fit.span);
-  report.set("field.free_share", fit.freeShare);
+  report.add("solve", solveFigures(fit));
+  report.add("solve", choiceFigures(options.fit.seed));
+  report.add("boundary_error", boundaryErrorFigures(fit));
+  report.add("tolerance", toleranceFigures(fit, options.fit.tolerance));
+  report.add("field", fieldFigures(fit.span, fit.freeShare));
   context.print(fmt::format(
       "boundary error: rms {:.2e}, 99% {:.2e}, max {:.2e} of the values' span of {:.4g}; inside at "
       "most {:.2e}\n",
@@ -140,7 +135,7 @@ void runHarmonic(const HarmonicOptions& options,
   const HarmonicGrids made = evaluateHarmonic(fit.field, boundary.solid, known.names, evaluation);
   for (const std::string& text : made.warnings) context.warning(text);
   addSeconds(context.report().seconds, made.seconds);
-  context.report().grid = ReportGrid{made.voxelSize, made.activeVoxels, made.interiorVoxels};
+  context.report().add("grid", gridFigures(made.voxelSize, made.activeVoxels, made.interiorVoxels));
   describeField(made.all(), facts);
   writeGridFile(options.output, made.all(), options.names, context);
   if (!options.field.empty())

@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "innermap/core/file.h"
 #include "innermap/core/version.h"
+#include "report_sections.h"
 
 namespace innermap::tool {
 namespace {
@@ -118,7 +119,7 @@ std::string markdownTable(const std::vector<Option>& options) {
 
 struct HelpOptions {
   std::string command, completion, pages;
-  bool markdown = false, all = false, man = false;
+  bool markdown = false, schema = false, all = false, man = false;
 };
 
 std::string titleAndUsage() {
@@ -162,6 +163,7 @@ void writePages(const std::string& path, Context& context) {
 void run(const HelpOptions& o, Context& context) {
   if (!o.pages.empty()) return writePages(o.pages, context);
   if (o.markdown) return context.print(markdownHelp());
+  if (o.schema) return context.print(reportSchema(reportSections()));
   if (!o.completion.empty()) return context.print(completionScript(o.completion));
   if (o.man)
     return context.print(o.command.empty() ? generalManPage() : manPage(findCommand(o.command)));
@@ -238,6 +240,9 @@ Command makeHelpCommand() {
            "a script that completes the command line: . <(innermap help --completion bash)")
       .choices({"bash", "zsh", "fish"});
   c.flag("--markdown", &o->markdown, "the reference of all commands, as docs/commands.md has it")
+      .advanced();
+  c.flag("--schema", &o->schema,
+         "the JSON Schema of report.json, as docs/report.schema.json has it")
       .advanced();
   c.option("--pages", "FOLDER", &o->pages,
            "write what an installation takes: all pages for man and completion scripts")

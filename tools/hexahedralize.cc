@@ -12,6 +12,7 @@
 #include "innermap/io/cells/cell_file.h"
 #include "innermap/io/picture/cell_picture.h"
 #include "innermap/mesh/write.h"
+#include "innermap/report/figures.h"
 #include "inputs.h"
 #include "job_cost.h"
 #include "polycube_report.h"
@@ -38,23 +39,11 @@ void claimOutputs(const Options& options, Context& context) {
     if (!path->empty()) context.output(*path);
 }
 
-void reportCheck(const std::string& section, const HexahedronCheck& check, Report& report) {
-  report.set(section + ".inverted", check.inverted);
-  report.set(section + ".inverted_corners", check.invertedCorners);
-  report.set(section + ".undecided", check.undecided);
-}
-
 void fillReport(const Hexahedralization& result, Context& context) {
   Report& report = context.report();
   reportPolycube(result.polycube, context);
-  report.set("hexahedra.pieces", result.pieces);
-  reportCheck("hexahedra.before", result.before, report);
-  reportCheck("hexahedra.after", result.after, report);
-  report.set("hexahedra.proven", result.after.proven());
-  report.set("boundary_map.energy_forward", result.boundaryMap.energyForward);
-  report.set("boundary_map.energy_backward", result.boundaryMap.energyBackward);
-  report.set("boundary_map.stretch_p99", result.boundaryMap.stretch.p99);
-  report.set("boundary_map.stretch_max", result.boundaryMap.stretch.max);
+  report.add("hexahedra", figures(result));
+  report.add("boundary_map", boundaryMapFigures(result.boundaryMap));
   reportCells(result.mesh, result.quality, context);
   context.print(
       fmt::format("inverted somewhere: {} as carried, {} now; {}\n", result.before.inverted,
@@ -63,9 +52,7 @@ void fillReport(const Hexahedralization& result, Context& context) {
                       ? "the Jacobian's Bernstein coefficients prove all of them right side out"
                       : fmt::format("{} not decided", result.after.undecided)));
   reportBoundaryFit(result.boundary, context);
-  report.set("features.length", result.featureLength);
-  report.set("features.rms", result.fromFeatures.rms);
-  report.set("features.max", result.fromFeatures.max);
+  report.add("features", featureFigures(result));
   if (result.featureLength > 0)
     context.print(
         fmt::format("sharp edges, not followed: {:.4g} long; the hexahedra's surface is "

@@ -6,6 +6,7 @@
 #include "innermap/io/slice.h"
 #include "innermap/io/volume/volume_texture.h"
 #include "lists.h"
+#include "report_figures.h"
 
 namespace innermap::tool {
 namespace {
@@ -62,13 +63,12 @@ void run(const ImportOptions& options, Context& context) {
     names.push_back(grid->getName());
   }
   Report& report = context.report();
-  report.set("texture.layout", volumeLayoutName(contents.layout));
-  report.set("texture.resolution",
-             std::vector<double>{double(contents.resolution.x()), double(contents.resolution.y()),
-                                 double(contents.resolution.z())});
-  report.set("texture.grids", names);
-  report.set("texture.active_voxels", active);
-  report.set("texture.not_finite", contents.notFinite);
+  const auto& size = contents.resolution;
+  report.add("texture", layoutFigures(volumeLayoutName(contents.layout)));
+  report.add("texture", figures(ReportImport{{double(size.x()), double(size.y()), double(size.z())},
+                                             names,
+                                             active,
+                                             contents.notFinite}));
   context.print(summary(contents, options));
 }
 

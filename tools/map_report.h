@@ -8,14 +8,12 @@
 #include "innermap/boundary/frame_fitter.h"
 #include "innermap/evaluate/map_grids.h"
 #include "innermap/levelset/solid.h"
+#include "report_figures.h"
 
 namespace innermap::tool {
 
 // What reports say of any mesh; handles, loops and caps are not known.
 ReportMesh reportOf(const Mesh& mesh, double volume);
-
-// "cap_places" under the key: the middles of the caps and the diagonals of their boxes.
-void reportCaps(const std::string& key, const std::vector<Box3>& caps, Report& report);
 
 // Of a solid that is not checked: what reports say of its mesh.
 void reportSolid(const Mesh& mesh, const Solid& solid, Report& report);

@@ -19,10 +19,9 @@ using NumberPair = std::pair<double, double>;
 // Where the value goes. std::uint64_t serves std::size_t too. A list is for the last positional
 // argument alone, which then takes all that follow. No std::function stands here by itself:
 // libstdc++ 12 destroys what it never made where copying one in a variant throws.
-using Target =
-    std::variant<bool*, int*, std::uint64_t*, double*, std::string*, std::optional<int>*,
-                 std::optional<std::uint64_t>*, std::optional<double>*, std::optional<NumberPair>*,
-                 std::vector<std::string>*, SettingChoice>;
+using Target = std::variant<bool*, int*, std::uint64_t*, double*, std::string*, std::optional<int>*,
+                            std::optional<std::uint64_t>*, std::optional<double>*,
+                            std::optional<NumberPair>*, std::vector<std::string>*, SettingChoice>;
 
 struct Option {
   std::string name;         // "--voxel-size"; a positional argument's is in capitals: "MESH"

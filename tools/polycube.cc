@@ -12,6 +12,7 @@
 #include "innermap/mesh/write.h"
 #include "inputs.h"
 #include "polycube_report.h"
+#include "report_figures.h"
 
 namespace innermap::tool {
 namespace {
@@ -40,7 +41,7 @@ void run(const PolycubeOptions& options, Context& context) {
   context.tell(cube);
   reportPolycube(cube, context);
   const Mesh surface = blockSurface(cube.blocks, options.pieces.value_or(usualPieces(cube.blocks)));
-  context.report().set("polycube.vertices", surface.vertices.size());
+  context.report().add("polycube", polycubeMeshFigures(surface.vertices.size()));
   context.timed("write", [&] { writeMesh(options.output, surface); });
   if (!options.picture.empty())
     context.timed("picture", [&] { drawPolycube(options.picture, mesh, cube.blocks); });

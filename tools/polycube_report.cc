@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "innermap/io/picture/mesh_picture.h"
+#include "innermap/report/figures.h"
 #include "map_report.h"
 
 namespace innermap::tool {
@@ -42,20 +43,7 @@ void requireMeshFile(const std::string& option, const std::string& path) {
 }
 
 void reportPolycube(const Polycube& cube, Context& context) {
-  Report& report = context.report();
-  report.set("polycube.across", cube.across);
-  report.set("polycube.blocks", cube.blocks.count());
-  report.set("polycube.edge", cube.blocks.edge);
-  report.set("polycube.handles", cube.handles);
-  report.set("polycube.cavities", cube.cavities);
-  report.set("polycube.missed", cube.missed);
-  report.set("polycube.surplus", cube.surplus);
-  report.setColumn("polycube.missed_parts.volume", cube.missedParts,
-                   [](const MissedPart& p) { return p.volume; });
-  constexpr const char* kAxes[] = {"x", "y", "z"};
-  for (int a = 0; a < 3; ++a)
-    report.setColumn(std::string("polycube.missed_parts.") + kAxes[a], cube.missedParts,
-                     [a](const MissedPart& p) { return p.centre[a]; });
+  context.report().add("polycube", figures(cube));
   context.print(
       fmt::format("polycube: {} blocks, {} across, {} handles, {} cavities; of the solid's volume "
                   "{:.1f}% is in "

@@ -12,6 +12,7 @@
 #include "innermap/transfer/carry_memory.h"
 #include "inputs.h"
 #include "job_cost.h"
+#include "report_figures.h"
 #include "transfer_options.h"
 
 namespace innermap::tool {
@@ -144,7 +145,7 @@ openvdb::GridPtrVec pull(const Job& job, const TransferOptions& options, Context
   const PullResult result = context.timed(
       "pull", [&] { return pullGrids(job.mapped.map, source, *levelSet, job.grids, settings); });
   for (const std::string& warning : result.warnings) context.warning(warning);
-  context.report().set("pull.voxels", result.voxels);
+  context.report().add("pull", pulledFigures(result.voxels));
   context.print(fmt::format("pulled {} grids, {} voxels\n", result.grids.size(), result.voxels));
   const double volumes = volumeRatio(job.target.volume(), source.volume());
   for (const openvdb::GridBase::Ptr& grid : job.grids)

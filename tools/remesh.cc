@@ -11,6 +11,7 @@
 #include "innermap/core/memory.h"
 #include "innermap/io/cells/cell_file.h"
 #include "innermap/io/picture/cell_picture.h"
+#include "innermap/report/figures.h"
 #include "innermap/tetra/carry_cells.h"
 #include "innermap/tetra/remesh_cells.h"
 #include "inputs.h"
@@ -28,17 +29,7 @@ struct RemeshOptions {
 
 void reportRemesh(const Remesh& result, double diagonal, Context& context) {
   Report& report = context.report();
-  report.set("remesh.inverted_at_rest", result.invertedAtRest);
-  report.set("remesh.inverted_carried", result.invertedCarried);
-  report.set("remesh.inverted", result.inverted);
-  report.set("remesh.from_coarse", result.fromCoarse);
-  report.set("remesh.swaps", result.swaps);
-  report.set("remesh.collapses", result.collapses);
-  report.set("remesh.moved_rms", result.repair.moved / diagonal);
-  report.set("remesh.moved_max", result.repair.farthestMoved / diagonal);
-  report.set("remesh.off_surface", result.repair.notLanded);
-  report.set("remesh.boundary_vertices_rms", result.boundaryRms);
-  report.set("remesh.boundary_vertices_max", result.boundaryMax);
+  report.add("remesh", figures(result, diagonal));
   addSeconds(report.seconds, result.seconds);
   context.print(fmt::format(
       "inverted: {} carried, {} repaired; vertices moved rms {:.2e}, max {:.2e}, {} swaps, {} "

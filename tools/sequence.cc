@@ -9,8 +9,10 @@
 #include "grid_options.h"
 #include "html/page.h"
 #include "innermap/io/picture/chart.h"
+#include "innermap/report/figures.h"
 #include "job_cost.h"
 #include "lists.h"
+#include "report_figures.h"
 #include "sequence_table.h"
 
 namespace innermap::tool {
@@ -69,9 +71,8 @@ FrameEvaluator makeEvaluator(const SequenceOptions& options, const FrameFitter& 
   FrameEvaluator made(fitter, gridsToMake(options, context), mapGridSettings(options.evaluation));
   addSeconds(context.report().seconds, made.seconds());
   for (const std::string& warning : made.warnings()) context.warning(warning);
-  context.report().set("grid.voxel_size", made.voxelSize());
-  context.report().set("energy.lame_lambda", options.evaluation.lame.lambda);
-  context.report().set("energy.lame_mu", options.evaluation.lame.mu);
+  context.report().add("grid", voxelSizeFigures(made.voxelSize()));
+  context.report().add("energy", figures(options.evaluation.lame));
   return made;
 }
 

@@ -5,51 +5,39 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
-#include <ostream>
 
-#include "innermap/core/file.h"
+#include "innermap/report/figures.h"
+#include "innermap/report/table.h"
 
 namespace innermap::tool {
-namespace {
-
-struct Column {
-  const char* name;
-  double (*value)(const SequenceRow&);
-};
-
-// The CSV's figures, in order.
-const Column kColumns[] = {
-    {"harmonic", [](const SequenceRow& r) { return r.harmonic; }},
-    {"deformation", [](const SequenceRow& r) { return r.deformation; }},
-    {"deformation_mean", [](const SequenceRow& r) { return r.deformationMean; }},
-    {"boundary_rms", [](const SequenceRow& r) { return r.error.rms; }},
-    {"boundary_p99", [](const SequenceRow& r) { return r.error.p99; }},
-    {"boundary_max", [](const SequenceRow& r) { return r.error.max; }},
-    {"jacobian_min", [](const SequenceRow& r) { return r.jacobianMin; }},
-    {"jacobian_max", [](const SequenceRow& r) { return r.jacobianMax; }},
-    {"folded_fraction", [](const SequenceRow& r) { return r.folded; }},
-    {"volume", [](const SequenceRow& r) { return r.volume; }},
-    {"outside_fraction", [](const SequenceRow& r) { return r.outside; }},
-    {"tolerance_met", [](const SequenceRow& r) { return r.misses ? 0.0 : 1.0; }},
-    {"seconds", [](const SequenceRow& r) { return r.seconds; }}};
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
+Figures figures(const SequenceRow& r) {
+  constexpr auto kShare = FigureUnit::share, kDiagonals = FigureUnit::diagonals;
+  return when(r.broken.empty(),
+              {{"harmonic", r.harmonic, "harmonic energy", "3 for a rigid motion"},
+               {"deformation", r.deformation, "deformation energy", "0 for a rigid motion"},
+               {"deformation_mean", r.deformationMean, "deformation, mean", "of a unit of volume"},
+               {"boundary_rms", r.error.rms, "boundary error", "root mean square", kDiagonals},
+               {"boundary_p99", r.error.p99, "boundary error", "99% within", kDiagonals},
+               {"boundary_max", r.error.max, "boundary error", "largest", kDiagonals},
+               {"jacobian_min", r.jacobianMin, "least change of volume", "0 or less: folded there"},
+               {"jacobian_max", r.jacobianMax, "greatest change of volume", ""},
+               {"folded_fraction", r.folded, "folded", "of the volume", kShare},
+               {"volume", r.volume, "volume", "of the frame's solid", FigureUnit::volume},
+               {"outside_fraction", r.outside, "outside", "of the inside", kShare},
+               {"tolerance_met", !r.misses, "tolerance met", "1: it is"},
+               {"seconds", r.seconds, "time", "", FigureUnit::seconds}});
 }
 
-std::vector<double> values(const std::vector<SequenceRow>& rows,
-                           double (*value)(const SequenceRow&)) {
-  std::vector<double> out;
-  for (const SequenceRow& r : rows)
-    out.push_back(r.broken.empty() ? value(r) : std::numeric_limits<double>::quiet_NaN());
-  return out;
+Figures worstFigures(const std::vector<SequenceRow>& rows) {
+  BoundaryError worst;
+  for (const SequenceRow& r : rows) {
+    worst.rms = std::max(worst.rms, r.error.rms);
+    worst.p99 = std::max(worst.p99, r.error.p99);
+    worst.max = std::max(worst.max, r.error.max);
+    worst.samples = std::max(worst.samples, r.error.samples);
+  }
+  return figures(worst);
 }
-
-}  // namespace
 
 std::vector<SequenceRow> withBroken(const std::vector<SequenceRow>& rows,
                                     const std::vector<FrameResult>& results) {
@@ -67,17 +55,12 @@ std::vector<SequenceRow> withBroken(const std::vector<SequenceRow>& rows,
 }
 
 void writeSequenceTable(const std::string& path, const std::vector<SequenceRow>& rows) {
-  writeWholeFile(path, [&](std::ostream& file) {
-    file << "frame,file";
-    for (const Column& column : kColumns) file << "," << column.name;
-    file << ",error\n";
-    for (const SequenceRow& row : rows) {
-      file << row.file.number << "," << quoted(row.file.path);
-      for (const Column& column : kColumns)
-        file << "," << (row.broken.empty() ? fmt::format("{:.9g}", column.value(row)) : "");
-      file << "," << quoted(row.broken) << "\n";
-    }
-  });
+  writeTable(
+      path, columns(rows, [](const SequenceRow& r) -> Figures {
+        return together({{{"frame", r.file.number, "frames"}, {"file", r.file.path, "files"}},
+                         figures(r),
+                         {{"error", r.broken, "what broke it"}}});
+      }));
 }
 
 Chart sequenceChart(const std::vector<SequenceRow>& rows, const std::string& rest) {
@@ -101,26 +84,17 @@ Chart sequenceChart(const std::vector<SequenceRow>& rows, const std::string& res
   chart.xLabel = "frame";
   ChartPanel harmonic{"harmonic energy (3: rigid)", kLeastHarmonic, {}},
       deformation{"deformation energy (0: rigid)", kLeastDeformation, {}};
-  harmonic.series.push_back({"harmonic", values(rows, kColumns[0].value)});
-  deformation.series.push_back({"deformation", values(rows, kColumns[1].value)});
+  const Figures table = columns(rows, [](const SequenceRow& r) { return figures(r); });
+  for (const auto& [panel, key] :
+       {std::make_pair(&harmonic, "harmonic"), std::make_pair(&deformation, "deformation")})
+    panel->series.push_back({key, std::get<std::vector<double>>(findFigure(table, key)->value)});
   chart.panels = {harmonic, deformation};
   return chart;
 }
 
 void fillReport(const std::vector<SequenceRow>& rows, Report& report) {
-  for (const Column& column : kColumns)
-    report.set(std::string("energies.") + column.name, values(rows, column.value));
-  BoundaryError worst;
-  for (const SequenceRow& r : rows) {
-    worst.rms = std::max(worst.rms, r.error.rms);
-    worst.p99 = std::max(worst.p99, r.error.p99);
-    worst.max = std::max(worst.max, r.error.max);
-    worst.samples = std::max(worst.samples, r.error.samples);
-  }
-  report.set("worst_boundary_error.rms", worst.rms);
-  report.set("worst_boundary_error.p99", worst.p99);
-  report.set("worst_boundary_error.max", worst.max);
-  report.set("worst_boundary_error.samples", worst.samples);
+  report.add("energies", columns(rows, [](const SequenceRow& r) { return figures(r); }));
+  report.add("worst_boundary_error", worstFigures(rows));
 }
 
 std::string sequenceHeader() {

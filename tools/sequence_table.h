@@ -7,7 +7,7 @@
 #include "frame_loop.h"
 #include "innermap/field/boundary_error.h"
 #include "innermap/io/picture/chart.h"
-#include "innermap/io/report.h"
+#include "innermap/report/report.h"
 
 namespace innermap::tool {
 
@@ -21,6 +21,11 @@ struct SequenceRow {
   double seconds = 0;
   std::string broken;  // why; all figures are then missing
 };
+
+// Not known of a frame that is broken.
+Figures figures(const SequenceRow& row);
+// The largest boundary errors of all rows.
+Figures worstFigures(const std::vector<SequenceRow>& rows);
 
 // All frames in order, those that are broken too, with their seconds. rows: the good ones, in
 // order.

@@ -8,6 +8,7 @@
 #include "innermap/io/exr/exr_slices.h"
 #include "innermap/io/picture/section_image.h"
 #include "innermap/io/vdb/vdb_file.h"
+#include "innermap/report/figures.h"
 #include "inputs.h"
 #include "lists.h"
 #include "section_options.h"
@@ -47,20 +48,14 @@ void writeSlices(const SliceOptions& options, const openvdb::GridPtrVec& grids, 
         fmt::format("{}: {} values do not fit half floats and were clamped; leave out "
                     "--half",
                     options.output, r.clamped));
-  context.report().set("slices.count", r.slices);
-  context.report().set("slices.width", r.columns);
-  context.report().set("slices.height", r.rows);
+  context.report().add("slices", figures(r));
 }
 
 void writeSection(const SliceOptions& options, const openvdb::GridPtrVec& grids, Context& context) {
   auto settings = options.section;
   settings.axis = options.axis;
   const SectionResult r = writeSectionImage(options.picture, grids, settings);
-  context.report().set("section.grid", r.grid);
-  context.report().set("section.position", r.position);
-  context.report().set("section.least", r.least);
-  context.report().set("section.most", r.most);
-  context.report().set("section.range", std::vector<double>{r.lower, r.upper});
+  context.report().add("section", figures(r));
 }
 
 std::uint64_t memoryOf(const SliceOptions& options, const openvdb::GridPtrVec& grids) {

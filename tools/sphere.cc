@@ -5,8 +5,10 @@
 #include "correspondence.h"
 #include "innermap/core/memory.h"
 #include "innermap/mesh/write.h"
+#include "innermap/report/figures.h"
 #include "inputs.h"
 #include "map_report.h"
+#include "report_figures.h"
 
 namespace innermap::tool {
 namespace {
@@ -29,15 +31,11 @@ void run(const Options& options, Context& context) {
         need);
   context.requireMemory("the layout", need, "use a coarser mesh");
   const LaidOutMesh laid = layOut(std::move(mesh), options.surface, context);
-  context.report().source = reportOf(laid);
-  if (!laid.outer) reportCaps("source", laid.caps(), context.report());
+  reportLaidOut("source", laid, context.report());
   const MeshOnSphere sphere = onSphere(laid);
   const LayoutQuality& quality = sphere.quality;
-  Report& report = context.report();
-  report.set("sphere.flips", quality.flips);
-  report.set("sphere.degree", quality.degree);
-  report.set("sphere.area_ratio_log10", quality.areaRatioLog10);
-  report.set("sphere.shells", laid.shells().shells.size());
+  context.report().add("sphere", figures(quality));
+  context.report().add("sphere", shellFigures(laid.shells().shells.size()));
   context.timed("write", [&] { writeMesh(options.output, sphere.mesh); });
   context.print(fmt::format(
       "on the sphere: {} flip{}, degree {:.9f}, least area 10^{:.2f} of its share\n", quality.flips,

@@ -14,6 +14,7 @@
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"
 #include "innermap/mesh/read.h"
+#include "innermap/report/figures.h"
 #include "inputs.h"
 #include "job_cost.h"
 #include "lists.h"
@@ -167,21 +168,10 @@ Study makeRuns(const BoundaryPair& pair, const StudySettings& settings,
 
 void fillReport(const Study& study, const StudyFindings& findings, const StudySettings& settings,
                 Report& report) {
-  report.set("study.runs", study.rows.size());
-  report.set("study.made", study.made);
-  report.set("study.kept", study.kept);
-  report.set("study.left", study.left);
-  if (findings.best) {
-    report.set("study.best", optionsOf(*findings.best, settings));
-    report.set("study.best_p99", findings.best->p99);
-    report.set("study.cheapest", optionsOf(*findings.cheapest, settings));
-    report.set("study.cheapest_p99", findings.cheapest->p99);
-  }
-  report.set("study.advice", findings.advice);
-  std::vector<std::string> statements;
-  for (const StudyStatement& s : findings.statements)
-    statements.push_back(s.text + ": " + verdictText(s.verdict));
-  report.set("study.statements", statements);
+  const auto text = [&](const std::optional<StudyRow>& row) {
+    return row ? optionsOf(*row, settings) : std::string();
+  };
+  report.add("study", studyFigures(study, findings, text(findings.best), text(findings.cheapest)));
 }
 
 void sayFindings(const StudyFindings& findings, Context& context) {

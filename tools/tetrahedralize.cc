@@ -12,6 +12,7 @@
 #include "innermap/core/memory.h"
 #include "innermap/io/cells/cell_file.h"
 #include "innermap/io/picture/cell_picture.h"
+#include "innermap/report/figures.h"
 #include "inputs.h"
 #include "job_cost.h"
 #include "map_report.h"
@@ -53,19 +54,10 @@ void fillReport(const Tetrahedralization& result, const Mesh& mesh, const Solid&
                 Context& context) {
   Report& report = context.report();
   reportSolid(mesh, solid, report);
-  report.set("topology.components", result.topology.components);
-  report.set("topology.cavities", result.topology.cavities);
-  report.set("topology.handles", result.topology.handles);
-  report.set("topology.compared", result.solidTopology.has_value());
-  report.set("topology.kept",
-             result.solidTopology.has_value() && *result.solidTopology == result.topology);
-  report.set("lattice.edge", result.edge);
-  report.set("lattice.changed_nodes", result.changedNodes);
+  report.add("topology", topologyFigures(result));
+  report.add("lattice", latticeFigures(result));
   if (result.sharpCurves > 0) {
-    report.set("features.curves", result.sharpCurves);
-    report.set("features.kept", result.keptCurves);
-    report.set("features.rms", result.sharpRms / solid.diagonal());
-    report.set("features.max", result.sharpMax / solid.diagonal());
+    report.add("features", featureFigures(result, solid.diagonal()));
     context.print(fmt::format(
         "sharp curves: {} of {} kept; off the mesh's edges rms {:.2e}, max {:.2e} (of the "
         "diagonal)\n",

@@ -6,9 +6,11 @@
 #include "innermap/boundary/map_fit.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/picture/texture_images.h"
+#include "innermap/report/figures.h"
 #include "innermap/texture/solid_texture.h"
 #include "inputs.h"
 #include "job_cost.h"
+#include "report_figures.h"
 #include "verdict.h"
 
 namespace innermap::tool {
@@ -48,53 +50,24 @@ TextureImages readImages(const TextureOptions& o, const std::vector<UdimTile>& t
   TextureImages images =
       context.timed("image", [&] { return TextureImages(o.image, tiles, o.images); });
   for (const std::string& note : images.notes()) context.note(note);
-  Report& report = context.report();
-  report.set("texture.image", o.image);
+  ReportImage image{o.image, "", images.count(), "", 0, 0, isTiled(o.image)};
   if (images.count() > 0) {
-    report.set("texture.colour_space", images.colourSpace());
-    report.set("texture.channels", images.channels());
-    report.set("texture.width", images.width());
-    report.set("texture.height", images.height());
+    image.colourSpace = images.colourSpace();
+    image.channels = images.channels();
+    image.width = images.width();
+    image.height = images.height();
   }
-  if (isTiled(o.image)) report.set("texture.tiles", images.count());
+  context.report().add("texture", figures(image));
   return images;
 }
 
-void report(const std::string& key, const BoundaryError& error, Report& report) {
-  if (error.samples == 0) return;
-  report.set(key + "_rms", error.rms);
-  report.set(key + "_p99", error.p99);
-  report.set(key + "_max", error.max);
-}
-
-void fillReport(const SolidTexture& made, const TextureOptions& options, Report& r) {
-  ReportSolve solve;
-  solve.method = wordOf(SolveMethod::iterative);
-  solve.sources = solve.rank = made.fit.sources;
-  solve.collocation = made.fit.collocation;
-  solve.iterations = static_cast<int>(made.fit.residuals.size()) - 1;
-  r.solve = solve;
-  r.set("solve.distance", made.fit.distance);
-  r.set("solve.residuals", made.fit.residuals);
-  r.set("solve.channels", made.fit.channels);
-  r.set("solve.seed", options.texture.seed);
-  report("surface.fit_error", made.fit.error, r);
-  if (const auto& seams = made.seams) {
-    r.set("seams.charts", seams->charts);
-    r.set("seams.edges", seams->edges);
-    r.set("seams.length", seams->length);
-    r.set("seams.length_share", seams->lengthShare);
-    r.set("seams.voxel_share", seams->voxelShare);
-    r.set("seams.area_share", seams->areaShare);
-    report("seams.colour_difference", seams->colourDifference, r);
-  }
-  report("surface.colour_error", made.colourError, r);
-  report("surface.colour_error_at_seams", made.colourErrorAtSeams, r);
-  ReportGrid grid;
-  grid.voxelSize = made.voxelSize;
-  grid.activeVoxels = made.colour->activeVoxelCount();
-  grid.interiorVoxels = made.interiorVoxels;
-  r.grid = grid;
+void fillReport(const SolidTexture& made, const TextureOptions& options, Report& report) {
+  report.add("solve", solveFigures(made));
+  report.add("solve", choiceFigures(options.texture.seed));
+  if (made.seams) report.add("seams", figures(*made.seams));
+  report.add("surface", surfaceFigures(made));
+  report.add("grid",
+             gridFigures(made.voxelSize, made.colour->activeVoxelCount(), made.interiorVoxels));
 }
 
 void expectPhases(const TextureOptions& o, const SolidTextureSettings& settings,
@@ -127,10 +100,7 @@ void run(const TextureOptions& o, Context& context) {
   context.output(o.output);
   const SolidTexturePlan plan = planSolidTexture(readMeshFile(o.mesh, context), settings);
   context.tell(plan);
-  if (o.blends()) {
-    context.report().set("seams.pieces", plan.pieces);
-    context.report().set("seams.groups", plan.groups);
-  }
+  if (o.blends()) context.report().add("seams", blendFigures(plan.pieces, plan.groups));
   const std::string image = o.image.empty() ? "vertex colours" : o.image;
   std::vector<UdimTile> tiles;
   if (isTiled(o.image)) tiles = udimTiles(plan.mesh());

@@ -3,9 +3,11 @@
 
 #include "commands.h"
 #include "grid_options.h"
+#include "innermap/report/figures.h"
 #include "innermap/transfer/distance_transfer.h"
 #include "inputs.h"
 #include "job_cost.h"
+#include "report_figures.h"
 #include "section_options.h"
 #include "verdict.h"
 
@@ -45,18 +47,11 @@ void writeVdbs(const DistanceTransfer& made, const MappedSolid& mapped, PendingF
 }
 
 void fillReport(const DistanceTransfer& made, const NumberPair& range, Report& report) {
-  ReportGrid grid;
-  grid.voxelSize = made.source.surface->voxelSize()[0];
-  grid.activeVoxels = made.through->activeVoxelCount();
-  grid.interiorVoxels = made.throughFigures.voxels;
-  report.grid = grid;
-  report.set("grid.target_voxel_size", made.target.surface->voxelSize()[0]);
-  report.set("grid.target_interior_voxels", made.target.figures.voxels);
-  report.set("distance.largest_in_target", made.target.figures.largest);
-  report.set("distance.largest_through_map", made.throughFigures.largest);
-  report.set("distance.largest_in_source", made.source.figures.largest);
-  report.set("distance.outside_fraction", made.outsideFraction);
-  report.set("distance.range", std::vector<double>{range.first, range.second});
+  report.add("grid", gridFigures(made.source.surface->voxelSize()[0],
+                                 made.through->activeVoxelCount(), made.throughFigures.voxels));
+  report.add("grid", targetGridFigures(made));
+  report.add("distance", figures(made));
+  report.add("distance", distanceRangeFigures(range));
 }
 
 std::string textOf(const DistanceTransfer& made) {

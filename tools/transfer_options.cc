@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "innermap/report/figures.h"
 #include "innermap/transfer/carry_memory.h"
 #include "inputs.h"
 #include "lists.h"
@@ -126,42 +127,12 @@ openvdb::FloatGrid::Ptr outputLevelSet(const Solid& solid, const openvdb::GridPt
   });
 }
 
-namespace {
-
-void reportInverse(const InverseStatistics& s, Report& report) {
-  report.set("inverse.voxels", s.voxels);
-  report.set("inverse.inside", s.inside);
-  report.set("inverse.uncovered", s.uncovered);
-  report.set("inverse.not_inverted", s.failed);
-  report.set("inverse.not_inverted_inside", s.failedInside);
-  // The map itself ends at the surface: its inverse is judged inside.
-  report.set("inverse.inverted_fraction", s.invertedInside());
-  report.set("inverse.inverted_fraction_outside", s.invertedOutside());
-  report.set("inverse.largest_residual_voxels", s.largestResidual);
-  if (s.failedInside > 0) {
-    const Vec3 &a = s.failedBox.lower, &b = s.failedBox.upper;
-    report.set("inverse.not_inverted_lower", std::vector<double>{a.x, a.y, a.z});
-    report.set("inverse.not_inverted_upper", std::vector<double>{b.x, b.y, b.z});
-    std::vector<double> places;
-    for (const Vec3& p : s.failedAt) places.insert(places.end(), {p.x, p.y, p.z});
-    report.set("inverse.not_inverted_at", places);
-  }
-}
-
-}  // namespace
-
 void reportPush(const PushResult& result, Context& context) {
   Report& report = context.report();
-  if (result.inverted) reportInverse(result.statistics, report);
+  if (result.inverted) report.add("inverse", figures(result.statistics));
   for (const CarriedMass& mass : result.masses) {
-    report.set("mass." + mass.name + "_before", mass.before);
-    report.set("mass." + mass.name + "_after", mass.after);
-    report.set("mass." + mass.name + "_left", mass.left);
-    report.set("mass." + mass.name + "_cut", mass.cut);
-    report.set("densities." + mass.name + "_largest_ratio", mass.largestRatio);
-    report.set("densities." + mass.name + "_largest_compression", mass.largestCompression);
-    report.set("densities." + mass.name + "_cells", mass.cells);
-    report.set("densities." + mass.name + "_folded_cells", mass.foldedCells);
+    report.add("mass", massFigures(mass));
+    report.add("densities", densityFigures(mass));
   }
   for (const std::string& warning : result.warnings) context.warning(warning);
 }

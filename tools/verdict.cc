@@ -6,6 +6,10 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "innermap/field/fit_facts.h"
+#include "innermap/report/figures.h"
+#include "report_figures.h"
+
 namespace innermap::tool {
 namespace {
 
@@ -49,19 +53,20 @@ std::string foldAdvice(MapOrigin origin, bool toTolerance, const Context& contex
 }
 
 void judgeBoundary(const MappedSolid& mapped, MapOrigin origin, Context& context) {
-  const double p99 = factNumber(mapped.facts, "boundary_error_p99").value_or(std::nan(""));
+  const FitFacts fit = fitFacts(mapped.facts);
+  const double p99 = fit.error.p99;
   if (std::isnan(p99)) return;
-  const bool toTolerance = factText(mapped.facts, "tolerance").has_value();
-  const double tolerance = factNumber(mapped.facts, "tolerance").value_or(kUsualTolerance);
+  const bool toTolerance = fit.tolerance.has_value();
+  const double tolerance = fit.tolerance.value_or(kUsualTolerance);
   ReportFinding f = finding("boundary",
                             fmt::format("99% of the boundary is within {:.2e} of the target's "
                                         "diagonal (wanted: {:g})",
                                         p99, tolerance),
                             p99, tolerance, boundaryAdvice(origin, toTolerance));
   // Of vertices alone where a smooth deformation is fitted; the fit has said how it ended.
-  if (toTolerance && factFlag(mapped.facts, "tolerance_met") == false && f.met) {
+  if (toTolerance && fit.met == false && f.met) {
     f.met = false;
-    f.value = factNumber(mapped.facts, "tolerance_reached").value_or(p99);
+    f.value = fit.reached.value_or(p99);
     f.advice = boundaryAdvice(origin, toTolerance);
   }
   context.judge(std::move(f), toTolerance && origin != MapOrigin::file);
@@ -104,7 +109,7 @@ double foldedOf(const Injectivity& known) {
 
 void judgeOutside(double outside, const VerdictOptions& options, const std::string& advice,
                   Context& context) {
-  context.report().set("outside_fraction", outside);
+  context.report().add("", outsideFigures(outside));
   context.judge(finding("outside",
                         fmt::format("{} of the inside lands outside the target, by more than the "
                                     "boundary's error (at most: {})",
@@ -140,7 +145,7 @@ void addVerdictOptions(Command& c, VerdictOptions& o, bool frames) {
 
 void judgeMap(const MappedSolid& mapped, const SolidGrids* grids, const VerdictOptions& options,
               MapOrigin origin, Context& context) {
-  const bool toTolerance = factText(mapped.facts, "tolerance").has_value();
+  const bool toTolerance = fitFacts(mapped.facts).tolerance.has_value();
   const std::string advice = foldAdvice(origin, toTolerance, context);
   judgeBoundary(mapped, origin, context);
   const Injectivity& known = grids ? grids->injectivity : mapped.injectivity;
@@ -171,8 +176,7 @@ void judgeFrames(const std::vector<JudgedFrame>& frames, double tolerance,
   std::vector<std::int64_t> missed;
   for (const JudgedFrame& f : frames)
     if (f.misses(tolerance)) missed.push_back(f.number);
-  context.report().set("frames.tolerance", tolerance);
-  context.report().setColumn("frames.missed", missed, [](std::int64_t n) { return n; });
+  context.report().add("frames", judgedFigures(tolerance, missed));
   const JudgedFrame off = worst([](const JudgedFrame& f) { return f.p99; });
   std::string text = fmt::format(
       "99% of the boundary is within {:.2e} of the diagonal in all {} frames (wanted: {:g})",
@@ -193,7 +197,7 @@ void judgeFrames(const std::vector<JudgedFrame>& frames, double tolerance,
                            : "nowhere folded inside, in no frame: one-to-one as far as checked";
   context.judge(finding("folds", text, folded.folded, options.maxFolded, advice));
   const JudgedFrame out = worst([](const JudgedFrame& f) { return f.outside; });
-  context.report().set("outside_fraction", out.outside);
+  context.report().add("", outsideFigures(out.outside));
   text = fmt::format(
       "up to {} of the inside lands outside the frame's solid, by more than the "
       "boundary's error{} (at most: {})",
@@ -245,10 +249,7 @@ void judgeDensity(const JudgedDensity& d, const CarryVerdictOptions& options, Co
 void judgeResampling(const ResamplingFigures& f, const CarryVerdictOptions& options,
                      Context& context) {
   if (!(f.sum > 0)) return;
-  Report& report = context.report();
-  report.set("resampling.input_voxel", f.inputVoxel);
-  report.set("resampling.output_voxel", f.outputVoxel);
-  report.set("resampling.coarser_share", f.coarserShare);
+  context.report().add("resampling", figures(f));
   context.judge(finding(
       "resampling",
       fmt::format("in {} of the inside the voxels, of {:.4g}, are over {:g} times as coarse "

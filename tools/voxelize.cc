@@ -5,6 +5,7 @@
 #include "grid_options.h"
 #include "innermap/core/memory.h"
 #include "innermap/levelset/level_set.h"
+#include "innermap/report/figures.h"
 #include "inputs.h"
 #include "map_report.h"
 
@@ -22,11 +23,8 @@ struct VoxelizeOptions {
 void fillReport(const openvdb::FloatGrid& levelSet, const Solid& solid, const Mesh& mesh,
                 Report& report) {
   reportSolid(mesh, solid, report);
-  ReportGrid g;
-  g.voxelSize = levelSet.voxelSize().x();
-  g.activeVoxels = levelSet.activeVoxelCount();
-  g.interiorVoxels = interiorVoxels(levelSet);
-  report.grid = g;
+  report.add("grid", gridFigures(levelSet.voxelSize().x(), levelSet.activeVoxelCount(),
+                                 interiorVoxels(levelSet)));
 }
 
 openvdb::GridPtrVec makeGrids(const VoxelizeOptions& options, const Solid& solid, const Mesh& mesh,
@@ -42,11 +40,7 @@ openvdb::GridPtrVec makeGrids(const VoxelizeOptions& options, const Solid& solid
   context.timed("check", [&] {
     const LevelSetCheck check = checkLevelSet(*levelSet, solid);
     for (const std::string& warning : check.warnings) context.warning(warning);
-    Report& report = context.report();
-    report.set("level_set.mesh_volume", check.meshVolume);
-    report.set("level_set.grid_volume", check.gridVolume);
-    report.set("level_set.volume_error", check.volumeError);
-    report.set("level_set.lost_surface", check.lostSurface);
+    context.report().add("level_set", figures(check));
   });
   fillReport(*levelSet, solid, mesh, context.report());
   return grids;

@@ -6,10 +6,12 @@
 
 #include "bind/arrays.h"
 #include "bind/errors.h"
+#include "bind/figures.h"
 #include "bind/meshes.h"
 #include "innermap/core/error.h"
 #include "innermap/io/geometry/surface_data.h"
 #include "innermap/mesh/write.h"
+#include "innermap/report/figures.h"
 
 namespace py = pybind11;
 
@@ -50,36 +52,6 @@ LandmarkList landmarksFrom(const py::object& given) {
     out.pairs.push_back(both);
   }
   if (out.pairs.empty()) wrongValue("landmarks", "is empty");
-  return out;
-}
-
-py::dict quantilesOf(const Quantiles& q) {
-  py::dict out;
-  out["median"] = q.median;
-  out["p99"] = q.p99;
-  out["max"] = q.max;
-  return out;
-}
-
-py::dict qualityOf(const MeshCorrespondence& map) {
-  const MapQuality& q = map.quality;
-  py::dict out;
-  out["flips"] = q.flips;
-  out["degree"] = q.degree;
-  out["area_ratio_log10"] = q.areaRatioLog10;
-  out["energy_forward"] = q.energyForward;
-  out["energy_backward"] = q.energyBackward;
-  out["stretch"] = quantilesOf(q.stretch);
-  out["triangle_stretch"] = quantilesOf(q.triangleStretch);
-  out["unmeasured"] = q.unmeasured;
-  out["inverted_triangles"] = q.invertedTriangles;
-  out["inverted_share"] = q.invertedShare;
-  out["deviation"] = quantilesOf(q.deviation);
-  out["deviation_of_target"] = quantilesOf(q.backDeviation);
-  out["image_self_intersections"] = q.imageSelfIntersections;
-  out["target_self_intersections"] = q.targetSelfIntersections;
-  out["landmarks"] = map.landmarks;
-  out["landmark_error"] = map.landmarkError;
   return out;
 }
 
@@ -214,7 +186,7 @@ std::shared_ptr<PyCorrespondence> correspondMeshes(const Mesh& a, const Mesh& b,
   out->changed = made.changed;
   out->notes = joined(joined(made.a.notes, made.b.notes), made.notes);
   out->warnings = made.warnings;
-  out->quality = qualityOf(made);
+  out->quality = dictOf(correspondenceFigures(&made));
   return out;
 }
 

@@ -14,6 +14,7 @@
 #include "bind/solids.h"
 #include "innermap/core/memory.h"
 #include "innermap/evaluate/harmonic_grids.h"
+#include "innermap/field/fit_facts.h"
 
 namespace py = pybind11;
 
@@ -134,7 +135,7 @@ void bindProperties(py::class_<PyField, std::shared_ptr<PyField>>& field) {
       .def_property_readonly(
           "boundary_error",
           [](const PyField& self) {
-            return self.fit ? self.fit->error : errorOf(self.solid->facts);
+            return self.fit ? self.fit->error : fitFacts(self.solid->facts).error;
           },
           "The certificate, a BoundaryError: fractions of the values' span; of fluxes their error "
           "times the distance to the nearest place with a value.")
@@ -148,7 +149,7 @@ void bindProperties(py::class_<PyField, std::shared_ptr<PyField>>& field) {
           "About the largest error of a value anywhere inside, a fraction of the values' span.")
       .def_readonly("span", &PyField::span, "The largest of the channels' given values' spans.")
       .def_property_readonly(
-          "tolerance_met", [](const PyField& self) { return toleranceMet(self.solid->facts); },
+          "tolerance_met", [](const PyField& self) { return fitFacts(self.solid->facts).met; },
           "Whether 99% of the boundary is within the tolerance.")
       .def_property_readonly(
           "facts", [](const PyField& self) { return factsOf(self.solid->facts); },

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "bind/arrays.h"
+
 namespace py = pybind11;
 
 namespace innermap::python {
@@ -14,30 +16,32 @@ py::dict factsOf(const Facts& facts) {
   return out;
 }
 
-py::object toleranceMet(const Facts& facts) {
-  const std::optional<bool> met = factFlag(facts, "tolerance_met");
-  return met ? py::object(py::bool_(*met)) : py::none();
-}
+namespace {
 
-BoundaryError errorOf(const Facts& facts) {
-  const auto number = [&](const char* key) {
-    return factNumber(facts, std::string("boundary_error_") + key).value_or(std::nan(""));
-  };
-  BoundaryError out;
-  out.rms = number("rms");
-  out.p99 = number("p99");
-  out.max = number("max");
-  out.p99Bound = number("p99_bound");
-  out.bound = number("bound");
-  const double samples = number("samples");
-  out.samples = samples >= 0 && samples < 1e15 ? static_cast<std::size_t>(samples) : 0;
-  return out;
-}
+struct ObjectOf {
+  py::object operator()(const std::vector<double>& list) const { return arrayOf(list); }
+  template <class Value>
+  py::object operator()(const Value& value) const {
+    return py::cast(value);
+  }
+};
 
-py::dict figuresOf(const Injectivity& known) {
+}  // namespace
+
+py::dict dictOf(const Figures& figures) {
   py::dict out;
-  for (const auto& [name, value] : injectivityFigures(known))
-    std::visit([&, &key = name](auto number) { out[key.c_str()] = number; }, value);
+  for (const Figure& figure : figures) {
+    if (!figure.known) continue;
+    const std::string& key = figure.key;
+    py::dict place = out;
+    std::size_t from = 0;
+    for (std::size_t dot; (dot = key.find('.', from)) != std::string::npos; from = dot + 1) {
+      const py::str part(key.substr(from, dot - from));
+      if (!place.contains(part)) place[part] = py::dict();
+      place = place[part].cast<py::dict>();
+    }
+    place[py::str(key.substr(from))] = std::visit(ObjectOf(), figure.value);
+  }
   return out;
 }
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "innermap/boundary/injectivity.h"
+#include "innermap/core/figure.h"
 #include "innermap/field/boundary_error.h"
 #include "innermap/field/field_file.h"
 
@@ -16,11 +16,8 @@ void bindFigures(pybind11::module_& m);
 
 // What a file says of itself.
 pybind11::dict factsOf(const Facts& facts);
-// Of what a fit to a tolerance says; None where there was none.
-pybind11::object toleranceMet(const Facts& facts);
-// From a map's or a field's facts; NaN where they say nothing.
-BoundaryError errorOf(const Facts& facts);
 
-pybind11::dict figuresOf(const Injectivity& known);
+// Of a result: parts are dicts in it, lists arrays; what is not known is left out.
+pybind11::dict dictOf(const Figures& figures);
 
 }  // namespace innermap::python

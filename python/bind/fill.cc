@@ -4,10 +4,12 @@
 #include "bind/arrays.h"
 #include "bind/cells.h"
 #include "bind/errors.h"
+#include "bind/figures.h"
 #include "bind/keywords.h"
 #include "bind/meshes.h"
 #include "innermap/boundary/laid_out_mesh.h"
 #include "innermap/core/memory.h"
+#include "innermap/report/figures.h"
 #include "innermap/tetra/block_set.h"
 #include "innermap/tetra/hexahedralize.h"
 #include "innermap/tetra/polycube.h"
@@ -69,14 +71,7 @@ struct BlockOptions {
 };
 
 py::dict figuresOf(const Polycube& cube) {
-  py::dict out;
-  out["across"] = cube.across;
-  out["blocks"] = cube.blocks.count();
-  out["edge"] = cube.blocks.edge;
-  out["handles"] = cube.handles;
-  out["cavities"] = cube.cavities;
-  out["missed"] = cube.missed;
-  out["surplus"] = cube.surplus;
+  py::dict out = dictOf(figures(cube));
   out["notes"] = cube.notes;
   out["warnings"] = cube.warnings;
   return out;

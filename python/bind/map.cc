@@ -10,6 +10,8 @@
 #include "bind/keywords.h"
 #include "bind/meshes.h"
 #include "bind/solids.h"
+#include "innermap/field/fit_facts.h"
+#include "innermap/report/figures.h"
 
 namespace py = pybind11;
 
@@ -150,10 +152,12 @@ void bindMap(py::module_& m) {
                     save);
   map.def_property_readonly(
          "boundary_error",
-         [](const PyMap& self) { return self.fit ? self.fit->error : errorOf(self.mapped->facts); },
+         [](const PyMap& self) {
+           return self.fit ? self.fit->error : fitFacts(self.mapped->facts).error;
+         },
          "The certificate, a BoundaryError: fractions of the target's diagonal.")
       .def_property_readonly(
-          "tolerance_met", [](const PyMap& self) { return toleranceMet(self.mapped->facts); },
+          "tolerance_met", [](const PyMap& self) { return fitFacts(self.mapped->facts).met; },
           "Whether 99% of the boundary is within the tolerance; None where the "
           "map was not fitted to one.")
       .def_property_readonly(
@@ -161,7 +165,7 @@ void bindMap(py::module_& m) {
           [](const PyMap& self) { return injectivityStatement(self.mapped->injectivity); },
           "What was checked of the map's being one-to-one, what was found and what follows.")
       .def_property_readonly(
-          "one_to_one", [](const PyMap& self) { return figuresOf(self.mapped->injectivity); },
+          "one_to_one", [](const PyMap& self) { return dictOf(figures(self.mapped->injectivity)); },
           "The figures of the statement, by name.")
       .def_property_readonly(
           "facts", [](const PyMap& self) { return factsOf(self.mapped->facts); },

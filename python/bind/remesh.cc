@@ -2,11 +2,13 @@
 #include "bind/arrays.h"
 #include "bind/cells.h"
 #include "bind/errors.h"
+#include "bind/figures.h"
 #include "bind/keywords.h"
 #include "bind/lists.h"
 #include "bind/map.h"
 #include "bind/meshes.h"
 #include "innermap/core/memory.h"
+#include "innermap/report/figures.h"
 #include "innermap/tetra/compare_fem.h"
 #include "innermap/tetra/remesh_cells.h"
 
@@ -78,37 +80,9 @@ struct CompareOptions {
   }
 };
 
-template <class Value>
-py::array column(const std::vector<ComparedRow>& rows, Value value) {
-  std::vector<double> out;
-  for (const ComparedRow& r : rows) out.push_back(static_cast<double>(value(r)));
-  return arrayOf(out);
-}
-
 // The columns of the program's comparison.csv.
 py::dict tableOf(const CompareFem& result) {
-  const auto& rows = result.rows;
-  py::dict out;
-  py::list method;
-  for (const ComparedRow& r : rows) method.append(r.charges ? "charges" : "elements");
-  out["method"] = method;
-  out["size"] = column(rows, [](const ComparedRow& r) { return r.size; });
-  out["unknowns"] = column(rows, [](const ComparedRow& r) { return r.unknowns; });
-  out["seconds"] = column(rows, [](const ComparedRow& r) { return r.seconds; });
-  out["memory_bytes"] = column(rows, [](const ComparedRow& r) { return r.memory; });
-  out["iterations"] = column(rows, [](const ComparedRow& r) { return r.iterations; });
-  out["value_error"] = column(rows, [](const ComparedRow& r) { return r.value; });
-  out["gradient_error"] = column(rows, [](const ComparedRow& r) { return r.gradient; });
-  out["largest_error"] = column(rows, [](const ComparedRow& r) { return r.largest; });
-  out["jump"] = column(rows, [](const ComparedRow& r) { return r.jump; });
-  out["harmonic_energy"] = column(rows, [](const ComparedRow& r) { return r.harmonicEnergy; });
-  out["deformation_energy"] =
-      column(rows, [](const ComparedRow& r) { return r.deformationEnergy; });
-  out["folded"] = column(rows, [](const ComparedRow& r) { return r.folded; });
-  out["inverted"] = column(rows, [](const ComparedRow& r) { return r.inverted; });
-  out["boundary_rms"] = column(rows, [](const ComparedRow& r) { return r.boundaryRms; });
-  out["value_order"] = result.valueOrder;
-  out["gradient_order"] = result.gradientOrder;
+  py::dict out = dictOf(figures(result));
   out["notes"] = result.notes;
   return out;
 }

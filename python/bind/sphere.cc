@@ -1,10 +1,12 @@
 // Surfaces laid out on the unit sphere.
 #include <memory>
 
+#include "bind/figures.h"
 #include "bind/keywords.h"
 #include "bind/meshes.h"
 #include "innermap/boundary/laid_out_mesh.h"
 #include "innermap/core/memory.h"
+#include "innermap/report/figures.h"
 
 namespace py = pybind11;
 
@@ -31,11 +33,8 @@ py::object sphere(const Arguments& a, SphereOptions& o) {
     requireMemory(o.call, "the layout", layOutMemory(mesh.vertices.size()), "use a coarser mesh");
     return onSphere(layOutMesh(mesh, o.settings));
   });
-  py::dict figures;
-  figures["flips"] = made.quality.flips;
-  figures["degree"] = made.quality.degree;
-  figures["area_ratio_log10"] = made.quality.areaRatioLog10;
-  return py::make_tuple(std::make_shared<Mesh>(std::move(made.mesh)), figures);
+  return py::make_tuple(std::make_shared<Mesh>(std::move(made.mesh)),
+                        dictOf(figures(made.quality)));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "assets.h"
 #include "encode.h"
 #include "innermap/core/file.h"
+#include "report_sections.h"
 
 namespace innermap::tool {
 namespace {
@@ -103,13 +104,16 @@ std::string dataText(const Page& page, const std::string& reportJson) {
 std::string pageHtml(const Page& page, const std::string& reportJson) {
   std::string out;
   std::string_view rest = pageAsset("page.html");
-  // {{NAME}} stands for the asset of that name, {{data}} for the data.
+  // {{NAME}} stands for the asset of that name, {{data}} for the data, {{words}} for what they
+  // mean.
   for (std::size_t open; (open = rest.find("{{")) != std::string_view::npos;) {
     out += rest.substr(0, open);
     const std::size_t close = rest.find("}}", open);
     const std::string name(rest.substr(open + 2, close - open - 2));
     if (name == "data")
       out += dataText(page, reportJson);
+    else if (name == "words")
+      out += inScript(reportWords(reportSections()));
     else
       out += pageAsset(name);
     rest.remove_prefix(close + 2);

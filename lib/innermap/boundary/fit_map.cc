@@ -8,6 +8,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/version.h"
+#include "innermap/field/fit_facts.h"
 
 namespace innermap {
 namespace {
@@ -25,16 +26,14 @@ Facts factsOf(const BoundaryPair& pair, const FitOutcome& out, std::uint64_t see
               {"interpolation", out.smooth ? "smooth" : "linear"},
               {"seed", std::to_string(seed)},
               {"regularization", textOfFact(out.solve.regularization)},
-              {"rank", std::to_string(out.solve.rank)},
-              {"boundary_error_rms", textOfFact(out.error.rms)},
-              {"boundary_error_p99", textOfFact(out.error.p99)},
-              {"boundary_error_max", textOfFact(out.error.max)},
-              {"boundary_error_samples", std::to_string(out.error.samples)},
-              {"boundary_error_p99_bound", textOfFact(out.error.p99Bound)},
-              {"boundary_error_bound", textOfFact(out.error.bound)},
-              {"boundary_error_confidence", textOfFact(kCertificateConfidence)},
-              {"boundary_error_smooth_bound", textOfFact(out.certificate.smoothBound)},
-              {"c_error", textOfFact(out.collocationError)}};
+              {"rank", std::to_string(out.solve.rank)}};
+  const auto add = [&](const Facts& more) { facts.insert(facts.end(), more.begin(), more.end()); };
+  add(factsOf(out.error));
+  add({{"boundary_error_p99_bound", textOfFact(out.error.p99Bound)},
+       {"boundary_error_bound", textOfFact(out.error.bound)},
+       {"boundary_error_confidence", textOfFact(kCertificateConfidence)},
+       {"boundary_error_smooth_bound", textOfFact(out.certificate.smoothBound)},
+       {"c_error", textOfFact(out.collocationError)}});
   if (out.solve.radiusRatio > 0)
     facts.emplace_back("radius_ratio", textOfFact(out.solve.radiusRatio));
   else
@@ -45,11 +44,7 @@ Facts factsOf(const BoundaryPair& pair, const FitOutcome& out, std::uint64_t see
     facts.emplace_back("boundary_error_triangles", textOfFact(out.certificate.triangles));
   if (!out.steps.empty()) facts.emplace_back("steps", std::to_string(out.steps.size()));
   if (out.inside.samples > 0) facts.emplace_back("folded", textOfFact(out.inside.folded));
-  if (out.tolerance) {
-    facts.emplace_back("tolerance", textOfFact(out.tolerance->wanted));
-    facts.emplace_back("tolerance_reached", textOfFact(out.tolerance->reached));
-    facts.emplace_back("tolerance_met", textOfFact(out.tolerance->met));
-  }
+  if (const auto& t = out.tolerance) add(factsOfTolerance(t->wanted, t->reached, t->met));
   return facts;
 }
 

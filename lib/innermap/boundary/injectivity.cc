@@ -59,18 +59,6 @@ void DeterminantFigures::add(const DeterminantFigures& others) {
   foldedAtOverlap += others.foldedAtOverlap;
 }
 
-std::vector<InjectivityFigure> injectivityFigures(const Injectivity& known) {
-  std::vector<InjectivityFigure> out;
-  visitFigures(known, [&](const std::string& name, const auto& value, bool is) {
-    if (!is) return;
-    if constexpr (std::is_integral_v<std::decay_t<decltype(value)>>)
-      out.emplace_back(name, static_cast<std::int64_t>(value));
-    else
-      out.emplace_back(name, value);
-  });
-  return out;
-}
-
 Facts injectivityFacts(const Injectivity& known) {
   Facts out;
   visitFigures(known, [&](const std::string& name, const auto& value, bool is) {

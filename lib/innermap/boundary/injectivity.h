@@ -23,7 +23,6 @@
 #include <cstdint>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "innermap/field/field_file.h"
@@ -89,12 +88,8 @@ std::string injectivityStatement(const Injectivity& known);
 // The short of it, for terminals: "no fold at 20033 points inside, ...".
 std::string injectivityLine(const Injectivity& known);
 
-// The figures that are known, by name: "inside_checked", "inside_folded", "boundary_least", ...
-using InjectivityFigure = std::pair<std::string, std::variant<std::int64_t, double>>;
-std::vector<InjectivityFigure> injectivityFigures(const Injectivity& known);
-
-// The same as facts of a map's file, `one_to_one_` before each name, and back; what facts do not
-// say stays as it is in `known`.
+// The figures that are known as facts of a map's file, "one_to_one_inside_checked" and so on, and
+// back; what facts do not say stays as it is in `known`.
 Facts injectivityFacts(const Injectivity& known);
 void readInjectivity(const Facts& facts, Injectivity& known);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "innermap/core/error.h"
+#include "innermap/field/fit_facts.h"
 
 namespace innermap {
 namespace {
@@ -57,7 +58,7 @@ MappedSolid readMap(const std::string& path) {
 double sumAccuracy(const MappedSolid& mapped) {
   // Fitted to the vertices alone, a map is far more exact than its error on triangles says.
   if (factText(mapped.facts, "interpolation") == "smooth") return kFinestSum;
-  const double error = factNumber(mapped.facts, "boundary_error_rms").value_or(0);
+  const double error = fitFacts(mapped.facts).error.rms;
   return error > 0 ? sumAccuracy(error) : kDefaultSum;
 }
 

@@ -6,6 +6,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/version.h"
+#include "innermap/field/fit_facts.h"
 
 namespace innermap {
 namespace {
@@ -32,19 +33,16 @@ Facts harmonicFacts(const HarmonicFit& fit, const HarmonicFitSettings& settings,
   for (const std::string& name : names)
     if (name.empty() || name.find_first_of(",\n\r") != std::string::npos)
       throw DataError(fmt::format("'{}' cannot be the name of a channel", name));
-  return {{"version", versionText()},
-          {"source", source},
-          {kChannels, fmt::format("{}", fmt::join(names, ","))},
-          {"span", textOfFact(fit.span)},
-          {"seed", fmt::format("{}", settings.seed)},
-          {"tolerance", textOfFact(settings.tolerance)},
-          {"tolerance_met", textOfFact(fit.met)},
-          {"boundary_error_rms", textOfFact(fit.error.rms)},
-          {"boundary_error_p99", textOfFact(fit.error.p99)},
-          {"boundary_error_max", textOfFact(fit.error.max)},
-          {"boundary_error_samples", fmt::format("{}", fit.error.samples)},
-          {"inside_error_bound", textOfFact(fit.bound)},
-          {"free_share", textOfFact(fit.freeShare)}};
+  Facts facts{{"version", versionText()},
+              {"source", source},
+              {kChannels, fmt::format("{}", fmt::join(names, ","))},
+              {"span", textOfFact(fit.span)},
+              {"seed", fmt::format("{}", settings.seed)}};
+  const auto add = [&](const Facts& more) { facts.insert(facts.end(), more.begin(), more.end()); };
+  add(factsOfTolerance(settings.tolerance, {}, fit.met));
+  add(factsOf(fit.error));
+  add({{"inside_error_bound", textOfFact(fit.bound)}, {"free_share", textOfFact(fit.freeShare)}});
+  return facts;
 }
 
 void writeSolidField(const std::string& path, const SolidField& field) {

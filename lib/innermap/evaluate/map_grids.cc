@@ -13,6 +13,7 @@
 #include "innermap/core/memory.h"
 #include "innermap/evaluate/detail/cell_check.h"
 #include "innermap/evaluate/detail/outside_voxels.h"
+#include "innermap/field/fit_facts.h"
 #include "innermap/levelset/detail/level_set_settings.h"
 #include "innermap/levelset/detail/set_metadata.h"
 #include "innermap/levelset/level_set.h"
@@ -53,9 +54,9 @@ void insertTotals(const openvdb::GridPtrVec& grids, const MapGrids& values) {
 
 // Of 99% of the boundary, world units of the target.
 double boundaryErrorOf(const MappedSolid& mapped) {
+  const double told = fitFacts(mapped.facts).error.p99;
   const double known = mapped.injectivity.boundaryError;
-  return (known > 0 ? known : factNumber(mapped.facts, "boundary_error_p99").value_or(0)) *
-         mapped.boundary.target.diagonal;
+  return (known > 0 ? known : std::isfinite(told) ? told : 0) * mapped.boundary.target.diagonal;
 }
 
 void findOutside(const MappedSolid& mapped, const TargetShape& target, SolidGrids& out) {
@@ -96,7 +97,7 @@ Injectivity injectivityOf(const MappedSolid& mapped, const SolidGrids& grids,
 
 // What the map was fitted to.
 double toleranceOf(const MappedSolid& mapped) {
-  const double tolerance = factNumber(mapped.facts, "tolerance").value_or(0);
+  const double tolerance = fitFacts(mapped.facts).tolerance.value_or(0);
   return tolerance > 0 ? tolerance : kUsualTolerance;
 }
 

@@ -61,7 +61,7 @@ TEST(Injectivity, SaysNothingOfWhatWasNotChecked) {
       "No points inside were checked. Neither surface runs through itself. Whether the map is "
       "one-to-one is not known.");
   EXPECT_EQ(injectivityLine({}), "one-to-one: not checked");
-  EXPECT_TRUE(injectivityFigures({}).empty());
+  EXPECT_TRUE(injectivityFacts({}).empty());
   Injectivity grid;
   grid.voxels = figures(5000, 0, 0.5);
   EXPECT_TRUE(says(grid, "nothing proves it"));
@@ -205,7 +205,7 @@ TEST(Injectivity, FactsGiveTheFiguresBack) {
   known.degree = {1500, -1, 2};
   Injectivity again;
   readInjectivity(injectivityFacts(known), again);
-  EXPECT_EQ(injectivityFigures(again), injectivityFigures(known));
+  EXPECT_EQ(injectivityFacts(again), injectivityFacts(known));
   EXPECT_EQ(injectivityStatement(again), injectivityStatement(known));
   for (const auto& [key, value] : injectivityFacts(known))
     EXPECT_EQ(key.substr(0, 11), "one_to_one_");

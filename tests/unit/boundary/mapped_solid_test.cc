@@ -34,7 +34,7 @@ TEST_F(MapFile, GivesTheSameMapAndBoundaries) {
   for (const Vec3& p : {Vec3{0, 0, 0}, Vec3{0.3, -0.2, 0.5}})
     EXPECT_EQ(norm(again.map(p) - fit.map(p)), 0);
   EXPECT_EQ(again.facts, fit.facts);
-  EXPECT_EQ(injectivityFigures(again.injectivity), injectivityFigures(fit.injectivity));
+  EXPECT_EQ(injectivityFacts(again.injectivity), injectivityFacts(fit.injectivity));
   EXPECT_GT(again.injectivity.inside.checked, 0u);
   EXPECT_EQ(again.boundary.source.mesh.name, "ball");
   EXPECT_EQ(again.boundary.targetMesh.name, "target");

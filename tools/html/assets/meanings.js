@@ -1,168 +1,21 @@
-// What the numbers of report.json mean: [key, name, meaning, how it is written]. A key that
-// starts with *. holds for source and target. Written as: "share" of 1 as percent, "error" of a diagonal, "bytes", "seconds".
-const schema = JSON.parse(document.getElementById("schema").textContent);
+// What the numbers of report.json mean, as docs/report.schema.json says it: sections as [key, title,
+// meaning], figures as key: [name, meaning, how it is written]. How: "share" of 1 as percent,
+// "error", "bytes", "seconds".
+const words = JSON.parse(document.getElementById("words").textContent);
 
-const groups = [
-  ["boundary_error", "Boundary error", "How far the map takes the boundary from where it was to go. Inside a map of one step it is nowhere larger."],
-  ["worst_boundary_error", "Boundary error of the worst frame", ""],
-  ["tolerance", "Tolerance", ""],
-  ["one_to_one", "Is it one-to-one?", ""],
-  ["inside", "Points inside", "A lattice of points inside the source, looked at one by one."],
-  ["jacobian", "Change of volume", "The determinant of the map's derivative: 1 keeps volume, 0 or less folds."],
-  ["repair", "Repaired folds", ""],
-  ["energy", "Energy", ""],
-  ["source", "Source", ""], ["target", "Target", ""],
-  ["solve", "Charges and their solve", "The map is an affine function plus weight / distance, summed over the charges."],
-  ["steps", "Steps", "A map in steps is several harmonic maps one after the other."],
-  ["grid", "Grid", ""],
-];
-const meanings = [
-  ["boundary_error.rms", "root mean square", "typical error at points that took no part in the fit, of the target's diagonal", "error"],
-  ["boundary_error.p99", "99% within", "99 of 100 of these points are nearer than this", "error"],
-  ["boundary_error.max", "largest", "the largest that was found", "error"],
-  ["boundary_error.samples", "points", "at which it was measured"],
-  ["boundary_error.c_error", "C-Error", "sum of squares at the points that were fitted, the paper's measure"],
-  ["boundary_error.p99_bound", "99% within, for sure", "bound on the share of 99%, with the confidence below", "error"],
-  ["boundary_error.bound", "bound", "no point of the map is farther off than this, with the confidence below, if it is harmonic inside", "error"],
-  ["boundary_error.confidence", "confidence", "of the two bounds", "share"],
-  ["boundary_error.searched", "evaluations", "spent on the search for the largest error"],
-  ["boundary_error.triangles", "triangles' error", "how far the flat triangles are from a smooth surface that the vertices may be samples of", "error"],
-  ["boundary_error.smooth_bound", "bound against a smooth surface", "the bound above and the triangles' error together", "error"],
-  ["boundary_error.vertices_rms", "at vertices left out", "root mean square at vertices that the fit never saw", "error"],
-  ["boundary_error.vertices_max", "largest at vertices", "at any vertex", "error"],
-  ["worst_boundary_error.rms", "root mean square", "of the frame where it is largest", "error"],
-  ["worst_boundary_error.p99", "99% within", "of the frame where it is largest", "error"],
-  ["worst_boundary_error.max", "largest", "of all frames", "error"],
-  ["worst_boundary_error.samples", "points", "at which each frame was measured"],
-  ["tolerance.wanted", "wanted", "99% of the boundary was to lie within this", "error"],
-  ["tolerance.reached", "reached", "99% lies within this", "error"],
-  ["tolerance.met", "met", "whether it does"],
-  ["tolerance.missed", "missed", "of the boundary, where the tolerance is not met", "share"],
-  ["tolerance.ended", "why no more", "what ended the fit before it was met"],
-  ["one_to_one.statement", "in words", "what was checked, what was found and what follows"],
-  ["one_to_one.inside_checked", "points inside", "that were checked"],
-  ["one_to_one.inside_folded", "of these folded", "the map turns them inside out"],
-  ["one_to_one.inside_folded_at_overlap", "of these at overlaps", "where the target runs through itself and no map can be one-to-one"],
-  ["one_to_one.inside_least", "least change of volume", "at these points"],
-  ["one_to_one.boundary_checked", "points of the boundary", "that were checked"],
-  ["one_to_one.boundary_folded", "of these folded", "the map turns them inside out"],
-  ["one_to_one.boundary_folded_at_overlap", "of these at overlaps", "where the target runs through itself"],
-  ["one_to_one.boundary_least", "least change of volume", "at these points"],
-  ["one_to_one.voxels_checked", "voxels", "that were checked, by their centres"],
-  ["one_to_one.voxels_folded", "of these folded", "after repair"],
-  ["one_to_one.voxels_folded_at_overlap", "of these at overlaps", "where the target runs through itself"],
-  ["one_to_one.voxels_least", "least change of volume", "of these voxels"],
-  ["one_to_one.cells_checked", "cells between voxels", "tetrahedra on which the map is linear"],
-  ["one_to_one.cells_folded", "of these folded", ""],
-  ["one_to_one.cells_folded_at_overlap", "of these at overlaps", "where the target runs through itself"],
-  ["one_to_one.cells_least", "least change of volume", "of these cells"],
-  ["one_to_one.cells_share", "cells' share", "of the solid's volume that they fill", "share"],
-  ["one_to_one.cells_overlaps", "cells' overlaps", "places where the image of their boundary runs through itself; -1: not known"],
-  ["one_to_one.degree_checked", "places deep inside", "about which the boundary's image was wound"],
-  ["one_to_one.degree_least", "least winding", "1 where the boundary goes round once, as it should"],
-  ["one_to_one.degree_greatest", "greatest winding", "1 where the boundary goes round once, as it should"],
-  ["one_to_one.outside", "outside", "share of the points inside that land outside the target by more than the boundary error", "share"],
-  ["one_to_one.repaired", "repaired", "voxels that were folded before"],
-  ["one_to_one.boundary_error", "boundary error", "of 99% of it", "error"],
-  ["inside.samples", "points", "that were looked at"],
-  ["inside.folded", "folded", "share of these that the map turns inside out", "share"],
-  ["inside.folded_at_overlap", "folded at overlaps", "share of them folded where the target runs through itself", "share"],
-  ["inside.outside", "outside", "share that lands outside the target by more than the boundary error", "share"],
-  ["jacobian.min", "least", "0 or less: folded there"],
-  ["jacobian.max", "greatest", "grows by this factor there"],
-  ["jacobian.folded_fraction", "folded", "share of the volume that the map turned inside out, before repair", "share"],
-  ["repair.folded_voxels", "folded voxels", "before"],
-  ["repair.left", "left", "folded voxels that could not be repaired"],
-  ["repair.farthest", "farthest", "that a repair moved a voxel's image, of the target's diagonal", "error"],
-  ["energy.harmonic", "harmonic", "how much the map changes from place to place, both solids of volume 1; 3 for a rigid motion"],
-  ["energy.deformation", "deformation", "what the deformation would cost rubber; 0 for a rigid motion"],
-  ["energy.deformation_mean", "deformation, mean", "of a unit of volume"],
-  ["energy.lame_lambda", "λ", "Lamé's first constant, as used"],
-  ["energy.lame_mu", "μ", "Lamé's second constant, as used"],
-  ["*.path", "file", ""],
-  ["*.vertices", "vertices", ""], ["*.triangles", "triangles", ""],
-  ["*.boundary_loops", "open loops", "of edges with one triangle only"],
-  ["*.caps", "caps", "holes that were closed"],
-  ["*.genus", "handles", "0 for a ball, 1 for a ring"],
-  ["*.volume", "volume", "world units cubed"],
-  ["*.diagonal", "diagonal", "of the bounding box, world units; errors and lengths are fractions of it"],
-  ["*.self_intersections", "self-intersections", "pairs of triangles that pass through each other"],
-  ["solve.method", "method", ""],
-  ["solve.sources", "charges", ""],
-  ["solve.collocation", "points fitted", "of the boundary"],
-  ["solve.rank", "rank", "combinations of charges that are used"],
-  ["solve.regularization", "regularisation", "relative; 0: none is needed"],
-  ["solve.iterations", "iterations", ""],
-  ["solve.placement", "placement", "of the charges"],
-  ["solve.distance", "distance", "of the farthest charges from the surface, of the source's diagonal", "error"],
-  ["solve.radius_ratio", "sphere's radius", "in half diagonals"],
-  ["solve.condition", "condition", "of the system"],
-  ["solve.weight_norm", "size of the weights", "large weights cancel one another and lose digits"],
-  ["solve.held_out", "points held out", "that chose settings, and were not fitted"],
-  ["solve.product_error", "error of the fast sums", "relative"],
-  ["solve.interpolation", "between vertices", "linear: as flat triangles; smooth: as a smooth deformation"],
-  ["solve.seed", "seed", "of all random points"],
-  ["solve.channels", "channels", ""],
-  ["steps.count", "steps", "1: one harmonic map"],
-  ["grid.voxel_size", "voxel size", "world units"],
-  ["grid.active_voxels", "voxels", "with values, skin included"],
-  ["grid.interior_voxels", "voxels inside", "with their centre inside"],
-  ["grid.volume", "volume", "of the solid as the grid has it, world units cubed"],
-  ["grid.map_rounding", "rounding", "of positions by storing floats, of the target's diagonal", "error"],
-  ["frames.count", "frames", ""],
-  ["frames.seconds_mean", "seconds a frame", "mean"],
-  ["frames.seconds_least", "fastest frame", "", "seconds"],
-  ["frames.seconds_most", "slowest frame", "", "seconds"],
-  ["outside_fraction", "outside", "share of the inside that lands outside the target", "share"],
-  ["correspondence.flips", "flips", "triangles of the common layout that are turned over"],
-  ["correspondence.degree", "degree", "how often the one surface covers the other; 1 as it should be"],
-  ["correspondence.area_ratio_log10", "area ratios", "decades between the smallest and the largest on the layout"],
-  ["correspondence.energy_forward", "energy forward", "how much lengths change from source to target, symmetric Dirichlet's first half"],
-  ["correspondence.energy_backward", "energy backward", "the same from target to source"],
-  ["correspondence.energy_sum", "energy", "both together; the least of the ways that were tried"],
-  ["correspondence.unmeasured", "not measured", "triangles of no area"],
-  ["correspondence.inverted_triangles", "turned over", "triangles of the source that lie on the target upside down"],
-  ["correspondence.inverted_share", "turned over", "their share of the area", "share"],
-  ["correspondence.image_self_intersections", "self-intersections", "of the source as laid on the target"],
-  ["correspondence.target_self_intersections", "of the target", "self-intersections that it had"],
-  ["correspondence.landmarks", "landmarks", "pairs of points that were given"],
-  ["correspondence.landmark_error", "landmark error", "farthest that one is from its like", "error"],
-  ["correspondence.vertices", "vertices", "of the source as it was laid"],
-  ["correspondence.target_vertices", "target's vertices", ""],
-  ["correspondence.subdivided", "subdivided", "whether triangles were split"],
-  ["outer_surface.taken", "outer surface", "it was taken in place of a mesh that crosses itself"],
-  ["outer_surface.apart_p99", "the mesh from its outer surface", "99% of what shows is as near", "error"],
-  ["correspondence.source_outer_surface.taken", "outer surface of the source", "it was mapped in place of a mesh that crosses itself"],
-  ["correspondence.source_outer_surface.apart_p99", "the source from its outer surface", "99% of what shows is as near", "error"],
-  ["correspondence.target_outer_surface.taken", "outer surface of the target", "it was mapped onto in place of a mesh that crosses itself"],
-  ["correspondence.target_outer_surface.apart_p99", "the target from its outer surface", "99% of what shows is as near", "error"],
-  ["correspondence.farthest_from_outer_surface", "from the outer surface", "farthest distance of a vertex of the source", "error"],
-  ["inverse.voxels", "voxels", "of the target that were asked where they come from"],
-  ["inverse.inside", "inside", "of these with their centre inside the target"],
-  ["inverse.uncovered", "not reached", "inside the target, but the map reaches them from nowhere"],
-  ["inverse.not_inverted", "not found", "voxels whose origin was not found"],
-  ["inverse.not_inverted_inside", "not found inside", ""],
-  ["inverse.inverted_fraction", "found", "share of the voxels whose origin was found", "share"],
-  ["peak_memory_bytes", "memory", "the most that the process held", "bytes"],
-  ["memory_needed_bytes", "memory needed", "estimate", "bytes"],
-  ["stopped_by_time", "stopped by time", "--max-time ended something: another run may differ", ""],
-];
+// "mass.*_before" stands for any name.
+const patterns = Object.entries(words.figures).filter(([key]) => key.includes("*")).map(([key, meaning]) => [
+  new RegExp("^" + key.split("*").map((part) => part.replace(/[.]/g, "\\.")).join("(.+)") + "$"), meaning]);
 
 function meaningOf(key) {
-  const exact = meanings.find((m) => m[0] === key);
+  const exact = words.figures[key];
   if (exact) return exact;
-  const last = key.slice(key.lastIndexOf(".") + 1), top = key.split(".")[0];
-  if (top === "source" || top === "target") {
-    const any = meanings.find((m) => m[0] === "*." + last);
-    if (any) return any;
+  for (const [pattern, [name, meaning, how]] of patterns) {
+    const found = key.match(pattern);
+    if (found) return [name.replace("*", found[1]).replace(/_/g, " "), meaning, how];
   }
-  const parts = key.split("."), name = parts.length > 2 ? parts.slice(-2).join(": ") : last;
-  return [key, name.replace(/_/g, " "), schemaWords(parts), /_bytes$/.test(last) ? "bytes" : /(fraction|share)$/.test(last) ? "share" : ""];
+  return null;
 }
 
-// What docs/report.schema.json says of a part of the report.
-function schemaWords(parts) {
-  let at = schema;
-  for (const name of parts) at = (at && at.properties && at.properties[name]) || null;
-  return (at && at.description) || "";
-}
+// Of a report that another version wrote.
+const fallback = (key) => [key.slice(key.lastIndexOf(".") + 1).replace(/_/g, " "), "", ""];

@@ -27,13 +27,13 @@ function leaves(object, before = "") {
   });
 }
 
-function numberTable(key, title, words) {
+function numberTable(key, title, told) {
   const rows = leaves(page.report[key] || {}, key).filter(([path]) => path !== "one_to_one.statement");  // said above
   if (!rows.length) return null;
-  return element("section", {class: "numbers"}, element("h3", {}, title), words ? element("p", {class: "hint"}, words) : null,
+  return element("section", {class: "numbers"}, element("h3", {}, title), told ? element("p", {class: "hint"}, told) : null,
     element("table", {}, element("tbody", {}, ...rows.map(([path, value]) => {
-      const [, name, meaning, how] = meaningOf(path), text = typeof value === "string";
-      return element("tr", {"data-key": path, "data-known": meanings.some((m) => m[0] === path) || name !== "" && !groups.some((g) => g[0] === key)},
+      const known = meaningOf(path), [name, meaning, how] = known || fallback(path), text = typeof value === "string";
+      return element("tr", {"data-key": path, "data-known": known !== null},
         element("th", {scope: "row"}, name),
         element("td", {class: text ? (value.length < 24 ? "text short" : "text") : "number", colspan: meaning ? 1 : 2}, written(value, how)),
         meaning ? element("td", {class: "meaning"}, meaning) : null);
@@ -44,16 +44,18 @@ const shownElsewhere = ["command", "seconds", "notes", "warnings", "run", "verdi
                         "command_line", "version", "date", "host", "memory_after_bytes"];
 
 function numbersSection() {
-  const known = groups.map(([key]) => key);
+  const known = words.sections.map(([key]) => key);
   const others = Object.keys(page.report).filter((key) => !known.includes(key) && !shownElsewhere.includes(key));
   const loose = others.filter((key) => typeof page.report[key] !== "object");
-  const tables = [...groups, ...others.filter((key) => !loose.includes(key)).map((key) => [key, key[0].toUpperCase() + key.slice(1).replace(/_/g, " "), schemaWords([key])])]
-    .map(([key, title, words]) => numberTable(key, title, words));
-  if (loose.length) page.report.other = Object.fromEntries(loose.map((key) => [key, page.report[key]]));
+  const tables = [...words.sections.filter(([key]) => !shownElsewhere.includes(key)),
+                  ...others.filter((key) => !loose.includes(key)).map((key) => [key, key.replace(/_/g, " "), ""])]
+    .map(([key, title, meaning]) => numberTable(key, title, meaning));
   tables.push(loose.length ? element("section", {class: "numbers"}, element("h3", {}, "Other"), element("table", {}, element("tbody", {},
-    ...loose.map((key) => element("tr", {"data-key": key, "data-known": true}, element("th", {scope: "row"}, meaningOf(key)[1]),
-      element("td", {class: "number"}, written(page.report[key], meaningOf(key)[3])), element("td", {class: "meaning"}, meaningOf(key)[2])))))) : null);
-  delete page.report.other;
+    ...loose.map((key) => {
+      const told = meaningOf(key), [name, meaning, how] = told || fallback(key);
+      return element("tr", {"data-key": key, "data-known": told !== null}, element("th", {scope: "row"}, name),
+        element("td", {class: "number"}, written(page.report[key], how)), element("td", {class: "meaning"}, meaning));
+    })))) : null);
   if (!tables.some(Boolean)) return null;
   return section("numbers", "The numbers", element("div", {class: "tables"}, ...tables));
 }

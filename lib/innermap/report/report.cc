@@ -1,4 +1,4 @@
-#include "innermap/io/report.h"
+#include "innermap/report/report.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -14,51 +14,8 @@ using Json = nlohmann::ordered_json;
 // JSON has no infinities and no NaN.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json json(const ReportMesh& m) {
-  return {{"path", m.path},
-          {"vertices", m.vertices},
-          {"triangles", m.triangles},
-          {"boundary_loops", m.boundaryLoops},
-          {"caps", m.caps},
-          {"genus", m.genus},
-          {"volume", number(m.volume)},
-          {"diagonal", number(m.diagonal)}};
-}
-
-Json json(const ReportSolve& s) {
-  return {{"method", s.method},
-          {"sources", s.sources},
-          {"collocation", s.collocation},
-          {"rank", s.rank},
-          {"regularization", number(s.regularization)},
-          {"iterations", s.iterations}};
-}
-
-Json json(const ReportBoundaryError& e) {
-  return {{"rms", number(e.rms)},
-          {"p99", number(e.p99)},
-          {"max", number(e.max)},
-          {"samples", e.samples},
-          {"c_error", number(e.cError)}};
-}
-
-Json json(const ReportEnergy& e) {
-  return {{"harmonic", number(e.harmonic)}, {"deformation", number(e.deformation)}};
-}
-
-Json json(const ReportJacobian& j) {
-  return {{"min", number(j.min)},
-          {"max", number(j.max)},
-          {"folded_fraction", number(j.foldedFraction)}};
-}
-
-Json json(const ReportGrid& g) {
-  return {{"voxel_size", number(g.voxelSize)},
-          {"active_voxels", g.activeVoxels},
-          {"interior_voxels", g.interiorVoxels}};
-}
-
-Json json(const ReportValue& value) {
+template <class Value>  // ReportValue or FigureValue
+Json jsonOf(const Value& value) {
   if (const double* d = std::get_if<double>(&value)) return number(*d);
   if (const auto* list = std::get_if<std::vector<double>>(&value)) {
     Json array = Json::array();
@@ -75,7 +32,7 @@ void addRun(const ReportRun& run, Json& root) {
   root["date"] = run.date;
   root["host"] = {{"cores", run.cores}, {"threads", run.threads}};
   Json settings = Json::object();
-  for (const auto& [name, value] : run.settings) settings[name] = json(value);
+  for (const auto& [name, value] : run.settings) settings[name] = jsonOf(value);
   root["settings"] = settings;
 }
 
@@ -101,20 +58,24 @@ Json json(const std::vector<ReportOutput>& outputs) {
   return list;
 }
 
-void setExtra(Json& root, const std::string& key, const ReportValue& value) {
+void addFigure(const Figure& figure, Json& root) {
+  const std::string& key = figure.key;
   Json* place = &root;
   std::size_t from = 0;
   for (std::size_t dot; (dot = key.find('.', from)) != std::string::npos; from = dot + 1) {
     place = &(*place)[key.substr(from, dot - from)];
     if (!place->is_object()) *place = Json::object();
   }
-  (*place)[key.substr(from)] = json(value);
+  (*place)[key.substr(from)] = jsonOf(figure.value);
 }
 
 }  // namespace
 
-void Report::set(std::string key, ReportValue value) {
-  extra.emplace_back(std::move(key), std::move(value));
+void Report::add(const std::string& section, const Figures& more) {
+  for (Figure f : more) {
+    if (!section.empty()) f.key = section + "." + f.key;
+    figures.push_back(std::move(f));
+  }
 }
 
 std::string reportJson(const Report& report) {
@@ -122,14 +83,8 @@ std::string reportJson(const Report& report) {
   if (!report.command.empty()) root["command"] = report.command;
   if (report.run) addRun(*report.run, root);
   if (!report.verdict.empty()) root["verdict"] = json(report.verdict);
-  if (report.source) root["source"] = json(*report.source);
-  if (report.target) root["target"] = json(*report.target);
-  if (report.solve) root["solve"] = json(*report.solve);
-  if (report.boundaryError) root["boundary_error"] = json(*report.boundaryError);
-  if (report.energy) root["energy"] = json(*report.energy);
-  if (report.jacobian) root["jacobian"] = json(*report.jacobian);
-  if (report.grid) root["grid"] = json(*report.grid);
-  for (const auto& [key, value] : report.extra) setExtra(root, key, value);
+  for (const Figure& figure : report.figures)
+    if (figure.known) addFigure(figure, root);
   root["outputs"] = json(report.outputs);
   if (!report.notes.empty()) root["notes"] = report.notes;
   if (!report.warnings.empty()) root["warnings"] = report.warnings;

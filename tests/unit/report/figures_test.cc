@@ -1,0 +1,74 @@
+#include "innermap/report/figures.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "innermap/boundary/map_fit.h"
+#include "innermap/evaluate/map_grids.h"
+#include "innermap/tetra/compare_fem.h"
+#include "innermap/transfer/carry.h"
+
+namespace innermap {
+namespace {
+
+double numberAt(const Figures& figures, const char* key) {
+  const Figure* found = findFigure(figures, key);
+  return found ? numberOf(*found) : -1;
+}
+
+TEST(ResultFigures, HaveKeysOfTheirOwnAndNames) {
+  for (const Figures& all :
+       {figures(MapSolve{}), figures(Injectivity{}), figures(BoundaryError{}),
+        boundaryErrorFigures(nullptr), toleranceFigures(nullptr, ""),
+        correspondenceFigures(nullptr), figures(CompareFem{}), gridFigures(SolidGrids{})}) {
+    std::set<std::string> keys;
+    for (const Figure& f : all) {
+      EXPECT_TRUE(keys.insert(f.key).second) << f.key;
+      EXPECT_EQ(f.key.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_."),
+                std::string::npos)
+          << f.key;
+      EXPECT_FALSE(f.name.empty()) << f.key;
+    }
+  }
+}
+
+TEST(ResultFigures, OfASolveAreThoseOfItsMethod) {
+  MapSolve dense;
+  dense.method = SolveMethod::truncatedSvd;
+  dense.distance = 0.1;
+  dense.condition = 1e6;
+  EXPECT_EQ(numberAt(figures(dense), "condition"), 1e6);
+  EXPECT_EQ(numberAt(figures(dense), "distance"), 0.1);
+  EXPECT_EQ(findFigure(figures(dense), "residuals"), nullptr);
+  EXPECT_EQ(findFigure(figures(dense), "radius_ratio"), nullptr);
+  MapSolve adaptive;
+  adaptive.levels = {{0.1, 0.2, 50}, {0.05, 0.1, 70}};
+  const Figure* sources = nullptr;
+  const Figures of = figures(adaptive);
+  sources = findFigure(of, "level_sources");
+  ASSERT_NE(sources, nullptr);
+  EXPECT_EQ(std::get<std::vector<double>>(sources->value), (std::vector<double>{50, 70}));
+  EXPECT_EQ(findFigure(of, "condition"), nullptr);
+}
+
+TEST(ResultFigures, OfWhatWasNotCheckedAreNotKnown) {
+  Injectivity known;
+  EXPECT_EQ(findFigure(figures(known), "inside_checked"), nullptr);
+  known.inside.add(0.5);
+  known.inside.add(-0.5);
+  EXPECT_EQ(numberAt(figures(known), "inside_checked"), 2);
+  EXPECT_EQ(numberAt(figures(known), "inside_folded"), 1);
+  EXPECT_EQ(findFigure(figures(known), "cells_checked"), nullptr);
+}
+
+TEST(ResultFigures, OfADensityBeginWithItsName) {
+  CarriedMass mass;
+  mass.name = "smoke";
+  mass.before = 2;
+  EXPECT_EQ(numberAt(massFigures(mass), "smoke_before"), 2);
+  EXPECT_EQ(numberAt(densityFigures(mass), "smoke_cells"), 0);
+}
+
+}  // namespace
+}  // namespace innermap
