@@ -132,10 +132,10 @@ Figures layoutFigures(const std::string& layout) { return {{"layout", layout, "l
 Figures figures(const ReportImage& image) {
   return together({{{"image", image.name, "image", ""}},
                    when(image.count > 0, {{"colour_space", image.colourSpace, "colour space", ""},
-                                          {"channels", image.channels, "channels", ""},
+                                          {"image_channels", image.channels, "channels", ""},
                                           {"width", image.width, "width", "pixels"},
                                           {"height", image.height, "height", "pixels"}}),
-                   {Figure("tiles", image.count, "tiles", "files").when(image.tiled)}});
+                   {Figure("image_tiles", image.count, "tiles", "files").when(image.tiled)}});
 }
 
 Figures figures(const ReportImport& read) {

@@ -1,7 +1,10 @@
 #include "report_sections.h"
 
+#include <algorithm>
+
 #include "innermap/boundary/map_fit.h"
 #include "innermap/boundary/mesh_correspondence.h"
+#include "innermap/core/error.h"
 #include "innermap/evaluate/map_grids.h"
 #include "innermap/io/exr/exr_slices.h"
 #include "innermap/io/picture/section_image.h"
@@ -30,15 +33,17 @@ CarriedMass anyMass() {
   return out;
 }
 
-// The ones whose keys the others do not have.
+// Of several commands, whose figures of the same key have the same type.
 Figures merged(std::initializer_list<Figures> parts) {
   Figures out;
-  for (const Figures& part : parts)
-    for (const Figure& f : part) {
-      bool there = false;
-      for (const Figure& other : out) there = there || other.key == f.key;
-      if (!there) out.push_back(f);
-    }
+  for (const Figure& f : together(parts)) {
+    const auto same = std::find_if(out.begin(), out.end(),
+                                   [&](const Figure& other) { return other.key == f.key; });
+    if (same == out.end())
+      out.push_back(f);
+    else if (same->value.index() != f.value.index())
+      throw Error("two figures of different types are called " + f.key);
+  }
   return out;
 }
 

@@ -293,7 +293,7 @@ def test_udim_tiles():
     write_png("skin.1011.png", (16, 16), lambda u, v: (0, 0, 1))
     report = texture("ball.obj", "skin.<UDIM>.png", "-o", "t.vdb", "--resolution", "16", "--seams",
                      "blend")
-    assert report["texture"]["tiles"] == 2
+    assert report["texture"]["image_tiles"] == 2
     for (_, _, z), value, distance in voxels("t.vdb", "Cd"):
         assert abs(value[0] + value[2] - 1) < 1e-3 and value[1] < 1e-3
         if abs(z) > 0.3 and distance > 0:

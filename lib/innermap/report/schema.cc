@@ -1,5 +1,6 @@
 #include "innermap/report/schema.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "innermap/core/error.h"
@@ -149,6 +150,22 @@ constexpr const char* kFrame = R"({
   }
 })";
 
+// Indented, but a leaf on one line.
+std::string laidOut(const Json& value, const std::string& indent) {
+  constexpr std::size_t kMostInLine = 400;
+  const bool nested =
+      value.is_object() && std::any_of(value.begin(), value.end(), [](const Json& member) {
+        return member.is_object() && !member.empty();
+      });
+  if (const std::string line = value.dump(); !nested && line.size() < kMostInLine) return line;
+  if (!value.is_object()) return value.dump();
+  const std::string inner = indent + "  ";
+  std::string out;
+  for (const auto& [key, member] : value.items())
+    out += (out.empty() ? "{\n" : ",\n") + inner + Json(key).dump() + ": " + laidOut(member, inner);
+  return out + "\n" + indent + "}";
+}
+
 const char* wordOf(FigureUnit unit) {
   switch (unit) {
     case FigureUnit::share:
@@ -185,7 +202,7 @@ std::string reportSchema(const std::vector<ReportSection>& sections) {
       for (const Figure& f : section.figures) add(f, root);
     else
       root["properties"][section.key] = objectOf(section);
-  return root.dump(2) + "\n";
+  return laidOut(root, "") + "\n";
 }
 
 std::string reportWords(const std::vector<ReportSection>& sections) {

@@ -93,11 +93,11 @@ Figures correspondenceFigures(const MeshCorrespondence* map) {
   const std::optional<OuterSurface> noOuter;
   const bool shells = map && !map->map.shells.empty();
   const ShellCorrespondence noShell, &first = shells ? map->map.shells.front() : noShell;
-  const std::optional<double> fromOuter = map ? map->farthestFromOuter : std::nullopt;
   const std::size_t landmarks = map ? map->landmarks : 0;
   return together(
-      {{{"farthest_from_outer_surface", fromOuter, "from the outer surface",
-         "farthest distance of a vertex of the source", kDiagonals}},
+      {{Figure("farthest_from_outer_surface", map ? map->farthestFromOuter.value_or(0) : 0,
+               "from the outer surface", "farthest distance of a vertex of the source", kDiagonals)
+            .when(map && map->farthestFromOuter)},
        figures(LayoutQuality{q.flips, q.degree, q.areaRatioLog10}),
        energyFigures(q),
        {{"energy_sum", q.energyForward + q.energyBackward, "energy",

@@ -33,7 +33,7 @@ function numberTable(key, title, told) {
   return element("section", {class: "numbers"}, element("h3", {}, title), told ? element("p", {class: "hint"}, told) : null,
     element("table", {}, element("tbody", {}, ...rows.map(([path, value]) => {
       const known = meaningOf(path), [name, meaning, how] = known || fallback(path), text = typeof value === "string";
-      return element("tr", {"data-key": path, "data-known": known !== null},
+      return element("tr", {"data-key": path, "data-known": String(known !== null)},
         element("th", {scope: "row"}, name),
         element("td", {class: text ? (value.length < 24 ? "text short" : "text") : "number", colspan: meaning ? 1 : 2}, written(value, how)),
         meaning ? element("td", {class: "meaning"}, meaning) : null);
@@ -41,7 +41,7 @@ function numberTable(key, title, told) {
 }
 
 const shownElsewhere = ["command", "seconds", "notes", "warnings", "run", "verdict", "outputs", "energies", "settings",
-                        "command_line", "version", "date", "host", "memory_after_bytes"];
+                        "command_line", "version", "date", "host", "memory_after_bytes", "peak_memory_bytes"];
 
 function numbersSection() {
   const known = words.sections.map(([key]) => key);
@@ -53,7 +53,7 @@ function numbersSection() {
   tables.push(loose.length ? element("section", {class: "numbers"}, element("h3", {}, "Other"), element("table", {}, element("tbody", {},
     ...loose.map((key) => {
       const told = meaningOf(key), [name, meaning, how] = told || fallback(key);
-      return element("tr", {"data-key": key, "data-known": told !== null}, element("th", {scope: "row"}, name),
+      return element("tr", {"data-key": key, "data-known": String(told !== null)}, element("th", {scope: "row"}, name),
         element("td", {class: "number"}, written(page.report[key], how)), element("td", {class: "meaning"}, meaning));
     })))) : null);
   if (!tables.some(Boolean)) return null;
