@@ -130,6 +130,7 @@ void run(const CheckOptions& options, Context& context) {
   if (!options.outer.empty()) context.output(options.outer);
   Mesh mesh = readMeshFile(options.mesh, context);
   const std::uint64_t need = checkMemory(mesh);
+  if (context.dryRun() && !options.outer.empty()) cleanSurface(mesh, options.layOut);
   if (context.dryRun())
     return context.plan(
         {"check " + options.mesh + fmt::format(" ({} triangles)", mesh.triangles.size())}, need);

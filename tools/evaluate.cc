@@ -20,6 +20,7 @@ void run(const EvaluateOptions& options, Context& context) {
   const MappedSolid mapped = readMapFile(options.map, context);
   const MapGridSettings settings = mapGridSettings(options.evaluation);
   context.expect(evaluationPhases(jobSize(mapped.solid(), settings, mapped.map.sources())));
+  requireInterior(mapped.solid(), options.evaluation.grid.in<LevelSetSettings>());
   if (context.dryRun())
     return context.plan({"evaluate " + options.map, "write grids to " + options.output},
                         mapGridMemory(mapped.solid(), settings, mapGridKind(mapped)));

@@ -124,9 +124,25 @@ double expectPhases(const MapOptions& options, const Meshes& meshes, Context& co
   return totalSeconds(last);
 }
 
-void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
-  const auto source = makeSourceBoundary(meshes.source);
+// What refuses the run refuses its plan: the pair is made, or it is looked at whether the two can
+// be laid onto each other.
+Solid solidToMap(const MapOptions& options, const Meshes& meshes, Context& context) {
+  if (meshes.related) {
+    BoundaryPair pair = makeBoundaryPair(meshes.source, meshes.target);
+    reportBoundaries(pair, context);
+    return std::move(pair.source.solid);
+  }
+  context.timed("check", [&] {
+    requireLayable(meshes.source, meshes.target, options.correspond.map.layOut);
+  });
+  SourceBoundary source = makeSourceBoundary(meshes.source);
   reportSource(source, context);
+  return std::move(source.solid);
+}
+
+void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
+  const Solid solid = solidToMap(options, meshes, context);
+  requireInterior(solid, options.evaluation.grid.in<LevelSetSettings>());
   const std::size_t vertices = meshes.source.vertices.size();
   const FitMapSettings fitting = fittingFor(options, meshes);
   std::vector<std::string> lines;
@@ -134,7 +150,7 @@ void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
   std::uint64_t need = std::max(
       fitMapMemory(fitting, vertices) + (steps ? kStepsMemory : 0),
       mapGridMemory(
-          source.solid, mapGridSettings(options.evaluation),
+          solid, mapGridSettings(options.evaluation),
           {steps ? std::size_t{2} : 1, needsLocalMap(meshes.target.vertices, fitting.tolerance)}));
   std::string files = "map.ply, map.vdb, slices.exr, section.png";
   if (!meshes.related) {

@@ -85,6 +85,7 @@ void run(const SequenceOptions& options, Context& context) {
   if (options.grids) context.outputs(framePaths(pattern, frames));
   const FrameFitterSettings settings = options.frames.fitting;
   SourceBoundary rest = readRest(options.rest, context);
+  requireInterior(rest.solid, options.evaluation.grid.in<LevelSetSettings>());
   const std::uint64_t gridsNeed =
       mapGridMemory(rest.solid, mapGridSettings(options.evaluation), {1, false, false});
   const JobSize size = jobSize(rest.solid, mapGridSettings(options.evaluation), settings.sources);

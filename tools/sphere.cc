@@ -24,11 +24,13 @@ void run(const Options& options, Context& context) {
   Mesh mesh = readMeshFile(options.mesh, context);
   const std::size_t vertices = mesh.vertices.size();
   const std::uint64_t need = layOutMemory(vertices);
-  if (context.dryRun())
+  if (context.dryRun()) {
+    requireSphere(mesh, options.surface.layOut);
     return context.plan(
         {fmt::format("lay the {} vertices of {} out on the unit sphere", vertices, options.mesh),
          "write them to " + options.output},
         need);
+  }
   context.requireMemory("the layout", need, "use a coarser mesh");
   const LaidOutMesh laid = layOut(std::move(mesh), options.surface, context);
   reportLaidOut("source", laid, context.report());

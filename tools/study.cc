@@ -205,6 +205,9 @@ void run(const StudyOptions& options, Context& context) {
   for (const std::string& name : studyChartNames()) names.push_back(name);
   const auto folder = context.outputFolder(options.output, names);
   const BoundaryPair pair = readPair(options, context);
+  LevelSetSettings grid;
+  grid.resolution = settings.resolution;
+  requireInterior(pair.solid(), grid);
   const std::vector<double> work = workOf(pair, settings);
   context.spend(1);
   expectRuns(work, context);

@@ -85,6 +85,7 @@ void run(const TransferDistanceOptions& options, Context& context) {
     return distanceTransferMemory(mapped.solid(), target, grid.in<DistanceTransferSettings>());
   };
   expectPhases(options, mapped, target, context);
+  requireInterior(mapped.solid(), options.grid.in<LevelSetSettings>());
   if (context.dryRun())
     return context.plan(
         {"transfer the target's distance field through " + options.map,

@@ -91,6 +91,7 @@ openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& o
                                Context& context) {
   openvdb::GridPtrVec grids = readGridFile(path, commaList(options.grids), context);
   if (grids.empty()) throw FileError(path, "holds no grid");
+  requireCarriable(grids, carrySettings(options));
   return grids;
 }
 

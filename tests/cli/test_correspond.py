@@ -353,6 +353,27 @@ def test_bad_input():
           says=["10 MB"])
 
 
+def test_a_dry_run_refuses_what_the_run_refuses():
+    """Of solids that cannot be laid onto each other, or are thinner than the voxels."""
+    vertices, faces = icosphere_arrays(2)
+    write_obj("ball.obj", vertices, faces)
+    torus("ring.obj")
+    write_obj("two.obj", vertices + [(x + 5, y, z) for x, y, z in vertices],
+              faces + [tuple(v + len(vertices) for v in face) for face in faces])
+    write_obj("flat.obj", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+    write_obj("plate.obj", [(x, y, 1e-3 * z) for x, y, z in vertices], faces)
+    write_obj("bent.obj", [(x, y, 1e-3 * z + 0.1 * x * x) for x, y, z in vertices], faces)
+    for a, b, why in [("ball.obj", "ring.obj", "genus"), ("two.obj", "ball.obj", "2 closed surfaces"),
+                      ("ball.obj", "flat.obj", "no inside"),
+                      ("plate.obj", "bent.obj", "thinner than the voxels")]:
+        jobs = [["map", a, b, "-o", "out", "--resolution", "16"]]
+        if a != "plate.obj":
+            jobs.append(["correspond", a, b, "-o", "out.ply"])
+        for job in jobs:
+            said = fails(1, *job, says=[why])
+            assert fails(1, *job, "--dry-run", says=[why]) == said
+
+
 def test_dry_runs_write_nothing():
     icosphere("a.obj")
     icosphere("b.obj", subdivisions=3)

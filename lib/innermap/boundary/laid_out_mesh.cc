@@ -132,6 +132,35 @@ void makeAlike(const Mesh& mesh, const Mesh& other, LayOutSettings settings, Cle
   clean = std::move(cut);
 }
 
+struct CleanPair {
+  CleanSurface a, b;
+  StageSeconds secondsA, secondsB;
+};
+
+CleanPair cleanPair(const Mesh& a, const Mesh& b, const LayOutSettings& settings) {
+  CleanPair out;
+  out.a = checked(a, settings, out.secondsA);
+  out.b = checked(b, settings, out.secondsB);
+  makeAlike(a, b, settings, out.a, out.b, out.secondsA);
+  makeAlike(b, a, settings, out.b, out.a, out.secondsB);
+  return out;
+}
+
+SurfaceShells shellsOf(const Mesh& mesh, const CleanSurface& clean) {
+  ClosedSurfaceSettings closing;
+  closing.closeHoles = true;
+  return closedSurfaces(clean.outer ? clean.outer->mesh : mesh, closing);
+}
+
+void requireNoHandles(const SurfaceShells& shells, const std::string& name) {
+  for (const ClosedSurface& shell : shells.shells)
+    if (shell.genus != 0)
+      throw DataError(fmt::format(
+          "{}: has {} handle{}, a sphere has none; innermap correspond maps solids with handles "
+          "onto each other",
+          name, shell.genus, shell.genus == 1 ? "" : "s"));
+}
+
 LaidOutMesh laidOut(Mesh mesh, CleanSurface clean, StageSeconds seconds) {
   EmbeddingSettings how;
   how.closeHoles = true;
@@ -217,26 +246,28 @@ LaidOutMesh layOutMesh(Mesh mesh, const LayOutSettings& settings) {
 }
 
 std::pair<LaidOutMesh, LaidOutMesh> layOutMeshes(Mesh a, Mesh b, const LayOutSettings& settings) {
-  StageSeconds secondsA, secondsB;
-  CleanSurface cleanA = checked(a, settings, secondsA), cleanB = checked(b, settings, secondsB);
-  makeAlike(a, b, settings, cleanA, cleanB, secondsA);
-  makeAlike(b, a, settings, cleanB, cleanA, secondsB);
-  return {laidOut(std::move(a), std::move(cleanA), std::move(secondsA)),
-          laidOut(std::move(b), std::move(cleanB), std::move(secondsB))};
+  CleanPair clean = cleanPair(a, b, settings);
+  return {laidOut(std::move(a), std::move(clean.a), std::move(clean.secondsA)),
+          laidOut(std::move(b), std::move(clean.b), std::move(clean.secondsB))};
+}
+
+void requireLayable(const Mesh& a, const Mesh& b, const LayOutSettings& settings) {
+  const CleanPair clean = cleanPair(a, b, settings);
+  const SurfaceShells shellsA = shellsOf(a, clean.a), shellsB = shellsOf(b, clean.b);
+  requireSameTopology(shellsA, shellsB);
 }
 
 std::uint64_t layOutMemory(std::size_t vertices) {
   return kCoarse + kBytesPerVertex * static_cast<std::uint64_t>(vertices);
 }
 
+void requireSphere(const Mesh& mesh, const LayOutSettings& settings) {
+  requireNoHandles(shellsOf(mesh, cleanSurface(mesh, settings)), mesh.name);
+}
+
 MeshOnSphere onSphere(const LaidOutMesh& laid) {
   const SurfaceShells& shells = laid.shells();
-  for (const ClosedSurface& shell : shells.shells)
-    if (shell.genus != 0)
-      throw DataError(fmt::format(
-          "{}: has {} handle{}, a sphere has none; innermap correspond maps solids with handles "
-          "onto each other",
-          laid.mesh.name, shell.genus, shell.genus == 1 ? "" : "s"));
+  requireNoHandles(shells, laid.mesh.name);
   const bool own = laid.ownNumbers() && shells.splitVertices == 0;
   MeshOnSphere out;
   out.mesh.name = laid.mesh.name;

@@ -65,8 +65,15 @@ LaidOutMesh layOutMesh(Mesh mesh, const LayOutSettings& settings = {});
 std::pair<LaidOutMesh, LaidOutMesh> layOutMeshes(Mesh a, Mesh b,
                                                  const LayOutSettings& settings = {});
 
+// Throws what laying the two out and onto each other throws because of what they are: no solid,
+// nothing but crossings, different topology. Takes the seconds of their outer surfaces, if any.
+void requireLayable(const Mesh& a, const Mesh& b, const LayOutSettings& settings = {});
+
 // Bytes of laying out surfaces of so many vertices in all: about what is needed.
 std::uint64_t layOutMemory(std::size_t vertices);
+
+// Throws what laying it out on the sphere throws because of what it is, as requireLayable() does.
+void requireSphere(const Mesh& mesh, const LayOutSettings& settings = {});
 
 struct MeshOnSphere {
   Mesh mesh;              // vertices on the unit sphere about the origin

@@ -363,6 +363,8 @@ class Corresponder {
 
 }  // namespace
 
+void requireSameTopology(const SurfaceShells& a, const SurfaceShells& b) { pairShells(a, b); }
+
 Correspondence correspond(const EmbeddedSurface& a, const EmbeddedSurface& b,
                           const CorrespondSettings& settings) {
   return Corresponder(a, b, a.implementation_->laidOut, b.implementation_->laidOut,

@@ -45,6 +45,10 @@ class EmbeddedSurface {
   std::shared_ptr<const Implementation> implementation_;
 };
 
+// Throws DataError where the shells of the two have no pairing of the same topology, as
+// correspond() does.
+void requireSameTopology(const SurfaceShells& a, const SurfaceShells& b);
+
 struct Landmark {
   int vertex = 0;         // of A's mesh
   SurfacePoint onTarget;  // of B's mesh

@@ -43,6 +43,10 @@ std::vector<Setting> describe(CarrySettings& settings);
 // Whether the settings make a density of a grid: scalars of a float or double grid that fill space.
 bool isDensity(const openvdb::GridBase& grid, const CarrySettings& settings);
 
+// Throws DataError for grids that pushing and pulling refuse: a type that cannot be carried, a name
+// that settings have and no grid, a tensor whose parts are missing or doubled.
+void requireCarriable(const openvdb::GridPtrVec& grids, const CarrySettings& settings);
+
 // The least edge of a voxel of the grids, world units: that of the output unless told otherwise,
 // times voxelGrowth().
 double finestVoxel(const openvdb::GridPtrVec& grids);

@@ -58,8 +58,7 @@ class Carrier {
 // known: beyond it attributes (all but level sets, fog volumes and densities) are continued by a
 // few voxels from their nearest, so that sampling along its surface does not meet the background.
 // Must outlive them.
-// Throws DataError: a type that cannot be carried, a name that settings have and no grid, a tensor
-// whose parts are missing or doubled.
+// Throws as requireCarriable().
 std::vector<std::unique_ptr<Carrier>> makeCarriers(const openvdb::GridPtrVec& grids,
                                                    const CarrySettings& settings,
                                                    const openvdb::FloatGrid* solid);
