@@ -111,7 +111,10 @@ void runHarmonic(const HarmonicOptions& options,
   like.tolerance = settings.tolerance;
   const std::uint64_t need = std::max(
       fitMapMemory(like, vertices), harmonicGridMemory(boundary.solid, known.names.size(), grids));
-  requireInterior(boundary.solid, grids);
+  LevelSetSettings cells;
+  cells.voxelSize = grids.voxelSize;
+  cells.resolution = grids.resolution;
+  requireInterior(boundary.solid, cells);
   JobSize size = jobSize(boundary.solid, grids);
   size.items = static_cast<double>(known.names.size()) * size.inside;
   std::vector<JobPhase> phases = fittingPhases(like, likelyPlaces(vertices, like.tolerance), false);
