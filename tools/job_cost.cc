@@ -43,7 +43,7 @@ const std::map<std::string, StageCost>& stageCosts() {
       {"fitting: a shell", {0.3, 0, 0, 0, 1, 0.6}},
       {"meeting the tolerance", {0.15, 0, 0, 0, 0.33, 0.45}},
       {"meeting the tolerance: cubes", {0, 0, 0, 0, 0.34, 0.45}},
-      {"going in steps", {0, 0, 0, 0, 30, 0.25}},
+      {"going in steps", {22, 0, 0, 0, 0, 0.25}},
       {"placing samples", {0.25, 0, 0, 0.08, 0, 0.25}},
       {"factoring", {0, 0, 0, 0.1, 0, 0.25}},
       {"factoring clusters", {0.1, 0, 0, 0.12, 0, 0}},
