@@ -145,13 +145,32 @@ void Context::outputs(const std::vector<std::string>& paths) {
     requireWritable(paths.front());
 }
 
+namespace {
+
+constexpr const char* kPageName = "report.html";
+
+// Whether a report of an earlier run stands there.
+bool isOurs(const std::filesystem::path& folder) {
+  constexpr std::streamsize kEnough = 4096;
+  std::ifstream file(folder / "report.json", std::ios::binary);
+  std::string head(kEnough, ' ');
+  file.read(head.data(), kEnough);
+  return head.compare(0, 1, "{") == 0 && head.find("\"command\"") != std::string::npos;
+}
+
+}  // namespace
+
 std::unique_ptr<PendingFolder> Context::outputFolder(const std::string& path,
                                                      const std::vector<std::string>& names) {
   auto folder = std::make_unique<PendingFolder>(path);
   inFolder(path, names);
   sayWhatIsThere(path, names);
+  if (isOurs(path)) {
+    stale_ = names;
+    stale_.emplace_back(kPageName);
+  }
   expectOutputs(1);
-  placePage((std::filesystem::path(path) / "report.html").string());
+  placePage((std::filesystem::path(path) / kPageName).string());
   for (const std::string& name : names)
     if (std::filesystem::path(name).extension() == ".png") {
       notePictures();
@@ -169,15 +188,6 @@ std::string someOf(std::vector<std::string> names) {
   const std::size_t more = names.size() > kShown ? names.size() - kShown : 0;
   names.resize(names.size() - more);
   return fmt::format("{}{}", fmt::join(names, ", "), more ? fmt::format(" and {} more", more) : "");
-}
-
-// Whether a report of an earlier run stands there.
-bool isOurs(const std::filesystem::path& folder) {
-  constexpr std::streamsize kEnough = 4096;
-  std::ifstream file(folder / "report.json", std::ios::binary);
-  std::string head(kEnough, ' ');
-  file.read(head.data(), kEnough);
-  return head.compare(0, 1, "{") == 0 && head.find("\"command\"") != std::string::npos;
 }
 
 }  // namespace
@@ -212,7 +222,7 @@ void Context::placePage(const std::string& output) {
   namespace fs = std::filesystem;
   pagePath_ = options_.html != kPageBesideOutputs
                   ? options_.html
-                  : (fs::path(output).parent_path() / "report.html").string();
+                  : (fs::path(output).parent_path() / kPageName).string();
   enter(pagePath_);
   if (!dryRun()) requireWritable(pagePath_);
 }
@@ -381,6 +391,12 @@ void Context::finish(PendingFolder& folder) {
   }
   folder.write("report.json",
                [&](const std::string& path) { writeReport(path, finishedReport()); });
+  for (const std::string& name : stale_)
+    if (const auto written = folder.written();
+        std::none_of(written.begin(), written.end(), [&](const auto& file) {
+          return std::filesystem::path(file.first).filename() == name;
+        }))
+      folder.remove(name);
   folder.commit();
 }
 

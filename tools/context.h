@@ -92,12 +92,12 @@ class Context {
   void output(const std::string& path, bool sure = true);
   // Files of one kind, of which only the first is tried out.
   void outputs(const std::vector<std::string>& paths);
-  // A folder of files that appear together; `names` are those that are known to be written, others
-  // are added by inFolder(). Files of other names stay untouched. Says which files that are no
-  // earlier run's are replaced, or stay. Null in a dry run.
+  // A folder of files that appear together; `names` are those that may be written. Those of an
+  // earlier run that this one does not write again, and its
+  // page, go. Files of other names stay untouched. Says which files that are no earlier run's are
+  // replaced, or stay. Null in a dry run.
   std::unique_ptr<PendingFolder> outputFolder(const std::string& path,
                                               const std::vector<std::string>& names);
-  void inFolder(const std::string& folder, const std::vector<std::string>& names);
   // Whether all outputs that are sure, but the report, are in place.
   bool allInPlace() const;
 
@@ -154,6 +154,7 @@ class Context {
   void finishPage();
 
  private:
+  void inFolder(const std::string& folder, const std::vector<std::string>& names);
   void sayWhatIsThere(const std::string& path, const std::vector<std::string>& names);
   void requireProgram() const;
 
@@ -188,6 +189,8 @@ class Context {
   std::map<std::string, std::string> inputs_, outputs_;       // by fileKey
   std::vector<std::pair<std::string, std::string>> ordered_;  // outputs: key when told, path
   std::vector<ReportOutput> inFolders_;                       // that are in place, or will be
+  // Names of files in outputFolder() that go when this run does not write them.
+  std::vector<std::string> stale_;
 };
 
 }  // namespace innermap::tool

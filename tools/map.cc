@@ -168,8 +168,6 @@ void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
 BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& folder,
                       Context& context) {
   if (meshes.related) return makeBoundaryPair(std::move(meshes.source), std::move(meshes.target));
-  context.inFolder(options.output, {"correspondence.ply", "correspondence.source.ply",
-                                    "correspondence.png", "correspondence.other.png"});
   context.note(correspondPlan(options) + "; --correspond takes one made before");
   const std::string name = meshes.target.name;
   CorrespondOptions correspond = options.correspond;
@@ -193,9 +191,13 @@ BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& f
 
 void run(const MapOptions& options, Context& context) {
   checkFittingOptions(options.fitting);
-  const auto folder = context.outputFolder(
-      options.output,
-      {"map.ply", "map.vdb", "slices.exr", "section.png", "steps.png", "report.json"});
+  std::vector<std::string> files{"map.ply",     "map.vdb",   "slices.exr",
+                                 "section.png", "steps.png", "report.json"};
+  if (options.correspondence.empty())
+    for (const char* name : {"correspondence.ply", "correspondence.source.ply",
+                             "correspondence.png", "correspondence.other.png"})
+      files.emplace_back(name);
+  const auto folder = context.outputFolder(options.output, files);
   Meshes meshes = readMeshes(options, context);
   const double later = expectPhases(options, meshes, context);
   if (context.dryRun()) return plan(options, meshes, context);

@@ -333,4 +333,23 @@ def test_every_model_gets_a_sound_map():
         assert report["jacobian"]["folded_fraction"] < 0.01, (name, report["jacobian"])
 
 
+def test_what_an_earlier_run_left_goes():
+    """A page or pictures of another map do not stand beside the new one; other files stay."""
+    pair(harmonic, subdivisions=2)
+    small = ["--charges", "200", "--resolution", "16", "--quiet"]
+    innermap("map", "ball.obj", "target.obj", "-o", "out", "--html", *small)
+    for name in ("steps.png", "mine.txt"):
+        with open(f"out/{name}", "w", encoding="ascii") as file:
+            file.write("old")
+    assert "report.html" in os.listdir("out")
+    innermap("map", "ball.obj", "target.obj", "-o", "out", *small)
+    assert sorted(os.listdir("out")) == sorted([*FILES, "mine.txt"]), os.listdir("out")
+    # Nothing says that an earlier run wrote these.
+    os.remove("out/report.json")
+    with open("out/report.html", "w", encoding="ascii") as file:
+        file.write("a page of the user's")
+    innermap("map", "ball.obj", "target.obj", "-o", "out", *small)
+    assert "report.html" in os.listdir("out")
+
+
 run(globals())

@@ -273,9 +273,21 @@ void PendingFolder::write(const std::string& name,
   files_.push_back(std::move(file));
 }
 
+void PendingFolder::remove(const std::string& name) {
+  File file;
+  file.path = (fs::path(folder_) / name).string();
+  const OutputPlace place = outputPlace(file.path);
+  if (place.through || !fs::is_regular_file(place.path)) return;
+  file.place = place.path;
+  file.replaced = stagingFor(folderOf(place.path)).at(kReplaced) + "/" +
+                  fs::path(place.path).filename().string();
+  files_.push_back(std::move(file));
+}
+
 std::vector<std::pair<std::string, std::uint64_t>> PendingFolder::written() const {
   std::vector<std::pair<std::string, std::uint64_t>> out;
   for (const File& file : files_) {
+    if (file.temporary.empty()) continue;
     std::error_code unknown;
     const std::uintmax_t bytes = fs::file_size(file.temporary, unknown);
     out.emplace_back(file.path, unknown ? 0 : bytes);
@@ -288,6 +300,10 @@ void PendingFolder::putInPlace(const File& file) {
     throw FileError(file.path, "cannot be put in place (" + systemMessage() + ")");
   };
   if (file.through) return copyInto(file.path, file.place, file.temporary);
+  if (file.temporary.empty()) {
+    if (rename(file.place.c_str(), file.replaced.c_str()) != 0 && errno != ENOENT) fail();
+    return;
+  }
   // A second name for the old file, where the disk has such: there is no moment without one then.
   if (link(file.place.c_str(), file.replaced.c_str()) != 0 && errno != ENOENT &&
       rename(file.place.c_str(), file.replaced.c_str()) != 0)

@@ -52,6 +52,9 @@ class PendingFolder {
   // the same name. FileErrors of it name the final path.
   void write(const std::string& name, const std::function<void(const std::string&)>& body);
 
+  // A file of this name that stands there goes when the others come.
+  void remove(const std::string& name);
+
   // The files written so far: their final paths, and their sizes in bytes.
   std::vector<std::pair<std::string, std::uint64_t>> written() const;
 
@@ -62,7 +65,7 @@ class PendingFolder {
  private:
   struct Staging;
   struct File {
-    std::string temporary, path, place, replaced;
+    std::string temporary, path, place, replaced;  // temporary: empty of what is to go
     bool through = false;
   };
   Staging& stagingFor(const std::string& folder);

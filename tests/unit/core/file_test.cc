@@ -181,6 +181,24 @@ TEST_F(FileTest, WhatOthersLeftGoesButWhatIsInUseStays) {
   EXPECT_TRUE(fs::exists(mine.temporaryPath()));
 }
 
+TEST_F(FileTest, WhatIsNoLongerThereGoesWithTheCommit) {
+  fs::create_directories(at("out"));
+  std::ofstream(at("out/stale")) << "old";
+  {
+    PendingFolder folder(at("out"));
+    folder.remove("stale");
+    folder.remove("missing");
+  }
+  EXPECT_TRUE(fs::exists(at("out/stale")));  // there was no commit
+  PendingFolder folder(at("out"));
+  folder.write("new", [&](const std::string& path) { std::ofstream(path) << "new"; });
+  folder.remove("stale");
+  EXPECT_EQ(folder.written().size(), 1u);
+  folder.commit();
+  EXPECT_FALSE(fs::exists(at("out/stale")));
+  EXPECT_TRUE(fs::exists(at("out/new")));
+}
+
 TEST_F(FileTest, ACommitThatWasCutOffIsFinished) {
   std::string staging;
   {
