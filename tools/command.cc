@@ -192,6 +192,7 @@ std::vector<Option> commonOptionTable(CommonOptions& common) {
   c.flag("--dry-run", &common.dryRun,
          "say what would be done and how much memory it needs; write nothing");
   c.option("--report", "FILE", &common.report, "write what was done, with times, as JSON");
+  c.flag("--json", &common.json, "print the report on stdout, in place of other text");
   c.option("--html", "FILE", &common.html,
            "also write a page to look at, one file for any browser: numbers with their meaning, "
            "surfaces, sections; report.html beside the outputs, or FILE")
@@ -200,10 +201,22 @@ std::vector<Option> commonOptionTable(CommonOptions& common) {
          "exit code 1 when the verdict that the run ends with is not met; files are written all "
          "the same");
   c.flag("--quiet", &common.quiet, "nothing on stderr but errors").shortName("-q");
+  c.flag("--verbose", &common.verbose, "a line on stderr as each stage begins, with the seconds");
   c.flag("--help", &common.help, "help on what is usual").shortName("-h");
   c.flag("--help-all", &common.helpAll, "help on every option");
   c.flag("--version", &common.version, "the program's version").shortName("-V");
   return c.options();
+}
+
+std::vector<Option> allOptions(const Command& command, CommonOptions& common) {
+  std::vector<Option> all = command.options();
+  const std::size_t own = all.size();
+  for (Option& o : commonOptionTable(common)) {
+    const auto end = all.begin() + static_cast<std::ptrdiff_t>(own);
+    if (std::none_of(all.begin(), end, [&](const Option& other) { return other.name == o.name; }))
+      all.push_back(std::move(o));
+  }
+  return all;
 }
 
 namespace {
@@ -219,8 +232,7 @@ bool usesName(const std::vector<std::string>& arguments, const std::string& name
 void parseArguments(const Command& command, CommonOptions& common,
                     const std::vector<std::string>& arguments) {
   common.arguments = arguments;
-  std::vector<Option> all = command.options();
-  for (Option& o : commonOptionTable(common)) all.push_back(std::move(o));
+  std::vector<Option> all = allOptions(command, common);
 
   CLI::App app;
   app.set_help_flag();

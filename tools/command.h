@@ -90,6 +90,8 @@ std::string optionName(const std::string& setting);
 
 // The options that every command has, bound to `common`.
 std::vector<Option> commonOptionTable(CommonOptions& common);
+// The command's own, and those that it has no own option in place of.
+std::vector<Option> allOptions(const Command& command, CommonOptions& common);
 
 // Parses `arguments` (after the command's name) by the command's table and the common one. Throws
 // UsageError, SettingError. Sets `common.help` and checks nothing further when --help is there;

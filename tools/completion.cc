@@ -19,9 +19,7 @@ Takes takes(const Command& command, const Option& o) {
 
 std::vector<Option> optionsOf(const Command& command) {
   static CommonOptions common;
-  std::vector<Option> all = command.options();
-  for (Option& o : commonOptionTable(common)) all.push_back(std::move(o));
-  return all;
+  return allOptions(command, common);
 }
 
 std::vector<std::string> commandNames() {

@@ -258,6 +258,7 @@ void Context::warning(const std::string& text) {
 }
 
 void Context::print(const std::string& text) {
+  if (options_.json) return;
   progress_.clear();
   std::fwrite(text.data(), 1, text.size(), stdout);
 }
@@ -337,6 +338,7 @@ void Context::conclude() {
   for (const ReportFinding& f : report_.verdict)
     if (!f.met) unmet.push_back(titleOf(f.name));
   if (!report_.verdict.empty()) print(verdictText(report_.verdict, unmet.size()));
+  if (!details_.empty()) print(details_);
   std::vector<ReportOutput> outputs = outputsNow();
   std::error_code none;
   if (std::filesystem::is_regular_file(options_.report, none))

@@ -39,7 +39,8 @@ struct CommonOptions {
   bool strict = false;
   std::string report;
   std::string html;  // empty: none
-  bool quiet = false;
+  bool quiet = false, verbose = false;
+  bool json = false;  // the report on stdout, in place of other text
   bool help = false, helpAll = false, version = false;
   // As they stood on the command line: all of them, and the last value of each option by its name.
   std::vector<std::string> arguments;
@@ -143,6 +144,8 @@ class Context {
 
   // Results, on stdout. Nothing else goes there.
   void print(const std::string& text);
+  // The same, after the verdict.
+  void detail(const std::string& text) { details_ += text; }
 
   // Sections that the command fills; the framework writes it to --report F afterwards.
   Report& report() { return report_; }
@@ -184,7 +187,7 @@ class Context {
   std::map<std::string, std::uint64_t> memoryAfter_;  // bytes, by stage
   std::unique_ptr<Page> page_;
   std::string pagePath_;
-  std::string failure_;
+  std::string failure_, details_;
   double expectedSeconds_ = 0;
   std::map<std::string, std::string> inputs_, outputs_;       // by fileKey
   std::vector<std::pair<std::string, std::string>> ordered_;  // outputs: key when told, path

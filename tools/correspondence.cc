@@ -109,7 +109,7 @@ MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const CorrespondOptions& opt
   MeshCorrespondence map = innermap::correspondMeshes(std::move(laidA), std::move(laidB), settings);
   context.tell(map);
   context.report().add("correspondence", correspondenceFigures(&map));
-  context.print(
+  context.detail(
       qualityText(map.quality, map.map.shells.front().image.space, map.a.outer || map.b.outer));
   return map;
 }

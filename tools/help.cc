@@ -201,7 +201,9 @@ std::string commandHelp(const Command& command, bool all) {
   if (!command.description().empty()) text += "\n" + wrapped(command.description(), 0, 0) + "\n";
   text += argumentSection(command.options());
   text += optionGroups(command.options(), all);
-  std::vector<Option> shared = commonOptionTable(common);
+  const std::vector<Option> every = allOptions(command, common);
+  std::vector<Option> shared(every.begin() + static_cast<std::ptrdiff_t>(command.options().size()),
+                             every.end());
   for (Option& o : shared) o.group = "options of every command";
   text += all ? optionGroups(shared, true) : namesOnly(shared);
   if (!command.examples().empty()) text += "\nexample:\n";

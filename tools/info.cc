@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 
 #include "commands.h"
 #include "info_json.h"
 #include "innermap/field/field_file.h"
+#include "innermap/field/fit_facts.h"
 #include "innermap/io/exr/exr_slices.h"
 #include "innermap/io/vdb/vdb_file.h"
 #include "inputs.h"
@@ -55,7 +57,17 @@ std::string mapInfo(const InfoOptions& options) {
       "{}: {}, {} channel{}, {} charges, boundary of {} vertices and {} triangles\n", options.file,
       steps == 1 ? "harmonic field" : fmt::format("map in {} harmonic steps", steps), channels,
       channels == 1 ? "" : "s", sources, file.boundary.size(), file.boundaryTriangles.size());
-  for (const auto& [key, value] : file.facts) text += fmt::format("    {}: {}\n", key, value);
+  if (options.metadata) {
+    for (const auto& [key, value] : file.facts) text += fmt::format("    {}: {}\n", key, value);
+    return text;
+  }
+  for (const char* key : {"source", "target"})
+    if (const auto name = factText(file.facts, key)) text += fmt::format("  {}: {}\n", key, *name);
+  const FitFacts fit = fitFacts(file.facts);
+  if (std::isfinite(fit.error.p99))
+    text += fmt::format("  boundary error: 99% within {:.3g}, at most {:.3g}{}\n", fit.error.p99,
+                        fit.error.max,
+                        fit.tolerance ? fmt::format("; {:g} was wanted", *fit.tolerance) : "");
   return text;
 }
 
@@ -89,7 +101,8 @@ Command makeInfoCommand() {
   auto o = std::make_shared<InfoOptions>();
   Command c("info", "Say what is in a file: grids, a map, a mesh, or EXR parts");
   c.positional("FILE", &o->file, "a .vdb, .exr, map or mesh file");
-  c.flag("--metadata", &o->metadata, "all metadata of each grid");
+  c.flag("--metadata", &o->metadata,
+         "also all metadata of the grids, or all that a map's file says");
   c.flag("--json", &o->json, "machine-readable, with all metadata, on stdout");
   c.example("innermap info map.vdb");
   c.example("innermap info map.vdb --json | jq '.grids[].name'");

@@ -52,6 +52,7 @@ void execute(const Command& command, const CommonOptions& common, TerminalProgre
     writeReport(common.report, context.finishedReport());
   }
   context.conclude();
+  if (common.json) std::fputs(reportJson(context.finishedReport()).c_str(), stdout);
   if (!context.failure().empty()) throw DataError(context.failure());
 }
 
@@ -110,7 +111,7 @@ void runCommand(const std::vector<std::string>& arguments) {
     return;
   }
   // Signals may come until the very end of the process.
-  static TerminalProgress progress(TerminalProgress::styleFor(common.quiet));
+  static TerminalProgress progress(TerminalProgress::styleFor(common.quiet, common.verbose));
   progress.expect(usualPhases(command.name()));
   handleSignals(progress);
   const RunScope scope(progress);

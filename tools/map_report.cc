@@ -123,8 +123,8 @@ void reportFit(const MapFit& fit, const FitMapSettings& settings, bool bestEffor
   report.add("solve", choiceFigures(settings.seed, fit.smooth));
   report.add("boundary_error", boundaryErrorFigures(&fit));
   const BoundaryError& e = fit.error;
-  context.print(fmt::format("boundary error: rms {:.2e}, 99% {:.2e}, max {:.2e} of the diagonal\n",
-                            e.rms, e.p99, e.max));
+  context.detail(fmt::format("boundary error: rms {:.2e}, 99% {:.2e}, max {:.2e} of the diagonal\n",
+                             e.rms, e.p99, e.max));
 }
 
 void reportFitter(const FrameFitter& fitter, const FrameFitterSettings& settings, Report& report) {
@@ -143,7 +143,7 @@ void reportFitter(const FrameFitter& fitter, const FrameFitterSettings& settings
 
 void reportInjectivity(const Injectivity& known, Context& context) {
   context.report().add("one_to_one", figures(known));
-  context.print(injectivityLine(known) + "\n");
+  context.detail(injectivityLine(known) + "\n");
 }
 
 void reportGrids(const SolidGrids& grids, const LameConstants& lame, Context& context) {
@@ -155,7 +155,7 @@ void reportGrids(const SolidGrids& grids, const LameConstants& lame, Context& co
   report.add("jacobian", jacobianFigures(values));
   report.add("grid", gridFigures(grids));
   if (values.repaired) report.add("repair", repairFigures(values));
-  context.print(fmt::format(
+  context.detail(fmt::format(
       "energy: harmonic {:.6g}, deformation {:.6g}\n"
       "jacobian: {:.4g} to {:.4g}, folded {:.3g}% of the volume\n"
       "grid: {} active voxels of {:.6g}\n",

@@ -121,7 +121,7 @@ openvdb::GridPtrVec push(const Job& job, const TransferOptions& options, Context
     return VolumePusher(job.mapped.solid(), job.grids, settings).push(job.mapped.map, *levelSet);
   });
   reportPush(result, context);
-  context.print(pushText(result));
+  context.detail(pushText(result));
   const double volumes = volumeRatio(job.mapped.solid().volume(), job.target.volume());
   for (const CarriedMass& mass : result.masses)
     judgeDensity({mass.name, "", std::min(mass.largestRatio, settings.carry.densityLimit), volumes},
@@ -146,7 +146,7 @@ openvdb::GridPtrVec pull(const Job& job, const TransferOptions& options, Context
       "pull", [&] { return pullGrids(job.mapped.map, source, *levelSet, job.grids, settings); });
   for (const std::string& warning : result.warnings) context.warning(warning);
   context.report().add("pull", pulledFigures(result.voxels));
-  context.print(fmt::format("pulled {} grids, {} voxels\n", result.grids.size(), result.voxels));
+  context.detail(fmt::format("pulled {} grids, {} voxels\n", result.grids.size(), result.voxels));
   const double volumes = volumeRatio(job.target.volume(), source.volume());
   for (const openvdb::GridBase::Ptr& grid : job.grids)
     if (result.resampling.largestGrowth > 0 && isDensity(*grid, settings.carry))
@@ -204,7 +204,7 @@ void runGeometry(Way way, const CarryOptions& options, Context& context) {
     return carryFile(*file, carry, options.geometry.subdivide * diagonal, context);
   });
   warnOf(*file, carried, options.transfer, "", context);
-  context.print(reportGeometry(*file, carried, context));
+  context.detail(reportGeometry(*file, carried, context));
   judgeMap(mapped, nullptr, options.verdict, MapOrigin::file, context);
   writeGeometryFile(options.output, *file, carried, context);
 }

@@ -35,11 +35,12 @@ std::string durationText(double seconds) {
 
 }  // namespace
 
-TerminalProgress::Style TerminalProgress::styleFor(bool quiet) {
+TerminalProgress::Style TerminalProgress::styleFor(bool quiet, bool verbose) {
   if (quiet) return Style::none;
+  if (verbose) return Style::lines;
   const char* terminal = std::getenv("TERM");
   const bool dumb = !terminal || std::string_view(terminal) == "dumb";
-  return isatty(STDERR_FILENO) && !dumb ? Style::bar : Style::lines;
+  return isatty(STDERR_FILENO) && !dumb ? Style::bar : Style::rare;
 }
 
 void TerminalProgress::expect(std::vector<JobPhase> phases) {
@@ -104,7 +105,8 @@ void TerminalProgress::writeLine(std::string_view stage, double fraction) {
   const auto time = Clock::now();
   const std::string text = job_.known() || part_.empty() ? label(stage) : part_;
   const bool first = seen_.insert(text).second;
-  if (!first && time - last_ < kLineEvery) return;
+  const bool due = time - std::max(last_, start_) >= kLineEvery;
+  if (!due && (!first || style_ == Style::rare)) return;
   last_ = time;
   const JobClock::State job = job_.at(now());
   std::string line = fmt::format("{:6.1f} s  {}", now(), text);

@@ -1,4 +1,4 @@
-// Progress on stderr: a bar on a terminal, plain lines otherwise.
+// Progress on stderr: a bar on a terminal, else a plain line from time to time, or one a stage.
 #pragma once
 
 #include <chrono>
@@ -13,10 +13,10 @@ namespace innermap::tool {
 
 class TerminalProgress : public RunContext {
  public:
-  enum class Style { none, lines, bar };
+  enum class Style { none, rare, lines, bar };
 
-  // bar when stderr is a terminal that can move its cursor.
-  static Style styleFor(bool quiet);
+  // lines when verbose, else bar when stderr is a terminal that can move its cursor.
+  static Style styleFor(bool quiet, bool verbose);
 
   explicit TerminalProgress(Style style) : style_(style) {}
   ~TerminalProgress() override { clear(); }

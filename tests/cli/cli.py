@@ -158,8 +158,8 @@ def file_size_limit(size):
 def interrupt(*arguments, after, number=signal.SIGINT):
     """Starts innermap and signals it `after` seconds after its first line of progress; (exit code,
     seconds it took to end), or (None, 0) when it had ended by then."""
-    process = subprocess.Popen([PROGRAM, *map(str, arguments)], stdout=subprocess.PIPE,
-                               stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen([PROGRAM, *map(str, arguments), "--verbose"],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     process.stderr.readline()
     time.sleep(after)
     if process.poll() is not None:

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """What holds for every command: quiet, dry run, report, limits, full disks, cancelling."""
 
+import json
 import os
 import resource
 import signal
@@ -38,6 +39,19 @@ def test_progress_is_a_bar_on_a_terminal():
     assert "\r" in text and "%" in text
     bar, written = text.split("innermap: wrote ")
     assert bar.endswith("\r\x1b[K") and "\x1b[K" not in written, "the bar is not taken away"
+
+
+def test_json_is_the_report_on_stdout():
+    cube()
+    done = innermap("voxelize", "cube.obj", "-o", "a.vdb", "--resolution", "16", "--json", "--report",
+                    "r.json")
+    told, written = json.loads(done.stdout), cli.read_json("r.json")
+    for report in (told, written):
+        for key in ("seconds", "memory_after_bytes", "peak_memory_bytes", "outputs"):
+            report.pop(key)
+    assert told == written and told["grid"]["active_voxels"] > 0
+    planned = json.loads(innermap("voxelize", "cube.obj", "-o", "a.vdb", "--dry-run", "--json").stdout)
+    assert planned["dry_run"] and planned["memory_needed_bytes"] > 0
 
 
 def test_dry_run_writes_nothing_and_tells_the_memory():

@@ -24,13 +24,18 @@ def read(path, *options):
 
 def test_what_all_grids_say_stands_once():
     mapped()
-    lines = [line.strip() for line in innermap("info", "out/map.vdb").stdout.split("\n")]
+    short = innermap("info", "out/map.vdb").stdout
+    assert "  jacobian: float" in short and "innermap_" not in short
+    every = innermap("info", "out/map.vdb", "--metadata").stdout
+    assert every.index("  jacobian: float") < every.index("in all grids:")
+    lines = [line.strip() for line in every.split("\n")]
     for key in ["innermap_source: ball.obj", "innermap_target: egg.obj", "innermap_version: "]:
         assert sum(line.startswith(key) for line in lines) == 1, key
     assert lines.index("in all grids:") < lines.index("innermap_target: egg.obj")
-    every = [line.strip() for line in innermap("info", "out/map.vdb", "--metadata").stdout.split("\n")]
-    assert sum(line.startswith("innermap_target") for line in every) == 1
-    assert sum(line.startswith("file_voxel_count") for line in every) >= 2
+    assert sum(line.startswith("file_voxel_count") for line in lines) >= 2
+    told = innermap("info", "out/map.ply").stdout
+    assert "  target: egg.obj" in told and "99% within" in told and "rank: " not in told
+    assert "rank: " in innermap("info", "out/map.ply", "--metadata").stdout
 
 
 def test_json_of_each_kind_of_file():

@@ -52,7 +52,9 @@ def test_one_bar_that_never_runs_backwards():
 
 def test_lines_carry_seconds():
     pair()
-    done = innermap("map", "ball.obj", "egg.obj", "-o", "out", "--resolution", "32")
+    job = ["map", "ball.obj", "egg.obj", "-o", "out", "--resolution", "32"]
+    assert not re.search(r"^ *\d+\.\d s ", innermap(*job).stderr, re.M)  # only every ten seconds
+    done = innermap(*job, "--verbose")
     lines = [line for line in done.stderr.split("\n") if line and not line.startswith("innermap: ")]
     found = [re.fullmatch(r" *(\d+\.\d) s  (\w.*)", line) for line in lines]
     assert all(found) and len(found) >= 3, lines

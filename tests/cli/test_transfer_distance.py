@@ -41,7 +41,7 @@ def test_five_files_with_distances_everywhere():
     assert distance["range"] == [0, distance["largest_in_target"]]
     for name in ("source.png", "target.png"):
         assert min(png_size(f"out/{name}")) > 700
-    text = innermap("info", "out/source.vdb").stdout
+    text = innermap("info", "out/source.vdb", "--metadata").stdout
     assert all(f"{grid}: float" in text for grid in ("distance", "source_distance", "surface"))
     assert "innermap_boundary_error_rms" in text
 

@@ -33,23 +33,21 @@ std::string transformText(const openvdb::math::Transform& transform) {
 
 using Entry = std::pair<std::string, std::string>;
 
-// What innermap wrote, or all: name and value.
-std::vector<Entry> entriesOf(const VdbGridInfo& g, bool metadata) {
+std::vector<Entry> entriesOf(const VdbGridInfo& g) {
   std::vector<Entry> entries;
   if (!g.grid) return entries;
   for (auto it = g.grid->beginMeta(); it != g.grid->endMeta(); ++it)
-    if (metadata || it->first.compare(0, 9, "innermap_") == 0)
-      entries.emplace_back(it->first, it->second ? it->second->str() : "");
+    entries.emplace_back(it->first, it->second ? it->second->str() : "");
   return entries;
 }
 
 // What several grids all say alike.
-std::vector<Entry> commonEntries(const VdbInfo& info, bool metadata) {
+std::vector<Entry> commonEntries(const VdbInfo& info) {
   std::vector<Entry> common;
   if (info.grids.size() < 2) return common;
-  common = entriesOf(info.grids.front(), metadata);
+  common = entriesOf(info.grids.front());
   for (const VdbGridInfo& grid : info.grids) {
-    const std::vector<Entry> own = entriesOf(grid, metadata);
+    const std::vector<Entry> own = entriesOf(grid);
     common.erase(std::remove_if(common.begin(), common.end(),
                                 [&](const Entry& e) {
                                   return std::find(own.begin(), own.end(), e) == own.end();
@@ -82,7 +80,7 @@ std::string gridText(const VdbGridInfo& g, bool metadata, const std::vector<Entr
     text += ", box " + boxText(lower->value(), upper->value());
   text += count ? "\n    " : "    ";
   text += transformText(g.grid->constTransform()) + "\n";
-  return text + entriesText(entriesOf(g, metadata), common, metadata ? "      " : "    ");
+  return metadata ? text + entriesText(entriesOf(g), common, "      ") : text;
 }
 
 }  // namespace
@@ -90,11 +88,10 @@ std::string gridText(const VdbGridInfo& g, bool metadata, const std::vector<Entr
 std::string describe(const VdbInfo& info, const std::string& path, bool metadata) {
   std::string text = fmt::format("{}: OpenVDB {}, {} grid{}\n", path, info.version,
                                  info.grids.size(), info.grids.size() == 1 ? "" : "s");
-  text += metadataText(info.metadata, "  ");
-  const std::vector<Entry> common = commonEntries(info, metadata);
-  if (!common.empty()) text += "  in all grids:\n" + entriesText(common, {}, "    ");
+  const std::vector<Entry> common = commonEntries(info);
   for (const VdbGridInfo& grid : info.grids) text += "  " + gridText(grid, metadata, common);
-  return text;
+  if (metadata && !common.empty()) text += "  in all grids:\n" + entriesText(common, {}, "    ");
+  return text + metadataText(info.metadata, "  ");
 }
 
 std::uint64_t readMemory(const VdbInfo& info, const std::vector<std::string>& names) {

@@ -70,8 +70,8 @@ struct VdbInfo {
 // Without reading voxels; throws as readVdb does.
 VdbInfo readVdbInfo(const std::string& path);
 
-// What the file at `path` holds, for a terminal: a few lines a grid, with all its metadata or only
-// innermap's own; what all grids say alike stands once, before them.
+// What the file at `path` holds, for a terminal: a few lines a grid, with or without its metadata;
+// what all grids say alike stands once, after them.
 std::string describe(const VdbInfo& info, const std::string& path, bool metadata = false);
 
 // Bytes that reading the grids of these names takes; empty means all.
