@@ -7,6 +7,7 @@
 #include <numeric>
 #include <type_traits>
 
+#include "lists.h"
 #include "spelling.h"
 
 namespace innermap::tool {
@@ -20,6 +21,7 @@ std::string defaultOf(const Target& target) {
     std::string operator()(const double* v) const { return fmt::format("{:.6g}", *v); }
     std::string operator()(const std::string* v) const { return *v; }
     std::string operator()(const SettingChoice& v) const { return v.words[v.now()]; }
+    std::string operator()(const Cut* v) const { return v->axis || v->at ? textOf(*v) : ""; }
     std::string operator()(const void*) const { return ""; }  // flags, lists, what may be absent
   };
   return std::visit(Visitor{}, target);
@@ -105,7 +107,9 @@ void take(const Command& command, const Given& given, CommonOptions& common) {
     if (given.flag) *std::get<bool*>(o.target) = o.sets;
     return;
   }
-  if (given.values.size() > 1 && !o.isList()) refuse(command, o.name + " is given more than once");
+  const bool parts = std::holds_alternative<Cut*>(o.target);
+  if (given.values.size() > 1 && !o.isList() && !parts)
+    refuse(command, o.name + " is given more than once");
   if (given.values.empty()) {
     if (o.required)
       refuse(command, o.isPositional()
@@ -258,8 +262,8 @@ void parseArguments(const Command& command, CommonOptions& common,
   refuseLeftOvers(command, all, app.remaining());
   for (const Given& g : given) take(command, g, common);
   for (const Option& o : all)
-    if (!o.formerName.empty() && usesName(arguments, o.formerName))
-      common.notes.push_back(o.formerName + " is now called " + o.name);
+    for (const std::string& former : commaList(o.formerName))
+      if (usesName(arguments, former)) common.notes.push_back(former + " is now called " + o.name);
 }
 
 std::string didYouMean(const std::string& typed, const std::vector<std::string>& known) {

@@ -11,15 +11,15 @@
 namespace innermap::tool {
 
 struct CutOptions {
-  int axis = 2;
-  double at = 0.5;  // of the box along the axis
+  Cut cut{2, 0.5};
   Colormap colormap = Colormap::redBlue;
 
   // label: "spot.obj, cut" of path/spot.obj.
   CellPictureSettings cellPicture(const std::string& path) const;
 };
 
-std::vector<Setting> describe(CutOptions& options);
+// --section and --colormap.
+void addCut(Command& command, CutOptions& options);
 
 // --picture FILE and the cut's options, in a group of their own. help: what the picture shows.
 void addCellPicture(Command& command, std::string& path, CutOptions& cut, const std::string& help);

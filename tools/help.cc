@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "innermap/core/file.h"
 #include "innermap/core/version.h"
+#include "lists.h"
 #include "report_sections.h"
 
 namespace innermap::tool {
@@ -104,7 +105,8 @@ std::string argumentSection(const std::vector<Option>& options) {
 std::string markdownRow(const Option& o) {
   std::string help = o.help, values = valueText(o);
   if (!o.formerName.empty())
-    values += fmt::format("{}formerly {}", values.empty() ? "" : "; ", o.formerName);
+    values += fmt::format("{}formerly {}", values.empty() ? "" : "; ",
+                          fmt::join(commaList(o.formerName), ", "));
   for (std::string* text : {&help, &values})
     for (std::size_t at = 0; (at = text->find('|', at)) != std::string::npos; at += 2)
       text->insert(at, "\\");

@@ -10,6 +10,7 @@
 
 #include "command.h"
 #include "innermap/core/file.h"
+#include "innermap/io/slice.h"
 #include "lists.h"
 #include "spelling.h"
 
@@ -100,6 +101,7 @@ struct Taker {
     const auto found = std::find(words.begin(), words.end(), parseText(option, text));
     to.take(static_cast<std::size_t>(found - words.begin()));
   }
+  void operator()(Cut* to) const { *to = parseCut(option.name, text, *to); }
   void operator()(NumberPair* to) const { *to = parsePair(option, text); }
   void operator()(std::vector<std::string>* to) const { to->push_back(parseText(option, text)); }
   template <class Value>
@@ -111,6 +113,39 @@ struct Taker {
 };
 
 }  // namespace
+
+Cut parseCut(const std::string& name, const std::string& text, Cut cut) {
+  const std::size_t equals = text.find('=');
+  std::string axis = text.substr(0, equals), at;
+  if (equals != std::string::npos)
+    at = text.substr(equals + 1);
+  else if (!axis.empty() && std::isalpha(static_cast<unsigned char>(axis[0])) == 0)
+    std::swap(axis, at);
+  if (axis.empty() && at.empty())
+    throw UsageError(name + ": is empty; give an axis and a fraction, as in x=0.5");
+  static const std::string kAxes = "xyz";
+  if (axis == "auto")
+    cut.axis.reset();
+  else if (axis.size() > 1 || (!axis.empty() && kAxes.find(axis) == std::string::npos))
+    throw UsageError(
+        fmt::format("{}: '{}' is not an axis; give x, y or z, as in x=0.5", name, axis));
+  else if (!axis.empty())
+    cut.axis = static_cast<int>(kAxes.find(axis));
+  if (at.empty() && equals == std::string::npos) return cut;
+  Option fraction;
+  fraction.name = name;
+  fraction.range = {0, 1, false};
+  fraction.unit = "fraction of the box";
+  cut.at = parseNumber<double>(fraction, at, "a number");
+  return cut;
+}
+
+std::string textOf(const Cut& cut) {
+  std::string out;
+  if (cut.axis) out = axisName(*cut.axis);
+  if (cut.at) out += fmt::format("{}{:g}", out.empty() ? "" : "=", *cut.at);
+  return out;
+}
 
 void parseInto(const Option& option, const std::string& text) {
   std::visit(Taker{option, text}, option.target);

@@ -16,16 +16,30 @@ namespace innermap::tool {
 // Two numbers, "LO,HI" on the command line.
 using NumberPair = std::pair<double, double>;
 
+// A plane across a box: "x=0.5" on the command line, an axis and the fraction of the box along it;
+// either may be left out.
+struct Cut {
+  std::optional<int> axis;
+  std::optional<double> at;
+};
+constexpr const char* kCutPlaceholder = "AXIS=T";
+
+// Adds what the text says, "x=0.5", "x", "0.5" or "auto", to `cut`; the name is the option's.
+// Throws UsageError, SettingError.
+Cut parseCut(const std::string& name, const std::string& text, Cut cut);
+std::string textOf(const Cut& cut);
+
 // Where the value goes. std::uint64_t serves std::size_t too. A list is for the last positional
 // argument alone, which then takes all that follow. No std::function stands here by itself:
 // libstdc++ 12 destroys what it never made where copying one in a variant throws.
-using Target = std::variant<bool*, int*, std::uint64_t*, double*, std::string*, std::optional<int>*,
-                            std::optional<std::uint64_t>*, std::optional<double>*,
-                            std::optional<NumberPair>*, std::vector<std::string>*, SettingChoice>;
+using Target =
+    std::variant<bool*, int*, std::uint64_t*, double*, std::string*, std::optional<int>*,
+                 std::optional<std::uint64_t>*, std::optional<double>*, std::optional<NumberPair>*,
+                 std::vector<std::string>*, Cut*, SettingChoice>;
 
 struct Option {
   std::string name;         // "--voxel-size"; a positional argument's is in capitals: "MESH"
-  std::string formerName;   // is still taken, with a note; or empty
+  std::string formerName;   // is still taken, with a note; several with commas between; or empty
   std::string shortName;    // "-o", or empty
   std::string placeholder;  // "LENGTH"; empty for a flag
   std::string unit;         // "world units", or empty

@@ -30,6 +30,10 @@ struct ValueOf {
     if (text.empty()) return leftToTheCommand();
     return text;
   }
+  ReportValue operator()(const Cut* v) const {
+    if (!v->axis && !v->at) return leftToTheCommand();
+    return textOf(*v);
+  }
   ReportValue operator()(const std::optional<NumberPair>* v) const {
     if (!*v) return leftToTheCommand();
     return std::vector<double>{(*v)->first, (*v)->second};

@@ -5,14 +5,10 @@
 namespace innermap::tool {
 
 void addSectionOptions(Command& c, SectionOptions& o) {
-  c.choice("--section-axis", "AXIS", &o.axis, {{"auto", {}}, {"x", 0}, {"y", 1}, {"z", 2}},
-           "direction across the pictured section; auto: where the solid is thinnest")
-      .advanced();
-  c.option("--section-at", "T", &o.at, "place of the pictured section along its axis")
-      .unit("fraction of the box")
-      .range(0, 1)
-      .defaults("near the middle, where most is cut")
-      .advanced();
+  c.option("--section", kCutPlaceholder, &o.cut,
+           "plane of the picture: x, y or z, and the fraction of the box along it, as in x=0.5")
+      .defaults("where the solid is thinnest, near the middle, where most is cut")
+      .was("--section-axis,--section-at");
   c.setting(colormapSetting(&o.colormap));
   c.setting(scaleSetting(&o.scale));
 }
@@ -22,8 +18,8 @@ SectionSettings sectionSettings(const SectionOptions& options, const Solid& soli
   SectionSettings section;
   section.colormap = options.colormap;
   section.scale = options.scale;
-  section.axis = options.axis ? *options.axis : thinnestAxis(solid.box().extent());
-  section.at = options.at ? *options.at : fullLayer(density, section.axis);
+  section.axis = options.cut.axis ? *options.cut.axis : thinnestAxis(solid.box().extent());
+  section.at = options.cut.at ? *options.cut.at : fullLayer(density, section.axis);
   return section;
 }
 

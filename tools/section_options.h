@@ -13,8 +13,7 @@
 namespace innermap::tool {
 
 struct SectionOptions {
-  std::optional<int> axis;  // without: where the solid is thinnest
-  std::optional<double> at;
+  Cut cut;  // without an axis: where the solid is thinnest
   Colormap colormap = Colormap::redBlue;
   SectionScale scale = SectionScale::automatic;
 };

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "commands.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/exr/exr_slices.h"
@@ -18,6 +20,7 @@ namespace {
 
 struct SliceOptions {
   std::string file, output, picture, grids;
+  std::string plane;  // of the picture, as it was given
   int axis = 2;
   ExrSliceSettings slices;
   SectionSettings section;
@@ -52,9 +55,7 @@ void writeSlices(const SliceOptions& options, const openvdb::GridPtrVec& grids, 
 }
 
 void writeSection(const SliceOptions& options, const openvdb::GridPtrVec& grids, Context& context) {
-  auto settings = options.section;
-  settings.axis = options.axis;
-  const SectionResult r = writeSectionImage(options.picture, grids, settings);
+  const SectionResult r = writeSectionImage(options.picture, grids, options.section);
   context.report().add("section", figures(r));
 }
 
@@ -66,15 +67,28 @@ std::uint64_t memoryOf(const SliceOptions& options, const openvdb::GridPtrVec& g
     need = exrSliceMemory(grids, slices);
   }
   if (options.picture.empty()) return need;
-  SectionSettings section = options.section;
-  section.axis = options.axis;
-  return std::max(need, sectionImageMemory(grids, section));
+  return std::max(need, sectionImageMemory(grids, options.section));
 }
 
-void run(const SliceOptions& options, Context& context) {
+// --section was the picture's file once.
+SliceOptions withPlane(SliceOptions options, Context& context) {
+  if (std::filesystem::path(options.plane).extension() == ".png") {
+    context.note("--section FILE is now called --picture FILE; --section x=0.5 is its plane");
+    options.picture = options.plane;
+    options.plane.clear();
+  }
+  Cut cut{options.axis, {}};
+  if (!options.plane.empty()) cut = parseCut("--section", options.plane, cut);
+  options.section.axis = *cut.axis;
+  if (cut.at) options.section.at = *cut.at;
+  return options;
+}
+
+void run(const SliceOptions& given, Context& context) {
+  const SliceOptions options = withPlane(given, context);
   if (options.output.empty() && options.picture.empty())
     throw UsageError(
-        "give --output for EXR slices, --section for a picture, or both; "
+        "give --output for EXR slices, --picture for a section, or both; "
         "see 'innermap slice --help'");
   for (const std::string* path : {&options.output, &options.picture})
     if (!path->empty()) context.output(*path);
@@ -114,16 +128,20 @@ Command makeSliceCommand() {
   c.settings(without(describe(o->slices), {"axis"}));
   c.option("--grids", "LIST", &o->grids, "grids to slice, with commas between").defaults("all");
   c.group("picture");
-  c.option("--section", "FILE", &o->picture, "the .png picture to write").writes({".png"});
+  c.option("--picture", "FILE", &o->picture, "a .png of a section to write").writes({".png"});
+  c.option("--section", kCutPlaceholder, &o->plane,
+           "plane of the picture: x, y or z, and the fraction of the box along it, as in x=0.5")
+      .defaults("across --axis, in the middle");
   c.option("--grid", "NAME", &o->section.grid, "grid that the picture shows")
       .defaults("jacobian, else the first energy, map, density or surface there is");
-  c.settings(without(describe(o->section), {"axis"}));
+  c.settings(without(describe(o->section), {"axis", "at"}));
+  c.setting(only(describe(o->section), {"at"}).front().rare());
   c.option("--range", "LO,HI", &o->section.range,
            "values at the ends of the colours; with --colour, black and white")
       .defaults("all but the outermost 0.5% on each side");
   c.example("innermap slice map.vdb --axis z --slices 16 -o slices.exr");
-  c.example("innermap slice map.vdb --section section.png --grid jacobian --axis x --at 0.5");
-  c.example("innermap slice texture.vdb --section section.png --colour --axis x");
+  c.example("innermap slice map.vdb --picture section.png --grid jacobian --section x=0.5");
+  c.example("innermap slice texture.vdb --picture section.png --colour --section x");
   c.run([o](Context& context) { run(*o, context); });
   return c;
 }

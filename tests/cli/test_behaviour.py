@@ -60,7 +60,7 @@ def test_dry_run_writes_nothing_and_tells_the_memory():
                     ["info", "cube.obj"]]:
         assert cli.dry_run(*command, "--report", "r.json").memory > 1e6
     innermap("voxelize", "cube.obj", "-o", "a.vdb", "--resolution", "16")
-    done = innermap("slice", "a.vdb", "-o", "s.exr", "--section", "p.png", "--dry-run")
+    done = innermap("slice", "a.vdb", "-o", "s.exr", "--picture", "p.png", "--dry-run")
     assert "s.exr" in done.stdout and "p.png" in done.stdout
     no_leftovers("cube.obj", "a.vdb")
 
@@ -92,7 +92,7 @@ def test_outputs_that_cannot_be_written():
     fails(1, "check", "cube.obj", "--report", "missing/r.json", says=["missing/r.json"])
     innermap("voxelize", "cube.obj", "-o", "a.vdb", "--resolution", "16", "--quiet")
     fails(1, "slice", "a.vdb", "-o", "missing/s.exr", says=["missing/s.exr"])
-    fails(1, "slice", "a.vdb", "--section", "missing/p.png", says=["missing/p.png"])
+    fails(1, "slice", "a.vdb", "--picture", "missing/p.png", says=["missing/p.png"])
     if os.geteuid() != 0:
         os.chmod("folder", 0o500)
         fails(1, "voxelize", "cube.obj", "-o", "folder/a.vdb", says=["folder/a.vdb"])
@@ -106,7 +106,7 @@ def test_full_disk():
     innermap("voxelize", "ball.obj", "-o", "a.vdb", "--resolution", "64", "--quiet")
     for size in [0, 1000, 20000]:
         fails(1, "slice", "a.vdb", "-o", "s.exr", says=["s.exr"], preexec_fn=file_size_limit(size))
-        fails(1, "slice", "a.vdb", "--section", "p.png", says=["p.png"],
+        fails(1, "slice", "a.vdb", "--picture", "p.png", says=["p.png"],
               preexec_fn=file_size_limit(size))
     if os.path.exists("/dev/full"):
         with open("/dev/full", "w", encoding="ascii") as full:

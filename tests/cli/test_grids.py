@@ -87,7 +87,7 @@ def test_same_file_content_for_any_number_of_threads():
     for threads in ["1", "2", "4"]:
         innermap("voxelize", "ball.obj", "-o", "a.vdb", "--resolution", "40", "--fog", "--quiet",
                  "--threads", threads)
-        innermap("slice", "a.vdb", "-o", "s.exr", "--section", "p.png", "--quiet",
+        innermap("slice", "a.vdb", "-o", "s.exr", "--picture", "p.png", "--quiet",
                  "--threads", threads)
         with open("s.exr", "rb") as exr, open("p.png", "rb") as png:
             parts.append((exr.read(), png.read()))
@@ -96,7 +96,7 @@ def test_same_file_content_for_any_number_of_threads():
 
 def test_slices_and_section():
     ball_grid()
-    innermap("slice", "ball.vdb", "--axis", "y", "--slices", "5", "-o", "s.exr", "--section",
+    innermap("slice", "ball.vdb", "--axis", "y", "--slices", "5", "-o", "s.exr", "--picture",
              "p.png", "--grid", "surface", "--at", "0.5", "--report", "r.json")
     text = innermap("info", "s.exr").stdout
     assert "5 parts" in text and "y_0004" in text and "density.V, surface.V" in text
@@ -119,11 +119,11 @@ def test_grids_and_places_that_are_not_there():
     ball_grid()
     fails(1, "slice", "ball.vdb", "-o", "s.exr", "--grids", "surface,curl",
           says=["curl", "surface", "density"])
-    fails(1, "slice", "ball.vdb", "--section", "p.png", "--grid", "jacobian",
+    fails(1, "slice", "ball.vdb", "--picture", "p.png", "--grid", "jacobian",
           says=["jacobian", "density"])
-    fails(1, "slice", "ball.vdb", "--section", "p.png", "--position", "50", says=["position"])
-    fails(1, "slice", "ball.vdb", "--section", "p.png", "--range", "2,1", says=["range"])
-    fails(1, "slice", "ball.vdb", "--section", "p.png", "--at", "1.5", says=["--at"])
+    fails(1, "slice", "ball.vdb", "--picture", "p.png", "--position", "50", says=["position"])
+    fails(1, "slice", "ball.vdb", "--picture", "p.png", "--range", "2,1", says=["range"])
+    fails(1, "slice", "ball.vdb", "--picture", "p.png", "--at", "1.5", says=["--at"])
     fails(1, "slice", "ball.vdb", "-o", "s.exr", "--slices", "0", says=["--slices"])
     fails(2, "slice", "ball.vdb", "-o", "s.exr", "--axis", "w", says=["--axis"])
 

@@ -110,19 +110,19 @@ def pixels(path):
 def test_scales_and_colormaps():
     mapped()
     section = ["slice", "out/map.vdb", "--grid", "jacobian", "--pixels", "64"]
-    innermap(*section, "--section", "a.png", "--report", "r.json")
+    innermap(*section, "--picture", "a.png", "--report", "r.json")
     lower, upper = cli.read_json("r.json")["section"]["range"]
     assert upper >= 1.49 and abs(lower * upper - 1) < 1e-6  # 1 has the middle colour
-    innermap(*section, "--section", "b.png", "--scale", "linear", "--report", "r.json")
+    innermap(*section, "--picture", "b.png", "--scale", "linear", "--report", "r.json")
     lower, upper = cli.read_json("r.json")["section"]["range"]
     assert lower > 1.4 and upper < 1.6
     seen = set()
     for name in ["red-blue", "viridis", "cividis", "inferno", "gray"]:
-        innermap(*section, "--section", "c.png", "--colormap", name)
+        innermap(*section, "--picture", "c.png", "--colormap", name)
         seen.add(tuple(map(tuple, pixels("c.png"))))
     assert len(seen) == 5
-    fails(2, *section, "--section", "c.png", "--colormap", "rainbow", says=["viridis"])
-    fails(1, *section, "--section", "c.png", "--scale", "log", "--range", "-1,1")
+    fails(2, *section, "--picture", "c.png", "--colormap", "rainbow", says=["viridis"])
+    fails(1, *section, "--picture", "c.png", "--scale", "log", "--range", "-1,1")
 
 
 def test_folds_have_a_colour_of_their_own():
@@ -131,7 +131,7 @@ def test_folds_have_a_colour_of_their_own():
     cli.write_obj("turned.obj", [(-x, y, z) for x, y, z in vertices], faces)
     innermap("map", "ball.obj", "turned.obj", "-o", "out", "--one-to-one", "off", "--best-effort",
              "--repair", "off", *MAP, "-q")
-    innermap("slice", "out/map.vdb", "--grid", "jacobian", "--section", "a.png", "--pixels", "64")
+    innermap("slice", "out/map.vdb", "--grid", "jacobian", "--picture", "a.png", "--pixels", "64")
     colours = [c for row in pixels("a.png") for c in row]
     folded = sum(r > 180 and g < 40 and b > 170 for r, g, b in colours)
     assert folded > 1000, folded

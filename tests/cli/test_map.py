@@ -129,7 +129,7 @@ def test_parts_give_what_map_gives():
     for section in ["energy", "jacobian", "grid"]:
         assert parts[section] == whole[section], section
     innermap("slice", "m.vdb", "--axis", "z", "--slices", "4", "-o", "s.exr", "--quiet")
-    told = innermap("info", "m.ply").stdout
+    told = innermap("info", "m.ply", "--metadata").stdout
     assert "400 charges" in told and "interpolation: smooth" in told, told
 
 

@@ -234,7 +234,7 @@ CASES = [
     Case("compare-fem", lambda _: torus(60),
          "compare-fem torus.obj -o out --functions --charges 500 --resolutions {}", 16, 72),
     Case("slice", volume, "slice in.vdb -o out.exr --slices 64", 64, 600),
-    Case("slice --section", volume, "slice in.vdb --grid surface --section out.png", 64, 600),
+    Case("slice --section", volume, "slice in.vdb --grid surface --picture out.png", 64, 600),
     Case("export", volume, "export in.vdb -o out.exr", 64, 400),
     Case("export --resolution", lambda _: volume(64), "export in.vdb -o out.exr --resolution {}", 64, 512),
     Case("export --layout parts", volume, "export in.vdb -o out.exr --layout parts", 64, 400),

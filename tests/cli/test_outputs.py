@@ -39,7 +39,7 @@ def test_an_output_is_no_input():
                     ["voxelize", "cube.obj", "-o", "a.vdb", "--report", "hard.obj"],
                     ["voxelize", "cube.obj", "-o", "a.vdb", "--report", "cube.obj"],
                     ["check", "cube.obj", "--report", "cube.obj"],
-                    ["slice", "g.vdb", "--section", "soft.png"],
+                    ["slice", "g.vdb", "--picture", "soft.png"],
                     ["slice", "g.vdb", "-o", "soft.exr"],
                     ["export", "g.vdb", "-o", "soft.exr"],
                     ["sphere", "cube.obj", "-o", "cube.ply", "--report", "cube.obj"],
@@ -77,8 +77,8 @@ def test_two_outputs_are_two_files():
     os.symlink("c.ply", "link.png")
     os.symlink("s.exr", "s.png")
     os.mkdir("out")
-    for command in [["slice", "g.vdb", "--section", "s.png", "-o", "s.exr"],
-                    ["slice", "g.vdb", "--section", "s.png", "-o", "./s.exr"],
+    for command in [["slice", "g.vdb", "--picture", "s.png", "-o", "s.exr"],
+                    ["slice", "g.vdb", "--picture", "s.png", "-o", "./s.exr"],
                     ["correspond", "ball.obj", "cube.obj", "-o", "link.ply", "--picture", "link.png"],
                     ["correspond", "ball.obj", "cube.obj", "-o", "c.ply", "--picture", "link.png"],
                     ["correspond", "ball.obj", "cube.obj", "-o", "c.ply", "--source-out", "c.ply"],

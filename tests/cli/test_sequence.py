@@ -67,12 +67,12 @@ def test_grids_of_each_frame():
     innermap("sequence", "rest.obj", "frames/*.obj", "-o", "out", "--grids", *SMALL)
     names = ["energy.0001.vdb", "energy.0120.vdb", "energy.12345.vdb"]
     assert sorted(os.listdir("out")) == ["energies.csv", "energies.png", *names, "report.json"]
-    text = innermap("info", "out/energy.0120.vdb").stdout
+    text = innermap("info", "out/energy.0120.vdb", "--metadata").stdout
     assert "harmonic_energy: float" in text and "deformation_energy: float" in text
     assert "surface" not in text and "jacobian:" not in text
     innermap("sequence", "rest.obj", "frames/f.0001.obj", "-o", "all", "--grids", "--grid-list",
              "surface,density,map,jacobian", *SMALL)
-    text = innermap("info", "all/energy.0001.vdb").stdout
+    text = innermap("info", "all/energy.0001.vdb", "--metadata").stdout
     for line in ["surface: float, level set", "density: float, fog volume", "map: vec3s",
                  "jacobian: float"]:
         assert line in text, text

@@ -231,7 +231,7 @@ def test_vertex_colours_are_continued():
         for f in faces:
             file.write("f " + " ".join(str(i + 1) for i in f) + "\n")
     texture("ball.obj", "-o", "t.vdb", "--resolution", "32")
-    info = innermap("info", "t.vdb").stdout
+    info = innermap("info", "t.vdb", "--metadata").stdout
     assert "Cd: vec3s" in info and "uv" not in info
     for place, value, distance in voxels("t.vdb", "Cd"):
         if distance < 0:
@@ -388,7 +388,7 @@ def test_spot_shows_no_seam_in_colour_mode():
     assert surface["colour_error_at_seams_p99"] < 1.2 * surface["colour_error_p99"], surface
     assert surface["colour_error_rms"] < 0.06, surface
     for axis in "xyz":
-        innermap("slice", "spot.vdb", "--section", f"{axis}.png", "--colour", "--axis", axis)
+        innermap("slice", "spot.vdb", "--picture", f"{axis}.png", "--colour", "--axis", axis)
         with open(f"{axis}.png", "rb") as file:
             assert file.read(8) == b"\x89PNG\r\n\x1a\n"
 

@@ -36,7 +36,7 @@ def test_tolerance_is_the_default_and_met():
     assert report["solve"]["method"] == "adaptive", report["solve"]
     assert report["tolerance"]["met"] and report["boundary_error"]["p99"] <= 2e-4, report
     assert report["boundary_error"]["max"] < 5 * 2e-4, report
-    told = innermap("info", "m.ply").stdout
+    told = innermap("info", "m.ply", "--metadata").stdout
     assert "tolerance: 0.0002" in told and "tolerance_met: true" in told, told
 
 
@@ -66,7 +66,7 @@ def test_not_met_is_said_and_files_are_written():
     assert report["tolerance"]["met"] is False, report["tolerance"]
     assert report["tolerance"]["reached"] == report["boundary_error"]["p99"] > 1e-6, report
     assert report["solve"]["sources"] <= 1200, report["solve"]
-    assert "tolerance_met: false" in innermap("info", "m.ply").stdout
+    assert "tolerance_met: false" in innermap("info", "m.ply", "--metadata").stdout
     done, report = fit(*options, "--best-effort")
     assert report["tolerance"]["met"] is False, report["tolerance"]
     assert any("not met" in warning for warning in report["warnings"]), report["warnings"]

@@ -72,7 +72,7 @@ assert seen == own.activeVoxelCount()
 def test_settings():
     ellipsoid_map()
     innermap("transfer-distance", "map.ply", "-o", "out", "--voxel-size", "0.1", "--range", "0,3",
-             "--section-axis", "x", "--section-at", "0.3")
+             "--section", "x=0.3")
     report = cli.read_json("out/report.json")
     assert report["grid"]["voxel_size"] == report["grid"]["target_voxel_size"] == 0.1
     assert report["distance"]["range"] == [0, 3]
@@ -81,8 +81,8 @@ def test_settings():
     fails(1, "transfer-distance", "missing.ply", "-o", "out", says=["missing.ply"])
     fails(1, "transfer-distance", "a.obj", "-o", "out", says=["a.obj"])
     fails(1, "transfer-distance", "map.ply", "-o", "out", "--range", "2,1", says=["range"])
-    fails(1, "transfer-distance", "map.ply", "-o", "out", "--section-at", "2",
-          says=["--section-at"])
+    fails(1, "transfer-distance", "map.ply", "-o", "out", "--section", "x=2",
+          says=["--section"])
     fails(1, "transfer-distance", "map.ply", "-o", "out", "--max-memory", "3M",
           says=["--max-memory"])
 

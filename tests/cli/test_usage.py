@@ -71,7 +71,7 @@ def test_missing_and_surplus_arguments():
     fails(2, "voxelize", "cube.obj", "-o", "--fog", says=["--output"])
     fails(2, "check", "cube.obj", "more.obj", says=["'more.obj'"])
     fails(2, "voxelize", "cube.obj", "-o", "a.vdb", "-o", "b.vdb")
-    fails(2, "slice", "a.vdb", says=["--output", "--section"])
+    fails(2, "slice", "a.vdb", says=["--output", "--picture"])
 
 
 def test_values_that_are_not_numbers():
@@ -82,7 +82,7 @@ def test_values_that_are_not_numbers():
     for value in ["1.5", "abc", "1e3", "-"]:
         line = fails(2, "voxelize", "cube.obj", "-o", "a.vdb", "--resolution", value)
         assert "--resolution" in line, line
-    line = fails(2, "slice", "a.vdb", "--section", "p.png", "--range", "3")
+    line = fails(2, "slice", "a.vdb", "--picture", "p.png", "--range", "3")
     assert "--range" in line, line
 
 
@@ -107,8 +107,8 @@ def test_spellings_of_both_sides_are_taken():
     cube()
     innermap("voxelise", "cube.obj", "-o", "a.vdb", "--resolution", "12", "--fog")
     for flag in ["--color", "--colour"]:
-        fails(1, "slice", "a.vdb", "--section", "a.png", flag, says=["density"])
-    fails(2, "slice", "a.vdb", "--section", "c.png", "--color", "--colour", "--colur",
+        fails(1, "slice", "a.vdb", "--picture", "a.png", flag, says=["density"])
+    fails(2, "slice", "a.vdb", "--picture", "c.png", "--color", "--colour", "--colur",
           says=["did you mean --colour?"])
     assert innermap("help", "tetrahedralise").stdout == innermap("tetrahedralize", "-h").stdout
     fails(2, "fit", "a.obj", "b.obj", "-o", "a.ply", "--regularisation", "0.1",
@@ -129,6 +129,26 @@ def test_former_names_are_taken_with_a_note():
     assert "formerly --sources" in innermap("help", "--markdown").stdout
 
 
+def test_a_cut_is_said_in_one_way():
+    cube()
+    innermap("voxelize", "cube.obj", "-o", "a.vdb", "--resolution", "16", "-q")
+    pictures = {}
+    for name, words in [("new", ["--picture", "{}", "--section", "x=0.3"]),
+                        ("parts", ["--picture", "{}", "--axis", "x", "--section", "0.3"]),
+                        ("old", ["--section", "{}", "--axis", "x", "--at", "0.3"]),
+                        ("other", ["--picture", "{}", "--section", "y"])]:
+        done = innermap("slice", "a.vdb", "--grid", "surface", *[w.format(f"{name}.png") for w in words])
+        assert ("--picture" in done.stderr) == (name == "old"), done.stderr
+        pictures[name] = open(f"{name}.png", "rb").read()
+    assert pictures["new"] == pictures["parts"] == pictures["old"] != pictures["other"]
+    done = innermap("tetrahedralize", "cube.obj", "-o", "t.vtu", "--resolution", "4", "--picture", "t.png",
+                    "--axis", "x", "--at", "0.3", "--report", "r.json")
+    assert "--axis is now called --section" in done.stderr
+    assert cli.read_json("r.json")["settings"]["section"] == "x=0.3"
+    for bad, code in [("w", 2), ("x=2", 1), ("=", 2), ("x=", 2), ("x=0.5=1", 2), ("x=nan", 2)]:
+        fails(code, "slice", "a.vdb", "--picture", "p.png", "--section", bad, says=["--section"])
+
+
 def test_names_whose_ending_is_another_kinds_are_refused():
     cube()
     for command, ending in [(["voxelize", "cube.obj"], ".vdb"), (["sphere", "cube.obj"], ".ply"),
@@ -136,7 +156,7 @@ def test_names_whose_ending_is_another_kinds_are_refused():
                             (["texture", "cube.obj"], ".vdb")]:
         for name in ["x.png", "x", "x.vdb.bak"]:
             fails(2, *command, "-o", name, says=["--output", name, ending])
-    fails(2, "slice", "a.vdb", "--section", "x.exr", says=["--section", ".png"])
+    fails(2, "slice", "a.vdb", "--picture", "x.exr", says=["--picture", ".png"])
     innermap("voxelize", "cube.obj", "-o", "x.VDB", "--resolution", "8")
     innermap("voxelize", "cube.obj", "-o", "/dev/null", "--resolution", "8")
 

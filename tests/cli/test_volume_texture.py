@@ -155,7 +155,7 @@ out.close()
     for name in ("plain.exr", "tiled.exr"):
         done = innermap("import", name, "-o", "b.vdb", *options)
         assert "density: float" in done.stdout
-        text = innermap("info", "b.vdb").stdout
+        text = innermap("info", "b.vdb", "--metadata").stdout
         assert "fog volume" in text and "voxel size 0.0625" in text, text
 
 

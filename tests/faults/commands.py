@@ -48,7 +48,7 @@ COMMANDS = {
     "remesh": ["remesh", "I/map.ply", "I/ball.vtu", "-o", "O/r.mesh", "--coarse", "0"],
     "compare-fem": ["compare-fem", "I/round.obj", "--functions", "-o", "O/fem", "--resolutions",
                     "6,8", "--charges", "50,100", "--samples", "200"],
-    "slice": ["slice", "I/map.vdb", "-o", "O/s.exr", "--section", "O/s.png"],
+    "slice": ["slice", "I/map.vdb", "-o", "O/s.exr", "--picture", "O/s.png"],
     "export": ["export", "I/map.vdb", "-o", "O/e.####.exr", "--layout", "slices", "--grids",
                "jacobian"],
     "export-tiles": ["export", "I/map.vdb", "-o", "O/e.exr", "--grids", "density"],
