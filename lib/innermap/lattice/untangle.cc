@@ -16,9 +16,7 @@ namespace {
 
 constexpr int kPairs = 8;
 constexpr double kLeastGain = 1e-2;  // of a round; below it no more is to be had
-// How fast eps falls at least, their sigma: with their 0.1 patches that can be repaired take three
-// times the rounds.
-constexpr double kLeastSigma = 0.5;
+constexpr int kStepsLookedAt = 3;    // for UntangleSettings::leastStepGain
 constexpr std::size_t kTetsABlock = 512, kVerticesABlock = 1024;
 constexpr double kSmallest = 1e-9;  // regularisation of patches without folds
 
@@ -112,6 +110,10 @@ class Energy {
     settings.m = kPairs;
     settings.max_iterations = settings_.stepsARound;
     settings.epsilon = 1e-6;
+    if (settings_.leastStepGain > 0) {
+      settings.past = kStepsLookedAt;
+      settings.delta = settings_.leastStepGain;
+    }
     // Beyond the wall that the energy then is, its values tell nothing: only shorter steps help.
     if (eps <= kSmallest) settings.linesearch = LBFGS_LINESEARCH_BACKTRACKING_WOLFE;
     // What it returns says no more than x does: the round ended by its steps, or no line search
@@ -251,7 +253,7 @@ double untangle(TetPatch& patch, const UntangleSettings& settings) {
     const double gain = 1 - energy.at(eps) / before;
     least = energy.leastDeterminant();
     if ((least > 0 && gain < kLeastGain) || outOfTime()) break;
-    const double mu = (1 - std::max(gain, kLeastSigma)) * Lifted(least, eps).value;
+    const double mu = (1 - std::max(gain, settings.leastSigma)) * Lifted(least, eps).value;
     eps = least < mu ? 2 * std::sqrt(mu * (mu - least)) : kSmallest;
     if (settings.afterRound) settings.afterRound(patch, round);
   }

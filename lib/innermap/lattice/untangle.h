@@ -36,6 +36,11 @@ struct UntangleSettings {
   double volumeShare = 0.5;  // theta: of the volumes' part of the energy, over 0
   int rounds = 20;           // at most, over 0; in each the regularisation stays as it is
   int stepsARound = 50;      // at most, over 0
+  // How fast eps falls at least, the paper's sigma, in [0, 1): with its 0.1 patches that can be
+  // repaired take three times the rounds.
+  double leastSigma = 0.5;
+  // A round ends when three steps lower the energy by less than this share of it; 0: not so.
+  double leastStepGain = 0;
   // Where no determinant is negative none becomes so: no regularisation in the first round either.
   bool keep = false;
   // Called after each round, with its number from 0: may change the springs' places, normals and
