@@ -66,13 +66,11 @@ Meshes readMeshes(const MapOptions& options, Context& context) {
     return meshes;
   }
   requireMeshMemory(options.target, context);
-  try {
-    meshes.target =
-        context.timed("read", [&] { return readMeshLike(options.target, meshes.source); });
-  } catch (const DataError&) {
-    meshes.target = readMeshFile(options.target, context);
-    meshes.related = false;
-  }
+  TargetMesh target =
+      context.timed("read", [&] { return readTarget(options.target, meshes.source); });
+  meshes.target = std::move(target.mesh);
+  meshes.related = target.related;
+  if (!meshes.related && context.page()) addMesh(*context.page(), meshes.target);
   return meshes;
 }
 

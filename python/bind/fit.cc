@@ -43,14 +43,11 @@ Mesh likeSource(const Mesh& source, Points vertices, const std::string& name) {
   return out;
 }
 
-void readTarget(const std::string& path, const CallOptions& options, Job& job) {
+void readTargetOf(const std::string& path, const CallOptions& options, Job& job) {
   runCall(options, [&]() {
-    try {
-      job.target = readMeshLike(path, job.source);
-    } catch (const DataError&) {
-      job.target = readMesh(path);
-      job.related = false;
-    }
+    TargetMesh target = readTarget(path, job.source);
+    job.target = std::move(target.mesh);
+    job.related = target.related;
   });
 }
 
@@ -72,7 +69,7 @@ Job jobOf(const Arguments& a, const CallOptions& options) {
     return job;
   }
   if (last && isPath(a[at])) {
-    readTarget(pathFrom(a[at], "target"), options, job);
+    readTargetOf(pathFrom(a[at], "target"), options, job);
     return job;
   }
   job.target = takeMesh(a, at, "target");

@@ -39,4 +39,12 @@ Mesh readMeshLike(const std::string& path, const Mesh& reference) {
   return mesh;
 }
 
+TargetMesh readTarget(const std::string& path, const Mesh& source) {
+  try {
+    return {readMeshLike(path, source), true};
+  } catch (const DataError&) {
+    return {readMesh(path), false};
+  }
+}
+
 }  // namespace innermap

@@ -36,4 +36,13 @@ Mesh readMesh(const std::string& path);
 // (surface/correspond.h).
 Mesh readMeshLike(const std::string& path, const Mesh& reference);
 
+struct TargetMesh {
+  Mesh mesh;
+  bool related = true;  // of the source's connectivity
+};
+
+// What a source is to be mapped onto: as readMeshLike() where the connectivity is the same, else as
+// readMesh(). Throws FileError.
+TargetMesh readTarget(const std::string& path, const Mesh& source);
+
 }  // namespace innermap

@@ -227,6 +227,16 @@ TEST_F(Read, LikeNamesTheFirstDifference) {
   EXPECT_NE(message(v + "f 1 2 4\nf 1 2 3\n").find("triangle 0"), std::string::npos);
 }
 
+TEST_F(Read, ATargetIsRelatedOrAStranger) {
+  const std::string v = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+  const Mesh source = readMesh(folder_.write("0.obj", v + "f 1 2 3 4\n"));
+  EXPECT_TRUE(readTarget(folder_.write("1.obj", v + "f 1 2 3 4\n"), source).related);
+  const TargetMesh stranger = readTarget(folder_.write("2.obj", v + "f 2 3 4 1\n"), source);
+  EXPECT_FALSE(stranger.related);
+  EXPECT_EQ(stranger.mesh.triangles.size(), 2u);
+  EXPECT_THROW(readTarget(folder_.write("3.obj", "v 0 0\n"), source), FileError);
+}
+
 TEST_F(Read, CancelledReadsThrow) {
   RunContext run;
   run.cancel();
