@@ -8,6 +8,7 @@
 #include "correspondence.h"
 #include "fitting_options.h"
 #include "grid_options.h"
+#include "html/contents.h"
 #include "innermap/io/exr/exr_slices.h"
 #include "innermap/io/picture/mesh_picture.h"
 #include "innermap/mesh/read.h"

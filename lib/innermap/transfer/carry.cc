@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "innermap/transfer/detail/carrier.h"
-
 namespace innermap {
 
 void ResamplingFigures::add(double growth) {
@@ -23,10 +21,6 @@ void ResamplingFigures::add(const ResamplingFigures& others) {
 }
 
 void ResamplingFigures::finish() { coarserShare = sum > 0 ? coarser / sum : 0; }
-
-void requireCarriable(const openvdb::GridPtrVec& grids, const CarrySettings& settings) {
-  makeCarriers(grids, settings, nullptr);
-}
 
 double finestVoxel(const openvdb::GridPtrVec& grids) {
   double finest = 0;

@@ -98,4 +98,8 @@ std::vector<std::unique_ptr<Carrier>> makeCarriers(const openvdb::GridPtrVec& gr
   return out;
 }
 
+void requireCarriable(const openvdb::GridPtrVec& grids, const CarrySettings& settings) {
+  makeCarriers(grids, settings, nullptr);
+}
+
 }  // namespace innermap
