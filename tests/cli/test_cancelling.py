@@ -20,8 +20,8 @@ MOST_STAGES_AFTER = 2
 def stopped(*arguments, at, number=signal.SIGINT):
     """Runs innermap and signals it when it says its stage number `at`: (exit code, stages that it
     began after that)."""
-    with subprocess.Popen([cli.PROGRAM, *map(str, arguments)], stdout=subprocess.DEVNULL,
-                          stderr=subprocess.PIPE) as process:
+    with subprocess.Popen([cli.PROGRAM, *map(str, arguments), "--verbose"],
+                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
         stream = process.stderr.fileno()
         begun = b""
         while begun.count(b"\n") < at:
