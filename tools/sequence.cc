@@ -19,26 +19,27 @@ namespace innermap::tool {
 namespace {
 
 struct SequenceOptions {
-  std::string rest, output, gridList = "harmonic_energy,deformation_energy";
+  std::string rest, output;
+  std::string grids, gridList;  // to write, and what their list was called once
   FrameOptions frames;
   EvaluationOptions evaluation;
-  bool grids = false;
 };
 
 // The grids that are to be written; empty without --grids.
 std::vector<std::string> gridsToWrite(const SequenceOptions& options) {
-  if (!options.grids) return {};
+  if (options.grids.empty()) return {};
   std::vector<std::string> names;
-  for (const std::string& name : commaList(options.gridList)) {
+  for (const std::string& name :
+       commaList(options.gridList.empty() ? options.grids : options.gridList)) {
     if (std::find(mapGridNames().begin(), mapGridNames().end(), name) == mapGridNames().end())
-      throw UsageError(fmt::format("--grid-list: '{}' is not one of {}{}", name,
+      throw UsageError(fmt::format("--grids: '{}' is not one of {}{}", name,
                                    fmt::join(mapGridNames(), ", "),
                                    didYouMean(name, mapGridNames())));
     if (std::find(names.begin(), names.end(), name) != names.end())
-      throw UsageError("--grid-list: " + name + " is given twice");
+      throw UsageError("--grids: " + name + " is given twice");
     names.push_back(name);
   }
-  if (names.empty()) throw UsageError("--grid-list: names no grid");
+  if (names.empty()) throw UsageError("--grids: names no grid");
   return names;
 }
 
@@ -78,11 +79,12 @@ FrameEvaluator makeEvaluator(const SequenceOptions& options, const FrameFitter& 
 
 void run(const SequenceOptions& options, Context& context) {
   gridsToWrite(options);  // refuses names that cannot be before anything is read
+  if (!options.gridList.empty()) context.note("--grid-list is now the list of --grids=LIST");
   const Frames frames = listFrames(options.frames, options.rest, context);
   const FramePattern pattern("--output", options.output + "/energy.####.vdb");
   const auto folder =
       context.outputFolder(options.output, {"energies.csv", "energies.png", "report.json"});
-  if (options.grids) context.outputs(framePaths(pattern, frames));
+  if (!options.grids.empty()) context.outputs(framePaths(pattern, frames));
   const FrameFitterSettings settings = options.frames.fitting;
   SourceBoundary rest = readRest(options.rest, context);
   requireInterior(rest.solid, options.evaluation.grid.in<LevelSetSettings>());
@@ -94,22 +96,23 @@ void run(const SequenceOptions& options, Context& context) {
   phases.insert(phases.end() - 1, stageOf("level set", size));
   context.expect(phases);
   if (context.dryRun())
-    return context.plan({framesPlan(settings, frames),
-                         "write energies.csv, energies.png and report.json" +
-                             std::string(options.grids ? " and the grids of each frame" : "") +
-                             " to " + options.output},
-                        frameFitterMemory(settings, gridsNeed));
+    return context.plan(
+        {framesPlan(settings, frames),
+         "write energies.csv, energies.png and report.json" +
+             std::string(!options.grids.empty() ? " and the grids of each frame" : "") + " to " +
+             options.output},
+        frameFitterMemory(settings, gridsNeed));
   requireFrameMemory(settings, gridsNeed, context);
   const FrameFitter fitter = makeFrameFitter(std::move(rest), settings, context);
   const FrameEvaluator evaluator = makeEvaluator(options, fitter, context);
   FrameFits fits = makeFrameFits(fitter, frames, context);
   std::vector<SequenceRow> rows;
   context.print(sequenceHeader());
-  const auto results = runFrames(frames, options.grids, context, [&](std::size_t index) {
+  const auto results = runFrames(frames, !options.grids.empty(), context, [&](std::size_t index) {
     const FrameFile& frame = frames.all[index];
     const std::shared_ptr<const FrameFit> fit = fits.at(index);
     const MapGrids grids = context.timed("evaluate", [&] { return evaluator.evaluate(*fit); });
-    if (options.grids)
+    if (!options.grids.empty())
       writeFrame(frame, [&] {
         writeGridFile(pattern.path(frame.number), evaluator.grids({fit.get(), frame.number}, grids),
                       options.evaluation.names, context);
@@ -156,11 +159,13 @@ Command makeSequenceCommand() {
       .required();
   addFrameOptions(c, o->frames);
   addEvaluationOptions(c, o->evaluation);
-  c.flag("--grids", &o->grids,
-         "also write the energies' distribution over the rest pose, energy.####.vdb a frame");
-  c.option("--grid-list", "LIST", &o->gridList,
-           "grids that --grids writes, with commas between: " +
-               fmt::format("{}", fmt::join(mapGridNames(), ", ")));
+  c.option(
+       "--grids", "LIST", &o->grids,
+       "also write grids over the rest pose, energy.####.vdb a frame; the energies', or those of "
+       "LIST, with commas between: " +
+           fmt::format("{}", fmt::join(mapGridNames(), ", ")))
+      .implied("harmonic_energy,deformation_energy");
+  c.option("--grid-list", "LIST", &o->gridList, "formerly the LIST of --grids=LIST").advanced();
   c.example("innermap sequence rest.obj 'frames/*.obj' -o energies");
   c.example("innermap sequence rest.obj 'walk.####.obj' -o energies --frames 1-48x2 --grids");
   c.run([o](Context& context) { run(*o, context); });

@@ -268,7 +268,7 @@ def test_sequence():
     check_sequence("again.html", 4, sections=False)
     # With grids, those of each frame come from its file.
     innermap("sequence", "rest.obj", "frames", "-o", "grids", "--charges", "400", "--resolution", "24",
-             "--grids", "--grid-list", "surface,jacobian,deformation_energy", "--quiet")
+             "--grids=surface,jacobian,deformation_energy", "--quiet")
     innermap("report", "grids", "-o", "grids.html", "--quiet")
     check_sequence("grids.html", 4)
 

@@ -70,15 +70,20 @@ def test_grids_of_each_frame():
     text = innermap("info", "out/energy.0120.vdb", "--metadata").stdout
     assert "harmonic_energy: float" in text and "deformation_energy: float" in text
     assert "surface" not in text and "jacobian:" not in text
-    innermap("sequence", "rest.obj", "frames/f.0001.obj", "-o", "all", "--grids", "--grid-list",
-             "surface,density,map,jacobian", *SMALL)
+    done = innermap("sequence", "rest.obj", "frames/f.0001.obj", "-o", "all", "--grids", "--grid-list",
+                    "surface,density,map,jacobian", *SMALL[:-1])
+    assert "--grids=LIST" in done.stderr
     text = innermap("info", "all/energy.0001.vdb", "--metadata").stdout
     for line in ["surface: float, level set", "density: float, fog volume", "map: vec3s",
                  "jacobian: float"]:
         assert line in text, text
     assert "harmonic_energy: float" not in text
-    fails(2, "sequence", "rest.obj", "frames", "-o", "b", "--grids", "--grid-list", "jacobain",
-          says=["jacobain", "jacobian"])
+    innermap("sequence", "rest.obj", "frames/f.0001.obj", "-o", "again",
+             "--grids=surface,density,map,jacobian", *SMALL)
+    with open("all/energy.0001.vdb", "rb") as a, open("again/energy.0001.vdb", "rb") as b:
+        assert a.read() == b.read()
+    fails(2, "sequence", "rest.obj", "frames", "-o", "b", "--grids=jacobain",
+          says=["--grids", "jacobain", "jacobian"])
 
 
 def test_a_broken_frame_is_reported_and_the_others_go_on():
