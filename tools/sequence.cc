@@ -18,6 +18,8 @@
 namespace innermap::tool {
 namespace {
 
+constexpr const char* kEnergies = "energies";  // --grids alone
+
 struct SequenceOptions {
   std::string rest, output;
   std::string grids, gridList;  // to write, and what their list was called once
@@ -28,9 +30,10 @@ struct SequenceOptions {
 // The grids that are to be written; empty without --grids.
 std::vector<std::string> gridsToWrite(const SequenceOptions& options) {
   if (options.grids.empty()) return {};
+  std::string list = options.gridList.empty() ? options.grids : options.gridList;
+  if (list == kEnergies) list = "harmonic_energy,deformation_energy";
   std::vector<std::string> names;
-  for (const std::string& name :
-       commaList(options.gridList.empty() ? options.grids : options.gridList)) {
+  for (const std::string& name : commaList(list)) {
     if (std::find(mapGridNames().begin(), mapGridNames().end(), name) == mapGridNames().end())
       throw UsageError(fmt::format("--grids: '{}' is not one of {}{}", name,
                                    fmt::join(mapGridNames(), ", "),
@@ -164,7 +167,7 @@ Command makeSequenceCommand() {
        "also write grids over the rest pose, energy.####.vdb a frame; the energies', or those of "
        "LIST, with commas between: " +
            fmt::format("{}", fmt::join(mapGridNames(), ", ")))
-      .implied("harmonic_energy,deformation_energy");
+      .implied(kEnergies);
   c.option("--grid-list", "LIST", &o->gridList, "formerly the LIST of --grids=LIST").advanced();
   c.example("innermap sequence rest.obj 'frames/*.obj' -o energies");
   c.example("innermap sequence rest.obj 'walk.####.obj' -o energies --frames 1-48x2 --grids");
