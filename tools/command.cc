@@ -107,7 +107,7 @@ void take(const Command& command, const Given& given, CommonOptions& common) {
     if (given.flag) *std::get<bool*>(o.target) = o.sets;
     return;
   }
-  const bool parts = std::holds_alternative<Cut*>(o.target);
+  const bool parts = std::holds_alternative<Cut*>(o.target) && arePartsOfACut(given.values);
   if (given.values.size() > 1 && !o.isList() && !parts)
     refuse(command, o.name + " is given more than once");
   if (given.values.empty()) {

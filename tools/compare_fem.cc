@@ -189,10 +189,10 @@ void writeSection(const std::string& path, const CompareFem& result, const Solid
   for (int i = 0; i < 64; ++i)
     for (int j = 0; j < 64; ++j) {
       Vec3 p;
-      p[*options.cut.cut.axis] = box.lower[*options.cut.cut.axis] +
-                                 *options.cut.cut.at * box.extent()[*options.cut.cut.axis];
+      p[options.cut.axis()] =
+          box.lower[options.cut.axis()] + options.cut.at() * box.extent()[options.cut.axis()];
       for (int k = 1; k < 3; ++k) {
-        const int a = (*options.cut.cut.axis + k) % 3;
+        const int a = (options.cut.axis() + k) % 3;
         p[a] = box.lower[a] + ((k == 1 ? i : j) + 0.5) / 64 * box.extent()[a];
       }
       probe.push_back(p);
@@ -204,8 +204,8 @@ void writeSection(const std::string& path, const CompareFem& result, const Solid
   std::sort(values.begin(), values.end());
   PlanePictureSettings settings;
   settings.colormap = options.cut.colormap;
-  settings.axis = *options.cut.cut.axis;
-  settings.at = *options.cut.cut.at;
+  settings.axis = options.cut.axis();
+  settings.at = options.cut.at();
   if (!values.empty()) {
     settings.blue = values[values.size() / 100];
     settings.red = std::max(values[values.size() - 1 - values.size() / 100],

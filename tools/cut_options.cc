@@ -8,8 +8,8 @@ CellPictureSettings CutOptions::cellPicture(const std::string& path) const {
   CellPictureSettings settings;
   settings.colormap = colormap;
   settings.direction = {0, 0, 0};
-  settings.direction[*cut.axis] = 1;
-  settings.at = *cut.at;
+  settings.direction[axis()] = 1;
+  settings.at = at();
   settings.label = std::filesystem::path(path).filename().string() + ", cut";
   return settings;
 }
@@ -19,6 +19,7 @@ void addCut(Command& command, CutOptions& o) {
   command
       .option("--section", kCutPlaceholder, &o.cut,
               "where the picture cuts: x, y or z, and the fraction of the box along it")
+      .defaults("z=0.5")
       .was("--axis,--at");
 }
 

@@ -11,7 +11,10 @@
 namespace innermap::tool {
 
 struct CutOptions {
-  Cut cut{2, 0.5};
+  Cut cut;
+
+  int axis() const { return cut.axis.value_or(2); }
+  double at() const { return cut.at.value_or(0.5); }
   Colormap colormap = Colormap::redBlue;
 
   // label: "spot.obj, cut" of path/spot.obj.

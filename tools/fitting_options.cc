@@ -113,7 +113,6 @@ std::vector<JobPhase> fittingPhases(const FitMapSettings& settings, double place
   std::vector<JobPhase> phases = {stageOf("fitting", size),
                                   stageOf("meeting the tolerance", size, 1, "fitting")};
   if (settings.oneToOne == OneToOne::off) return phases;
-  size.items = places;
   phases.push_back(stageOf("going in steps", size));
   phases.back().perhaps = !laidOn;
   return phases;

@@ -140,6 +140,15 @@ Cut parseCut(const std::string& name, const std::string& text, Cut cut) {
   return cut;
 }
 
+bool arePartsOfACut(const std::vector<std::string>& texts) {
+  if (texts.size() != 2) return false;
+  const auto isAxis = [](const std::string& text) {
+    return !text.empty() && std::isalpha(static_cast<unsigned char>(text[0])) != 0;
+  };
+  return isAxis(texts[0]) != isAxis(texts[1]) &&
+         (texts[0] + texts[1]).find('=') == std::string::npos;
+}
+
 std::string textOf(const Cut& cut) {
   std::string out;
   if (cut.axis) out = axisName(*cut.axis);

@@ -28,6 +28,8 @@ constexpr const char* kCutPlaceholder = "AXIS=T";
 // Throws UsageError, SettingError.
 Cut parseCut(const std::string& name, const std::string& text, Cut cut);
 std::string textOf(const Cut& cut);
+// Whether the texts are an axis and a fraction, as the two former options of a cut said them.
+bool arePartsOfACut(const std::vector<std::string>& texts);
 
 // Where the value goes. std::uint64_t serves std::size_t too. A list is for the last positional
 // argument alone, which then takes all that follow. No std::function stands here by itself:

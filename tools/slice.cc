@@ -79,7 +79,7 @@ SliceOptions withPlane(SliceOptions options, Context& context) {
   }
   Cut cut{options.axis, {}};
   if (!options.plane.empty()) cut = parseCut("--section", options.plane, cut);
-  options.section.axis = *cut.axis;
+  options.section.axis = cut.axis.value_or(options.axis);
   if (cut.at) options.section.at = *cut.at;
   return options;
 }

@@ -145,6 +145,11 @@ def test_a_cut_is_said_in_one_way():
                     "--axis", "x", "--at", "0.3", "--report", "r.json")
     assert "--axis is now called --section" in done.stderr
     assert cli.read_json("r.json")["settings"]["section"] == "x=0.3"
+    for twice in [("x=0.1", "y=0.2"), ("x", "y"), ("0.1", "0.2"), ("x=0.1", "0.2")]:
+        fails(2, "tetrahedralize", "cube.obj", "-o", "u.vtu", "--section", twice[0], "--section", twice[1],
+              says=["more than once"])
+    for command in [["tetrahedralize", "cube.obj", "-o", "t.vtu", "--resolution", "4"], ["slice", "a.vdb"]]:
+        innermap(*command, "--picture", "t.png", "--section", "auto")
     for bad, code in [("w", 2), ("x=2", 1), ("=", 2), ("x=", 2), ("x=0.5=1", 2), ("x=nan", 2)]:
         fails(code, "slice", "a.vdb", "--picture", "p.png", "--section", bad, says=["--section"])
 

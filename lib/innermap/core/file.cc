@@ -276,11 +276,10 @@ void PendingFolder::write(const std::string& name,
 void PendingFolder::remove(const std::string& name) {
   File file;
   file.path = (fs::path(folder_) / name).string();
-  const OutputPlace place = outputPlace(file.path);
-  if (place.through || !fs::is_regular_file(place.path)) return;
-  file.place = place.path;
-  file.replaced = stagingFor(folderOf(place.path)).at(kReplaced) + "/" +
-                  fs::path(place.path).filename().string();
+  std::error_code unknown;  // links stay, and what they lead to
+  if (!fs::is_regular_file(fs::symlink_status(file.path, unknown))) return;
+  file.place = file.path;
+  file.replaced = stagingFor(folderOf(file.path)).at(kReplaced) + "/" + name;
   files_.push_back(std::move(file));
 }
 

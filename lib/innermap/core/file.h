@@ -52,7 +52,7 @@ class PendingFolder {
   // the same name. FileErrors of it name the final path.
   void write(const std::string& name, const std::function<void(const std::string&)>& body);
 
-  // A file of this name that stands there goes when the others come.
+  // A file of this name that stands there goes when the others come. Links and folders stay.
   void remove(const std::string& name);
 
   // The files written so far: their final paths, and their sizes in bytes.

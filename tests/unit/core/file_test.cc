@@ -189,12 +189,17 @@ TEST_F(FileTest, WhatIsNoLongerThereGoesWithTheCommit) {
     folder.remove("stale");
     folder.remove("missing");
   }
+  fs::create_directories(at("out/folder"));
+  fs::create_symlink(at("elsewhere"), at("out/link"));
+  std::ofstream(at("elsewhere")) << "kept";
   EXPECT_TRUE(fs::exists(at("out/stale")));  // there was no commit
   PendingFolder folder(at("out"));
   folder.write("new", [&](const std::string& path) { std::ofstream(path) << "new"; });
-  folder.remove("stale");
+  for (const char* name : {"stale", "folder", "link"}) folder.remove(name);
   EXPECT_EQ(folder.written().size(), 1u);
   folder.commit();
+  EXPECT_TRUE(fs::exists(at("out/folder")) && fs::exists(at("out/link")) &&
+              fs::exists(at("elsewhere")));
   EXPECT_FALSE(fs::exists(at("out/stale")));
   EXPECT_TRUE(fs::exists(at("out/new")));
 }
