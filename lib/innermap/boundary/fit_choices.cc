@@ -4,7 +4,6 @@
 
 #include <utility>
 
-#include "innermap/boundary/mesh_correspondence.h"
 #include "innermap/core/error.h"
 
 namespace innermap {

@@ -39,8 +39,11 @@ std::size_t shellCollocation(const ShellSettings& shell);
 // smaller steps seldom cure. on: steps until no such point is folded. off: one harmonic map, of
 // which folds are counted.
 enum class OneToOne { automatic, on, off };
-
 constexpr double kManyFolds = 5e-3, kManyOutside = 1e-2, kFewFolds = 4e-4;
+
+// FitMapSettings::tolerance of solids that were laid onto each other, unless told otherwise: their
+// surfaces follow each other within some thousandths anyway. A fraction of the target's diagonal.
+constexpr double kLaidOnTolerance = 2e-3;
 
 // What maps in steps take beside a single one in bytes: the most that was measured between
 // unrelated solids of some 10,000 triangles, where 0.3e9 is as common.

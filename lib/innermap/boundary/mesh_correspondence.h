@@ -75,10 +75,9 @@ struct MeshCorrespondence {
 // polygons or triangles. Otherwise the one has to be laid onto the other first.
 bool sameConnectivity(const Mesh& a, const Mesh& b);
 
-// What maps through a correspondence are made with unless told otherwise: surfaces that were laid
-// on one another follow each other within some thousandths anyway. Fractions of B's diagonal:
-// FitMapSettings::tolerance, MeshCorrespondenceSettings::subdivide.
-constexpr double kLaidOnTolerance = 2e-3, kLaidOnSubdivide = 5e-3;
+// MeshCorrespondenceSettings::subdivide where a map is fitted to the result, unless told otherwise.
+// A fraction of B's diagonal.
+constexpr double kLaidOnSubdivide = 5e-3;
 
 // Of the seconds until a deadline, what laying a surface on another may spend on trying and
 // refining where a map is fitted to the result.

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "innermap/boundary/mesh_correspondence.h"
+#include "innermap/boundary/map_fit.h"
 #include "innermap/core/error.h"
 
 namespace innermap {

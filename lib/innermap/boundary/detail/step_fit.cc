@@ -8,7 +8,7 @@
 #include "innermap/boundary/detail/carried_boundary.h"
 #include "innermap/boundary/detail/inside_check.h"
 #include "innermap/boundary/detail/shape_path.h"
-#include "innermap/boundary/mesh_correspondence.h"
+#include "innermap/boundary/map_fit.h"
 #include "innermap/core/run.h"
 
 namespace innermap {
