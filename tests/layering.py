@@ -1,9 +1,13 @@
 #!/usr/bin/python3
-"""Checks the layers: which folder of lib/innermap may include which (the DEPENDS in
-lib/CMakeLists.txt), that solve/ knows no mesh and no grid, that programs include no
-header of a detail/ (those serve the library alone and are not installed), that no file includes
-itself by way of others, that no two headers define types of one name (their files would link to
-either's code), and that every public header has its unit test.
+"""Checks the layers of the library. Its rooms and which may include which stand in lib/CMakeLists.txt
+(innermap_room, DEPENDS). Headers of a room are public (lib/include/innermap/ROOM/, installed), private to
+the library (lib/ROOM/), or the room's own (a detail/ in it).
+
+Found are: includes of rooms that are not below, of a header that is not there, of another room's own; public
+headers that include private ones, or are more than MOST_PUBLIC, or that no test of the room includes;
+programs that include private headers of other rooms than OPEN; files that include themselves by way of
+others; two headers that define types of one name (their files would link to either's code); a solve/ that
+knows of meshes or grids.
 
     layering.py [ROOT]      exit code 1 and one line for each finding
 """
@@ -11,18 +15,25 @@ import os
 import re
 import sys
 
-# Words that must not stand in a folder's sources, comments aside.
+# Words that must not stand in a room's sources, comments aside.
 FORBIDDEN = {"solve": r"\bmesh\b|\bMesh\b|openvdb"}
+# Rooms whose private headers serve the programs of this repository too.
+OPEN = ("core", "jobs", "report")
+MOST_PUBLIC = 50
 TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)[^;(]*\{", re.M)
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.M)
+PUBLIC = "lib/include/innermap"
+
+
+def read(path):
+    with open(path, encoding="utf-8") as file:
+        return file.read()
 
 
 def read_edges(root):
-    """Direct dependencies of each folder, from lib/CMakeLists.txt."""
-    with open(os.path.join(root, "lib/CMakeLists.txt"), encoding="utf-8") as file:
-        text = file.read()
+    """Direct dependencies of each room, from lib/CMakeLists.txt."""
     edges = {}
-    for name, rest in re.findall(r"^innermap_folder\((\w+)([^)]*)\)", text, re.M):
+    for name, rest in re.findall(r"^innermap_room\((\w+)([^)]*)\)", read(os.path.join(root, "lib/CMakeLists.txt")), re.M):
         words = rest.split()
         start = words.index("DEPENDS") + 1 if "DEPENDS" in words else len(words)
         depends = []
@@ -34,8 +45,8 @@ def read_edges(root):
     return edges
 
 
-def closure(edges, folder):
-    allowed, waiting = {folder}, [folder]
+def closure(edges, room):
+    allowed, waiting = {room}, [room]
     while waiting:
         for other in edges[waiting.pop()]:
             if other not in allowed:
@@ -48,10 +59,6 @@ def without_comments(text):
     return re.sub(r"//[^\n]*|/\*.*?\*/", "", text, flags=re.S)
 
 
-def is_internal(included):
-    return "detail" in included.split("/")[2:-1]
-
-
 def sources(top):
     for folder, _, names in os.walk(top):
         for name in sorted(names):
@@ -59,79 +66,79 @@ def sources(top):
                 yield os.path.join(folder, name)
 
 
-def check_folder(root, folder, edges):
-    """Findings of one folder of lib/innermap."""
-    if folder not in edges:
-        yield f"lib/innermap/{folder}: not an innermap_folder of lib/CMakeLists.txt"
+def parse(included, edges):
+    """(room, whether public, whether the room's own) of an include of ours; None: not ours."""
+    parts = included.split("/")
+    if parts[0] == "innermap" and len(parts) == 3:
+        return parts[1], True, False
+    if len(parts) > 1 and parts[0] in edges:
+        return parts[0], False, "detail" in parts[1:-1]
+    return None
+
+
+def check_room(root, room, edges):
+    """Findings of one room: its public headers and what stands in its folder."""
+    allowed = closure(edges, room)
+    for public, top in ((True, f"{PUBLIC}/{room}"), (False, f"lib/{room}")):
+        for path in sources(os.path.join(root, top)):
+            here, text = os.path.relpath(path, root), read(path)
+            for included in INCLUDE.findall(text):
+                yield from check_include(root, room, here, public, included, edges, allowed)
+            found = room in FORBIDDEN and re.search(FORBIDDEN[room], without_comments(text))
+            if found:
+                yield f'{here}: {room} must not know of "{found.group()}"'
+
+
+def check_include(root, room, here, public, included, edges, allowed):
+    found = parse(included, edges)
+    if not found:
+        first = included.split("/")[0]
+        beside = os.path.join(root, os.path.dirname(here), included)
+        if first in ("..", "lib", "tools", "tests", "innermap") or os.path.exists(beside):
+            yield f'{here}: includes "{included}", not by its path from lib/ or lib/include/'
         return
-    allowed = closure(edges, folder)
-    for path in sources(os.path.join(root, "lib/innermap", folder)):
-        here = os.path.relpath(path, root)
-        with open(path, encoding="utf-8") as file:
-            text = file.read()
-        for included in INCLUDE.findall(text):
-            parts = included.split("/")
-            if parts[0] != "innermap":
-                if not os.path.dirname(included) and os.path.exists(
-                        os.path.join(os.path.dirname(path), included)):
-                    yield f'{here}: includes "{included}", not by its path from lib/'
-                elif ".." in parts or parts[0] in ("lib", "tools", "tests"):
-                    yield f'{here}: includes "{included}", not by its path from lib/'
-            elif len(parts) < 3:
-                yield f'{here}: includes "{included}", which is in no folder'
-            elif parts[1] not in allowed:
-                yield f"{here}: {folder} must not include {parts[1]} ({included})"
-            elif not os.path.exists(os.path.join(root, "lib", included)):
-                yield f'{here}: includes "{included}", which is not there'
-        forbidden = FORBIDDEN.get(folder)
-        found = forbidden and re.search(forbidden, without_comments(text))
-        if found:
-            yield f'{here}: {folder} must not know of "{found.group()}"'
+    other, is_public, own = found
+    if other not in allowed:
+        yield f"{here}: {room} must not include {other} ({included})"
+    elif not os.path.exists(os.path.join(root, "lib/include" if is_public else "lib", included)):
+        yield f'{here}: includes "{included}", which is not there'
+    elif own and other != room:
+        yield f"{here}: {included} is {other}'s own"
+    elif public and not is_public:
+        yield f"{here}: is public and includes {included}, which is not"
 
 
-def check_tests(root, folder):
-    """Public headers without tests/unit/<their path>_test.cc."""
-    lib = os.path.join(root, "lib")
-    for path in sources(os.path.join(lib, "innermap", folder)):
-        header = os.path.relpath(path, lib)
-        if not header.endswith(".h") or is_internal(header):
-            continue
-        test = f"tests/unit/{header[len('innermap/'):-2]}_test.cc"
-        path = os.path.join(root, test)
-        if not os.path.exists(path):
-            yield f"lib/{header}: no unit test, {test} is missing"
-            continue
-        with open(path, encoding="utf-8") as file:
-            text = file.read()
-        if f'"{header}"' not in text:
-            yield f"{test}: does not include {header}"
-        elif not re.search(r"^\s*(TYPED_)?TEST(_[FP])?\(", text, re.M):
-            yield f"{test}: has no test"
+def check_tests(root, room):
+    """Public headers that no test of the room is for."""
+    tests = [read(path) for path in sources(os.path.join(root, "tests/unit", room))]
+    tests = [text for text in tests if re.search(r"^\s*(TYPED_)?TEST(_[FP])?\(", text, re.M)]
+    for path in sources(os.path.join(root, PUBLIC, room)):
+        header = os.path.relpath(path, os.path.join(root, "lib/include"))
+        if not any(f'"{header}"' in text for text in tests):
+            yield f"lib/include/{header}: no test in tests/unit/{room}/ includes it"
 
 
-def check_outside(root, top):
-    """Programs see public headers only."""
+def check_outside(root, top, edges):
+    """Programs see public headers, and those of the rooms that are open to them."""
     for path in sources(os.path.join(root, top)):
-        with open(path, encoding="utf-8") as file:
-            text = file.read()
-        for included in INCLUDE.findall(text):
-            if included.startswith("innermap/") and is_internal(included):
-                yield f"{os.path.relpath(path, root)}: {included} is internal to its folder"
+        for included in INCLUDE.findall(read(path)):
+            found = parse(included, edges)
+            if found and not found[1] and (found[2] or found[0] not in OPEN):
+                yield f"{os.path.relpath(path, root)}: {included} is private"
 
 
 def unit_of(path):
-    """A header and its source are one unit."""
     return re.sub(r"\.(h|cc)$", "", path)
 
 
 def check_cycles(root):
-    """Units (a header with its source) that include each other, directly or round about."""
+    """Headers that include each other, directly or round about. A private header and its source are one
+    unit; a public header, which stands for several sources, is one without them."""
     lib = os.path.join(root, "lib")
     includes = {}
     for path in sources(lib):
-        with open(path, encoding="utf-8") as file:
-            units = {unit_of(i) for i in INCLUDE.findall(file.read())}
-        unit = unit_of(os.path.relpath(path, lib))
+        unit = unit_of(re.sub(r"^include/", "", os.path.relpath(path, lib)))
+        units = {unit_of(i) for i in INCLUDE.findall(read(path))}
         includes.setdefault(unit, set()).update(units - {unit})
     state, trail = {}, []
 
@@ -158,28 +165,36 @@ def check_names(root):
         if not path.endswith(".h"):
             continue
         here = os.path.relpath(path, root)
-        with open(path, encoding="utf-8") as file:
-            names = TYPE.findall(without_comments(file.read()))
-        for name in sorted(set(names)):
+        for name in sorted(set(TYPE.findall(without_comments(read(path))))):
             if name in seen:
                 yield f"{here}: defines {name}, as {seen[name]} does"
             seen[name] = here
 
 
+def check_places(root, edges):
+    """Rooms that lib/CMakeLists.txt does not have, and files in none."""
+    for top, others in (("lib", ("include", "modules", "precompiled")), (PUBLIC, ())):
+        for name in sorted(os.listdir(os.path.join(root, top))):
+            if os.path.isdir(os.path.join(root, top, name)):
+                if name not in edges and name not in others:
+                    yield f"{top}/{name}: not an innermap_room of lib/CMakeLists.txt"
+            elif name.endswith((".cc", ".h")) and (top, name) != (PUBLIC, "innermap.h"):
+                yield f"{top}/{name}: in no room"
+
+
 def check(root):
     edges = read_edges(root)
-    for top in ("tools", "tests/install", "python"):
-        yield from check_outside(root, top)
+    yield from check_places(root, edges)
+    for top in ("tools", "tests/install"):
+        yield from check_outside(root, top, edges)
     yield from check_cycles(root)
     yield from check_names(root)
-    lib = os.path.join(root, "lib/innermap")
-    for folder in sorted(os.listdir(lib)):
-        if os.path.isdir(os.path.join(lib, folder)):
-            yield from check_folder(root, folder, edges)
-            if folder in edges:
-                yield from check_tests(root, folder)
-        elif folder.endswith(".cc"):
-            yield f"lib/innermap/{folder}: in no folder of the design"
+    for room in sorted(edges):
+        yield from check_room(root, room, edges)
+        yield from check_tests(root, room)
+    public = sum(1 for _ in sources(os.path.join(root, PUBLIC)))
+    if public > MOST_PUBLIC:
+        yield f"{PUBLIC}: {public} headers, at most {MOST_PUBLIC} are wanted"
 
 
 def main():

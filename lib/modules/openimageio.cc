@@ -6,7 +6,7 @@
 
 #include <utility>
 
-#include "innermap/io/picture/detail/image_library.h"
+#include "io/picture/detail/image_library.h"
 
 namespace innermap {
 namespace {

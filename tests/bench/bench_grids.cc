@@ -5,7 +5,7 @@
 
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/levelset/level_set.h"
-#include "innermap/sample/source_points.h"
+#include "sample/source_points.h"
 #include "shapes.h"
 
 namespace innermap {

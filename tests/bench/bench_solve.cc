@@ -3,10 +3,10 @@
 
 #include <Eigen/QR>
 
-#include "innermap/solve/dense_solver.h"
-#include "innermap/solve/detail/blocked_qr.h"
 #include "innermap/solve/kernel_sum.h"
+#include "innermap/solve/solver.h"
 #include "shapes.h"
+#include "solve/detail/blocked_qr.h"
 
 namespace innermap {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "innermap/core/detail/pi.h"
-#include "innermap/core/detail/random.h"
+#include "core/pi.h"
+#include "core/random.h"
 #include "innermap/core/matrix.h"
 #include "innermap/core/vec3.h"
 #include "innermap/mesh/mesh.h"

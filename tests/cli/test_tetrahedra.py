@@ -244,7 +244,7 @@ def test_compare_fem_on_functions():
     assert float(rows[0]["jump"]) > 0 and float(rows[3]["jump"]) == 0
     comparison = read_json("out/report.json")["comparison"]
     assert abs(comparison["gradient_order"] - 1) < 0.3
-    for name in ("curves.png", "section.png"):
+    for name in ("curves.svg", "section.png"):
         assert os.path.getsize("out/" + name) > 3000
 
 

@@ -5,16 +5,15 @@
 #include <sstream>
 
 #include "core/memory_limit.h"
-#include "innermap/boundary/landmarks.h"
 #include "innermap/core/memory.h"
+#include "innermap/correspond/mesh_correspondence.h"
 #include "innermap/field/field_file.h"
-#include "innermap/io/exr/exr_slices.h"
-#include "innermap/io/geometry/geometry_file.h"
-#include "innermap/io/geometry/surface_data.h"
-#include "innermap/io/picture/image_file.h"
-#include "innermap/io/vdb/vdb_file.h"
-#include "innermap/io/volume/volume_texture.h"
-#include "innermap/mesh/read.h"
+#include "innermap/io/exr_slices.h"
+#include "innermap/io/geometry_file.h"
+#include "innermap/io/pictures.h"
+#include "innermap/io/vdb_file.h"
+#include "innermap/io/volume_texture.h"
+#include "innermap/mesh/mesh_file.h"
 
 namespace innermap::fuzz {
 namespace {

@@ -7,8 +7,8 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "innermap/boundary/mapped_solid.h"
-#include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
+#include "innermap/fit/mapped_solid.h"
 
 using namespace innermap;
 

@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "section.h"
 
 namespace {

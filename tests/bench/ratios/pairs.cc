@@ -2,11 +2,10 @@
 
 #include <cmath>
 
-#include "innermap/boundary/boundary_pair.h"
-#include "innermap/boundary/surface_problem.h"
-#include "innermap/field/boundary_error.h"
-#include "innermap/mesh/read.h"
-#include "innermap/mesh/write.h"
+#include "innermap/field/fit.h"
+#include "innermap/fit/boundary_pair.h"
+#include "innermap/fit/surface_problem.h"
+#include "innermap/mesh/mesh_file.h"
 
 namespace innermap::bench {
 namespace {

@@ -4,9 +4,9 @@
 #include "innermap/core/memory.h"
 #include "innermap/levelset/solid.h"
 #include "innermap/mesh/check.h"
-#include "innermap/mesh/read.h"
-#include "innermap/sample/source_points.h"
-#include "innermap/sample/surface_samples.h"
+#include "innermap/mesh/mesh_file.h"
+#include "sample/source_points.h"
+#include "sample/surface_samples.h"
 #include "section.h"
 
 namespace innermap::bench {

@@ -5,13 +5,13 @@
 
 #include <cmath>
 
-#include "innermap/evaluate/detail/active_region.h"
+#include "evaluate/active_region.h"
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/field/fit.h"
 #include "innermap/levelset/level_set.h"
-#include "innermap/mesh/read.h"
-#include "innermap/sample/source_points.h"
-#include "innermap/sample/surface_samples.h"
+#include "innermap/mesh/mesh_file.h"
+#include "sample/source_points.h"
+#include "sample/surface_samples.h"
 #include "section.h"
 
 namespace innermap::bench {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "innermap/boundary/frame_fitter.h"
-#include "innermap/mesh/read.h"
+#include "innermap/fit/frame_fitter.h"
+#include "innermap/mesh/mesh_file.h"
 #include "section.h"
 
 namespace innermap::bench {

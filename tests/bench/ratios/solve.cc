@@ -4,12 +4,12 @@
 #include <algorithm>
 
 #include "innermap/field/field_file.h"
-#include "innermap/mesh/read.h"
-#include "innermap/sample/surface_samples.h"
-#include "innermap/solve/detail/blocked_qr.h"
+#include "innermap/mesh/mesh_file.h"
 #include "innermap/solve/kernel_sum.h"
 #include "pairs.h"
 #include "program.h"
+#include "sample/surface_samples.h"
+#include "solve/detail/blocked_qr.h"
 
 // NOLINTNEXTLINE(readability-identifier-naming)
 extern "C" void openblas_set_num_threads(int threads);

@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "innermap/core/detail/random.h"
-#include "innermap/evaluate/detail/active_region.h"
+#include "core/random.h"
+#include "evaluate/active_region.h"
 #include "innermap/field/field_file.h"
 #include "innermap/levelset/level_set.h"
-#include "innermap/mesh/read.h"
-#include "innermap/sample/source_points.h"
-#include "innermap/solve/fast_sum.h"
+#include "innermap/mesh/mesh_file.h"
+#include "innermap/solve/kernel_sum.h"
 #include "memory_peak.h"
 #include "pairs.h"
 #include "program.h"
+#include "sample/source_points.h"
 
 namespace innermap::bench {
 namespace {

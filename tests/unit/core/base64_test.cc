@@ -1,4 +1,4 @@
-#include "innermap/core/base64.h"
+#include "core/base64.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <set>
 
+#include "core/file.h"
 #include "innermap/core/error.h"
-#include "innermap/core/file.h"
 #include "innermap/core/run.h"
 
 namespace innermap {

@@ -1,4 +1,4 @@
-#include "innermap/core/figure.h"
+#include "core/figure.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "innermap/core/frame_files.h"
+#include "core/frame_files.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -6,7 +6,7 @@
 
 #include "core/memory_limit.h"
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {

@@ -1,5 +1,3 @@
-#include "innermap/core/parallel.h"
-
 #include <gtest/gtest.h>
 
 #include <atomic>

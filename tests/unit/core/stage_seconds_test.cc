@@ -1,8 +1,8 @@
-#include "innermap/core/stage_seconds.h"
-
 #include <gtest/gtest.h>
 
 #include <stdexcept>
+
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {

@@ -1,11 +1,10 @@
-#include "innermap/evaluate/energy.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "innermap/core/detail/pi.h"
-#include "innermap/core/detail/random.h"
+#include "core/pi.h"
+#include "core/random.h"
+#include "innermap/evaluate/evaluate_map.h"
 
 namespace innermap {
 namespace {

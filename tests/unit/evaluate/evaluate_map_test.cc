@@ -3,9 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "core/memory_limit.h"
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"

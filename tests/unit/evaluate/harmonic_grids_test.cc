@@ -1,9 +1,8 @@
-#include "innermap/evaluate/harmonic_grids.h"
-
 #include <gtest/gtest.h>
 
 #include "core/memory_limit.h"
 #include "innermap/core/error.h"
+#include "innermap/evaluate/grids.h"
 #include "mesh/shapes.h"
 
 namespace innermap {

@@ -1,14 +1,13 @@
-#include "innermap/evaluate/map_grids.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "boundary/test_pairs.h"
 #include "core/memory_limit.h"
-#include "innermap/boundary/fit_map.h"
+#include "fit/test_pairs.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
+#include "innermap/evaluate/grids.h"
+#include "innermap/fit/fit_map.h"
 #include "innermap/levelset/level_set.h"
 
 namespace innermap {

@@ -5,8 +5,8 @@
 
 #include <functional>
 
-#include "boundary/test_pairs.h"
-#include "innermap/evaluate/detail/cell_check.h"
+#include "evaluate/detail/cell_check.h"
+#include "fit/test_pairs.h"
 
 namespace innermap::test {
 

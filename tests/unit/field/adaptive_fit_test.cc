@@ -1,15 +1,13 @@
-#include "innermap/field/adaptive_fit.h"
-
 #include <gtest/gtest.h>
 
 #include "core/memory_limit.h"
+#include "core/pi.h"
+#include "core/point_grid.h"
 #include "field/sphere_problem.h"
-#include "innermap/core/detail/pi.h"
-#include "innermap/core/detail/point_grid.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
+#include "innermap/field/fit.h"
 
 namespace innermap {
 namespace {

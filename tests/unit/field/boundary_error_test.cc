@@ -1,13 +1,12 @@
-#include "innermap/field/boundary_error.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "core/pi.h"
+#include "core/random.h"
 #include "field/sphere_problem.h"
-#include "innermap/core/detail/pi.h"
-#include "innermap/core/detail/random.h"
 #include "innermap/core/error.h"
+#include "innermap/field/fit.h"
 
 namespace innermap {
 namespace {

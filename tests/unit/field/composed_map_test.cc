@@ -2,7 +2,7 @@
 
 #include "field/sphere_problem.h"
 #include "innermap/core/error.h"
-#include "innermap/field/harmonic_map.h"
+#include "innermap/field/harmonic_field.h"
 
 namespace innermap {
 namespace {

@@ -1,6 +1,6 @@
-#include "innermap/field/facts.h"
-
 #include <gtest/gtest.h>
+
+#include "innermap/field/field_file.h"
 
 namespace innermap {
 namespace {

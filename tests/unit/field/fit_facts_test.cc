@@ -1,8 +1,8 @@
-#include "innermap/field/fit_facts.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "innermap/field/field_file.h"
 
 namespace innermap {
 namespace {

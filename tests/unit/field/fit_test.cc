@@ -5,7 +5,6 @@
 #include "core/memory_limit.h"
 #include "field/sphere_problem.h"
 #include "innermap/core/error.h"
-#include "innermap/field/boundary_error.h"
 
 namespace innermap {
 namespace {

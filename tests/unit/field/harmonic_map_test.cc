@@ -1,9 +1,8 @@
-#include "innermap/field/harmonic_map.h"
-
 #include <gtest/gtest.h>
 
 #include "field/sphere_problem.h"
 #include "innermap/core/error.h"
+#include "innermap/field/harmonic_field.h"
 
 namespace innermap {
 namespace {

@@ -1,7 +1,7 @@
 // A unit ball with a harmonic function on its boundary, for the tests of field/.
 #pragma once
 
-#include "innermap/core/detail/pi.h"
+#include "core/pi.h"
 #include "innermap/field/fit.h"
 #include "solve/points.h"
 

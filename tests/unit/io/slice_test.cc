@@ -1,12 +1,11 @@
-#include "innermap/io/slice.h"
-
 #include <gtest/gtest.h>
 #include <openvdb/tools/ChangeBackground.h>
 
 #include <set>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "innermap/core/error.h"
+#include "innermap/io/pictures.h"
 #include "io/test_files.h"
 
 namespace innermap {

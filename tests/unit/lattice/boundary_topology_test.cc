@@ -1,7 +1,6 @@
-#include "innermap/lattice/boundary_topology.h"
-
 #include <gtest/gtest.h>
 
+#include "innermap/lattice/outer_surface.h"
 #include "mesh/shapes.h"
 
 namespace innermap {

@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "core/memory_limit.h"
-#include "innermap/core/detail/pi.h"
-#include "innermap/core/detail/random.h"
+#include "core/pi.h"
+#include "core/random.h"
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
-#include "innermap/mesh/self_intersection.h"
+#include "innermap/mesh/check.h"
 #include "mesh/shapes.h"
 
 namespace innermap {

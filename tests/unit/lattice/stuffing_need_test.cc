@@ -1,8 +1,7 @@
-#include "innermap/lattice/stuffing_need.h"
-
 #include <gtest/gtest.h>
 
-#include "innermap/lattice/detail/stuffing.h"
+#include "innermap/lattice/outer_surface.h"
+#include "lattice/stuffing.h"
 #include "mesh/shapes.h"
 
 namespace innermap {

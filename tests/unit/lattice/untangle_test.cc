@@ -1,10 +1,10 @@
-#include "innermap/lattice/untangle.h"
+#include "lattice/untangle.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "innermap/core/run.h"
 
 namespace innermap {

@@ -1,9 +1,7 @@
-#include "innermap/levelset/fog.h"
-
 #include <gtest/gtest.h>
 #include <openvdb/tools/Diagnostics.h>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "innermap/core/error.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"

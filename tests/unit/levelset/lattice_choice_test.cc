@@ -1,5 +1,3 @@
-#include "innermap/levelset/lattice_choice.h"
-
 #include <gtest/gtest.h>
 
 #include "innermap/core/error.h"

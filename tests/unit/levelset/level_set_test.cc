@@ -4,8 +4,7 @@
 #include <openvdb/tools/Diagnostics.h>
 
 #include "core/memory_limit.h"
-#include "innermap/core/detail/random.h"
-#include "innermap/core/parallel.h"
+#include "core/random.h"
 #include "innermap/core/run.h"
 #include "mesh/shapes.h"
 

@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
-#include "innermap/levelset/detail/offset_surface.h"
 #include "innermap/levelset/level_set.h"
-#include "innermap/mesh/read.h"
+#include "innermap/mesh/mesh_file.h"
+#include "levelset/offset_surface.h"
 
 namespace innermap {
 namespace {

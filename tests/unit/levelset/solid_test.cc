@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "innermap/core/run.h"
 #include "mesh/shapes.h"
 

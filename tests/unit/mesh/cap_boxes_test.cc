@@ -1,7 +1,6 @@
-#include "innermap/mesh/cap_boxes.h"
-
 #include <gtest/gtest.h>
 
+#include "innermap/mesh/check.h"
 #include "mesh/test_meshes.h"
 
 namespace innermap {

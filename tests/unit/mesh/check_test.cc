@@ -4,10 +4,10 @@
 
 #include <filesystem>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
-#include "innermap/mesh/read.h"
+#include "innermap/mesh/mesh_file.h"
 #include "mesh/test_meshes.h"
 
 namespace innermap {

@@ -4,8 +4,8 @@
 
 #include <functional>
 
-#include "innermap/core/detail/pi.h"
-#include "innermap/core/detail/random.h"
+#include "core/pi.h"
+#include "core/random.h"
 #include "innermap/core/error.h"
 #include "mesh/shapes.h"
 #include "mesh/test_meshes.h"

@@ -8,11 +8,10 @@
 #include <fstream>
 #include <iterator>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
-#include "innermap/mesh/read.h"
-#include "innermap/mesh/write.h"
+#include "innermap/mesh/mesh_file.h"
 #include "mesh/test_meshes.h"
 
 namespace innermap {

@@ -1,5 +1,3 @@
-#include "innermap/mesh/read.h"
-
 #include <gtest/gtest.h>
 
 #include <clocale>
@@ -8,6 +6,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
+#include "innermap/mesh/mesh_file.h"
 #include "mesh/test_meshes.h"
 
 namespace innermap {

@@ -1,18 +1,16 @@
-#include "innermap/mesh/repair.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
 
-#include "innermap/core/detail/pi.h"
-#include "innermap/core/detail/random.h"
+#include "core/pi.h"
+#include "core/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/mesh/check.h"
-#include "innermap/mesh/detail/winding_number.h"
-#include "innermap/mesh/read.h"
+#include "innermap/mesh/mesh_file.h"
 #include "mesh/test_meshes.h"
+#include "mesh/winding_number.h"
 
 namespace innermap {
 namespace {

@@ -1,13 +1,10 @@
-#include "innermap/mesh/self_intersection.h"
-
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <set>
 
-#include "innermap/core/detail/pi.h"
-#include "innermap/core/detail/random.h"
-#include "innermap/core/parallel.h"
+#include "core/pi.h"
+#include "core/random.h"
 #include "innermap/core/run.h"
 #include "innermap/mesh/check.h"
 #include "mesh/test_meshes.h"

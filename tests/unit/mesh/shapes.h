@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "innermap/core/detail/pi.h"
-#include "innermap/core/detail/random.h"
+#include "core/pi.h"
+#include "core/random.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap::shapes {

@@ -1,10 +1,10 @@
-#include "innermap/mesh/triangle_tree.h"
+#include "mesh/triangle_tree.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "mesh/shapes.h"
 
 namespace innermap {

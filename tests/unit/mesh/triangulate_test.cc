@@ -1,4 +1,4 @@
-#include "innermap/mesh/triangulate.h"
+#include "mesh/triangulate.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "innermap/core/detail/pi.h"
-#include "innermap/core/detail/random.h"
+#include "core/pi.h"
+#include "core/random.h"
 
 namespace innermap {
 namespace {

@@ -1,4 +1,4 @@
-#include "innermap/mesh/uv_charts.h"
+#include "mesh/uv_charts.h"
 
 #include <gtest/gtest.h>
 

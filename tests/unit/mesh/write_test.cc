@@ -1,5 +1,3 @@
-#include "innermap/mesh/write.h"
-
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -7,9 +5,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "innermap/core/error.h"
-#include "innermap/mesh/read.h"
+#include "innermap/mesh/mesh_file.h"
 #include "mesh/test_meshes.h"
 
 namespace innermap {

@@ -1,11 +1,11 @@
-#include "innermap/report/figures.h"
+#include "report/figures.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "innermap/boundary/map_fit.h"
-#include "innermap/evaluate/map_grids.h"
+#include "innermap/evaluate/grids.h"
+#include "innermap/fit/fit_map.h"
 #include "innermap/tetra/compare_fem.h"
 #include "innermap/transfer/carry.h"
 

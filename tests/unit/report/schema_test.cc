@@ -1,4 +1,4 @@
-#include "innermap/report/schema.h"
+#include "report/schema.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,8 @@
-#include "innermap/sample/source_points.h"
+#include "sample/source_points.h"
 
 #include <gtest/gtest.h>
 
-#include "innermap/core/detail/random.h"
-#include "innermap/core/parallel.h"
+#include "core/random.h"
 #include "innermap/core/run.h"
 #include "mesh/shapes.h"
 

@@ -1,15 +1,14 @@
-#include "innermap/sample/surface_samples.h"
+#include "sample/surface_samples.h"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <set>
 
-#include "innermap/core/detail/random.h"
-#include "innermap/core/parallel.h"
+#include "core/random.h"
 #include "innermap/core/run.h"
-#include "innermap/sample/detail/sample_elimination.h"
 #include "mesh/shapes.h"
+#include "sample/detail/sample_elimination.h"
 
 namespace innermap {
 namespace {

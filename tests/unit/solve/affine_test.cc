@@ -1,6 +1,6 @@
-#include "innermap/solve/affine.h"
-
 #include <gtest/gtest.h>
+
+#include "innermap/solve/solver.h"
 
 namespace innermap {
 namespace {

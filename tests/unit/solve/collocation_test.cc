@@ -1,9 +1,7 @@
-#include "innermap/solve/collocation.h"
-
 #include <gtest/gtest.h>
 
-#include "innermap/solve/iterative_solver.h"
 #include "innermap/solve/kernel_sum.h"
+#include "innermap/solve/solver.h"
 
 namespace innermap {
 namespace {

@@ -1,11 +1,10 @@
-#include "innermap/solve/dense_solver.h"
-
 #include <gtest/gtest.h>
 
 #include "core/memory_limit.h"
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/solve/kernel_sum.h"
+#include "innermap/solve/solver.h"
 #include "solve/points.h"
 
 namespace innermap {

@@ -1,12 +1,10 @@
-#include "innermap/solve/fast_sum.h"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
 
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
+#include "innermap/solve/kernel_sum.h"
 #include "solve/points.h"
 
 namespace innermap {

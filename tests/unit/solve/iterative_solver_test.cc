@@ -1,15 +1,12 @@
-#include "innermap/solve/iterative_solver.h"
-
 #include <gtest/gtest.h>
 
 #include "core/memory_limit.h"
-#include "innermap/core/detail/pi.h"
-#include "innermap/core/detail/random.h"
+#include "core/pi.h"
+#include "core/random.h"
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
-#include "innermap/solve/dense_solver.h"
 #include "innermap/solve/kernel_sum.h"
+#include "innermap/solve/solver.h"
 #include "solve/points.h"
 
 namespace innermap {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
 #include "solve/points.h"
 

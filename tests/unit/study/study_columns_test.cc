@@ -1,9 +1,9 @@
-#include "innermap/study/study_columns.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
+
+#include "innermap/study/study.h"
 
 namespace innermap {
 namespace {

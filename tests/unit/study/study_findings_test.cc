@@ -1,8 +1,8 @@
-#include "innermap/study/study_findings.h"
-
 #include <gtest/gtest.h>
 
 #include <functional>
+
+#include "innermap/study/study.h"
 
 namespace innermap {
 namespace {

@@ -1,6 +1,6 @@
-#include "innermap/study/study_run.h"
-
 #include <gtest/gtest.h>
+
+#include "innermap/study/study.h"
 
 namespace innermap {
 namespace {

@@ -1,12 +1,11 @@
-#include "innermap/surface/closed_surface.h"
-
 #include <gtest/gtest.h>
 
 #include <map>
 
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
-#include "innermap/mesh/read.h"
+#include "innermap/mesh/mesh_file.h"
+#include "innermap/surface/correspond.h"
 #include "mesh/test_meshes.h"
 
 namespace innermap {

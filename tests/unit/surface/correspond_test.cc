@@ -7,12 +7,10 @@
 #include <filesystem>
 
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
-#include "innermap/mesh/read.h"
-#include "innermap/mesh/triangle_tree.h"
-#include "innermap/surface/map_quality.h"
+#include "innermap/mesh/mesh_file.h"
 #include "mesh/shapes.h"
+#include "mesh/triangle_tree.h"
 #include "surface/handle_shapes.h"
 
 namespace innermap {

@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
-#include "innermap/core/detail/random.h"
-#include "innermap/surface/layout.h"
+#include "core/random.h"
+#include "innermap/surface/correspond.h"
 #include "mesh/shapes.h"
 
 namespace innermap::shapes {

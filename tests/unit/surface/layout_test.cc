@@ -1,7 +1,6 @@
-#include "innermap/surface/layout.h"
-
 #include <gtest/gtest.h>
 
+#include "innermap/surface/correspond.h"
 #include "mesh/shapes.h"
 
 namespace innermap {

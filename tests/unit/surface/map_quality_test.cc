@@ -1,15 +1,13 @@
-#include "innermap/surface/map_quality.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstring>
 
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
-#include "innermap/surface/detail/refining/locate.h"
+#include "innermap/surface/correspond.h"
 #include "mesh/test_meshes.h"
+#include "surface/detail/refining/locate.h"
 
 namespace innermap {
 namespace {

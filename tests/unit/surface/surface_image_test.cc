@@ -3,8 +3,8 @@
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/surface/correspond.h"
-#include "innermap/surface/detail/refining/locate.h"
 #include "mesh/test_meshes.h"
+#include "surface/detail/refining/locate.h"
 
 namespace innermap {
 namespace {

@@ -1,5 +1,3 @@
-#include "innermap/tetra/block_set.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/mesh/check.h"
+#include "innermap/tetra/hexahedralize.h"
 #include "tetra/test_blocks.h"
 
 namespace innermap {

@@ -1,11 +1,10 @@
-#include "innermap/tetra/boundary_fit.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
+#include "innermap/tetra/hexahedralize.h"
 #include "mesh/shapes.h"
 
 namespace innermap {

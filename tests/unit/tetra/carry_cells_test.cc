@@ -1,10 +1,9 @@
-#include "innermap/tetra/carry_cells.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "innermap/core/error.h"
+#include "innermap/tetra/cells.h"
 #include "innermap/tetra/tetrahedralize.h"
 #include "tetra/kuhn_mesh.h"
 #include "tetra/mapped_balls.h"

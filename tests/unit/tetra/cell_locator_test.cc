@@ -1,10 +1,9 @@
-#include "innermap/tetra/cell_locator.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
+#include "innermap/tetra/cells.h"
 #include "tetra/kuhn_mesh.h"
 
 namespace innermap {

@@ -1,5 +1,3 @@
-#include "innermap/tetra/cell_quality.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
+#include "innermap/tetra/cells.h"
 
 namespace innermap {
 namespace {

@@ -1,12 +1,10 @@
-#include "innermap/tetra/harmonic_cells.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
+#include "innermap/tetra/compare_fem.h"
 #include "innermap/tetra/tetrahedralize.h"
 #include "mesh/shapes.h"
 

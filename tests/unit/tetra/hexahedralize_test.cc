@@ -4,9 +4,7 @@
 
 #include "core/memory_limit.h"
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
-#include "innermap/tetra/block_set.h"
 #include "mesh/shapes.h"
 
 namespace innermap {

@@ -1,11 +1,10 @@
-#include "innermap/tetra/hexahedron_check.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "innermap/core/error.h"
+#include "innermap/tetra/hexahedralize.h"
 
 namespace innermap {
 namespace {

@@ -1,15 +1,13 @@
-#include "innermap/tetra/improve_cells.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
-#include "innermap/mesh/triangle_tree.h"
-#include "innermap/tetra/cell_quality.h"
+#include "innermap/tetra/cells.h"
+#include "innermap/tetra/remesh_cells.h"
+#include "mesh/triangle_tree.h"
 #include "tetra/kuhn_mesh.h"
 
 namespace innermap {

@@ -1,9 +1,8 @@
-#include "innermap/tetra/linear_map.h"
-
 #include <gtest/gtest.h>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "innermap/core/error.h"
+#include "innermap/tetra/cells.h"
 #include "tetra/kuhn_mesh.h"
 
 namespace innermap {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "boundary/test_pairs.h"
-#include "innermap/boundary/fit_map.h"
-#include "innermap/boundary/mapped_solid.h"
+#include "fit/test_pairs.h"
+#include "innermap/fit/fit_map.h"
+#include "innermap/fit/mapped_solid.h"
 
 namespace innermap::test {
 

@@ -1,11 +1,10 @@
-#include "innermap/tetra/polycube.h"
-
 #include <gtest/gtest.h>
 
 #include "innermap/core/error.h"
 #include "innermap/mesh/check.h"
-#include "innermap/tetra/detail/block_topology.h"
+#include "innermap/tetra/hexahedralize.h"
 #include "mesh/shapes.h"
+#include "tetra/detail/block_topology.h"
 
 namespace innermap {
 namespace {

@@ -5,10 +5,8 @@
 #include <algorithm>
 
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
-#include "innermap/tetra/carry_cells.h"
-#include "innermap/tetra/linear_map.h"
+#include "innermap/tetra/cells.h"
 #include "innermap/tetra/tetrahedralize.h"
 #include "tetra/kuhn_mesh.h"
 #include "tetra/mapped_balls.h"

@@ -1,14 +1,12 @@
-#include "innermap/tetra/repair_cells.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
-#include "innermap/mesh/triangle_tree.h"
+#include "innermap/tetra/remesh_cells.h"
+#include "mesh/triangle_tree.h"
 #include "tetra/kuhn_mesh.h"
 
 namespace innermap {

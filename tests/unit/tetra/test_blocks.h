@@ -1,7 +1,7 @@
 // Sets of blocks made for tests.
 #pragma once
 
-#include "innermap/tetra/block_set.h"
+#include "innermap/tetra/hexahedralize.h"
 
 namespace innermap {
 

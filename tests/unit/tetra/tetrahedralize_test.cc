@@ -6,11 +6,10 @@
 #include <map>
 
 #include "core/memory_limit.h"
-#include "innermap/core/detail/pi.h"
+#include "core/pi.h"
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
-#include "innermap/tetra/cell_quality.h"
+#include "innermap/tetra/cells.h"
 #include "mesh/shapes.h"
 
 namespace innermap {

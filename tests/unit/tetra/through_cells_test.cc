@@ -1,8 +1,7 @@
-#include "innermap/tetra/through_cells.h"
-
 #include <gtest/gtest.h>
 
 #include "innermap/core/error.h"
+#include "innermap/tetra/cells.h"
 #include "innermap/tetra/remesh_cells.h"
 #include "innermap/tetra/tetrahedralize.h"
 #include "tetra/mapped_balls.h"

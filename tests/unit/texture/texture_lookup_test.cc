@@ -1,10 +1,9 @@
-#include "innermap/texture/texture_lookup.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "innermap/core/error.h"
+#include "innermap/texture/solid_texture.h"
 
 namespace innermap {
 namespace {

@@ -1,11 +1,10 @@
-#include "innermap/transfer/carry_geometry.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/memory_limit.h"
 #include "innermap/core/error.h"
+#include "innermap/transfer/geometry.h"
 
 namespace innermap {
 namespace {

@@ -1,7 +1,6 @@
-#include "innermap/transfer/carry_memory.h"
-
 #include <gtest/gtest.h>
 
+#include "innermap/transfer/carry.h"
 #include "transfer/test_maps.h"
 
 namespace innermap {

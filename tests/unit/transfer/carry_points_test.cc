@@ -1,12 +1,10 @@
-#include "innermap/transfer/carry_points.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
+#include "innermap/transfer/inverse_map.h"
 #include "transfer/test_maps.h"
 
 namespace innermap {

@@ -5,8 +5,7 @@
 #include <openvdb/tools/ChangeBackground.h>
 
 #include "innermap/core/error.h"
-#include "innermap/transfer/pull.h"
-#include "innermap/transfer/push.h"
+#include "innermap/transfer/push_pull.h"
 #include "transfer/test_maps.h"
 
 namespace innermap {

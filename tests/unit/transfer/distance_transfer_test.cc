@@ -7,7 +7,6 @@
 
 #include "core/memory_limit.h"
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/levelset/level_set.h"

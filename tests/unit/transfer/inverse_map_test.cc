@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "core/memory_limit.h"
+#include "evaluate/active_region.h"
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
-#include "innermap/evaluate/detail/active_region.h"
 #include "transfer/test_maps.h"
 
 namespace innermap {

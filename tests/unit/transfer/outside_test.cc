@@ -1,8 +1,7 @@
-#include "innermap/transfer/outside.h"
-
 #include <gtest/gtest.h>
 
 #include "innermap/core/error.h"
+#include "innermap/transfer/carry.h"
 #include "transfer/test_maps.h"
 
 namespace innermap {

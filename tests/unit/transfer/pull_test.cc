@@ -1,10 +1,8 @@
-#include "innermap/transfer/pull.h"
-
 #include <gtest/gtest.h>
 
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
-#include "innermap/transfer/push.h"
+#include "innermap/transfer/push_pull.h"
 #include "transfer/test_maps.h"
 
 namespace innermap {

@@ -9,9 +9,8 @@
 
 #include "core/memory_limit.h"
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
-#include "innermap/transfer/push.h"
+#include "innermap/transfer/push_pull.h"
 #include "transfer/test_maps.h"
 
 namespace innermap {

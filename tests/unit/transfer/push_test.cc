@@ -1,13 +1,12 @@
-#include "innermap/transfer/push.h"
-
 #include <gtest/gtest.h>
 #include <openvdb/tools/Composite.h>
 
 #include <functional>
 
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
+#include "innermap/core/run.h"
 #include "innermap/evaluate/evaluate_map.h"
+#include "innermap/transfer/push_pull.h"
 #include "transfer/test_maps.h"
 
 namespace innermap {

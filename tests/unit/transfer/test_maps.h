@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-#include "innermap/core/detail/pi.h"
-#include "innermap/core/detail/random.h"
+#include "core/pi.h"
+#include "core/random.h"
 #include "innermap/field/fit.h"
-#include "innermap/field/harmonic_map.h"
+#include "innermap/field/harmonic_field.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/levelset/solid.h"
 #include "mesh/shapes.h"

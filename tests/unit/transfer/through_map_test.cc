@@ -1,12 +1,10 @@
-#include "innermap/transfer/through_map.h"
-
 #include <gtest/gtest.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
 #include "innermap/core/error.h"
 #include "innermap/levelset/level_set.h"
-#include "innermap/transfer/pull.h"
-#include "innermap/transfer/push.h"
+#include "innermap/transfer/inverse_map.h"
+#include "innermap/transfer/push_pull.h"
 #include "transfer/test_maps.h"
 
 namespace innermap {

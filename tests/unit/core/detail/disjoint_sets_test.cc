@@ -1,4 +1,4 @@
-#include "innermap/core/detail/disjoint_sets.h"
+#include "core/disjoint_sets.h"
 
 #include <gtest/gtest.h>
 

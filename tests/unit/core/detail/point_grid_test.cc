@@ -1,8 +1,8 @@
-#include "innermap/core/detail/point_grid.h"
+#include "core/point_grid.h"
 
 #include <gtest/gtest.h>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "innermap/core/error.h"
 
 namespace innermap {

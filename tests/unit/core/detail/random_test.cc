@@ -1,4 +1,4 @@
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "innermap/evaluate/detail/active_region.h"
+#include "evaluate/active_region.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "innermap/evaluate/detail/cell_check.h"
+#include "evaluate/detail/cell_check.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,6 @@
 
 #include "evaluate/test_lattice.h"
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
 
 namespace innermap {

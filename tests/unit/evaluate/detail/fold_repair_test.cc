@@ -1,4 +1,4 @@
-#include "innermap/evaluate/detail/fold_repair.h"
+#include "evaluate/detail/fold_repair.h"
 
 #include <gtest/gtest.h>
 

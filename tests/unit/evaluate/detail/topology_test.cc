@@ -1,4 +1,4 @@
-#include "innermap/evaluate/detail/topology.h"
+#include "evaluate/topology.h"
 
 #include <gtest/gtest.h>
 

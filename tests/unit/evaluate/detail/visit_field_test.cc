@@ -1,13 +1,13 @@
-#include "innermap/evaluate/detail/visit_field.h"
+#include "evaluate/visit_field.h"
 
 #include <gtest/gtest.h>
 
 #include <atomic>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
+#include "evaluate/active_region.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
-#include "innermap/evaluate/detail/active_region.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"
 

@@ -1,4 +1,4 @@
-#include "innermap/io/cells/cell_file.h"
+#include "innermap/io/cell_file.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
-#include "innermap/io/exr/exr_slices.h"
+#include "innermap/io/exr_slices.h"
 #include "io/test_files.h"
 
 namespace innermap {

@@ -1,4 +1,4 @@
-#include "innermap/io/exr/exr_slices.h"
+#include "innermap/io/exr_slices.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfDoubleAttribute.h>
@@ -16,7 +16,7 @@
 #include "core/memory_limit.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
-#include "innermap/io/slice.h"
+#include "innermap/io/pictures.h"
 #include "io/test_files.h"
 
 namespace innermap {

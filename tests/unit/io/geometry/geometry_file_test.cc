@@ -1,4 +1,4 @@
-#include "innermap/io/geometry/geometry_file.h"
+#include "innermap/io/geometry_file.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 
 #include "core/memory_limit.h"
 #include "innermap/core/error.h"
-#include "innermap/io/cells/cell_file.h"
-#include "innermap/mesh/read.h"
+#include "innermap/io/cell_file.h"
+#include "innermap/mesh/mesh_file.h"
 
 namespace innermap {
 namespace {

@@ -1,12 +1,11 @@
-#include "innermap/io/geometry/surface_data.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <fstream>
 
 #include "innermap/core/error.h"
-#include "innermap/mesh/read.h"
+#include "innermap/io/geometry_file.h"
+#include "innermap/mesh/mesh_file.h"
 
 namespace innermap {
 namespace {

@@ -1,10 +1,9 @@
-#include "innermap/io/picture/cell_picture.h"
-
 #include <gtest/gtest.h>
 
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
-#include "innermap/io/picture/image_file.h"
+#include "innermap/io/pictures.h"
+#include "innermap/io/solid_pictures.h"
 #include "io/test_files.h"
 
 namespace innermap {

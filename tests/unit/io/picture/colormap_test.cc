@@ -1,8 +1,8 @@
-#include "innermap/io/picture/colormap.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "innermap/io/pictures.h"
 
 namespace innermap {
 namespace {

@@ -1,5 +1,3 @@
-#include "innermap/io/picture/image_file.h"
-
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +9,7 @@
 #include "core/memory_limit.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
+#include "innermap/io/pictures.h"
 #include "io/test_files.h"
 
 #if defined(__has_feature)

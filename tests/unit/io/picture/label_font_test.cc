@@ -1,8 +1,8 @@
-#include "innermap/io/picture/label_font.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
+
+#include "innermap/io/pictures.h"
 
 namespace innermap {
 namespace {

@@ -1,14 +1,12 @@
-#include "innermap/io/picture/mesh_picture.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
-#include "innermap/boundary/boundary_pair.h"
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
-#include "innermap/io/picture/image_file.h"
+#include "innermap/fit/boundary_pair.h"
+#include "innermap/io/pictures.h"
+#include "innermap/io/solid_pictures.h"
 #include "io/test_files.h"
 #include "mesh/shapes.h"
 

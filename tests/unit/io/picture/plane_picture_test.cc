@@ -1,11 +1,10 @@
-#include "innermap/io/picture/plane_picture.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "innermap/core/error.h"
-#include "innermap/io/picture/image_file.h"
+#include "innermap/io/pictures.h"
+#include "innermap/io/solid_pictures.h"
 #include "io/test_files.h"
 
 namespace innermap {

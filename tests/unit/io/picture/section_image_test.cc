@@ -1,10 +1,9 @@
-#include "innermap/io/picture/section_image.h"
-
 #include <OpenImageIO/imagebuf.h>
 #include <gtest/gtest.h>
 
 #include "core/memory_limit.h"
 #include "innermap/core/error.h"
+#include "innermap/io/pictures.h"
 #include "io/test_files.h"
 
 namespace innermap {

@@ -1,8 +1,7 @@
-#include "innermap/io/picture/texture_images.h"
-
 #include <gtest/gtest.h>
 
 #include "innermap/core/error.h"
+#include "innermap/io/pictures.h"
 #include "io/test_files.h"
 
 namespace innermap {

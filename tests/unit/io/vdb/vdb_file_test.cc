@@ -1,4 +1,4 @@
-#include "innermap/io/vdb/vdb_file.h"
+#include "innermap/io/vdb_file.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -11,7 +11,7 @@
 #include <regex>
 
 #include "core/memory_limit.h"
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"

@@ -17,7 +17,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"
-#include "innermap/io/volume/volume_texture.h"
+#include "innermap/io/volume_texture.h"
 #include "io/test_files.h"
 
 namespace innermap {

@@ -1,4 +1,4 @@
-#include "innermap/io/volume/volume_texture.h"
+#include "innermap/io/volume_texture.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfDoubleAttribute.h>

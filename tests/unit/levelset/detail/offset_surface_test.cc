@@ -1,4 +1,4 @@
-#include "innermap/levelset/detail/offset_surface.h"
+#include "levelset/offset_surface.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "innermap/mesh/detail/connectivity.h"
+#include "mesh/connectivity.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "innermap/mesh/detail/winding_number.h"
+#include "mesh/winding_number.h"
 
 #include <gtest/gtest.h>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "mesh/shapes.h"
 
 namespace innermap {

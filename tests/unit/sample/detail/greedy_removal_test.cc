@@ -1,11 +1,11 @@
-#include "innermap/sample/detail/greedy_removal.h"
+#include "sample/detail/greedy_removal.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdint>
 
-#include "innermap/core/detail/random.h"
-#include "innermap/core/parallel.h"
+#include "core/random.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {

@@ -1,11 +1,10 @@
-#include "innermap/sample/detail/patch_points.h"
+#include "sample/patch_points.h"
 
 #include <gtest/gtest.h>
 
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
-#include "innermap/mesh/read.h"
+#include "innermap/mesh/mesh_file.h"
 
 namespace innermap {
 namespace {

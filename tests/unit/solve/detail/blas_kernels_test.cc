@@ -1,4 +1,4 @@
-#include "innermap/solve/detail/blas_kernels.h"
+#include "solve/detail/blas_kernels.h"
 
 #include <gtest/gtest.h>
 

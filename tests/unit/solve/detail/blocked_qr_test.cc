@@ -1,12 +1,11 @@
-#include "innermap/solve/detail/blocked_qr.h"
+#include "solve/detail/blocked_qr.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
 
 namespace innermap {

@@ -1,4 +1,4 @@
-#include "innermap/solve/detail/clusters.h"
+#include "solve/detail/clusters.h"
 
 #include <gtest/gtest.h>
 

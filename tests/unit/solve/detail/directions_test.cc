@@ -1,8 +1,8 @@
-#include "innermap/solve/detail/directions.h"
+#include "solve/detail/directions.h"
 
 #include <gtest/gtest.h>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 
 namespace innermap {
 namespace {

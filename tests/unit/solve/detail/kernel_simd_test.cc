@@ -1,4 +1,4 @@
-#include "innermap/solve/detail/kernel_simd.h"
+#include "solve/detail/kernel_simd.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "innermap/solve/detail/lapack_status.h"
+#include "solve/lapack_status.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "innermap/tetra/detail/block_topology.h"
+#include "tetra/detail/block_topology.h"
 
 #include <gtest/gtest.h>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "tetra/test_blocks.h"
 
 namespace innermap {

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <set>
 
-#include "innermap/core/detail/random.h"
-#include "innermap/lattice/detail/fit_boundary.h"
-#include "innermap/lattice/detail/lattice_topology.h"
-#include "innermap/lattice/detail/sharp_edges.h"
-#include "innermap/lattice/detail/stuffing.h"
-#include "innermap/tetra/cell_quality.h"
+#include "core/random.h"
+#include "innermap/tetra/cells.h"
+#include "lattice/detail/lattice_topology.h"
+#include "lattice/fit_boundary.h"
+#include "lattice/sharp_edges.h"
+#include "lattice/stuffing.h"
 #include "mesh/shapes.h"
 
 namespace innermap {

@@ -1,11 +1,11 @@
-#include "innermap/texture/detail/continuation.h"
+#include "texture/detail/continuation.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/memory_limit.h"
-#include "innermap/core/detail/pi.h"
+#include "core/pi.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/levelset/level_set.h"

@@ -1,4 +1,4 @@
-#include "innermap/texture/detail/input_lookup.h"
+#include "texture/detail/input_lookup.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "innermap/texture/detail/near_segments.h"
+#include "texture/detail/near_segments.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <string>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "innermap/core/error.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"

@@ -1,4 +1,4 @@
-#include "innermap/texture/detail/texture_grids.h"
+#include "texture/detail/texture_grids.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "innermap/transfer/detail/split_tetrahedron.h"
+#include "transfer/detail/split_tetrahedron.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "innermap/transfer/detail/step_by_step.h"
+#include "transfer/detail/step_by_step.h"
 
 #include <gtest/gtest.h>
 

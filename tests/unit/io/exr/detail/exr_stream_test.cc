@@ -1,4 +1,4 @@
-#include "innermap/io/exr/detail/exr_stream.h"
+#include "io/exr/detail/exr_stream.h"
 
 #include <OpenEXR/ImfArray.h>
 #include <OpenEXR/ImfChannelList.h>

@@ -1,4 +1,4 @@
-#include "innermap/io/exr/detail/exr_verify.h"
+#include "io/exr/detail/exr_verify.h"
 
 #include <gtest/gtest.h>
 

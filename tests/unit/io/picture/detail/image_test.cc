@@ -1,4 +1,4 @@
-#include "innermap/io/picture/detail/image.h"
+#include "io/picture/detail/image.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <functional>
 #include <limits>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "innermap/core/error.h"
 
 namespace innermap {

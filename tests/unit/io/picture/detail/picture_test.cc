@@ -1,8 +1,8 @@
-#include "innermap/io/picture/detail/picture.h"
+#include "io/picture/detail/picture.h"
 
 #include <gtest/gtest.h>
 
-#include "innermap/io/picture/label_font.h"
+#include "innermap/io/pictures.h"
 #include "io/test_files.h"
 
 namespace innermap {

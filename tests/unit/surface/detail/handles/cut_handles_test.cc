@@ -1,4 +1,4 @@
-#include "innermap/surface/detail/handles/cut_handles.h"
+#include "surface/detail/handles/cut_handles.h"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
-#include "innermap/surface/detail/handles/cut_alike.h"
-#include "innermap/surface/detail/handles/match_handles.h"
-#include "innermap/surface/detail/sphere/sphere_layout.h"
-#include "innermap/surface/detail/topology/half_edges.h"
+#include "surface/detail/handles/cut_alike.h"
+#include "surface/detail/handles/match_handles.h"
+#include "surface/detail/sphere/sphere_layout.h"
+#include "surface/detail/topology/half_edges.h"
 #include "surface/handle_shapes.h"
 
 namespace innermap {

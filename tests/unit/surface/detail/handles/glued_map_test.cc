@@ -1,10 +1,10 @@
-#include "innermap/surface/detail/handles/glued_map.h"
+#include "surface/detail/handles/glued_map.h"
 
 #include <gtest/gtest.h>
 
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
-#include "innermap/surface/detail/refining/target_metric.h"
+#include "surface/detail/refining/target_metric.h"
 #include "surface/handle_shapes.h"
 
 namespace innermap {

@@ -1,11 +1,11 @@
-#include "innermap/surface/detail/refining/ways_round.h"
+#include "surface/detail/refining/ways_round.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "innermap/core/error.h"
-#include "innermap/surface/detail/sphere/rotation_search.h"
+#include "surface/detail/sphere/rotation_search.h"
 
 namespace innermap {
 namespace {

@@ -1,15 +1,15 @@
-#include "innermap/surface/detail/sphere/sphere_layout.h"
+#include "surface/detail/sphere/sphere_layout.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
 
-#include "innermap/core/detail/random.h"
+#include "core/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
-#include "innermap/mesh/read.h"
-#include "innermap/surface/closed_surface.h"
+#include "innermap/mesh/mesh_file.h"
+#include "innermap/surface/correspond.h"
 #include "mesh/shapes.h"
 #include "surface/handle_shapes.h"
 

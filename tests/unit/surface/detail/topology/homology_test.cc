@@ -1,13 +1,13 @@
-#include "innermap/surface/detail/topology/homology.h"
+#include "surface/detail/topology/homology.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
 #include "innermap/core/error.h"
-#include "innermap/surface/detail/topology/knot.h"
-#include "innermap/surface/detail/topology/linking.h"
-#include "innermap/surface/detail/topology/meridians.h"
+#include "surface/detail/topology/knot.h"
+#include "surface/detail/topology/linking.h"
+#include "surface/detail/topology/meridians.h"
 #include "surface/handle_shapes.h"
 
 namespace innermap {

@@ -1,15 +1,14 @@
-#include "innermap/surface/detail/torus/torus_candidates.h"
+#include "surface/detail/torus/torus_candidates.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
-#include "innermap/mesh/read.h"
-#include "innermap/surface/detail/refining/locate.h"
-#include "innermap/surface/detail/torus/torus_layout.h"
+#include "innermap/mesh/mesh_file.h"
+#include "surface/detail/refining/locate.h"
+#include "surface/detail/torus/torus_layout.h"
 #include "surface/handle_shapes.h"
 
 namespace innermap {

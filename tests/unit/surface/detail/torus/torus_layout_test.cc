@@ -1,13 +1,12 @@
-#include "innermap/surface/detail/torus/torus_layout.h"
+#include "surface/detail/torus/torus_layout.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
 #include "innermap/core/error.h"
-#include "innermap/core/parallel.h"
 #include "innermap/core/run.h"
-#include "innermap/mesh/read.h"
+#include "innermap/mesh/mesh_file.h"
 #include "surface/handle_shapes.h"
 
 namespace innermap {

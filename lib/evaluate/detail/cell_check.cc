@@ -1,0 +1,226 @@
+#include "evaluate/detail/cell_check.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "core/kuhn_cells.h"
+#include "evaluate/detail/fold_repair.h"
+#include "innermap/core/run.h"
+#include "innermap/mesh/check.h"
+#include "mesh/winding_number.h"
+
+namespace innermap {
+namespace {
+
+using openvdb::Coord;
+using MapLeaf = openvdb::Vec3STree::LeafNodeType;
+
+constexpr std::size_t kLeaves = 8;  // that a thread takes at a time
+// Faces beyond which overlaps are not looked for: they would take seconds, and half a gigabyte.
+constexpr std::size_t kMostFaces = 500000;
+constexpr double kJustInside = 1e-3;  // of the way from a face to the corner across
+
+// A face of one cell only, outward, and the corner of that cell which is not on it.
+struct OuterFace {
+  std::array<Coord, 3> corners;
+  Coord across;
+};
+
+// Of one leaf.
+struct LeafCells {
+  DeterminantFigures determinants;
+  std::vector<OuterFace> faces;
+};
+
+// Of the cube's corners.
+struct Cube {
+  std::array<bool, 8> inside{};
+  std::array<Vec3, 8> images;
+};
+
+// Reads what one thread looks at.
+class Cells {
+ public:
+  Cells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
+        const TargetShape& target, double error, const Vec3& origin)
+      : map_(map.getConstAccessor()),
+        distance_(levelSet.getConstAccessor()),
+        target_(target),
+        origin_(origin),
+        error_(error),
+        volume_(std::pow(levelSet.voxelSize()[0], 3)) {}
+
+  LeafCells of(const MapLeaf& leaf) const {
+    LeafCells out;
+    for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) addCube(voxel.getCoord(), out);
+    return out;
+  }
+
+ private:
+  bool inside(const Coord& c) const { return distance_.getValue(c) < 0 && map_.isValueOn(c); }
+
+  void addCube(const Coord& at, LeafCells& out) const {
+    if (!inside(at) || !inside(cornerOf(at, 7))) return;  // all cells have these corners
+    Cube cube;
+    for (int bits = 0; bits < 8; ++bits) {
+      const Coord c = cornerOf(at, bits);
+      const auto k = static_cast<std::size_t>(bits);
+      cube.inside[k] = inside(c);
+      const openvdb::Vec3f p = map_.getValue(c);
+      cube.images[k] = {p.x(), p.y(), p.z()};
+    }
+    for (const KuhnCell& cell : kKuhnCells)
+      if (cube.inside[static_cast<std::size_t>(cell[1])] &&
+          cube.inside[static_cast<std::size_t>(cell[2])])
+        addCell(at, cube, cell, out);
+  }
+
+  void addCell(const Coord& at, const Cube& cube, const KuhnCell& cell, LeafCells& out) const {
+    const auto image = [&](std::size_t i) {
+      return cube.images[static_cast<std::size_t>(cell[i])];
+    };
+    const Vec3 p = image(0), a = image(1) - p, b = image(2) - p, c = image(3) - p;
+    const double determinant = dot(cross(a, b), c) / volume_;
+    out.determinants.add(
+        determinant,
+        !(determinant > 0) && target_.runsThroughItself(origin_ + p + (a + b + c) / 4, error_));
+    addOuterFaces(at, cube, cell, out.faces);
+  }
+
+  // The cell beyond a face has the other three corners and, for the one across, the sum of its
+  // neighbours along the cell's path from the lowest corner to the highest, less itself: for the
+  // two in the middle a corner of the cube.
+  void addOuterFaces(const Coord& at, const Cube& cube, const KuhnCell& cell,
+                     std::vector<OuterFace>& out) const {
+    constexpr std::array<std::array<std::size_t, 3>, 4> kFaces{
+        {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+    const std::size_t low = cell[1] < cell[2] ? 1 : 2, high = 3 - low;
+    const Coord first = cornerOf(Coord(), cell[low]),
+                last = Coord(1) - cornerOf(Coord(), cell[high]);
+    const auto corner = [&](std::size_t i) { return cornerOf(at, cell[i]); };
+    const auto add = [&](std::size_t across) {
+      const auto& face = kFaces[across];
+      out.push_back({{corner(face[0]), corner(face[1]), corner(face[2])}, corner(across)});
+    };
+    if (!inside(corner(3) + first)) add(0);
+    if (!cube.inside[static_cast<std::size_t>(cell[high] - cell[low])]) add(low);
+    if (!cube.inside[static_cast<std::size_t>(cell[low] + 7 - cell[high])]) add(high);
+    if (!inside(at - last)) add(3);
+  }
+
+  openvdb::Vec3fGrid::ConstAccessor map_;
+  openvdb::FloatGrid::ConstAccessor distance_;
+  const TargetShape& target_;
+  const Vec3 origin_;
+  double error_;
+  double volume_;
+};
+
+std::vector<LeafCells> allCells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
+                                const TargetShape& target, double error, const Vec3& origin) {
+  std::vector<const MapLeaf*> leaves;
+  for (auto leaf = map.tree().cbeginLeaf(); leaf; ++leaf) leaves.push_back(&*leaf);
+  std::vector<LeafCells> out(leaves.size());
+  parallelBlocks(
+      leaves.size(), kLeaves,
+      [&](std::size_t begin, std::size_t end) {
+        const Cells cells(map, levelSet, target, error, origin);
+        for (std::size_t i = begin; i < end; ++i) out[i] = cells.of(*leaves[i]);
+      },
+      "checking cells");
+  return out;
+}
+
+// The image of the cells' boundary.
+struct OuterImage {
+  Points vertices;
+  std::vector<Triangle> triangles;
+  std::vector<Vec3> across;  // of each triangle, the corner of its cell that is not on it
+
+  // Takes the faces away from the leaves.
+  OuterImage(std::vector<LeafCells>& leaves, const openvdb::Vec3fGrid& map) {
+    const auto values = map.getConstAccessor();
+    const auto image = [&](const Coord& c) {
+      const openvdb::Vec3f p = values.getValue(c);
+      return Vec3{p.x(), p.y(), p.z()};
+    };
+    std::unordered_map<Coord, int, CoordHash> numbers;
+    for (LeafCells& leaf : leaves)
+      for (const OuterFace& face : std::exchange(leaf.faces, {})) {
+        Triangle t;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const auto [at, fresh] =
+              numbers.try_emplace(face.corners[k], static_cast<int>(vertices.size()));
+          if (fresh) vertices.push_back(image(face.corners[k]));
+          t[k] = at->second;
+        }
+        triangles.push_back(t);
+        across.push_back(image(face.across));
+      }
+  }
+
+  // One triangle of each part that hangs together by edges of two triangles.
+  std::vector<std::size_t> partRepresentatives() const {
+    std::vector<std::pair<std::uint64_t, std::size_t>> edges;  // by their ends, of a triangle
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      for (std::size_t e = 0; e < 3; ++e) {
+        const auto [a, b] = std::minmax(triangles[t][e], triangles[t][(e + 1) % 3]);
+        edges.emplace_back((static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint64_t>(b),
+                           t);
+      }
+    std::sort(edges.begin(), edges.end());
+    std::vector<std::size_t> parent(triangles.size());
+    std::iota(parent.begin(), parent.end(), 0);
+    const auto root = [&](std::size_t t) {
+      while (parent[t] != t) t = parent[t] = parent[parent[t]];
+      return t;
+    };
+    for (std::size_t i = 0; i < edges.size();) {
+      std::size_t end = i + 1;
+      while (end < edges.size() && edges[end].first == edges[i].first) ++end;
+      if (end == i + 2) parent[root(edges[i].second)] = root(edges[i + 1].second);
+      i = end;
+    }
+    std::vector<std::size_t> out;
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      if (root(t) == t) out.push_back(t);
+    return out;
+  }
+};
+
+std::int64_t overlapsOf(const OuterImage& image) {
+  std::int64_t out = 0;
+  forEachSelfIntersection(image.vertices, image.triangles, [&](const Crossing&) { ++out; });
+  const WindingNumber winding(image.vertices, image.triangles);
+  for (const std::size_t t : image.partRepresentatives()) {
+    const Triangle& corners = image.triangles[t];
+    const Vec3 middle =
+        (image.vertices[corners[0]] + image.vertices[corners[1]] + image.vertices[corners[2]]) / 3;
+    if (std::lround(winding.at(middle + kJustInside * (image.across[t] - middle))) != 1) ++out;
+  }
+  return out;
+}
+
+}  // namespace
+
+CellFigures checkCells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
+                       const TargetShape& target, double error, const Vec3& origin) {
+  std::vector<LeafCells> leaves = allCells(map, levelSet, target, error, origin);
+  CellFigures out;
+  std::size_t faces = 0;
+  for (const LeafCells& leaf : leaves) {
+    out.add(leaf.determinants);
+    faces += leaf.faces.size();
+  }
+  if (out.checked > 0 && out.folded == 0 && faces <= kMostFaces)
+    out.overlaps = overlapsOf(OuterImage(leaves, map));
+  return out;
+}
+
+}  // namespace innermap

@@ -1,0 +1,297 @@
+#include "innermap/evaluate/evaluate_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "evaluate/active_region.h"
+#include "evaluate/detail/fold_repair.h"
+#include "evaluate/topology.h"
+#include "evaluate/visit_field.h"
+#include "innermap/core/error.h"
+#include "innermap/core/run.h"
+
+namespace innermap {
+namespace {
+
+constexpr double kMoving = 0.9;  // of repairing folds; then what was moved is evaluated again
+
+using FloatLeaf = openvdb::FloatTree::LeafNodeType;
+using Vec3Leaf = openvdb::Vec3STree::LeafNodeType;
+
+// What one leaf adds to the totals; summed in the leaves' order so that the sums do not depend on
+// the threads.
+struct LeafTotals {
+  double harmonic = 0, deformation = 0, volume = 0, folded = 0;
+  double rounding = 0;
+  double jacobianMin = std::numeric_limits<double>::infinity(), jacobianMax = -jacobianMin;
+  std::uint64_t active = 0, interior = 0, foldedVoxels = 0;
+
+  void add(const LeafTotals& t) {
+    harmonic += t.harmonic;
+    deformation += t.deformation;
+    volume += t.volume;
+    folded += t.folded;
+    active += t.active;
+    interior += t.interior;
+    foldedVoxels += t.foldedVoxels;
+    rounding = std::max(rounding, t.rounding);
+    jacobianMin = std::min(jacobianMin, t.jacobianMin);
+    jacobianMax = std::max(jacobianMax, t.jacobianMax);
+  }
+};
+
+// Where the leaves' values go.
+struct LeafOutput {
+  Vec3Leaf* map = nullptr;
+  FloatLeaf *jacobian = nullptr, *harmonic = nullptr, *deformation = nullptr;
+
+  LeafOutput(const MapGrids& grids, const openvdb::Coord& origin) {
+    if (grids.map) map = grids.map->tree().probeLeaf(origin);
+    if (grids.jacobian) jacobian = grids.jacobian->tree().probeLeaf(origin);
+    if (grids.harmonicEnergy) harmonic = grids.harmonicEnergy->tree().probeLeaf(origin);
+    if (grids.deformationEnergy) deformation = grids.deformationEnergy->tree().probeLeaf(origin);
+  }
+};
+
+class Evaluation {
+ public:
+  Evaluation(const ComposedMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
+             const EvaluateSettings& settings)
+      : map_(map), solid_(solid), levelSet_(levelSet), settings_(settings) {
+    voxel_ = levelSet.voxelSize()[0];
+    const double target = settings.targetVolume > 0 ? settings.targetVolume : solid.volume();
+    unitVolumeScale_ = std::pow(solid.volume() / target, 2.0 / 3);
+    accuracy_ = settings.accuracy * targetExtent(map, solid);
+  }
+
+  MapGrids run();
+
+ private:
+  void repair(const openvdb::MaskGrid& region, std::vector<LeafTotals>& totals,
+              MapGrids& out) const;
+  LeafTotals store(const LeafValues& values, const MapGrids& out) const;
+  void store(const Mat3& j, const Vec3& position, double share, std::size_t offset,
+             const LeafOutput& out, LeafTotals& totals) const;
+
+  const ComposedMap& map_;
+  const Solid& solid_;
+  const openvdb::FloatGrid& levelSet_;
+  const EvaluateSettings& settings_;
+  double voxel_ = 0, unitVolumeScale_ = 1;
+  double accuracy_ = 0;  // of sums, world units of the target
+};
+
+void Evaluation::store(const Mat3& j, const Vec3& position, double share, std::size_t offset,
+                       const LeafOutput& out, LeafTotals& totals) const {
+  const double det = determinant(j), h = unitVolumeScale_ * harmonicEnergyDensity(j),
+               psi = deformationEnergyDensity(j, settings_.lame);
+  const auto at = static_cast<openvdb::Index>(offset);
+  const openvdb::Vec3d exact(position.x, position.y, position.z);
+  if (out.map)
+    out.map->setValueOnly(
+        at, openvdb::Vec3f(exact - openvdb::Vec3d(settings_.origin.x, settings_.origin.y,
+                                                  settings_.origin.z)));
+  totals.rounding =
+      std::max(totals.rounding, (openvdb::Vec3d(openvdb::Vec3f(exact)) - exact).length());
+  if (out.jacobian) out.jacobian->setValueOnly(at, static_cast<float>(det));
+  if (out.harmonic) out.harmonic->setValueOnly(at, static_cast<float>(h));
+  if (out.deformation) out.deformation->setValueOnly(at, static_cast<float>(psi));
+  totals.volume += share;
+  totals.harmonic += share * h;
+  totals.deformation += share * psi;
+  if (det <= 0) totals.folded += share;
+  ++totals.active;
+}
+
+LeafTotals Evaluation::store(const LeafValues& values, const MapGrids& out) const {
+  const LeafOutput leaf(out, values.origin);
+  LeafTotals totals;
+  for (std::size_t i = 0; i < values.count; ++i) {
+    Mat3 j;
+    for (std::size_t r = 0; r < 3; ++r)
+      for (std::size_t a = 0; a < 3; ++a) j[r][a] = values.gradients[9 * i + 3 * r + a];
+    const double* q = values.values + 3 * i;
+    store(j, {q[0], q[1], q[2]}, values.share[i], values.offset[i], leaf, totals);
+    if (!values.inside[i]) continue;
+    const double det = determinant(j);
+    ++totals.interior;
+    if (!(det > 0)) ++totals.foldedVoxels;
+    totals.jacobianMin = std::min(totals.jacobianMin, det);
+    totals.jacobianMax = std::max(totals.jacobianMax, det);
+  }
+  return totals;
+}
+
+template <class GridPtr>
+GridPtr named(GridPtr grid, const char* name) {
+  grid->setName(name);
+  return grid;
+}
+
+void markFolds(const openvdb::FloatGrid& levelSet, MapGrids& out) {
+  out.folded = named(openvdb::FloatGrid::create(), "folded");
+  out.folded->setTransform(out.jacobian->transform().copy());
+  auto marks = out.folded->getAccessor();
+  const auto distance = levelSet.getConstAccessor();
+  for (auto voxel = out.jacobian->cbeginValueOn(); voxel; ++voxel)
+    if (!(*voxel > 0) && distance.getValue(voxel.getCoord()) < 0)
+      marks.setValue(voxel.getCoord(), 1.0f);
+}
+
+// The values of a leaf with those of repaired voxels in their places.
+class RepairedLeaf {
+ public:
+  RepairedLeaf(const LeafValues& leaf, const FoldRepair& repair, const Vec3& origin)
+      : leaf_(leaf),
+        values_(leaf.values, leaf.values + 3 * leaf.count),
+        gradients_(leaf.gradients, leaf.gradients + 9 * leaf.count) {
+    for (std::size_t i = 0; i < leaf.count; ++i) {
+      const auto local = openvdb::MaskTree::LeafNodeType::offsetToLocalCoord(leaf.offset[i]);
+      const auto found = repair.voxels.find(leaf.origin + local);
+      if (found == repair.voxels.end()) continue;
+      for (std::size_t r = 0; r < 3; ++r) {
+        const int axis = static_cast<int>(r);
+        values_[3 * i + r] = origin[axis] + found->second.position[axis];
+        for (std::size_t a = 0; a < 3; ++a)
+          gradients_[9 * i + 3 * r + a] = found->second.jacobian[r][a];
+      }
+    }
+    leaf_.values = values_.data();
+    leaf_.gradients = gradients_.data();
+  }
+
+  const LeafValues& leaf() const { return leaf_; }
+
+ private:
+  LeafValues leaf_;
+  std::vector<double> values_, gradients_;
+};
+
+// The leaves are evaluated once more where a voxel was moved: the grids hold floats.
+void Evaluation::repair(const openvdb::MaskGrid& region, std::vector<LeafTotals>& totals,
+                        MapGrids& out) const {
+  FoldRepairSettings s;
+  s.growth = std::pow(unitVolumeScale_, -0.5);
+  const FoldRepair repair = [&] {
+    const PartOfStage moving(0, kMoving);
+    reportProgress(kRepairing, 0);
+    return repairFolds(*out.map, *out.jacobian, levelSet_, s);
+  }();
+  if (repair.voxels.empty() && out.foldedVoxels == 0) return;
+  out.repairedFarthest = repair.farthest;
+  out.repaired = named(openvdb::FloatGrid::create(), "repaired");
+  out.repaired->setTransform(region.transform().copy());
+  auto ways = out.repaired->getAccessor();
+  std::map<openvdb::Coord, std::size_t> numbers;
+  for (auto leaf = region.tree().cbeginLeaf(); leaf; ++leaf)
+    numbers.emplace(leaf->origin(), numbers.size());
+  const openvdb::MaskGrid::Ptr again = openvdb::MaskGrid::create();
+  again->setTransform(region.transform().copy());
+  const auto before = out.map->getConstAccessor();
+  for (const auto& [at, voxel] : repair.voxels) {
+    const openvdb::Vec3f p = before.getValue(at);
+    ways.setValue(at, static_cast<float>(norm(voxel.position - Vec3{p.x(), p.y(), p.z()})));
+    again->tree().touchLeaf(at)->topologyUnion(*region.tree().probeConstLeaf(at));
+  }
+  std::vector<openvdb::Coord> origins;
+  for (auto leaf = again->tree().cbeginLeaf(); leaf; ++leaf) origins.push_back(leaf->origin());
+  const PartOfStage evaluating(kMoving, 1);
+  visitField(map_, solid_, levelSet_, *again,
+             [&](std::size_t leaf, const LeafValues& values) {
+               totals[numbers.at(origins[leaf])] =
+                   store(RepairedLeaf(values, repair, settings_.origin).leaf(), out);
+             },
+             {accuracy_, kRepairing});
+}
+
+MapGrids Evaluation::run() {
+  constexpr std::uint64_t kMaskBytes = 1;
+  const bool mayRepair = settings_.repairUpTo > 0;
+  const bool wantsMap = settings_.map || mayRepair, wantsJacobian = settings_.jacobian || mayRepair;
+  RegionSettings where;
+  where.skin = settings_.skin;
+  where.bytesPerVoxel = kMaskBytes + (wantsMap ? 12 : 0) + (wantsJacobian ? 4 : 0) +
+                        (settings_.harmonicEnergy ? 4 : 0) + (settings_.deformationEnergy ? 4 : 0);
+  const openvdb::MaskGrid::Ptr region = activeRegion(levelSet_, where);
+  MapGrids out;
+  if (wantsMap) {
+    out.map = named(vectorGridOn(*region), "map");
+    out.map->setVectorType(openvdb::VEC_INVARIANT);
+  }
+  if (wantsJacobian) out.jacobian = named(floatGridOn(*region), "jacobian");
+  if (settings_.harmonicEnergy) out.harmonicEnergy = named(floatGridOn(*region), "harmonic_energy");
+  if (settings_.deformationEnergy)
+    out.deformationEnergy = named(floatGridOn(*region), "deformation_energy");
+
+  std::vector<LeafTotals> totals(region->tree().leafCount());
+  visitField(map_, solid_, levelSet_, *region,
+             [&](std::size_t leaf, const LeafValues& values) { totals[leaf] = store(values, out); },
+             {accuracy_, "evaluating the map"});
+  std::uint64_t interior = 0;
+  for (const LeafTotals& t : totals) {
+    out.foldedVoxels += t.foldedVoxels;
+    interior += t.interior;
+  }
+  if (out.jacobian && out.foldedVoxels > 0) markFolds(levelSet_, out);
+  const double most = settings_.repairUpTo * static_cast<double>(interior);
+  if (mayRepair && static_cast<double>(out.foldedVoxels) <= most) repair(*region, totals, out);
+  if (!settings_.map) out.map.reset();
+  if (!settings_.jacobian) {
+    out.jacobian.reset();
+    out.folded.reset();
+  }
+  LeafTotals sum;
+  for (const LeafTotals& t : totals) sum.add(t);
+  const double cell = voxel_ * voxel_ * voxel_;
+  out.volume = sum.volume * cell;
+  // By the volume that the voxels sum to, so that a rigid map has 3 at every resolution.
+  out.harmonicTotal = sum.volume > 0 ? sum.harmonic / sum.volume : 0;
+  out.deformationTotal = sum.deformation * cell;
+  out.foldedFraction = sum.volume > 0 ? sum.folded / sum.volume : 0;
+  out.jacobianMin = sum.interior ? sum.jacobianMin : 0;
+  out.jacobianMax = sum.interior ? sum.jacobianMax : 0;
+  out.foldedVoxelsLeft = sum.foldedVoxels;
+  out.activeVoxels = sum.active;
+  out.rounding = sum.rounding;
+  out.interiorVoxels = sum.interior;
+  return out;
+}
+
+}  // namespace
+
+std::vector<openvdb::GridBase::Ptr> MapGrids::all() const {
+  std::vector<openvdb::GridBase::Ptr> grids;
+  for (const openvdb::GridBase::Ptr& grid :
+       {openvdb::GridBase::Ptr(map), openvdb::GridBase::Ptr(jacobian),
+        openvdb::GridBase::Ptr(harmonicEnergy), openvdb::GridBase::Ptr(deformationEnergy),
+        openvdb::GridBase::Ptr(repaired), openvdb::GridBase::Ptr(folded)})
+    if (grid) grids.push_back(grid);
+  return grids;
+}
+
+double targetExtent(const ComposedMap& map, const Solid& solid) {
+  constexpr std::size_t kSamples = 500;
+  const Points& vertices = solid.surface().vertices;
+  const std::size_t count = std::min(kSamples, vertices.size());
+  Points some(count), images(count);
+  for (std::size_t i = 0; i < count; ++i) some[i] = vertices[i * vertices.size() / count];
+  map.evaluate(some.data(), count, images.data(), nullptr);
+  const double extent = boundingBox(images).diagonal();
+  return extent > 0 ? extent : 1;
+}
+
+MapGrids evaluateMap(const ComposedMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
+                     const EvaluateSettings& settings) {
+  if (!(settings.lame.lambda >= 0) || !(settings.lame.mu >= 0))
+    throw SettingError("Lame constants", "must not be negative");
+  if (!(settings.skin >= 0 && settings.skin <= 3))
+    throw SettingError("skin", "must lie in [0, 3] voxels");
+  if (!(settings.accuracy >= 1e-12 && settings.accuracy <= 1e-3))
+    throw SettingError("accuracy", "must lie in [1e-12, 1e-3] of the target's extent");
+  if (!(settings.targetVolume >= 0)) throw SettingError("target volume", "must not be negative");
+  return Evaluation(map, solid, levelSet, settings).run();
+}
+
+}  // namespace innermap

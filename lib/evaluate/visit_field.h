@@ -1,0 +1,67 @@
+// A harmonic field at the voxels of its solid and of a skin about it, leaf by leaf: what every grid
+// of a field is made from.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "innermap/field/harmonic_field.h"
+#include "innermap/levelset/solid.h"
+
+namespace innermap {
+
+// The active voxels of one leaf. Outside the solid the field is not evaluated (it is singular at
+// the sources there) but extended from the closest boundary point c: the value is f(c) + J(c) (p -
+// c), the gradient J(c).
+struct LeafValues {
+  openvdb::Coord origin;                  // of the leaf, index space
+  std::size_t count = 0, channels = 0;    // voxels, K
+  const std::uint16_t* offset = nullptr;  // place in the leaf
+  const double* share = nullptr;          // of the voxel's cell that lies inside the solid, 0..1
+  const Vec3* beyond = nullptr;           // p - c in world units; zero inside
+  const std::uint8_t* inside = nullptr;   // 1 where the voxel's centre is inside
+  const double* values = nullptr;         // K for each voxel
+  const double* gradients = nullptr;      // 3 K for each voxel: 3 k + axis; or null
+};
+
+// `leaf` counts the leaves of the region in their tree's order. Called from many threads, once for
+// each leaf.
+using LeafVisitor = std::function<void(std::size_t leaf, const LeafValues& values)>;
+
+struct VisitSettings {
+  double accuracy = 0;  // of the sums: root mean square error, units of the values, above 0
+  std::string_view stage = "evaluating";
+  bool gradients = true;  // without them LeafValues::gradients is null
+};
+
+// levelSet: of `solid`. region: the voxels to visit, on the same lattice, without tiles; those
+// outside the solid may be at any distance from it. Throws SettingError, DataError when the
+// lattices differ or the region has tiles, Cancelled. The same values for any number of threads.
+void visitField(const HarmonicField& field, const Solid& solid, const openvdb::FloatGrid& levelSet,
+                const openvdb::MaskGrid& region, const LeafVisitor& visit,
+                const VisitSettings& settings);
+
+// The same of a map: three channels. The first of its steps is summed on the lattice, the others at
+// points.
+void visitField(const ComposedMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
+                const openvdb::MaskGrid& region, const LeafVisitor& visit,
+                const VisitSettings& settings);
+
+// The same at any points, world units: values #points x K, gradients #points x 3 K. beyond: as
+// above, #points. levelSet only tells which points are near the surface.
+struct ExtendedSamples {
+  FieldSamples samples;
+  Points beyond;
+};
+ExtendedSamples sampleExtended(const HarmonicField& field, const Solid& solid,
+                               const openvdb::FloatGrid& levelSet, const Points& points,
+                               const VisitSettings& settings);
+ExtendedSamples sampleExtended(const ComposedMap& map, const Solid& solid,
+                               const openvdb::FloatGrid& levelSet, const Points& points,
+                               const VisitSettings& settings);
+
+}  // namespace innermap

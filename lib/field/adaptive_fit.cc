@@ -1,0 +1,338 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "field/detail/refinement_marks.h"
+#include "innermap/core/error.h"
+#include "innermap/core/memory.h"
+#include "innermap/core/run.h"
+#include "innermap/field/fit.h"
+#include "innermap/solve/solver.h"
+
+namespace innermap {
+namespace {
+
+constexpr double kDistance = 1.0;           // spacings
+constexpr double kSourceDarts = 0.83;       // spacings; fills to one charge a spacing squared
+constexpr double kCollocationDarts = 0.46;  // spacings; three points a charge
+constexpr double kCollocationReach = 2;     // distances, from a new charge
+constexpr int kMostLevels = 14;
+constexpr double kNearest = 1e-6;  // of the diagonal
+constexpr std::size_t kMarkSamples = 30000;
+// Of the tolerance; other points than those that were looked at differ a little.
+constexpr double kMargin = 0.97;
+constexpr double kErrorAccuracy = 1e-3;  // of the tolerance
+constexpr double kLeastGain = 0.97;      // of the score in the rounds of patience
+constexpr double kForNothing = 4;        // times the charges that did as well
+constexpr double kMostRounds = 20;       // that are looked ahead
+constexpr std::size_t kLookBack = 2;     // rounds, for how the next will go
+constexpr double kOfOutlierRounds = 0.5;
+constexpr double kNextRound = 1.5;  // seconds, of the one before; for a deadline
+
+void append(Matrix& a, const Matrix& b) {
+  Matrix out(a.rows() + b.rows(), b.columns());
+  for (std::size_t k = 0; k < b.columns(); ++k) {
+    if (a.rows() > 0) std::copy_n(a.column(k), a.rows(), out.column(k));
+    std::copy_n(b.column(k), b.rows(), out.column(k) + a.rows());
+  }
+  a = std::move(out);
+}
+
+double secondsSince(std::chrono::steady_clock::time_point then) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
+}
+
+class AdaptiveFitting {
+ public:
+  AdaptiveFitting(const AdaptiveProblem& problem, const AdaptiveSettings& settings)
+      : problem_(problem), settings_(settings) {}
+
+  AdaptiveResult run();
+
+ private:
+  struct Level {
+    double spacing, distance;  // fractions of the diagonal
+    Points sources;
+  };
+
+  void check() const;
+  void first();
+  Level& level(std::size_t l);
+  bool refine(const std::vector<Points>& marks);
+  bool refineOnce(const std::vector<Points>& marks);
+  void solve();
+  double score(const BoundaryError& error) const;
+  void keepIfBest();
+  double workDone() const;
+  bool gains() const;
+  std::size_t sourceCount() const;
+  std::uint64_t memory() const;
+
+  const AdaptiveProblem& problem_;
+  const AdaptiveSettings& settings_;
+  std::optional<RefinementMarks> marks_;
+  std::optional<IterativeSolver> solver_;
+  std::vector<Level> levels_;
+  Collocation collocation_;
+  Matrix values_;
+  IterativeSolution solution_;
+  std::optional<HarmonicField> field_;
+  std::optional<AdaptiveResult> best_;
+  double bestScore_ = 0;
+  std::vector<AdaptiveRound> rounds_;
+  AdaptiveEnd end_ = AdaptiveEnd::met;
+  std::uint64_t requests_ = 0;
+  const std::uint64_t room_ = memoryLeft();  // bytes
+};
+
+void AdaptiveFitting::check() const {
+  if (!(settings_.tolerance >= kSmallestTolerance && settings_.tolerance <= 1))
+    throw SettingError("tolerance",
+                       "must lie in 1e-12 (double precision holds no less) to 1 of the diagonal");
+  if (settings_.firstSources < 10 || settings_.firstSources > 5000)
+    throw SettingError("first sources", "must lie in 10 to 5000");
+  if (settings_.maxSources < settings_.firstSources || settings_.maxSources > kMaxCharges)
+    throw SettingError("max sources", "must lie in " + std::to_string(settings_.firstSources) +
+                                          " to " + std::to_string(kMaxCharges));
+  if (settings_.patience < 1) throw SettingError("patience", "must be at least 1");
+  if (!(problem_.diagonal > 0) || !(problem_.area > 0) || !(problem_.unit > 0))
+    throw DataError("fit: the boundary has no extent");
+}
+
+AdaptiveFitting::Level& AdaptiveFitting::level(std::size_t l) {
+  while (levels_.size() <= l) {
+    const double first =
+        std::sqrt(problem_.area / static_cast<double>(settings_.firstSources)) / problem_.diagonal;
+    const double spacing = first * std::pow(0.5, static_cast<double>(levels_.size()));
+    levels_.push_back({spacing, kDistance * spacing, {}});
+  }
+  return levels_[l];
+}
+
+std::size_t AdaptiveFitting::sourceCount() const {
+  std::size_t count = 0;
+  for (const Level& l : levels_) count += l.sources.size();
+  return count;
+}
+
+std::uint64_t AdaptiveFitting::memory() const {
+  const std::size_t coarse = levels_.front().sources.size();
+  return iterativeSolverMemory(collocation_.size(), sourceCount() - coarse, coarse, true);
+}
+
+void AdaptiveFitting::first() {
+  Level& coarse = level(0);
+  marks_.emplace(problem_.jumps, coarse.spacing * problem_.diagonal, settings_.tolerance);
+  PlacementRequest request;
+  request.spacing = kSourceDarts * coarse.spacing;
+  request.reach = coarse.spacing;
+  request.most = settings_.maxSources;
+  request.index = requests_++;
+  coarse.sources = problem_.placeSources(request, coarse.distance);
+  if (coarse.sources.empty())
+    throw DataError("fit: there is no room for charges around the boundary");
+  // The shell is larger than the boundary: by charges, not by area.
+  request.spacing = kCollocationDarts *
+                    std::sqrt(problem_.area / static_cast<double>(coarse.sources.size())) /
+                    problem_.diagonal;
+  request.most = 100 * settings_.firstSources;
+  request.index = requests_++;
+  BoundarySamples samples = problem_.placeCollocation(request);
+  collocation_ = samples.collocation();
+  values_ = std::move(samples.values);
+  requireMemory("the first level of charges", memory(), room_, "raise the limit of memory");
+  IterativeSettings s;
+  s.accuracy = std::clamp(kErrorAccuracy * settings_.tolerance, 1e-12, s.accuracy);
+  solver_.emplace(collocation_,
+                  std::vector<SourceLevel>{{coarse.sources, coarse.spacing * problem_.diagonal,
+                                            coarse.distance * problem_.diagonal}},
+                  s);
+}
+
+// Adds charges around the marks, and boundary points around the charges; false when there is room
+// for none.
+bool AdaptiveFitting::refineOnce(const std::vector<Points>& marks) {
+  std::vector<SourceLevel> added;
+  Collocation points;
+  Matrix values;
+  for (std::size_t l = 1; l < marks.size(); ++l) {
+    if (marks[l].empty()) continue;
+    Level& fine = level(l);
+    marks_->tried(l, marks[l]);
+    const std::size_t there = sourceCount();
+    if (fine.distance < kNearest || there >= settings_.maxSources) continue;
+    const Points fresh = problem_.placeSources(
+        {marks[l], marks_->reach(l) / problem_.diagonal, kSourceDarts * fine.spacing, fine.sources,
+         settings_.maxSources - there, requests_++},
+        fine.distance);
+    if (fresh.empty()) continue;
+    fine.sources.insert(fine.sources.end(), fresh.begin(), fresh.end());
+    added.push_back({fresh, fine.spacing * problem_.diagonal, fine.distance * problem_.diagonal});
+    const BoundarySamples more = problem_.placeCollocation(
+        {fresh, kCollocationReach * fine.distance, kCollocationDarts * fine.spacing,
+         collocation_.points, 100 * fresh.size() + 1000, requests_++});
+    collocation_.append(more.collocation());
+    points.append(more.collocation());
+    append(values, more.values);
+  }
+  if (added.empty()) return false;
+  if (memory() > room_) {
+    end_ = AdaptiveEnd::maxMemory;
+    return false;
+  }
+  append(values_, values);
+  solver_->add(points, added);
+  return true;
+}
+
+// Where a gap is too narrow for a level, the next finer one is tried.
+bool AdaptiveFitting::refine(const std::vector<Points>& marks) {
+  std::vector<Points> wanted = marks;
+  for (int tries = 0; tries < kMostLevels; ++tries) {
+    if (sourceCount() >= settings_.maxSources) {
+      end_ = AdaptiveEnd::maxSources;
+      return false;
+    }
+    if (refineOnce(wanted)) return true;
+    if (end_ != AdaptiveEnd::met) return false;
+    wanted.insert(wanted.begin(), Points());
+    if (wanted.size() > kMostLevels) break;
+  }
+  end_ = AdaptiveEnd::noGain;
+  return false;
+}
+
+void AdaptiveFitting::solve() {
+  const bool warm = solution_.weights.rows() > 0;
+  solution_ = solver_->solve(values_, warm ? &solution_ : nullptr);
+  field_.emplace(solver_->sources(), solution_.weights, solution_.affine);
+}
+
+// Share of the work, if the rounds to come go on as those so far did: each with so many times the
+// charges and so much of the error of the one before.
+double AdaptiveFitting::workDone() const {
+  if (rounds_.size() < 2) return 0;
+  const std::size_t look = std::min<std::size_t>(rounds_.size() - 1, kLookBack);
+  const AdaptiveRound &now = rounds_.back(), &then = rounds_[rounds_.size() - 1 - look];
+  const double goal = kMargin * settings_.tolerance;
+  const auto steps = static_cast<double>(look);
+  double rounds = 0;
+  if (now.error.p99 > goal)
+    rounds = now.error.p99 < then.error.p99
+                 ? steps * std::log(goal / now.error.p99) / std::log(now.error.p99 / then.error.p99)
+                 : kMostRounds;
+  // What stands out needs some more, seldom as many as it may.
+  if (!RefinementMarks::isTame(now.error)) rounds += kOfOutlierRounds * settings_.outlierRounds;
+  double done = 0;
+  for (const AdaptiveRound& round : rounds_) done += static_cast<double>(round.sources);
+  const auto last = static_cast<double>(now.sources);
+  const double growth = std::pow(last / static_cast<double>(then.sources), 1 / steps);
+  double left = 0, next = last;
+  for (double r = 0; r < std::min<double>(rounds, kMostRounds); ++r) {
+    next = std::min(growth * next, static_cast<double>(settings_.maxSources));
+    left += std::min(1.0, rounds - r) * next;
+  }
+  return done / (done + left);
+}
+
+// The less the better: the error as long as the tolerance does not hold, then how far the largest
+// error stands out.
+double AdaptiveFitting::score(const BoundaryError& error) const {
+  if (error.p99 > kMargin * settings_.tolerance) return 1 + error.p99 / settings_.tolerance;
+  return error.rms > 0 ? std::min(1.0, 1e-3 * error.max / error.rms) : 0;
+}
+
+void AdaptiveFitting::keepIfBest() {
+  const double now = score(rounds_.back().error);
+  if (best_ && !(now < bestScore_)) return;
+  bestScore_ = now;
+  best_.emplace(AdaptiveResult{*field_,
+                               {},
+                               AdaptiveEnd::met,
+                               {},
+                               {},
+                               collocation_.size(),
+                               solution_.residuals,
+                               solution_.weightNorm,
+                               solution_.productError});
+  for (const Level& l : levels_) best_->levels.push_back({l.distance, l.spacing, l.sources.size()});
+}
+
+// Whether one of the last rounds was better than all before, and charges have not grown too much
+// since it last became so.
+bool AdaptiveFitting::gains() const {
+  const auto good = std::find_if(rounds_.begin(), rounds_.end(), [&](const AdaptiveRound& round) {
+    return kLeastGain * score(round.error) <= bestScore_;
+  });
+  if (static_cast<double>(rounds_.back().sources) >
+      kForNothing * static_cast<double>(good->sources))
+    return false;
+  const auto patience = static_cast<std::size_t>(settings_.patience);
+  if (rounds_.size() <= patience) return true;
+  double best[2] = {score(rounds_.front().error), score(rounds_.back().error)};
+  for (std::size_t r = 0; r < rounds_.size(); ++r) {
+    double& part = best[r + patience < rounds_.size() ? 0 : 1];
+    part = std::min(part, score(rounds_[r].error));
+  }
+  return best[1] < kLeastGain * best[0];
+}
+
+AdaptiveResult AdaptiveFitting::run() {
+  check();
+  first();
+  const BoundarySamples checks = problem_.draw(settings_.checkSamples, 0);
+  const auto errorsAtChecks = [&](const HarmonicField& field) {
+    return boundaryErrors(field, checks.collocation(), checks.values, problem_.unit, {0});
+  };
+  int outliers = 0;
+  for (std::uint64_t round = 1;; ++round) {
+    const auto began = std::chrono::steady_clock::now();
+    solve();
+    const BoundarySamples fresh = problem_.draw(kMarkSamples, round);
+    std::vector<double> errors =
+        boundaryErrors(*field_, fresh.collocation(), fresh.values, problem_.unit,
+                       {kErrorAccuracy * settings_.tolerance * problem_.unit});
+    const BoundaryError error = marks_->awayFromJumps(fresh.points, errors);
+    rounds_.push_back(
+        {solver_->sources().size(), collocation_.size(), solution_.iterations, error});
+    keepIfBest();
+    reportProgress("meeting the tolerance", workDone());
+    if (settings_.goOn && !settings_.goOn(*field_, static_cast<int>(round))) {
+      end_ = AdaptiveEnd::stopped;
+      break;
+    }
+    if (error.p99 <= kMargin * settings_.tolerance && RefinementMarks::isTame(error)) {
+      std::vector<double> others = errorsAtChecks(*field_);
+      const BoundaryError other = marks_->awayFromJumps(checks.points, others);
+      if (other.p99 <= kMargin * settings_.tolerance && RefinementMarks::isTame(other)) break;
+    }
+    if (error.p99 <= kMargin * settings_.tolerance && ++outliers > settings_.outlierRounds) break;
+    if (!gains()) {
+      end_ = AdaptiveEnd::noGain;
+      break;
+    }
+    if (outOfTime(kNextRound * secondsSince(began))) {
+      end_ = AdaptiveEnd::time;
+      break;
+    }
+    if (!refine(marks_->byLevel(fresh.points, errors, error))) break;
+  }
+  AdaptiveResult out = std::move(*best_);
+  out.error = summarizeErrors(errorsAtChecks(out.field));
+  if (end_ != AdaptiveEnd::stopped && out.error.p99 <= settings_.tolerance)
+    out.end = AdaptiveEnd::met;
+  else
+    out.end = end_ == AdaptiveEnd::met && !problem_.jumps.empty() ? AdaptiveEnd::jumps : end_;
+  out.rounds = std::move(rounds_);
+  return out;
+}
+
+}  // namespace
+
+AdaptiveResult fitToTolerance(const AdaptiveProblem& problem, const AdaptiveSettings& settings) {
+  return AdaptiveFitting(problem, settings).run();
+}
+
+}  // namespace innermap

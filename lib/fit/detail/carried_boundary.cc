@@ -1,0 +1,170 @@
+#include "fit/detail/carried_boundary.h"
+
+#include <algorithm>
+
+#include "fit/detail/problem_samples.h"
+#include "fit/detail/streams.h"
+#include "innermap/core/run.h"
+#include "innermap/fit/boundary_pair.h"
+#include "sample/surface_samples.h"
+
+namespace innermap {
+namespace {
+
+// Where an intermediate shape crosses itself its exposed surface need not be known finely.
+constexpr double kPieces = 1.0 / 256;
+// A mesh about an intermediate shape has at most so many triangles more than the source, or so
+// many times as many.
+constexpr std::size_t kMoreTriangles = 100000, kTimesTriangles = 4;
+constexpr double kExact = 0.4;  // of a charge's distance, that the mesh may be off at its foot
+
+// At places on solid.surface(), from values at the vertices that the solid was made of.
+Matrix interpolated(const Points& vertices, const Solid& solid,
+                    const std::vector<SurfacePoint>& places) {
+  TargetBoundary values;
+  values.moved = vertices.size() == solid.repaired().mesh.vertices.size()
+                     ? vertices
+                     : repairedPositions(solid.repaired(), vertices);
+  return values.targetsOf(solid, places);
+}
+
+BoundarySamples samplesFrom(const Points& now, const Points& ways) {
+  Matrix to(now.size(), 3);
+  for (std::size_t i = 0; i < now.size(); ++i)
+    for (int k = 0; k < 3; ++k) to(i, static_cast<std::size_t>(k)) = now[i][k] + ways[i][k];
+  return {now, std::move(to)};
+}
+
+}  // namespace
+
+CarriedBoundary::CarriedBoundary(const Solid& source, const CarriedSettings& settings)
+    : source_(source),
+      settings_(settings),
+      surface_(source.repaired().mesh),
+      vertices_(source.repaired().mesh.vertices),
+      solid_(source) {}
+
+Points CarriedBoundary::carried(Points points, std::size_t firstStep) const {
+  EvaluateFieldSettings sums;
+  sums.accuracy = settings_.accuracy;
+  for (std::size_t s = firstStep; s < steps_.size(); ++s)
+    points = pointsOf(steps_[s].field().evaluate(points, sums).values);
+  return points;
+}
+
+Points CarriedBoundary::onSource(const Points& vertices,
+                                 const std::vector<SurfacePoint>& places) const {
+  return interpolate(vertices, source_.repaired().mesh.triangles, places);
+}
+
+std::vector<SurfacePoint> CarriedBoundary::placesOf(std::size_t count, std::uint64_t draw) const {
+  SampleSettings sample;
+  sample.seed = seedOf(settings_.seed, Stream::fresh, draw);
+  std::vector<SurfacePoint> places = randomSamples(source_.surface(), count, sample);
+  for (SurfacePoint& p : places) p = source_.address(p);
+  return places;
+}
+
+const CarriedBoundary::Draw& CarriedBoundary::drawn(std::size_t count, std::uint64_t draw) {
+  Draw& d = draws_[{count, draw}];
+  if (d.places.empty()) {
+    d.places = placesOf(count, draw);
+    d.now = onSource(source_.repaired().mesh.vertices, d.places);
+  }
+  d.now = carried(d.now, d.steps);
+  d.steps = steps_.size();
+  return d;
+}
+
+void CarriedBoundary::carrySurface() {
+  Points points = vertices_;
+  for (const auto& edge : edges_)
+    points.insert(points.end(), edge.second.begin(), edge.second.end());
+  points = carried(std::move(points), steps_.size() - 1);
+  auto next = points.begin() + static_cast<std::ptrdiff_t>(vertices_.size());
+  vertices_.assign(points.begin(), next);
+  for (auto& edge : edges_)
+    for (Vec3& on : edge.second) on = *next++;
+}
+
+void CarriedBoundary::advance(const HarmonicMap& step, bool last) {
+  steps_.push_back(step);
+  if (last) return;
+  carrySurface();
+  const Mesh& mesh = source_.repaired().mesh;
+  refine(
+      surface_, vertices_, edges_,
+      [&](const std::vector<SurfacePoint>& places) {
+        return carried(onSource(mesh.vertices, places), 0);
+      },
+      settings_.chord,
+      std::max(kTimesTriangles * mesh.triangles.size(), mesh.triangles.size() + kMoreTriangles));
+  Mesh now;
+  now.name = "an intermediate shape";
+  now.vertices = vertices_;
+  now.triangles = surface_.triangles;
+  SolidSettings solid;
+  solid.pieceSize = kPieces;
+  solid_ = Solid(now, solid);
+}
+
+// Those that stand where the mesh about the present solid is as good as exact at their distance
+// from it: elsewhere a charge could touch the exact images, or stand inside of them.
+Points CarriedBoundary::known(const Points& charges, double distance, const SurfaceValues& values) {
+  std::vector<SurfacePoint> feet(charges.size());
+  parallelBlocks(charges.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      feet[i] = solid_.closest(charges[i], solid_.diagonal()).onSurface;
+  });
+  const Points on = positionsOf(solid_, feet), exact = carried(pointsOf(values(feet)), 0);
+  Points out;
+  for (std::size_t i = 0; i < charges.size(); ++i)
+    if (norm(exact[i] - on[i]) <= kExact * distance) out.push_back(charges[i]);
+  return out;
+}
+
+AdaptiveProblem CarriedBoundary::problem(const Points& ways, double unit) {
+  AdaptiveProblemSettings s;
+  s.seed = settings_.seed;
+  // Columns: the point of the source, and its way.
+  const auto values =
+      [solid = solid_, from = surface_.positions,
+       way = onSource(ways, surface_.vertices)](const std::vector<SurfacePoint>& places) {
+        const Matrix a = interpolated(from, solid, places), b = interpolated(way, solid, places);
+        Matrix out(places.size(), 6);
+        for (std::size_t k = 0; k < 3; ++k) {
+          std::copy_n(a.column(k), places.size(), out.column(k));
+          std::copy_n(b.column(k), places.size(), out.column(k + 3));
+        }
+        return out;
+      };
+  AdaptiveProblem out = adaptiveProblem(solid_, values, unit, s);
+  const auto carry = [this](const BoundarySamples& samples) {
+    return samplesFrom(carried(pointsOf(samples.values), 0), pointsOf(samples.values, 3));
+  };
+  if (!steps_.empty())
+    out.placeSources = [this, values, diagonal = out.diagonal, place = out.placeSources](
+                           const PlacementRequest& request, double distance) {
+      return known(place(request, distance), distance * diagonal, values);
+    };
+  out.placeCollocation = [carry, place = out.placeCollocation](const PlacementRequest& request) {
+    return carry(place(request));
+  };
+  // Uniform by the source's area, as the certificate is.
+  out.draw = [this, ways](std::size_t count, std::uint64_t index) {
+    const Draw& d = drawn(count, index);
+    return samplesFrom(d.now, onSource(ways, d.places));
+  };
+  return out;
+}
+
+BoundaryError CarriedBoundary::errorFrom(const Points& shape, double unit) {
+  const Draw& fresh = drawn(kFreshSamples, 0);
+  const Points wanted = interpolate(shape, source_.repaired().mesh.triangles, fresh.places);
+  std::vector<double> lengths;
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    lengths.push_back(norm(fresh.now[i] - wanted[i]) / unit);
+  return summarizeErrors(std::move(lengths));
+}
+
+}  // namespace innermap

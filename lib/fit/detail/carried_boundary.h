@@ -1,0 +1,71 @@
+// A solid's boundary where the steps of a map have carried it so far: what the next step starts
+// from. Its points are exact images, not points of a mesh between the images of vertices.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "fit/detail/refined_surface.h"
+#include "innermap/field/harmonic_field.h"
+#include "innermap/fit/surface_problem.h"
+#include "innermap/levelset/solid.h"
+
+namespace innermap {
+
+struct CarriedSettings {
+  double accuracy = 1e-7;  // of the sums, world units
+  double chord = 1e-3;     // of the mesh about the present solid, world units; see refine
+  std::uint64_t seed = 1;
+};
+
+class CarriedBoundary {
+ public:
+  CarriedBoundary(const Solid& source, const CarriedSettings& settings);
+
+  const std::vector<HarmonicMap>& steps() const { return steps_; }
+
+  // One step further; after the last one there is no problem any more. Throws DataError when what
+  // is left has no inside, Cancelled.
+  void advance(const HarmonicMap& step, bool last);
+
+  // Each point of the boundary goes from where it is by its way: fitted where it is not buried in
+  // other parts now, measured everywhere. ways: of the vertices of source.repaired().mesh, linear
+  // between them. unit: what errors are fractions of. Holds a reference to this.
+  AdaptiveProblem problem(const Points& ways, double unit);
+
+  // Distances from where `shape`, positions of those vertices, has them: at the points of
+  // freshSamples, fractions of the unit.
+  BoundaryError errorFrom(const Points& shape, double unit);
+
+ private:
+  // Random places, the same at each step.
+  struct Draw {
+    std::vector<SurfacePoint> places;  // on the source's repaired mesh
+    Points now;                        // where they are after so many steps
+    std::size_t steps = 0;
+  };
+
+  Points carried(Points points, std::size_t firstStep) const;
+  Points known(const Points& charges, double distance, const SurfaceValues& values);
+  void carrySurface();  // by the last step
+  // Random places on the source's repaired mesh, uniform by its area; those of draw 0 are
+  // freshSamples'.
+  std::vector<SurfacePoint> placesOf(std::size_t count, std::uint64_t draw) const;
+  const Draw& drawn(std::size_t count, std::uint64_t draw);
+  Points onSource(const Points& vertices, const std::vector<SurfacePoint>& places) const;
+
+  const Solid& source_;
+  const CarriedSettings settings_;
+  std::vector<HarmonicMap> steps_;
+  RefinedSurface surface_;
+  EdgeImages edges_;  // of surface_, now
+  Points vertices_;   // of surface_, now
+  Solid solid_;       // that these bound
+  // By count and number. A step goes on from where the one before has taken them: carried all the
+  // way each time they cost more than the fits.
+  std::map<std::pair<std::size_t, std::uint64_t>, Draw> draws_;
+};
+
+}  // namespace innermap

@@ -1,0 +1,45 @@
+// Whether a map is one-to-one, as far as points inside tell.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "fit/target_shape.h"
+#include "innermap/field/harmonic_field.h"
+#include "innermap/fit/boundary_pair.h"
+#include "innermap/fit/mapped_solid.h"
+
+namespace innermap {
+
+// Points of a cubic lattice in the box of which `wanted` is true, in a fixed order. step: world
+// units. wanted: may be called from any thread. Throws Cancelled.
+Points latticePoints(const Box3& box, double step, const std::function<bool(const Vec3&)>& wanted);
+
+// Those that lie inside the solid, about so many. Throws Cancelled.
+Points pointsInside(const Solid& solid, std::size_t count);
+
+// Images and Jacobian determinants of points.
+struct MappedPoints {
+  Points points;
+  std::vector<double> determinants;
+};
+
+// Through one step: determinants are those of the whole way, if `before` has those of the way here.
+// accuracy: of the sums, world units. Throws Cancelled.
+MappedPoints mapPoints(const HarmonicMap& step, const MappedPoints& before, double accuracy);
+
+// Through all steps.
+MappedPoints mapPoints(const ComposedMap& map, Points points, double accuracy);
+
+// Those of the whole way. error: the boundary's largest, world units.
+DeterminantFigures determinantsOf(const MappedPoints& mapped, const TargetShape& target,
+                                  double error);
+
+// Share of the points whose determinant is not above 0.
+double foldedShare(const std::vector<double>& determinants);
+
+// Share of the points that are outside the target by more than `slack`, world units; 0 of a target
+// that bounds nothing. Throws Cancelled.
+double outsideShare(const Points& points, const TargetShape& target, double slack);
+
+}  // namespace innermap

@@ -1,0 +1,229 @@
+#include "fit/detail/shape_path.h"
+
+#include <Eigen/Dense>
+#include <Eigen/Sparse>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "fit/detail/triangle_turns.h"
+#include "innermap/core/error.h"
+
+namespace innermap {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+// Weight of the straight way of each vertex beside that of its edges: keeps parts that nothing
+// connects where they belong, and is too small to bend anything.
+constexpr double kStraight = 1e-6;
+// Cotangents of slivers are kept in these bounds. Any positive weights give both ends exactly.
+constexpr double kLeastCotangent = 0.02, kMostCotangent = 50;
+
+Vector3d vector(const Vec3& p) { return {p.x, p.y, p.z}; }
+Vec3 point(const Vector3d& v) { return {v[0], v[1], v[2]}; }
+
+// The rotation nearest to m (Kabsch, 1976).
+Matrix3d rotationOf(const Matrix3d& m) {
+  const Eigen::JacobiSVD<Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Matrix3d flip = Matrix3d::Identity();
+  flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  return svd.matrixU() * flip * svd.matrixV().transpose();
+}
+
+// Columns: two edges and the normal, as long as the root of the area.
+Matrix3d frameOf(const Points& at, const Triangle& t) {
+  const Vec3 a = at[t[1]] - at[t[0]], b = at[t[2]] - at[t[0]], n = cross(a, b);
+  const double length = norm(n);
+  Matrix3d out;
+  out.col(0) = vector(a);
+  out.col(1) = vector(b);
+  out.col(2) = length > 0 ? vector(n / std::sqrt(length)) : Vector3d::Zero();
+  return out;
+}
+
+Matrix3d turnedBy(const Vector3d& turn) {
+  const double angle = turn.norm();
+  if (angle == 0) return Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+}
+
+// A triangle's deformation: exp(turn) stretch, and the weights of its edges.
+struct Deformation {
+  Vector3d turn = Vector3d::Zero();  // axis times angle
+  Matrix3d stretch = Matrix3d::Identity();
+  double weight[3] = {};  // of the edge after corner k
+
+  Matrix3d at(double t) const {
+    return turnedBy(t * turn) * ((1 - t) * Matrix3d::Identity() + t * stretch);
+  }
+};
+
+// Empty where the triangle has no area.
+std::optional<Matrix3d> gradientOf(const Points& from, const Points& to, const Triangle& t) {
+  const Matrix3d before = frameOf(from, t), after = frameOf(to, t);
+  const double size = before.col(0).norm() * before.col(1).norm() * before.col(2).norm();
+  if (!(std::abs(before.determinant()) > 1e-12 * size)) return {};
+  return after * before.inverse();
+}
+
+void weigh(const Points& from, const Triangle& t, Deformation& out) {
+  for (int k = 0; k < 3; ++k) {  // the angle at the corner opposite to the edge after corner k
+    const Vec3 &a = from[t[k]], &b = from[t[(k + 1) % 3]], &c = from[t[(k + 2) % 3]];
+    const double area = norm(cross(a - c, b - c));
+    out.weight[k] = area > 0 ? std::clamp(dot(a - c, b - c) / area, kLeastCotangent, kMostCotangent)
+                             : kLeastCotangent;
+  }
+}
+
+std::vector<Deformation> deformationsOf(const Points& from, const Points& to,
+                                        const std::vector<Triangle>& triangles) {
+  std::vector<Matrix3d> gradients(triangles.size(), Matrix3d::Identity()), rotations = gradients;
+  std::vector<bool> known(triangles.size(), false);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    if (const auto gradient = gradientOf(from, to, triangles[t])) {
+      gradients[t] = *gradient;
+      rotations[t] = rotationOf(*gradient);
+      known[t] = true;
+    }
+  const std::vector<Vector3d> turns = turnsOf(triangles, rotations, known);
+  std::vector<Deformation> out(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    weigh(from, triangles[t], out[t]);
+    out[t].turn = turns[t];
+    out[t].stretch = turnedBy(turns[t]).transpose() * gradients[t];
+  }
+  return out;
+}
+
+// What lays `to` on `from` best by least squares over the vertices, weighted by area, when scaled
+// by 1 / growth. As the way back, from there to `to`.
+Similarity alignment(const Points& from, const Points& to, const std::vector<Triangle>& triangles,
+                     double growth) {
+  std::vector<double> weight(from.size(), 0);
+  for (const Triangle& t : triangles)
+    for (const int v : t)
+      weight[v] += norm(cross(from[t[1]] - from[t[0]], from[t[2]] - from[t[0]]));
+  double sum = 0;
+  Vector3d a = Vector3d::Zero(), b = a;
+  for (std::size_t v = 0; v < from.size(); ++v) {
+    sum += weight[v];
+    a += weight[v] * vector(from[v]);
+    b += weight[v] * vector(to[v]);
+  }
+  if (!(sum > 0)) throw DataError("the surface has no area");
+  a /= sum;
+  b /= sum;
+  Matrix3d covariance = Matrix3d::Zero();
+  for (std::size_t v = 0; v < from.size(); ++v)
+    covariance += weight[v] * (vector(to[v]) - b) * (vector(from[v]) - a).transpose();
+  const Matrix3d r = rotationOf(covariance);
+  Similarity out;
+  out.scale = growth;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) out.rotation[i][k] = r(i, k);
+  out.translation = point(b - growth * (r * a));
+  return out;
+}
+
+Points movedBack(const Similarity& motion, const Points& points) {
+  const Mat3 back = transposed(motion.rotation);
+  Points out;
+  out.reserve(points.size());
+  for (const Vec3& p : points)
+    out.push_back((1 / motion.scale) * (back * (p - motion.translation)));
+  return out;
+}
+
+}  // namespace
+
+struct ShapePath::Implementation {
+  Similarity rest;
+  Points from, to;  // `to` as at(1)
+  std::vector<Triangle> triangles;
+  std::vector<Deformation> deformations;
+  double straight = 0;  // the weight of a vertex's straight way
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
+
+  void factor() {
+    std::vector<Eigen::Triplet<double>> entries;
+    double sum = 0;
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      for (int k = 0; k < 3; ++k) {
+        const int i = triangles[t][k], j = triangles[t][(k + 1) % 3];
+        const double w = deformations[t].weight[k];
+        sum += w;
+        entries.insert(entries.end(), {{i, i, w}, {j, j, w}, {i, j, -w}, {j, i, -w}});
+      }
+    const auto count = static_cast<int>(from.size());
+    straight = kStraight * std::max(sum / count, 1e-12);
+    for (int v = 0; v < count; ++v) entries.push_back({v, v, straight});
+    Eigen::SparseMatrix<double> matrix(count, count);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    solver.compute(matrix);
+    if (solver.info() != Eigen::Success) throw DataError("the surface is too thin to interpolate");
+  }
+};
+
+ShapePath::ShapePath(const Points& from, const Points& to, const std::vector<Triangle>& triangles,
+                     double growth) {
+  auto out = std::make_unique<Implementation>();
+  out->rest = alignment(from, to, triangles, growth);
+  out->from = from;
+  out->to = movedBack(out->rest, to);
+  out->triangles = triangles;
+  out->deformations = deformationsOf(from, out->to, triangles);
+  out->factor();
+  implementation_ = std::move(out);
+}
+
+ShapePath::~ShapePath() = default;
+ShapePath::ShapePath(ShapePath&&) noexcept = default;
+
+const Similarity& ShapePath::rest() const { return implementation_->rest; }
+
+Points ShapePath::at(double t) const {
+  const Implementation& d = *implementation_;
+  if (t <= 0) return d.from;
+  if (t >= 1) return d.to;
+  Eigen::MatrixX3d right(static_cast<Eigen::Index>(d.from.size()), 3);
+  for (std::size_t v = 0; v < d.from.size(); ++v)
+    right.row(static_cast<Eigen::Index>(v)) =
+        d.straight * vector((1 - t) * d.from[v] + t * d.to[v]).transpose();
+  for (std::size_t i = 0; i < d.triangles.size(); ++i) {
+    const Triangle& corners = d.triangles[i];
+    const Matrix3d m = d.deformations[i].at(t);
+    for (int k = 0; k < 3; ++k) {
+      const int a = corners[k], b = corners[(k + 1) % 3];
+      const Vector3d edge = d.deformations[i].weight[k] * (m * vector(d.from[a] - d.from[b]));
+      right.row(a) += edge.transpose();
+      right.row(b) -= edge.transpose();
+    }
+  }
+  const Eigen::MatrixX3d solved = d.solver.solve(right);
+  Points out(d.from.size());
+  for (std::size_t v = 0; v < out.size(); ++v)
+    out[v] = point(solved.row(static_cast<Eigen::Index>(v)).transpose());
+  return out;
+}
+
+HarmonicField movedBy(const Similarity& motion, const HarmonicField& field) {
+  const auto turned = [&](const Matrix& rows, std::size_t r) {
+    return motion.scale * (motion.rotation * Vec3{rows(r, 0), rows(r, 1), rows(r, 2)});
+  };
+  const auto turnAll = [&](const Matrix& rows) {
+    Matrix out(rows.rows(), 3);
+    for (std::size_t r = 0; r < rows.rows(); ++r) {
+      const Vec3 row = turned(rows, r);
+      for (int k = 0; k < 3; ++k) out(r, static_cast<std::size_t>(k)) = row[k];
+    }
+    return out;
+  };
+  Affine affine{field.affine().center, turnAll(field.affine().coefficients)};
+  for (int k = 0; k < 3; ++k)
+    affine.coefficients(0, static_cast<std::size_t>(k)) += motion.translation[k];
+  return HarmonicField(field.sources(), turnAll(field.weights()), std::move(affine));
+}
+
+}  // namespace innermap

@@ -1,0 +1,185 @@
+#include "fit/detail/step_fit.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "fit/detail/carried_boundary.h"
+#include "fit/detail/inside_check.h"
+#include "fit/detail/shape_path.h"
+#include "innermap/core/run.h"
+#include "innermap/fit/fit_map.h"
+
+namespace innermap {
+namespace {
+
+// Of the way: halves that are made where a coarse fit folds, and where only the full one does,
+// whose folds beside the surface smaller steps cure more seldom.
+constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32;
+// Of what is left of the tolerance for the way that is left: errors of steps add up, but do not all
+// point the same way. The last step has to do with what is left.
+constexpr double kShare = 1.3, kLastShare = 1, kLeastShare = 0.5;
+// Of the error, once it is over the tolerance: what a step may add where no step can mend that.
+constexpr double kOfMissed = 0.25;
+// Of the folds that are left: after a step, and after its first charges.
+constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
+constexpr double kOfTolerance = 0.9;  // is given to the steps
+// Of the work until there to the work in all, by the way until there: the nearer to the target, the
+// shorter the steps and the more charges they take.
+constexpr double kWorkPower = 2.4;
+constexpr int kOutlierRounds = 3, kPatience = 1;
+constexpr int kLastPatience = 3;  // what the last step does not reach is missed
+// Charges of one step, at most, at the tolerance of surfaces that were laid on one another; more in
+// proportion at a smaller one. Steps that can be met take 4,000 to 13,000; jumps across slits take
+// all there are.
+constexpr double kStepSources = 15000;
+// Of the target's diagonal. Sums, and where points inside go; the mesh about an intermediate shape.
+constexpr double kSumAccuracy = 1e-7, kChord = 1e-3;
+
+struct Step {
+  MapStep record;
+  AdaptiveResult fit;
+  HarmonicMap map;
+  MappedPoints inside;  // at its end
+};
+
+double growthOf(const BoundaryPair& pair) {
+  const double volume = pair.target.volume;
+  return volume > 0 ? std::cbrt(volume / pair.solid().volume())
+                    : pair.target.diagonal / pair.solid().diagonal();
+}
+
+class StepFitter {
+ public:
+  StepFitter(const BoundaryPair& pair, const Points& inside, const StepFitSettings& settings)
+      : settings_(settings),
+        vertices_(pair.solid().repaired().mesh.vertices),
+        path_(vertices_, pair.target.moved, pair.solid().repaired().mesh.triangles, growthOf(pair)),
+        unit_(pair.target.diagonal / path_.rest().scale),
+        boundary_(pair.solid(), carrySettings()),
+        inside_{inside, {}} {}
+
+  StepFit fit() {
+    std::vector<double> ends{1};  // the next one last
+    if (settings_.maxSteps > 1) ends.push_back(0.5);
+    bool hurries = false;  // one step does the rest of the way, for lack of time
+    double seconds = 0;    // of the last step, taken or not
+    while (!ends.empty()) {
+      reportProgress("going in steps", std::pow(at_, kWorkPower));
+      if (!hurries && outOfTime(seconds)) {
+        hurries = true;
+        ends = {1};
+      }
+      const double end = ends.back();
+      const bool may =
+          !hurries && static_cast<int>(records_.size() + ends.size()) < settings_.maxSteps;
+      const double half = (end - at_) / 2;
+      const auto began = std::chrono::steady_clock::now();
+      Step step = fitStep(end, may);
+      seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+      if (step.fit.end == AdaptiveEnd::stopped ||
+          (may && half >= kShortestFitted && step.record.folded > allowed(kFoldShare))) {
+        ends.push_back((at_ + end) / 2);
+        continue;
+      }
+      ends.pop_back();
+      take(std::move(step), ends.empty());
+    }
+    std::vector<HarmonicMap> steps = boundary_.steps();
+    steps.back() = HarmonicMap(movedBy(path_.rest(), steps.back().field()));
+    return {ComposedMap(std::move(steps)), std::move(records_), error_, end_};
+  }
+
+ private:
+  CarriedSettings carrySettings() const {
+    CarriedSettings s;
+    s.accuracy = std::min(kSumAccuracy, 1e-3 * settings_.tolerance) * unit_;
+    s.chord = std::min(kChord, settings_.tolerance) * unit_;
+    s.seed = settings_.seed;
+    return s;
+  }
+
+  // Share of the points inside that may be folded after a step, if that gets so much of what is
+  // left.
+  double allowed(double share) const {
+    return folded_ + share * std::max(0.0, settings_.folds - folded_);
+  }
+
+  double toleranceUntil(double end) const {
+    const double part = (end - at_) / (1 - at_);
+    const double left = kOfTolerance * settings_.tolerance - error_.p99;
+    const double tolerance = (end < 1 ? kShare : kLastShare) * part * left;
+    const double missed = error_.p99 > settings_.tolerance ? kOfMissed * error_.p99 : 0;
+    return std::max(
+        {tolerance, kLeastShare * part * settings_.tolerance, missed, kSmallestTolerance});
+  }
+
+  std::size_t mostSources() const {
+    const double most = kStepSources * std::max(1.0, kLaidOnTolerance / settings_.tolerance);
+    return static_cast<std::size_t>(std::min(most, static_cast<double>(settings_.maxSources)));
+  }
+
+  // mayHalve: stops where a round folds too many points that are not folded yet. Folds of the first
+  // level of charges are few or none where those of the whole fit are none.
+  Step fitStep(double to, bool mayHalve) {
+    const Points now = path_.at(at_);
+    Points ways = path_.at(to);
+    for (std::size_t v = 0; v < ways.size(); ++v) ways[v] = ways[v] - now[v];
+    AdaptiveSettings s;
+    s.tolerance = toleranceUntil(to);
+    s.maxSources = mostSources();
+    s.outlierRounds = to < 1 ? 0 : kOutlierRounds;
+    s.patience = to < 1 ? kPatience : kLastPatience;
+    const double half = (to - at_) / 2;
+    if (mayHalve && half >= kShortest)
+      s.goOn = [this, half](const HarmonicField& field, int round) {
+        if (round > 1 && half < kShortestFitted) return true;
+        return foldedShare(insideAfter(HarmonicMap(field)).determinants) <=
+               allowed(round == 1 ? kCoarseFoldShare : kFoldShare);
+      };
+    AdaptiveResult fit = fitToTolerance(boundary_.problem(ways, unit_), s);
+    if (fit.end == AdaptiveEnd::maxSources && s.maxSources < settings_.maxSources)
+      fit.end = AdaptiveEnd::noGain;
+    HarmonicMap map(fit.field);
+    MappedPoints inside = insideAfter(map);
+    const MapStep record{at_, to, fit.field.sources().size(), fit.error.p99,
+                         foldedShare(inside.determinants)};
+    return {record, std::move(fit), std::move(map), std::move(inside)};
+  }
+
+  MappedPoints insideAfter(const HarmonicMap& step) const {
+    return mapPoints(step, inside_, kSumAccuracy * unit_);
+  }
+
+  void take(Step step, bool last) {
+    if (end_ == AdaptiveEnd::met) end_ = step.fit.end;
+    at_ = step.record.to;
+    folded_ = step.record.folded;
+    records_.push_back(step.record);
+    inside_ = std::move(step.inside);
+    boundary_.advance(step.map, last);
+    error_ = boundary_.errorFrom(path_.at(at_), unit_);
+  }
+
+  const StepFitSettings& settings_;
+  const Points& vertices_;
+  const ShapePath path_;
+  const double unit_;
+  CarriedBoundary boundary_;
+  MappedPoints inside_;
+  std::vector<MapStep> records_;
+  double at_ = 0;      // of the way
+  double folded_ = 0;  // share of the points inside, so far
+  BoundaryError error_;
+  AdaptiveEnd end_ = AdaptiveEnd::met;
+};
+
+}  // namespace
+
+StepFit fitInSteps(const BoundaryPair& pair, const Points& inside,
+                   const StepFitSettings& settings) {
+  return StepFitter(pair, inside, settings).fit();
+}
+
+}  // namespace innermap

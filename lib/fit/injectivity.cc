@@ -1,0 +1,85 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <type_traits>
+
+#include "innermap/fit/mapped_solid.h"
+
+namespace innermap {
+namespace {
+
+constexpr std::size_t kPlaces = 16;
+constexpr std::string_view kPrefix = "one_to_one_";
+
+// Calls visit(name, number, whether it is known) for each of them; numbers of `known` may be
+// written to where it is not constant.
+template <class Figures, class Visit>
+void visitDeterminants(const std::string& of, Figures& figures, const Visit& visit) {
+  const bool any = figures.checked > 0;
+  visit(of + "_checked", figures.checked, any);
+  visit(of + "_folded", figures.folded, any);
+  visit(of + "_folded_at_overlap", figures.foldedAtOverlap, any);
+  visit(of + "_least", figures.least, any);
+}
+
+template <class Known, class Visit>
+void visitFigures(Known& known, const Visit& visit) {
+  visitDeterminants("inside", known.inside, visit);
+  visit("outside", known.outside, known.inside.checked > 0);
+  visitDeterminants("boundary", known.boundary, visit);
+  visit("boundary_error", known.boundaryError, known.boundaryError > 0);
+  const bool degree = known.degree.checked > 0;
+  visit("degree_checked", known.degree.checked, degree);
+  visit("degree_least", known.degree.least, degree);
+  visit("degree_greatest", known.degree.greatest, degree);
+  visitDeterminants("voxels", known.voxels, visit);
+  visit("repaired", known.repaired, known.voxels.checked > 0);
+  const bool cells = known.cells.checked > 0;
+  visitDeterminants("cells", known.cells, visit);
+  visit("cells_share", known.cells.share, cells);
+  visit("cells_overlaps", known.cells.overlaps, known.cells.overlaps >= 0);
+}
+
+}  // namespace
+
+void DeterminantFigures::add(double determinant, bool atOverlap) {
+  least = checked == 0 ? determinant : std::min(least, determinant);
+  ++checked;
+  if (determinant > 0) return;
+  ++folded;
+  if (atOverlap) ++foldedAtOverlap;
+}
+
+void DeterminantFigures::add(const DeterminantFigures& others) {
+  if (others.checked == 0) return;
+  least = checked == 0 ? others.least : std::min(least, others.least);
+  checked += others.checked;
+  folded += others.folded;
+  foldedAtOverlap += others.foldedAtOverlap;
+}
+
+Facts injectivityFacts(const Injectivity& known) {
+  Facts out;
+  visitFigures(known, [&](const std::string& name, const auto& value, bool is) {
+    if (is) out.emplace_back(std::string(kPrefix) + name, fmt::format("{}", value));
+  });
+  return out;
+}
+
+void readInjectivity(const Facts& facts, Injectivity& known) {
+  visitFigures(known, [&](const std::string& name, auto& value, bool) {
+    if (const auto number = factNumber(facts, std::string(kPrefix) + name))
+      value = static_cast<std::decay_t<decltype(value)>>(*number);
+  });
+}
+
+SelfIntersectionFigures selfIntersectionFigures(const MeshReport& check) {
+  SelfIntersectionFigures out;
+  out.pairs = check.selfIntersections;
+  for (std::size_t i = 0; i < std::min(kPlaces, check.crossings.size()); ++i)
+    out.places.push_back(check.crossings[i].place);
+  return out;
+}
+
+}  // namespace innermap

@@ -1,0 +1,205 @@
+// What is known of a map's being one-to-one, in words.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "innermap/fit/mapped_solid.h"
+
+namespace innermap {
+namespace {
+
+struct Kind {
+  const DeterminantFigures& figures;
+  const char* name;
+};
+
+std::vector<Kind> checkedKinds(const Injectivity& known) {
+  std::vector<Kind> out;
+  for (const Kind& kind :
+       {Kind{known.inside, "points inside"}, Kind{known.boundary, "points of the boundary"},
+        Kind{known.voxels, "voxels"}, Kind{known.cells, "cells between voxels"}})
+    if (kind.figures.checked > 0) out.push_back(kind);
+  return out;
+}
+
+// "a, b and c"
+std::string listed(const std::vector<std::string>& items) {
+  std::string out;
+  for (std::size_t i = 0; i < items.size(); ++i)
+    out += (i == 0 ? "" : i + 1 < items.size() ? ", " : " and ") + items[i];
+  return out;
+}
+
+std::string percent(double share) { return fmt::format("{:.2g}%", 100 * share); }
+
+std::string foldedOf(const Kind& kind) {
+  const DeterminantFigures& f = kind.figures;
+  std::string out =
+      fmt::format("{} of {} {} ({}, least {:.3g}", f.folded, f.checked, kind.name,
+                  percent(static_cast<double>(f.folded) / static_cast<double>(f.checked)), f.least);
+  if (f.foldedAtOverlap > 0)
+    out += fmt::format("; {} where the target runs through itself",
+                       f.foldedAtOverlap == f.folded ? "all" : std::to_string(f.foldedAtOverlap));
+  return out + ")";
+}
+
+std::string determinants(const Injectivity& known) {
+  std::vector<std::string> positive, folded;
+  for (const Kind& kind : checkedKinds(known)) {
+    if (kind.figures.folded > 0)
+      folded.push_back(foldedOf(kind));
+    else
+      positive.push_back(fmt::format("all {} {} (least {:.3g})", kind.figures.checked, kind.name,
+                                     kind.figures.least));
+  }
+  std::string out;
+  if (!positive.empty()) out += "det J > 0 at " + listed(positive) + ". ";
+  if (!folded.empty()) out += "det J is not above 0 at " + listed(folded) + ". ";
+  if (out.empty()) out = "No points inside were checked. ";
+  if (known.repaired > 0)
+    out += fmt::format("{} voxel{} repaired, where the grids differ from the map. ", known.repaired,
+                       known.repaired == 1 ? " was" : "s were");
+  return out;
+}
+
+std::string times(int count) {
+  return count == 1 ? "once" : fmt::format("{} time{}", count, std::abs(count) == 1 ? "" : "s");
+}
+
+std::string boundary(const Injectivity& known) {
+  std::string out;
+  if (known.outside > 0)
+    out += percent(known.outside) +
+           " of the points inside come to lie outside the target by more than the error of 99% of "
+           "the boundary. ";
+  const DegreeFigures& degree = known.degree;
+  const std::string within = fmt::format(
+      "99% of the boundary's image is within {:.2g} of the target's diagonal of the target",
+      known.boundaryError);
+  if (degree.checked > 0)
+    out += fmt::format(
+        "{}, and winds {} about the {} points checked inside the target that are deeper than "
+        "that{}. ",
+        within,
+        degree.least == degree.greatest
+            ? times(degree.least)
+            : fmt::format("{} to {}", degree.least, times(degree.greatest)),
+        degree.checked,
+        degree.least == degree.greatest ? fmt::format(" (degree {})", degree.least) : "");
+  else if (known.boundary.checked > 0)
+    out += within + "; no point of the target lies deeper, so its degree is not known. ";
+  return out;
+}
+
+std::string crossing(const char* what, const SelfIntersectionFigures& figures) {
+  std::string out = fmt::format("The {} runs through itself: {} pair{} of triangles", what,
+                                figures.pairs, figures.pairs == 1 ? "" : "s");
+  if (!figures.places.empty()) {
+    const Vec3& p = figures.places.front();
+    out += fmt::format(", the first near ({:.4g}, {:.4g}, {:.4g})", p.x, p.y, p.z);
+  }
+  return out + ". ";
+}
+
+std::string surfaces(const Injectivity& known) {
+  if (known.source.pairs == 0 && known.target.pairs == 0)
+    return "Neither surface runs through itself. ";
+  std::string out;
+  if (known.source.pairs > 0)
+    out += crossing("source", known.source) + "What overlaps there is mapped as one solid. ";
+  if (known.target.pairs > 0) out += crossing("target", known.target);
+  if (known.target.pairs > 0 && known.source.pairs == 0)
+    out += "No continuous map that meets this target exactly can be one-to-one. ";
+  return out;
+}
+
+std::size_t foldedPoints(const Injectivity& known) {
+  return known.inside.folded + known.boundary.folded + known.voxels.folded;
+}
+
+// Turned over everywhere, as by a mirror: nowhere folded.
+bool mirrors(const Injectivity& known) {
+  const std::size_t folded = foldedPoints(known);
+  return folded > 0 &&
+         folded == known.inside.checked + known.boundary.checked + known.voxels.checked;
+}
+
+bool folds(const Injectivity& known) { return foldedPoints(known) > 0 && !mirrors(known); }
+
+bool windsOtherwise(const DegreeFigures& degree) { return degree.least < 0 || degree.greatest > 1; }
+
+std::string conclusion(const Injectivity& known) {
+  const DegreeFigures& degree = known.degree;
+  std::string out;
+  if (folds(known)) out += "So the map is not one-to-one: it is turned over at those places. ";
+  if (degree.greatest > 1)
+    out += fmt::format("So the map is not one-to-one: its boundary winds up to {} about a point. ",
+                       times(degree.greatest));
+  if (degree.least < 0)
+    out += fmt::format(
+        "So the map is not one-to-one: its boundary winds {} about a point, and what goes there "
+        "is turned over. ",
+        times(degree.least));
+  if (notOneToOne(known)) return out;
+  if (known.inside.checked == 0 && known.voxels.checked == 0)
+    return "Whether the map is one-to-one is not known. ";
+  if (mirrors(known))
+    return "The map mirrors the solid, as its target is inside out; nothing that was checked rules "
+           "out that it is one-to-one. ";
+  if (degree.checked == 0 || degree.least != 1)
+    return "Nothing that was checked rules out that the map is one-to-one; nothing proves it. ";
+  return fmt::format(
+      "Where det J > 0 everywhere inside, as many points go to a place as the image of the "
+      "boundary "
+      "winds about it: then exactly one goes to each of those {} points, and to all that can be "
+      "joined to them without coming nearer to the target's surface than that. That det J > 0 "
+      "between the points that were checked is not proved. ",
+      degree.checked);
+}
+
+std::string cells(const CellFigures& cells) {
+  if (cells.checked == 0 || cells.folded > 0 || cells.overlaps < 0) return "";
+  const std::string what =
+      fmt::format("The map that is linear on the {} cells, {} of the solid, is ", cells.checked,
+                  percent(cells.share));
+  if (cells.overlaps == 0) return what + "one-to-one; that was checked as a whole. ";
+  return what + fmt::format(
+                    "nowhere turned over, but not one-to-one: it covers itself at {} "
+                    "place{} of its boundary. ",
+                    cells.overlaps, cells.overlaps == 1 ? "" : "s");
+}
+
+}  // namespace
+
+bool notOneToOne(const Injectivity& known) { return folds(known) || windsOtherwise(known.degree); }
+
+std::string injectivityStatement(const Injectivity& known) {
+  std::string out = determinants(known) + boundary(known) + surfaces(known) + conclusion(known) +
+                    cells(known.cells);
+  out.pop_back();
+  return out;
+}
+
+std::string injectivityLine(const Injectivity& known) {
+  std::vector<std::string> positive, folded;
+  for (const Kind& kind : checkedKinds(known)) {
+    const DeterminantFigures& f = kind.figures;
+    if (f.folded > 0)
+      folded.push_back(fmt::format("{} of {} {}", f.folded, f.checked, kind.name));
+    else
+      positive.push_back(fmt::format("{} {}", f.checked, kind.name));
+  }
+  if (positive.empty() && folded.empty()) return "one-to-one: not checked";
+  std::string out = notOneToOne(known) ? "not one-to-one" : "one-to-one as far as checked";
+  if (!folded.empty()) out += "; folded: " + listed(folded);
+  if (!positive.empty()) out += "; no fold at " + listed(positive);
+  if (windsOtherwise(known.degree))
+    out += fmt::format("; the boundary winds {} to {}", known.degree.least,
+                       times(known.degree.greatest));
+  if (known.target.pairs > 0)
+    out += fmt::format("; the target runs through itself in {} pair{} of triangles",
+                       known.target.pairs, known.target.pairs == 1 ? "" : "s");
+  return out;
+}
+
+}  // namespace innermap

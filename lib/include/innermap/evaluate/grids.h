@@ -1,0 +1,164 @@
+// A map on the voxels of its solid, ready to be written: level set, fog, positions, Jacobian and
+// energies, with the map's facts in their metadata.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "innermap/core/run.h"
+#include "innermap/core/setting.h"
+#include "innermap/evaluate/evaluate_map.h"
+#include "innermap/field/field_file.h"
+#include "innermap/field/harmonic_field.h"
+#include "innermap/fit/frame_fitter.h"
+#include "innermap/fit/mapped_solid.h"
+#include "innermap/levelset/solid.h"
+
+namespace innermap {
+
+// Whether folds are repaired (EvaluateSettings::repairUpTo). automatic: where at most
+// kRepairedFolds of the voxels inside is folded, and not in sequences.
+enum class RepairFolds { automatic, on, off };
+constexpr double kRepairedFolds = 5e-3;
+Setting repairSetting(RepairFolds* repair);
+
+struct MapGridSettings {
+  int resolution = 0;    // voxels along the longest side, as in LevelSetSettings
+  double voxelSize = 0;  // world units; above 0: in place of the resolution
+  LameConstants lame;
+  RepairFolds repair = RepairFolds::automatic;
+};
+
+constexpr double kUsualTolerance = 1e-3;
+
+struct SolidGrids {
+  openvdb::FloatGrid::Ptr surface, density;  // level set, and fog of the inside
+  MapGrids values;                           // with their totals; map: absolute positions
+  // Far from the origin, where floats hold positions to less than a tenth of the tolerance that the
+  // map was fitted to (of kUsualTolerance, if to none), also `map_local`: positions less
+  // localOrigin, which floats hold well; folds are looked for in these. Null otherwise.
+  openvdb::Vec3fGrid::Ptr mapLocal;
+  Vec3 localOrigin;
+  // How far the image of each voxel inside lies outside the target, world units of that; active
+  // where that is more than the error of 99% of the boundary. Null where nothing does.
+  openvdb::FloatGrid::Ptr outside;
+  double outsideFraction = 0;  // their share of the voxels inside
+  double mapRounding = 0;      // MapGrids::rounding, fraction of the target's diagonal
+  double voxelSize = 0;        // world units
+  Injectivity injectivity;     // of the map, with what voxels and cells tell
+  std::vector<std::string> notes, warnings;
+  StageSeconds seconds;  // "voxelize", "evaluate", "outside", "cells"
+
+  // As mapGridNames(), and `repaired`, `folded`, `outside` and `map_local` where there are such.
+  openvdb::GridPtrVec all() const;
+};
+
+// Metadata (prefix innermap_): the map's facts, harmonic_energy_total, deformation_energy_total,
+// jacobian_min, jacobian_max, folded_fraction, outside_fraction, map_rounding
+// (SolidGrids::mapRounding), lame_lambda, lame_mu; map_local_origin (Vec3d) where there is that
+// grid; one_to_one, which is what injectivityStatement says. Throws SettingError, MemoryError,
+// DataError (thinner than the voxels everywhere), Cancelled. Deterministic for any number of
+// threads.
+SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& settings = {});
+
+// The maps of a sequence's frames on the voxels of its rest pose.
+class FrameEvaluator {
+ public:
+  // names: grids to be had beside the totals, of mapGridNames(). fitter: must outlive it. Throws
+  // SettingError, MemoryError, DataError (thinner than the voxels everywhere), Cancelled.
+  explicit FrameEvaluator(const FrameFitter& fitter, std::vector<std::string> names = {},
+                          const MapGridSettings& settings = {});
+
+  double voxelSize() const { return surface_->voxelSize()[0]; }  // world units
+  const std::vector<std::string>& warnings() const { return warnings_; }
+  const StageSeconds& seconds() const { return seconds_; }  // "voxelize"
+
+  // fit: of the fitter. Throws MemoryError, Cancelled. The same for any number of threads.
+  MapGrids evaluate(const FrameFit& fit) const;
+
+  // The grids of these names, in their order, with the frame's facts (describeFrame) and the totals
+  // of evaluateOnGrid in their metadata. values: of that frame.
+  openvdb::GridPtrVec grids(const NumberedFit& frame, const MapGrids& values) const;
+
+ private:
+  bool wants(const char* name) const;
+
+  const FrameFitter& fitter_;
+  std::vector<std::string> names_;
+  MapGridSettings settings_;
+  openvdb::FloatGrid::Ptr surface_, density_;
+  std::vector<std::string> warnings_;
+  StageSeconds seconds_;
+};
+
+// surface, density, map, jacobian, harmonic_energy, deformation_energy.
+const std::vector<std::string>& mapGridNames();
+
+// Whether a target of these vertices, in world units, stands so far from the origin that the grid
+// `map_local` is made too: floats hold positions no better than to a tenth of the tolerance, a
+// fraction of its diagonal.
+bool needsLocalMap(const Points& target, double tolerance);
+
+// How mapGridMemory() counts: harmonic maps one after another, whether there is a map_local, and
+// whether the cells between the voxels are looked at, as FrameEvaluator does not.
+struct MapGridKind {
+  std::size_t steps = 1;
+  bool local = false, cells = true;
+};
+MapGridKind mapGridKind(const MappedSolid& mapped);
+
+// Need of evaluateOnGrid() in bytes, from the solid's volume and area. Throws Cancelled.
+std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings,
+                            const MapGridKind& kind = {});
+
+// The map's facts as metadata of grids made with it (prefix innermap_); of its injectivity the
+// statement, one_to_one.
+void describeMap(const openvdb::GridPtrVec& grids, const MappedSolid& mapped);
+
+// The same of grids made with the map of an animation's frame: frame (its number),
+// boundary_error_rms, boundary_error_p99, boundary_error_max, boundary_error_bound.
+void describeFrame(const openvdb::GridPtrVec& grids, const NumberedFit& frame);
+
+// A harmonic field on the voxels of its solid: values, gradients, their directions and lengths.
+
+struct HarmonicGridSettings {
+  int resolution = 128;  // voxels along the longest side of the solid, in [4, 4096]
+  double voxelSize = 0;  // world units; above 0: in place of the resolution
+  bool values = true, gradients = true, directions = true, magnitudes = true;
+  double accuracy = 1e-7;  // of the sums, fraction of `span`, in [1e-12, 1e-3]
+  double span = 1;         // of the values, in their units, above 0
+};
+
+struct HarmonicGrids {
+  openvdb::FloatGrid::Ptr surface, density;  // level set, and fog of the inside
+  // Of each channel, in order, what was asked for: NAME (float), NAME_gradient (vec3s, values'
+  // units per world unit), NAME_direction (its unit vector; 0 where it is 0), NAME_magnitude (its
+  // length). Active inside and in a skin of two voxels, where values go on from the closest point
+  // of the boundary, as those of maps do (MapGrids). Background 0.
+  openvdb::GridPtrVec fields;
+  std::uint64_t activeVoxels = 0, interiorVoxels = 0;
+  double voxelSize = 0;  // world units
+  std::vector<std::string> warnings;
+  StageSeconds seconds;  // "voxelize", "evaluate"
+
+  openvdb::GridPtrVec all() const;
+};
+
+// names: of the channels. Throws SettingError (a setting out of range; names that are empty, twice,
+// or not one a channel), MemoryError, DataError (thinner than the voxels everywhere), Cancelled.
+// The same for any number of threads.
+HarmonicGrids evaluateHarmonic(const HarmonicField& field, const Solid& solid,
+                               const std::vector<std::string>& names,
+                               const HarmonicGridSettings& settings = {});
+
+// The field's facts as metadata of its grids (prefix innermap_).
+void describeField(const openvdb::GridPtrVec& grids, const Facts& facts);
+
+// Need in bytes of the grids of so many channels.
+std::uint64_t harmonicGridMemory(const Solid& solid, std::size_t channels,
+                                 const HarmonicGridSettings& settings = {});
+
+}  // namespace innermap

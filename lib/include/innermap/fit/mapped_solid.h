@@ -1,0 +1,143 @@
+// A map together with the solid that it maps: all that evaluating it, or carrying things through
+// it, needs. It is what a map's file holds.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "innermap/field/field_file.h"
+#include "innermap/field/harmonic_field.h"
+#include "innermap/fit/boundary_pair.h"
+#include "innermap/mesh/check.h"
+
+namespace innermap {
+
+// What is known of a map's being one-to-one, and what follows from that, in words.
+//
+// Let f be continuously differentiable on the closure of a bounded domain. Its degree about a point
+// y off the image of the boundary is the winding number of that image about y, and the number of
+// points that f takes to y, each counted with the sign of det J (degree theory; Deimling,
+// "Nonlinear Functional Analysis", 1985, chapter 1). So
+//
+// - where det J > 0 everywhere inside, as many points go to y as the image of the boundary winds
+//   about it, and f is one-to-one inside when that winds about no point more than once: Ball,
+//   "Global invertibility of Sobolev functions and the interpenetration of matter", Proc. Roy. Soc.
+//   Edinburgh 88A, 1981, where boundary values are those of a one-to-one map; Meisters and Olech,
+//   "Locally one-to-one mappings and a classical theorem on schlicht functions", Duke Math. J. 30,
+//   1963;
+// - a one-to-one map of a connected solid has the same degree, 1 or -1, about all points that it
+//   reaches, and det J nowhere changes its sign: a fold, and a boundary that winds otherwise than
+//   once or not at all about some point, rule it out;
+// - moving the boundary by less than the distance of y from it does not change how often it winds
+//   about y. An image of the boundary that is within e of the target's surface winds about points
+//   farther than e from that as the target does.
+
+// Determinants of the map's derivative, world units of the target over those of the source, cubed.
+struct DeterminantFigures {
+  std::size_t checked = 0;  // points or cells; none: nothing is known of them
+  std::size_t folded = 0;   // of these: not above 0
+  // Of these: their image is where the target runs through itself; within a hundredth of its
+  // diagonal, or where its surface winds otherwise than once or not at all.
+  std::size_t foldedAtOverlap = 0;
+  double least = 0;
+
+  void add(double determinant, bool atOverlap = false);
+  void add(const DeterminantFigures& others);
+};
+
+// How often the image of the boundary winds about points of a lattice in the target that are
+// farther from its surface than boundaryError.
+struct DegreeFigures {
+  std::size_t checked = 0;  // points; none: no point lies so deep
+  int least = 0, greatest = 0;
+};
+
+// The map that is linear on the tetrahedra between neighbouring voxels: six in each cube of eight
+// voxel centres (Kuhn's), where all corners are inside.
+struct CellFigures : DeterminantFigures {
+  double share = 0;  // of the solid's volume that they fill, in [0, 1]
+  // Places where their boundary's image runs through itself (pairs of triangles) or has cells on
+  // its inside that it does not wind about just once; -1: not known, as where a cell is folded.
+  // None: this map is one-to-one, as checked for the whole of it.
+  std::int64_t overlaps = -1;
+};
+
+struct SelfIntersectionFigures {
+  std::size_t pairs = 0;  // of triangles
+  Points places;          // the first of them, at most 16, world units
+};
+
+struct Injectivity {
+  DeterminantFigures inside;    // points of a lattice
+  DeterminantFigures boundary;  // random points of it, uniform by area
+  DeterminantFigures voxels;    // with their centre inside; of a grid, when there is one
+  CellFigures cells;            // of that grid
+  std::size_t repaired = 0;     // of the voxels: that were folded before
+  double outside = 0;           // share of `inside` farther out of the target than boundaryError
+  DegreeFigures degree;
+  double boundaryError = 0;  // that 99% of it keep, fraction of the target's diagonal
+  SelfIntersectionFigures source, target;
+};
+
+// Whether something that was found rules out that the map is one-to-one: a fold at one of the
+// points or voxels, or a boundary that winds about some point otherwise than once or not at all.
+// What the target does to maps that meet it exactly is not asked.
+bool notOneToOne(const Injectivity& known);
+
+// What was checked, what was found and what follows, no more than that: plain English, one line.
+std::string injectivityStatement(const Injectivity& known);
+
+// The short of it, for terminals: "no fold at 20033 points inside, ...".
+std::string injectivityLine(const Injectivity& known);
+
+// The figures that are known as facts of a map's file, "one_to_one_inside_checked" and so on, and
+// back; what facts do not say stays as it is in `known`.
+Facts injectivityFacts(const Injectivity& known);
+void readInjectivity(const Facts& facts, Injectivity& known);
+
+// The self-intersections of a mesh that was checked.
+SelfIntersectionFigures selfIntersectionFigures(const MeshReport& check);
+
+struct MappedSolid {
+  ComposedMap map;
+  BoundaryPair boundary;
+  // How the map was made and how good it is, as its file says it: version, source, target, method,
+  // interpolation, seed, regularization, rank, boundary_error_rms, boundary_error_p99,
+  // boundary_error_max, boundary_error_samples, boundary_error_p99_bound, boundary_error_bound,
+  // boundary_error_confidence, boundary_error_smooth_bound, c_error, and boundary_error_triangles
+  // or boundary_error_vertices_max, and distance, radius_ratio, tolerance, tolerance_reached,
+  // tolerance_met where they apply; those of injectivityFacts.
+  Facts facts;
+  // As far as points tell; what grids tell, evaluateOnGrid adds.
+  Injectivity injectivity;
+
+  const Solid& solid() const { return boundary.solid(); }
+};
+
+// One step of a map in steps.
+struct MapStep {
+  double from = 0, to = 0;  // the part of the way that it goes, in [0, 1]
+  std::size_t sources = 0;
+  double error = 0;   // its own, at 99% of its boundary, fraction of its target's diagonal
+  double folded = 0;  // share of the points inside that it folds
+};
+
+// The map's file: one PLY, see field_file.h. Throws FileError when it cannot be written; it appears
+// whole or not at all.
+void writeMap(const std::string& path, const MappedSolid& mapped);
+
+// Reads it and makes the solid again. Throws FileError for what is not the file of a map with its
+// boundary, DataError as makeBoundaryPair does, Cancelled.
+MappedSolid readMap(const std::string& path);
+
+// How accurate sums of charges have to be, a fraction of the target's diagonal, in [1e-9, 1e-5]:
+// well below the map's own error as its facts state that.
+double sumAccuracy(const MappedSolid& mapped);
+
+// The same for a map whose boundary error has that root mean square.
+double sumAccuracy(double boundaryErrorRms);
+
+}  // namespace innermap

@@ -1,0 +1,179 @@
+// The inverse of a map on the voxels of its target: where each of them comes from.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "innermap/core/vec3.h"
+#include "innermap/field/harmonic_field.h"
+#include "innermap/levelset/solid.h"
+#include "innermap/transfer/carry.h"
+
+namespace innermap {
+
+struct InverseSettings {
+  OutsideSettings outside;
+  double skin = 2;          // voxels outside the target's surface, in [0, 3]
+  double tolerance = 1e-3;  // of f(p) = q, target voxels, in [1e-6, 0.01]
+  double accuracy = 1e-7;   // of the sums of charges, as EvaluateSettings::accuracy
+};
+
+// Throws SettingError for a number out of its range.
+void requireInRange(const InverseSettings& settings);
+
+struct InverseStatistics {
+  std::uint64_t voxels = 0;     // of the region
+  std::uint64_t inverted = 0;   // with a residual of at most 0.01 voxel
+  std::uint64_t uncovered = 0;  // in no cell's image: folds, and gaps along the boundary
+  std::uint64_t failed = 0;     // not inverted
+  std::uint64_t inside = 0, failedInside = 0;  // of those with their centre inside the target
+  double largestResidual = 0;                  // of those inverted, target voxels
+  Box3 failedBox;                              // world units of the target
+  Points failedAt;                             // the first of them, at most 16
+
+  double invertedInside() const;  // share of the voxels inside; 1 when there are none
+  double invertedOutside() const;
+  // What to warn of when over 0.5% of the voxels inside are not inverted, else nothing.
+  std::string warning() const;
+};
+
+// For the voxels of `region` in the order of its leaves and of the voxels in them; voxels of leaf l
+// start at first[l].
+struct InvertedMap {
+  openvdb::MaskGrid::Ptr region;
+  std::vector<std::size_t> first;               // #leaves + 1
+  Points sources;                               // #voxels: p with f(p) = q, world units
+  std::vector<std::array<float, 9>> jacobians;  // #voxels: of f at p, row by row
+  InverseStatistics statistics;
+};
+
+// A lattice of voxels through a solid, and as far around it as the map is to be used.
+struct SourceLattice {
+  openvdb::FloatGrid::Ptr levelSet;  // of the solid
+  openvdb::MaskGrid::Ptr region;
+};
+
+// For each voxel of the target (those of targetLevelSet whose distance is at most the skin; with
+// settings.outside also those around it that come from the lattice) the point p with f(p) = q:
+// cells of the lattice are mapped, voxels in their images start with second-order accuracy, and
+// Newton steps with the analytic Jacobian do the rest, halved while they do not help. Voxels inside
+// that these do not invert start again from the sources of their neighbours, and, where the map has
+// steps, from what inverting these one after the other finds. A voxel that is not inverted has the
+// source and Jacobian of the nearest one that is. Outside the solid the map is extended as
+// transfer/carry.h says, so voxels along the boundary, which the map meets but for its boundary
+// error, have sources just outside. Same result for any number of threads. Throws SettingError,
+// DataError (nothing of the target is inverted), MemoryError, Cancelled.
+InvertedMap invertMap(const ComposedMap& map, const Solid& source, const SourceLattice& lattice,
+                      const openvdb::FloatGrid& targetLevelSet,
+                      const InverseSettings& settings = {});
+
+// The same at any points of the target, world units; points that are in no voxel of `inverted` stay
+// as they are. #points.
+Points invertAt(const ComposedMap& map, const Solid& source, const SourceLattice& lattice,
+                const InvertedMap& inverted, const Points& targets,
+                const InverseSettings& settings = {});
+
+// Points carried through the map of a solid, and back, with its derivative at each.
+
+struct CarryPointsSettings {
+  OutsideSettings outside;
+  // Points that are no farther outside are taken for points of the boundary and carried whatever
+  // `outside` says: fraction of the source's diagonal, in [0, 0.1]. Two surfaces that are meant to
+  // be one differ by that much.
+  double skin = 1e-3;
+  double accuracy = 1e-7;  // of the sums of charges, as EvaluateSettings::accuracy
+};
+
+// Throws SettingError for a number out of its range.
+void requireInRange(const CarryPointsSettings& settings);
+
+enum class PointFate : std::uint8_t {
+  carried,
+  cut,    // too far outside the solid; it has no place
+  failed  // the map was not inverted there; it has the place of the nearest point found
+};
+
+struct CarriedPoints {
+  Points points;                // #points, world units
+  std::vector<Mat3> jacobians;  // #points, of the way taken; empty when not asked for
+  std::vector<PointFate> fates;
+  // Of all: outside the solid by over 1e-6 of its diagonal, whatever their fate; and the rest.
+  std::uint64_t outside = 0, cut = 0, failed = 0;
+  double farthest = 0;  // of those outside and not cut, fraction of the source's diagonal
+};
+
+// Carries #points; with jacobians if asked for.
+using PointCarry = std::function<CarriedPoints(const Points& points, bool jacobians)>;
+
+// From the source to the target: x becomes f(x), the Jacobian is f's. Outside the solid the map is
+// extended as transfer/carry.h says. Holds copies, which share their data; serves any number of
+// maps.
+class PointPusher {
+ public:
+  // Throws SettingError, MemoryError, Cancelled.
+  explicit PointPusher(const Solid& source, const CarryPointsSettings& settings = {});
+
+  // Same result for any number of threads. Throws DataError for a point that is not finite,
+  // Cancelled.
+  CarriedPoints push(const ComposedMap& map, const Points& points, bool jacobians) const;
+
+ private:
+  struct Data;
+  std::shared_ptr<const Data> data_;
+};
+
+// From the target to the source: y becomes the x with f(x) = y, the Jacobian is the inverse of f's
+// there. The inverse on a grid of the target gives the starts (see inverse_map.h), Newton's method
+// does the rest, to 1e-5 of the target's diagonal and mostly to `accuracy`.
+class PointPuller {
+ public:
+  // Inverts the map on the grid. Throws as invertMap does.
+  PointPuller(const ComposedMap& map, const Solid& source, const Solid& target,
+              const CarryPointsSettings& settings = {});
+
+  // Throws as PointPusher::push.
+  CarriedPoints pull(const Points& points, bool jacobians) const;
+
+ private:
+  struct Data;
+  std::shared_ptr<const Data> data_;
+};
+
+// Peak need in bytes of carrying so many points, beyond the points given: with Jacobians or
+// without.
+std::uint64_t carryPointsMemory(std::uint64_t points, bool jacobians);
+
+// What of a vector or a normal becomes of it, A being the Jacobian: A v; and A^-T n, as long as n
+// was. A normal stays as it is where A is singular.
+Vec3 carriedVector(const Mat3& jacobian, const Vec3& v);
+Vec3 carriedNormal(const Mat3& jacobian, const Vec3& n);
+
+// A map both ways that is given point by point, in place of a harmonic one: a repaired mesh as a
+// piecewise linear map, say.
+
+// Each carries #points and gives the Jacobian of the way taken at each; for points anywhere, also
+// outside. Deterministic.
+struct ThroughMap {
+  std::function<void(const Points& points, Points& images, std::vector<Mat3>& jacobians)> push;
+  std::function<void(const Points& points, Points& images, std::vector<Mat3>& jacobians)> pull;
+};
+
+// Calls use(leaf's origin, places of its active voxels' centres in world units, images, Jacobians)
+// for each leaf of the region in order, some of them side by side on the way there. Throws
+// Cancelled.
+void forLeavesThrough(
+    const openvdb::MaskGrid& region,
+    const std::function<void(const Points&, Points&, std::vector<Mat3>&)>& way,
+    const std::function<void(std::size_t leaf, const openvdb::Coord& origin, const Points& images,
+                             const std::vector<Mat3>& jacobians)>& use);
+
+// The inverse at the voxels of a region of the target.
+InvertedMap invertThrough(const ThroughMap& through, const openvdb::MaskGrid::Ptr& region);
+
+}  // namespace innermap

@@ -1,0 +1,147 @@
+// Push forward: grids that live in a source solid, carried to the target by the solid's map.
+//
+// For each voxel q of the target the point p with f(p) = q is found: cells of a lattice through the
+// source are mapped, those whose image holds q give the start, Newton steps with the analytic
+// Jacobian do the rest. The grids are sampled at p.
+//
+// Densities are not sampled, or what the map crushes below a voxel would be lost, but remapped so
+// that their mass is kept whatever the map does. Their voxels, or parts of them where the target's
+// are finer, are cut into six tetrahedra each, whose corners are mapped; the image of each is cut
+// along the target's voxels, which get what their parts hold (Powell and Abel, "An exact general
+// remeshing scheme applied to physically conservative voxelization", J. Comput. Phys. 297, 2015).
+// Within a voxel of the source a density is linear, with limited slopes (Dukowicz and Kodis,
+// "Accurate conservative remapping (rezoning) for arbitrary Lagrangian-Eulerian computations", SIAM
+// J. Sci. Stat. Comput. 8, 1987), constant with Sampling::nearest. So a voxel of the target has the
+// mean over it; a density does not change where nothing moves. Parts of the solid that touch within
+// a voxel of the source go each their own way.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "innermap/field/harmonic_field.h"
+#include "innermap/fit/frame_fitter.h"
+#include "innermap/levelset/level_set.h"
+#include "innermap/levelset/solid.h"
+#include "innermap/transfer/carry.h"
+#include "innermap/transfer/inverse_map.h"
+
+namespace innermap {
+
+struct PushSettings {
+  CarrySettings carry;
+  OutsideSettings outside;
+  double skin = 2;          // active voxels outside the target's surface, in [0, 3]
+  double tolerance = 1e-3;  // of f(p) = q, target voxels, in [1e-6, 0.01]
+  double accuracy = 1e-7;   // of the sums of charges, as EvaluateSettings::accuracy
+  // Goes this way instead of by the map; for what is sampled, not for densities. Null: by the map.
+  const ThroughMap* through = nullptr;
+};
+
+struct PushResult {
+  openvdb::GridPtrVec grids;  // in the order given, then the fields
+  // Of the inverse, which is taken where there is something to sample: other grids than densities,
+  // or fields. Without, the number of voxels alone.
+  bool inverted = false;
+  InverseStatistics statistics;
+  std::vector<CarriedMass> masses;  // of grids carried as densities
+  ResamplingFigures resampling;     // of the voxels inside, where there is an inverse
+  std::vector<std::string> warnings;
+};
+
+// Keeps what the source alone decides; serves any number of maps (the frames of a sequence).
+// Immutable; one push at a time uses all threads.
+class VolumePusher {
+ public:
+  // Throws DataError for a grid of a type that cannot be carried, a tensor with a part missing or
+  // no active voxel near the solid in any grid; SettingError; MemoryError; Cancelled.
+  VolumePusher(const Solid& source, const openvdb::GridPtrVec& grids,
+               const PushSettings& settings = {});
+
+  // targetLevelSet: of the target, class level set, half-width at least the skin; its transform is
+  // that of the output. Output grids keep name, class, background, vector type and metadata; they
+  // are active where the target's signed distance is at most the skin. Level sets are rebuilt as
+  // distances; where one is the source's own surface, to a voxel, it becomes the target's. With
+  // outside settings, also where the volume around the source comes to. Densities are active also
+  // where mass of theirs comes to beyond that. Throws as invertMap does. Same result for any number
+  // of threads.
+  PushResult push(const ComposedMap& map, const openvdb::FloatGrid& targetLevelSet,
+                  const std::vector<CarriedField>& fields = {}) const;
+
+ private:
+  struct Data;
+  std::shared_ptr<const Data> data_;
+};
+
+struct FramePushSettings {
+  PushSettings push;
+  bool fadeToFitted = false;  // what lies outside fades to the best rigid motion of each frame
+  LevelSetSettings output;    // of the rest pose: all frames get its voxels and its lattice
+};
+
+struct FramePush {
+  PushResult result;
+  StageSeconds seconds;  // "level set", "push"
+};
+
+// Grids that live in a rest pose, carried through the frames of an animation. What a frame gives
+// does not depend on the others.
+class FramePusher {
+ public:
+  // fitter: must outlive it. Throws as VolumePusher.
+  FramePusher(const FrameFitter& fitter, const openvdb::GridPtrVec& grids,
+              const FramePushSettings& settings = {});
+
+  double voxelSize() const { return settings_.output.voxelSize; }  // of the outputs, world units
+
+  // fit: of the fitter. The grids have the frame's facts in their metadata, see describeFrame.
+  // Throws as VolumePusher::push, DataError for a frame that bounds no solid.
+  FramePush push(const NumberedFit& fit, const std::vector<CarriedField>& fields = {}) const;
+
+ private:
+  VolumePusher pusherFor(const Points& moved) const;
+
+  const FrameFitter& fitter_;
+  openvdb::GridPtrVec grids_;
+  FramePushSettings settings_;
+  std::optional<VolumePusher> pusher_;  // none where each frame needs its own
+};
+
+// Pull back: grids that live in the target, brought to the source by the solid's map.
+
+struct PullSettings {
+  CarrySettings carry;
+  OutsideSettings outside;
+  double skin = 2;         // active voxels outside the surface, in [0, 3]
+  double accuracy = 1e-7;  // of the sums of charges, as EvaluateSettings::accuracy
+  // Of the target's solid, half-width at least 3 voxels; null when it is not known. With it,
+  // attributes that end at the target's surface are continued by three voxels beyond, so that what
+  // is sampled along the surface does not mix with the background; positions need it.
+  const openvdb::FloatGrid* targetLevelSet = nullptr;
+  // Goes this way instead of by the map. Null: by the map.
+  const ThroughMap* through = nullptr;
+};
+
+struct PullResult {
+  openvdb::GridPtrVec grids;     // in the order given
+  std::uint64_t voxels = 0;      // active
+  ResamplingFigures resampling;  // of the voxels inside; none when pulled through a mesh
+  std::vector<std::string> warnings;
+};
+
+// For each voxel p of the source, the grids' values at f(p), moved back by what they are. levelSet:
+// of `source`, half-width at least the skin; its transform is that of the output, which is active
+// where the signed distance is at most the skin (with outside settings: the outside distance).
+// Names, classes, backgrounds, vector types and metadata stay; level sets are rebuilt as distances,
+// and where one is the target's own surface, to a voxel, it becomes the source's.
+// Throws as VolumePusher does.
+PullResult pullGrids(const ComposedMap& map, const Solid& source,
+                     const openvdb::FloatGrid& levelSet, const openvdb::GridPtrVec& grids,
+                     const PullSettings& settings = {});
+
+}  // namespace innermap

@@ -1,0 +1,184 @@
+#include "io/geometry/detail/ply_geometry.h"
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/text_scanner.h"
+#include "innermap/core/error.h"
+#include "innermap/core/run.h"
+
+namespace innermap {
+
+PlyRole plyRole(const PlyElement& element) {
+  if (element.name == "vertex") return PlyRole::vertices;
+  if (element.name == "face") return PlyRole::faces;
+  if (element.name == "tristrips") return PlyRole::strips;
+  return element.name == "edge" ? PlyRole::edges : PlyRole::other;
+}
+
+bool isIndexList(const PlyProperty& p) {
+  return p.list && (p.name == "vertex_indices" || p.name == "vertex_index");
+}
+
+bool PlyGeometry::findThree(const PlyElement& element,
+                            const std::vector<std::array<std::string, 3>>& names, int direction) {
+  for (const auto& three : names) {
+    std::array<std::optional<std::size_t>, 3> at;
+    for (std::size_t p = 0; p < element.properties.size(); ++p)
+      for (std::size_t a = 0; a < 3; ++a)
+        if (!element.properties[p].list && element.properties[p].name == three[a] && !at[a])
+          at[a] = p;
+    if (!at[0] || !at[1] || !at[2]) continue;
+    for (int a = 0; a < 3; ++a) {
+      const PlyType type = element.properties[*at[static_cast<std::size_t>(a)]].type;
+      if (!isFloat(type) && !(direction < 0))
+        throw FileError(file_.path, "property '" + three[static_cast<std::size_t>(a)] +
+                                        "' holds whole numbers; a direction needs float or double");
+      moving_[*at[static_cast<std::size_t>(a)]] = {direction, a};
+    }
+    return true;
+  }
+  return false;
+}
+
+void PlyGeometry::findMoving(const PlyElement& element, const ReadGeometrySettings& settings) {
+  if (!findThree(element, {{"x", "y", "z"}}, -1))
+    throw FileError(file_.path, "its vertices have no x, y and z");
+  for (const PlyProperty& p : element.properties)
+    if ((p.name == "x" || p.name == "y" || p.name == "z") && !isFloat(p.type))
+      throw FileError(file_.path,
+                      "places are whole numbers; write them as float or double to carry them");
+  const auto add = [&](const std::string& name, DirectionKind kind, bool must) {
+    const auto next = static_cast<int>(geometry.directions.size());
+    std::vector<std::array<std::string, 3>> names;
+    if (name == "n") names.push_back({"nx", "ny", "nz"});
+    for (const char* between : {"_", ".", ""})
+      names.push_back({name + between + "x", name + between + "y", name + between + "z"});
+    if (findThree(element, names, next))
+      geometry.directions.push_back({name, kind, {}, {}});
+    else if (must)
+      throw FileError(file_.path, fmt::format("has no vector {0}: its vertices have no properties "
+                                              "{1}_x, {1}_y and {1}_z",
+                                              inQuotes(name), name));
+  };
+  add("n", DirectionKind::normal, false);
+  for (const std::string& name : settings.normals)
+    if (name != "n") add(name, DirectionKind::normal, true);
+  for (const std::string& name : settings.vectors) add(name, DirectionKind::vector, true);
+}
+
+void PlyGeometry::read(const ReadGeometrySettings& settings) {
+  PlyBody body(file_, header_);
+  bool vertices = false;
+  for (const PlyElement& element : header_.elements) {
+    body.requireRoom(element);
+    const PlyRole role = plyRole(element);
+    if (role == PlyRole::vertices) {
+      if (vertices) throw FileError(file_.path, "has two elements of vertices; keep one");
+      vertices = true;
+      findMoving(element, settings);
+      readVertices(body, element);
+      continue;
+    }
+    if (role == PlyRole::strips && element.count > 0) geometry.splittable = false;
+    for (std::uint64_t row = 0; row < element.count; ++row) {
+      if (row % 65536 == 0)
+        reportProgress("reading", static_cast<double>(body.position()) /
+                                      static_cast<double>(file_.bytes.size()));
+      if (role == PlyRole::other)
+        body.skipRow(element);
+      else
+        readFace(body, element, row);
+    }
+  }
+  if (!vertices) throw FileError(file_.path, "has no vertices");
+  const auto count = static_cast<int>(geometry.points.size());
+  for (const Corner& corner : geometry.elements.corners)
+    if (corner.point >= count || corner.point < -1)
+      throw FileError(file_.path, fmt::format("a face uses vertex {}, the file has {} (counted "
+                                              "from 0)",
+                                              corner.point, count));
+  geometry.ownPoints = geometry.points.size();
+  geometry.textures = textures_.size() / 2;
+}
+
+void PlyGeometry::readVertices(PlyBody& body, const PlyElement& element) {
+  requireCountable(file_, element.count, "vertices");
+  geometry.points.reserve(element.count);
+  std::vector<const PlyMoving*> moving(element.properties.size());
+  for (const auto& [at, what] : moving_) moving[at] = &what;
+  std::vector<Vec3> values(1 + geometry.directions.size());
+  for (std::uint64_t row = 0; row < element.count; ++row) {
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+      const PlyProperty& property = element.properties[p];
+      const std::uint64_t items = property.list ? body.listSize(property) : 1;
+      for (std::uint64_t k = 0; k < items; ++k) {
+        const std::string_view bytes = body.next(property.type);
+        if (!moving[p]) continue;
+        const double value = body.value(bytes, property.type);
+        if (!std::isfinite(value) && moving[p]->direction < 0)
+          body.fail(fmt::format("vertex {} is not finite; export the file again", row));
+        values[static_cast<std::size_t>(1 + moving[p]->direction)][moving[p]->axis] = value;
+      }
+    }
+    geometry.points.push_back(values[0]);
+    for (std::size_t d = 0; d < geometry.directions.size(); ++d) {
+      geometry.directions[d].values.push_back(values[d + 1]);
+      geometry.directions[d].points.push_back(static_cast<int>(row));
+    }
+  }
+}
+
+void PlyGeometry::readFace(PlyBody& body, const PlyElement& element, std::uint64_t row) {
+  const PlyRole role = plyRole(element);
+  std::vector<double> indices, uvs;
+  for (const PlyProperty& property : element.properties) {
+    const std::uint64_t items = property.list ? body.listSize(property) : 1;
+    const bool ends = role == PlyRole::edges && !property.list &&
+                      (property.name == "vertex1" || property.name == "vertex2");
+    const bool isTexture = property.list && property.name == "texcoord";
+    for (std::uint64_t k = 0; k < items; ++k) {
+      const std::string_view bytes = body.next(property.type);
+      if ((role != PlyRole::edges && isIndexList(property)) || ends)
+        indices.push_back(body.value(bytes, property.type));
+      else if (isTexture)
+        uvs.push_back(body.value(bytes, property.type));
+    }
+  }
+  const std::size_t first = textures_.size() / 2;
+  addElement(role, row, indices);
+  if (uvs.size() != 2 * indices.size() || uvs.empty()) return;
+  textures_.insert(textures_.end(), uvs.begin(), uvs.end());
+  std::vector<Corner>& corners = geometry.elements.corners;
+  for (std::size_t k = 0; k < indices.size(); ++k)
+    corners[corners.size() - indices.size() + k].texture = static_cast<int>(first + k);
+}
+
+void PlyGeometry::addElement(PlyRole role, std::uint64_t row, const std::vector<double>& indices) {
+  std::vector<Corner> corners;
+  for (const double index : indices) {
+    const double least = role == PlyRole::strips ? -1 : 0;
+    if (!(index >= least && index < std::numeric_limits<int>::max()) || index != std::floor(index))
+      throw FileError(file_.path, fmt::format("{} is not an index of a vertex", index));
+    Corner corner;
+    corner.point = static_cast<int>(index);
+    corners.push_back(corner);
+  }
+  requireCountable(file_, geometry.elements.corners.size() + corners.size(), "corners");
+  Elements::Kind kind = role == PlyRole::edges    ? Elements::Kind::line
+                        : role == PlyRole::strips ? Elements::Kind::cell
+                                                  : Elements::Kind::face;
+  if (kind == Elements::Kind::face && corners.size() < 3) kind = Elements::Kind::cell;
+  geometry.elements.add(kind, static_cast<std::uint32_t>(rows_.size()), corners.data(),
+                        corners.size());
+  rows_.push_back(static_cast<std::uint32_t>(row));
+  roles_.push_back(role);
+}
+
+std::unique_ptr<GeometryFile> readPlyGeometry(FileBytes file,
+                                              const ReadGeometrySettings& settings) {
+  return std::make_unique<PlyGeometry>(std::move(file), settings);
+}
+
+}  // namespace innermap

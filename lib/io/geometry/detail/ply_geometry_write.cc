@@ -1,0 +1,185 @@
+#include "io/geometry/detail/ply_geometry.h"
+
+namespace innermap {
+
+void PlyGeometry::writeHeader(OutputBuffer& out, const CarriedGeometry& carried) const {
+  std::map<PlyRole, std::uint64_t> counts;
+  for (const int number : carried.number) counts[PlyRole::vertices] += number >= 0;
+  for (std::size_t e = 0; e < geometry.elements.size(); ++e) {
+    const PlyRole role = roles_[geometry.elements.source[e]];
+    // A line that was split is as many edges as it has parts.
+    const std::size_t corners = geometry.elements.start[e + 1] - geometry.elements.start[e];
+    if (carried.stays[e]) counts[role] += role == PlyRole::edges ? corners - 1 : 1;
+  }
+  std::size_t position = 0;
+  for (std::size_t e = 0; e < header_.elements.size(); ++e) {
+    const std::size_t line = file_.bytes.find("element", position);
+    // Comments may have the word too.
+    const std::size_t lineBegin = file_.bytes.find_last_of("\r\n", line) + 1;
+    if (file_.bytes.find_first_not_of(" \t", lineBegin) != line) {
+      copy(out, position, line + 7);
+      position = line + 7;
+      --e;
+      continue;
+    }
+    const std::size_t end = file_.bytes.find_first_of("\r\n", line);
+    copy(out, position, line);
+    const PlyElement& element = header_.elements[e];
+    const PlyRole role = plyRole(element);
+    out.print("element {} {}", element.name, role == PlyRole::other ? element.count : counts[role]);
+    position = end;
+  }
+  copy(out, position, header_.bodyOffset);
+}
+
+void PlyGeometry::writeVertices(OutputBuffer& out, PlyBody& body, const PlyElement& element,
+                                const CarriedGeometry& carried) const {
+  std::vector<const PlyMoving*> moving(element.properties.size());
+  for (const auto& [at, what] : moving_) moving[at] = &what;
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < element.count; ++row) {
+    std::size_t copied = body.position();
+    if (carried.added > 0) rows.push_back(copied);
+    const bool stays = carried.number[row] >= 0;
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+      const PlyProperty& property = element.properties[p];
+      const std::uint64_t items = property.list ? body.listSize(property) : 1;
+      for (std::uint64_t k = 0; k < items; ++k) {
+        const std::string_view bytes = body.next(property.type);
+        if (!moving[p] || !stays) continue;
+        const auto begin = static_cast<std::size_t>(bytes.data() - file_.bytes.data());
+        // Digits come with a space of their own.
+        copy(out, copied,
+             body.ascii() && begin > copied && file_.bytes[begin - 1] == ' ' ? begin - 1 : begin);
+        body.put(out, property.type, moved(*moving[p], row, carried));
+        copied = begin + bytes.size();
+      }
+    }
+    if (stays) copy(out, copied, body.position());
+  }
+  if (carried.added > 0) writeAdded(out, body, element, rows, carried);
+}
+
+// Properties of points between others are the means of theirs.
+void PlyGeometry::writeAdded(OutputBuffer& out, PlyBody& body, const PlyElement& element,
+                             const std::vector<std::size_t>& rows,
+                             const CarriedGeometry& carried) const {
+  const std::size_t after = body.position(), originals = rows.size();
+  std::vector<std::vector<double>> made;
+  const auto valuesOf = [&](int point) {
+    const auto i = static_cast<std::size_t>(point);
+    if (i >= originals) return made[i - originals];
+    std::vector<double> values;
+    body.seek(rows[i]);
+    for (const PlyProperty& property : element.properties) {
+      const std::uint64_t items = property.list ? body.listSize(property) : 1;
+      for (std::uint64_t k = 0; k < items; ++k) {
+        const double value = body.value(body.next(property.type), property.type);
+        if (!property.list) values.push_back(value);
+      }
+      if (property.list) values.push_back(0);
+    }
+    return values;
+  };
+  for (std::size_t i = 0; i < carried.added; ++i) {
+    const auto& [a, b] = geometry.pointMiddles.parents()[i];
+    std::vector<double> values = valuesOf(a);
+    const std::vector<double> others = valuesOf(b);
+    for (std::size_t p = 0; p < values.size(); ++p) values[p] = 0.5 * (values[p] + others[p]);
+    made.push_back(values);
+    if (carried.number[originals + i] < 0) continue;
+    if (body.ascii()) out.raw("\n");
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+      const PlyProperty& property = element.properties[p];
+      const auto found = moving_.find(p);
+      if (property.list)
+        body.put(out, property.countType, 0);
+      else
+        body.put(out, property.type,
+                 found == moving_.end() ? values[p] : moved(found->second, originals + i, carried));
+    }
+  }
+  body.seek(after);
+}
+
+std::vector<double> PlyGeometry::textureAt(int texture) const {
+  const auto i = static_cast<std::size_t>(texture);
+  const std::size_t originals = textures_.size() / 2;
+  if (i < originals) return {textures_[2 * i], textures_[2 * i + 1]};
+  const auto& [a, b] = geometry.textureMiddles.parents()[i - originals];
+  const std::vector<double> from = textureAt(a), to = textureAt(b);
+  return {0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])};
+}
+
+// The row at the body's position, with the corners of element `which` in place of its own.
+void PlyGeometry::writeElement(OutputBuffer& out, PlyBody& body, const PlyElement& element,
+                               std::size_t which) const {
+  const Elements& elements = geometry.elements;
+  const std::size_t begin = elements.start[which], end = elements.start[which + 1];
+  const bool edges = plyRole(element) == PlyRole::edges;
+  const auto number = [&](std::size_t k) {
+    const int point = elements.corners[k].point;
+    return point < 0 ? -1.0 : carried_->number[static_cast<std::size_t>(point)];
+  };
+  const std::size_t row = body.position();
+  for (std::size_t part = 0; part < (edges ? end - begin - 1 : 1); ++part) {
+    body.seek(row);
+    if (body.ascii()) out.raw("\n");
+    for (const PlyProperty& property : element.properties) {
+      const std::uint64_t items = property.list ? body.listSize(property) : 1;
+      std::vector<double> values;
+      for (std::uint64_t k = 0; k < items; ++k)
+        values.push_back(body.value(body.next(property.type), property.type));
+      if (edges && property.name == "vertex1") values = {number(begin + part)};
+      if (edges && property.name == "vertex2") values = {number(begin + part + 1)};
+      if (!edges && isIndexList(property)) {
+        values.clear();
+        for (std::size_t k = begin; k < end; ++k) values.push_back(number(k));
+      }
+      if (property.list && property.name == "texcoord" && elements.corners[begin].texture >= 0) {
+        values.clear();
+        for (std::size_t k = begin; k < end; ++k)
+          for (const double value : textureAt(elements.corners[k].texture)) values.push_back(value);
+      }
+      if (property.list) body.put(out, property.countType, static_cast<double>(values.size()));
+      for (const double value : values) body.put(out, property.type, value);
+    }
+  }
+}
+
+std::vector<std::string> PlyGeometry::write(const std::string&, const CarriedGeometry& carried,
+                                            std::ostream& stream) const {
+  carried_ = &carried;
+  OutputBuffer out(stream);
+  writeHeader(out, carried);
+  PlyBody body(file_, header_);
+  std::size_t next = 0, fileElement = 0;
+  for (const PlyElement& element : header_.elements) {
+    const PlyRole role = plyRole(element);
+    if (role == PlyRole::vertices) {
+      writeVertices(out, body, element, carried);
+      continue;
+    }
+    for (std::uint64_t row = 0; row < element.count; ++row) {
+      const std::size_t begin = body.position();
+      body.skipRow(element);
+      const std::size_t end = body.position();
+      if (role == PlyRole::other || unchanged(carried)) {
+        copy(out, begin, end);
+        continue;
+      }
+      for (; next < geometry.elements.size() && geometry.elements.source[next] == fileElement;
+           ++next) {
+        if (!carried.stays[next]) continue;
+        body.seek(begin);
+        writeElement(out, body, element, next);
+      }
+      body.seek(end);
+      ++fileElement;
+    }
+  }
+  copy(out, body.position(), file_.bytes.size());
+  return {};
+}
+
+}  // namespace innermap

@@ -1,0 +1,91 @@
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "core/file.h"
+#include "core/file_bytes.h"
+#include "core/text_scanner.h"
+#include "innermap/core/error.h"
+#include "innermap/core/memory.h"
+#include "innermap/io/cell_file.h"
+#include "innermap/io/geometry_file.h"
+#include "io/geometry/detail/geometry_formats.h"
+
+namespace innermap {
+namespace {
+
+struct Format {
+  const char* extension;
+  std::unique_ptr<GeometryFile> (*read)(FileBytes, const ReadGeometrySettings&);
+};
+
+constexpr Format kFormats[] = {{".obj", readObjGeometry},
+                               {".ply", readPlyGeometry},
+                               {".off", readOffGeometry},
+                               {".stl", readStlGeometry}};
+
+const Format* findFormat(const std::string& path) {
+  for (const Format& format : kFormats)
+    if (equalsIgnoringCase(extensionOf(path), format.extension)) return &format;
+  return nullptr;
+}
+
+// Of one pass over the points.
+constexpr std::uint64_t kOnTheWay = 25'000'000;
+
+// Bytes in memory for each of the file, measured: dense files, and those with directions, whose
+// Jacobians are kept, take more.
+double bytesPerByte(const std::string& path) {
+  std::string head(4096, ' ');
+  std::ifstream(path, std::ios::binary).read(head.data(), 4096);
+  if (equalsIgnoringCase(extensionOf(path), ".stl")) return head.compare(0, 5, "solid") ? 18 : 5;
+  if (equalsIgnoringCase(extensionOf(path), ".ply")) return head.find(" nx") != head.npos ? 9.5 : 5;
+  return 4.2;
+}
+
+}  // namespace
+
+bool isGeometryFile(const std::string& path) { return findFormat(path) || isCellFile(path); }
+
+void requireWritableAs(const std::string& input, const std::string& output) {
+  if (isCellFile(input) ? isCellFile(output)
+                        : equalsIgnoringCase(extensionOf(input), extensionOf(output)))
+    return;
+  throw FileError(output,
+                  isCellFile(input)
+                      ? "cells are written as .vtu, .msh or .mesh; give one of these endings"
+                      : "must end as " + input + " does, in " + extensionOf(input));
+}
+
+std::unique_ptr<GeometryFile> readGeometry(const std::string& path,
+                                           const ReadGeometrySettings& settings) {
+  const std::uint64_t limit = std::min(memoryLimit(), availableMemory());
+  requireMemory("carrying " + path, geometryMemory(path), limit, "cut the file into parts");
+  if (isCellFile(path)) return readCellGeometry(path, settings);
+  const Format* format = findFormat(path);
+  if (!format)
+    throw FileError(path,
+                    "unknown extension " + inQuotes(extensionOf(path)) +
+                        "; geometry is read from .obj, .ply, .off, .stl, .vtu, .msh and .mesh "
+                        "files");
+  auto file = format->read(readFileBytes(path, "a file of geometry"), settings);
+  if (file->geometry.points.empty()) throw FileError(path, "has no points");
+  return file;
+}
+
+std::uint64_t geometryMemory(const std::string& path) {
+  if (isCellFile(path)) return readCellsMemory(path) * 11 / 10 + kOnTheWay;
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) throw FileError(path, "cannot be read (" + error.message() + "); check the name");
+  return static_cast<std::uint64_t>(bytesPerByte(path) * static_cast<double>(size)) + kOnTheWay;
+}
+
+std::vector<std::string> writeGeometry(const std::string& path, const GeometryFile& file,
+                                       const CarriedGeometry& carried) {
+  std::vector<std::string> lost;
+  writeWholeFile(path, [&](std::ostream& stream) { lost = file.write(path, carried, stream); });
+  return lost;
+}
+
+}  // namespace innermap

@@ -1,0 +1,156 @@
+#include "lattice/detail/grow_solid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "innermap/core/run.h"
+#include "lattice/detail/lattice_topology.h"
+
+namespace innermap {
+namespace {
+
+constexpr double kLeastPart = 1e-3;
+// Cores: at each order along the sheets, which are below 0, to a thousandth; then every half
+// spacing, then in equal steps.
+constexpr float kFineSteps = 1000, kHalfSteps = 8;
+constexpr int kFarSteps = 20;
+constexpr std::size_t kMostCores = 60;  // evenly out of more
+
+// The nodes of the lattice that can be reached from `start` over nodes for which `open` holds.
+template <class Open>
+std::vector<std::size_t> reached(const BccLattice& lattice, std::size_t start, const Open& open,
+                                 std::vector<bool>& seen) {
+  std::vector<std::size_t> out{start};
+  seen[start] = true;
+  for (std::size_t k = 0; k < out.size(); ++k)
+    for (int d = 0; d < kDirections; ++d) {
+      const std::size_t next = lattice.neighbour(out[k], d);
+      if (next >= seen.size() || seen[next] || !open(next)) continue;
+      seen[next] = true;
+      out.push_back(next);
+    }
+  return out;
+}
+
+// Whether the node stands far enough from the lattice's sides for all its neighbours to be nodes.
+class Middle {
+ public:
+  explicit Middle(const BccLattice& lattice) : lattice_(lattice) {}
+
+  bool operator()(std::size_t node) const {
+    const auto& n = lattice_.size();
+    std::size_t c = lattice_.second(node) ? node - lattice_.cells() : node;
+    for (int a = 0; a < 3; ++a) {
+      const auto i = static_cast<int>(c % n[a]);
+      c /= static_cast<std::size_t>(n[a]);
+      if (i < 1 || i > n[a] - 2) return false;
+    }
+    return true;
+  }
+
+ private:
+  const BccLattice& lattice_;
+};
+
+Sides sidesOf(std::size_t nodes, const std::vector<std::size_t>& inside) {
+  Sides sides(nodes, NodeSide::outside);
+  for (const std::size_t n : inside) sides[n] = NodeSide::inside;
+  return sides;
+}
+
+std::vector<float> coresOf(const Sides& part, const std::vector<float>& order) {
+  std::vector<float> steps;
+  float top = 0;
+  for (std::size_t n = 0; n < part.size(); ++n) {
+    if (part[n] != NodeSide::inside) continue;
+    top = std::max(top, order[n]);
+    if (order[n] < 0) steps.push_back(std::round(kFineSteps * order[n]) / kFineSteps);
+  }
+  for (float k = 0; k < 2 * kHalfSteps && 0.5f * k < top; ++k) steps.push_back(0.5f * k);
+  for (int k = 1; k < kFarSteps && top > kHalfSteps; ++k)
+    steps.push_back(kHalfSteps + (top - kHalfSteps) * static_cast<float>(k) / kFarSteps);
+  std::sort(steps.begin(), steps.end());
+  steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
+  if (steps.size() <= kMostCores) return steps;
+  std::vector<float> some;
+  for (std::size_t k = 0; k < kMostCores; ++k)
+    some.push_back(steps[k * (steps.size() - 1) / (kMostCores - 1)]);
+  return some;
+}
+
+}  // namespace
+
+void fillPockets(const BccLattice& lattice, Sides& sides) {
+  const Middle middle(lattice);
+  std::vector<bool> seen(sides.size(), false);
+  const std::size_t corner =
+      1 + lattice.size()[0] * (1 + static_cast<std::size_t>(lattice.size()[1]));
+  reached(
+      lattice, corner, [&](std::size_t n) { return sides[n] != NodeSide::inside && middle(n); },
+      seen);
+  for (std::size_t n = 0; n < sides.size(); ++n)
+    sides[n] = seen[n] || !middle(n) ? NodeSide::outside : NodeSide::inside;
+}
+
+std::vector<std::vector<std::size_t>> piecesInside(const LatticeSigns& signs) {
+  std::vector<bool> seen(signs.side.size(), false);
+  std::vector<std::vector<std::size_t>> found;
+  for (std::size_t n = 0; n < signs.side.size(); ++n) {
+    if (seen[n] || signs.side[n] != NodeSide::inside) continue;
+    throwIfCancelled();
+    found.push_back(reached(
+        signs.lattice, n, [&](std::size_t m) { return signs.side[m] == NodeSide::inside; }, seen));
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  return found;
+}
+
+SolidParts partsOf(const LatticeSigns& signs, bool onePiece) {
+  const std::vector<std::vector<std::size_t>> found = piecesInside(signs);
+  SolidParts out;
+  std::size_t all = 0, left = 0;
+  for (const auto& nodes : found) {
+    all += nodes.size();
+    if ((onePiece && !out.parts.empty()) ||
+        static_cast<double>(nodes.size()) < kLeastPart * static_cast<double>(found[0].size())) {
+      ++out.leftOut;
+      left += nodes.size();
+      continue;
+    }
+    out.parts.push_back(sidesOf(signs.side.size(), nodes));
+    fillPockets(signs.lattice, out.parts.back());
+  }
+  out.leftOutShare = all ? static_cast<double>(left) / static_cast<double>(all) : 0;
+  return out;
+}
+
+bool growWithHandles(LatticeSigns& signs, const Sides& part, int handles,
+                     const std::vector<float>& order) {
+  const SolidTopology wanted{1, 0, handles};
+  signs.side = part;
+  if (latticeTopology(signs) == wanted) return true;
+  std::size_t deepest = 0;
+  for (std::size_t n = 0; n < part.size(); ++n)
+    if (part[n] == NodeSide::inside &&
+        (part[deepest] != NodeSide::inside || order[n] > order[deepest]))
+      deepest = n;
+  for (const float core : coresOf(part, order)) {
+    throwIfCancelled();
+    if (!(core <= order[deepest])) break;
+    std::vector<bool> seen(part.size(), false);
+    signs.side = sidesOf(
+        part.size(),
+        reached(
+            signs.lattice, deepest,
+            [&](std::size_t n) { return part[n] == NodeSide::inside && order[n] >= core; }, seen));
+    fillPockets(signs.lattice, signs.side);
+    if (!(latticeTopology(signs) == wanted)) continue;
+    changeSimply(signs, part, NodeSide::inside, order);
+    return true;
+  }
+  signs.side = part;
+  return false;
+}
+
+}  // namespace innermap

@@ -1,0 +1,17 @@
+#include "levelset/detail/solid_body.h"
+
+namespace innermap {
+
+SolidBody::SolidBody(RepairedMesh mesh, ExposedSurface surface)
+    : repaired_(std::move(mesh)),
+      exposed_(std::move(surface)),
+      box_(boundingBox(this->surface())),
+      area_(surfaceArea(this->surface())),
+      tree_(this->surface().vertices, this->surface().triangles),
+      winding_(repaired_.mesh.vertices, repaired_.mesh.triangles) {}
+
+bool SolidBody::closedWellEnough() const {
+  return exposed_.doubledArea <= 1e-4 * area_ && exposed_.gap <= box_.diagonal() / 64;
+}
+
+}  // namespace innermap

@@ -1,0 +1,283 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "evaluate/active_region.h"
+#include "evaluate/extended_places.h"
+#include "innermap/core/error.h"
+#include "innermap/core/run.h"
+#include "innermap/evaluate/evaluate_map.h"
+#include "innermap/levelset/level_set.h"
+#include "innermap/transfer/inverse_map.h"
+#include "transfer/detail/extended_map.h"
+#include "transfer/detail/leaf_index.h"
+#include "transfer/detail/newton.h"
+#include "transfer/detail/source_lattice.h"
+#include "transfer/detail/step_by_step.h"
+
+namespace innermap {
+namespace {
+
+constexpr std::size_t kTogether = std::size_t{1} << 18;  // points of one pass, for memory
+constexpr double kOutside = 1e-6;                        // of the source's diagonal
+constexpr double kInverted = 1e-5;                       // of the target's diagonal
+constexpr double kSkinVoxels = 3;                        // of the target, where points are pulled
+constexpr std::size_t kMostStepByStep = 2000;
+
+void requireFinite(const Points& points) {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (!isFinite(points[i]))
+      throw DataError(fmt::format("points: number {} is not finite (counted from 0)", i));
+}
+
+// Passes over parts of the points, so that what they need on the way does not grow.
+template <class Part>
+CarriedPoints inParts(const Points& points, bool jacobians, const Part& part) {
+  requireFinite(points);
+  CarriedPoints out;
+  out.points.resize(points.size());
+  out.fates.resize(points.size());
+  if (jacobians) out.jacobians.resize(points.size());
+  for (std::size_t begin = 0; begin < points.size(); begin += kTogether) {
+    reportProgress("carrying points",
+                   static_cast<double>(begin) / static_cast<double>(points.size()));
+    part(begin, std::min(points.size(), begin + kTogether), out);
+  }
+  return out;
+}
+
+// How far outside a point is, world units, decides what becomes of it.
+struct Limits {
+  double diagonal, reach;
+  bool endless;
+
+  Limits(const Solid& source, const CarryPointsSettings& s)
+      : diagonal(source.diagonal()),
+        reach(std::max(s.skin, s.outside.distance) * diagonal),
+        endless(s.outside.fadeTo.has_value()) {}
+
+  void judge(double outside, std::size_t i, CarriedPoints& out) const {
+    if (outside > kOutside * diagonal) ++out.outside;
+    if (out.fates[i] == PointFate::carried && outside > reach && !endless)
+      out.fates[i] = PointFate::cut;
+    if (out.fates[i] == PointFate::cut)
+      ++out.cut;
+    else if (outside > kOutside * diagonal)
+      out.farthest = std::max(out.farthest, outside / diagonal);
+    if (out.fates[i] == PointFate::failed) ++out.failed;
+  }
+};
+
+openvdb::FloatGrid::Ptr coarseLevelSet(const Solid& solid, int resolution = kUsualResolution) {
+  LevelSetSettings levelSet;
+  levelSet.resolution = resolution;
+  return makeLevelSet(solid, levelSet);
+}
+
+// Voxels across the source and the target. Much space around them is worth less: Newton's method
+// finds from farther there, as the map is smooth.
+int resolutionOf(const CarryPointsSettings& settings) {
+  return settings.outside.distance > 0 ? 48 : kUsualResolution;
+}
+
+// Through the source and what is around it.
+SourceLattice latticeOf(const Solid& source, const CarryPointsSettings& settings) {
+  SourceLattice out;
+  out.levelSet = coarseLevelSet(source, resolutionOf(settings));
+  RegionSettings region;
+  out.region = activeRegion(*out.levelSet, region);
+  constexpr std::uint64_t kVoxelBytes = 64;
+  if (settings.outside.distance > 0)
+    addAround(*out.region, source, settings.outside.distance * source.diagonal(), kVoxelBytes);
+  return out;
+}
+
+void keep(const ExtendedSample& sample, std::size_t i, CarriedPoints& out) {
+  out.points[i] = sample.image;
+  if (!out.jacobians.empty()) out.jacobians[i] = sample.jacobian;
+}
+
+}  // namespace
+
+void requireInRange(const CarryPointsSettings& s) {
+  if (!(s.outside.distance >= 0 && s.outside.distance <= 1))
+    throw SettingError("outside", "must lie in [0, 1] of the diagonal");
+  if (!(s.skin >= 0 && s.skin <= 0.1))
+    throw SettingError("skin", "must lie in [0, 0.1] of the diagonal");
+  if (!(s.accuracy >= 1e-12 && s.accuracy <= 1e-3))
+    throw SettingError("accuracy", "must lie in [1e-12, 1e-3] of the target's extent");
+}
+
+struct PointPusher::Data {
+  Solid source;
+  CarryPointsSettings settings;
+  openvdb::FloatGrid::Ptr levelSet;
+};
+
+PointPusher::PointPusher(const Solid& source, const CarryPointsSettings& settings) {
+  requireInRange(settings);
+  data_ = std::make_shared<Data>(Data{source, settings, coarseLevelSet(source)});
+}
+
+CarriedPoints PointPusher::push(const ComposedMap& map, const Points& points,
+                                bool jacobians) const {
+  const CarryPointsSettings& s = data_->settings;
+  const Limits limits(data_->source, s);
+  const double accuracy = s.accuracy * targetExtent(map, data_->source);
+  const ExtendedMap extended(map, data_->source, *data_->levelSet, s.outside, accuracy);
+  return inParts(points, jacobians, [&](std::size_t begin, std::size_t end, CarriedPoints& out) {
+    const Points part(points.begin() + static_cast<std::ptrdiff_t>(begin),
+                      points.begin() + static_cast<std::ptrdiff_t>(end));
+    // Inside, the derivative is not needed for the place.
+    const ExtendedPlaces places = placeExtended(data_->source, *data_->levelSet, part);
+    Points inside, outside;
+    std::vector<std::size_t> insideAt, outsideAt;
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      const bool away = jacobians || squaredNorm(places.beyond[i]) > 0;
+      (away ? outside : inside).push_back(part[i]);
+      (away ? outsideAt : insideAt).push_back(i);
+    }
+    const Points images = extended.imagesInside(inside);
+    for (std::size_t n = 0; n < images.size(); ++n) out.points[begin + insideAt[n]] = images[n];
+    const std::vector<ExtendedSample> samples = extended.at(outside);
+    for (std::size_t n = 0; n < samples.size(); ++n) keep(samples[n], begin + outsideAt[n], out);
+    for (std::size_t i = 0; i < part.size(); ++i)
+      limits.judge(norm(places.beyond[i]), begin + i, out);
+  });
+}
+
+struct PointPuller::Data {
+  ComposedMap map;
+  Solid source;
+  CarryPointsSettings settings;
+  SourceLattice lattice;
+  double diagonal = 0;  // of the target
+  InvertedMap inverted;
+  LeafIndex leaves;
+
+  Data(const ComposedMap& theMap, const Solid& theSource, const Solid& target,
+       const CarryPointsSettings& theSettings)
+      : map(theMap),
+        source(theSource),
+        settings(theSettings),
+        lattice(latticeOf(source, settings)),
+        diagonal(target.diagonal()),
+        inverted(invert(target)),
+        leaves(inverted.region->tree()) {}
+
+  InvertedMap invert(const Solid& target) {
+    InverseSettings inverse;
+    inverse.outside = settings.outside;
+    inverse.skin = kSkinVoxels;
+    inverse.accuracy = std::max(settings.accuracy, 1e-7);  // starts, no more
+    return invertMap(map, source, lattice, *coarseLevelSet(target, resolutionOf(settings)),
+                     inverse);
+  }
+
+  // Where the search for a point begins; false when nothing comes there.
+  bool startOf(const Vec3& q, Vec3& start) const {
+    const openvdb::Coord ijk =
+        inverted.region->transform().worldToIndexNodeCentered(openvdb::Vec3d(q.x, q.y, q.z));
+    const std::uint32_t leaf = leaves.find(ijk);
+    if (leaf != LeafIndex::kNone && leaves[leaf].isValueOn(ijk)) {
+      const auto& mask = leaves[leaf].getValueMask();
+      const openvdb::Index at = LeafIndex::Leaf::coordToOffset(ijk);
+      std::size_t before = 0;
+      for (openvdb::Index word = 0; word < at / 64; ++word)
+        before += openvdb::util::CountOn(mask.getWord<openvdb::Index64>(word));
+      const openvdb::Index64 below = (openvdb::Index64(1) << (at % 64)) - 1;
+      before += openvdb::util::CountOn(mask.getWord<openvdb::Index64>(at / 64) & below);
+      start = inverted.sources[inverted.first[leaf] + before];
+      return true;
+    }
+    if (!settings.outside.fadeTo) return false;
+    const RigidMotion& rigid = *settings.outside.fadeTo;
+    start = transposed(rigid.rotation) * (q - rigid.translation);
+    return true;
+  }
+};
+
+PointPuller::PointPuller(const ComposedMap& map, const Solid& source, const Solid& target,
+                         const CarryPointsSettings& settings) {
+  requireInRange(settings);
+  data_ = std::make_shared<Data>(map, source, target, settings);
+}
+
+CarriedPoints PointPuller::pull(const Points& points, bool jacobians) const {
+  const Data& d = *data_;
+  const CarryPointsSettings& s = d.settings;
+  const Limits limits(d.source, s);
+  const double accuracy = s.accuracy * targetExtent(d.map, d.source);
+  const ExtendedMap extended(d.map, d.source, *d.lattice.levelSet, s.outside, accuracy);
+  NewtonSettings newton;
+  newton.tolerance = std::max(4 * accuracy, 1e-9 * d.diagonal);
+  newton.longestStep = 4 * d.lattice.levelSet->voxelSize()[0];
+  return inParts(points, jacobians, [&](std::size_t begin, std::size_t end, CarriedPoints& out) {
+    Points targets, sources;
+    std::vector<std::size_t> at;
+    for (std::size_t i = begin; i < end; ++i) {
+      Vec3 start;
+      if (d.startOf(points[i], start)) {
+        targets.push_back(points[i]);
+        sources.push_back(start);
+        at.push_back(i);
+      } else {
+        out.points[i] = points[i];
+        out.fates[i] = PointFate::cut;
+        ++out.cut;
+        ++out.outside;
+      }
+    }
+    const Points starts = sources;
+    NewtonResult found = solveNewton(extended, targets, sources, newton);
+    if (d.map.steps().size() > 1) {
+      Points again, from;
+      std::vector<std::size_t> which;
+      for (std::size_t n = 0; n < at.size(); ++n)
+        if (!(found.residuals[n] <= kInverted * d.diagonal)) {
+          again.push_back(targets[n]);
+          from.push_back(starts[n]);
+          which.push_back(n);
+        }
+      if (!which.empty() && which.size() <= kMostStepByStep) {
+        from = invertStepByStep(d.map, again, from, {newton.tolerance});
+        const NewtonResult second = solveNewton(extended, again, from, newton);
+        for (std::size_t k = 0; k < which.size(); ++k) {
+          sources[which[k]] = from[k];
+          found.at[which[k]] = second.at[k];
+          found.residuals[which[k]] = second.residuals[k];
+        }
+      }
+    }
+    for (std::size_t n = 0; n < at.size(); ++n) {
+      const std::size_t i = at[n];
+      out.points[i] = sources[n];
+      if (jacobians) out.jacobians[i] = inverse(found.at[n].jacobian);
+      if (!(found.residuals[n] <= kInverted * d.diagonal)) out.fates[i] = PointFate::failed;
+      limits.judge(found.at[n].outside, i, out);
+    }
+  });
+}
+
+std::uint64_t carryPointsMemory(std::uint64_t points, bool jacobians) {
+  const std::uint64_t each = sizeof(Vec3) + 1 + (jacobians ? sizeof(Mat3) : 0);
+  // One pass: samples, places, sums in matrices.
+  return points * each + std::min<std::uint64_t>(points, kTogether) * 600;
+}
+
+Vec3 carriedVector(const Mat3& jacobian, const Vec3& v) { return jacobian * v; }
+
+Vec3 carriedNormal(const Mat3& jacobian, const Vec3& n) {
+  const Vec3 a{jacobian[0][0], jacobian[0][1], jacobian[0][2]},
+      b{jacobian[1][0], jacobian[1][1], jacobian[1][2]},
+      c{jacobian[2][0], jacobian[2][1], jacobian[2][2]};
+  // The cofactors are det A times the inverse transpose, without a division. With det A below 0
+  // the surface is turned inside out, and its normal with it.
+  const Vec3 turned{dot(cross(b, c), n), dot(cross(c, a), n), dot(cross(a, b), n)};
+  const double length = norm(turned), before = norm(n);
+  if (!(length > 0) || !std::isfinite(length)) return n;
+  return (determinant(jacobian) < 0 ? -before : before) / length * turned;
+}
+
+}  // namespace innermap

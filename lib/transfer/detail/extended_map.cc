@@ -1,0 +1,99 @@
+#include "transfer/detail/extended_map.h"
+
+#include <algorithm>
+
+#include "innermap/core/run.h"
+
+namespace innermap {
+
+// w = 1 at the solid, 0 from the reach on, smooth at both ends: F = w E + (1 - w) R.
+void ExtendedMap::fade(const Vec3& p, const Vec3& beyond, ExtendedSample& sample) const {
+  sample.outside = norm(beyond);
+  if (!outside_.fadeTo || sample.outside == 0) return;
+  const double reach = this->reach(), t = std::min(sample.outside / reach, 1.0);
+  const double w = 1 - t * t * (3 - 2 * t), slope = t < 1 ? -6 * t * (1 - t) / reach : 0;
+  const RigidMotion& rigid = *outside_.fadeTo;
+  const Vec3 moved = rigid(p), away = beyond / sample.outside, apart = sample.image - moved;
+  for (int r = 0; r < 3; ++r)
+    for (int a = 0; a < 3; ++a)
+      sample.jacobian[r][a] =
+          w * sample.jacobian[r][a] + (1 - w) * rigid.rotation[r][a] + slope * apart[r] * away[a];
+  sample.image = moved + w * apart;
+}
+
+bool ExtendedMap::isRigidAt(const Vec3& p) const {
+  if (!outside_.fadeTo) return false;
+  const Box3& box = solid_.box();
+  double squared = 0;
+  for (int a = 0; a < 3; ++a) {
+    const double beyond = std::max({box.lower[a] - p[a], p[a] - box.upper[a], 0.0});
+    squared += beyond * beyond;
+  }
+  return squared > reach() * reach();
+}
+
+std::vector<ExtendedSample> ExtendedMap::at(const Points& points) const {
+  std::vector<ExtendedSample> out(points.size());
+  Points near;
+  std::vector<std::size_t> index;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (isRigidAt(points[i])) {
+      out[i] = {(*outside_.fadeTo)(points[i]), outside_.fadeTo->rotation, 2 * reach()};
+    } else {
+      near.push_back(points[i]);
+      index.push_back(i);
+    }
+  }
+  const std::vector<ExtendedSample> found = nearAt(near);
+  for (std::size_t n = 0; n < index.size(); ++n) out[index[n]] = found[n];
+  return out;
+}
+
+Points ExtendedMap::imagesInside(const Points& points) const {
+  const FieldSamples samples = map_.evaluate(points, {accuracy_, false});
+  Points out(points.size());
+  for (std::size_t i = 0; i < out.size(); ++i)
+    for (int r = 0; r < 3; ++r) out[i][r] = samples.values(i, r);
+  return out;
+}
+
+std::vector<ExtendedSample> ExtendedMap::nearAt(const Points& points) const {
+  const ExtendedSamples extended = sampleExtended(map_, solid_, levelSet_, points, {accuracy_, {}});
+  std::vector<ExtendedSample> out(points.size());
+  constexpr std::size_t kBlock = 4096;
+  parallelBlocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      for (int r = 0; r < 3; ++r) {
+        out[i].image[r] = extended.samples.values(i, r);
+        for (int a = 0; a < 3; ++a)
+          out[i].jacobian[r][a] = extended.samples.gradients(i, 3 * r + a);
+      }
+      fade(points[i], extended.beyond[i], out[i]);
+    }
+  });
+  return out;
+}
+
+void ExtendedMap::visit(const openvdb::MaskGrid& region, const Visitor& visit,
+                        std::string_view stage) const {
+  visitField(map_, solid_, levelSet_, region,
+             [&](std::size_t leaf, const LeafValues& values) {
+               std::vector<ExtendedSample> samples(values.count);
+               for (std::size_t i = 0; i < values.count; ++i) {
+                 const openvdb::Coord ijk =
+                     values.origin +
+                     openvdb::MaskTree::LeafNodeType::offsetToLocalCoord(values.offset[i]);
+                 const openvdb::Vec3d p = levelSet_.transform().indexToWorld(ijk);
+                 for (int r = 0; r < 3; ++r) {
+                   samples[i].image[r] = values.values[3 * i + r];
+                   for (int a = 0; a < 3; ++a)
+                     samples[i].jacobian[r][a] = values.gradients[9 * i + 3 * r + a];
+                 }
+                 fade({p.x(), p.y(), p.z()}, values.beyond[i], samples[i]);
+               }
+               visit(leaf, values, samples);
+             },
+             {accuracy_, stage});
+}
+
+}  // namespace innermap

@@ -1,0 +1,63 @@
+// A map on its solid and beyond: harmonic inside, extended from the closest
+// boundary point outside, faded to a rigid motion where that is asked for.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <string_view>
+#include <vector>
+
+#include "evaluate/visit_field.h"
+#include "innermap/field/harmonic_field.h"
+#include "innermap/levelset/solid.h"
+#include "innermap/transfer/carry.h"
+
+namespace innermap {
+
+// What the map does at one point.
+struct ExtendedSample {
+  Vec3 image;
+  Mat3 jacobian;
+  double outside = 0;  // distance from the solid, world units of the source
+};
+
+// Holds references. Thread-safe.
+class ExtendedMap {
+ public:
+  // accuracy: of the sums, world units of the target.
+  ExtendedMap(const ComposedMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
+              const OutsideSettings& outside, double accuracy)
+      : map_(map), solid_(solid), levelSet_(levelSet), outside_(outside), accuracy_(accuracy) {}
+
+  std::vector<ExtendedSample> at(const Points& points) const;
+
+  // Images of points that are inside the solid.
+  Points imagesInside(const Points& points) const;
+
+  // The same at lattice voxels; sample i of `samples` is that of the i-th active voxel of a leaf.
+  using Visitor = std::function<void(std::size_t leaf, const LeafValues& values,
+                                     const std::vector<ExtendedSample>& samples)>;
+  void visit(const openvdb::MaskGrid& region, const Visitor& visit, std::string_view stage) const;
+
+  const ComposedMap& map() const { return map_; }
+  const Solid& solid() const { return solid_; }
+  const openvdb::FloatGrid& levelSet() const { return levelSet_; }
+  double accuracy() const { return accuracy_; }
+  // World units; how far outside the map is meant to be used.
+  double reach() const { return outside_.distance * solid_.diagonal(); }
+  bool endless() const { return outside_.fadeTo.has_value(); }
+
+ private:
+  // Surely beyond the reach, where only the rigid motion is left.
+  bool isRigidAt(const Vec3& p) const;
+  std::vector<ExtendedSample> nearAt(const Points& points) const;
+  void fade(const Vec3& p, const Vec3& beyond, ExtendedSample& sample) const;
+
+  const ComposedMap map_;  // by value: often made of one harmonic map for the call
+  const Solid& solid_;
+  const openvdb::FloatGrid& levelSet_;
+  const OutsideSettings& outside_;
+  double accuracy_;
+};
+
+}  // namespace innermap

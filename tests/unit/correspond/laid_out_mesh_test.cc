@@ -1,0 +1,148 @@
+#include <gtest/gtest.h>
+
+#include "core/pi.h"
+#include "fit/blobs.h"
+#include "innermap/core/run.h"
+#include "innermap/correspond/mesh_correspondence.h"
+#include "mesh/test_meshes.h"
+
+namespace innermap {
+namespace {
+
+using shapes::blob;
+using shapes::joined;
+using shapes::opened;
+using shapes::overlapping;
+
+bool anyHas(const std::vector<std::string>& lines, const std::string& word) {
+  for (const std::string& line : lines)
+    if (line.find(word) != std::string::npos) return true;
+  return false;
+}
+
+TEST(LayOutMesh, TakesACleanMeshAsItIs) {
+  const Mesh mesh = blob("a.obj", 2, 0.5);
+  const LaidOutMesh laid = layOutMesh(mesh);
+  EXPECT_FALSE(laid.outer);
+  EXPECT_TRUE(laid.ownNumbers());
+  EXPECT_EQ(laid.handles(), 0);
+  EXPECT_NEAR(laid.volume(), signedVolume(mesh), 1e-12);
+  EXPECT_EQ(laid.mesh.vertices.size(), mesh.vertices.size());
+  ASSERT_EQ(laid.seconds.size(), 2u);
+  EXPECT_EQ(laid.seconds[0].first, "check");
+  EXPECT_EQ(laid.seconds[1].first, "lay out");
+}
+
+TEST(LayOutMesh, ClosesTheHolesOfAnOpenMesh) {
+  const LaidOutMesh laid = layOutMesh(opened(blob("open.obj", 2, 0.5), 6));
+  EXPECT_FALSE(laid.outer);
+  EXPECT_GT(laid.shells().caps, 0);
+  EXPECT_EQ(static_cast<int>(laid.caps().size()), laid.shells().caps);
+  EXPECT_TRUE(anyHas(laid.notes, "open.obj: ")) << "what was capped";
+}
+
+TEST(LayOutMesh, TakesTheOuterSurfaceOfPartsThatOverlap) {
+  const Mesh mesh = overlapping("two.obj");
+  LayOutSettings settings;
+  settings.outerResolution = 20;
+  const LaidOutMesh laid = layOutMesh(mesh, settings);
+  ASSERT_TRUE(laid.outer);
+  EXPECT_FALSE(laid.ownNumbers());
+  EXPECT_EQ(laid.shells().mesh.vertices.size(), laid.outer->mesh.vertices.size());
+  EXPECT_EQ(laid.handles(), 0);
+  EXPECT_EQ(laid.shells().shells.size(), 1u);
+  EXPECT_EQ(laid.mesh.vertices.size(), mesh.vertices.size());
+  EXPECT_LT(laid.volume(), signedVolume(mesh)) << "what is in both balls counts once";
+  EXPECT_TRUE(anyHas(laid.notes, "two.obj: "));
+}
+
+TEST(LayOutMesh, KnowsTheCapsOfAnOpenMeshThatOverlaps) {
+  LayOutSettings settings;
+  settings.outerResolution = 20;
+  const LaidOutMesh laid = layOutMesh(opened(overlapping("two.obj"), 6), settings);
+  ASSERT_TRUE(laid.outer);
+  EXPECT_FALSE(laid.caps().empty());
+  EXPECT_TRUE(anyHas(laid.notes, "capped"));
+}
+
+// A ring of four rods that overlap has a handle as a union; onto a ball it goes as a rod.
+TEST(LayOutMeshes, CutsTheUnionOfSeveralPiecesAsTheOtherHas) {
+  Mesh ring = joined(
+      joined(shapes::box({0, 0, 0}, {4, 1, 1}), shapes::box({0.1, 3.1, 0.1}, {4.1, 4.1, 1.1})),
+      joined(shapes::box({0.05, 0.2, 0.2}, {1.05, 3.9, 0.8}),
+             shapes::box({2.95, 0.3, 0.15}, {3.95, 3.8, 0.85})));
+  ring.name = "ring.obj";
+  const Mesh ball = blob("ball.obj", 2, 0.5);
+  LayOutSettings coarse;
+  coarse.outerResolution = 16;
+  const auto [a, b] = layOutMeshes(ball, ring, coarse);
+  EXPECT_EQ(a.handles(), 0);
+  EXPECT_EQ(b.handles(), 0);
+  ASSERT_TRUE(b.outer);
+  EXPECT_FALSE(b.outer->cuts.empty());
+  EXPECT_TRUE(anyHas(b.notes, "cut until it has 0 as ball.obj"));
+  coarse.handles = 1;
+  const CleanSurface asked = cleanSurface(ring, coarse);
+  EXPECT_FALSE(asked.handlesOfUnion) << "what is asked for stays";
+  EXPECT_EQ(asked.handles, 1);
+}
+
+// A coil that closes on itself is a ball still: one piece, whose union with itself is a ring.
+TEST(LayOutMesh, KeepsTheHandlesOfAMeshThatRunsThroughItself) {
+  const Mesh mesh = shapes::coil(2.2 * kPi);
+  const LaidOutMesh laid = layOutMesh(mesh);
+  ASSERT_TRUE(laid.outer);
+  EXPECT_EQ(laid.handles(), 0);
+  EXPECT_FALSE(laid.outer->cuts.empty());
+  LayOutSettings settings;
+  settings.handles = 1;
+  const LaidOutMesh ring = layOutMesh(mesh, settings);
+  EXPECT_EQ(ring.handles(), 1);
+  EXPECT_TRUE(ring.outer->cuts.empty());
+  settings.handles = 3;
+  EXPECT_THROW(layOutMesh(mesh, settings), DataError);
+}
+
+TEST(LayOutMesh, RefusesSettingsOutOfRange) {
+  LayOutSettings settings;
+  for (const int bad : {-1, 7, 1025}) {
+    settings.outerResolution = bad;
+    EXPECT_THROW(layOutMesh(overlapping("two.obj"), settings), SettingError) << bad;
+  }
+}
+
+TEST(LayOutMesh, CanBeCancelled) {
+  RunContext run;
+  run.cancel();
+  LayOutSettings settings;
+  const RunScope scope(run);
+  EXPECT_THROW(layOutMesh(blob("a.obj", 1, 0.5), settings), Cancelled);
+}
+
+TEST(OnSphere, KeepsTheMeshAndFlipsNothing) {
+  Mesh mesh = blob("a.obj", 2, 0.8, {2, 1, 0.7});
+  mesh.vertices.push_back({0, 0, 0});  // loose
+  const MeshOnSphere sphere = onSphere(layOutMesh(mesh));
+  EXPECT_EQ(sphere.mesh.triangles, mesh.triangles);
+  ASSERT_EQ(sphere.mesh.vertices.size(), mesh.vertices.size());
+  for (const Vec3& p : sphere.mesh.vertices) EXPECT_NEAR(norm(p), 1, 1e-12);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    EXPECT_GT(
+        tripleProduct(sphere.mesh.vertices[a], sphere.mesh.vertices[b], sphere.mesh.vertices[c]),
+        0);
+  }
+  EXPECT_EQ(sphere.quality.flips, 0u);
+  EXPECT_NEAR(sphere.quality.degree, 1, 1e-9);
+}
+
+TEST(OnSphere, RefusesHandles) {
+  const LaidOutMesh laid = layOutMesh(shapes::torus(12, 8));
+  EXPECT_EQ(laid.handles(), 1);
+  EXPECT_THROW(onSphere(laid), DataError);
+}
+
+TEST(LayOutMemory, GrowsWithTheVertices) { EXPECT_GT(layOutMemory(20000), layOutMemory(10000)); }
+
+}  // namespace
+}  // namespace innermap

@@ -1,0 +1,102 @@
+#include "fit/detail/boundary_check.h"
+
+#include <gtest/gtest.h>
+
+#include "fit/test_pairs.h"
+#include "innermap/core/error.h"
+#include "innermap/core/run.h"
+#include "innermap/fit/fit_map.h"
+
+namespace innermap {
+namespace {
+
+MapFit fitted(const Mesh& source, const Mesh& target) {
+  FitMapSettings settings;
+  settings.tolerance = 5e-3;
+  settings.oneToOne = OneToOne::off;
+  return fitMap(source, target, settings);
+}
+
+BoundaryCheckSettings settingsFor(const MapFit& fit) {
+  BoundaryCheckSettings settings;
+  settings.error = fit.error.max * fit.boundary.target.diagonal;
+  return settings;
+}
+
+TEST(BoundaryCheck, AnAffineMapHasItsDeterminantAndDegreeOne) {
+  const Mesh source = ball();
+  const MapFit fit = fitted(source, moved(source, affineMap));
+  const TargetShape target(fit.boundary);
+  const double det = determinant(fit.map.jacobian({0, 0, 0}));
+  const DeterminantFigures found =
+      boundaryDeterminants(fit.map, fit.boundary, target, settingsFor(fit));
+  EXPECT_EQ(found.checked, 10000u);
+  EXPECT_EQ(found.folded, 0u);
+  EXPECT_NEAR(found.least, det, 1e-6 * det);
+  const DegreeFigures degree = boundaryDegree(fit.map, fit.boundary, target, settingsFor(fit));
+  EXPECT_NEAR(static_cast<double>(degree.checked), 2000, 100);
+  EXPECT_EQ(degree.least, 1);
+  EXPECT_EQ(degree.greatest, 1);
+}
+
+TEST(BoundaryCheck, AMirrorTurnsOverEveryPointButHasDegreeOne) {
+  const Mesh source = ball();
+  const MapFit fit = fitted(source, moved(source, [](const Vec3& p) {
+                              return Vec3{p.x, p.y, -2 * p.z};
+                            }));
+  const TargetShape target(fit.boundary);
+  EXPECT_EQ(boundaryDeterminants(fit.map, fit.boundary, target, settingsFor(fit)).folded, 10000u);
+  const DegreeFigures degree = boundaryDegree(fit.map, fit.boundary, target, settingsFor(fit));
+  EXPECT_EQ(degree.least, 1);
+  EXPECT_EQ(degree.greatest, 1);
+}
+
+// The lens that two balls share is wound about twice, what one of them has for itself once.
+TEST(BoundaryCheck, WhatIsCoveredTwiceHasDegreeTwo) {
+  const MapFit fit = fitted(twoBalls(1.5), twoBalls(0.5));
+  const TargetShape target(fit.boundary);
+  const DegreeFigures degree = boundaryDegree(fit.map, fit.boundary, target, settingsFor(fit));
+  EXPECT_GT(degree.checked, 1000u);
+  EXPECT_EQ(degree.least, 1);
+  EXPECT_EQ(degree.greatest, 2);
+}
+
+// Of few triangles, which the map bends: the degree is that of the curved image.
+TEST(BoundaryCheck, CoarseMeshesAreSplit) {
+  const Mesh source = ball(1);
+  MapFit fit = fitted(source, moved(source, harmonicPolynomial));
+  BoundaryCheckSettings settings = settingsFor(fit);
+  settings.error = 1e-3;
+  const TargetShape target(fit.boundary);
+  const DegreeFigures degree = boundaryDegree(fit.map, fit.boundary, target, settings);
+  EXPECT_EQ(degree.least, 1);
+  EXPECT_EQ(degree.greatest, 1);
+}
+
+TEST(BoundaryCheck, NoPointIsDeepEnoughForALargeError) {
+  const Mesh source = ball();
+  const MapFit fit = fitted(source, source);
+  BoundaryCheckSettings settings = settingsFor(fit);
+  settings.error = 1.1;
+  EXPECT_EQ(boundaryDegree(fit.map, fit.boundary, TargetShape(fit.boundary), settings).checked, 0u);
+}
+
+TEST(BoundaryCheck, SameForAnyNumberOfThreadsAndCancels) {
+  const Mesh source = ball();
+  const MapFit fit = fitted(source, moved(source, harmonicPolynomial));
+  const TargetShape target(fit.boundary);
+  BoundaryCheckSettings settings = settingsFor(fit);
+  const auto least = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return boundaryDeterminants(fit.map, fit.boundary, target, settings).least;
+  };
+  EXPECT_EQ(least(1), least(3));
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(boundaryDeterminants(fit.map, fit.boundary, target, settings), Cancelled);
+  EXPECT_THROW(boundaryDegree(fit.map, fit.boundary, target, settings), Cancelled);
+}
+
+}  // namespace
+}  // namespace innermap

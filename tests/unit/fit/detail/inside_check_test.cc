@@ -1,0 +1,64 @@
+#include "fit/detail/inside_check.h"
+
+#include <gtest/gtest.h>
+
+#include "fit/test_pairs.h"
+
+namespace innermap {
+namespace {
+
+HarmonicMap affine(const Vec3& diagonal, const Vec3& shift = {}) {
+  Affine a;
+  a.coefficients = Matrix(4, 3);
+  for (std::size_t k = 0; k < 3; ++k) {
+    a.coefficients(0, k) = shift[static_cast<int>(k)];
+    a.coefficients(1 + k, k) = diagonal[static_cast<int>(k)];
+  }
+  return HarmonicMap(HarmonicField({}, Matrix(0, 3), a));
+}
+
+TEST(InsideCheck, PointsFillTheSolid) {
+  const Solid ball(shapes::icosphere(4));
+  const Points points = pointsInside(ball, 20000);
+  // Of a lattice as many lie inside as the volume has cells, but for some of those that the surface
+  // cuts: 4 pi r^2 of them at a radius of cbrt(20000 3 / 4 pi) = 17 cells, a few hundredths.
+  EXPECT_NEAR(static_cast<double>(points.size()), 20000, 400);
+  Vec3 middle;
+  for (const Vec3& p : points) {
+    EXPECT_TRUE(ball.inside(p));
+    middle += p / static_cast<double>(points.size());
+  }
+  EXPECT_LT(norm(middle), 0.01);
+}
+
+TEST(InsideCheck, DeterminantsMultiply) {
+  const Points points{{0, 0, 0}, {0.5, 0.25, 0}};
+  MappedPoints here = mapPoints(affine({2, 1, 1}, {1, 0, 0}), {points, {}}, 1e-9);
+  here = mapPoints(affine({1, -3, 1}), here, 1e-9);
+  EXPECT_NEAR(here.determinants[1], -6, 1e-12);
+  EXPECT_LT(norm(here.points[1] - Vec3{2, -0.75, 0}), 1e-12);
+  EXPECT_EQ(foldedShare(here.determinants), 1);
+  EXPECT_EQ(foldedShare({1, -1, 0, 2}), 0.5);
+}
+
+TEST(InsideCheck, FoldsAreCounted) {
+  const Mesh mesh = ball(2);
+  const TargetShape target(makeBoundaryPair(mesh, mesh));
+  const DeterminantFigures found =
+      determinantsOf({{{0, 0, 0}, {0.5, 0, 0}, {0, 0.5, 0}}, {2, -0.5, 0}}, target, 0);
+  EXPECT_EQ(found.checked, 3u);
+  EXPECT_EQ(found.folded, 2u);
+  EXPECT_EQ(found.foldedAtOverlap, 0u);
+  EXPECT_EQ(found.least, -0.5);
+}
+
+TEST(InsideCheck, OutsideIsBeyondTheSlack) {
+  const Mesh mesh = ball(4);
+  const TargetShape target(makeBoundaryPair(mesh, mesh));
+  const Points points{{0, 0, 0}, {0, 0, 1.05}, {0, 0, 1.5}, {3, 0, 0}};
+  EXPECT_EQ(outsideShare(points, target, 0), 0.75);
+  EXPECT_EQ(outsideShare(points, target, 0.1), 0.5);
+}
+
+}  // namespace
+}  // namespace innermap

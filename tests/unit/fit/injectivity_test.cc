@@ -1,0 +1,225 @@
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "innermap/fit/mapped_solid.h"
+
+namespace innermap {
+namespace {
+
+DeterminantFigures figures(std::size_t checked, std::size_t folded, double least) {
+  DeterminantFigures out;
+  out.checked = checked;
+  out.folded = folded;
+  out.least = least;
+  return out;
+}
+
+// All that can be known, and nothing that speaks against the map.
+Injectivity sound() {
+  Injectivity known;
+  known.inside = figures(20000, 0, 0.25);
+  known.boundary = figures(10000, 0, 0.125);
+  known.voxels = figures(5000, 0, 0.5);
+  static_cast<DeterminantFigures&>(known.cells) = figures(24000, 0, 0.75);
+  known.cells.share = 0.9;
+  known.cells.overlaps = 0;
+  known.degree = {1500, 1, 1};
+  known.boundaryError = 0.003;
+  return known;
+}
+
+bool says(const Injectivity& known, const std::string& what) {
+  return injectivityStatement(known).find(what) != std::string::npos;
+}
+
+constexpr const char* kNot = "So the map is not one-to-one";
+constexpr const char* kThen = "then exactly one goes to each";
+constexpr const char* kUnproved = "not proved";
+constexpr const char* kWhole = "is one-to-one; that was checked as a whole";
+constexpr const char* kNoMap = "No continuous map";
+
+TEST(Injectivity, SaysWhatWasCheckedAndWhatFollows) {
+  const Injectivity known = sound();
+  EXPECT_FALSE(notOneToOne(known));
+  for (const char* what :
+       {"det J > 0 at all 20000 points inside (least 0.25), all 10000 points of the boundary "
+        "(least "
+        "0.125), all 5000 voxels (least 0.5) and all 24000 cells between voxels (least 0.75).",
+        "within 0.003 of the target's diagonal", "winds once about the 1500 points", "(degree 1)",
+        "Neither surface runs through itself.", kThen, kUnproved, kWhole})
+    EXPECT_TRUE(says(known, what)) << what << "\n" << injectivityStatement(known);
+  EXPECT_FALSE(says(known, kNot));
+  EXPECT_EQ(injectivityLine(known),
+            "one-to-one as far as checked; no fold at 20000 points inside, 10000 points of the "
+            "boundary, 5000 voxels and 24000 cells between voxels");
+}
+
+TEST(Injectivity, SaysNothingOfWhatWasNotChecked) {
+  EXPECT_EQ(
+      injectivityStatement({}),
+      "No points inside were checked. Neither surface runs through itself. Whether the map is "
+      "one-to-one is not known.");
+  EXPECT_EQ(injectivityLine({}), "one-to-one: not checked");
+  EXPECT_TRUE(injectivityFacts({}).empty());
+  Injectivity grid;
+  grid.voxels = figures(5000, 0, 0.5);
+  EXPECT_TRUE(says(grid, "nothing proves it"));
+  EXPECT_FALSE(says(grid, "points inside"));
+  EXPECT_FALSE(says(grid, "winds"));
+  EXPECT_FALSE(says(grid, kThen));
+  EXPECT_FALSE(says(grid, kWhole));
+}
+
+TEST(Injectivity, AFoldIsSaidWithItsShareAndItsCause) {
+  Injectivity known = sound();
+  known.inside = figures(20000, 50, -0.5);
+  EXPECT_TRUE(notOneToOne(known));
+  EXPECT_TRUE(
+      says(known, "det J is not above 0 at 50 of 20000 points inside (0.25%, least -0.5)."));
+  EXPECT_TRUE(says(known, kNot));
+  known.inside.foldedAtOverlap = 20;
+  EXPECT_TRUE(says(known, "least -0.5; 20 where the target runs through itself)"));
+  known.inside.foldedAtOverlap = 50;
+  EXPECT_TRUE(says(known, "least -0.5; all where the target runs through itself)"));
+  EXPECT_EQ(injectivityLine(known).substr(0, 55),
+            "not one-to-one; folded: 50 of 20000 points inside; no f");
+}
+
+// Folded cells are those of another map, the one that is linear on them.
+TEST(Injectivity, FoldedCellsAreNotFoldsOfTheMap) {
+  Injectivity known = sound();
+  known.cells.folded = 3;
+  EXPECT_FALSE(notOneToOne(known));
+  EXPECT_TRUE(says(known, "det J is not above 0 at 3 of 24000 cells"));
+  EXPECT_FALSE(says(known, kWhole));
+  known.cells.folded = 0;
+  known.cells.overlaps = 2;
+  EXPECT_TRUE(says(known, "it covers itself at 2 places of its boundary."));
+  EXPECT_FALSE(says(known, kWhole));
+  known.cells.overlaps = -1;
+  EXPECT_FALSE(says(known, "The map that is linear"));
+}
+
+TEST(Injectivity, ABoundaryThatWindsTwiceIsNotThatOfAOneToOneMap) {
+  Injectivity known = sound();
+  known.degree = {1500, 1, 2};
+  EXPECT_TRUE(notOneToOne(known));
+  EXPECT_TRUE(says(known, "winds 1 to 2 times about the 1500 points"));
+  EXPECT_TRUE(says(known, "its boundary winds up to 2 times about a point."));
+  EXPECT_FALSE(says(known, kThen));
+  known.degree = {1500, -1, 1};
+  EXPECT_TRUE(notOneToOne(known));
+  EXPECT_TRUE(says(known, "its boundary winds -1 time about a point"));
+  known.degree = {1500, 0, 1};
+  EXPECT_FALSE(notOneToOne(known));
+  EXPECT_FALSE(says(known, kThen));
+  known.degree = {};
+  EXPECT_TRUE(says(known, "its degree is not known"));
+}
+
+TEST(Injectivity, TargetsThatRunThroughThemselves) {
+  Injectivity known = sound();
+  known.target = {65, {{1, 2, 3}}};
+  EXPECT_TRUE(says(
+      known, "The target runs through itself: 65 pairs of triangles, the first near (1, 2, 3)."));
+  EXPECT_TRUE(says(known, kNoMap));
+  EXPECT_FALSE(notOneToOne(known));  // this one meets the target only within its error
+  // Parts of the source that overlap are one solid, whose target nobody told of.
+  known.source = {1, {}};
+  EXPECT_TRUE(says(known, "The source runs through itself: 1 pair of triangles."));
+  EXPECT_TRUE(says(known, "mapped as one solid"));
+  EXPECT_FALSE(says(known, kNoMap));
+}
+
+TEST(Injectivity, AMirrorIsNoFold) {
+  Injectivity known = sound();
+  known.inside = figures(20000, 20000, -1);
+  known.boundary = figures(10000, 10000, -1);
+  known.voxels = figures(5000, 5000, -1);
+  EXPECT_FALSE(notOneToOne(known));
+  EXPECT_TRUE(says(known, "mirrors"));
+  EXPECT_FALSE(says(known, kThen));
+}
+
+// Whatever is known: never "not" without a reason, never what follows from determinants that are
+// all above 0 where one is not, never "as a whole" of cells that are not.
+TEST(Injectivity, NoCombinationSaysMoreThanItsFigures) {
+  for (int bits = 0; bits < 1024; ++bits) {
+    const auto bit = [bits](int k) { return (bits >> k & 1) != 0; };
+    Injectivity known = sound();
+    if (bit(0)) known.inside = {};
+    if (bit(1)) known.inside = figures(20000, 7, -1);
+    if (bit(2)) known.boundary = figures(10000, 9, -1);
+    if (bit(3)) known.voxels = {};
+    if (bit(4)) known.voxels = figures(5000, 1, -1);
+    if (bit(5)) known.cells.folded = 2;
+    if (bit(6)) known.cells.overlaps = 1;
+    if (bit(7)) known.degree = {1500, bit(8) ? -1 : 1, bit(8) ? 1 : 2};
+    if (bit(8) && !bit(7)) known.degree = {};
+    if (bit(9)) known.target = {3, {{0, 0, 0}}};
+    const bool fold = bit(1) || bit(2) || bit(4);
+    const std::string text = injectivityStatement(known);
+    SCOPED_TRACE(text);
+    EXPECT_EQ(notOneToOne(known), fold || bit(7));
+    EXPECT_EQ(says(known, kNot), fold || bit(7));
+    EXPECT_EQ(says(known, kWhole), !bit(5) && !bit(6));
+    EXPECT_EQ(says(known, kNoMap), bit(9));
+    const bool checked = known.inside.checked > 0 || known.voxels.checked > 0;
+    EXPECT_EQ(says(known, kThen), !fold && !bit(7) && !bit(8) && checked);
+    EXPECT_EQ(says(known, kThen), says(known, kUnproved));
+    EXPECT_EQ(says(known, "7 of 20000 points inside"), bit(1));
+    EXPECT_EQ(text.find('\n'), std::string::npos);
+    EXPECT_FALSE(std::regex_search(text, std::regex("  |\\.\\.| $|^ ")));
+  }
+}
+
+TEST(Injectivity, DeterminantsAreCounted) {
+  DeterminantFigures out;
+  out.add(2);
+  out.add(0);
+  out.add(-1, true);
+  out.add(3);
+  EXPECT_EQ(out.checked, 4u);
+  EXPECT_EQ(out.folded, 2u);
+  EXPECT_EQ(out.foldedAtOverlap, 1u);
+  EXPECT_EQ(out.least, -1);
+  DeterminantFigures sum;
+  sum.add(DeterminantFigures{});
+  EXPECT_EQ(sum.checked, 0u);
+  sum.add(figures(10, 1, 5));
+  sum.add(out);
+  EXPECT_EQ(sum.checked, 14u);
+  EXPECT_EQ(sum.folded, 3u);
+  EXPECT_EQ(sum.foldedAtOverlap, 1u);
+  EXPECT_EQ(sum.least, -1);
+}
+
+TEST(Injectivity, FactsGiveTheFiguresBack) {
+  Injectivity known = sound();
+  known.inside.folded = 3;
+  known.inside.foldedAtOverlap = 2;
+  known.inside.least = -0.1;
+  known.outside = 0.0123456789012345678;
+  known.repaired = 4;
+  known.degree = {1500, -1, 2};
+  Injectivity again;
+  readInjectivity(injectivityFacts(known), again);
+  EXPECT_EQ(injectivityFacts(again), injectivityFacts(known));
+  EXPECT_EQ(injectivityStatement(again), injectivityStatement(known));
+  for (const auto& [key, value] : injectivityFacts(known))
+    EXPECT_EQ(key.substr(0, 11), "one_to_one_");
+}
+
+TEST(Injectivity, OfManyCrossingsTheFirstArePlaced) {
+  MeshReport check;
+  check.selfIntersections = 500;
+  for (int i = 0; i < 100; ++i) check.crossings.push_back({i, i + 1, {double(i), 0, 0}});
+  const SelfIntersectionFigures out = selfIntersectionFigures(check);
+  EXPECT_EQ(out.pairs, 500u);
+  ASSERT_EQ(out.places.size(), 16u);
+  EXPECT_EQ(out.places[15].x, 15);
+}
+
+}  // namespace
+}  // namespace innermap

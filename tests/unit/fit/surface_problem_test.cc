@@ -1,0 +1,97 @@
+#include "innermap/fit/surface_problem.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "innermap/core/run.h"
+#include "innermap/field/fit.h"
+#include "mesh/shapes.h"
+
+namespace innermap {
+namespace {
+
+constexpr double kUnit = 2;  // extent of the values
+
+// A harmonic function at points of the ball's surface, and the points beside it.
+SurfaceValues polynomial(const Solid& solid) {
+  return [solid](const std::vector<SurfacePoint>& samples) {
+    const Points at = interpolate(solid.surface().vertices, solid.surface().triangles, samples);
+    Matrix values(at.size(), 1);
+    for (std::size_t i = 0; i < at.size(); ++i)
+      values(i, 0) = at[i].x * at[i].x - at[i].y * at[i].y + at[i].y * at[i].z;
+    return values;
+  };
+}
+
+double rmsAtFreshPoints(const HarmonicField& field, const Solid& solid) {
+  const BoundarySamples fresh = freshSamples(solid, polynomial(solid));
+  return measureBoundaryError(field, fresh.points, fresh.values, kUnit).rms;
+}
+
+TEST(SurfaceProblem, FieldOnAShellMeetsAPolynomial) {
+  const Solid solid(shapes::icosphere(3));
+  SurfaceProblemSettings settings;
+  settings.collocation = 1200;
+  settings.heldOut = 500;
+  const FitProblem problem = surfaceProblem(solid, polynomial(solid), settings);
+  EXPECT_EQ(problem.surface.points.size(), 1200u);
+  EXPECT_EQ(problem.surface.values.rows(), 1200u);
+  EXPECT_EQ(problem.surface.heldOut.size(), 500u);
+  FitSettings fit;
+  fit.sources = 300;
+  fit.interpolation = Interpolation::linear;
+  EXPECT_LT(rmsAtFreshPoints(fitField(problem, fit).field, solid), 1e-5);
+}
+
+TEST(SurfaceProblem, AdaptiveFieldMeetsItsTolerance) {
+  const Solid solid(shapes::icosphere(3));
+  AdaptiveSettings settings;
+  settings.tolerance = 1e-3;
+  const AdaptiveResult fit =
+      fitToTolerance(adaptiveProblem(solid, polynomial(solid), kUnit), settings);
+  EXPECT_EQ(fit.end, AdaptiveEnd::met);
+  EXPECT_LE(fit.error.p99, 1e-3);
+  EXPECT_LT(rmsAtFreshPoints(fit.field, solid), 1e-3);
+}
+
+TEST(SurfaceProblem, SetsOfOneSeedShareNoPoint) {
+  const Solid solid(shapes::icosphere(2));
+  SurfaceProblemSettings settings;
+  settings.collocation = 200;
+  settings.heldOut = 200;
+  settings.seed = 7;
+  const FitProblem problem = surfaceProblem(solid, polynomial(solid), settings);
+  FreshSampleSettings fresh;
+  fresh.count = 300;
+  fresh.seed = 7;
+  const Points other = freshSamples(solid, polynomial(solid), fresh).points;
+  ASSERT_EQ(other.size(), 300u);
+  for (const Points* set : {&problem.surface.points, &problem.surface.heldOut})
+    for (const Vec3& p : *set)
+      for (const Vec3& q : other) ASSERT_GT(norm(p - q), 0);
+}
+
+TEST(SurfaceProblem, FreshSamplesAreTheFirstDrawOfTheAdaptiveProblem) {
+  const Solid solid(shapes::icosphere(2));
+  FreshSampleSettings fresh;
+  fresh.count = 50;
+  fresh.seed = 3;
+  AdaptiveProblemSettings settings;
+  settings.seed = 3;
+  const Points a = freshSamples(solid, polynomial(solid), fresh).points,
+               b = adaptiveProblem(solid, polynomial(solid), kUnit, settings).draw(50, 0).points;
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(norm(a[i] - b[i]), 0);
+}
+
+TEST(SurfaceProblem, Cancels) {
+  const Solid solid(shapes::icosphere(2));
+  const auto values = polynomial(solid);
+  RunContext run;
+  run.cancel();
+  const RunScope scope(run);
+  EXPECT_THROW(surfaceProblem(solid, values, {}), Cancelled);
+}
+
+}  // namespace
+}  // namespace innermap

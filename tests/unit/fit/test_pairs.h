@@ -1,0 +1,42 @@
+// Pairs of boundaries with a map inside that is known.
+#pragma once
+
+#include <functional>
+
+#include "innermap/fit/boundary_pair.h"
+#include "mesh/shapes.h"
+
+namespace innermap {
+
+inline Mesh moved(const Mesh& mesh, const std::function<Vec3(const Vec3&)>& map) {
+  Mesh out = mesh;
+  for (Vec3& p : out.vertices) p = map(p);
+  out.name = "target";
+  return out;
+}
+
+inline Mesh ball(int levels = 3) {
+  Mesh mesh = shapes::icosphere(levels);
+  mesh.name = "ball";
+  return mesh;
+}
+
+// Of radius 1, their middles `apart` to either side of the origin along x: one mesh whatever that
+// is, which runs through itself below 1.
+inline Mesh twoBalls(double apart) {
+  Mesh mesh = shapes::joined(shapes::icosphere(3, 1, {-apart, 0, 0}),
+                             shapes::icosphere(3, 1, {apart, 0, 0}));
+  mesh.name = "two balls";
+  return mesh;
+}
+
+inline Vec3 affineMap(const Vec3& p) {
+  return {2 * p.x + 0.5 * p.y + 1, p.y - 0.25 * p.z, 1.5 * p.z + 0.125 * p.x - 2};
+}
+
+// Each component is harmonic, the map one-to-one on the unit ball.
+inline Vec3 harmonicPolynomial(const Vec3& p) {
+  return {p.x + 0.1 * (p.x * p.x - p.y * p.y), p.y + 0.1 * p.x * p.z, p.z + 0.05 * p.x * p.y};
+}
+
+}  // namespace innermap

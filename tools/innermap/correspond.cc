@@ -1,0 +1,120 @@
+// `innermap correspond`: where each point of one closed surface lies on another.
+#include <fmt/format.h>
+
+#include "commands.h"
+#include "correspondence.h"
+#include "html/contents.h"
+#include "innermap/io/solid_pictures.h"
+#include "innermap/mesh/mesh_file.h"
+#include "inputs.h"
+#include "job_cost.h"
+
+namespace innermap::tool {
+namespace {
+
+struct Options {
+  std::string a, b, output, sourceOutput, picture;
+  CorrespondOptions correspond;
+};
+
+// The file of A with the triangles of the output, where those are not A's own.
+std::string sourceOutputOf(const Options& options) {
+  if (!options.sourceOutput.empty()) return options.sourceOutput;
+  return options.output.substr(0, options.output.size() - 4) + ".source.ply";
+}
+
+std::uint64_t memoryOf(const Options& options, std::size_t countA, std::size_t countB) {
+  const std::uint64_t map = correspondMemory(countA, countB);
+  return options.picture.empty() ? map : std::max(map, meshPictureMemory());
+}
+
+void run(const Options& options, Context& context) {
+  requirePly("--output", options.output);
+  if (!options.sourceOutput.empty()) requirePly("--source-out", options.sourceOutput);
+  context.output(options.output);
+  context.output(sourceOutputOf(options), false);
+  if (!options.picture.empty()) {
+    context.output(options.picture);
+    context.output(otherPicture(options.picture), false);
+  }
+  Mesh a = readMeshFile(options.a, context), b = readMeshFile(options.b, context);
+  const std::size_t countA = a.vertices.size(), countB = b.vertices.size();
+  context.expect(correspondPhases(countA + countB));
+  if (context.dryRun()) {
+    context.timed("check", [&] { requireLayable(a, b, options.correspond.map.layOut); });
+    return context.plan({fmt::format("map the {} vertices of {} onto {} ({} vertices)", countA,
+                                     options.a, options.b, countB),
+                         "write them to " + options.output},
+                        memoryOf(options, countA, countB));
+  }
+  context.requireMemory("the correspondence", memoryOf(options, countA, countB),
+                        "use coarser meshes");
+  context.spend(Context::kMostOfTime);
+  const MeshCorrespondence moved =
+      correspondMeshes(std::move(a), std::move(b), options.correspond, context);
+  if (context.page()) showPair(*context.page(), moved.source, moved.positions);
+  context.timed("write", [&] {
+    if (moved.changed) {
+      Mesh source = moved.source;
+      source.colours.clear();
+      writeMesh(sourceOutputOf(options), source);
+    }
+    writeCorrespondence(options.output, moved);
+  });
+  if (!options.picture.empty())
+    context.timed("picture", [&] {
+      writeCorrespondencePictures(options.picture, moved,
+                                  [](const std::string& path, const auto& write) { write(path); });
+    });
+  if (moved.changed)
+    context.note(fmt::format("{} has A with the same {} vertices: give both to innermap map",
+                             sourceOutputOf(options), moved.source.vertices.size()));
+}
+
+}  // namespace
+
+Command makeCorrespondCommand() {
+  auto o = std::make_shared<Options>();
+  Command c("correspond", "Lay the surface of one solid onto that of another, of any connectivity");
+  c.description(
+      std::string(
+          "Writes SOURCE with its vertices moved onto TARGET's surface, so that it is a target for "
+          "map, fit "
+          "and "
+          "the rest, and each vertex's `triangle` of TARGET (counted from 0) and barycentric "
+          "coordinates "
+          "`b0 b1 b2`. The map is one-to-one between the two surfaces, each point of TARGET is "
+          "reached "
+          "once; the triangles between the moved vertices cut corners where TARGET is finer than "
+          "SOURCE "
+          "(--subdivide). Solids of the same number of handles, with as many shells (cavities). ") +
+      kLandmarkFormat);
+  c.positional("SOURCE", &o->a, "mesh of the first solid: .obj, .ply, .off or .stl");
+  c.positional("TARGET", &o->b, "mesh of the second solid");
+  c.option("--output", "FILE", &o->output, "SOURCE on TARGET, a .ply file")
+      .shortName("-o")
+      .required()
+      .writes({".ply"});
+  c.option(
+       "--source-out", "FILE", &o->sourceOutput,
+       "SOURCE with the same vertices as the output, written when its triangles were split or its "
+       "touching parts cut apart")
+      .defaults("the output's name with .source.ply")
+      .writes({".ply"})
+      .advanced();
+  c.limitTime("after which trying and refining end");
+  addCorrespondOptions(c, o->correspond);
+  c.setting(seedSetting(&o->correspond.map.seed));
+  c.option("--picture", "FILE", &o->picture,
+           "a .png with SOURCE's coordinates as colours, on both; where another way is about as "
+           "good, that goes to the same name with .other.png")
+      .writes({".png"});
+  c.example("innermap correspond cow.obj man.obj -o cow_on_man.ply --picture cow_on_man.png");
+  c.example(
+      "innermap correspond cow.obj man.obj -o out.ply --landmarks pairs.txt --subdivide 0.005");
+  c.example("innermap correspond scan.ply ball.obj -o out.ply --surface-resolution 96");
+  c.run([o](Context& context) { run(*o, context); });
+  return c;
+}
+
+}  // namespace innermap::tool

@@ -1,0 +1,351 @@
+// `innermap deform`: what is inside a rest pose carried through the frames of an animation.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "commands.h"
+#include "deform_geometry.h"
+#include "frame_loop.h"
+#include "innermap/core/version.h"
+#include "innermap/io/vdb_file.h"
+#include "inputs.h"
+#include "job_cost.h"
+#include "report_figures.h"
+#include "transfer_options.h"
+
+namespace innermap::tool {
+namespace {
+
+constexpr double kAccuracy = 1e-6;  // of sums of charges; well below what the fits leave
+constexpr char kInputs[] = "innermap_inputs";
+
+struct DeformOptions {
+  std::string rest, volume, output;
+  FrameOptions frames;
+  TransferOptions transfer;
+  GeometryOptions geometry;
+  bool velocity = false, force = false;
+  double framesPerSecond = 24;
+};
+
+// What decides an output beside the frames' files.
+std::string settingsText(const DeformOptions& o) {
+  const FrameFitterSettings& f = o.frames.fitting;
+  const TransferOptions& t = o.transfer;
+  const auto number = [](const auto& v) { return v ? fmt::format("{:.17g}", double(*v)) : "-"; };
+  return fmt::format("{};{};{};{};{};{};{};{};{};{};{};{};{:.17g};{};{};{};{};{}", versionText(),
+                     f.sources, frameCollocation(f), number(f.distance), f.seed, t.grids,
+                     static_cast<int>(t.carry.sampling), t.carry.allDensities, t.carry.densityLimit,
+                     t.densities, t.stress, t.strain, t.outside, t.fadeTo,
+                     number(t.grid.resolution), number(t.grid.voxelSize), static_cast<int>(t.names),
+                     o.velocity ? fmt::format("{:.17g}", o.framesPerSecond) : "-");
+}
+
+// Tells which inputs and settings an output was made from.
+class Inputs {
+ public:
+  Inputs(const DeformOptions& options, const Frames& frames)
+      : frames_(frames),
+        neighbours_(options.velocity),
+        common_(fmt::format("rest {}, volume {}, settings {:016x}", fingerprintOf(options.rest),
+                            fingerprintOf(options.volume), hashOf(settingsText(options)))) {}
+
+  std::string of(std::size_t index) const {
+    std::string text = common_ + ", frame " + fingerprint(index);
+    if (!neighbours_) return text;
+    if (index > 0) text += ", before " + numbered(index - 1);
+    if (index + 1 < frames_.all.size()) text += ", after " + numbered(index + 1);
+    return text;
+  }
+
+ private:
+  std::string fingerprint(std::size_t index) const {
+    return fingerprintOf(frames_.all[index].path);
+  }
+  // A neighbour that cannot be read plays no part.
+  std::string numbered(std::size_t index) const try {
+    return fmt::format("{} {}", frames_.all[index].number, fingerprint(index));
+  } catch (const FileError&) {
+    return "none";
+  }
+
+  const Frames& frames_;
+  const bool neighbours_;
+  const std::string common_;
+};
+
+// Whether a whole file made from these inputs is there.
+bool isFinished(const std::string& path, const std::string& inputs) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;
+  try {
+    const VdbInfo info = readVdbInfo(path);
+    const auto made = info.metadata.getMetadata<openvdb::StringMetadata>(kInputs);
+    return made && made->value() == inputs;
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+struct DeformRow {
+  InverseStatistics statistics;
+  BoundaryError error;
+  JudgedFrame judged;
+};
+
+// The set-up that all frames share.
+class Deformer {
+ public:
+  Deformer(const DeformOptions& options, const Frames& frames, SourceBoundary rest,
+           openvdb::GridPtrVec grids, Context& context)
+      : options_(options),
+        context_(context),
+        frames_(frames),
+        fitter_(makeFrameFitter(std::move(rest), options.frames.fitting, context)),
+        fits_(makeFrameFits(fitter_, frames, context)),
+        grids_(std::move(grids)) {
+    requireNoVelocity();
+    FramePushSettings settings;
+    settings.push.carry = carrySettings(options.transfer);
+    settings.push.accuracy = kAccuracy;
+    settings.fadeToFitted = options.transfer.fadeTo == "fitted";
+    if (!settings.fadeToFitted) settings.push.outside = outsideSettings(options.transfer, {}, {});
+    settings.push.outside.distance = options.transfer.outside;
+    settings.output = outputSettings(grids_, options.transfer.grid);
+    pusher_.emplace(fitter_, grids_, settings);
+  }
+
+  double voxelSize() const { return pusher_->voxelSize(); }
+  // Of all frames so far: the densities that grow most beside their solids.
+  const std::map<std::string, JudgedDensity>& densities() const { return densities_; }
+
+  DeformRow run(std::size_t index, const std::string& path, const std::string& inputs) {
+    const FrameFile& frame = frames_.all[index];
+    const std::shared_ptr<const FrameFit> fit = fits_.at(index);
+    std::vector<CarriedField> fields;
+    if (options_.velocity)
+      fields.push_back({"velocity", fits_.velocity(index, options_.framesPerSecond),
+                        openvdb::VEC_CONTRAVARIANT_RELATIVE});
+    // No structured binding: lambdas cannot capture one in C++17.
+    const FramePush pushed = pusher_->push({fit.get(), frame.number}, fields);
+    const auto& result = pushed.result;
+    addSeconds(context_.report().seconds, pushed.seconds);
+    for (const std::string& warning : result.warnings)
+      context_.warning(fmt::format("frame {}: {}", frame.number, warning));
+    if (options_.velocity)
+      for (const openvdb::GridBase::Ptr& grid : result.grids)
+        grid->insertMeta("innermap_frames_per_second",
+                         openvdb::DoubleMetadata(options_.framesPerSecond));
+    openvdb::MetaMap file;
+    file.insertMeta(kInputs, openvdb::StringMetadata(inputs));
+    writeFrame(frame,
+               [&] { writeGridFile(path, result.grids, options_.transfer.names, context_, file); });
+    judge(result, *fit, frame.number);
+    return {
+        result.statistics, fit->error, {frame.number, fit->error.p99, fit->folded, fit->outside}};
+  }
+
+ private:
+  void judge(const PushResult& result, const FrameFit& fit, std::int64_t number) {
+    const double volumes = volumeRatio(fitter_.solid().volume(), fit.boundary.volume);
+    for (const CarriedMass& mass : result.masses) {
+      const JudgedDensity now{mass.name, fmt::format("in frame {} ", number),
+                              std::min(mass.largestRatio, options_.transfer.carry.densityLimit),
+                              volumes};
+      JudgedDensity& worst = densities_[mass.name];
+      if (worst.grid.empty() || now.growth * now.volumes > worst.growth * worst.volumes)
+        worst = now;
+    }
+  }
+
+  void requireNoVelocity() const {
+    const NamingScheme scheme = options_.transfer.names;
+    for (const openvdb::GridBase::Ptr& grid : grids_)
+      if (options_.velocity && gridName(grid->getName(), scheme) == gridName("velocity", scheme))
+        throw DataError(options_.volume + ": already has a grid '" + grid->getName() +
+                        "'; leave out --velocity or choose the others by --grids");
+  }
+
+  const DeformOptions& options_;
+  Context& context_;
+  const Frames& frames_;
+  const FrameFitter fitter_;
+  FrameFits fits_;
+  std::map<std::string, JudgedDensity> densities_;
+  const openvdb::GridPtrVec grids_;
+  std::optional<FramePusher> pusher_;
+};
+
+std::string lineOf(const FrameFile& frame, const DeformRow& row, double seconds, double tolerance) {
+  const InverseStatistics& s = row.statistics;
+  return fmt::format("{:>8} {:>10} {:>10.4f} {:>10.2e} {:>10.2e} {:>9.3g}{}\n", frame.number,
+                     s.voxels, 100 * s.invertedInside(), row.error.rms, row.error.p99, seconds,
+                     missedMark(row.judged.misses(tolerance)));
+}
+
+void check(const DeformOptions& options, const Frames& frames) {
+  std::string extension = std::filesystem::path(options.output).extension().string();
+  requireFitting(options.volume, options.output, options.transfer, options.geometry);
+  if (isGeometryFile(options.volume)) {
+    if (options.velocity) throw UsageError("--velocity: is for volumes; leave it out");
+  } else if (extension != ".vdb")
+    throw UsageError("--output: '" + options.output + "' must end in .vdb, as in a.####.vdb");
+  if (options.velocity && frames.all.size() < 2)
+    throw UsageError("--velocity: needs at least two frames; give more or leave it out");
+  // Refuses what makes no sense before anything is read; which motion fits is not known yet.
+  if (options.transfer.fadeTo != "fitted" || !(options.transfer.outside > 0))
+    outsideSettings(options.transfer, {}, {});
+}
+
+// Those whose output is not there or was made from something else.
+Frames framesLeft(const DeformOptions& options, const Frames& frames, const FramePattern& pattern,
+                  const Inputs& inputs, Context& context) {
+  Frames left = frames;
+  left.wanted.clear();
+  for (const std::size_t index : frames.wanted) {
+    bool toDo = true;
+    try {
+      toDo = options.force || !isFinished(pattern.path(frames.all[index].number), inputs.of(index));
+    } catch (const FileError&) {  // a frame that cannot be read is told of in its turn
+    }
+    if (toDo) left.wanted.push_back(index);
+  }
+  const std::size_t finished = frames.wanted.size() - left.wanted.size();
+  context.report().add("frames", finishedFigures(finished));
+  if (finished > 0)
+    context.note(fmt::format("{} of {} frames are finished already; --force makes them again",
+                             finished, frames.wanted.size()));
+  return left;
+}
+
+// In bytes, beside what is read.
+std::uint64_t memoryOf(const DeformOptions& options, const Solid& solid,
+                       const openvdb::GridPtrVec& grids) {
+  return transferMemory(solid, grids, options.transfer, {true, options.velocity ? 1 : 0});
+}
+
+void expectFrames(const DeformOptions& options, const Solid& solid,
+                  const openvdb::GridPtrVec& grids, const Frames& frames, Context& context) {
+  const std::size_t charges = options.frames.fitting.sources;
+  JobSize size = jobSize(solid, outputSettings(grids, options.transfer.grid), charges);
+  size.items = static_cast<double>(grids.size()) * size.inside;
+  context.expect(framePhases(charges, frames.wanted.size(), stageOf("frames: volume", size)));
+}
+
+void plan(const DeformOptions& options, const Frames& frames, const FramePattern& pattern,
+          std::uint64_t others, Context& context) {
+  const auto path = [&](std::size_t i) { return pattern.path(frames.all[i].number); };
+  const FrameFitterSettings settings = options.frames.fitting;
+  context.plan({framesPlan(settings, frames), "carry " + options.volume + " to " +
+                                                  path(frames.wanted.front()) + " to " +
+                                                  path(frames.wanted.back())},
+               frameFitterMemory(settings, others));
+}
+
+void run(const DeformOptions& options, Context& context) {
+  const FramePattern pattern("--output", options.output);
+  const Frames frames = listFrames(options.frames, options.rest, context);
+  check(options, frames);
+  // Made first, and gone again if nothing comes into it.
+  std::optional<PendingFolder> folder;
+  if (!context.dryRun()) folder.emplace(pattern.folder());
+  context.outputs(framePaths(pattern, frames));
+  if (isGeometryFile(options.volume))
+    return deformGeometry(
+        {options.rest, options.volume, options.frames, options.transfer, options.geometry}, frames,
+        pattern, context);
+  if (context.dryRun()) {
+    const SourceBoundary rest = readRest(options.rest, context);
+    const openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
+    expectFrames(options, rest.solid, grids, frames, context);
+    return plan(options, frames, pattern, memoryOf(options, rest.solid, grids), context);
+  }
+  std::optional<Inputs> inputs;
+  Frames left;
+  context.timed("compare", [&] {
+    inputs.emplace(options, frames);
+    left = framesLeft(options, frames, pattern, *inputs, context);
+  });
+  if (left.wanted.empty()) return;
+  SourceBoundary rest = readRest(options.rest, context);
+  openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
+  requireFrameMemory(options.frames.fitting, memoryOf(options, rest.solid, grids), context);
+  expectFrames(options, rest.solid, grids, left, context);
+  Deformer deformer(options, left, std::move(rest), std::move(grids), context);
+  std::map<std::size_t, DeformRow> rows;
+  context.print(fmt::format("{:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "frame", "voxels",
+                            "found %", "error rms", "error 99%", "seconds"));
+  const auto results = runFrames(left, true, context, [&](std::size_t index) {
+    const FrameFile& frame = frames.all[index];
+    StageSeconds seconds;
+    rows[index] = timed(seconds, "frame", [&] {
+      return deformer.run(index, pattern.path(frame.number), inputs->of(index));
+    });
+    context.print(lineOf(frame, rows[index], seconds.front().second, options.frames.tolerance));
+  });
+  context.report().add("grid", voxelSizeFigures(deformer.voxelSize()));
+  // Of those that were made now; the others' are missing.
+  std::vector<DeformedFrame> made(left.wanted.size());
+  for (std::size_t i = 0; i < left.wanted.size(); ++i)
+    if (const auto row = rows.find(left.wanted[i]); row != rows.end())
+      made[i] = {row->second.statistics, row->second.error, row->second.judged.folded,
+                 row->second.judged.outside};
+  context.report().add("frames", deformedFigures(made));
+  std::vector<JudgedFrame> judged;
+  for (const auto& [index, row] : rows) judged.push_back(row.judged);
+  judgeFrames(judged, options.frames.tolerance, options.frames.verdict, context);
+  for (const auto& [name, density] : deformer.densities())
+    judgeDensity(density, options.transfer.verdict, context);
+  context.print(secondsText(results, context));
+}
+
+}  // namespace
+
+Command makeDeformCommand() {
+  auto o = std::make_shared<DeformOptions>();
+  Command c("deform", "Carry a volume or geometry in a rest pose through an animation");
+  c.description(
+      "INSIDE, grids or geometry, lives inside SOURCE. For each frame SOURCE's inside is mapped "
+      "onto "
+      "the "
+      "frame's and what is inside is carried along, as push does. The set-up is made once "
+      "for all frames, all outputs have one voxel size and one lattice, and a frame's result does "
+      "not depend on which others are made. Frames whose output is there already, made from the "
+      "same files and settings, are skipped (of geometry all are made). A frame that cannot be "
+      "read or fitted is reported and "
+      "left out; the exit code is then 1.");
+  c.positional("SOURCE", &o->rest, "mesh of the rest pose: .obj, .ply, .off or .stl");
+  c.positional("INSIDE", &o->volume,
+               "what is carried, in the rest pose's world space: grids (.vdb) or geometry (.obj, "
+               ".ply, .off, .stl; cells in .vtu, .msh, .mesh)");
+  addFrameArgument(c, o->frames);
+  c.option("--output", "FILES", &o->output,
+           "the files to write, of INSIDE's kind, #### or %04d standing for the frame's number; "
+           "without, it is put before the ending; the folder is made when missing")
+      .shortName("-o")
+      .required();
+  addFrameOptions(c, o->frames);
+  c.flag("--force", &o->force, "make finished frames again");
+  c.flag("--velocity", &o->velocity,
+         "also write a grid velocity (v with --names houdini) for motion blur, in world units per "
+         "second, from the neighbouring frames");
+  c.option("--fps", "N", &o->framesPerSecond, "frames per second, for --velocity")
+      .above(0)
+      .atMost(1e6);
+  addTransferOptions(c, o->transfer);
+  addGeometryOptions(c, o->geometry, false);
+  c.example("innermap deform rest.obj bones.obj 'walk.*.obj' -o 'out/bones.####.obj'");
+  c.example("innermap deform rest.obj smoke.vdb 'walk.*.obj' -o 'out/smoke.####.vdb' --density");
+  c.example(
+      "innermap deform rest.obj smoke.vdb 'walk.*.obj' -o 'out/smoke.%04d.vdb' --velocity --fps "
+      "25");
+  c.run([o](Context& context) { run(*o, context); });
+  return c;
+}
+
+}  // namespace innermap::tool

@@ -1,0 +1,100 @@
+// `innermap export`: grids as volume textures in EXR files.
+#include <fmt/format.h>
+
+#include "commands.h"
+#include "core/frame_files.h"
+#include "innermap/io/pictures.h"
+#include "innermap/io/vdb_file.h"
+#include "innermap/io/volume_texture.h"
+#include "inputs.h"
+#include "lists.h"
+#include "report/figures.h"
+#include "report_figures.h"
+
+namespace innermap::tool {
+namespace {
+
+struct ExportOptions {
+  std::string file, output, grids, tiles;
+  VolumeTextureSettings texture;
+};
+
+VolumeTextureSettings settingsOf(const ExportOptions& options) {
+  auto s = options.texture;
+  if (!options.tiles.empty()) s.tiles = parseTiles("--tiles", options.tiles);
+  return s;
+}
+
+void fillReport(const VolumeTextureResult& r, const ExportOptions& options, Context& context) {
+  Report& report = context.report();
+  report.add("texture", layoutFigures(volumeLayoutName(options.texture.layout)));
+  report.add("texture", figures(r));
+}
+
+void run(const ExportOptions& options, Context& context) {
+  const VolumeTextureSettings settings = settingsOf(options);
+  if (settings.layout == VolumeLayout::slices) {
+    const FramePattern slices("--output", options.output);
+    context.output(slices.path(0));
+    const auto number = frameNumber(options.file);
+    if (number.value_or(0) != 0) context.output(slices.path(*number), false);
+  } else {
+    context.output(options.output);
+  }
+  const std::vector<std::string> names = commaList(options.grids);
+  const openvdb::GridPtrVec grids = readGridFile(options.file, names, context);
+  const std::uint64_t need = volumeTextureMemory(grids, settings);
+  if (context.dryRun())
+    return context.plan({fmt::format("write {} as a volume texture ({}) to {}", options.file,
+                                     volumeLayoutName(settings.layout), options.output)},
+                        need);
+  context.requireMemory("the volume texture " + options.output, need,
+                        "export fewer grids or at a lower --resolution");
+  const VolumeTextureResult result =
+      context.timed("write", [&] { return writeVolumeTexture(options.output, grids, settings); });
+  for (const std::string& warning : warningsOf(result, options.output, settings))
+    context.warning(warning);
+  fillReport(result, options, context);
+  context.print(describe(result, options.output, settings));
+}
+
+void addShapeOptions(Command& c, ExportOptions& o) {
+  c.option("--tiles", "CxR", &o.tiles, "columns and rows of the atlas, such as 8x8")
+      .defaults("near a square")
+      .advanced();
+}
+
+}  // namespace
+
+Command makeExportCommand() {
+  auto o = std::make_shared<ExportOptions>();
+  Command c("export", "Write grids as volume textures for engines: an atlas, slices or parts");
+  c.description(
+      "The common active box of the grids as a dense texture in EXR, with the background where "
+      "nothing is active. An atlas has its slices as tiles, row-major from the top left. "
+      "Attributes "
+      "tell tiling, order, voxel size, bounds, matrices and what each grid is; `innermap import` "
+      "reads them. One scalar grid is the channel Y, a vector R, G, B, a vector and a scalar "
+      "R, G, B, A; more than four channels are layers (`density.V`, `Cd.R`).");
+  c.positional("FILE", &o->file, "the .vdb file");
+  c.option("--output", "FILE", &o->output,
+           "the .exr file; of slices, with #### or %04d for the number, else it is put before the "
+           "extension")
+      .shortName("-o")
+      .required()
+      .writes({".exr"});
+  c.option("--grids", "LIST", &o->grids, "grids to write, with commas between")
+      .was("--grid")
+      .defaults("all");
+  c.settings(describe(o->texture));
+  addShapeOptions(c, *o);
+  c.choice("--rows", "ORDER", &o->texture.rowsUp, {{"down", false}, {"up", true}},
+           "down: a slice's first row has the least index (Direct3D, Unreal); up: the largest "
+           "(OpenGL, Unity)");
+  c.example("innermap export smoke.vdb -o smoke.exr --grids density --resolution 64 --cube --half");
+  c.example("innermap export map.vdb -o 'slices/map.####.exr' --layout slices --grids map,density");
+  c.run([o](Context& context) { run(*o, context); });
+  return c;
+}
+
+}  // namespace innermap::tool

@@ -1,0 +1,130 @@
+#include "frame_options.h"
+
+#include <fmt/format.h>
+
+#include "core/file.h"
+#include "html/contents.h"
+#include "innermap/core/memory.h"
+#include "innermap/field/fit.h"
+#include "innermap/mesh/mesh_file.h"
+#include "inputs.h"
+#include "map_report.h"
+
+namespace innermap::tool {
+namespace {
+
+std::string span(const std::vector<FrameFile>& frames) {
+  return frames.size() == 1 ? fmt::format("the only one is {}", frames.front().number)
+                            : fmt::format("there are {} from {} to {}", frames.size(),
+                                          frames.front().number, frames.back().number);
+}
+
+}  // namespace
+
+void addFrameArgument(Command& command, FrameOptions& o) {
+  command.positional("FRAMES", &o.files,
+                     "meshes of the rest pose's connectivity, a frame number in each name: files, "
+                     "a folder, or a pattern in quotes with *, ?, #### or %04d");
+}
+
+void addFrameOptions(Command& command, FrameOptions& o) {
+  command.group("frames");
+  command.option("--frames", "LIST", &o.ranges, "which frames: 12, 1-48, 1-48x2 (every second)")
+      .defaults("all");
+  command.settings(describe(o.fitting));
+  command
+      .option(
+          "--tolerance", "T", &o.tolerance,
+          "within which 99% of each frame's boundary should lie; frames that miss it are marked "
+          "and warned of")
+      .unit("fraction of the frame's diagonal")
+      .range(1e-12, 1);
+  addVerdictOptions(command, o.verdict, true);
+}
+
+Frames listFrames(const FrameOptions& options, const std::string& rest, Context& context) {
+  FrameList list = findFrames(options.files, {".obj", ".ply", ".off", ".stl"});
+  std::vector<std::string> left;
+  for (const std::string& path : list.unnumbered)
+    if (!isSameFile(path, rest)) left.push_back(path);
+  if (list.frames.empty())
+    throw DataError(fmt::format("{}: none of the {} files has a frame number in its name",
+                                options.files.front(), list.unnumbered.size()));
+  if (!left.empty())
+    context.note(fmt::format(
+        "{}{} left out: no frame number in the name", left.front(),
+        left.size() > 1 ? fmt::format(" and {} others", left.size() - 1) : std::string()));
+  Frames frames;
+  frames.all = std::move(list.frames);
+  for (const FrameFile& frame : frames.all) context.input(frame.path);
+  std::optional<FrameRanges> ranges;
+  if (!options.ranges.empty()) ranges.emplace("--frames", options.ranges);
+  for (std::size_t i = 0; i < frames.all.size(); ++i)
+    if (!ranges || ranges->contains(frames.all[i].number)) frames.wanted.push_back(i);
+  if (frames.wanted.empty())
+    throw SettingError("--frames", fmt::format("'{}' has none of the frames; {}", options.ranges,
+                                               span(frames.all)));
+  return frames;
+}
+
+std::vector<std::string> framePaths(const FramePattern& pattern, const Frames& frames) {
+  std::vector<std::string> paths;
+  for (const std::size_t index : frames.wanted)
+    paths.push_back(pattern.path(frames.all[index].number));
+  return paths;
+}
+
+SourceBoundary readRest(const std::string& rest, Context& context) {
+  SourceBoundary source = makeSourceBoundary(readMeshFile(rest, context));
+  reportSource(source, context);
+  return source;
+}
+
+FrameFitter makeFrameFitter(SourceBoundary source, const FrameFitterSettings& settings,
+                            Context& context) {
+  FrameFitter fitter(std::move(source), settings);
+  addSeconds(context.report().seconds, fitter.seconds());
+  reportFitter(fitter, settings, context.report());
+  return fitter;
+}
+
+FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context& context) {
+  std::vector<std::int64_t> numbers;
+  for (const FrameFile& frame : frames.all) numbers.push_back(frame.number);
+  std::shared_ptr<PageFrames> shown;
+  if (context.page())
+    shown = std::make_shared<PageFrames>(*context.page(), fitter.rest().mesh, frames.wanted.size());
+  return {std::move(numbers), [&, shown](std::size_t index) {
+            const FrameFile& frame = frames.all[index];
+            const Mesh mesh =
+                context.timed("read", [&] { return readMeshLike(frame.path, fitter.rest().mesh); });
+            FrameFit fit = fitter.fit(mesh);
+            addSeconds(context.report().seconds, fit.seconds);
+            for (const std::string& warning : fit.warnings)
+              context.warning(fmt::format("frame {}: {}", frame.number, warning));
+            if (shown) shown->add(frame.number, mesh.vertices, fit);
+            return fit;
+          }};
+}
+
+std::string framesPlan(const FrameFitterSettings& settings, const Frames& frames) {
+  return fmt::format("fit {} charges to {} boundary points for {} frames, {} to {}",
+                     settings.sources, frameCollocation(settings), frames.wanted.size(),
+                     frames.all[frames.wanted.front()].number,
+                     frames.all[frames.wanted.back()].number);
+}
+
+void requireFrameMemory(const FrameFitterSettings& settings, std::uint64_t others,
+                        const Context& context) {
+  const auto need = [&](std::uint64_t sources) {
+    FrameFitterSettings fewer = settings;
+    fewer.sources = sources;
+    fewer.collocation = 0;
+    return frameFitterMemory(fewer, others);
+  };
+  context.requireMemory(fmt::format("a sequence with {} charges", settings.sources),
+                        frameFitterMemory(settings, others), {"--charges", 1, kMaxCharges, need},
+                        "use a lower --resolution or raise --max-memory");
+}
+
+}  // namespace innermap::tool

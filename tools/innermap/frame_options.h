@@ -1,0 +1,58 @@
+// The frames of a sequence and how they are fitted: what `sequence` and `deform` share.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "core/frame_files.h"
+#include "innermap/fit/frame_fitter.h"
+#include "verdict.h"
+
+namespace innermap::tool {
+
+struct FrameOptions {
+  std::vector<std::string> files;
+  std::string ranges;
+  FrameFitterSettings fitting;
+  double tolerance = kUsualTolerance;  // that frames are judged by
+  VerdictOptions verdict;
+};
+
+// The argument FRAMES, which must be the last one.
+void addFrameArgument(Command& command, FrameOptions& options);
+void addFrameOptions(Command& command, FrameOptions& options);
+
+struct Frames {
+  std::vector<FrameFile> all;       // ascending
+  std::vector<std::size_t> wanted;  // of all, those that --frames chooses
+};
+
+// Files without a number that a pattern or folder holds are noted, but for the rest pose. Throws
+// FileError, SettingError.
+Frames listFrames(const FrameOptions& options, const std::string& rest, Context& context);
+
+// The output of each of the frames wanted.
+std::vector<std::string> framePaths(const FramePattern& pattern, const Frames& frames);
+
+// The rest pose; fills the report's "source".
+SourceBoundary readRest(const std::string& rest, Context& context);
+
+// Its fitter; fills the report's "solve".
+FrameFitter makeFrameFitter(SourceBoundary source, const FrameFitterSettings& settings,
+                            Context& context);
+
+// Reads and fits frames.all as they are asked for. All three must outlive the result.
+FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context& context);
+
+// "fit 8000 charges to 24000 boundary points for 48 frames, 1 to 48", for --dry-run.
+std::string framesPlan(const FrameFitterSettings& settings, const Frames& frames);
+
+// Throws MemoryError, with the largest --charges that would fit beside `others` bytes, when the
+// need of all together is over the limit.
+void requireFrameMemory(const FrameFitterSettings& settings, std::uint64_t others,
+                        const Context& context);
+
+}  // namespace innermap::tool

@@ -1,0 +1,44 @@
+// Options that say how fine the grids that a command writes are, and what they are called.
+#pragma once
+
+#include <fmt/format.h>
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "command.h"
+#include "innermap/evaluate/grids.h"
+#include "innermap/io/vdb_file.h"
+#include "innermap/levelset/level_set.h"
+
+namespace innermap::tool {
+
+// Throws MemoryError, with the highest --resolution that would fit, when the need is over the
+// limit. doing: "evaluating the map on a grid". need: bytes.
+void requireGridMemory(const std::string& doing, const LatticeChoice& options,
+                       const Context& context,
+                       const std::function<std::uint64_t(const LatticeChoice&)>& need);
+
+void writeGridFile(const std::string& path, const openvdb::GridPtrVec& grids,
+                   const NamingScheme& names, Context& context,
+                   const openvdb::MetaMap& metadata = {});
+
+// What `evaluate`, `map` and `sequence` share.
+struct EvaluationOptions {
+  LatticeChoice grid;
+  LameConstants lame;
+  RepairFolds repair = RepairFolds::automatic;
+  NamingScheme names = NamingScheme::innermap;
+};
+
+void addEvaluationOptions(Command& command, EvaluationOptions& options);
+
+MapGridSettings mapGridSettings(const EvaluationOptions& options);
+
+void requireEvaluationMemory(const Solid& solid, const LatticeChoice& options,
+                             const Context& context, const MapGridKind& kind);
+
+}  // namespace innermap::tool

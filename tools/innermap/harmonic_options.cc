@@ -1,0 +1,151 @@
+#include "harmonic_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "fitting_options.h"
+#include "innermap/core/memory.h"
+#include "innermap/fit/fit_harmonic.h"
+#include "innermap/fit/fit_map.h"
+#include "inputs.h"
+#include "job_cost.h"
+#include "lists.h"
+#include "map_report.h"
+#include "report/figures.h"
+
+namespace innermap::tool {
+namespace {
+
+void reportHarmonic(const HarmonicFit& fit, const HarmonicOptions& options, Context& context) {
+  context.tell(fit);
+  Report& report = context.report();
+  const BoundaryError& e = fit.error;
+  report.add("solve", solveFigures(fit));
+  report.add("solve", choiceFigures(options.fit.seed));
+  report.add("boundary_error", boundaryErrorFigures(fit));
+  report.add("tolerance", toleranceFigures(fit, options.fit.tolerance));
+  report.add("field", fieldFigures(fit.span, fit.freeShare));
+  context.print(fmt::format(
+      "boundary error: rms {:.2e}, 99% {:.2e}, max {:.2e} of the values' span of {:.4g}; inside at "
+      "most {:.2e}\n",
+      e.rms, e.p99, e.max, fit.span, fit.bound));
+  if (fit.met) return;
+  const std::string text = fmt::format(
+      "--tolerance {:g} is not met: 99% of the boundary lies within {:.3g} of the values' span, "
+      "with "
+      "{} charges; {}",
+      options.fit.tolerance, e.p99, fit.sources, whyEnded(fit.end, options.fit.maxSources));
+  if (options.bestEffort)
+    context.warning(text);
+  else
+    context.failAfterwards(text + "; what is written is marked so (--best-effort: exit code 0)");
+}
+
+HarmonicGridSettings gridSettingsOf(const HarmonicOptions& options) {
+  auto out = options.grid.in<HarmonicGridSettings>();
+  out.values = out.gradients = out.directions = out.magnitudes = false;
+  for (const std::string& name : commaList(options.grids)) {
+    if (name == "value")
+      out.values = true;
+    else if (name == "gradient")
+      out.gradients = true;
+    else if (name == "direction")
+      out.directions = true;
+    else if (name == "magnitude")
+      out.magnitudes = true;
+    else
+      throw UsageError("--grids: '" + name +
+                       "' is not one of value, gradient, direction, magnitude");
+  }
+  return out;
+}
+
+}  // namespace
+
+void addHarmonicOptions(Command& command, HarmonicOptions& o, const std::string& defaultGrids) {
+  o.grids = defaultGrids;
+  command.positional("MESH", &o.mesh, "mesh of the solid: .obj, .ply, .off or .stl");
+  command.option("--output", "FILE", &o.output, "the grids, a .vdb file")
+      .shortName("-o")
+      .required()
+      .writes({".vdb"});
+  command
+      .option("--field", "FILE", &o.field,
+              "also the field itself in double precision, a .ply file of charges and weights")
+      .writes({".ply"});
+  command.limitTime("after which charges are no longer added");
+  command.settings(describe(o.fit));
+  command.setting(creaseSetting(&o.creaseAngle));
+  command.flag("--best-effort", &o.bestEffort, "a tolerance that is not met is a warning");
+  command.settings(describe(o.grid));
+  command.option(
+      "--grids", "LIST", &o.grids,
+      "what is written of each channel, of value, gradient, direction (unit vectors) and "
+      "magnitude");
+  command.setting(namesSetting(&o.names));
+}
+
+void runHarmonic(const HarmonicOptions& options,
+                 const std::function<NamedConditions(const Mesh& mesh)>& conditionsOf, bool unitSum,
+                 Context& context) {
+  const HarmonicGridSettings grids = gridSettingsOf(options);
+  context.output(options.output);
+  if (!options.field.empty()) context.output(options.field);
+  Mesh mesh = readMeshFile(options.mesh, context);
+  NamedConditions known = conditionsOf(mesh);
+  known.conditions.creaseAngle = options.creaseAngle;
+  if (known.conditions.values.rows() == 3 * mesh.triangles.size()) {
+    const double share = removeJumps(mesh, known.conditions);
+    if (share > 0)
+      context.note(
+          fmt::format("values that touch are joined: on {:.2g}% of the surface, the triangles "
+                      "along their borders, they go over into one another",
+                      100 * share));
+  }
+  const std::size_t vertices = mesh.vertices.size();
+  const SourceBoundary boundary = makeSourceBoundary(std::move(mesh));
+  reportSource(boundary, context);
+  HarmonicFitSettings settings = options.fit;
+  FitMapSettings like;
+  like.tolerance = settings.tolerance;
+  const std::uint64_t need = std::max(
+      fitMapMemory(like, vertices), harmonicGridMemory(boundary.solid, known.names.size(), grids));
+  LevelSetSettings cells;
+  cells.voxelSize = grids.voxelSize;
+  cells.resolution = grids.resolution;
+  requireInterior(boundary.solid, cells);
+  JobSize size = jobSize(boundary.solid, grids);
+  size.items = static_cast<double>(known.names.size()) * size.inside;
+  std::vector<JobPhase> phases = fittingPhases(like, likelyPlaces(vertices, like.tolerance), false);
+  phases.pop_back();  // no steps
+  for (JobPhase& phase : phases) phase.seconds *= 1 + 0.1 * static_cast<double>(known.names.size());
+  for (const char* stage : {"level set", "evaluating the field", "writing the VDB file"})
+    phases.push_back(stageOf(stage, size));
+  context.expect(phases);
+  if (context.dryRun())
+    return context.plan({fmt::format("fit {} channel(s) on {}", known.names.size(), options.mesh),
+                         "write grids to " + options.output},
+                        need);
+  context.requireMemory("the harmonic field", need,
+                        "use a lower --resolution or raise --max-memory");
+  context.spend(Context::kMostOfTime);
+  HarmonicFit fit = fitHarmonic(boundary, known.conditions, settings);
+  if (unitSum) fit.field = withUnitSum(fit.field);
+  reportHarmonic(fit, options, context);
+  const Facts facts = harmonicFacts(fit, options.fit, options.mesh, known.names);
+  HarmonicGridSettings evaluation = grids;
+  evaluation.span = fit.span;
+  const HarmonicGrids made = evaluateHarmonic(fit.field, boundary.solid, known.names, evaluation);
+  for (const std::string& text : made.warnings) context.warning(text);
+  addSeconds(context.report().seconds, made.seconds);
+  context.report().add("grid", gridFigures(made.voxelSize, made.activeVoxels, made.interiorVoxels));
+  describeField(made.all(), facts);
+  writeGridFile(options.output, made.all(), options.names, context);
+  if (!options.field.empty())
+    context.timed("write", [&] {
+      writeSolidField(options.field, {fit.field, boundary, known.names, facts});
+    });
+}
+
+}  // namespace innermap::tool

@@ -1,0 +1,163 @@
+// `innermap hexahedralize`: a mesh's inside as hexahedra.
+#include "innermap/tetra/hexahedralize.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "cell_report.h"
+#include "commands.h"
+#include "cut_options.h"
+#include "innermap/core/memory.h"
+#include "innermap/io/cell_file.h"
+#include "innermap/io/solid_pictures.h"
+#include "innermap/mesh/mesh_file.h"
+#include "inputs.h"
+#include "job_cost.h"
+#include "polycube_report.h"
+#include "report/figures.h"
+#include "section_options.h"
+
+namespace innermap::tool {
+namespace {
+
+struct Options {
+  std::string mesh, output, picture, cubes, cubesPicture, inBlocks;
+  HexahedralizeSettings settings;
+  SurfaceOptions surface;
+  CutOptions cut;
+};
+
+void claimOutputs(const Options& options, Context& context) {
+  for (const auto& [option, path] : {std::make_pair("--output", &options.output),
+                                     std::make_pair("--in-blocks", &options.inBlocks)})
+    if (!path->empty() && !isCellFile(*path))
+      throw UsageError(std::string(option) + " " + *path + ": must end in .vtu, .msh or .mesh");
+  if (!options.cubes.empty()) requireMeshFile("--polycube", options.cubes);
+  for (const std::string* path : {&options.output, &options.inBlocks, &options.cubes,
+                                  &options.picture, &options.cubesPicture})
+    if (!path->empty()) context.output(*path);
+}
+
+void fillReport(const Hexahedralization& result, Context& context) {
+  Report& report = context.report();
+  reportPolycube(result.polycube, context);
+  report.add("hexahedra", figures(result));
+  report.add("boundary_map", boundaryMapFigures(result.boundaryMap));
+  reportCells(result.mesh, result.quality, context);
+  context.print(
+      fmt::format("inverted somewhere: {} as carried, {} now; {}\n", result.before.inverted,
+                  result.after.inverted,
+                  result.after.proven()
+                      ? "the Jacobian's Bernstein coefficients prove all of them right side out"
+                      : fmt::format("{} not decided", result.after.undecided)));
+  reportBoundaryFit(result.boundary, context);
+  report.add("features", featureFigures(result));
+  if (result.featureLength > 0)
+    context.print(
+        fmt::format("sharp edges, not followed: {:.4g} long; the hexahedra's surface is "
+                    "off them rms {:.2e}, max {:.2e}\n",
+                    result.featureLength, result.fromFeatures.rms, result.fromFeatures.max));
+}
+
+void drawCut(const Options& options, const Hexahedralization& result) {
+  CellPictureSettings settings = options.cut.cellPicture(options.mesh);
+  settings.blue = 1;
+  settings.red = 0;
+  settings.caption = fmt::format("scaled Jacobian of each of {} cells: red 0, blue 1",
+                                 result.mesh.hexahedra.size());
+  const std::vector<float>& jacobians = result.quality.scaledJacobian;
+  writeCellPicture(options.picture, result.mesh,
+                   std::vector<double>(jacobians.begin(), jacobians.end()), settings);
+}
+
+void writeAll(const Options& options, const Mesh& mesh, const Hexahedralization& result,
+              Context& context) {
+  context.timed("write", [&] {
+    for (const std::string& field : writeCells(options.output, result.mesh))
+      context.note(fmt::format("{} cannot hold the field {}", options.output, field));
+    if (!options.inBlocks.empty()) writeCells(options.inBlocks, result.inBlocks);
+    if (!options.cubes.empty())
+      writeMesh(options.cubes, blockSurface(result.polycube.blocks, result.pieces));
+  });
+  context.timed("picture", [&] {
+    if (!options.picture.empty()) drawCut(options, result);
+    if (!options.cubesPicture.empty())
+      drawPolycube(options.cubesPicture, mesh, result.polycube.blocks);
+  });
+}
+
+void run(const Options& options, Context& context) {
+  claimOutputs(options, context);
+  const Mesh mesh = readCleanSurface(options.mesh, options.surface, context);
+  const HexahedralizeSettings settings = options.settings;
+  const std::uint64_t need = hexahedralizeMemory(mesh, settings);
+  JobSize size;
+  const double blocks = expectedBlocks(mesh, settings.polycube.blocks);
+  size.items = blocks * std::pow(settings.pieces, 3) / 1000;
+  std::vector<JobPhase> phases = correspondPhases(mesh.vertices.size());
+  for (const char* stage : {"meeting the tolerance: cubes", "checking hexahedra",
+                            "untangling hexahedra", "shaping hexahedra"})
+    phases.push_back(stageOf(stage, size));
+  context.expect(phases);
+  if (context.dryRun())
+    return context.plan(
+        {fmt::format("fill {} with hexahedra, {} along the edge of each of about {:.0f} blocks, to "
+                     "{}",
+                     options.mesh, settings.pieces, expectedBlocks(mesh, settings.polycube.blocks),
+                     options.output)},
+        need);
+  context.requireMemory("hexahedra of " + options.mesh, need, "use fewer --blocks or --pieces");
+  context.spend(Context::kMostOfTime);
+  const Hexahedralization result = hexahedralize(mesh, settings);
+  context.tell(result);
+  fillReport(result, context);
+  writeAll(options, mesh, result, context);
+  if (!result.after.proven())
+    context.failAfterwards(
+        fmt::format("{} hexahedra are inverted or not proven not to be; they are "
+                    "written all the same",
+                    result.after.inverted + result.after.undecided));
+}
+
+}  // namespace
+
+Command makeHexahedralizeCommand() {
+  auto o = std::make_shared<Options>();
+  Command c("hexahedralize", "Fill a mesh with hexahedra");
+  c.description(
+      "A polycube stands in for the solid (innermap polycube); its blocks, cut into hexahedra and "
+      "with a layer of more around them, are carried into the solid by the harmonic map of one "
+      "onto "
+      "the other, and there evened out with their boundary on the surface until none is inverted, "
+      "which the Bernstein coefficients of each one's Jacobian prove. Sharp edges are drawn near, "
+      "not followed. One closed body, whose mesh may have any number of handles and cavities. "
+      "Ends with exit code 1 where some hexahedra could not be turned right.");
+  addFillOptions(c, o->mesh, o->settings.polycube, o->surface);
+  c.option("--output", "FILE", &o->output,
+           "the .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file to write, with each cell's "
+           "scaled_jacobian (.vtu and .msh)")
+      .shortName("-o")
+      .required()
+      .writes({".vtu", ".msh", ".mesh"});
+  c.limitTime("after which fitting, untangling and shaping end");
+  c.settings(without(describe(o->settings), {"blocks"}));
+  c.option("--polycube", "FILE", &o->cubes, "also write the polycube's surface, .obj or .ply")
+      .writes({".obj", ".ply"})
+      .advanced();
+  c.option("--in-blocks", "FILE", &o->inBlocks,
+           "also write the same hexahedra in the polycube, .vtu, .msh or .mesh")
+      .writes({".vtu", ".msh", ".mesh"})
+      .advanced();
+  addCellPicture(c, o->picture, o->cut,
+                 "a .png of the hexahedra behind a cut, coloured by scaled Jacobian");
+  c.option("--polycube-picture", "FILE", &o->cubesPicture, "a .png of the mesh and the polycube")
+      .writes({".png"})
+      .advanced();
+  c.example("innermap hexahedralize spot.obj -o spot.vtu --picture spot.png");
+  c.example("innermap hexahedralize part.obj -o part.msh --blocks 24 --polycube cubes.obj");
+  c.run([o](Context& context) { run(*o, context); });
+  return c;
+}
+
+}  // namespace innermap::tool

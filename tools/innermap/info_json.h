@@ -1,0 +1,22 @@
+// What `innermap info --json` says of each kind of file.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "innermap/field/field_file.h"
+#include "innermap/io/exr_slices.h"
+#include "innermap/io/vdb_file.h"
+#include "innermap/io/volume_texture.h"
+#include "innermap/mesh/mesh.h"
+
+namespace innermap::tool {
+
+std::string infoJson(const std::string& path, const VdbInfo& info);
+std::string infoJson(const std::string& path, const std::vector<ExrPart>& parts,
+                     const std::optional<VolumeTextureInfo>& volume);
+std::string infoJson(const std::string& path, const FieldFile& file);
+std::string infoJson(const std::string& path, const Mesh& mesh);
+
+}  // namespace innermap::tool

@@ -1,0 +1,276 @@
+// `innermap map`: the main job, from two meshes to grids, slices, a picture and a report.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "commands.h"
+#include "correspondence.h"
+#include "fitting_options.h"
+#include "grid_options.h"
+#include "html/contents.h"
+#include "innermap/io/exr_slices.h"
+#include "innermap/io/solid_pictures.h"
+#include "innermap/mesh/mesh_file.h"
+#include "inputs.h"
+#include "job_cost.h"
+#include "map_report.h"
+#include "section_options.h"
+#include "verdict.h"
+
+namespace innermap::tool {
+namespace {
+
+constexpr double kRepairShare = 0.3;  // of what --max-time leaves when the fit has ended
+
+struct MapOptions {
+  std::string source, target, output, correspondence;
+  CorrespondOptions correspond;
+  FittingOptions fitting;
+  EvaluationOptions evaluation;
+  VerdictOptions verdict;
+  ExrSliceSettings slices;
+  std::string sectionGrid = "deformation_energy";
+  SectionOptions section;
+};
+
+void writePictures(const SolidGrids& solidGrids, const MapFit& fit, PendingFolder& folder,
+                   const MapOptions& options) {
+  const openvdb::GridPtrVec grids = solidGrids.all();
+  folder.write("slices.exr",
+               [&](const std::string& path) { writeExrSlices(path, grids, options.slices); });
+  SectionSettings section = sectionSettings(options.section, fit.solid(), *solidGrids.density);
+  section.grid = options.sectionGrid;
+  folder.write("section.png",
+               [&](const std::string& path) { writeSectionImage(path, grids, section); });
+  if (fit.steps.empty()) return;
+  folder.write("steps.png", [&](const std::string& path) { writeStepsPicture(path, fit); });
+}
+
+// Both meshes as the files have them; `related` tells whether they have the same connectivity.
+struct Meshes {
+  Mesh source, target;
+  bool related = true;
+};
+
+Meshes readMeshes(const MapOptions& options, Context& context) {
+  if (options.target.empty() && options.correspondence.empty())
+    throw UsageError("TARGET is missing; give it, or --correspond (see 'innermap map --help')");
+  Meshes meshes;
+  meshes.source = readMeshFile(options.source, context);
+  if (!options.correspondence.empty()) {
+    meshes.target = context.timed(
+        "read", [&] { return readCorrespondence(options.correspondence, meshes.source); });
+    if (!options.target.empty())
+      requireOnTarget(meshes.target, readMeshFile(options.target, context));
+    return meshes;
+  }
+  requireMeshMemory(options.target, context);
+  TargetMesh target =
+      context.timed("read", [&] { return readTarget(options.target, meshes.source); });
+  meshes.target = std::move(target.mesh);
+  meshes.related = target.related;
+  if (!meshes.related && context.page()) addMesh(*context.page(), meshes.target);
+  return meshes;
+}
+
+std::string correspondPlan(const MapOptions& options) {
+  return fmt::format("{} and {} differ in connectivity, so the one is laid onto the other first",
+                     options.source, options.target);
+}
+
+// Before the solid is known: of the mesh as it was given.
+JobSize gridSize(const MapOptions& options, const Mesh& source) {
+  const LatticeChoice& grid = options.evaluation.grid;
+  const Vec3 size = boundingBox(source).extent();
+  const double longest = std::max({size.x, size.y, size.z});
+  const double voxel =
+      grid.voxelSize ? *grid.voxelSize : longest / grid.resolution.value_or(kUsualResolution);
+  constexpr std::size_t kLikely = 2;  // charges a vertex
+  return jobSize(std::abs(signedVolume(source)), surfaceArea(source), voxel,
+                 kLikely * source.vertices.size());
+}
+
+bool laidOn(const MapOptions& options, const Meshes& meshes) {
+  return !meshes.related || !options.correspondence.empty();
+}
+
+FitMapSettings fittingFor(const MapOptions& options, const Meshes& meshes) {
+  return fitMapSettings(options.fitting, meshes.source.vertices.size(), laidOn(options, meshes));
+}
+
+// The job after the meshes are read; the seconds from the evaluation on.
+double expectPhases(const MapOptions& options, const Meshes& meshes, Context& context) {
+  const std::size_t vertices = meshes.source.vertices.size();
+  const bool strangers = laidOn(options, meshes);
+  std::vector<JobPhase> phases;
+  if (!meshes.related) phases = correspondPhases(vertices + meshes.target.vertices.size());
+  const FitMapSettings fitting = fittingFor(options, meshes);
+  const double places = meshes.related
+                            ? bentPlaces(meshes.source, meshes.target.vertices, fitting.tolerance)
+                            : likelyPlaces(vertices, fitting.tolerance);
+  for (const JobPhase& phase : fittingPhases(fitting, places, strangers)) phases.push_back(phase);
+  const JobSize size = gridSize(options, meshes.source);
+  JobPhase begin{"evaluating", 0};
+  begin.gate = true;
+  std::vector<JobPhase> last{begin};
+  for (const JobPhase& phase : evaluationPhases(size)) last.push_back(phase);
+  last.push_back(stageOf("writing slices", size));
+  last.push_back(stageOf("drawing the section", size));
+  phases.insert(phases.end(), last.begin(), last.end());
+  context.expect(phases);
+  return totalSeconds(last);
+}
+
+// What refuses the run refuses its plan: the pair is made, or it is looked at whether the two can
+// be laid onto each other.
+Solid solidToMap(const MapOptions& options, const Meshes& meshes, Context& context) {
+  if (meshes.related) {
+    BoundaryPair pair = makeBoundaryPair(meshes.source, meshes.target);
+    reportBoundaries(pair, context);
+    return std::move(pair.source.solid);
+  }
+  context.timed("check", [&] {
+    requireLayable(meshes.source, meshes.target, options.correspond.map.layOut);
+  });
+  SourceBoundary source = makeSourceBoundary(meshes.source);
+  reportSource(source, context);
+  return std::move(source.solid);
+}
+
+void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
+  const Solid solid = solidToMap(options, meshes, context);
+  requireInterior(solid, options.evaluation.grid.in<LevelSetSettings>());
+  const std::size_t vertices = meshes.source.vertices.size();
+  const FitMapSettings fitting = fittingFor(options, meshes);
+  std::vector<std::string> lines;
+  const bool steps = laidOn(options, meshes) && fitting.oneToOne != OneToOne::off;
+  std::uint64_t need = std::max(
+      fitMapMemory(fitting, vertices) + (steps ? kStepsMemory : 0),
+      mapGridMemory(
+          solid, mapGridSettings(options.evaluation),
+          {steps ? std::size_t{2} : 1, needsLocalMap(meshes.target.vertices, fitting.tolerance)}));
+  std::string files = "map.ply, map.vdb, slices.exr, section.png";
+  if (!meshes.related) {
+    lines.push_back(correspondPlan(options));
+    need = std::max(
+        {need, correspondMemory(vertices, meshes.target.vertices.size()), meshPictureMemory()});
+    files += ", correspondence.ply, correspondence.png";
+  }
+  lines.push_back(fittingPlan(fitting));
+  lines.push_back(fmt::format("write {} and report.json to {}", files, options.output));
+  context.plan(lines, need);
+}
+
+// Lays the source onto the target where they are not related, and puts that into the folder.
+BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& folder,
+                      Context& context) {
+  if (meshes.related) return makeBoundaryPair(std::move(meshes.source), std::move(meshes.target));
+  context.note(correspondPlan(options) + "; --correspond takes one made before");
+  const std::string name = meshes.target.name;
+  CorrespondOptions correspond = options.correspond;
+  correspond.map.seed = options.fitting.fit.seed;
+  correspond.map.carryBack = false;
+  const MeshCorrespondence moved =
+      correspondMeshes(std::move(meshes.source), std::move(meshes.target), correspond, context);
+  const Mesh target = moved.target(name);
+  folder.write("correspondence.ply",
+               [&](const std::string& path) { writeCorrespondence(path, moved); });
+  if (moved.changed)
+    folder.write("correspondence.source.ply",
+                 [&](const std::string& path) { writeMesh(path, moved.source); });
+  context.timed("picture", [&] {
+    writeCorrespondencePictures(
+        "correspondence.png", moved,
+        [&](const std::string& file, const auto& write) { folder.write(file, write); });
+  });
+  return makeBoundaryPair(moved.source, target);
+}
+
+void run(const MapOptions& options, Context& context) {
+  checkFittingOptions(options.fitting);
+  std::vector<std::string> files{"map.ply",     "map.vdb",   "slices.exr",
+                                 "section.png", "steps.png", "report.json"};
+  if (options.correspondence.empty())
+    for (const char* name : {"correspondence.ply", "correspondence.source.ply",
+                             "correspondence.png", "correspondence.other.png"})
+      files.emplace_back(name);
+  const auto folder = context.outputFolder(options.output, files);
+  Meshes meshes = readMeshes(options, context);
+  const double later = expectPhases(options, meshes, context);
+  if (context.dryRun()) return plan(options, meshes, context);
+  const bool laid = laidOn(options, meshes);
+  context.spend(kLayingTimeShare, later);
+  BoundaryPair pair = makePair(options, std::move(meshes), *folder, context);
+  reportBoundaries(pair, context);
+  const std::size_t vertices = pair.source.mesh.vertices.size();
+  const FitMapSettings fitting = fitMapSettings(options.fitting, vertices, laid);
+  requireFittingMemory(fitting, vertices, context);
+  requireEvaluationMemory(pair.solid(), options.evaluation.grid, context,
+                          {1, needsLocalMap(pair.target.moved, fitting.tolerance)});
+  requireInterior(pair.solid(), options.evaluation.grid.in<LevelSetSettings>());
+  context.phase("fitting");
+  context.spend(1, later);
+  const MapFit fit = fitMap(std::move(pair), fitting);
+  reportFit(fit, fitting, options.fitting.bestEffort, context);
+  context.phase("evaluating");
+  context.spend(kRepairShare);
+  const SolidGrids grids = evaluateOnGrid(fit, mapGridSettings(options.evaluation));
+  reportGrids(grids, options.evaluation.lame, context);
+  judgeMap(fit, &grids, options.verdict, laid ? MapOrigin::laidOn : MapOrigin::related, context);
+  folder->write("map.vdb", [&](const std::string& path) {
+    writeGridFile(path, grids.all(), options.evaluation.names, context);
+  });
+  context.timed("write", [&] {
+    folder->write("map.ply", [&](const std::string& path) { writeMap(path, fit); });
+    writePictures(grids, fit, *folder, options);
+  });
+  context.finish(*folder);
+}
+
+}  // namespace
+
+Command makeMapCommand() {
+  auto o = std::make_shared<MapOptions>();
+  Command c("map", "Map the inside of a solid onto another: fit, evaluate, slice, report");
+  c.description(
+      "Writes map.ply (the map itself), map.vdb (its grids), slices.exr, section.png and "
+      "report.json into a folder. Where SOURCE and TARGET have the same faces and vertex order, "
+      "each vertex goes to its like. Any other TARGET is a shape that SOURCE is laid onto first, "
+      "as innermap correspond does; correspondence.ply and correspondence.png then show how. The "
+      "shapes that a map in steps goes through are shown by steps.png.");
+  c.positional("SOURCE", &o->source, "mesh of the solid: .obj, .ply, .off or .stl");
+  c.positional("TARGET", &o->target,
+               "the same mesh with its vertices moved, or any other mesh; may be left out with "
+               "--correspond")
+      .optional();
+  c.option("--output", "FOLDER", &o->output, "where the files go; made when missing")
+      .shortName("-o")
+      .required();
+  c.limitTime("after which trying, refining, steps and repairs end; the rest takes what it takes");
+  c.option("--correspond", "FILE", &o->correspondence,
+           "SOURCE's vertices on TARGET, as innermap correspond or an earlier map wrote them")
+      .reads();
+  o->correspond.map.subdivide = kLaidOnSubdivide;
+  addCorrespondOptions(c, o->correspond);
+  addFittingOptions(c, o->fitting);
+  addEvaluationOptions(c, o->evaluation);
+  addVerdictOptions(c, o->verdict);
+  c.group("slices and picture");
+  c.choice("--slice-axis", "AXIS", &o->slices.axis, {{"x", 0}, {"y", 1}, {"z", 2}}, "of slices.exr")
+      .advanced();
+  c.option("--slices", "N", &o->slices.count, "parts of slices.exr")
+      .range(1, 4096)
+      .advanced()
+      .was("--slice-count");
+  c.option("--section-grid", "NAME", &o->sectionGrid, "grid shown in section.png")
+      .choices(mapGridNames());
+  addSectionOptions(c, o->section);
+  c.example("innermap map rest.obj pose.obj -o out");
+  c.example("innermap map cow.obj man.obj -o out");
+  c.example("innermap map rest.obj pose.obj -o out --tolerance 3e-4 --resolution 256");
+  c.run([o](Context& context) { run(*o, context); });
+  return c;
+}
+
+}  // namespace innermap::tool

@@ -1,0 +1,74 @@
+// `innermap polycube`: a solid as a few equal cubes.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "commands.h"
+#include "innermap/core/memory.h"
+#include "innermap/mesh/mesh_file.h"
+#include "innermap/tetra/hexahedralize.h"
+#include "inputs.h"
+#include "polycube_report.h"
+#include "report_figures.h"
+
+namespace innermap::tool {
+namespace {
+
+struct PolycubeOptions {
+  std::string mesh, output, picture;
+  PolycubeSettings settings;
+  SurfaceOptions surface;
+  std::optional<int> pieces;
+};
+
+void run(const PolycubeOptions& options, Context& context) {
+  requireMeshFile("--output", options.output);
+  context.output(options.output);
+  if (!options.picture.empty()) context.output(options.picture);
+  const Mesh mesh = readCleanSurface(options.mesh, options.surface, context);
+  const PolycubeSettings settings = options.settings;
+  const std::uint64_t need = polycubeMemory(mesh, settings);
+  if (context.dryRun())
+    return context.plan(
+        {fmt::format("write a polycube of about {:.0f} blocks of {} to {}",
+                     expectedBlocks(mesh, settings.blocks), options.mesh, options.output)},
+        need);
+  context.requireMemory("a polycube of " + options.mesh, need, "use fewer --blocks");
+  const Polycube cube = makePolycube(mesh, settings);
+  context.tell(cube);
+  reportPolycube(cube, context);
+  const Mesh surface = blockSurface(cube.blocks, options.pieces.value_or(usualPieces(cube.blocks)));
+  context.report().add("polycube", polycubeMeshFigures(surface.vertices.size()));
+  context.timed("write", [&] { writeMesh(options.output, surface); });
+  if (!options.picture.empty())
+    context.timed("picture", [&] { drawPolycube(options.picture, mesh, cube.blocks); });
+}
+
+}  // namespace
+
+Command makePolycubeCommand() {
+  auto o = std::make_shared<PolycubeOptions>();
+  Command c("polycube", "Stand a few equal cubes in for a solid");
+  c.description(
+      "Blocks that lie along the axes, as near to the solid as so many can be, with its handles "
+      "and "
+      "cavities; where no such set is found the command fails and names a number of blocks that "
+      "does. The surface's vertices stand close enough to be mapped (innermap map OUT MESH "
+      "--aligned). One closed body, whose mesh may have any number of handles and cavities.");
+  addFillOptions(c, o->mesh, o->settings, o->surface);
+  c.option("--output", "FILE", &o->output, "the surface of the cubes, a .obj or .ply file")
+      .shortName("-o")
+      .required()
+      .writes({".obj", ".ply"});
+  c.option("--pieces", "K", &o->pieces, "squares along a block's edge, of two triangles each")
+      .range(1, kMostBlockPieces)
+      .defaults("as many as give 3000 vertices");
+  c.option("--picture", "FILE", &o->picture, "a .png of the mesh and the cubes").writes({".png"});
+  c.example("innermap polycube spot.obj -o cubes.obj --blocks 12 --picture cubes.png");
+  c.run([o](Context& context) { run(*o, context); });
+  return c;
+}
+
+}  // namespace innermap::tool

@@ -1,0 +1,145 @@
+// `innermap remesh`: the cells of one solid made those of another by a map between them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include "cell_report.h"
+#include "commands.h"
+#include "cut_options.h"
+#include "innermap/core/memory.h"
+#include "innermap/io/cell_file.h"
+#include "innermap/io/solid_pictures.h"
+#include "innermap/tetra/cells.h"
+#include "innermap/tetra/remesh_cells.h"
+#include "inputs.h"
+#include "job_cost.h"
+#include "report/figures.h"
+#include "section_options.h"
+
+namespace innermap::tool {
+namespace {
+
+struct RemeshOptions {
+  std::string map, cells, surface, output, picture;
+  RemeshSettings settings;
+  CutOptions cut;
+};
+
+void reportRemesh(const Remesh& result, double diagonal, Context& context) {
+  Report& report = context.report();
+  report.add("remesh", figures(result, diagonal));
+  addSeconds(report.seconds, result.seconds);
+  context.print(fmt::format(
+      "inverted: {} carried, {} repaired; vertices moved rms {:.2e}, max {:.2e}, {} swaps, {} "
+      "collapses\nboundary's vertices off the surface: rms {:.2e}, max {:.2e} (of the diagonal)\n",
+      result.invertedCarried, result.inverted, result.repair.moved / diagonal,
+      result.repair.farthestMoved / diagonal, result.swaps, result.collapses, result.boundaryRms,
+      result.boundaryMax));
+}
+
+void drawCut(const RemeshOptions& options, const Remesh& result) {
+  CellPictureSettings settings = options.cut.cellPicture(options.output);
+  std::vector<double> values(result.quality.leastDihedral.begin(),
+                             result.quality.leastDihedral.end());
+  for (const float j : result.quality.scaledJacobian) values.push_back(60.0 * j);
+  settings.caption = result.mesh.hexahedra.empty()
+                         ? "least dihedral angle of each cell: red 0, yellow 30, blue 60 degrees"
+                         : "scaled Jacobian of each cell: red 0, yellow 0.5, blue 1";
+  writeCellPicture(options.picture, result.mesh, values, settings);
+}
+
+void write(const RemeshOptions& options, Remesh& result, Context& context) {
+  context.timed("write", [&] {
+    for (const std::string& field : writeCells(options.output, result.mesh))
+      context.warning(options.output + ": its format cannot hold the field '" + field +
+                      "'; it is left out");
+  });
+}
+
+void run(const RemeshOptions& options, Context& context) {
+  if (!isCellFile(options.cells))
+    throw UsageError(options.cells + ": must be a .vtu, .msh or .mesh file");
+  if (!isCellFile(options.output))
+    throw UsageError("--output " + options.output + ": must end in .vtu, .msh or .mesh");
+  context.output(options.output);
+  if (!options.picture.empty()) context.output(options.picture);
+  const MappedSolid mapped = readMapFile(options.map, context);
+  const std::uint64_t reading = readCellsMemory(options.cells);
+  context.requireMemory("reading " + options.cells, reading, "use a coarser mesh");
+  CellFile file = context.timed("read", [&] { return readCells(options.cells); });
+  for (const std::string& note : file.notes) context.note(note);
+  const std::uint64_t need = std::max(reading, remeshMemory(file.mesh));
+  JobSize size;
+  size.items = static_cast<double>(file.mesh.tetrahedra.size() + file.mesh.hexahedra.size()) / 1e6;
+  // Comes several times, with the like of it in between.
+  JobPhase boundary = stageOf("repairing the boundary", size);
+  boundary.steady = false;
+  context.expect({stageOf("repairing", size), boundary, stageOf("improving shapes", size),
+                  stageOf("writing cells", size)});
+  if (context.dryRun())
+    return context.plan({fmt::format("carry the {} cells of {} by {}",
+                                     file.mesh.tetrahedra.size() + file.mesh.hexahedra.size(),
+                                     options.cells, options.map),
+                         "write " + options.output},
+                        need);
+  context.requireMemory("carrying " + options.cells, need, "use a coarser mesh");
+  RemeshSettings settings = options.settings;
+  std::optional<Mesh> surface;
+  if (!options.surface.empty()) {
+    surface = readMeshFile(options.surface, context);
+    settings.surface = &*surface;
+  }
+  const Mesh own = settings.back ? sourceSurface(mapped) : targetSurface(mapped);
+  const Mesh& onto = surface ? *surface : own;
+  context.spend(Context::kMostOfTime);
+  Remesh result = remeshCells(file.mesh, mapped, settings);
+  for (const std::string& note : result.notes) context.note(note);
+  for (const std::string& warning : result.warnings) context.warning(warning);
+  reportRemesh(result, boundingBox(onto).diagonal(), context);
+  reportCells(result.mesh, result.quality, context);
+  const BoundaryFit fit = context.timed(
+      "boundary", [&] { return boundaryFit(result.mesh, Solid(onto), BoundaryFitSettings{}); });
+  reportBoundaryFit(fit, context);
+  if (!options.picture.empty()) context.timed("picture", [&] { drawCut(options, result); });
+  write(options, result, context);
+}
+
+}  // namespace
+
+Command makeRemeshCommand() {
+  auto o = std::make_shared<RemeshOptions>();
+  Command c("remesh", "Carry the cells that fill one solid onto another, none of them inverted");
+  c.description(
+      "Vertices inside go by the map, those of the boundary by their places on the surface. Cells "
+      "that this turns inside out are repaired by moving vertices, those of the boundary along the "
+      "surface; then tetrahedra with poor angles are improved by swapping edges and faces, by "
+      "drawing edges together and by moving vertices. Vertices keep the places that they came from "
+      "as the field `source`: the two together are a piecewise linear map, which push and pull "
+      "take with --through. Vectors and normals among the fields are turned by it.");
+  c.positional("MAP", &o->map, "a map.ply written by fit or map");
+  c.positional("CELLS", &o->cells,
+               "tetrahedra or hexahedra that fill the map's source: .vtu, .msh or .mesh");
+  c.positional("SURFACE", &o->surface,
+               "the mesh whose surface the boundary goes onto, as it was given to map; left out: "
+               "the map's own, the source's triangles where it takes them")
+      .optional();
+  c.option("--output", "FILE", &o->output,
+           "the .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file to write")
+      .shortName("-o")
+      .required()
+      .writes({".vtu", ".msh", ".mesh"});
+  c.limitTime("after which repairing and improving end");
+  c.settings(describe(o->settings));
+  addCellPicture(
+      c, o->picture, o->cut,
+      "a .png of the cells behind a cut, coloured by their least dihedral angle or scaled "
+      "Jacobian");
+  c.example("innermap remesh map.ply rest.vtu posed.obj -o posed.vtu");
+  c.example("innermap remesh map.ply posed.vtu rest.obj -o back.vtu --back");
+  c.run([o](Context& context) { run(*o, context); });
+  return c;
+}
+
+}  // namespace innermap::tool

@@ -1,0 +1,227 @@
+// `innermap report`: the page of an output folder, from its files.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "commands.h"
+#include "html/contents.h"
+#include "innermap/core/run.h"
+#include "innermap/field/field_file.h"
+#include "innermap/io/vdb_file.h"
+#include "innermap/mesh/mesh_file.h"
+#include "inputs.h"
+
+namespace innermap::tool {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+struct ReportOptions {
+  std::string folder, output;
+};
+
+constexpr std::uintmax_t kMostReportBytes = 64'000'000;
+constexpr int kDeepest = 32;  // levels of sections in sections
+
+// Reports may come from anywhere: nothing is taken for granted.
+Json readReport(const std::string& path) {
+  std::error_code failed;
+  const std::uintmax_t size = fs::file_size(path, failed);
+  if (failed)
+    throw FileError(path, "cannot be read; give a folder that innermap wrote, with a report.json");
+  if (size > kMostReportBytes) throw FileError(path, "is too large to be a report of innermap");
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  const auto shallow = [](int depth, Json::parse_event_t, Json&) { return depth <= kDeepest; };
+  Json report = Json::parse(text.str(), shallow, false);
+  if (!report.is_object()) throw FileError(path, "is no report of innermap (not a JSON object)");
+  return report;
+}
+
+const Json* at(const Json& report, const char* section, const char* key) {
+  const auto found = report.find(section);
+  if (found == report.end() || !found->is_object()) return nullptr;
+  const auto value = found->find(key);
+  return value == found->end() ? nullptr : &*value;
+}
+
+std::string textAt(const Json& report, const char* section, const char* key) {
+  const Json* value = at(report, section, key);
+  return value && value->is_string() ? value->get<std::string>() : "";
+}
+
+// Reads with `body`; what cannot be read is said in the page.
+template <class Body>
+bool tried(Page& page, const Body& body) {
+  try {
+    body();
+    return true;
+  } catch (const FileError& error) {
+    page.missing.push_back(error.what());
+  } catch (const DataError& error) {
+    page.missing.push_back(error.what());
+  } catch (const MemoryError& error) {
+    page.missing.push_back(error.what());
+  }
+  return false;
+}
+
+// As the report names it, or of that name in the folder.
+std::string found(const std::string& path, const fs::path& folder) {
+  if (fs::exists(path)) return path;
+  const fs::path beside = folder / fs::path(path).filename();
+  return fs::exists(beside) ? beside.string() : path;
+}
+
+void addFrames(Page& page, const Json& report, const Mesh& rest, const fs::path& folder) {
+  const Json *files = at(report, "frames", "file"), *numbers = at(report, "frames", "number");
+  if (!files || !numbers || !files->is_array() || !numbers->is_array()) return;
+  const std::size_t count = std::min(files->size(), numbers->size());
+  PageFrames frames(page, rest, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    throwIfCancelled();
+    const Json &file = (*files)[i], &number = (*numbers)[i];
+    if (!file.is_string() || !number.is_number()) continue;
+    tried(page, [&] {
+      const Mesh mesh = readMeshLike(found(file.get<std::string>(), folder), rest);
+      frames.add(static_cast<std::int64_t>(std::llround(number.get<double>())), mesh.vertices);
+    });
+  }
+}
+
+void addSurfaces(Page& page, const Json& report, const fs::path& folder) {
+  const std::string map = (folder / "map.ply").string();
+  if (fs::exists(map) && tried(page, [&] { showMap(page, readMap(map)); })) return;
+  const std::string source = textAt(report, "source", "path");
+  const std::string target = textAt(report, "target", "path");
+  if (source.empty()) return page.missing.push_back("surfaces: the report names no mesh");
+  Mesh rest;
+  if (!tried(page, [&] { rest = readMesh(found(source, folder)); })) return;
+  if (at(report, "frames", "file")) return addFrames(page, report, rest, folder);
+  addMesh(page, rest);
+  if (target.empty()) return;
+  tried(page, [&] {
+    const Mesh other = readMesh(found(target, folder));
+    if (other.triangles == rest.triangles && other.vertices.size() == rest.vertices.size())
+      showPair(page, rest, other.vertices);
+    else
+      addMesh(page, other);
+  });
+}
+
+// The frame whose number a file's name ends in.
+std::optional<PageFrame> frameOf(const std::string& path, const Json& report) {
+  const Json* numbers = at(report, "frames", "number");
+  const std::string name = fs::path(path).stem().string();
+  const std::size_t begin = name.find_last_not_of("0123456789") + 1;
+  if (!numbers || !numbers->is_array() || begin >= name.size() || name.size() - begin > 15)
+    return std::nullopt;
+  const std::int64_t number = std::stoll(name.substr(begin));
+  for (std::size_t i = 0; i < numbers->size(); ++i)
+    if ((*numbers)[i].is_number() && std::llround((*numbers)[i].get<double>()) == number)
+      return PageFrame{number, i, numbers->size()};
+  return std::nullopt;
+}
+
+struct GridFile {
+  std::string path;
+  std::optional<PageFrame> frame;  // whose it is
+};
+
+// Those that the page shows: of frames only some, and some of the others.
+std::vector<GridFile> gridFiles(const Json& report, const fs::path& folder) {
+  constexpr std::size_t kMostFiles = 8;
+  std::vector<std::string> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (entry.is_regular_file() && entry.path().extension() == ".vdb")
+      files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  std::vector<GridFile> shown;
+  std::size_t others = 0;
+  for (const std::string& file : files) {
+    const std::optional<PageFrame> frame = frameOf(file, report);
+    if (frame ? frame->index % frameStep(frame->of) == 0 : ++others <= kMostFiles)
+      shown.push_back({file, frame});
+  }
+  return shown;
+}
+
+void addGridsOf(Page& page, const Json& report, const fs::path& folder) {
+  const std::vector<GridFile> files = gridFiles(report, folder);
+  if (files.empty()) page.missing.push_back("sections: the folder has no .vdb file");
+  // Grids of one name are shown once, or once a frame.
+  for (const GridFile& file : files) {
+    page.frame = file.frame;
+    tried(page, [&] { addGrids(page, readVdb(file.path).grids); });
+  }
+  page.frame.reset();
+}
+
+// Of the largest grid file and of all surfaces, as they are read, and of the page.
+std::uint64_t memoryOf(const Json& report, const fs::path& folder) {
+  std::uint64_t grids = 0;
+  double surfaces = 0;
+  Page unsaid;
+  for (const GridFile& file : gridFiles(report, folder))
+    tried(unsaid, [&] { grids = std::max(grids, readMemory(readVdbInfo(file.path), {})); });
+  for (const std::string& path :
+       {(folder / "map.ply").string(), found(textAt(report, "source", "path"), folder),
+        found(textAt(report, "target", "path"), folder)}) {
+    std::error_code none;
+    if (const std::uintmax_t size = fs::file_size(path, none); !none)
+      surfaces += kMeshByte * static_cast<double>(size);
+  }
+  return std::max(grids, static_cast<std::uint64_t>(surfaces)) + kPageMemory;
+}
+
+void run(const ReportOptions& options, Context& context) {
+  const fs::path folder(options.folder);
+  const std::string output =
+      options.output.empty() ? (folder / "report.html").string() : options.output;
+  const std::string json = (folder / "report.json").string();
+  context.input(json);
+  if (!fs::is_directory(folder)) throw FileError(options.folder, "is no folder");
+  const Json report = readReport(json);
+  context.output(output);
+  if (context.dryRun())
+    return context.plan({"write the page of " + json + " to " + output}, memoryOf(report, folder));
+  Page page;
+  context.timed("surfaces", [&] { addSurfaces(page, report, folder); });
+  context.timed("sections", [&] { addGridsOf(page, report, folder); });
+  context.timed("write", [&] {
+    writePage(output, page, report.dump(-1, ' ', false, Json::error_handler_t::replace));
+  });
+  for (const std::string& text : page.missing) context.note("not shown: " + text);
+  context.print(
+      fmt::format("{}: {:.1f} MB\n", output, static_cast<double>(fs::file_size(output)) / 1e6));
+}
+
+}  // namespace
+
+Command makeReportCommand() {
+  auto o = std::make_shared<ReportOptions>();
+  Command c("report", "Make the page of an output folder, to look at in a browser");
+  c.description(
+      "Reads report.json and what it belongs to: map.ply, .vdb files, and the meshes that the "
+      "report names. The page is one file that needs no network: the numbers with their meaning, "
+      "the surfaces before and after, sections through the volume, how the fit went, time and "
+      "memory, the command and its settings. What is missing is left out, and said. --html of the "
+      "other commands writes the same page as they run.");
+  c.positional("FOLDER", &o->folder, "that a command of innermap wrote, with a report.json");
+  c.option("--output", "FILE", &o->output, "the page")
+      .shortName("-o")
+      .defaults("report.html in the folder");
+  c.example("innermap report out");
+  c.example("innermap report out -o page.html");
+  c.run([o](Context& context) { run(*o, context); });
+  return c;
+}
+
+}  // namespace innermap::tool

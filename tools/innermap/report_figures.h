@@ -1,0 +1,74 @@
+// Figures that this program adds to those of the library (innermap/report/figures.h).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/figure.h"
+#include "innermap/core/vec3.h"
+#include "innermap/field/fit.h"
+#include "innermap/transfer/inverse_map.h"
+
+namespace innermap::tool {
+
+struct FrameResult;
+struct JudgedFrame;
+
+// "source" and "target"
+struct ReportMesh {
+  std::string path;
+  std::uint64_t vertices = 0, triangles = 0;
+  int boundaryLoops = 0, genus = 0, caps = 0;
+  std::vector<Box3> capPlaces;
+  double volume = 0, diagonal = 0;  // world units
+  std::optional<std::uint64_t> selfIntersections;
+};
+Figures figures(const ReportMesh& mesh);
+
+// "frames" of any command for animations; of `deform`, whose frames may be finished already; their
+// seconds; what they are judged by.
+Figures frameFigures(const std::vector<FrameResult>& results);
+struct DeformedFrame {
+  std::optional<InverseStatistics> inverse;
+  std::optional<BoundaryError> error;
+  std::optional<double> folded, outside;  // shares
+};
+Figures deformedFigures(const std::vector<DeformedFrame>& frames);
+Figures finishedFigures(std::uint64_t before);
+Figures frameSeconds(double mean, double least, double most);
+Figures judgedFigures(double tolerance, const std::vector<std::int64_t>& missed);
+
+// Beside the sections.
+Figures outsideFigures(double share);
+Figures stoppedByTimeFigures();
+Figures planFigures(double seconds, std::uint64_t bytes);
+
+Figures voxelSizeFigures(double voxelSize);                            // "grid"
+Figures findingFigures(const std::string& name, std::uint64_t count);  // "findings"
+Figures memoryFigures(const std::string& stage, std::uint64_t bytes);  // "memory_after_bytes"
+Figures shellFigures(std::uint64_t shells);                            // "sphere"
+Figures polycubeMeshFigures(std::uint64_t vertices);                   // "polycube"
+Figures pulledFigures(std::uint64_t voxels);                           // "pull"
+Figures distanceRangeFigures(const std::pair<double, double>& range);  // "distance"
+Figures blendFigures(std::uint64_t pieces, std::uint64_t groups);      // "seams"
+Figures layoutFigures(const std::string& layout);                      // "texture"
+// "texture": an image that is continued; a volume texture that was read.
+struct ReportImage {
+  std::string name, colourSpace;
+  std::uint64_t count = 0;  // of files
+  std::string channels;
+  int width = 0, height = 0;  // pixels
+  bool tiled = false;
+};
+Figures figures(const ReportImage& image);
+struct ReportImport {
+  std::vector<double> resolution;
+  std::vector<std::string> grids;
+  std::uint64_t active = 0, notFinite = 0;
+};
+Figures figures(const ReportImport& read);
+
+}  // namespace innermap::tool

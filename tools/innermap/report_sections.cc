@@ -1,0 +1,222 @@
+#include "report_sections.h"
+
+#include <algorithm>
+
+#include "innermap/core/error.h"
+#include "innermap/correspond/mesh_correspondence.h"
+#include "innermap/evaluate/grids.h"
+#include "innermap/fit/fit_map.h"
+#include "innermap/io/exr_slices.h"
+#include "innermap/io/pictures.h"
+#include "innermap/io/volume_texture.h"
+#include "innermap/levelset/level_set.h"
+#include "innermap/study/study.h"
+#include "innermap/tetra/compare_fem.h"
+#include "innermap/tetra/hexahedralize.h"
+#include "innermap/tetra/remesh_cells.h"
+#include "innermap/tetra/tetrahedralize.h"
+#include "innermap/texture/solid_texture.h"
+#include "innermap/transfer/distance_transfer.h"
+#include "innermap/transfer/geometry.h"
+#include "report/figures.h"
+#include "report_figures.h"
+#include "sequence_table.h"
+
+namespace innermap::tool {
+namespace {
+
+// Those of a density whose name may be any.
+CarriedMass anyMass() {
+  CarriedMass out;
+  out.name = "*";
+  return out;
+}
+
+// Of several commands, whose figures of the same key have the same type.
+Figures merged(std::initializer_list<Figures> parts) {
+  Figures out;
+  for (const Figure& f : together(parts)) {
+    const auto same = std::find_if(out.begin(), out.end(),
+                                   [&](const Figure& other) { return other.key == f.key; });
+    if (same == out.end())
+      out.push_back(f);
+    else if (same->value.index() != f.value.index())
+      throw Error("two figures of different types are called " + f.key);
+  }
+  return out;
+}
+
+// Results of which nothing is known.
+struct Unknown {
+  MapGrids grids;
+  Tetrahedralization tetrahedra;
+  Hexahedralization hexahedra;
+  SolidTexture texture;
+};
+
+std::vector<ReportSection> mapSections(const Unknown& u) {
+  const std::vector<std::string> mesh = {"path", "vertices", "triangles", "boundary_loops",
+                                         "caps", "genus",    "volume",    "diagonal"};
+  return {
+      {"boundary_error",
+       "Boundary error",
+       "How far the map takes the boundary from where it was to go. Inside a map of one step it is "
+       "nowhere larger.",
+       boundaryErrorFigures(nullptr),
+       {"rms", "p99", "max"}},
+      {"worst_boundary_error",
+       "Boundary error of the worst frame",
+       "",
+       worstFigures({}),
+       {"rms", "p99", "max"}},
+      {"tolerance", "Tolerance", "", toleranceFigures(nullptr, ""), {"wanted", "reached", "met"}},
+      {"one_to_one",
+       "Is it one-to-one?",
+       "What was checked, and what was found.",
+       figures(Injectivity{}),
+       {}},
+      {"inside",
+       "Points inside",
+       "A lattice of points inside the source, looked at one by one.",
+       figures(InsideFigures{}),
+       {}},
+      {"jacobian",
+       "Change of volume",
+       "The determinant of the map's derivative: 1 keeps volume, 0 or less folds.",
+       jacobianFigures(u.grids),
+       {"min", "max", "folded_fraction"}},
+      {"repair", "Repaired folds", "", repairFigures(u.grids), {}},
+      {"energy", "Energy", "", merged({energyFigures(u.grids), figures(LameConstants{})}), {}},
+      {"source", "Source", "", figures(ReportMesh{}), mesh},
+      {"target", "Target", "", figures(ReportMesh{}), mesh},
+      {"solve",
+       "Charges and their solve",
+       "The map is an affine function plus weight / distance, summed over the charges.",
+       merged({figures(MapSolve{}), choiceFigures(0, false), solveFigures(u.texture)}),
+       {"method", "sources", "collocation"}},
+      {"steps",
+       "Steps",
+       "A map in steps is several harmonic maps one after the other.",
+       stepFigures({}),
+       {}},
+      {"grid",
+       "Grid",
+       "",
+       merged({gridFigures(SolidGrids{}), targetGridFigures(DistanceTransfer{})}),
+       {}},
+      {"field", "Field", "Of harmonic fields.", fieldFigures(0, 0), {}},
+      {"energies",
+       "Energies",
+       "Of a sequence, one value a frame.",
+       columns(std::vector<SequenceRow>(), [](const SequenceRow& r) { return figures(r); }),
+       {}},
+      {"frames",
+       "Frames",
+       "Of an animation; lists have one value a frame.",
+       merged({frameFigures({}), deformedFigures({}), finishedFigures(0), frameSeconds(0, 0, 0),
+               judgedFigures(0, {})}),
+       {}}};
+}
+
+std::vector<ReportSection> carrySections(const Unknown& u) {
+  return {
+      {"inverse",
+       "Inverse",
+       "Of the inverse map at the target's voxels.",
+       figures(InverseStatistics{}),
+       {}},
+      {"mass", "Mass", "Of each density, by its name.", massFigures(anyMass()), {}},
+      {"densities", "Densities", "Of each density, by its name.", densityFigures(anyMass()), {}},
+      {"resampling",
+       "Resampling",
+       "Voxels of the input and the output.",
+       figures(ResamplingFigures{}),
+       {}},
+      {"pull", "Pull", "", pulledFigures(0), {}},
+      {"geometry",
+       "Geometry",
+       "Points, directions and cells that were carried.",
+       geometryFigures(CarriedGeometry{}, 0, {}),
+       {}},
+      {"distance",
+       "Distance",
+       "Fields of distance.",
+       merged({figures(DistanceTransfer{}), distanceRangeFigures({})}),
+       {}},
+      {"texture",
+       "Texture",
+       "Images and volume textures, read or written.",
+       merged({figures(ReportImage{}), figures(VolumeTextureResult{}), layoutFigures(""),
+               figures(ReportImport{})}),
+       {}},
+      {"seams",
+       "Seams",
+       "Of a texture's charts.",
+       merged({figures(SeamFigures{}), blendFigures(0, 0)}),
+       {}},
+      {"surface", "Surface", "Errors at the surface.", surfaceFigures(u.texture), {}},
+      {"slices", "Slices", "", figures(ExrSliceResult{}), {}},
+      {"section", "Section", "A picture's plane and colours.", figures(SectionResult{}), {}}};
+}
+
+std::vector<ReportSection> meshSections(const Unknown& u) {
+  return {{"correspondence",
+           "Correspondence",
+           "Of one surface laid on another.",
+           correspondenceFigures(nullptr),
+           {}},
+          {"outer_surface",
+           "Outer surface",
+           "The closed surface that is mapped in place of a mesh that runs through itself.",
+           outerSurfaceFigures({}),
+           {}},
+          {"sphere",
+           "Sphere",
+           "Of a layout on the sphere.",
+           merged({figures(LayoutQuality{}), shellFigures(0)}),
+           {}},
+          {"findings", "Findings", "What is wrong with the mesh.", findingFigures("*", 0), {}},
+          {"level_set", "Level set", "The grid beside the mesh.", figures(LevelSetCheck{}), {}},
+          {"cells", "Cells", "", cellFigures({}, {}), {}},
+          {"boundary", "Boundary", "Of a mesh of cells.", figures(BoundaryFit{}), {}},
+          {"topology", "Topology", "Of a mesh of cells.", topologyFigures(u.tetrahedra), {}},
+          {"lattice", "Lattice", "That cells were cut from.", latticeFigures(u.tetrahedra), {}},
+          {"features",
+           "Sharp edges",
+           "",
+           merged({featureFigures(u.tetrahedra, 1), featureFigures(u.hexahedra)}),
+           {}},
+          {"remesh", "Remesh", "Cells carried onto another solid.", figures(Remesh{}, 1), {}},
+          {"polycube",
+           "Polycube",
+           "Cubes that stand in for the solid.",
+           merged({figures(Polycube{}), polycubeMeshFigures(0)}),
+           {}},
+          {"hexahedra", "Hexahedra", "", figures(u.hexahedra), {}},
+          {"boundary_map",
+           "Boundary map",
+           "Of a surface onto cubes.",
+           boundaryMapFigures(MapQuality{}),
+           {}},
+          {"comparison",
+           "Comparison",
+           "Harmonic map and finite elements, one value a method in each list.",
+           figures(CompareFem{}),
+           {}},
+          {"study", "Study", "Of the runs of a study.", studyFigures({}, {}, "", ""), {}}};
+}
+
+}  // namespace
+
+std::vector<ReportSection> reportSections() {
+  const Unknown unknown;
+  std::vector<ReportSection> out;
+  for (const auto& part : {mapSections(unknown), carrySections(unknown), meshSections(unknown)})
+    out.insert(out.end(), part.begin(), part.end());
+  out.push_back({"memory_after_bytes", "Memory after stages", "", memoryFigures("*", 0), {}});
+  out.push_back(
+      {"", "", "", merged({outsideFigures(0), stoppedByTimeFigures(), planFigures(1, 0)}), {}});
+  return out;
+}
+
+}  // namespace innermap::tool

@@ -1,0 +1,177 @@
+// `innermap sequence`: the energies of an animation's maps over its frames.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "commands.h"
+#include "frame_loop.h"
+#include "grid_options.h"
+#include "html/page.h"
+#include "job_cost.h"
+#include "lists.h"
+#include "report/figures.h"
+#include "report_figures.h"
+#include "sequence_table.h"
+
+namespace innermap::tool {
+namespace {
+
+constexpr const char* kEnergies = "energies";  // --grids alone
+
+struct SequenceOptions {
+  std::string rest, output;
+  std::string grids, gridList;  // to write, and what their list was called once
+  FrameOptions frames;
+  EvaluationOptions evaluation;
+};
+
+// The grids that are to be written; empty without --grids.
+std::vector<std::string> gridsToWrite(const SequenceOptions& options) {
+  if (options.grids.empty()) return {};
+  std::string list = options.gridList.empty() ? options.grids : options.gridList;
+  if (list == kEnergies) list = "harmonic_energy,deformation_energy";
+  std::vector<std::string> names;
+  for (const std::string& name : commaList(list)) {
+    if (std::find(mapGridNames().begin(), mapGridNames().end(), name) == mapGridNames().end())
+      throw UsageError(fmt::format("--grids: '{}' is not one of {}{}", name,
+                                   fmt::join(mapGridNames(), ", "),
+                                   didYouMean(name, mapGridNames())));
+    if (std::find(names.begin(), names.end(), name) != names.end())
+      throw UsageError("--grids: " + name + " is given twice");
+    names.push_back(name);
+  }
+  if (names.empty()) throw UsageError("--grids: names no grid");
+  return names;
+}
+
+SequenceRow rowOf(const FrameFile& frame, const FrameFit& fit, const MapGrids& grids,
+                  double tolerance) {
+  SequenceRow row;
+  row.misses = !(fit.error.p99 <= tolerance);
+  row.outside = fit.outside;
+  row.file = frame;
+  row.error = fit.error;
+  row.harmonic = grids.harmonicTotal;
+  row.deformation = grids.deformationTotal;
+  row.deformationMean = grids.volume > 0 ? grids.deformationTotal / grids.volume : 0;
+  row.jacobianMin = grids.jacobianMin;
+  row.jacobianMax = grids.jacobianMax;
+  row.folded = grids.foldedFraction;
+  row.volume = fit.boundary.volume;
+  return row;
+}
+
+// Those that are written, or else those that the page shows.
+std::vector<std::string> gridsToMake(const SequenceOptions& options, Context& context) {
+  const std::vector<std::string> written = gridsToWrite(options);
+  if (!written.empty() || !context.page()) return written;
+  return {"surface", "jacobian", "deformation_energy"};
+}
+
+FrameEvaluator makeEvaluator(const SequenceOptions& options, const FrameFitter& fitter,
+                             Context& context) {
+  FrameEvaluator made(fitter, gridsToMake(options, context), mapGridSettings(options.evaluation));
+  addSeconds(context.report().seconds, made.seconds());
+  for (const std::string& warning : made.warnings()) context.warning(warning);
+  context.report().add("grid", voxelSizeFigures(made.voxelSize()));
+  context.report().add("energy", figures(options.evaluation.lame));
+  return made;
+}
+
+void run(const SequenceOptions& options, Context& context) {
+  gridsToWrite(options);  // refuses names that cannot be before anything is read
+  if (!options.gridList.empty()) context.note("--grid-list is now the list of --grids=LIST");
+  const Frames frames = listFrames(options.frames, options.rest, context);
+  const FramePattern pattern("--output", options.output + "/energy.####.vdb");
+  const auto folder =
+      context.outputFolder(options.output, {"energies.csv", "energies.svg", "report.json"});
+  if (!options.grids.empty()) context.outputs(framePaths(pattern, frames));
+  const FrameFitterSettings settings = options.frames.fitting;
+  SourceBoundary rest = readRest(options.rest, context);
+  requireInterior(rest.solid, options.evaluation.grid.in<LevelSetSettings>());
+  const std::uint64_t gridsNeed =
+      mapGridMemory(rest.solid, mapGridSettings(options.evaluation), {1, false, false});
+  const JobSize size = jobSize(rest.solid, mapGridSettings(options.evaluation), settings.sources);
+  std::vector<JobPhase> phases = framePhases(settings.sources, frames.wanted.size(),
+                                             stageOf("frames: grids", withNearSums(size)));
+  phases.insert(phases.end() - 1, stageOf("level set", size));
+  context.expect(phases);
+  if (context.dryRun())
+    return context.plan(
+        {framesPlan(settings, frames),
+         "write energies.csv, energies.svg and report.json" +
+             std::string(!options.grids.empty() ? " and the grids of each frame" : "") + " to " +
+             options.output},
+        frameFitterMemory(settings, gridsNeed));
+  requireFrameMemory(settings, gridsNeed, context);
+  const FrameFitter fitter = makeFrameFitter(std::move(rest), settings, context);
+  const FrameEvaluator evaluator = makeEvaluator(options, fitter, context);
+  FrameFits fits = makeFrameFits(fitter, frames, context);
+  std::vector<SequenceRow> rows;
+  context.print(sequenceHeader());
+  const auto results = runFrames(frames, !options.grids.empty(), context, [&](std::size_t index) {
+    const FrameFile& frame = frames.all[index];
+    const std::shared_ptr<const FrameFit> fit = fits.at(index);
+    const MapGrids grids = context.timed("evaluate", [&] { return evaluator.evaluate(*fit); });
+    if (!options.grids.empty())
+      writeFrame(frame, [&] {
+        writeGridFile(pattern.path(frame.number), evaluator.grids({fit.get(), frame.number}, grids),
+                      options.evaluation.names, context);
+      });
+    else if (context.page())
+      addGrids(*context.page(), evaluator.grids({fit.get(), frame.number}, grids));
+    rows.push_back(rowOf(frame, *fit, grids, options.frames.tolerance));
+    context.print(sequenceLine(rows.back()));
+  });
+  const std::string seconds = secondsText(results, context);
+  const std::vector<SequenceRow> table = withBroken(rows, results);
+  fillReport(table, context.report());
+  std::vector<JudgedFrame> judged;
+  for (const SequenceRow& r : rows)
+    judged.push_back({r.file.number, r.error.p99, r.folded, r.outside});
+  judgeFrames(judged, options.frames.tolerance, options.frames.verdict, context);
+  context.timed("write", [&] {
+    folder->write("energies.csv",
+                  [&](const std::string& path) { writeSequenceTable(path, table); });
+    folder->write("energies.svg", [&](const std::string& path) {
+      writeChart(path, sequenceChart(table, fitter.rest().mesh.name));
+    });
+  });
+  context.print(seconds);
+  context.finish(*folder);
+}
+
+}  // namespace
+
+Command makeSequenceCommand() {
+  auto o = std::make_shared<SequenceOptions>();
+  Command c("sequence", "Measure the energy of each frame of an animation against its rest pose");
+  c.description(
+      "Each frame's map is that of the inside of SOURCE onto the frame's; its harmonic energy (3 "
+      "for "
+      "a rigid motion) and deformation energy (0 for one) go to energies.csv, energies.svg and "
+      "report.json in a folder. Charges are placed once for all frames; a frame's figures do not "
+      "depend on the other frames. A frame that cannot be read or fitted is reported and left out; "
+      "the exit code is then 1.");
+  c.positional("SOURCE", &o->rest, "mesh of the rest pose: .obj, .ply, .off or .stl");
+  addFrameArgument(c, o->frames);
+  c.option("--output", "FOLDER", &o->output, "where the files go; made when missing")
+      .shortName("-o")
+      .required();
+  addFrameOptions(c, o->frames);
+  addEvaluationOptions(c, o->evaluation);
+  c.option(
+       "--grids", "LIST", &o->grids,
+       "also write grids over the rest pose, energy.####.vdb a frame; the energies', or those of "
+       "LIST, with commas between: " +
+           fmt::format("{}", fmt::join(mapGridNames(), ", ")))
+      .implied(kEnergies);
+  c.option("--grid-list", "LIST", &o->gridList, "formerly the LIST of --grids=LIST").advanced();
+  c.example("innermap sequence rest.obj 'frames/*.obj' -o energies");
+  c.example("innermap sequence rest.obj 'walk.####.obj' -o energies --frames 1-48x2 --grids");
+  c.run([o](Context& context) { run(*o, context); });
+  return c;
+}
+
+}  // namespace innermap::tool

@@ -1,0 +1,48 @@
+// What `sequence` tells of each frame: as CSV, chart, report and text.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "frame_loop.h"
+#include "innermap/field/fit.h"
+#include "report/report.h"
+#include "report/svg_chart.h"
+
+namespace innermap::tool {
+
+struct SequenceRow {
+  FrameFile file;
+  double harmonic = 0, deformation = 0, deformationMean = 0;
+  BoundaryError error;
+  bool misses = false;  // the tolerance
+  double jacobianMin = 0, jacobianMax = 0, folded = 0, outside = 0;
+  double volume = 0;  // of the frame's solid, world units cubed; 0 when its parts cancel
+  double seconds = 0;
+  std::string broken;  // why; all figures are then missing
+};
+
+// Not known of a frame that is broken.
+Figures figures(const SequenceRow& row);
+// The largest boundary errors of all rows.
+Figures worstFigures(const std::vector<SequenceRow>& rows);
+
+// All frames in order, those that are broken too, with their seconds. rows: the good ones, in
+// order.
+std::vector<SequenceRow> withBroken(const std::vector<SequenceRow>& rows,
+                                    const std::vector<FrameResult>& results);
+
+// CSV after RFC 4180 with a line of names; fields of broken frames are empty but for the last.
+// Throws FileError.
+void writeSequenceTable(const std::string& path, const std::vector<SequenceRow>& rows);
+
+// Both energies over the frames' numbers.
+SvgChart sequenceChart(const std::vector<SequenceRow>& rows, const std::string& rest);
+
+// The report's "energies" and its worst boundary error.
+void fillReport(const std::vector<SequenceRow>& rows, Report& report);
+
+std::string sequenceHeader();
+std::string sequenceLine(const SequenceRow& row);
+
+}  // namespace innermap::tool

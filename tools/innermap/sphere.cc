@@ -1,0 +1,68 @@
+// `innermap sphere`: the spherical embedding of a closed surface by itself.
+#include <fmt/format.h>
+
+#include "commands.h"
+#include "correspondence.h"
+#include "innermap/core/memory.h"
+#include "innermap/mesh/mesh_file.h"
+#include "inputs.h"
+#include "map_report.h"
+#include "report/figures.h"
+#include "report_figures.h"
+
+namespace innermap::tool {
+namespace {
+
+struct Options {
+  std::string mesh, output;
+  SurfaceOptions surface;
+};
+
+void run(const Options& options, Context& context) {
+  requirePly("--output", options.output);
+  context.output(options.output);
+  Mesh mesh = readMeshFile(options.mesh, context);
+  const std::size_t vertices = mesh.vertices.size();
+  const std::uint64_t need = layOutMemory(vertices);
+  if (context.dryRun()) {
+    requireSphere(mesh, options.surface.layOut);
+    return context.plan(
+        {fmt::format("lay the {} vertices of {} out on the unit sphere", vertices, options.mesh),
+         "write them to " + options.output},
+        need);
+  }
+  context.requireMemory("the layout", need, "use a coarser mesh");
+  const LaidOutMesh laid = layOut(std::move(mesh), options.surface, context);
+  reportLaidOut("source", laid, context.report());
+  const MeshOnSphere sphere = onSphere(laid);
+  const LayoutQuality& quality = sphere.quality;
+  context.report().add("sphere", figures(quality));
+  context.report().add("sphere", shellFigures(laid.shells().shells.size()));
+  context.timed("write", [&] { writeMesh(options.output, sphere.mesh); });
+  context.print(fmt::format(
+      "on the sphere: {} flip{}, degree {:.9f}, least area 10^{:.2f} of its share\n", quality.flips,
+      quality.flips == 1 ? "" : "s", quality.degree, quality.areaRatioLog10));
+}
+
+}  // namespace
+
+Command makeSphereCommand() {
+  auto o = std::make_shared<Options>();
+  Command c("sphere", "Lay a closed surface without handles out on the unit sphere");
+  c.description(
+      "Writes the mesh with its vertices on the unit sphere about the origin, no triangle flipped, "
+      "areas near their share. Each shell (a cavity, say) covers the sphere by itself. Of a mesh "
+      "that "
+      "runs through itself the outer surface is laid out.");
+  c.positional("MESH", &o->mesh, "a closed mesh: .obj, .ply, .off or .stl");
+  c.option("--output", "FILE", &o->output, "the .ply file to write")
+      .shortName("-o")
+      .required()
+      .writes({".ply"});
+  addSurfaceOptions(c, o->surface);
+  c.example("innermap sphere cow.obj -o cow_sphere.ply");
+  c.run([o](Context& context) { run(*o, context); });
+  return c;
+}
+
+}  // namespace innermap::tool

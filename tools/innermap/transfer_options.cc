@@ -1,0 +1,163 @@
+#include "transfer_options.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "innermap/transfer/carry.h"
+#include "inputs.h"
+#include "lists.h"
+#include "report/figures.h"
+
+namespace innermap::tool {
+namespace {
+
+// Twelve numbers, the rows of a 3 x 4 matrix.
+RigidMotion parseMotion(const std::string& text) {
+  const std::vector<double> numbers = parseNumbers(
+      "--fade-to", text, 12,
+      "neither cut, identity nor fitted nor the twelve numbers of a rigid motion's 3 x 4 matrix, "
+      "row by row with commas between");
+  RigidMotion motion;
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t c = 0; c < 3; ++c) motion.rotation[r][c] = numbers[4 * r + c];
+    motion.translation[static_cast<int>(r)] = numbers[4 * r + 3];
+  }
+  if (!isRigid(motion))
+    throw UsageError(
+        "--fade-to: the matrix is no rotation; rows must be orthonormal and "
+        "right-handed");
+  return motion;
+}
+
+}  // namespace
+
+void addTransferOptions(Command& c, TransferOptions& o) {
+  c.group("grids that are carried");
+  c.option("--grids", "LIST", &o.grids, "grids to carry, with commas between").defaults("all");
+  c.settings(only(describe(o.carry), {"sampling"}));
+  c.flag(
+      "--density", &o.carry.allDensities,
+      "scalars are densities: divided by the change of volume; where they are pushed, their mass "
+      "is kept exactly");
+  c.option("--densities", "LIST", &o.densities, "only these scalars are densities")
+      .defaults("none")
+      .advanced();
+  c.option("--stress", "LIST", &o.stress,
+           "Cauchy stresses: NAME stands for the six grids NAME.xx, .yy, .zz, .xy, .yz, .xz or "
+           "the rows NAME.x, .y, .z")
+      .defaults("none")
+      .advanced();
+  c.option("--strain", "LIST", &o.strain, "the same for covariant strains")
+      .defaults("none")
+      .advanced();
+  c.setting(outsideSetting(&o.outside));
+  c.option("--fade-to", "MOTION", &o.fadeTo,
+           "what the map fades to with --outside: cut (it ends there), identity, fitted (the best "
+           "rigid motion of the surface), or twelve numbers, a rigid motion's 3 x 4 matrix by rows")
+      .advanced();
+  c.settings(only(describe(o.carry), {"density_limit"}));
+  addCarryVerdictOptions(c, o.verdict);
+  c.settings(
+      describe(o.grid, "the solid",
+               "voxels as fine as those of the grids, for the size of the solid that they go to"));
+  c.setting(namesSetting(&o.names));
+}
+
+CarrySettings carrySettings(const TransferOptions& options) {
+  CarrySettings out = options.carry;
+  out.densities = commaList(options.densities);
+  out.stresses = commaList(options.stress);
+  out.strains = commaList(options.strain);
+  return out;
+}
+
+OutsideSettings outsideSettings(const TransferOptions& options, const Points& from,
+                                const Points& to) {
+  OutsideSettings out;
+  out.distance = options.outside;
+  if (options.fadeTo == "cut") return out;
+  if (!(options.outside > 0))
+    throw UsageError("--fade-to: is for what lies outside; give --outside too");
+  if (options.fadeTo == "identity")
+    out.fadeTo = RigidMotion();
+  else
+    out.fadeTo =
+        options.fadeTo == "fitted" ? bestRigidMotion(from, to) : parseMotion(options.fadeTo);
+  return out;
+}
+
+openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& options,
+                               Context& context) {
+  openvdb::GridPtrVec grids = readGridFile(path, commaList(options.grids), context);
+  if (grids.empty()) throw FileError(path, "holds no grid");
+  requireCarriable(grids, carrySettings(options));
+  return grids;
+}
+
+LevelSetSettings outputSettings(const openvdb::GridPtrVec& grids, const LatticeChoice& options,
+                                double growth) {
+  auto settings = options.in<LevelSetSettings>();
+  if (!options.voxelSize && !options.resolution) settings.voxelSize = growth * finestVoxel(grids);
+  return settings;
+}
+
+std::uint64_t transferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
+                             const TransferOptions& options, const CarryKind& kind, double growth) {
+  OutsideSettings outside;
+  outside.distance = options.outside;
+  return carryMemory(solid, grids, outputSettings(grids, options.grid, growth), outside,
+                     carrySettings(options), kind);
+}
+
+void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
+                           const TransferOptions& options, const Context& context,
+                           const CarryKind& kind, double growth) {
+  requireGridMemory("carrying the volume", options.grid, context, [&](const LatticeChoice& grid) {
+    TransferOptions other = options;
+    other.grid = grid;
+    return transferMemory(solid, grids, other, kind, growth);
+  });
+}
+
+openvdb::FloatGrid::Ptr outputLevelSet(const Solid& solid, const openvdb::GridPtrVec& grids,
+                                       const TransferOptions& options, Context& context,
+                                       double growth) {
+  return context.timed("level set", [&] {
+    return makeLevelSet(solid, outputSettings(grids, options.grid, growth));
+  });
+}
+
+void reportPush(const PushResult& result, Context& context) {
+  Report& report = context.report();
+  if (result.inverted) report.add("inverse", figures(result.statistics));
+  for (const CarriedMass& mass : result.masses) {
+    report.add("mass", massFigures(mass));
+    report.add("densities", densityFigures(mass));
+  }
+  for (const std::string& warning : result.warnings) context.warning(warning);
+}
+
+std::string pushText(const PushResult& result) {
+  const InverseStatistics& s = result.statistics;
+  std::string text;
+  if (result.inverted)
+    text = fmt::format(
+        "inverse: found for {1:.4f}% of {0} voxels inside, not for {2}; of {3} outside the "
+        "surface, not for {4}\n",
+        s.inside, 100 * s.invertedInside(), s.failedInside, s.voxels - s.inside,
+        s.failed - s.failedInside);
+  for (const CarriedMass& mass : result.masses)
+    text += fmt::format(
+        "mass of {}: {:.6g} before, {:.6g} after ({:+.3f}%); densities grow at most {:.4g} times\n",
+        mass.name, mass.before, mass.after,
+        mass.before != 0 ? 100 * (mass.after / mass.before - 1) : 0.0, mass.largestRatio);
+  for (const CarriedMass& mass : result.masses)
+    if (mass.cut != 0)
+      text +=
+          fmt::format("--density-limit leaves out {:.6g} of the mass of {} ({:.3g}%)\n", mass.cut,
+                      mass.name, mass.before != 0 ? 100 * mass.cut / mass.before : 0.0);
+  return text;
+}
+
+}  // namespace innermap::tool

@@ -1,0 +1,57 @@
+// `innermap weights`: harmonic weights of groups of a surface, inside it.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "commands.h"
+#include "harmonic_options.h"
+#include "innermap/io/geometry_file.h"
+#include "lists.h"
+
+namespace innermap::tool {
+namespace {
+
+struct WeightOptions {
+  HarmonicOptions harmonic;
+  std::string groups;
+};
+
+NamedConditions conditionsOf(const WeightOptions& options, const Mesh& mesh) {
+  const std::vector<std::string> wanted = commaList(options.groups);
+  NamedConditions out;
+  std::vector<SurfaceGroup> groups;
+  for (SurfaceGroup& group : readGroups(mesh.name, mesh)) {
+    const bool named = std::find(wanted.begin(), wanted.end(), group.name) != wanted.end();
+    if ((wanted.empty() && !group.triangles.empty()) || named) groups.push_back(std::move(group));
+  }
+  for (const std::string& name : wanted)
+    if (std::none_of(groups.begin(), groups.end(), [&](const auto& g) { return g.name == name; }))
+      throw FileError(mesh.name, fmt::format("has no group '{}'", name));
+  out.conditions = weightConditions(mesh, groups);
+  for (const SurfaceGroup& group : groups) out.names.push_back(group.name);
+  return out;
+}
+
+}  // namespace
+
+Command makeWeightsCommand() {
+  auto o = std::make_shared<WeightOptions>();
+  o->harmonic.fit.tolerance =
+      1e-2;  // where groups touch, a finer one is spent on the border's kinks
+  Command c("weights", "Harmonic weights of groups of a surface, inside the solid");
+  c.description(
+      "A channel for each group: 1 on it, 0 on the other groups, nothing flows through the rest of "
+      "the surface. Groups that touch go over into one another on the triangles along their "
+      "border. All are fitted at once and sum up to 1 everywhere.");
+  addHarmonicOptions(c, o->harmonic, "value");
+  c.option("--groups", "LIST", &o->groups, "groups, objects or materials of the OBJ, by name")
+      .defaults("all that have faces");
+  c.example("innermap weights body.obj -o weights.vdb --groups head,arms,legs");
+  c.run([o](Context& context) {
+    runHarmonic(
+        o->harmonic, [&](const Mesh& mesh) { return conditionsOf(*o, mesh); }, true, context);
+  });
+  return c;
+}
+
+}  // namespace innermap::tool

@@ -1,0 +1,154 @@
+#include "bind/carry_options.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "bind/arrays.h"
+#include "bind/errors.h"
+#include "bind/lists.h"
+#include "innermap/core/memory.h"
+#include "innermap/transfer/geometry.h"
+
+namespace py = pybind11;
+
+namespace innermap::python {
+namespace {
+
+RigidMotion motionFrom(const py::object& object) {
+  const Matrix m = matrixFrom(object, "fade_to");
+  if (m.columns() != 4 || (m.rows() != 3 && m.rows() != 4))
+    wrongValue("fade_to", "expects 'cut', 'identity', 'fitted' or a 3 x 4 or 4 x 4 matrix");
+  RigidMotion motion;
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t c = 0; c < 3; ++c) motion.rotation[r][c] = m(r, c);
+    motion.translation[static_cast<int>(r)] = m(r, 3);
+  }
+  if (!isRigid(motion)) wrongValue("fade_to", "is no rigid motion");
+  return motion;
+}
+
+}  // namespace
+
+void CarryOptions::describe(Keywords& k) {
+  k.object("grids", &grids, "str or Sequence[str]",
+           "names of the grids to carry; all if not given");
+  k.object("densities", &densities, "bool or Sequence[str]",
+           "scalars that are densities, divided by the change of volume; pushed, their mass is "
+           "kept; True: all scalars");
+  k.object("stresses", &stresses, "str or Sequence[str]",
+           "Cauchy stresses: NAME stands for the six grids NAME.xx, .yy, .zz, .xy, .yz, .xz or the "
+           "rows NAME.x, .y, .z");
+  k.object("strains", &strains, "str or Sequence[str]", "the same for covariant strains");
+  k.settings(innermap::describe(carrySettings));
+  k.setting(outsideSetting(&outside));
+  k.object("fade_to", &fadeTo, "str or array",
+           "what the map fades to with outside: 'cut' (it ends there, the default), 'identity', "
+           "'fitted' (the best rigid motion of the surface), or a rigid motion, (3, 4) or (4, 4)");
+  k.object("vectors", &vectors, "str or Sequence[str]",
+           "of geometry: properties or fields that are vectors, turned by the Jacobian");
+  k.object("normals", &normals, "str or Sequence[str]",
+           "of geometry: those that are normals, turned by its inverse transpose");
+  k.settings(innermap::describe(lattice, "the solid", "as fine as those of the grids"));
+  k.setting(namesSetting(&names));
+  call.describe(k);
+}
+
+CarrySettings CarryOptions::carry() const {
+  CarrySettings out = carrySettings;
+  if (py::isinstance<py::bool_>(densities))
+    out.allDensities = py::cast<bool>(densities);
+  else
+    out.densities = textsFrom(densities, "densities");
+  out.stresses = textsFrom(stresses, "stresses");
+  out.strains = textsFrom(strains, "strains");
+  return out;
+}
+
+OutsideSettings CarryOptions::outsideSettings(const Points& from, const Points& to) const {
+  OutsideSettings out;
+  out.distance = outside;
+  const bool isText = py::isinstance<py::str>(fadeTo);
+  const std::string text = isText ? textFrom(fadeTo, "fade_to") : "cut";
+  if (fadeTo.is_none() || (isText && text == "cut")) return out;
+  if (!(outside > 0)) wrongValue("fade_to", "is for what lies outside; give outside too");
+  if (!isText)
+    out.fadeTo = motionFrom(fadeTo);
+  else if (text == "identity")
+    out.fadeTo = RigidMotion();
+  else if (text == "fitted")
+    out.fadeTo = bestRigidMotion(from, to);
+  else
+    wrongValue("fade_to", "expects 'cut', 'identity', 'fitted' or a rigid motion's matrix");
+  return out;
+}
+
+LevelSetSettings CarryOptions::output(const openvdb::GridPtrVec& carried, double growth) const {
+  auto out = lattice.in<LevelSetSettings>();
+  if (!lattice.resolution && !lattice.voxelSize) out.voxelSize = growth * finestVoxel(carried);
+  return out;
+}
+
+py::dict totalsOf(const PushResult& result) {
+  py::dict out, masses;
+  for (const CarriedMass& mass : result.masses) {
+    py::dict of;
+    of["before"] = mass.before;
+    of["after"] = mass.after;
+    of["left"] = mass.left;
+    of["cut"] = mass.cut;
+    of["largest_ratio"] = mass.largestRatio;
+    masses[mass.name.c_str()] = of;
+  }
+  out["mass"] = masses;
+  if (result.inverted) {
+    out["voxels"] = result.statistics.voxels;
+    out["inverted_fraction"] = result.statistics.invertedInside();
+    out["not_inverted"] = result.statistics.failedInside;
+  }
+  out["coarser_share"] = result.resampling.coarserShare;
+  out["warnings"] = result.warnings;
+  return out;
+}
+
+py::dict dictOf(const FileFigures& figures) {
+  py::dict out;
+  for (const auto& [name, number] : figures.numbers) out[name] = number;
+  out["fields_lost"] = figures.lost;
+  return out;
+}
+
+ReadGeometrySettings geometrySettings(const CarryOptions& o) {
+  ReadGeometrySettings out;
+  out.vectors = textsFrom(o.vectors, "vectors");
+  out.normals = textsFrom(o.normals, "normals");
+  return out;
+}
+
+FileFigures carryFile(const std::string& from, const std::string& to,
+                      const ReadGeometrySettings& reading, double subdivide,
+                      const PointCarry& carry) {
+  const auto file = readGeometry(from, reading);
+  innermap::requireMemory("carrying the geometry",
+                          processMemory(carryGeometryMemory(file->geometry)),
+                          "cut the file into parts");
+  CarryGeometrySettings settings;
+  settings.subdivide = subdivide;
+  const CarriedGeometry carried = carryGeometry(file->geometry, carry, settings);
+  FileFigures out;
+  out.lost = writeGeometry(to, *file, carried);
+  const GeometryFile::Inverted inverted = file->inverted(carried);
+  out.numbers = {{"points", carried.ownPoints},
+                 {"points_added", carried.added},
+                 {"points_outside", carried.points.outside},
+                 {"points_cut", carried.points.cut},
+                 {"points_not_inverted", carried.points.failed},
+                 {"points_folded", carried.folded},
+                 {"elements_cut", carried.cutElements},
+                 {"cells", inverted.cells},
+                 {"cells_inverted_before", inverted.before},
+                 {"cells_inverted_after", inverted.after}};
+  return out;
+}
+
+}  // namespace innermap::python

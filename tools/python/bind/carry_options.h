@@ -1,0 +1,57 @@
+// What push(), pull() and deform() share.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bind/grids.h"
+#include "bind/keywords.h"
+#include "innermap/fit/mapped_solid.h"
+#include "innermap/io/geometry_file.h"
+#include "innermap/levelset/level_set.h"
+#include "innermap/transfer/inverse_map.h"
+#include "innermap/transfer/push_pull.h"
+
+namespace innermap::python {
+
+void bindCarry(pybind11::module_& m);  // after bindMap, bindGrids and bindCells
+
+struct CarryOptions {
+  pybind11::object grids, densities, stresses, strains, fadeTo, vectors, normals;
+  CarrySettings carrySettings;  // but for the names
+  double outside = 0;
+  LatticeChoice lattice;
+  NamingScheme names = NamingScheme::innermap;
+  CallOptions call;
+
+  void describe(Keywords& k);
+
+  CarrySettings carry() const;
+  // from, to: corresponding points of the two solids.
+  OutsideSettings outsideSettings(const Points& from, const Points& to) const;
+  // Voxels of the output: as asked for, else those of the grids times `growth`.
+  LevelSetSettings output(const openvdb::GridPtrVec& carried, double growth) const;
+};
+
+// What became of grids, for Grids.totals.
+pybind11::dict totalsOf(const PushResult& result);
+
+// What became of a file of geometry.
+struct FileFigures {
+  std::vector<std::pair<const char*, std::uint64_t>> numbers;
+  std::vector<std::string> lost;  // fields
+};
+pybind11::dict dictOf(const FileFigures& figures);
+
+// What a file of geometry or cells is read with.
+ReadGeometrySettings geometrySettings(const CarryOptions& o);
+
+// A file carried and written. Without the lock of the interpreter. subdivide: world units.
+FileFigures carryFile(const std::string& from, const std::string& to,
+                      const ReadGeometrySettings& reading, double subdivide,
+                      const PointCarry& carry);
+
+}  // namespace innermap::python

@@ -1,0 +1,223 @@
+// deform(): what is inside, through the frames of an animation.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "bind/arrays.h"
+#include "bind/carry_options.h"
+#include "bind/errors.h"
+#include "bind/frame_set.h"
+#include "bind/grids.h"
+#include "bind/lists.h"
+#include "bind/meshes.h"
+#include "innermap/core/memory.h"
+#include "innermap/transfer/carry.h"
+
+namespace py = pybind11;
+
+namespace innermap::python {
+namespace {
+
+// Of the sums of charges: of points, which are kept in double precision, and of grids.
+constexpr double kPointAccuracy = 1e-7, kGridAccuracy = 1e-6;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+struct DeformOptions : CarryOptions {
+  FittingOptions fitting;
+  bool velocity = false;
+  double framesPerSecond = 24;
+
+  void describe(Keywords& k) {
+    k.flag("velocity", &velocity,
+           "of grids: also a grid velocity for motion blur, world units a second, from the "
+           "neighbouring frames");
+    k.number("fps", &framesPerSecond, {1e-6, 1e6}, "frames a second, for velocity");
+    fitting.describe(k);
+    CarryOptions::describe(k);
+  }
+};
+
+class Deformation {
+ public:
+  Deformation(const Mesh& rest, const FrameSet& frames, const DeformOptions& o)
+      : rest_(rest), frames_(frames), o_(o) {
+    fadeToFitted_ = py::isinstance<py::str>(o.fadeTo) &&
+                    textFrom(o.fadeTo, "fade_to") == "fitted" && o.outside > 0;
+    if (!fadeToFitted_) outside_ = o.outsideSettings({}, {});
+    outside_.distance = o.outside;
+  }
+
+  py::object grids(const py::object& what, const std::optional<FramePattern>& pattern) const;
+  py::object points(const Points& points) const;
+  py::object file(const std::string& from, const FramePattern& pattern) const;
+
+ private:
+  PointPusher pusherFor(const FrameFitter& fitter, const Points& moved) const {
+    CarryPointsSettings settings;
+    settings.outside = outside_;
+    if (fadeToFitted_)
+      settings.outside.fadeTo = bestRigidMotion(fitter.solid().repaired().mesh.vertices, moved);
+    settings.accuracy = kPointAccuracy;
+    return PointPusher(fitter.solid(), settings);
+  }
+
+  // carry: of a frame's number and the carry to it.
+  template <class Carry>
+  void forFrames(std::uint64_t memory, FrameTable& table, const Carry& carry) const {
+    const FrameFitter fitter = fitterOf(rest_, o_.fitting, o_.call, memory);
+    FrameFits fits = frames_.fits(fitter);
+    std::optional<PointPusher> shared;
+    if (!fadeToFitted_) shared = pusherFor(fitter, {});
+    for (const std::size_t index : frames_.wanted()) {
+      const std::int64_t number = frames_.numbers()[index];
+      table.add(number, [&] {
+        const std::shared_ptr<const FrameFit> fit = fits.at(index);
+        const PointPusher pusher = shared ? *shared : pusherFor(fitter, fit->boundary.moved);
+        const ComposedMap map = HarmonicMap(fit->field);
+        carry(number, [&](const Points& points, bool jacobians) {
+          return pusher.push(map, points, jacobians);
+        });
+        return rowOf(*fit);
+      });
+    }
+  }
+
+  const Mesh& rest_;
+  const FrameSet& frames_;
+  const DeformOptions& o_;
+  OutsideSettings outside_;
+  bool fadeToFitted_ = false;
+};
+
+py::object Deformation::grids(const py::object& what,
+                              const std::optional<FramePattern>& pattern) const {
+  const openvdb::GridPtrVec given =
+      takeGrids(what, "inside", textsFrom(o_.grids, "grids"), o_.call);
+  FramePushSettings settings;
+  settings.push.carry = o_.carry();
+  settings.push.outside = outside_;
+  settings.push.accuracy = kGridAccuracy;
+  settings.fadeToFitted = fadeToFitted_;
+  FrameTable table;
+  std::vector<PushResult> results;
+  runCall(o_.call, [&]() {
+    settings.output = o_.output(given, 1);
+    const FrameFitter fitter = fitterOf(rest_, o_.fitting, o_.call, 0);
+    requireMemory(o_.call, "carrying the grids",
+                  carryMemory(fitter.solid(), given, settings.output, outside_, settings.push.carry,
+                              {true, o_.velocity ? 1 : 0}),
+                  "use a lower resolution");
+    FrameFits fits = frames_.fits(fitter);
+    const FramePusher pusher(fitter, given, settings);
+    for (const std::size_t index : frames_.wanted()) {
+      const std::int64_t number = frames_.numbers()[index];
+      table.add(number, [&] {
+        const std::shared_ptr<const FrameFit> fit = fits.at(index);
+        std::vector<CarriedField> fields;
+        if (o_.velocity)
+          fields.push_back({"velocity", fits.velocity(index, o_.framesPerSecond),
+                            openvdb::VEC_CONTRAVARIANT_RELATIVE});
+        PushResult result = pusher.push({fit.get(), number}, fields).result;
+        std::map<std::string, double> row = rowOf(*fit);
+        row["inverted_fraction"] = result.statistics.invertedInside();
+        row["voxels"] = static_cast<double>(result.statistics.voxels);
+        VdbWriteSettings writing;
+        writing.names = o_.names;
+        if (pattern)
+          writeVdb(pattern->path(number), result.grids, {}, writing);
+        else
+          results.push_back(std::move(result));
+        return row;
+      });
+    }
+  });
+  const py::dict figures = table.dict();
+  if (pattern) return figures;
+  py::list out;
+  for (PushResult& result : results) {
+    const py::dict totals = totalsOf(result);
+    out.append(gridsObject(std::move(result.grids), totals, o_.call));
+  }
+  return std::move(out);
+}
+
+py::object Deformation::points(const Points& points) const {
+  FrameTable table;
+  std::vector<Points> places;
+  std::vector<char> found(points.size(), 1);
+  runCall(o_.call, [&]() {
+    forFrames(0, table, [&](std::int64_t, const PointCarry& carry) {
+      CarriedPoints carried = carry(points, false);
+      for (std::size_t i = 0; i < points.size(); ++i)
+        if (carried.fates[i] != PointFate::carried) {
+          found[i] = 0;
+          carried.points[i] = {kNone, kNone, kNone};
+        }
+      places.push_back(std::move(carried.points));
+    });
+  });
+  for (std::size_t i = 0; i < table.error.size(); ++i)
+    if (!table.error[i].empty())
+      throw DataError(fmt::format("frame {}: {}", table.frame[i], table.error[i]));
+  py::array_t<double> out({static_cast<py::ssize_t>(places.size()),
+                           static_cast<py::ssize_t>(points.size()), py::ssize_t(3)});
+  double* to = out.mutable_data();
+  for (const Points& frame : places)
+    for (const Vec3& p : frame)
+      for (int axis = 0; axis < 3; ++axis) *to++ = p[axis];
+  py::array_t<bool> is(static_cast<py::ssize_t>(found.size()));
+  std::copy(found.begin(), found.end(), is.mutable_data());
+  return py::make_tuple(out, is);
+}
+
+py::object Deformation::file(const std::string& from, const FramePattern& pattern) const {
+  ReadGeometrySettings reading = geometrySettings(o_);
+  requireWritableAs(from, pattern.path(0));
+  FrameTable table;
+  runCall(o_.call, [&]() {
+    forFrames(geometryMemory(from), table, [&](std::int64_t number, const PointCarry& carry) {
+      carryFile(from, pattern.path(number), reading, 0, carry);
+    });
+  });
+  return table.dict();
+}
+
+py::object deform(const Arguments& a, DeformOptions& o) {
+  const Mesh rest = meshFrom(a[0], "source");
+  const FrameSet frames(a[2], o.fitting.only, rest);
+  if (o.velocity && frames.numbers().size() < 2)
+    wrongValue("velocity", "needs two frames at least");
+  std::optional<FramePattern> pattern;
+  if (!a[3].is_none()) pattern.emplace("output", pathFrom(a[3], "output"));
+  const Deformation job(rest, frames, o);
+  const std::string from = isPath(a[1]) ? pathFrom(a[1], "inside") : "";
+  if (!from.empty() && isGeometryFile(from)) {
+    if (!pattern) wrongValue("output", "is needed for files of geometry");
+    return job.file(from, *pattern);
+  }
+  if (!from.empty() || isGrids(a[1])) return job.grids(a[1], pattern);
+  if (pattern) wrongValue("output", "is for grids and files of geometry");
+  return job.points(pointsFrom(a[1], "inside"));
+}
+
+}  // namespace
+
+void bindDeform(py::module_& m) {
+  define<DeformOptions>(
+      m,
+      {"deform", "source, inside, frames, output=None",
+       "Carries what is inside a rest pose through the frames of an animation.\n\nsource: the rest "
+       "pose, a mesh: (V, F), a path, an innermap.Mesh. inside: points (n, 3), which come back as "
+       "(places (frames, n, 3), found (n,)), NaN where a point lies too far outside; an "
+       "innermap.Grids or the path of a .vdb file, which come back as a list of Grids, or are "
+       "written to output and figures come back; or the path of a file of geometry (.obj, .ply, "
+       "..., .vtu, .msh), written to output. frames: paths, a pattern ('walk.*.obj'), or an array "
+       "of each frame's vertices. output: a path with #### or %04d for the frame's number. "
+       "Figures are a dict of columns: frame, boundary_rms and so on, error, the text of what was "
+       "wrong with a frame that is left out. All frames are made, also those whose output is "
+       "there. Raises DataError, FileError, MemoryError."},
+      deform);
+}
+
+}  // namespace innermap::python

@@ -1,0 +1,129 @@
+#include "bind/frame_set.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "bind/arrays.h"
+#include "bind/errors.h"
+#include "bind/lists.h"
+#include "bind/meshes.h"
+#include "innermap/core/memory.h"
+#include "innermap/mesh/mesh_file.h"
+
+namespace py = pybind11;
+
+namespace innermap::python {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+void FittingOptions::describe(Keywords& k) {
+  k.object("only", &only, "str", "which of the frames, by number: '12', '1-48', '1-48x2'; all");
+  k.settings(innermap::describe(fitting));
+}
+
+FrameSet::FrameSet(const py::object& given, const py::object& only, const Mesh& rest)
+    : rest_(rest) {
+  const bool oneText = isPath(given);
+  if (oneText || (py::isinstance<py::sequence>(given) && !py::isinstance<py::array>(given) &&
+                  py::len(given) > 0 && isPath(py::sequence(given)[0])))
+    takeFiles(given, oneText);
+  else
+    takeMeshes(given);
+  if (numbers_.empty()) wrongValue("frames", "is empty");
+  choose(only);
+}
+
+Mesh FrameSet::mesh(std::size_t index) const {
+  if (!files_.empty()) return readMeshLike(files_[index].path, rest_);
+  Mesh out = rest_;
+  out.name = fmt::format("frame {}", numbers_[index]);
+  out.vertices = places_[index];
+  return out;
+}
+
+FrameFits FrameSet::fits(const FrameFitter& fitter) const {
+  return {numbers_, [&fitter, this](std::size_t index) { return fitter.fit(mesh(index)); }};
+}
+
+void FrameSet::takeFiles(const py::object& given, bool oneText) {
+  std::vector<std::string> names;
+  if (oneText)
+    names.push_back(pathFrom(given, "frames"));
+  else
+    for (const auto& path : given) names.push_back(pathFrom(path, "frames"));
+  files_ = findFrames(names, {".obj", ".ply", ".off", ".stl"}).frames;
+  if (files_.empty()) wrongValue("frames", "no file has a frame number in its name");
+  for (const FrameFile& file : files_) numbers_.push_back(file.number);
+}
+
+void FrameSet::takeMeshes(const py::object& given) {
+  if (!py::isinstance<py::iterable>(given))
+    wrongType("frames", "expects paths, a pattern, or the vertices of each frame");
+  for (const auto& item : given) {
+    const auto object = py::reinterpret_borrow<py::object>(item);
+    const std::string name = fmt::format("frames[{}]", numbers_.size());
+    places_.push_back(isArrayLike(object) ? pointsFrom(object, name)
+                                          : meshFrom(object, name).vertices);
+    if (places_.back().size() != rest_.vertices.size())
+      wrongValue(name, fmt::format("has {} vertices, the rest pose has {}", places_.back().size(),
+                                   rest_.vertices.size()));
+    numbers_.push_back(static_cast<std::int64_t>(numbers_.size()));
+  }
+}
+
+void FrameSet::choose(const py::object& only) {
+  std::optional<FrameRanges> ranges;
+  if (!only.is_none()) ranges.emplace("only", textOf(only, "only"));
+  for (std::size_t i = 0; i < numbers_.size(); ++i)
+    if (!ranges || ranges->contains(numbers_[i])) wanted_.push_back(i);
+  if (wanted_.empty()) throw SettingError("only", "has none of the frames");
+}
+
+void FrameTable::add(std::int64_t number,
+                     const std::function<std::map<std::string, double>()>& body) {
+  std::map<std::string, double> row;
+  std::string failure;
+  try {
+    row = body();
+  } catch (const FileError& problem) {
+    failure = problem.what();
+  } catch (const DataError& problem) {
+    failure = problem.what();
+  }
+  for (const auto& [name, value] : row)
+    columns.try_emplace(name, frame.size(), kNone).first->second.push_back(value);
+  frame.push_back(number);
+  error.push_back(failure);
+  for (auto& [name, values] : columns) values.resize(frame.size(), kNone);
+}
+
+py::dict FrameTable::dict() const {
+  if (std::none_of(error.begin(), error.end(), [](const std::string& e) { return e.empty(); }))
+    throw DataError("none of the frames can be used; the first: " + error.front());
+  py::dict out;
+  out["frame"] = arrayOf(frame);
+  for (const auto& [name, values] : columns) out[name.c_str()] = arrayOf(values);
+  out["error"] = error;
+  return out;
+}
+
+std::map<std::string, double> rowOf(const FrameFit& fit) {
+  return {{"boundary_rms", fit.error.rms},   {"boundary_p99", fit.error.p99},
+          {"boundary_max", fit.error.max},   {"folded_fraction", fit.folded},
+          {"outside_fraction", fit.outside}, {"volume", fit.boundary.volume}};
+}
+
+FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, const CallOptions& call,
+                     std::uint64_t others) {
+  const FrameFitterSettings settings = o.fitting;
+  requireMemory(call, fmt::format("a sequence with {} charges", settings.sources),
+                frameFitterMemory(settings, others), "use fewer charges");
+  return FrameFitter(makeSourceBoundary(rest), settings);
+}
+
+}  // namespace innermap::python

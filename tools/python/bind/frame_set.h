@@ -1,0 +1,73 @@
+// The frames of an animation, as deform() and sequence() take them.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bind/keywords.h"
+#include "core/frame_files.h"
+#include "innermap/core/error.h"
+#include "innermap/fit/frame_fitter.h"
+
+namespace innermap::python {
+
+void bindDeform(pybind11::module_& m);  // after bindGrids
+void bindSequence(pybind11::module_& m);
+
+struct FittingOptions {
+  FrameFitterSettings fitting;
+  pybind11::object only;  // which frames
+
+  void describe(Keywords& k);
+};
+
+// From files or from arrays.
+class FrameSet {
+ public:
+  // rest: must outlive it.
+  FrameSet(const pybind11::object& given, const pybind11::object& only, const Mesh& rest);
+
+  const std::vector<std::int64_t>& numbers() const { return numbers_; }
+  const std::vector<std::size_t>& wanted() const { return wanted_; }
+
+  // Without the lock of the interpreter.
+  Mesh mesh(std::size_t index) const;
+  // All references must outlive them.
+  FrameFits fits(const FrameFitter& fitter) const;
+
+ private:
+  void takeFiles(const pybind11::object& given, bool oneText);
+  void takeMeshes(const pybind11::object& given);
+  void choose(const pybind11::object& only);
+
+  const Mesh& rest_;
+  std::vector<FrameFile> files_;
+  std::vector<Points> places_;
+  std::vector<std::int64_t> numbers_;
+  std::vector<std::size_t> wanted_;
+};
+
+// Columns of figures, a row a frame; a frame that cannot be used has its error and NaN.
+struct FrameTable {
+  std::vector<std::int64_t> frame;
+  std::vector<std::string> error;
+  std::map<std::string, std::vector<double>> columns;
+
+  void add(std::int64_t number, const std::function<std::map<std::string, double>()>& figures);
+  // Throws DataError where no frame could be used.
+  pybind11::dict dict() const;
+};
+
+std::map<std::string, double> rowOf(const FrameFit& fit);
+
+// others: memory that is needed beside it, bytes.
+FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, const CallOptions& call,
+                     std::uint64_t others);
+
+}  // namespace innermap::python

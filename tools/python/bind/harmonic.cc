@@ -1,0 +1,182 @@
+// harmonic() and weights().
+#include <fmt/format.h>
+
+#include "bind/arrays.h"
+#include "bind/conditions.h"
+#include "bind/errors.h"
+#include "bind/field.h"
+#include "bind/keywords.h"
+#include "bind/lists.h"
+#include "bind/meshes.h"
+#include "innermap/core/memory.h"
+#include "innermap/fit/fit_map.h"
+
+namespace py = pybind11;
+
+namespace innermap::python {
+namespace {
+
+constexpr double kWeightsTolerance = 1e-2;  // where groups touch, a finer one is spent on kinks
+
+struct FieldFitOptions {
+  HarmonicFitSettings fit;
+  double creaseAngle = BoundaryConditions{}.creaseAngle;
+  CallOptions call;
+
+  void describe(Keywords& k) {
+    k.settings(innermap::describe(fit));
+    k.setting(creaseSetting(&creaseAngle));
+    call.describe(k);
+  }
+};
+
+struct HarmonicOptions {
+  GivenConditions given;
+  py::object names = py::none();
+  FieldFitOptions fit;
+
+  void describe(Keywords& k) {
+    k.object("values", &given.values, "array or Callable[[array], array]",
+             "(n,) or (n, channels) at the vertices, linear on triangles, NaN where a vertex has "
+             "none: nothing flows through the triangles about it then; or a callable that takes "
+             "(p, 3) points of the surface and gives (p,) or (p, channels), exact between vertices "
+             "too");
+    k.object("fix", &given.fix, "dict, pairs, or triangles",
+             "without `values`: {group: value(s)} or pairs (triangles, value(s)); with `values`: "
+             "the triangles on which they hold. Nothing flows through all others unless `flux` "
+             "says otherwise. triangles: (m,) bool, whole numbers, or a group's name");
+    k.object("flux", &given.flux, "dict, pairs, array or Callable[[array, array], array]",
+             "derivatives along the outward normal, values' units per world unit: {group: "
+             "value(s)}, pairs (triangles, value(s)), (m,) or (m, channels) with NaN where there "
+             "is none, or a callable that takes points and outward unit normals, for all triangles "
+             "without values");
+    k.object("groups", &given.groups, "dict[str, array]",
+             "triangles by name, for `fix` and `flux`; groups, objects and materials of the file "
+             "if the mesh was read from an OBJ");
+    k.object("names", &names, "Sequence[str]",
+             "of the channels' grids; 'value', or 'value0', 'value1', ... if not given");
+    fit.describe(k);
+  }
+};
+
+std::vector<std::string> namesFrom(const py::object& given, std::size_t channels) {
+  std::vector<std::string> out;
+  if (given.is_none()) {
+    for (std::size_t k = 0; k < channels; ++k)
+      out.push_back(channels == 1 ? "value" : fmt::format("value{}", k));
+    return out;
+  }
+  if (py::isinstance<py::str>(given) || !py::isinstance<py::iterable>(given))
+    wrongType("names", "expects a list of the channels' names");
+  for (const auto& name : py::iter(given)) out.push_back(textOf(name, "names"));
+  if (out.size() != channels)
+    wrongValue("names", fmt::format("has {} for {} channels", out.size(), channels));
+  return out;
+}
+
+// unitSum: see withUnitSum.
+std::shared_ptr<PyField> fitted(const Mesh& mesh, BoundaryConditions& conditions,
+                                const py::object& names, bool unitSum, const FieldFitOptions& o) {
+  if (!conditions.function) namesFrom(names, conditions.values.columns());  // before the work
+  conditions.creaseAngle = o.creaseAngle;
+  auto made = call(o.call, [&]() {
+    const auto settings = o.fit;
+    FitMapSettings like;
+    like.tolerance = settings.tolerance;
+    requireMemory(o.call, "the harmonic field", fitMapMemory(like, mesh.vertices.size()),
+                  "raise max_memory");
+    const bool corners =
+        !conditions.function && conditions.values.rows() == 3 * mesh.triangles.size();
+    const double joined = corners ? removeJumps(mesh, conditions) : 0;
+    SourceBoundary boundary = makeSourceBoundary(mesh);
+    HarmonicFit fit = fitHarmonic(boundary, conditions, settings);
+    if (unitSum) fit.field = withUnitSum(fit.field);
+    if (joined > 0)
+      fit.notes.push_back(
+          fmt::format("values that touch are joined: on {:.2g}% of the surface, the triangles "
+                      "along their borders, they go over into one another",
+                      100 * joined));
+    return std::make_pair(std::move(boundary), std::move(fit));
+  });
+  auto& [boundary, fit] = made;
+  std::vector<std::string> channels = namesFrom(names, fit.field.channels());
+  Facts facts = harmonicFacts(fit, o.fit, mesh.name, channels);
+  auto out = fieldOf({fit.field, std::move(boundary), std::move(channels), std::move(facts)});
+  out->span = std::max(fit.span, 1e-300);
+  out->fit = std::move(fit);
+  return out;
+}
+
+py::object harmonic(const Arguments& a, HarmonicOptions& o) {
+  std::size_t at = 0;
+  const Mesh mesh = takeMesh(a, at, "mesh");
+  if (at < a.size()) {
+    if (!o.given.values.is_none()) throw py::type_error("harmonic() has `values` twice");
+    o.given.values = a[at++];
+  }
+  if (at < a.size()) throw py::type_error("harmonic() takes a mesh and values, no more");
+  ConditionsFrom conditions(mesh, o.given);
+  return py::cast(fitted(mesh, conditions.conditions(), o.names, false, o.fit));
+}
+
+struct WeightOptions {
+  py::object groups = py::none();
+  FieldFitOptions fit;
+
+  WeightOptions() { fit.fit.tolerance = kWeightsTolerance; }
+  void describe(Keywords& k) {
+    k.object("groups", &groups, "dict[str, array] or Sequence[str]",
+             "triangles by name, whole numbers or (m,) bool; or names of groups, objects and "
+             "materials of the OBJ that the mesh was read from, all that have faces if not given");
+    fit.describe(k);
+  }
+};
+
+py::object weights(const Arguments& a, WeightOptions& o) {
+  std::size_t at = 0;
+  const Mesh mesh = takeMesh(a, at, "mesh");
+  if (at < a.size()) {
+    if (!o.groups.is_none()) throw py::type_error("weights() has `groups` twice");
+    o.groups = a[at++];
+  }
+  if (at < a.size()) throw py::type_error("weights() takes a mesh and groups, no more");
+  const std::vector<SurfaceGroup> groups = Groups(mesh, o.groups).all(o.groups);
+  py::list names;
+  for (const SurfaceGroup& group : groups) names.append(group.name);
+  BoundaryConditions conditions = weightConditions(mesh, groups);
+  return py::cast(fitted(mesh, conditions, names, true, o.fit));
+}
+
+}  // namespace
+
+void bindHarmonic(py::module_& m) {
+  define<HarmonicOptions>(
+      m,
+      {"harmonic", "*mesh_and_values",
+       "A harmonic field inside a solid, from what is known on its surface; no tetrahedra are "
+       "needed. Returns an innermap.Field.\n\n"
+       "harmonic(V, F, values): any number of channels in one solve.\n"
+       "harmonic(V, F, fix=[(inner, 0), (outer, 1)]): values on parts of the surface, nothing "
+       "flows through the rest.\n"
+       "harmonic('heart.obj', fix={'endo': 0, 'epi': 1}): by the file's groups.\n\n"
+       "V: (n, 3) float64, world units. F: (m, 3) integers; or whatever stands for a mesh. A "
+       "tolerance that cannot be met is no error, see Field.tolerance_met. Points and lines inside "
+       "cannot hold a value in three dimensions: give them as small balls or tubes, closed parts "
+       "of "
+       "the surface. Raises DataError, SettingError, MemoryError."},
+      harmonic);
+  define<WeightOptions>(
+      m,
+      {"weights", "*mesh_and_groups",
+       "Harmonic weights of groups of a surface, inside the solid: of each group a channel, 1 on "
+       "it, 0 on the others, nothing flows through the rest. They sum up to 1 everywhere. Groups "
+       "that touch go over into one another on the triangles along their border. Returns an "
+       "innermap.Field with the groups' names.\n\n"
+       "weights(V, F, {'head': head, 'arm': arm})\n"
+       "weights('body.obj', ['head', 'arm'])\n\n"
+       "Raises DataError: fewer than two groups, one without triangles (a point or a line inside "
+       "cannot hold a weight: give it as a small ball or tube), a triangle in two of them."},
+      weights);
+}
+
+}  // namespace innermap::python

@@ -1,0 +1,196 @@
+#include "bind/map.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "bind/arrays.h"
+#include "bind/errors.h"
+#include "bind/figures.h"
+#include "bind/keywords.h"
+#include "bind/meshes.h"
+#include "bind/solids.h"
+#include "innermap/field/field_file.h"
+#include "report/figures.h"
+
+namespace py = pybind11;
+
+namespace innermap::python {
+namespace {
+
+// Of the sums of charges, of the target's diagonal: some hundred times what doubles hold.
+constexpr double kUsualAccuracy = 1e-12;
+
+struct CallMapOptions {
+  bool jacobian = false;
+  double accuracy = kUsualAccuracy;
+  CallOptions call;
+
+  void describe(Keywords& k) {
+    k.flag("jacobian", &jacobian, "also the derivative of the map at each point");
+    k.number("accuracy", &accuracy, {0, 1e-3},
+             "of the sums of charges, root mean square, a fraction of the target's diagonal; a "
+             "coarser one is faster for many points; 0: plain sums");
+    call.describe(k);
+  }
+};
+
+py::object callMap(const Arguments& a, CallMapOptions& o) {
+  const auto& map = py::cast<const PyMap&>(a[0]);
+  const Points points = pointsFrom(a[1], "X");
+  FieldSamples samples = call(o.call, [&]() {
+    EvaluateFieldSettings settings;
+    settings.accuracy = o.accuracy * map.diagonal();
+    settings.gradients = o.jacobian;
+    return map.mapped->map.evaluate(points, settings);
+  });
+  if (!o.jacobian) return arrayOf(std::move(samples.values));
+  return py::make_tuple(arrayOf(std::move(samples.values)),
+                        gradientsOf(std::move(samples.gradients)));
+}
+
+struct InverseOptions {
+  bool jacobian = false;
+  CallOptions call;
+
+  void describe(Keywords& k) {
+    k.flag("jacobian", &jacobian, "also the derivative of the inverse at each point");
+    call.describe(k);
+  }
+};
+
+py::object inverseMap(const Arguments& a, InverseOptions& o) {
+  const auto& map = py::cast<const PyMap&>(a[0]);
+  const Points points = pointsFrom(a[1], "Y");
+  return carriedTuple(call(o.call, [&]() { return map.puller().pull(points, o.jacobian); }),
+                      o.jacobian);
+}
+
+py::object save(const Arguments& a, NoOptions&) {
+  const auto mapped = py::cast<const PyMap&>(a[0]).mapped;
+  const std::string path = pathFrom(a[1], "path");
+  {
+    const py::gil_scoped_release unlocked;
+    writeMap(path, *mapped);
+  }
+  return py::none();
+}
+
+std::string reprOf(const PyMap& map) {
+  const MappedSolid& mapped = *map.mapped;
+  return fmt::format(
+      "<innermap.Map of '{}' onto '{}': {} charges{}>", mapped.boundary.source.mesh.name,
+      mapped.boundary.targetMesh.name, mapped.map.sources(),
+      mapped.map.steps().size() > 1 ? fmt::format(" in {} steps", mapped.map.steps().size()) : "");
+}
+
+std::vector<std::string> notesOf(const PyMap& map) {
+  return map.fit ? map.fit->notes : map.mapped->boundary.notes;
+}
+
+std::vector<std::string> warningsOf(const PyMap& map) {
+  return map.fit ? map.fit->warnings : map.mapped->boundary.warnings;
+}
+
+Mesh targetOf(const PyMap& map) { return map.mapped->boundary.targetMesh; }
+
+}  // namespace
+
+PointPuller PyMap::puller() const {
+  const std::lock_guard<std::mutex> guard(inverse_->making);
+  if (!inverse_->made) {
+    CarryPointsSettings settings;
+    settings.accuracy = kUsualAccuracy;
+    const Solid target = makeTargetSolid(mapped->boundary);
+    inverse_->made = PointPuller(mapped->map, mapped->solid(), target, settings);
+  }
+  return *inverse_->made;
+}
+
+py::tuple carriedTuple(CarriedPoints carried, bool jacobians) {
+  py::array_t<bool> found(static_cast<py::ssize_t>(carried.points.size()));
+  bool* is = found.mutable_data();
+  for (std::size_t i = 0; i < carried.points.size(); ++i) {
+    is[i] = carried.fates[i] == PointFate::carried;
+    if (is[i]) continue;
+    carried.points[i] = {std::nan(""), std::nan(""), std::nan("")};
+    if (jacobians)
+      for (auto& row : carried.jacobians[i]) row.fill(std::nan(""));
+  }
+  if (!jacobians) return py::make_tuple(arrayOf(carried.points), found);
+  return py::make_tuple(arrayOf(carried.points), found, arrayOf(carried.jacobians));
+}
+
+void bindMap(py::module_& m) {
+  py::class_<PyMap, std::shared_ptr<PyMap>> map(
+      m, "Map",
+      "The map of a solid: harmonic, or several harmonic maps one after the other. Made by fit() "
+      "or load(). It does not change, and several threads may use it at once.");
+  define<CallMapOptions>(
+      map,
+      {"__call__", "self, X",
+       "Where points go.\n\nX: (n, 3), world units of the source, inside the solid; outside stand "
+       "the map's charges. Returns Y, (n, 3), world units of the target, or, with jacobian=True, "
+       "Y and J, (n, 3, 3): J[i, r, a] is the derivative of Y[i, r] by X[i, a]. Arrays are in "
+       "Fortran's order, column after column."},
+      callMap);
+  define<InverseOptions>(
+      map,
+      {"inverse", "self, Y",
+       "Where points come from.\n\nY: (n, 3), world units of the target. Returns X, (n, 3), world "
+       "units of the source, with m(X) = Y, and found, (n,) bool; where nothing of the source "
+       "comes to a point, X is NaN and found False. Where the map folds, several points come to "
+       "one: X is one of them. With jacobian=True also the derivative of the inverse, (n, 3, 3). "
+       "The first call inverts the map on a grid, which takes some seconds and is kept."},
+      inverseMap);
+  defineContains(
+      map, [](const py::object& self) { return py::cast<const PyMap&>(self).mapped->solid(); });
+  define<NoOptions>(map,
+                    {"save", "self, path",
+                     "Writes the map's file (.ply), which load() and the program read. It appears "
+                     "whole or not at all. Raises FileError."},
+                    save);
+  map.def_property_readonly(
+         "boundary_error",
+         [](const PyMap& self) {
+           return self.fit ? self.fit->error : fitFacts(self.mapped->facts).error;
+         },
+         "The certificate, a BoundaryError: fractions of the target's diagonal.")
+      .def_property_readonly(
+          "tolerance_met", [](const PyMap& self) { return fitFacts(self.mapped->facts).met; },
+          "Whether 99% of the boundary is within the tolerance; None where the "
+          "map was not fitted to one.")
+      .def_property_readonly(
+          "statement",
+          [](const PyMap& self) { return injectivityStatement(self.mapped->injectivity); },
+          "What was checked of the map's being one-to-one, what was found and what follows.")
+      .def_property_readonly(
+          "one_to_one", [](const PyMap& self) { return dictOf(figures(self.mapped->injectivity)); },
+          "The figures of the statement, by name.")
+      .def_property_readonly(
+          "facts", [](const PyMap& self) { return factsOf(self.mapped->facts); },
+          "What the map's file says of it: settings and results, as text by name.")
+      .def_property_readonly("notes", &notesOf, "What was done on the way, a line each.")
+      .def_property_readonly("warnings", &warningsOf, "What makes the map doubtful, a line each.")
+      .def_property_readonly(
+          "steps", [](const PyMap& self) { return self.mapped->map.steps().size(); },
+          "How many harmonic maps it is made of, one after the other.")
+      .def_property_readonly(
+          "charges", [](const PyMap& self) { return self.mapped->map.sources(); },
+          "Charges of all steps.")
+      .def_property_readonly(
+          "source", [](const PyMap& self) { return self.mapped->boundary.source.mesh; },
+          "The mesh that is mapped, a Mesh.")
+      .def_property_readonly("target", &targetOf,
+                             "The same mesh with its vertices where the map takes them, a Mesh.")
+      .def_property_readonly(
+          "volumes",
+          [](const PyMap& self) {
+            return py::make_tuple(self.mapped->solid().volume(),
+                                  self.mapped->boundary.target.volume);
+          },
+          "Of source and target, world units cubed.")
+      .def("__repr__", &reprOf);
+}
+
+}  // namespace innermap::python

@@ -1,0 +1,102 @@
+// sequence(): the maps of an animation, measured.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "bind/arrays.h"
+#include "bind/errors.h"
+#include "bind/frame_set.h"
+#include "bind/grids.h"
+#include "bind/lists.h"
+#include "bind/meshes.h"
+#include "innermap/core/memory.h"
+#include "innermap/evaluate/grids.h"
+
+namespace py = pybind11;
+
+namespace innermap::python {
+namespace {
+
+struct SequenceOptions {
+  FittingOptions fitting;
+  LatticeChoice grid;
+  LameConstants lame;
+  py::object output, grids;
+  NamingScheme names = NamingScheme::innermap;
+  CallOptions call;
+
+  void describe(Keywords& k) {
+    k.object("output", &output, "path",
+             "a .vdb file a frame, with #### or %04d for the number, with `grids`");
+    k.object("grids", &grids, "str or Sequence[str]",
+             "written to output: of surface, density, map, jacobian, harmonic_energy, "
+             "deformation_energy; the two energies if not given");
+    fitting.describe(k);
+    k.settings(innermap::describe(grid));
+    k.settings(innermap::describe(lame));
+    k.setting(namesSetting(&names));
+    call.describe(k);
+  }
+};
+
+// The columns of the program's energies.csv, but for what tells of its run.
+std::map<std::string, double> measuresOf(const FrameFit& fit, const MapGrids& grids) {
+  std::map<std::string, double> row = rowOf(fit);
+  row["harmonic"] = grids.harmonicTotal;
+  row["deformation"] = grids.deformationTotal;
+  row["deformation_mean"] = grids.volume > 0 ? grids.deformationTotal / grids.volume : 0;
+  row["jacobian_min"] = grids.jacobianMin;
+  row["jacobian_max"] = grids.jacobianMax;
+  row["folded_fraction"] = grids.foldedFraction;
+  return row;
+}
+
+py::object sequence(const Arguments& a, SequenceOptions& o) {
+  const Mesh rest = meshFrom(a[0], "source");
+  const FrameSet frames(a[1], o.fitting.only, rest);
+  std::optional<FramePattern> pattern;
+  if (!o.output.is_none()) pattern.emplace("output", pathFrom(o.output, "output"));
+  std::vector<std::string> names = textsFrom(o.grids, "grids");
+  if (!pattern && !names.empty()) wrongValue("grids", "is for output; give it too");
+  if (pattern && names.empty()) names = {"harmonic_energy", "deformation_energy"};
+  FrameTable table;
+  runCall(o.call, [&]() {
+    auto settings = o.grid.in(MapGridSettings{});
+    settings.lame = o.lame;
+    const FrameFitter fitter = fitterOf(rest, o.fitting, o.call, 0);
+    const FrameEvaluator evaluator(fitter, names, settings);
+    FrameFits fits = frames.fits(fitter);
+    for (const std::size_t index : frames.wanted()) {
+      const std::int64_t number = frames.numbers()[index];
+      table.add(number, [&] {
+        const std::shared_ptr<const FrameFit> fit = fits.at(index);
+        const MapGrids grids = evaluator.evaluate(*fit);
+        VdbWriteSettings writing;
+        writing.names = o.names;
+        if (pattern)
+          writeVdb(pattern->path(number), evaluator.grids({fit.get(), number}, grids), {}, writing);
+        return measuresOf(*fit, grids);
+      });
+    }
+  });
+  return table.dict();
+}
+
+}  // namespace
+
+void bindSequence(py::module_& m) {
+  define<SequenceOptions>(
+      m,
+      {"sequence", "source, frames",
+       "Measures the maps from a rest pose to the frames of an animation: a dict of columns as the "
+       "program's energies.csv has them: frame, harmonic (3 for a rigid motion), deformation (0 "
+       "for one), deformation_mean, boundary_rms, boundary_p99, boundary_max (fractions of the "
+       "frame's diagonal), jacobian_min, jacobian_max, folded_fraction, outside_fraction, volume "
+       "(world units cubed), and error, the text of what was wrong with a frame that could not be "
+       "used, whose figures are NaN.\n\nsource and frames as deform() takes them. Raises "
+       "DataError where no frame can be used, FileError, MemoryError."},
+      sequence);
+}
+
+}  // namespace innermap::python
