@@ -30,8 +30,9 @@ Context::Context(const CommonOptions& options, TerminalProgress& progress)
 Context::~Context() = default;
 
 void Context::spend(double share, double later) {
+  constexpr double kMargin = 2;  // what is expected of a solid's grids is that far out, at times
   const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start_;
-  progress_.setSecondsLeft(share * (options_.maxTime - gone.count() - later));
+  progress_.setSecondsLeft(share * (options_.maxTime - gone.count() - kMargin * later));
 }
 
 void Context::noteTime() {
