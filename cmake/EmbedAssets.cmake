@@ -1,5 +1,5 @@
 # cmake -DOUTPUT=assets.cc "-DFILES=a.js;b.css" -P EmbedAssets.cmake
-# Writes innermap::tool::pageAsset(), which has the files' bytes by their names.
+# Writes innermap::pageAsset(), which has the files' bytes by their names.
 set(arrays "")
 set(table "")
 set(number 0)
@@ -12,11 +12,11 @@ foreach(file IN LISTS FILES)
   math(EXPR number "${number} + 1")
 endforeach()
 file(WRITE ${OUTPUT} "// Made by cmake/EmbedAssets.cmake.
-#include \"html/assets.h\"
+#include \"report/page/assets.h\"
 
 #include <map>
 
-namespace innermap::tool {
+namespace innermap {
 namespace {
 
 ${arrays}
@@ -34,5 +34,5 @@ ${table}  };
   return found == assets.end() ? std::string_view() : found->second;
 }
 
-}  // namespace innermap::tool
+}  // namespace innermap
 ")

@@ -7,13 +7,13 @@
 
 #include "commands.h"
 #include "correspondence.h"
-#include "html/contents.h"
 #include "innermap/core/memory.h"
 #include "innermap/mesh/mesh_file.h"
 #include "innermap/surface/correspond.h"
 #include "inputs.h"
 #include "map_report.h"
-#include "report_figures.h"
+#include "report/page/contents.h"
+#include "report/report_figures.h"
 
 namespace innermap::tool {
 namespace {

@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <fstream>
 
-#include "html/page.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/pictures.h"
-#include "report_figures.h"
+#include "report/page/page.h"
+#include "report/report_figures.h"
 #include "run_record.h"
 #include "signals.h"
 #include "terminal_progress.h"
@@ -269,15 +269,12 @@ void Context::used(const std::string& option, const ReportValue& value) {
     if (name == settingKey(option)) known = value;
 }
 
-const std::string* Context::setting(const std::string& option) const {
-  for (const auto& [name, value] : report_.run->settings)
-    if (name == settingKey(option)) return std::get_if<std::string>(&value);
-  return nullptr;
-}
-
-void Context::judge(ReportFinding finding, bool told) {
-  if (!finding.met && !told) warning(finding.statement);
-  report_.verdict.push_back(std::move(finding));
+void Context::judge(const Verdict& verdict) {
+  for (const auto& [section, figures] : verdict.figures) report_.add(section, figures);
+  for (const auto& [finding, told] : verdict.findings) {
+    if (!finding.met && !told) warning(finding.statement);
+    report_.verdict.push_back(finding);
+  }
 }
 
 namespace {

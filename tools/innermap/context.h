@@ -16,12 +16,15 @@
 #include "innermap/core/run.h"
 #include "job_clock.h"
 #include "report/report.h"
+#include "report/verdict.h"
+
+namespace innermap {
+struct Page;
+}
 
 namespace innermap::tool {
 
 class TerminalProgress;
-
-struct Page;
 
 // Bytes that making a page takes, which holds so many vertices and blocks at most; measured: 1 to
 // 23 MB.
@@ -129,11 +132,9 @@ class Context {
 
   // A setting that was left to the command: what it took. option: "--tolerance". In the report.
   void used(const std::string& option, const ReportValue& value);
-  // The value of a setting that is a text, or null.
-  const std::string* setting(const std::string& option) const;
 
   // Adds to the verdict that the run ends with; warns of what is not met, unless that was told.
-  void judge(ReportFinding finding, bool told = false);
+  void judge(const Verdict& verdict);
   // The verdict, on stdout, and what was written, on stderr; with --strict what is not met is a
   // failure. The last that a run says.
   void conclude();

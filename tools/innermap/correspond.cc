@@ -3,11 +3,11 @@
 
 #include "commands.h"
 #include "correspondence.h"
-#include "html/contents.h"
 #include "innermap/io/solid_pictures.h"
 #include "innermap/mesh/mesh_file.h"
 #include "inputs.h"
 #include "job_cost.h"
+#include "report/page/contents.h"
 
 namespace innermap::tool {
 namespace {

@@ -13,7 +13,7 @@
 #include "innermap/io/vdb_file.h"
 #include "inputs.h"
 #include "job_cost.h"
-#include "report_figures.h"
+#include "report/report_figures.h"
 #include "transfer_options.h"
 
 namespace innermap::tool {
@@ -298,9 +298,9 @@ void run(const DeformOptions& options, Context& context) {
   context.report().add("frames", deformedFigures(made));
   std::vector<JudgedFrame> judged;
   for (const auto& [index, row] : rows) judged.push_back(row.judged);
-  judgeFrames(judged, options.frames.tolerance, options.frames.verdict, context);
+  context.judge(judgeFrames(judged, options.frames.tolerance, options.frames.verdict));
   for (const auto& [name, density] : deformer.densities())
-    judgeDensity(density, options.transfer.verdict, context);
+    context.judge(judgeDensity(density, options.transfer.verdict));
   context.print(secondsText(results, context));
 }
 

@@ -9,7 +9,7 @@
 #include "frame_loop.h"
 #include "innermap/levelset/level_set.h"
 #include "job_cost.h"
-#include "report_figures.h"
+#include "report/report_figures.h"
 
 namespace innermap::tool {
 namespace {
@@ -119,7 +119,7 @@ void deformGeometry(const DeformGeometry& job, const Frames& frames, const Frame
       made[i].error = error->second;
   context.report().add(
       "frames", only(deformedFigures(made), {"boundary_rms", "boundary_p99", "boundary_max"}));
-  judgeFrames(judged, job.frames.tolerance, job.frames.verdict, context);
+  context.judge(judgeFrames(judged, job.frames.tolerance, job.frames.verdict));
   context.print(secondsText(results, context));
 }
 

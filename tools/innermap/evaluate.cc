@@ -4,7 +4,7 @@
 #include "inputs.h"
 #include "job_cost.h"
 #include "map_report.h"
-#include "verdict.h"
+#include "report/verdict.h"
 
 namespace innermap::tool {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 struct EvaluateOptions {
   std::string map, output;
   EvaluationOptions evaluation;
-  VerdictOptions verdict;
+  VerdictSettings verdict;
 };
 
 void run(const EvaluateOptions& options, Context& context) {
@@ -27,7 +27,7 @@ void run(const EvaluateOptions& options, Context& context) {
   requireEvaluationMemory(mapped.solid(), options.evaluation.grid, context, mapGridKind(mapped));
   const SolidGrids grids = evaluateOnGrid(mapped, settings);
   reportGrids(grids, settings.lame, context);
-  judgeMap(mapped, &grids, options.verdict, MapOrigin::file, context);
+  context.judge(judgeMap(mapped, &grids, options.verdict, MapOrigin::file));
   writeGridFile(options.output, grids.all(), options.evaluation.names, context);
 }
 
@@ -50,7 +50,7 @@ Command makeEvaluateCommand() {
       .required()
       .writes({".vdb"});
   addEvaluationOptions(c, o->evaluation);
-  addVerdictOptions(c, o->verdict);
+  c.settings(describe(o->verdict));
   c.example("innermap evaluate map.ply -o map.vdb --resolution 256");
   c.example("innermap evaluate map.ply -o map.vdb --voxel-size 0.01 --names blender");
   c.run([o](Context& context) { run(*o, context); });

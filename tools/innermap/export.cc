@@ -9,7 +9,7 @@
 #include "inputs.h"
 #include "lists.h"
 #include "report/figures.h"
-#include "report_figures.h"
+#include "report/report_figures.h"
 
 namespace innermap::tool {
 namespace {

@@ -5,7 +5,7 @@
 #include "inputs.h"
 #include "job_cost.h"
 #include "map_report.h"
-#include "verdict.h"
+#include "report/verdict.h"
 
 namespace innermap::tool {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 struct FitOptions {
   std::string source, target, output;
   FittingOptions fitting;
-  VerdictOptions verdict;
+  VerdictSettings verdict;
 };
 
 void run(const FitOptions& options, Context& context) {
@@ -37,7 +37,7 @@ void run(const FitOptions& options, Context& context) {
   const MapFit fit = fitMap(std::move(pair), settings);
   reportFit(fit, settings, options.fitting.bestEffort, context);
   reportInjectivity(fit.injectivity, context);
-  judgeMap(fit, nullptr, options.verdict, MapOrigin::related, context);
+  context.judge(judgeMap(fit, nullptr, options.verdict, MapOrigin::related, settings.oneToOne));
   context.timed("write", [&] { writeMap(options.output, fit); });
 }
 
@@ -58,7 +58,7 @@ Command makeFitCommand() {
       .writes({".ply"});
   c.limitTime("after which refining and steps end");
   addFittingOptions(c, o->fitting);
-  addVerdictOptions(c, o->verdict);
+  c.settings(describe(o->verdict));
   c.example("innermap fit rest.obj pose.obj -o map.ply");
   c.example("innermap fit rest.obj pose.obj -o map.ply --tolerance 1e-4 --best-effort");
   c.example("innermap fit rest.obj pose.obj -o map.ply --charges 4000 --distance 0.02");

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <chrono>
 
-#include "html/page.h"
 #include "innermap/core/run.h"
-#include "report_figures.h"
+#include "report/page/page.h"
+#include "report/report_figures.h"
 
 namespace innermap::tool {
 namespace {
@@ -91,8 +91,6 @@ void writeFrame(const FrameFile& frame, const std::function<void()>& write) {
     throw OutputFailure(fmt::format("{}; stopped at frame {}", error.what(), frame.number));
   }
 }
-
-const char* missedMark(bool misses) { return misses ? "  misses the tolerance" : ""; }
 
 std::string secondsText(const std::vector<FrameResult>& results, Context& context) {
   double sum = 0, least = 0, most = 0;

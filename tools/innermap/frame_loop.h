@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "frame_options.h"
+#include "report/report_figures.h"
 
 namespace innermap::tool {
 
@@ -13,12 +14,6 @@ namespace innermap::tool {
 class OutputFailure : public Error {
  public:
   using Error::Error;
-};
-
-struct FrameResult {
-  FrameFile file;
-  double seconds = 0;
-  std::string error;  // empty: good
 };
 
 // Calls `body` for all wanted frames, with the frame's place in frames.all. FileErrors and
@@ -30,9 +25,6 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
 
 // Calls `write`; its FileErrors become OutputFailures that name the frame.
 void writeFrame(const FrameFile& frame, const std::function<void()>& write);
-
-// What stands behind the line of a frame that misses the tolerance.
-const char* missedMark(bool misses);
 
 // "seconds a frame: mean 0.41, least 0.38, most 0.52" of the good ones; also into the report.
 std::string secondsText(const std::vector<FrameResult>& results, Context& context);

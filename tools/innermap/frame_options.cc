@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include "core/file.h"
-#include "html/contents.h"
 #include "innermap/core/memory.h"
 #include "innermap/field/fit.h"
 #include "innermap/mesh/mesh_file.h"
 #include "inputs.h"
 #include "map_report.h"
+#include "report/page/contents.h"
 
 namespace innermap::tool {
 namespace {
@@ -39,7 +39,7 @@ void addFrameOptions(Command& command, FrameOptions& o) {
           "and warned of")
       .unit("fraction of the frame's diagonal")
       .range(1e-12, 1);
-  addVerdictOptions(command, o.verdict, true);
+  command.settings(describe(o.verdict, true));
 }
 
 Frames listFrames(const FrameOptions& options, const std::string& rest, Context& context) {

@@ -9,7 +9,7 @@
 #include "command.h"
 #include "core/frame_files.h"
 #include "innermap/fit/frame_fitter.h"
-#include "verdict.h"
+#include "report/verdict.h"
 
 namespace innermap::tool {
 
@@ -18,7 +18,7 @@ struct FrameOptions {
   std::string ranges;
   FrameFitterSettings fitting;
   double tolerance = kUsualTolerance;  // that frames are judged by
-  VerdictOptions verdict;
+  VerdictSettings verdict;
 };
 
 // The argument FRAMES, which must be the last one.

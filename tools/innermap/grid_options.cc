@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "html/page.h"
 #include "innermap/core/memory.h"
+#include "report/page/page.h"
 
 namespace innermap::tool {
 void requireGridMemory(const std::string& doing, const LatticeChoice& options,

@@ -8,7 +8,7 @@
 #include "core/file.h"
 #include "innermap/core/version.h"
 #include "lists.h"
-#include "report_sections.h"
+#include "report/report_sections.h"
 
 namespace innermap::tool {
 namespace {

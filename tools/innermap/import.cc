@@ -6,7 +6,7 @@
 #include "innermap/io/pictures.h"
 #include "innermap/io/volume_texture.h"
 #include "lists.h"
-#include "report_figures.h"
+#include "report/report_figures.h"
 
 namespace innermap::tool {
 namespace {

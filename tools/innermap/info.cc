@@ -7,11 +7,11 @@
 #include <filesystem>
 
 #include "commands.h"
-#include "info_json.h"
 #include "innermap/field/field_file.h"
 #include "innermap/io/exr_slices.h"
 #include "innermap/io/vdb_file.h"
 #include "inputs.h"
+#include "report/info_json.h"
 
 namespace innermap::tool {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <filesystem>
 
-#include "html/contents.h"
 #include "innermap/core/run.h"
 #include "innermap/io/vdb_file.h"
 #include "innermap/mesh/mesh_file.h"
 #include "map_report.h"
+#include "report/page/contents.h"
 
 namespace innermap::tool {
 

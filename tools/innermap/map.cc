@@ -8,15 +8,15 @@
 #include "correspondence.h"
 #include "fitting_options.h"
 #include "grid_options.h"
-#include "html/contents.h"
 #include "innermap/io/exr_slices.h"
 #include "innermap/io/solid_pictures.h"
 #include "innermap/mesh/mesh_file.h"
 #include "inputs.h"
 #include "job_cost.h"
 #include "map_report.h"
+#include "report/page/contents.h"
+#include "report/verdict.h"
 #include "section_options.h"
-#include "verdict.h"
 
 namespace innermap::tool {
 namespace {
@@ -28,7 +28,7 @@ struct MapOptions {
   CorrespondOptions correspond;
   FittingOptions fitting;
   EvaluationOptions evaluation;
-  VerdictOptions verdict;
+  VerdictSettings verdict;
   ExrSliceSettings slices;
   std::string sectionGrid = "deformation_energy";
   SectionOptions section;
@@ -217,7 +217,8 @@ void run(const MapOptions& options, Context& context) {
   context.spend(kRepairShare);
   const SolidGrids grids = evaluateOnGrid(fit, mapGridSettings(options.evaluation));
   reportGrids(grids, options.evaluation.lame, context);
-  judgeMap(fit, &grids, options.verdict, laid ? MapOrigin::laidOn : MapOrigin::related, context);
+  context.judge(judgeMap(fit, &grids, options.verdict,
+                         laid ? MapOrigin::laidOn : MapOrigin::related, fitting.oneToOne));
   folder->write("map.vdb", [&](const std::string& path) {
     writeGridFile(path, grids.all(), options.evaluation.names, context);
   });
@@ -255,7 +256,7 @@ Command makeMapCommand() {
   addCorrespondOptions(c, o->correspond);
   addFittingOptions(c, o->fitting);
   addEvaluationOptions(c, o->evaluation);
-  addVerdictOptions(c, o->verdict);
+  c.settings(describe(o->verdict));
   c.group("slices and picture");
   c.choice("--slice-axis", "AXIS", &o->slices.axis, {{"x", 0}, {"y", 1}, {"z", 2}}, "of slices.exr")
       .advanced();

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "html/contents.h"
 #include "innermap/mesh/check.h"
 #include "report/figures.h"
+#include "report/page/contents.h"
 
 namespace innermap::tool {
 namespace {

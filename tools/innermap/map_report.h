@@ -8,7 +8,7 @@
 #include "innermap/fit/fit_map.h"
 #include "innermap/fit/frame_fitter.h"
 #include "innermap/levelset/solid.h"
-#include "report_figures.h"
+#include "report/report_figures.h"
 
 namespace innermap::tool {
 

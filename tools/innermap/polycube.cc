@@ -11,7 +11,7 @@
 #include "innermap/tetra/hexahedralize.h"
 #include "inputs.h"
 #include "polycube_report.h"
-#include "report_figures.h"
+#include "report/report_figures.h"
 
 namespace innermap::tool {
 namespace {

@@ -12,7 +12,7 @@
 #include "innermap/transfer/carry.h"
 #include "inputs.h"
 #include "job_cost.h"
-#include "report_figures.h"
+#include "report/report_figures.h"
 #include "transfer_options.h"
 
 namespace innermap::tool {
@@ -22,7 +22,7 @@ enum class Way { push, pull };
 
 struct CarryOptions {
   std::string map, volume, output, through;
-  VerdictOptions verdict;
+  VerdictSettings verdict;
   TransferOptions transfer;
   GeometryOptions geometry;
 };
@@ -124,9 +124,10 @@ openvdb::GridPtrVec push(const Job& job, const TransferOptions& options, Context
   context.detail(pushText(result));
   const double volumes = volumeRatio(job.mapped.solid().volume(), job.target.volume());
   for (const CarriedMass& mass : result.masses)
-    judgeDensity({mass.name, "", std::min(mass.largestRatio, settings.carry.densityLimit), volumes},
-                 options.verdict, context);
-  judgeResampling(result.resampling, options.verdict, context);
+    context.judge(judgeDensity(
+        {mass.name, "", std::min(mass.largestRatio, settings.carry.densityLimit), volumes},
+        options.verdict));
+  context.judge(judgeResampling(result.resampling, options.verdict));
   return result.grids;
 }
 
@@ -150,11 +151,11 @@ openvdb::GridPtrVec pull(const Job& job, const TransferOptions& options, Context
   const double volumes = volumeRatio(job.target.volume(), source.volume());
   for (const openvdb::GridBase::Ptr& grid : job.grids)
     if (result.resampling.largestGrowth > 0 && isDensity(*grid, settings.carry))
-      judgeDensity(
+      context.judge(judgeDensity(
           {grid->getName(), "",
            std::min(result.resampling.largestGrowth, settings.carry.densityLimit), volumes},
-          options.verdict, context);
-  judgeResampling(result.resampling, options.verdict, context);
+          options.verdict));
+  context.judge(judgeResampling(result.resampling, options.verdict));
   return result.grids;
 }
 
@@ -205,7 +206,7 @@ void runGeometry(Way way, const CarryOptions& options, Context& context) {
   });
   warnOf(*file, carried, options.transfer, "", context);
   context.detail(reportGeometry(*file, carried, context));
-  judgeMap(mapped, nullptr, options.verdict, MapOrigin::file, context);
+  context.judge(judgeMap(mapped, nullptr, options.verdict, MapOrigin::file));
   writeGeometryFile(options.output, *file, carried, context);
 }
 
@@ -227,7 +228,7 @@ void run(Way way, const CarryOptions& options, Context& context) {
   noteVoxelSize(job.grids, options.transfer, growth, context);
   const openvdb::GridPtrVec grids =
       (way == Way::push ? push : pull)(job, options.transfer, context);
-  judgeMap(job.mapped, nullptr, options.verdict, MapOrigin::file, context);
+  context.judge(judgeMap(job.mapped, nullptr, options.verdict, MapOrigin::file));
   describeMap(grids, job.mapped);
   writeGridFile(options.output, grids, options.transfer.names, context);
 }
@@ -252,7 +253,7 @@ Command makeCarryCommand(Way way, const std::string& name, const std::string& su
       .reads();
   addTransferOptions(c, o->transfer);
   addGeometryOptions(c, o->geometry, true);
-  addVerdictOptions(c, o->verdict);
+  c.settings(describe(o->verdict));
   c.run([o, way](Context& context) { run(way, *o, context); });
   return c;
 }

@@ -9,12 +9,12 @@
 #include <sstream>
 
 #include "commands.h"
-#include "html/contents.h"
 #include "innermap/core/run.h"
 #include "innermap/field/field_file.h"
 #include "innermap/io/vdb_file.h"
 #include "innermap/mesh/mesh_file.h"
 #include "inputs.h"
+#include "report/page/contents.h"
 
 namespace innermap::tool {
 namespace {

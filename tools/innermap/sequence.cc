@@ -7,12 +7,12 @@
 #include "commands.h"
 #include "frame_loop.h"
 #include "grid_options.h"
-#include "html/page.h"
 #include "job_cost.h"
 #include "lists.h"
 #include "report/figures.h"
-#include "report_figures.h"
-#include "sequence_table.h"
+#include "report/page/page.h"
+#include "report/report_figures.h"
+#include "report/sequence_table.h"
 
 namespace innermap::tool {
 namespace {
@@ -130,7 +130,7 @@ void run(const SequenceOptions& options, Context& context) {
   std::vector<JudgedFrame> judged;
   for (const SequenceRow& r : rows)
     judged.push_back({r.file.number, r.error.p99, r.folded, r.outside});
-  judgeFrames(judged, options.frames.tolerance, options.frames.verdict, context);
+  context.judge(judgeFrames(judged, options.frames.tolerance, options.frames.verdict));
   context.timed("write", [&] {
     folder->write("energies.csv",
                   [&](const std::string& path) { writeSequenceTable(path, table); });

@@ -8,7 +8,7 @@
 #include "inputs.h"
 #include "map_report.h"
 #include "report/figures.h"
-#include "report_figures.h"
+#include "report/report_figures.h"
 
 namespace innermap::tool {
 namespace {

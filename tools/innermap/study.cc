@@ -19,8 +19,8 @@
 #include "lists.h"
 #include "map_report.h"
 #include "report/figures.h"
+#include "report/study_files.h"
 #include "signals.h"
-#include "study_files.h"
 
 namespace innermap::tool {
 namespace {

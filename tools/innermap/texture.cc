@@ -10,8 +10,8 @@
 #include "inputs.h"
 #include "job_cost.h"
 #include "report/figures.h"
-#include "report_figures.h"
-#include "verdict.h"
+#include "report/report_figures.h"
+#include "report/verdict.h"
 
 namespace innermap::tool {
 namespace {
@@ -123,7 +123,7 @@ void run(const TextureOptions& o, Context& context) {
   const SolidTexture made = makeSolidTexture(plan, lookup);
   context.tell(made);
   fillReport(made, o, context.report());
-  judgeTexture(made.fit.error, o.tolerance, context);
+  context.judge(judgeTexture(made.fit.error, o.tolerance));
   const openvdb::GridPtrVec grids = made.grids();
   for (const openvdb::GridBase::Ptr& grid : grids) {
     grid->insertMeta("innermap_texture", openvdb::StringMetadata(image));

@@ -7,9 +7,9 @@
 #include "inputs.h"
 #include "job_cost.h"
 #include "report/figures.h"
-#include "report_figures.h"
+#include "report/report_figures.h"
+#include "report/verdict.h"
 #include "section_options.h"
-#include "verdict.h"
 
 namespace innermap::tool {
 namespace {
@@ -19,7 +19,7 @@ struct TransferDistanceOptions {
   LatticeChoice grid;
   SectionOptions section;
   std::optional<NumberPair> range;
-  VerdictOptions verdict;
+  VerdictSettings verdict;
 };
 
 void writeSection(const std::string& path, const std::string& title, const Solid& solid,
@@ -110,7 +110,7 @@ void run(const TransferDistanceOptions& options, Context& context) {
     });
   });
   writeVdbs(made, mapped, *folder, context);
-  judgeMap(mapped, nullptr, options.verdict, MapOrigin::file, context);
+  context.judge(judgeMap(mapped, nullptr, options.verdict, MapOrigin::file));
   context.print(textOf(made));
   context.finish(*folder);
 }
@@ -134,7 +134,7 @@ Command makeTransferDistanceCommand() {
   addSectionOptions(c, o->section);
   c.option("--range", "LO,HI", &o->range, "distances that are blue and red")
       .defaults("0 to the largest in the target");
-  addVerdictOptions(c, o->verdict);
+  c.settings(describe(o->verdict));
   c.example("innermap transfer-distance map.ply -o distance --resolution 256");
   c.run([o](Context& context) { run(*o, context); });
   return c;

@@ -57,7 +57,7 @@ void addTransferOptions(Command& c, TransferOptions& o) {
            "rigid motion of the surface), or twelve numbers, a rigid motion's 3 x 4 matrix by rows")
       .advanced();
   c.settings(only(describe(o.carry), {"density_limit"}));
-  addCarryVerdictOptions(c, o.verdict);
+  c.settings(describe(o.verdict));
   c.settings(
       describe(o.grid, "the solid",
                "voxels as fine as those of the grids, for the size of the solid that they go to"));

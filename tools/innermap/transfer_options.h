@@ -6,7 +6,7 @@
 #include "grid_options.h"
 #include "innermap/transfer/carry.h"
 #include "innermap/transfer/push_pull.h"
-#include "verdict.h"
+#include "report/verdict.h"
 
 namespace innermap::tool {
 
@@ -17,7 +17,7 @@ struct TransferOptions {
   double outside = 0;
   std::string fadeTo = "cut";
   LatticeChoice grid;
-  CarryVerdictOptions verdict;
+  CarryVerdictSettings verdict;
   NamingScheme names = NamingScheme::innermap;
 };
 

@@ -7,9 +7,9 @@
 
 #include "innermap/fit/frame_fitter.h"
 #include "innermap/fit/mapped_solid.h"
-#include "page.h"
+#include "report/page/page.h"
 
-namespace innermap::tool {
+namespace innermap {
 
 // A surface by itself. Not when a map is shown already.
 void addMesh(Page& page, const Mesh& mesh);
@@ -41,4 +41,4 @@ class PageFrames {
   std::size_t each_ = 1, seen_ = 0;
 };
 
-}  // namespace innermap::tool
+}  // namespace innermap

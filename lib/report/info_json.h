@@ -11,7 +11,7 @@
 #include "innermap/io/volume_texture.h"
 #include "innermap/mesh/mesh.h"
 
-namespace innermap::tool {
+namespace innermap {
 
 std::string infoJson(const std::string& path, const VdbInfo& info);
 std::string infoJson(const std::string& path, const std::vector<ExrPart>& parts,
@@ -19,4 +19,4 @@ std::string infoJson(const std::string& path, const std::vector<ExrPart>& parts,
 std::string infoJson(const std::string& path, const FieldFile& file);
 std::string infoJson(const std::string& path, const Mesh& mesh);
 
-}  // namespace innermap::tool
+}  // namespace innermap

@@ -1,4 +1,4 @@
-#include "encode.h"
+#include "report/page/encode.h"
 
 #include <zlib.h>
 
@@ -10,7 +10,7 @@
 
 #include "core/base64.h"
 
-namespace innermap::tool {
+namespace innermap {
 namespace {
 
 std::string compressed(const std::string& bytes) {
@@ -82,4 +82,4 @@ Quantised quantised(const std::vector<Number>& values) {
 template Quantised quantised(const std::vector<float>& values);
 template Quantised quantised(const std::vector<double>& values);
 
-}  // namespace innermap::tool
+}  // namespace innermap

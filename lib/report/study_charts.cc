@@ -1,4 +1,4 @@
-#include "study_charts.h"
+#include "report/study_charts.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "innermap/study/study.h"
 
-namespace innermap::tool {
+namespace innermap {
 namespace {
 
 using Rows = std::vector<StudyRow>;
@@ -262,4 +262,4 @@ std::vector<StudyChart> studyCharts(const Study& study, const std::string& subti
   return out;
 }
 
-}  // namespace innermap::tool
+}  // namespace innermap

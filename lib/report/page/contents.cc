@@ -1,9 +1,9 @@
-#include "contents.h"
+#include "report/page/contents.h"
 
 #include <filesystem>
 #include <utility>
 
-namespace innermap::tool {
+namespace innermap {
 namespace {
 
 std::string fileName(const std::string& path) {
@@ -116,4 +116,4 @@ void PageFrames::add(std::int64_t number, const Points& positions, const FrameFi
   addPlace(number, std::move(image));
 }
 
-}  // namespace innermap::tool
+}  // namespace innermap

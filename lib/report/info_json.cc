@@ -1,11 +1,11 @@
 // What `innermap info --json` says of each kind of file.
-#include "info_json.h"
+#include "report/info_json.h"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-namespace innermap::tool {
+namespace innermap {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -115,4 +115,4 @@ std::string infoJson(const std::string& path, const Mesh& mesh) {
                  {"volume", signedVolume(mesh)}});
 }
 
-}  // namespace innermap::tool
+}  // namespace innermap

@@ -1,4 +1,4 @@
-#include "study_files.h"
+#include "report/study_files.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@
 #include "innermap/study/study.h"
 #include "report/svg_chart.h"
 
-namespace innermap::tool {
+namespace innermap {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -217,4 +217,4 @@ std::string studyLine(const StudyRow& row) {
       100 * row.folded, row.condition, row.seconds, row.kept ? " (kept)" : "");
 }
 
-}  // namespace innermap::tool
+}  // namespace innermap

@@ -1,4 +1,4 @@
-// Figures that this program adds to those of the library (innermap/report/figures.h).
+// Figures of runs, beside those of results (report/figures.h).
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,12 @@
 #include <vector>
 
 #include "core/figure.h"
+#include "core/frame_files.h"
 #include "innermap/core/vec3.h"
 #include "innermap/field/fit.h"
 #include "innermap/transfer/inverse_map.h"
 
-namespace innermap::tool {
-
-struct FrameResult;
-struct JudgedFrame;
+namespace innermap {
 
 // "source" and "target"
 struct ReportMesh {
@@ -28,6 +26,13 @@ struct ReportMesh {
 };
 Figures figures(const ReportMesh& mesh);
 
+// A frame of an animation that was worked on.
+struct FrameResult {
+  FrameFile file;
+  double seconds = 0;
+  std::string error;  // empty: good
+};
+
 // "frames" of any command for animations; of `deform`, whose frames may be finished already; their
 // seconds; what they are judged by.
 Figures frameFigures(const std::vector<FrameResult>& results);
@@ -39,6 +44,8 @@ struct DeformedFrame {
 Figures deformedFigures(const std::vector<DeformedFrame>& frames);
 Figures finishedFigures(std::uint64_t before);
 Figures frameSeconds(double mean, double least, double most);
+// What stands behind the line of a frame that misses the tolerance.
+const char* missedMark(bool misses);
 Figures judgedFigures(double tolerance, const std::vector<std::int64_t>& missed);
 
 // Beside the sections.
@@ -71,4 +78,4 @@ struct ReportImport {
 };
 Figures figures(const ReportImport& read);
 
-}  // namespace innermap::tool
+}  // namespace innermap

@@ -1,4 +1,4 @@
-#include "sequence_table.h"
+#include "report/sequence_table.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "report/figures.h"
 #include "report/table.h"
 
-namespace innermap::tool {
+namespace innermap {
 Figures figures(const SequenceRow& r) {
   constexpr auto kShare = FigureUnit::share, kDiagonals = FigureUnit::diagonals;
   return when(r.broken.empty(),
@@ -114,4 +114,4 @@ std::string sequenceLine(const SequenceRow& r) {
                      r.jacobianMin, 100 * r.folded, missedMark(r.misses));
 }
 
-}  // namespace innermap::tool
+}  // namespace innermap

@@ -8,7 +8,7 @@
 #include "innermap/study/study.h"
 #include "report/svg_chart.h"
 
-namespace innermap::tool {
+namespace innermap {
 
 struct StudyChart {
   std::string file;     // its name
@@ -22,4 +22,4 @@ std::vector<StudyChart> studyCharts(const Study& study, const std::string& subti
 // The files that there may be.
 std::vector<std::string> studyChartNames();
 
-}  // namespace innermap::tool
+}  // namespace innermap

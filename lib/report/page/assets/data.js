@@ -1,4 +1,4 @@
-// Reads what tools/html/encode.cc writes.
+// Reads what report/page/encode.cc writes.
 const page = JSON.parse(document.getElementById("data").textContent);
 
 async function decoded(text, bytesEach) {

@@ -3,9 +3,9 @@
 #include <limits>
 #include <optional>
 
-#include "page.h"
+#include "report/page/page.h"
 
-namespace innermap::tool {
+namespace innermap {
 namespace {
 
 // Blocks along the longest side of a grid.
@@ -187,4 +187,4 @@ void addGrids(Page& page, const openvdb::GridPtrVec& grids) {
   }
 }
 
-}  // namespace innermap::tool
+}  // namespace innermap

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "innermap/study/study.h"
-#include "study_charts.h"
+#include "report/study_charts.h"
 
-namespace innermap::tool {
+namespace innermap {
 
 struct StudyNames {
   std::string source, target;
@@ -33,4 +33,4 @@ void writeStudyPage(const std::string& path, const Study& study, const StudyFind
 std::string studyHeader();
 std::string studyLine(const StudyRow& row);
 
-}  // namespace innermap::tool
+}  // namespace innermap

@@ -1,12 +1,12 @@
-// What report.html is made of: the files of html/assets/ and the drawing library, built in.
+// What report.html is made of: the files of assets/ and the drawing library, built in.
 #pragma once
 
 #include <string>
 #include <string_view>
 
-namespace innermap::tool {
+namespace innermap {
 
 // Empty when there is none of that name.
 std::string_view pageAsset(const std::string& name);
 
-}  // namespace innermap::tool
+}  // namespace innermap

@@ -1,16 +1,16 @@
-#include "page.h"
+#include "report/page/page.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <string_view>
 
-#include "assets.h"
 #include "core/file.h"
-#include "encode.h"
-#include "report_sections.h"
+#include "report/page/assets.h"
+#include "report/page/encode.h"
+#include "report/report_sections.h"
 
-namespace innermap::tool {
+namespace innermap {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -127,4 +127,4 @@ void writePage(const std::string& path, const Page& page, const std::string& rep
   writeWholeFile(path, [&](std::ostream& file) { file << text; });
 }
 
-}  // namespace innermap::tool
+}  // namespace innermap

@@ -4,9 +4,9 @@
 #include <numeric>
 #include <unordered_map>
 
-#include "page.h"
+#include "report/page/page.h"
 
-namespace innermap::tool {
+namespace innermap {
 namespace {
 
 // A page holds some millions of positions; more is too large to load at once.
@@ -107,4 +107,4 @@ std::vector<double> stretches(const Points& from, const Points& to,
   return sum;
 }
 
-}  // namespace innermap::tool
+}  // namespace innermap

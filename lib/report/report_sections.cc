@@ -1,4 +1,4 @@
-#include "report_sections.h"
+#include "report/report_sections.h"
 
 #include <algorithm>
 
@@ -19,10 +19,10 @@
 #include "innermap/transfer/distance_transfer.h"
 #include "innermap/transfer/geometry.h"
 #include "report/figures.h"
-#include "report_figures.h"
-#include "sequence_table.h"
+#include "report/report_figures.h"
+#include "report/sequence_table.h"
 
-namespace innermap::tool {
+namespace innermap {
 namespace {
 
 // Those of a density whose name may be any.
@@ -219,4 +219,4 @@ std::vector<ReportSection> reportSections() {
   return out;
 }
 
-}  // namespace innermap::tool
+}  // namespace innermap

@@ -1,11 +1,10 @@
-#include "report_figures.h"
+#include "report/report_figures.h"
 
 #include <fmt/format.h>
 
-#include "frame_loop.h"
 #include "report/figures.h"
 
-namespace innermap::tool {
+namespace innermap {
 namespace {
 
 constexpr auto kShare = FigureUnit::share;
@@ -70,6 +69,8 @@ Figures frameSeconds(double mean, double least, double most) {
           {"seconds_least", least, "fastest frame", "", kSeconds},
           {"seconds_most", most, "slowest frame", "", kSeconds}};
 }
+
+const char* missedMark(bool misses) { return misses ? "  misses the tolerance" : ""; }
 
 Figures judgedFigures(double tolerance, const std::vector<std::int64_t>& missed) {
   return {{"tolerance", tolerance, "tolerance", "that frames are judged by", kDiagonals},
@@ -145,4 +146,4 @@ Figures figures(const ReportImport& read) {
           {"not_finite", read.notFinite, "not finite", "values that are infinite or no numbers"}};
 }
 
-}  // namespace innermap::tool
+}  // namespace innermap

@@ -6,8 +6,8 @@
 
 #include "report/schema.h"
 
-namespace innermap::tool {
+namespace innermap {
 
 std::vector<ReportSection> reportSections();
 
-}  // namespace innermap::tool
+}  // namespace innermap

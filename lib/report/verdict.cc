@@ -1,4 +1,4 @@
-#include "verdict.h"
+#include "report/verdict.h"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 
 #include "innermap/field/field_file.h"
 #include "report/figures.h"
-#include "report_figures.h"
+#include "report/report_figures.h"
 
-namespace innermap::tool {
+namespace innermap {
 namespace {
 
 std::string percent(double share) { return fmt::format("{:.3g}%", 100 * share); }
@@ -27,9 +27,8 @@ ReportFinding finding(std::string name, std::string statement, double value, dou
   return out;
 }
 
-bool usedOn(const Context& context, const std::string& setting) {
-  const std::string* value = context.setting(setting);
-  return value && *value == "on";
+void add(Verdict& out, const std::string& section, Figures figures) {
+  out.figures.emplace_back(section, std::move(figures));
 }
 
 std::string boundaryAdvice(MapOrigin origin, bool toTolerance) {
@@ -40,19 +39,18 @@ std::string boundaryAdvice(MapOrigin origin, bool toTolerance) {
                      : "--tolerance in place of a number of charges, or more --charges";
 }
 
-std::string foldAdvice(MapOrigin origin, bool toTolerance, const Context& context) {
+std::string foldAdvice(MapOrigin origin, bool toTolerance, OneToOne oneToOne) {
   const std::string laid = ", pairs of places in --landmarks, or --aligned where both stand alike";
   if (origin == MapOrigin::file)
     return "fit the map again with --one-to-one on, a smaller --tolerance, or for solids that were "
            "never related --landmarks or --aligned";
   if (!toTolerance) return "--one-to-one on with --tolerance, in place of a number of charges";
-  const std::string first = usedOn(context, "--one-to-one")
-                                ? "more --max-steps, a smaller --tolerance"
-                                : "--one-to-one on, a smaller --tolerance";
+  const std::string first = oneToOne == OneToOne::on ? "more --max-steps, a smaller --tolerance"
+                                                     : "--one-to-one on, a smaller --tolerance";
   return origin == MapOrigin::laidOn ? first + laid : first;
 }
 
-void judgeBoundary(const MappedSolid& mapped, MapOrigin origin, Context& context) {
+void judgeBoundary(const MappedSolid& mapped, MapOrigin origin, Verdict& out) {
   const FitFacts fit = fitFacts(mapped.facts);
   const double p99 = fit.error.p99;
   if (std::isnan(p99)) return;
@@ -69,7 +67,7 @@ void judgeBoundary(const MappedSolid& mapped, MapOrigin origin, Context& context
     f.value = fit.reached.value_or(p99);
     f.advice = boundaryAdvice(origin, toTolerance);
   }
-  context.judge(std::move(f), toTolerance && origin != MapOrigin::file);
+  out.findings.push_back({std::move(f), toTolerance && origin != MapOrigin::file});
 }
 
 std::string foldStatement(double folded, const DeterminantFigures& points, double threshold) {
@@ -83,7 +81,7 @@ std::string foldStatement(double folded, const DeterminantFigures& points, doubl
   return out;
 }
 
-void judgeCrossings(const MappedSolid& mapped, const VerdictOptions& options, Context& context) {
+void judgeCrossings(const MappedSolid& mapped, const VerdictSettings& settings, Verdict& out) {
   const SelfIntersectionFigures& target = mapped.injectivity.target;
   const SelfIntersectionFigures& source = mapped.injectivity.source;
   std::string text = target.pairs == 0
@@ -93,11 +91,12 @@ void judgeCrossings(const MappedSolid& mapped, const VerdictOptions& options, Co
                                "where no map is one-to-one",
                                target.pairs, target.pairs == 1 ? "" : "s");
   if (source.pairs > 0) text += fmt::format("; the source does, in {}", source.pairs);
-  context.judge(finding("self_intersections", text, static_cast<double>(target.pairs),
-                        static_cast<double>(options.maxCrossings),
-                        "repair the target where `innermap check` places the crossings, or allow "
-                        "them by --warn-crossings"),
-                true);  // reading the boundaries warned of it
+  out.findings.push_back(
+      {finding("self_intersections", text, static_cast<double>(target.pairs),
+               static_cast<double>(settings.maxCrossings),
+               "repair the target where `innermap check` places the crossings, or allow "
+               "them by --warn-crossings"),
+       true});  // reading the boundaries warned of it
 }
 
 // A mirror's image is nowhere folded, though its determinants are negative.
@@ -107,14 +106,15 @@ double foldedOf(const Injectivity& known) {
   return static_cast<double>(inside.folded) / static_cast<double>(inside.checked);
 }
 
-void judgeOutside(double outside, const VerdictOptions& options, const std::string& advice,
-                  Context& context) {
-  context.report().add("", outsideFigures(outside));
-  context.judge(finding("outside",
-                        fmt::format("{} of the inside lands outside the target, by more than the "
-                                    "boundary's error (at most: {})",
-                                    percent(outside), percent(options.maxOutside)),
-                        outside, options.maxOutside, advice));
+void judgeOutside(double outside, const VerdictSettings& settings, const std::string& advice,
+                  Verdict& out) {
+  add(out, "", outsideFigures(outside));
+  out.findings.push_back(
+      {finding("outside",
+               fmt::format("{} of the inside lands outside the target, by more than the "
+                           "boundary's error (at most: {})",
+                           percent(outside), percent(settings.maxOutside)),
+               outside, settings.maxOutside, advice)});
 }
 
 std::string listOf(const std::vector<std::int64_t>& numbers) {
@@ -127,27 +127,32 @@ std::string listOf(const std::vector<std::int64_t>& numbers) {
 
 }  // namespace
 
-void addVerdictOptions(Command& c, VerdictOptions& o, bool frames) {
-  c.option("--warn-folded", "SHARE", &o.maxFolded,
-           "of the inside that may be folded; more is warned of")
-      .range(0, 1)
-      .was("--max-folded");
-  c.option("--warn-outside", "SHARE", &o.maxOutside,
-           "of the inside that may land outside the target; more is warned of")
-      .range(0, 1)
-      .was("--max-outside");
-  if (frames) return;
-  c.option("--warn-crossings", "N", &o.maxCrossings,
-           "pairs of the target's triangles that may pass through each other; more is warned of")
-      .range(0, 1e15)
-      .was("--max-crossings");
+std::vector<Setting> describe(VerdictSettings& s, bool frames) {
+  std::vector<Setting> out{
+      Setting("warn_folded", "SHARE", &s.maxFolded,
+              "of the inside that may be folded; more is warned of")
+          .from(0, 1)
+          .was("max_folded"),
+      Setting("warn_outside", "SHARE", &s.maxOutside,
+              "of the inside that may land outside the target; more is warned of")
+          .from(0, 1)
+          .was("max_outside")};
+  if (!frames)
+    out.push_back(
+        Setting("warn_crossings", "N", &s.maxCrossings,
+                "pairs of the target's triangles that may pass through each other; more is warned "
+                "of")
+            .from(0, 1e15)
+            .was("max_crossings"));
+  return out;
 }
 
-void judgeMap(const MappedSolid& mapped, const SolidGrids* grids, const VerdictOptions& options,
-              MapOrigin origin, Context& context) {
+Verdict judgeMap(const MappedSolid& mapped, const SolidGrids* grids,
+                 const VerdictSettings& settings, MapOrigin origin, OneToOne oneToOne) {
+  Verdict out;
   const bool toTolerance = fitFacts(mapped.facts).tolerance.has_value();
-  const std::string advice = foldAdvice(origin, toTolerance, context);
-  judgeBoundary(mapped, origin, context);
+  const std::string advice = foldAdvice(origin, toTolerance, oneToOne);
+  judgeBoundary(mapped, origin, out);
   const Injectivity& known = grids ? grids->injectivity : mapped.injectivity;
   if (grids || known.inside.checked > 0) {
     const bool mirrors = grids && grids->values.foldedVoxels == grids->values.interiorVoxels;
@@ -156,19 +161,21 @@ void judgeMap(const MappedSolid& mapped, const SolidGrids* grids, const VerdictO
                                                   static_cast<double>(grids->values.interiorVoxels)
                                             : 0;
     const double folded = std::max(foldedOf(known), voxels);
-    std::string text = foldStatement(folded, known.inside, options.maxFolded);
+    std::string text = foldStatement(folded, known.inside, settings.maxFolded);
     if (known.repaired > 0)
       text += fmt::format("; in the grids {} voxels were repaired", known.repaired);
-    context.judge(finding("folds", text, folded, options.maxFolded, advice));
-    judgeOutside(grids ? std::max(grids->outsideFraction, known.outside) : known.outside, options,
-                 advice, context);
+    out.findings.push_back({finding("folds", text, folded, settings.maxFolded, advice)});
+    judgeOutside(grids ? std::max(grids->outsideFraction, known.outside) : known.outside, settings,
+                 advice, out);
   }
-  judgeCrossings(mapped, options, context);
+  judgeCrossings(mapped, settings, out);
+  return out;
 }
 
-void judgeFrames(const std::vector<JudgedFrame>& frames, double tolerance,
-                 const VerdictOptions& options, Context& context) {
-  if (frames.empty()) return;
+Verdict judgeFrames(const std::vector<JudgedFrame>& frames, double tolerance,
+                    const VerdictSettings& settings) {
+  Verdict out;
+  if (frames.empty()) return out;
   const auto worst = [&](auto of) {
     return *std::max_element(frames.begin(), frames.end(),
                              [&](const auto& a, const auto& b) { return of(a) < of(b); });
@@ -176,7 +183,7 @@ void judgeFrames(const std::vector<JudgedFrame>& frames, double tolerance,
   std::vector<std::int64_t> missed;
   for (const JudgedFrame& f : frames)
     if (f.misses(tolerance)) missed.push_back(f.number);
-  context.report().add("frames", judgedFigures(tolerance, missed));
+  add(out, "frames", judgedFigures(tolerance, missed));
   const JudgedFrame off = worst([](const JudgedFrame& f) { return f.p99; });
   std::string text = fmt::format(
       "99% of the boundary is within {:.2e} of the diagonal in all {} frames (wanted: {:g})",
@@ -186,51 +193,56 @@ void judgeFrames(const std::vector<JudgedFrame>& frames, double tolerance,
         "{} of {} frames miss the tolerance of {:g} at 99% of the boundary: {}; the worst is {}, "
         "with {:.2e}",
         missed.size(), frames.size(), tolerance, listOf(missed), off.number, off.p99);
-  context.judge(finding("boundary", text, off.p99, tolerance,
-                        "more --charges, another --distance, or a larger --tolerance"));
+  out.findings.push_back({finding("boundary", text, off.p99, tolerance,
+                                  "more --charges, another --distance, or a larger --tolerance")});
   const std::string advice = "more --charges; map these frames by `innermap map --one-to-one on`";
   const JudgedFrame folded = worst([](const JudgedFrame& f) { return f.folded; });
   text = folded.folded > 0 ? fmt::format(
                                  "up to {} of the inside is folded, in frame {} (at most: {}): not "
                                  "one-to-one there",
-                                 percent(folded.folded), folded.number, percent(options.maxFolded))
+                                 percent(folded.folded), folded.number, percent(settings.maxFolded))
                            : "nowhere folded inside, in no frame: one-to-one as far as checked";
-  context.judge(finding("folds", text, folded.folded, options.maxFolded, advice));
-  const JudgedFrame out = worst([](const JudgedFrame& f) { return f.outside; });
-  context.report().add("", outsideFigures(out.outside));
+  out.findings.push_back({finding("folds", text, folded.folded, settings.maxFolded, advice)});
+  const JudgedFrame outside = worst([](const JudgedFrame& f) { return f.outside; });
+  add(out, "", outsideFigures(outside.outside));
   text = fmt::format(
       "up to {} of the inside lands outside the frame's solid, by more than the "
       "boundary's error{} (at most: {})",
-      percent(out.outside),
-      out.outside > 0 ? fmt::format(", in frame {}", out.number) : std::string(),
-      percent(options.maxOutside));
-  context.judge(finding("outside", text, out.outside, options.maxOutside, advice));
+      percent(outside.outside),
+      outside.outside > 0 ? fmt::format(", in frame {}", outside.number) : std::string(),
+      percent(settings.maxOutside));
+  out.findings.push_back({finding("outside", text, outside.outside, settings.maxOutside, advice)});
+  return out;
 }
 
-void judgeTexture(const BoundaryError& error, double tolerance, Context& context) {
-  if (error.samples == 0) return;
-  context.judge(finding(
+Verdict judgeTexture(const BoundaryError& error, double tolerance) {
+  Verdict out;
+  if (error.samples == 0) return out;
+  out.findings.push_back({finding(
       "boundary",
       fmt::format("99% of the surface has its values within {:.2e} (wanted: {:g}, of values in 0 "
                   "to 1)",
                   error.p99, tolerance),
       error.p99, tolerance,
-      "more --charges; across seams, where values jump, --seams blend; or a larger --tolerance"));
+      "more --charges; across seams, where values jump, --seams blend; or a larger --tolerance")});
+  return out;
 }
 
-void addCarryVerdictOptions(Command& c, CarryVerdictOptions& o) {
-  c.option("--warn-density", "TIMES", &o.maxDensity,
-           "that densities may grow, beyond what the solids' volumes explain; more is warned of")
-      .above(0)
-      .was("--max-density");
-  c.option("--warn-lost", "SHARE", &o.maxLost,
-           "of the inside where the output's voxels may be over 1.5 times as coarse as what comes "
-           "there; more is warned of")
-      .range(0, 1)
-      .was("--max-lost");
+std::vector<Setting> describe(CarryVerdictSettings& s) {
+  return {Setting("warn_density", "TIMES", &s.maxDensity,
+                  "that densities may grow, beyond what the solids' volumes explain; more is "
+                  "warned of")
+              .above(0)
+              .was("max_density"),
+          Setting("warn_lost", "SHARE", &s.maxLost,
+                  "of the inside where the output's voxels may be over 1.5 times as coarse as what "
+                  "comes there; more is warned of")
+              .from(0, 1)
+              .was("max_lost")};
 }
 
-void judgeDensity(const JudgedDensity& d, const CarryVerdictOptions& options, Context& context) {
+Verdict judgeDensity(const JudgedDensity& d, const CarryVerdictSettings& settings) {
+  Verdict out;
   // Three layers of a fold lie on one another, each as dense as the whole is; what is crushed is
   // denser.
   constexpr double kLayers = 3;
@@ -239,25 +251,28 @@ void judgeDensity(const JudgedDensity& d, const CarryVerdictOptions& options, Co
       fmt::format("the density {} grows up to {:.3g} times {}", d.grid, d.growth, d.where);
   text +=
       fmt::format("(the solids' volumes explain {:.3g}, a fold three times that; at most: {:.3g})",
-                  usual, options.maxDensity * usual);
-  context.judge(finding("density", text, times, options.maxDensity,
-                        fmt::format("--density-limit {:.3g}, which leaves out what comes together "
-                                    "beyond that and says how much; or a map that is one-to-one",
-                                    kLayers * usual)));
+                  usual, settings.maxDensity * usual);
+  out.findings.push_back(
+      {finding("density", text, times, settings.maxDensity,
+               fmt::format("--density-limit {:.3g}, which leaves out what comes together "
+                           "beyond that and says how much; or a map that is one-to-one",
+                           kLayers * usual))});
+  return out;
 }
 
-void judgeResampling(const ResamplingFigures& f, const CarryVerdictOptions& options,
-                     Context& context) {
-  if (!(f.sum > 0)) return;
-  context.report().add("resampling", figures(f));
-  context.judge(finding(
+Verdict judgeResampling(const ResamplingFigures& f, const CarryVerdictSettings& settings) {
+  Verdict out;
+  if (!(f.sum > 0)) return out;
+  add(out, "resampling", figures(f));
+  out.findings.push_back({finding(
       "resampling",
       fmt::format("in {} of the inside the voxels, of {:.4g}, are over {:g} times as coarse "
                   "as the input's, of {:.4g}, come there (at most: {})",
                   percent(f.coarserShare), f.outputVoxel, kCoarser, f.inputVoxel,
-                  percent(options.maxLost)),
-      f.coarserShare, options.maxLost,
-      fmt::format("--voxel-size {:.3g} or less: finer detail is lost", f.outputVoxel / 2)));
+                  percent(settings.maxLost)),
+      f.coarserShare, settings.maxLost,
+      fmt::format("--voxel-size {:.3g} or less: finer detail is lost", f.outputVoxel / 2))});
+  return out;
 }
 
-}  // namespace innermap::tool
+}  // namespace innermap

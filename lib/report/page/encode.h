@@ -1,4 +1,4 @@
-// Numbers as compact text that html/assets/data.js reads: whole numbers of 16 or 32 bits, each less
+// Numbers as compact text that assets/data.js reads: whole numbers of 16 or 32 bits, each less
 // the one before it, first the low bytes, then the higher ones, compressed (zlib), base64.
 #pragma once
 
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace innermap::tool {
+namespace innermap {
 
 std::string encoded(const std::vector<std::uint16_t>& numbers);
 std::string encoded(const std::vector<std::uint32_t>& numbers);
@@ -22,4 +22,4 @@ struct Quantised {
 template <class Number>
 Quantised quantised(const std::vector<Number>& values);
 
-}  // namespace innermap::tool
+}  // namespace innermap

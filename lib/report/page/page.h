@@ -1,6 +1,6 @@
 // The page that people look at: report.html, one file that needs no network.
 //
-// A Page holds what there is to see; the numbers come from the report. html/assets/ is what shows
+// A Page holds what there is to see; the numbers come from the report. assets/ is what shows
 // both in a browser.
 #pragma once
 
@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "encode.h"
 #include "innermap/core/vec3.h"
 #include "innermap/mesh/mesh.h"
+#include "report/page/encode.h"
 
-namespace innermap::tool {
+namespace innermap {
 
 // Where the vertices of a shape stand: at rest, in a frame.
 struct PagePlace {
@@ -92,4 +92,4 @@ std::string pageHtml(const Page& page, const std::string& reportJson);
 // Throws FileError. The file appears whole or not at all.
 void writePage(const std::string& path, const Page& page, const std::string& reportJson);
 
-}  // namespace innermap::tool
+}  // namespace innermap

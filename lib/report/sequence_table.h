@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "frame_loop.h"
 #include "innermap/field/fit.h"
 #include "report/report.h"
+#include "report/report_figures.h"
 #include "report/svg_chart.h"
 
-namespace innermap::tool {
+namespace innermap {
 
 struct SequenceRow {
   FrameFile file;
@@ -45,4 +45,4 @@ void fillReport(const std::vector<SequenceRow>& rows, Report& report);
 std::string sequenceHeader();
 std::string sequenceLine(const SequenceRow& row);
 
-}  // namespace innermap::tool
+}  // namespace innermap
