@@ -64,6 +64,10 @@ Figures finishedFigures(std::uint64_t before) {
   return {{"finished_before", before, "finished before", "this run"}};
 }
 
+Figures leftFigures(std::uint64_t left) {
+  return {{"left", left, "left", "not begun, as --max-time ended"}};
+}
+
 Figures frameSeconds(double mean, double least, double most) {
   return {{"seconds_mean", mean, "seconds a frame", "mean", kSeconds},
           {"seconds_least", least, "fastest frame", "", kSeconds},

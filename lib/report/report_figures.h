@@ -43,6 +43,7 @@ struct DeformedFrame {
 };
 Figures deformedFigures(const std::vector<DeformedFrame>& frames);
 Figures finishedFigures(std::uint64_t before);
+Figures leftFigures(std::uint64_t left);
 Figures frameSeconds(double mean, double least, double most);
 // What stands behind the line of a frame that misses the tolerance.
 const char* missedMark(bool misses);

@@ -113,8 +113,8 @@ std::vector<ReportSection> mapSections(const Unknown& u) {
       {"frames",
        "Frames",
        "Of an animation; lists have one value a frame.",
-       merged({frameFigures({}), deformedFigures({}), finishedFigures(0), frameSeconds(0, 0, 0),
-               judgedFigures(0, {})}),
+       merged({frameFigures({}), deformedFigures({}), finishedFigures(0), leftFigures(0),
+               frameSeconds(0, 0, 0), judgedFigures(0, {})}),
        {}}};
 }
 

@@ -4,6 +4,7 @@
 import os
 
 from cli import ROOT, cube, fails, icosphere, innermap, no_leftovers, read_json, run
+from frames import ball_frames, read_energies, twisted
 from scenes import cells_and_map
 
 AT_ONCE = ("--max-time", "1e-3", "--report", "r.json", "--quiet")
@@ -24,6 +25,19 @@ def test_strangers_are_mapped():
     assert report["verdict"], report
     assert {"map.ply", "map.vdb", "section.png"} <= set(os.listdir("out")), os.listdir("out")
     no_leftovers("out", "r.json")
+
+
+def test_frames_are_left():
+    ball_frames(twisted, {1: 0.0, 2: 0.2, 3: 0.4})
+    innermap("sequence", "rest.obj", "frames/*.obj", "-o", "out", "--charges", 400, "--resolution", 24, *AT_ONCE)
+    frames = stopped()["frames"]
+    assert frames["number"] == [1] and frames["left"] == 2, frames
+    assert len(read_energies("out")) == 1
+    deform = ("deform", "rest.obj", "rest.obj", "frames/*.obj", "-o", "d/r.####.obj", "--charges", 400)
+    innermap(*deform, *AT_ONCE)
+    assert stopped()["frames"]["left"] == 2 and os.listdir("d") == ["r.0001.obj"]
+    innermap(*deform, "--quiet")
+    assert len(os.listdir("d")) == 3
 
 
 def test_fits_end():

@@ -29,10 +29,19 @@ Context::Context(const CommonOptions& options, TerminalProgress& progress)
 
 Context::~Context() = default;
 
+double Context::secondsGone() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+bool Context::timeIsUp() {
+  if (secondsGone() < options_.maxTime) return false;
+  progress_.endByTime();
+  return true;
+}
+
 void Context::spend(double share, double later) {
   constexpr double kMargin = 2;  // what is expected of a solid's grids is that far out, at times
-  const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start_;
-  progress_.setSecondsLeft(share * (options_.maxTime - gone.count() - kMargin * later));
+  progress_.setSecondsLeft(share * (options_.maxTime - secondsGone() - kMargin * later));
 }
 
 void Context::noteTime() {

@@ -73,6 +73,8 @@ class Context {
   // Of what --max-time leaves now, less `later` seconds for what has to come after, this share may
   // be spent on improving what comes next.
   void spend(double share, double later = 0);
+  // Whether --max-time is over, so that no other part of the job is begun.
+  bool timeIsUp();
 
   bool dryRun() const { return options_.dryRun; }
   // What --dry-run says: a line for each thing that would be done, the seconds that expect() knows
@@ -180,6 +182,8 @@ class Context {
   const CommonOptions& options_;
   TerminalProgress& progress_;
   std::uint64_t maxMemory_ = 0;
+  double secondsGone() const;
+
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   bool timeNoted_ = false;
   mutable std::uint64_t most_ = 0;  // of claimed()

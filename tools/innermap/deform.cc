@@ -290,8 +290,8 @@ void run(const DeformOptions& options, Context& context) {
   });
   context.report().add("grid", voxelSizeFigures(deformer.voxelSize()));
   // Of those that were made now; the others' are missing.
-  std::vector<DeformedFrame> made(left.wanted.size());
-  for (std::size_t i = 0; i < left.wanted.size(); ++i)
+  std::vector<DeformedFrame> made(results.size());
+  for (std::size_t i = 0; i < made.size(); ++i)
     if (const auto row = rows.find(left.wanted[i]); row != rows.end())
       made[i] = {row->second.statistics, row->second.error, row->second.judged.folded,
                  row->second.judged.outside};

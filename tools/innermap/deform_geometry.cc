@@ -113,8 +113,8 @@ void deformGeometry(const DeformGeometry& job, const Frames& frames, const Frame
     last = std::move(row.carried);
   });
   if (last) context.print(deformer.report(*last));
-  std::vector<DeformedFrame> made(frames.wanted.size());
-  for (std::size_t i = 0; i < frames.wanted.size(); ++i)
+  std::vector<DeformedFrame> made(results.size());
+  for (std::size_t i = 0; i < made.size(); ++i)
     if (const auto error = errors.find(frames.wanted[i]); error != errors.end())
       made[i].error = error->second;
   context.report().add(

@@ -25,6 +25,7 @@ void run(const EvaluateOptions& options, Context& context) {
     return context.plan({"evaluate " + options.map, "write grids to " + options.output},
                         mapGridMemory(mapped.solid(), settings, mapGridKind(mapped)));
   requireEvaluationMemory(mapped.solid(), options.evaluation.grid, context, mapGridKind(mapped));
+  context.spend(Context::kMostOfTime);
   const SolidGrids grids = evaluateOnGrid(mapped, settings);
   reportGrids(grids, settings.lame, context);
   context.judge(judgeMap(mapped, &grids, options.verdict, MapOrigin::file));
@@ -49,6 +50,7 @@ Command makeEvaluateCommand() {
       .shortName("-o")
       .required()
       .writes({".vdb"});
+  c.limitTime("after which folds are no longer repaired");
   addEvaluationOptions(c, o->evaluation);
   c.settings(describe(o->verdict));
   c.example("innermap evaluate map.ply -o map.vdb --resolution 256");

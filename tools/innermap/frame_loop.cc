@@ -55,6 +55,7 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
   std::size_t finished = 0;
   try {
     for (const std::size_t index : frames.wanted) {
+      if (!results.empty() && context.timeIsUp()) break;
       FrameResult result;
       result.file = frames.all[index];
       context.setPart(fmt::format("frame {} ({} of {})", result.file.number, results.size() + 1,
@@ -80,6 +81,12 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
   context.setPart("");
   if (context.page()) context.page()->frame.reset();
   context.report().add("frames", frameFigures(results));
+  const std::size_t left = frames.wanted.size() - results.size();
+  context.report().add("frames", leftFigures(left));
+  if (left > 0)
+    context.warning(fmt::format("{} of {} frames are left, from {} on, as --max-time ended", left,
+                                frames.wanted.size(),
+                                frames.all[frames.wanted[results.size()]].number));
   sayBroken(results, context);
   return results;
 }

@@ -31,6 +31,7 @@ void addFrameOptions(Command& command, FrameOptions& o) {
   command.group("frames");
   command.option("--frames", "LIST", &o.ranges, "which frames: 12, 1-48, 1-48x2 (every second)")
       .defaults("all");
+  command.limitTime("no frame begins later, but for the first; those that are left are counted");
   command.settings(describe(o.fitting));
   command
       .option(
