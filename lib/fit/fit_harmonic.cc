@@ -9,6 +9,7 @@
 #include "core/point_grid.h"
 #include "fit/detail/problem_samples.h"
 #include "fit/detail/surface_conditions.h"
+#include "fit/detail/value_jumps.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/fit/fit_map.h"
@@ -70,11 +71,14 @@ struct Fitted {
 };
 
 Fitted fittedWhereNeeded(const SourceBoundary& boundary, const SurfaceConditions& conditions,
-                         double span, const HarmonicFitSettings& settings) {
+                         double span, const HarmonicFitSettings& settings,
+                         const std::vector<ValueJump>& jumps) {
   AdaptiveSettings s;
   s.tolerance = settings.tolerance;
   s.maxSources = settings.maxSources;
-  const AdaptiveResult fit = fitToTolerance(problemOf(boundary, conditions, span, settings), s);
+  AdaptiveProblem problem = problemOf(boundary, conditions, span, settings);
+  for (const ValueJump& jump : jumps) problem.jumps.push_back(jump.place);
+  const AdaptiveResult fit = fitToTolerance(problem, s);
   return {fit.field, fit.end, fit.collocation};
 }
 
@@ -198,11 +202,16 @@ HarmonicFit fitHarmonic(const SourceBoundary& boundary, const BoundaryConditions
   const double found = spanOf(trial.draw(kFreshSamples, 0));
   const double span = found > 0 ? found : 1;
   StageSeconds seconds;
+  std::vector<ValueJump> jumps;
+  if (!conditions.function)
+    jumps =
+        CrossingLines(boundary.solid)
+            .jumps([&](const auto& at) { return surface.valuesAt(at); }, settings.tolerance * span);
   const Fitted fit = timed(seconds, "fit", [&] {
     std::optional<Fitted> few;
     // Linear values have kinks at the edges.
     if (conditions.function) few = fittedByFew(boundary, surface, span, settings);
-    return few ? *few : fittedWhereNeeded(boundary, surface, span, settings);
+    return few ? *few : fittedWhereNeeded(boundary, surface, span, settings, jumps);
   });
   HarmonicFit out{fit.field, 0, {}, 0, false, {}, 0, 0, 0, {}, {}, {}};
   out.span = span;
@@ -218,6 +227,8 @@ HarmonicFit fitHarmonic(const SourceBoundary& boundary, const BoundaryConditions
                     : out.error.bound;
   });
   out.met = out.error.p99 <= settings.tolerance;
+  if (const std::string text = jumpsText(jumps, span, "the values' span"); !text.empty())
+    out.notes.push_back(boundary.mesh.name + ": " + text);
   out.seconds = std::move(seconds);
   return out;
 }

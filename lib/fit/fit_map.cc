@@ -58,16 +58,8 @@ void noteSteps(MapFit& fit, double singleFolded, std::size_t singleSources) {
 }
 
 void noteJumps(MapFit& fit, const std::vector<ValueJump>& jumps) {
-  if (jumps.empty()) return;
-  const ValueJump& worst =
-      *std::max_element(jumps.begin(), jumps.end(),
-                        [](const ValueJump& a, const ValueJump& b) { return a.size < b.size; });
-  fit.notes.push_back(fmt::format(
-      "{}: exposed parts slide along each other where they cross, by up to {:.2g} of the target's "
-      "diagonal, most near ({:.4g}, {:.4g}, {:.4g}); the map blends there, and its error is large "
-      "along those lines",
-      fit.boundary.source.mesh.name, worst.size / fit.boundary.target.diagonal, worst.place.x,
-      worst.place.y, worst.place.z));
+  const std::string text = jumpsText(jumps, fit.boundary.target.diagonal, "the target's diagonal");
+  if (!text.empty()) fit.notes.push_back(fit.boundary.source.mesh.name + ": " + text);
 }
 
 void noteProducts(MapFit& fit) {

@@ -8,6 +8,7 @@
 #include "fit/detail/inside_check.h"
 #include "fit/detail/problem_samples.h"
 #include "fit/detail/streams.h"
+#include "fit/detail/value_jumps.h"
 #include "innermap/core/error.h"
 #include "innermap/field/fit.h"
 #include "innermap/field/harmonic_field.h"
@@ -104,6 +105,7 @@ FrameFitter::FrameFitter(SourceBoundary rest, const FrameFitterSettings& setting
         samplesAt(blueNoiseSamples(solid().surface(), frameCollocation(settings), sample));
     seed_ = settings.seed;
     inside_ = pointsInside(solid(), kInside);
+    lines_ = std::make_shared<const CrossingLines>(solid());
     return levelsOf(solid(), settings);
   });
   levels_ = levels.size();
@@ -157,8 +159,17 @@ FrameFit FrameFitter::fit(const Mesh& frame) const {
         fmt::format("the boundary error reaches {:.2g} of the diagonal: this map is not to be "
                     "trusted; use more charges",
                     error.max));
-  return {std::move(boundary), std::move(field),  error, folded, outside, solution.iterations,
-          std::move(warnings), std::move(seconds)};
+  std::string jumps = jumpsText(lines_->jumps(solid(), boundary.moved, kJump * boundary.diagonal),
+                                boundary.diagonal, "the diagonal");
+  return {std::move(boundary),
+          std::move(field),
+          error,
+          folded,
+          outside,
+          solution.iterations,
+          std::move(jumps),
+          std::move(warnings),
+          std::move(seconds)};
 }
 
 HarmonicField velocityAt(const NumberedFit& frame, const std::optional<NumberedFit>& before,

@@ -95,7 +95,7 @@ FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context
   std::shared_ptr<PageFrames> shown;
   if (context.page())
     shown = std::make_shared<PageFrames>(*context.page(), fitter.rest().mesh, frames.wanted.size());
-  return {std::move(numbers), [&, shown](std::size_t index) {
+  return {std::move(numbers), [&, shown, told = false](std::size_t index) mutable {
             const FrameFile& frame = frames.all[index];
             const Mesh mesh =
                 context.timed("read", [&] { return readMeshLike(frame.path, fitter.rest().mesh); });
@@ -103,6 +103,10 @@ FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context
             addSeconds(context.report().seconds, fit.seconds);
             for (const std::string& warning : fit.warnings)
               context.warning(fmt::format("frame {}: {}", frame.number, warning));
+            if (!fit.jumps.empty() && !told)
+              context.note(fmt::format("frame {}: {}; other frames are not told of", frame.number,
+                                       fit.jumps));
+            told = told || !fit.jumps.empty();
             if (shown) shown->add(frame.number, mesh.vertices, fit);
             return fit;
           }};

@@ -200,7 +200,8 @@ AdaptiveProblem MapFitter::problem(double tolerance) {
       pair_.solid(),
       [this](const std::vector<SurfacePoint>& points) { return pair_.targetsOf(points); },
       pair_.target.diagonal, s);
-  jumps = valueJumps(pair_.solid(), pair_.target.moved, tolerance * pair_.target.diagonal);
+  jumps = CrossingLines(pair_.solid())
+              .jumps(pair_.solid(), pair_.target.moved, tolerance * pair_.target.diagonal);
   for (const ValueJump& jump : jumps) out.jumps.push_back(jump.place);
   return out;
 }

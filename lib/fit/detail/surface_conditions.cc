@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/pi.h"
 #include "fit/detail/problem_samples.h"
@@ -187,6 +188,18 @@ Matrix SurfaceConditions::values(const std::vector<SurfacePoint>& onSurface) con
   for (std::size_t i = 0; i < onSurface.size(); ++i) {
     const SurfacePoint address = boundary_.solid.address(onSurface[i]);
     for (std::size_t k = 0; k < channels_; ++k) out(i, k) = value(address, k);
+  }
+  return out;
+}
+
+Matrix SurfaceConditions::valuesAt(const std::vector<SurfacePoint>& addresses) const {
+  Matrix out(addresses.size(), channels_);
+  for (std::size_t i = 0; i < addresses.size(); ++i) {
+    const int input =
+        boundary_.solid.repaired().parent[static_cast<std::size_t>(addresses[i].triangle)];
+    const bool free = anyFree() && (input < 0 || conditions_.free[static_cast<std::size_t>(input)]);
+    for (std::size_t k = 0; k < channels_; ++k)
+      out(i, k) = free ? std::numeric_limits<double>::quiet_NaN() : value(addresses[i], k);
   }
   return out;
 }

@@ -19,6 +19,8 @@ class SurfaceConditions {
   // Rows as Collocation has them: values, or fluxes times the length of the direction.
   Matrix rows(const std::vector<SurfacePoint>& onSurface) const;
   Points directions(const std::vector<SurfacePoint>& onSurface) const;
+  // The values at addresses on repaired().mesh; NaN where a flux is given. Not of a function.
+  Matrix valuesAt(const std::vector<SurfacePoint>& addresses) const;
 
   std::size_t channels() const { return channels_; }
   bool anyFree() const { return fixed_ != nullptr; }

@@ -1,5 +1,7 @@
 #include "fit/detail/value_jumps.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -54,42 +56,83 @@ std::array<Vec3, 2> lineOf(const Corners& a, const Corners& b, const Vec3& middl
 
 }  // namespace
 
-std::vector<ValueJump> valueJumps(const Solid& solid, const Points& values, double least) {
-  if (!solid.overlaps()) return {};
+CrossingLines::CrossingLines(const Solid& solid) {
+  if (!solid.overlaps()) return;
   const Mesh& mesh = solid.repaired().mesh;
   const std::vector<Crossing> crossings = selfIntersections(mesh.vertices, mesh.triangles);
-  std::vector<std::vector<ValueJump>> found(crossings.size());
   const double apart = kApart * solid.diagonal(),
                exposed = solid.gap() + kExposed * solid.diagonal();
+  std::vector<Points> found(crossings.size());
+  const auto cornersOf = [&](int triangle) {
+    Corners out;
+    for (int k = 0; k < 3; ++k) out[k] = mesh.vertices[mesh.triangles[triangle][k]];
+    return out;
+  };
   parallelBlocks(
       crossings.size(), 64,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t c = begin; c < end; ++c) {
-          std::array<Corners, 2> at, value;
-          for (int side = 0; side < 2; ++side)
-            for (int k = 0; k < 3; ++k) {
-              const int v = mesh.triangles[side ? crossings[c].second : crossings[c].first][k];
-              at[side][k] = mesh.vertices[v];
-              value[side][k] = values[v];
-            }
-          const auto [from, to] = lineOf(at[0], at[1], crossings[c].place);
+          const auto [from, to] = lineOf(cornersOf(crossings[c].first),
+                                         cornersOf(crossings[c].second), crossings[c].place);
           const auto count = static_cast<int>(1 + std::min(kMostPlaces, norm(to - from) / apart));
           for (int i = 0; i < count; ++i) {
             const Vec3 p = from + (i + 0.5) / count * (to - from);
-            Vec3 difference;
-            for (int side = 0; side < 2; ++side) {
-              const Vec3 w = barycentric(at[side], p);
-              for (int k = 0; k < 3; ++k) difference += (side ? -w[k] : w[k]) * value[side][k];
-            }
-            if (norm(difference) > least && solid.closest(p, exposed).onSurface.triangle >= 0)
-              found[c].push_back({p, norm(difference)});
+            if (solid.closest(p, exposed).onSurface.triangle >= 0) found[c].push_back(p);
           }
         }
       },
       "looking for parts that slide along each other");
+  for (std::size_t c = 0; c < crossings.size(); ++c)
+    for (const Vec3& p : found[c]) {
+      places_.push_back(p);
+      for (int side = 0; side < 2; ++side) {
+        const int triangle = side ? crossings[c].second : crossings[c].first;
+        const Vec3 w = barycentric(cornersOf(triangle), p);
+        sides_[side].push_back({triangle, {w.x, w.y, w.z}});
+      }
+    }
+}
+
+std::vector<ValueJump> CrossingLines::jumps(const Values& values, double least) const {
   std::vector<ValueJump> out;
-  for (const std::vector<ValueJump>& part : found) out.insert(out.end(), part.begin(), part.end());
+  if (places_.empty()) return out;
+  const Matrix first = values(sides_[0]), second = values(sides_[1]);
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    double squared = 0;
+    for (std::size_t k = 0; k < first.columns(); ++k)
+      squared += (first(i, k) - second(i, k)) * (first(i, k) - second(i, k));
+    if (std::sqrt(squared) > least) out.push_back({places_[i], std::sqrt(squared)});
+  }
   return out;
+}
+
+std::vector<ValueJump> CrossingLines::jumps(const Solid& solid, const Points& values,
+                                            double least) const {
+  const Mesh& mesh = solid.repaired().mesh;
+  return jumps(
+      [&](const std::vector<SurfacePoint>& addresses) {
+        Matrix out(addresses.size(), 3);
+        for (std::size_t i = 0; i < addresses.size(); ++i) {
+          Vec3 sum;
+          for (int k = 0; k < 3; ++k)
+            sum += addresses[i].barycentric[k] * values[mesh.triangles[addresses[i].triangle][k]];
+          for (int k = 0; k < 3; ++k) out(i, k) = sum[k];
+        }
+        return out;
+      },
+      least);
+}
+
+std::string jumpsText(const std::vector<ValueJump>& jumps, double unit,
+                      const std::string& unitName) {
+  if (jumps.empty()) return "";
+  const ValueJump& worst =
+      *std::max_element(jumps.begin(), jumps.end(),
+                        [](const ValueJump& a, const ValueJump& b) { return a.size < b.size; });
+  return fmt::format(
+      "where exposed parts cross, their values differ by up to {:.2g} of {}, most near ({:.4g}, "
+      "{:.4g}, {:.4g}); the fit blends there, and its error is large along those lines",
+      worst.size / unit, unitName, worst.place.x, worst.place.y, worst.place.z);
 }
 
 }  // namespace innermap

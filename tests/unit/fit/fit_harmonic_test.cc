@@ -268,5 +268,22 @@ TEST(FitHarmonic, ChannelsOfGroupsSumUpToOne) {
   }
 }
 
+// 0 on a box, 1 on another that stands in it: no harmonic field meets that along the line where
+// they cross.
+TEST(FitHarmonic, SaysWhereValuesJump) {
+  const Mesh mesh = shapes::joined(shapes::box({-1, -1, -1}, {1, 1, 1}),
+                                   shapes::box({-0.4, -0.3, 0.5}, {0.4, 0.3, 2}));
+  BoundaryConditions conditions;
+  conditions.values = Matrix(mesh.vertices.size(), 1);
+  for (std::size_t v = mesh.vertices.size() / 2; v < mesh.vertices.size(); ++v)
+    conditions.values(v, 0) = 1;
+  HarmonicFitSettings settings;
+  settings.tolerance = 5e-2;
+  settings.maxSources = 4000;
+  const HarmonicFit fit = fitHarmonic(makeSourceBoundary(mesh), conditions, settings);
+  ASSERT_EQ(fit.notes.size(), 1u);
+  EXPECT_NE(fit.notes.front().find("differ by up to 1 of"), std::string::npos) << fit.notes.front();
+}
+
 }  // namespace
 }  // namespace innermap

@@ -7,6 +7,7 @@
 #include "fit/test_pairs.h"
 #include "innermap/core/error.h"
 #include "innermap/field/harmonic_field.h"
+#include "mesh/shapes.h"
 
 namespace innermap {
 namespace {
@@ -156,6 +157,18 @@ TEST(FrameFitter, CountsItsMemory) {
   settings.sources = 100000;
   EXPECT_GT(frameFitterMemory(settings), 5 * thousands);
   EXPECT_EQ(frameCollocation(settings), 300000u);
+}
+
+TEST(FrameFitter, SaysWherePartsSlide) {
+  const Mesh rest = shapes::joined(shapes::box({-1, -1, -1}, {1, 1, 1}),
+                                   shapes::box({-0.4, -0.3, 0.5}, {0.4, 0.3, 2}));
+  const FrameFitter fitter(makeSourceBoundary(rest), few());
+  Mesh slid = rest;
+  for (std::size_t v = slid.vertices.size() / 2; v < slid.vertices.size(); ++v)
+    slid.vertices[v] += Vec3{0.06, 0.08, 0};
+  const std::string said = fitter.fit(slid).jumps;
+  EXPECT_NE(said.find("differ by up to 0.02"), std::string::npos) << said;
+  EXPECT_EQ(fitter.fit(rest).jumps, "");
 }
 
 }  // namespace

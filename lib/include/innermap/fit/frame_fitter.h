@@ -22,6 +22,8 @@
 
 namespace innermap {
 
+class CrossingLines;
+
 struct FrameFitterSettings {
   std::size_t sources = 8000;      // charges, the same for all frames
   std::size_t collocation = 0;     // boundary points, at least sources + 4; 0: 3 a source
@@ -38,6 +40,8 @@ std::size_t frameCollocation(const FrameFitterSettings& settings);
 std::uint64_t frameFitterMemory(const FrameFitterSettings& settings, std::uint64_t others = 0);
 
 // The map of one frame.
+constexpr double kJump = 1e-3;  // what FrameFit::jumps tells of, at least
+
 struct FrameFit {
   TargetBoundary boundary;
   HarmonicField field;
@@ -46,6 +50,10 @@ struct FrameFit {
   // share whose image is farther out of the frame's solid than error.p99.
   double folded = 0, outside = 0;
   int iterations = 0;
+  // Where exposed parts cross and slide along each other by more than kJump of the diagonal, and
+  // how far, in words; empty where none do. The charges stand where they stand, so the fit blends
+  // there.
+  std::string jumps;
   std::vector<std::string> warnings;
   StageSeconds seconds;  // "solid", "solve", "certificate", "inside"
 };
@@ -81,6 +89,7 @@ class FrameFitter {
   SourceBoundary rest_;
   Samples collocation_;
   Points inside_;
+  std::shared_ptr<const CrossingLines> lines_;
   std::uint64_t seed_ = 1;
   std::optional<IterativeSolver> solver_;
   std::size_t levels_ = 0;
