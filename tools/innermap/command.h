@@ -1,6 +1,6 @@
 // The framework of innermap's subcommands.
 //
-// To add one, write tools/NAME.cc after the shortest there is, tools/evaluate.cc, and list its
+// To add one, write NAME.cc here after the shortest there is, evaluate.cc, and list its
 // make function in commands.h and commands.cc. --help, docs/commands.md, did-you-mean, range checks
 // and the common options (--threads, --max-memory, --dry-run, --report, --quiet, --help) come by
 // themselves. Throw innermap's errors; they become one line on stderr and exit code 1 (UsageError:

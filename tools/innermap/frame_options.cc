@@ -104,8 +104,7 @@ FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context
             for (const std::string& warning : fit.warnings)
               context.warning(fmt::format("frame {}: {}", frame.number, warning));
             if (!fit.jumps.empty() && !told)
-              context.note(fmt::format("frame {}: {}; other frames are not told of", frame.number,
-                                       fit.jumps));
+              context.note(fmt::format("from frame {} on: {}", frame.number, fit.jumps));
             told = told || !fit.jumps.empty();
             if (shown) shown->add(frame.number, mesh.vertices, fit);
             return fit;
