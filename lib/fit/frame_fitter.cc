@@ -159,8 +159,9 @@ FrameFit FrameFitter::fit(const Mesh& frame) const {
         fmt::format("the boundary error reaches {:.2g} of the diagonal: this map is not to be "
                     "trusted; use more charges",
                     error.max));
-  std::string jumps = jumpsText(lines_->jumps(solid(), boundary.moved, kJump * boundary.diagonal),
-                                boundary.diagonal, "the diagonal");
+  std::string jumps =
+      jumpsText(lines_->jumps(solid(), boundary.moved, kLeastJumpTold * boundary.diagonal),
+                boundary.diagonal, "the diagonal");
   return {std::move(boundary),
           std::move(field),
           error,

@@ -10,6 +10,7 @@
 #include "report/table.h"
 
 namespace innermap {
+
 Figures figures(const SequenceRow& r) {
   constexpr auto kShare = FigureUnit::share, kDiagonals = FigureUnit::diagonals;
   return when(r.broken.empty(),

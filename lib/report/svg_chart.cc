@@ -22,6 +22,7 @@ constexpr int kHead = 64, kEdge = 16;                            // of the chart
 constexpr int kLeft = 70, kRight = 16, kTop = 54, kBottom = 52;  // of a panel
 constexpr int kCellLeft = 90;
 constexpr int kMostTicks = 7;
+constexpr std::size_t kMostMarks = 120;  // of a curve: more run into each other
 
 std::string textAt(double x, double y, const std::string& text, const std::string& more = {}) {
   return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\"{}>{}</text>\n", x, y,
@@ -177,8 +178,9 @@ std::string curveOf(const SvgSeries& series, const SvgAxis& x, const SvgAxis& y,
     }
     const double px = x.at(series.x[i]), py = y.at(series.y[i]);
     points += fmt::format("{:.1f},{:.1f} ", px, py);
-    marks += markAt(px, py, index,
-                    fmt::format("{}: {:.4g}, {:.4g}", series.name, series.x[i], series.y[i]));
+    if (!series.line || series.x.size() <= kMostMarks)
+      marks += markAt(px, py, index,
+                      fmt::format("{}: {:.4g}, {:.4g}", series.name, series.x[i], series.y[i]));
   }
   end();
   return lines + marks;

@@ -12,7 +12,7 @@ struct SvgSeries {
   std::string name;          // in the panel's legend
   std::vector<double> x, y;  // of one size; what is not finite, or not positive on a logarithmic
                              // axis, is a gap
-  bool line = true;          // else points alone
+  bool line = true;          // else points alone; of many points the line alone
 };
 
 struct SvgPanel {

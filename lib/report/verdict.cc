@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "innermap/field/field_file.h"
 #include "report/figures.h"

@@ -20,6 +20,7 @@ SurfaceConditions::SurfaceConditions(const SourceBoundary& boundary,
   check();
   splitSurface();
   if (anyFree()) smoothNormals();
+  averageCorners();
   if (conditions.function) {
     const Mesh& surface = boundary.solid.surface();
     channels_ = conditions.function({positionOf(surface, SurfacePoint{})}).columns();
@@ -120,6 +121,20 @@ void SurfaceConditions::smoothNormals() {
   });
 }
 
+void SurfaceConditions::averageCorners() {
+  const Mesh& mesh = boundary_.mesh;
+  if (conditions_.function || conditions_.values.rows() == mesh.vertices.size()) return;
+  ofVertices_ = Matrix(mesh.vertices.size(), channels_);
+  std::vector<double> count(mesh.vertices.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t c = 0; c < 3 && (conditions_.free.empty() || !conditions_.free[t]); ++c) {
+      const auto v = static_cast<std::size_t>(mesh.triangles[t][c]);
+      ++count[v];
+      for (std::size_t k = 0; k < channels_; ++k)
+        ofVertices_(v, k) += (conditions_.values(3 * t + c, k) - ofVertices_(v, k)) / count[v];
+    }
+}
+
 Vec3 SurfaceConditions::normalAt(const SurfacePoint& onSurface) const {
   const std::array<Vec3, 3>& corners = normals_[static_cast<std::size_t>(onSurface.triangle)];
   Vec3 sum;
@@ -142,6 +157,7 @@ double SurfaceConditions::corner(int repairedVertex, int inputTriangle, std::siz
   const Mesh& mesh = boundary_.mesh;
   if (conditions_.values.rows() == mesh.vertices.size())
     return conditions_.values(static_cast<std::size_t>(repairedVertex), channel);
+  if (inputTriangle < 0) return ofVertices_(static_cast<std::size_t>(repairedVertex), channel);
   const Triangle& corners = mesh.triangles[static_cast<std::size_t>(inputTriangle)];
   const auto c = std::find(corners.begin(), corners.end(), repairedVertex) - corners.begin();
   return conditions_.values(

@@ -32,12 +32,14 @@ class SurfaceConditions {
   void check() const;
   void splitSurface();
   void smoothNormals();
+  void averageCorners();
   Vec3 normalAt(const SurfacePoint& onSurface) const;
   int inputTriangle(const SurfacePoint& onSurface) const;
   void checkFunction(const Matrix& out, std::size_t points) const;
   Matrix values(const std::vector<SurfacePoint>& onSurface) const;
   Matrix fluxes(const std::vector<SurfacePoint>& onSurface, const Points& normals) const;
   double value(const SurfacePoint& address, std::size_t channel) const;
+  // inputTriangle: -1 in a cap.
   double corner(int repairedVertex, int inputTriangle, std::size_t channel) const;
 
   // Of the diagonal: a direction must not vanish where it is to be one.
@@ -49,6 +51,7 @@ class SurfaceConditions {
   std::vector<std::uint8_t> freePieces_;  // of surface().triangles
   std::unique_ptr<TriangleTree> fixed_;   // where values are given; null: everywhere
   double freeShare_ = 0;
+  Matrix ofVertices_;  // where values are given three a triangle: their means at each vertex
   std::vector<std::array<Vec3, 3>>
       normals_;  // at the corners of surface().triangles; if any is free
 };

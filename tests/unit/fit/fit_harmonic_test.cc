@@ -268,6 +268,20 @@ TEST(FitHarmonic, ChannelsOfGroupsSumUpToOne) {
   }
 }
 
+// The cap of a hole has no triangle of the input, and so no corners of its own.
+TEST(FitHarmonic, CornersOfAnOpenMeshHaveValues) {
+  Mesh mesh = shapes::box({0, 0, 0}, {1, 1, 1});
+  mesh.triangles.pop_back();
+  mesh.triangles.pop_back();
+  BoundaryConditions conditions;
+  conditions.values = Matrix(3 * mesh.triangles.size(), 1);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t c = 0; c < 3; ++c)
+      conditions.values(3 * t + c, 0) = mesh.vertices[mesh.triangles[t][c]].x;
+  const HarmonicFit fit = fitHarmonic(makeSourceBoundary(mesh), conditions);
+  EXPECT_NEAR(fit.field.evaluate({{0.3, 0.5, 0.6}}, {0, false}).values(0, 0), 0.3, 1e-6);
+}
+
 // 0 on a box, 1 on another that stands in it: no harmonic field meets that along the line where
 // they cross.
 TEST(FitHarmonic, SaysWhereValuesJump) {

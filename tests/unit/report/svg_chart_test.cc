@@ -71,6 +71,16 @@ TEST(SvgChart, ACurveHasGaps) {
   EXPECT_EQ(count(svgChart(chartOf(p)), "<polyline"), 2u);
 }
 
+TEST(SvgChart, ManyPointsAreALineAlone) {
+  SvgPanel p = panel(false);
+  const std::size_t few = count(svgChart(chartOf(p)), "<circle");
+  for (int i = 4; i < 1000; ++i) {
+    p.series[0].x.push_back(100 + i);
+    p.series[0].y.push_back(0.1);
+  }
+  EXPECT_EQ(count(svgChart(chartOf(p)), "<circle"), few - 3);
+}
+
 TEST(SvgChart, NoiseIsNotMagnified) {
   SvgPanel p = panel(false);
   p.series[0].y = {1e-16, 3e-16, 2e-16};

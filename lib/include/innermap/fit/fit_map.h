@@ -24,7 +24,7 @@
 
 namespace innermap {
 
-// What fitMap (fit_map.h) takes and gives.
+// What fitMap takes and gives.
 
 // A number of charges, whatever the error.
 struct ShellSettings {

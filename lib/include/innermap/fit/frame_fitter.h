@@ -40,7 +40,7 @@ std::size_t frameCollocation(const FrameFitterSettings& settings);
 std::uint64_t frameFitterMemory(const FrameFitterSettings& settings, std::uint64_t others = 0);
 
 // The map of one frame.
-constexpr double kJump = 1e-3;  // what FrameFit::jumps tells of, at least
+constexpr double kLeastJumpTold = 1e-3;  // fraction of the frame's diagonal
 
 struct FrameFit {
   TargetBoundary boundary;
@@ -50,7 +50,7 @@ struct FrameFit {
   // share whose image is farther out of the frame's solid than error.p99.
   double folded = 0, outside = 0;
   int iterations = 0;
-  // Where exposed parts cross and slide along each other by more than kJump of the diagonal, and
+  // Where exposed parts cross and slide along each other by more than kLeastJumpTold, and
   // how far, in words; empty where none do. The charges stand where they stand, so the fit blends
   // there.
   std::string jumps;

@@ -108,7 +108,7 @@ void requireInterior(const Solid& solid, const LevelSetSettings& settings);
 std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const openvdb::FloatGrid& levelSet,
                                                        const Solid& solid, const Mesh& mesh);
 
-// Need in bytes of a level set of those settings with a fog (fog.h) and attributes of the mesh.
+// Need in bytes of a level set of those settings with a fog and attributes of the mesh.
 std::uint64_t voxelizeMemory(const Solid& solid, const LevelSetSettings& settings, const Mesh& mesh,
                              bool fog, bool attributes);
 

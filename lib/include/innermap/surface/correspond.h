@@ -1,6 +1,6 @@
 // Where each point of one closed surface lies on another that was never related to it.
 //
-// Both are laid out on a common model space (surface/correspond.h); rotations of it and matched
+// Both are laid out on a common model space; rotations of it and matched
 // limb tips give candidates, which are refined by lowering the symmetric Dirichlet energy both
 // ways. After Praun and Hoppe, "Spherical parametrization and remeshing" (SIGGRAPH 2003); Schmidt,
 // Campen, Born, Kobbelt, "Inter-surface maps via constant-curvature metrics" (SIGGRAPH 2020).
@@ -140,7 +140,7 @@ struct SurfaceShells {
 };
 
 struct ClosedSurfaceSettings {
-  bool closeHoles = false;  // cap boundary loops (mesh/repair.h); otherwise they are an error
+  bool closeHoles = false;  // cap boundary loops (mesh/check.h); otherwise they are an error
 };
 
 // Throws DataError: holes (their number and the longest) without consent to close them, edges of

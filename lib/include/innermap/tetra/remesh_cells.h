@@ -123,8 +123,8 @@ struct Remesh {
   StageSeconds seconds;  // "carry", "coarse", "repair", "shapes"
 };
 
-// Carries the mesh (carry_cells.h), repairs it (repair_cells.h) and improves its tetrahedra's
-// shapes (improve_cells.h), in turns until the boundary lies on the surface.
+// Carries the mesh (tetra/cells.h), repairs it and improves its tetrahedra's shapes, in turns until
+// the boundary lies on the surface.
 //
 // Coarse to fine: where many cells are inverted, meshes of the source of `coarse`, twice as many,
 // ... cells, as long as they are coarser than `mesh`, are carried and repaired first, each from the
