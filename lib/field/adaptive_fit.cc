@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <string>
 
@@ -18,6 +19,10 @@ constexpr double kDistance = 1.0;           // spacings
 constexpr double kSourceDarts = 0.83;       // spacings; fills to one charge a spacing squared
 constexpr double kCollocationDarts = 0.46;  // spacings; three points a charge
 constexpr double kCollocationReach = 2;     // distances, from a new charge
+// Points a charge, of all, before the darts of a level get closer: where a part is thinner than the
+// charges' distance, their shell is larger than its surface.
+constexpr double kLeastPoints = 1.5;
+constexpr int kCloserDarts = 4;
 constexpr int kMostLevels = 14;
 constexpr double kNearest = 1e-6;  // of the diagonal
 constexpr std::size_t kMarkSamples = 30000;
@@ -62,6 +67,7 @@ class AdaptiveFitting {
   Level& level(std::size_t l);
   bool refine(const std::vector<Points>& marks);
   bool refineOnce(const std::vector<Points>& marks);
+  void collocate(PlacementRequest request);
   void solve();
   double score(const BoundaryError& error) const;
   void keepIfBest();
@@ -138,10 +144,7 @@ void AdaptiveFitting::first() {
                     std::sqrt(problem_.area / static_cast<double>(coarse.sources.size())) /
                     problem_.diagonal;
   request.most = 100 * settings_.firstSources;
-  request.index = requests_++;
-  BoundarySamples samples = problem_.placeCollocation(request);
-  collocation_ = samples.collocation();
-  values_ = std::move(samples.values);
+  collocate(request);
   requireMemory("the first level of charges", memory(), room_, "raise the limit of memory");
   IterativeSettings s;
   s.accuracy = std::clamp(kErrorAccuracy * settings_.tolerance, 1e-12, s.accuracy);
@@ -151,12 +154,24 @@ void AdaptiveFitting::first() {
                   s);
 }
 
+// Adds boundary points and their values, the darts closer where they are few for the charges.
+void AdaptiveFitting::collocate(PlacementRequest request) {
+  for (int tries = 0; tries < kCloserDarts; ++tries, request.spacing /= 2) {
+    request.existing = collocation_.points;
+    request.index = requests_++;
+    const BoundarySamples more = problem_.placeCollocation(request);
+    collocation_.append(more.collocation());
+    append(values_, more.values);
+    const double wanted = kLeastPoints * static_cast<double>(sourceCount());
+    if (static_cast<double>(collocation_.size()) >= wanted) return;
+  }
+}
+
 // Adds charges around the marks, and boundary points around the charges; false when there is room
 // for none.
 bool AdaptiveFitting::refineOnce(const std::vector<Points>& marks) {
+  const std::size_t before = collocation_.size();
   std::vector<SourceLevel> added;
-  Collocation points;
-  Matrix values;
   for (std::size_t l = 1; l < marks.size(); ++l) {
     if (marks[l].empty()) continue;
     Level& fine = level(l);
@@ -170,20 +185,20 @@ bool AdaptiveFitting::refineOnce(const std::vector<Points>& marks) {
     if (fresh.empty()) continue;
     fine.sources.insert(fine.sources.end(), fresh.begin(), fresh.end());
     added.push_back({fresh, fine.spacing * problem_.diagonal, fine.distance * problem_.diagonal});
-    const BoundarySamples more = problem_.placeCollocation(
-        {fresh, kCollocationReach * fine.distance, kCollocationDarts * fine.spacing,
-         collocation_.points, 100 * fresh.size() + 1000, requests_++});
-    collocation_.append(more.collocation());
-    points.append(more.collocation());
-    append(values, more.values);
+    collocate({fresh,
+               kCollocationReach * fine.distance,
+               kCollocationDarts * fine.spacing,
+               {},
+               100 * fresh.size() + 1000});
   }
   if (added.empty()) return false;
   if (memory() > room_) {
     end_ = AdaptiveEnd::maxMemory;
     return false;
   }
-  append(values_, values);
-  solver_->add(points, added);
+  std::vector<std::size_t> points(collocation_.size() - before);
+  std::iota(points.begin(), points.end(), before);
+  solver_->add(collocation_.subset(points), added);
   return true;
 }
 

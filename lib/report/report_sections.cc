@@ -77,7 +77,7 @@ std::vector<ReportSection> mapSections(const Unknown& u) {
        {}},
       {"inside",
        "Points inside",
-       "A lattice of points inside the source, looked at one by one.",
+       "Random points inside the source, spread evenly, looked at one by one.",
        figures(InsideFigures{}),
        {}},
       {"jacobian",

@@ -40,7 +40,7 @@ bool Context::timeIsUp() {
 }
 
 void Context::spend(double share, double later) {
-  constexpr double kMargin = 2;  // what is expected of a solid's grids is that far out, at times
+  constexpr double kMargin = 3;  // what is expected of a solid's grids is that far out, at times
   progress_.setSecondsLeft(share * (options_.maxTime - secondsGone() - kMargin * later));
 }
 

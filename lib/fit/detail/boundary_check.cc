@@ -60,7 +60,7 @@ DegreeFigures boundaryDegree(const ComposedMap& map, const BoundaryPair& pair,
   const WindingNumber image = imageOf(map, pair.solid().surface(), settings);
   const Box3 box = boundingBox(pair.target.mesh(pair.solid(), ""));
   const double volume = std::max(target.volume(), kThinnest * std::pow(box.diagonal(), 3));
-  const Points deep = latticePoints(box, std::cbrt(volume / kInTarget), [&](const Vec3& p) {
+  const Points deep = stratifiedPoints(box, std::cbrt(volume / kInTarget), [&](const Vec3& p) {
     return target.inside(p) && !target.near(p, settings.error);
   });
   std::vector<int> windings(deep.size());

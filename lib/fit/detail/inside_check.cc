@@ -4,23 +4,27 @@
 #include <cmath>
 #include <utility>
 
+#include "core/random.h"
 #include "innermap/core/run.h"
 
 namespace innermap {
 
-Points latticePoints(const Box3& box, double step, const std::function<bool(const Vec3&)>& wanted) {
+Points stratifiedPoints(const Box3& box, double step,
+                        const std::function<bool(const Vec3&)>& wanted) {
   const auto cells = [&](int axis) {
     return static_cast<std::size_t>(std::ceil(box.extent()[axis] / step));
   };
   const std::size_t nx = cells(0), ny = cells(1), nz = cells(2);
+  const CounterRandom random(1, 83);
   std::vector<Points> columns(nx * ny);
   parallelBlocks(columns.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       const std::size_t i = c / ny, j = c % ny;
       for (std::size_t k = 0; k < nz; ++k) {
-        const Vec3 p =
-            box.lower + step * Vec3{static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5,
-                                    static_cast<double>(k) + 0.5};
+        const std::uint64_t draw = 3 * (c * nz + k);
+        const Vec3 p = box.lower + step * Vec3{static_cast<double>(i) + random.uniform(draw),
+                                               static_cast<double>(j) + random.uniform(draw + 1),
+                                               static_cast<double>(k) + random.uniform(draw + 2)};
         if (wanted(p)) columns[c].push_back(p);
       }
     }
@@ -32,8 +36,8 @@ Points latticePoints(const Box3& box, double step, const std::function<bool(cons
 
 Points pointsInside(const Solid& solid, std::size_t count) {
   const double volume = std::max(solid.volume(), 1e-9 * std::pow(solid.diagonal(), 3));
-  return latticePoints(solid.box(), std::cbrt(volume / static_cast<double>(count)),
-                       [&](const Vec3& p) { return solid.inside(p); });
+  return stratifiedPoints(solid.box(), std::cbrt(volume / static_cast<double>(count)),
+                          [&](const Vec3& p) { return solid.inside(p); });
 }
 
 MappedPoints mapPoints(const HarmonicMap& step, const MappedPoints& before, double accuracy) {

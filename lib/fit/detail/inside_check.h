@@ -11,9 +11,12 @@
 
 namespace innermap {
 
-// Points of a cubic lattice in the box of which `wanted` is true, in a fixed order. step: world
-// units. wanted: may be called from any thread. Throws Cancelled.
-Points latticePoints(const Box3& box, double step, const std::function<bool(const Vec3&)>& wanted);
+// One random point in each cube of a lattice over the box, those of which `wanted` is true, the
+// same ones each time: a plate thinner than the step along an axis is met all through, as a lattice
+// of points does not meet it. step: world units. wanted: may be called from any thread. Throws
+// Cancelled.
+Points stratifiedPoints(const Box3& box, double step,
+                        const std::function<bool(const Vec3&)>& wanted);
 
 // Those that lie inside the solid, about so many. Throws Cancelled.
 Points pointsInside(const Solid& solid, std::size_t count);

@@ -55,6 +55,33 @@ TEST(SurfaceProblem, AdaptiveFieldMeetsItsTolerance) {
   EXPECT_LT(rmsAtFreshPoints(fit.field, solid), 1e-3);
 }
 
+// Charges about a needle stand farther away than it is thick, so that their shell is many times its
+// surface.
+TEST(SurfaceProblem, NeedlesHaveMorePointsThanCharges) {
+  Mesh needle = shapes::icosphere(3);
+  for (Vec3& p : needle.vertices) p = {p.x, 2e-3 * p.y, 2e-3 * p.z};
+  const Solid solid(needle);
+  AdaptiveSettings settings;
+  settings.firstSources = 100;
+  settings.maxSources = 5000;
+  const AdaptiveResult fit =
+      fitToTolerance(adaptiveProblem(
+                         solid,
+                         [&](const std::vector<SurfacePoint>& samples) {
+                           const Points at = interpolate(solid.surface().vertices,
+                                                         solid.surface().triangles, samples);
+                           Matrix values(at.size(), 1);
+                           for (std::size_t i = 0; i < at.size(); ++i)
+                             values(i, 0) = std::sin(200 * at[i].x);
+                           return values;
+                         },
+                         1),
+                     settings);
+  EXPECT_GT(fit.rounds.size(), 1u);
+  for (const AdaptiveRound& round : fit.rounds) EXPECT_GT(round.collocation, round.sources);
+  EXPECT_LT(fit.error.p99, 0.1);
+}
+
 TEST(SurfaceProblem, SetsOfOneSeedShareNoPoint) {
   const Solid solid(shapes::icosphere(2));
   SurfaceProblemSettings settings;

@@ -48,7 +48,7 @@ struct DeterminantFigures {
   void add(const DeterminantFigures& others);
 };
 
-// How often the image of the boundary winds about points of a lattice in the target that are
+// How often the image of the boundary winds about random points in the target that are
 // farther from its surface than boundaryError.
 struct DegreeFigures {
   std::size_t checked = 0;  // points; none: no point lies so deep
@@ -71,7 +71,7 @@ struct SelfIntersectionFigures {
 };
 
 struct Injectivity {
-  DeterminantFigures inside;    // points of a lattice
+  DeterminantFigures inside;    // random, spread evenly
   DeterminantFigures boundary;  // random points of it, uniform by area
   DeterminantFigures voxels;    // with their centre inside; of a grid, when there is one
   CellFigures cells;            // of that grid

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "fit/test_pairs.h"
 
 namespace innermap {
@@ -29,6 +32,15 @@ TEST(InsideCheck, PointsFillTheSolid) {
     middle += p / static_cast<double>(points.size());
   }
   EXPECT_LT(norm(middle), 0.01);
+}
+
+TEST(InsideCheck, PointsFillAPlateThinnerThanTheirSpacing) {
+  const Points points = pointsInside(Solid(shapes::box({-1, -1, -2e-3}, {1, 1, 2e-3})), 1000);
+  // Each of 6,400 cubes with a probability of 0.16: a standard deviation of 29.
+  EXPECT_NEAR(static_cast<double>(points.size()), 1000, 150);
+  const auto outer = std::count_if(points.begin(), points.end(),
+                                   [](const Vec3& p) { return std::abs(p.z) > 1e-3; });
+  EXPECT_NEAR(static_cast<double>(outer) / static_cast<double>(points.size()), 0.5, 0.1);
 }
 
 TEST(InsideCheck, DeterminantsMultiply) {
