@@ -78,6 +78,22 @@ std::vector<float> coresOf(const Sides& part, const std::vector<float>& order) {
   return some;
 }
 
+// Whether each piece of the part that was not grown has a node on a buried sheet: a handle of the
+// solid's own would be cut anywhere.
+bool isCutAtSheets(const LatticeSigns& signs, const Sides& part, const std::vector<float>& order) {
+  const auto left = [&](std::size_t n) {
+    return part[n] == NodeSide::inside && signs.side[n] != NodeSide::inside;
+  };
+  std::vector<bool> seen(part.size(), false);
+  for (std::size_t n = 0; n < part.size(); ++n) {
+    if (seen[n] || !left(n)) continue;
+    const std::vector<std::size_t> piece = reached(signs.lattice, n, left, seen);
+    if (std::none_of(piece.begin(), piece.end(), [&](std::size_t m) { return order[m] < 0; }))
+      return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 void fillPockets(const BccLattice& lattice, Sides& sides) {
@@ -148,6 +164,12 @@ bool growWithHandles(LatticeSigns& signs, const Sides& part, int handles,
     if (!(latticeTopology(signs) == wanted)) continue;
     changeSimply(signs, part, NodeSide::inside, order);
     return true;
+  }
+  if (handles == 0) {
+    // A node has none, whatever the cores have.
+    signs.side = sidesOf(part.size(), {deepest});
+    changeSimply(signs, part, NodeSide::inside, order);
+    if (isCutAtSheets(signs, part, order)) return true;
   }
   signs.side = part;
   return false;

@@ -25,8 +25,9 @@ void fillPockets(const BccLattice& lattice, Sides& sides);
 SolidParts partsOf(const LatticeSigns& signs, bool onePiece);
 
 // Sets the sides to what is grown of `part` by `order` (highest first) from the largest of its
-// cores {order at least some value} that has so many handles. False where no core has: the sides
-// are the part's then.
+// cores {order at least some value} that has so many handles, or from the node of the highest order
+// where none are wanted, no core is without, and all that is cut so lies on buried sheets. False
+// where there is no such core: the sides are the part's then.
 bool growWithHandles(LatticeSigns& signs, const Sides& part, int handles,
                      const std::vector<float>& order);
 
