@@ -67,7 +67,7 @@ class AdaptiveFitting {
   Level& level(std::size_t l);
   bool refine(const std::vector<Points>& marks);
   bool refineOnce(const std::vector<Points>& marks);
-  void collocate(PlacementRequest request);
+  void collocate(PlacementRequest request, Matrix& values);
   void solve();
   double score(const BoundaryError& error) const;
   void keepIfBest();
@@ -144,7 +144,7 @@ void AdaptiveFitting::first() {
                     std::sqrt(problem_.area / static_cast<double>(coarse.sources.size())) /
                     problem_.diagonal;
   request.most = 100 * settings_.firstSources;
-  collocate(request);
+  collocate(request, values_);
   requireMemory("the first level of charges", memory(), room_, "raise the limit of memory");
   IterativeSettings s;
   s.accuracy = std::clamp(kErrorAccuracy * settings_.tolerance, 1e-12, s.accuracy);
@@ -154,14 +154,15 @@ void AdaptiveFitting::first() {
                   s);
 }
 
-// Adds boundary points and their values, the darts closer where they are few for the charges.
-void AdaptiveFitting::collocate(PlacementRequest request) {
+// Adds boundary points, and their values to `values`; the darts closer where they are few for the
+// charges.
+void AdaptiveFitting::collocate(PlacementRequest request, Matrix& values) {
   for (int tries = 0; tries < kCloserDarts; ++tries, request.spacing /= 2) {
     request.existing = collocation_.points;
     request.index = requests_++;
     const BoundarySamples more = problem_.placeCollocation(request);
     collocation_.append(more.collocation());
-    append(values_, more.values);
+    append(values, more.values);
     const double wanted = kLeastPoints * static_cast<double>(sourceCount());
     if (static_cast<double>(collocation_.size()) >= wanted) return;
   }
@@ -172,6 +173,7 @@ void AdaptiveFitting::collocate(PlacementRequest request) {
 bool AdaptiveFitting::refineOnce(const std::vector<Points>& marks) {
   const std::size_t before = collocation_.size();
   std::vector<SourceLevel> added;
+  Matrix values;
   for (std::size_t l = 1; l < marks.size(); ++l) {
     if (marks[l].empty()) continue;
     Level& fine = level(l);
@@ -189,13 +191,19 @@ bool AdaptiveFitting::refineOnce(const std::vector<Points>& marks) {
                kCollocationReach * fine.distance,
                kCollocationDarts * fine.spacing,
                {},
-               100 * fresh.size() + 1000});
+               100 * fresh.size() + 1000},
+              values);
   }
   if (added.empty()) return false;
+  if (collocation_.size() < sourceCount()) {
+    end_ = AdaptiveEnd::noGain;
+    return false;
+  }
   if (memory() > room_) {
     end_ = AdaptiveEnd::maxMemory;
     return false;
   }
+  append(values_, values);
   std::vector<std::size_t> points(collocation_.size() - before);
   std::iota(points.begin(), points.end(), before);
   solver_->add(collocation_.subset(points), added);

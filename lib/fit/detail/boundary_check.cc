@@ -60,9 +60,13 @@ DegreeFigures boundaryDegree(const ComposedMap& map, const BoundaryPair& pair,
   const WindingNumber image = imageOf(map, pair.solid().surface(), settings);
   const Box3 box = boundingBox(pair.target.mesh(pair.solid(), ""));
   const double volume = std::max(target.volume(), kThinnest * std::pow(box.diagonal(), 3));
-  const Points deep = stratifiedPoints(box, std::cbrt(volume / kInTarget), [&](const Vec3& p) {
-    return target.inside(p) && !target.near(p, settings.error);
-  });
+  Points deep =
+      stratifiedPoints(box, std::cbrt(volume / kInTarget),
+                       {[&](const Vec3& p) { return target.inside(p); },
+                        [&](const Vec3& p, double distance) { return target.near(p, distance); }});
+  deep.erase(std::remove_if(deep.begin(), deep.end(),
+                            [&](const Vec3& p) { return target.near(p, settings.error); }),
+             deep.end());
   std::vector<int> windings(deep.size());
   parallelBlocks(deep.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)

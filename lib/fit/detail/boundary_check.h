@@ -23,8 +23,8 @@ DeterminantFigures boundaryDeterminants(const ComposedMap& map, const BoundaryPa
                                         const BoundaryCheckSettings& settings);
 
 // The image: triangles between the images of the vertices of the solid's surface, which is split
-// where there are few and the map bends them by more than the error. About some 2,000
-// random points inside the target that are deeper than the error; about a target that is inside out
+// where there are few and the map bends them by more than the error. About some 2,000 random
+// points inside the target that are deeper than the error; about a target that is inside out
 // winding is counted the other way round. Throws Cancelled.
 DegreeFigures boundaryDegree(const ComposedMap& map, const BoundaryPair& pair,
                              const TargetShape& target, const BoundaryCheckSettings& settings);

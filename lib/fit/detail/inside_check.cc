@@ -1,6 +1,7 @@
 #include "fit/detail/inside_check.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -9,35 +10,77 @@
 
 namespace innermap {
 
-Points stratifiedPoints(const Box3& box, double step,
-                        const std::function<bool(const Vec3&)>& wanted) {
-  const auto cells = [&](int axis) {
-    return static_cast<std::size_t>(std::ceil(box.extent()[axis] / step));
-  };
-  const std::size_t nx = cells(0), ny = cells(1), nz = cells(2);
-  const CounterRandom random(1, 83);
-  std::vector<Points> columns(nx * ny);
-  parallelBlocks(columns.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) {
-      const std::size_t i = c / ny, j = c % ny;
-      for (std::size_t k = 0; k < nz; ++k) {
-        const std::uint64_t draw = 3 * (c * nz + k);
-        const Vec3 p = box.lower + step * Vec3{static_cast<double>(i) + random.uniform(draw),
-                                               static_cast<double>(j) + random.uniform(draw + 1),
-                                               static_cast<double>(k) + random.uniform(draw + 2)};
-        if (wanted(p)) columns[c].push_back(p);
-      }
-    }
+namespace {
+
+using Cube = std::array<std::uint64_t, 3>;  // its number along each axis
+
+std::vector<Cube> halved(const std::vector<Cube>& cubes) {
+  std::vector<Cube> out;
+  out.reserve(8 * cubes.size());
+  for (const auto& [i, j, k] : cubes)
+    for (std::uint64_t part = 0; part < 8; ++part)
+      out.push_back({2 * i + (part >> 2), 2 * j + (part >> 1 & 1), 2 * k + (part & 1)});
+  return out;
+}
+
+std::vector<Cube> chosen(const std::vector<Cube>& cubes,
+                         const std::function<bool(const Cube&)>& wanted) {
+  std::vector<char> keep(cubes.size(), 0);
+  parallelBlocks(cubes.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) keep[c] = wanted(cubes[c]);
   });
+  std::vector<Cube> out;
+  for (std::size_t c = 0; c < cubes.size(); ++c)
+    if (keep[c]) out.push_back(cubes[c]);
+  return out;
+}
+
+}  // namespace
+
+Points stratifiedPoints(const Box3& box, double step, const PointRegion& region) {
+  Cube count;
+  for (int a = 0; a < 3; ++a)
+    count[static_cast<std::size_t>(a)] =
+        static_cast<std::uint64_t>(std::ceil(box.extent()[a] / step));
+  const CounterRandom random(1, 83);
+  const auto place = [&](const Cube& cube) {
+    const std::uint64_t draw = 3 * ((cube[0] * count[1] + cube[1]) * count[2] + cube[2]);
+    Vec3 p = box.lower;
+    for (int a = 0; a < 3; ++a) {
+      const auto axis = static_cast<std::size_t>(a);
+      p[a] += step * (static_cast<double>(cube[axis]) + random.uniform(draw + axis));
+    }
+    return p;
+  };
+  std::uint64_t side = 1;
+  while (side < *std::max_element(count.begin(), count.end())) side *= 2;
+  std::vector<Cube> cubes{{0, 0, 0}};
+  for (; side > 1; side /= 2)
+    cubes = halved(chosen(cubes, [&](const Cube& cube) {
+      const double size = static_cast<double>(side) * step;
+      Vec3 centre = box.lower;
+      for (int a = 0; a < 3; ++a)
+        centre[a] += size * (static_cast<double>(cube[static_cast<std::size_t>(a)]) + 0.5);
+      return region.inside(centre) || region.near(centre, 0.5 * std::sqrt(3.0) * size);
+    }));
+  cubes = chosen(cubes, [&](const Cube& cube) {
+    for (std::size_t a = 0; a < 3; ++a)
+      if (cube[a] >= count[a]) return false;
+    return region.inside(place(cube));
+  });
+  std::sort(cubes.begin(), cubes.end());
   Points out;
-  for (const Points& column : columns) out.insert(out.end(), column.begin(), column.end());
+  for (const Cube& cube : cubes) out.push_back(place(cube));
   return out;
 }
 
 Points pointsInside(const Solid& solid, std::size_t count) {
   const double volume = std::max(solid.volume(), 1e-9 * std::pow(solid.diagonal(), 3));
   return stratifiedPoints(solid.box(), std::cbrt(volume / static_cast<double>(count)),
-                          [&](const Vec3& p) { return solid.inside(p); });
+                          {[&](const Vec3& p) { return solid.inside(p); },
+                           [&](const Vec3& p, double distance) {
+                             return solid.distance(p) <= distance + solid.gap();
+                           }});
 }
 
 MappedPoints mapPoints(const HarmonicMap& step, const MappedPoints& before, double accuracy) {

@@ -11,12 +11,18 @@
 
 namespace innermap {
 
-// One random point in each cube of a lattice over the box, those of which `wanted` is true, the
-// same ones each time: a plate thinner than the step along an axis is met all through, as a lattice
-// of points does not meet it. step: world units. wanted: may be called from any thread. Throws
-// Cancelled.
-Points stratifiedPoints(const Box3& box, double step,
-                        const std::function<bool(const Vec3&)>& wanted);
+// Where points are wanted. Both may be called from any thread.
+struct PointRegion {
+  std::function<bool(const Vec3& p)> inside;
+  // Whether the region's surface may be nearer than `distance`, world units.
+  std::function<bool(const Vec3& p, double distance)> near;
+};
+
+// One random point in each cube of a lattice over the box, those inside, the same ones each time. A
+// plate thinner than the step is met all through, as a lattice of points does not meet it. Cubes
+// far from the region are left out in blocks: the work goes with the cubes in and about it, not
+// with those of the box. step: world units. Throws Cancelled.
+Points stratifiedPoints(const Box3& box, double step, const PointRegion& region);
 
 // Those that lie inside the solid, about so many. Throws Cancelled.
 Points pointsInside(const Solid& solid, std::size_t count);

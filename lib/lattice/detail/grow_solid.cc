@@ -78,22 +78,6 @@ std::vector<float> coresOf(const Sides& part, const std::vector<float>& order) {
   return some;
 }
 
-// Whether each piece of the part that was not grown has a node on a buried sheet: a handle of the
-// solid's own would be cut anywhere.
-bool isCutAtSheets(const LatticeSigns& signs, const Sides& part, const std::vector<float>& order) {
-  const auto left = [&](std::size_t n) {
-    return part[n] == NodeSide::inside && signs.side[n] != NodeSide::inside;
-  };
-  std::vector<bool> seen(part.size(), false);
-  for (std::size_t n = 0; n < part.size(); ++n) {
-    if (seen[n] || !left(n)) continue;
-    const std::vector<std::size_t> piece = reached(signs.lattice, n, left, seen);
-    if (std::none_of(piece.begin(), piece.end(), [&](std::size_t m) { return order[m] < 0; }))
-      return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 void fillPockets(const BccLattice& lattice, Sides& sides) {
@@ -108,14 +92,14 @@ void fillPockets(const BccLattice& lattice, Sides& sides) {
     sides[n] = seen[n] || !middle(n) ? NodeSide::outside : NodeSide::inside;
 }
 
-std::vector<std::vector<std::size_t>> piecesInside(const LatticeSigns& signs) {
-  std::vector<bool> seen(signs.side.size(), false);
+std::vector<std::vector<std::size_t>> piecesInside(const BccLattice& lattice, const Sides& sides) {
+  std::vector<bool> seen(sides.size(), false);
   std::vector<std::vector<std::size_t>> found;
-  for (std::size_t n = 0; n < signs.side.size(); ++n) {
-    if (seen[n] || signs.side[n] != NodeSide::inside) continue;
+  for (std::size_t n = 0; n < sides.size(); ++n) {
+    if (seen[n] || sides[n] != NodeSide::inside) continue;
     throwIfCancelled();
     found.push_back(reached(
-        signs.lattice, n, [&](std::size_t m) { return signs.side[m] == NodeSide::inside; }, seen));
+        lattice, n, [&](std::size_t m) { return sides[m] == NodeSide::inside; }, seen));
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.size() > b.size(); });
@@ -123,7 +107,7 @@ std::vector<std::vector<std::size_t>> piecesInside(const LatticeSigns& signs) {
 }
 
 SolidParts partsOf(const LatticeSigns& signs, bool onePiece) {
-  const std::vector<std::vector<std::size_t>> found = piecesInside(signs);
+  const std::vector<std::vector<std::size_t>> found = piecesInside(signs.lattice, signs.side);
   SolidParts out;
   std::size_t all = 0, left = 0;
   for (const auto& nodes : found) {
@@ -140,6 +124,22 @@ SolidParts partsOf(const LatticeSigns& signs, bool onePiece) {
   out.leftOutShare = all ? static_cast<double>(left) / static_cast<double>(all) : 0;
   return out;
 }
+
+namespace {
+
+// Whether each piece of the part that was not grown has a node on a buried sheet: a handle of the
+// solid's own would be cut anywhere.
+bool isCutAtSheets(const LatticeSigns& signs, const Sides& part, const std::vector<float>& order) {
+  Sides cut = part;
+  for (std::size_t n = 0; n < cut.size(); ++n)
+    if (signs.side[n] == NodeSide::inside) cut[n] = NodeSide::outside;
+  const auto pieces = piecesInside(signs.lattice, cut);
+  return std::all_of(pieces.begin(), pieces.end(), [&](const std::vector<std::size_t>& piece) {
+    return std::any_of(piece.begin(), piece.end(), [&](std::size_t n) { return order[n] < 0; });
+  });
+}
+
+}  // namespace
 
 bool growWithHandles(LatticeSigns& signs, const Sides& part, int handles,
                      const std::vector<float>& order) {

@@ -16,7 +16,7 @@ struct SolidParts {
 };
 
 // The nodes inside in pieces that hang together, the largest first.
-std::vector<std::vector<std::size_t>> piecesInside(const LatticeSigns& signs);
+std::vector<std::vector<std::size_t>> piecesInside(const BccLattice& lattice, const Sides& sides);
 
 // Makes inside what the outside does not reach.
 void fillPockets(const BccLattice& lattice, Sides& sides);
@@ -25,9 +25,9 @@ void fillPockets(const BccLattice& lattice, Sides& sides);
 SolidParts partsOf(const LatticeSigns& signs, bool onePiece);
 
 // Sets the sides to what is grown of `part` by `order` (highest first) from the largest of its
-// cores {order at least some value} that has so many handles, or from the node of the highest order
-// where none are wanted, no core is without, and all that is cut so lies on buried sheets. False
-// where there is no such core: the sides are the part's then.
+// cores {order at least some value} that has so many handles. Where none are wanted and every core
+// has some, it grows from the node of the highest order, if that cuts at buried sheets (order below
+// 0) alone. Otherwise false, and the sides are the part's.
 bool growWithHandles(LatticeSigns& signs, const Sides& part, int handles,
                      const std::vector<float>& order);
 

@@ -78,11 +78,10 @@ std::vector<std::size_t> cutNodes(const Sides& all, const LatticeSigns& signs) {
 }
 
 std::vector<Box3> cutBoxes(const std::vector<std::size_t>& cut, const LatticeSigns& signs) {
-  LatticeSigns alone = signs;
-  std::fill(alone.side.begin(), alone.side.end(), NodeSide::outside);
-  for (const std::size_t n : cut) alone.side[n] = NodeSide::inside;
+  Sides alone(signs.side.size(), NodeSide::outside);
+  for (const std::size_t n : cut) alone[n] = NodeSide::inside;
   std::vector<Box3> boxes;
-  for (const std::vector<std::size_t>& nodes : piecesInside(alone)) {
+  for (const std::vector<std::size_t>& nodes : piecesInside(signs.lattice, alone)) {
     boxes.emplace_back();
     for (const std::size_t n : nodes) boxes.back().add(signs.lattice.position(n));
   }

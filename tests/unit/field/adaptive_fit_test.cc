@@ -100,6 +100,18 @@ TEST(AdaptiveFit, MeetsTheToleranceWithChargesWhereTheKinkIs) {
   EXPECT_GT(near, 0.9 * static_cast<double>(finest));
 }
 
+TEST(AdaptiveFit, EndsWhereTheBoundaryHasNoRoomForPoints) {
+  Ball ball;
+  ball.settings.tolerance = 2e-4;
+  ball.problem.placeCollocation = [](const PlacementRequest& request) {
+    const Points points = request.marks.empty() ? darts(request, 1) : Points();
+    return BoundarySamples{points, kinkedValues(points)};
+  };
+  const AdaptiveResult r = fitToTolerance(ball.problem, ball.settings);
+  EXPECT_EQ(r.end, AdaptiveEnd::noGain);
+  EXPECT_LE(r.field.sources().size(), r.collocation);
+}
+
 TEST(AdaptiveFit, SmoothValuesNeedOnlyTheFirstLevel) {
   Ball ball;
   ball.settings.tolerance = 2e-2;

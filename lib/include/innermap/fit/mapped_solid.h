@@ -48,8 +48,8 @@ struct DeterminantFigures {
   void add(const DeterminantFigures& others);
 };
 
-// How often the image of the boundary winds about random points in the target that are
-// farther from its surface than boundaryError.
+// How often the image of the boundary winds about random points in the target that are farther
+// from its surface than boundaryError.
 struct DegreeFigures {
   std::size_t checked = 0;  // points; none: no point lies so deep
   int least = 0, greatest = 0;

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
+#include "core/pi.h"
 #include "fit/test_pairs.h"
 
 namespace innermap {
@@ -41,6 +43,24 @@ TEST(InsideCheck, PointsFillAPlateThinnerThanTheirSpacing) {
   const auto outer = std::count_if(points.begin(), points.end(),
                                    [](const Vec3& p) { return std::abs(p.z) > 1e-3; });
   EXPECT_NEAR(static_cast<double>(outer) / static_cast<double>(points.size()), 0.5, 0.1);
+}
+
+// Its box has 120 million cubes: 2,000 of them are the needle's, along the diagonal.
+TEST(InsideCheck, TheBoxOfANeedleIsNotLookedThrough) {
+  const Vec3 along = Vec3{1, 1, 1} / std::sqrt(3.0);
+  const double radius = 1e-3, length = 1;
+  std::atomic<std::size_t> asked = 0;
+  const auto beside = [&](const Vec3& p) {
+    const double t = std::clamp(dot(p, along), 0.0, length);
+    return norm(p - t * along) - radius;
+  };
+  const double step = std::cbrt(kPi * radius * radius * length / 2000);
+  const Points points =
+      stratifiedPoints({{0, 0, 0}, along}, step,
+                       {[&](const Vec3& p) { return ++asked, beside(p) < 0; },
+                        [&](const Vec3& p, double distance) { return beside(p) < distance; }});
+  EXPECT_NEAR(static_cast<double>(points.size()), 2000, 200);
+  EXPECT_LT(asked, 1000000u);
 }
 
 TEST(InsideCheck, DeterminantsMultiply) {
