@@ -1,0 +1,100 @@
+// Proofs about maps: where a map keeps its sense on whole cells of its solid, and how far its
+// boundary can be from its target anywhere.
+//
+// A map is known by finitely many numbers, so these are theorems, not samples. On a cell about c,
+// |x - c| <= r, each step is expanded in solid harmonics, f(c + x) = sum_n u_n(x), with
+// coefficients L_n in Schmidt's basis up to order P. With B = J(c)^-1, H(x) the part of J that is
+// linear in x, and d_j the distances of the charges w_j from c, rho_j = r / d_j,
+//
+//   S = max over the cell's corners x of |B H(x)| + sum_{n=3..P} n r^(n-1) |B L_n|
+//     + |B| sum_j |w_j| / d_j^2 rho_j^P ((P+1) - P rho_j) / (1 - rho_j)^2
+//
+// bounds |B J(x) - 1| on the cell. Where S < 1, det J has there the sign of det J(c), |det J| is at
+// least |det J(c)| (1 - S)^3, and f is one-to-one on the cell. Else the cell is split. Derivation,
+// literature, and what follows for the whole solid: docs/method.md, "Proofs".
+//
+// Rounding: S has a part 4e-13 |B| times the sum of the absolute values of all terms of J, more
+// than 3,600 units of rounding, which bounds what summing the terms and moving their expansions
+// through all levels can lose; cells overlap by 1e-12 of the solid; sums of a few terms have
+// margins of 1e-9. Compiled without -ffast-math.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "innermap/core/setting.h"
+#include "innermap/core/vec3.h"
+#include "innermap/field/harmonic_field.h"
+#include "innermap/mesh/mesh.h"
+
+namespace innermap {
+
+struct ProofSettings {
+  // Cells, or pieces of the boundary, that are looked at before the rest stays undecided: a count
+  // in proportion to the map's charges, never a clock, so that results do not depend on the
+  // machine's speed. From 1 to 1e6.
+  double cellsPerCharge = 100;
+  std::uint64_t leastCells = 50'000;  // that many in any case
+  // How near the proven boundary error comes to the largest one that is seen, relative to that;
+  // from 1e-3 to 1.
+  double errorMargin = 0.02;
+  bool keepProven = false;  // the places of proven cells too
+};
+
+std::vector<Setting> describe(ProofSettings& settings);
+
+// A cube. World units of the source.
+struct ProofCell {
+  Vec3 center;
+  double halfEdge = 0;
+};
+
+struct ProofCells {
+  std::size_t count = 0;
+  double volume = 0;  // of whole cubes, which reach out of the solid beside its surface
+  double share = 0;   // of the solid's volume, at most: the cubes' volume over that, in [0, 1]
+  std::vector<ProofCell> places;  // largest first
+};
+
+// What is known of the sign of det J on each cell of a solid. Cells that hold no point of it are
+// left out. Of a map in steps each step's sign is meant, on the image of the cell under those
+// before; a product of two folded steps is no proof.
+struct SenseProof {
+  ProofCells proven;           // det J has the map's sign everywhere on them; places if asked for
+  ProofCells negative;         // the other sign everywhere: folded
+  ProofCells undecided;        // neither, at the limit
+  double provenShare = 0;      // of the solid's volume, at least
+  bool mirrored = false;       // the map's sign, that of the greater volume, is negative
+  double least = 0;            // lower bound of |det J| on the proven cells; 0 where there is none
+  std::uint64_t examined = 0;  // cells, of all sizes
+
+  // det J has one sign on the closed solid.
+  bool whole() const { return proven.count > 0 && negative.count + undecided.count == 0; }
+};
+
+// solid: closed, outward oriented, in the map's world units; as it was fitted, with caps. A charge
+// inside it or on it leaves its cells undecided, and so does det J = 0. On all threads, the same
+// result for any number of them. Throws DataError for a mesh that is not closed, without volume or
+// not finite, and for more than 64 steps; SettingError; MemoryError; Cancelled.
+SenseProof proveSense(const ComposedMap& map, const Mesh& solid,
+                      const ProofSettings& settings = {});
+
+// How far the map's boundary is from its target, proven: no point of any triangle is farther from
+// where the target's affine map of that triangle takes it. Fractions of the target's diagonal.
+struct BoundaryProof {
+  double error = 0;            // none is larger; infinity where nothing could be bounded
+  double seen = 0;             // the largest that was evaluated
+  Vec3 seenAt;                 // there, world units of the source
+  bool close = false;          // error <= (1 + errorMargin) seen
+  std::uint64_t examined = 0;  // pieces of triangles
+};
+
+// By branch and bound. target: #vertices of `surface`, where its vertices go; `surface` need not be
+// closed. An error below 1e-12 counts as close. On all threads, the same result for any number of
+// them. Throws DataError when the numbers of vertices differ, there is no triangle, or a number is
+// not finite; SettingError; MemoryError; Cancelled.
+BoundaryProof proveBoundaryError(const ComposedMap& map, const Mesh& surface, const Points& target,
+                                 const ProofSettings& settings = {});
+
+}  // namespace innermap

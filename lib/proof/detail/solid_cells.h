@@ -1,0 +1,49 @@
+// The cells of an octree about a solid, and which of them hold points of it.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/bvh.h"
+#include "innermap/mesh/mesh.h"
+#include "innermap/proof/prove.h"
+#include "mesh/winding_number.h"
+#include "proof/detail/descent.h"
+
+namespace innermap::proof {
+
+// In coordinates of the proof: those of the mesh times a power of two, so that its diagonal is in
+// [1/2, 1).
+double proofScale(const Box3& box);
+
+class SolidCells {
+ public:
+  // The mesh must be closed.
+  explicit SolidCells(const Mesh& mesh);
+
+  double scale() const { return scale_; }
+
+  // Of the node's children: those that may hold points of the solid, and which of these lie in it
+  // wholly. A child is left out where no triangle meets it and its centre lies outside.
+  ChildLanes children(const OpenNode& parent) const;
+  void sets(NodeKey parent, LaneSets& out) const;
+
+  ProofCell world(NodeKey key) const;
+
+ private:
+  struct Cell {
+    Vec3 center;
+    double half = 0;  // of its edge
+  };
+  Cell local(NodeKey key) const;  // about center_
+  bool meetsSurface(const Cell& cell) const;
+
+  double scale_ = 1;
+  Vec3 center_;                                 // of the root's cube, scaled
+  double half_ = 1;                             // a power of two
+  std::vector<std::array<Vec3, 3>> triangles_;  // scaled, about center_; in the order of the leaves
+  Bvh tree_;
+  WindingNumber winding_;
+};
+
+}  // namespace innermap::proof

@@ -1,0 +1,19 @@
+#include "innermap/proof/prove.h"
+
+namespace innermap {
+
+std::vector<Setting> describe(ProofSettings& s) {
+  return {Setting("cells_per_charge", "N", &s.cellsPerCharge,
+                  "cells that a proof looks at, in proportion to the charges, before it leaves the "
+                  "rest undecided")
+              .from(1, 1e6),
+          Setting("least_cells", "N", &s.leastCells, "cells that a proof looks at in any case")
+              .from(1, 1e12)
+              .rare(),
+          Setting("error_margin", "SHARE", &s.errorMargin,
+                  "how near the proven boundary error comes to the largest that is seen")
+              .from(1e-3, 1),
+          Setting("keep_proven", &s.keepProven, "the places of proven cells too").rare()};
+}
+
+}  // namespace innermap
