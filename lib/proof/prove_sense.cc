@@ -11,7 +11,7 @@
 #include "innermap/proof/prove.h"
 #include "mesh/connectivity.h"
 #include "proof/detail/cell_limit.h"
-#include "proof/detail/descent.h"
+#include "proof/detail/set_group.h"
 #include "proof/detail/solid_cells.h"
 
 namespace innermap {
@@ -20,64 +20,64 @@ namespace {
 using namespace proof;
 
 constexpr std::size_t kMostSteps = 64;
+constexpr std::uint64_t kBytesPerCell = 120;
 
 struct DecidedCell {
-  NodeKey key = 1;
+  CellKey key = 1;
   std::uint64_t signs = 0;  // bit k: the determinant of step k is negative
 };
 
-struct BlockCells {
-  std::vector<DecidedCell> cells;
-  // By signs; the least |det J|.
-  std::map<std::uint64_t, double> least;
+// Cells whose children one thread looks at in one go.
+constexpr std::size_t kBlock = 32;
+
+// All cells that were decided, and those that were not.
+struct Outcome {
+  std::vector<DecidedCell> decided;
+  std::map<std::uint64_t, double> least;  // of |det J|, by signs
+  std::vector<OpenCell> open;
   std::uint64_t examined = 0;
+
+  void noteLeast(std::uint64_t signs, double value) {
+    const auto [place, fresh] = least.emplace(signs, value);
+    if (!fresh) place->second = std::min(place->second, value);
+  }
+  // Decided cells are added; the open ones are replaced by the caller.
+  void add(const Outcome& block) {
+    decided.insert(decided.end(), block.decided.begin(), block.decided.end());
+    for (const auto& [signs, value] : block.least) noteLeast(signs, value);
+    examined += block.examined;
+  }
 };
 
-class CellSplitter : public Splitter {
- public:
-  CellSplitter(const SolidCells& cells, std::size_t steps) : cells_(cells), steps_(steps) {}
-
-  void start(std::size_t open) {
-    blocks_.assign((open + Descent::kBlock - 1) / Descent::kBlock, BlockCells());
+void addProven(CellKey key, const SetGroup& group, std::size_t steps, int lane, Outcome& out) {
+  DecidedCell cell{key, 0};
+  double bound = 1;
+  for (std::size_t k = 0; k < steps; ++k) {
+    const LaneFindings& found = group.findings(k);
+    bound *= found.least[lane];
+    if (found.determinant[lane] < 0) cell.signs |= std::uint64_t{1} << k;
   }
-  const std::vector<BlockCells>& blocks() const { return blocks_; }
+  out.decided.push_back(cell);
+  out.noteLeast(cell.signs, bound);
+}
 
-  ChildLanes children(const OpenNode& parent) const override { return cells_.children(parent); }
-  void sets(NodeKey parent, LaneSets& out) const override { cells_.sets(parent, out); }
-
-  std::uint8_t decide(std::size_t block, const OpenNode& parent, const ChildLanes& lanes,
-                      const SetGroup& group) override {
-    BlockCells& out = blocks_[block];
-    unsigned open = 0;
-    for (int lane = 0; lane < static_cast<int>(kLanes); ++lane) {
-      if (!(lanes.alive >> lane & 1)) continue;
-      ++out.examined;
-      if (group.proven() >> lane & 1)
-        add(childOf(parent.key, lane), group, lane, out);
-      else
-        open |= 1u << lane;
-    }
-    return static_cast<std::uint8_t>(open);
+void splitCell(const StepTrees& steps, const SolidCells& cells, const OpenCell& parent,
+               SetGroup& group, Outcome& out) {
+  const ChildLanes lanes = cells.children(parent);
+  if (lanes.alive == 0) return;
+  LaneSets sets;
+  cells.sets(parent.key, sets);
+  group.compute(steps, sets, lanes.alive, true);
+  for (int lane = 0; lane < static_cast<int>(kLanes); ++lane) {
+    if (!(lanes.alive >> lane & 1)) continue;
+    ++out.examined;
+    const CellKey key = childOf(parent.key, lane);
+    if (group.proven() >> lane & 1)
+      addProven(key, group, steps.count(), lane, out);
+    else
+      out.open.push_back({key, (lanes.inside >> lane & 1) != 0});
   }
-
- private:
-  void add(NodeKey key, const SetGroup& group, int lane, BlockCells& out) const {
-    DecidedCell cell{key, 0};
-    double bound = 1;
-    for (std::size_t k = 0; k < steps_; ++k) {
-      const LaneFindings& found = group.step(k).findings;
-      bound *= found.least[lane];
-      if (found.determinant[lane] < 0) cell.signs |= std::uint64_t{1} << k;
-    }
-    out.cells.push_back(cell);
-    const auto [place, fresh] = out.least.emplace(cell.signs, bound);
-    if (!fresh) place->second = std::min(place->second, bound);
-  }
-
-  const SolidCells& cells_;
-  const std::size_t steps_;
-  std::vector<BlockCells> blocks_;
-};
+}
 
 void requireClosed(const Mesh& mesh) {
   const std::vector<EdgeUse> edges = sortedEdges(mesh.triangles);
@@ -108,40 +108,31 @@ double volumeOf(const Mesh& mesh) {
   return volume;
 }
 
-// All cells that were decided, and those that were not.
-struct Outcome {
-  std::vector<DecidedCell> decided;
-  std::map<std::uint64_t, double> least;
-  std::vector<OpenNode> open{OpenNode()};
-  std::uint64_t examined = 0;
-};
-
-double volumeOfCell(const SolidCells& cells, NodeKey key) {
+double volumeOfCell(const SolidCells& cells, CellKey key) {
   const double edge = 2 * cells.world(key).halfEdge;
   return edge * edge * edge;
 }
 
-Outcome decideCells(const MapSteps& steps, const SolidCells& cells, double volume,
+// Level by level, so that a limit on cells cuts all places at the same size.
+Outcome decideCells(const StepTrees& steps, const SolidCells& cells, double volume,
                     std::uint64_t limit) {
-  CellSplitter splitter(cells, steps.count());
-  Descent descent(steps, splitter);
   Outcome out;
+  out.open.push_back(OpenCell());
   double decidedVolume = 0;
   for (int level = 0; level < kMostLevels && !out.open.empty(); ++level) {
     if (out.examined + kLanes * out.open.size() > limit) break;
     reportProgress("proving that nothing folds", std::min(1.0, decidedVolume / volume));
-    splitter.start(out.open.size());
-    out.open = descent.split(out.open);
-    for (const BlockCells& block : splitter.blocks()) {
-      out.examined += block.examined;
-      for (const DecidedCell& cell : block.cells) {
-        out.decided.push_back(cell);
-        decidedVolume += volumeOfCell(cells, cell.key);
-      }
-      for (const auto& [signs, least] : block.least) {
-        const auto [place, fresh] = out.least.emplace(signs, least);
-        if (!fresh) place->second = std::min(place->second, least);
-      }
+    std::vector<Outcome> blocks((out.open.size() + kBlock - 1) / kBlock);
+    parallelBlocks(out.open.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+      SetGroup group;
+      for (std::size_t i = begin; i < end; ++i)
+        splitCell(steps, cells, out.open[i], group, blocks[begin / kBlock]);
+    });
+    out.open.clear();
+    for (const Outcome& block : blocks) {
+      out.add(block);
+      out.open.insert(out.open.end(), block.open.begin(), block.open.end());
+      for (const DecidedCell& cell : block.decided) decidedVolume += volumeOfCell(cells, cell.key);
     }
   }
   return out;
@@ -179,7 +170,7 @@ SenseProof summary(const Outcome& outcome, const SolidCells& cells, double volum
     const bool proven = cell.signs == common;
     add(proven ? out.proven : out.negative, cells.world(cell.key), !proven || keepProven);
   }
-  for (const OpenNode& node : outcome.open) add(out.undecided, cells.world(node.key), true);
+  for (const OpenCell& cell : outcome.open) add(out.undecided, cells.world(cell.key), true);
   for (ProofCells* lot : {&out.proven, &out.negative, &out.undecided})
     lot->share = std::min(1.0, lot->volume / volume);
   if (out.proven.count > 0)
@@ -197,9 +188,10 @@ SenseProof proveSense(const ComposedMap& map, const Mesh& solid, const ProofSett
   const double volume = volumeOf(solid);
   const std::uint64_t limit = cellLimit(map, settings);
   const SolidCells cells(solid);
-  const MapSteps steps(map, cells.scale());
-  requireMemory("proving that nothing folds", Descent::memory(steps) + 200 * limit,
+  requireMemory("proving that nothing folds",
+                FieldTree::memory(map.sources()) + kBytesPerCell * limit,
                 "look at fewer cells a charge");
+  const StepTrees steps(map, cells.scale());
   return summary(decideCells(steps, cells, volume, limit), cells, volume, settings.keepProven);
 }
 

@@ -505,6 +505,18 @@ void addCharges(const double* charges, const std::uint32_t* list, const std::uin
   HWY_DYNAMIC_DISPATCH(AddCharges)(charges, list, lanes, flip, count, sets, coefficients);
 }
 
+void addInherited(const StepExpansion& from, const LaneSets& sets, LaneRemainders& remainders) {
+  const Remainder& r = from.remainder;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const Vec3 center{sets.center[0][lane], sets.center[1][lane], sets.center[2][lane]};
+    remainders.gradient[lane] += r.gradient;
+    remainders.value[lane] += r.value;
+    remainders.gradientMagnitude[lane] += r.gradientMagnitude;
+    remainders.valueMagnitude[lane] +=
+        r.valueMagnitude + norm(center - from.center) * r.gradientMagnitude;
+  }
+}
+
 void moveExpansion(const StepExpansion& from, const LaneSets& sets, double* coefficients) {
   HWY_DYNAMIC_DISPATCH(MoveExpansion)(from, sets, coefficients);
 }

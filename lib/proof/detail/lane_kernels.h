@@ -41,10 +41,13 @@ constexpr double kFarRatio = 0.36;
 constexpr double kNearRatio = 0.8;
 
 // Tells far from near charges: bit l of farLanes[i] is set where charge list[i] is far from set l.
-// Writes what both lots add to the remainders.
+// Writes what both lots add to the remainders; infinite where nothing is known.
 void classify(const double* charges, const std::uint32_t* list, std::size_t count,
               const LaneSets& sets, std::uint8_t* farLanes, LaneRemainders& far,
               LaneRemainders& near);
+
+// Adds what an expansion about another centre brings along when it is moved.
+void addInherited(const StepExpansion& from, const LaneSets& sets, LaneRemainders& remainders);
 
 // Adds the expansions of charges about the eight centres: in lane l where bit l of
 // lanes[i] ^ flip is set. coefficients: kCoefficients x kLanes.

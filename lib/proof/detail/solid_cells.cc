@@ -68,7 +68,7 @@ SolidCells::SolidCells(const Mesh& mesh)
   }
 }
 
-SolidCells::Cell SolidCells::local(NodeKey key) const {
+SolidCells::Cell SolidCells::local(CellKey key) const {
   const int level = levelOf(key);
   std::uint64_t place[3] = {};
   for (int l = level; l-- > 0;)
@@ -80,7 +80,7 @@ SolidCells::Cell SolidCells::local(NodeKey key) const {
   return out;
 }
 
-ProofCell SolidCells::world(NodeKey key) const {
+ProofCell SolidCells::world(CellKey key) const {
   const Cell cell = local(key);
   return {(cell.center + center_) / scale_, cell.half / scale_};
 }
@@ -110,7 +110,7 @@ bool SolidCells::meetsSurface(const Cell& cell) const {
   return false;
 }
 
-ChildLanes SolidCells::children(const OpenNode& parent) const {
+ChildLanes SolidCells::children(const OpenCell& parent) const {
   if (parent.inside) return {0xff, 0xff};
   ChildLanes out;
   for (int lane = 0; lane < static_cast<int>(kLanes); ++lane) {
@@ -127,7 +127,7 @@ ChildLanes SolidCells::children(const OpenNode& parent) const {
   return out;
 }
 
-void SolidCells::sets(NodeKey parent, LaneSets& out) const {
+void SolidCells::sets(CellKey parent, LaneSets& out) const {
   // Up to their mirror images about the centre these are all corners.
   constexpr int kSigns[4][3] = {{1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
   for (int lane = 0; lane < static_cast<int>(kLanes); ++lane) {

@@ -11,7 +11,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "innermap/core/vec3.h"
@@ -40,7 +39,5 @@ struct StepExpansion {
   Remainder remainder;
   std::vector<std::uint32_t> near;  // charges
 };
-
-using StepExpansions = std::vector<std::shared_ptr<const StepExpansion>>;  // one a step
 
 }  // namespace innermap::proof

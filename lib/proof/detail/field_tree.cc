@@ -1,0 +1,145 @@
+#include "proof/detail/field_tree.h"
+
+#include <tbb/cache_aligned_allocator.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "innermap/core/run.h"
+
+namespace innermap::proof {
+namespace {
+
+constexpr std::size_t kNearCharges = 96;  // of a leaf, at most
+constexpr int kMostLevels = 24;
+// Of a node's ball, in half edges: more than the cube's own, so that sets across its faces fit.
+constexpr double kReach = 2.2;
+constexpr std::size_t kBlock = 8;
+
+std::vector<double> packed(const HarmonicField& field, double scale) {
+  const Points& sources = field.sources();
+  std::vector<double> out(kChargeStride * sources.size());
+  for (std::size_t j = 0; j < sources.size(); ++j) {
+    double* q = out.data() + kChargeStride * j;
+    Vec3 weight;
+    for (int k = 0; k < 3; ++k) {
+      q[k] = scale * sources[j][k];
+      weight[k] = q[3 + k] = scale * scale * field.weights()(j, k);
+    }
+    q[6] = norm(weight) * (1 + 1e-15);
+  }
+  return out;
+}
+
+StepExpansion affineExpansion(const HarmonicField& field, double scale) {
+  const Affine& affine = field.affine();
+  StepExpansion out;
+  out.center = scale * affine.center;
+  out.coefficients.assign(kCoefficients, 0);
+  double squares = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double value = scale * affine.coefficients(0, k);
+    out.coefficients[6 * termOf(0, 0) + 2 * k] = value;
+    out.coefficients[6 * termOf(1, 1) + 2 * k] = affine.coefficients(1, k);
+    out.coefficients[6 * termOf(1, 1) + 2 * k + 1] = affine.coefficients(2, k);
+    out.coefficients[6 * termOf(1, 0) + 2 * k] = affine.coefficients(3, k);
+    for (std::size_t a = 1; a < 4; ++a)
+      squares += affine.coefficients(a, k) * affine.coefficients(a, k);
+    out.remainder.valueMagnitude += std::abs(value);
+  }
+  out.remainder.gradientMagnitude = std::sqrt(squares);
+  out.near.resize(field.sources().size());
+  std::iota(out.near.begin(), out.near.end(), 0u);
+  return out;
+}
+
+LaneSets octants(const Vec3& center, double half) {
+  LaneSets out{};
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    for (int a = 0; a < 3; ++a)
+      out.center[a][lane] = center[a] + (lane >> a & 1 ? 0.5 : -0.5) * half;
+    out.radius[lane] = kReach * 0.5 * half;
+  }
+  return out;
+}
+
+}  // namespace
+
+FieldTree::FieldTree(const HarmonicField& field, double scale) : charges_(packed(field, scale)) {
+  Node root;
+  root.expansion = affineExpansion(field, scale);
+  Box3 box;
+  for (const Vec3& q : field.sources()) box.add(scale * q);
+  if (!box.empty()) {
+    const Vec3 extent = box.extent();
+    root.half = 0.5 * std::max({extent.x, extent.y, extent.z});
+    // The affine part about the middle of the cube.
+    const LaneSets middle = octants(box.center(), 0);
+    std::vector<double, tbb::cache_aligned_allocator<double>> moved(kCoefficients * kLanes);
+    moveExpansion(root.expansion, middle, moved.data());
+    root.expansion.remainder.valueMagnitude +=
+        norm(box.center() - root.expansion.center) * root.expansion.remainder.gradientMagnitude;
+    for (std::size_t i = 0; i < kCoefficients; ++i)
+      root.expansion.coefficients[i] = moved[i * kLanes];
+    root.expansion.center = box.center();
+  }
+  nodes_.push_back(std::move(root));
+  std::size_t begin = 0;
+  for (int level = 0; level < kMostLevels; ++level) {
+    std::vector<std::size_t> crowded;
+    for (std::size_t n = begin; n < nodes_.size(); ++n)
+      if (nodes_[n].expansion.near.size() > kNearCharges) crowded.push_back(n);
+    if (crowded.empty()) break;
+    begin = nodes_.size();
+    std::vector<std::vector<Node>> children(crowded.size());
+    parallelBlocks(crowded.size(), kBlock, [&](std::size_t first, std::size_t end) {
+      for (std::size_t i = first; i < end; ++i) split(nodes_[crowded[i]], children[i]);
+    });
+    for (std::size_t i = 0; i < crowded.size(); ++i) {
+      nodes_[crowded[i]].firstChild = static_cast<std::int32_t>(nodes_.size());
+      std::move(children[i].begin(), children[i].end(), std::back_inserter(nodes_));
+    }
+  }
+}
+
+void FieldTree::split(const Node& parent, std::vector<Node>& children) const {
+  const StepExpansion& from = parent.expansion;
+  const LaneSets sets = octants(from.center, parent.half);
+  const std::size_t count = from.near.size();
+  std::vector<std::uint8_t> far(count);
+  std::vector<double, tbb::cache_aligned_allocator<double>> all(kCoefficients * kLanes);
+  LaneRemainders added, near;
+  classify(charges(), from.near.data(), count, sets, far.data(), added, near);
+  moveExpansion(from, sets, all.data());
+  addCharges(charges(), from.near.data(), far.data(), 0, count, sets, all.data());
+  addInherited(from, sets, added);
+  children.resize(kLanes);
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    StepExpansion& child = children[lane].expansion;
+    children[lane].half = 0.5 * parent.half;
+    child.center = {sets.center[0][lane], sets.center[1][lane], sets.center[2][lane]};
+    child.coefficients.resize(kCoefficients);
+    for (std::size_t i = 0; i < kCoefficients; ++i) child.coefficients[i] = all[i * kLanes + lane];
+    child.remainder = {added.gradient[lane], added.value[lane], added.gradientMagnitude[lane],
+                       added.valueMagnitude[lane]};
+    for (std::size_t i = 0; i < count; ++i)
+      if (!(far[i] >> lane & 1)) child.near.push_back(from.near[i]);
+  }
+}
+
+const StepExpansion& FieldTree::about(const Vec3& center, double radius) const {
+  const Node* node = &nodes_.front();
+  while (node->firstChild >= 0) {
+    const Vec3& middle = node->expansion.center;
+    const int octant = (center.x > middle.x ? 1 : 0) | (center.y > middle.y ? 2 : 0) |
+                       (center.z > middle.z ? 4 : 0);
+    const Node& child = nodes_[node->firstChild + octant];
+    const double reach = kReach * child.half * (1 - 1e-12);
+    if (!(norm(center - child.expansion.center) + radius <= reach)) break;
+    node = &child;
+  }
+  return node->expansion;
+}
+
+}  // namespace innermap::proof

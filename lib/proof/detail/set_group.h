@@ -1,0 +1,50 @@
+// What a map in steps does to eight sets of points at once.
+#pragma once
+
+#include <tbb/cache_aligned_allocator.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "innermap/field/harmonic_field.h"
+#include "proof/detail/field_tree.h"
+#include "proof/detail/lane_kernels.h"
+
+namespace innermap::proof {
+
+// Of each step its tree.
+class StepTrees {
+ public:
+  StepTrees(const ComposedMap& map, double scale);
+  std::size_t count() const { return trees_.size(); }
+  const FieldTree& operator[](std::size_t step) const { return trees_[step]; }
+
+ private:
+  std::vector<FieldTree> trees_;
+};
+
+// All steps, one after the other. Its memory serves again.
+class SetGroup {
+ public:
+  // The eight sets should lie near one another. alive: lanes that matter, one at least. senses:
+  // what is wanted is whether each determinant keeps its sign; ends when no lane is left where it
+  // does.
+  void compute(const StepTrees& map, const LaneSets& sets, std::uint8_t alive, bool senses);
+
+  // Lanes where each step's determinant keeps its sign on the whole set.
+  std::uint8_t proven() const { return proven_; }
+  // Lanes whose images after all steps are known.
+  std::uint8_t enclosed() const { return enclosed_; }
+  const LaneFindings& findings(std::size_t step) const { return findings_[step]; }
+
+ private:
+  using Numbers = std::vector<double, tbb::cache_aligned_allocator<double>>;
+  bool computeStep(const FieldTree& tree, LaneSets& sets, std::uint8_t needed, LaneFindings& out);
+
+  std::vector<LaneFindings> findings_;
+  Numbers coefficients_ = Numbers(kCoefficients * kLanes);
+  std::vector<std::uint8_t> far_;
+  std::uint8_t proven_ = 0, enclosed_ = 0;
+};
+
+}  // namespace innermap::proof
