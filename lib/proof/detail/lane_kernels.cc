@@ -160,6 +160,48 @@ void AddCharges(const double* HWY_RESTRICT charges, const std::uint32_t* HWY_RES
   }
 }
 
+// Eight charges, one a lane, about the origin: coordinates and weights.
+struct alignas(64) ChargeLanes {
+  Lanes place[3], weight[3];
+};
+
+HWY_INLINE void AddLanes(const ChargeLanes& q, std::size_t lane, Complex* HWY_RESTRICT harmonics,
+                         double* HWY_RESTRICT sums) {
+  const D d;
+  const V x = hn::Load(d, q.place[0] + lane);
+  Irregular(x, hn::Load(d, q.place[1] + lane), hn::Load(d, q.place[2] + lane), hn::Eq(x, x),
+            harmonics);
+  for (int k = 0; k < 3; ++k) {
+    const V weight = hn::Load(d, q.weight[k] + lane);
+    double* out = sums + 2 * k * kLanes + lane;
+    for (std::size_t t = 0; t < kTerms; ++t, out += 6 * kLanes) {
+      hn::Store(hn::MulAdd(weight, harmonics[t].re, hn::Load(d, out)), d, out);
+      hn::Store(hn::MulAdd(weight, harmonics[t].im, hn::Load(d, out + kLanes)), d, out + kLanes);
+    }
+  }
+}
+
+void AddAboutOne(const double* HWY_RESTRICT charges, const std::uint32_t* HWY_RESTRICT list,
+                 std::size_t count, StepExpansion& expansion) {
+  alignas(64) double sums[kCoefficients * kLanes] = {};
+  Complex harmonics[kTerms];
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    ChargeLanes q{};
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const bool real = i + l < count;
+      const double* const charge = charges + kChargeStride * list[real ? i + l : i];
+      for (int a = 0; a < 3; ++a) {
+        q.place[a][l] = charge[a] - expansion.center[a];
+        q.weight[a][l] = real ? charge[3 + a] : 0;
+      }
+    }
+    for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(D()))
+      AddLanes(q, lane, harmonics, sums);
+  }
+  for (std::size_t c = 0; c < kCoefficients; ++c)
+    for (std::size_t l = 0; l < kLanes; ++l) expansion.coefficients[c] += sums[c * kLanes + l];
+}
+
 constexpr std::size_t kAll = (kOrder + 1) * (kOrder + 1);  // pairs (n, m), -n <= m <= n
 constexpr std::size_t allOf(int n, int m) { return static_cast<std::size_t>(n * (n + 1) + m); }
 
@@ -491,6 +533,7 @@ namespace innermap::proof {
 
 HWY_EXPORT(Classify);
 HWY_EXPORT(AddCharges);
+HWY_EXPORT(AddAboutOne);
 HWY_EXPORT(MoveExpansion);
 HWY_EXPORT(Examine);
 
@@ -503,6 +546,11 @@ void classify(const double* charges, const std::uint32_t* list, std::size_t coun
 void addCharges(const double* charges, const std::uint32_t* list, const std::uint8_t* lanes,
                 std::uint8_t flip, std::size_t count, const LaneSets& sets, double* coefficients) {
   HWY_DYNAMIC_DISPATCH(AddCharges)(charges, list, lanes, flip, count, sets, coefficients);
+}
+
+void addCharges(const double* charges, const std::uint32_t* list, std::size_t count,
+                StepExpansion& expansion) {
+  HWY_DYNAMIC_DISPATCH(AddAboutOne)(charges, list, count, expansion);
 }
 
 void addInherited(const StepExpansion& from, const LaneSets& sets, LaneRemainders& remainders) {

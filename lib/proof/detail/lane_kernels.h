@@ -54,6 +54,10 @@ void addInherited(const StepExpansion& from, const LaneSets& sets, LaneRemainder
 void addCharges(const double* charges, const std::uint32_t* list, const std::uint8_t* lanes,
                 std::uint8_t flip, std::size_t count, const LaneSets& sets, double* coefficients);
 
+// Adds to an expansion about one centre, eight charges at a time; `count` is at least 1.
+void addCharges(const double* charges, const std::uint32_t* list, std::size_t count,
+                StepExpansion& expansion);
+
 // The expansion about another centre, moved to the eight ones: exact. Overwrites.
 void moveExpansion(const StepExpansion& from, const LaneSets& sets, double* coefficients);
 

@@ -55,15 +55,29 @@ std::uint8_t evenLanes(const LaneSets& sets, std::uint8_t lanes) {
   return lanes & lanesBelow(sets.radius, kMostUneven * least);
 }
 
-// The smallest expansion that holds on all sets.
-const StepExpansion& expansionAbout(const FieldTree& tree, const LaneSets& sets) {
+struct GroupBall {
+  Vec3 center;
+  double radius = 0;
+};
+
+GroupBall ballAbout(const LaneSets& sets) {
   Box3 box;
   for (std::size_t lane = 0; lane < kLanes; ++lane) box.add(centerOf(sets, lane));
-  const Vec3 center = box.center();
-  double radius = 0;
+  GroupBall out{box.center(), 0};
   for (std::size_t lane = 0; lane < kLanes; ++lane)
-    radius = std::max(radius, norm(centerOf(sets, lane) - center) + sets.radius[lane]);
-  return tree.about(center, radius);
+    out.radius = std::max(out.radius, norm(centerOf(sets, lane) - out.center) + sets.radius[lane]);
+  out.radius *= 1 + 1e-12;
+  return out;
+}
+
+// All eight centres in one place.
+LaneSets oneSet(const GroupBall& ball) {
+  LaneSets out{};
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    for (int a = 0; a < 3; ++a) out.center[a][lane] = ball.center[a];
+    out.radius[lane] = ball.radius;
+  }
+  return out;
 }
 
 void add(LaneRemainders& a, const LaneRemainders& b) {
@@ -79,6 +93,37 @@ void add(LaneRemainders& a, const LaneRemainders& b) {
 
 StepTrees::StepTrees(const ComposedMap& map, double scale) {
   for (const HarmonicMap& step : map.steps()) trees_.emplace_back(step.field(), scale);
+}
+
+// An expansion that holds on all sets. Nodes of the tree are up to three times as large as the
+// group, so that most of what is near a node is far from the group: it is expanded about it once,
+// not about each set.
+const StepExpansion& SetGroup::expansionAbout(const FieldTree& tree, const LaneSets& sets) {
+  const GroupBall ball = ballAbout(sets);
+  const StepExpansion& from = tree.about(ball.center, ball.radius);
+  own_.near.clear();
+  farOfOwn_.clear();
+  const double far = ball.radius / kFarRatio * (1 + 1e-12);
+  for (const std::uint32_t j : from.near) {
+    const double* q = tree.charges() + kChargeStride * j;
+    const bool isFar = squaredNorm(Vec3{q[0], q[1], q[2]} - ball.center) > far * far;
+    (isFar ? farOfOwn_ : own_.near).push_back(j);
+  }
+  if (farOfOwn_.size() < 2 * kLanes) return from;
+  const LaneSets one = oneSet(ball);
+  LaneRemainders added, none;
+  far_.resize(farOfOwn_.size());
+  classify(tree.charges(), farOfOwn_.data(), farOfOwn_.size(), one, far_.data(), added, none);
+  addInherited(from, one, added);
+  moveExpansion(from, one, coefficients_.data());
+  own_.center = ball.center;
+  own_.coefficients.resize(kCoefficients);
+  for (std::size_t i = 0; i < kCoefficients; ++i) own_.coefficients[i] = coefficients_[i * kLanes];
+  own_.remainder = {added.gradient[0] + none.gradient[0], added.value[0] + none.value[0],
+                    added.gradientMagnitude[0] + none.gradientMagnitude[0],
+                    added.valueMagnitude[0] + none.valueMagnitude[0]};
+  addCharges(tree.charges(), farOfOwn_.data(), farOfOwn_.size(), own_);
+  return own_;
 }
 
 // False where nothing is known of any lane that is needed.

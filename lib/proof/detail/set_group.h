@@ -39,10 +39,13 @@ class SetGroup {
 
  private:
   using Numbers = std::vector<double, tbb::cache_aligned_allocator<double>>;
+  const StepExpansion& expansionAbout(const FieldTree& tree, const LaneSets& sets);
   bool computeStep(const FieldTree& tree, LaneSets& sets, std::uint8_t needed, LaneFindings& out);
 
   std::vector<LaneFindings> findings_;
   Numbers coefficients_ = Numbers(kCoefficients * kLanes);
+  StepExpansion own_;  // about the whole group
+  std::vector<std::uint32_t> farOfOwn_;
   std::vector<std::uint8_t> far_;
   std::uint8_t proven_ = 0, enclosed_ = 0;
 };

@@ -113,13 +113,25 @@ bool SolidCells::meetsSurface(const Cell& cell) const {
 ChildLanes SolidCells::children(const OpenCell& parent) const {
   if (parent.inside) return {0xff, 0xff};
   ChildLanes out;
+  unsigned free = 0;  // no triangle meets them
   for (int lane = 0; lane < static_cast<int>(kLanes); ++lane) {
-    const Cell cell = local(childOf(parent.key, lane));
     const unsigned bit = 1u << lane;
+    const Cell cell = local(childOf(parent.key, lane));
     if (meetsSurface(cell)) {
       out.alive |= bit;
-      // Winding numbers of closed meshes are whole; at() is exact to 1e-2.
-    } else if (std::abs(winding_.at(cell.center)) > 0.25) {
+      continue;
+    }
+    // Two such cells with a common face lie on the same side.
+    bool inside = false, known = false;
+    for (const int other : {lane ^ 1, lane ^ 2, lane ^ 4})
+      if (free >> other & 1) {
+        known = true;
+        inside = out.inside >> other & 1;
+      }
+    // Winding numbers of closed meshes are whole.
+    if (!known) inside = winding_.wholeAt(cell.center) != 0;
+    free |= bit;
+    if (inside) {
       out.alive |= bit;
       out.inside |= bit;
     }
