@@ -11,7 +11,7 @@
 namespace innermap::proof {
 namespace {
 
-constexpr std::size_t kNearCharges = 64;  // of a leaf, at most
+constexpr std::size_t kNearCharges = 160;  // of a leaf, at most
 constexpr int kMostLevels = 24;
 // Of a node's ball, in half edges: more than the cube's own, so that sets across its faces fit.
 constexpr double kReach = 2.2;
