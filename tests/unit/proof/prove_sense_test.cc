@@ -1,0 +1,185 @@
+#include <gtest/gtest.h>
+
+#include "innermap/core/error.h"
+#include "innermap/core/run.h"
+#include "innermap/proof/prove.h"
+#include "mesh/shapes.h"
+#include "proof/maps.h"
+
+namespace innermap {
+namespace {
+
+using testing::affineOf;
+using testing::Charge;
+using testing::kIdentity;
+using testing::mapOf;
+
+HarmonicMap gentle(double strength, std::uint64_t seed = 1) {
+  return mapOf(affineOf(kIdentity), testing::chargesAbout(200, 1.9, strength, seed));
+}
+
+void expectWhole(const SenseProof& proof) {
+  EXPECT_TRUE(proof.whole());
+  EXPECT_FALSE(proof.mirrored);
+  EXPECT_EQ(proof.provenShare, 1);
+  EXPECT_GT(proof.least, 0);
+}
+
+TEST(ProveSense, SmoothMapsAreWhollyProven) {
+  for (std::uint64_t seed = 1; seed < 6; ++seed) {
+    const HarmonicMap map = gentle(0.004, seed);
+    expectWhole(proveSense(map, shapes::icosphere(3)));
+    expectWhole(proveSense(map, shapes::torus(40, 20)));
+    expectWhole(proveSense(map, shapes::box({-0.9, -0.9, -0.9}, {0.9, 0.9, 0.9})));
+    expectWhole(proveSense(ComposedMap({map, gentle(0.003, seed + 9)}), shapes::icosphere(2)));
+  }
+}
+
+TEST(ProveSense, UnitsAndPlacesDoNotMatter) {
+  for (const double scale : {1e-6, 1e5})
+    for (const double shift : {0.0, 1e4}) {
+      std::vector<Charge> charges = testing::chargesAbout(200, 1.9, 0.004, 1);
+      const Vec3 away = shift * scale * Vec3{1, -2, 0.5};
+      for (Charge& c : charges) c = {scale * c.place + away, scale * scale * c.weight};
+      const Mesh ball = shapes::transformed(shapes::icosphere(3), scale, away);
+      expectWhole(proveSense(mapOf(affineOf(kIdentity), charges), ball));
+    }
+}
+
+TEST(ProveSense, WithoutChargesOneCellIsEnough) {
+  const SenseProof proof =
+      proveSense(mapOf(affineOf({{{2, 0, 0}, {0, 3, 0}, {0, 0, 1}}}), {}), shapes::icosphere(1));
+  EXPECT_TRUE(proof.whole());
+  EXPECT_LE(proof.proven.count, 8u);
+  EXPECT_NEAR(proof.least, 6, 1e-6);
+}
+
+TEST(ProveSense, MirroredMapsAreProvenToo) {
+  const Affine mirror = affineOf({{{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+  const HarmonicMap map = mapOf(mirror, testing::chargesAbout(200, 1.9, 0.004, 3));
+  const SenseProof proof = proveSense(map, shapes::icosphere(3));
+  EXPECT_TRUE(proof.whole());
+  EXPECT_TRUE(proof.mirrored);
+  const SenseProof twice = proveSense(ComposedMap({map, map}), shapes::icosphere(3));
+  EXPECT_TRUE(twice.whole());
+  EXPECT_FALSE(twice.mirrored);
+}
+
+TEST(ProveSense, ADeterminantOfZeroIsNeverProven) {
+  ProofSettings few;
+  few.leastCells = 1000;
+  for (const double third : {0.0, 1e-300, 1e-14}) {
+    const SenseProof proof = proveSense(
+        mapOf(affineOf({{{1, 0, 0}, {0, 1, 0}, {1, 1, third}}}), {}), shapes::icosphere(1), few);
+    EXPECT_EQ(proof.proven.count, 0u);
+    EXPECT_EQ(proof.provenShare, 0);
+    EXPECT_FALSE(proof.whole());
+  }
+}
+
+TEST(ProveSense, NumbersOutOfRangeProveNothing) {
+  ProofSettings few;
+  few.leastCells = 1000;
+  std::vector<Charge> charges = testing::chargesAbout(20, 1.9, 1, 1);
+  for (Charge& c : charges) c.weight = 1e307 * c.weight;
+  EXPECT_EQ(proveSense(mapOf(affineOf(kIdentity), charges), shapes::icosphere(1), few).proven.count,
+            0u);
+}
+
+TEST(ProveSense, AChargeInsideLeavesItsCellsUndecided) {
+  ProofSettings few;
+  few.leastCells = 3000;
+  few.keepProven = true;
+  const Vec3 place{0.31, 0.2, -0.1};
+  const SenseProof proof =
+      proveSense(mapOf(affineOf(kIdentity), {{place, {1e-9, 0, 0}}}), shapes::icosphere(2), few);
+  EXPECT_FALSE(proof.whole());
+  EXPECT_GT(proof.provenShare, 0.99);
+  ASSERT_GT(proof.undecided.count, 0u);
+  for (const ProofCell& cell : proof.proven.places) {
+    const Vec3 d = place - cell.center;
+    EXPECT_GT(std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}), cell.halfEdge);
+  }
+}
+
+// Both steps fold about the same place: the product of their determinants is positive there.
+TEST(ProveSense, TwoFoldsDoNotMakeAProof) {
+  const Vec3 p{0.95, 0.05, 0.02};
+  const HarmonicMap smooth = gentle(0.003);
+  const auto folded = [](const HarmonicMap& map, const Vec3& at) {
+    const Vec3 outside = at + Vec3{0.12, 0, 0};
+    std::vector<Charge> charges = testing::chargesAbout(200, 1.9, 0.003, 1);
+    charges.push_back(testing::foldingCharge(map, at, outside, 0.3));
+    return mapOf(affineOf(kIdentity), charges);
+  };
+  const HarmonicMap first = folded(smooth, p), second = folded(smooth, first(p));
+  ASSERT_LT(testing::longDeterminant(first, p), 0);
+  ASSERT_LT(testing::longDeterminant(second, first(p)), 0);
+  const ComposedMap map({first, second});
+  ASSERT_GT(determinant(map.jacobian(p)), 0);
+  ProofSettings settings;
+  settings.keepProven = true;
+  const SenseProof proof = proveSense(map, shapes::icosphere(3), settings);
+  EXPECT_FALSE(proof.whole());
+  EXPECT_GT(proof.provenShare, 0.9);
+  for (const ProofCell& cell : proof.proven.places) {
+    const Vec3 d = p - cell.center;
+    EXPECT_GT(std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}), cell.halfEdge);
+  }
+}
+
+bool same(const ProofCells& a, const ProofCells& b) {
+  if (a.count != b.count || a.volume != b.volume || a.places.size() != b.places.size())
+    return false;
+  for (std::size_t i = 0; i < a.places.size(); ++i)
+    if (norm(a.places[i].center - b.places[i].center) != 0) return false;
+  return true;
+}
+
+TEST(ProveSense, ThreadsDoNotMatter) {
+  std::vector<Charge> charges = testing::chargesAbout(600, 1.3, 0.004, 5);
+  charges.push_back({{1.05, 0, 0}, {-0.01, 0, 0}});
+  const HarmonicMap map = mapOf(affineOf(kIdentity), charges);
+  ProofSettings settings;
+  settings.keepProven = true;
+  settings.cellsPerCharge = 10;
+  settings.leastCells = 8000;
+  const ThreadLimit two(2);
+  const SenseProof a = proveSense(map, shapes::icosphere(3), settings);
+  const ThreadLimit one(1);
+  const SenseProof b = proveSense(map, shapes::icosphere(3), settings);
+  EXPECT_TRUE(same(a.proven, b.proven));
+  EXPECT_TRUE(same(a.negative, b.negative));
+  EXPECT_TRUE(same(a.undecided, b.undecided));
+  EXPECT_EQ(a.examined, b.examined);
+  EXPECT_EQ(a.least, b.least);
+}
+
+TEST(ProveSense, CanBeCancelled) {
+  class AtOnce : public RunContext {
+    void report(std::string_view, double) override { cancel(); }
+  } run;
+  const RunScope scope(run);
+  EXPECT_THROW(proveSense(gentle(0.004), shapes::icosphere(2)), Cancelled);
+}
+
+TEST(ProveSense, RefusesWhatItCannotTake) {
+  const HarmonicMap map = gentle(0.004);
+  Mesh open = shapes::icosphere(1);
+  open.triangles.pop_back();
+  EXPECT_THROW(proveSense(map, open), DataError);
+  EXPECT_THROW(proveSense(map, shapes::flipped(shapes::icosphere(1))), DataError);
+  EXPECT_THROW(proveSense(map, Mesh()), DataError);
+  Mesh bad = shapes::icosphere(1);
+  bad.vertices[3].y = std::nan("");
+  EXPECT_THROW(proveSense(map, bad), DataError);
+  EXPECT_THROW(mapOf(affineOf(kIdentity), {{{2, 0, 0}, {std::nan(""), 0, 0}}}), DataError);
+  EXPECT_THROW(proveSense(ComposedMap(std::vector<HarmonicMap>(65, map)), shapes::icosphere(1)),
+               DataError);
+  ProofSettings settings;
+  settings.cellsPerCharge = 0;
+  EXPECT_THROW(proveSense(map, shapes::icosphere(1), settings), SettingError);
+}
+
+}  // namespace
+}  // namespace innermap
