@@ -3,18 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "proof/detail/scale.h"
+
 namespace innermap::proof {
 namespace {
 
 // Cells are taken larger by so much of the root's half edge: more than all rounding of positions.
 constexpr double kMargin = 1e-12;
-
-// The least power of two above x.
-double powerAbove(double x) {
-  int exponent = 0;
-  std::frexp(x, &exponent);
-  return std::ldexp(1, exponent);
-}
 
 // Whether projections onto the axis lie apart: of the cube of that half edge about the origin, and
 // of the triangle.
@@ -45,8 +40,6 @@ Points scaledPoints(const Mesh& mesh, double scale, const Vec3& center) {
 }
 
 }  // namespace
-
-double proofScale(const Box3& box) { return 1 / powerAbove(box.diagonal()); }
 
 SolidCells::SolidCells(const Mesh& mesh)
     : scale_(proofScale(boundingBox(mesh))),

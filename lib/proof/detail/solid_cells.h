@@ -33,10 +33,7 @@ struct ChildLanes {
   std::uint8_t alive = 0, inside = 0;
 };
 
-// In coordinates of the proof: those of the mesh times a power of two, so that its diagonal is in
-// [1/2, 1).
-double proofScale(const Box3& box);
-
+// In coordinates of the proof: those of the mesh times proofScale().
 class SolidCells {
  public:
   // The mesh must be closed.

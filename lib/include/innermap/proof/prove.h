@@ -91,7 +91,7 @@ struct BoundaryProof {
 };
 
 // By branch and bound. target: #vertices of `surface`, where its vertices go; `surface` need not be
-// closed. An error below 1e-12 counts as close. On all threads, the same result for any number of
+// closed. An error below 1e-11 counts as close. On all threads, the same result for any number of
 // them. Throws DataError when the numbers of vertices differ, there is no triangle, or a number is
 // not finite; SettingError; MemoryError; Cancelled.
 BoundaryProof proveBoundaryError(const ComposedMap& map, const Mesh& surface, const Points& target,

@@ -124,6 +124,12 @@ TEST(SetGroup, BoundIsNearlyReachedTowardsOneCharge) {
     const double there = excessAt(map, inverse(map.jacobian({})), {half, half, half});
     EXPECT_LE(there, bound * (1 + 1e-9));
     EXPECT_GT(there, 0.75 * bound) << ratio;
+    // So is the bound of what the map adds to its linear part.
+    const Vec3 p{half, half, half};
+    const double rest = norm(map(p) - map({}) - map.jacobian({}) * p);
+    const double slack = group.findings(0).image.slack[0];
+    EXPECT_LE(rest, slack * (1 + 1e-9));
+    EXPECT_GT(rest, 0.75 * slack) << ratio;
   }
 }
 
