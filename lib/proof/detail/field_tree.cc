@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "innermap/core/run.h"
-
 namespace innermap::proof {
 namespace {
 
@@ -15,7 +13,8 @@ constexpr std::size_t kNearCharges = 160;  // of a leaf, at most
 constexpr int kMostLevels = 24;
 // Of a node's ball, in half edges: more than the cube's own, so that sets across its faces fit.
 constexpr double kReach = 2.2;
-constexpr std::size_t kBlock = 8;
+
+using Numbers = std::vector<double, tbb::cache_aligned_allocator<double>>;
 
 std::vector<double> packed(const HarmonicField& field, double scale) {
   const Points& sources = field.sources();
@@ -66,58 +65,41 @@ LaneSets octants(const Vec3& center, double half) {
 
 }  // namespace
 
-FieldTree::FieldTree(const HarmonicField& field, double scale) : charges_(packed(field, scale)) {
-  Node root;
-  root.expansion = affineExpansion(field, scale);
+FieldTree::FieldTree(const HarmonicField& field, double scale)
+    : charges_(packed(field, scale)), root_(std::make_unique<Node>()) {
+  StepExpansion& expansion = root_->expansion;
+  expansion = affineExpansion(field, scale);
   Box3 box;
   for (const Vec3& q : field.sources()) box.add(scale * q);
-  if (!box.empty()) {
-    const Vec3 extent = box.extent();
-    root.half = 0.5 * std::max({extent.x, extent.y, extent.z});
-    // The affine part about the middle of the cube.
-    const LaneSets middle = octants(box.center(), 0);
-    std::vector<double, tbb::cache_aligned_allocator<double>> moved(kCoefficients * kLanes);
-    moveExpansion(root.expansion, middle, moved.data());
-    root.expansion.remainder.valueMagnitude +=
-        norm(box.center() - root.expansion.center) * root.expansion.remainder.gradientMagnitude;
-    for (std::size_t i = 0; i < kCoefficients; ++i)
-      root.expansion.coefficients[i] = moved[i * kLanes];
-    root.expansion.center = box.center();
-  }
-  nodes_.push_back(std::move(root));
-  std::size_t begin = 0;
-  for (int level = 0; level < kMostLevels; ++level) {
-    std::vector<std::size_t> crowded;
-    for (std::size_t n = begin; n < nodes_.size(); ++n)
-      if (nodes_[n].expansion.near.size() > kNearCharges) crowded.push_back(n);
-    if (crowded.empty()) break;
-    begin = nodes_.size();
-    std::vector<std::vector<Node>> children(crowded.size());
-    parallelBlocks(crowded.size(), kBlock, [&](std::size_t first, std::size_t end) {
-      for (std::size_t i = first; i < end; ++i) split(nodes_[crowded[i]], children[i]);
-    });
-    for (std::size_t i = 0; i < crowded.size(); ++i) {
-      nodes_[crowded[i]].firstChild = static_cast<std::int32_t>(nodes_.size());
-      std::move(children[i].begin(), children[i].end(), std::back_inserter(nodes_));
-    }
-  }
+  if (box.empty()) return;
+  const Vec3 extent = box.extent();
+  root_->half = 0.5 * std::max({extent.x, extent.y, extent.z});
+  // The affine part about the middle of the cube.
+  Numbers moved(kCoefficients * kLanes);
+  moveExpansion(expansion, octants(box.center(), 0), moved.data());
+  expansion.remainder.valueMagnitude +=
+      norm(box.center() - expansion.center) * expansion.remainder.gradientMagnitude;
+  for (std::size_t i = 0; i < kCoefficients; ++i) expansion.coefficients[i] = moved[i * kLanes];
+  expansion.center = box.center();
 }
 
-void FieldTree::split(const Node& parent, std::vector<Node>& children) const {
+void FieldTree::split(const Node& parent) const {
   const StepExpansion& from = parent.expansion;
   const LaneSets sets = octants(from.center, parent.half);
   const std::size_t count = from.near.size();
   std::vector<std::uint8_t> far(count);
-  std::vector<double, tbb::cache_aligned_allocator<double>> all(kCoefficients * kLanes);
+  Numbers all(kCoefficients * kLanes);
   LaneRemainders added, near;
   classify(charges(), from.near.data(), count, sets, far.data(), added, near);
   moveExpansion(from, sets, all.data());
   addCharges(charges(), from.near.data(), far.data(), 0, count, sets, all.data());
   addInherited(from, sets, added);
-  children.resize(kLanes);
+  auto children = std::make_unique<std::array<Node, kLanes>>();
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    StepExpansion& child = children[lane].expansion;
-    children[lane].half = 0.5 * parent.half;
+    Node& node = (*children)[lane];
+    node.half = 0.5 * parent.half;
+    node.level = parent.level + 1;
+    StepExpansion& child = node.expansion;
     child.center = {sets.center[0][lane], sets.center[1][lane], sets.center[2][lane]};
     child.coefficients.resize(kCoefficients);
     for (std::size_t i = 0; i < kCoefficients; ++i) child.coefficients[i] = all[i * kLanes + lane];
@@ -126,18 +108,23 @@ void FieldTree::split(const Node& parent, std::vector<Node>& children) const {
     for (std::size_t i = 0; i < count; ++i)
       if (!(far[i] >> lane & 1)) child.near.push_back(from.near[i]);
   }
+  parent.children = std::move(children);
 }
 
 const StepExpansion& FieldTree::about(const Vec3& center, double radius) const {
-  const Node* node = &nodes_.front();
-  while (node->firstChild >= 0) {
+  const Node* node = root_.get();
+  while (node->expansion.near.size() > kNearCharges && node->level < kMostLevels) {
     const Vec3& middle = node->expansion.center;
-    const int octant = (center.x > middle.x ? 1 : 0) | (center.y > middle.y ? 2 : 0) |
-                       (center.z > middle.z ? 4 : 0);
-    const Node& child = nodes_[node->firstChild + octant];
-    const double reach = kReach * child.half * (1 - 1e-12);
-    if (!(norm(center - child.expansion.center) + radius <= reach)) break;
-    node = &child;
+    const double half = 0.5 * node->half;
+    int octant = 0;
+    Vec3 child = middle;
+    for (int a = 0; a < 3; ++a) {
+      if (center[a] > middle[a]) octant |= 1 << a;
+      child[a] += center[a] > middle[a] ? half : -half;
+    }
+    if (!(norm(center - child) + radius <= kReach * half * (1 - 1e-12))) break;
+    std::call_once(node->splitting, [&] { split(*node); });
+    node = &(*node->children)[octant];
   }
   return node->expansion;
 }

@@ -1,10 +1,14 @@
 // One step's map, expanded in the balls of an octree about its charges.
 //
 // A node's expansion is its parent's, moved, and charges enter it where they are far from its ball.
-// So what is near a small set of points is known without looking at all charges.
+// So what is near a small set of points is known without looking at all charges. Nodes are made
+// when they are first asked for: most of the space about the charges never is.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "innermap/field/harmonic_field.h"
@@ -13,11 +17,10 @@
 
 namespace innermap::proof {
 
-// Immutable after construction; safe from any number of threads.
+// Safe from any number of threads; what it says does not depend on what was asked before.
 class FieldTree {
  public:
   // Lengths before and after the step are multiplied by `scale`, a power of two: no digit changes.
-  // Throws Cancelled.
   FieldTree(const HarmonicField& field, double scale);
 
   const double* charges() const { return charges_.data(); }  // kChargeStride each
@@ -32,12 +35,14 @@ class FieldTree {
   struct Node {
     StepExpansion expansion;
     double half = 0;  // of its cube's edge
-    std::int32_t firstChild = -1;
+    int level = 0;
+    mutable std::once_flag splitting;
+    mutable std::unique_ptr<std::array<Node, kLanes>> children;
   };
-  void split(const Node& parent, std::vector<Node>& children) const;
+  void split(const Node& parent) const;
 
   std::vector<double> charges_;
-  std::vector<Node> nodes_;  // the first: affine part, and all charges near; holds everywhere
+  std::unique_ptr<Node> root_;  // the affine part, and all charges near: it holds everywhere
 };
 
 }  // namespace innermap::proof
