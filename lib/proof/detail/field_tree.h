@@ -25,6 +25,12 @@ class FieldTree {
 
   const double* charges() const { return charges_.data(); }  // kChargeStride each
 
+  // How many times larger rounding errors may be for the number of charges: one unit more for each
+  // that is added up.
+  double rounding() const {
+    return 1 + 1.2e-4 * static_cast<double>(charges_.size() / kChargeStride);
+  }
+
   // An expansion that holds for all points of this ball: of the smallest node about it.
   const StepExpansion& about(const Vec3& center, double radius) const;
 

@@ -446,9 +446,10 @@ HWY_INLINE V DistanceFromUnit(const Matrix3& b, const Matrix3& j) {
   return hn::Sqrt(sum);
 }
 
-// Of terms whose absolute values sum to 1: kRounding bounds what comes of rounding them, of moving
-// their sum through 30 levels, each of up to 100 terms.
-constexpr double kRounding = 4e-13;
+// Of terms whose absolute values sum to 1: what may come of rounding them, of moving their sum
+// through 26 levels, each time by sums of 100 complex products; 9,000 units of rounding. For the
+// sums over charges see FieldTree::rounding().
+constexpr double kRounding = 1e-12;
 constexpr double kRelative = 1e-14;  // of a few operations
 
 // The image of the sets: f is its linear part at the centre plus the rest, which is no larger than

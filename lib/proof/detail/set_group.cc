@@ -138,6 +138,10 @@ bool SetGroup::computeStep(const FieldTree& tree, LaneSets& sets, std::uint8_t n
   if (!(lanesBelow(near.gradient, std::numeric_limits<double>::infinity()) & needed)) return false;
   addInherited(from, sets, remainder);
   add(remainder, near);
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    remainder.gradientMagnitude[lane] *= tree.rounding();
+    remainder.valueMagnitude[lane] *= tree.rounding();
+  }
   moveExpansion(from, sets, coefficients_.data());
   far_.assign(count, 0xff);
   addCharges(tree.charges(), from.near.data(), far_.data(), 0, count, sets, coefficients_.data());

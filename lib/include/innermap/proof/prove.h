@@ -13,10 +13,10 @@
 // least |det J(c)| (1 - S)^3, and f is one-to-one on the cell. Else the cell is split. Derivation,
 // literature, and what follows for the whole solid: docs/method.md, "Proofs".
 //
-// Rounding: S has a part 4e-13 |B| times the sum of the absolute values of all terms of J, more
-// than 3,600 units of rounding, which bounds what summing the terms and moving their expansions
-// through all levels can lose; cells overlap by 1e-12 of the solid; sums of a few terms have
-// margins of 1e-9. Compiled without -ffast-math.
+// Rounding: S has a part of 1e-12 |B| times the sum of the absolute values of all terms of J, and
+// as much again for each 8,000 charges. That is above what summing the terms, one after the other,
+// and moving their expansions through all levels can lose. Cells overlap by 1e-12 of the solid;
+// sums of a few terms have margins of 1e-9. Compiled without -ffast-math.
 #pragma once
 
 #include <cstddef>
@@ -53,7 +53,8 @@ struct ProofCell {
 struct ProofCells {
   std::size_t count = 0;
   double volume = 0;  // of whole cubes, which reach out of the solid beside its surface
-  double share = 0;   // of the solid's volume, at most: the cubes' volume over that, in [0, 1]
+  double share = 0;   // of the solid's volume, at most: the cubes' volume over that, in [0, 1];
+                      // where the surface covers a place twice it counts twice
   std::vector<ProofCell> places;  // largest first
 };
 
