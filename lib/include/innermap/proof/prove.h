@@ -10,8 +10,8 @@
 //     + |B| sum_j |w_j| / d_j^2 rho_j^P ((P+1) - P rho_j) / (1 - rho_j)^2
 //
 // bounds |B J(x) - 1| on the cell. Where S < 1, det J has there the sign of det J(c), |det J| is at
-// least |det J(c)| (1 - S)^3, and f is one-to-one on the cell. Cells are split until S <= 0.8. Derivation,
-// literature, and what follows for the whole solid: docs/method.md, "Proofs".
+// least |det J(c)| (1 - S)^3, and f is one-to-one on the cell. Cells are split until S <= 0.8.
+// Derivation, literature, and what follows for the whole solid: docs/method.md, "Proofs".
 //
 // Rounding: S has a part of 1e-12 |B| times the sum of the absolute values of all terms of J, and
 // as much again for each 8,000 charges. That is above what summing the terms, one after the other,

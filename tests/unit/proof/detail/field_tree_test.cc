@@ -1,0 +1,97 @@
+#include "proof/detail/field_tree.h"
+
+#include <gtest/gtest.h>
+
+#include "proof/maps.h"
+
+namespace innermap::proof {
+namespace {
+
+using testing::Charge;
+
+struct ValueAndGradient {
+  Vec3 value;
+  Mat3 gradient{};
+};
+
+// Of an expansion and of its near charges, at a point.
+ValueAndGradient evaluate(const FieldTree& tree, const StepExpansion& from, const Vec3& p) {
+  LaneSets sets{};
+  for (std::size_t lane = 0; lane < kLanes; ++lane)
+    for (int a = 0; a < 3; ++a) sets.center[a][lane] = p[a];
+  alignas(64) double coefficients[kCoefficients * kLanes];
+  moveExpansion(from, sets, coefficients);
+  const std::vector<std::uint8_t> all(from.near.size(), 0xff);
+  addCharges(tree.charges(), from.near.data(), all.data(), 0, all.size(), sets, coefficients);
+  const auto at = [&](int n, int m, int k, int part) {
+    return coefficients[(6 * termOf(n, m) + 2 * k + part) * kLanes + 3];
+  };
+  ValueAndGradient out;
+  for (int k = 0; k < 3; ++k) {
+    out.value[k] = at(0, 0, k, 0);
+    out.gradient[k] = {at(1, 1, k, 0), at(1, 1, k, 1), at(1, 0, k, 0)};
+  }
+  return out;
+}
+
+double largestDifference(const Mat3& a, const Mat3& b) {
+  double out = 0;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) out = std::max(out, std::abs(a[r][c] - b[r][c]));
+  return out;
+}
+
+// The errors at a ball's centre, over what is allowed of each.
+double checkBall(const HarmonicMap& map, const FieldTree& tree, const Vec3& p, double radius) {
+  const StepExpansion& from = tree.about(p, radius);
+  const ValueAndGradient got = evaluate(tree, from, p);
+  const double value = norm(got.value - map(p));
+  const double gradient = largestDifference(got.gradient, map.jacobian(p));
+  const Remainder& r = from.remainder;
+  EXPECT_LE(value, r.value + 1e-12 * (r.valueMagnitude + 1));
+  EXPECT_LE(gradient, r.gradient + 1e-12 * (r.gradientMagnitude + 1));
+  return gradient / (r.gradient + 1e-12 * r.gradientMagnitude + 1e-300);
+}
+
+TEST(FieldTree, ExpansionsHoldInTheirBalls) {
+  const HarmonicMap map = testing::mapOf(testing::affineOf(testing::kIdentity, {1, 2, 3}),
+                                         testing::chargesAbout(3000, 1.1, 0.02, 1));
+  const FieldTree tree(map.field(), 1);
+  const CounterRandom random(4, 51);
+  double most = 0;
+  for (std::uint64_t i = 0; i < 500; ++i) {
+    const Vec3 p{random.uniform(4 * i) - 0.5, random.uniform(4 * i + 1) - 0.5,
+                 random.uniform(4 * i + 2) - 0.5};
+    most = std::max(most,
+                    checkBall(map, tree, 1.3 * p, std::pow(10.0, -4 * random.uniform(4 * i + 3))));
+  }
+  EXPECT_GT(most, 1e-4);
+}
+
+// All but one charge have no weight: what is cut off is that one's, from a ball far up.
+TEST(FieldTree, WhatIsCutOffAboveHoldsBelow) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    std::vector<Charge> charges = {{{1, 0.7, -0.4}, {0.3, 0.2, -0.1}}};
+    const CounterRandom random(seed, 52);
+    for (std::uint64_t i = 0; i < 1000; ++i)
+      charges.push_back(
+          {{-1 + 0.01 * random.uniform(3 * i), -0.6 + 0.01 * random.uniform(3 * i + 1),
+            0.5 + 0.01 * random.uniform(3 * i + 2)},
+           {}});
+    const HarmonicMap map = testing::mapOf(testing::affineOf(testing::kIdentity), charges);
+    const FieldTree tree(map.field(), 1);
+    const Vec3 p = charges[500].place + Vec3{1e-4, 0, 0};
+    ASSERT_LT(tree.about(p, 1e-6).near.size(), 400u);
+    EXPECT_GT(checkBall(map, tree, p, 1e-6), 1e-4);
+  }
+}
+
+TEST(FieldTree, WithoutChargesIsTheAffinePart) {
+  const HarmonicMap map =
+      testing::mapOf(testing::affineOf({{{1, 2, 3}, {0, 1, 0}, {2, 0, 1}}}), {});
+  const FieldTree tree(map.field(), 1);
+  checkBall(map, tree, {0.3, 0.2, 5}, 100);
+}
+
+}  // namespace
+}  // namespace innermap::proof
