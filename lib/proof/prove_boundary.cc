@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
@@ -12,23 +10,17 @@
 #include "proof/detail/cell_limit.h"
 #include "proof/detail/scale.h"
 #include "proof/detail/set_group.h"
+#include "proof/detail/surface_pieces.h"
 
 namespace innermap {
 namespace {
 
 using namespace proof;
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kExact = 1e-11;  // of the diagonal: an error that is as good as none
 constexpr std::uint64_t kBytesPerPiece = 400;
 // Pieces that one thread splits in one go; triangles at first, eight times as many.
 constexpr std::size_t kBlock = 32;
-
-// A triangle or a part of one, and where its corners go; scaled.
-struct Piece {
-  std::array<Vec3, 3> at, to;
-  double most = kInfinite;  // no error on it is larger
-};
 
 struct Witness {
   Piece piece;
@@ -39,57 +31,6 @@ struct BlockPieces {
   std::vector<Piece> pieces;
   Witness witness;
 };
-
-Vec3 centroid(const std::array<Vec3, 3>& corners) {
-  return (corners[0] + corners[1] + corners[2]) / 3;
-}
-
-// Halves across the longest edge, thrice.
-void cut(const Piece& piece, int times, std::vector<Piece>& out) {
-  if (times == 0) {
-    out.push_back(piece);
-    return;
-  }
-  int longest = 0;
-  double length = -1;
-  for (int i = 0; i < 3; ++i) {
-    const double l = squaredNorm(piece.at[(i + 1) % 3] - piece.at[i]);
-    if (l > length) {
-      length = l;
-      longest = i;
-    }
-  }
-  const int a = longest, b = (longest + 1) % 3;
-  const Vec3 middle = 0.5 * (piece.at[a] + piece.at[b]), goes = 0.5 * (piece.to[a] + piece.to[b]);
-  for (const int replaced : {a, b}) {
-    Piece half = piece;
-    half.at[replaced] = middle;
-    half.to[replaced] = goes;
-    cut(half, times - 1, out);
-  }
-}
-
-double largestCoordinate(const Vec3& v) {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
-
-LaneSets setsOf(const Piece* pieces, std::size_t count) {
-  LaneSets out{};
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    const std::array<Vec3, 3>& at = pieces[std::min(lane, count - 1)].at;
-    const Vec3 center = centroid(at);
-    double radius = 0;
-    for (int i = 0; i < 4; ++i) {
-      const Vec3 v = at[i % 3] - center;
-      radius = std::max(radius, norm(v));
-      for (int a = 0; a < 3; ++a) out.vertex[i][a][lane] = v[a];
-    }
-    for (int a = 0; a < 3; ++a) out.center[a][lane] = center[a];
-    out.slack[lane] = 4e-15 * (largestCoordinate(center) + radius);
-    out.radius[lane] = (radius + out.slack[lane]) * (1 + 1e-14);
-  }
-  return out;
-}
 
 // On a piece map minus target is linear but for the slack, so that it is largest at a corner.
 void boundPieces(const StepTrees& steps, SetGroup& group, Piece* pieces, std::size_t count,
@@ -117,33 +58,6 @@ void boundPieces(const StepTrees& steps, SetGroup& group, Piece* pieces, std::si
 
 void takeBetter(const Witness& other, Witness& best) {
   if (other.error > best.error) best = other;
-}
-
-// Neighbours stand near one another: along a curve of Morton.
-std::vector<Piece> sortedPieces(const Mesh& surface, const Points& target, double scale) {
-  const Box3 box = boundingBox(surface);
-  const double cells = 1023 / std::max({box.extent().x, box.extent().y, box.extent().z, 1e-300});
-  std::vector<std::pair<std::uint32_t, Piece>> keyed;
-  for (const Triangle& t : surface.triangles) {
-    Piece piece;
-    for (int i = 0; i < 3; ++i) {
-      piece.at[i] = scale * surface.vertices[t[i]];
-      piece.to[i] = scale * target[t[i]];
-    }
-    const Vec3 place = cells * (centroid(piece.at) / scale - box.lower);
-    std::uint32_t key = 0;
-    for (int bit = 9; bit >= 0; --bit)
-      for (int a = 0; a < 3; ++a) {
-        const auto whole = static_cast<std::uint32_t>(std::clamp(place[a], 0.0, 1023.0));
-        key = key << 1 | (whole >> bit & 1);
-      }
-    keyed.emplace_back(key, piece);
-  }
-  std::stable_sort(keyed.begin(), keyed.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<Piece> out;
-  for (auto& [key, piece] : keyed) out.push_back(piece);
-  return out;
 }
 
 class BoundarySearch {

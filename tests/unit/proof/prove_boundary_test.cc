@@ -28,8 +28,11 @@ double sampledError(const ComposedMap& map, const Mesh& mesh, const Points& targ
         u = 1 - u;
         v = 1 - v;
       }
-      const auto& [a, b, c] = mesh.triangles[t];
-      const auto at = [&](const Points& p) { return p[a] + u * (p[b] - p[a]) + v * (p[c] - p[a]); };
+      const Triangle& corners = mesh.triangles[t];
+      const auto at = [&](const Points& p) {
+        const Vec3 first = p[corners[0]];
+        return first + u * (p[corners[1]] - first) + v * (p[corners[2]] - first);
+      };
       most = std::max(most, norm(map(at(mesh.vertices)) - at(target)));
     }
   return most / diagonalOf(target);

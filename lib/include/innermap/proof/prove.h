@@ -98,4 +98,20 @@ struct BoundaryProof {
 BoundaryProof proveBoundaryError(const ComposedMap& map, const Mesh& surface, const Points& target,
                                  const ProofSettings& settings = {});
 
+// Whether the map takes no two points of a surface to one: then it is a homeomorphism of the
+// surface onto its image; and of a whole connected solid onto its own, where that has this surface
+// as its connected boundary and proveSense() finds one sign (Meisters and Olech 1963).
+struct EmbeddingProof {
+  bool proven = false;
+  std::size_t undecided = 0;   // pairs of patches that may meet, where their number was up
+  Points places;               // of the first of them, at most 16; world units of the source
+  std::uint64_t examined = 0;  // pairs
+};
+
+// Each pair of patches either lies in one box on which the map is one-to-one, or has images apart;
+// else it is split. Looks at up to four times the pairs that settings has cells. On all threads,
+// the same result for any number of them. Throws as proveBoundaryError().
+EmbeddingProof proveEmbedding(const ComposedMap& map, const Mesh& surface,
+                              const ProofSettings& settings = {});
+
 }  // namespace innermap

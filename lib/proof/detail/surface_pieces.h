@@ -1,0 +1,39 @@
+// A surface in pieces: its triangles, and parts of them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "innermap/mesh/mesh.h"
+#include "proof/detail/lane_kernels.h"
+
+namespace innermap::proof {
+
+// A triangle or a part of one, and where its corners go; scaled.
+struct Piece {
+  std::array<Vec3, 3> at, to;
+  double most = std::numeric_limits<double>::infinity();  // no error on it is larger
+};
+
+inline Vec3 centroid(const std::array<Vec3, 3>& corners) {
+  return (corners[0] + corners[1] + corners[2]) / 3;
+}
+
+// Halves across the longest edge, `times` times; 2^times are added.
+void cut(const Piece& piece, int times, std::vector<Piece>& out);
+
+// Of up to eight pieces; the last one fills what is left.
+LaneSets setsOf(const Piece* pieces, std::size_t count);
+
+// Along a curve of Morton through the box: points whose keys are near lie near one another.
+std::uint32_t curveKey(const Vec3& p, const Box3& box);
+
+// All triangles in the order of that curve.
+std::vector<Piece> sortedPieces(const Mesh& surface, const Points& target, double scale);
+
+double largestCoordinate(const Vec3& v);
+
+}  // namespace innermap::proof
