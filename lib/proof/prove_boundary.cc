@@ -23,17 +23,17 @@ constexpr std::uint64_t kBytesPerPiece = 400;
 constexpr std::size_t kBlock = 32;
 
 struct Witness {
-  Piece piece;
+  SurfacePiece piece;
   double error = -1;  // about, at the centroid
 };
 
 struct BlockPieces {
-  std::vector<Piece> pieces;
+  std::vector<SurfacePiece> pieces;
   Witness witness;
 };
 
 // On a piece map minus target is linear but for the slack, so that it is largest at a corner.
-void boundPieces(const StepTrees& steps, SetGroup& group, Piece* pieces, std::size_t count,
+void boundPieces(const StepTrees& steps, SetGroup& group, SurfacePiece* pieces, std::size_t count,
                  Witness& witness) {
   const auto alive = static_cast<std::uint8_t>((1u << count) - 1);
   group.compute(steps, setsOf(pieces, count), alive, false);
@@ -41,7 +41,7 @@ void boundPieces(const StepTrees& steps, SetGroup& group, Piece* pieces, std::si
   const LaneSets& image = group.findings(steps.count() - 1).image;
   for (std::size_t lane = 0; lane < count; ++lane) {
     if (!(group.enclosed() >> lane & 1)) continue;
-    Piece& piece = pieces[lane];
+    SurfacePiece& piece = pieces[lane];
     const Vec3 center{image.center[0][lane], image.center[1][lane], image.center[2][lane]};
     double most = 0, large = 0;
     for (int i = 0; i < 3; ++i) {
@@ -67,7 +67,7 @@ class BoundarySearch {
       : map_(map), steps_(steps), scale_(scale), diagonal_(diagonal), margin_(margin) {}
 
   // All triangles, or all open pieces cut in eight.
-  void round(std::vector<Piece> pieces, bool whole) {
+  void round(std::vector<SurfacePiece> pieces, bool whole) {
     std::vector<BlockPieces> blocks((pieces.size() + kBlock - 1) / kBlock);
     parallelBlocks(pieces.size(), kBlock, [&](std::size_t begin, std::size_t end) {
       BlockPieces& out = blocks[begin / kBlock];
@@ -83,7 +83,7 @@ class BoundarySearch {
     const double enough = std::max((1 + margin_) * seen_, kExact * diagonal_ * scale_);
     open_.clear();
     for (const BlockPieces& block : blocks)
-      for (const Piece& piece : block.pieces) {
+      for (const SurfacePiece& piece : block.pieces) {
         ++examined_;
         if (piece.most <= enough)
           settled_ = std::max(settled_, piece.most);
@@ -92,12 +92,12 @@ class BoundarySearch {
       }
   }
 
-  std::vector<Piece>& open() { return open_; }
+  std::vector<SurfacePiece>& open() { return open_; }
   std::uint64_t examined() const { return examined_; }
 
   BoundaryProof result() const {
     double most = settled_;
-    for (const Piece& piece : open_) most = std::max(most, piece.most);
+    for (const SurfacePiece& piece : open_) most = std::max(most, piece.most);
     BoundaryProof out;
     const double unit = 1 / (scale_ * diagonal_);
     out.error = most * unit * (1 + 1e-14);
@@ -110,7 +110,7 @@ class BoundarySearch {
 
  private:
   // By plain sums, at the middle and the corners.
-  void look(const Piece& piece) {
+  void look(const SurfacePiece& piece) {
     const Vec3 places[4] = {centroid(piece.at), piece.at[0], piece.at[1], piece.at[2]};
     const Vec3 goes[4] = {centroid(piece.to), piece.to[0], piece.to[1], piece.to[2]};
     for (int i = 0; i < 4; ++i) {
@@ -125,7 +125,7 @@ class BoundarySearch {
   const ComposedMap& map_;
   const StepTrees& steps_;
   const double scale_, diagonal_, margin_;
-  std::vector<Piece> open_;
+  std::vector<SurfacePiece> open_;
   std::uint64_t examined_ = 0;
   double settled_ = 0, seen_ = 0;
   Vec3 seenAt_;

@@ -54,7 +54,7 @@ Image imageOf(const LaneSets& image, std::size_t lane) {
 }
 
 // Images of pieces that stand near one another in this order.
-std::vector<Image> imagesOf(const StepTrees& steps, const std::vector<Piece>& pieces) {
+std::vector<Image> imagesOf(const StepTrees& steps, const std::vector<SurfacePiece>& pieces) {
   std::vector<Image> out(pieces.size());
   parallelBlocks(pieces.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     SetGroup group;
@@ -71,16 +71,16 @@ std::vector<Image> imagesOf(const StepTrees& steps, const std::vector<Piece>& pi
 }
 
 // Triangles, cut until their images are known.
-void cutLoosePieces(const StepTrees& steps, std::vector<Piece>& pieces,
+void cutLoosePieces(const StepTrees& steps, std::vector<SurfacePiece>& pieces,
                     std::vector<Image>& images) {
   images = imagesOf(steps, pieces);
   for (int round = 0; round < kMostCuts; ++round) {
-    std::vector<Piece> cutOnes;
+    std::vector<SurfacePiece> cutOnes;
     for (std::size_t i = 0; i < pieces.size(); ++i)
       if (!images[i].tight) cut(pieces[i], 3, cutOnes);
     if (cutOnes.empty()) return;
     const std::vector<Image> theirs = imagesOf(steps, cutOnes);
-    std::vector<Piece> allPieces;
+    std::vector<SurfacePiece> allPieces;
     std::vector<Image> allImages;
     std::size_t next = 0;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -108,12 +108,12 @@ bool apart(const Box3& a, const Box3& b) {
 }
 
 PatchTree::PatchTree(const StepTrees& steps, const Mesh& surface, double scale) {
-  std::vector<Piece> pieces = sortedPieces(surface, surface.vertices, scale);
+  std::vector<SurfacePiece> pieces = sortedPieces(surface, surface.vertices, scale);
   std::vector<Image> images;
   cutLoosePieces(steps, pieces, images);
   const Vec3 middle = scale * boundingBox(surface).center();
   std::vector<Box3> boxes;
-  for (const Piece& piece : pieces) {
+  for (const SurfacePiece& piece : pieces) {
     Box3 box;
     for (const Vec3& v : piece.at) box.add(v - middle);
     boxes.push_back(box);
@@ -140,7 +140,7 @@ PatchTree::PatchTree(const StepTrees& steps, const Mesh& surface, double scale) 
 }
 
 void PatchTree::cut(const StepTrees& steps, const std::vector<int>& leaves) {
-  std::vector<Piece> pieces;
+  std::vector<SurfacePiece> pieces;
   for (const int leaf : leaves) {
     nodes_[leaf].first = static_cast<int>(nodes_.size() + pieces.size());
     nodes_[leaf].count = static_cast<int>(kLanes);

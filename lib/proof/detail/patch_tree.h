@@ -14,7 +14,7 @@ class PatchTree {
   struct Node {
     Box3 at, image;            // scaled; the image's box is infinite where it is not known
     int first = 0, count = 0;  // children; none of a leaf
-    Piece piece;               // of a leaf
+    SurfacePiece piece;        // of a leaf
   };
 
   // Leaves are triangles. Boxes of images are built from those of the leaves.

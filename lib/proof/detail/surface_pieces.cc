@@ -7,7 +7,7 @@
 
 namespace innermap::proof {
 
-void cut(const Piece& piece, int times, std::vector<Piece>& out) {
+void cut(const SurfacePiece& piece, int times, std::vector<SurfacePiece>& out) {
   if (times == 0) {
     out.push_back(piece);
     return;
@@ -24,7 +24,7 @@ void cut(const Piece& piece, int times, std::vector<Piece>& out) {
   const int a = longest, b = (longest + 1) % 3;
   const Vec3 middle = 0.5 * (piece.at[a] + piece.at[b]), goes = 0.5 * (piece.to[a] + piece.to[b]);
   for (const int replaced : {a, b}) {
-    Piece half = piece;
+    SurfacePiece half = piece;
     half.at[replaced] = middle;
     half.to[replaced] = goes;
     cut(half, times - 1, out);
@@ -35,7 +35,7 @@ double largestCoordinate(const Vec3& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-LaneSets setsOf(const Piece* pieces, std::size_t count) {
+LaneSets setsOf(const SurfacePiece* pieces, std::size_t count) {
   LaneSets out{};
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const std::array<Vec3, 3>& at = pieces[std::min(lane, count - 1)].at;
@@ -65,13 +65,13 @@ std::uint32_t curveKey(const Vec3& p, const Box3& box) {
   return key;
 }
 
-std::vector<Piece> sortedPieces(const Mesh& surface, const Points& target, double scale) {
+std::vector<SurfacePiece> sortedPieces(const Mesh& surface, const Points& target, double scale) {
   Box3 box;
   for (const Triangle& t : surface.triangles)
     for (const int v : t) box.add(scale * surface.vertices[v]);
-  std::vector<std::pair<std::uint32_t, Piece>> keyed;
+  std::vector<std::pair<std::uint32_t, SurfacePiece>> keyed;
   for (const Triangle& t : surface.triangles) {
-    Piece piece;
+    SurfacePiece piece;
     for (int i = 0; i < 3; ++i) {
       piece.at[i] = scale * surface.vertices[t[i]];
       piece.to[i] = scale * target[t[i]];
@@ -80,7 +80,7 @@ std::vector<Piece> sortedPieces(const Mesh& surface, const Points& target, doubl
   }
   std::stable_sort(keyed.begin(), keyed.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<Piece> out;
+  std::vector<SurfacePiece> out;
   for (auto& [key, piece] : keyed) out.push_back(piece);
   return out;
 }

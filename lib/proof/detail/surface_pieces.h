@@ -13,7 +13,7 @@
 namespace innermap::proof {
 
 // A triangle or a part of one, and where its corners go; scaled.
-struct Piece {
+struct SurfacePiece {
   std::array<Vec3, 3> at, to;
   double most = std::numeric_limits<double>::infinity();  // no error on it is larger
 };
@@ -23,16 +23,16 @@ inline Vec3 centroid(const std::array<Vec3, 3>& corners) {
 }
 
 // Halves across the longest edge, `times` times; 2^times are added.
-void cut(const Piece& piece, int times, std::vector<Piece>& out);
+void cut(const SurfacePiece& piece, int times, std::vector<SurfacePiece>& out);
 
 // Of up to eight pieces; the last one fills what is left.
-LaneSets setsOf(const Piece* pieces, std::size_t count);
+LaneSets setsOf(const SurfacePiece* pieces, std::size_t count);
 
 // Along a curve of Morton through the box: points whose keys are near lie near one another.
 std::uint32_t curveKey(const Vec3& p, const Box3& box);
 
 // All triangles in the order of that curve.
-std::vector<Piece> sortedPieces(const Mesh& surface, const Points& target, double scale);
+std::vector<SurfacePiece> sortedPieces(const Mesh& surface, const Points& target, double scale);
 
 double largestCoordinate(const Vec3& v);
 
