@@ -78,7 +78,10 @@ Sifted sift(const PatchTree& tree, const Pair* begin, const Pair* end) {
     const PatchTree::Node &a = tree[pair->first], &b = tree[pair->second];
     if (pair->first != pair->second && apart(a.image, b.image)) continue;
     const double together = diagonal(joined(a.at, b.at));
-    const bool near = together <= kMostApart * std::max(diagonal(a.at), diagonal(b.at));
+    // A box about both holds one about each.
+    const bool hopeless = pair->first != pair->second && (a.folds || b.folds);
+    const bool near =
+        !hopeless && together <= kMostApart * std::max(diagonal(a.at), diagonal(b.at));
     (near ? out.near : out.left).push_back(*pair);
   }
   return out;
@@ -194,6 +197,8 @@ EmbeddingProof proveEmbedding(const ComposedMap& map, const Mesh& surface,
                    static_cast<double>(out.examined) / static_cast<double>(limit));
     out.examined += pairs.size();
     const std::vector<Pair> left = undecidedPairs(steps, tree, pairs);
+    for (const Pair& pair : left)
+      if (pair.first == pair.second) tree.setFolds(pair.first);
     cutLeaves(steps, left, tree);
     pairs = splitPairs(tree, left);
   }

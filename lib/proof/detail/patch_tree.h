@@ -15,12 +15,15 @@ class PatchTree {
     Box3 at, image;            // scaled; the image's box is infinite where it is not known
     int first = 0, count = 0;  // children; none of a leaf
     SurfacePiece piece;        // of a leaf
+    bool folds = false;        // the map was not found to be one-to-one on a box about it
   };
 
   // Leaves are triangles. Boxes of images are built from those of the leaves.
   PatchTree(const StepTrees& steps, const Mesh& surface, double scale);
 
   const Node& operator[](int node) const { return nodes_[node]; }
+
+  void setFolds(int node) { nodes_[node].folds = true; }
 
   // Cuts these leaves in eight.
   void cut(const StepTrees& steps, const std::vector<int>& leaves);

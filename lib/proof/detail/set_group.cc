@@ -56,11 +56,6 @@ std::uint8_t evenLanes(const LaneSets& sets, std::uint8_t lanes) {
   return lanes & lanesBelow(sets.radius, kMostUneven * least);
 }
 
-struct GroupBall {
-  Vec3 center;
-  double radius = 0;
-};
-
 GroupBall ballAbout(const LaneSets& sets) {
   Box3 box;
   for (std::size_t lane = 0; lane < kLanes; ++lane) box.add(centerOf(sets, lane));
@@ -96,12 +91,28 @@ StepTrees::StepTrees(const ComposedMap& map, double scale) {
   for (const HarmonicMap& step : map.steps()) trees_.emplace_back(step.field(), scale);
 }
 
-// An expansion that holds on all sets. Nodes of the tree are up to three times as large as the
-// group, so that most of what is near a node is far from the group: it is expanded about it once,
-// not about each set.
-const StepExpansion& SetGroup::expansionAbout(const FieldTree& tree, const LaneSets& sets) {
-  const GroupBall ball = ballAbout(sets);
-  const StepExpansion& from = tree.about(ball.center, ball.radius);
+// Nodes of the tree are up to three times as large as the group, so that most of what is near a
+// node is far from the group: it is expanded about it once, not about each set.
+void SetGroup::expandAbout(const FieldTree& tree, const StepExpansion& from,
+                           const GroupBall& ball) {
+  const LaneSets one = oneSet(ball);
+  LaneRemainders added, none;
+  far_.resize(farOfOwn_.size());
+  classify(tree.charges(), farOfOwn_.data(), farOfOwn_.size(), one, far_.data(), added, none);
+  add(added, none);
+  addInherited(from, one, added);
+  moveExpansion(from, one, coefficients_.data());
+  own_.center = ball.center;
+  own_.coefficients.resize(kCoefficients);
+  for (std::size_t i = 0; i < kCoefficients; ++i) own_.coefficients[i] = coefficients_[i * kLanes];
+  own_.remainder = {added.gradient[0], added.value[0], added.gradientMagnitude[0],
+                    added.valueMagnitude[0]};
+  addCharges(tree.charges(), farOfOwn_.data(), farOfOwn_.size(), own_);
+}
+
+// Whether it pays to expand about the group what is near the node and far from the group.
+bool SetGroup::sortCharges(const FieldTree& tree, const StepExpansion& from,
+                           const GroupBall& ball) {
   own_.near.clear();
   farOfOwn_.clear();
   const double far = ball.radius / kFarRatio * (1 + 1e-12);
@@ -110,33 +121,23 @@ const StepExpansion& SetGroup::expansionAbout(const FieldTree& tree, const LaneS
     const bool isFar = squaredNorm(Vec3{q[0], q[1], q[2]} - ball.center) > far * far;
     (isFar ? farOfOwn_ : own_.near).push_back(j);
   }
-  if (farOfOwn_.size() < 2 * kLanes) return from;
-  const LaneSets one = oneSet(ball);
-  LaneRemainders added, none;
-  far_.resize(farOfOwn_.size());
-  classify(tree.charges(), farOfOwn_.data(), farOfOwn_.size(), one, far_.data(), added, none);
-  addInherited(from, one, added);
-  moveExpansion(from, one, coefficients_.data());
-  own_.center = ball.center;
-  own_.coefficients.resize(kCoefficients);
-  for (std::size_t i = 0; i < kCoefficients; ++i) own_.coefficients[i] = coefficients_[i * kLanes];
-  own_.remainder = {added.gradient[0] + none.gradient[0], added.value[0] + none.value[0],
-                    added.gradientMagnitude[0] + none.gradientMagnitude[0],
-                    added.valueMagnitude[0] + none.valueMagnitude[0]};
-  addCharges(tree.charges(), farOfOwn_.data(), farOfOwn_.size(), own_);
-  return own_;
+  return farOfOwn_.size() >= 2 * kLanes;
 }
 
 // False where nothing is known of any lane that is needed.
 bool SetGroup::computeStep(const FieldTree& tree, LaneSets& sets, std::uint8_t needed,
                            LaneFindings& out) {
   fillUnused(sets, needed);
-  const StepExpansion& from = expansionAbout(tree, sets);
+  const GroupBall ball = ballAbout(sets);
+  const StepExpansion& node = tree.about(ball.center, ball.radius);
+  const bool pays = sortCharges(tree, node, ball);
+  const StepExpansion& from = pays ? own_ : node;
   const std::size_t count = from.near.size();
   far_.resize(count);
   LaneRemainders remainder, near;
   classify(tree.charges(), from.near.data(), count, sets, far_.data(), remainder, near);
   if (!(lanesBelow(near.gradient, std::numeric_limits<double>::infinity()) & needed)) return false;
+  if (pays) expandAbout(tree, node, ball);
   addInherited(from, sets, remainder);
   add(remainder, near);
   for (std::size_t lane = 0; lane < kLanes; ++lane) {

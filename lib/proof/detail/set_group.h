@@ -23,6 +23,12 @@ class StepTrees {
   std::vector<FieldTree> trees_;
 };
 
+// Holds all sets of a group.
+struct GroupBall {
+  Vec3 center;
+  double radius = 0;
+};
+
 // All steps, one after the other. Its memory serves again.
 class SetGroup {
  public:
@@ -39,7 +45,8 @@ class SetGroup {
 
  private:
   using Numbers = std::vector<double, tbb::cache_aligned_allocator<double>>;
-  const StepExpansion& expansionAbout(const FieldTree& tree, const LaneSets& sets);
+  void expandAbout(const FieldTree& tree, const StepExpansion& from, const GroupBall& ball);
+  bool sortCharges(const FieldTree& tree, const StepExpansion& from, const GroupBall& ball);
   bool computeStep(const FieldTree& tree, LaneSets& sets, std::uint8_t needed, LaneFindings& out);
 
   std::vector<LaneFindings> findings_;
