@@ -23,7 +23,8 @@ using namespace proof;
 // Pairs that one thread looks at in one go.
 constexpr std::size_t kSiftBlock = 4096, kTestBlock = 128;
 constexpr std::size_t kMostPlaces = 16;
-constexpr std::uint64_t kBytesPerPair = 250;
+constexpr std::uint64_t kBytesPerPair = 120, kBytesPerPatch = 700;
+constexpr std::uint64_t kPairsPerPatch = 4;
 // Pairs whose common box is larger than this many of them are split at once.
 constexpr double kMostApart = 3;
 
@@ -182,25 +183,27 @@ EmbeddingProof proveEmbedding(const ComposedMap& map, const Mesh& surface,
   if (surface.triangles.empty())
     throw DataError(surface.name + ": has no triangles, so that there is nothing to prove");
   validate(surface);
-  const std::uint64_t limit =
-      std::max<std::uint64_t>(4 * cellLimit(map, settings), 64 * surface.triangles.size());
+  const std::uint64_t patches =
+      std::max<std::uint64_t>(cellLimit(map, settings), 2 * surface.triangles.size());
+  const std::uint64_t limit = kPairsPerPatch * patches / map.steps().size();
   requireMemory("proving that the boundary does not meet itself",
-                FieldTree::memory(map.sources()) + kBytesPerPair * limit,
+                FieldTree::memory(map.sources()) + kBytesPerPatch * patches + kBytesPerPair * limit,
                 "look at fewer cells a charge");
   const double scale = proofScale(boundingBox(surface));
   const StepTrees steps(map, scale);
-  PatchTree tree(steps, surface, scale);
+  PatchTree tree(steps, surface, scale, patches);
   EmbeddingProof out;
   std::vector<Pair> pairs = {{0, 0}};
-  while (!pairs.empty() && out.examined + pairs.size() <= limit) {
+  while (!pairs.empty()) {
     reportProgress("proving that the boundary does not meet itself",
-                   static_cast<double>(out.examined) / static_cast<double>(limit));
+                   std::min(1.0, static_cast<double>(out.examined) / static_cast<double>(limit)));
     out.examined += pairs.size();
-    const std::vector<Pair> left = undecidedPairs(steps, tree, pairs);
-    for (const Pair& pair : left)
+    pairs = undecidedPairs(steps, tree, pairs);
+    if (out.examined + kLanes * pairs.size() > limit || tree.size() > 2 * patches) break;
+    for (const Pair& pair : pairs)
       if (pair.first == pair.second) tree.setFolds(pair.first);
-    cutLeaves(steps, left, tree);
-    pairs = splitPairs(tree, left);
+    cutLeaves(steps, pairs, tree);
+    pairs = splitPairs(tree, pairs);
   }
   out.undecided = pairs.size();
   for (std::size_t i = 0; i < std::min(pairs.size(), kMostPlaces); ++i)

@@ -70,15 +70,16 @@ std::vector<Image> imagesOf(const StepTrees& steps, const std::vector<SurfacePie
   return out;
 }
 
-// Triangles, cut until their images are known.
-void cutLoosePieces(const StepTrees& steps, std::vector<SurfacePiece>& pieces,
+// Triangles, cut until their images are known, or there would be more than `most`.
+void cutLoosePieces(const StepTrees& steps, std::size_t most, std::vector<SurfacePiece>& pieces,
                     std::vector<Image>& images) {
   images = imagesOf(steps, pieces);
   for (int round = 0; round < kMostCuts; ++round) {
     std::vector<SurfacePiece> cutOnes;
     for (std::size_t i = 0; i < pieces.size(); ++i)
       if (!images[i].tight) cut(pieces[i], 3, cutOnes);
-    if (cutOnes.empty()) return;
+    if (cutOnes.empty() || pieces.size() + cutOnes.size() > most) return;
+    throwIfCancelled();
     const std::vector<Image> theirs = imagesOf(steps, cutOnes);
     std::vector<SurfacePiece> allPieces;
     std::vector<Image> allImages;
@@ -107,10 +108,10 @@ bool apart(const Box3& a, const Box3& b) {
   return false;
 }
 
-PatchTree::PatchTree(const StepTrees& steps, const Mesh& surface, double scale) {
+PatchTree::PatchTree(const StepTrees& steps, const Mesh& surface, double scale, std::size_t most) {
   std::vector<SurfacePiece> pieces = sortedPieces(surface, surface.vertices, scale);
   std::vector<Image> images;
-  cutLoosePieces(steps, pieces, images);
+  cutLoosePieces(steps, most, pieces, images);
   const Vec3 middle = scale * boundingBox(surface).center();
   std::vector<Box3> boxes;
   for (const SurfacePiece& piece : pieces) {

@@ -18,9 +18,11 @@ class PatchTree {
     bool folds = false;        // the map was not found to be one-to-one on a box about it
   };
 
-  // Leaves are triangles. Boxes of images are built from those of the leaves.
-  PatchTree(const StepTrees& steps, const Mesh& surface, double scale);
+  // Leaves are triangles, cut until their images are known well, or there would be more than
+  // `most`. Boxes of images are built from those of the leaves.
+  PatchTree(const StepTrees& steps, const Mesh& surface, double scale, std::size_t most);
 
+  std::size_t size() const { return nodes_.size(); }
   const Node& operator[](int node) const { return nodes_[node]; }
 
   void setFolds(int node) { nodes_[node].folds = true; }
