@@ -109,8 +109,9 @@ struct EmbeddingProof {
 };
 
 // Each pair of patches either lies in one box on which the map is one-to-one, or has images apart;
-// else it is split. Looks at up to four times the pairs that settings has cells. On all threads,
-// the same result for any number of them. Throws as proveBoundaryError().
+// else it is split. Looks at up to four times the pairs that settings has cells, shared among the
+// map's steps. On all threads, the same result for any number of them. Throws as
+// proveBoundaryError().
 EmbeddingProof proveEmbedding(const ComposedMap& map, const Mesh& surface,
                               const ProofSettings& settings = {});
 
