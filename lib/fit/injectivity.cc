@@ -23,6 +23,20 @@ void visitDeterminants(const std::string& of, Figures& figures, const Visit& vis
   visit(of + "_least", figures.least, any);
 }
 
+template <class Figures, class Visit>
+void visitProof(Figures& proof, const Visit& visit) {
+  const bool any = proof.cells > 0;
+  visit("proof_cells", proof.cells, any);
+  visit("proof_undecided", proof.undecided, any);
+  visit("proof_negative", proof.negative, any);
+  visit("proof_proven_share", proof.proven, any);
+  visit("proof_undecided_share", proof.undecidedShare, any);
+  visit("proof_negative_share", proof.negativeShare, any);
+  visit("proof_mirrored", proof.mirrored, any);
+  visit("proof_least", proof.least, any);
+  visit("proof_boundary_error", proof.boundaryError, proof.boundaryError > 0);
+}
+
 template <class Known, class Visit>
 void visitFigures(Known& known, const Visit& visit) {
   visitDeterminants("inside", known.inside, visit);
@@ -39,6 +53,7 @@ void visitFigures(Known& known, const Visit& visit) {
   visitDeterminants("cells", known.cells, visit);
   visit("cells_share", known.cells.share, cells);
   visit("cells_overlaps", known.cells.overlaps, known.cells.overlaps >= 0);
+  visitProof(known.proof, visit);
 }
 
 }  // namespace
@@ -62,7 +77,10 @@ void DeterminantFigures::add(const DeterminantFigures& others) {
 Facts injectivityFacts(const Injectivity& known) {
   Facts out;
   visitFigures(known, [&](const std::string& name, const auto& value, bool is) {
-    if (is) out.emplace_back(std::string(kPrefix) + name, fmt::format("{}", value));
+    using Value = std::decay_t<decltype(value)>;
+    using Number = std::conditional_t<std::is_same_v<Value, bool>, int, Value>;
+    if (is)
+      out.emplace_back(std::string(kPrefix) + name, fmt::format("{}", static_cast<Number>(value)));
   });
   return out;
 }

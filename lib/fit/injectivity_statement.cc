@@ -62,6 +62,50 @@ std::string determinants(const Injectivity& known) {
   return out;
 }
 
+// "3 cells, 0.1% of the solid at most, "
+std::string cellsOf(std::size_t count, double share) {
+  return fmt::format("{} cell{}, {} of the solid at most, ", count, count == 1 ? "" : "s",
+                     percent(share));
+}
+
+std::string proof(const ProofFigures& p) {
+  if (p.cells == 0) return "";
+  const char* sign = p.mirrored ? "<" : ">";
+  std::string out =
+      p.whole() ? fmt::format(
+                      "Proven: det J {} 0 everywhere in the solid, on {} cells (size {:.3g} "
+                      "at least). ",
+                      sign, p.cells, p.least)
+                : fmt::format("Proven: det J {} 0 in {:.6g}% of the solid at least, on {} cells. ",
+                              sign, 100 * p.proven, p.cells - p.undecided - p.negative);
+  if (p.negative > 0)
+    out += "On " + cellsOf(p.negative, p.negativeShare) + "it has the other sign everywhere. ";
+  if (p.undecided > 0) out += "On " + cellsOf(p.undecided, p.undecidedShare) + "it is undecided. ";
+  if (p.boundaryError > 0)
+    out += fmt::format(
+        "No point of the boundary is farther than {:.3g} of the target's diagonal from where it "
+        "should be. ",
+        p.boundaryError);
+  return out;
+}
+
+// The number of preimages is a theorem where the target's winding numbers are those of the image.
+bool countsPreimages(const Injectivity& known) {
+  return known.proof.cells > 0 && known.proof.boundaryError > 0 && known.source.pairs == 0;
+}
+
+std::string preimages(const ProofFigures& p) {
+  std::string out = fmt::format(
+      "So each point farther than {:.3g} from the target's surface has as many preimages as that "
+      "winds about it: one inside, none outside",
+      p.boundaryError);
+  if (!p.whole())
+    out +=
+        "; where nothing of the cells that are undecided or turned over goes, for these are not "
+        "counted";
+  return out + ". ";
+}
+
 std::string times(int count) {
   return count == 1 ? "once" : fmt::format("{} time{}", count, std::abs(count) == 1 ? "" : "s");
 }
@@ -124,7 +168,9 @@ bool mirrors(const Injectivity& known) {
          folded == known.inside.checked + known.boundary.checked + known.voxels.checked;
 }
 
-bool folds(const Injectivity& known) { return foldedPoints(known) > 0 && !mirrors(known); }
+bool folds(const Injectivity& known) {
+  return (foldedPoints(known) > 0 && !mirrors(known)) || known.proof.negative > 0;
+}
 
 bool windsOtherwise(const DegreeFigures& degree) { return degree.least < 0 || degree.greatest > 1; }
 
@@ -140,14 +186,18 @@ std::string conclusion(const Injectivity& known) {
         "So the map is not one-to-one: its boundary winds {} about a point, and what goes there "
         "is turned over. ",
         times(degree.least));
-  if (notOneToOne(known)) return out;
+  if (countsPreimages(known)) out += preimages(known.proof);
+  if (notOneToOne(known) || known.proof.whole()) return out;
   if (known.inside.checked == 0 && known.voxels.checked == 0)
     return "Whether the map is one-to-one is not known. ";
   if (mirrors(known))
-    return "The map mirrors the solid, as its target is inside out; nothing that was checked rules "
+    return out +
+           "The map mirrors the solid, as its target is inside out; nothing that was checked rules "
            "out that it is one-to-one. ";
   if (degree.checked == 0 || degree.least != 1)
-    return "Nothing that was checked rules out that the map is one-to-one; nothing proves it. ";
+    return out +
+           "Nothing that was checked rules out that the map is one-to-one; nothing proves it. ";
+  if (countsPreimages(known)) return out;
   return fmt::format(
       "Where det J > 0 everywhere inside, as many points go to a place as the image of the "
       "boundary "
@@ -174,8 +224,8 @@ std::string cells(const CellFigures& cells) {
 bool notOneToOne(const Injectivity& known) { return folds(known) || windsOtherwise(known.degree); }
 
 std::string injectivityStatement(const Injectivity& known) {
-  std::string out = determinants(known) + boundary(known) + surfaces(known) + conclusion(known) +
-                    cells(known.cells);
+  std::string out = proof(known.proof) + determinants(known) + boundary(known) + surfaces(known) +
+                    conclusion(known) + cells(known.cells);
   out.pop_back();
   return out;
 }
@@ -190,7 +240,14 @@ std::string injectivityLine(const Injectivity& known) {
       positive.push_back(fmt::format("{} {}", f.checked, kind.name));
   }
   if (positive.empty() && folded.empty()) return "one-to-one: not checked";
-  std::string out = notOneToOne(known) ? "not one-to-one" : "one-to-one as far as checked";
+  const ProofFigures& p = known.proof;
+  std::string out = notOneToOne(known) ? "not one-to-one"
+                    : p.whole() && countsPreimages(known)
+                        ? fmt::format("one-to-one, proven deeper than {:.3g}", p.boundaryError)
+                    : p.whole() ? "nowhere folded, proven"
+                                : "one-to-one as far as checked";
+  if (p.negative > 0) out += fmt::format("; proven to fold on {} cells", p.negative);
+  if (p.undecided > 0) out += fmt::format("; {} of the solid undecided", percent(p.undecidedShare));
   if (!folded.empty()) out += "; folded: " + listed(folded);
   if (!positive.empty()) out += "; no fold at " + listed(positive);
   if (windsOtherwise(known.degree))

@@ -101,6 +101,14 @@ std::vector<Setting> describe(FitMapSettings& s) {
                           "harmonic map",
                           100 * kManyFolds, 100 * kManyOutside)),
       Setting("max_steps", "N", &s.maxSteps, "steps at most").from(1, 256).rare(),
+      Setting("prove", "WHAT",
+              choiceOf<Prove>(&s.prove, {{"off", Prove::off}, {"core", Prove::core}}),
+              "core: where nothing folds, on whole cells, and how far the boundary is off at most; "
+              "off: only points are checked"),
+      Setting("proof_cells", "N", &s.proofCells,
+              "cells that {prove} looks at a charge before it leaves the rest undecided")
+          .from(1, 1e6)
+          .rare(),
       seedSetting(&s.seed)};
 }
 

@@ -190,6 +190,26 @@ Figures stepFigures(const std::vector<MapStep>& steps) {
        when(!steps.empty(), columns(steps, step))});
 }
 
+Figures proofFigures(const ProofFigures& proof) {
+  return {
+      {"proof_cells", proof.cells, "cells of the proof", "that cover the solid"},
+      {"proof_undecided", proof.undecided, "cells undecided", "of which nothing is proven"},
+      {"proof_negative", proof.negative, "cells folded", "everywhere, proven"},
+      {"proof_proven_share", proof.proven, "proven", "not folded, share of the volume, at least",
+       kShare},
+      {"proof_undecided_share", proof.undecidedShare, "undecided", "share of the volume, at most",
+       kShare},
+      {"proof_negative_share", proof.negativeShare, "proven folded", "share of the volume, at most",
+       kShare},
+      {"proof_mirrored", proof.mirrored, "mirrored", "the map turns left into right everywhere"},
+      {"proof_least", proof.least, "least det J", "its size where its sign is proven, at least"},
+      Figure("proof_boundary_error", proof.boundaryError, "boundary error, proven",
+             "no point of the boundary is farther off", kDiagonals)
+          .when(proof.boundaryError > 0),
+      {"proof_places", proof.places, "cells not proven", "x, y, z of the first, in the source",
+       FigureUnit::length}};
+}
+
 Figures figures(const Injectivity& known) {
   const DegreeFigures& degree = known.degree;
   return together(
@@ -222,8 +242,9 @@ Figures figures(const Injectivity& known) {
             .when(known.cells.checked > 0),
         Figure("cells_overlaps", known.cells.overlaps, "cells' overlaps",
                "places where the image of their boundary runs through itself")
-            .when(known.cells.overlaps >= 0),
-        {"source_crossings_at", known.source.places, "source's crossings", "x, y, z of the first",
+            .when(known.cells.overlaps >= 0)},
+       when(known.proof.cells > 0, proofFigures(known.proof)),
+       {{"source_crossings_at", known.source.places, "source's crossings", "x, y, z of the first",
          FigureUnit::length},
         {"target_crossings_at", known.target.places, "target's crossings", "x, y, z of the first",
          FigureUnit::length}}});

@@ -19,8 +19,9 @@ constexpr std::size_t kInside = 20000, kPlaces = 16;
 // What a thousand charges fold is near what the whole fit does, where that is so much: no need to
 // go on to it.
 constexpr double kHopelessFolds = 2 * kManyFolds;
-constexpr double kWorthIt = 0.2;       // of one map's folds may be left by steps
-constexpr double kSumAccuracy = 1e-7;  // of the target's diagonal, of what is checked inside
+constexpr double kWorthIt = 0.2;        // of one map's folds may be left by steps
+constexpr double kProofSeconds = 5e-4;  // a charge, on two cores; most take less
+constexpr double kSumAccuracy = 1e-7;   // of the target's diagonal, of what is checked inside
 
 // A fit with a number of charges.
 FitOutcome outcomeOf(const FitResult& fit, const FitProblem& problem, const ShellSettings& shell) {
@@ -159,7 +160,22 @@ Injectivity MapFitter::injectivityOf(const FitOutcome& out) {
     known.boundaryError = out.error.p99;
     known.degree = boundaryDegree(out.map, pair_, *target_, s);
   });
+  if (settings_.prove != Prove::off)
+    timed(seconds, "proof", [&] { known.proof = proofOf(out.map); });
   return known;
+}
+
+// Needs time in proportion to the charges, and is left where that is out.
+ProofFigures MapFitter::proofOf(const ComposedMap& map) {
+  if (outOfTime(kProofSeconds * static_cast<double>(map.sources()))) return {};
+  ProofSettings s;
+  s.cellsPerCharge = settings_.proofCells;
+  try {
+    return proveMap(map, pair_, s);
+  } catch (const DataError& e) {
+    warnings.push_back(std::string("nothing is proven: ") + e.what());
+    return {};
+  }
 }
 
 // Onto a target that is turned inside out somewhere no map is one-to-one.

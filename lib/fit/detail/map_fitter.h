@@ -59,6 +59,7 @@ class MapFitter {
   Injectivity injectivityOf(const FitOutcome& out);
 
  private:
+  ProofFigures proofOf(const ComposedMap& map);
   bool mayTakeSteps() const;
   const Points& inside();
   MappedPoints insideOf(const ComposedMap& map);

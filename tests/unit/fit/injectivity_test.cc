@@ -195,8 +195,48 @@ TEST(Injectivity, DeterminantsAreCounted) {
   EXPECT_EQ(sum.least, -1);
 }
 
+ProofFigures proven() {
+  ProofFigures p;
+  p.cells = 5000;
+  p.proven = 1;
+  p.least = 0.01;
+  p.boundaryError = 0.004;
+  return p;
+}
+
+TEST(Injectivity, AProofSaysWhatFollowsAndTakesThePlaceOfWhatPointsSuggest) {
+  Injectivity known = sound();
+  known.proof = proven();
+  EXPECT_FALSE(notOneToOne(known));
+  EXPECT_TRUE(says(known, "Proven: det J > 0 everywhere in the solid, on 5000 cells"));
+  EXPECT_TRUE(says(known, "each point farther than 0.004 from the target's surface has as many"));
+  EXPECT_FALSE(says(known, kUnproved));
+  EXPECT_FALSE(says(known, kThen));
+  EXPECT_EQ(injectivityLine(known).substr(0, 39), "one-to-one, proven deeper than 0.004; n");
+  known.source.pairs = 3;  // the boundary's values jump where parts cross
+  EXPECT_FALSE(says(known, "as many"));
+  EXPECT_EQ(injectivityLine(known).substr(0, 23), "nowhere folded, proven;");
+}
+
+TEST(Injectivity, CellsThatAreUndecidedOrFoldedAreNoProof) {
+  Injectivity known = sound();
+  known.proof = proven();
+  known.proof.undecided = 7;
+  known.proof.undecidedShare = 0.001;
+  EXPECT_FALSE(notOneToOne(known));
+  EXPECT_FALSE(known.proof.whole());
+  EXPECT_TRUE(says(known, "On 7 cells, 0.1% of the solid at most, it is undecided."));
+  EXPECT_TRUE(says(known, "where nothing of the cells that are undecided or turned over goes"));
+  known.proof.negative = 2;
+  EXPECT_TRUE(notOneToOne(known));
+  EXPECT_TRUE(says(known, kNot));
+}
+
 TEST(Injectivity, FactsGiveTheFiguresBack) {
   Injectivity known = sound();
+  known.proof = proven();
+  known.proof.mirrored = true;
+  known.proof.undecided = 3;
   known.inside.folded = 3;
   known.inside.foldedAtOverlap = 2;
   known.inside.least = -0.1;

@@ -12,6 +12,7 @@
 #include "innermap/field/harmonic_field.h"
 #include "innermap/fit/boundary_pair.h"
 #include "innermap/mesh/check.h"
+#include "innermap/proof/prove.h"
 
 namespace innermap {
 
@@ -70,7 +71,26 @@ struct SelfIntersectionFigures {
   Points places;          // the first of them, at most 16, world units
 };
 
+// What is proven of the solid as a whole; docs/method.md, "Proofs". Volumes are shares of the
+// source's.
+struct ProofFigures {
+  std::size_t cells = 0;                    // that cover the solid; none: no proof was tried
+  std::size_t undecided = 0, negative = 0;  // of these: nothing is known; folded everywhere on them
+  double proven = 0;                        // at least: det J has one sign there
+  double undecidedShare = 0, negativeShare = 0;  // at most
+  bool mirrored = false;                         // that sign is negative
+  double least = 0;                              // of |det J| where its sign is proven
+  // No point of the boundary is farther from where it should be, fraction of the target's diagonal;
+  // 0: not known. Of a source whose parts overlap of what is exposed, as its solid knows that.
+  double boundaryError = 0;
+  Points places;  // of cells that are negative, then undecided, the largest first; at most 16
+
+  // det J has one sign everywhere.
+  bool whole() const { return cells > 0 && undecided + negative == 0; }
+};
+
 struct Injectivity {
+  ProofFigures proof;
   DeterminantFigures inside;    // random, spread evenly
   DeterminantFigures boundary;  // random points of it, uniform by area
   DeterminantFigures voxels;    // with their centre inside; of a grid, when there is one
@@ -97,6 +117,10 @@ std::string injectivityLine(const Injectivity& known);
 // back; what facts do not say stays as it is in `known`.
 Facts injectivityFacts(const Injectivity& known);
 void readInjectivity(const Facts& facts, Injectivity& known);
+
+// Proves what it can; see proof/prove.h. Throws what that does.
+ProofFigures proveMap(const ComposedMap& map, const BoundaryPair& boundary,
+                      const ProofSettings& settings = {});
 
 // The self-intersections of a mesh that was checked.
 SelfIntersectionFigures selfIntersectionFigures(const MeshReport& check);
