@@ -92,13 +92,6 @@ CellFile CellCollector::finish() {
   return std::move(file);
 }
 
-void failAt(const FileBytes& file, std::size_t byte, const std::string& what) {
-  const auto line = std::count(
-      file.bytes.begin(),
-      file.bytes.begin() + static_cast<std::ptrdiff_t>(std::min(byte, file.bytes.size())), '\n');
-  throw FileError(file.path, fmt::format("line {}: {}", line + 1, what));
-}
-
 const CellField* findField(const std::vector<CellField>& fields, std::string_view name) {
   for (const CellField& field : fields)
     if (field.name == name && field.components == 1) return &field;

@@ -110,7 +110,8 @@ std::vector<BadFile> badFiles() {
       {"cut.stl", facet, ""},
       {"corners.stl", facet + "endloop\nendfacet\nendsolid\n", "1"},
       {"keyword.stl", "solid a\nfacets\n", ""},
-      {"number.stl", "solid a\nvertex 0 zero 0\n", "'zero'"},
+      {"number.stl", "solid a\nfacet normal 0 0 1\nvertex 0 zero 0\n", "'zero'"},
+      {"facet.stl", "solid a\nvertex 0 0 0\n", "line 2"},
       {"mesh.xyz", "0 0 0\n", ""},
       {"mesh", "0 0 0\n", ""},
   };

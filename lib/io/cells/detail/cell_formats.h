@@ -51,9 +51,6 @@ class CellCollector {
   std::uint64_t claimed_ = 0;
 };
 
-// Throws FileError: "path: line 12: what", by the lines before the byte.
-[[noreturn]] void failAt(const FileBytes& file, std::size_t byte, const std::string& what);
-
 CellFile readVtu(const FileBytes& file);
 CellFile readMsh(const FileBytes& file);
 CellFile readMedit(const FileBytes& file);

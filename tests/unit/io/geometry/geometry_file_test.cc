@@ -227,12 +227,12 @@ TEST(GeometryFile, BadInput) {
   lying = kPly;
   lying.replace(lying.find("3 1 2 3 8"), 9, "3 1 2 4 8");
   expectError("x.ply", lying, "uses vertex 4");
-  expectError("x.off", "OFF\n9 9 9\n0 0 0\n", "fit in the file");
-  expectError("x.stl", std::string(84, '\xff'), "do not fit");
+  expectError("x.off", "OFF\n9 9 9\n0 0 0\n", "do not fit");
+  expectError("x.stl", std::string(84, '\xff'), "cut short");
   const std::string facet = "facet normal 0 0 1\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n";
-  expectError("x.stl", "solid a\n" + facet, "does not end");
+  expectError("x.stl", "solid a\n" + facet, "cut short");
   expectError("x.stl", "solid a\n" + facet + facet + "endfacet\n", "within another");
-  expectError("x.stl", "solid a\nendfacet\n", "not three corners");
+  expectError("x.stl", "solid a\nendfacet\n", "three corners");
   expectError("x.xyz", "0 0 0\n", "unknown extension");
   EXPECT_THROW(requireWritableAs("a.obj", "b.ply"), FileError);
   EXPECT_THROW(requireWritableAs("a.vtu", "b.ply"), FileError);
