@@ -41,10 +41,10 @@ auto withType(PlyType type, const Body& body) {
 }
 
 template <class T>
-T swappedIf(bool swap, T value) {
+T swapped(T value) {
   char bytes[sizeof(T)];
   std::memcpy(bytes, &value, sizeof(T));
-  if (swap) std::reverse(bytes, bytes + sizeof(T));
+  std::reverse(bytes, bytes + sizeof(T));
   std::memcpy(&value, bytes, sizeof(T));
   return value;
 }
@@ -90,7 +90,7 @@ double PlyBody::nextValue(PlyType type) {
     if (sizeof kind > file_.bytes.size() - position_) fail(kTruncated);
     std::memcpy(&kind, file_.bytes.data() + position_, sizeof kind);
     position_ += sizeof kind;
-    return static_cast<double>(swappedIf(bigEndian_, kind));
+    return static_cast<double>(bigEndian_ ? swapped(kind) : kind);
   });
 }
 
@@ -143,7 +143,7 @@ void PlyBody::put(OutputBuffer& out, PlyType type, double value) const {
       else
         out.print(" {}", kind);
     } else {
-      kind = swappedIf(bigEndian_, kind);
+      if (bigEndian_) kind = swapped(kind);
       out.raw({reinterpret_cast<const char*>(&kind), sizeof kind});
     }
     return 0;
@@ -183,6 +183,12 @@ int PlyFaces::corner(PlyBody& body, PlyType type) const {
   return static_cast<int>(index);
 }
 
+double PlyFaces::uv(PlyBody& body, PlyType type) {
+  const double value = body.nextValue(type);
+  if (!std::isfinite(value)) body.fail("a texture coordinate is not finite");
+  return value;
+}
+
 void PlyFaces::read(PlyBody& body) {
   corners.clear();
   uvs.clear();
@@ -192,14 +198,11 @@ void PlyFaces::read(PlyBody& body) {
       body.skip(property);
       continue;
     }
-    for (std::uint64_t left = body.items(property); left > 0; --left) {
-      if (parts_[p] != PlyPart::uvs) {
-        corners.push_back(corner(body, property.type));
-        continue;
-      }
-      uvs.push_back(body.nextValue(property.type));
-      if (!std::isfinite(uvs.back())) body.fail("a texture coordinate is not finite");
-    }
+    const std::uint64_t items = body.items(property);
+    if (parts_[p] == PlyPart::uvs)
+      for (std::uint64_t k = 0; k < items; ++k) uvs.push_back(uv(body, property.type));
+    else
+      for (std::uint64_t k = 0; k < items; ++k) corners.push_back(corner(body, property.type));
   }
 }
 

@@ -78,6 +78,7 @@ class PlyFaces {
 
  private:
   int corner(PlyBody& body, PlyType type) const;
+  static double uv(PlyBody& body, PlyType type);
 
   const PlyElement& element_;
   PlyRole role_;

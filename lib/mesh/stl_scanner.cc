@@ -38,11 +38,10 @@ bool StlScanner::nextRecord() {
   if (read_ == records_) return false;
   if (read_ % 65536 == 0) throwIfCancelled();
   facet = {kHeader + kRecord * read_, kHeader + kRecord * (read_ + 1)};
-  float numbers[12];
-  std::memcpy(numbers, file_.bytes.data() + facet.begin, sizeof numbers);
-  for (std::size_t k = 0; k < 4; ++k) {
-    rows[k] = {numbers[3 * k], numbers[3 * k + 1], numbers[3 * k + 2]};
-    spans[k] = {facet.begin + 12 * k, facet.begin + 12 * (k + 1)};
+  for (std::size_t k = normals_ ? 0 : 1; k < 4; ++k) {
+    float numbers[3];
+    std::memcpy(numbers, file_.bytes.data() + facet.begin + 12 * k, sizeof numbers);
+    rows[k] = {numbers[0], numbers[1], numbers[2]};
     if (k > 0 && !isFinite(rows[k]))
       throw FileError(file_.path, fmt::format("triangle {} has a corner that is not finite; "
                                               "export the mesh again",
@@ -53,9 +52,9 @@ bool StlScanner::nextRecord() {
 }
 
 void StlScanner::readRow(std::size_t row) {
-  spans[row].begin = scanner_.position();
+  spans_[row].begin = scanner_.position();
   rows[row] = scanner_.nextVec3("three numbers");
-  spans[row].end = scanner_.position();
+  spans_[row].end = scanner_.position();
 }
 
 bool StlScanner::nextFacet() {

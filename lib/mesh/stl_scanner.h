@@ -25,7 +25,10 @@ class StlScanner {
     std::size_t begin = 0, end = 0;
   };
   Vec3 rows[4];
-  Span spans[4], facet;
+  Span span(std::size_t row) const {
+    return binary_ ? Span{facet.begin + 12 * row, facet.begin + 12 * row + 12} : spans_[row];
+  }
+  Span facet;
 
  private:
   bool nextRecord();
@@ -34,6 +37,7 @@ class StlScanner {
 
   const FileBytes& file_;
   TextScanner scanner_;
+  Span spans_[4];  // in text
   bool normals_, binary_, ended_ = false;
   std::size_t records_ = 0, read_ = 0;  // lines or records
 };

@@ -29,13 +29,13 @@ class StlGeometry : public GeometryFile {
     for (std::size_t t = 0; stl.next(); ++t) {
       copy.to(stl.facet.begin);
       for (std::size_t k = 0; k < 4 && carried.stays[t]; ++k) {
-        copy.to(stl.spans[k].begin);
+        copy.to(stl.span(k).begin);
         const Vec3& p = k == 0 ? carried.directions[0][t] : carried.points.points[3 * t + k - 1];
         if (stl.binary())
           for (int a = 0; a < 3; ++a) putFloat(out, p[a]);
         else
           out.print(" {} {} {}", p.x, p.y, p.z);
-        copy.skipTo(stl.spans[k].end);
+        copy.skipTo(stl.span(k).end);
       }
       carried.stays[t] ? copy.to(stl.facet.end) : copy.skipTo(stl.facet.end);
     }

@@ -127,6 +127,32 @@ TEST(GeometryFile, PlyKeepsProperties) {
   EXPECT_THROW(carriedBytes("a.ply", kPly, 0, settings), FileError);
 }
 
+// Edges without ends stay as they are, and so do values of faces that are written anew.
+TEST(GeometryFile, PlyKeepsWhatItDoesNotKnow) {
+  const std::string out =
+      carriedBytes("e.ply",
+                   "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                   "property float z\nelement void 9\nelement edge 1\nproperty int crease\n"
+                   "element face 1\nproperty list uchar int vertex_indices\n"
+                   "property float quality\nend_header\n"
+                   "9 0 0\n0 1 0\n0 0 1\n7\n3 1 2 1 nan\n");
+  EXPECT_NE(out.find("element void 9\nelement edge 1\n"), std::string::npos) << out;
+  EXPECT_NE(out.find(" 0 1 0\n 0 0 1\n7\n 3 0 1 0 nan\n"), std::string::npos) << out;
+}
+
+TEST(GeometryFile, TextIsAsStrictAsInMeshes) {
+  for (const char* number : {"nan", "inf", "1e999", "1,5", "0x1", "1e"}) {
+    SCOPED_TRACE(number);
+    const std::string n = number;
+    std::string ply = kPly;
+    ply.replace(ply.find("0.125"), 5, n);
+    expectError("n.ply", ply, "line 19");
+    expectError("n.obj", "v 0 0 " + n + "\nf 1 1 1\n", "line 1");
+    expectError("n.off", "OFF\n1 0 0\n0 0 " + n + "\n", "line 3");
+    expectError("n.stl", "solid\nfacet normal 0 0 1\nvertex 0 0 " + n + "\n", "line 3");
+  }
+}
+
 TEST(GeometryFile, PlySubdivided) {
   std::string text = kPly;
   text.replace(text.find("9 0 0 40"), 8, "2 0 0 40");
