@@ -182,11 +182,6 @@ TEST(ReadBadInput, AFileLargerThanTheMemoryIsRefused) {
   EXPECT_THROW(readMesh(path), MemoryError);
 }
 
-std::string content(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 std::vector<std::pair<std::string, std::string>> validFiles(const TemporaryFolder& folder) {
   Mesh mesh = testing::cube();
   mesh.colours.assign(8, {0.5f, 0.25f, 1});
@@ -219,8 +214,8 @@ std::vector<std::pair<std::string, std::string>> validFiles(const TemporaryFolde
     facets += "endloop\nendfacet\n";
     binary += std::string(2, '\0');
   }
-  return {{"b.obj", content(folder.file("a.obj"))},
-          {"b.ply", content(folder.file("a.ply"))},
+  return {{"b.obj", test::contents(folder.file("a.obj"))},
+          {"b.ply", test::contents(folder.file("a.ply"))},
           {"c.ply", strips},
           {"b.off", off},
           {"b.stl", facets + "endsolid a\n"},

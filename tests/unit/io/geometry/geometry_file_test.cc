@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "core/memory_limit.h"
+#include "core/temporary_folder.h"
 #include "innermap/core/error.h"
 #include "innermap/io/cell_file.h"
 #include "innermap/mesh/mesh_file.h"
@@ -16,21 +16,13 @@ namespace innermap {
 namespace {
 
 std::string pathOf(const std::string& name) {
-  const std::string folder = ::testing::TempDir() + "geometry_file_test";
-  std::filesystem::create_directories(folder);
-  return folder + "/" + name;
+  static const test::TemporaryFolder folder;
+  return folder.file(name);
 }
 
 std::string write(const std::string& name, const std::string& text) {
   std::ofstream(pathOf(name), std::ios::binary) << text;
   return pathOf(name);
-}
-
-std::string bytesOf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
 }
 
 // x goes to twice itself, y to y + x^2; points beyond x = 5 are cut.
@@ -52,7 +44,7 @@ std::string carriedBytes(const std::string& name, const std::string& text, doubl
   settings.subdivide = subdivide;
   const CarriedGeometry carried = carryGeometry(file->geometry, warp, settings);
   writeGeometry(pathOf("out_" + name), *file, carried);
-  return bytesOf(pathOf("out_" + name));
+  return test::contents(pathOf("out_" + name));
 }
 
 void expectError(const std::string& name, const std::string& text, const std::string& part) {
