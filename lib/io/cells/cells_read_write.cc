@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 
 #include "core/file.h"
 #include "core/text_scanner.h"
@@ -46,11 +45,6 @@ void CellCollector::claim(std::uint64_t bytes) {
   claimed_ += bytes;
   const std::uint64_t limit = std::min(memoryLimit(), availableMemory());
   requireMemory("reading " + path_, claimed_, limit, "use a smaller file");
-}
-
-void CellCollector::requireCountable(std::uint64_t count) const {
-  if (count >= static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
-    fail(fmt::format("has {} vertices or cells, over 2147483646; cut the mesh into parts", count));
 }
 
 void CellCollector::requireFinite(const Vec3& p, std::uint64_t index) const {
