@@ -13,11 +13,7 @@
 namespace innermap {
 namespace {
 
-EvaluateFieldSettings withGradients() {
-  EvaluateFieldSettings settings;
-  settings.gradients = true;
-  return settings;
-}
+using testing::withGradients;
 
 class FieldFileTest : public ::testing::Test {
  protected:
