@@ -129,7 +129,7 @@ void PlyGeometry::writeElement(OutputBuffer& out, PlyBody& body, const PlyElemen
       if (what == PlyPart::end) values = {number(begin + part + (property.name == "vertex2"))};
       if (what == PlyPart::corners)
         for (std::size_t k = begin; k < end; ++k) values.push_back(number(k));
-      if (what == PlyPart::uvs && elements.corners[begin].texture >= 0)
+      if (what == PlyPart::uvs && begin < end && elements.corners[begin].texture >= 0)
         for (std::size_t k = begin; k < end; ++k)
           for (const double value : textureAt(elements.corners[k].texture)) values.push_back(value);
       if (!values.empty()) kept.clear();

@@ -119,17 +119,19 @@ TEST(GeometryFile, PlyKeepsProperties) {
   EXPECT_THROW(carriedBytes("a.ply", kPly, 0, settings), FileError);
 }
 
-// Edges without ends stay as they are, and so do values of faces that are written anew.
+// Edges without ends stay as they are, and so do values of faces that are written anew, be they
+// faces without corners.
 TEST(GeometryFile, PlyKeepsWhatItDoesNotKnow) {
   const std::string out =
       carriedBytes("e.ply",
                    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
                    "property float z\nelement void 9\nelement edge 1\nproperty int crease\n"
-                   "element face 1\nproperty list uchar int vertex_indices\n"
-                   "property float quality\nend_header\n"
-                   "9 0 0\n0 1 0\n0 0 1\n7\n3 1 2 1 nan\n");
+                   "element face 2\nproperty list uchar int vertex_indices\n"
+                   "property list uchar float texcoord\nproperty float quality\nend_header\n"
+                   "9 0 0\n0 1 0\n0 0 1\n7\n3 1 2 1 0 nan\n0 2 0.5 0.5 1\n");
   EXPECT_NE(out.find("element void 9\nelement edge 1\n"), std::string::npos) << out;
-  EXPECT_NE(out.find(" 0 1 0\n 0 0 1\n7\n 3 0 1 0 nan\n"), std::string::npos) << out;
+  EXPECT_NE(out.find(" 0 1 0\n 0 0 1\n7\n 3 0 1 0 0 nan\n 0 2 0.5 0.5 1\n"), std::string::npos)
+      << out;
 }
 
 TEST(GeometryFile, TextIsAsStrictAsInMeshes) {
