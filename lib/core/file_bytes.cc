@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "innermap/core/error.h"
@@ -50,6 +51,11 @@ FileBytes readFileBytes(const std::string& path, const std::string& what) {
     done += static_cast<std::size_t>(got);
   }
   return {path, std::move(bytes)};
+}
+
+void requireCountable(const std::string& path, std::size_t count) {
+  if (count >= static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    throw FileError(path, "has more than 2147483646 vertices or corners; cut it into parts");
 }
 
 std::string extensionOf(const std::string& path) {

@@ -115,7 +115,6 @@ class HeaderReader {
   PlyHeader finish() {
     if (!hasFormat_) fail("the header has no format line");
     header_.bodyOffset = position_;
-    header_.bodyLine = line_ + 1;
     return std::move(header_);
   }
 

@@ -34,7 +34,6 @@ struct PlyHeader {
   PlyFormat format = PlyFormat::ascii;
   std::vector<PlyElement> elements;
   std::size_t bodyOffset = 0;  // bytes
-  std::size_t bodyLine = 0;    // number of the body's first line, for messages
 };
 
 // Throws FileError with the line.

@@ -3,16 +3,28 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "innermap/core/error.h"
 
 namespace innermap {
 namespace {
 
-bool isSpace(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+enum : unsigned char { kSpace = 1, kComment = 2, kContinuation = 4 };
+
+constexpr std::array<unsigned char, 256> kClasses = [] {
+  std::array<unsigned char, 256> classes{};
+  for (const unsigned char c : {' ', '\t', '\r', '\v', '\f'}) classes[c] = kSpace;
+  classes['#'] = kComment;
+  classes['\\'] = kContinuation;
+  return classes;
+}();
+
+unsigned char classOf(char c) { return kClasses[static_cast<unsigned char>(c)]; }
 
 // from_chars says "out of range" for numbers too small as well as for numbers too large; the small
 // ones are zero for every purpose here.
@@ -20,6 +32,19 @@ bool underflows(std::string_view number) {
   if (number.find("e-") != number.npos || number.find("E-") != number.npos) return true;
   const std::size_t digit = number.find_first_not_of("+-0");
   return digit != number.npos && number[digit] == '.' && number.find_first_of("eE") == number.npos;
+}
+
+// Old Mac files separate lines by carriage returns alone.
+char separatorOf(const FileBytes& file, std::size_t from) {
+  return file.bytes.find('\n', from) == file.bytes.npos ? '\r' : '\n';
+}
+
+template <class Number>
+std::errc parse(std::string_view text, Number& value) {
+  if (!text.empty() && text[0] == '+') text.remove_prefix(1);
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  return stop == end ? error : std::errc::invalid_argument;
 }
 
 }  // namespace
@@ -38,22 +63,60 @@ bool equalsIgnoringCase(std::string_view a, std::string_view b) {
                                             [&](char x, char y) { return lower(x) == lower(y); });
 }
 
-TextScanner::TextScanner(const FileBytes& file, TextSyntax syntax, std::size_t offset,
-                         std::size_t firstLine)
-    : file_(file), syntax_(syntax), line_(firstLine - 1) {
-  next_ = file.bytes.data() + std::min(offset, file.bytes.size());
-  end_ = file.bytes.data() + file.bytes.size();
-  cursor_ = lineEnd_ = next_;
-  // Old Mac files separate lines by carriage returns alone.
-  if (!std::memchr(next_, '\n', static_cast<std::size_t>(end_ - next_))) separator_ = '\r';
+std::optional<double> parseNumber(std::string_view text) {
+  double value = 0;
+  const std::errc error = parse(text, value);
+  if (error == std::errc::result_out_of_range)
+    return underflows(text) ? 0 : std::numeric_limits<double>::infinity();
+  return error == std::errc() ? std::optional(value) : std::nullopt;
+}
+
+std::optional<std::int64_t> parseInteger(std::string_view text) {
+  std::int64_t value = 0;
+  return parse(text, value) == std::errc() ? std::optional(value) : std::nullopt;
+}
+
+void failAt(const FileBytes& file, std::size_t byte, const std::string& what) {
+  // The end of the file belongs to its last line.
+  const std::size_t before = std::min(byte, std::max<std::size_t>(1, file.bytes.size()) - 1);
+  const auto lines =
+      std::count(file.bytes.begin(), file.bytes.begin() + static_cast<std::ptrdiff_t>(before),
+                 separatorOf(file, 0));
+  throw FileError(file.path, fmt::format("line {}: {}", lines + 1, what));
+}
+
+TextScanner::TextScanner(const FileBytes& file, TextSyntax syntax, std::size_t offset)
+    : file_(file),
+      special_(static_cast<unsigned char>(kSpace | (syntax.comments ? kComment : 0) |
+                                          (syntax.continuation ? kContinuation : 0))),
+      end_(file.bytes.data() + file.bytes.size()) {
+  seek(offset);
+  separator_ = separatorOf(file, offset);
+}
+
+void TextScanner::seek(std::size_t byte) {
+  cursor_ = lineEnd_ = next_ = file_.bytes.data() + std::min(byte, file_.bytes.size());
 }
 
 bool TextScanner::nextLine() {
+  lineBegin_ = endLine();
+  return breakLine();
+}
+
+std::size_t TextScanner::endLine() {
+  if ((special_ & kContinuation) && cursor_ < lineEnd_ &&
+      std::memchr(cursor_, '\\', static_cast<std::size_t>(lineEnd_ - cursor_)))
+    for (std::string_view rest; token(rest);) {
+    }
+  cursor_ = lineEnd_;
+  return static_cast<std::size_t>(next_ - file_.bytes.data());
+}
+
+bool TextScanner::breakLine() {
   if (next_ >= end_) {
     cursor_ = lineEnd_ = end_;
     return false;
   }
-  ++line_;
   cursor_ = next_;
   const void* found = std::memchr(next_, separator_, static_cast<std::size_t>(end_ - next_));
   lineEnd_ = found ? static_cast<const char*>(found) : end_;
@@ -61,28 +124,29 @@ bool TextScanner::nextLine() {
   return true;
 }
 
-bool TextScanner::continued() {
-  const char* c = cursor_ + 1;
-  while (c < lineEnd_ && isSpace(*c)) ++c;
-  return c == lineEnd_;
+bool TextScanner::joins(const char* at) const {
+  if (*at != '\\') return false;
+  ++at;
+  while (at < lineEnd_ && classOf(*at) == kSpace) ++at;
+  return at == lineEnd_;
 }
 
 bool TextScanner::token(std::string_view& token) {
   for (;;) {
-    while (cursor_ < lineEnd_ && isSpace(*cursor_)) ++cursor_;
+    while (cursor_ < lineEnd_ && classOf(*cursor_) == kSpace) ++cursor_;
     if (cursor_ == lineEnd_) return false;
-    if (syntax_.comments && *cursor_ == '#') {
+    const unsigned char kind = classOf(*cursor_) & special_;
+    if (kind == kComment) {
       cursor_ = lineEnd_;
       return false;
     }
-    if (!(syntax_.continuation && *cursor_ == '\\' && continued())) break;
-    if (!nextLine()) return false;
+    if (kind != kContinuation || !joins(cursor_)) break;
+    if (!breakLine()) return false;
   }
-  const char* begin = cursor_++;
-  while (cursor_ < lineEnd_ && !isSpace(*cursor_) && !(syntax_.comments && *cursor_ == '#') &&
-         !(syntax_.continuation && *cursor_ == '\\' && continued()))
-    ++cursor_;
-  token = std::string_view(begin, static_cast<std::size_t>(cursor_ - begin));
+  const char *const begin = cursor_, *at = begin + 1, *const end = lineEnd_;
+  while (at < end && (!(classOf(*at) & special_) || (*at == '\\' && !joins(at)))) ++at;
+  cursor_ = at;
+  token = std::string_view(begin, static_cast<std::size_t>(at - begin));
   return true;
 }
 
@@ -98,37 +162,32 @@ bool TextScanner::nextFilledLine(std::string_view& result) {
   return false;
 }
 
-std::size_t TextScanner::remainingBytes() const { return static_cast<std::size_t>(end_ - cursor_); }
-
-void TextScanner::fail(const std::string& what) const {
-  throw FileError(file_.path, fmt::format("line {}: {}", std::max<std::size_t>(1, line_), what));
-}
+void TextScanner::fail(const std::string& what) const { failAt(file_, position(), what); }
 
 double TextScanner::number(std::string_view token) const {
-  const std::string_view digits = !token.empty() && token[0] == '+' ? token.substr(1) : token;
-  double value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error == std::errc::invalid_argument || end != digits.data() + digits.size())
-    fail(inQuotes(token) + " is not a number; correct the line or export the mesh again");
-  if (error == std::errc::result_out_of_range && underflows(digits)) return 0;
-  if (error != std::errc() || !std::isfinite(value))
-    fail(inQuotes(token) + " is not a finite number; correct the line or export the mesh again");
-  return value;
+  const std::optional<double> value = parseNumber(token);
+  if (!value || !std::isfinite(*value))
+    fail(inQuotes(token) + " is not a finite number; correct the line or export the file again");
+  return *value;
 }
 
 std::int64_t TextScanner::integer(std::string_view token) const {
-  const std::string_view digits = !token.empty() && token[0] == '+' ? token.substr(1) : token;
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size())
-    fail(inQuotes(token) + " is not a whole number; correct the line or export the mesh again");
-  return value;
+  const std::optional<std::int64_t> value = parseInteger(token);
+  if (!value)
+    fail(inQuotes(token) + " is not a whole number; correct the line or export the file again");
+  return *value;
 }
 
 double TextScanner::nextNumber(const char* what) {
   std::string_view text;
   if (!token(text)) fail(std::string("the line ends before its ") + what);
   return number(text);
+}
+
+Vec3 TextScanner::nextVec3(const char* what) {
+  Vec3 p;
+  for (int a = 0; a < 3; ++a) p[a] = nextNumber(what);
+  return p;
 }
 
 }  // namespace innermap

@@ -1,12 +1,9 @@
 // Landmark files in.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <string_view>
+#include <limits>
 
-#include "core/file_bytes.h"
+#include "core/text_scanner.h"
 #include "innermap/core/error.h"
 #include "innermap/correspond/mesh_correspondence.h"
 
@@ -15,50 +12,26 @@ namespace {
 
 constexpr std::size_t kLongestLine = 4096, kMostLines = 1000000;
 
-[[noreturn]] void fail(const std::string& path, std::size_t line, const std::string& what) {
-  throw FileError(path, fmt::format("line {}: {}", line, what));
-}
-
-std::vector<std::string> tokensOf(std::string text) {
-  text.resize(std::min(text.find('#'), text.size()));
-  for (char& c : text)
-    if (c == ',' || c == ';' || static_cast<unsigned char>(c) < 32) c = ' ';
-  std::vector<std::string> tokens;
-  for (std::size_t from = 0; from < text.size();) {
-    const std::size_t space = std::min(text.find(' ', from), text.size());
-    if (space > from) tokens.push_back(text.substr(from, space - from));
-    from = space + 1;
-  }
+std::vector<std::string_view> tokensOf(TextScanner& scanner) {
+  std::vector<std::string_view> tokens;
+  for (std::string_view token; scanner.token(token); tokens.push_back(token))
+    if (scanner.position() - scanner.lineBegin() > kLongestLine)
+      scanner.fail("is too long for a landmark file; give a text file");
   return tokens;
-}
-
-template <class Number>
-std::optional<Number> numberIn(std::string_view text) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
-std::string shown(const std::string& token) {
-  std::string text = token.substr(0, 24);
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 32 || static_cast<unsigned char>(c) > 126) c = '?';
-  return "'" + text + "'";
 }
 
 // One line's tokens, taken place by place.
 class LineReader {
  public:
-  LineReader(const std::string& path, std::size_t line, std::vector<std::string> tokens)
-      : path_(path), line_(line), tokens_(std::move(tokens)) {
+  LineReader(const TextScanner& scanner, std::vector<std::string_view> tokens)
+      : scanner_(scanner), tokens_(std::move(tokens)) {
     const bool pairOfNumbers = tokens_.size() == 2, pairOfPoints = tokens_.size() == 6;
     const bool marked = tokens_.size() == 4 && (isMarked(tokens_[0]) || isMarked(tokens_[3]));
     if (!pairOfNumbers && !pairOfPoints && !marked)
-      fail(path, line,
-           fmt::format("{} numbers make no pair of places; give two vertices, two points of three "
-                       "numbers, or one of each with the vertex written as v12",
-                       tokens_.size()));
+      scanner.fail(
+          fmt::format("{} numbers make no pair of places; give two vertices, two points of three "
+                      "numbers, or one of each with the vertex written as v12",
+                      tokens_.size()));
     pointsOnly_ = pairOfPoints;
   }
 
@@ -68,30 +41,23 @@ class LineReader {
       place.vertex = vertex(tokens_[at_++]);
       return place;
     }
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::optional<double> value = numberIn<double>(tokens_[at_]);
-      if (!value || !std::isfinite(*value))
-        fail(path_, line_, shown(tokens_[at_]) + " is no coordinate");
-      place.point[axis] = *value;
-      ++at_;
-    }
+    for (int axis = 0; axis < 3; ++axis) place.point[axis] = scanner_.number(tokens_[at_++]);
     return place;
   }
 
  private:
-  static bool isMarked(const std::string& token) { return token[0] == 'v' || token[0] == 'V'; }
+  static bool isMarked(std::string_view token) { return token[0] == 'v' || token[0] == 'V'; }
 
-  int vertex(const std::string& token) const {
-    const std::optional<int> value =
-        numberIn<int>(std::string_view(token).substr(isMarked(token) ? 1 : 0));
-    if (!value || *value < 0)
-      fail(path_, line_, shown(token) + " is no vertex; vertices are counted from 0");
-    return *value;
+  int vertex(std::string_view token) const {
+    const std::optional<std::int64_t> value = parseInteger(token.substr(isMarked(token) ? 1 : 0));
+    if (!value || *value < 0 || *value > std::numeric_limits<int>::max())
+      scanner_.fail(inQuotes(token) + " is no vertex; vertices are counted from 0");
+    return static_cast<int>(*value);
   }
 
-  const std::string& path_;
-  std::size_t line_, at_ = 0;
-  std::vector<std::string> tokens_;
+  const TextScanner& scanner_;
+  std::size_t at_ = 0;
+  std::vector<std::string_view> tokens_;
   bool pointsOnly_ = false;
 };
 
@@ -106,18 +72,19 @@ const char kLandmarkFormat[] =
     "nearest vertex.";
 
 LandmarkList readLandmarks(const std::string& path) {
-  const FileBytes file = readFileBytes(path, "a text file of landmarks");
+  FileBytes file = readFileBytes(path, "a text file of landmarks");
+  // What may stand between numbers.
+  for (char& c : file.bytes)
+    if (c == ',' || c == ';' || (static_cast<unsigned char>(c) < 32 && c != '\n' && c != '\r'))
+      c = ' ';
+  TextScanner scanner(file, {true, false});
   LandmarkList list;
   list.name = path;
-  std::string_view rest = file.bytes;
-  for (std::size_t number = 1; !rest.empty(); ++number) {
-    const std::string_view text = rest.substr(0, rest.find('\n'));
-    rest.remove_prefix(std::min(text.size() + 1, rest.size()));
-    if (text.size() > kLongestLine || number > kMostLines)
-      fail(path, number, "is too long for a landmark file; give a text file");
-    std::vector<std::string> tokens = tokensOf(std::string(text));
+  for (std::size_t number = 1; scanner.nextLine(); ++number) {
+    if (number > kMostLines) scanner.fail("is too long for a landmark file; give a text file");
+    std::vector<std::string_view> tokens = tokensOf(scanner);
     if (tokens.empty()) continue;
-    LineReader reader(path, number, std::move(tokens));
+    LineReader reader(scanner, std::move(tokens));
     LandmarkPair pair;
     pair.line = number;
     pair.onA = reader.next();

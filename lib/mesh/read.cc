@@ -1,4 +1,4 @@
-#include "core/file_bytes.h"
+#include "core/text_scanner.h"
 #include "innermap/core/error.h"
 #include "innermap/mesh/mesh_file.h"
 #include "mesh/detail/polygon_mesh.h"
@@ -6,25 +6,34 @@
 namespace innermap {
 namespace {
 
-using Reader = PolygonMesh (*)(const FileBytes&);
+struct Format {
+  const char* extension;
+  PolygonMesh (*read)(const FileBytes&);
+};
 
-Reader readerOf(const std::string& path) {
+constexpr Format kFormats[] = {
+    {".obj", readObj}, {".ply", readPly}, {".off", readOff}, {".stl", readStl}};
+
+PolygonMesh readPolygons(const std::string& path) {
   const std::string extension = extensionOf(path);
-  if (equalsIgnoringCase(extension, ".obj")) return readObj;
-  if (equalsIgnoringCase(extension, ".ply")) return readPly;
-  if (equalsIgnoringCase(extension, ".off")) return readOff;
-  if (equalsIgnoringCase(extension, ".stl")) return readStl;
+  for (const Format& format : kFormats)
+    if (equalsIgnoringCase(extension, format.extension))
+      return format.read(readFileBytes(path, "a mesh file"));
   throw FileError(
       path, (!extension.empty() ? "unknown extension " + inQuotes(extension) : "has no extension") +
                 "; meshes are read from .obj, .ply, .off and .stl files");
 }
 
-PolygonMesh readPolygons(const std::string& path) {
-  const Reader reader = readerOf(path);
-  return reader(readFileBytes(path, "a mesh file"));
-}
-
 }  // namespace
+
+const std::vector<std::string>& meshExtensions() {
+  static const std::vector<std::string> all = [] {
+    std::vector<std::string> extensions;
+    for (const Format& format : kFormats) extensions.push_back(format.extension);
+    return extensions;
+  }();
+  return all;
+}
 
 Mesh readMesh(const std::string& path) {
   Mesh mesh = toMesh(readPolygons(path), path);

@@ -41,7 +41,25 @@ void properties(const std::string& path) { readVertexProperties(path, {"s"}, rea
 
 void table(const std::string& path) { readVertexTable(path, octahedron()); }
 
-// Also written again, with all where it was, which uses every index that was read.
+// Every third point cut, and what uses it.
+void cut(const Geometry& geometry, CarriedGeometry& carried) {
+  const Elements& elements = geometry.elements;
+  for (std::size_t i = 0; i < geometry.ownPoints; i += 3) carried.number[i] = -1;
+  carried.points.cut = 1;
+  int next = 0;
+  for (int& number : carried.number)
+    if (number >= 0) number = next++;
+  for (std::size_t e = 0; e < elements.size(); ++e)
+    for (std::size_t k = elements.start[e]; k < elements.start[e + 1]; ++k) {
+      const int point = elements.corners[k].point;
+      if (point >= 0 && carried.number[static_cast<std::size_t>(point)] < 0 &&
+          elements.kinds[e] != Elements::Kind::points)
+        carried.stays[e] = 0;
+    }
+}
+
+// Also written again, with all where it was and with points cut, which uses every index that was
+// read.
 void geometry(const std::string& path) {
   const MemoryLimit limit(kMemory + 160000000);  // what readGeometry plans for carrying
   const auto file = readGeometry(path);
@@ -54,6 +72,8 @@ void geometry(const std::string& path) {
   for (std::size_t i = 0; i < g.ownPoints; ++i) carried.number.push_back(static_cast<int>(i));
   carried.stays.assign(g.elements.size(), 1);
   std::ostringstream out;
+  file->write(path, carried, out);
+  cut(g, carried);
   file->write(path, carried, out);
   file->inverted(carried);
 }

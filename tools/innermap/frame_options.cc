@@ -44,7 +44,7 @@ void addFrameOptions(Command& command, FrameOptions& o) {
 }
 
 Frames listFrames(const FrameOptions& options, const std::string& rest, Context& context) {
-  FrameList list = findFrames(options.files, {".obj", ".ply", ".off", ".stl"});
+  FrameList list = findFrames(options.files, meshExtensions());
   std::vector<std::string> left;
   for (const std::string& path : list.unnumbered)
     if (!isSameFile(path, rest)) left.push_back(path);

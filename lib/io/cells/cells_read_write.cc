@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 
 #include "core/file.h"
 #include "core/text_scanner.h"
@@ -48,11 +47,6 @@ void CellCollector::claim(std::uint64_t bytes) {
   requireMemory("reading " + path_, claimed_, limit, "use a smaller file");
 }
 
-void CellCollector::requireCountable(std::uint64_t count) const {
-  if (count >= static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
-    fail(fmt::format("has {} vertices or cells, over 2147483646; cut the mesh into parts", count));
-}
-
 void CellCollector::requireFinite(const Vec3& p, std::uint64_t index) const {
   if (!isFinite(p))
     fail(fmt::format("vertex {} is not finite (counted from 0); export the mesh again", index));
@@ -90,13 +84,6 @@ CellFile CellCollector::finish() {
     note(fmt::format("{}: {} {} left out", path_, count, kind));
   report(1);
   return std::move(file);
-}
-
-void failAt(const FileBytes& file, std::size_t byte, const std::string& what) {
-  const auto line = std::count(
-      file.bytes.begin(),
-      file.bytes.begin() + static_cast<std::ptrdiff_t>(std::min(byte, file.bytes.size())), '\n');
-  throw FileError(file.path, fmt::format("line {}: {}", line + 1, what));
 }
 
 const CellField* findField(const std::vector<CellField>& fields, std::string_view name) {

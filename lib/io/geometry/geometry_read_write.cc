@@ -9,25 +9,29 @@
 #include "innermap/core/memory.h"
 #include "innermap/io/cell_file.h"
 #include "innermap/io/geometry_file.h"
+#include "innermap/mesh/mesh_file.h"
 #include "io/geometry/detail/geometry_formats.h"
 
 namespace innermap {
 namespace {
 
-struct Format {
-  const char* extension;
-  std::unique_ptr<GeometryFile> (*read)(FileBytes, const ReadGeometrySettings&);
-};
+bool endsIn(const std::string& path, const char* extension) {
+  return equalsIgnoringCase(extensionOf(path), extension);
+}
 
-constexpr Format kFormats[] = {{".obj", readObjGeometry},
-                               {".ply", readPlyGeometry},
-                               {".off", readOffGeometry},
-                               {".stl", readStlGeometry}};
+bool isMeshFile(const std::string& path) {
+  const auto& all = meshExtensions();
+  return std::any_of(all.begin(), all.end(),
+                     [&](const std::string& one) { return endsIn(path, one.c_str()); });
+}
 
-const Format* findFormat(const std::string& path) {
-  for (const Format& format : kFormats)
-    if (equalsIgnoringCase(extensionOf(path), format.extension)) return &format;
-  return nullptr;
+std::unique_ptr<GeometryFile> readMeshGeometry(const std::string& path,
+                                               const ReadGeometrySettings& settings) {
+  FileBytes file = readFileBytes(path, "a file of geometry");
+  if (endsIn(path, ".obj")) return readObjGeometry(std::move(file));
+  if (endsIn(path, ".ply")) return readPlyGeometry(std::move(file), settings);
+  if (endsIn(path, ".off")) return readOffGeometry(std::move(file));
+  return readStlGeometry(std::move(file));
 }
 
 // Of one pass over the points.
@@ -38,14 +42,14 @@ constexpr std::uint64_t kOnTheWay = 25'000'000;
 double bytesPerByte(const std::string& path) {
   std::string head(4096, ' ');
   std::ifstream(path, std::ios::binary).read(head.data(), 4096);
-  if (equalsIgnoringCase(extensionOf(path), ".stl")) return head.compare(0, 5, "solid") ? 18 : 5;
-  if (equalsIgnoringCase(extensionOf(path), ".ply")) return head.find(" nx") != head.npos ? 9.5 : 5;
+  if (endsIn(path, ".stl")) return head.compare(0, 5, "solid") ? 18 : 5;
+  if (endsIn(path, ".ply")) return head.find(" nx") != head.npos ? 9.5 : 5;
   return 4.2;
 }
 
 }  // namespace
 
-bool isGeometryFile(const std::string& path) { return findFormat(path) || isCellFile(path); }
+bool isGeometryFile(const std::string& path) { return isMeshFile(path) || isCellFile(path); }
 
 void requireWritableAs(const std::string& input, const std::string& output) {
   if (isCellFile(input) ? isCellFile(output)
@@ -62,13 +66,12 @@ std::unique_ptr<GeometryFile> readGeometry(const std::string& path,
   const std::uint64_t limit = std::min(memoryLimit(), availableMemory());
   requireMemory("carrying " + path, geometryMemory(path), limit, "cut the file into parts");
   if (isCellFile(path)) return readCellGeometry(path, settings);
-  const Format* format = findFormat(path);
-  if (!format)
+  if (!isMeshFile(path))
     throw FileError(path,
                     "unknown extension " + inQuotes(extensionOf(path)) +
                         "; geometry is read from .obj, .ply, .off, .stl, .vtu, .msh and .mesh "
                         "files");
-  auto file = format->read(readFileBytes(path, "a file of geometry"), settings);
+  auto file = readMeshGeometry(path, settings);
   if (file->geometry.points.empty()) throw FileError(path, "has no points");
   return file;
 }

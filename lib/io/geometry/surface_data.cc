@@ -2,17 +2,16 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <map>
 
 #include "core/file_bytes.h"
-#include "core/ply_header.h"
+#include "core/ply_body.h"
 #include "core/text_scanner.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/io/geometry_file.h"
-#include "io/geometry/detail/ply_body.h"
+#include "mesh/obj_scanner.h"
 
 namespace innermap {
 namespace {
@@ -79,12 +78,11 @@ Matrix valuesOf(PlyBody& body, const PlyElement& element, const std::vector<std:
     if (row % 65536 == 0) throwIfCancelled();
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const PlyProperty& property = element.properties[p];
-      if (property.list) {
-        for (std::uint64_t left = body.listSize(property); left > 0; --left)
-          body.next(property.type);
+      if (std::find(wanted.begin(), wanted.end(), p) == wanted.end()) {
+        body.skip(property);
         continue;
       }
-      const double value = body.value(body.next(property.type), property.type);
+      const double value = body.nextValue(property.type);
       for (std::size_t k = 0; k < wanted.size(); ++k)
         if (wanted[k] == p) out(row, k) = value;
     }
@@ -101,32 +99,24 @@ std::vector<std::string_view> tokensOf(TextScanner& scanner) {
   return out;
 }
 
-bool isNumber(std::string_view text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size();
-}
-
 }  // namespace
 
 std::vector<SurfaceGroup> readGroups(const std::string& path, const Mesh& mesh) {
   if (!equalsIgnoringCase(extensionOf(path), ".obj"))
     throw FileError(path, "holds no groups; those of .obj files are read (g, o, usemtl)");
   const FileBytes file = readFileBytes(path, "a mesh file");
-  TextScanner scanner(file, {true, true});
+  ObjScanner obj(file, false);
   const PolygonTriangles polygons(mesh);
   Groups groups;
   std::size_t polygon = 0;
   int triangle = 0;
-  std::string_view keyword;
-  for (std::size_t lines = 0; scanner.nextLine(); ++lines) {
+  for (std::size_t lines = 0; obj.next(); ++lines) {
     if (lines % 65536 == 0) throwIfCancelled();
-    if (!scanner.token(keyword)) continue;
-    if (keyword == "g" || keyword == "o" || keyword == "usemtl") {
-      const std::string kind(keyword);
+    const std::string kind(obj.keyword());
+    if (kind == "g" || kind == "o" || kind == "usemtl") {
       groups.begin(kind);
-      for (std::string_view name; scanner.token(name);) groups.name(kind, std::string(name));
-    } else if (keyword == "f" || keyword == "fo") {
+      for (std::string_view name; obj.text().token(name);) groups.name(kind, std::string(name));
+    } else if (obj.kind() == ObjLine::face) {
       if (polygon < polygons.polygons())
         for (int left = polygons.count(polygon); left > 0; --left) groups.add(triangle++);
       ++polygon;
@@ -145,7 +135,7 @@ Matrix readVertexProperties(const std::string& path, const std::vector<std::stri
   const PlyHeader header = readPlyHeader(file);
   PlyBody body(file, header);
   for (const PlyElement& element : header.elements) {
-    body.requireRoom(element);
+    const std::uint64_t rows = body.rows(element);
     if (element.name == "vertex") {
       if (element.count != mesh.vertices.size())
         throw FileError(path, "has other vertices than the mesh that was read from it");
@@ -153,7 +143,7 @@ Matrix readVertexProperties(const std::string& path, const std::vector<std::stri
       for (const std::string& name : names) wanted.push_back(propertyNamed(element, name, path));
       return valuesOf(body, element, wanted);
     }
-    for (std::uint64_t row = 0; row < element.count; ++row) {
+    for (std::uint64_t row = 0; row < rows; ++row) {
       if (row % 65536 == 0) throwIfCancelled();
       body.skipRow(element);
     }
@@ -174,7 +164,7 @@ VertexTable readVertexTable(const std::string& path, const Mesh& mesh) {
     if (tokens.empty()) continue;
     if (tokens.size() < 2) scanner.fail("a line needs a vertex and at least one value");
     const bool first = out.values.columns() == 0;
-    if (first && out.names.empty() && !isNumber(tokens[0])) {
+    if (first && out.names.empty() && !parseNumber(tokens[0])) {
       out.names.assign(tokens.begin() + 1, tokens.end());
       continue;
     }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
@@ -89,11 +88,6 @@ std::vector<Triangle> recutUvs(const PolygonMesh& polygons,
 std::array<float, 3> clampedColour(double red, double green, double blue) {
   const auto clamped = [](double c) { return c > 0 ? static_cast<float>(std::min(c, 1.0)) : 0.0f; };
   return {clamped(red), clamped(green), clamped(blue)};
-}
-
-void requireCountable(const std::string& path, std::size_t count) {
-  if (count >= static_cast<std::size_t>(std::numeric_limits<int>::max()))
-    throw FileError(path, "has more than 2147483646 vertices or corners; use a coarser mesh");
 }
 
 Mesh toMesh(PolygonMesh&& polygons, const std::string& path) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/text_scanner.h"
+#include "core/file_bytes.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {
@@ -30,9 +30,6 @@ PolygonMesh readStl(const FileBytes& file);
 
 // Clamps to [0, 1]; NaN becomes 0.
 std::array<float, 3> clampedColour(double red, double green, double blue);
-
-// Throws FileError when one more vertex or corner would exceed what an int counts.
-void requireCountable(const std::string& path, std::size_t count);
 
 // Cuts the polygons into triangles.
 Mesh toMesh(PolygonMesh&& polygons, const std::string& path);

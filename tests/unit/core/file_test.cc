@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "core/temporary_folder.h"
 #include "innermap/core/error.h"
 
 namespace innermap {
@@ -18,17 +19,9 @@ namespace fs = std::filesystem;
 
 class FileTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("innermap_file_" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string at(const std::string& name) const { return (folder_ / name).string(); }
-  std::size_t entries() const {
-    return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-  }
-  fs::path folder_;
+  std::string at(const std::string& name) const { return folder_.file(name); }
+  std::size_t entries() const { return folder_.count(); }
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(FileTest, AppearsOnCommitOnly) {
@@ -68,7 +61,7 @@ TEST_F(FileTest, FailedStreamIsAnError) {
 
 TEST_F(FileTest, UnwritablePlacesAreRefused) {
   EXPECT_THROW(PendingFile(at("no/such/folder")), FileError);
-  EXPECT_THROW(PendingFile(folder_.string()), FileError);
+  EXPECT_THROW(PendingFile(folder_.path().string()), FileError);
   EXPECT_THROW(PendingFile(""), FileError);
   EXPECT_THROW(requireWritable(at("no/such/folder")), FileError);
   writeWholeFile(at("a"), [](std::ostream&) {});

@@ -1,11 +1,11 @@
 #include "core/frame_files.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
+#include "core/temporary_folder.h"
 #include "innermap/core/error.h"
 
 namespace innermap {
@@ -17,21 +17,17 @@ namespace fs = std::filesystem;
 class Files {
  public:
   explicit Files(const std::vector<std::string>& names) : before_(fs::current_path()) {
-    std::string pattern = (fs::temp_directory_path() / "innermap-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
     for (const std::string& name : names) {
-      fs::create_directories((folder_ / name).parent_path());
-      std::ofstream(folder_ / name) << "x";
+      fs::create_directories(fs::path(folder_.file(name)).parent_path());
+      folder_.write(name, "x");
     }
-    fs::current_path(folder_);
+    fs::current_path(folder_.path());
   }
-  ~Files() {
-    fs::current_path(before_);
-    fs::remove_all(folder_);
-  }
+  ~Files() { fs::current_path(before_); }
 
  private:
-  fs::path before_, folder_;
+  fs::path before_;
+  test::TemporaryFolder folder_;
 };
 
 std::string found(const std::vector<std::string>& arguments) {

@@ -4,6 +4,7 @@
 
 #include "core/memory_limit.h"
 #include "core/random.h"
+#include "field/affine_map.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/levelset/level_set.h"
@@ -11,6 +12,8 @@
 
 namespace innermap {
 namespace {
+
+using test::affineMap;
 
 Vec3 turned(const Vec3& p) {
   const double a = 0.5, b = 0.8;
@@ -23,16 +26,6 @@ Mesh cube() {
   Mesh mesh = shapes::box({-1, -1, -1}, {1, 1, 1});
   for (Vec3& v : mesh.vertices) v = turned(v);
   return mesh;
-}
-
-HarmonicMap affineMap(const Mat3& m, const Vec3& shift) {
-  Affine affine;
-  affine.coefficients = Matrix(4, 3);
-  for (int r = 0; r < 3; ++r) {
-    affine.coefficients(0, r) = shift[r];
-    for (int a = 0; a < 3; ++a) affine.coefficients(1 + a, r) = m[r][a];
-  }
-  return HarmonicMap(HarmonicField({}, Matrix(0, 3), affine));
 }
 
 // Identity and three charges outside the cube.

@@ -1,34 +1,22 @@
 #include "innermap/field/field_file.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 
+#include "core/temporary_folder.h"
 #include "field/sphere_problem.h"
 #include "innermap/core/error.h"
 
 namespace innermap {
 namespace {
 
-EvaluateFieldSettings withGradients() {
-  EvaluateFieldSettings settings;
-  settings.gradients = true;
-  return settings;
-}
+using testing::withGradients;
 
 class FieldFileTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ =
-        std::filesystem::temp_directory_path() / ("innermap_field_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
-    path_ = (folder_ / "map.ply").string();
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   FieldFile sample() const {
     FieldFile f{
         {testing::someField()}, {{"method", "tikhonov"}, {"note", "two words"}}, {}, {}, {}};
@@ -38,14 +26,11 @@ class FieldFileTest : public ::testing::Test {
     return f;
   }
 
-  std::string contents() const {
-    std::ifstream in(path_, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
+  std::string contents() const { return test::contents(path_); }
   void write(const std::string& text) const { std::ofstream(path_, std::ios::binary) << text; }
 
-  std::filesystem::path folder_;
-  std::string path_;
+  test::TemporaryFolder folder_;
+  std::string path_ = folder_.file("map.ply");
 };
 
 TEST_F(FieldFileTest, ReadsBackTheSameBits) {
@@ -175,7 +160,7 @@ TEST_F(FieldFileTest, NewerFormatsAreRefusedInWords) {
 }
 
 TEST_F(FieldFileTest, MissingFolderAndBadSettingsAreRefused) {
-  EXPECT_THROW(writeField((folder_ / "no" / "map.ply").string(), sample()), FileError);
+  EXPECT_THROW(writeField(folder_.file("no/map.ply"), sample()), FileError);
   FieldFile bad = sample();
   bad.facts.emplace_back("x", "two\nlines");
   EXPECT_THROW(writeField(path_, bad), DataError);

@@ -8,11 +8,7 @@
 namespace innermap {
 namespace {
 
-EvaluateFieldSettings withGradients() {
-  EvaluateFieldSettings settings;
-  settings.gradients = true;
-  return settings;
-}
+using testing::withGradients;
 
 // Central differences of second order: the error falls by 4 when the step halves.
 TEST(HarmonicField, GradientIsTheSlopeOfTheValues) {

@@ -7,11 +7,7 @@
 namespace innermap {
 namespace {
 
-EvaluateFieldSettings withGradients() {
-  EvaluateFieldSettings settings;
-  settings.gradients = true;
-  return settings;
-}
+using testing::withGradients;
 
 TEST(HarmonicMap, RowsOfTheJacobianBelongToComponents) {
   const HarmonicField field = testing::someField();

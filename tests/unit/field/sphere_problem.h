@@ -44,4 +44,10 @@ inline HarmonicField someField() {
   return HarmonicField(sources, weights, affine);
 }
 
+inline EvaluateFieldSettings withGradients() {
+  EvaluateFieldSettings settings;
+  settings.gradients = true;
+  return settings;
+}
+
 }  // namespace innermap::testing

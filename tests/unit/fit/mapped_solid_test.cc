@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "core/temporary_folder.h"
 #include "fit/test_pairs.h"
 #include "innermap/core/error.h"
 #include "innermap/fit/fit_map.h"
@@ -13,17 +14,10 @@ namespace {
 
 class MapFile : public testing::Test {
  protected:
-  MapFile()
-      : folder_(std::filesystem::temp_directory_path() /
-                ("innermap-map-" + std::to_string(::getpid()))) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~MapFile() override { std::filesystem::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string path(const std::string& name) const { return folder_.file(name); }
 
  private:
-  std::filesystem::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(MapFile, GivesTheSameMapAndBoundaries) {

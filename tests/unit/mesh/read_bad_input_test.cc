@@ -110,7 +110,8 @@ std::vector<BadFile> badFiles() {
       {"cut.stl", facet, ""},
       {"corners.stl", facet + "endloop\nendfacet\nendsolid\n", "1"},
       {"keyword.stl", "solid a\nfacets\n", ""},
-      {"number.stl", "solid a\nvertex 0 zero 0\n", "'zero'"},
+      {"number.stl", "solid a\nfacet normal 0 0 1\nvertex 0 zero 0\n", "'zero'"},
+      {"facet.stl", "solid a\nvertex 0 0 0\n", "line 2"},
       {"mesh.xyz", "0 0 0\n", ""},
       {"mesh", "0 0 0\n", ""},
   };
@@ -181,11 +182,6 @@ TEST(ReadBadInput, AFileLargerThanTheMemoryIsRefused) {
   EXPECT_THROW(readMesh(path), MemoryError);
 }
 
-std::string content(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 std::vector<std::pair<std::string, std::string>> validFiles(const TemporaryFolder& folder) {
   Mesh mesh = testing::cube();
   mesh.colours.assign(8, {0.5f, 0.25f, 1});
@@ -218,8 +214,8 @@ std::vector<std::pair<std::string, std::string>> validFiles(const TemporaryFolde
     facets += "endloop\nendfacet\n";
     binary += std::string(2, '\0');
   }
-  return {{"b.obj", content(folder.file("a.obj"))},
-          {"b.ply", content(folder.file("a.ply"))},
+  return {{"b.obj", test::contents(folder.file("a.obj"))},
+          {"b.ply", test::contents(folder.file("a.ply"))},
           {"c.ply", strips},
           {"b.off", off},
           {"b.stl", facets + "endsolid a\n"},

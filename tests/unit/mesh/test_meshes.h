@@ -1,45 +1,18 @@
 // More meshes, and files, for the tests of mesh/.
 #pragma once
 
-#include <unistd.h>
-
 #include <array>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <map>
-#include <stdexcept>
 #include <string>
 
+#include "core/temporary_folder.h"
 #include "innermap/mesh/mesh.h"
 #include "mesh/shapes.h"
 
 namespace innermap::testing {
 
-// A folder of its own that goes with the test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern =
-        (std::filesystem::temp_directory_path() / "innermap-mesh-XXXXXX").string();
-    if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
-    path_ = pattern;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  std::string file(const std::string& name) const { return path_ + "/" + name; }
-  std::string write(const std::string& name, const std::string& content) const {
-    // Some file systems flush a file that was truncated: slow when there are thousands.
-    std::filesystem::remove(file(name));
-    std::ofstream(file(name), std::ios::binary) << content;
-    return file(name);
-  }
-
- private:
-  std::string path_;
-};
+using test::TemporaryFolder;
 
 inline Mesh makeMesh(Points vertices, std::vector<Triangle> triangles) {
   Mesh mesh;

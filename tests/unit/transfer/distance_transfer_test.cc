@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/memory_limit.h"
+#include "field/affine_map.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/evaluate/evaluate_map.h"
@@ -14,6 +15,8 @@
 
 namespace innermap {
 namespace {
+
+using test::affineMap;
 
 const Vec3 kLower{-1, -0.6, -0.8}, kUpper{1.1, 0.7, 0.9};
 
@@ -31,17 +34,6 @@ openvdb::FloatGrid::Ptr levelSet(const Solid& solid) {
   LevelSetSettings settings;
   settings.resolution = 40;
   return makeLevelSet(solid, settings);
-}
-
-// p -> m p + shift, scaled and turned.
-HarmonicMap affineMap(const Mat3& m, const Vec3& shift) {
-  Affine affine;
-  affine.coefficients = Matrix(4, 3);
-  for (int r = 0; r < 3; ++r) {
-    affine.coefficients(0, r) = shift[r];
-    for (int a = 0; a < 3; ++a) affine.coefficients(1 + a, r) = m[r][a];
-  }
-  return HarmonicMap(HarmonicField({}, Matrix(0, 3), affine));
 }
 
 TEST(DistanceTransfer, DepthIsExactEverywhereInside) {

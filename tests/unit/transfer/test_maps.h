@@ -7,6 +7,7 @@
 
 #include "core/pi.h"
 #include "core/random.h"
+#include "field/affine_map.h"
 #include "innermap/field/fit.h"
 #include "innermap/field/harmonic_field.h"
 #include "innermap/levelset/level_set.h"
@@ -25,16 +26,6 @@ class Draws {
   CounterRandom random_;
   std::uint64_t next_ = 0;
 };
-
-inline HarmonicMap affineMap(const Mat3& m, const Vec3& shift) {
-  Affine affine;
-  affine.coefficients = Matrix(4, 3);
-  for (int r = 0; r < 3; ++r) {
-    affine.coefficients(0, r) = shift[r];
-    for (int a = 0; a < 3; ++a) affine.coefficients(1 + a, r) = m[r][a];
-  }
-  return HarmonicMap(HarmonicField({}, Matrix(0, 3), affine));
-}
 
 inline Mat3 rotation(double a, double b) {
   const Mat3 z{{{std::cos(a), -std::sin(a), 0}, {std::sin(a), std::cos(a), 0}, {0, 0, 1}}};

@@ -56,7 +56,7 @@ void FrameSet::takeFiles(const py::object& given, bool oneText) {
     names.push_back(pathFrom(given, "frames"));
   else
     for (const auto& path : given) names.push_back(pathFrom(path, "frames"));
-  files_ = findFrames(names, {".obj", ".ply", ".off", ".stl"}).frames;
+  files_ = findFrames(names, meshExtensions()).frames;
   if (files_.empty()) wrongValue("frames", "no file has a frame number in its name");
   for (const FrameFile& file : files_) numbers_.push_back(file.number);
 }

@@ -15,6 +15,9 @@
 
 namespace innermap {
 
+// ".obj" and so on, of the files that readMesh reads.
+const std::vector<std::string>& meshExtensions();
+
 // Reads by the extension (case-insensitive) .obj, .ply, .off, .stl.
 //
 // Vertices keep the file's order and number, loose ones included. STL corners are welded where

@@ -34,8 +34,7 @@ class CellCollector {
   void report(double fraction) const { reportProgress("reading cells", fraction); }
   void leaveOut(const std::string& kind, std::uint64_t count = 1) { leftOut_[kind] += count; }
   void note(const std::string& text) { file.notes.push_back(text); }
-  // Throws FileError when one more vertex or cell would exceed what an int counts.
-  void requireCountable(std::uint64_t count) const;
+  void requireCountable(std::uint64_t count) const { innermap::requireCountable(path_, count); }
   void requireFinite(const Vec3& p, std::uint64_t index) const;
   // Corners counted from 0.
   void addCell(CellUse use, const std::int64_t* corners);
@@ -50,9 +49,6 @@ class CellCollector {
   std::map<std::string, std::uint64_t> leftOut_;
   std::uint64_t claimed_ = 0;
 };
-
-// Throws FileError: "path: line 12: what", by the lines before the byte.
-[[noreturn]] void failAt(const FileBytes& file, std::size_t byte, const std::string& what);
 
 CellFile readVtu(const FileBytes& file);
 CellFile readMsh(const FileBytes& file);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cstring>
 
 #include "core/text_scanner.h"
@@ -49,21 +48,16 @@ std::string MshCursor::quoted() {
 
 std::int64_t MshCursor::textInteger() {
   const std::string_view text = nextWord();
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size())
-    fail(inQuotes(text) + " is not a whole number; export the file again");
-  return value;
+  const std::optional<std::int64_t> value = parseInteger(text);
+  if (!value) fail(inQuotes(text) + " is not a whole number; export the file again");
+  return *value;
 }
 
 double MshCursor::textReal() {
   const std::string_view text = nextWord();
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if ((error != std::errc() && error != std::errc::result_out_of_range) ||
-      end != text.data() + text.size())
-    fail(inQuotes(text) + " is not a number; export the file again");
-  return value;
+  const std::optional<double> value = parseNumber(text);
+  if (!value) fail(inQuotes(text) + " is not a number; export the file again");
+  return *value;
 }
 
 void MshCursor::endLine() {

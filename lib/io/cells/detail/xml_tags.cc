@@ -1,7 +1,6 @@
 #include "io/cells/detail/xml_tags.h"
 
-#include "innermap/core/error.h"
-#include "io/cells/detail/cell_formats.h"
+#include "core/text_scanner.h"
 
 namespace innermap {
 namespace {

@@ -1,10 +1,6 @@
 // The formats behind io/geometry_file.h, and what they share.
 #pragma once
 
-#include <fmt/format.h>
-
-#include <cstdint>
-#include <iterator>
 #include <memory>
 #include <ostream>
 #include <string>
@@ -17,55 +13,30 @@
 
 namespace innermap {
 
-std::unique_ptr<GeometryFile> readObjGeometry(FileBytes file, const ReadGeometrySettings& settings);
+std::unique_ptr<GeometryFile> readObjGeometry(FileBytes file);
 std::unique_ptr<GeometryFile> readPlyGeometry(FileBytes file, const ReadGeometrySettings& settings);
-std::unique_ptr<GeometryFile> readOffGeometry(FileBytes file, const ReadGeometrySettings& settings);
-std::unique_ptr<GeometryFile> readStlGeometry(FileBytes file, const ReadGeometrySettings& settings);
+std::unique_ptr<GeometryFile> readOffGeometry(FileBytes file);
+std::unique_ptr<GeometryFile> readStlGeometry(FileBytes file);
 std::unique_ptr<GeometryFile> readCellGeometry(const std::string& path,
                                                const ReadGeometrySettings& settings);
 
-// The words of one line of text, with where they stand. Continued lines ('\' at the end) count as
-// one; a '#' ends it where comments are.
-class LineWords {
+// Copies a file but for what is put in place of some of its bytes.
+class FileCopy {
  public:
-  LineWords(const FileBytes& file, std::size_t begin, std::size_t end, bool comments)
-      : bytes_(&file.bytes), position_(begin), end_(end), comments_(comments) {}
+  FileCopy(const FileBytes& file, OutputBuffer& out) : bytes_(file.bytes), out_(out) {}
 
-  bool next(std::string_view& word);
-  std::size_t position() const { return position_; }  // behind the last word
+  // Copies what comes before that byte.
+  void to(std::size_t byte) {
+    out_.raw(bytes_.substr(next_, byte - next_));
+    next_ = byte;
+  }
+  void skipTo(std::size_t byte) { next_ = byte; }
 
  private:
-  bool separates(std::size_t at) const;
-  const std::string* bytes_;
-  std::size_t position_, end_;
-  bool comments_;
+  std::string_view bytes_;
+  OutputBuffer& out_;
+  std::size_t next_ = 0;
 };
-
-// The lines of a text, each with its end; lines that '\' continues as one, where asked for.
-class TextLines {
- public:
-  TextLines(const FileBytes& file, bool continued, std::size_t begin = 0);
-
-  // [begin, end) of the next line, its line break included; false at the end of the file.
-  bool next(std::size_t& begin, std::size_t& end);
-  std::size_t line() const { return line_; }  // the number of the line that next() gave
-
- private:
-  const std::string& bytes_;
-  bool continued_;
-  char separator_ = '\n';
-  std::size_t position_, line_ = 0, nextLine_ = 1;
-};
-
-// "path: line 12: what".
-[[noreturn]] void failAtLine(const FileBytes& file, std::size_t line, const std::string& what);
-
-// Throw FileError with the line.
-double numberOf(const FileBytes& file, std::size_t line, std::string_view word);
-std::int64_t integerOf(const FileBytes& file, std::size_t line, std::string_view word);
-
-// Throws FileError when there are more than an int counts.
-void requireCountable(const FileBytes& file, std::size_t count, const char* what);
 
 // Whether all of the file's things are still there as they were.
 inline bool unchanged(const CarriedGeometry& carried) {

@@ -3,25 +3,19 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "core/text_scanner.h"
-#include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "io/geometry/detail/geometry_formats.h"
+#include "mesh/obj_scanner.h"
 
 namespace innermap {
 namespace {
 
-enum class Line { vertex, normal, texture, element, other };
-
-Line kindOf(std::string_view keyword) {
-  if (keyword == "v") return Line::vertex;
-  if (keyword == "vn") return Line::normal;
-  if (keyword == "vt") return Line::texture;
-  return keyword == "f" || keyword == "fo" || keyword == "l" || keyword == "p" ? Line::element
-                                                                               : Line::other;
-}
-
 using Numbers = std::vector<double>;
+
+Elements::Kind elementKind(ObjLine kind) {
+  if (kind == ObjLine::face) return Elements::Kind::face;
+  return kind == ObjLine::line ? Elements::Kind::line : Elements::Kind::points;
+}
 
 class ObjGeometry : public GeometryFile {
  public:
@@ -38,19 +32,17 @@ class ObjGeometry : public GeometryFile {
   };
 
   void read();
-  void readElement(LineWords& words, std::string_view keyword, std::size_t line);
-  Corner readCorner(std::string_view word, std::size_t line);
-  int index(std::string_view word, std::size_t count, const char* what, std::int64_t& highest,
-            std::size_t line) const;
-  Vec3 three(LineWords& words, std::size_t line) const;
+  void readElement(ObjScanner& obj);
+  int useOf(int normal, int point);
   void numberNormals();
-  void requireInRange(std::int64_t highest, std::size_t count, const char* what) const;
 
   // The numbers of the line at that byte, from the `from`-th on.
   Numbers numbersAt(std::size_t byte, std::size_t from) const;
   Numbers meanOf(const std::vector<std::size_t>& lines, std::size_t from, const Midpoints& middles,
                  std::vector<Numbers>& made, std::size_t i) const;
-  void writeVertex(OutputBuffer& out, const Vec3& p, std::size_t begin, std::size_t end) const;
+  // The rest of the line, to which a line break is added where the file ends without one.
+  void copyRest(OutputBuffer& out, TextScanner& text) const;
+  void writeVertex(OutputBuffer& out, const Vec3& p, TextScanner& text) const;
   void writeVertices(OutputBuffer& out, const CarriedGeometry& carried) const;
   void writeTextures(OutputBuffer& out) const;
   void writeElement(OutputBuffer& out, std::string_view keyword, std::size_t element,
@@ -62,113 +54,56 @@ class ObjGeometry : public GeometryFile {
   Points normals_;                                       // of the file
   std::vector<Use> uses_;
   std::unordered_map<std::uint64_t, int> useOf_;
-  std::int64_t highestPoint_ = 0, highestTexture_ = 0, highestNormal_ = 0;
   bool normalsInPlace_ = true;  // the file's normals keep their numbers
 };
 
-Vec3 ObjGeometry::three(LineWords& words, std::size_t line) const {
-  Vec3 p;
-  std::string_view word;
-  for (int a = 0; a < 3; ++a) {
-    if (!words.next(word)) failAtLine(file_, line, "the line ends before its three coordinates");
-    p[a] = numberOf(file_, line, word);
-  }
-  return p;
-}
-
 void ObjGeometry::read() {
-  TextLines lines(file_, true);
-  geometry.cornerDirections = true;
-  std::size_t begin = 0, end = 0;
-  std::string_view keyword;
-  for (std::size_t count = 0; lines.next(begin, end); ++count) {
-    if (count % 65536 == 0)
-      reportProgress("reading",
-                     static_cast<double>(begin) / static_cast<double>(file_.bytes.size()));
-    LineWords words(file_, begin, end, true);
-    if (!words.next(keyword)) continue;
-    switch (kindOf(keyword)) {
-      case Line::vertex:
-        requireCountable(file_, geometry.points.size(), "points");
-        geometry.points.push_back(three(words, lines.line()));
-        vertexLines_.push_back(begin);
+  ObjScanner obj(file_, true);
+  for (std::size_t count = 0; obj.next(); ++count) {
+    if (count % 65536 == 0) reportProgress("reading", obj.fraction());
+    switch (obj.kind()) {
+      case ObjLine::vertex:
+        requireCountable(file_.path, geometry.points.size());
+        geometry.points.push_back(obj.text().nextVec3("three coordinates"));
+        vertexLines_.push_back(obj.text().lineBegin());
         break;
-      case Line::normal:
-        requireCountable(file_, normals_.size(), "normals");
-        normals_.push_back(three(words, lines.line()));
+      case ObjLine::normal:
+        requireCountable(file_.path, normals_.size());
+        normals_.push_back(obj.text().nextVec3("three coordinates"));
         break;
-      case Line::texture:
-        requireCountable(file_, textureLines_.size(), "texture coordinates");
-        textureLines_.push_back(begin);
+      case ObjLine::texture:
+        requireCountable(file_.path, textureLines_.size());
+        textureLines_.push_back(obj.text().lineBegin());
         break;
-      case Line::element:
-        readElement(words, keyword, lines.line());
+      case ObjLine::other:
         break;
-      case Line::other:
-        break;
+      default:
+        readElement(obj);
     }
   }
-  requireInRange(highestPoint_, geometry.points.size(), "vertex");
-  requireInRange(highestTexture_, textureLines_.size(), "texture coordinate");
-  requireInRange(highestNormal_, normals_.size(), "normal");
+  obj.requireInRange();
   geometry.ownPoints = geometry.points.size();
   geometry.textures = textureLines_.size();
   numberNormals();
 }
 
-void ObjGeometry::requireInRange(std::int64_t highest, std::size_t count, const char* what) const {
-  if (highest > static_cast<std::int64_t>(count))
-    throw FileError(file_.path, fmt::format("{} index {} is out of range, the file has {}", what,
-                                            highest, count));
-}
-
-int ObjGeometry::index(std::string_view word, std::size_t count, const char* what,
-                       std::int64_t& highest, std::size_t line) const {
-  const std::int64_t value = integerOf(file_, line, word), size = static_cast<std::int64_t>(count);
-  if (value == 0 || value < -size || value > 2147483647)
-    failAtLine(
-        file_, line,
-        fmt::format("{} index {} is out of range, the file has {} there", what, value, count));
-  highest = std::max(highest, value);
-  return static_cast<int>(value > 0 ? value - 1 : size + value);
-}
-
-// v, v/vt, v//vn or v/vt/vn
-Corner ObjGeometry::readCorner(std::string_view word, std::size_t line) {
-  Corner corner;
-  const std::size_t slash = word.find('/');
-  corner.point =
-      index(word.substr(0, slash), geometry.points.size(), "vertex", highestPoint_, line);
-  if (slash == word.npos) return corner;
-  const std::string_view rest = word.substr(slash + 1);
-  const std::size_t second = rest.find('/');
-  if (const std::string_view uv = rest.substr(0, second); !uv.empty())
-    corner.texture = index(uv, textureLines_.size(), "texture coordinate", highestTexture_, line);
-  if (second == rest.npos || second + 1 >= rest.size()) return corner;
-  const int normal =
-      index(rest.substr(second + 1), normals_.size(), "normal", highestNormal_, line);
-  const std::uint64_t key =
-      static_cast<std::uint64_t>(normal) << 32 | static_cast<std::uint32_t>(corner.point);
-  const auto [found, isNew] = useOf_.try_emplace(key, static_cast<int>(uses_.size()));
-  if (isNew) uses_.push_back({normal, corner.point, found->second});
-  corner.direction = found->second;
-  return corner;
-}
-
-void ObjGeometry::readElement(LineWords& words, std::string_view keyword, std::size_t line) {
+void ObjGeometry::readElement(ObjScanner& obj) {
   std::vector<Corner> corners;
-  std::string_view word;
-  while (words.next(word)) corners.push_back(readCorner(word, line));
-  const bool face = keyword[0] == 'f';
-  const std::size_t least = face ? 3 : keyword == "l" ? 2 : 1;
-  if (corners.size() < least)
-    failAtLine(file_, line, fmt::format("it needs {} corners, here are {}", least, corners.size()));
-  requireCountable(file_, geometry.elements.corners.size() + corners.size(), "corners");
-  geometry.elements.add(face             ? Elements::Kind::face
-                        : keyword == "l" ? Elements::Kind::line
-                                         : Elements::Kind::points,
+  for (const ObjCorner& corner : obj.corners())
+    corners.push_back({corner.vertex, corner.normal < 0 ? -1 : useOf(corner.normal, corner.vertex),
+                       corner.texture});
+  requireCountable(file_.path, geometry.elements.corners.size() + corners.size());
+  geometry.elements.add(elementKind(obj.kind()),
                         static_cast<std::uint32_t>(geometry.elements.size()), corners.data(),
                         corners.size());
+}
+
+int ObjGeometry::useOf(int normal, int point) {
+  const std::uint64_t key =
+      static_cast<std::uint64_t>(normal) << 32 | static_cast<std::uint32_t>(point);
+  const auto [found, isNew] = useOf_.try_emplace(key, static_cast<int>(uses_.size()));
+  if (isNew) uses_.push_back({normal, point, found->second});
+  return found->second;
 }
 
 // Uses of normals become directions, in the order of the file's normals.
@@ -203,15 +138,13 @@ void ObjGeometry::numberNormals() {
 }
 
 Numbers ObjGeometry::numbersAt(std::size_t byte, std::size_t from) const {
-  TextLines lines(file_, true, byte);
-  std::size_t begin = 0, end = 0;
-  lines.next(begin, end);
-  LineWords words(file_, begin, end, true);
+  TextScanner text(file_, kObjSyntax, byte);
+  text.nextLine();
   std::string_view word;
-  words.next(word);
+  text.token(word);
   Numbers numbers;
-  for (std::size_t k = 0; words.next(word); ++k)
-    if (k >= from) numbers.push_back(numberOf(file_, lines.line(), word));
+  for (std::size_t k = 0; text.token(word); ++k)
+    if (k >= from) numbers.push_back(text.number(word));
   return numbers;
 }
 
@@ -231,24 +164,26 @@ Numbers ObjGeometry::meanOf(const std::vector<std::size_t>& lines, std::size_t f
   return a;
 }
 
-void ObjGeometry::writeVertex(OutputBuffer& out, const Vec3& p, std::size_t begin,
-                              std::size_t end) const {
-  LineWords words(file_, begin, end, true);
-  std::string_view keyword, word;
-  words.next(keyword);
-  for (int a = 0; a < 3; ++a) words.next(word);
-  out.print("{} {} {} {}", keyword, p.x, p.y, p.z);
-  out.raw(std::string_view(file_.bytes).substr(words.position(), end - words.position()));
+void ObjGeometry::copyRest(OutputBuffer& out, TextScanner& text) const {
+  const std::size_t begin = text.position(), end = text.endLine();
+  out.raw(std::string_view(file_.bytes).substr(begin, end - begin));
   if (end == file_.bytes.size() && file_.bytes.back() != '\n') out.raw("\n");
+}
+
+void ObjGeometry::writeVertex(OutputBuffer& out, const Vec3& p, TextScanner& text) const {
+  std::string_view word;
+  for (int a = 0; a < 3; ++a) text.token(word);
+  out.print("v {} {} {}", p.x, p.y, p.z);
+  copyRest(out, text);
 }
 
 void ObjGeometry::writeVertices(OutputBuffer& out, const CarriedGeometry& carried) const {
   for (std::size_t i = 0; i < vertexLines_.size(); ++i) {
     if (carried.number[i] < 0) continue;
-    TextLines lines(file_, true, vertexLines_[i]);
-    std::size_t begin = 0, end = 0;
-    lines.next(begin, end);
-    writeVertex(out, carried.points.points[i], begin, end);
+    TextScanner text(file_, kObjSyntax, vertexLines_[i]);
+    std::string_view keyword;
+    text.nextFilledLine(keyword);
+    writeVertex(out, carried.points.points[i], text);
   }
   std::vector<Numbers> made;
   for (std::size_t i = 0; i < carried.added; ++i) {
@@ -263,11 +198,9 @@ void ObjGeometry::writeVertices(OutputBuffer& out, const CarriedGeometry& carrie
 
 void ObjGeometry::writeTextures(OutputBuffer& out) const {
   for (const std::size_t line : textureLines_) {
-    TextLines lines(file_, true, line);
-    std::size_t begin = 0, end = 0;
-    lines.next(begin, end);
-    out.raw(std::string_view(file_.bytes).substr(begin, end - begin));
-    if (end == file_.bytes.size() && file_.bytes.back() != '\n') out.raw("\n");
+    TextScanner text(file_, kObjSyntax, line);
+    text.nextLine();
+    copyRest(out, text);
   }
   std::vector<Numbers> made;
   for (std::size_t i = 0; i < geometry.textureMiddles.parents().size(); ++i) {
@@ -312,51 +245,53 @@ void ObjGeometry::writeElement(OutputBuffer& out, std::string_view keyword, std:
 std::vector<std::string> ObjGeometry::write(const std::string&, const CarriedGeometry& carried,
                                             std::ostream& stream) const {
   OutputBuffer out(stream);
-  TextLines lines(file_, true);
+  FileCopy copy(file_, out);
+  ObjScanner obj(file_, true);
   const Elements& elements = geometry.elements;
   // Where points come and go, all of them are written at the place of the first.
   const bool samePoints = unchanged(carried), sameTextures = carried.added == 0;
-  std::size_t begin = 0, end = 0, vertices = 0, normals = 0, textures = 0, element = 0,
-              elementLine = 0;
-  std::string_view keyword;
+  std::size_t vertices = 0, normals = 0, textures = 0, element = 0, elementLine = 0;
   const std::vector<int> directionNumbers = numberDirections(carried);
   const auto normal = [&](std::size_t i) {
     if (directionNumbers[i] < 0) return;
     const Vec3& n = carried.directions[0][i];
     out.print("vn {} {} {}\n", n.x, n.y, n.z);
   };
-  while (lines.next(begin, end)) {
-    LineWords words(file_, begin, end, true);
-    const Line kind = words.next(keyword) ? kindOf(keyword) : Line::other;
-    const auto copy = [&] { out.raw(std::string_view(file_.bytes).substr(begin, end - begin)); };
-    if (kind == Line::vertex) {
+  while (obj.next()) {
+    const ObjLine kind = obj.kind();
+    if (kind == ObjLine::other || (kind == ObjLine::texture && sameTextures)) continue;
+    const bool isElement =
+        kind != ObjLine::vertex && kind != ObjLine::normal && kind != ObjLine::texture;
+    if (isElement && normalsInPlace_ && samePoints) continue;
+    copy.to(obj.text().lineBegin());
+    if (kind == ObjLine::vertex) {
       if (samePoints)
-        writeVertex(out, carried.points.points[vertices], begin, end);
+        writeVertex(out, carried.points.points[vertices], obj.text());
       else if (vertices == 0)
         writeVertices(out, carried);
       ++vertices;
-    } else if (kind == Line::normal) {
+    } else if (kind == ObjLine::normal) {
       if (normalsInPlace_ && samePoints)
         normal(normals);
       else if (normals == 0 && !carried.directions.empty())
         for (std::size_t i = 0; i < carried.directions[0].size(); ++i) normal(i);
       ++normals;
-    } else if (kind == Line::texture && !sameTextures) {
+    } else if (kind == ObjLine::texture) {
       if (textures++ == 0) writeTextures(out);
-    } else if (kind == Line::element && !(normalsInPlace_ && samePoints)) {
-      for (; element < elements.size() && elements.source[element] == elementLine; ++element)
-        writeElement(out, keyword, element, carried, directionNumbers);
-      ++elementLine;
     } else {
-      copy();
+      for (; element < elements.size() && elements.source[element] == elementLine; ++element)
+        writeElement(out, obj.keyword(), element, carried, directionNumbers);
+      ++elementLine;
     }
+    copy.skipTo(obj.text().endLine());
   }
+  copy.to(file_.bytes.size());
   return {};
 }
 
 }  // namespace
 
-std::unique_ptr<GeometryFile> readObjGeometry(FileBytes file, const ReadGeometrySettings&) {
+std::unique_ptr<GeometryFile> readObjGeometry(FileBytes file) {
   return std::make_unique<ObjGeometry>(std::move(file));
 }
 

@@ -1,25 +1,12 @@
 #include "io/geometry/detail/ply_geometry.h"
 
 #include <cmath>
-#include <limits>
 #include <optional>
 
-#include "core/text_scanner.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 
 namespace innermap {
-
-PlyRole plyRole(const PlyElement& element) {
-  if (element.name == "vertex") return PlyRole::vertices;
-  if (element.name == "face") return PlyRole::faces;
-  if (element.name == "tristrips") return PlyRole::strips;
-  return element.name == "edge" ? PlyRole::edges : PlyRole::other;
-}
-
-bool isIndexList(const PlyProperty& p) {
-  return p.list && (p.name == "vertex_indices" || p.name == "vertex_index");
-}
 
 bool PlyGeometry::findThree(const PlyElement& element,
                             const std::vector<std::array<std::string, 3>>& names, int direction) {
@@ -72,7 +59,7 @@ void PlyGeometry::read(const ReadGeometrySettings& settings) {
   PlyBody body(file_, header_);
   bool vertices = false;
   for (const PlyElement& element : header_.elements) {
-    body.requireRoom(element);
+    const std::uint64_t rows = body.rows(element);
     const PlyRole role = plyRole(element);
     if (role == PlyRole::vertices) {
       if (vertices) throw FileError(file_.path, "has two elements of vertices; keep one");
@@ -81,21 +68,24 @@ void PlyGeometry::read(const ReadGeometrySettings& settings) {
       readVertices(body, element);
       continue;
     }
-    if (role == PlyRole::strips && element.count > 0) geometry.splittable = false;
-    for (std::uint64_t row = 0; row < element.count; ++row) {
+    if (role == PlyRole::strips && rows > 0) geometry.splittable = false;
+    PlyFaces faces(element);
+    for (std::uint64_t row = 0; row < rows; ++row) {
       if (row % 65536 == 0)
         reportProgress("reading", static_cast<double>(body.position()) /
                                       static_cast<double>(file_.bytes.size()));
-      if (role == PlyRole::other)
+      if (role == PlyRole::other) {
         body.skipRow(element);
-      else
-        readFace(body, element, row);
+        continue;
+      }
+      faces.read(body);
+      addElement(role, faces);
     }
   }
   if (!vertices) throw FileError(file_.path, "has no vertices");
   const auto count = static_cast<int>(geometry.points.size());
   for (const Corner& corner : geometry.elements.corners)
-    if (corner.point >= count || corner.point < -1)
+    if (corner.point >= count)
       throw FileError(file_.path, fmt::format("a face uses vertex {}, the file has {} (counted "
                                               "from 0)",
                                               corner.point, count));
@@ -104,7 +94,7 @@ void PlyGeometry::read(const ReadGeometrySettings& settings) {
 }
 
 void PlyGeometry::readVertices(PlyBody& body, const PlyElement& element) {
-  requireCountable(file_, element.count, "vertices");
+  requireCountable(file_.path, element.count);
   geometry.points.reserve(element.count);
   std::vector<const PlyMoving*> moving(element.properties.size());
   for (const auto& [at, what] : moving_) moving[at] = &what;
@@ -112,15 +102,14 @@ void PlyGeometry::readVertices(PlyBody& body, const PlyElement& element) {
   for (std::uint64_t row = 0; row < element.count; ++row) {
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const PlyProperty& property = element.properties[p];
-      const std::uint64_t items = property.list ? body.listSize(property) : 1;
-      for (std::uint64_t k = 0; k < items; ++k) {
-        const std::string_view bytes = body.next(property.type);
-        if (!moving[p]) continue;
-        const double value = body.value(bytes, property.type);
-        if (!std::isfinite(value) && moving[p]->direction < 0)
-          body.fail(fmt::format("vertex {} is not finite; export the file again", row));
-        values[static_cast<std::size_t>(1 + moving[p]->direction)][moving[p]->axis] = value;
+      if (!moving[p]) {
+        body.skip(property);
+        continue;
       }
+      const double value = body.nextValue(property.type);
+      if (!std::isfinite(value) && moving[p]->direction < 0)
+        body.fail(fmt::format("vertex {} is not finite; export the file again", row));
+      values[static_cast<std::size_t>(1 + moving[p]->direction)][moving[p]->axis] = value;
     }
     geometry.points.push_back(values[0]);
     for (std::size_t d = 0; d < geometry.directions.size(); ++d) {
@@ -130,49 +119,22 @@ void PlyGeometry::readVertices(PlyBody& body, const PlyElement& element) {
   }
 }
 
-void PlyGeometry::readFace(PlyBody& body, const PlyElement& element, std::uint64_t row) {
-  const PlyRole role = plyRole(element);
-  std::vector<double> indices, uvs;
-  for (const PlyProperty& property : element.properties) {
-    const std::uint64_t items = property.list ? body.listSize(property) : 1;
-    const bool ends = role == PlyRole::edges && !property.list &&
-                      (property.name == "vertex1" || property.name == "vertex2");
-    const bool isTexture = property.list && property.name == "texcoord";
-    for (std::uint64_t k = 0; k < items; ++k) {
-      const std::string_view bytes = body.next(property.type);
-      if ((role != PlyRole::edges && isIndexList(property)) || ends)
-        indices.push_back(body.value(bytes, property.type));
-      else if (isTexture)
-        uvs.push_back(body.value(bytes, property.type));
-    }
+void PlyGeometry::addElement(PlyRole role, const PlyFaces& face) {
+  std::vector<Corner> corners(face.corners.size());
+  const std::size_t firstTexture = textures_.size() / 2;
+  const bool textured = !face.uvs.empty() && face.uvs.size() == 2 * corners.size();
+  if (textured) textures_.insert(textures_.end(), face.uvs.begin(), face.uvs.end());
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    corners[k].point = face.corners[k];
+    if (textured) corners[k].texture = static_cast<int>(firstTexture + k);
   }
-  const std::size_t first = textures_.size() / 2;
-  addElement(role, row, indices);
-  if (uvs.size() != 2 * indices.size() || uvs.empty()) return;
-  textures_.insert(textures_.end(), uvs.begin(), uvs.end());
-  std::vector<Corner>& corners = geometry.elements.corners;
-  for (std::size_t k = 0; k < indices.size(); ++k)
-    corners[corners.size() - indices.size() + k].texture = static_cast<int>(first + k);
-}
-
-void PlyGeometry::addElement(PlyRole role, std::uint64_t row, const std::vector<double>& indices) {
-  std::vector<Corner> corners;
-  for (const double index : indices) {
-    const double least = role == PlyRole::strips ? -1 : 0;
-    if (!(index >= least && index < std::numeric_limits<int>::max()) || index != std::floor(index))
-      throw FileError(file_.path, fmt::format("{} is not an index of a vertex", index));
-    Corner corner;
-    corner.point = static_cast<int>(index);
-    corners.push_back(corner);
-  }
-  requireCountable(file_, geometry.elements.corners.size() + corners.size(), "corners");
+  requireCountable(file_.path, geometry.elements.corners.size() + corners.size());
   Elements::Kind kind = role == PlyRole::edges    ? Elements::Kind::line
                         : role == PlyRole::strips ? Elements::Kind::cell
                                                   : Elements::Kind::face;
   if (kind == Elements::Kind::face && corners.size() < 3) kind = Elements::Kind::cell;
-  geometry.elements.add(kind, static_cast<std::uint32_t>(rows_.size()), corners.data(),
+  geometry.elements.add(kind, static_cast<std::uint32_t>(roles_.size()), corners.data(),
                         corners.size());
-  rows_.push_back(static_cast<std::uint32_t>(row));
   roles_.push_back(role);
 }
 

@@ -7,14 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "io/geometry/detail/ply_body.h"
+#include "core/ply_body.h"
+#include "io/geometry/detail/geometry_formats.h"
 
 namespace innermap {
-
-enum class PlyRole { other, vertices, faces, strips, edges };
-
-PlyRole plyRole(const PlyElement& element);
-bool isIndexList(const PlyProperty& property);
 
 // What a property of the vertices moves with: the place (-1) or one of the directions.
 struct PlyMoving {
@@ -37,8 +33,7 @@ class PlyGeometry : public GeometryFile {
   bool findThree(const PlyElement& element, const std::vector<std::array<std::string, 3>>& names,
                  int direction);
   void readVertices(PlyBody& body, const PlyElement& element);
-  void readFace(PlyBody& body, const PlyElement& element, std::uint64_t row);
-  void addElement(PlyRole role, std::uint64_t row, const std::vector<double>& indices);
+  void addElement(PlyRole role, const PlyFaces& face);
 
   double moved(const PlyMoving& what, std::size_t point, const CarriedGeometry& carried) const {
     const Points& of = what.direction < 0
@@ -61,7 +56,6 @@ class PlyGeometry : public GeometryFile {
   FileBytes file_;
   PlyHeader header_;
   std::map<std::size_t, PlyMoving> moving_;  // of the vertices' properties, by their place
-  std::vector<std::uint32_t> rows_;          // #elements of the file: row among its PLY element's
   std::vector<PlyRole> roles_;               // #elements of the file
   std::vector<double> textures_;             // two for each corner, where faces have them
   mutable const CarriedGeometry* carried_ = nullptr;

@@ -43,17 +43,17 @@ void PlyGeometry::writeVertices(OutputBuffer& out, PlyBody& body, const PlyEleme
     const bool stays = carried.number[row] >= 0;
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const PlyProperty& property = element.properties[p];
-      const std::uint64_t items = property.list ? body.listSize(property) : 1;
-      for (std::uint64_t k = 0; k < items; ++k) {
-        const std::string_view bytes = body.next(property.type);
-        if (!moving[p] || !stays) continue;
-        const auto begin = static_cast<std::size_t>(bytes.data() - file_.bytes.data());
-        // Digits come with a space of their own.
-        copy(out, copied,
-             body.ascii() && begin > copied && file_.bytes[begin - 1] == ' ' ? begin - 1 : begin);
-        body.put(out, property.type, moved(*moving[p], row, carried));
-        copied = begin + bytes.size();
+      if (!moving[p] || !stays) {
+        body.skip(property);
+        continue;
       }
+      const std::string_view bytes = body.next(property.type);
+      const auto begin = static_cast<std::size_t>(bytes.data() - file_.bytes.data());
+      // Digits come with a space of their own.
+      copy(out, copied,
+           body.ascii() && begin > copied && file_.bytes[begin - 1] == ' ' ? begin - 1 : begin);
+      body.put(out, property.type, moved(*moving[p], row, carried));
+      copied = begin + bytes.size();
     }
     if (stays) copy(out, copied, body.position());
   }
@@ -72,12 +72,8 @@ void PlyGeometry::writeAdded(OutputBuffer& out, PlyBody& body, const PlyElement&
     std::vector<double> values;
     body.seek(rows[i]);
     for (const PlyProperty& property : element.properties) {
-      const std::uint64_t items = property.list ? body.listSize(property) : 1;
-      for (std::uint64_t k = 0; k < items; ++k) {
-        const double value = body.value(body.next(property.type), property.type);
-        if (!property.list) values.push_back(value);
-      }
-      if (property.list) values.push_back(0);
+      if (property.list) body.skip(property);
+      values.push_back(property.list ? 0 : body.nextValue(property.type));
     }
     return values;
   };
@@ -126,22 +122,20 @@ void PlyGeometry::writeElement(OutputBuffer& out, PlyBody& body, const PlyElemen
     body.seek(row);
     if (body.ascii()) out.raw("\n");
     for (const PlyProperty& property : element.properties) {
-      const std::uint64_t items = property.list ? body.listSize(property) : 1;
+      std::vector<std::string_view> kept(body.items(property));
+      for (std::string_view& bytes : kept) bytes = body.next(property.type);
       std::vector<double> values;
-      for (std::uint64_t k = 0; k < items; ++k)
-        values.push_back(body.value(body.next(property.type), property.type));
-      if (edges && property.name == "vertex1") values = {number(begin + part)};
-      if (edges && property.name == "vertex2") values = {number(begin + part + 1)};
-      if (!edges && isIndexList(property)) {
-        values.clear();
+      const PlyPart what = plyPart(plyRole(element), property);
+      if (what == PlyPart::end) values = {number(begin + part + (property.name == "vertex2"))};
+      if (what == PlyPart::corners)
         for (std::size_t k = begin; k < end; ++k) values.push_back(number(k));
-      }
-      if (property.list && property.name == "texcoord" && elements.corners[begin].texture >= 0) {
-        values.clear();
+      if (what == PlyPart::uvs && begin < end && elements.corners[begin].texture >= 0)
         for (std::size_t k = begin; k < end; ++k)
           for (const double value : textureAt(elements.corners[k].texture)) values.push_back(value);
-      }
-      if (property.list) body.put(out, property.countType, static_cast<double>(values.size()));
+      if (!values.empty()) kept.clear();
+      if (property.list)
+        body.put(out, property.countType, static_cast<double>(kept.size() + values.size()));
+      for (const std::string_view bytes : kept) body.put(out, bytes);
       for (const double value : values) body.put(out, property.type, value);
     }
   }
@@ -160,7 +154,7 @@ std::vector<std::string> PlyGeometry::write(const std::string&, const CarriedGeo
       writeVertices(out, body, element, carried);
       continue;
     }
-    for (std::uint64_t row = 0; row < element.count; ++row) {
+    for (std::uint64_t left = body.rows(element); left > 0; --left) {
       const std::size_t begin = body.position();
       body.skipRow(element);
       const std::size_t end = body.position();

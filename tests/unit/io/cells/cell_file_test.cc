@@ -4,32 +4,24 @@
 
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <sstream>
 
 #include "core/memory_limit.h"
+#include "core/temporary_folder.h"
 #include "innermap/core/error.h"
 
 namespace innermap {
 namespace {
 
 std::string pathOf(const std::string& name) {
-  const std::string folder = ::testing::TempDir() + "cell_file_test";
-  std::filesystem::create_directories(folder);
-  return folder + "/" + name;
+  static const test::TemporaryFolder folder;
+  return folder.file(name);
 }
 
 void write(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
-}
-
-std::string bytesOf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
 }
 
 // A cube and two tetrahedra on its top, with fields of each kind.
@@ -124,7 +116,7 @@ TEST(CellFile, AFileCutShortAnywhereIsAnError) {
   for (const char* name : {"mixed.vtu", "mixed.msh", "mixed.mesh"}) {
     const std::string whole = pathOf(name), cut = pathOf(std::string("cut_") + name);
     writeCells(whole, mixed());
-    const std::string bytes = bytesOf(whole);
+    const std::string bytes = test::contents(whole);
     const std::size_t step = std::max<std::size_t>(1, bytes.size() / 60);
     for (std::size_t size = 0; size + 60 < bytes.size(); size += step) {
       write(cut, bytes.substr(0, size));
@@ -143,7 +135,7 @@ TEST(CellFile, DamagedBytesNeverCrash) {
   for (const char* name : {"mixed.vtu", "mixed.msh", "mixed.mesh"}) {
     const std::string whole = pathOf(name), damaged = pathOf(std::string("damaged_") + name);
     writeCells(whole, mixed());
-    const std::string bytes = bytesOf(whole);
+    const std::string bytes = test::contents(whole);
     for (std::size_t i = 0; i < bytes.size(); i += 13)
       for (const char with : {'\xff', '9', '\0'}) {
         std::string changed = bytes;

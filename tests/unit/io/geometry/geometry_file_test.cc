@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "core/memory_limit.h"
+#include "core/temporary_folder.h"
 #include "innermap/core/error.h"
 #include "innermap/io/cell_file.h"
 #include "innermap/mesh/mesh_file.h"
@@ -16,21 +16,13 @@ namespace innermap {
 namespace {
 
 std::string pathOf(const std::string& name) {
-  const std::string folder = ::testing::TempDir() + "geometry_file_test";
-  std::filesystem::create_directories(folder);
-  return folder + "/" + name;
+  static const test::TemporaryFolder folder;
+  return folder.file(name);
 }
 
 std::string write(const std::string& name, const std::string& text) {
   std::ofstream(pathOf(name), std::ios::binary) << text;
   return pathOf(name);
-}
-
-std::string bytesOf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
 }
 
 // x goes to twice itself, y to y + x^2; points beyond x = 5 are cut.
@@ -52,7 +44,7 @@ std::string carriedBytes(const std::string& name, const std::string& text, doubl
   settings.subdivide = subdivide;
   const CarriedGeometry carried = carryGeometry(file->geometry, warp, settings);
   writeGeometry(pathOf("out_" + name), *file, carried);
-  return bytesOf(pathOf("out_" + name));
+  return test::contents(pathOf("out_" + name));
 }
 
 void expectError(const std::string& name, const std::string& text, const std::string& part) {
@@ -125,6 +117,34 @@ TEST(GeometryFile, PlyKeepsProperties) {
   EXPECT_EQ(out.find("40"), std::string::npos);
   settings.vectors = {"w"};
   EXPECT_THROW(carriedBytes("a.ply", kPly, 0, settings), FileError);
+}
+
+// Edges without ends stay as they are, and so do values of faces that are written anew, be they
+// faces without corners.
+TEST(GeometryFile, PlyKeepsWhatItDoesNotKnow) {
+  const std::string out =
+      carriedBytes("e.ply",
+                   "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                   "property float z\nelement void 9\nelement edge 1\nproperty int crease\n"
+                   "element face 2\nproperty list uchar int vertex_indices\n"
+                   "property list uchar float texcoord\nproperty float quality\nend_header\n"
+                   "9 0 0\n0 1 0\n0 0 1\n7\n3 1 2 1 0 nan\n0 2 0.5 0.5 1\n");
+  EXPECT_NE(out.find("element void 9\nelement edge 1\n"), std::string::npos) << out;
+  EXPECT_NE(out.find(" 0 1 0\n 0 0 1\n7\n 3 0 1 0 0 nan\n 0 2 0.5 0.5 1\n"), std::string::npos)
+      << out;
+}
+
+TEST(GeometryFile, TextIsAsStrictAsInMeshes) {
+  for (const char* number : {"nan", "inf", "1e999", "1,5", "0x1", "1e"}) {
+    SCOPED_TRACE(number);
+    const std::string n = number;
+    std::string ply = kPly;
+    ply.replace(ply.find("0.125"), 5, n);
+    expectError("n.ply", ply, "line 19");
+    expectError("n.obj", "v 0 0 " + n + "\nf 1 1 1\n", "line 1");
+    expectError("n.off", "OFF\n1 0 0\n0 0 " + n + "\n", "line 3");
+    expectError("n.stl", "solid\nfacet normal 0 0 1\nvertex 0 0 " + n + "\n", "line 3");
+  }
 }
 
 TEST(GeometryFile, PlySubdivided) {
@@ -227,12 +247,12 @@ TEST(GeometryFile, BadInput) {
   lying = kPly;
   lying.replace(lying.find("3 1 2 3 8"), 9, "3 1 2 4 8");
   expectError("x.ply", lying, "uses vertex 4");
-  expectError("x.off", "OFF\n9 9 9\n0 0 0\n", "fit in the file");
-  expectError("x.stl", std::string(84, '\xff'), "do not fit");
+  expectError("x.off", "OFF\n9 9 9\n0 0 0\n", "do not fit");
+  expectError("x.stl", std::string(84, '\xff'), "cut short");
   const std::string facet = "facet normal 0 0 1\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n";
-  expectError("x.stl", "solid a\n" + facet, "does not end");
+  expectError("x.stl", "solid a\n" + facet, "cut short");
   expectError("x.stl", "solid a\n" + facet + facet + "endfacet\n", "within another");
-  expectError("x.stl", "solid a\nendfacet\n", "not three corners");
+  expectError("x.stl", "solid a\nendfacet\n", "three corners");
   expectError("x.xyz", "0 0 0\n", "unknown extension");
   EXPECT_THROW(requireWritableAs("a.obj", "b.ply"), FileError);
   EXPECT_THROW(requireWritableAs("a.vtu", "b.ply"), FileError);

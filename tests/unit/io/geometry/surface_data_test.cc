@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 
+#include "core/temporary_folder.h"
 #include "innermap/core/error.h"
 #include "innermap/io/geometry_file.h"
 #include "innermap/mesh/mesh_file.h"
@@ -13,11 +13,9 @@ namespace {
 class SurfaceData : public ::testing::Test {
  protected:
   std::string write(const std::string& name, const std::string& text) {
-    const std::string path = folder_ + name;
-    std::ofstream(path) << text;
-    return path;
+    return folder_.write(name, text);
   }
-  std::string folder_ = ::testing::TempDir() + "/";
+  test::TemporaryFolder folder_;
 };
 
 const char kObj[] =
