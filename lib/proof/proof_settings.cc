@@ -12,8 +12,7 @@ std::vector<Setting> describe(ProofSettings& s) {
               .rare(),
           Setting("error_margin", "SHARE", &s.errorMargin,
                   "how near the proven boundary error comes to the largest that is seen")
-              .from(1e-3, 1),
-          Setting("keep_proven", &s.keepProven, "the places of proven cells too").rare()};
+              .from(1e-3, 1)};
 }
 
 }  // namespace innermap

@@ -27,6 +27,7 @@ struct HarmonicFit;
 struct Hexahedralization;
 struct HexahedronCheck;
 struct Injectivity;
+struct ProofFigures;
 struct InsideFigures;
 struct InverseStatistics;
 struct LameConstants;
@@ -74,6 +75,8 @@ Figures figures(const InsideFigures& inside);
 Figures stepFigures(const std::vector<MapStep>& steps);
 // "one_to_one"
 Figures figures(const Injectivity& known);
+// "one_to_one" too: of what is proven.
+Figures figures(const ProofFigures& proof);
 // "field"
 Figures fieldFigures(double span, double freeShare);
 // "energy", "jacobian", "repair", "grid" of an evaluated map.

@@ -190,7 +190,7 @@ Figures stepFigures(const std::vector<MapStep>& steps) {
        when(!steps.empty(), columns(steps, step))});
 }
 
-Figures proofFigures(const ProofFigures& proof) {
+Figures figures(const ProofFigures& proof) {
   return {
       {"proof_cells", proof.cells, "cells of the proof", "that cover the solid"},
       {"proof_undecided", proof.undecided, "cells undecided", "of which nothing is proven"},
@@ -243,7 +243,7 @@ Figures figures(const Injectivity& known) {
         Figure("cells_overlaps", known.cells.overlaps, "cells' overlaps",
                "places where the image of their boundary runs through itself")
             .when(known.cells.overlaps >= 0)},
-       when(known.proof.cells > 0, proofFigures(known.proof)),
+       when(known.proof.cells > 0, figures(known.proof)),
        {{"source_crossings_at", known.source.places, "source's crossings", "x, y, z of the first",
          FigureUnit::length},
         {"target_crossings_at", known.target.places, "target's crossings", "x, y, z of the first",

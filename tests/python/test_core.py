@@ -91,6 +91,10 @@ def test_says_what_it_knows():
     assert 0 < e.rms < e.p99 < 1e-3 and e.p99 < e.max <= e.bound and e.samples == 20000
     assert m.tolerance_met is True and m.steps == 1 and m.charges > 100
     assert "det J > 0" in m.statement and m.one_to_one["inside_folded"] == 0
+    proof = m.prove(cells_per_charge=50)
+    assert proof["proof_cells"] > 0 and proof["proof_undecided"] == proof["proof_negative"] == 0
+    assert 0 < proof["proof_boundary_error"] < 1.1 * m.boundary_error.bound
+    assert m.one_to_one["proof_undecided"] == 0
     assert m.facts["tolerance"] == "0.001"
     assert np.array_equal(m.source.triangles, F) and np.array_equal(m.target.vertices,
                                                                     shapes.bent(V))

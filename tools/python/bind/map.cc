@@ -76,6 +76,22 @@ py::object save(const Arguments& a, NoOptions&) {
   return py::none();
 }
 
+struct ProveOptions {
+  ProofSettings settings;
+  CallOptions call;
+
+  void describe(Keywords& k) {
+    k.settings(innermap::describe(settings));
+    call.describe(k);
+  }
+};
+
+py::object prove(const Arguments& a, ProveOptions& o) {
+  const auto mapped = py::cast<const PyMap&>(a[0]).mapped;
+  return dictOf(
+      figures(call(o.call, [&]() { return proveMap(mapped->map, mapped->boundary, o.settings); })));
+}
+
 std::string reprOf(const PyMap& map) {
   const MappedSolid& mapped = *map.mapped;
   return fmt::format(
@@ -150,6 +166,15 @@ void bindMap(py::module_& m) {
                      "Writes the map's file (.ply), which load() and the program read. It appears "
                      "whole or not at all. Raises FileError."},
                     save);
+  define<ProveOptions>(
+      map,
+      {"prove", "self",
+       "Where the map folds nowhere, proven on whole cells of the solid, and how far its boundary "
+       "is off at most, proven too.\n\nReturns a dict, with the keys that one_to_one has for its "
+       "proof; fit() proves as much with fewer cells. Raises DataError where the solid's surface "
+       "is "
+       "not closed."},
+      prove);
   map.def_property_readonly(
          "boundary_error",
          [](const PyMap& self) {

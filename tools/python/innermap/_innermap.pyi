@@ -145,6 +145,10 @@ class Map:
         self, X: ArrayLike, *, progress: Optional[Progress] = None,
         max_memory: Union[int, str, None] = None, threads: int = 0) -> Bools: ...
     def save(self, path: Path) -> None: ...
+    def prove(
+        self, *, cells_per_charge: float = 100, least_cells: int = 50000, error_margin: float = 0.02,
+        progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+        threads: int = 0) -> Dict[str, Any]: ...
     @property
     def boundary_error(self) -> BoundaryError: ...
     @property
@@ -239,7 +243,8 @@ def fit(
     *meshes: Any, tolerance: Optional[float] = None, charges: Optional[int] = None,
     collocation: Optional[int] = None, max_charges: int = 100000,
     interpolation: Literal['auto', 'linear', 'smooth'] = 'auto',
-    one_to_one: Literal['auto', 'on', 'off'] = 'auto', max_steps: int = 16, seed: int = 1,
+    one_to_one: Literal['auto', 'on', 'off'] = 'auto', max_steps: int = 16,
+    prove: Literal['off', 'core'] = 'core', proof_cells: float = 16, seed: int = 1,
     distance: Optional[float] = None, radius_ratio: Optional[float] = None,
     solver: Literal['auto', 'dense', 'iterative'] = 'auto',
     method: Literal['tikhonov', 'tsvd'] = 'tikhonov', regularization: Optional[float] = None,

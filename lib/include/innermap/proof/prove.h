@@ -42,6 +42,7 @@ struct ProofSettings {
   bool keepProven = false;  // the places of proven cells too
 };
 
+// Without keepProven.
 std::vector<Setting> describe(ProofSettings& settings);
 
 // A cube. World units of the source.
