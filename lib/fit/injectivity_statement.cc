@@ -96,8 +96,8 @@ bool countsPreimages(const Injectivity& known) {
 
 std::string preimages(const ProofFigures& p) {
   std::string out = fmt::format(
-      "So each point farther than {:.3g} from the target's surface has as many preimages as that "
-      "winds about it: one inside, none outside",
+      "By these proofs each point farther than {:.3g} from the target's surface has as many "
+      "preimages as that surface winds about it: one inside, none outside",
       p.boundaryError);
   if (!p.whole())
     out +=

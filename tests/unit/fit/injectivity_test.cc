@@ -226,7 +226,7 @@ TEST(Injectivity, CellsThatAreUndecidedOrFoldedAreNoProof) {
   EXPECT_FALSE(notOneToOne(known));
   EXPECT_FALSE(known.proof.whole());
   EXPECT_TRUE(says(known, "On 7 cells, 0.1% of the solid at most, it is undecided."));
-  EXPECT_TRUE(says(known, "where nothing of the cells that are undecided or turned over goes"));
+  EXPECT_TRUE(says(known, "not counting those in cells that are undecided or turned over"));
   known.proof.negative = 2;
   EXPECT_TRUE(notOneToOne(known));
   EXPECT_TRUE(says(known, kNot));
