@@ -206,8 +206,10 @@ Figures figures(const ProofFigures& proof) {
       Figure("proof_boundary_error", proof.boundaryError, "boundary error, proven",
              "no point of the boundary is farther off", kDiagonals)
           .when(proof.boundaryError > 0),
-      {"proof_places", proof.places, "cells not proven", "x, y, z of the first, in the source",
-       FigureUnit::length}};
+      Figure("proof_places", proof.places, "cells not proven",
+             "x, y, z of the first, in the source; of the run that proved alone",
+             FigureUnit::length)
+          .when(!proof.places.empty())};
 }
 
 Figures figures(const Injectivity& known) {

@@ -59,6 +59,9 @@ def check_statement(report):
     assert known["statement"] in innermap("info", "out/map.vdb", "--metadata").stdout
     innermap("evaluate", "out/map.ply", "-o", "again.vdb", "--resolution", "48", "--quiet",
              "--report", "again.json")
+    places = known.pop("proof_places", [])  # are not kept in the file
+    unproven = known["proof_undecided"] + known["proof_negative"]
+    assert known["proof_cells"] > 0 and (places != []) == (unproven > 0), known
     assert read_json("again.json")["one_to_one"] == known
 
 
