@@ -99,10 +99,7 @@ std::string preimages(const ProofFigures& p) {
       "By these proofs each point farther than {:.3g} from the target's surface has as many "
       "preimages as that surface winds about it: one inside, none outside",
       p.boundaryError);
-  if (!p.whole())
-    out +=
-        "; where nothing of the cells that are undecided or turned over goes, for these are not "
-        "counted";
+  if (!p.whole()) out += ", not counting those in cells that are undecided or turned over";
   return out + ". ";
 }
 
