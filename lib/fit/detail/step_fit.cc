@@ -34,8 +34,6 @@ constexpr int kLastPatience = 3;  // what the last step does not reach is missed
 // proportion at a smaller one. Steps that can be met take 4,000 to 13,000; jumps across slits take
 // all there are.
 constexpr double kStepSources = 15000;
-// Of those, once the tolerance is missed: what a step adds beyond is little beside what is missed.
-constexpr double kOfMissedSources = 1.0 / 3;
 // Of the target's diagonal. Sums, and where points inside go; the mesh about an intermediate shape.
 constexpr double kSumAccuracy = 1e-7, kChord = 1e-3;
 
@@ -118,9 +116,7 @@ class StepFitter {
   }
 
   std::size_t mostSources() const {
-    const double share = error_.p99 > settings_.tolerance ? kOfMissedSources : 1;
-    const double most =
-        share * kStepSources * std::max(1.0, kLaidOnTolerance / settings_.tolerance);
+    const double most = kStepSources * std::max(1.0, kLaidOnTolerance / settings_.tolerance);
     return static_cast<std::size_t>(std::min(most, static_cast<double>(settings_.maxSources)));
   }
 
