@@ -165,7 +165,8 @@ Injectivity MapFitter::injectivityOf(const FitOutcome& out) {
   return known;
 }
 
-// Needs time in proportion to the charges, and is left where that is out.
+// Needs time in proportion to the charges, and is left where that is out, or memory: the map stands
+// without it.
 ProofFigures MapFitter::proofOf(const ComposedMap& map) {
   if (outOfTime(kProofSeconds * static_cast<double>(map.sources()))) return {};
   ProofSettings s;
@@ -174,8 +175,10 @@ ProofFigures MapFitter::proofOf(const ComposedMap& map) {
     return proveMap(map, pair_, s);
   } catch (const DataError& e) {
     warnings.push_back(std::string("nothing is proven: ") + e.what());
-    return {};
+  } catch (const MemoryError& e) {
+    warnings.push_back(std::string("nothing is proven: ") + e.what());
   }
+  return {};
 }
 
 // Onto a target that is turned inside out somewhere no map is one-to-one.

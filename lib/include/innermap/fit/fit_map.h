@@ -74,8 +74,8 @@ struct FitMapSettings {
   OneToOne oneToOne = OneToOne::automatic;  // with `shell` folds are counted, no more
   int maxSteps = 16;
   Prove prove = Prove::core;
-  // ProofSettings::cellsPerCharge. Maps in one piece need 4 to 7; of one in five steps this leaves
-  // 2% of the solid undecided in a sixth of the seconds that 0.01% take.
+  // ProofSettings::cellsPerCharge. Maps in one piece need 4 to 7; of one in five steps this
+  // leaves 2% of the solid undecided, where a hundred leave 0.01%.
   double proofCells = 16;
   std::uint64_t seed = 1;
 };
