@@ -35,6 +35,7 @@ void visitProof(Figures& proof, const Visit& visit) {
   visit("proof_mirrored", proof.mirrored, any);
   visit("proof_least", proof.least, any);
   visit("proof_boundary_error", proof.boundaryError, proof.boundaryError > 0);
+  visit("proof_one_to_one", proof.oneToOne, proof.oneToOne >= 0);
 }
 
 template <class Known, class Visit>

@@ -68,7 +68,7 @@ std::string cellsOf(std::size_t count, double share) {
                      percent(share));
 }
 
-std::string proof(const ProofFigures& p) {
+std::string proofWords(const ProofFigures& p) {
   if (p.cells == 0) return "";
   const char* sign = p.mirrored ? "<" : ">";
   std::string out =
@@ -86,6 +86,9 @@ std::string proof(const ProofFigures& p) {
         "No point of the boundary is farther than {:.3g} of the target's diagonal from where it "
         "should be. ",
         p.boundaryError);
+  if (p.oneToOne > 0)
+    out += "No two points of the solid go to one: it is mapped one-to-one as a whole. ";
+  if (p.oneToOne == 0) out += "Whether any two points of the solid go to one is not decided. ";
   return out;
 }
 
@@ -97,8 +100,8 @@ bool countsPreimages(const Injectivity& known) {
 std::string preimages(const ProofFigures& p) {
   std::string out = fmt::format(
       "By these proofs each point farther than {:.3g} from the target's surface has as many "
-      "preimages as that surface winds about it: one inside, none outside",
-      p.boundaryError);
+      "preimages as that surface winds about it{}: one inside, none outside",
+      p.boundaryError, p.mirrored ? ", the other way round" : "");
   if (!p.whole()) out += ", not counting those in cells that are undecided or turned over";
   return out + ". ";
 }
@@ -221,8 +224,8 @@ std::string cells(const CellFigures& cells) {
 bool notOneToOne(const Injectivity& known) { return folds(known) || windsOtherwise(known.degree); }
 
 std::string injectivityStatement(const Injectivity& known) {
-  std::string out = proof(known.proof) + determinants(known) + boundary(known) + surfaces(known) +
-                    conclusion(known) + cells(known.cells);
+  std::string out = proofWords(known.proof) + determinants(known) + boundary(known) +
+                    surfaces(known) + conclusion(known) + cells(known.cells);
   out.pop_back();
   return out;
 }
@@ -239,6 +242,7 @@ std::string injectivityLine(const Injectivity& known) {
   if (positive.empty() && folded.empty()) return "one-to-one: not checked";
   const ProofFigures& p = known.proof;
   std::string out = notOneToOne(known) ? "not one-to-one"
+                    : p.oneToOne > 0   ? "one-to-one, proven"
                     : p.whole() && countsPreimages(known)
                         ? fmt::format("one-to-one, proven deeper than {:.3g}", p.boundaryError)
                     : p.whole() ? "nowhere folded, proven"

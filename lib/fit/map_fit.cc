@@ -95,18 +95,22 @@ std::vector<Setting> describe(FitMapSettings& s) {
               choiceOf<OneToOne>(
                   &s.oneToOne,
                   {{"auto", OneToOne::automatic}, {"on", OneToOne::on}, {"off", OneToOne::off}}),
-              fmt::format("go in steps through intermediate shapes where one harmonic map folds; "
-                          "auto: where it folds over {:g}% of the inside or takes over {:g}% of it "
-                          "out of the target; on: until nothing that is checked folds; off: one "
-                          "harmonic map",
-                          100 * kManyFolds, 100 * kManyOutside)),
+              fmt::format(
+                  "go in steps through intermediate shapes where one harmonic map folds; "
+                  "auto: where it folds over {:g}% of the inside or takes over {:g}% of it "
+                  "out of the target; on: until nothing that is checked or proven folds; off: one "
+                  "harmonic map",
+                  100 * kManyFolds, 100 * kManyOutside)),
       Setting("max_steps", "N", &s.maxSteps, "steps at most").from(1, 256).rare(),
       Setting("prove", "WHAT",
-              choiceOf<Prove>(&s.prove, {{"off", Prove::off}, {"core", Prove::core}}),
+              choiceOf<Prove>(&s.prove,
+                              {{"off", Prove::off}, {"core", Prove::core}, {"full", Prove::full}}),
               "core: where nothing folds, on whole cells, and how far the boundary is off at most; "
-              "off: only points are checked"),
+              "full: also that no two points go to one, which takes longer; off: only points are "
+              "checked"),
       Setting("proof_cells", "N", &s.proofCells,
-              "cells that {prove} looks at a charge before it leaves the rest undecided")
+              "cells that {prove} looks at a charge before it leaves the rest undecided; with "
+              "{one_to_one} on 100 at least")
           .from(1, 1e6)
           .rare(),
       seedSetting(&s.seed)};

@@ -41,11 +41,19 @@ void addPlaces(const ProofCells& cells, Points& places) {
     if (places.size() < kPlaces) places.push_back(cell.center);
 }
 
+bool boundaryIsInjective(const ExpandedMap& map, const BoundaryPair& boundary,
+                         const ProofSettings& settings) {
+  if (boundary.source.check.selfIntersections > 0) return false;
+  const EmbeddingProof proof = proveEmbedding(map, boundary.solid().repaired().mesh, settings);
+  return proof.proven && proof.connected;
+}
+
 }  // namespace
 
 ProofFigures proveMap(const ComposedMap& map, const BoundaryPair& boundary,
-                      const ProofSettings& settings) {
-  const SenseProof sense = proveSense(map, boundary.solid().repaired().mesh, settings);
+                      const ProofSettings& settings, bool full) {
+  const ExpandedMap expanded = map;
+  const SenseProof sense = proveSense(expanded, boundary.solid().repaired().mesh, settings);
   ProofFigures out;
   out.cells = sense.proven.count + sense.undecided.count + sense.negative.count;
   out.undecided = sense.undecided.count;
@@ -58,8 +66,10 @@ ProofFigures proveMap(const ComposedMap& map, const BoundaryPair& boundary,
   addPlaces(sense.negative, out.places);
   addPlaces(sense.undecided, out.places);
   const Exposed exposed = exposedOf(boundary);
-  const double error = proveBoundaryError(map, exposed.surface, exposed.targets, settings).error;
+  const double error =
+      proveBoundaryError(expanded, exposed.surface, exposed.targets, settings).error;
   if (std::isfinite(error)) out.boundaryError = error;
+  if (full) out.oneToOne = sense.whole() && boundaryIsInjective(expanded, boundary, settings);
   return out;
 }
 

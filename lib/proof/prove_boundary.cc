@@ -150,9 +150,10 @@ double targetDiagonal(const Mesh& surface, const Points& target) {
 
 }  // namespace
 
-BoundaryProof proveBoundaryError(const ComposedMap& map, const Mesh& surface, const Points& target,
-                                 const ProofSettings& settings) {
+BoundaryProof proveBoundaryError(const ExpandedMap& expanded, const Mesh& surface,
+                                 const Points& target, const ProofSettings& settings) {
   requireDescribed(settings);
+  const ComposedMap& map = expanded.map();
   const double diagonal = targetDiagonal(surface, target);
   const std::uint64_t limit =
       std::max<std::uint64_t>(cellLimit(map, settings), 8 * surface.triangles.size());
@@ -160,8 +161,8 @@ BoundaryProof proveBoundaryError(const ComposedMap& map, const Mesh& surface, co
                 FieldTree::memory(map.sources()) + kBytesPerPiece * limit,
                 "look at fewer cells a charge");
   const double scale = proofScale(boundingBox(surface));
-  const StepTrees steps(map, scale);
-  BoundarySearch search(map, steps, scale, diagonal, settings.errorMargin);
+  const auto steps = expanded.expansions(scale);
+  BoundarySearch search(map, *steps, scale, diagonal, settings.errorMargin);
   reportProgress("bounding the boundary's error", 0);
   search.round(sortedPieces(surface, target, scale), true);
   while (!search.open().empty() && search.examined() + kLanes * search.open().size() <= limit) {

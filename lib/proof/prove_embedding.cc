@@ -6,10 +6,12 @@
 #include <utility>
 
 #include "core/bvh.h"
+#include "core/disjoint_sets.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"
 #include "innermap/proof/prove.h"
+#include "mesh/connectivity.h"
 #include "proof/detail/cell_limit.h"
 #include "proof/detail/patch_tree.h"
 #include "proof/detail/scale.h"
@@ -175,11 +177,23 @@ void cutLeaves(const StepTrees& steps, const std::vector<Pair>& pairs, PatchTree
   tree.cut(steps, leaves);
 }
 
+bool isConnected(const std::vector<Triangle>& triangles) {
+  const std::vector<EdgeUse> edges = sortedEdges(triangles);
+  DisjointSets parts(triangles.size());
+  std::size_t count = triangles.size();
+  forEachEdge(edges, [&](const EdgeUse* begin, const EdgeUse* end) {
+    for (const EdgeUse* use = begin + 1; use < end; ++use)
+      if (parts.unite(begin->triangle, use->triangle)) --count;
+  });
+  return count == 1;
+}
+
 }  // namespace
 
-EmbeddingProof proveEmbedding(const ComposedMap& map, const Mesh& surface,
+EmbeddingProof proveEmbedding(const ExpandedMap& expanded, const Mesh& surface,
                               const ProofSettings& settings) {
   requireDescribed(settings);
+  const ComposedMap& map = expanded.map();
   if (surface.triangles.empty())
     throw DataError(surface.name + ": has no triangles, so that there is nothing to prove");
   validate(surface);
@@ -190,9 +204,11 @@ EmbeddingProof proveEmbedding(const ComposedMap& map, const Mesh& surface,
                 FieldTree::memory(map.sources()) + kBytesPerPatch * patches + kBytesPerPair * limit,
                 "look at fewer cells a charge");
   const double scale = proofScale(boundingBox(surface));
-  const StepTrees steps(map, scale);
+  const auto expansions = expanded.expansions(scale);
+  const StepTrees& steps = *expansions;
   PatchTree tree(steps, surface, scale, patches);
   EmbeddingProof out;
+  out.connected = isConnected(surface.triangles);
   std::vector<Pair> pairs = {{0, 0}};
   while (!pairs.empty()) {
     reportProgress("proving that the boundary does not meet itself",

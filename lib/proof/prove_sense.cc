@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
+#include <utility>
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
@@ -75,7 +77,7 @@ void splitCell(const StepTrees& steps, const SolidCells& cells, const OpenCell& 
     if (group.proven() >> lane & 1)
       addProven(key, group, steps.count(), lane, out);
     else
-      out.open.push_back({key, (lanes.inside >> lane & 1) != 0});
+      out.open.push_back({key, (lanes.inside >> lane & 1) != 0, group.excess(lane)});
   }
 }
 
@@ -113,22 +115,37 @@ double volumeOfCell(const SolidCells& cells, CellKey key) {
   return edge * edge * edge;
 }
 
-// Level by level, so that a limit on cells cuts all places at the same size.
+// Of the cells that are to be split those for which `room` is left: where least was missing.
+std::vector<OpenCell> takeNearest(std::vector<OpenCell>& open, std::uint64_t room) {
+  if (kLanes * open.size() <= room) return std::exchange(open, {});
+  const auto end = open.begin() + static_cast<std::ptrdiff_t>(room / kLanes);
+  std::nth_element(open.begin(), end, open.end(), [](const OpenCell& a, const OpenCell& b) {
+    return std::tie(a.excess, a.key) < std::tie(b.excess, b.key);
+  });
+  std::vector<OpenCell> taken(open.begin(), end);
+  open.erase(open.begin(), end);
+  for (std::vector<OpenCell>* cells : {&taken, &open})
+    std::sort(cells->begin(), cells->end(),
+              [](const OpenCell& a, const OpenCell& b) { return a.key < b.key; });
+  return taken;
+}
+
+// Level by level, largest cells first.
 Outcome decideCells(const StepTrees& steps, const SolidCells& cells, double volume,
                     std::uint64_t limit) {
   Outcome out;
   out.open.push_back(OpenCell());
   double decidedVolume = 0;
-  for (int level = 0; level < kMostLevels && !out.open.empty(); ++level) {
-    if (out.examined + kLanes * out.open.size() > limit) break;
+  for (int level = 0; level < kMostLevels && out.examined + kLanes <= limit; ++level) {
+    const std::vector<OpenCell> taken = takeNearest(out.open, limit - out.examined);
+    if (taken.empty()) break;
     reportProgress("proving that nothing folds", std::min(1.0, decidedVolume / volume));
-    std::vector<Outcome> blocks((out.open.size() + kBlock - 1) / kBlock);
-    parallelBlocks(out.open.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    std::vector<Outcome> blocks((taken.size() + kBlock - 1) / kBlock);
+    parallelBlocks(taken.size(), kBlock, [&](std::size_t begin, std::size_t end) {
       SetGroup group;
       for (std::size_t i = begin; i < end; ++i)
-        splitCell(steps, cells, out.open[i], group, blocks[begin / kBlock]);
+        splitCell(steps, cells, taken[i], group, blocks[begin / kBlock]);
     });
-    out.open.clear();
     for (const Outcome& block : blocks) {
       out.add(block);
       out.open.insert(out.open.end(), block.open.begin(), block.open.end());
@@ -180,8 +197,10 @@ SenseProof summary(const Outcome& outcome, const SolidCells& cells, double volum
 
 }  // namespace
 
-SenseProof proveSense(const ComposedMap& map, const Mesh& solid, const ProofSettings& settings) {
+SenseProof proveSense(const ExpandedMap& expanded, const Mesh& solid,
+                      const ProofSettings& settings) {
   requireDescribed(settings);
+  const ComposedMap& map = expanded.map();
   if (map.steps().size() > kMostSteps)
     throw DataError(fmt::format("a map in {} steps is too long for a proof; {} are taken at most",
                                 map.steps().size(), kMostSteps));
@@ -191,8 +210,8 @@ SenseProof proveSense(const ComposedMap& map, const Mesh& solid, const ProofSett
   requireMemory("proving that nothing folds",
                 FieldTree::memory(map.sources()) + kBytesPerCell * limit,
                 "look at fewer cells a charge");
-  const StepTrees steps(map, cells.scale());
-  return summary(decideCells(steps, cells, volume, limit), cells, volume, settings.keepProven);
+  const auto steps = expanded.expansions(cells.scale());
+  return summary(decideCells(*steps, cells, volume, limit), cells, volume, settings.keepProven);
 }
 
 }  // namespace innermap

@@ -206,6 +206,9 @@ Figures figures(const ProofFigures& proof) {
       Figure("proof_boundary_error", proof.boundaryError, "boundary error, proven",
              "no point of the boundary is farther off", kDiagonals)
           .when(proof.boundaryError > 0),
+      Figure("proof_one_to_one", proof.oneToOne, "one-to-one, proven",
+             "1: no two points of the solid go to one; 0: not decided")
+          .when(proof.oneToOne >= 0),
       Figure("proof_places", proof.places, "cells not proven",
              "x, y, z of the first, in the source; of the run that proved alone",
              FigureUnit::length)

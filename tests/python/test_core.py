@@ -94,7 +94,12 @@ def test_says_what_it_knows():
     proof = m.prove(cells_per_charge=50)
     assert proof["proof_cells"] > 0 and proof["proof_undecided"] == proof["proof_negative"] == 0
     assert 0 < proof["proof_boundary_error"] < 1e-2  # of flat triangles; this map is smooth
-    assert m.one_to_one["proof_undecided"] == 0
+    assert m.one_to_one["proof_undecided"] == 0 and "proof_one_to_one" not in m.one_to_one
+    assert m.prove(full=True)["proof_one_to_one"] == 1
+    proven, undecided, folded = m.proof_cells(cells_per_charge=50)
+    assert len(proven) == proof["proof_cells"] and undecided.shape == folded.shape == (0, 4)
+    held = np.abs(V[0] - proven[:, :3]).max(axis=1) <= 1.001 * proven[:, 3]
+    assert held.any()  # they cover the closed solid
     assert m.facts["tolerance"] == "0.001"
     assert np.array_equal(m.source.triangles, F) and np.array_equal(m.target.vertices,
                                                                     shapes.bent(V))

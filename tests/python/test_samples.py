@@ -39,6 +39,10 @@ def test_field():
     assert "99% of the patches within" in run("field")
 
 
+def test_proof_cells():
+    assert " 0 undecided, 0 folded" in run("proof_cells")
+
+
 def test_volume_texture():
     assert "channels A, R, G, B" in run("volume_texture")
 

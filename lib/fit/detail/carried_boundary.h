@@ -25,6 +25,8 @@ class CarriedBoundary {
   CarriedBoundary(const Solid& source, const CarriedSettings& settings);
 
   const std::vector<HarmonicMap>& steps() const { return steps_; }
+  // About the present solid, closed.
+  const Mesh& mesh() const { return solid_.repaired().mesh; }
 
   // One step further; after the last one there is no problem any more. Throws DataError when what
   // is left has no inside, Cancelled.

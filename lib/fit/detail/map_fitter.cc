@@ -26,7 +26,7 @@ constexpr double kSumAccuracy = 1e-7;   // of the target's diagonal, of what is 
 // A fit with a number of charges.
 FitOutcome outcomeOf(const FitResult& fit, const FitProblem& problem, const ShellSettings& shell) {
   const BoundaryData& data = fit.smooth ? problem.vertices : problem.surface;
-  FitOutcome out{HarmonicMap(fit.field), {}, {}, 0, fit.smooth, {}, {}, {}, {}, {}};
+  FitOutcome out{HarmonicMap(fit.field), {}, {}, 0, fit.smooth, {}, {}, {}, {}, {}, {}};
   MapSolve& s = out.solve;
   s.method = fit.iterative                                  ? SolveMethod::iterative
              : shell.method == Regularization::truncatedSvd ? SolveMethod::truncatedSvd
@@ -52,7 +52,7 @@ FitOutcome outcomeOf(const FitResult& fit, const FitProblem& problem, const Shel
 
 // A fit to a tolerance.
 FitOutcome outcomeOf(const AdaptiveResult& fit, double unit) {
-  FitOutcome out{HarmonicMap(fit.field), fit.error, {}, 0, false, {}, {}, {}, {}, {}};
+  FitOutcome out{HarmonicMap(fit.field), fit.error, {}, 0, false, {}, {}, {}, {}, {}, {}};
   out.collocationError =
       std::pow(fit.residuals.back() / unit, 2) * static_cast<double>(fit.collocation);
   MapSolve& s = out.solve;
@@ -133,19 +133,34 @@ void MapFitter::check(FitOutcome& out) {
     out.inside = figuresOf(out);
   });
   if (!mayTakeSteps()) return;
-  const bool on = settings_.oneToOne == OneToOne::on;
-  if (out.inside.folded <= (on ? 0 : kManyFolds) && out.inside.outside <= kManyOutside) return;
+  if (settings_.oneToOne == OneToOne::on && out.inside.folded == 0) prove(out);
+  if (!foldsTooMuch(out)) return;
   singleFolded = out.inside.folded;
   singleSources = out.solve.sources;
   if (!roomForSteps() || outOfTime()) return finishSingle(out);
   FitOutcome steps = inSteps();
-  if (steps.inside.folded <= (on ? 1 : kWorthIt) * singleFolded)
+  if (areBetter(steps, out))
     out = std::move(steps);
   else
     finishSingle(out);
 }
 
-Injectivity MapFitter::injectivityOf(const FitOutcome& out) {
+bool MapFitter::foldsTooMuch(const FitOutcome& out) const {
+  const bool on = settings_.oneToOne == OneToOne::on;
+  return out.inside.folded > (on ? 0 : kManyFolds) || out.inside.outside > kManyOutside ||
+         (on && out.proof && out.proof->negative > 0);
+}
+
+bool MapFitter::areBetter(FitOutcome& steps, const FitOutcome& single) {
+  if (settings_.oneToOne != OneToOne::on)
+    return steps.inside.folded <= kWorthIt * single.inside.folded;
+  if (!single.proof || single.proof->negative == 0 || steps.inside.folded > 0)
+    return steps.inside.folded <= single.inside.folded;
+  prove(steps);
+  return steps.proof && steps.proof->negativeShare < single.proof->negativeShare;
+}
+
+Injectivity MapFitter::injectivityOf(FitOutcome& out) {
   Injectivity known;
   known.source = selfIntersectionFigures(pair_.source.check);
   known.target = selfIntersectionFigures(pair_.targetCheck);
@@ -160,9 +175,14 @@ Injectivity MapFitter::injectivityOf(const FitOutcome& out) {
     known.boundaryError = out.error.p99;
     known.degree = boundaryDegree(out.map, pair_, *target_, s);
   });
-  if (settings_.prove != Prove::off)
-    timed(seconds, "proof", [&] { known.proof = proofOf(out.map); });
+  prove(out);
+  if (out.proof) known.proof = *out.proof;
   return known;
+}
+
+void MapFitter::prove(FitOutcome& out) {
+  if (settings_.prove == Prove::off || out.proof) return;
+  timed(seconds, "proof", [&] { out.proof = proofOf(out.map); });
 }
 
 // Needs time in proportion to the charges, and is left where that is out, or memory: the map stands
@@ -170,9 +190,10 @@ Injectivity MapFitter::injectivityOf(const FitOutcome& out) {
 ProofFigures MapFitter::proofOf(const ComposedMap& map) {
   if (outOfTime(kProofSeconds * static_cast<double>(map.sources()))) return {};
   ProofSettings s;
-  s.cellsPerCharge = settings_.proofCells;
+  const double cells = settings_.proofCells;
+  s.cellsPerCharge = settings_.oneToOne == OneToOne::on ? std::max(cells, s.cellsPerCharge) : cells;
   try {
-    return proveMap(map, pair_, s);
+    return proveMap(map, pair_, s, settings_.prove == Prove::full);
   } catch (const DataError& e) {
     warnings.push_back(std::string("nothing is proven: ") + e.what());
   } catch (const MemoryError& e) {
@@ -259,11 +280,13 @@ FitOutcome MapFitter::inSteps() {
   StepFitSettings s;
   s.tolerance = settings_.tolerance;
   s.folds = settings_.oneToOne == OneToOne::on ? 0 : kFewFolds;
+  s.proven = settings_.oneToOne == OneToOne::on && settings_.prove != Prove::off;
   s.maxSteps = settings_.maxSteps;
   s.maxSources = settings_.maxSources;
   s.seed = settings_.seed;
   StepFit fit = timed(seconds, "steps", [&] { return fitInSteps(pair_, inside(), s); });
-  FitOutcome out{std::move(fit.map), fit.error, {}, 0, false, {}, {}, {}, {}, std::move(fit.steps)};
+  FitOutcome out{std::move(fit.map),   fit.error, {}, 0, false, {}, {}, {}, {},
+                 std::move(fit.steps), {}};
   out.solve.method = SolveMethod::steps;
   out.solve.placement = MapPlacement::steps;
   out.solve.sources = out.solve.rank = out.map.sources();

@@ -33,6 +33,7 @@ struct FitOutcome {
   MapSolve solve;
   InsideFigures inside;
   std::vector<MapStep> steps;
+  std::optional<ProofFigures> proof;  // once it was tried
 };
 
 class MapFitter {
@@ -56,10 +57,13 @@ class MapFitter {
   void check(FitOutcome& out);
 
   // After check().
-  Injectivity injectivityOf(const FitOutcome& out);
+  Injectivity injectivityOf(FitOutcome& out);
 
  private:
+  void prove(FitOutcome& out);
   ProofFigures proofOf(const ComposedMap& map);
+  bool foldsTooMuch(const FitOutcome& out) const;
+  bool areBetter(FitOutcome& steps, const FitOutcome& single);
   bool mayTakeSteps() const;
   const Points& inside();
   MappedPoints insideOf(const ComposedMap& map);

@@ -8,8 +8,10 @@
 #include "fit/detail/carried_boundary.h"
 #include "fit/detail/inside_check.h"
 #include "fit/detail/shape_path.h"
+#include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/fit/fit_map.h"
+#include "innermap/proof/prove.h"
 
 namespace innermap {
 namespace {
@@ -79,7 +81,7 @@ class StepFitter {
       Step step = fitStep(end, may);
       seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
       if (step.fit.end == AdaptiveEnd::stopped ||
-          (may && half >= kShortestFitted && step.record.folded > allowed(kFoldShare))) {
+          (may && half >= kShortestFitted && foldsTooMuch(step))) {
         ends.push_back((at_ + end) / 2);
         continue;
       }
@@ -146,6 +148,21 @@ class StepFitter {
     const MapStep record{at_, to, fit.field.sources().size(), fit.error.p99,
                          foldedShare(inside.determinants)};
     return {record, std::move(fit), std::move(map), std::move(inside)};
+  }
+
+  bool foldsTooMuch(const Step& step) const {
+    return step.record.folded > allowed(kFoldShare) || (settings_.proven && isProvenToFold(step));
+  }
+
+  // On the mesh about the present solid. Where there is no room for a proof the points decide.
+  bool isProvenToFold(const Step& step) const {
+    ProofSettings s;
+    s.cellsPerCharge = FitMapSettings().proofCells;
+    try {
+      return proveSense(step.map, boundary_.mesh(), s).negative.count > 0;
+    } catch (const MemoryError&) {
+      return false;
+    }
   }
 
   MappedPoints insideAfter(const HarmonicMap& step) const {

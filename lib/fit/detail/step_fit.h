@@ -13,6 +13,7 @@ namespace innermap {
 struct StepFitSettings {
   double tolerance = 2e-3;  // of the whole; fraction of the target's diagonal
   double folds = 0;         // share of the points inside that may be folded in the end, in [0, 1]
+  bool proven = false;      // steps that are proven to fold anywhere are halved too
   int maxSteps = 16;
   std::size_t maxSources = 100000;  // of one step
   std::uint64_t seed = 1;
@@ -29,7 +30,8 @@ struct StepFit {
 // were to reach: so nothing is ever outside the solid that a step is fitted on, and an error is
 // handed on as it is, not magnified. A step that folds points inside is halved
 // while there are fewer than maxSteps: where its first charges fold more than a quarter, or the
-// whole fit more than half, of what is left of `folds`. inside: points of the source. Throws
+// whole fit more than half, of what is left of `folds`; or where cells are proven to fold, if
+// that is asked for. inside: points of the source. Throws
 // DataError, MemoryError, Cancelled.
 StepFit fitInSteps(const BoundaryPair& pair, const Points& inside, const StepFitSettings& settings);
 

@@ -87,10 +87,6 @@ void add(LaneRemainders& a, const LaneRemainders& b) {
 
 }  // namespace
 
-StepTrees::StepTrees(const ComposedMap& map, double scale) {
-  for (const HarmonicMap& step : map.steps()) trees_.emplace_back(step.field(), scale);
-}
-
 // Nodes of the tree are up to three times as large as the group, so that most of what is near a
 // node is far from the group: it is expanded about it once, not about each set.
 void SetGroup::expandAbout(const FieldTree& tree, const StepExpansion& from,
@@ -155,11 +151,16 @@ void SetGroup::compute(const StepTrees& map, const LaneSets& sets, std::uint8_t 
                        bool senses) {
   findings_.resize(map.count());
   proven_ = enclosed_ = 0;
+  std::fill(std::begin(excess_), std::end(excess_), std::numeric_limits<double>::infinity());
   std::uint8_t proven = alive, known = alive;
   LaneSets now = sets;
   for (std::size_t k = 0; k < map.count(); ++k) {
     known = evenLanes(now, senses ? known & proven : known);
     if (known == 0 || !computeStep(map[k], now, known, findings_[k])) return;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const double excess = findings_[k].excess[lane];
+      if (known >> lane & 1) excess_[lane] = k == 0 ? excess : std::max(excess_[lane], excess);
+    }
     proven &= known & lanesBelow(findings_[k].excess, kProven);
     now = findings_[k].image;
     known &= finiteLanes(now);

@@ -6,22 +6,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "innermap/field/harmonic_field.h"
 #include "proof/detail/field_tree.h"
 #include "proof/detail/lane_kernels.h"
+#include "proof/detail/step_trees.h"
 
 namespace innermap::proof {
-
-// Of each step its tree.
-class StepTrees {
- public:
-  StepTrees(const ComposedMap& map, double scale);
-  std::size_t count() const { return trees_.size(); }
-  const FieldTree& operator[](std::size_t step) const { return trees_[step]; }
-
- private:
-  std::vector<FieldTree> trees_;
-};
 
 // Holds all sets of a group.
 struct GroupBall {
@@ -39,6 +28,9 @@ class SetGroup {
 
   // Lanes where each step's determinant keeps its sign on the whole set.
   std::uint8_t proven() const { return proven_; }
+  // S, the largest of the steps up to the first where it is too large; infinite where nothing is
+  // known of that one.
+  double excess(int lane) const { return excess_[lane]; }
   // Lanes whose images after all steps are known.
   std::uint8_t enclosed() const { return enclosed_; }
   const LaneFindings& findings(std::size_t step) const { return findings_[step]; }
@@ -55,6 +47,7 @@ class SetGroup {
   std::vector<std::uint32_t> farOfOwn_;
   std::vector<std::uint8_t> far_;
   std::uint8_t proven_ = 0, enclosed_ = 0;
+  Lanes excess_ = {};
 };
 
 }  // namespace innermap::proof

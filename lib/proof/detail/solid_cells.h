@@ -27,6 +27,7 @@ inline int levelOf(CellKey key) {
 struct OpenCell {
   CellKey key = 1;
   bool inside = false;  // no triangle meets it
+  double excess = 0;    // S of the step where the proof failed; infinite where that is not known
 };
 
 struct ChildLanes {

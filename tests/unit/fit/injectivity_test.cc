@@ -218,6 +218,17 @@ TEST(Injectivity, AProofSaysWhatFollowsAndTakesThePlaceOfWhatPointsSuggest) {
   EXPECT_EQ(injectivityLine(known).substr(0, 23), "nowhere folded, proven;");
 }
 
+TEST(Injectivity, AProofOfTheWholeIsSaidAndSoIsItsFailure) {
+  Injectivity known = sound();
+  known.proof = proven();
+  known.proof.oneToOne = 1;
+  EXPECT_TRUE(says(known, "No two points of the solid go to one: it is mapped one-to-one"));
+  EXPECT_EQ(injectivityLine(known).substr(0, 19), "one-to-one, proven;");
+  known.proof.oneToOne = 0;
+  EXPECT_TRUE(says(known, "Whether any two points of the solid go to one is not decided."));
+  EXPECT_EQ(injectivityLine(known).substr(0, 32), "one-to-one, proven deeper than 0");
+}
+
 TEST(Injectivity, CellsThatAreUndecidedOrFoldedAreNoProof) {
   Injectivity known = sound();
   known.proof = proven();
@@ -237,6 +248,7 @@ TEST(Injectivity, FactsGiveTheFiguresBack) {
   known.proof = proven();
   known.proof.mirrored = true;
   known.proof.undecided = 3;
+  known.proof.oneToOne = 0;
   known.inside.folded = 3;
   known.inside.foldedAtOverlap = 2;
   known.inside.least = -0.1;

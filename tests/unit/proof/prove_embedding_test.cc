@@ -42,9 +42,13 @@ TEST(ProveEmbedding, PartsThatRunIntoEachOtherAreNotProven) {
   const EmbeddingProof proof = proveEmbedding(pulled(0.02), balls);
   EXPECT_FALSE(proof.proven);
   for (const Vec3& place : proof.places) EXPECT_LT(norm(place), 0.5);
+  EXPECT_FALSE(proof.connected);
   // It is the two that meet: either by itself is proven.
-  for (const double side : {-0.6, 0.6})
-    EXPECT_TRUE(proveEmbedding(pulled(0.02), shapes::icosphere(2, 0.5, {side, 0, 0})).proven);
+  for (const double side : {-0.6, 0.6}) {
+    const EmbeddingProof one =
+        proveEmbedding(pulled(0.02), shapes::icosphere(2, 0.5, {side, 0, 0}));
+    EXPECT_TRUE(one.proven && one.connected);
+  }
 }
 
 TEST(ProveEmbedding, FoldedSurfacesAreNotProven) {

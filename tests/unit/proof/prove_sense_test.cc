@@ -136,6 +136,36 @@ bool same(const ProofCells& a, const ProofCells& b) {
   return true;
 }
 
+// Of a map that needs 20,000: cells are taken where least is missing, to the last one.
+TEST(ProveSense, EachCellMoreIsUsed) {
+  const HarmonicMap map = mapOf(affineOf(kIdentity), testing::chargesAbout(600, 1.3, 0.004, 5));
+  const Mesh ball = shapes::icosphere(3);
+  ProofSettings settings;
+  settings.cellsPerCharge = 1;
+  double before = -1;
+  for (const std::uint64_t limit : {500u, 1000u, 2000u, 4000u, 8000u}) {
+    settings.leastCells = limit;
+    const SenseProof proof = proveSense(map, ball, settings);
+    ASSERT_FALSE(proof.whole());
+    EXPECT_LE(proof.examined, std::max<std::uint64_t>(limit, 600));
+    EXPECT_GT(proof.examined, limit / 2);
+    EXPECT_GT(proof.provenShare, before);
+    before = proof.provenShare;
+  }
+}
+
+TEST(ProveSense, ProofsOfOneExpandedMapAreThoseOfEachAlone) {
+  const HarmonicMap map = gentle(0.004, 2);
+  const ExpandedMap shared = map, copy = shared;
+  const double sizes[] = {0.2, 1, 0.2};  // each asks for another scale
+  for (const double size : sizes) {
+    const Mesh ball = shapes::icosphere(3, size, {});
+    EXPECT_TRUE(same(proveSense(shared, ball).proven, proveSense(map, ball).proven));
+    EXPECT_EQ(proveBoundaryError(copy, ball, ball.vertices).error,
+              proveBoundaryError(map, ball, ball.vertices).error);
+  }
+}
+
 TEST(ProveSense, ThreadsDoNotMatter) {
   std::vector<Charge> charges = testing::chargesAbout(600, 1.3, 0.004, 5);
   charges.push_back({{1.05, 0, 0}, {-0.01, 0, 0}});

@@ -11,6 +11,7 @@
 #include "bind/meshes.h"
 #include "bind/solids.h"
 #include "innermap/field/field_file.h"
+#include "innermap/proof/prove.h"
 #include "report/figures.h"
 
 namespace py = pybind11;
@@ -78,18 +79,51 @@ py::object save(const Arguments& a, NoOptions&) {
 
 struct ProveOptions {
   ProofSettings settings;
+  bool full = false;
   CallOptions call;
 
   void describe(Keywords& k) {
     k.settings(innermap::describe(settings));
+    k.flag("full", &full, "that no two points go to one, too; takes longer");
     call.describe(k);
   }
 };
 
 py::object prove(const Arguments& a, ProveOptions& o) {
   const auto mapped = py::cast<const PyMap&>(a[0]).mapped;
-  return dictOf(
-      figures(call(o.call, [&]() { return proveMap(mapped->map, mapped->boundary, o.settings); })));
+  return dictOf(figures(
+      call(o.call, [&]() { return proveMap(mapped->map, mapped->boundary, o.settings, o.full); })));
+}
+
+struct ProofCellsOptions {
+  ProofSettings settings;
+  CallOptions call;
+
+  void describe(Keywords& k) {
+    std::vector<Setting> known = innermap::describe(settings);
+    known.pop_back();  // of the boundary
+    k.settings(known);
+    call.describe(k);
+  }
+};
+
+py::object cellsArray(const ProofCells& cells) {
+  Matrix out(cells.places.size(), 4);
+  for (std::size_t i = 0; i < cells.places.size(); ++i) {
+    for (int k = 0; k < 3; ++k) out(i, static_cast<std::size_t>(k)) = cells.places[i].center[k];
+    out(i, 3) = cells.places[i].halfEdge;
+  }
+  return arrayOf(std::move(out));
+}
+
+py::object proofCells(const Arguments& a, ProofCellsOptions& o) {
+  const auto mapped = py::cast<const PyMap&>(a[0]).mapped;
+  o.settings.keepProven = true;
+  const SenseProof proof = call(o.call, [&]() {
+    return proveSense(mapped->map, mapped->solid().repaired().mesh, o.settings);
+  });
+  return py::make_tuple(cellsArray(proof.proven), cellsArray(proof.undecided),
+                        cellsArray(proof.negative));
 }
 
 std::string reprOf(const PyMap& map) {
@@ -175,6 +209,15 @@ void bindMap(py::module_& m) {
        "is "
        "not closed."},
       prove);
+  define<ProofCellsOptions>(
+      map,
+      {"proof_cells", "self",
+       "The cubes on which prove() decides where the map folds.\n\nReturns three arrays, (n, 4), "
+       "the largest cubes first: where the map is proven not to fold, where nothing is decided, "
+       "and "
+       "where it is proven to fold everywhere. Each row holds the cube's centre and half its edge, "
+       "world units of the source. Raises as prove()."},
+      proofCells);
   map.def_property_readonly(
          "boundary_error",
          [](const PyMap& self) {

@@ -52,8 +52,9 @@ std::size_t shellCollocation(const ShellSettings& shell);
 // which folds are counted.
 enum class OneToOne { automatic, on, off };
 // What is proven of a map that was fitted. core: where det J has one sign on whole cells of the
-// solid, and how far the boundary is from its target at most; see proveMap.
-enum class Prove { off, core };
+// solid, and how far the boundary is from its target at most. full: that no two points go to one,
+// too; see proveMap.
+enum class Prove { off, core, full };
 constexpr double kManyFolds = 5e-3, kManyOutside = 1e-2, kFewFolds = 4e-4;
 
 // FitMapSettings::tolerance of solids that were laid onto each other, unless told otherwise: their
@@ -74,9 +75,10 @@ struct FitMapSettings {
   OneToOne oneToOne = OneToOne::automatic;  // with `shell` folds are counted, no more
   int maxSteps = 16;
   Prove prove = Prove::core;
-  // ProofSettings::cellsPerCharge. Maps in one piece need 4 to 7; of one in five steps this
-  // leaves 2% of the solid undecided, where a hundred leave 0.01%.
-  double proofCells = 16;
+  // ProofSettings::cellsPerCharge. Maps in one piece need 4 to 7; of maps in three to five steps
+  // this leaves 1 to 3% of the solid undecided, where a hundred leave 0.01%.
+  // With oneToOne on as many as ProofSettings has at least.
+  double proofCells = 8;
   std::uint64_t seed = 1;
 };
 

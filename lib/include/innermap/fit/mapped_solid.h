@@ -83,6 +83,9 @@ struct ProofFigures {
   // No point of the boundary is farther from where it should be, fraction of the target's diagonal;
   // 0: not known. Of a source whose parts overlap of what is exposed, as its solid knows that.
   double boundaryError = 0;
+  // No two points of the solid go to one: 1 proven, 0 not decided, -1 not asked. Of a solid with
+  // one connected surface that does not cross itself.
+  int oneToOne = -1;
   Points places;  // of cells that are negative, then undecided, the largest first; at most 16
 
   // det J has one sign everywhere.
@@ -118,9 +121,10 @@ std::string injectivityLine(const Injectivity& known);
 Facts injectivityFacts(const Injectivity& known);
 void readInjectivity(const Facts& facts, Injectivity& known);
 
-// Proves what it can; see proof/prove.h. Throws what that does.
+// Proves what it can; see proof/prove.h. full: also that the boundary does not meet itself, which
+// takes some ten times as long. Throws what those do.
 ProofFigures proveMap(const ComposedMap& map, const BoundaryPair& boundary,
-                      const ProofSettings& settings = {});
+                      const ProofSettings& settings = {}, bool full = false);
 
 // The self-intersections of a mesh that was checked.
 SelfIntersectionFigures selfIntersectionFigures(const MeshReport& check);

@@ -21,6 +21,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "innermap/core/setting.h"
@@ -29,6 +30,28 @@
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {
+
+namespace proof {
+class StepTrees;
+}
+
+// A map and its expansions, which take as long to make as some 4 cells a charge take to decide.
+// Proofs make them where they are first asked for, and proofs of one object share them; copies too.
+class ExpandedMap {
+ public:
+  ExpandedMap(ComposedMap map);  // implicit: one proof alone needs no more than the map
+  ExpandedMap(HarmonicMap map);
+
+  const ComposedMap& map() const { return map_; }
+
+  // Of lengths times `scale`, a power of two; the last scale's are kept. Safe from many threads.
+  std::shared_ptr<const proof::StepTrees> expansions(double scale) const;
+
+ private:
+  struct Kept;
+  ComposedMap map_;
+  std::shared_ptr<Kept> kept_;
+};
 
 struct ProofSettings {
   // Cells, or pieces of the boundary, that are looked at before the rest stays undecided: a count
@@ -79,7 +102,7 @@ struct SenseProof {
 // inside it or on it leaves its cells undecided, and so does det J = 0. On all threads, the same
 // result for any number of them. Throws DataError for a mesh that is not closed, without volume or
 // not finite, and for more than 64 steps; SettingError; MemoryError; Cancelled.
-SenseProof proveSense(const ComposedMap& map, const Mesh& solid,
+SenseProof proveSense(const ExpandedMap& map, const Mesh& solid,
                       const ProofSettings& settings = {});
 
 // How far the map's boundary is from its target, proven: no point of any triangle is farther from
@@ -96,7 +119,7 @@ struct BoundaryProof {
 // closed. An error below 1e-11 counts as close. On all threads, the same result for any number of
 // them. Throws DataError when the numbers of vertices differ, there is no triangle, or a number is
 // not finite; SettingError; MemoryError; Cancelled.
-BoundaryProof proveBoundaryError(const ComposedMap& map, const Mesh& surface, const Points& target,
+BoundaryProof proveBoundaryError(const ExpandedMap& map, const Mesh& surface, const Points& target,
                                  const ProofSettings& settings = {});
 
 // Whether the map takes no two points of a surface to one: then it is a homeomorphism of the
@@ -104,6 +127,7 @@ BoundaryProof proveBoundaryError(const ComposedMap& map, const Mesh& surface, co
 // as its connected boundary and proveSense() finds one sign (Meisters and Olech 1963).
 struct EmbeddingProof {
   bool proven = false;
+  bool connected = false;      // the surface is one piece, joined by edges
   std::size_t undecided = 0;   // pairs of patches that may meet, where their number was up
   Points places;               // of the first of them, at most 16; world units of the source
   std::uint64_t examined = 0;  // pairs
@@ -113,7 +137,7 @@ struct EmbeddingProof {
 // else it is split. Looks at up to four times the pairs that settings has cells, shared among the
 // map's steps. On all threads, the same result for any number of them. Throws as
 // proveBoundaryError().
-EmbeddingProof proveEmbedding(const ComposedMap& map, const Mesh& surface,
+EmbeddingProof proveEmbedding(const ExpandedMap& map, const Mesh& surface,
                               const ProofSettings& settings = {});
 
 }  // namespace innermap
