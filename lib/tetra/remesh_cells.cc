@@ -223,10 +223,18 @@ class Remesher {
     for (std::size_t h = 0; h < made.hexahedra.size(); ++h)
       rows.push_back(static_cast<int>(given_.tetrahedra.size() + h));
     turnFields(given_, kept, rows, source, made);
+    timed(out_.seconds, "proof", [&] { prove(source); });
     addSource(source);
     out_.quality = cellQuality(made);
     setQualityFields(made, out_.quality);
     warn();
+  }
+
+  void prove(Points& source) {
+    out_.proof = proveCells(out_.mesh);
+    std::swap(out_.mesh.vertices, source);
+    out_.sourceProof = proveCells(out_.mesh);
+    std::swap(out_.mesh.vertices, source);
   }
 
   void addSource(const Points& source) {

@@ -98,7 +98,9 @@ void run(const RemeshOptions& options, Context& context) {
   for (const std::string& note : result.notes) context.note(note);
   for (const std::string& warning : result.warnings) context.warning(warning);
   reportRemesh(result, boundingBox(onto).diagonal(), context);
-  reportCells(result.mesh, result.quality, context);
+  reportCells(result.mesh, result.quality, result.proof, context);
+  if (const std::string map = linearMapStatement(result.sourceProof, result.proof); !map.empty())
+    context.print(map + "\n");
   const BoundaryFit fit = context.timed(
       "boundary", [&] { return boundaryFit(result.mesh, Solid(onto), BoundaryFitSettings{}); });
   reportBoundaryFit(fit, context);

@@ -99,7 +99,8 @@ void run(const TetrahedralizeOptions& options, Context& context) {
   for (const std::string& warning : result.warnings) context.warning(warning);
   fillReport(result, mesh, solid, context);
   const CellQuality quality = context.timed("quality", [&] { return cellQuality(result.mesh); });
-  reportCells(result.mesh, quality, context);
+  const CellProof proof = context.timed("proof", [&] { return proveCells(result.mesh); });
+  reportCells(result.mesh, quality, proof, context);
   const BoundaryFit fit =
       context.timed("boundary", [&] { return boundaryFit(result.mesh, solid); });
   reportBoundaryFit(fit, context);
