@@ -99,11 +99,11 @@ bool facesOpposite(const CellMesh& mesh, std::uint32_t a, std::uint32_t b) {
 
 struct Faces {
   std::vector<std::uint32_t> single;  // numbers of those of one cell alone, ascending
-  bool paired = true;                 // all others belong to two cells, one on either side
+  bool paired = true;  // if asked for: all others belong to two cells, one on either side
 };
 
 // Faces are gathered by their lowest vertex, where equal ones meet.
-Faces facesOf(const CellMesh& mesh) {
+Faces facesOf(const CellMesh& mesh, bool pairs) {
   if (4 * mesh.tetrahedra.size() + 6 * mesh.hexahedra.size() >
       std::numeric_limits<std::uint32_t>::max())
     throw MemoryError((mesh.name.empty() ? "mesh" : mesh.name) +
@@ -126,7 +126,7 @@ Faces facesOf(const CellMesh& mesh) {
         }
         if (after == f + 1)
           found[begin / kBlock].push_back(f->number);
-        else if (after != f + 2 || !facesOpposite(mesh, f->number, (f + 1)->number))
+        else if (pairs && (after != f + 2 || !facesOpposite(mesh, f->number, (f + 1)->number)))
           paired = false;
       }
     }
@@ -136,6 +136,17 @@ Faces facesOf(const CellMesh& mesh) {
   std::sort(out.single.begin(), out.single.end());
   out.paired = paired;
   return out;
+}
+
+// Of the single faces, quadrilaterals cut in two.
+std::vector<Triangle> trianglesOf(const CellMesh& mesh, const Faces& faces) {
+  std::vector<Triangle> triangles;
+  for (const std::uint32_t face : faces.single) {
+    const std::array<int, 4> c = cornersOf(mesh, face);
+    triangles.push_back({c[0], c[1], c[2]});
+    if (c[3] >= 0) triangles.push_back({c[0], c[2], c[3]});
+  }
+  return triangles;
 }
 
 }  // namespace
@@ -164,19 +175,12 @@ std::array<Tetrahedron, 8> cornerTetrahedra(const Hexahedron& c) {
 }
 
 CellBoundary cellBoundary(const CellMesh& mesh) {
-  CellBoundary out;
-  const Faces faces = facesOf(mesh);
-  out.paired = faces.paired;
-  for (const std::uint32_t face : faces.single) {
-    const std::array<int, 4> c = cornersOf(mesh, face);
-    out.triangles.push_back({c[0], c[1], c[2]});
-    if (c[3] >= 0) out.triangles.push_back({c[0], c[2], c[3]});
-  }
-  return out;
+  const Faces faces = facesOf(mesh, true);
+  return {trianglesOf(mesh, faces), faces.paired};
 }
 
 std::vector<Triangle> boundaryTriangles(const CellMesh& mesh) {
-  return cellBoundary(mesh).triangles;
+  return trianglesOf(mesh, facesOf(mesh, false));
 }
 
 }  // namespace innermap

@@ -1,13 +1,14 @@
 // Cells proven right side out, and not to overlap.
 #include <fmt/format.h>
 
+#include <optional>
 #include <vector>
 
 #include "innermap/core/run.h"
 #include "innermap/tetra/cells.h"
 #include "innermap/tetra/hexahedralize.h"
-#include "lattice/cell_signs.h"
 #include "mesh/cover_once.h"
+#include "tetra/detail/prove_with.h"
 
 namespace innermap {
 namespace {
@@ -32,10 +33,11 @@ void proveTetrahedra(const CellMesh& mesh, CellProof& out) {
   }
 }
 
-void proveCover(const CellMesh& mesh, CellProof& out) {
-  const CellBoundary boundary = cellBoundary(mesh);
-  if (!boundary.paired) return;
-  const CoverCheck cover = checkCover(mesh.vertices, boundary.triangles);
+void proveCover(const CellMesh& mesh, std::optional<CellBoundary>& boundary, CellProof& out) {
+  if (!boundary) boundary = cellBoundary(mesh);
+  out.boundary = boundary->triangles;
+  if (!boundary->paired) return;
+  const CoverCheck cover = checkCover(mesh.vertices, out.boundary);
   out.exact += cover.exact;
   out.meetings = cover.crossings + cover.meetings + cover.doubled;
   if (cover.overlaps())
@@ -55,6 +57,11 @@ std::string cellsOf(std::size_t count, const CellProof& proof) {
 }  // namespace
 
 CellProof proveCells(const CellMesh& mesh) {
+  std::optional<CellBoundary> boundary;
+  return proveWith(mesh, boundary);
+}
+
+CellProof proveWith(const CellMesh& mesh, std::optional<CellBoundary>& boundary) {
   CellProof out;
   out.cells = mesh.tetrahedra.size() + mesh.hexahedra.size();
   proveTetrahedra(mesh, out);
@@ -62,7 +69,7 @@ CellProof proveCells(const CellMesh& mesh) {
   out.inverted += hexahedra.inverted;
   out.undecided += hexahedra.undecided;
   out.exact += hexahedra.exact;
-  if (out.rightSideOut() && mesh.hexahedra.empty()) proveCover(mesh, out);
+  if (out.rightSideOut() && mesh.hexahedra.empty()) proveCover(mesh, boundary, out);
   return out;
 }
 

@@ -14,6 +14,7 @@
 #include "tetra/detail/cell_system.h"
 #include "tetra/detail/coarse_start.h"
 #include "tetra/detail/guide_surface.h"
+#include "tetra/detail/prove_with.h"
 #include "tetra/detail/turn_fields.h"
 
 namespace innermap {
@@ -231,9 +232,10 @@ class Remesher {
   }
 
   void prove(Points& source) {
-    out_.proof = proveCells(out_.mesh);
+    std::optional<CellBoundary> boundary;
+    out_.proof = proveWith(out_.mesh, boundary);
     std::swap(out_.mesh.vertices, source);
-    out_.sourceProof = proveCells(out_.mesh);
+    out_.sourceProof = proveWith(out_.mesh, boundary);
     std::swap(out_.mesh.vertices, source);
   }
 

@@ -101,8 +101,10 @@ void run(const TetrahedralizeOptions& options, Context& context) {
   const CellQuality quality = context.timed("quality", [&] { return cellQuality(result.mesh); });
   const CellProof proof = context.timed("proof", [&] { return proveCells(result.mesh); });
   reportCells(result.mesh, quality, proof, context);
+  BoundaryFitSettings known;
+  known.boundary = &proof.boundary;
   const BoundaryFit fit =
-      context.timed("boundary", [&] { return boundaryFit(result.mesh, solid); });
+      context.timed("boundary", [&] { return boundaryFit(result.mesh, solid, known); });
   reportBoundaryFit(fit, context);
   if (!options.picture.empty())
     context.timed("picture", [&] { drawCut(options, result.mesh, quality); });

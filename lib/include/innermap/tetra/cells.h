@@ -97,8 +97,9 @@ struct CellProof {
   std::size_t inverted = 0;   // not right side out everywhere, or flat
   std::size_t undecided = 0;  // right side out or not: within the margin of rounding
   Overlap overlap = Overlap::unknown;
-  std::size_t meetings = 0;  // places where the boundary crosses or touches itself, or may
-  std::uint64_t exact = 0;   // signs that took exact arithmetic; others were beyond rounding
+  std::size_t meetings = 0;        // places where the boundary crosses or touches itself, or may
+  std::uint64_t exact = 0;         // signs that took exact arithmetic; others were beyond rounding
+  std::vector<Triangle> boundary;  // boundaryTriangles(), where it was asked whether they overlap
 
   bool rightSideOut() const { return cells > 0 && inverted + undecided == 0; }
   bool oneToOne() const { return rightSideOut() && overlap == Overlap::none; }

@@ -41,6 +41,8 @@ struct BoundaryFit {
 struct BoundaryFitSettings {
   std::size_t samples = 20000;  // each way, at least 1
   std::uint64_t seed = 1;
+  // boundaryTriangles() of the mesh; empty or none: they are looked for.
+  const std::vector<Triangle>* boundary = nullptr;
 };
 
 // Distances are exact at the samples, which are uniform by area. The mesh must be valid. Throws
