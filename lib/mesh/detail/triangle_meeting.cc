@@ -1,6 +1,9 @@
 #include "mesh/detail/triangle_meeting.h"
 
 #include <algorithm>
+#include <iterator>
+#include <tuple>
+#include <utility>
 
 #include "core/orientation.h"
 
