@@ -119,7 +119,7 @@ CellProof proveCells(const CellMesh& mesh);
 std::string statementOf(const CellProof& proof);
 
 // Of a mesh and the places that its vertices came from: whether the map between the two that is
-// linear on the cells is one-to-one. Empty where no cell is a tetrahedron, or one is not.
+// linear on the cells is one-to-one. Empty where a cell is a hexahedron, or not right side out.
 std::string linearMapStatement(const CellProof& from, const CellProof& to);
 
 // A mesh of cells that fills one solid of a map, carried to the other: vertices inside by the map,
