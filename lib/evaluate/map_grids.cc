@@ -89,6 +89,7 @@ Injectivity injectivityOf(const MappedSolid& mapped, const SolidGrids& grids,
         ++out.voxels.foldedAtOverlap;
     }
   out.cells = checkCells(*values.map, *grids.surface, target, error, origin);
+  out.cells.local = origin.x != 0 || origin.y != 0 || origin.z != 0;
   out.cells.share = static_cast<double>(out.cells.checked) / 6 * std::pow(grids.voxelSize, 3) /
                     mapped.solid().volume();
   return out;

@@ -208,14 +208,17 @@ std::string conclusion(const Injectivity& known) {
 }
 
 std::string cells(const CellFigures& cells) {
-  if (cells.checked == 0 || cells.folded > 0 || cells.overlaps < 0) return "";
-  const std::string what =
-      fmt::format("The map that is linear on the {} cells, {} of the solid, is ", cells.checked,
-                  percent(cells.share));
-  if (cells.overlaps == 0) return what + "one-to-one; that was checked as a whole. ";
+  if (cells.checked == 0 || cells.folded > 0) return "";
+  const std::string what = fmt::format(
+      "Proven of the grid {}, repaired or not: the map that is linear on its {} cells, {} of the "
+      "solid, turns none of them over",
+      cells.local ? "map_local" : "map", cells.checked, percent(cells.share));
+  if (cells.overlaps == 0) return what + ", and is one-to-one as a whole. ";
+  if (cells.overlaps < 0)
+    return what + ". That is local: whether their images overlap is not shown. ";
   return what + fmt::format(
-                    "nowhere turned over, but not one-to-one: it covers itself at {} "
-                    "place{} of its boundary. ",
+                    ", but is not one-to-one: their images overlap at {} place{} of their "
+                    "boundary. ",
                     cells.overlaps, cells.overlaps == 1 ? "" : "s");
 }
 

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <functional>
 #include <limits>
 
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
+#include "lattice/cell_signs.h"
 
 namespace innermap {
 namespace {
@@ -83,9 +85,25 @@ void forEachFace(const CellMesh& mesh, const Use& use) {
   }
 }
 
-// The numbers of faces that belong to one cell alone, ascending: faces are gathered by their lowest
-// vertex, where equal ones meet.
-std::vector<std::uint32_t> singleFaces(const CellMesh& mesh) {
+// Whether the two are seen in opposite senses: from the two sides.
+bool facesOpposite(const CellMesh& mesh, std::uint32_t a, std::uint32_t b) {
+  const auto ascending = [&](std::uint32_t f) {
+    const std::array<int, 4> c = cornersOf(mesh, f);
+    // Of a triangle; a quadrilateral's sense is that of its first corner's neighbours.
+    const auto low = std::min_element(c.begin(), c.end() - (c[3] < 0 ? 1 : 0)) - c.begin();
+    const int n = c[3] < 0 ? 3 : 4;
+    return c[(low + 1) % n] < c[(low + n - 1) % n];
+  };
+  return ascending(a) != ascending(b);
+}
+
+struct Faces {
+  std::vector<std::uint32_t> single;  // numbers of those of one cell alone, ascending
+  bool paired = true;  // if asked for: all others belong to two cells, one on either side
+};
+
+// Faces are gathered by their lowest vertex, where equal ones meet.
+Faces facesOf(const CellMesh& mesh, bool pairs) {
   if (4 * mesh.tetrahedra.size() + 6 * mesh.hexahedra.size() >
       std::numeric_limits<std::uint32_t>::max())
     throw MemoryError((mesh.name.empty() ? "mesh" : mesh.name) +
@@ -98,6 +116,7 @@ std::vector<std::uint32_t> singleFaces(const CellMesh& mesh) {
   forEachFace(mesh, [&](const Face& face, int lowest) { faces[next[lowest]++] = face; });
   constexpr std::size_t kBlock = 4096;
   std::vector<std::vector<std::uint32_t>> found(mesh.vertices.size() / kBlock + 1);
+  std::atomic<bool> paired{true};
   parallelBlocks(mesh.vertices.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const auto first = faces.begin() + start[v], last = faces.begin() + start[v + 1];
@@ -105,14 +124,29 @@ std::vector<std::uint32_t> singleFaces(const CellMesh& mesh) {
       for (auto f = first, after = f; f != last; f = after) {
         for (after = f + 1; after != last && after->others == f->others; ++after) {
         }
-        if (after == f + 1) found[begin / kBlock].push_back(f->number);
+        if (after == f + 1)
+          found[begin / kBlock].push_back(f->number);
+        else if (pairs && (after != f + 2 || !facesOpposite(mesh, f->number, (f + 1)->number)))
+          paired = false;
       }
     }
   });
-  std::vector<std::uint32_t> all;
-  for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
-  std::sort(all.begin(), all.end());
-  return all;
+  Faces out;
+  for (const auto& some : found) out.single.insert(out.single.end(), some.begin(), some.end());
+  std::sort(out.single.begin(), out.single.end());
+  out.paired = paired;
+  return out;
+}
+
+// Of the single faces, quadrilaterals cut in two.
+std::vector<Triangle> trianglesOf(const CellMesh& mesh, const Faces& faces) {
+  std::vector<Triangle> triangles;
+  for (const std::uint32_t face : faces.single) {
+    const std::array<int, 4> c = cornersOf(mesh, face);
+    triangles.push_back({c[0], c[1], c[2]});
+    if (c[3] >= 0) triangles.push_back({c[0], c[2], c[3]});
+  }
+  return triangles;
 }
 
 }  // namespace
@@ -140,14 +174,13 @@ std::array<Tetrahedron, 8> cornerTetrahedra(const Hexahedron& c) {
   return tetrahedra;
 }
 
+CellBoundary cellBoundary(const CellMesh& mesh) {
+  const Faces faces = facesOf(mesh, true);
+  return {trianglesOf(mesh, faces), faces.paired};
+}
+
 std::vector<Triangle> boundaryTriangles(const CellMesh& mesh) {
-  std::vector<Triangle> triangles;
-  for (const std::uint32_t face : singleFaces(mesh)) {
-    const std::array<int, 4> c = cornersOf(mesh, face);
-    triangles.push_back({c[0], c[1], c[2]});
-    if (c[3] >= 0) triangles.push_back({c[0], c[2], c[3]});
-  }
-  return triangles;
+  return trianglesOf(mesh, facesOf(mesh, false));
 }
 
 }  // namespace innermap

@@ -54,12 +54,25 @@ Figures rowOf(const ComparedRow& r) {
 
 }  // namespace
 
-Figures cellFigures(const CellMesh& mesh, const CellQuality& quality) {
+Figures figures(const CellProof& proof) {
+  return {
+      {"statement", statementOf(proof), "in words", "what is proven of them as written"},
+      {"not_right_side_out", proof.inverted, "not right side out", "somewhere inside; proven"},
+      {"undecided", proof.undecided, "not decided", "within rounding"},
+      {"right_side_out", proof.rightSideOut(), "right side out", "all of them, proven"},
+      {"one_to_one", proof.oneToOne(), "one-to-one", "nor do any two overlap: globally, proven"},
+      {"meetings", proof.meetings, "boundary meets itself",
+       "places where it crosses or touches itself, or may"},
+      {"exact", proof.exact, "signs by exact arithmetic", "as rounding might have turned them"}};
+}
+
+Figures cellFigures(const CellMesh& mesh, const CellQuality& quality, const CellProof& proof) {
   return together(
       {{{"vertices", mesh.vertices.size(), "vertices", ""},
         {"tetrahedra", mesh.tetrahedra.size(), "tetrahedra", ""},
         {"hexahedra", mesh.hexahedra.size(), "hexahedra", ""},
         {"inverted", quality.invertedTetrahedra + quality.invertedHexahedra, "inverted", "cells"}},
+       under("proof", "proof", figures(proof)),
        when(!mesh.tetrahedra.empty(),
             together({under("least_dihedral", "least dihedral angle",
                             summaryFigures(quality.dihedral, FigureUnit::degrees)),
@@ -109,7 +122,8 @@ Figures featureFigures(const Hexahedralization& made) {
 Figures figures(const HexahedronCheck& check) {
   return {{"inverted", check.inverted, "inverted", "somewhere inside"},
           {"inverted_corners", check.invertedCorners, "inverted at corners", ""},
-          {"undecided", check.undecided, "not decided", "by the bounds"}};
+          {"undecided", check.undecided, "not decided", "by the bounds"},
+          {"exact", check.exact, "corners by exact arithmetic", ""}};
 }
 
 Figures figures(const Hexahedralization& made) {
@@ -145,6 +159,8 @@ Figures figures(const Remesh& made, double diagonal) {
           {"inverted_carried", made.invertedCarried, "inverted as carried", ""},
           {"inverted", made.inverted, "inverted", "after repair"},
           {"from_coarse", made.fromCoarse, "coarse cells first", "as the map alone did not do"},
+          {"linear_map", linearMapStatement(made.sourceProof, made.proof), "linear map",
+           "what is proven of the map that is linear on the cells"},
           {"swaps", made.swaps, "swaps", ""},
           {"collapses", made.collapses, "collapses", ""},
           {"moved_rms", made.repair.moved / diagonal, "moved", "root mean square", kDiagonals},

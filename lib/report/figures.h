@@ -19,6 +19,7 @@ struct Box3;
 struct CarriedGeometry;
 struct CarriedMass;
 struct CellMesh;
+struct CellProof;
 struct CellQuality;
 struct CompareFem;
 struct DistanceTransfer;
@@ -103,10 +104,12 @@ Figures boundaryMapFigures(const MapQuality& quality);
 
 // -- cells (cell_figures.cc) --
 
-Figures cellFigures(const CellMesh& mesh, const CellQuality& quality);  // "cells"
-Figures figures(const BoundaryFit& fit);                                // "boundary"
-Figures topologyFigures(const Tetrahedralization& made);                // "topology"
-Figures latticeFigures(const Tetrahedralization& made);                 // "lattice"
+Figures figures(const CellProof& proof);
+// "cells"
+Figures cellFigures(const CellMesh& mesh, const CellQuality& quality, const CellProof& proof);
+Figures figures(const BoundaryFit& fit);                  // "boundary"
+Figures topologyFigures(const Tetrahedralization& made);  // "topology"
+Figures latticeFigures(const Tetrahedralization& made);   // "lattice"
 // "features". diagonal: of the solid, world units.
 Figures featureFigures(const Tetrahedralization& made, double diagonal);
 Figures featureFigures(const Hexahedralization& made);

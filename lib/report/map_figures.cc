@@ -247,7 +247,10 @@ Figures figures(const Injectivity& known) {
             .when(known.cells.checked > 0),
         Figure("cells_overlaps", known.cells.overlaps, "cells' overlaps",
                "places where the image of their boundary runs through itself")
-            .when(known.cells.overlaps >= 0)},
+            .when(known.cells.overlaps >= 0),
+        Figure("cells_exact", known.cells.exact, "cells decided exactly",
+               "whose sign rounding might have turned")
+            .when(known.cells.checked > 0)},
        when(known.proof.cells > 0, figures(known.proof)),
        {{"source_crossings_at", known.source.places, "source's crossings", "x, y, z of the first",
          FigureUnit::length},

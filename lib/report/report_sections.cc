@@ -177,7 +177,7 @@ std::vector<ReportSection> meshSections(const Unknown& u) {
            {}},
           {"findings", "Findings", "What is wrong with the mesh.", findingFigures("*", 0), {}},
           {"level_set", "Level set", "The grid beside the mesh.", figures(LevelSetCheck{}), {}},
-          {"cells", "Cells", "", cellFigures({}, {}), {}},
+          {"cells", "Cells", "", cellFigures({}, {}, {}), {}},
           {"boundary", "Boundary", "Of a mesh of cells.", figures(BoundaryFit{}), {}},
           {"topology", "Topology", "Of a mesh of cells.", topologyFigures(u.tetrahedra), {}},
           {"lattice", "Lattice", "That cells were cut from.", latticeFigures(u.tetrahedra), {}},

@@ -66,7 +66,8 @@ BoundaryFit boundaryFit(const CellMesh& mesh, const Solid& solid,
   Mesh boundary;
   boundary.name = "boundary of " + mesh.name;
   boundary.vertices = mesh.vertices;
-  boundary.triangles = boundaryTriangles(mesh);
+  boundary.triangles = settings.boundary && !settings.boundary->empty() ? *settings.boundary
+                                                                        : boundaryTriangles(mesh);
   const TriangleTree tree(boundary.vertices, boundary.triangles);
   BoundaryFit fit;
   fit.faces = boundary.triangles.size();

@@ -5,6 +5,7 @@
 #include "core/pi.h"
 #include "innermap/core/run.h"
 #include "innermap/tetra/cells.h"
+#include "lattice/cell_signs.h"
 
 namespace innermap {
 namespace {
@@ -47,13 +48,15 @@ QualitySummary summaryOf(const std::vector<float>& values, double lower, double 
 }  // namespace
 
 DihedralRange dihedralRange(const Points& vertices, const Tetrahedron& cell) {
-  if (!(signedVolume(vertices, cell) > 0)) return {};
+  if (isInverted(vertices, cell)) return {};
   static constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
   std::array<Vec3, 4> normal;
   for (int f = 0; f < 4; ++f) {
     const Vec3& a = vertices[cell[kFaces[f][0]]];
     normal[f] = cross(vertices[cell[kFaces[f][1]]] - a, vertices[cell[kFaces[f][2]]] - a);
-    normal[f] = normal[f] / norm(normal[f]);
+    const double length = norm(normal[f]);
+    if (!(length > 0)) return {};  // underflow
+    normal[f] = normal[f] / length;
   }
   double least = 1, greatest = -1;  // cosines of the angles between the normals
   for (int f = 0; f < 4; ++f)
@@ -90,7 +93,7 @@ CellQuality cellQuality(const CellMesh& mesh) {
       [&](std::size_t begin, std::size_t end) {
         std::uint64_t inverted = 0;
         for (std::size_t t = begin; t < end; ++t) {
-          inverted += !(signedVolume(mesh.vertices, mesh.tetrahedra[t]) > 0);
+          inverted += isInverted(mesh.vertices, mesh.tetrahedra[t]);
           const DihedralRange range = dihedralRange(mesh.vertices, mesh.tetrahedra[t]);
           q.leastDihedral[t] = static_cast<float>(range.least);
           q.greatestDihedral[t] = static_cast<float>(range.greatest);
@@ -103,10 +106,7 @@ CellQuality cellQuality(const CellMesh& mesh) {
       [&](std::size_t begin, std::size_t end) {
         std::uint64_t inverted = 0;
         for (std::size_t h = begin; h < end; ++h) {
-          const auto corners = cornerTetrahedra(mesh.hexahedra[h]);
-          inverted += std::any_of(corners.begin(), corners.end(), [&](const Tetrahedron& t) {
-            return !(signedVolume(mesh.vertices, t) > 0);
-          });
+          inverted += isInverted(mesh.vertices, mesh.hexahedra[h]);
           q.scaledJacobian[h] =
               static_cast<float>(scaledJacobian(mesh.vertices, mesh.hexahedra[h]));
         }

@@ -121,6 +121,10 @@ void measureFeatures(const Mesh& surface, const HexahedralizeSettings& settings,
 void measure(const Mesh& surface, const HexahedralizeSettings& settings, Hexahedralization& out) {
   out.after = checkHexahedra(out.mesh);
   out.quality = cellQuality(out.mesh);
+  out.proof.cells = out.mesh.hexahedra.size();
+  out.proof.inverted = out.after.inverted;
+  out.proof.undecided = out.after.undecided;
+  out.proof.exact = out.after.exact;
   setQualityFields(out.mesh, out.quality);
   BoundaryFitSettings fitting;
   fitting.seed = settings.seed + 1;  // other points than those that shaped the hexahedra

@@ -4,6 +4,7 @@
 
 #include "innermap/core/error.h"
 #include "innermap/tetra/cells.h"
+#include "lattice/cell_signs.h"
 #include "lattice/untangle.h"
 
 namespace innermap {
@@ -63,8 +64,8 @@ LinearCellMap::LinearCellMap(const CellMesh& carried) {
   const Points source = sourceOf(carried);
   std::size_t here = 0, there = 0;
   for (const Tetrahedron& t : carried.tetrahedra) {
-    here += !(signedVolume(carried.vertices, t) > 0);
-    there += !(signedVolume(source, t) > 0);
+    here += isInverted(carried.vertices, t);
+    there += isInverted(source, t);
   }
   if (here + there > 0)
     unfit(carried, fmt::format("{} of {} tetrahedra are inverted, and {} in their source: as a map "

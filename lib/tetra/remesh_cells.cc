@@ -14,6 +14,7 @@
 #include "tetra/detail/cell_system.h"
 #include "tetra/detail/coarse_start.h"
 #include "tetra/detail/guide_surface.h"
+#include "tetra/detail/prove_with.h"
 #include "tetra/detail/turn_fields.h"
 
 namespace innermap {
@@ -223,10 +224,19 @@ class Remesher {
     for (std::size_t h = 0; h < made.hexahedra.size(); ++h)
       rows.push_back(static_cast<int>(given_.tetrahedra.size() + h));
     turnFields(given_, kept, rows, source, made);
+    timed(out_.seconds, "proof", [&] { prove(source); });
     addSource(source);
     out_.quality = cellQuality(made);
     setQualityFields(made, out_.quality);
     warn();
+  }
+
+  void prove(Points& source) {
+    std::optional<CellBoundary> boundary;
+    out_.proof = proveWith(out_.mesh, boundary);
+    std::swap(out_.mesh.vertices, source);
+    out_.sourceProof = proveWith(out_.mesh, boundary);
+    std::swap(out_.mesh.vertices, source);
   }
 
   void addSource(const Points& source) {

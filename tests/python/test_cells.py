@@ -1,5 +1,9 @@
 """Tetrahedra and hexahedra: in meshio's terms, and as the program writes them."""
 
+import collections
+import fractions
+import itertools
+import os
 import sys
 
 import numpy as np
@@ -18,6 +22,17 @@ def same(a, b):
         assert one.keys() == other.keys()
         for name in one:
             assert np.array_equal(one[name], other[name]), name
+
+
+def cli_seed():
+    return int(os.environ.get("INNERMAP_TEST_SEED", 1))
+
+
+def as_cells(points, cells):
+    """Through a file that holds them as they are."""
+    import meshio
+    meshio.write("as.vtu", meshio.Mesh(points, cells))
+    return innermap.read_cells("as.vtu")
 
 
 def test_fills_with_tetrahedra_as_the_program_does():
@@ -153,6 +168,115 @@ def test_refuses_what_are_no_cells():
         (lambda: innermap.tetrahedralize(V, F, resolution=2), innermap.SettingError,
          "resolution"),
         (lambda: innermap.tetrahedralize(V), TypeError, "triangles"))
+
+
+def determinant(a, b, c, d):
+    """Six times the tetrahedron's volume, exact for Fractions."""
+    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = ([q - p for p, q in zip(a, e)] for e in (b, c, d))
+    return ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
+
+
+def exact(points):
+    return [tuple(map(fractions.Fraction, p)) for p in points]
+
+
+def nearly_flat(random, corners, scale, far):
+    """Corners in a plane, but for rounding and now and then a little more."""
+    axes = random.normal(size=(2, 3)) * 10.0 ** random.uniform(-4, 0, size=(2, 1))
+    flat = random.uniform(-1, 1, size=(corners, 2)) @ axes
+    flat += random.normal(size=(corners, 3)) * random.choice([0, 1e-16, 1e-12])
+    return scale * (flat + far * random.normal(size=3))
+
+
+def test_signs_are_those_of_fractions():
+    """Of nearly flat tetrahedra at scales from 1e-9 to 1e9, near the origin and far from it."""
+    seed = cli_seed()
+    random = np.random.default_rng(seed)
+    plain_wrong = exactly = 0
+    for scale in 1e-9, 1.0, 1e9:
+        for far in 0, 1, 1e6:
+            points = np.concatenate([nearly_flat(random, 4, scale, far) for _ in range(300)])
+            cells = as_cells(points, {"tetra": np.arange(len(points)).reshape(-1, 4)})
+            known = exact(points.tolist())
+            signs = [determinant(*known[i:i + 4]) > 0 for i in range(0, len(known), 4)]
+            proof = cells.prove()
+            assert proof["not_right_side_out"] == signs.count(False), (seed, scale, far, proof)
+            assert proof["undecided"] == 0, (seed, scale, far, proof)
+            exactly += proof["exact"]
+            assert cells.quality()["inverted"] == signs.count(False), (seed, scale, far)
+            edges = points.reshape(-1, 4, 3)[:, 1:] - points.reshape(-1, 4, 3)[:, :1]
+            plain_wrong += int((np.linalg.det(edges) > 0).tolist() != signs)
+            # As written, each of them: the same vertices.
+            for end in "vtu", "msh", "mesh":
+                cells.write(f"flat.{end}")
+                again = innermap.read_cells(f"flat.{end}")
+                assert np.array_equal(again.points, points), (seed, end)
+                assert again.prove() == proof, (seed, end)
+    assert plain_wrong >= 5 and exactly >= 5, (seed, plain_wrong, exactly)
+
+
+def bernstein(p):
+    """The 27 coefficients of a hexahedron's determinant, exact, by (x, y, z)."""
+    bits = {(x, y, z): p[[0, 1, 3, 2, 4, 5, 7, 6][x + 2 * y + 4 * z]]
+            for x in (0, 1) for y in (0, 1) for z in (0, 1)}
+    zero = (fractions.Fraction(0),) * 3
+
+    def edge(axis, i, j):
+        """Along the axis, with the bits i, j of the other two."""
+        low, high = [i, j], [i, j]
+        low.insert(axis, 0)
+        high.insert(axis, 1)
+        return tuple(b - a for a, b in zip(bits[tuple(low)], bits[tuple(high)]))
+
+    out = collections.defaultdict(fractions.Fraction)
+    for y1, z1, x1, z2, x2, y2 in itertools.product((0, 1), repeat=6):
+        at = (x1 + x2, y1 + y2, z1 + z2)
+        out[at] += determinant(zero, edge(0, y1, z1), edge(1, x1, z2), edge(2, x2, y2)) / \
+            2 ** at.count(1)
+    return out
+
+
+def test_hexahedra_are_decided_as_fractions_decide():
+    seed = cli_seed()
+    random = np.random.default_rng(seed)
+    cube = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
+    counts = collections.Counter()
+    for scale in 1e-9, 1.0, 1e9:
+        for far in 0, 1, 1e6:
+            for _ in range(15):
+                # Thin: from 1e-18 to 1 in height.
+                shape = cube * [1, 1, 10.0 ** random.uniform(-18, 0)] @ random.normal(size=(3, 3))
+                shape += shape * random.normal(size=shape.shape) * random.choice([0, 1e-16, 0.05])
+                shape = shape if np.linalg.det(shape[[1, 3, 4]] - shape[0]) > 0 else shape[[4, 5, 6, 7, 0, 1, 2, 3]]
+                points = scale * (shape + far * random.normal(size=3))
+                proof = as_cells(points, {"hexahedron": np.arange(8).reshape(1, 8)}).prove()
+                known = bernstein(exact(points.tolist()))
+                corners = [known[at] for at in itertools.product((0, 2), repeat=3)]
+                where = (seed, scale, far, points.tolist(), proof)
+                assert not proof["one_to_one"], where  # curved faces
+                if min(corners) <= 0:
+                    assert proof["not_right_side_out"] == 1, where
+                if proof["not_right_side_out"]:
+                    assert min(known.values()) <= 0, where
+                if proof["right_side_out"]:
+                    assert min(corners) > 0, where
+                if proof["right_side_out"] and min(known.values()) <= 0:
+                    counts["by halves"] += 1
+                counts[proof["statement"][:8]] += 1
+    assert len(counts) >= 2, (seed, counts)
+
+
+def test_what_overlaps_is_not_globally_one_to_one():
+    V, F = shapes.ball(2)
+    ball = innermap.tetrahedralize(V, F, resolution=8)
+    assert ball.figures["proof"]["one_to_one"] and ball.prove()["one_to_one"]
+    tets = ball.cells_dict["tetra"]
+    for way, apart in ((0.7, False), (3, True)):
+        both = as_cells(np.concatenate([ball.points, ball.points + [way, 0.1, 0.2]]),
+                        {"tetra": np.concatenate([tets, tets + len(ball.points)])})
+        proof = both.prove()
+        assert proof["right_side_out"] and proof["one_to_one"] == apart, proof
+        assert (proof["meetings"] == 0) == apart, proof
 
 
 if __name__ == "__main__":

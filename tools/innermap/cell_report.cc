@@ -6,8 +6,9 @@
 
 namespace innermap::tool {
 
-void reportCells(const CellMesh& mesh, const CellQuality& quality, Context& context) {
-  context.report().add("cells", cellFigures(mesh, quality));
+void reportCells(const CellMesh& mesh, const CellQuality& quality, const CellProof& proof,
+                 Context& context) {
+  context.report().add("cells", cellFigures(mesh, quality, proof));
   if (!mesh.tetrahedra.empty()) {
     context.print(fmt::format(
         "tetrahedra: {}, inverted {}, dihedral angles {:.2f} to {:.2f} degrees, the least one over "
@@ -22,6 +23,7 @@ void reportCells(const CellMesh& mesh, const CellQuality& quality, Context& cont
         mesh.hexahedra.size(), quality.invertedHexahedra, quality.jacobian.least,
         quality.jacobian.onePercent, quality.jacobian.mean));
   }
+  context.print(statementOf(proof) + "\n");
 }
 
 void reportBoundaryFit(const BoundaryFit& fit, Context& context) {

@@ -7,8 +7,10 @@
 
 namespace innermap::tool {
 
-// "cells": counts, inverted ones, angles or Jacobians with their histogram; a line or two.
-void reportCells(const CellMesh& mesh, const CellQuality& quality, Context& context);
+// "cells": counts, inverted ones, what is proven, angles or Jacobians with their histogram; two or
+// three lines.
+void reportCells(const CellMesh& mesh, const CellQuality& quality, const CellProof& proof,
+                 Context& context);
 
 // "boundary"; a line.
 void reportBoundaryFit(const BoundaryFit& fit, Context& context);

@@ -44,7 +44,7 @@ void fillReport(const Hexahedralization& result, Context& context) {
   reportPolycube(result.polycube, context);
   report.add("hexahedra", figures(result));
   report.add("boundary_map", boundaryMapFigures(result.boundaryMap));
-  reportCells(result.mesh, result.quality, context);
+  reportCells(result.mesh, result.quality, result.proof, context);
   context.print(
       fmt::format("inverted somewhere: {} as carried, {} now; {}\n", result.before.inverted,
                   result.after.inverted,

@@ -98,9 +98,13 @@ void run(const RemeshOptions& options, Context& context) {
   for (const std::string& note : result.notes) context.note(note);
   for (const std::string& warning : result.warnings) context.warning(warning);
   reportRemesh(result, boundingBox(onto).diagonal(), context);
-  reportCells(result.mesh, result.quality, context);
-  const BoundaryFit fit = context.timed(
-      "boundary", [&] { return boundaryFit(result.mesh, Solid(onto), BoundaryFitSettings{}); });
+  reportCells(result.mesh, result.quality, result.proof, context);
+  if (const std::string map = linearMapStatement(result.sourceProof, result.proof); !map.empty())
+    context.print(map + "\n");
+  BoundaryFitSettings known;
+  known.boundary = &result.proof.boundary;
+  const BoundaryFit fit =
+      context.timed("boundary", [&] { return boundaryFit(result.mesh, Solid(onto), known); });
   reportBoundaryFit(fit, context);
   if (!options.picture.empty()) context.timed("picture", [&] { drawCut(options, result); });
   write(options, result, context);
@@ -117,7 +121,9 @@ Command makeRemeshCommand() {
       "surface; then tetrahedra with poor angles are improved by swapping edges and faces, by "
       "drawing edges together and by moving vertices. Vertices keep the places that they came from "
       "as the field `source`: the two together are a piecewise linear map, which push and pull "
-      "take with --through. Vectors and normals among the fields are turned by it.");
+      "take with --through. The command says what is proven of the cells as written: whether one "
+      "is inverted, and whether two overlap. Vectors and normals among the fields are turned by "
+      "it.");
   c.positional("MAP", &o->map, "a map.ply written by fit or map");
   c.positional("CELLS", &o->cells,
                "tetrahedra or hexahedra that fill the map's source: .vtu, .msh or .mesh");

@@ -99,9 +99,12 @@ void run(const TetrahedralizeOptions& options, Context& context) {
   for (const std::string& warning : result.warnings) context.warning(warning);
   fillReport(result, mesh, solid, context);
   const CellQuality quality = context.timed("quality", [&] { return cellQuality(result.mesh); });
-  reportCells(result.mesh, quality, context);
+  const CellProof proof = context.timed("proof", [&] { return proveCells(result.mesh); });
+  reportCells(result.mesh, quality, proof, context);
+  BoundaryFitSettings known;
+  known.boundary = &proof.boundary;
   const BoundaryFit fit =
-      context.timed("boundary", [&] { return boundaryFit(result.mesh, solid); });
+      context.timed("boundary", [&] { return boundaryFit(result.mesh, solid, known); });
   reportBoundaryFit(fit, context);
   if (!options.picture.empty())
     context.timed("picture", [&] { drawCut(options, result.mesh, quality); });

@@ -4,16 +4,16 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
+#include <limits>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "core/kuhn_cells.h"
+#include "core/orientation.h"
 #include "evaluate/detail/fold_repair.h"
 #include "innermap/core/run.h"
-#include "innermap/mesh/check.h"
-#include "mesh/winding_number.h"
+#include "mesh/cover_once.h"
 
 namespace innermap {
 namespace {
@@ -24,17 +24,13 @@ using MapLeaf = openvdb::Vec3STree::LeafNodeType;
 constexpr std::size_t kLeaves = 8;  // that a thread takes at a time
 // Faces beyond which overlaps are not looked for: they would take seconds, and half a gigabyte.
 constexpr std::size_t kMostFaces = 500000;
-constexpr double kJustInside = 1e-3;  // of the way from a face to the corner across
 
-// A face of one cell only, outward, and the corner of that cell which is not on it.
-struct OuterFace {
-  std::array<Coord, 3> corners;
-  Coord across;
-};
+using OuterFace = std::array<Coord, 3>;  // of one cell only, outward
 
 // Of one leaf.
 struct LeafCells {
   DeterminantFigures determinants;
+  std::uint64_t exact = 0;  // signs that took exact arithmetic
   std::vector<OuterFace> faces;
 };
 
@@ -86,7 +82,13 @@ class Cells {
       return cube.images[static_cast<std::size_t>(cell[i])];
     };
     const Vec3 p = image(0), a = image(1) - p, b = image(2) - p, c = image(3) - p;
-    const double determinant = dot(cross(a, b), c) / volume_;
+    double determinant = dot(cross(a, b), c) / volume_;
+    // The figure is rounded, its sign is not.
+    std::uint64_t exact = 0;
+    const bool positive = orientation(p, image(1), image(2), image(3), exact) == Sign::positive;
+    out.exact += exact;
+    determinant = positive ? std::max(determinant, std::numeric_limits<double>::min())
+                           : std::min(determinant, 0.0);
     out.determinants.add(
         determinant,
         !(determinant > 0) && target_.runsThroughItself(origin_ + p + (a + b + c) / 4, error_));
@@ -106,7 +108,7 @@ class Cells {
     const auto corner = [&](std::size_t i) { return cornerOf(at, cell[i]); };
     const auto add = [&](std::size_t across) {
       const auto& face = kFaces[across];
-      out.push_back({{corner(face[0]), corner(face[1]), corner(face[2])}, corner(across)});
+      out.push_back({corner(face[0]), corner(face[1]), corner(face[2])});
     };
     if (!inside(corner(3) + first)) add(0);
     if (!cube.inside[static_cast<std::size_t>(cell[high] - cell[low])]) add(low);
@@ -141,70 +143,32 @@ std::vector<LeafCells> allCells(const openvdb::Vec3fGrid& map, const openvdb::Fl
 struct OuterImage {
   Points vertices;
   std::vector<Triangle> triangles;
-  std::vector<Vec3> across;  // of each triangle, the corner of its cell that is not on it
 
   // Takes the faces away from the leaves.
   OuterImage(std::vector<LeafCells>& leaves, const openvdb::Vec3fGrid& map) {
     const auto values = map.getConstAccessor();
-    const auto image = [&](const Coord& c) {
-      const openvdb::Vec3f p = values.getValue(c);
-      return Vec3{p.x(), p.y(), p.z()};
-    };
     std::unordered_map<Coord, int, CoordHash> numbers;
     for (LeafCells& leaf : leaves)
       for (const OuterFace& face : std::exchange(leaf.faces, {})) {
         Triangle t;
         for (std::size_t k = 0; k < 3; ++k) {
-          const auto [at, fresh] =
-              numbers.try_emplace(face.corners[k], static_cast<int>(vertices.size()));
-          if (fresh) vertices.push_back(image(face.corners[k]));
+          const auto [at, fresh] = numbers.try_emplace(face[k], static_cast<int>(vertices.size()));
+          if (fresh) {
+            const openvdb::Vec3f p = values.getValue(face[k]);
+            vertices.push_back({p.x(), p.y(), p.z()});
+          }
           t[k] = at->second;
         }
         triangles.push_back(t);
-        across.push_back(image(face.across));
       }
-  }
-
-  // One triangle of each part that hangs together by edges of two triangles.
-  std::vector<std::size_t> partRepresentatives() const {
-    std::vector<std::pair<std::uint64_t, std::size_t>> edges;  // by their ends, of a triangle
-    for (std::size_t t = 0; t < triangles.size(); ++t)
-      for (std::size_t e = 0; e < 3; ++e) {
-        const auto [a, b] = std::minmax(triangles[t][e], triangles[t][(e + 1) % 3]);
-        edges.emplace_back((static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint64_t>(b),
-                           t);
-      }
-    std::sort(edges.begin(), edges.end());
-    std::vector<std::size_t> parent(triangles.size());
-    std::iota(parent.begin(), parent.end(), 0);
-    const auto root = [&](std::size_t t) {
-      while (parent[t] != t) t = parent[t] = parent[parent[t]];
-      return t;
-    };
-    for (std::size_t i = 0; i < edges.size();) {
-      std::size_t end = i + 1;
-      while (end < edges.size() && edges[end].first == edges[i].first) ++end;
-      if (end == i + 2) parent[root(edges[i].second)] = root(edges[i + 1].second);
-      i = end;
-    }
-    std::vector<std::size_t> out;
-    for (std::size_t t = 0; t < triangles.size(); ++t)
-      if (root(t) == t) out.push_back(t);
-    return out;
   }
 };
 
+// As CellFigures::overlaps has it. Cells of neighbouring cubes meet in whole faces.
 std::int64_t overlapsOf(const OuterImage& image) {
-  std::int64_t out = 0;
-  forEachSelfIntersection(image.vertices, image.triangles, [&](const Crossing&) { ++out; });
-  const WindingNumber winding(image.vertices, image.triangles);
-  for (const std::size_t t : image.partRepresentatives()) {
-    const Triangle& corners = image.triangles[t];
-    const Vec3 middle =
-        (image.vertices[corners[0]] + image.vertices[corners[1]] + image.vertices[corners[2]]) / 3;
-    if (std::lround(winding.at(middle + kJustInside * (image.across[t] - middle))) != 1) ++out;
-  }
-  return out;
+  const CoverCheck cover = checkCover(image.vertices, image.triangles);
+  if (cover.overlaps()) return static_cast<std::int64_t>(cover.crossings + cover.doubled);
+  return cover.once() ? 0 : -1;
 }
 
 }  // namespace
@@ -216,6 +180,7 @@ CellFigures checkCells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& 
   std::size_t faces = 0;
   for (const LeafCells& leaf : leaves) {
     out.add(leaf.determinants);
+    out.exact += leaf.exact;
     faces += leaf.faces.size();
   }
   if (out.checked > 0 && out.folded == 0 && faces <= kMostFaces)

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/kuhn_cells.h"
+#include "core/orientation.h"
 #include "innermap/core/run.h"
 #include "lattice/untangle.h"
 
@@ -399,9 +400,9 @@ std::vector<Coord> foldedVoxels(const openvdb::Vec3fGrid& map, const openvdb::Fl
         if (!voxels.inside(at)) continue;
         if (!(determinants.getValue(at) > 0)) parts[l].push_back(at);
         voxels.forTets(at, [&](std::size_t, const std::array<Coord, 4>& corners) {
-          const Vec3 p = voxels.original(corners[0]);
-          const auto edge = [&](std::size_t i) { return voxels.original(corners[i]) - p; };
-          if (!(dot(cross(edge(1), edge(2)), edge(3)) > 0))
+          const auto image = [&](std::size_t i) { return voxels.original(corners[i]); };
+          std::uint64_t exact = 0;
+          if (orientation(image(0), image(1), image(2), image(3), exact) != Sign::positive)
             parts[l].insert(parts[l].end(), corners.begin(), corners.end());
         });
       }

@@ -6,6 +6,7 @@
 
 #include "core/disjoint_sets.h"
 #include "innermap/core/run.h"
+#include "lattice/cell_signs.h"
 #include "lattice/untangle.h"
 
 namespace innermap {
@@ -159,12 +160,8 @@ std::vector<int> poorTets(const CellSystem& system, const Points& at, double lea
 
 std::size_t invertedCells(const CellMesh& mesh, const Points& at) {
   std::size_t inverted = 0;
-  for (const Tetrahedron& t : mesh.tetrahedra) inverted += !(signedVolume(at, t) > 0);
-  for (const Hexahedron& h : mesh.hexahedra) {
-    const auto corners = cornerTetrahedra(h);
-    inverted += std::any_of(corners.begin(), corners.end(),
-                            [&](const Tetrahedron& t) { return !(signedVolume(at, t) > 0); });
-  }
+  for (const Tetrahedron& t : mesh.tetrahedra) inverted += isInverted(at, t);
+  for (const Hexahedron& h : mesh.hexahedra) inverted += isInverted(at, h);
   return inverted;
 }
 

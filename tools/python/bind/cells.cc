@@ -8,12 +8,14 @@
 
 #include "bind/arrays.h"
 #include "bind/errors.h"
+#include "bind/figures.h"
 #include "bind/keywords.h"
 #include "bind/lists.h"
 #include "bind/meshes.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/cell_file.h"
 #include "innermap/tetra/cells.h"
+#include "report/figures.h"
 
 namespace py = pybind11;
 
@@ -244,6 +246,14 @@ py::object quality(const Arguments& a, LongOptions& o) {
   return std::move(out);
 }
 
+py::object prove(const Arguments& a, LongOptions& o) {
+  const auto& cells = py::cast<const PyCells&>(a[0]);
+  return python::dictOf(innermap::figures(call(o.call, [&]() {
+    validate(cells.mesh);
+    return proveCells(cells.mesh);
+  })));
+}
+
 py::object write(const Arguments& a, NoOptions&) {
   const auto& cells = py::cast<const PyCells&>(a[0]);
   const std::string path = pathFrom(a[1], "path");
@@ -334,6 +344,15 @@ void bindCells(py::module_& m) {
                        "degrees, scaled_jacobian of hexahedra, arrays of one number a cell, and "
                        "inverted, how many are inside out."},
                       quality);
+  define<LongOptions>(
+      cells,
+      {"prove", "self",
+       "What is proven of the cells with their points as they are, by exact signs: a dict. "
+       "statement, in words; right_side_out, whether all are; one_to_one, whether also no two "
+       "overlap, which is shown for tetrahedra alone; not_right_side_out and undecided, how many "
+       "cells; meetings, where the boundary meets itself; exact, how many signs took exact "
+       "arithmetic."},
+      prove);
   define<NoOptions>(cells,
                     {"write", "self, path",
                      "Writes a .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file, whole or not at all. "

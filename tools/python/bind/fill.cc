@@ -43,6 +43,8 @@ py::object tetrahedra(const Arguments& a, TetrahedralizeOptions& o) {
   figures["least_dihedral"] = quality.dihedral.least;
   figures["greatest_dihedral"] = quality.greatestAngle;
   figures["inverted"] = quality.invertedTetrahedra;
+  figures["proof"] =
+      dictOf(innermap::figures(call(o.call, [&]() { return proveCells(made.mesh); })));
   figures["notes"] = made.notes;
   figures["warnings"] = made.warnings;
   return cellsObject(std::move(made.mesh), figures);
@@ -100,6 +102,7 @@ py::object hexahedra(const Arguments& a, HexahedralizeOptions& o) {
   figures["proven"] = made.after.proven();
   figures["inverted"] = made.after.inverted;
   figures["inverted_before"] = made.before.inverted;
+  figures["proof"] = dictOf(innermap::figures(made.proof));
   figures["scaled_jacobian_least"] = made.quality.jacobian.least;
   figures["scaled_jacobian_mean"] = made.quality.jacobian.mean;
   figures["polycube"] = figuresOf(made.polycube);

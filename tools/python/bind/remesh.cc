@@ -52,6 +52,8 @@ py::object remesh(const Arguments& a, RemeshOptions& o) {
   figures["inverted"] = made.inverted;
   figures["inverted_at_rest"] = made.invertedAtRest;
   figures["inverted_carried"] = made.invertedCarried;
+  figures["proof"] = dictOf(innermap::figures(made.proof));
+  figures["linear_map"] = linearMapStatement(made.sourceProof, made.proof);
   figures["swaps"] = made.swaps;
   figures["collapses"] = made.collapses;
   figures["boundary_rms"] = made.boundaryRms;

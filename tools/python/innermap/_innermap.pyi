@@ -340,6 +340,9 @@ class Cells:
     def quality(
         self, *, progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
         threads: int = 0) -> Dict[str, Any]: ...
+    def prove(
+        self, *, progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+        threads: int = 0) -> Dict[str, Any]: ...
     def write(self, path: Path) -> List[str]: ...
 
 def read_cells(

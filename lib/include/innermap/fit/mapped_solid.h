@@ -60,10 +60,13 @@ struct DegreeFigures {
 // voxel centres (Kuhn's), where all corners are inside.
 struct CellFigures : DeterminantFigures {
   double share = 0;  // of the solid's volume that they fill, in [0, 1]
-  // Places where their boundary's image runs through itself (pairs of triangles) or has cells on
-  // its inside that it does not wind about just once; -1: not known, as where a cell is folded.
-  // None: this map is one-to-one, as checked for the whole of it.
+  // Places where their boundary's image passes through itself (pairs of triangles) or has cells on
+  // its inside that it does not wind about just once: their images overlap. -1: not known, as where
+  // a cell is folded, or where that image touches itself. None: this map is one-to-one.
   std::int64_t overlaps = -1;
+  // All of this by exact signs of the voxels' floats, as they are in the grid map, or map_local.
+  std::uint64_t exact = 0;  // signs of cells that took exact arithmetic
+  bool local = false;       // it is map_local, which map is rounded from once more
 };
 
 struct SelfIntersectionFigures {

@@ -1,9 +1,12 @@
 // Files of tetrahedra and hexahedra, with fields on points and cells, in and out:
 //
 //   .vtu   VTK's XML unstructured grid (ParaView, PyVista): ASCII, base64 and appended data, plain
-//          or compressed with zlib, either byte order; written as base64
-//   .msh   Gmsh's format 4.1, ASCII and binary, and 2.2, both too; written as 4.1 binary
-//   .mesh  MEDIT's format (INRIA), ASCII
+//          or compressed with zlib, either byte order; written as base64, Float64
+//   .msh   Gmsh's format 4.1, ASCII and binary, and 2.2, both too; written as 4.1 binary, doubles
+//   .mesh  MEDIT's format (INRIA), ASCII; written with as many digits as give the same double again
+//
+// So each of them keeps vertices as they are, and what is proven of cells (tetra/cells.h) is of
+// those in the file. Readers that take floats round them anew.
 //
 // The readers are our own: the packaged ones (VTK, meshio, Gmsh) trust counts, or are GPL, or need
 // a toolkit of hundreds of megabytes. Input is untrusted: every count is compared with the bytes

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "innermap/core/vec3.h"
@@ -68,8 +69,8 @@ struct QualitySummary {
 struct CellQuality {
   std::vector<float> leastDihedral, greatestDihedral;  // degrees, #T
   std::vector<float> scaledJacobian;                   // #H
-  std::uint64_t invertedTetrahedra = 0;                // signedVolume() not above 0
-  std::uint64_t invertedHexahedra = 0;                 // a corner's not above 0
+  std::uint64_t invertedTetrahedra = 0;                // not right side out, by exact signs
+  std::uint64_t invertedHexahedra = 0;                 // likewise at a corner
   QualitySummary dihedral;                             // of leastDihedral; bins of 5 degrees
   double greatestAngle = 0;                            // of greatestDihedral
   QualitySummary jacobian;                             // of scaledJacobian; bins of 0.1 from -1
@@ -82,6 +83,44 @@ CellQuality cellQuality(const CellMesh& mesh);
 // and "greatest_dihedral" where there are tetrahedra, "scaled_jacobian" where there are hexahedra;
 // 0 for cells of the other kind. quality: of this mesh.
 void setQualityFields(CellMesh& mesh, const CellQuality& quality);
+
+// What is proven of a mesh's cells, with their vertices as they are. Files of cells (cell_file.h)
+// hold vertices as these doubles, whatever their format, so it is proven of the cells as written.
+
+struct CellProof {
+  enum class Overlap {
+    none,    // no two cells have an inside point in common
+    some,    // two have
+    unknown  // neither is shown
+  };
+  std::size_t cells = 0;
+  std::size_t inverted = 0;   // not right side out everywhere, or flat
+  std::size_t undecided = 0;  // right side out or not: within the margin of rounding
+  Overlap overlap = Overlap::unknown;
+  std::size_t meetings = 0;        // places where the boundary crosses or touches itself, or may
+  std::uint64_t exact = 0;         // signs that took exact arithmetic; others were beyond rounding
+  std::vector<Triangle> boundary;  // boundaryTriangles(), where it was asked whether they overlap
+
+  bool rightSideOut() const { return cells > 0 && inverted + undecided == 0; }
+  bool oneToOne() const { return rightSideOut() && overlap == Overlap::none; }
+};
+
+// Tetrahedra by the exact sign of their volume, hexahedra by leastJacobian() (hexahedralize.h).
+// Where all are right side out and are tetrahedra that meet in whole faces, also whether they
+// overlap, by exact signs: there as many cells lie about a point as their boundary winds about it,
+// and this is looked at as a whole (Lipman, "Bijective Mappings of Meshes with Boundary and the
+// Degree in Mesh Processing", SIAM J. Imaging Sciences 7(2), 2014). Cells with curved faces are not
+// asked whether they overlap. The mesh must be valid. The same for any number of threads. Throws
+// Cancelled.
+CellProof proveCells(const CellMesh& mesh);
+
+// "Proven of the 12 cells as written: none is inverted, and no two overlap." and the like: never
+// more than is proven.
+std::string statementOf(const CellProof& proof);
+
+// Of a mesh and the places that its vertices came from: whether the map between the two that is
+// linear on the cells is one-to-one. Empty where a cell is a hexahedron, or not right side out.
+std::string linearMapStatement(const CellProof& from, const CellProof& to);
 
 // A mesh of cells that fills one solid of a map, carried to the other: vertices inside by the map,
 // those of the boundary by where they are on the surface.
@@ -123,7 +162,7 @@ CellCarry carryCellsBack(const CellMesh& mesh, const MappedSolid& mapped, const 
                          const CarryCellsSettings& settings = {});
 
 // A carried mesh with the places that its vertices came from, as a map: linear on each tetrahedron,
-// one-to-one where none is inverted.
+// locally one-to-one as none is inverted; globally where proveCells() says so of both.
 
 struct LinearSample {
   Vec3 image;

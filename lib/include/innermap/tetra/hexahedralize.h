@@ -41,6 +41,8 @@ struct BoundaryFit {
 struct BoundaryFitSettings {
   std::size_t samples = 20000;  // each way, at least 1
   std::uint64_t seed = 1;
+  // boundaryTriangles() of the mesh; empty or none: they are looked for.
+  const std::vector<Triangle>* boundary = nullptr;
 };
 
 // Distances are exact at the samples, which are uniform by area. The mesh must be valid. Throws
@@ -55,9 +57,13 @@ BoundaryFit boundaryFit(const CellMesh& mesh, const Solid& solid,
 // it: all positive proves that it is so everywhere. Where that is undecided the cube is halved
 // along each axis and each part looked at. After Johnen, Weill and Remacle, "Robust and efficient
 // validation of the linear hexahedral element" (IMR 2017).
+//
+// Rounding is counted: each coefficient has a margin that a forward error analysis gives, and at
+// corners whose sign that leaves open it is found by exact arithmetic (Shewchuk 1997). What stays
+// within the margin is undecided.
 
 struct JacobianBounds {
-  double lower = 0, upper = 0;  // the least determinant over the cell lies between them
+  double lower = 0, upper = 0;  // the least determinant over the cell lies between them: proven
   bool proven() const { return lower > 0; }     // right side out everywhere
   bool inverted() const { return upper <= 0; }  // somewhere not
 };
@@ -70,6 +76,7 @@ struct HexahedronCheck {
   std::size_t inverted = 0;         // determinant not positive somewhere
   std::size_t invertedCorners = 0;  // of these, at a corner
   std::size_t undecided = 0;        // neither proven positive nor found to be inverted
+  std::uint64_t exact = 0;          // corners whose sign took exact arithmetic
   bool proven() const { return inverted == 0 && undecided == 0; }
 };
 
@@ -194,6 +201,7 @@ struct Hexahedralization {
   HexahedronCheck before;  // as carried
   HexahedronCheck after;
   CellQuality quality;                       // of mesh
+  CellProof proof;                           // likewise
   BoundaryFit boundary;                      // fractions of the solid's diagonal
   double featureLength = 0;                  // of the solid's sharp edges, world units
   SurfaceDistance fromFeatures;              // of those from the hexahedra's surface

@@ -119,8 +119,10 @@ struct Remesh {
   // cuts corners, see boundary_fit.h.
   double boundaryRms = 0, boundaryMax = 0;
   CellQuality quality;
+  CellProof proof;        // of mesh
+  CellProof sourceProof;  // of its cells where the field "source" has their vertices
   std::vector<std::string> notes, warnings;
-  StageSeconds seconds;  // "carry", "coarse", "repair", "shapes"
+  StageSeconds seconds;  // "carry", "coarse", "repair", "shapes", "proof"
 };
 
 // Carries the mesh (tetra/cells.h), repairs it and improves its tetrahedra's shapes, in turns until

@@ -5,20 +5,13 @@
 #include "innermap/core/error.h"
 #include "io/cells/detail/cell_formats.h"
 #include "io/geometry/detail/geometry_formats.h"
+#include "lattice/cell_signs.h"
 
 namespace innermap {
 namespace {
 
 Vec3 rowOf(const CellField& field, std::size_t row) {
   return {field.values[3 * row], field.values[3 * row + 1], field.values[3 * row + 2]};
-}
-
-bool isInverted(const Points& p, const Tetrahedron& cell) { return !(signedVolume(p, cell) > 0); }
-
-bool isInverted(const Points& p, const Hexahedron& cell) {
-  const auto corners = cornerTetrahedra(cell);
-  return std::any_of(corners.begin(), corners.end(),
-                     [&](const Tetrahedron& corner) { return isInverted(p, corner); });
 }
 
 class CellGeometry : public GeometryFile {

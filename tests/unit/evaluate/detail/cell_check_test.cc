@@ -29,6 +29,18 @@ TEST(CellCheck, AnAffineMapTurnsNoCellOver) {
   EXPECT_NEAR(found.least, det, 1e-4);
 }
 
+// Whole numbers that floats hold: each cell is flat, which sums of products tell of few of them.
+TEST(CellCheck, AMapOntoAPlaneTurnsEachCellOver) {
+  Lattice lattice;
+  const Vec3 a{524287, 300001, -412339}, b{-123457, 498731, 377717};
+  lattice.addBox({0, 0, 0}, {7, 7, 7},
+                 [&](const Vec3& p) { return p.x * a + p.y * b + p.z * (a + b); });
+  const CellFigures found = lattice.check();
+  EXPECT_EQ(found.checked, 6u * 7 * 7 * 7);
+  EXPECT_EQ(found.folded, found.checked);
+  EXPECT_GT(found.exact, 0u);
+}
+
 // A voxel is a corner of 24 cells; past the opposite face of its cubes all on that side are over.
 TEST(CellCheck, AVoxelOutOfPlaceTurnsCellsOver) {
   Lattice lattice;
