@@ -70,7 +70,7 @@ class Verifier {
         static_cast<std::uint64_t>(static_cast<double>(out.leastCells) * cells / first);
     out.cellsPerCharge = cells;
     out.keepProven = true;
-    out.least = claimed_.least;
+    out.least = claimed_.least * (1 - kClaimDigits);
     return out;
   }
 
@@ -102,7 +102,7 @@ class Verifier {
     SenseEvidence out;
     if (sense_.undecided.count > 0)
       for (const Vec3& q : map_.steps().front().field().sources())
-        if (winding_.wholeAt(q) != 0) {
+        if (winding_.wholeAt(q) > 0) {
           out.chargeInside = q;
           break;
         }
@@ -126,8 +126,8 @@ class Verifier {
         "should be",
         claimed_.boundaryError);
     withMoreCells([&](const ProofSettings& s) { boundBoundary(s); },
-                  [&] { return boundary_.error <= claimed_.boundaryError || boundaryFails(); });
-    if (boundary_.error <= claimed_.boundaryError) {
+                  [&] { return boundaryHolds() || boundaryFails(); });
+    if (boundaryHolds()) {
       out.result = ClaimResult::holds;
       out.found = fmt::format("none is farther than {:.6g}", boundary_.error);
       return out;
@@ -146,15 +146,16 @@ class Verifier {
   void boundBoundary(ProofSettings s) {
     boundary_ = proveBoundaryError(map_, exposed_.surface, exposed_.targets, s);
     const double room = claimed_.boundaryError / boundary_.seen - 1;
-    if (boundary_.error <= claimed_.boundaryError || !(room > 0) || room > s.errorMargin) return;
+    if (boundaryHolds() || !(room > 0) || room > s.errorMargin) return;
     s.errorMargin = std::max(1e-3, 0.9 * room);
     boundary_ = proveBoundaryError(map_, exposed_.surface, exposed_.targets, s);
   }
 
+  double mostError() const { return claimed_.boundaryError * (1 + kClaimDigits); }
+  bool boundaryHolds() const { return boundary_.error <= mostError(); }
   bool boundaryFails() const {
-    return boundary_.seen > claimed_.boundaryError &&
-           proof::sureDistance(map_, boundary_.seenAt, boundary_.seenTo) >
-               claimed_.boundaryError * diagonal() * (1 + 1e-12);
+    return boundary_.seen > mostError() &&
+           proof::sureDistance(map_, boundary_.seenAt, boundary_.seenTo) > mostError() * diagonal();
   }
 
   double diagonal() const { return boundingBox(exposed_.targets).diagonal(); }
@@ -195,7 +196,9 @@ class Verifier {
                                triangles.decided, triangles.drawn, triangles.least);
       if (!against) against = triangles.disagreement;
     }
-    out.result = against ? ClaimResult::fails : ClaimResult::holds;
+    out.result = against                                   ? ClaimResult::fails
+                 : cells.drawn > 0 && cells.decided == 0 ? ClaimResult::unshown
+                                                         : ClaimResult::holds;
     if (!against) return out;
     out.found = against->what;
     out.places = {against->place};

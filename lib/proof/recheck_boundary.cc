@@ -13,8 +13,9 @@ namespace innermap::proof {
 namespace {
 
 constexpr std::uint64_t kTriangles = 0x7665'0003;  // stream of random numbers
-constexpr std::size_t kMostPieces = 1 << 16;
 constexpr double kUnit = 0x1p-52;
+// Of a triangle's size: where parts as small are not decided, smaller ones will not be.
+constexpr double kSmallest = 1.0 / 4096;
 
 using Corners = std::array<Vec3, 3>;
 
@@ -90,6 +91,12 @@ std::array<Piece, 2> halves(const Piece& piece) {
   return out;
 }
 
+double extent(const Piece& piece) {
+  return std::sqrt(std::max({squaredNorm(piece.at[1] - piece.at[0]),
+                             squaredNorm(piece.at[2] - piece.at[1]),
+                             squaredNorm(piece.at[0] - piece.at[2])}));
+}
+
 struct TriangleOutcome {
   bool decided = true;
   double most = 0, sure = 0;
@@ -102,8 +109,7 @@ TriangleOutcome examine(const ComposedMap& map, const Piece& triangle, double bo
   const Rounding rounding{64 * kUnit * largest(triangle.at), 64 * kUnit * largest(triangle.to)};
   TriangleOutcome out;
   std::vector<Piece> open{triangle};
-  const std::size_t most = std::min<std::uint64_t>(
-      kMostPieces, 1 + terms / std::max<std::size_t>(1, 2 * map.sources()));
+  const std::size_t most = mostParts(map, terms / 2);
   for (std::size_t pieces = 0; !open.empty(); ++pieces) {
     throwIfCancelled();
     const Piece piece = open.back();
@@ -117,7 +123,8 @@ TriangleOutcome examine(const ComposedMap& map, const Piece& triangle, double bo
       out.most = std::max(out.most, error.most);
       continue;
     }
-    if (out.sure > bound || pieces + open.size() >= most) {
+    if (out.sure > bound || pieces + open.size() >= most ||
+        extent(piece) <= kSmallest * extent(triangle)) {
       out.decided = false;
       break;
     }

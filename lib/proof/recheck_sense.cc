@@ -18,7 +18,8 @@ namespace {
 constexpr const char* kStage = "checking the proof in another way";
 // Streams of random numbers.
 constexpr std::uint64_t kCells = 0x7665'0001, kPoints = 0x7665'0002;
-constexpr std::size_t kMostParts = 1 << 16;  // of a cell
+// Of a cell's edge: where parts as small are not decided, smaller ones will not be.
+constexpr double kSmallest = 1.0 / 256;
 constexpr double kOnCell = 1e-11;            // of the solid: points that lie on a cell's side
 
 struct Expected {
@@ -77,8 +78,7 @@ CellOutcome examine(const ComposedMap& map, const ProofCell& cell, const Expecte
                     std::uint64_t terms) {
   CellOutcome out;
   std::vector<ProofCell> open{cell};
-  const std::size_t most = std::min<std::uint64_t>(
-      kMostParts, 1 + terms / std::max<std::size_t>(1, map.sources()));
+  const std::size_t most = mostParts(map, terms);
   for (std::size_t parts = 0; !open.empty() && !out.disagreement; ++parts) {
     throwIfCancelled();
     const ProofCell part = open.back();
@@ -90,7 +90,7 @@ CellOutcome examine(const ComposedMap& map, const ProofCell& cell, const Expecte
       out.greatest = std::max(out.greatest, found.magnitude());
       continue;
     }
-    if (parts + open.size() >= most) {
+    if (parts + open.size() >= most || part.halfEdge <= kSmallest * cell.halfEdge) {
       out.decided = false;
       break;
     }

@@ -7,7 +7,6 @@
 namespace innermap {
 namespace {
 
-constexpr double kShare = 1e-12;  // shares are sums of that many roundings
 constexpr std::size_t kPlaces = 16;
 
 std::string percent(double share) { return fmt::format("{:.6g}%", 100 * share); }
@@ -59,7 +58,7 @@ Claim senseClaim(const ProofFigures& p, const SenseProof& found, const SenseEvid
   const double share = claimedShare(p);
   out.claimed = sign(p.mirrored) + (p.whole() ? " everywhere in the solid"
                                               : " in " + percent(share) + " of the solid at least");
-  const bool shown = p.whole() ? found.whole() : found.provenShare >= share - kShare;
+  const bool shown = p.whole() ? found.whole() : found.provenShare >= share - kClaimDigits;
   if (!shown || found.proven.count == 0 || found.mirrored != p.mirrored || evidence.chargeInside) {
     refuteSense(p, found, evidence, out);
     return out;
@@ -77,7 +76,7 @@ Claim undecidedClaim(const ProofFigures& p, const SenseProof& found) {
   out.claimed = "the sign of det J is known but for " + percent(p.undecidedShare) + " of the solid";
   out.found = found.undecided.count == 0 ? "it is known everywhere"
                                          : "on " + cellsOf(found.undecided) + " it is not known";
-  out.result = found.undecided.share <= p.undecidedShare + kShare ? ClaimResult::holds
+  out.result = found.undecided.share <= p.undecidedShare + kClaimDigits ? ClaimResult::holds
                                                                  : ClaimResult::unshown;
   if (out.result != ClaimResult::holds) out.places = centersOf(found.undecided.places);
   return out;
@@ -104,7 +103,7 @@ Claim leastClaim(const ProofFigures& p, const SenseProof& found, const SenseEvid
   out.claimed = fmt::format("|det J| is {:.6g} at least {}", p.least,
                             p.whole() ? "there" : "in " + percent(share) + " of the solid");
   const bool shown = p.whole() ? found.whole() && found.weak.count == 0
-                               : found.leastShare >= share - kShare;
+                               : found.leastShare >= share - kClaimDigits;
   if (shown) {
     out.result = ClaimResult::holds;
     out.found = found.whole() ? "so it is" : "in " + percent(found.leastShare) + " at least";

@@ -8,6 +8,10 @@
 
 namespace innermap {
 
+// Figures are compared to so much of them: another machine's differ in the last digits, as sums
+// are put together otherwise there.
+constexpr double kClaimDigits = 1e-9;
+
 // What rules such claims out, beside the proof's cells.
 struct SenseEvidence {
   std::optional<Vec3> chargeInside;  // a charge of the first step lies in the solid

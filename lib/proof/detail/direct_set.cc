@@ -108,4 +108,9 @@ bool throughStep(const HarmonicField& step, DirectSet& set, Interval* determinan
   return std::isfinite(set.slack);
 }
 
+std::size_t mostParts(const ComposedMap& map, std::uint64_t charges) {
+  constexpr std::uint64_t kStep = 700;  // the intervals of a step cost as much as so many charges
+  return 1 + charges / (map.sources() + kStep * map.steps().size());
+}
+
 }  // namespace innermap::proof

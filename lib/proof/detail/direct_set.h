@@ -25,4 +25,7 @@ DirectSet directSet(const ProofCell& cube);
 // near.
 bool throughStep(const HarmonicField& step, DirectSet& set, Interval* determinant);
 
+// How many sets may be taken through the map for the cost of so many charges; one at least.
+std::size_t mostParts(const ComposedMap& map, std::uint64_t charges);
+
 }  // namespace innermap::proof

@@ -92,6 +92,21 @@ py::object prove(const Arguments& a, ProveOptions& o) {
       figures(call(o.call, [&]() { return proveMap(mapped->map, mapped->boundary, o.settings); })));
 }
 
+struct VerifyOptions {
+  VerifySettings settings;
+  CallOptions call;
+
+  void describe(Keywords& k) {
+    k.settings(innermap::describe(settings));
+    call.describe(k);
+  }
+};
+
+py::object verify(const Arguments& a, VerifyOptions& o) {
+  const auto mapped = py::cast<const PyMap&>(a[0]).mapped;
+  return dictOf(figures(call(o.call, [&]() { return verifyMap(*mapped, o.settings); })));
+}
+
 std::string reprOf(const PyMap& map) {
   const MappedSolid& mapped = *map.mapped;
   return fmt::format(
@@ -175,6 +190,14 @@ void bindMap(py::module_& m) {
        "is "
        "not closed."},
       prove);
+  define<VerifyOptions>(
+      map,
+      {"verify", "self",
+       "Proves again what the map's facts claim to be proven of it, from its charges, its mesh and "
+       "where that goes; see load().\n\nReturns a dict: any, whether something is claimed; holds, "
+       "whether each claim does; lists claims, claimed, found and results, a text each for every "
+       "claim: \"holds\", \"fails\" or \"cannot be shown\"; under proven what came out here."},
+      verify);
   map.def_property_readonly(
          "boundary_error",
          [](const PyMap& self) {

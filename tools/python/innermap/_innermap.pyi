@@ -149,6 +149,10 @@ class Map:
         self, *, cells_per_charge: float = 100, least_cells: int = 50000, error_margin: float = 0.02,
         progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
         threads: int = 0) -> Dict[str, Any]: ...
+    def verify(
+        self, *, proof_cells: float = 100, sample: int = 64, seed: int = 1,
+        progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+        threads: int = 0) -> Dict[str, Any]: ...
     @property
     def boundary_error(self) -> BoundaryError: ...
     @property

@@ -193,8 +193,8 @@ struct Verification {
   bool holds() const;  // each claim
 };
 
-// A claim that is weaker than what is shown holds. Shares are compared to 1e-12. Throws as proveMap
-// does.
+// A claim that is weaker than what is shown holds; figures are compared to nine digits. Throws as
+// proveMap does.
 Verification verifyMap(const MappedSolid& mapped, const VerifySettings& settings = {});
 
 // Need in bytes of verifyMap, an upper bound.
