@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/detail/exposed_surface.h"
+#include "fit/detail/exposed_pair.h"
 #include "innermap/fit/mapped_solid.h"
 
 namespace innermap {
@@ -35,9 +35,8 @@ ProofFigures proofFigures(const SenseProof& sense, const BoundaryProof& boundary
 ProofFigures proveMap(const ComposedMap& map, const BoundaryPair& boundary,
                       const ProofSettings& settings) {
   const SenseProof sense = proveSense(map, boundary.solid().repaired().mesh, settings);
-  const ExposedSurface exposed = exposedSurface(boundary);
-  return proofFigures(sense,
-                      proveBoundaryError(map, exposed.surface, exposed.targets, settings));
+  const ExposedPair exposed = exposedPair(boundary);
+  return proofFigures(sense, proveBoundaryError(map, exposed.surface, exposed.targets, settings));
 }
 
 }  // namespace innermap

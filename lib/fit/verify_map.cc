@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/detail/exposed_surface.h"
+#include "fit/detail/exposed_pair.h"
 #include "fit/detail/preimages.h"
 #include "fit/detail/sense_claims.h"
 #include "fit/detail/stated_proof.h"
@@ -14,8 +14,8 @@
 namespace innermap {
 namespace {
 
-constexpr double kFirstCells = 16;  // for each charge, as fits look at
-constexpr double kMore = 4;         // times as many, as long as a claim is not reached
+constexpr double kFirstCells = 16;     // for each charge, as fits look at
+constexpr double kMore = 4;            // times as many, as long as a claim is not reached
 constexpr std::size_t kLowTried = 64;  // cells whose middle may have too small a determinant
 
 bool allHold(const std::vector<Claim>& claims) {
@@ -41,7 +41,7 @@ class Verifier {
   Verifier(const MappedSolid& mapped, const ProofFigures& claimed, const VerifySettings& settings)
       : map_(mapped.map),
         solid_(mapped.solid().repaired().mesh),
-        exposed_(exposedSurface(mapped.boundary)),
+        exposed_(exposedPair(mapped.boundary)),
         winding_(solid_.vertices, solid_.triangles),
         crosses_(mapped.injectivity.source.pairs > 0),
         claimed_(claimed),
@@ -170,8 +170,9 @@ class Verifier {
         out.result = weaker(out.result, claim.result);
     // Without these two it may still be so.
     if (out.result == ClaimResult::fails) out.result = ClaimResult::unshown;
-    out.found = out.result == ClaimResult::holds ? "follows from what is shown of det J and boundary"
-                                                 : "does not follow from what is shown";
+    out.found = out.result == ClaimResult::holds
+                    ? "follows from what is shown of det J and boundary"
+                    : "does not follow from what is shown";
     return out;
   }
 
@@ -190,13 +191,13 @@ class Verifier {
     out.found += fmt::format("; {} points of the solid looked up", cells.points);
     std::optional<proof::Disagreement> against = cells.disagreement;
     if (std::isfinite(boundary_.error) && boundary_.examined > 0) {
-      const proof::Recheck triangles = proof::recheckBoundary(
-          map_, exposed_.surface, exposed_.targets, boundary_.error, s);
+      const proof::Recheck triangles =
+          proof::recheckBoundary(map_, exposed_.surface, exposed_.targets, boundary_.error, s);
       out.found += fmt::format("; {} of {} triangles decided, errors up to {:.6g}",
                                triangles.decided, triangles.drawn, triangles.least);
       if (!against) against = triangles.disagreement;
     }
-    out.result = against                                   ? ClaimResult::fails
+    out.result = against                                 ? ClaimResult::fails
                  : cells.drawn > 0 && cells.decided == 0 ? ClaimResult::unshown
                                                          : ClaimResult::holds;
     if (!against) return out;
@@ -207,7 +208,7 @@ class Verifier {
 
   const ComposedMap& map_;
   const Mesh& solid_;
-  const ExposedSurface exposed_;
+  const ExposedPair exposed_;
   const WindingNumber winding_;
   const bool crosses_;
   const ProofFigures claimed_;
@@ -254,8 +255,8 @@ Verification verifyMap(const MappedSolid& mapped, const VerifySettings& settings
 std::uint64_t verifyMemory(const MappedSolid& mapped, const VerifySettings& settings) {
   ProofSettings most;
   most.cellsPerCharge = settings.proofCells;
-  most.leastCells = static_cast<std::uint64_t>(
-      static_cast<double>(most.leastCells) * std::max(1.0, settings.proofCells / kFirstCells));
+  most.leastCells = static_cast<std::uint64_t>(static_cast<double>(most.leastCells) *
+                                               std::max(1.0, settings.proofCells / kFirstCells));
   return proofMemory(mapped.map, mapped.solid().surface().triangles.size(), most);
 }
 

@@ -221,7 +221,8 @@ SenseProof proveSense(const ComposedMap& map, const Mesh& solid, const ProofSett
   const StepTrees steps(map, cells.scale());
   Outcome outcome;
   outcome.open.push_back(OpenCell());
-  decideCells(steps, cells, volume, limit, [](const DecidedCell&) { return true; }, outcome);
+  decideCells(
+      steps, cells, volume, limit, [](const DecidedCell&) { return true; }, outcome);
   const std::uint64_t common = commonSigns(outcome, cells);
   SenseProof out = summary(outcome, cells, common, settings.keepProven);
   if (settings.least > out.least)

@@ -12,8 +12,8 @@
 namespace innermap::proof {
 
 struct RecheckSettings {
-  std::size_t cells = 64;      // that are drawn, and as many triangles
-  std::size_t points = 256;    // of the solid, each of which has to lie in a cell
+  std::size_t cells = 64;            // that are drawn, and as many triangles
+  std::size_t points = 256;          // of the solid, each of which has to lie in a cell
   std::uint64_t terms = 10'000'000;  // charges that are summed for each cell or triangle, at most
   std::uint64_t seed = 1;
 };

@@ -38,8 +38,7 @@ Vec3 middle(const Corners& c) { return (c[0] + c[1] + c[2]) / 3; }
 
 double largest(const Corners& corners) {
   double out = 0;
-  for (const Vec3& c : corners)
-    out = std::max({out, std::abs(c.x), std::abs(c.y), std::abs(c.z)});
+  for (const Vec3& c : corners) out = std::max({out, std::abs(c.x), std::abs(c.y), std::abs(c.z)});
   return out;
 }
 
@@ -92,9 +91,9 @@ std::array<Piece, 2> halves(const Piece& piece) {
 }
 
 double extent(const Piece& piece) {
-  return std::sqrt(std::max({squaredNorm(piece.at[1] - piece.at[0]),
-                             squaredNorm(piece.at[2] - piece.at[1]),
-                             squaredNorm(piece.at[0] - piece.at[2])}));
+  return std::sqrt(
+      std::max({squaredNorm(piece.at[1] - piece.at[0]), squaredNorm(piece.at[2] - piece.at[1]),
+                squaredNorm(piece.at[0] - piece.at[2])}));
 }
 
 struct TriangleOutcome {
@@ -163,9 +162,8 @@ Recheck recheckBoundary(const ComposedMap& map, const Mesh& surface, const Point
   parallelBlocks(
       out.drawn, 1,
       [&](std::size_t begin, std::size_t) {
-        const std::size_t t =
-            std::min(all - 1, static_cast<std::size_t>(random.uniform(begin) *
-                                                       static_cast<double>(all)));
+        const std::size_t t = std::min(
+            all - 1, static_cast<std::size_t>(random.uniform(begin) * static_cast<double>(all)));
         // What divides and multiplies with the diagonal is off by less.
         outcomes[begin] = examine(map, triangleOf(surface, target, t),
                                   bound * diagonal * (1 + 1e-12), settings.terms);

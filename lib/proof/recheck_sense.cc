@@ -20,7 +20,7 @@ constexpr const char* kStage = "checking the proof in another way";
 constexpr std::uint64_t kCells = 0x7665'0001, kPoints = 0x7665'0002;
 // Of a cell's edge: where parts as small are not decided, smaller ones will not be.
 constexpr double kSmallest = 1.0 / 256;
-constexpr double kOnCell = 1e-11;            // of the solid: points that lie on a cell's side
+constexpr double kOnCell = 1e-11;  // of the solid: points that lie on a cell's side
 
 struct Expected {
   bool negative = false;  // det J
@@ -121,9 +121,8 @@ void drawCells(const ComposedMap& map, const SenseProof& proof, const RecheckSet
   parallelBlocks(
       count, 1,
       [&](std::size_t begin, std::size_t) {
-        const std::size_t i =
-            std::min(all - 1, static_cast<std::size_t>(random.uniform(begin) *
-                                                       static_cast<double>(all)));
+        const std::size_t i = std::min(
+            all - 1, static_cast<std::size_t>(random.uniform(begin) * static_cast<double>(all)));
         const bool is = i < proven.size();
         const Expected expected{proof.mirrored == is, is ? proof.least : 0};
         outcomes[begin] = examine(map, is ? proven[i] : proof.negative.places[i - proven.size()],

@@ -224,14 +224,13 @@ Figures figures(const Verification& made) {
   for (const Claim& claim : made.claims)
     if (claim.result != ClaimResult::holds)
       places.insert(places.end(), claim.places.begin(), claim.places.end());
-  return together({{{"any", !made.claims.empty(), "claims anything", "to be proven"},
-                    {"holds", made.holds(), "holds", "each claim"}},
-                   columns(made.claims, row),
-                   {Figure("places", places, "places", "x, y, z where claims do not hold",
-                           FigureUnit::length)
-                        .when(!places.empty())},
-                   under("proven", "proven again",
-                         when(made.found.cells > 0, figures(made.found)))});
+  return together(
+      {{{"any", !made.claims.empty(), "claims anything", "to be proven"},
+        {"holds", made.holds(), "holds", "each claim"}},
+       columns(made.claims, row),
+       {Figure("places", places, "places", "x, y, z where claims do not hold", FigureUnit::length)
+            .when(!places.empty())},
+       under("proven", "proven again", when(made.found.cells > 0, figures(made.found)))});
 }
 
 Figures figures(const Injectivity& known) {

@@ -45,8 +45,8 @@ std::string failureOf(const VerifyOptions& options, const Verification& made) {
   std::string names;
   for (const Claim& claim : made.claims)
     if (claim.result != ClaimResult::holds)
-      names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", claim.name,
-                           wordOf(claim.result));
+      names +=
+          fmt::format("{}{} ({})", names.empty() ? "" : ", ", claim.name, wordOf(claim.result));
   if (!names.empty()) return fmt::format("{}: not each claim holds: {}", options.map, names);
   if (options.required != Required::nothing && made.claims.empty())
     return fmt::format("{}: claims nothing to be proven, as --require asks for", options.map);

@@ -12,16 +12,15 @@ constexpr std::size_t kPlaces = 16;
 std::string percent(double share) { return fmt::format("{:.6g}%", 100 * share); }
 
 std::string cellsOf(const ProofCells& cells) {
-  return fmt::format("{} cell{}, {} of the solid at most,", cells.count, cells.count == 1 ? "" : "s",
-                     percent(cells.share));
+  return fmt::format("{} cell{}, {} of the solid at most,", cells.count,
+                     cells.count == 1 ? "" : "s", percent(cells.share));
 }
 
 std::string sign(bool mirrored) { return mirrored ? "det J < 0" : "det J > 0"; }
 
 Points centersOf(const std::vector<ProofCell>& cells) {
   Points out;
-  for (std::size_t i = 0; i < std::min(kPlaces, cells.size()); ++i)
-    out.push_back(cells[i].center);
+  for (std::size_t i = 0; i < std::min(kPlaces, cells.size()); ++i) out.push_back(cells[i].center);
   return out;
 }
 
@@ -37,17 +36,17 @@ void refuteSense(const ProofFigures& p, const SenseProof& found, const SenseEvid
     claim.found = "a charge lies in the solid, so that the map is not even defined there";
     claim.places = {*evidence.chargeInside};
   } else if (found.proven.count > 0 && found.mirrored != p.mirrored) {
-    claim.found = fmt::format("{} on {} of the solid", sign(found.mirrored),
-                              percent(found.provenShare));
+    claim.found =
+        fmt::format("{} on {} of the solid", sign(found.mirrored), percent(found.provenShare));
     claim.places = centersOf(found.proven.places);
   } else if (p.whole() && found.negative.count > 0) {
     claim.found = "the other sign on " + cellsOf(found.negative) + " everywhere";
     claim.places = centersOf(found.negative.places);
   } else {
     claim.result = ClaimResult::unshown;
-    claim.found = fmt::format("{} in {} of the solid at least; on {} it is undecided",
-                              sign(found.mirrored), percent(found.provenShare),
-                              cellsOf(found.undecided));
+    claim.found =
+        fmt::format("{} in {} of the solid at least; on {} it is undecided", sign(found.mirrored),
+                    percent(found.provenShare), cellsOf(found.undecided));
     claim.places = centersOf(found.undecided.places);
   }
 }
@@ -77,7 +76,7 @@ Claim undecidedClaim(const ProofFigures& p, const SenseProof& found) {
   out.found = found.undecided.count == 0 ? "it is known everywhere"
                                          : "on " + cellsOf(found.undecided) + " it is not known";
   out.result = found.undecided.share <= p.undecidedShare + kClaimDigits ? ClaimResult::holds
-                                                                 : ClaimResult::unshown;
+                                                                        : ClaimResult::unshown;
   if (out.result != ClaimResult::holds) out.places = centersOf(found.undecided.places);
   return out;
 }
@@ -102,8 +101,8 @@ Claim leastClaim(const ProofFigures& p, const SenseProof& found, const SenseEvid
   const double share = claimedShare(p);
   out.claimed = fmt::format("|det J| is {:.6g} at least {}", p.least,
                             p.whole() ? "there" : "in " + percent(share) + " of the solid");
-  const bool shown = p.whole() ? found.whole() && found.weak.count == 0
-                               : found.leastShare >= share - kClaimDigits;
+  const bool shown =
+      p.whole() ? found.whole() && found.weak.count == 0 : found.leastShare >= share - kClaimDigits;
   if (shown) {
     out.result = ClaimResult::holds;
     out.found = found.whole() ? "so it is" : "in " + percent(found.leastShare) + " at least";

@@ -58,8 +58,8 @@ Interval restOf(const DirectJet& jet, int k, double radius) {
   Interval squares;
   for (int a = 0; a < 3; ++a)
     for (int c = 0; c < 3; ++c)
-      squares += square(Interval(jet.hessian[k][kHessianPlace[a][c]]) +
-                        within(jet.hessianError[k]));
+      squares +=
+          square(Interval(jet.hessian[k][kHessianPlace[a][c]]) + within(jet.hessianError[k]));
   return Interval(jet.valueError[k]) + Interval(2 * jet.gradientError[k]) * radius +
          Interval(0.5) * squareRoot(squares) * radius * radius + Interval(jet.valueRest[k]);
 }
@@ -76,8 +76,7 @@ void takeImage(const DirectJet& jet, double radius, DirectSet& set) {
     Interval off[3];
     for (int k = 0; k < 3; ++k) {
       const auto& g = jet.gradient[k];
-      const Interval exact =
-          Interval(g[0]) * v.x + Interval(g[1]) * v.y + Interval(g[2]) * v.z;
+      const Interval exact = Interval(g[0]) * v.x + Interval(g[1]) * v.y + Interval(g[2]) * v.z;
       moved[k] = g[0] * v.x + g[1] * v.y + g[2] * v.z;
       off[k] = exact - moved[k];
     }
@@ -94,8 +93,8 @@ DirectSet directSet(const ProofCell& cube) {
   const Vec3& c = cube.center;
   const double off = std::max({std::abs(c.x), std::abs(c.y), std::abs(c.z)});
   const double half = cube.halfEdge * (1 + 4e-16) + 4e-16 * off;
-  return {c, {{{half, half, half}, {half, half, -half}, {half, -half, half}, {-half, half, half}}},
-          0};
+  return {
+      c, {{{half, half, half}, {half, half, -half}, {half, -half, half}, {-half, half, half}}}, 0};
 }
 
 bool throughStep(const HarmonicField& step, DirectSet& set, Interval* determinant) {

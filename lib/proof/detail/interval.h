@@ -31,9 +31,7 @@ struct Interval {
 inline double below(double x) {
   return std::nextafter(x, -std::numeric_limits<double>::infinity());
 }
-inline double above(double x) {
-  return std::nextafter(x, std::numeric_limits<double>::infinity());
-}
+inline double above(double x) { return std::nextafter(x, std::numeric_limits<double>::infinity()); }
 
 inline Interval operator-(const Interval& a) { return {-a.upper, -a.lower}; }
 inline Interval operator+(const Interval& a, const Interval& b) {
@@ -65,8 +63,10 @@ inline Interval& operator+=(Interval& a, const Interval& b) { return a = a + b; 
 // Of squares, 0 at least.
 inline Interval square(const Interval& a) {
   const double most = a.magnitude();
-  const double least =
-      a.lower > 0 ? a.lower : a.upper < 0 ? -a.upper : a.known() ? 0 : std::nan("");
+  const double least = a.lower > 0   ? a.lower
+                       : a.upper < 0 ? -a.upper
+                       : a.known()   ? 0
+                                     : std::nan("");
   return {std::max(0.0, below(least * least)), above(most * most)};
 }
 

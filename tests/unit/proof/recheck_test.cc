@@ -27,8 +27,8 @@ HarmonicMap gentle(std::uint64_t seed = 1, double strength = 0.02) {
 HarmonicMap folded() {
   std::vector<innermap::testing::Charge> charges =
       innermap::testing::chargesAbout(200, 1.5, 0.004, 1);
-  charges.push_back(innermap::testing::foldingCharge(gentle(1, 0.004), {0.7, 0.1, 0}, {1.2, 0.2, 0},
-                                                     0.5));
+  charges.push_back(
+      innermap::testing::foldingCharge(gentle(1, 0.004), {0.7, 0.1, 0}, {1.2, 0.2, 0}, 0.5));
   return mapOf(affineOf(kIdentity), charges);
 }
 
@@ -111,13 +111,11 @@ TEST(Recheck, BoundsTheBoundarysError) {
   const BoundaryProof proof = proveBoundaryError(target.map, target.ball, target.to);
   RecheckSettings all = settingsOf();
   all.cells = 5000;  // as many as are drawn: each triangle with near certainty
-  const Recheck found =
-      recheckBoundary(target.map, target.ball, target.to, proof.error, all);
+  const Recheck found = recheckBoundary(target.map, target.ball, target.to, proof.error, all);
   EXPECT_FALSE(found.disagreement);
   EXPECT_EQ(found.decided, found.drawn);
   EXPECT_LE(found.greatest, proof.error * (1 + 1e-9));
-  const Recheck wrong =
-      recheckBoundary(target.map, target.ball, target.to, 0.5 * proof.error, all);
+  const Recheck wrong = recheckBoundary(target.map, target.ball, target.to, 0.5 * proof.error, all);
   ASSERT_TRUE(wrong.disagreement);
   EXPECT_LT(norm(wrong.disagreement->place - target.ball.vertices[17]), 0.3);
 }

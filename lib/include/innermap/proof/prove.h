@@ -71,12 +71,12 @@ struct ProofCells {
 // left out. Of a map in steps each step's sign is meant, on the image of the cell under those
 // before; a product of two folded steps is no proof.
 struct SenseProof {
-  ProofCells proven;           // det J has the map's sign everywhere on them; places if asked for
-  ProofCells negative;         // the other sign everywhere: folded
-  ProofCells undecided;        // neither, at the limit
-  double provenShare = 0;      // of the solid's volume, at least
-  bool mirrored = false;       // the map's sign, that of the greater volume, is negative
-  double least = 0;            // lower bound of |det J| on the proven cells; 0 where there is none
+  ProofCells proven;       // det J has the map's sign everywhere on them; places if asked for
+  ProofCells negative;     // the other sign everywhere: folded
+  ProofCells undecided;    // neither, at the limit
+  double provenShare = 0;  // of the solid's volume, at least
+  bool mirrored = false;   // the map's sign, that of the greater volume, is negative
+  double least = 0;        // lower bound of |det J| on the proven cells; 0 where there is none
   // Parts of proven cells where |det J| is not shown to be ProofSettings::least, and the share of
   // the solid's volume where it is, at least.
   ProofCells weak;

@@ -30,8 +30,9 @@ std::array<long double, 3> longValue(const HarmonicMap& map, const Vec3& p) {
   for (std::size_t k = 0; k < 3; ++k) {
     out[k] = f.affine().coefficients(0, k);
     for (int a = 0; a < 3; ++a)
-      out[k] += static_cast<long double>(f.affine().coefficients(1 + static_cast<std::size_t>(a), k)) *
-                (static_cast<long double>(p[a]) - f.affine().center[a]);
+      out[k] +=
+          static_cast<long double>(f.affine().coefficients(1 + static_cast<std::size_t>(a), k)) *
+          (static_cast<long double>(p[a]) - f.affine().center[a]);
     for (std::size_t j = 0; j < f.sources().size(); ++j) {
       long double square = 0;
       for (int a = 0; a < 3; ++a) {
@@ -104,8 +105,9 @@ TEST(DirectSet, HoldsImagesAndDeterminants) {
   std::size_t decided = 0;
   for (std::uint64_t seed = 1; seed < 60; ++seed) {
     SCOPED_TRACE(seed);
-    const ComposedMap map({mapOfSeed(seed, seed % 3 == 0 ? 0.05 : 0), mapOf(affineOf(kIdentity),
-        innermap::testing::chargesAbout(50, 5, 0.1, seed + 100))});
+    const ComposedMap map(
+        {mapOfSeed(seed, seed % 3 == 0 ? 0.05 : 0),
+         mapOf(affineOf(kIdentity), innermap::testing::chargesAbout(50, 5, 0.1, seed + 100))});
     const CounterRandom random(seed, 7);
     const double half = 0.02 + 0.1 * random.uniform(1000);
     const ProofCell cell{0.4 * randomPoint(random, 0), half};

@@ -1,4 +1,4 @@
-// What bounds a solid, with where it goes, as proofs about its boundary take it.
+// What bounds a solid, paired with where it goes, as proofs about its boundary take it.
 #pragma once
 
 #include "innermap/fit/boundary_pair.h"
@@ -8,12 +8,12 @@ namespace innermap {
 
 // The exposed surface with corners of its own for each triangle, whose values may jump where two
 // parts meet, and where these go.
-struct ExposedSurface {
+struct ExposedPair {
   Mesh surface;
   Points targets;
 };
 
-ExposedSurface exposedSurface(const BoundaryPair& boundary);
+ExposedPair exposedPair(const BoundaryPair& boundary);
 
 // What is said of both proofs.
 ProofFigures proofFigures(const SenseProof& sense, const BoundaryProof& boundary);

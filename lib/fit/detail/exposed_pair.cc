@@ -1,10 +1,10 @@
-#include "fit/detail/exposed_surface.h"
+#include "fit/detail/exposed_pair.h"
 
 namespace innermap {
 
-ExposedSurface exposedSurface(const BoundaryPair& boundary) {
+ExposedPair exposedPair(const BoundaryPair& boundary) {
   const Mesh& mesh = boundary.solid().surface();
-  ExposedSurface out;
+  ExposedPair out;
   std::vector<SurfacePoint> corners;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto first = static_cast<int>(out.surface.vertices.size());
