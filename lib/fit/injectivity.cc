@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <string_view>
 #include <type_traits>
 
@@ -57,6 +58,17 @@ void visitFigures(Known& known, const Visit& visit) {
   visitProof(known.proof, visit);
 }
 
+// Whether a number that a file states is one of that type.
+template <class Value>
+bool fits(double number) {
+  if constexpr (std::is_same_v<Value, double>) return true;
+  if constexpr (std::is_same_v<Value, bool>) return number == 0 || number == 1;
+  constexpr double kWhole = 9007199254740992;  // 2^53: all whole numbers up to it are doubles
+  const auto least = static_cast<double>(std::numeric_limits<Value>::min());
+  const auto most = static_cast<double>(std::numeric_limits<Value>::max());
+  return number >= std::max(least, -kWhole) && number <= std::min(most, kWhole);
+}
+
 }  // namespace
 
 void DeterminantFigures::add(double determinant, bool atOverlap) {
@@ -88,8 +100,9 @@ Facts injectivityFacts(const Injectivity& known) {
 
 void readInjectivity(const Facts& facts, Injectivity& known) {
   visitFigures(known, [&](const std::string& name, auto& value, bool) {
-    if (const auto number = factNumber(facts, std::string(kPrefix) + name))
-      value = static_cast<std::decay_t<decltype(value)>>(*number);
+    using Value = std::decay_t<decltype(value)>;
+    const auto number = factNumber(facts, std::string(kPrefix) + name);
+    if (number && fits<Value>(*number)) value = static_cast<Value>(*number);
   });
 }
 

@@ -3,9 +3,24 @@
 
 #include <cmath>
 
+#include "fit/detail/preimages.h"
 #include "innermap/fit/mapped_solid.h"
 
 namespace innermap {
+
+bool countsPreimages(const Injectivity& known) {
+  return known.proof.cells > 0 && known.proof.boundaryError > 0 && known.source.pairs == 0;
+}
+
+std::string preimages(const ProofFigures& p) {
+  std::string out = fmt::format(
+      "each point farther than {:.3g} from the target's surface has as many preimages as that "
+      "surface winds about it{}: one inside, none outside",
+      p.boundaryError, p.mirrored ? ", the other way round" : "");
+  if (!p.whole()) out += ", not counting those in cells that are undecided or turned over";
+  return out;
+}
+
 namespace {
 
 struct Kind {
@@ -92,20 +107,6 @@ std::string proofWords(const ProofFigures& p) {
   return out;
 }
 
-// The number of preimages is a theorem where the target's winding numbers are those of the image.
-bool countsPreimages(const Injectivity& known) {
-  return known.proof.cells > 0 && known.proof.boundaryError > 0 && known.source.pairs == 0;
-}
-
-std::string preimages(const ProofFigures& p) {
-  std::string out = fmt::format(
-      "By these proofs each point farther than {:.3g} from the target's surface has as many "
-      "preimages as that surface winds about it{}: one inside, none outside",
-      p.boundaryError, p.mirrored ? ", the other way round" : "");
-  if (!p.whole()) out += ", not counting those in cells that are undecided or turned over";
-  return out + ". ";
-}
-
 std::string times(int count) {
   return count == 1 ? "once" : fmt::format("{} time{}", count, std::abs(count) == 1 ? "" : "s");
 }
@@ -186,7 +187,7 @@ std::string conclusion(const Injectivity& known) {
         "So the map is not one-to-one: its boundary winds {} about a point, and what goes there "
         "is turned over. ",
         times(degree.least));
-  if (countsPreimages(known)) out += preimages(known.proof);
+  if (countsPreimages(known)) out += "By these proofs " + preimages(known.proof) + ". ";
   if (notOneToOne(known) || known.proof.whole()) return out;
   if (known.inside.checked == 0 && known.voxels.checked == 0)
     return "Whether the map is one-to-one is not known. ";

@@ -1,4 +1,6 @@
 #include "innermap/proof/prove.h"
+#include "proof/detail/cell_limit.h"
+#include "proof/detail/field_tree.h"
 
 namespace innermap {
 
@@ -13,6 +15,13 @@ std::vector<Setting> describe(ProofSettings& s) {
           Setting("error_margin", "SHARE", &s.errorMargin,
                   "how near the proven boundary error comes to the largest that is seen")
               .from(1e-3, 1)};
+}
+
+std::uint64_t proofMemory(const ComposedMap& map, std::size_t triangles,
+                          const ProofSettings& settings) {
+  const std::uint64_t pieces =
+      std::max<std::uint64_t>(proof::cellLimit(map, settings), 8 * std::uint64_t{triangles});
+  return proof::FieldTree::memory(map.sources()) + proof::kBytesPerPiece * pieces;
 }
 
 }  // namespace innermap

@@ -18,7 +18,6 @@ namespace {
 using namespace proof;
 
 constexpr double kExact = 1e-11;  // of the diagonal: an error that is as good as none
-constexpr std::uint64_t kBytesPerPiece = 400;
 // Pieces that one thread splits in one go; triangles at first, eight times as many.
 constexpr std::size_t kBlock = 32;
 
@@ -103,6 +102,7 @@ class BoundarySearch {
     out.error = most * unit * (1 + 1e-14);
     out.seen = seen_ * unit;
     out.seenAt = seenAt_ / scale_;
+    out.seenTo = seenTo_ / scale_;
     out.close = out.error <= std::max((1 + margin_) * out.seen * (1 + 1e-13), 1.01 * kExact);
     out.examined = examined_;
     return out;
@@ -118,6 +118,7 @@ class BoundarySearch {
       if (error > seen_) {
         seen_ = error;
         seenAt_ = places[i];
+        seenTo_ = goes[i];
       }
     }
   }
@@ -128,7 +129,7 @@ class BoundarySearch {
   std::vector<SurfacePiece> open_;
   std::uint64_t examined_ = 0;
   double settled_ = 0, seen_ = 0;
-  Vec3 seenAt_;
+  Vec3 seenAt_, seenTo_;
 };
 
 double targetDiagonal(const Mesh& surface, const Points& target) {
@@ -158,7 +159,7 @@ BoundaryProof proveBoundaryError(const ExpandedMap& expanded, const Mesh& surfac
   const std::uint64_t limit =
       std::max<std::uint64_t>(cellLimit(map, settings), 8 * surface.triangles.size());
   requireMemory("bounding the boundary's error",
-                FieldTree::memory(map.sources()) + kBytesPerPiece * limit,
+                proofMemory(map, surface.triangles.size(), settings),
                 "look at fewer cells a charge");
   const double scale = proofScale(boundingBox(surface));
   const auto steps = expanded.expansions(scale);

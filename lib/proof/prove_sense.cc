@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <functional>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -27,6 +27,7 @@ constexpr std::uint64_t kBytesPerCell = 120;
 struct DecidedCell {
   CellKey key = 1;
   std::uint64_t signs = 0;  // bit k: the determinant of step k is negative
+  double least = 0;         // of |det J|
 };
 
 // Cells whose children one thread looks at in one go.
@@ -35,36 +36,31 @@ constexpr std::size_t kBlock = 32;
 // All cells that were decided, and those that were not.
 struct Outcome {
   std::vector<DecidedCell> decided;
-  std::map<std::uint64_t, double> least;  // of |det J|, by signs
   std::vector<OpenCell> open;
   std::uint64_t examined = 0;
 
-  void noteLeast(std::uint64_t signs, double value) {
-    const auto [place, fresh] = least.emplace(signs, value);
-    if (!fresh) place->second = std::min(place->second, value);
-  }
   // Decided cells are added; the open ones are replaced by the caller.
   void add(const Outcome& block) {
     decided.insert(decided.end(), block.decided.begin(), block.decided.end());
-    for (const auto& [signs, value] : block.least) noteLeast(signs, value);
     examined += block.examined;
   }
 };
 
-void addProven(CellKey key, const SetGroup& group, std::size_t steps, int lane, Outcome& out) {
-  DecidedCell cell{key, 0};
-  double bound = 1;
+// Which decided cells say enough; the others are cut further.
+using Enough = std::function<bool(const DecidedCell&)>;
+
+DecidedCell decided(CellKey key, const SetGroup& group, std::size_t steps, int lane) {
+  DecidedCell cell{key, 0, 1};
   for (std::size_t k = 0; k < steps; ++k) {
     const LaneFindings& found = group.findings(k);
-    bound *= found.least[lane];
+    cell.least *= found.least[lane];
     if (found.determinant[lane] < 0) cell.signs |= std::uint64_t{1} << k;
   }
-  out.decided.push_back(cell);
-  out.noteLeast(cell.signs, bound);
+  return cell;
 }
 
 void splitCell(const StepTrees& steps, const SolidCells& cells, const OpenCell& parent,
-               SetGroup& group, Outcome& out) {
+               const Enough& enough, SetGroup& group, Outcome& out) {
   const ChildLanes lanes = cells.children(parent);
   if (lanes.alive == 0) return;
   LaneSets sets;
@@ -74,10 +70,14 @@ void splitCell(const StepTrees& steps, const SolidCells& cells, const OpenCell& 
     if (!(lanes.alive >> lane & 1)) continue;
     ++out.examined;
     const CellKey key = childOf(parent.key, lane);
-    if (group.proven() >> lane & 1)
-      addProven(key, group, steps.count(), lane, out);
-    else
-      out.open.push_back({key, (lanes.inside >> lane & 1) != 0, group.excess(lane)});
+    if (group.proven() >> lane & 1) {
+      const DecidedCell cell = decided(key, group, steps.count(), lane);
+      if (enough(cell)) {
+        out.decided.push_back(cell);
+        continue;
+      }
+    }
+    out.open.push_back({key, (lanes.inside >> lane & 1) != 0, group.excess(lane)});
   }
 }
 
@@ -115,13 +115,20 @@ double volumeOfCell(const SolidCells& cells, CellKey key) {
   return edge * edge * edge;
 }
 
-// Of the cells that are to be split those for which `room` is left: where least was missing.
+// Of the cells that are to be split those for which `room` is left: where least was missing. What
+// is as small as cells get stays open.
 std::vector<OpenCell> takeNearest(std::vector<OpenCell>& open, std::uint64_t room) {
-  if (kLanes * open.size() <= room) return std::exchange(open, {});
-  const auto end = open.begin() + static_cast<std::ptrdiff_t>(room / kLanes);
-  std::nth_element(open.begin(), end, open.end(), [](const OpenCell& a, const OpenCell& b) {
-    return std::tie(a.excess, a.key) < std::tie(b.excess, b.key);
+  auto end = std::stable_partition(open.begin(), open.end(), [](const OpenCell& cell) {
+    return levelOf(cell.key) < kMostLevels;
   });
+  if (const std::uint64_t most = room / kLanes;
+      static_cast<std::uint64_t>(end - open.begin()) > most) {
+    const auto last = open.begin() + static_cast<std::ptrdiff_t>(most);
+    std::nth_element(open.begin(), last, end, [](const OpenCell& a, const OpenCell& b) {
+      return std::tie(a.excess, a.key) < std::tie(b.excess, b.key);
+    });
+    end = last;
+  }
   std::vector<OpenCell> taken(open.begin(), end);
   open.erase(open.begin(), end);
   for (std::vector<OpenCell>* cells : {&taken, &open})
@@ -130,21 +137,20 @@ std::vector<OpenCell> takeNearest(std::vector<OpenCell>& open, std::uint64_t roo
   return taken;
 }
 
-// Level by level, largest cells first.
-Outcome decideCells(const StepTrees& steps, const SolidCells& cells, double volume,
-                    std::uint64_t limit) {
-  Outcome out;
-  out.open.push_back(OpenCell());
+// The open cells of `out`, level by level, largest first.
+void decideCells(const StepTrees& steps, const SolidCells& cells, double volume,
+                 std::uint64_t limit, const Enough& enough, Outcome& out) {
   double decidedVolume = 0;
-  for (int level = 0; level < kMostLevels && out.examined + kLanes <= limit; ++level) {
-    const std::vector<OpenCell> taken = takeNearest(out.open, limit - out.examined);
+  const std::uint64_t last = out.examined + limit;
+  while (out.examined + kLanes <= last) {
+    const std::vector<OpenCell> taken = takeNearest(out.open, last - out.examined);
     if (taken.empty()) break;
     reportProgress("proving that nothing folds", std::min(1.0, decidedVolume / volume));
     std::vector<Outcome> blocks((taken.size() + kBlock - 1) / kBlock);
     parallelBlocks(taken.size(), kBlock, [&](std::size_t begin, std::size_t end) {
       SetGroup group;
       for (std::size_t i = begin; i < end; ++i)
-        splitCell(steps, cells, taken[i], group, blocks[begin / kBlock]);
+        splitCell(steps, cells, taken[i], enough, group, blocks[begin / kBlock]);
     });
     for (const Outcome& block : blocks) {
       out.add(block);
@@ -152,7 +158,21 @@ Outcome decideCells(const StepTrees& steps, const SolidCells& cells, double volu
       for (const DecidedCell& cell : block.decided) decidedVolume += volumeOfCell(cells, cell.key);
     }
   }
-  return out;
+}
+
+// Of the cells of these signs those that are left where |det J| is not shown to be `least`, after
+// cutting them.
+std::vector<OpenCell> weakCells(const StepTrees& steps, const SolidCells& cells, double volume,
+                                std::uint64_t limit, std::uint64_t signs, double least,
+                                const std::vector<DecidedCell>& decided) {
+  const Enough enough = [&](const DecidedCell& cell) {
+    return cell.signs == signs && cell.least >= least;
+  };
+  Outcome weak;
+  for (const DecidedCell& cell : decided)
+    if (cell.signs == signs && !enough(cell)) weak.open.push_back({cell.key, false});
+  decideCells(steps, cells, volume, limit, enough, weak);
+  return std::move(weak.open);
 }
 
 void add(ProofCells& cells, const ProofCell& cell, bool keep) {
@@ -173,26 +193,29 @@ std::uint64_t commonSigns(const Outcome& outcome, const SolidCells& cells) {
   return best;
 }
 
-SenseProof summary(const Outcome& outcome, const SolidCells& cells, double volume,
+SenseProof summary(const Outcome& outcome, const SolidCells& cells, std::uint64_t common,
                    bool keepProven) {
   SenseProof out;
   out.examined = outcome.examined;
-  const std::uint64_t common = commonSigns(outcome, cells);
   std::uint64_t odd = 0;
   for (std::size_t k = 0; k < kMostSteps; ++k) odd ^= common >> k & 1;
   out.mirrored = odd != 0;
-  if (const auto least = outcome.least.find(common); least != outcome.least.end())
-    out.least = least->second;
   for (const DecidedCell& cell : outcome.decided) {
     const bool proven = cell.signs == common;
+    if (proven) out.least = out.proven.count == 0 ? cell.least : std::min(out.least, cell.least);
     add(proven ? out.proven : out.negative, cells.world(cell.key), !proven || keepProven);
   }
   for (const OpenCell& cell : outcome.open) add(out.undecided, cells.world(cell.key), true);
-  for (ProofCells* lot : {&out.proven, &out.negative, &out.undecided})
-    lot->share = std::min(1.0, lot->volume / volume);
-  if (out.proven.count > 0)
-    out.provenShare = std::max(0.0, 1 - (out.negative.volume + out.undecided.volume) / volume);
   return out;
+}
+
+void takeShares(double volume, SenseProof& out) {
+  for (ProofCells* lot : {&out.proven, &out.negative, &out.undecided, &out.weak})
+    lot->share = std::min(1.0, lot->volume / volume);
+  if (out.proven.count == 0) return;
+  const double rest = out.negative.volume + out.undecided.volume;
+  out.provenShare = std::max(0.0, 1 - rest / volume);
+  out.leastShare = std::max(0.0, 1 - (rest + out.weak.volume) / volume);
 }
 
 }  // namespace
@@ -210,8 +233,20 @@ SenseProof proveSense(const ExpandedMap& expanded, const Mesh& solid,
   requireMemory("proving that nothing folds",
                 FieldTree::memory(map.sources()) + kBytesPerCell * limit,
                 "look at fewer cells a charge");
-  const auto steps = expanded.expansions(cells.scale());
-  return summary(decideCells(*steps, cells, volume, limit), cells, volume, settings.keepProven);
+  const auto expansions = expanded.expansions(cells.scale());
+  const StepTrees& steps = *expansions;
+  Outcome outcome;
+  outcome.open.push_back(OpenCell());
+  decideCells(
+      steps, cells, volume, limit, [](const DecidedCell&) { return true; }, outcome);
+  const std::uint64_t common = commonSigns(outcome, cells);
+  SenseProof out = summary(outcome, cells, common, settings.keepProven);
+  if (settings.least > out.least)
+    for (const OpenCell& cell :
+         weakCells(steps, cells, volume, limit, common, settings.least, outcome.decided))
+      add(out.weak, cells.world(cell.key), true);
+  takeShares(volume, out);
+  return out;
 }
 
 }  // namespace innermap

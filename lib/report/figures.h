@@ -53,6 +53,7 @@ struct SolidTexture;
 struct Study;
 struct StudyFindings;
 struct Tetrahedralization;
+struct Verification;
 struct VolumeTextureResult;
 
 // -- maps and fields (map_figures.cc) --
@@ -78,6 +79,8 @@ Figures stepFigures(const std::vector<MapStep>& steps);
 Figures figures(const Injectivity& known);
 // "one_to_one" too: of what is proven.
 Figures figures(const ProofFigures& proof);
+// "verification"
+Figures figures(const Verification& made);
 // "field"
 Figures fieldFigures(double span, double freeShare);
 // "energy", "jacobian", "repair", "grid" of an evaluated map.

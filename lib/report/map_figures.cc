@@ -215,6 +215,27 @@ Figures figures(const ProofFigures& proof) {
           .when(!proof.places.empty())};
 }
 
+Figures figures(const Verification& made) {
+  const auto row = [](const Claim& claim) -> Figures {
+    return {{"claims", claim.name, "claims", "a name each"},
+            {"claimed", claim.claimed, "claimed", "in words"},
+            {"found", claim.found, "found", "in words"},
+            {"results", wordOf(claim.result), "results",
+             "of each claim: holds, fails or cannot be shown"}};
+  };
+  Points places;
+  for (const Claim& claim : made.claims)
+    if (claim.result != ClaimResult::holds)
+      places.insert(places.end(), claim.places.begin(), claim.places.end());
+  return together(
+      {{{"any", !made.claims.empty(), "claims anything", "to be proven"},
+        {"holds", made.holds(), "holds", "each claim"}},
+       columns(made.claims, row),
+       {Figure("places", places, "places", "x, y, z where claims do not hold", FigureUnit::length)
+            .when(!places.empty())},
+       under("proven", "proven again", when(made.found.cells > 0, figures(made.found)))});
+}
+
 Figures figures(const Injectivity& known) {
   const DegreeFigures& degree = known.degree;
   return together(

@@ -53,6 +53,7 @@ COMMANDS = {
                "jacobian"],
     "export-tiles": ["export", "I/map.vdb", "-o", "O/e.exr", "--grids", "density"],
     "import": ["import", "I/map.exr", "-o", "O/i.vdb"],
+    "verify": ["verify", "I/map.ply", "--sample", "4", "--report", "O/r.json"],
     "info": ["info", "I/map.vdb", "--report", "O/r.json"],
     "harmonic": ["harmonic", "I/groups.obj", "-o", "O/h.vdb", "--field", "O/h.ply", "--fix",
                  "top=1,bottom=0", "--resolution", "16", "--tolerance", "0.02", "--best-effort"],

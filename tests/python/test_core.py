@@ -108,6 +108,9 @@ def test_says_what_it_knows():
     again = innermap.load("map.ply")
     assert np.isclose(again.boundary_error.max, e.max) and again.tolerance_met is True
     assert again.statement == m.statement
+    verified = again.verify(sample=8)
+    assert verified["any"] and verified["holds"] and "sense" in verified["claims"], verified
+    assert set(verified["results"]) == {"holds"} and verified["proven"]["proof_cells"] > 0
     for attribute in ("notes", "warnings"):
         assert all(isinstance(line, str) for line in getattr(m, attribute))
 

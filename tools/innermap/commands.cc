@@ -14,6 +14,7 @@ std::vector<Command> allCommands() {
                                       makeSphereCommand,
                                       makeFitCommand,
                                       makeEvaluateCommand,
+                                      makeVerifyCommand,
                                       makeSequenceCommand,
                                       makeDeformCommand,
                                       makeHarmonicCommand,
@@ -44,7 +45,7 @@ std::vector<Command> allCommands() {
 
 std::vector<Topic> commandTopics() {
   std::vector<Topic> topics = {
-      {"maps", {"map", "correspond", "sphere", "fit", "evaluate", "study"}},
+      {"maps", {"map", "correspond", "sphere", "fit", "evaluate", "verify", "study"}},
       {"what goes through a map", {"push", "pull", "transfer-distance", "remesh"}},
       {"animation", {"sequence", "deform"}},
       {"solids",

@@ -65,6 +65,29 @@ TEST(ProveSense, MirroredMapsAreProvenToo) {
   EXPECT_FALSE(twice.mirrored);
 }
 
+// Its true least is above what the cells tell of themselves, and cells are cut until they do.
+TEST(ProveSense, CellsAreCutUntilTheDeterminantIsLarge) {
+  const HarmonicMap map = gentle(0.02);
+  const Mesh ball = shapes::icosphere(3);
+  ProofSettings settings;
+  const SenseProof plain = proveSense(map, ball, settings);
+  EXPECT_EQ(plain.weak.count, 0u);
+  EXPECT_EQ(plain.leastShare, 1);
+  double least = 1e300;
+  for (const Vec3& p : ball.vertices) least = std::min(least, determinant(map.jacobian(p)));
+  ASSERT_GT(0.9 * least, 2 * plain.least);
+  settings.least = 0.9 * least;
+  const SenseProof cut = proveSense(map, ball, settings);
+  EXPECT_EQ(cut.weak.count, 0u);
+  EXPECT_EQ(cut.leastShare, 1);
+  EXPECT_EQ(cut.proven.count, plain.proven.count);
+  settings.least = 1.1 * least;
+  const SenseProof tooMuch = proveSense(map, ball, settings);
+  EXPECT_GT(tooMuch.weak.count, 0u);
+  EXPECT_LT(tooMuch.leastShare, 1);
+  EXPECT_GT(tooMuch.leastShare, 0);
+}
+
 TEST(ProveSense, ADeterminantOfZeroIsNeverProven) {
   ProofSettings few;
   few.leastCells = 1000;

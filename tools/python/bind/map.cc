@@ -126,6 +126,21 @@ py::object proofCells(const Arguments& a, ProofCellsOptions& o) {
                         cellsArray(proof.negative));
 }
 
+struct VerifyOptions {
+  VerifySettings settings;
+  CallOptions call;
+
+  void describe(Keywords& k) {
+    k.settings(innermap::describe(settings));
+    call.describe(k);
+  }
+};
+
+py::object verify(const Arguments& a, VerifyOptions& o) {
+  const auto mapped = py::cast<const PyMap&>(a[0]).mapped;
+  return dictOf(figures(call(o.call, [&]() { return verifyMap(*mapped, o.settings); })));
+}
+
 std::string reprOf(const PyMap& map) {
   const MappedSolid& mapped = *map.mapped;
   return fmt::format(
@@ -218,6 +233,14 @@ void bindMap(py::module_& m) {
        "where it is proven to fold everywhere. Each row holds the cube's centre and half its edge, "
        "world units of the source. Raises as prove()."},
       proofCells);
+  define<VerifyOptions>(
+      map,
+      {"verify", "self",
+       "Proves again what the map's facts claim to be proven of it, from its charges, its mesh and "
+       "where that goes; see load().\n\nReturns a dict: any, whether something is claimed; holds, "
+       "whether each claim does; lists claims, claimed, found and results, a text each for every "
+       "claim: \"holds\", \"fails\" or \"cannot be shown\"; under proven what came out here."},
+      verify);
   map.def_property_readonly(
          "boundary_error",
          [](const PyMap& self) {

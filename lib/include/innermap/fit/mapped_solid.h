@@ -120,7 +120,7 @@ std::string injectivityStatement(const Injectivity& known);
 std::string injectivityLine(const Injectivity& known);
 
 // The figures that are known as facts of a map's file, "one_to_one_inside_checked" and so on, and
-// back; what facts do not say stays as it is in `known`.
+// back; what facts do not say stays as it is in `known`, as does what they say out of range.
 Facts injectivityFacts(const Injectivity& known);
 void readInjectivity(const Facts& facts, Injectivity& known);
 
@@ -163,6 +163,50 @@ void writeMap(const std::string& path, const MappedSolid& mapped);
 // Reads it and makes the solid again. Throws FileError for what is not the file of a map with its
 // boundary, DataError as makeBoundaryPair does, Cancelled.
 MappedSolid readMap(const std::string& path);
+
+// What a map's file claims to be proven, proven again from what the file holds: its charges, its
+// mesh and where that goes. The file's figures are not believed; they say what is to be shown. Then
+// a random sample is looked at in another way, with plain sums and intervals; proof.md has both.
+
+// unshown: neither that it holds nor that it does not.
+enum class ClaimResult { holds, fails, unshown };
+std::string wordOf(ClaimResult result);  // "holds", "fails", "cannot be shown"
+
+struct Claim {
+  // form: the facts are such as fits write them; sense: where det J has one sign; undecided: where
+  // that may be otherwise; folded: that it is somewhere; least: of |det J|; boundary: its error;
+  // preimages: what follows; one-to-one: no two points go to one; agreement: of both ways, on the
+  // sample.
+  std::string name;
+  ClaimResult result = ClaimResult::unshown;
+  std::string claimed, found;  // each half a sentence
+  Points places;               // where it fails; world units of the source, at most 16
+};
+
+struct VerifySettings {
+  // Cells for each charge that are looked at, at most: fewer first, and four times as many as long
+  // as a claim is not reached. See ProofSettings::cellsPerCharge.
+  double proofCells = 100;
+  std::uint64_t sample = 64;  // cells, and triangles of the boundary, that are drawn; from 0 to 1e6
+  std::uint64_t seed = 1;
+};
+
+std::vector<Setting> describe(VerifySettings& settings);
+
+struct Verification {
+  std::vector<Claim> claims;  // none: nothing is claimed to be proven
+  ProofFigures claimed;       // as the file says it, and as it came out here
+  ProofFigures found;
+
+  bool holds() const;  // each claim
+};
+
+// A claim that is weaker than what is shown holds; figures are compared to nine digits. Throws as
+// proveMap does.
+Verification verifyMap(const MappedSolid& mapped, const VerifySettings& settings = {});
+
+// Need in bytes of verifyMap, an upper bound.
+std::uint64_t verifyMemory(const MappedSolid& mapped, const VerifySettings& settings);
 
 // How accurate sums of charges have to be, a fraction of the target's diagonal, in [1e-9, 1e-5]:
 // well below the map's own error as its facts state that.

@@ -63,10 +63,18 @@ struct ProofSettings {
   // from 1e-3 to 1.
   double errorMargin = 0.02;
   bool keepProven = false;  // the places of proven cells too
+  // proveSense cuts proven cells further until |det J| is at least that on them; see
+  // SenseProof::weak. Not below 0.
+  double least = 0;
 };
 
-// Without keepProven.
+// Without keepProven and least.
 std::vector<Setting> describe(ProofSettings& settings);
+
+// Need in bytes of proveSense or proveBoundaryError, about a surface of so many triangles; an upper
+// bound.
+std::uint64_t proofMemory(const ComposedMap& map, std::size_t triangles,
+                          const ProofSettings& settings);
 
 // A cube. World units of the source.
 struct ProofCell {
@@ -86,12 +94,16 @@ struct ProofCells {
 // left out. Of a map in steps each step's sign is meant, on the image of the cell under those
 // before; a product of two folded steps is no proof.
 struct SenseProof {
-  ProofCells proven;           // det J has the map's sign everywhere on them; places if asked for
-  ProofCells negative;         // the other sign everywhere: folded
-  ProofCells undecided;        // neither, at the limit
-  double provenShare = 0;      // of the solid's volume, at least
-  bool mirrored = false;       // the map's sign, that of the greater volume, is negative
-  double least = 0;            // lower bound of |det J| on the proven cells; 0 where there is none
+  ProofCells proven;       // det J has the map's sign everywhere on them; places if asked for
+  ProofCells negative;     // the other sign everywhere: folded
+  ProofCells undecided;    // neither, at the limit
+  double provenShare = 0;  // of the solid's volume, at least
+  bool mirrored = false;   // the map's sign, that of the greater volume, is negative
+  double least = 0;        // lower bound of |det J| on the proven cells; 0 where there is none
+  // Parts of proven cells where |det J| is not shown to be ProofSettings::least, and the share of
+  // the solid's volume where it is, at least.
+  ProofCells weak;
+  double leastShare = 0;
   std::uint64_t examined = 0;  // cells, of all sizes
 
   // det J has one sign on the closed solid.
@@ -111,6 +123,7 @@ struct BoundaryProof {
   double error = 0;            // none is larger; infinity where nothing could be bounded
   double seen = 0;             // the largest that was evaluated
   Vec3 seenAt;                 // there, world units of the source
+  Vec3 seenTo;                 // where its target is, world units of the target
   bool close = false;          // error <= (1 + errorMargin) seen
   std::uint64_t examined = 0;  // pieces of triangles
 };

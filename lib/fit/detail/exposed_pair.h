@@ -1,0 +1,21 @@
+// What bounds a solid, paired with where it goes, as proofs about its boundary take it.
+#pragma once
+
+#include "innermap/fit/boundary_pair.h"
+#include "innermap/fit/mapped_solid.h"
+
+namespace innermap {
+
+// The exposed surface with corners of its own for each triangle, whose values may jump where two
+// parts meet, and where these go.
+struct ExposedPair {
+  Mesh surface;
+  Points targets;
+};
+
+ExposedPair exposedPair(const BoundaryPair& boundary);
+
+// What is said of both proofs.
+ProofFigures proofFigures(const SenseProof& sense, const BoundaryProof& boundary);
+
+}  // namespace innermap
