@@ -36,7 +36,7 @@ bool says(const Injectivity& known, const std::string& what) {
 constexpr const char* kNot = "So the map is not one-to-one";
 constexpr const char* kThen = "then exactly one goes to each";
 constexpr const char* kUnproved = "not proved";
-constexpr const char* kWhole = "is one-to-one; that was checked as a whole";
+constexpr const char* kWhole = "is one-to-one as a whole";
 constexpr const char* kNoMap = "No continuous map";
 
 TEST(Injectivity, SaysWhatWasCheckedAndWhatFollows) {
