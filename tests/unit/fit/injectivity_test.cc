@@ -95,7 +95,7 @@ TEST(Injectivity, FoldedCellsAreNotFoldsOfTheMap) {
   EXPECT_FALSE(says(known, kWhole));
   known.cells.folded = 0;
   known.cells.overlaps = 2;
-  EXPECT_TRUE(says(known, "it covers itself at 2 places of its boundary."));
+  EXPECT_TRUE(says(known, "their images overlap at 2 places of their boundary."));
   EXPECT_FALSE(says(known, kWhole));
   known.cells.overlaps = -1;
   EXPECT_FALSE(says(known, "The map that is linear"));
