@@ -108,9 +108,11 @@ std::vector<Setting> describe(FitMapSettings& s) {
               "core: where nothing folds, on whole cells, and how far the boundary is off at most; "
               "full: also that no two points go to one, which takes longer; off: only points are "
               "checked"),
-      Setting("proof_cells", "N", &s.proofCells,
-              "cells that {prove} looks at a charge before it leaves the rest undecided; with "
-              "{one_to_one} on 100 at least")
+      Setting(
+          "proof_cells", "N", &s.proofCells,
+          fmt::format("cells that {{prove}} looks at a charge before it leaves the rest undecided; "
+                      "with {{one_to_one}} on {:g} at least",
+                      ProofSettings().cellsPerCharge))
           .from(1, 1e6)
           .rare(),
       seedSetting(&s.seed)};

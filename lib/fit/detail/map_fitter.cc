@@ -280,7 +280,8 @@ FitOutcome MapFitter::inSteps() {
   StepFitSettings s;
   s.tolerance = settings_.tolerance;
   s.folds = settings_.oneToOne == OneToOne::on ? 0 : kFewFolds;
-  s.proven = settings_.oneToOne == OneToOne::on && settings_.prove != Prove::off;
+  if (settings_.oneToOne == OneToOne::on && settings_.prove != Prove::off)
+    s.proofCells = settings_.proofCells;
   s.maxSteps = settings_.maxSteps;
   s.maxSources = settings_.maxSources;
   s.seed = settings_.seed;

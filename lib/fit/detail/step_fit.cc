@@ -151,16 +151,19 @@ class StepFitter {
   }
 
   bool foldsTooMuch(const Step& step) const {
-    return step.record.folded > allowed(kFoldShare) || (settings_.proven && isProvenToFold(step));
+    return step.record.folded > allowed(kFoldShare) ||
+           (settings_.proofCells && isProvenToFold(step));
   }
 
-  // On the mesh about the present solid. Where there is no room for a proof the points decide.
+  // On the mesh about the present solid. Where that allows no proof, or memory, the points decide.
   bool isProvenToFold(const Step& step) const {
     ProofSettings s;
-    s.cellsPerCharge = FitMapSettings().proofCells;
+    s.cellsPerCharge = *settings_.proofCells;
     try {
       return proveSense(step.map, boundary_.mesh(), s).negative.count > 0;
     } catch (const MemoryError&) {
+      return false;
+    } catch (const DataError&) {
       return false;
     }
   }

@@ -1,6 +1,7 @@
 // A map in steps: through intermediate shapes, each step a harmonic map of the present one.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "innermap/field/fit.h"
@@ -13,7 +14,8 @@ namespace innermap {
 struct StepFitSettings {
   double tolerance = 2e-3;  // of the whole; fraction of the target's diagonal
   double folds = 0;         // share of the points inside that may be folded in the end, in [0, 1]
-  bool proven = false;      // steps that are proven to fold anywhere are halved too
+  // Steps that are proven to fold anywhere are halved too: ProofSettings::cellsPerCharge for that.
+  std::optional<double> proofCells;
   int maxSteps = 16;
   std::size_t maxSources = 100000;  // of one step
   std::uint64_t seed = 1;

@@ -158,7 +158,8 @@ void SetGroup::compute(const StepTrees& map, const LaneSets& sets, std::uint8_t 
     known = evenLanes(now, senses ? known & proven : known);
     if (known == 0 || !computeStep(map[k], now, known, findings_[k])) return;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const double excess = findings_[k].excess[lane];
+      double excess = findings_[k].excess[lane];
+      if (std::isnan(excess)) excess = std::numeric_limits<double>::infinity();  // cells are sorted
       if (known >> lane & 1) excess_[lane] = k == 0 ? excess : std::max(excess_[lane], excess);
     }
     proven &= known & lanesBelow(findings_[k].excess, kProven);
