@@ -149,9 +149,9 @@ FrameFit FrameFitter::fit(const Mesh& frame) const {
   timed(seconds, "inside", [&] {
     const MappedPoints mapped =
         mapPoints(HarmonicMap(field), inside_, kSumAccuracy * boundary.diagonal);
-    folded = foldedShare(mapped.determinants);
-    outside =
-        outsideShare(mapped.points, TargetShape(solid(), boundary), error.p99 * boundary.diagonal);
+    const TargetShape target(solid(), boundary);
+    folded = foldedShare(mapped.determinants, target.orientation());
+    outside = outsideShare(mapped.points, target, error.p99 * boundary.diagonal);
   });
   std::vector<std::string> warnings = boundary.warnings;
   if (error.max > kDoubtfulError)

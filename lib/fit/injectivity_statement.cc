@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fit/detail/preimages.h"
+#include "fit/map_sense.h"
 #include "innermap/fit/mapped_solid.h"
 
 namespace innermap {
@@ -47,29 +48,43 @@ std::string listed(const std::vector<std::string>& items) {
 
 std::string percent(double share) { return fmt::format("{:.2g}%", 100 * share); }
 
-std::string foldedOf(const Kind& kind) {
+// The figures know the least determinant alone, so that of a mirror's image says nothing.
+std::string leastOf(const DeterminantFigures& f, bool mirrored) {
+  return mirrored ? "" : fmt::format("least {:.3g}", f.least);
+}
+
+std::string soundOf(const Kind& kind, bool mirrored) {
+  const std::string least = leastOf(kind.figures, mirrored);
+  return fmt::format("all {} {}{}", kind.figures.checked, kind.name,
+                     least.empty() ? "" : " (" + least + ")");
+}
+
+std::string foldedOf(const Kind& kind, bool mirrored) {
   const DeterminantFigures& f = kind.figures;
+  const std::size_t folded = againstSense(f, mirrored);
+  const std::string least = leastOf(f, mirrored);
   std::string out =
-      fmt::format("{} of {} {} ({}, least {:.3g}", f.folded, f.checked, kind.name,
-                  percent(static_cast<double>(f.folded) / static_cast<double>(f.checked)), f.least);
-  if (f.foldedAtOverlap > 0)
+      fmt::format("{} of {} {} ({}{}", folded, f.checked, kind.name,
+                  percent(static_cast<double>(folded) / static_cast<double>(f.checked)),
+                  least.empty() ? "" : ", " + least);
+  if (f.foldedAtOverlap > 0 && !mirrored)
     out += fmt::format("; {} where the target runs through itself",
                        f.foldedAtOverlap == f.folded ? "all" : std::to_string(f.foldedAtOverlap));
   return out + ")";
 }
 
 std::string determinants(const Injectivity& known) {
-  std::vector<std::string> positive, folded;
-  for (const Kind& kind : checkedKinds(known)) {
-    if (kind.figures.folded > 0)
-      folded.push_back(foldedOf(kind));
+  const bool mirrored = mirrors(known);
+  std::vector<std::string> sound, folded;
+  for (const Kind& kind : checkedKinds(known))
+    if (againstSense(kind.figures, mirrored) == 0)
+      sound.push_back(soundOf(kind, mirrored));
     else
-      positive.push_back(fmt::format("all {} {} (least {:.3g})", kind.figures.checked, kind.name,
-                                     kind.figures.least));
-  }
+      folded.push_back(foldedOf(kind, mirrored));
   std::string out;
-  if (!positive.empty()) out += "det J > 0 at " + listed(positive) + ". ";
-  if (!folded.empty()) out += "det J is not above 0 at " + listed(folded) + ". ";
+  if (!sound.empty()) out += fmt::format("det J {} 0 at {}. ", mirrored ? "<" : ">", listed(sound));
+  if (!folded.empty())
+    out += fmt::format("det J is not {} 0 at {}. ", mirrored ? "below" : "above", listed(folded));
   if (out.empty()) out = "No points inside were checked. ";
   if (known.repaired > 0)
     out += fmt::format("{} voxel{} repaired, where the grids differ from the map. ", known.repaired,
@@ -158,19 +173,12 @@ std::string surfaces(const Injectivity& known) {
   return out;
 }
 
-std::size_t foldedPoints(const Injectivity& known) {
-  return known.inside.folded + known.boundary.folded + known.voxels.folded;
-}
-
-// Turned over everywhere, as by a mirror: nowhere folded.
-bool mirrors(const Injectivity& known) {
-  const std::size_t folded = foldedPoints(known);
-  return folded > 0 &&
-         folded == known.inside.checked + known.boundary.checked + known.voxels.checked;
-}
-
 bool folds(const Injectivity& known) {
-  return (foldedPoints(known) > 0 && !mirrors(known)) || known.proof.negative > 0;
+  const bool mirrored = mirrors(known);
+  std::size_t folded = known.proof.negative;
+  for (const DeterminantFigures* figures : {&known.inside, &known.boundary, &known.voxels})
+    folded += againstSense(*figures, mirrored);
+  return folded > 0;
 }
 
 bool windsOtherwise(const DegreeFigures& degree) { return degree.least < 0 || degree.greatest > 1; }
@@ -225,6 +233,19 @@ std::string cells(const CellFigures& cells) {
 
 }  // namespace
 
+bool mirrors(const Injectivity& known) {
+  std::size_t turned = 0, checked = 0;
+  for (const DeterminantFigures* figures : {&known.inside, &known.boundary, &known.voxels}) {
+    turned += figures->folded;
+    checked += figures->checked;
+  }
+  return turned > checked - turned;
+}
+
+std::size_t againstSense(const DeterminantFigures& figures, bool mirrored) {
+  return mirrored ? figures.checked - figures.folded : figures.folded;
+}
+
 bool notOneToOne(const Injectivity& known) { return folds(known) || windsOtherwise(known.degree); }
 
 std::string injectivityStatement(const Injectivity& known) {
@@ -235,15 +256,16 @@ std::string injectivityStatement(const Injectivity& known) {
 }
 
 std::string injectivityLine(const Injectivity& known) {
-  std::vector<std::string> positive, folded;
+  std::vector<std::string> sound, folded;
   for (const Kind& kind : checkedKinds(known)) {
     const DeterminantFigures& f = kind.figures;
-    if (f.folded > 0)
-      folded.push_back(fmt::format("{} of {} {}", f.folded, f.checked, kind.name));
+    const std::size_t against = againstSense(f, mirrors(known));
+    if (against == 0)
+      sound.push_back(fmt::format("{} {}", f.checked, kind.name));
     else
-      positive.push_back(fmt::format("{} {}", f.checked, kind.name));
+      folded.push_back(fmt::format("{} of {} {}", against, f.checked, kind.name));
   }
-  if (positive.empty() && folded.empty()) return "one-to-one: not checked";
+  if (sound.empty() && folded.empty()) return "one-to-one: not checked";
   const ProofFigures& p = known.proof;
   std::string out = notOneToOne(known) ? "not one-to-one"
                     : p.oneToOne > 0   ? "one-to-one, proven"
@@ -254,7 +276,8 @@ std::string injectivityLine(const Injectivity& known) {
   if (p.negative > 0) out += fmt::format("; proven to fold on {} cells", p.negative);
   if (p.undecided > 0) out += fmt::format("; {} of the solid undecided", percent(p.undecidedShare));
   if (!folded.empty()) out += "; folded: " + listed(folded);
-  if (!positive.empty()) out += "; no fold at " + listed(positive);
+  if (!sound.empty())
+    out += (mirrors(known) ? "; mirrored, no fold at " : "; no fold at ") + listed(sound);
   if (windsOtherwise(known.degree))
     out += fmt::format("; the boundary winds {} to {}", known.degree.least,
                        times(known.degree.greatest));

@@ -23,8 +23,12 @@ TriangleTree treeOf(const std::vector<Crossing>& crossings) {
 
 }  // namespace
 
+int orientationOf(const Solid& source, const TargetBoundary& target) {
+  return signedVolume(target.moved, source.repaired().mesh.triangles) < 0 ? -1 : 1;
+}
+
 TargetShape::TargetShape(const Solid& source, const TargetBoundary& target)
-    : orientation_(signedVolume(target.moved, source.repaired().mesh.triangles) < 0 ? -1 : 1),
+    : orientation_(orientationOf(source, target)),
       volume_(target.volume),
       reach_(kNear * target.diagonal),
       winding_(target.moved, source.repaired().mesh.triangles),

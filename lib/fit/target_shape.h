@@ -10,6 +10,10 @@
 
 namespace innermap {
 
+// -1 where the target is inside out, as a mirror's image, 1 otherwise: the sign that det J has
+// wherever the map is not folded.
+int orientationOf(const Solid& source, const TargetBoundary& target);
+
 // World units of the target. Safe from any number of threads.
 class TargetShape {
  public:
@@ -32,7 +36,7 @@ class TargetShape {
   bool runsThroughItself(const Vec3& p, double error) const;
 
   double volume() const { return volume_; }         // world units cubed; 0 when parts cancel
-  int orientation() const { return orientation_; }  // -1: inside out, as a mirror's image
+  int orientation() const { return orientation_; }  // orientationOf()
 
  private:
   int orientation_ = 1;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/map_sense.h"
 #include "innermap/field/field_file.h"
 #include "report/figures.h"
 #include "report/report_figures.h"
@@ -69,11 +70,12 @@ void judgeBoundary(const MappedSolid& mapped, MapOrigin origin, Verdict& out) {
   out.findings.push_back({std::move(f), toTolerance && origin != MapOrigin::file});
 }
 
-std::string foldStatement(double folded, const DeterminantFigures& points, double threshold) {
+std::string foldStatement(double folded, const Injectivity& known, double threshold) {
+  const DeterminantFigures& points = known.inside;
   if (folded <= 0) return "nowhere folded inside: one-to-one as far as checked";
   std::string out = fmt::format("{} of the inside is folded (at most: {}): not one-to-one there",
                                 percent(folded), percent(threshold));
-  if (points.foldedAtOverlap > 0 && points.folded > 0)
+  if (points.foldedAtOverlap > 0 && !mirrors(known))
     out += fmt::format(
         ", {} of that where the target runs through itself",
         percent(static_cast<double>(points.foldedAtOverlap) / static_cast<double>(points.folded)));
@@ -98,11 +100,15 @@ void judgeCrossings(const MappedSolid& mapped, const VerdictSettings& settings, 
        true});  // reading the boundaries warned of it
 }
 
-// A mirror's image is nowhere folded, though its determinants are negative.
-double foldedOf(const Injectivity& known) {
-  const DeterminantFigures& inside = known.inside;
-  if (inside.checked == 0 || inside.folded == inside.checked) return 0;
-  return static_cast<double>(inside.folded) / static_cast<double>(inside.checked);
+double foldedOf(const Injectivity& known, const SolidGrids* grids) {
+  const auto shareOf = [mirrored = mirrors(known)](std::uint64_t turned, std::uint64_t all) {
+    if (all == 0) return 0.0;
+    return static_cast<double>(mirrored ? all - turned : turned) / static_cast<double>(all);
+  };
+  const double inside = shareOf(known.inside.folded, known.inside.checked);
+  // The map itself, not what repair made of its grids.
+  return grids ? std::max(inside, shareOf(grids->values.foldedVoxels, grids->values.interiorVoxels))
+               : inside;
 }
 
 void judgeOutside(double outside, const VerdictSettings& settings, const std::string& advice,
@@ -154,13 +160,8 @@ Verdict judgeMap(const MappedSolid& mapped, const SolidGrids* grids,
   judgeBoundary(mapped, origin, out);
   const Injectivity& known = grids ? grids->injectivity : mapped.injectivity;
   if (grids || known.inside.checked > 0) {
-    const bool mirrors = grids && grids->values.foldedVoxels == grids->values.interiorVoxels;
-    // The map itself, not what repair made of its grids.
-    const double voxels = grids && !mirrors ? static_cast<double>(grids->values.foldedVoxels) /
-                                                  static_cast<double>(grids->values.interiorVoxels)
-                                            : 0;
-    const double folded = std::max(foldedOf(known), voxels);
-    std::string text = foldStatement(folded, known.inside, settings.maxFolded);
+    const double folded = foldedOf(known, grids);
+    std::string text = foldStatement(folded, known, settings.maxFolded);
     if (known.repaired > 0)
       text += fmt::format("; in the grids {} voxels were repaired", known.repaired);
     out.findings.push_back({finding("folds", text, folded, settings.maxFolded, advice)});

@@ -119,10 +119,10 @@ DeterminantFigures determinantsOf(const MappedPoints& mapped, const TargetShape&
   return out;
 }
 
-double foldedShare(const std::vector<double>& determinants) {
+double foldedShare(const std::vector<double>& determinants, int orientation) {
   if (determinants.empty()) return 0;
-  const auto folded =
-      std::count_if(determinants.begin(), determinants.end(), [](double d) { return !(d > 0); });
+  const auto folded = std::count_if(determinants.begin(), determinants.end(),
+                                    [&](double d) { return !(orientation * d > 0); });
   return static_cast<double>(folded) / static_cast<double>(determinants.size());
 }
 

@@ -44,8 +44,8 @@ MappedPoints mapPoints(const ComposedMap& map, Points points, double accuracy);
 DeterminantFigures determinantsOf(const MappedPoints& mapped, const TargetShape& target,
                                   double error);
 
-// Share of the points whose determinant is not above 0.
-double foldedShare(const std::vector<double>& determinants);
+// Share of the points whose determinant is not of that sign; see orientationOf().
+double foldedShare(const std::vector<double>& determinants, int orientation);
 
 // Share of the points that are outside the target by more than `slack`, world units; 0 of a target
 // that bounds nothing. Throws Cancelled.

@@ -94,7 +94,7 @@ PointCounts pointCounts(const ShellSettings& shell) {
 }
 
 MapFitter::MapFitter(const BoundaryPair& pair, const FitMapSettings& settings)
-    : pair_(pair), settings_(settings) {}
+    : pair_(pair), settings_(settings), orientation_(orientationOf(pair.solid(), pair.target)) {}
 
 FitOutcome MapFitter::onShell(const ShellSettings& shell) {
   const FitProblem problem = problemOf(pointCounts(shell));
@@ -113,8 +113,8 @@ FitOutcome MapFitter::within(double tolerance, bool mayStop) {
     AdaptiveSettings settings = adaptiveSettings(tolerance);
     if (mayStop && mayTakeSteps())
       settings.goOn = [this](const HarmonicField& field, int round) {
-        return round > 1 ||
-               foldedShare(insideOf(HarmonicMap(field)).determinants) <= kHopelessFolds;
+        return round > 1 || foldedShare(insideOf(HarmonicMap(field)).determinants, orientation_) <=
+                                kHopelessFolds;
       };
     timed(seconds, "fit", [&] {
       const AdaptiveResult fit = fitToTolerance(problem(tolerance), settings);
@@ -268,10 +268,10 @@ InsideFigures MapFitter::figuresOf(const FitOutcome& out) {
   const MappedPoints here = insideOf(out.map);
   InsideFigures figures;
   figures.samples = inside_.size();
-  figures.folded = foldedShare(here.determinants);
+  figures.folded = foldedShare(here.determinants, orientation_);
   figures.determinants = determinantsOf(here, *target_, slack);
   for (std::size_t i = 0; i < inside_.size() && figures.foldedAt.size() < kPlaces; ++i)
-    if (!(here.determinants[i] > 0)) figures.foldedAt.push_back(inside_[i]);
+    if (!(orientation_ * here.determinants[i] > 0)) figures.foldedAt.push_back(inside_[i]);
   figures.outside = outsideShare(here.points, *target_, slack);
   return figures;
 }

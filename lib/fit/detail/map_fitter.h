@@ -80,6 +80,7 @@ class MapFitter {
 
   const BoundaryPair& pair_;
   const FitMapSettings& settings_;
+  const int orientation_;  // of the target
   Points inside_;
   std::optional<TargetShape> target_;
 };

@@ -24,11 +24,12 @@ constexpr double kLeastCotangent = 0.02, kMostCotangent = 50;
 Vector3d vector(const Vec3& p) { return {p.x, p.y, p.z}; }
 Vec3 point(const Vector3d& v) { return {v[0], v[1], v[2]}; }
 
-// The rotation nearest to m (Kabsch, 1976).
-Matrix3d rotationOf(const Matrix3d& m) {
+// The rotation nearest to m (Kabsch, 1976), or the rotation with a reflection: sign of its
+// determinant.
+Matrix3d rotationOf(const Matrix3d& m, int sign = 1) {
   const Eigen::JacobiSVD<Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Matrix3d flip = Matrix3d::Identity();
-  flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  flip(2, 2) = sign * (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
   return svd.matrixU() * flip * svd.matrixV().transpose();
 }
 
@@ -118,7 +119,8 @@ Similarity alignment(const Points& from, const Points& to, const std::vector<Tri
   Matrix3d covariance = Matrix3d::Zero();
   for (std::size_t v = 0; v < from.size(); ++v)
     covariance += weight[v] * (vector(to[v]) - b) * (vector(from[v]) - a).transpose();
-  const Matrix3d r = rotationOf(covariance);
+  const bool mirrored = signedVolume(from, triangles) * signedVolume(to, triangles) < 0;
+  const Matrix3d r = rotationOf(covariance, mirrored ? -1 : 1);
   Similarity out;
   out.scale = growth;
   for (int i = 0; i < 3; ++i)

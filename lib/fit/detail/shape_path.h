@@ -4,7 +4,8 @@
 // angle (triangle_turns.h), the stretch linearly, and the vertices follow by least squares over the
 // edges: Xu, Zhang, Wang and Bao, "Poisson shape interpolation" (SPM 2005), with the triangle
 // frames of Sumner and Popovic, "Deformation transfer for triangle meshes" (SIGGRAPH 2004). What
-// the whole surface turns, moves and grows is left out of the way, and put back at its end.
+// the whole surface turns, moves and grows is left out of the way, and put back at its end; so is a
+// reflection, where one surface is inside out and the other is not.
 #pragma once
 
 #include <memory>
@@ -15,7 +16,8 @@
 
 namespace innermap {
 
-// p -> scale rotation p + translation.
+// p -> scale rotation p + translation. The rotation has a reflection in it where a path leads to a
+// mirror's image.
 struct Similarity {
   double scale = 1;
   Mat3 rotation{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};

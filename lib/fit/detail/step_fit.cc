@@ -137,7 +137,7 @@ class StepFitter {
     if (mayHalve && half >= kShortest)
       s.goOn = [this, half](const HarmonicField& field, int round) {
         if (round > 1 && half < kShortestFitted) return true;
-        return foldedShare(insideAfter(HarmonicMap(field)).determinants) <=
+        return foldedShare(insideAfter(HarmonicMap(field)).determinants, 1) <=
                allowed(round == 1 ? kCoarseFoldShare : kFoldShare);
       };
     AdaptiveResult fit = fitToTolerance(boundary_.problem(ways, unit_), s);
@@ -146,7 +146,7 @@ class StepFitter {
     HarmonicMap map(fit.field);
     MappedPoints inside = insideAfter(map);
     const MapStep record{at_, to, fit.field.sources().size(), fit.error.p99,
-                         foldedShare(inside.determinants)};
+                         foldedShare(inside.determinants, 1)};
     return {record, std::move(fit), std::move(map), std::move(inside)};
   }
 

@@ -135,11 +135,25 @@ TEST(Injectivity, TargetsThatRunThroughThemselves) {
 TEST(Injectivity, AMirrorIsNoFold) {
   Injectivity known = sound();
   known.inside = figures(20000, 20000, -1);
+  known.cells = {};
   known.boundary = figures(10000, 10000, -1);
   known.voxels = figures(5000, 5000, -1);
   EXPECT_FALSE(notOneToOne(known));
   EXPECT_TRUE(says(known, "mirrors"));
+  EXPECT_TRUE(says(known, "det J < 0 at all 20000 points inside"));
   EXPECT_FALSE(says(known, kThen));
+  EXPECT_EQ(injectivityLine(known).find("folded:"), std::string::npos);
+}
+
+TEST(Injectivity, AMirrorFoldsWhereItDoesNotTurnOver) {
+  Injectivity known = sound();
+  known.inside = figures(20000, 19996, -1);
+  known.cells = {};
+  known.boundary = figures(10000, 10000, -1);
+  known.voxels = figures(5000, 5000, -1);
+  EXPECT_TRUE(notOneToOne(known));
+  EXPECT_TRUE(says(known, "det J is not below 0 at 4 of 20000 points inside (0.02%)"));
+  EXPECT_NE(injectivityLine(known).find("folded: 4 of 20000 points inside"), std::string::npos);
 }
 
 // Whatever is known: never "not" without a reason, never what follows from determinants that are

@@ -69,8 +69,9 @@ TEST(InsideCheck, DeterminantsMultiply) {
   here = mapPoints(affine({1, -3, 1}), here, 1e-9);
   EXPECT_NEAR(here.determinants[1], -6, 1e-12);
   EXPECT_LT(norm(here.points[1] - Vec3{2, -0.75, 0}), 1e-12);
-  EXPECT_EQ(foldedShare(here.determinants), 1);
-  EXPECT_EQ(foldedShare({1, -1, 0, 2}), 0.5);
+  EXPECT_EQ(foldedShare(here.determinants, 1), 1);
+  EXPECT_EQ(foldedShare(here.determinants, -1), 0);
+  EXPECT_EQ(foldedShare({1, -1, 0, 2}, 1), 0.5);
 }
 
 TEST(InsideCheck, FoldsAreCounted) {

@@ -60,9 +60,9 @@ std::vector<double> errorsAt(const StepFit& fit, const BoundaryPair& pair, const
 // boundary and, by the maximum principle in the second step's solid, twice the first step's error.
 TEST(StepFitRelease, SimilaritiesAreMetInside) {
   const Mesh source = bar();
-  const Move map = [](const Vec3& p) { return Vec3{2 - 3 * p.y, 3 * p.x + 1, 3 * p.z}; };
-  const BoundaryPair pair = makeBoundaryPair(source, moved(source, map));
-  for (const double tolerance : {1e-3, 1e-5}) {
+  for (const auto& [tolerance, up] : {std::pair{1e-3, 3}, {1e-5, 3}, {1e-3, -3}}) {  // -: mirrored
+    const Move map = [up = up](const Vec3& p) { return Vec3{2 - 3 * p.y, 3 * p.x + 1, up * p.z}; };
+    const BoundaryPair pair = makeBoundaryPair(source, moved(source, map));
     const StepFit fit = fitted(pair, tolerance);
     ASSERT_EQ(fit.steps.size(), 2u);
     const Points inside = pointsInside(pair.solid(), 3000);
