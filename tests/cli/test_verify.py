@@ -15,10 +15,20 @@ def bent(p, strength=0.3):
     return (p[0] + strength * p[2] * p[2], p[1] * (1 + 0.2 * p[2]), p[2])
 
 
-def fitted(path="map.ply", *options, to=bent):
+def long(p):
+    return (p[0], p[1], 8 * p[2])
+
+
+def ringed(p):
+    """That bent to a ring whose ends run through each other."""
+    turn, radius = 3.5 * p[2], 16 / 7 - p[0]
+    return (radius * math.cos(turn), p[1], -radius * math.sin(turn))
+
+
+def fitted(path="map.ply", *options, source=lambda p: p, to=bent):
     """The file of a map of a ball, in parts."""
     vertices, faces = icosphere_arrays(3)
-    write_obj("ball.obj", vertices, faces)
+    write_obj("ball.obj", [source(p) for p in vertices], faces)
     write_obj("bent.obj", [to(p) for p in vertices], faces)
     innermap("fit", "ball.obj", "bent.obj", "-o", path, "--quiet", "--tolerance", "0.01", *options)
     return MapFile(path)
@@ -89,6 +99,17 @@ def test_a_proven_map_is_proven_again():
     assert verified(file.claiming(), "--sample", "0", "--require", "whole").get("agreement") is None
     assert verified(file.claiming(), "--seed", "7", "--threads", "1") == results
     no_leftovers("ball.obj", "bent.obj", "map.ply", "edited.ply", "verify.json")
+
+
+def test_one_to_one_is_proven_again():
+    file = fitted("map.ply", "--prove", "full")
+    assert file.fact("one_to_one") == "1"
+    assert verified(file.claiming())["one-to-one"] == "holds"
+    assert "one-to-one" not in verified(file.claiming(one_to_one=0))
+    ring = fitted("ring.ply", "--prove", "full", "--best-effort", source=long, to=ringed)
+    assert ring.fact("one_to_one") == "0"
+    claimed = verified(ring.claiming(one_to_one=1), exit_code=1)
+    assert claimed["one-to-one"] != "holds", claimed
 
 
 def test_weaker_claims_hold_and_stronger_do_not():
@@ -179,7 +200,7 @@ def test_what_is_no_map_is_refused():
 
 
 def test_a_mirrored_map_is_proven_again():
-    file = fitted("map.ply", "--one-to-one", "off", to=lambda p: bent((-p[0], p[1], p[2])))
+    file = fitted("map.ply", to=lambda p: bent((-p[0], p[1], p[2])))
     assert file.fact("mirrored") == "1"
     results = verified(file.claiming())
     assert results["sense"] == results["agreement"] == "holds", results
