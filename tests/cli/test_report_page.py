@@ -204,6 +204,8 @@ def test_folds_are_marked():
         page.value(SETTLED)
         assert seen(page, "canvas.surfaces")["sum"] != picture["sum"]
         assert page.value("document.querySelector('#surfaces .told').textContent").startswith("fold inside 1;")
+        marks = page.value("[...document.querySelectorAll('button.mark')].map(b => b.textContent).join()")
+        assert "cell proven to fold 1" in marks, marks
         check_quiet(page)
 
 

@@ -53,10 +53,14 @@ function sizeUp(panel) {
 // Marks of the report: [{text, panel, point}].
 function marksOf(panels) {
   const out = [];
-  const add = (key, text, panel) => pointsIn(reported(key)).forEach((point, i) => {
+  const addPoints = (points, text, panel) => points.forEach((point, i) => {
     if (panels[panel]) out.push({text: `${text} ${i + 1}`, panel, point});
   });
+  const add = (key, text, panel) => addPoints(pointsIn(reported(key)), text, panel);
   add("inside.folded_at", "fold inside", 0);
+  const cells = pointsIn(reported("one_to_one.proof_places")), folded = reported("one_to_one.proof_negative") || 0;
+  addPoints(cells.slice(0, folded), "cell proven to fold", 0);
+  addPoints(cells.slice(folded), "undecided cell", 0);
   add("one_to_one.source_crossings_at", "source crosses itself", 0);
   add("one_to_one.target_crossings_at", "target crosses itself", 1);
   add("tolerance.worst_at", "largest error", 0);
