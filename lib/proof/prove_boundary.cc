@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
@@ -20,6 +21,16 @@ using namespace proof;
 constexpr double kExact = 1e-11;  // of the diagonal: an error that is as good as none
 // Pieces that one thread splits in one go; triangles at first, eight times as many.
 constexpr std::size_t kBlock = 32;
+
+// Of the surface's area over the number of pieces that may be looked at: where a piece so small has
+// no bound, as the image of the boundary runs into charges of a later step, none is to be had.
+constexpr double kLeastArea = 1e-2;
+// Pieces without a bound that are cut in one go.
+constexpr std::uint64_t kDive = 1024;
+
+double areaOf(const SurfacePiece& piece) {
+  return 0.5 * norm(cross(piece.at[1] - piece.at[0], piece.at[2] - piece.at[0]));
+}
 
 struct Witness {
   SurfacePiece piece;
@@ -62,36 +73,34 @@ void takeBetter(const Witness& other, Witness& best) {
 class BoundarySearch {
  public:
   BoundarySearch(const ComposedMap& map, const StepTrees& steps, double scale, double diagonal,
-                 double margin)
-      : map_(map), steps_(steps), scale_(scale), diagonal_(diagonal), margin_(margin) {}
+                 double margin, std::uint64_t limit)
+      : map_(map),
+        steps_(steps),
+        scale_(scale),
+        diagonal_(diagonal),
+        margin_(margin),
+        limit_(limit) {}
 
-  // All triangles, or all open pieces cut in eight.
-  void round(std::vector<SurfacePiece> pieces, bool whole) {
-    std::vector<BlockPieces> blocks((pieces.size() + kBlock - 1) / kBlock);
-    parallelBlocks(pieces.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-      BlockPieces& out = blocks[begin / kBlock];
-      for (std::size_t i = begin; i < end; ++i) cut(pieces[i], whole ? 0 : 3, out.pieces);
-      SetGroup group;
-      for (std::size_t i = 0; i < out.pieces.size(); i += kLanes)
-        boundPieces(steps_, group, out.pieces.data() + i, std::min(kLanes, out.pieces.size() - i),
-                    out.witness);
-    });
-    Witness best;
-    for (const BlockPieces& block : blocks) takeBetter(block.witness, best);
-    if (best.error >= 0) look(best.piece);
-    const double enough = std::max((1 + margin_) * seen_, kExact * diagonal_ * scale_);
-    open_.clear();
-    for (const BlockPieces& block : blocks)
-      for (const SurfacePiece& piece : block.pieces) {
-        ++examined_;
-        if (piece.most <= enough)
-          settled_ = std::max(settled_, piece.most);
-        else
-          open_.push_back(piece);
-      }
+  // All triangles as they are.
+  void begin(const std::vector<SurfacePiece>& triangles) {
+    double area = 0;
+    for (const SurfacePiece& piece : triangles) area += areaOf(piece);
+    leastArea_ = kLeastArea * area / static_cast<double>(limit_);
+    round(triangles, 0);
   }
 
-  std::vector<SurfacePiece>& open() { return open_; }
+  // Cuts open pieces in eight: first those that have no bound, the smallest of them, so that it is
+  // soon known where there is none; then all of them, where `room` for more pieces allows that,
+  // else those of the largest bounds, and so few that there is room to cut what comes of them.
+  void goOn(std::uint64_t room) {
+    std::uint64_t most = room / kLanes;
+    if (open_.size() > most) most = std::max<std::uint64_t>(most / 2, 1);
+    if (unbounded_) most = std::min(most, kDive);
+    round(takeLargest(most), 3);
+  }
+
+  bool mayGoOn() const { return !open_.empty() && examined_ + kLanes <= limit_ && !hopeless_; }
+
   std::uint64_t examined() const { return examined_; }
 
   BoundaryProof result() const {
@@ -109,6 +118,65 @@ class BoundarySearch {
   }
 
  private:
+  // Each piece halved so many times.
+  void round(const std::vector<SurfacePiece>& pieces, int times) {
+    std::vector<BlockPieces> blocks((pieces.size() + kBlock - 1) / kBlock);
+    parallelBlocks(pieces.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+      BlockPieces& out = blocks[begin / kBlock];
+      for (std::size_t i = begin; i < end; ++i) cut(pieces[i], times, out.pieces);
+      SetGroup group;
+      for (std::size_t i = 0; i < out.pieces.size(); i += kLanes)
+        boundPieces(steps_, group, out.pieces.data() + i, std::min(kLanes, out.pieces.size() - i),
+                    out.witness);
+    });
+    Witness best;
+    for (const BlockPieces& block : blocks) takeBetter(block.witness, best);
+    if (best.error >= 0) look(best.piece);
+    for (const BlockPieces& block : blocks) {
+      examined_ += block.pieces.size();
+      open_.insert(open_.end(), block.pieces.begin(), block.pieces.end());
+    }
+    settle();
+  }
+
+  // Pieces whose bound is near enough to what was seen are open no more.
+  void settle() {
+    const double enough = std::max((1 + margin_) * seen_, kExact * diagonal_ * scale_);
+    const auto end = std::remove_if(open_.begin(), open_.end(), [&](const SurfacePiece& piece) {
+      if (!(piece.most <= enough)) return false;
+      settled_ = std::max(settled_, piece.most);
+      return true;
+    });
+    open_.erase(end, open_.end());
+    unbounded_ = false;
+    for (const SurfacePiece& piece : open_) {
+      if (!std::isinf(piece.most)) continue;
+      unbounded_ = true;
+      hopeless_ = hopeless_ || areaOf(piece) < leastArea_;
+    }
+  }
+
+  // At most so many, in the order in which they stand; they are open no more.
+  std::vector<SurfacePiece> takeLargest(std::uint64_t most) {
+    std::vector<SurfacePiece> taken;
+    if (open_.size() <= most) {
+      taken.swap(open_);
+      return taken;
+    }
+    using Rank = std::tuple<double, double, std::size_t>;
+    std::vector<Rank> order;
+    for (std::size_t i = 0; i < open_.size(); ++i)
+      order.emplace_back(-open_[i].most, areaOf(open_[i]), i);
+    const auto last = order.begin() + static_cast<std::ptrdiff_t>(most);
+    std::nth_element(order.begin(), last, order.end());
+    std::vector<char> takes(open_.size(), 0);
+    for (auto i = order.begin(); i != last; ++i) takes[std::get<2>(*i)] = 1;
+    std::vector<SurfacePiece> left;
+    for (std::size_t i = 0; i < open_.size(); ++i) (takes[i] ? taken : left).push_back(open_[i]);
+    open_.swap(left);
+    return taken;
+  }
+
   // By plain sums, at the middle and the corners.
   void look(const SurfacePiece& piece) {
     const Vec3 places[4] = {centroid(piece.at), piece.at[0], piece.at[1], piece.at[2]};
@@ -126,6 +194,9 @@ class BoundarySearch {
   const ComposedMap& map_;
   const StepTrees& steps_;
   const double scale_, diagonal_, margin_;
+  const std::uint64_t limit_;
+  double leastArea_ = 0;
+  bool unbounded_ = false, hopeless_ = false;  // of the open pieces: some have no bound; none will
   std::vector<SurfacePiece> open_;
   std::uint64_t examined_ = 0;
   double settled_ = 0, seen_ = 0;
@@ -163,13 +234,13 @@ BoundaryProof proveBoundaryError(const ExpandedMap& expanded, const Mesh& surfac
                 "look at fewer cells a charge");
   const double scale = proofScale(boundingBox(surface));
   const auto steps = expanded.expansions(scale);
-  BoundarySearch search(map, *steps, scale, diagonal, settings.errorMargin);
+  BoundarySearch search(map, *steps, scale, diagonal, settings.errorMargin, limit);
   reportProgress("bounding the boundary's error", 0);
-  search.round(sortedPieces(surface, target, scale), true);
-  while (!search.open().empty() && search.examined() + kLanes * search.open().size() <= limit) {
+  search.begin(sortedPieces(surface, target, scale));
+  while (search.mayGoOn()) {
     reportProgress("bounding the boundary's error",
                    static_cast<double>(search.examined()) / static_cast<double>(limit));
-    search.round(std::move(search.open()), false);
+    search.goOn(limit - search.examined());
   }
   return search.result();
 }
