@@ -1,6 +1,14 @@
+#include <algorithm>
+
+#include "innermap/core/run.h"
 #include "io/geometry/detail/ply_geometry.h"
 
 namespace innermap {
+namespace {
+
+constexpr std::size_t kTogether = 8192;  // rows whose splats are held at once
+
+}  // namespace
 
 void PlyGeometry::writeHeader(OutputBuffer& out, const CarriedGeometry& carried) const {
   std::map<PlyRole, std::uint64_t> counts;
@@ -34,30 +42,74 @@ void PlyGeometry::writeHeader(OutputBuffer& out, const CarriedGeometry& carried)
 
 void PlyGeometry::writeVertices(OutputBuffer& out, PlyBody& body, const PlyElement& element,
                                 const CarriedGeometry& carried) const {
-  std::vector<const PlyMoving*> moving(element.properties.size());
-  for (const auto& [at, what] : moving_) moving[at] = &what;
   std::vector<std::size_t> rows;
-  for (std::size_t row = 0; row < element.count; ++row) {
-    std::size_t copied = body.position();
-    if (carried.added > 0) rows.push_back(copied);
-    const bool stays = carried.number[row] >= 0;
-    for (std::size_t p = 0; p < element.properties.size(); ++p) {
-      const PlyProperty& property = element.properties[p];
-      if (!moving[p] || !stays) {
-        body.skip(property);
-        continue;
-      }
-      const std::string_view bytes = body.next(property.type);
-      const auto begin = static_cast<std::size_t>(bytes.data() - file_.bytes.data());
-      // Digits come with a space of their own.
-      copy(out, copied,
-           body.ascii() && begin > copied && file_.bytes[begin - 1] == ' ' ? begin - 1 : begin);
-      body.put(out, property.type, moved(*moving[p], row, carried));
-      copied = begin + bytes.size();
+  for (std::size_t begin = 0; begin < element.count; begin += kTogether) {
+    reportProgress("writing", static_cast<double>(begin) / static_cast<double>(element.count));
+    const std::size_t end = std::min<std::size_t>(element.count, begin + kTogether);
+    std::vector<CarriedSplat> splats;
+    if (splats_.degree() >= 0) splats = carrySplats(body, element, begin, end - begin, carried);
+    for (std::size_t row = begin; row < end; ++row) {
+      if (carried.added > 0) rows.push_back(body.position());
+      writeVertex(out, body, element, row, carried,
+                  splats.empty() ? nullptr : &splats[row - begin].splat);
     }
-    if (stays) copy(out, copied, body.position());
   }
   if (carried.added > 0) writeAdded(out, body, element, rows, carried);
+}
+
+void PlyGeometry::writeVertex(OutputBuffer& out, PlyBody& body, const PlyElement& element,
+                              std::size_t row, const CarriedGeometry& carried, Splat* splat) const {
+  if (carried.number[row] < 0) return body.skipRow(element);
+  std::size_t copied = body.position();
+  for (std::size_t p = 0; p < element.properties.size(); ++p) {
+    const PlyProperty& property = element.properties[p];
+    const std::optional<PlyMoving>& moving = moving_[p];
+    const bool ofSplat = moving && moving->direction == PlyMoving::kSplat;
+    if (!moving || (ofSplat && moving->axis == PlySplats::kOpacity &&
+                    carried.splats.opacity == SplatOpacity::look)) {
+      body.skip(property);
+      continue;
+    }
+    const std::string_view bytes = body.next(property.type);
+    const auto begin = static_cast<std::size_t>(bytes.data() - file_.bytes.data());
+    // Digits come with a space of their own.
+    copy(out, copied,
+         body.ascii() && begin > copied && file_.bytes[begin - 1] == ' ' ? begin - 1 : begin);
+    body.put(out, property.type,
+             ofSplat ? PlySplats::valueOf(*splat, moving->axis) : moved(*moving, row, carried));
+    copied = begin + bytes.size();
+  }
+  copy(out, copied, body.position());
+}
+
+std::vector<CarriedSplat> PlyGeometry::carrySplats(PlyBody& body, const PlyElement& element,
+                                                   std::size_t firstRow, std::size_t rows,
+                                                   const CarriedGeometry& carried) const {
+  const std::size_t position = body.position();
+  std::vector<CarriedSplat> out(rows);
+  for (CarriedSplat& one : out) one.splat = splats_.read(body, element);
+  body.seek(position);
+  parallelBlocks(rows, 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (carried.number[firstRow + i] >= 0)
+        out[i] = carriedSplat(carried.points.jacobians.at(firstRow + i), out[i].splat,
+                              carried.splats.opacity);
+  });
+  return out;
+}
+
+std::uint64_t PlyGeometry::cappedOpacities(const CarriedGeometry& carried) const {
+  if (splats_.degree() < 0 || carried.splats.opacity == SplatOpacity::look) return 0;
+  PlyBody body(file_, header_);
+  body.seek(vertexBody_);
+  std::uint64_t out = 0;
+  for (std::size_t begin = 0; begin < vertices_->count; begin += kTogether) {
+    const std::size_t rows = std::min<std::size_t>(vertices_->count - begin, kTogether);
+    for (const CarriedSplat& one : carrySplats(body, *vertices_, begin, rows, carried))
+      out += one.capped;
+    for (std::size_t row = 0; row < rows; ++row) body.skipRow(*vertices_);
+  }
+  return out;
 }
 
 // Properties of points between others are the means of theirs.
@@ -87,12 +139,11 @@ void PlyGeometry::writeAdded(OutputBuffer& out, PlyBody& body, const PlyElement&
     if (body.ascii()) out.raw("\n");
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const PlyProperty& property = element.properties[p];
-      const auto found = moving_.find(p);
+      const std::optional<PlyMoving>& moving = moving_[p];
       if (property.list)
         body.put(out, property.countType, 0);
       else
-        body.put(out, property.type,
-                 found == moving_.end() ? values[p] : moved(found->second, originals + i, carried));
+        body.put(out, property.type, moving ? moved(*moving, originals + i, carried) : values[p]);
     }
   }
   body.seek(after);
