@@ -38,7 +38,7 @@ void makeOrthogonal(Columns& columns, double cosine, Columns* with) {
       const double aa = dot(a, a), bb = dot(b, b), ab = dot(a, b);
       if (!(std::abs(ab) > cosine * std::sqrt(aa * bb))) continue;
       const double zeta = (bb - aa) / (2 * ab);
-      const double t = std::copysign(1 / (std::abs(zeta) + std::hypot(1, zeta)), zeta);
+      const double t = std::copysign(1 / (std::abs(zeta) + std::sqrt(1 + zeta * zeta)), zeta);
       const double c = 1 / std::sqrt(1 + t * t);
       rotate(a, b, c, c * t);
       if (with)
@@ -76,7 +76,7 @@ Columns columnsOf(const Mat3& m) {
 // The orthogonal factor of J = R P.
 bool polarFactor(const Mat3& jacobian, Mat3& r) {
   Columns left = columnsOf(jacobian), right = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, axes;
-  makeOrthogonal(left, 1e-15, &right);
+  makeOrthogonal(left, 1e-14, &right);
   const Vec3 lengths{norm(left[0]), norm(left[1]), norm(left[2])};
   if (!axesOf(left, lengths, axes)) return false;
   // In axesOf() the shortest lost its sign.
@@ -118,7 +118,7 @@ std::array<double, 4> quaternionOf(const Mat3& m) {
 }
 
 double lengthOf(const std::array<double, 4>& q) {
-  return std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
+  return std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
 }
 
 // growth: by what the Jacobian was divided.

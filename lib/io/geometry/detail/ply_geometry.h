@@ -41,11 +41,15 @@ class PlyGeometry : public GeometryFile {
   void readVertices(PlyBody& body, const PlyElement& element);
   void addElement(PlyRole role, const PlyFaces& face);
 
-  // From the row at the body's position on, where it is again afterwards; as they are where they
-  // are cut. Side by side.
-  std::vector<CarriedSplat> carrySplats(PlyBody& body, const PlyElement& element,
-                                        std::size_t firstRow, std::size_t rows,
-                                        const CarriedGeometry& carried) const;
+  // Of the row at the body's position, which stays there.
+  CarriedSplat carrySplat(PlyBody& body, const PlyElement& element, std::size_t row,
+                          const CarriedGeometry& carried) const;
+  // Calls use(body at the first, first row, last row, number of the part) for parts of rows [begin,
+  // end), at the first of which `body` is; it is behind them afterwards. Side by side, each with a
+  // body of its own, where all rows are as long; one part otherwise.
+  template <class Use>
+  void forRows(PlyBody& body, const PlyElement& element, std::size_t begin, std::size_t end,
+               const Use& use) const;
 
   double moved(const PlyMoving& what, std::size_t point, const CarriedGeometry& carried) const {
     const Points& of = what.direction < 0
@@ -56,9 +60,8 @@ class PlyGeometry : public GeometryFile {
   void writeHeader(OutputBuffer& out, const CarriedGeometry& carried) const;
   void writeVertices(OutputBuffer& out, PlyBody& body, const PlyElement& element,
                      const CarriedGeometry& carried) const;
-  // splat: of the row, null where vertices are none.
   void writeVertex(OutputBuffer& out, PlyBody& body, const PlyElement& element, std::size_t row,
-                   const CarriedGeometry& carried, Splat* splat) const;
+                   const CarriedGeometry& carried) const;
   void writeAdded(OutputBuffer& out, PlyBody& body, const PlyElement& element,
                   const std::vector<std::size_t>& rows, const CarriedGeometry& carried) const;
   void writeElement(OutputBuffer& out, PlyBody& body, const PlyElement& element,

@@ -1,4 +1,7 @@
 #include <algorithm>
+#include <array>
+#include <numeric>
+#include <sstream>
 
 #include "innermap/core/run.h"
 #include "io/geometry/detail/ply_geometry.h"
@@ -6,7 +9,18 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kTogether = 8192;  // rows whose splats are held at once
+// Rows that are written by one thread, and how many times as many are held.
+constexpr std::size_t kPart = 512, kParts = 64;
+
+// Of every row; 0 where that differs.
+std::size_t rowBytes(const PlyElement& element) {
+  std::size_t out = 0;
+  for (const PlyProperty& property : element.properties) {
+    if (property.list) return 0;
+    out += plySize(property.type);
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -40,26 +54,62 @@ void PlyGeometry::writeHeader(OutputBuffer& out, const CarriedGeometry& carried)
   copy(out, position, header_.bodyOffset);
 }
 
+template <class Use>
+void PlyGeometry::forRows(PlyBody& body, const PlyElement& element, std::size_t begin,
+                          std::size_t end, const Use& use) const {
+  const std::size_t bytes = rowBytes(element), start = body.position();
+  if (body.ascii() || bytes == 0) return use(body, begin, end, 0);
+  parallelBlocks(end - begin, kPart, [&](std::size_t first, std::size_t last) {
+    PlyBody own(file_, header_);
+    own.seek(start + first * bytes);
+    use(own, begin + first, begin + last, first / kPart);
+  });
+  body.seek(start + (end - begin) * bytes);
+}
+
 void PlyGeometry::writeVertices(OutputBuffer& out, PlyBody& body, const PlyElement& element,
                                 const CarriedGeometry& carried) const {
   std::vector<std::size_t> rows;
-  for (std::size_t begin = 0; begin < element.count; begin += kTogether) {
-    reportProgress("writing", static_cast<double>(begin) / static_cast<double>(element.count));
-    const std::size_t end = std::min<std::size_t>(element.count, begin + kTogether);
-    std::vector<CarriedSplat> splats;
-    if (splats_.degree() >= 0) splats = carrySplats(body, element, begin, end - begin, carried);
-    for (std::size_t row = begin; row < end; ++row) {
-      if (carried.added > 0) rows.push_back(body.position());
-      writeVertex(out, body, element, row, carried,
-                  splats.empty() ? nullptr : &splats[row - begin].splat);
+  if (carried.added > 0) {
+    const std::size_t position = body.position();
+    for (std::size_t row = 0; row < element.count; ++row) {
+      rows.push_back(body.position());
+      body.skipRow(element);
     }
+    body.seek(position);
+  }
+  for (std::size_t begin = 0; begin < element.count; begin += kParts * kPart) {
+    reportProgress("writing", static_cast<double>(begin) / static_cast<double>(element.count));
+    const std::size_t end = std::min<std::size_t>(element.count, begin + kParts * kPart);
+    std::array<std::string, kParts> parts;
+    forRows(body, element, begin, end,
+            [&](PlyBody& own, std::size_t first, std::size_t last, std::size_t part) {
+              std::ostringstream text;
+              {
+                OutputBuffer to(text);
+                for (std::size_t row = first; row < last; ++row)
+                  writeVertex(to, own, element, row, carried);
+              }
+              parts[part] = text.str();
+            });
+    for (const std::string& part : parts) out.raw(part);
   }
   if (carried.added > 0) writeAdded(out, body, element, rows, carried);
 }
 
+CarriedSplat PlyGeometry::carrySplat(PlyBody& body, const PlyElement& element, std::size_t row,
+                                     const CarriedGeometry& carried) const {
+  const std::size_t position = body.position();
+  const Splat splat = splats_.read(body, element);
+  body.seek(position);
+  return carriedSplat(carried.points.jacobians.at(row), splat, carried.splats.opacity);
+}
+
 void PlyGeometry::writeVertex(OutputBuffer& out, PlyBody& body, const PlyElement& element,
-                              std::size_t row, const CarriedGeometry& carried, Splat* splat) const {
+                              std::size_t row, const CarriedGeometry& carried) const {
   if (carried.number[row] < 0) return body.skipRow(element);
+  Splat splat;
+  if (splats_.degree() >= 0) splat = carrySplat(body, element, row, carried).splat;
   std::size_t copied = body.position();
   for (std::size_t p = 0; p < element.properties.size(); ++p) {
     const PlyProperty& property = element.properties[p];
@@ -76,40 +126,27 @@ void PlyGeometry::writeVertex(OutputBuffer& out, PlyBody& body, const PlyElement
     copy(out, copied,
          body.ascii() && begin > copied && file_.bytes[begin - 1] == ' ' ? begin - 1 : begin);
     body.put(out, property.type,
-             ofSplat ? PlySplats::valueOf(*splat, moving->axis) : moved(*moving, row, carried));
+             ofSplat ? PlySplats::valueOf(splat, moving->axis) : moved(*moving, row, carried));
     copied = begin + bytes.size();
   }
   copy(out, copied, body.position());
-}
-
-std::vector<CarriedSplat> PlyGeometry::carrySplats(PlyBody& body, const PlyElement& element,
-                                                   std::size_t firstRow, std::size_t rows,
-                                                   const CarriedGeometry& carried) const {
-  const std::size_t position = body.position();
-  std::vector<CarriedSplat> out(rows);
-  for (CarriedSplat& one : out) one.splat = splats_.read(body, element);
-  body.seek(position);
-  parallelBlocks(rows, 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      if (carried.number[firstRow + i] >= 0)
-        out[i] = carriedSplat(carried.points.jacobians.at(firstRow + i), out[i].splat,
-                              carried.splats.opacity);
-  });
-  return out;
 }
 
 std::uint64_t PlyGeometry::cappedOpacities(const CarriedGeometry& carried) const {
   if (splats_.degree() < 0 || carried.splats.opacity == SplatOpacity::look) return 0;
   PlyBody body(file_, header_);
   body.seek(vertexBody_);
-  std::uint64_t out = 0;
-  for (std::size_t begin = 0; begin < vertices_->count; begin += kTogether) {
-    const std::size_t rows = std::min<std::size_t>(vertices_->count - begin, kTogether);
-    for (const CarriedSplat& one : carrySplats(body, *vertices_, begin, rows, carried))
-      out += one.capped;
-    for (std::size_t row = 0; row < rows; ++row) body.skipRow(*vertices_);
-  }
-  return out;
+  const std::size_t count = vertices_->count;
+  std::vector<std::uint64_t> capped(count / kPart + 1);
+  forRows(body, *vertices_, 0, count,
+          [&](PlyBody& own, std::size_t first, std::size_t last, std::size_t part) {
+            for (std::size_t row = first; row < last; ++row) {
+              if (carried.number[row] >= 0)
+                capped[part] += carrySplat(own, *vertices_, row, carried).capped;
+              own.skipRow(*vertices_);
+            }
+          });
+  return std::accumulate(capped.begin(), capped.end(), std::uint64_t{0});
 }
 
 // Properties of points between others are the means of theirs.

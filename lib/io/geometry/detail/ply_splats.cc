@@ -90,8 +90,8 @@ void PlySplats::check(const PlyBody& body, std::uint64_t row, Splat& splat, int 
   const auto fail = [&](const char* what) {
     body.fail(fmt::format("splat {} {}; leave it out or export the file again", row, what));
   };
-  double length = 0;
-  for (const double q : splat.quaternion) length = std::hypot(length, q);
+  double length = 0;  // squared
+  for (const double q : splat.quaternion) length += q * q;
   if (!std::isfinite(length)) fail("has a quaternion (rot_0 to rot_3) that is not finite");
   if (!(length > 0)) fail("has a quaternion (rot_0 to rot_3) of length 0");
   if (!isFinite(splat.logScales)) fail("has a scale that is not finite");
