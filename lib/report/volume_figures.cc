@@ -157,6 +157,10 @@ Figures geometryFigures(const CarriedGeometry& carried, std::uint64_t directions
           {"points_not_inverted", points.failed, "points without an inverse",
            "which have the nearest place that was found"},
           {"points_folded", carried.folded, "points folded", "where directions mean little"},
+          {"splats", carried.splats.degree < 0 ? 0 : carried.ownPoints, "Gaussian splats",
+           "of the points"},
+          {"opacities_capped", carried.splats.capped, "opacities capped",
+           "of splats that shrink more than --splats mass can make up for"},
           {"cells", cells[0], "cells", ""},
           {"cells_inverted_before", cells[1], "cells inverted before", ""},
           {"cells_inverted_after", cells[2], "cells inverted after", ""}};

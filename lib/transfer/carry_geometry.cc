@@ -68,6 +68,10 @@ void subdivide(Geometry& geometry, const PointCarry& carry, const CarryGeometryS
   }
 }
 
+bool needsJacobians(const Geometry& geometry) {
+  return !geometry.directions.empty() || geometry.splats.degree >= 0;
+}
+
 void carryDirections(const Geometry& geometry, CarriedGeometry& out) {
   for (const Directions& directions : geometry.directions) {
     Points turned(directions.values.size());
@@ -106,24 +110,28 @@ CarriedGeometry carryGeometry(Geometry& geometry, const PointCarry& carry,
                               const CarryGeometrySettings& settings) {
   if (!(settings.subdivide >= 0) || !std::isfinite(settings.subdivide))
     throw SettingError("subdivide", "must not be negative");
+  if (settings.splats == SplatOpacity::mass && geometry.splats.degree < 0)
+    throw SettingError("splats", "is for Gaussian splats; there are none, so leave it out");
   CarriedGeometry out;
   out.ownPoints = geometry.ownPoints;
+  out.splats.degree = geometry.splats.degree;
+  out.splats.opacity = settings.splats;
   if (settings.subdivide > 0) {
     if (!geometry.splittable)
       throw SettingError("subdivide",
                          "edges of this kind of file cannot be split; only those of "
-                         ".obj and .ply, without strips of triangles");
+                         ".obj and .ply, without strips of triangles or splats");
     subdivide(geometry, carry, settings);
   }
   out.added = geometry.ownPoints - out.ownPoints;
-  out.points = carry(geometry.points, !geometry.directions.empty());
+  out.points = carry(geometry.points, needsJacobians(geometry));
   carryDirections(geometry, out);
   numberThose(geometry, out);
   return out;
 }
 
 std::uint64_t carryGeometryMemory(const Geometry& geometry) {
-  std::uint64_t bytes = carryPointsMemory(geometry.points.size(), !geometry.directions.empty());
+  std::uint64_t bytes = carryPointsMemory(geometry.points.size(), needsJacobians(geometry));
   for (const Directions& directions : geometry.directions)
     bytes += directions.values.size() * sizeof(Vec3);
   return bytes + geometry.ownPoints * sizeof(int) + geometry.elements.size();

@@ -67,6 +67,8 @@ void geometry(const std::string& path) {
   const Geometry& g = file->geometry;
   carried.points.points = g.points;
   carried.points.fates.assign(g.points.size(), PointFate::carried);
+  carried.points.jacobians.assign(g.points.size(), {{{1, 0.5, 0}, {0, 2, 0}, {0, 0.25, 1}}});
+  carried.splats.opacity = SplatOpacity::mass;
   for (const Directions& d : g.directions) carried.directions.push_back(d.values);
   carried.ownPoints = g.ownPoints;
   for (std::size_t i = 0; i < g.ownPoints; ++i) carried.number.push_back(static_cast<int>(i));
@@ -76,6 +78,7 @@ void geometry(const std::string& path) {
   cut(g, carried);
   file->write(path, carried, out);
   file->inverted(carried);
+  file->cappedOpacities(carried);
 }
 
 void landmarks(const std::string& path) { readLandmarks(path); }

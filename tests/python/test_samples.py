@@ -43,6 +43,10 @@ def test_proof_cells():
     assert " 0 undecided, 0 folded" in run("proof_cells")
 
 
+def test_splats():
+    assert "24000 splats, 0 too far outside" in run("splats")
+
+
 def test_volume_texture():
     assert "channels A, R, G, B" in run("volume_texture")
 

@@ -43,11 +43,13 @@ class Deformer {
     Row row;
     row.error = fit->error;
     row.judged = {frame.number, fit->error.p99, fit->folded, fit->outside};
+    CarryGeometrySettings settings;
+    settings.splats = job_.geometry.splats;
     row.carried = context_.timed("carry", [&] {
       return carryFile(
           *file_,
           [&](const Points& points, bool jacobians) { return pusher.push(map, points, jacobians); },
-          0, context_);
+          settings, context_);
     });
     warnOf(*file_, row.carried, job_.transfer, fmt::format("frame {}: ", frame.number), context_);
     writeFrame(frame, [&] { writeGeometryFile(path, *file_, row.carried, context_); });

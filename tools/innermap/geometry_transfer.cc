@@ -25,6 +25,7 @@ void addGeometryOptions(Command& c, GeometryOptions& o, bool subdivide) {
            "likewise those that are normals of surfaces, turned by its inverse transpose")
       .defaults("nx, ny, nz; those that the file declares");
   if (subdivide) c.setting(subdivideSetting(&o.subdivide));
+  c.setting(splatsSetting(&o.splats));
 }
 
 void requireFitting(const std::string& input, const std::string& output,
@@ -37,6 +38,7 @@ void requireFitting(const std::string& input, const std::string& output,
     refuse("--vectors", !geometry.vectors.empty(), "geometry");
     refuse("--normals", !geometry.normals.empty(), "geometry");
     refuse("--subdivide", geometry.subdivide > 0, "geometry");
+    refuse("--splats", geometry.splats != SplatOpacity::look, "geometry");
     return;
   }
   refuse("--grids", !transfer.grids.empty(), "volumes");
@@ -67,13 +69,13 @@ CarryPointsSettings carryPointsSettings(const OutsideSettings& outside, double a
   return settings;
 }
 
-CarriedGeometry carryFile(GeometryFile& file, const PointCarry& carry, double subdivide,
-                          Context& context) {
+CarriedGeometry carryFile(GeometryFile& file, const PointCarry& carry,
+                          const CarryGeometrySettings& settings, Context& context) {
   context.requireMemory("carrying the geometry", carryGeometryMemory(file.geometry),
                         "cut the file into parts");
-  CarryGeometrySettings settings;
-  settings.subdivide = subdivide;
-  return carryGeometry(file.geometry, carry, settings);
+  CarriedGeometry out = carryGeometry(file.geometry, carry, settings);
+  out.splats.capped = file.cappedOpacities(out);
+  return out;
 }
 
 void warnOf(const GeometryFile& file, const CarriedGeometry& carried,
@@ -96,6 +98,11 @@ void warnOf(const GeometryFile& file, const CarriedGeometry& carried,
         fmt::format("{}at {} points the map turns space inside out; directions there "
                     "mean little",
                     part, carried.folded));
+  if (carried.splats.capped > 0)
+    context.warning(
+        fmt::format("{}{} splats shrink so much that no opacity keeps what they dim; they have the "
+                    "largest, 0.99 or what they had",
+                    part, carried.splats.capped));
   const GeometryFile::Inverted inverted = file.inverted(carried);
   if (inverted.after > inverted.before)
     context.warning(fmt::format("{}{} of {} cells are inverted, {} were before", part,
@@ -113,6 +120,9 @@ std::string reportGeometry(const GeometryFile& file, const CarriedGeometry& carr
       geometryFigures(carried, directions, {inverted.cells, inverted.before, inverted.after}));
   std::string text =
       fmt::format("{} points, {} directions carried\n", carried.ownPoints, directions);
+  if (carried.splats.degree >= 0)
+    text += fmt::format("the points are Gaussian splats, with colours of degree {}\n",
+                        carried.splats.degree);
   if (carried.added > 0) text += fmt::format("{} points added on split edges\n", carried.added);
   if (points.outside > 0)
     text += fmt::format(

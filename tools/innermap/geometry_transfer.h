@@ -15,6 +15,7 @@ namespace innermap::tool {
 struct GeometryOptions {
   std::string vectors, normals;  // names with commas between
   double subdivide = 0;          // fraction of the diagonal of what is carried to
+  SplatOpacity splats = SplatOpacity::look;
 };
 
 // subdivide: whether edges may be split.
@@ -31,9 +32,8 @@ std::unique_ptr<GeometryFile> readGeometryFile(const std::string& path,
 
 CarryPointsSettings carryPointsSettings(const OutsideSettings& outside, double accuracy);
 
-// subdivide: world units.
-CarriedGeometry carryFile(GeometryFile& file, const PointCarry& carry, double subdivide,
-                          Context& context);
+CarriedGeometry carryFile(GeometryFile& file, const PointCarry& carry,
+                          const CarryGeometrySettings& settings, Context& context);
 
 // Warns of what went wrong. part: "frame 7: " or nothing.
 void warnOf(const GeometryFile& file, const CarriedGeometry& carried,

@@ -201,9 +201,9 @@ void runGeometry(Way way, const CarryOptions& options, Context& context) {
           : carryThrough(readThrough(options.through, mapped, context), way == Way::push, settings);
   const double diagonal =
       way == Way::push ? boundingBox(moved).diagonal() : mapped.solid().diagonal();
-  const CarriedGeometry carried = context.timed("carry", [&] {
-    return carryFile(*file, carry, options.geometry.subdivide * diagonal, context);
-  });
+  const CarryGeometrySettings how{options.geometry.subdivide * diagonal, options.geometry.splats};
+  const CarriedGeometry carried =
+      context.timed("carry", [&] { return carryFile(*file, carry, how, context); });
   warnOf(*file, carried, options.transfer, "", context);
   context.detail(reportGeometry(*file, carried, context));
   context.judge(judgeMap(mapped, nullptr, options.verdict, MapOrigin::file));

@@ -11,6 +11,7 @@
 #include "innermap/io/geometry_file.h"
 #include "innermap/mesh/mesh_file.h"
 #include "io/geometry/detail/geometry_formats.h"
+#include "io/geometry/detail/ply_splats.h"
 
 namespace innermap {
 namespace {
@@ -39,12 +40,17 @@ constexpr std::uint64_t kOnTheWay = 25'000'000;
 
 // Bytes in memory for each of the file, measured: dense files, and those with directions, whose
 // Jacobians are kept, take more.
-double bytesPerByte(const std::string& path) {
-  std::string head(4096, ' ');
-  std::ifstream(path, std::ios::binary).read(head.data(), 4096);
+double bytesPerByte(const std::string& path, const std::string& head) {
   if (endsIn(path, ".stl")) return head.compare(0, 5, "solid") ? 18 : 5;
   if (endsIn(path, ".ply")) return head.find(" nx") != head.npos ? 9.5 : 5;
   return 4.2;
+}
+
+std::string headOf(const std::string& path) {
+  std::string head(16384, ' ');
+  std::ifstream(path, std::ios::binary)
+      .read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head;
 }
 
 }  // namespace
@@ -81,7 +87,11 @@ std::uint64_t geometryMemory(const std::string& path) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error) throw FileError(path, "cannot be read (" + error.message() + "); check the name");
-  return static_cast<std::uint64_t>(bytesPerByte(path) * static_cast<double>(size)) + kOnTheWay;
+  const std::string head = headOf(path);
+  if (const std::uint64_t splats = endsIn(path, ".ply") ? plySplatsMemory({path, head}, size) : 0)
+    return splats + kOnTheWay;
+  return static_cast<std::uint64_t>(bytesPerByte(path, head) * static_cast<double>(size)) +
+         kOnTheWay;
 }
 
 std::vector<std::string> writeGeometry(const std::string& path, const GeometryFile& file,

@@ -228,8 +228,9 @@ py::object Job::file(const std::string& from, const py::object& path) const {
   const double diagonal = push_ ? boundingBox(map_.mapped->boundary.target.moved).diagonal()
                                 : map_.mapped->solid().diagonal();
   ReadGeometrySettings reading = geometrySettings(o_);
-  return dictOf(call(
-      o_.call, [&]() { return carryFile(from, to, reading, o_.subdivide * diagonal, carryOf()); }));
+  return dictOf(call(o_.call, [&]() {
+    return carryFile(from, to, reading, {o_.subdivide * diagonal, o_.splats}, carryOf());
+  }));
 }
 
 py::object carry(bool push, const Arguments& a, const WayOptions& o) {

@@ -49,6 +49,7 @@ void CarryOptions::describe(Keywords& k) {
            "of geometry: properties or fields that are vectors, turned by the Jacobian");
   k.object("normals", &normals, "str or Sequence[str]",
            "of geometry: those that are normals, turned by its inverse transpose");
+  k.setting(splatsSetting(&splats));
   k.settings(innermap::describe(lattice, "the solid", "as fine as those of the grids"));
   k.setting(namesSetting(&names));
   call.describe(k);
@@ -126,14 +127,12 @@ ReadGeometrySettings geometrySettings(const CarryOptions& o) {
 }
 
 FileFigures carryFile(const std::string& from, const std::string& to,
-                      const ReadGeometrySettings& reading, double subdivide,
+                      const ReadGeometrySettings& reading, const CarryGeometrySettings& settings,
                       const PointCarry& carry) {
   const auto file = readGeometry(from, reading);
   innermap::requireMemory("carrying the geometry",
                           processMemory(carryGeometryMemory(file->geometry)),
                           "cut the file into parts");
-  CarryGeometrySettings settings;
-  settings.subdivide = subdivide;
   const CarriedGeometry carried = carryGeometry(file->geometry, carry, settings);
   FileFigures out;
   out.lost = writeGeometry(to, *file, carried);
@@ -145,6 +144,8 @@ FileFigures carryFile(const std::string& from, const std::string& to,
                  {"points_not_inverted", carried.points.failed},
                  {"points_folded", carried.folded},
                  {"elements_cut", carried.cutElements},
+                 {"splats", carried.splats.degree < 0 ? 0 : carried.ownPoints},
+                 {"opacities_capped", file->cappedOpacities(carried)},
                  {"cells", inverted.cells},
                  {"cells_inverted_before", inverted.before},
                  {"cells_inverted_after", inverted.after}};

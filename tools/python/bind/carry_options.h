@@ -22,6 +22,7 @@ void bindCarry(pybind11::module_& m);  // after bindMap, bindGrids and bindCells
 struct CarryOptions {
   pybind11::object grids, densities, stresses, strains, fadeTo, vectors, normals;
   CarrySettings carrySettings;  // but for the names
+  SplatOpacity splats = SplatOpacity::look;
   double outside = 0;
   LatticeChoice lattice;
   NamingScheme names = NamingScheme::innermap;
@@ -49,9 +50,9 @@ pybind11::dict dictOf(const FileFigures& figures);
 // What a file of geometry or cells is read with.
 ReadGeometrySettings geometrySettings(const CarryOptions& o);
 
-// A file carried and written. Without the lock of the interpreter. subdivide: world units.
+// A file carried and written. Without the lock of the interpreter.
 FileFigures carryFile(const std::string& from, const std::string& to,
-                      const ReadGeometrySettings& reading, double subdivide,
+                      const ReadGeometrySettings& reading, const CarryGeometrySettings& settings,
                       const PointCarry& carry);
 
 }  // namespace innermap::python

@@ -177,7 +177,7 @@ py::object Deformation::file(const std::string& from, const FramePattern& patter
   FrameTable table;
   runCall(o_.call, [&]() {
     forFrames(geometryMemory(from), table, [&](std::int64_t number, const PointCarry& carry) {
-      carryFile(from, pattern.path(number), reading, 0, carry);
+      carryFile(from, pattern.path(number), reading, {0, o_.splats}, carry);
     });
   });
   return table.dict();

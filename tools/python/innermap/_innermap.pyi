@@ -392,10 +392,10 @@ def push(
     sampling: Literal['nearest', 'linear', 'quadratic'] = 'linear',
     density_limit: Optional[float] = None, outside: float = 0,
     fade_to: Union[str, ArrayLike, None] = None, vectors: Union[str, Sequence[str], None] = None,
-    normals: Union[str, Sequence[str], None] = None, resolution: Optional[int] = None,
-    voxel_size: Optional[float] = None, names: Literal['innermap', 'blender', 'houdini'] = 'innermap',
-    progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
-    threads: int = 0) -> Any: ...
+    normals: Union[str, Sequence[str], None] = None, splats: Literal['look', 'mass'] = 'look',
+    resolution: Optional[int] = None, voxel_size: Optional[float] = None,
+    names: Literal['innermap', 'blender', 'houdini'] = 'innermap', progress: Optional[Progress] = None,
+    max_memory: Union[int, str, None] = None, threads: int = 0) -> Any: ...
 
 def pull(
     map: Map, inside: Any, path: Optional[Path]=None, *, jacobian: bool = False,
@@ -406,10 +406,10 @@ def pull(
     sampling: Literal['nearest', 'linear', 'quadratic'] = 'linear',
     density_limit: Optional[float] = None, outside: float = 0,
     fade_to: Union[str, ArrayLike, None] = None, vectors: Union[str, Sequence[str], None] = None,
-    normals: Union[str, Sequence[str], None] = None, resolution: Optional[int] = None,
-    voxel_size: Optional[float] = None, names: Literal['innermap', 'blender', 'houdini'] = 'innermap',
-    progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
-    threads: int = 0) -> Any: ...
+    normals: Union[str, Sequence[str], None] = None, splats: Literal['look', 'mass'] = 'look',
+    resolution: Optional[int] = None, voxel_size: Optional[float] = None,
+    names: Literal['innermap', 'blender', 'houdini'] = 'innermap', progress: Optional[Progress] = None,
+    max_memory: Union[int, str, None] = None, threads: int = 0) -> Any: ...
 
 def deform(
     source: AnyMesh, inside: Any, frames: Any, output: Optional[Path]=None, *, velocity: bool = False,
@@ -420,10 +420,10 @@ def deform(
     sampling: Literal['nearest', 'linear', 'quadratic'] = 'linear',
     density_limit: Optional[float] = None, outside: float = 0,
     fade_to: Union[str, ArrayLike, None] = None, vectors: Union[str, Sequence[str], None] = None,
-    normals: Union[str, Sequence[str], None] = None, resolution: Optional[int] = None,
-    voxel_size: Optional[float] = None, names: Literal['innermap', 'blender', 'houdini'] = 'innermap',
-    progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
-    threads: int = 0) -> Any: ...
+    normals: Union[str, Sequence[str], None] = None, splats: Literal['look', 'mass'] = 'look',
+    resolution: Optional[int] = None, voxel_size: Optional[float] = None,
+    names: Literal['innermap', 'blender', 'houdini'] = 'innermap', progress: Optional[Progress] = None,
+    max_memory: Union[int, str, None] = None, threads: int = 0) -> Any: ...
 
 def sequence(
     source: AnyMesh, frames: Any, *, output: Optional[Path] = None,

@@ -5,7 +5,9 @@
 //          materials, colours, comments) stays byte for byte. A normal that several points share is
 //          split, as each of them turns it otherwise
 //   .ply   ASCII and binary, with all elements and properties in their types; x y z and nx ny nz
-//          move, and vectors that are named: NAME_x NAME_y NAME_z
+//          move, and vectors that are named: NAME_x NAME_y NAME_z. With scale_0..2, rot_0..3 and
+//          opacity vertices are Gaussian splats, see transfer/geometry.h: these and the colours'
+//          f_rest_* (0, 9, 24 or 45) move too
 //   .off   x y z and, in NOFF, normals
 //   .stl   ASCII and binary, with normals and attributes
 //   .vtu .msh .mesh   tetrahedra and hexahedra with fields, see io/cell_file.h; these may be
@@ -48,6 +50,9 @@ class GeometryFile {
   };
   virtual Inverted inverted(const CarriedGeometry&) const { return {}; }
 
+  // Splats whose opacity SplatOpacity::mass would have grown above its limit.
+  virtual std::uint64_t cappedOpacities(const CarriedGeometry&) const { return 0; }
+
   // The file with what was carried. Returns names of fields that `path`'s format cannot hold.
   virtual std::vector<std::string> write(const std::string& path, const CarriedGeometry& carried,
                                          std::ostream& stream) const = 0;
@@ -60,7 +65,8 @@ bool isGeometryFile(const std::string& path);
 void requireWritableAs(const std::string& input, const std::string& output);
 
 // Throws FileError for content that is wrong or cut short, counts beyond the file's size, indices
-// out of range, coordinates that are not finite, a name of a vector that is not there; MemoryError;
+// out of range, coordinates that are not finite, a name of a vector that is not there, splats that
+// lack a property, quaternions of length 0, scales or colours that are not finite; MemoryError;
 // Cancelled.
 std::unique_ptr<GeometryFile> readGeometry(const std::string& path,
                                            const ReadGeometrySettings& settings = {});

@@ -63,6 +63,12 @@ class Midpoints {
   std::unordered_map<std::uint64_t, int> made_;
 };
 
+// Gaussian splats stay in their file and are carried as it is written, so that millions take no
+// more memory than points do.
+struct SplatCloud {
+  int degree = -1;  // of the colours' harmonics, 0 to 3; -1: points are no splats
+};
+
 struct Geometry {
   Points points;  // world units; new ones of split edges at the end
   // Points after these are not the file's: places at which cells' values are carried.
@@ -71,6 +77,7 @@ struct Geometry {
   bool cornerDirections = false;       // some; directions otherwise stand at points
   std::size_t textures = 0;            // of Corner::texture
   Elements elements;
+  SplatCloud splats;
   bool splittable = true;  // its edges may be split
 
   Midpoints pointMiddles, directionMiddles, textureMiddles;
@@ -85,6 +92,45 @@ void splitEdges(Geometry& geometry, const std::vector<std::array<int, 2>>& edges
 // The edges of faces and lines, each once, lower point first.
 std::vector<std::array<int, 2>> edgesOf(const Geometry& geometry);
 
+// Gaussian splats as the reference implementation of Kerbl, Kopanas, Leimkuehler and Drettakis, "3D
+// Gaussian Splatting for Real-Time Radiance Field Rendering" (2023), stores them. A splat about the
+// point c has the covariance S = Q diag(exp(2 logScales)) Q^T, Q being its quaternion's rotation.
+struct Splat {
+  Vec3 logScales;  // natural logarithms of standard deviations in world units
+  std::array<double, 4> quaternion{{1, 0, 0, 0}};  // w x y z, of any length but 0
+  double opacity = 0;                              // logit of alpha, in [-inf, inf]
+  int degree = 0;                                  // of the harmonics, 0 to 3
+  // Coefficients of the colour's real spherical harmonics of degrees 1 to `degree`, with the
+  // reference's signs: those of red, of green, of blue, each (degree + 1)^2 - 1.
+  std::array<double, 45> harmonics{};
+};
+
+// look keeps alpha. With it a cloud hides what is behind it as much as before, along the image of
+// each ray, however the map stretches it.
+//
+// mass: alpha' = alpha A / A', A being the mean of the splat's cross section, 2 pi times the root
+// of the projected covariance's determinant, over all directions: half the area of the ellipsoid
+// whose semi-axes are the scales (Cauchy), world units squared. Light that crosses a length L of
+// splats strewn at random, n a volume, is dimmed to exp(-n L A alpha) on average; n changes by 1 /
+// |det J|, so this is what a fog of the same mass does, exactly on average over directions, and in
+// each where J is a similarity. alpha grows to 0.99 at most, where the reference's renderer stops,
+// or stays where it was above.
+enum class SplatOpacity { look, mass };
+
+struct CarriedSplat {
+  Splat splat;
+  bool capped = false;  // alpha was to grow above its limit
+};
+
+// With J the Jacobian and R its polar factor: the covariance is J S J^T, its axes in the order of
+// those that were turned. Along R d the colour is what it was along d; where J turns space inside
+// out R is a reflection. The quaternion keeps its length and its sign. Where J is not finite or of
+// a rank below 2 the splat stays as it is.
+CarriedSplat carriedSplat(const Mat3& jacobian, const Splat& splat,
+                          SplatOpacity opacity = SplatOpacity::look);
+
+Setting splatsSetting(SplatOpacity* opacity);
+
 // Meshes, point clouds, curves and cells carried through a map.
 
 struct CarryGeometrySettings {
@@ -92,27 +138,35 @@ struct CarryGeometrySettings {
   // are nowhere (at a quarter, a half, three quarters) farther than this from where the map brings
   // them: world units of what is carried to; 0 splits none. Not negative.
   double subdivide = 0;
+  SplatOpacity splats = SplatOpacity::look;  // of what has splats alone
 };
 
 // Of `subdivide`, as a share of the diagonal of the solid that is carried to.
 Setting subdivideSetting(double* share);
 
+struct CarriedSplats {
+  int degree = -1;  // as SplatCloud
+  SplatOpacity opacity = SplatOpacity::look;
+  std::uint64_t capped = 0;  // of them, as GeometryFile::cappedOpacities() counts them
+};
+
 struct CarriedGeometry {
   CarriedPoints points;            // of geometry.points, those of cells' values included
   std::vector<Points> directions;  // as geometry.directions
-  std::uint64_t ownPoints = 0;     // those of the file that were there before edges were split
-  std::uint64_t added = 0;         // on split edges
-  std::uint64_t folded = 0;        // points where the map turns space inside out, where Jacobians
-                                   // were taken
-  std::uint64_t cutElements = 0;   // elements with a point that is cut
+  CarriedSplats splats;
+  std::uint64_t ownPoints = 0;    // those of the file that were there before edges were split
+  std::uint64_t added = 0;        // on split edges
+  std::uint64_t folded = 0;       // points where the map turns space inside out, where Jacobians
+                                  // were taken
+  std::uint64_t cutElements = 0;  // elements with a point that is cut
   // New numbers of the points that stay, -1 for others; and whether each element stays.
   std::vector<int> number;
   std::vector<std::uint8_t> stays;
 };
 
 // Splits edges of `geometry` where that is asked for, then carries it. Jacobians are taken where
-// there are directions. Throws what `carry` throws; MemoryError when edges are split beyond the
-// limit; SettingError.
+// there are directions or splats. Throws what `carry` throws; MemoryError when edges are split
+// beyond the limit; SettingError.
 CarriedGeometry carryGeometry(Geometry& geometry, const PointCarry& carry,
                               const CarryGeometrySettings& settings = {});
 

@@ -22,14 +22,25 @@ bool PlyGeometry::findThree(const PlyElement& element,
       if (!isFloat(type) && !(direction < 0))
         throw FileError(file_.path, "property '" + three[static_cast<std::size_t>(a)] +
                                         "' holds whole numbers; a direction needs float or double");
-      moving_[*at[static_cast<std::size_t>(a)]] = {direction, a};
+      moving_[*at[static_cast<std::size_t>(a)]] = PlyMoving{direction, a};
     }
     return true;
   }
   return false;
 }
 
+void PlyGeometry::findSplats(const PlyElement& element) {
+  splats_ = PlySplats(file_.path, element);
+  geometry.splats.degree = splats_.degree();
+  if (splats_.degree() < 0) return;
+  geometry.splittable = false;
+  for (std::size_t p = 0; p < splats_.parts().size(); ++p)
+    if (const int part = splats_.parts()[p]; part != PlySplats::kNone)
+      moving_[p] = PlyMoving{PlyMoving::kSplat, part};
+}
+
 void PlyGeometry::findMoving(const PlyElement& element, const ReadGeometrySettings& settings) {
+  moving_.assign(element.properties.size(), std::nullopt);
   if (!findThree(element, {{"x", "y", "z"}}, -1))
     throw FileError(file_.path, "its vertices have no x, y and z");
   for (const PlyProperty& p : element.properties)
@@ -53,6 +64,7 @@ void PlyGeometry::findMoving(const PlyElement& element, const ReadGeometrySettin
   for (const std::string& name : settings.normals)
     if (name != "n") add(name, DirectionKind::normal, true);
   for (const std::string& name : settings.vectors) add(name, DirectionKind::vector, true);
+  findSplats(element);
 }
 
 void PlyGeometry::read(const ReadGeometrySettings& settings) {
@@ -64,6 +76,8 @@ void PlyGeometry::read(const ReadGeometrySettings& settings) {
     if (role == PlyRole::vertices) {
       if (vertices) throw FileError(file_.path, "has two elements of vertices; keep one");
       vertices = true;
+      vertices_ = &element;
+      vertexBody_ = body.position();
       findMoving(element, settings);
       readVertices(body, element);
       continue;
@@ -96,21 +110,33 @@ void PlyGeometry::read(const ReadGeometrySettings& settings) {
 void PlyGeometry::readVertices(PlyBody& body, const PlyElement& element) {
   requireCountable(file_.path, element.count);
   geometry.points.reserve(element.count);
-  std::vector<const PlyMoving*> moving(element.properties.size());
-  for (const auto& [at, what] : moving_) moving[at] = &what;
+  for (Directions& directions : geometry.directions) {
+    directions.values.reserve(element.count);
+    directions.points.reserve(element.count);
+  }
   std::vector<Vec3> values(1 + geometry.directions.size());
+  Splat splat;
   for (std::uint64_t row = 0; row < element.count; ++row) {
+    if (row % 65536 == 0)
+      reportProgress("reading", static_cast<double>(body.position()) /
+                                    static_cast<double>(file_.bytes.size()));
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const PlyProperty& property = element.properties[p];
-      if (!moving[p]) {
+      const std::optional<PlyMoving>& moving = moving_[p];
+      if (!moving) {
         body.skip(property);
         continue;
       }
       const double value = body.nextValue(property.type);
-      if (!std::isfinite(value) && moving[p]->direction < 0)
+      if (moving->direction == PlyMoving::kSplat) {
+        PlySplats::valueOf(splat, moving->axis) = value;
+        continue;
+      }
+      if (!std::isfinite(value) && moving->direction < 0)
         body.fail(fmt::format("vertex {} is not finite; export the file again", row));
-      values[static_cast<std::size_t>(1 + moving[p]->direction)][moving[p]->axis] = value;
+      values[static_cast<std::size_t>(1 + moving->direction)][moving->axis] = value;
     }
+    if (splats_.degree() >= 0) PlySplats::check(body, row, splat, splats_.degree());
     geometry.points.push_back(values[0]);
     for (std::size_t d = 0; d < geometry.directions.size(); ++d) {
       geometry.directions[d].values.push_back(values[d + 1]);

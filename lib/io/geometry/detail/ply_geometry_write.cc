@@ -1,6 +1,28 @@
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <sstream>
+
+#include "innermap/core/run.h"
 #include "io/geometry/detail/ply_geometry.h"
 
 namespace innermap {
+namespace {
+
+// Rows that are written by one thread, and how many times as many are held.
+constexpr std::size_t kPart = 512, kParts = 64;
+
+// Of every row; 0 where that differs.
+std::size_t rowBytes(const PlyElement& element) {
+  std::size_t out = 0;
+  for (const PlyProperty& property : element.properties) {
+    if (property.list) return 0;
+    out += plySize(property.type);
+  }
+  return out;
+}
+
+}  // namespace
 
 void PlyGeometry::writeHeader(OutputBuffer& out, const CarriedGeometry& carried) const {
   std::map<PlyRole, std::uint64_t> counts;
@@ -32,32 +54,99 @@ void PlyGeometry::writeHeader(OutputBuffer& out, const CarriedGeometry& carried)
   copy(out, position, header_.bodyOffset);
 }
 
+template <class Use>
+void PlyGeometry::forRows(PlyBody& body, const PlyElement& element, std::size_t begin,
+                          std::size_t end, const Use& use) const {
+  const std::size_t bytes = rowBytes(element), start = body.position();
+  if (body.ascii() || bytes == 0) return use(body, begin, end, 0);
+  parallelBlocks(end - begin, kPart, [&](std::size_t first, std::size_t last) {
+    PlyBody own(file_, header_);
+    own.seek(start + first * bytes);
+    use(own, begin + first, begin + last, first / kPart);
+  });
+  body.seek(start + (end - begin) * bytes);
+}
+
 void PlyGeometry::writeVertices(OutputBuffer& out, PlyBody& body, const PlyElement& element,
                                 const CarriedGeometry& carried) const {
-  std::vector<const PlyMoving*> moving(element.properties.size());
-  for (const auto& [at, what] : moving_) moving[at] = &what;
   std::vector<std::size_t> rows;
-  for (std::size_t row = 0; row < element.count; ++row) {
-    std::size_t copied = body.position();
-    if (carried.added > 0) rows.push_back(copied);
-    const bool stays = carried.number[row] >= 0;
-    for (std::size_t p = 0; p < element.properties.size(); ++p) {
-      const PlyProperty& property = element.properties[p];
-      if (!moving[p] || !stays) {
-        body.skip(property);
-        continue;
-      }
-      const std::string_view bytes = body.next(property.type);
-      const auto begin = static_cast<std::size_t>(bytes.data() - file_.bytes.data());
-      // Digits come with a space of their own.
-      copy(out, copied,
-           body.ascii() && begin > copied && file_.bytes[begin - 1] == ' ' ? begin - 1 : begin);
-      body.put(out, property.type, moved(*moving[p], row, carried));
-      copied = begin + bytes.size();
+  if (carried.added > 0) {
+    const std::size_t position = body.position();
+    for (std::size_t row = 0; row < element.count; ++row) {
+      rows.push_back(body.position());
+      body.skipRow(element);
     }
-    if (stays) copy(out, copied, body.position());
+    body.seek(position);
+  }
+  for (std::size_t begin = 0; begin < element.count; begin += kParts * kPart) {
+    reportProgress("writing", static_cast<double>(begin) / static_cast<double>(element.count));
+    const std::size_t end = std::min<std::size_t>(element.count, begin + kParts * kPart);
+    std::array<std::string, kParts> parts;
+    forRows(body, element, begin, end,
+            [&](PlyBody& own, std::size_t first, std::size_t last, std::size_t part) {
+              std::ostringstream text;
+              {
+                OutputBuffer to(text);
+                for (std::size_t row = first; row < last; ++row)
+                  writeVertex(to, own, element, row, carried);
+              }
+              parts[part] = text.str();
+            });
+    for (const std::string& part : parts) out.raw(part);
   }
   if (carried.added > 0) writeAdded(out, body, element, rows, carried);
+}
+
+CarriedSplat PlyGeometry::carrySplat(PlyBody& body, const PlyElement& element, std::size_t row,
+                                     const CarriedGeometry& carried) const {
+  const std::size_t position = body.position();
+  const Splat splat = splats_.read(body, element);
+  body.seek(position);
+  return carriedSplat(carried.points.jacobians.at(row), splat, carried.splats.opacity);
+}
+
+void PlyGeometry::writeVertex(OutputBuffer& out, PlyBody& body, const PlyElement& element,
+                              std::size_t row, const CarriedGeometry& carried) const {
+  if (carried.number[row] < 0) return body.skipRow(element);
+  Splat splat;
+  if (splats_.degree() >= 0) splat = carrySplat(body, element, row, carried).splat;
+  std::size_t copied = body.position();
+  for (std::size_t p = 0; p < element.properties.size(); ++p) {
+    const PlyProperty& property = element.properties[p];
+    const std::optional<PlyMoving>& moving = moving_[p];
+    const bool ofSplat = moving && moving->direction == PlyMoving::kSplat;
+    if (!moving || (ofSplat && moving->axis == PlySplats::kOpacity &&
+                    carried.splats.opacity == SplatOpacity::look)) {
+      body.skip(property);
+      continue;
+    }
+    const std::string_view bytes = body.next(property.type);
+    const auto begin = static_cast<std::size_t>(bytes.data() - file_.bytes.data());
+    // Digits come with a space of their own.
+    copy(out, copied,
+         body.ascii() && begin > copied && file_.bytes[begin - 1] == ' ' ? begin - 1 : begin);
+    body.put(out, property.type,
+             ofSplat ? PlySplats::valueOf(splat, moving->axis) : moved(*moving, row, carried));
+    copied = begin + bytes.size();
+  }
+  copy(out, copied, body.position());
+}
+
+std::uint64_t PlyGeometry::cappedOpacities(const CarriedGeometry& carried) const {
+  if (splats_.degree() < 0 || carried.splats.opacity == SplatOpacity::look) return 0;
+  PlyBody body(file_, header_);
+  body.seek(vertexBody_);
+  const std::size_t count = vertices_->count;
+  std::vector<std::uint64_t> capped(count / kPart + 1);
+  forRows(body, *vertices_, 0, count,
+          [&](PlyBody& own, std::size_t first, std::size_t last, std::size_t part) {
+            for (std::size_t row = first; row < last; ++row) {
+              if (carried.number[row] >= 0)
+                capped[part] += carrySplat(own, *vertices_, row, carried).capped;
+              own.skipRow(*vertices_);
+            }
+          });
+  return std::accumulate(capped.begin(), capped.end(), std::uint64_t{0});
 }
 
 // Properties of points between others are the means of theirs.
@@ -87,12 +176,11 @@ void PlyGeometry::writeAdded(OutputBuffer& out, PlyBody& body, const PlyElement&
     if (body.ascii()) out.raw("\n");
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const PlyProperty& property = element.properties[p];
-      const auto found = moving_.find(p);
+      const std::optional<PlyMoving>& moving = moving_[p];
       if (property.list)
         body.put(out, property.countType, 0);
       else
-        body.put(out, property.type,
-                 found == moving_.end() ? values[p] : moved(found->second, originals + i, carried));
+        body.put(out, property.type, moving ? moved(*moving, originals + i, carried) : values[p]);
     }
   }
   body.seek(after);
