@@ -26,6 +26,13 @@ def test_gives_what_deform_gives():
     assert np.array_equal(deformer((frames[1], F)), deformer(frames[1]))
 
 
+def test_fades_to_the_motion_of_each_pose():
+    V, F = shapes.ball(2)
+    deformer = innermap.Deformer((V, F), [[0, 0, 5.0]], outside=0.1, fade_to="fitted", charges=50)
+    for way in 0, 1, -2:
+        assert np.allclose(deformer(V + [way, 0, 0]), [[way, 0, 5]], atol=1e-9)
+
+
 def test_measures_as_sequence_does():
     V, F = shapes.ball(3)
     deformer = innermap.Deformer((V, F), V[:0], **FEW)
