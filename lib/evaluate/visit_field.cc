@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "evaluate/detail/leaf_plan.h"
-#include "evaluate/extended_places.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 
@@ -211,22 +210,28 @@ void visitAll(const HarmonicField& field, const ComposedMap* map, const Solid& s
 
 // f: a field or a map.
 template <class Function>
+FieldSamples samplesAt(const Function& f, const ExtendedPlaces& places,
+                       const VisitSettings& settings) {
+  requireAccuracy(settings);
+  FieldSamples out = f.evaluate(places.at, {settings.accuracy, true});
+  Matrix& values = out.values;
+  for (std::size_t k = 0; k < values.columns(); ++k)
+    for (int a = 0; a < 3; ++a) {
+      const double* gradient = out.gradients.column(3 * k + static_cast<std::size_t>(a));
+      for (std::size_t i = 0; i < places.at.size(); ++i)
+        values(i, k) += gradient[i] * places.beyond[i][a];
+    }
+  return out;
+}
+
+template <class Function>
 ExtendedSamples extendedSamples(const Function& f, const Solid& solid,
                                 const openvdb::FloatGrid& levelSet, const Points& points,
                                 const VisitSettings& settings) {
   requireAccuracy(settings);
   ExtendedPlaces places = placeExtended(solid, levelSet, points);
-  ExtendedSamples out;
-  out.beyond = std::move(places.beyond);
-  out.samples = f.evaluate(places.at, {settings.accuracy, true});
-  Matrix& values = out.samples.values;
-  for (std::size_t k = 0; k < values.columns(); ++k)
-    for (int a = 0; a < 3; ++a) {
-      const double* gradient = out.samples.gradients.column(3 * k + static_cast<std::size_t>(a));
-      for (std::size_t i = 0; i < points.size(); ++i)
-        values(i, k) += gradient[i] * out.beyond[i][a];
-    }
-  return out;
+  FieldSamples samples = samplesAt(f, places, settings);
+  return {std::move(samples), std::move(places.beyond)};
 }
 
 }  // namespace
@@ -253,6 +258,11 @@ ExtendedSamples sampleExtended(const ComposedMap& map, const Solid& solid,
                                const openvdb::FloatGrid& levelSet, const Points& points,
                                const VisitSettings& settings) {
   return extendedSamples(map, solid, levelSet, points, settings);
+}
+
+FieldSamples sampleExtended(const ComposedMap& map, const ExtendedPlaces& places,
+                            const VisitSettings& settings) {
+  return samplesAt(map, places, settings);
 }
 
 }  // namespace innermap

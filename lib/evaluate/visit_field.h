@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "evaluate/extended_places.h"
 #include "innermap/field/harmonic_field.h"
 #include "innermap/levelset/solid.h"
 
@@ -63,5 +64,9 @@ ExtendedSamples sampleExtended(const HarmonicField& field, const Solid& solid,
 ExtendedSamples sampleExtended(const ComposedMap& map, const Solid& solid,
                                const openvdb::FloatGrid& levelSet, const Points& points,
                                const VisitSettings& settings);
+
+// The same at points whose places are known.
+FieldSamples sampleExtended(const ComposedMap& map, const ExtendedPlaces& places,
+                            const VisitSettings& settings);
 
 }  // namespace innermap

@@ -124,17 +124,27 @@ FrameFitter::Samples FrameFitter::samplesAt(std::vector<SurfacePoint> onSurface)
   return out;
 }
 
-FrameFit FrameFitter::fit(const Mesh& frame) const {
+FrameSolution FrameFitter::solve(const Mesh& frame) const {
   TargetBoundary boundary = makeTargetBoundary(solid(), frame);
   StageSeconds seconds = boundary.seconds;
   IterativeSolution solution = timed(seconds, "solve", [&] {
     return solver_->solve(boundary.targetsOf(solid(), collocation_.onSurface));
   });
-  HarmonicField field(solver_->sources(), std::move(solution.weights), std::move(solution.affine));
+  return {
+      std::move(boundary),
+      HarmonicField(solver_->sources(), std::move(solution.weights), std::move(solution.affine)),
+      solution.iterations, solution.residuals.back(), std::move(seconds)};
+}
+
+FrameFit FrameFitter::fit(const Mesh& frame) const {
+  FrameSolution solution = solve(frame);
+  TargetBoundary& boundary = solution.boundary;
+  HarmonicField& field = solution.field;
+  StageSeconds& seconds = solution.seconds;
   const BoundaryError error = timed(seconds, "certificate", [&] {
     BoundaryErrorSettings e;
     // By fast sums, to a hundredth of what is measured.
-    e.accuracy = std::max(1e-2 * solution.residuals.back(), 1e-12 * boundary.diagonal);
+    e.accuracy = std::max(1e-2 * solution.residual, 1e-12 * boundary.diagonal);
     CertificateSettings certificate;
     certificate.seed = seed_;
     return certify(

@@ -57,10 +57,11 @@ struct Limits {
         reach(std::max(s.skin, s.outside.distance) * diagonal),
         endless(s.outside.fadeTo.has_value()) {}
 
+  bool cuts(double outside) const { return outside > reach && !endless; }
+
   void judge(double outside, std::size_t i, CarriedPoints& out) const {
     if (outside > kOutside * diagonal) ++out.outside;
-    if (out.fates[i] == PointFate::carried && outside > reach && !endless)
-      out.fates[i] = PointFate::cut;
+    if (out.fates[i] == PointFate::carried && cuts(outside)) out.fates[i] = PointFate::cut;
     if (out.fates[i] == PointFate::cut)
       ++out.cut;
     else if (outside > kOutside * diagonal)
@@ -98,6 +99,37 @@ void keep(const ExtendedSample& sample, std::size_t i, CarriedPoints& out) {
   if (!out.jacobians.empty()) out.jacobians[i] = sample.jacobian;
 }
 
+Points slice(const Points& points, std::size_t begin, std::size_t end) {
+  return Points(points.begin() + static_cast<std::ptrdiff_t>(begin),
+                points.begin() + static_cast<std::ptrdiff_t>(end));
+}
+
+// Points that are rows of `out` from `begin` on. Inside, the derivative is not needed for the
+// place.
+void pushPart(const ExtendedMap& extended, const Limits& limits, const Points& part,
+              const ExtendedPlaces& places, std::size_t begin, CarriedPoints& out) {
+  Points inside, outside;
+  ExtendedPlaces away;
+  std::vector<std::size_t> insideAt, outsideAt;
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    if (out.jacobians.empty() && !(squaredNorm(places.beyond[i]) > 0)) {
+      inside.push_back(part[i]);
+      insideAt.push_back(begin + i);
+    } else {
+      outside.push_back(part[i]);
+      away.at.push_back(places.at[i]);
+      away.beyond.push_back(places.beyond[i]);
+      outsideAt.push_back(begin + i);
+    }
+  }
+  const Points images = extended.imagesInside(inside);
+  for (std::size_t n = 0; n < images.size(); ++n) out.points[insideAt[n]] = images[n];
+  const std::vector<ExtendedSample> samples = extended.at(outside, away);
+  for (std::size_t n = 0; n < samples.size(); ++n) keep(samples[n], outsideAt[n], out);
+  for (std::size_t i = 0; i < part.size(); ++i)
+    limits.judge(norm(places.beyond[i]), begin + i, out);
+}
+
 }  // namespace
 
 void requireInRange(const CarryPointsSettings& s) {
@@ -113,6 +145,11 @@ struct PointPusher::Data {
   Solid source;
   CarryPointsSettings settings;
   openvdb::FloatGrid::Ptr levelSet;
+
+  ExtendedMap extended(const ComposedMap& map) const {
+    return {map, source, *levelSet, settings.outside,
+            settings.accuracy * targetExtent(map, source)};
+  }
 };
 
 PointPusher::PointPusher(const Solid& source, const CarryPointsSettings& settings) {
@@ -120,31 +157,44 @@ PointPusher::PointPusher(const Solid& source, const CarryPointsSettings& setting
   data_ = std::make_shared<Data>(Data{source, settings, coarseLevelSet(source)});
 }
 
+PointPusher PointPusher::fadingTo(const RigidMotion& motion) const {
+  PointPusher out(*this);
+  Data data = *data_;
+  data.settings.outside.fadeTo = motion;
+  out.data_ = std::make_shared<Data>(std::move(data));
+  return out;
+}
+
+PlacedPoints PointPusher::place(const Points& points) const {
+  requireFinite(points);
+  const Limits limits(data_->source, data_->settings);
+  ExtendedPlaces places = placeExtended(data_->source, *data_->levelSet, points);
+  PlacedPoints out{points, std::move(places.at), std::move(places.beyond), {}};
+  for (const Vec3& beyond : out.beyond)
+    out.fates.push_back(limits.cuts(norm(beyond)) ? PointFate::cut : PointFate::carried);
+  return out;
+}
+
 CarriedPoints PointPusher::push(const ComposedMap& map, const Points& points,
                                 bool jacobians) const {
-  const CarryPointsSettings& s = data_->settings;
-  const Limits limits(data_->source, s);
-  const double accuracy = s.accuracy * targetExtent(map, data_->source);
-  const ExtendedMap extended(map, data_->source, *data_->levelSet, s.outside, accuracy);
+  const Limits limits(data_->source, data_->settings);
+  const ExtendedMap extended = data_->extended(map);
   return inParts(points, jacobians, [&](std::size_t begin, std::size_t end, CarriedPoints& out) {
-    const Points part(points.begin() + static_cast<std::ptrdiff_t>(begin),
-                      points.begin() + static_cast<std::ptrdiff_t>(end));
-    // Inside, the derivative is not needed for the place.
-    const ExtendedPlaces places = placeExtended(data_->source, *data_->levelSet, part);
-    Points inside, outside;
-    std::vector<std::size_t> insideAt, outsideAt;
-    for (std::size_t i = 0; i < part.size(); ++i) {
-      const bool away = jacobians || squaredNorm(places.beyond[i]) > 0;
-      (away ? outside : inside).push_back(part[i]);
-      (away ? outsideAt : insideAt).push_back(i);
-    }
-    const Points images = extended.imagesInside(inside);
-    for (std::size_t n = 0; n < images.size(); ++n) out.points[begin + insideAt[n]] = images[n];
-    const std::vector<ExtendedSample> samples = extended.at(outside);
-    for (std::size_t n = 0; n < samples.size(); ++n) keep(samples[n], begin + outsideAt[n], out);
-    for (std::size_t i = 0; i < part.size(); ++i)
-      limits.judge(norm(places.beyond[i]), begin + i, out);
+    const Points part = slice(points, begin, end);
+    pushPart(extended, limits, part, placeExtended(data_->source, *data_->levelSet, part), begin,
+             out);
   });
+}
+
+CarriedPoints PointPusher::push(const ComposedMap& map, const PlacedPoints& placed,
+                                bool jacobians) const {
+  const Limits limits(data_->source, data_->settings);
+  const ExtendedMap extended = data_->extended(map);
+  return inParts(
+      placed.points, jacobians, [&](std::size_t begin, std::size_t end, CarriedPoints& out) {
+        pushPart(extended, limits, slice(placed.points, begin, end),
+                 {slice(placed.at, begin, end), slice(placed.beyond, begin, end)}, begin, out);
+      });
 }
 
 struct PointPuller::Data {

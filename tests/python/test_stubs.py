@@ -15,7 +15,8 @@ SPECIAL = ("__call__", "__getitem__", "__iter__", "__len__", "__contains__")
 
 def members(cls):
     return {name: value for name, value in vars(cls).items()
-            if name in SPECIAL or not name.startswith("_")}
+            if name in SPECIAL or not name.startswith("_") or
+            name == "__init__" and inspect.isroutine(value) and "Keyword arguments" in value.__doc__}
 
 
 def parameters_of(definition):

@@ -28,7 +28,7 @@ struct DeformOptions {
   TransferOptions transfer;
   GeometryOptions geometry;
   bool velocity = false, force = false;
-  double framesPerSecond = 24;
+  double framesPerSecond = 24, shutter = kUsualShutter;
 };
 
 // What decides an output beside the frames' files.
@@ -36,12 +36,12 @@ std::string settingsText(const DeformOptions& o) {
   const FrameFitterSettings& f = o.frames.fitting;
   const TransferOptions& t = o.transfer;
   const auto number = [](const auto& v) { return v ? fmt::format("{:.17g}", double(*v)) : "-"; };
-  return fmt::format("{};{};{};{};{};{};{};{};{};{};{};{};{:.17g};{};{};{};{};{}", versionText(),
-                     f.sources, frameCollocation(f), number(f.distance), f.seed, t.grids,
-                     static_cast<int>(t.carry.sampling), t.carry.allDensities, t.carry.densityLimit,
-                     t.densities, t.stress, t.strain, t.outside, t.fadeTo,
-                     number(t.grid.resolution), number(t.grid.voxelSize), static_cast<int>(t.names),
-                     o.velocity ? fmt::format("{:.17g}", o.framesPerSecond) : "-");
+  return fmt::format(
+      "{};{};{};{};{};{};{};{};{};{};{};{};{:.17g};{};{};{};{};{}", versionText(), f.sources,
+      frameCollocation(f), number(f.distance), f.seed, t.grids, static_cast<int>(t.carry.sampling),
+      t.carry.allDensities, t.carry.densityLimit, t.densities, t.stress, t.strain, t.outside,
+      t.fadeTo, number(t.grid.resolution), number(t.grid.voxelSize), static_cast<int>(t.names),
+      o.velocity ? fmt::format("{:.17g}/{:.17g}", o.framesPerSecond, o.shutter) : "-");
 }
 
 // Tells which inputs and settings an output was made from.
@@ -130,7 +130,8 @@ class Deformer {
     std::vector<CarriedField> fields;
     if (options_.velocity)
       fields.push_back({"velocity", fits_.velocity(index, options_.framesPerSecond),
-                        openvdb::VEC_CONTRAVARIANT_RELATIVE});
+                        openvdb::VEC_CONTRAVARIANT_RELATIVE,
+                        options_.shutter / options_.framesPerSecond});
     // No structured binding: lambdas cannot capture one in C++17.
     const FramePush pushed = pusher_->push({fit.get(), frame.number}, fields);
     const auto& result = pushed.result;
@@ -337,6 +338,11 @@ Command makeDeformCommand() {
   c.option("--fps", "N", &o->framesPerSecond, "frames per second, for --velocity")
       .above(0)
       .atMost(1e6);
+  c.option("--shutter", "FRAMES", &o->shutter,
+           "how long the shutter is open, for --velocity: the grid goes on around the solid as far "
+           "as it moves meanwhile, or the outer part of the blur is cut off")
+      .atLeast(0)
+      .atMost(10);
   addTransferOptions(c, o->transfer);
   addGeometryOptions(c, o->geometry, false);
   c.example("innermap deform rest.obj bones.obj 'walk.*.obj' -o 'out/bones.####.obj'");

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "evaluate/topology.h"
+#include "innermap/core/memory.h"
 #include "innermap/core/run.h"
 
 namespace innermap {
@@ -34,6 +35,25 @@ std::uint32_t activeAround(const MaskReader& at, const openvdb::Coord& ijk) {
   return bits;
 }
 
+// The voxels around those of `front` that are not active; keep: of a voxel.
+template <class Keep>
+Layer layerAround(const openvdb::MaskTree& front, const openvdb::MaskTree& active,
+                  const Keep& keep) {
+  openvdb::MaskTree ring(front);
+  openvdb::tools::dilateActiveValues(ring, 1, openvdb::tools::NN_FACE_EDGE_VERTEX,
+                                     openvdb::tools::PRESERVE_TILES);
+  ring.topologyDifference(active);
+  Layer layer;
+  for (auto leaf = ring.cbeginLeaf(); leaf; ++leaf)
+    for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel)
+      if (keep(voxel.getCoord())) layer.push_back({voxel.getCoord(), 0});
+  parallelBlocks(layer.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    const MaskReader at(active);
+    for (std::size_t i = begin; i < end; ++i) layer[i].active = activeAround(at, layer[i].at);
+  });
+  return layer;
+}
+
 // Layer by layer, the voxels around the active ones that are not inside the solid.
 std::vector<Layer> layersAround(const openvdb::GridBase& grid, const openvdb::FloatGrid& solid,
                                 int layers) {
@@ -44,19 +64,8 @@ std::vector<Layer> layersAround(const openvdb::GridBase& grid, const openvdb::Fl
   openvdb::MaskTree active = activeTopology(grid);
   std::vector<Layer> out(static_cast<std::size_t>(layers));
   for (Layer& layer : out) {
-    openvdb::MaskTree ring(active);
-    openvdb::tools::dilateActiveValues(ring, 1, openvdb::tools::NN_FACE_EDGE_VERTEX,
-                                       openvdb::tools::PRESERVE_TILES);
-    ring.topologyDifference(active);
-    for (auto leaf = ring.cbeginLeaf(); leaf; ++leaf)
-      for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel) {
-        const openvdb::Coord ijk = voxel.getCoord();
-        if (distance.wsSample(grid.transform().indexToWorld(ijk)) > -within)
-          layer.push_back({ijk, 0});
-      }
-    parallelBlocks(layer.size(), 1024, [&](std::size_t begin, std::size_t end) {
-      const MaskReader at(active);
-      for (std::size_t i = begin; i < end; ++i) layer[i].active = activeAround(at, layer[i].at);
+    layer = layerAround(active, active, [&](const openvdb::Coord& ijk) {
+      return distance.wsSample(grid.transform().indexToWorld(ijk)) > -within;
     });
     for (const NewVoxel& voxel : layer) active.setValueOn(voxel.at);
   }
@@ -119,6 +128,28 @@ openvdb::GridBase::Ptr continuedBeyond(const openvdb::GridBase& grid,
   out->apply<GridTypes::Remove<openvdb::MaskGrid>>(
       [&](auto& typed) { fill(typed.tree(), around); });
   return out;
+}
+
+void continueBySpeed(openvdb::Vec3SGrid& velocity, double seconds) {
+  // A voxel and its part of a leaf, which may hold few.
+  constexpr std::uint64_t kBytes = 100;
+  const double voxel = velocity.voxelSize()[0];
+  openvdb::MaskTree active = activeTopology(velocity);
+  openvdb::MaskTree front;
+  for (auto v = velocity.cbeginValueOn(); v; ++v)
+    if (static_cast<double>(v->length()) * seconds > 0) front.setValueOn(v.getCoord());
+  for (double reach = voxel; !front.empty(); reach += voxel) {
+    requireMemory("continuing the velocity", processMemory(kBytes * 4 * front.activeVoxelCount()),
+                  "give a shorter --shutter or a lower resolution");
+    const Layer layer = layerAround(front, active, [](const openvdb::Coord&) { return true; });
+    const std::vector<openvdb::Vec3s> values = valuesFor(velocity.tree(), layer);
+    front.clear();
+    for (std::size_t i = 0; i < layer.size(); ++i) {
+      velocity.tree().setValueOn(layer[i].at, values[i]);
+      active.setValueOn(layer[i].at);
+      if (static_cast<double>(values[i].length()) * seconds > reach) front.setValueOn(layer[i].at);
+    }
+  }
 }
 
 }  // namespace innermap

@@ -12,4 +12,9 @@ namespace innermap {
 openvdb::GridBase::Ptr continuedBeyond(const openvdb::GridBase& grid,
                                        const openvdb::FloatGrid& solid, int layers);
 
+// Goes on with the values of velocities, world units per second, around the active voxels as far as
+// each goes in so many seconds: layer by layer, the mean of the active neighbours. Throws
+// MemoryError, Cancelled.
+void continueBySpeed(openvdb::Vec3SGrid& velocity, double seconds);
+
 }  // namespace innermap

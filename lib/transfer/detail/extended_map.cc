@@ -44,7 +44,7 @@ std::vector<ExtendedSample> ExtendedMap::at(const Points& points) const {
       index.push_back(i);
     }
   }
-  const std::vector<ExtendedSample> found = nearAt(near);
+  const std::vector<ExtendedSample> found = at(near, placeExtended(solid_, levelSet_, near));
   for (std::size_t n = 0; n < index.size(); ++n) out[index[n]] = found[n];
   return out;
 }
@@ -57,18 +57,18 @@ Points ExtendedMap::imagesInside(const Points& points) const {
   return out;
 }
 
-std::vector<ExtendedSample> ExtendedMap::nearAt(const Points& points) const {
-  const ExtendedSamples extended = sampleExtended(map_, solid_, levelSet_, points, {accuracy_, {}});
+std::vector<ExtendedSample> ExtendedMap::at(const Points& points,
+                                            const ExtendedPlaces& places) const {
+  const FieldSamples samples = sampleExtended(map_, places, {accuracy_, {}});
   std::vector<ExtendedSample> out(points.size());
   constexpr std::size_t kBlock = 4096;
   parallelBlocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       for (int r = 0; r < 3; ++r) {
-        out[i].image[r] = extended.samples.values(i, r);
-        for (int a = 0; a < 3; ++a)
-          out[i].jacobian[r][a] = extended.samples.gradients(i, 3 * r + a);
+        out[i].image[r] = samples.values(i, r);
+        for (int a = 0; a < 3; ++a) out[i].jacobian[r][a] = samples.gradients(i, 3 * r + a);
       }
-      fade(points[i], extended.beyond[i], out[i]);
+      fade(points[i], places.beyond[i], out[i]);
     }
   });
   return out;

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "evaluate/extended_places.h"
 #include "evaluate/visit_field.h"
 #include "innermap/field/harmonic_field.h"
 #include "innermap/levelset/solid.h"
@@ -30,6 +31,8 @@ class ExtendedMap {
       : map_(map), solid_(solid), levelSet_(levelSet), outside_(outside), accuracy_(accuracy) {}
 
   std::vector<ExtendedSample> at(const Points& points) const;
+  // places: of the points, by placeExtended.
+  std::vector<ExtendedSample> at(const Points& points, const ExtendedPlaces& places) const;
 
   // Images of points that are inside the solid.
   Points imagesInside(const Points& points) const;
@@ -50,7 +53,6 @@ class ExtendedMap {
  private:
   // Surely beyond the reach, where only the rigid motion is left.
   bool isRigidAt(const Vec3& p) const;
-  std::vector<ExtendedSample> nearAt(const Points& points) const;
   void fade(const Vec3& p, const Vec3& beyond, ExtendedSample& sample) const;
 
   const ComposedMap map_;  // by value: often made of one harmonic map for the call

@@ -6,6 +6,7 @@
 #include "evaluate/topology.h"
 #include "evaluate/visit_field.h"
 #include "innermap/core/error.h"
+#include "transfer/detail/continue_values.h"
 
 namespace innermap {
 namespace {
@@ -48,10 +49,12 @@ openvdb::GridBase::Ptr fieldGrid(const CarriedField& field, const Solid& source,
   if (field.field.channels() == 1)
     return filled(floatGridOn(*inverted.region), field.name,
                   [&](std::size_t i) { return static_cast<float>(v(i, 0)); });
-  const openvdb::GridBase::Ptr grid = filled(
-      vectorGridOn(*inverted.region), field.name,
-      [&](std::size_t i) { return openvdb::Vec3f(openvdb::Vec3d(v(i, 0), v(i, 1), v(i, 2))); });
+  const openvdb::Vec3SGrid::Ptr vectors = vectorGridOn(*inverted.region);
+  const openvdb::GridBase::Ptr grid = filled(vectors, field.name, [&](std::size_t i) {
+    return openvdb::Vec3f(openvdb::Vec3d(v(i, 0), v(i, 1), v(i, 2)));
+  });
   grid->setVectorType(field.vectorType);
+  if (field.shutter > 0) continueBySpeed(*vectors, field.shutter);
   return grid;
 }
 

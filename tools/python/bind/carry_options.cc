@@ -30,6 +30,13 @@ RigidMotion motionFrom(const py::object& object) {
 
 }  // namespace
 
+void describeOutside(Keywords& k, double* outside, py::object* fadeTo) {
+  k.setting(outsideSetting(outside));
+  k.object("fade_to", fadeTo, "str or array",
+           "what the map fades to with outside: 'cut' (it ends there, the default), 'identity', "
+           "'fitted' (the best rigid motion of the surface), or a rigid motion, (3, 4) or (4, 4)");
+}
+
 void CarryOptions::describe(Keywords& k) {
   k.object("grids", &grids, "str or Sequence[str]",
            "names of the grids to carry; all if not given");
@@ -41,10 +48,7 @@ void CarryOptions::describe(Keywords& k) {
            "rows NAME.x, .y, .z");
   k.object("strains", &strains, "str or Sequence[str]", "the same for covariant strains");
   k.settings(innermap::describe(carrySettings));
-  k.setting(outsideSetting(&outside));
-  k.object("fade_to", &fadeTo, "str or array",
-           "what the map fades to with outside: 'cut' (it ends there, the default), 'identity', "
-           "'fitted' (the best rigid motion of the surface), or a rigid motion, (3, 4) or (4, 4)");
+  describeOutside(k, &outside, &fadeTo);
   k.object("vectors", &vectors, "str or Sequence[str]",
            "of geometry: properties or fields that are vectors, turned by the Jacobian");
   k.object("normals", &normals, "str or Sequence[str]",
@@ -67,6 +71,11 @@ CarrySettings CarryOptions::carry() const {
 }
 
 OutsideSettings CarryOptions::outsideSettings(const Points& from, const Points& to) const {
+  return outsideFrom(outside, fadeTo, from, to);
+}
+
+OutsideSettings outsideFrom(double outside, const py::object& fadeTo, const Points& from,
+                            const Points& to) {
   OutsideSettings out;
   out.distance = outside;
   const bool isText = py::isinstance<py::str>(fadeTo);

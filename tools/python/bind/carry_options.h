@@ -37,6 +37,11 @@ struct CarryOptions {
   LevelSetSettings output(const openvdb::GridPtrVec& carried, double growth) const;
 };
 
+// Keywords outside and fade_to, and what they say. from, to: corresponding points of the solids.
+void describeOutside(Keywords& k, double* outside, pybind11::object* fadeTo);
+OutsideSettings outsideFrom(double outside, const pybind11::object& fadeTo, const Points& from,
+                            const Points& to);
+
 // What became of grids, for Grids.totals.
 pybind11::dict totalsOf(const PushResult& result);
 

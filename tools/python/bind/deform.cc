@@ -6,6 +6,7 @@
 
 #include "bind/arrays.h"
 #include "bind/carry_options.h"
+#include "bind/deformer.h"
 #include "bind/errors.h"
 #include "bind/frame_set.h"
 #include "bind/grids.h"
@@ -19,20 +20,21 @@ namespace py = pybind11;
 namespace innermap::python {
 namespace {
 
-// Of the sums of charges: of points, which are kept in double precision, and of grids.
-constexpr double kPointAccuracy = 1e-7, kGridAccuracy = 1e-6;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kGridAccuracy = 1e-6;  // of the sums of charges
 
 struct DeformOptions : CarryOptions {
   FittingOptions fitting;
   bool velocity = false;
-  double framesPerSecond = 24;
+  double framesPerSecond = 24, shutter = kUsualShutter;
 
   void describe(Keywords& k) {
     k.flag("velocity", &velocity,
            "of grids: also a grid velocity for motion blur, world units a second, from the "
            "neighbouring frames");
     k.number("fps", &framesPerSecond, {1e-6, 1e6}, "frames a second, for velocity");
+    k.number("shutter", &shutter, {0, 10},
+             "how long the shutter is open, in frames: the grid velocity goes on around the solid "
+             "as far as it moves meanwhile");
     fitting.describe(k);
     CarryOptions::describe(k);
   }
@@ -41,43 +43,22 @@ struct DeformOptions : CarryOptions {
 class Deformation {
  public:
   Deformation(const Mesh& rest, const FrameSet& frames, const DeformOptions& o)
-      : rest_(rest), frames_(frames), o_(o) {
-    fadeToFitted_ = py::isinstance<py::str>(o.fadeTo) &&
-                    textFrom(o.fadeTo, "fade_to") == "fitted" && o.outside > 0;
-    if (!fadeToFitted_) outside_ = o.outsideSettings({}, {});
-    outside_.distance = o.outside;
-  }
+      : rest_(rest), frames_(frames), o_(o), outside_(o.outside, o.fadeTo) {}
 
   py::object grids(const py::object& what, const std::optional<FramePattern>& pattern) const;
   py::object points(const Points& points) const;
   py::object file(const std::string& from, const FramePattern& pattern) const;
 
  private:
-  PointPusher pusherFor(const FrameFitter& fitter, const Points& moved) const {
-    CarryPointsSettings settings;
-    settings.outside = outside_;
-    if (fadeToFitted_)
-      settings.outside.fadeTo = bestRigidMotion(fitter.solid().repaired().mesh.vertices, moved);
-    settings.accuracy = kPointAccuracy;
-    return PointPusher(fitter.solid(), settings);
-  }
-
-  // carry: of a frame's number and the carry to it.
-  template <class Carry>
-  void forFrames(std::uint64_t memory, FrameTable& table, const Carry& carry) const {
-    const FrameFitter fitter = fitterOf(rest_, o_.fitting, o_.call, memory);
-    FrameFits fits = frames_.fits(fitter);
-    std::optional<PointPusher> shared;
-    if (!fadeToFitted_) shared = pusherFor(fitter, {});
+  // each: of a frame's number, its fit and the pusher to it.
+  template <class Each>
+  void forFrames(const FrameCarrier& carrier, FrameTable& table, const Each& each) const {
+    FrameFits fits = frames_.fits(carrier.fitter());
     for (const std::size_t index : frames_.wanted()) {
       const std::int64_t number = frames_.numbers()[index];
       table.add(number, [&] {
         const std::shared_ptr<const FrameFit> fit = fits.at(index);
-        const PointPusher pusher = shared ? *shared : pusherFor(fitter, fit->boundary.moved);
-        const ComposedMap map = HarmonicMap(fit->field);
-        carry(number, [&](const Points& points, bool jacobians) {
-          return pusher.push(map, points, jacobians);
-        });
+        each(number, HarmonicMap(fit->field), carrier.pusherTo(fit->boundary));
         return rowOf(*fit);
       });
     }
@@ -86,8 +67,7 @@ class Deformation {
   const Mesh& rest_;
   const FrameSet& frames_;
   const DeformOptions& o_;
-  OutsideSettings outside_;
-  bool fadeToFitted_ = false;
+  FrameOutside outside_;
 };
 
 py::object Deformation::grids(const py::object& what,
@@ -96,17 +76,17 @@ py::object Deformation::grids(const py::object& what,
       takeGrids(what, "inside", textsFrom(o_.grids, "grids"), o_.call);
   FramePushSettings settings;
   settings.push.carry = o_.carry();
-  settings.push.outside = outside_;
+  settings.push.outside = outside_.settings;
   settings.push.accuracy = kGridAccuracy;
-  settings.fadeToFitted = fadeToFitted_;
+  settings.fadeToFitted = outside_.fitted;
   FrameTable table;
   std::vector<PushResult> results;
   runCall(o_.call, [&]() {
     settings.output = o_.output(given, 1);
     const FrameFitter fitter = fitterOf(rest_, o_.fitting, o_.call, 0);
     requireMemory(o_.call, "carrying the grids",
-                  carryMemory(fitter.solid(), given, settings.output, outside_, settings.push.carry,
-                              {true, o_.velocity ? 1 : 0}),
+                  carryMemory(fitter.solid(), given, settings.output, outside_.settings,
+                              settings.push.carry, {true, o_.velocity ? 1 : 0}),
                   "use a lower resolution");
     FrameFits fits = frames_.fits(fitter);
     const FramePusher pusher(fitter, given, settings);
@@ -117,7 +97,7 @@ py::object Deformation::grids(const py::object& what,
         std::vector<CarriedField> fields;
         if (o_.velocity)
           fields.push_back({"velocity", fits.velocity(index, o_.framesPerSecond),
-                            openvdb::VEC_CONTRAVARIANT_RELATIVE});
+                            openvdb::VEC_CONTRAVARIANT_RELATIVE, o_.shutter / o_.framesPerSecond});
         PushResult result = pusher.push({fit.get(), number}, fields).result;
         std::map<std::string, double> row = rowOf(*fit);
         row["inverted_fraction"] = result.statistics.invertedInside();
@@ -145,16 +125,12 @@ py::object Deformation::grids(const py::object& what,
 py::object Deformation::points(const Points& points) const {
   FrameTable table;
   std::vector<Points> places;
-  std::vector<char> found(points.size(), 1);
+  PlacedPoints placed;
   runCall(o_.call, [&]() {
-    forFrames(0, table, [&](std::int64_t, const PointCarry& carry) {
-      CarriedPoints carried = carry(points, false);
-      for (std::size_t i = 0; i < points.size(); ++i)
-        if (carried.fates[i] != PointFate::carried) {
-          found[i] = 0;
-          carried.points[i] = {kNone, kNone, kNone};
-        }
-      places.push_back(std::move(carried.points));
+    const FrameCarrier carrier(fitterOf(rest_, o_.fitting, o_.call, 0), outside_);
+    placed = carrier.place(points);
+    forFrames(carrier, table, [&](std::int64_t, const HarmonicMap& map, const PointPusher& pusher) {
+      places.push_back(placesOf(pusher.push(map, placed, false)));
     });
   });
   for (std::size_t i = 0; i < table.error.size(); ++i)
@@ -166,9 +142,7 @@ py::object Deformation::points(const Points& points) const {
   for (const Points& frame : places)
     for (const Vec3& p : frame)
       for (int axis = 0; axis < 3; ++axis) *to++ = p[axis];
-  py::array_t<bool> is(static_cast<py::ssize_t>(found.size()));
-  std::copy(found.begin(), found.end(), is.mutable_data());
-  return py::make_tuple(out, is);
+  return py::make_tuple(out, foundOf(placed));
 }
 
 py::object Deformation::file(const std::string& from, const FramePattern& pattern) const {
@@ -176,16 +150,22 @@ py::object Deformation::file(const std::string& from, const FramePattern& patter
   requireWritableAs(from, pattern.path(0));
   FrameTable table;
   runCall(o_.call, [&]() {
-    forFrames(geometryMemory(from), table, [&](std::int64_t number, const PointCarry& carry) {
-      carryFile(from, pattern.path(number), reading, {0, o_.splats}, carry);
-    });
+    const FrameCarrier carrier(fitterOf(rest_, o_.fitting, o_.call, geometryMemory(from)),
+                               outside_);
+    forFrames(carrier, table,
+              [&](std::int64_t number, const HarmonicMap& map, const PointPusher& pusher) {
+                carryFile(from, pattern.path(number), reading, {0, o_.splats},
+                          [&](const Points& points, bool jacobians) {
+                            return pusher.push(map, points, jacobians);
+                          });
+              });
   });
   return table.dict();
 }
 
 py::object deform(const Arguments& a, DeformOptions& o) {
   const Mesh rest = meshFrom(a[0], "source");
-  const FrameSet frames(a[2], o.fitting.only, rest);
+  const FrameSet frames(a[2], o.fitting, rest);
   if (o.velocity && frames.numbers().size() < 2)
     wrongValue("velocity", "needs two frames at least");
   std::optional<FramePattern> pattern;

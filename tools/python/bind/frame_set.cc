@@ -23,10 +23,13 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 void FittingOptions::describe(Keywords& k) {
   k.object("only", &only, "str", "which of the frames, by number: '12', '1-48', '1-48x2'; all");
+  k.object("numbers", &numbers, "Sequence[int]",
+           "of frames that are arrays: their numbers, ascending, for names of files and "
+           "velocities; from 0 on if not given");
   k.settings(innermap::describe(fitting));
 }
 
-FrameSet::FrameSet(const py::object& given, const py::object& only, const Mesh& rest)
+FrameSet::FrameSet(const py::object& given, const FittingOptions& options, const Mesh& rest)
     : rest_(rest) {
   const bool oneText = isPath(given);
   if (oneText || (py::isinstance<py::sequence>(given) && !py::isinstance<py::array>(given) &&
@@ -35,7 +38,8 @@ FrameSet::FrameSet(const py::object& given, const py::object& only, const Mesh& 
   else
     takeMeshes(given);
   if (numbers_.empty()) wrongValue("frames", "is empty");
-  choose(only);
+  if (!options.numbers.is_none()) number(options.numbers);
+  choose(options.only);
 }
 
 Mesh FrameSet::mesh(std::size_t index) const {
@@ -74,6 +78,19 @@ void FrameSet::takeMeshes(const py::object& given) {
                                    rest_.vertices.size()));
     numbers_.push_back(static_cast<std::int64_t>(numbers_.size()));
   }
+}
+
+void FrameSet::number(const py::object& numbers) {
+  constexpr std::int64_t kMost = 999'999'999;  // as in names of files
+  if (!files_.empty())
+    wrongValue("numbers", "is for arrays; files have their numbers in their names");
+  const std::vector<std::int64_t> given = wholesFrom(numbers, "numbers", 0, kMost);
+  if (given.size() != numbers_.size())
+    wrongValue("numbers",
+               fmt::format("has {} numbers for {} frames", given.size(), numbers_.size()));
+  for (std::size_t i = 1; i < given.size(); ++i)
+    if (given[i] <= given[i - 1]) wrongValue("numbers", "must ascend");
+  numbers_ = given;
 }
 
 void FrameSet::choose(const py::object& only) {

@@ -22,7 +22,8 @@ void bindSequence(pybind11::module_& m);
 
 struct FittingOptions {
   FrameFitterSettings fitting;
-  pybind11::object only;  // which frames
+  pybind11::object only;     // which frames
+  pybind11::object numbers;  // of frames that no file names
 
   void describe(Keywords& k);
 };
@@ -31,7 +32,7 @@ struct FittingOptions {
 class FrameSet {
  public:
   // rest: must outlive it.
-  FrameSet(const pybind11::object& given, const pybind11::object& only, const Mesh& rest);
+  FrameSet(const pybind11::object& given, const FittingOptions& options, const Mesh& rest);
 
   const std::vector<std::int64_t>& numbers() const { return numbers_; }
   const std::vector<std::size_t>& wanted() const { return wanted_; }
@@ -44,6 +45,7 @@ class FrameSet {
  private:
   void takeFiles(const pybind11::object& given, bool oneText);
   void takeMeshes(const pybind11::object& given);
+  void number(const pybind11::object& numbers);
   void choose(const pybind11::object& only);
 
   const Mesh& rest_;

@@ -4,6 +4,7 @@
 #include "bind/carry_options.h"
 #include "bind/cells.h"
 #include "bind/correspondence.h"
+#include "bind/deformer.h"
 #include "bind/errors.h"
 #include "bind/field.h"
 #include "bind/figures.h"
@@ -53,6 +54,7 @@ PYBIND11_MODULE(_innermap, m) {
   bindRemesh(m);
   bindCompareFem(m);
   bindCarry(m);
+  bindDeformer(m);
   bindDeform(m);
   bindSequence(m);
   bindVolumes(m);

@@ -21,10 +21,10 @@ GroupValues = Union[Mapping[str, ArrayLike], Sequence[Tuple[Triangles, ArrayLike
 
 __version__: str
 __all__ = [
-    'BoundaryError', 'Cancelled', 'Cells', 'Correspondence', 'DataError', 'Error', 'Field',
+    'BoundaryError', 'Cancelled', 'Cells', 'Correspondence', 'DataError', 'Deformer', 'Error', 'Field',
     'FileError', 'Folds', 'Grids', 'Map', 'Mesh', 'MeshReport', 'SettingError',
     'check', 'compare_fem', 'correspond', 'deform', 'fit', 'grids', 'harmonic', 'hexahedralize',
-    'load', 'load_correspondence', 'polycube', 'pull', 'push', 'read_cells', 'read_mesh',
+    'lattice', 'load', 'load_correspondence', 'polycube', 'pull', 'push', 'read_cells', 'read_mesh',
     'read_vdb', 'read_volume_texture', 'remesh', 'sequence', 'solid_texture', 'sphere', 'study',
     'tetrahedralize', 'transfer_distance', 'voxelize', 'weights', 'write_mesh', 'write_section',
     'write_slices', 'write_volume_texture',
@@ -411,9 +411,28 @@ def pull(
     names: Literal['innermap', 'blender', 'houdini'] = 'innermap', progress: Optional[Progress] = None,
     max_memory: Union[int, str, None] = None, threads: int = 0) -> Any: ...
 
+class Deformer:
+    def __init__(
+        self, source: AnyMesh, X: ArrayLike, *, charges: int = 8000, collocation: Optional[int] = None,
+        distance: Optional[float] = None, seed: int = 1, outside: float = 0,
+        fade_to: Union[str, ArrayLike, None] = None, progress: Optional[Progress] = None,
+        max_memory: Union[int, str, None] = None, threads: int = 0) -> None: ...
+    def __call__(
+        self, frame: Any, *, progress: Optional[Progress] = None,
+        max_memory: Union[int, str, None] = None, threads: int = 0) -> Floats: ...
+    def measure(
+        self, frame: Any, *, progress: Optional[Progress] = None,
+        max_memory: Union[int, str, None] = None, threads: int = 0) -> Dict[str, float]: ...
+    @property
+    def found(self) -> Bools: ...
+
+def lattice(
+    bounds: ArrayLike, *, resolution: int = 32) -> Tuple[Floats, Tuple[int, int, int], float]: ...
+
 def deform(
     source: AnyMesh, inside: Any, frames: Any, output: Optional[Path]=None, *, velocity: bool = False,
-    fps: float = 24, only: Optional[str] = None, charges: int = 8000, collocation: Optional[int] = None,
+    fps: float = 24, shutter: float = 0.5, only: Optional[str] = None,
+    numbers: Optional[Sequence[int]] = None, charges: int = 8000, collocation: Optional[int] = None,
     distance: Optional[float] = None, seed: int = 1, grids: Union[str, Sequence[str], None] = None,
     densities: Union[bool, str, Sequence[str], None] = None,
     stresses: Union[str, Sequence[str], None] = None, strains: Union[str, Sequence[str], None] = None,
@@ -427,12 +446,12 @@ def deform(
 
 def sequence(
     source: AnyMesh, frames: Any, *, output: Optional[Path] = None,
-    grids: Union[str, Sequence[str], None] = None, only: Optional[str] = None, charges: int = 8000,
-    collocation: Optional[int] = None, distance: Optional[float] = None, seed: int = 1,
-    resolution: Optional[int] = None, voxel_size: Optional[float] = None, lame_lambda: float = 0.0335,
-    lame_mu: float = 0.0224, names: Literal['innermap', 'blender', 'houdini'] = 'innermap',
-    progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
-    threads: int = 0) -> Dict[str, Any]: ...
+    grids: Union[str, Sequence[str], None] = None, only: Optional[str] = None,
+    numbers: Optional[Sequence[int]] = None, charges: int = 8000, collocation: Optional[int] = None,
+    distance: Optional[float] = None, seed: int = 1, resolution: Optional[int] = None,
+    voxel_size: Optional[float] = None, lame_lambda: float = 0.0335, lame_mu: float = 0.0224,
+    names: Literal['innermap', 'blender', 'houdini'] = 'innermap', progress: Optional[Progress] = None,
+    max_memory: Union[int, str, None] = None, threads: int = 0) -> Dict[str, Any]: ...
 
 def grids(
     arrays: Mapping[str, ArrayLike], matrix: ArrayLike, *, background: Optional[float] = None,

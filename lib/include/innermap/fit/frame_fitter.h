@@ -39,6 +39,15 @@ std::size_t frameCollocation(const FrameFitterSettings& settings);
 // Peak need in bytes of setting up and solving, and then of what else a frame takes: `others`.
 std::uint64_t frameFitterMemory(const FrameFitterSettings& settings, std::uint64_t others = 0);
 
+// The map of one frame as it is solved for, not measured.
+struct FrameSolution {
+  TargetBoundary boundary;
+  HarmonicField field;
+  int iterations = 0;
+  double residual = 0;   // root mean square at the boundary points, world units of the frame
+  StageSeconds seconds;  // "solid", "solve"
+};
+
 // The map of one frame.
 constexpr double kLeastJumpTold = 1e-3;  // fraction of the frame's diagonal
 
@@ -77,6 +86,9 @@ class FrameFitter {
   // frames came before. frame: of the rest pose's connectivity. Throws DataError for a frame that
   // cannot be used, as makeTargetBoundary does; Cancelled.
   FrameFit fit(const Mesh& frame) const;
+
+  // The same field, at a tenth of the time. Throws alike.
+  FrameSolution solve(const Mesh& frame) const;
 
  private:
   // Points of the boundary that move with it.

@@ -98,11 +98,17 @@ struct ResamplingFigures {
   double sum = 0, coarser = 0;  // volumes of the input while voxels are added
 };
 
+// Of CarriedField::shutter, where nothing else is said: frames, as renderers have it.
+constexpr double kUsualShutter = 0.5;
+
 // A harmonic field on the source that is written on the target's voxels: at q its value at p.
 struct CarriedField {
   std::string name;
   HarmonicField field;  // one channel: a float grid, three: Vec3f
   openvdb::VecType vectorType = openvdb::VEC_INVARIANT;
+  // Of velocities, seconds: the grid goes on around the target as far as its values go in this
+  // time, so that what a renderer smears beyond the skin finds them there. 0: ends as others do.
+  double shutter = 0;
 };
 
 // A map beyond its solid, for smoke around a body.

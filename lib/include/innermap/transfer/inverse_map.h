@@ -111,6 +111,13 @@ struct CarriedPoints {
 // Carries #points; with jacobians if asked for.
 using PointCarry = std::function<CarriedPoints(const Points& points, bool jacobians)>;
 
+// Points by where they lie to a solid: found once for any number of its maps.
+struct PlacedPoints {
+  Points points;      // world units
+  Points at, beyond;  // themselves, or the closest of the boundary; from there to the points
+  std::vector<PointFate> fates;  // carried or cut, whatever the map
+};
+
 // From the source to the target: x becomes f(x), the Jacobian is f's. Outside the solid the map is
 // extended as transfer/carry.h says. Holds copies, which share their data; serves any number of
 // maps.
@@ -122,6 +129,13 @@ class PointPusher {
   // Same result for any number of threads. Throws DataError for a point that is not finite,
   // Cancelled.
   CarriedPoints push(const ComposedMap& map, const Points& points, bool jacobians) const;
+
+  // The same in two parts; placed: by this pusher or one that it gave. Throw alike.
+  PlacedPoints place(const Points& points) const;
+  CarriedPoints push(const ComposedMap& map, const PlacedPoints& placed, bool jacobians) const;
+
+  // This pusher with another motion that fades in outside.
+  PointPusher fadingTo(const RigidMotion& motion) const;
 
  private:
   struct Data;
