@@ -115,4 +115,19 @@ std::string infoJson(const std::string& path, const Mesh& mesh) {
                  {"volume", signedVolume(mesh)}});
 }
 
+std::string infoJson(const std::string& path, const PointCacheInfo& info) {
+  Json out = {{"file", path},
+              {"kind", "point_cache"},
+              {"format", info.format},
+              {"frames", info.frames},
+              {"points", info.points}};
+  if (info.seconds.empty()) {
+    out["start"] = info.start;
+    out["step"] = info.step;
+  } else {
+    out["seconds"] = info.seconds;
+  }
+  return dumped(out);
+}
+
 }  // namespace innermap

@@ -35,6 +35,17 @@ Mesh octahedron() {
 // A correspondence, or a pose: a mesh of known connectivity, that of most of the corpus.
 void pose(const std::string& path) { readMeshLike(path, octahedron()); }
 
+// All frames of a point cache.
+void frames(const std::string& path) {
+  const MemoryLimit limit(kMemory);
+  readPointCacheInfo(path);
+  const auto source = openFrames({path});
+  for (std::size_t i = 0; i < source->numbers.size(); ++i) {
+    source->fingerprint(i);
+    source->read(i, octahedron());
+  }
+}
+
 void groups(const std::string& path) { readGroups(path, readMesh(path)); }
 
 void properties(const std::string& path) { readVertexProperties(path, {"s"}, readMesh(path)); }
@@ -129,6 +140,8 @@ const std::vector<Reader>& readers() {
       {"mesh-off", "off", mesh},
       {"mesh-stl", "stl", mesh},
       {"correspondence", "ply", pose},
+      {"frames-mdd", "mdd", frames},
+      {"frames-pc2", "pc2", frames},
       {"landmarks", "txt", landmarks},
       {"groups", "obj", groups},
       {"properties", "ply", properties},

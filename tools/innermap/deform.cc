@@ -7,6 +7,8 @@
 #include <map>
 
 #include "commands.h"
+#include "core/file_bytes.h"
+#include "core/text_scanner.h"
 #include "deform_geometry.h"
 #include "frame_loop.h"
 #include "innermap/core/version.h"
@@ -62,9 +64,7 @@ class Inputs {
   }
 
  private:
-  std::string fingerprint(std::size_t index) const {
-    return fingerprintOf(frames_.all[index].path);
-  }
+  std::string fingerprint(std::size_t index) const { return frames_.source->fingerprint(index); }
   // A neighbour that cannot be read plays no part.
   std::string numbered(std::size_t index) const try {
     return fmt::format("{} {}", frames_.all[index].number, fingerprint(index));
@@ -190,9 +190,14 @@ std::string lineOf(const FrameFile& frame, const DeformRow& row, double seconds,
 
 void check(const DeformOptions& options, const Frames& frames) {
   std::string extension = std::filesystem::path(options.output).extension().string();
-  requireFitting(options.volume, options.output, options.transfer, options.geometry);
+  const bool cache = isPointCache(options.output);
+  requireFitting(options.volume, cache ? options.volume : options.output, options.transfer,
+                 options.geometry);
   if (isGeometryFile(options.volume)) {
     if (options.velocity) throw UsageError("--velocity: is for volumes; leave it out");
+    if (cache && equalsIgnoringCase(extensionOf(options.volume), ".stl"))
+      throw FileError(options.volume,
+                      "has no vertices that a point cache could hold; save it as .ply first");
   } else if (extension != ".vdb")
     throw UsageError("--output: '" + options.output + "' must end in .vdb, as in a.####.vdb");
   if (options.velocity && frames.all.size() < 2)
@@ -254,13 +259,16 @@ void run(const DeformOptions& options, Context& context) {
   // Made first, and gone again if nothing comes into it.
   std::optional<PendingFolder> folder;
   if (!context.dryRun()) folder.emplace(pattern.folder());
-  context.outputs(framePaths(pattern, frames));
+  if (isPointCache(options.output))
+    context.output(options.output);
+  else
+    context.outputs(framePaths(pattern, frames));
   if (isGeometryFile(options.volume))
-    return deformGeometry(
-        {options.rest, options.volume, options.frames, options.transfer, options.geometry}, frames,
-        pattern, context);
+    return deformGeometry({options.rest, options.volume, options.output, options.framesPerSecond,
+                           options.frames, options.transfer, options.geometry},
+                          frames, context);
   if (context.dryRun()) {
-    const SourceBoundary rest = readRest(options.rest, context);
+    const SourceBoundary rest = readRest(options.rest, frames, context);
     const openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
     expectFrames(options, rest.solid, grids, frames, context);
     return plan(options, frames, pattern, memoryOf(options, rest.solid, grids), context);
@@ -272,7 +280,7 @@ void run(const DeformOptions& options, Context& context) {
     left = framesLeft(options, frames, pattern, *inputs, context);
   });
   if (left.wanted.empty()) return;
-  SourceBoundary rest = readRest(options.rest, context);
+  SourceBoundary rest = readRest(options.rest, frames, context);
   openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
   requireFrameMemory(options.frames.fitting, memoryOf(options, rest.solid, grids), context);
   expectFrames(options, rest.solid, grids, left, context);
@@ -326,7 +334,8 @@ Command makeDeformCommand() {
   addFrameArgument(c, o->frames);
   c.option("--output", "FILES", &o->output,
            "the files to write, of INSIDE's kind, #### or %04d standing for the frame's number; "
-           "without, it is put before the ending; the folder is made when missing")
+           "without, it is put before the ending; or a point cache of geometry's points (.mdd, "
+           ".pc2), all frames in one; the folder is made when missing")
       .shortName("-o")
       .required();
   addFrameOptions(c, o->frames);
@@ -334,12 +343,13 @@ Command makeDeformCommand() {
   c.flag("--velocity", &o->velocity,
          "also write a grid velocity (v with --names houdini) for motion blur, in world units per "
          "second, from the neighbouring frames");
-  c.option("--fps", "N", &o->framesPerSecond, "frames per second, for --velocity")
+  c.option("--fps", "N", &o->framesPerSecond, "frames per second, for --velocity and .mdd")
       .above(0)
       .atMost(1e6);
   addTransferOptions(c, o->transfer);
   addGeometryOptions(c, o->geometry, false);
   c.example("innermap deform rest.obj bones.obj 'walk.*.obj' -o 'out/bones.####.obj'");
+  c.example("innermap deform rest.obj hair.obj walk.pc2 -o out/hair.pc2");
   c.example("innermap deform rest.obj smoke.vdb 'walk.*.obj' -o 'out/smoke.####.vdb' --density");
   c.example(
       "innermap deform rest.obj smoke.vdb 'walk.*.obj' -o 'out/smoke.%04d.vdb' --velocity --fps "

@@ -80,6 +80,19 @@ std::string found(const std::string& path, const fs::path& folder) {
   return fs::exists(beside) ? beside.string() : path;
 }
 
+// Frame `number` of a file, which may hold all of them.
+Mesh readFrame(const std::string& path, std::int64_t number, const Json& report, const Mesh& rest) {
+  if (!isAnimationFile(path)) return readMeshLike(path, rest);
+  AnimationSettings settings;
+  const Json* first = at(report, "settings", "first_frame");
+  if (first && first->is_number_integer()) settings.firstFrame = first->get<int>();
+  const auto source = openFrames({path}, settings);
+  const auto place = std::find(source->numbers.begin(), source->numbers.end(), number);
+  if (place == source->numbers.end())
+    throw DataError(fmt::format("{}: has no frame {}", path, number));
+  return source->read(static_cast<std::size_t>(place - source->numbers.begin()), rest);
+}
+
 void addFrames(Page& page, const Json& report, const Mesh& rest, const fs::path& folder) {
   const Json *files = at(report, "frames", "file"), *numbers = at(report, "frames", "number");
   if (!files || !numbers || !files->is_array() || !numbers->is_array()) return;
@@ -90,8 +103,9 @@ void addFrames(Page& page, const Json& report, const Mesh& rest, const fs::path&
     const Json &file = (*files)[i], &number = (*numbers)[i];
     if (!file.is_string() || !number.is_number()) continue;
     tried(page, [&] {
-      const Mesh mesh = readMeshLike(found(file.get<std::string>(), folder), rest);
-      frames.add(static_cast<std::int64_t>(std::llround(number.get<double>())), mesh.vertices);
+      const std::int64_t which = std::llround(number.get<double>());
+      const std::string path = found(file.get<std::string>(), folder);
+      frames.add(which, readFrame(path, which, report, rest).vertices);
     });
   }
 }

@@ -88,7 +88,7 @@ void run(const SequenceOptions& options, Context& context) {
       context.outputFolder(options.output, {"energies.csv", "energies.svg", "report.json"});
   if (!options.grids.empty()) context.outputs(framePaths(pattern, frames));
   const FrameFitterSettings settings = options.frames.fitting;
-  SourceBoundary rest = readRest(options.rest, context);
+  SourceBoundary rest = readRest(options.rest, frames, context);
   requireInterior(rest.solid, options.evaluation.grid.in<LevelSetSettings>());
   const std::uint64_t gridsNeed =
       mapGridMemory(rest.solid, mapGridSettings(options.evaluation), {1, false, false});

@@ -11,6 +11,7 @@
 #include "bind/grids.h"
 #include "bind/lists.h"
 #include "bind/meshes.h"
+#include "core/frame_files.h"
 #include "innermap/core/memory.h"
 #include "innermap/transfer/carry.h"
 
@@ -185,7 +186,7 @@ py::object Deformation::file(const std::string& from, const FramePattern& patter
 
 py::object deform(const Arguments& a, DeformOptions& o) {
   const Mesh rest = meshFrom(a[0], "source");
-  const FrameSet frames(a[2], o.fitting.only, rest);
+  const FrameSet frames(a[2], o.fitting, rest);
   if (o.velocity && frames.numbers().size() < 2)
     wrongValue("velocity", "needs two frames at least");
   std::optional<FramePattern> pattern;
@@ -212,8 +213,9 @@ void bindDeform(py::module_& m) {
        "(places (frames, n, 3), found (n,)), NaN where a point lies too far outside; an "
        "innermap.Grids or the path of a .vdb file, which come back as a list of Grids, or are "
        "written to output and figures come back; or the path of a file of geometry (.obj, .ply, "
-       "..., .vtu, .msh), written to output. frames: paths, a pattern ('walk.*.obj'), or an array "
-       "of each frame's vertices. output: a path with #### or %04d for the frame's number. "
+       "..., .vtu, .msh), written to output. frames: paths, a pattern ('walk.*.obj'), a point "
+       "cache (.mdd, .pc2), or an array of each frame's vertices. output: a path with #### or %04d "
+       "for the frame's number. "
        "Figures are a dict of columns: frame, boundary_rms and so on, error, the text of what was "
        "wrong with a frame that is left out. All frames are made, also those whose output is "
        "there. Raises DataError, FileError, MemoryError."},

@@ -9,6 +9,7 @@
 #include "bind/errors.h"
 #include "bind/lists.h"
 #include "bind/meshes.h"
+#include "core/frame_files.h"
 #include "innermap/core/memory.h"
 #include "innermap/mesh/mesh_file.h"
 
@@ -23,23 +24,24 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 void FittingOptions::describe(Keywords& k) {
   k.object("only", &only, "str", "which of the frames, by number: '12', '1-48', '1-48x2'; all");
+  k.settings(innermap::describe(animation));
   k.settings(innermap::describe(fitting));
 }
 
-FrameSet::FrameSet(const py::object& given, const py::object& only, const Mesh& rest)
+FrameSet::FrameSet(const py::object& given, const FittingOptions& options, const Mesh& rest)
     : rest_(rest) {
   const bool oneText = isPath(given);
   if (oneText || (py::isinstance<py::sequence>(given) && !py::isinstance<py::array>(given) &&
                   py::len(given) > 0 && isPath(py::sequence(given)[0])))
-    takeFiles(given, oneText);
+    takeFiles(given, oneText, options.animation);
   else
     takeMeshes(given);
   if (numbers_.empty()) wrongValue("frames", "is empty");
-  choose(only);
+  choose(options.only);
 }
 
 Mesh FrameSet::mesh(std::size_t index) const {
-  if (!files_.empty()) return readMeshLike(files_[index].path, rest_);
+  if (files_) return files_->read(index, rest_);
   Mesh out = rest_;
   out.name = fmt::format("frame {}", numbers_[index]);
   out.vertices = places_[index];
@@ -50,15 +52,15 @@ FrameFits FrameSet::fits(const FrameFitter& fitter) const {
   return {numbers_, [&fitter, this](std::size_t index) { return fitter.fit(mesh(index)); }};
 }
 
-void FrameSet::takeFiles(const py::object& given, bool oneText) {
+void FrameSet::takeFiles(const py::object& given, bool oneText, const AnimationSettings& settings) {
   std::vector<std::string> names;
   if (oneText)
     names.push_back(pathFrom(given, "frames"));
   else
     for (const auto& path : given) names.push_back(pathFrom(path, "frames"));
-  files_ = findFrames(names, meshExtensions()).frames;
-  if (files_.empty()) wrongValue("frames", "no file has a frame number in its name");
-  for (const FrameFile& file : files_) numbers_.push_back(file.number);
+  files_ = openFrames(names, settings);
+  files_->requireLike(rest_);
+  numbers_ = files_->numbers;
 }
 
 void FrameSet::takeMeshes(const py::object& given) {

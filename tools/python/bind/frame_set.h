@@ -6,14 +6,15 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "bind/keywords.h"
-#include "core/frame_files.h"
 #include "innermap/core/error.h"
 #include "innermap/fit/frame_fitter.h"
+#include "innermap/mesh/mesh_file.h"
 
 namespace innermap::python {
 
@@ -22,6 +23,7 @@ void bindSequence(pybind11::module_& m);
 
 struct FittingOptions {
   FrameFitterSettings fitting;
+  AnimationSettings animation;
   pybind11::object only;  // which frames
 
   void describe(Keywords& k);
@@ -31,7 +33,7 @@ struct FittingOptions {
 class FrameSet {
  public:
   // rest: must outlive it.
-  FrameSet(const pybind11::object& given, const pybind11::object& only, const Mesh& rest);
+  FrameSet(const pybind11::object& given, const FittingOptions& options, const Mesh& rest);
 
   const std::vector<std::int64_t>& numbers() const { return numbers_; }
   const std::vector<std::size_t>& wanted() const { return wanted_; }
@@ -42,12 +44,12 @@ class FrameSet {
   FrameFits fits(const FrameFitter& fitter) const;
 
  private:
-  void takeFiles(const pybind11::object& given, bool oneText);
+  void takeFiles(const pybind11::object& given, bool oneText, const AnimationSettings& settings);
   void takeMeshes(const pybind11::object& given);
   void choose(const pybind11::object& only);
 
   const Mesh& rest_;
-  std::vector<FrameFile> files_;
+  std::unique_ptr<FrameSource> files_;
   std::vector<Points> places_;
   std::vector<std::int64_t> numbers_;
   std::vector<std::size_t> wanted_;

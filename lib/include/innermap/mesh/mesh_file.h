@@ -1,4 +1,4 @@
-// Mesh files in: OBJ, PLY, OFF, STL.
+// Mesh files in: OBJ, PLY, OFF, STL; animations of a mesh: files of frames, point caches.
 //
 // The readers are our own. For PLY, OFF and STL no packaged reader keeps non-manifold faces, reads
 // triangle strips and refuses a header that promises more than the file holds before memory is
@@ -7,10 +7,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "innermap/core/setting.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {
@@ -72,5 +76,68 @@ struct PlyExtras {
 // As writeMesh() writes .ply, with further properties of the vertices. Throws DataError for a
 // property that has not a number for each vertex; FileError.
 void writePly(const std::string& path, const Mesh& mesh, const PlyExtras& extras);
+
+// Animations: the vertices of one mesh, frame by frame.
+
+struct AnimationSettings {
+  // Number of the first frame of a file that holds several; without, MDD's is 1 and PC2's what its
+  // header says, rounded. The others follow one by one, in PC2 by its frames a sample.
+  std::optional<int> firstFrame;
+};
+std::vector<Setting> describe(AnimationSettings& settings);
+
+// The frames of an animation; each is read when it is asked for.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+
+  std::vector<std::int64_t> numbers;    // ascending, each once
+  std::vector<std::string> unnumbered;  // files that are left out, having no number in their names
+  std::vector<std::string> notes;       // on what was taken for what
+
+  // The file that holds the frame at this place of `numbers`.
+  virtual const std::string& path(std::size_t index) const = 0;
+  // Its vertices, with the triangles of `rest`. Throws as readMeshLike.
+  virtual Mesh read(std::size_t index, const Mesh& rest) const = 0;
+  // Tells whether the frame is still the one that a result was made from, as fingerprintOf (core).
+  virtual std::string fingerprint(std::size_t index) const = 0;
+  // Throws DataError when no frame can be one of this mesh, as far as that can be told at once.
+  virtual void requireLike(const Mesh&) const {}
+};
+
+// Whether such a file, by its ending, holds several frames; whether that is a point cache: .mdd,
+// .pc2.
+bool isAnimationFile(const std::string& path);
+bool isPointCache(const std::string& path);
+
+// paths: either files with a frame's number in each name, folders, and patterns with *, ?, #### or
+// %04d; or one animation file. Throws FileError when one names nothing, has no number or that of
+// another, or is damaged: see PointCacheInfo; SettingError.
+std::unique_ptr<FrameSource> openFrames(const std::vector<std::string>& paths,
+                                        const AnimationSettings& settings = {});
+
+// What a point cache says of itself. MDD (LightWave) has seconds, PC2 (3ds Max) frames.
+struct PointCacheInfo {
+  std::string format;  // "MDD" or "PC2"
+  std::uint64_t frames = 0, points = 0;
+  double start = 0, step = 0;  // of PC2, frames
+  std::vector<float> seconds;  // of each frame of MDD
+};
+
+// Throws FileError for no such file, counts below 1, another size than they make.
+PointCacheInfo readPointCacheInfo(const std::string& path);
+
+struct PointCacheLayout {
+  std::uint64_t points = 0;
+  std::vector<std::int64_t> numbers;  // of the frames, ascending; in PC2 at even steps
+  double framesPerSecond = 24;        // MDD's seconds count from its first frame
+};
+
+// Writes .mdd or .pc2 by the ending. frames: calls what it is given with the points of each frame,
+// in order, where DataError is thrown for another number of points, or places beyond a float's. The
+// file appears whole when it returns, or not at all. Throws what it throws; DataError when it gave
+// fewer frames; FileError.
+void writePointCache(const std::string& path, const PointCacheLayout& layout,
+                     const std::function<void(const std::function<void(const Points&)>&)>& frames);
 
 }  // namespace innermap
