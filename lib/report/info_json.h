@@ -19,6 +19,6 @@ std::string infoJson(const std::string& path, const std::vector<ExrPart>& parts,
                      const std::optional<VolumeTextureInfo>& volume);
 std::string infoJson(const std::string& path, const FieldFile& file);
 std::string infoJson(const std::string& path, const Mesh& mesh);
-std::string infoJson(const std::string& path, const PointCacheInfo& info);
+std::string infoJson(const std::string& path, const AnimationInfo& info);
 
 }  // namespace innermap

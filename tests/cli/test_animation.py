@@ -158,4 +158,63 @@ def test_caches_of_blender():
         assert rows[0]["deformation"] < 1e-6 < rows[-1]["deformation"]
 
 
+def write_gltf(path):
+    """A ball of split vertices that is moved and grows, from frame 12 to 36 of 24 a second."""
+    vertices, faces = cli.icosphere_arrays(3)
+    corners = [vertices[i] for f in faces for i in f]
+    data = struct.pack(f"<{3 * len(corners)}f", *(c for p in corners for c in p))
+    keys = struct.pack("<2f", 0.5, 1.5), struct.pack("<6f", 0, 0, 0, 1, -2, 0.5), \
+        struct.pack("<6f", 1, 1, 1, 1.5, 1.5, 1.5)
+    parts, views, at = [data, *keys], [], 0
+    for part in parts:
+        views.append({"buffer": 0, "byteOffset": at, "byteLength": len(part)})
+        at += len(part)
+    kinds = [("VEC3", len(corners)), ("SCALAR", 2), ("VEC3", 2), ("VEC3", 2)]
+    with open(path.replace(".gltf", ".bin"), "wb") as file:
+        file.write(b"".join(parts))
+    scene = {
+        "asset": {"version": "2.0"}, "bufferViews": views,
+        "buffers": [{"byteLength": at, "uri": path.replace(".gltf", ".bin")}],
+        "accessors": [{"bufferView": i, "componentType": 5126, "count": n, "type": kind}
+                      for i, (kind, n) in enumerate(kinds)],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "nodes": [{"name": "ball", "mesh": 0}],
+        "animations": [{"name": "move", "samplers": [{"input": 1, "output": 2}, {"input": 1, "output": 3}],
+                        "channels": [{"sampler": i, "target": {"node": 0, "path": path}}
+                                     for i, path in enumerate(("translation", "scale"))]}]}
+    with open(path, "w", encoding="ascii") as file:
+        json.dump(scene, file)
+    return vertices, faces
+
+
+def test_gltf_is_rest_pose_and_frames():
+    vertices, faces = write_gltf("ball.gltf")
+    innermap("sequence", "ball.gltf", "-o", "out", "--frames", "12,24,36", *SMALL)
+    rows = read_energies("out")
+    assert [r["frame"] for r in rows] == [12, 24, 36] and rows[0]["file"] == "ball.gltf"
+    for row, growth in zip(rows, (1, 1.25, 1.5)):
+        assert abs(row["jacobian_min"] - growth ** 3) < 1e-4, row
+    innermap("sequence", "ball.gltf", "-o", "back", "--rest", "36", "--frames", "12", *SMALL)
+    assert abs(read_energies("back")[0]["jacobian_min"] - 1.5 ** -3) < 1e-4
+    cli.write_obj("rest.obj", vertices, faces)
+    innermap("sequence", "rest.obj", "ball.gltf", "-o", "beside", "--fps", "2", *SMALL)
+    rows = read_energies("beside")
+    assert [r["frame"] for r in rows] == [1, 2, 3] and abs(rows[1]["jacobian_min"] - 1.25 ** 3) < 1e-4
+    innermap("report", "beside")
+    cli.icosphere("inside.obj", 1, 0.5)
+    innermap("deform", "ball.gltf", "inside.obj", "-o", "inside.pc2", "--frames", "24", "--up", "z",
+             *SMALL[:2])
+    place = read_pc2("inside.pc2")[2][0]
+    inside = cli.icosphere_arrays(1, 0.5)[0]
+    for p, q in zip(place, inside):
+        assert max(abs(a - 1.25 * b - c) for a, b, c in zip(p, q, (0.5, -0.25, -1))) < 1e-5
+    info = json.loads(innermap("info", "ball.gltf", "--json").stdout)
+    assert info["meshes"][0]["vertices"] == len(vertices) and info["animations"][0]["end"] == 1.5
+    assert "move" in innermap("info", "ball.gltf").stdout
+    cli.icosphere("other.obj", 3, 1.1)
+    fails(1, "sequence", "other.obj", "ball.gltf", "-o", "x", *SMALL, says=["ball.gltf", "--up z"])
+    fails(1, "sequence", "ball.gltf", "-o", "x", "--mesh", "bal", *SMALL, says=["ball"])
+    fails(2, "sequence", "rest.obj", "-o", "x", says=["FRAMES"])
+
+
 cli.run(globals())

@@ -166,5 +166,23 @@ def test_measures_a_sequence_as_the_program_does():
     assert table["error"][1] and not table["error"][0] and np.isnan(table["harmonic"][1])
 
 
+def test_takes_point_caches():
+    V, F, poses = frames()
+    V, poses = (np.asarray(a, np.float32) for a in (V, poses))
+    with open("walk.mdd", "wb") as file:
+        np.array([len(poses), len(V)], ">i4").tofile(file)
+        np.zeros(len(poses), ">f4").tofile(file)
+        poses.astype(">f4").tofile(file)
+    X = 0.5 * V[:20]
+    places, _ = innermap.deform((V, F), X, poses, charges=400)
+    cached, _ = innermap.deform((V, F), X, "walk.mdd", charges=400, first_frame=5, only="6")
+    assert cached.shape == (1, 20, 3) and np.array_equal(cached[0], places[1])
+    try:
+        innermap.deform((V[:-1], F[(F < len(V) - 1).all(1)]), X, "walk.mdd", charges=400)
+        assert False, "a cache of another mesh"
+    except innermap.DataError as error:
+        assert "points" in str(error)
+
+
 if __name__ == "__main__":
     cli.run(globals())

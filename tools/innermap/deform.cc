@@ -30,7 +30,7 @@ struct DeformOptions {
   TransferOptions transfer;
   GeometryOptions geometry;
   bool velocity = false, force = false;
-  double framesPerSecond = 24;
+  double framesPerSecond() const { return frames.animation.framesPerSecond; }
 };
 
 // What decides an output beside the frames' files.
@@ -38,12 +38,15 @@ std::string settingsText(const DeformOptions& o) {
   const FrameFitterSettings& f = o.frames.fitting;
   const TransferOptions& t = o.transfer;
   const auto number = [](const auto& v) { return v ? fmt::format("{:.17g}", double(*v)) : "-"; };
-  return fmt::format("{};{};{};{};{};{};{};{};{};{};{};{};{:.17g};{};{};{};{};{}", versionText(),
+  const AnimationSettings& a = o.frames.animation;
+  const std::string rest =
+      fmt::format("{};{};{}", number(a.restFrame), static_cast<int>(a.up), a.mesh);
+  return fmt::format("{};{};{};{};{};{};{};{};{};{};{};{};{:.17g};{};{};{};{};{};{}", versionText(),
                      f.sources, frameCollocation(f), number(f.distance), f.seed, t.grids,
                      static_cast<int>(t.carry.sampling), t.carry.allDensities, t.carry.densityLimit,
                      t.densities, t.stress, t.strain, t.outside, t.fadeTo,
                      number(t.grid.resolution), number(t.grid.voxelSize), static_cast<int>(t.names),
-                     o.velocity ? fmt::format("{:.17g}", o.framesPerSecond) : "-");
+                     o.velocity ? fmt::format("{:.17g}", o.framesPerSecond()) : "-", rest);
 }
 
 // Tells which inputs and settings an output was made from.
@@ -129,7 +132,7 @@ class Deformer {
     const std::shared_ptr<const FrameFit> fit = fits_.at(index);
     std::vector<CarriedField> fields;
     if (options_.velocity)
-      fields.push_back({"velocity", fits_.velocity(index, options_.framesPerSecond),
+      fields.push_back({"velocity", fits_.velocity(index, options_.framesPerSecond()),
                         openvdb::VEC_CONTRAVARIANT_RELATIVE});
     // No structured binding: lambdas cannot capture one in C++17.
     const FramePush pushed = pusher_->push({fit.get(), frame.number}, fields);
@@ -140,7 +143,7 @@ class Deformer {
     if (options_.velocity)
       for (const openvdb::GridBase::Ptr& grid : result.grids)
         grid->insertMeta("innermap_frames_per_second",
-                         openvdb::DoubleMetadata(options_.framesPerSecond));
+                         openvdb::DoubleMetadata(options_.framesPerSecond()));
     openvdb::MetaMap file;
     file.insertMeta(kInputs, openvdb::StringMetadata(inputs));
     writeFrame(frame,
@@ -264,7 +267,7 @@ void run(const DeformOptions& options, Context& context) {
   else
     context.outputs(framePaths(pattern, frames));
   if (isGeometryFile(options.volume))
-    return deformGeometry({options.rest, options.volume, options.output, options.framesPerSecond,
+    return deformGeometry({options.rest, options.volume, options.output, options.framesPerSecond(),
                            options.frames, options.transfer, options.geometry},
                           frames, context);
   if (context.dryRun()) {
@@ -327,7 +330,7 @@ Command makeDeformCommand() {
       "same files and settings, are skipped (of geometry all are made). A frame that cannot be "
       "read or fitted is reported and "
       "left out; the exit code is then 1.");
-  c.positional("SOURCE", &o->rest, "mesh of the rest pose: .obj, .ply, .off or .stl");
+  c.positional("SOURCE", &o->rest, "mesh of the rest pose: .obj, .ply, .off or .stl; or glTF");
   c.positional("INSIDE", &o->volume,
                "what is carried, in the rest pose's world space: grids (.vdb) or geometry (.obj, "
                ".ply, .off, .stl; cells in .vtu, .msh, .mesh)");
@@ -343,9 +346,6 @@ Command makeDeformCommand() {
   c.flag("--velocity", &o->velocity,
          "also write a grid velocity (v with --names houdini) for motion blur, in world units per "
          "second, from the neighbouring frames");
-  c.option("--fps", "N", &o->framesPerSecond, "frames per second, for --velocity and .mdd")
-      .above(0)
-      .atMost(1e6);
   addTransferOptions(c, o->transfer);
   addGeometryOptions(c, o->geometry, false);
   c.example("innermap deform rest.obj bones.obj 'walk.*.obj' -o 'out/bones.####.obj'");

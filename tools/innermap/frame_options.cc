@@ -21,10 +21,13 @@ std::string span(const std::vector<FrameFile>& frames) {
 }  // namespace
 
 void addFrameArgument(Command& command, FrameOptions& o) {
-  command.positional("FRAMES", &o.files,
-                     "meshes of the rest pose's connectivity, a frame number in each name: files, "
-                     "a folder, or a pattern in quotes with *, ?, #### or %04d; or a point cache "
-                     "of the rest pose's vertices (.mdd, .pc2)");
+  command
+      .positional("FRAMES", &o.files,
+                  "meshes of the rest pose's connectivity, a frame number in each name: files, "
+                  "a folder, or a pattern in quotes with *, ?, #### or %04d; or a point cache "
+                  "of the rest pose's vertices (.mdd, .pc2), or glTF (.glb, .gltf), which may "
+                  "also be SOURCE alone")
+      .optional();
 }
 
 void addFrameOptions(Command& command, FrameOptions& o) {
@@ -32,6 +35,11 @@ void addFrameOptions(Command& command, FrameOptions& o) {
   command.option("--frames", "LIST", &o.ranges, "which frames: 12, 1-48, 1-48x2 (every second)")
       .defaults("all");
   command.settings(describe(o.animation));
+  command.option("--mesh", "NAME", &o.animation.mesh, "which mesh or node of glTF, of several");
+  command
+      .option("--animation", "NAME", &o.animation.animation,
+              "which animation of glTF, where several move the same")
+      .defaults("all");
   command.limitTime("no frame begins later, but for the first; those that are left are counted");
   command.settings(describe(o.fitting));
   command
@@ -45,8 +53,12 @@ void addFrameOptions(Command& command, FrameOptions& o) {
 }
 
 Frames listFrames(const FrameOptions& options, const std::string& rest, Context& context) {
+  if (options.files.empty() && !isGltf(rest))
+    throw UsageError("FRAMES: is missing; give files, a folder, a pattern, or an animation file");
   Frames frames;
-  frames.source = openFrames(options.files, options.animation);
+  frames.source = openFrames(options.files.empty() ? std::vector<std::string>{rest} : options.files,
+                             options.animation);
+  frames.animation = options.animation;
   std::vector<std::string> left;
   for (const std::string& path : frames.source->unnumbered)
     if (!isSameFile(path, rest)) left.push_back(path);
@@ -58,7 +70,8 @@ Frames listFrames(const FrameOptions& options, const std::string& rest, Context&
   for (std::size_t i = 0; i < frames.source->numbers.size(); ++i)
     frames.all.push_back({frames.source->numbers[i], frames.source->path(i)});
   for (std::size_t i = 0; i < frames.all.size(); ++i)
-    if (i == 0 || frames.all[i].path != frames.all[i - 1].path) context.input(frames.all[i].path);
+    if (frames.all[i].path != (i == 0 ? rest : frames.all[i - 1].path))
+      context.input(frames.all[i].path);
   std::optional<FrameRanges> ranges;
   if (!options.ranges.empty()) ranges.emplace("--frames", options.ranges);
   for (std::size_t i = 0; i < frames.all.size(); ++i)
@@ -77,7 +90,9 @@ std::vector<std::string> framePaths(const FramePattern& pattern, const Frames& f
 }
 
 SourceBoundary readRest(const std::string& rest, const Frames& frames, Context& context) {
-  Mesh mesh = readMeshFile(rest, context);
+  Mesh mesh = isGltf(rest)
+                  ? context.timed("read", [&] { return readRestPose(rest, frames.animation); })
+                  : readMeshFile(rest, context);
   frames.source->requireLike(mesh);
   SourceBoundary source = makeSourceBoundary(std::move(mesh));
   reportSource(source, context);

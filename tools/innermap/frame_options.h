@@ -30,6 +30,7 @@ void addFrameOptions(Command& command, FrameOptions& options);
 
 struct Frames {
   std::shared_ptr<const FrameSource> source;
+  AnimationSettings animation;
   std::vector<FrameFile> all;       // the source's, ascending
   std::vector<std::size_t> wanted;  // of all, those that --frames chooses
 };

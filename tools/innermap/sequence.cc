@@ -154,7 +154,7 @@ Command makeSequenceCommand() {
       "report.json in a folder. Charges are placed once for all frames; a frame's figures do not "
       "depend on the other frames. A frame that cannot be read or fitted is reported and left out; "
       "the exit code is then 1.");
-  c.positional("SOURCE", &o->rest, "mesh of the rest pose: .obj, .ply, .off or .stl");
+  c.positional("SOURCE", &o->rest, "mesh of the rest pose: .obj, .ply, .off or .stl; or glTF");
   addFrameArgument(c, o->frames);
   c.option("--output", "FOLDER", &o->output, "where the files go; made when missing")
       .shortName("-o")

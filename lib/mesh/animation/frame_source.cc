@@ -8,6 +8,7 @@
 #include "core/text_scanner.h"
 #include "innermap/core/error.h"
 #include "innermap/mesh/mesh_file.h"
+#include "mesh/animation/detail/gltf_frames.h"
 #include "mesh/animation/detail/point_cache.h"
 #include "mesh/detail/scene_files.h"
 
@@ -86,13 +87,23 @@ class FramesOfCache : public FrameSource {
 }  // namespace
 
 std::vector<Setting> describe(AnimationSettings& s) {
-  return {Setting("first_frame", "N", &s.firstFrame,
-                  "number of the first frame of a point cache; the others follow")
-              .from(-1e9, 1e9)
-              .otherwise("1 of .mdd, what .pc2 says")};
+  return {
+      Setting("first_frame", "N", &s.firstFrame,
+              "number of the first frame of a file that holds several; the others follow")
+          .from(-1e9, 1e9)
+          .otherwise("1 of .mdd, what .pc2 says, by its seconds of glTF"),
+      Setting("fps", "N", &s.framesPerSecond,
+              "frames per second: that glTF is baked at, of velocities, and in .mdd files")
+          .above(0, 1e6),
+      Setting("rest", "N", &s.restFrame, "which frame of glTF is the rest pose")
+          .from(-1e9, 1e9)
+          .otherwise("as its mesh was bound"),
+      Setting("up", "AXIS",
+              choiceOf(&s.up, {std::pair<std::string, UpAxis>{"y", UpAxis::y}, {"z", UpAxis::z}}),
+              "what points up in the meshes made of glTF, where y does; z turns them")};
 }
 
-bool isAnimationFile(const std::string& path) { return isPointCache(path); }
+bool isAnimationFile(const std::string& path) { return isPointCache(path) || isGltf(path); }
 
 std::unique_ptr<FrameSource> openFrames(const std::vector<std::string>& paths,
                                         const AnimationSettings& settings) {
@@ -103,14 +114,16 @@ std::unique_ptr<FrameSource> openFrames(const std::vector<std::string>& paths,
     if (!isAnimationFile(path)) continue;
     if (paths.size() > 1)
       throw FileError(path, "holds all frames; give it alone, or frames as files of their own");
+    if (isGltf(path)) return openGltfFrames(path, settings);
     return std::make_unique<FramesOfCache>(path, settings);
   }
   return std::make_unique<FramesInFiles>(paths);
 }
 
-PointCacheInfo readPointCacheInfo(const std::string& path) {
+AnimationInfo readAnimationInfo(const std::string& path) {
+  if (isGltf(path)) return readGltfInfo(path);
   const PointCache cache(path);
-  PointCacheInfo info;
+  AnimationInfo info;
   info.format = cache.format() == PointCacheFormat::mdd ? "MDD" : "PC2";
   info.frames = cache.frames();
   info.points = cache.points();

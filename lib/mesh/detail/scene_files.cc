@@ -15,7 +15,7 @@ void requireNoScene(const std::string& path) {
     if (equalsIgnoringCase(extension, ending))
       throw FileError(path, std::string("is ") + format +
                                 ", which is not read; export the mesh at rest as .obj, and its "
-                                "animation as .mdd or .pc2");
+                                "animation as .mdd or .pc2, or both as glTF");
 }
 
 }  // namespace innermap

@@ -27,13 +27,11 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 struct DeformOptions : CarryOptions {
   FittingOptions fitting;
   bool velocity = false;
-  double framesPerSecond = 24;
 
   void describe(Keywords& k) {
     k.flag("velocity", &velocity,
            "of grids: also a grid velocity for motion blur, world units a second, from the "
            "neighbouring frames");
-    k.number("fps", &framesPerSecond, {1e-6, 1e6}, "frames a second, for velocity");
     fitting.describe(k);
     CarryOptions::describe(k);
   }
@@ -117,7 +115,7 @@ py::object Deformation::grids(const py::object& what,
         const std::shared_ptr<const FrameFit> fit = fits.at(index);
         std::vector<CarriedField> fields;
         if (o_.velocity)
-          fields.push_back({"velocity", fits.velocity(index, o_.framesPerSecond),
+          fields.push_back({"velocity", fits.velocity(index, o_.fitting.animation.framesPerSecond),
                             openvdb::VEC_CONTRAVARIANT_RELATIVE});
         PushResult result = pusher.push({fit.get(), number}, fields).result;
         std::map<std::string, double> row = rowOf(*fit);
@@ -214,7 +212,8 @@ void bindDeform(py::module_& m) {
        "innermap.Grids or the path of a .vdb file, which come back as a list of Grids, or are "
        "written to output and figures come back; or the path of a file of geometry (.obj, .ply, "
        "..., .vtu, .msh), written to output. frames: paths, a pattern ('walk.*.obj'), a point "
-       "cache (.mdd, .pc2), or an array of each frame's vertices. output: a path with #### or %04d "
+       "cache (.mdd, .pc2), glTF (.glb, .gltf), or an array of each frame's vertices. output: a "
+       "path with #### or %04d "
        "for the frame's number. "
        "Figures are a dict of columns: frame, boundary_rms and so on, error, the text of what was "
        "wrong with a frame that is left out. All frames are made, also those whose output is "

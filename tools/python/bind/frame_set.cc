@@ -25,6 +25,8 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 void FittingOptions::describe(Keywords& k) {
   k.object("only", &only, "str", "which of the frames, by number: '12', '1-48', '1-48x2'; all");
   k.settings(innermap::describe(animation));
+  k.text("mesh", &animation.mesh, "which mesh or node of glTF, of several");
+  k.text("animation", &animation.animation, "which animation of glTF, where several move the same");
   k.settings(innermap::describe(fitting));
 }
 

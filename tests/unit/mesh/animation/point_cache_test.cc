@@ -174,7 +174,7 @@ TEST_F(WritePointCache, ReadsBack) {
     }
   }
   EXPECT_EQ(openFrames({path("a.pc2")})->numbers, (std::vector<std::int64_t>{3, 5, 7}));
-  const std::vector<float> seconds = readPointCacheInfo(path("a.mdd")).seconds;
+  const std::vector<float> seconds = readAnimationInfo(path("a.mdd")).seconds;
   ASSERT_EQ(seconds.size(), 3u);
   EXPECT_FLOAT_EQ(seconds[2], 4 / 25.0f);
 }
