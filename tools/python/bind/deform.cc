@@ -183,7 +183,7 @@ py::object Deformation::file(const std::string& from, const FramePattern& patter
 }
 
 py::object deform(const Arguments& a, DeformOptions& o) {
-  const Mesh rest = meshFrom(a[0], "source");
+  const Mesh rest = restFrom(a[0], o.fitting);
   const FrameSet frames(a[2], o.fitting, rest);
   if (o.velocity && frames.numbers().size() < 2)
     wrongValue("velocity", "needs two frames at least");
@@ -207,7 +207,8 @@ void bindDeform(py::module_& m) {
       m,
       {"deform", "source, inside, frames, output=None",
        "Carries what is inside a rest pose through the frames of an animation.\n\nsource: the rest "
-       "pose, a mesh: (V, F), a path, an innermap.Mesh. inside: points (n, 3), which come back as "
+       "pose, a mesh: (V, F), a path, an innermap.Mesh, or that of a glTF file. inside: points (n, "
+       "3), which come back as "
        "(places (frames, n, 3), found (n,)), NaN where a point lies too far outside; an "
        "innermap.Grids or the path of a .vdb file, which come back as a list of Grids, or are "
        "written to output and figures come back; or the path of a file of geometry (.obj, .ply, "

@@ -30,6 +30,13 @@ void FittingOptions::describe(Keywords& k) {
   k.settings(innermap::describe(fitting));
 }
 
+Mesh restFrom(const py::object& given, const FittingOptions& options) {
+  if (isPath(given))
+    if (const std::string path = pathFrom(given, "source"); isGltf(path))
+      return readRestPose(path, options.animation);
+  return meshFrom(given, "source");
+}
+
 FrameSet::FrameSet(const py::object& given, const FittingOptions& options, const Mesh& rest)
     : rest_(rest) {
   const bool oneText = isPath(given);

@@ -29,6 +29,9 @@ struct FittingOptions {
   void describe(Keywords& k);
 };
 
+// A mesh, or the rest pose of a glTF file.
+Mesh restFrom(const pybind11::object& given, const FittingOptions& options);
+
 // From files or from arrays.
 class FrameSet {
  public:

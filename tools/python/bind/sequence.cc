@@ -54,7 +54,7 @@ std::map<std::string, double> measuresOf(const FrameFit& fit, const MapGrids& gr
 }
 
 py::object sequence(const Arguments& a, SequenceOptions& o) {
-  const Mesh rest = meshFrom(a[0], "source");
+  const Mesh rest = restFrom(a[0], o.fitting);
   const FrameSet frames(a[1], o.fitting, rest);
   std::optional<FramePattern> pattern;
   if (!o.output.is_none()) pattern.emplace("output", pathFrom(o.output, "output"));
