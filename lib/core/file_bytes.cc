@@ -15,41 +15,47 @@
 #include "innermap/core/run.h"
 
 namespace innermap {
-namespace {
-
-struct Descriptor {
-  int number;
-  ~Descriptor() { close(number); }
-};
-
-}  // namespace
-
-FileBytes readFileBytes(const std::string& path, const std::string& what) {
+OpenFile::OpenFile(const std::string& path, const std::string& what) : path_(path) {
   // Without O_NONBLOCK, opening a pipe that nobody writes to would wait for ever.
-  const int number = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (number < 0)
+  number_ = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (number_ < 0)
     throw FileError(path, std::string("cannot be opened (") + std::strerror(errno) +
                               "); check the name and its permissions");
-  const Descriptor file{number};
+  const auto refuse = [&](const std::string& why) {
+    close(number_);
+    throw FileError(path, why);
+  };
   struct stat status {};
-  if (fstat(number, &status) != 0)
-    throw FileError(path, std::string("cannot be read (") + std::strerror(errno) + ")");
-  if (S_ISDIR(status.st_mode)) throw FileError(path, "is a folder; give " + what);
-  if (!S_ISREG(status.st_mode)) throw FileError(path, "is not a regular file; give " + what);
-  if (status.st_size <= 0) throw FileError(path, "is empty; export it again");
-  const std::size_t size = static_cast<std::size_t>(status.st_size);
-  requireMemory("reading " + path, size, availableMemory(), "use a coarser one");
-  std::string bytes(size, '\0');
+  if (fstat(number_, &status) != 0)
+    refuse(std::string("cannot be read (") + std::strerror(errno) + ")");
+  if (S_ISDIR(status.st_mode)) refuse("is a folder; give " + what);
+  if (!S_ISREG(status.st_mode)) refuse("is not a regular file; give " + what);
+  if (status.st_size <= 0) refuse("is empty; export it again");
+  size_ = static_cast<std::uint64_t>(status.st_size);
+}
+
+OpenFile::~OpenFile() { close(number_); }
+
+void OpenFile::read(std::uint64_t from, char* bytes, std::size_t count) const {
   constexpr std::size_t kChunk = std::size_t(16) << 20;
-  for (std::size_t done = 0; done < size;) {
+  for (std::size_t done = 0; done < count;) {
     throwIfCancelled();
-    const ssize_t got = read(number, &bytes[done], std::min(kChunk, size - done));
+    const ssize_t got = pread(number_, bytes + done, std::min(kChunk, count - done),
+                              static_cast<off_t>(from + done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0)
-      throw FileError(path, std::string("cannot be read (") + std::strerror(errno) + ")");
-    if (got == 0) throw FileError(path, "became shorter while it was read; try again");
+      throw FileError(path_, std::string("cannot be read (") + std::strerror(errno) + ")");
+    if (got == 0) throw FileError(path_, "became shorter while it was read; try again");
     done += static_cast<std::size_t>(got);
   }
+}
+
+FileBytes readFileBytes(const std::string& path, const std::string& what) {
+  const OpenFile file(path, what);
+  const std::size_t size = static_cast<std::size_t>(file.size());
+  requireMemory("reading " + path, size, availableMemory(), "use a coarser one");
+  std::string bytes(size, '\0');
+  file.read(0, bytes.data(), size);
   return {path, std::move(bytes)};
 }
 

@@ -2,6 +2,7 @@
 #include "innermap/core/error.h"
 #include "innermap/mesh/mesh_file.h"
 #include "mesh/detail/polygon_mesh.h"
+#include "mesh/detail/scene_files.h"
 
 namespace innermap {
 namespace {
@@ -19,6 +20,7 @@ PolygonMesh readPolygons(const std::string& path) {
   for (const Format& format : kFormats)
     if (equalsIgnoringCase(extension, format.extension))
       return format.read(readFileBytes(path, "a mesh file"));
+  requireNoScene(path);
   throw FileError(
       path, (!extension.empty() ? "unknown extension " + inQuotes(extension) : "has no extension") +
                 "; meshes are read from .obj, .ply, .off and .stl files");

@@ -115,4 +115,33 @@ std::string infoJson(const std::string& path, const Mesh& mesh) {
                  {"volume", signedVolume(mesh)}});
 }
 
+std::string infoJson(const std::string& path, const AnimationInfo& info) {
+  if (isGltf(path)) {
+    Json out = {
+        {"file", path}, {"kind", "gltf"}, {"meshes", Json::array()}, {"animations", Json::array()}};
+    for (const AnimationInfo::Body& m : info.meshes)
+      out["meshes"].push_back({{"name", m.name},
+                               {"vertices", m.vertices},
+                               {"stored_vertices", m.stored},
+                               {"triangles", m.triangles},
+                               {"joints", m.joints},
+                               {"morph_targets", m.targets}});
+    for (const AnimationInfo::Clip& c : info.animations)
+      out["animations"].push_back({{"name", c.name}, {"start", c.start}, {"end", c.end}});
+    return dumped(out);
+  }
+  Json out = {{"file", path},
+              {"kind", "point_cache"},
+              {"format", info.format},
+              {"frames", info.frames},
+              {"points", info.points}};
+  if (info.seconds.empty()) {
+    out["start"] = info.start;
+    out["step"] = info.step;
+  } else {
+    out["seconds"] = info.seconds;
+  }
+  return dumped(out);
+}
+
 }  // namespace innermap

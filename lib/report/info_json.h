@@ -10,6 +10,7 @@
 #include "innermap/io/vdb_file.h"
 #include "innermap/io/volume_texture.h"
 #include "innermap/mesh/mesh.h"
+#include "innermap/mesh/mesh_file.h"
 
 namespace innermap {
 
@@ -18,5 +19,6 @@ std::string infoJson(const std::string& path, const std::vector<ExrPart>& parts,
                      const std::optional<VolumeTextureInfo>& volume);
 std::string infoJson(const std::string& path, const FieldFile& file);
 std::string infoJson(const std::string& path, const Mesh& mesh);
+std::string infoJson(const std::string& path, const AnimationInfo& info);
 
 }  // namespace innermap

@@ -35,6 +35,27 @@ Mesh octahedron() {
 // A correspondence, or a pose: a mesh of known connectivity, that of most of the corpus.
 void pose(const std::string& path) { readMeshLike(path, octahedron()); }
 
+// All frames of a point cache.
+void frames(const std::string& path) {
+  const MemoryLimit limit(kMemory);
+  readAnimationInfo(path);
+  const auto source = openFrames({path});
+  for (std::size_t i = 0; i < source->numbers.size(); ++i) {
+    source->fingerprint(i);
+    source->read(i, octahedron());
+  }
+}
+
+// Some frames of a glTF file, of its own rest pose.
+void gltf(const std::string& path) {
+  const MemoryLimit limit(kMemory);
+  readAnimationInfo(path);
+  const Mesh rest = readRestPose(path);
+  const auto source = openFrames({path});
+  constexpr std::size_t kMost = 5;
+  for (std::size_t i = 0; i < std::min(source->numbers.size(), kMost); ++i) source->read(i, rest);
+}
+
 void groups(const std::string& path) { readGroups(path, readMesh(path)); }
 
 void properties(const std::string& path) { readVertexProperties(path, {"s"}, readMesh(path)); }
@@ -132,6 +153,10 @@ const std::vector<Reader>& readers() {
       {"mesh-off", "off", mesh},
       {"mesh-stl", "stl", mesh},
       {"correspondence", "ply", pose},
+      {"frames-mdd", "mdd", frames},
+      {"frames-pc2", "pc2", frames},
+      {"frames-glb", "glb", gltf},
+      {"frames-gltf", "gltf", gltf},
       {"landmarks", "txt", landmarks},
       {"groups", "obj", groups},
       {"properties", "ply", properties},

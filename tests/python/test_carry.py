@@ -1,5 +1,7 @@
 """Grids, meshes, cells, files and points through a map, and frames: as the program does them."""
 
+import json
+
 import numpy as np
 
 import cli
@@ -164,6 +166,51 @@ def test_measures_a_sequence_as_the_program_does():
     poses[1] = poses[1] * 0  # bounds no solid
     table = innermap.sequence((V, F), poses, charges=800, resolution=32)
     assert table["error"][1] and not table["error"][0] and np.isnan(table["harmonic"][1])
+
+
+def test_takes_point_caches():
+    V, F, poses = frames()
+    V, poses = (np.asarray(a, np.float32) for a in (V, poses))
+    with open("walk.mdd", "wb") as file:
+        np.array([len(poses), len(V)], ">i4").tofile(file)
+        np.zeros(len(poses), ">f4").tofile(file)
+        poses.astype(">f4").tofile(file)
+    X = 0.5 * V[:20]
+    places, _ = innermap.deform((V, F), X, poses, charges=400)
+    cached, _ = innermap.deform((V, F), X, "walk.mdd", charges=400, first_frame=5, only="6")
+    assert cached.shape == (1, 20, 3) and np.array_equal(cached[0], places[1])
+    try:
+        innermap.deform((V[:-1], F[(F < len(V) - 1).all(1)]), X, "walk.mdd", charges=400)
+        assert False, "a cache of another mesh"
+    except innermap.DataError as error:
+        assert "points" in str(error)
+
+
+def test_takes_gltf_as_rest_pose_and_frames():
+    V, F, _ = frames()
+    parts = [V[F].astype("<f4"), np.array([0, 1], "<f4"), np.array([[0, 0, 0], [2, 0, 0]], "<f4")]
+    offsets = np.cumsum([0] + [p.nbytes for p in parts])
+    with open("ball.bin", "wb") as file:
+        for part in parts:
+            part.tofile(file)
+    counts = [("VEC3", 3 * len(F)), ("SCALAR", 2), ("VEC3", 2)]
+    with open("ball.gltf", "w", encoding="ascii") as file:
+        json.dump({
+            "asset": {"version": "2.0"},
+            "buffers": [{"byteLength": int(offsets[-1]), "uri": "ball.bin"}],
+            "bufferViews": [{"buffer": 0, "byteOffset": int(o), "byteLength": p.nbytes}
+                            for o, p in zip(offsets, parts)],
+            "accessors": [{"bufferView": i, "componentType": 5126, "type": kind, "count": n}
+                          for i, (kind, n) in enumerate(counts)],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+            "nodes": [{"mesh": 0}],
+            "animations": [{"samplers": [{"input": 1, "output": 2}],
+                            "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}],
+        }, file)
+    X = 0.5 * V[:20]
+    places, found = innermap.deform("ball.gltf", X, "ball.gltf", charges=400, fps=2)
+    assert places.shape == (3, 20, 3) and found.all()
+    assert np.abs(places[1] - X - [1, 0, 0]).max() < 1e-5
 
 
 if __name__ == "__main__":

@@ -7,6 +7,8 @@
 #include <map>
 
 #include "commands.h"
+#include "core/file_bytes.h"
+#include "core/text_scanner.h"
 #include "deform_geometry.h"
 #include "frame_loop.h"
 #include "innermap/core/version.h"
@@ -28,7 +30,8 @@ struct DeformOptions {
   TransferOptions transfer;
   GeometryOptions geometry;
   bool velocity = false, force = false;
-  double framesPerSecond = 24, shutter = kUsualShutter;
+  double shutter = kUsualShutter;
+  double framesPerSecond() const { return frames.animation.framesPerSecond; }
 };
 
 // What decides an output beside the frames' files.
@@ -36,12 +39,15 @@ std::string settingsText(const DeformOptions& o) {
   const FrameFitterSettings& f = o.frames.fitting;
   const TransferOptions& t = o.transfer;
   const auto number = [](const auto& v) { return v ? fmt::format("{:.17g}", double(*v)) : "-"; };
+  const AnimationSettings& a = o.frames.animation;
+  const std::string rest =
+      fmt::format("{};{};{}", number(a.restFrame), static_cast<int>(a.up), a.mesh);
   return fmt::format(
-      "{};{};{};{};{};{};{};{};{};{};{};{};{:.17g};{};{};{};{};{}", versionText(), f.sources,
+      "{};{};{};{};{};{};{};{};{};{};{};{};{:.17g};{};{};{};{};{};{}", versionText(), f.sources,
       frameCollocation(f), number(f.distance), f.seed, t.grids, static_cast<int>(t.carry.sampling),
       t.carry.allDensities, t.carry.densityLimit, t.densities, t.stress, t.strain, t.outside,
       t.fadeTo, number(t.grid.resolution), number(t.grid.voxelSize), static_cast<int>(t.names),
-      o.velocity ? fmt::format("{:.17g}/{:.17g}", o.framesPerSecond, o.shutter) : "-");
+      o.velocity ? fmt::format("{:.17g}/{:.17g}", o.framesPerSecond(), o.shutter) : "-", rest);
 }
 
 // Tells which inputs and settings an output was made from.
@@ -62,9 +68,7 @@ class Inputs {
   }
 
  private:
-  std::string fingerprint(std::size_t index) const {
-    return fingerprintOf(frames_.all[index].path);
-  }
+  std::string fingerprint(std::size_t index) const { return frames_.source->fingerprint(index); }
   // A neighbour that cannot be read plays no part.
   std::string numbered(std::size_t index) const try {
     return fmt::format("{} {}", frames_.all[index].number, fingerprint(index));
@@ -129,9 +133,9 @@ class Deformer {
     const std::shared_ptr<const FrameFit> fit = fits_.at(index);
     std::vector<CarriedField> fields;
     if (options_.velocity)
-      fields.push_back({"velocity", fits_.velocity(index, options_.framesPerSecond),
+      fields.push_back({"velocity", fits_.velocity(index, options_.framesPerSecond()),
                         openvdb::VEC_CONTRAVARIANT_RELATIVE,
-                        options_.shutter / options_.framesPerSecond});
+                        options_.shutter / options_.framesPerSecond()});
     // No structured binding: lambdas cannot capture one in C++17.
     const FramePush pushed = pusher_->push({fit.get(), frame.number}, fields);
     const auto& result = pushed.result;
@@ -141,7 +145,7 @@ class Deformer {
     if (options_.velocity)
       for (const openvdb::GridBase::Ptr& grid : result.grids)
         grid->insertMeta("innermap_frames_per_second",
-                         openvdb::DoubleMetadata(options_.framesPerSecond));
+                         openvdb::DoubleMetadata(options_.framesPerSecond()));
     openvdb::MetaMap file;
     file.insertMeta(kInputs, openvdb::StringMetadata(inputs));
     writeFrame(frame,
@@ -191,9 +195,14 @@ std::string lineOf(const FrameFile& frame, const DeformRow& row, double seconds,
 
 void check(const DeformOptions& options, const Frames& frames) {
   std::string extension = std::filesystem::path(options.output).extension().string();
-  requireFitting(options.volume, options.output, options.transfer, options.geometry);
+  const bool cache = isPointCache(options.output);
+  requireFitting(options.volume, cache ? options.volume : options.output, options.transfer,
+                 options.geometry);
   if (isGeometryFile(options.volume)) {
     if (options.velocity) throw UsageError("--velocity: is for volumes; leave it out");
+    if (cache && equalsIgnoringCase(extensionOf(options.volume), ".stl"))
+      throw FileError(options.volume,
+                      "has no vertices that a point cache could hold; save it as .ply first");
   } else if (extension != ".vdb")
     throw UsageError("--output: '" + options.output + "' must end in .vdb, as in a.####.vdb");
   if (options.velocity && frames.all.size() < 2)
@@ -255,13 +264,16 @@ void run(const DeformOptions& options, Context& context) {
   // Made first, and gone again if nothing comes into it.
   std::optional<PendingFolder> folder;
   if (!context.dryRun()) folder.emplace(pattern.folder());
-  context.outputs(framePaths(pattern, frames));
+  if (isPointCache(options.output))
+    context.output(options.output);
+  else
+    context.outputs(framePaths(pattern, frames));
   if (isGeometryFile(options.volume))
-    return deformGeometry(
-        {options.rest, options.volume, options.frames, options.transfer, options.geometry}, frames,
-        pattern, context);
+    return deformGeometry({options.rest, options.volume, options.output, options.framesPerSecond(),
+                           options.frames, options.transfer, options.geometry},
+                          frames, context);
   if (context.dryRun()) {
-    const SourceBoundary rest = readRest(options.rest, context);
+    const SourceBoundary rest = readRest(options.rest, frames, context);
     const openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
     expectFrames(options, rest.solid, grids, frames, context);
     return plan(options, frames, pattern, memoryOf(options, rest.solid, grids), context);
@@ -273,7 +285,7 @@ void run(const DeformOptions& options, Context& context) {
     left = framesLeft(options, frames, pattern, *inputs, context);
   });
   if (left.wanted.empty()) return;
-  SourceBoundary rest = readRest(options.rest, context);
+  SourceBoundary rest = readRest(options.rest, frames, context);
   openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
   requireFrameMemory(options.frames.fitting, memoryOf(options, rest.solid, grids), context);
   expectFrames(options, rest.solid, grids, left, context);
@@ -320,14 +332,15 @@ Command makeDeformCommand() {
       "same files and settings, are skipped (of geometry all are made). A frame that cannot be "
       "read or fitted is reported and "
       "left out; the exit code is then 1.");
-  c.positional("SOURCE", &o->rest, "mesh of the rest pose: .obj, .ply, .off or .stl");
+  c.positional("SOURCE", &o->rest, "mesh of the rest pose: .obj, .ply, .off or .stl; or glTF");
   c.positional("INSIDE", &o->volume,
                "what is carried, in the rest pose's world space: grids (.vdb) or geometry (.obj, "
                ".ply, .off, .stl; cells in .vtu, .msh, .mesh)");
   addFrameArgument(c, o->frames);
   c.option("--output", "FILES", &o->output,
            "the files to write, of INSIDE's kind, #### or %04d standing for the frame's number; "
-           "without, it is put before the ending; the folder is made when missing")
+           "without, it is put before the ending; or a point cache of geometry's points (.mdd, "
+           ".pc2), all frames in one; the folder is made when missing")
       .shortName("-o")
       .required();
   addFrameOptions(c, o->frames);
@@ -335,9 +348,6 @@ Command makeDeformCommand() {
   c.flag("--velocity", &o->velocity,
          "also write a grid velocity (v with --names houdini) for motion blur, in world units per "
          "second, from the neighbouring frames");
-  c.option("--fps", "N", &o->framesPerSecond, "frames per second, for --velocity")
-      .above(0)
-      .atMost(1e6);
   c.option("--shutter", "FRAMES", &o->shutter,
            "how long the shutter is open, for --velocity: the grid goes on around the solid as far "
            "as it moves meanwhile, or the outer part of the blur is cut off")
@@ -346,6 +356,7 @@ Command makeDeformCommand() {
   addTransferOptions(c, o->transfer);
   addGeometryOptions(c, o->geometry, false);
   c.example("innermap deform rest.obj bones.obj 'walk.*.obj' -o 'out/bones.####.obj'");
+  c.example("innermap deform rest.obj hair.obj walk.pc2 -o out/hair.pc2");
   c.example("innermap deform rest.obj smoke.vdb 'walk.*.obj' -o 'out/smoke.####.vdb' --density");
   c.example(
       "innermap deform rest.obj smoke.vdb 'walk.*.obj' -o 'out/smoke.%04d.vdb' --velocity --fps "

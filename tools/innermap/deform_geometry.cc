@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 
 #include "frame_loop.h"
 #include "innermap/levelset/level_set.h"
+#include "innermap/mesh/mesh_file.h"
 #include "job_cost.h"
 #include "report/report_figures.h"
 
@@ -23,7 +26,7 @@ class Deformer {
       : job_(job),
         context_(context),
         frames_(frames),
-        fitter_(makeFrameFitter(readRest(job.rest, context), job.frames.fitting, context)),
+        fitter_(makeFrameFitter(readRest(job.rest, frames, context), job.frames.fitting, context)),
         fits_(makeFrameFits(fitter_, frames, context)),
         file_(readGeometryFile(job.input, job.geometry, context)) {
     if (job.transfer.fadeTo != "fitted") pusher_ = pusherFor({});
@@ -35,7 +38,11 @@ class Deformer {
     JudgedFrame judged;
   };
 
-  Row run(std::size_t index, const std::string& path) {
+  // Points that the file has.
+  std::size_t points() const { return file_->geometry.ownPoints; }
+
+  // write: puts what was carried in place.
+  Row run(std::size_t index, const std::function<void(const CarriedGeometry&)>& write) {
     const FrameFile& frame = frames_.all[index];
     const std::shared_ptr<const FrameFit> fit = fits_.at(index);
     const PointPusher pusher = pusher_ ? *pusher_ : pusherFor(fit->boundary.moved);
@@ -52,8 +59,12 @@ class Deformer {
           settings, context_);
     });
     warnOf(*file_, row.carried, job_.transfer, fmt::format("frame {}: ", frame.number), context_);
-    writeFrame(frame, [&] { writeGeometryFile(path, *file_, row.carried, context_); });
+    writeFrame(frame, [&] { write(row.carried); });
     return row;
+  }
+
+  void writeFile(const std::string& path, const CarriedGeometry& carried) const {
+    writeGeometryFile(path, *file_, carried, context_);
   }
 
   // Of the last frame: which points are outside is the same in all.
@@ -77,11 +88,80 @@ class Deformer {
   std::optional<PointPusher> pusher_;  // none where each frame needs its own
 };
 
+// What is made of the frames, beside the files.
+struct Made {
+  std::map<std::size_t, BoundaryError> errors;
+  std::vector<JudgedFrame> judged;
+  std::optional<CarriedGeometry> last;
+  std::vector<FrameResult> results;
+};
+
+// stays: what `write` writes of a frame stays when the others are not made.
+Made makeFrames(const DeformGeometry& job, const Frames& frames, Deformer& deformer, bool stays,
+                const std::function<void(std::size_t, const CarriedGeometry&)>& write,
+                Context& context) {
+  Made made;
+  context.print(fmt::format("{:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "frame", "points",
+                            "folded", "error rms", "error 99%", "seconds"));
+  made.results = runFrames(frames, stays, context, [&](std::size_t index) {
+    StageSeconds seconds;
+    auto row = timed(seconds, "frame", [&] {
+      return deformer.run(index, [&](const CarriedGeometry& carried) { write(index, carried); });
+    });
+    made.errors[index] = row.error;
+    made.judged.push_back(row.judged);
+    context.print(fmt::format("{:>8} {:>10} {:>10} {:>10.2e} {:>10.2e} {:>9.3g}{}\n",
+                              frames.all[index].number, row.carried.ownPoints, row.carried.folded,
+                              row.error.rms, row.error.p99, seconds.front().second,
+                              missedMark(row.judged.misses(job.frames.tolerance))));
+    made.last = std::move(row.carried);
+  });
+  return made;
+}
+
+// The file's own points, all of which a cache has in every frame.
+Points cachePoints(const std::string& input, const CarriedGeometry& carried) {
+  const auto end = carried.number.begin() + static_cast<std::ptrdiff_t>(carried.ownPoints);
+  const auto cut = std::count(carried.number.begin(), end, -1);
+  if (cut > 0)
+    throw OutputFailure(
+        fmt::format("{}: {} points lie too far outside and would be cut, and a "
+                    "point cache has all; raise --outside, or write files",
+                    input, cut));
+  return {carried.points.points.begin(),
+          carried.points.points.begin() + static_cast<std::ptrdiff_t>(carried.ownPoints)};
+}
+
+// All frames in one file.
+Made makeCache(const DeformGeometry& job, const Frames& frames, const std::string& path,
+               Deformer& deformer, Context& context) {
+  PointCacheLayout layout;
+  layout.points = deformer.points();
+  layout.framesPerSecond = job.framesPerSecond;
+  for (const std::size_t index : frames.wanted) layout.numbers.push_back(frames.all[index].number);
+  Made made;
+  writePointCache(path, layout, [&](const auto& add) {
+    made = makeFrames(
+        job, frames, deformer, false,
+        [&](std::size_t, const CarriedGeometry& carried) { add(cachePoints(job.input, carried)); },
+        context);
+  });
+  return made;
+}
+
+std::string planned(const DeformGeometry& job, const Frames& frames) {
+  if (job.cache()) return "carry " + job.input + " to " + job.output;
+  const FramePattern pattern("--output", job.output);
+  const auto path = [&](std::size_t i) { return pattern.path(frames.all[i].number); };
+  return "carry " + job.input + " to " + path(frames.wanted.front()) + " to " +
+         path(frames.wanted.back());
+}
+
 }  // namespace
 
-void deformGeometry(const DeformGeometry& job, const Frames& frames, const FramePattern& pattern,
-                    Context& context) {
-  const auto path = [&](std::size_t i) { return pattern.path(frames.all[i].number); };
+bool DeformGeometry::cache() const { return isPointCache(output); }
+
+void deformGeometry(const DeformGeometry& job, const Frames& frames, Context& context) {
   // What the fitter leaves scattered over the heap counts when the first frame is carried.
   constexpr std::uint64_t kScattered = 25'000'000;
   const std::uint64_t need = geometryMemory(job.input) + kScattered;
@@ -91,38 +171,26 @@ void deformGeometry(const DeformGeometry& job, const Frames& frames, const Frame
                              stageOf("frames: geometry", size)));
   if (context.dryRun()) {
     const FrameFitterSettings settings = job.frames.fitting;
-    return context.plan(
-        {framesPlan(settings, frames), "carry " + job.input + " to " + path(frames.wanted.front()) +
-                                           " to " + path(frames.wanted.back())},
-        frameFitterMemory(settings, need));
+    return context.plan({framesPlan(settings, frames), planned(job, frames)},
+                        frameFitterMemory(settings, need));
   }
   requireFrameMemory(job.frames.fitting, need, context);
   Deformer deformer(job, frames, context);
-  std::map<std::size_t, BoundaryError> errors;
-  std::vector<JudgedFrame> judged;
-  std::optional<CarriedGeometry> last;
-  context.print(fmt::format("{:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "frame", "points",
-                            "folded", "error rms", "error 99%", "seconds"));
-  const auto results = runFrames(frames, true, context, [&](std::size_t index) {
-    StageSeconds seconds;
-    auto row = timed(seconds, "frame", [&] { return deformer.run(index, path(index)); });
-    errors[index] = row.error;
-    judged.push_back(row.judged);
-    context.print(fmt::format("{:>8} {:>10} {:>10} {:>10.2e} {:>10.2e} {:>9.3g}{}\n",
-                              frames.all[index].number, row.carried.ownPoints, row.carried.folded,
-                              row.error.rms, row.error.p99, seconds.front().second,
-                              missedMark(row.judged.misses(job.frames.tolerance))));
-    last = std::move(row.carried);
-  });
-  if (last) context.print(deformer.report(*last));
-  std::vector<DeformedFrame> made(results.size());
+  const auto writeFile = [&](std::size_t index, const CarriedGeometry& carried) {
+    const FramePattern pattern("--output", job.output);
+    deformer.writeFile(pattern.path(frames.all[index].number), carried);
+  };
+  const Made all = job.cache() ? makeCache(job, frames, job.output, deformer, context)
+                               : makeFrames(job, frames, deformer, true, writeFile, context);
+  if (all.last) context.print(deformer.report(*all.last));
+  std::vector<DeformedFrame> made(all.results.size());
   for (std::size_t i = 0; i < made.size(); ++i)
-    if (const auto error = errors.find(frames.wanted[i]); error != errors.end())
+    if (const auto error = all.errors.find(frames.wanted[i]); error != all.errors.end())
       made[i].error = error->second;
   context.report().add(
       "frames", only(deformedFigures(made), {"boundary_rms", "boundary_p99", "boundary_max"}));
-  context.judge(judgeFrames(judged, job.frames.tolerance, job.frames.verdict));
-  context.print(secondsText(results, context));
+  context.judge(judgeFrames(all.judged, job.frames.tolerance, job.frames.verdict));
+  context.print(secondsText(all.results, context));
 }
 
 }  // namespace innermap::tool

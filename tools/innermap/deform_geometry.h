@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "core/frame_files.h"
 #include "frame_options.h"
 #include "geometry_transfer.h"
 
@@ -11,13 +10,16 @@ namespace innermap::tool {
 
 struct DeformGeometry {
   std::string rest, input;
+  std::string output;  // a pattern of files, or a point cache
+  double framesPerSecond = 24;
   const FrameOptions& frames;
   const TransferOptions& transfer;
   const GeometryOptions& geometry;
+
+  bool cache() const;
 };
 
-// Carries the geometry through the wanted frames and writes a file for each.
-void deformGeometry(const DeformGeometry& job, const Frames& frames, const FramePattern& pattern,
-                    Context& context);
+// Carries the geometry through the wanted frames and writes a file for each, or one of all.
+void deformGeometry(const DeformGeometry& job, const Frames& frames, Context& context);
 
 }  // namespace innermap::tool

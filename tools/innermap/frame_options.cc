@@ -5,7 +5,6 @@
 #include "core/file.h"
 #include "innermap/core/memory.h"
 #include "innermap/field/fit.h"
-#include "innermap/mesh/mesh_file.h"
 #include "inputs.h"
 #include "map_report.h"
 #include "report/page/contents.h"
@@ -22,14 +21,24 @@ std::string span(const std::vector<FrameFile>& frames) {
 }  // namespace
 
 void addFrameArgument(Command& command, FrameOptions& o) {
-  command.positional("FRAMES", &o.files,
-                     "meshes of the rest pose's connectivity, a frame number in each name: files, "
-                     "a folder, or a pattern in quotes with *, ?, #### or %04d");
+  command
+      .positional("FRAMES", &o.files,
+                  "meshes of the rest pose's connectivity, a frame number in each name: files, "
+                  "a folder, or a pattern in quotes with *, ?, #### or %04d; or a point cache "
+                  "of the rest pose's vertices (.mdd, .pc2), or glTF (.glb, .gltf), which may "
+                  "also be SOURCE alone")
+      .optional();
 }
 
 void addFrameOptions(Command& command, FrameOptions& o) {
   command.group("frames");
   command.option("--frames", "LIST", &o.ranges, "which frames: 12, 1-48, 1-48x2 (every second)")
+      .defaults("all");
+  command.settings(describe(o.animation));
+  command.option("--mesh", "NAME", &o.animation.mesh, "which mesh or node of glTF, of several");
+  command
+      .option("--animation", "NAME", &o.animation.animation,
+              "which animation of glTF, where several move the same")
       .defaults("all");
   command.limitTime("no frame begins later, but for the first; those that are left are counted");
   command.settings(describe(o.fitting));
@@ -44,20 +53,25 @@ void addFrameOptions(Command& command, FrameOptions& o) {
 }
 
 Frames listFrames(const FrameOptions& options, const std::string& rest, Context& context) {
-  FrameList list = findFrames(options.files, meshExtensions());
+  if (options.files.empty() && !isGltf(rest))
+    throw UsageError("FRAMES: is missing; give files, a folder, a pattern, or an animation file");
+  Frames frames;
+  frames.source = openFrames(options.files.empty() ? std::vector<std::string>{rest} : options.files,
+                             options.animation);
+  frames.animation = options.animation;
   std::vector<std::string> left;
-  for (const std::string& path : list.unnumbered)
+  for (const std::string& path : frames.source->unnumbered)
     if (!isSameFile(path, rest)) left.push_back(path);
-  if (list.frames.empty())
-    throw DataError(fmt::format("{}: none of the {} files has a frame number in its name",
-                                options.files.front(), list.unnumbered.size()));
   if (!left.empty())
     context.note(fmt::format(
         "{}{} left out: no frame number in the name", left.front(),
         left.size() > 1 ? fmt::format(" and {} others", left.size() - 1) : std::string()));
-  Frames frames;
-  frames.all = std::move(list.frames);
-  for (const FrameFile& frame : frames.all) context.input(frame.path);
+  for (const std::string& note : frames.source->notes) context.note(note);
+  for (std::size_t i = 0; i < frames.source->numbers.size(); ++i)
+    frames.all.push_back({frames.source->numbers[i], frames.source->path(i)});
+  for (std::size_t i = 0; i < frames.all.size(); ++i)
+    if (frames.all[i].path != (i == 0 ? rest : frames.all[i - 1].path))
+      context.input(frames.all[i].path);
   std::optional<FrameRanges> ranges;
   if (!options.ranges.empty()) ranges.emplace("--frames", options.ranges);
   for (std::size_t i = 0; i < frames.all.size(); ++i)
@@ -75,8 +89,12 @@ std::vector<std::string> framePaths(const FramePattern& pattern, const Frames& f
   return paths;
 }
 
-SourceBoundary readRest(const std::string& rest, Context& context) {
-  SourceBoundary source = makeSourceBoundary(readMeshFile(rest, context));
+SourceBoundary readRest(const std::string& rest, const Frames& frames, Context& context) {
+  Mesh mesh = isGltf(rest)
+                  ? context.timed("read", [&] { return readRestPose(rest, frames.animation); })
+                  : readMeshFile(rest, context);
+  frames.source->requireLike(mesh);
+  SourceBoundary source = makeSourceBoundary(std::move(mesh));
   reportSource(source, context);
   return source;
 }
@@ -97,8 +115,8 @@ FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context
     shown = std::make_shared<PageFrames>(*context.page(), fitter.rest().mesh, frames.wanted.size());
   return {std::move(numbers), [&, shown, told = false](std::size_t index) mutable {
             const FrameFile& frame = frames.all[index];
-            const Mesh mesh =
-                context.timed("read", [&] { return readMeshLike(frame.path, fitter.rest().mesh); });
+            const Mesh mesh = context.timed(
+                "read", [&] { return frames.source->read(index, fitter.rest().mesh); });
             FrameFit fit = fitter.fit(mesh);
             addSeconds(context.report().seconds, fit.seconds);
             for (const std::string& warning : fit.warnings)

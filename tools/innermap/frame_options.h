@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "command.h"
 #include "core/frame_files.h"
 #include "innermap/fit/frame_fitter.h"
+#include "innermap/mesh/mesh_file.h"
 #include "report/verdict.h"
 
 namespace innermap::tool {
@@ -16,6 +18,7 @@ namespace innermap::tool {
 struct FrameOptions {
   std::vector<std::string> files;
   std::string ranges;
+  AnimationSettings animation;
   FrameFitterSettings fitting;
   double tolerance = kUsualTolerance;  // that frames are judged by
   VerdictSettings verdict;
@@ -26,7 +29,9 @@ void addFrameArgument(Command& command, FrameOptions& options);
 void addFrameOptions(Command& command, FrameOptions& options);
 
 struct Frames {
-  std::vector<FrameFile> all;       // ascending
+  std::shared_ptr<const FrameSource> source;
+  AnimationSettings animation;
+  std::vector<FrameFile> all;       // the source's, ascending
   std::vector<std::size_t> wanted;  // of all, those that --frames chooses
 };
 
@@ -37,8 +42,9 @@ Frames listFrames(const FrameOptions& options, const std::string& rest, Context&
 // The output of each of the frames wanted.
 std::vector<std::string> framePaths(const FramePattern& pattern, const Frames& frames);
 
-// The rest pose; fills the report's "source".
-SourceBoundary readRest(const std::string& rest, Context& context);
+// The rest pose of these frames; fills the report's "source". Throws DataError where they are of
+// another mesh.
+SourceBoundary readRest(const std::string& rest, const Frames& frames, Context& context);
 
 // Its fitter; fills the report's "solve".
 FrameFitter makeFrameFitter(SourceBoundary source, const FrameFitterSettings& settings,

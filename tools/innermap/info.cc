@@ -7,9 +7,11 @@
 #include <filesystem>
 
 #include "commands.h"
+#include "core/text_scanner.h"
 #include "innermap/field/field_file.h"
 #include "innermap/io/exr_slices.h"
 #include "innermap/io/vdb_file.h"
+#include "innermap/mesh/mesh_file.h"
 #include "inputs.h"
 #include "report/info_json.h"
 
@@ -83,13 +85,41 @@ std::string exrInfo(const InfoOptions& options) {
   return describe(parts, options.file) + (volume ? describe(*volume) : "");
 }
 
+std::string gltfText(const std::string& path, const AnimationInfo& info) {
+  std::string text = fmt::format("{}: glTF, {} meshes, {} animations\n", path, info.meshes.size(),
+                                 info.animations.size());
+  for (const AnimationInfo::Body& mesh : info.meshes)
+    text += fmt::format(
+        "  mesh {}: {} vertices ({} in the file), {} triangles, {} joints, {} morph "
+        "targets\n",
+        inQuotes(mesh.name), mesh.vertices, mesh.stored, mesh.triangles, mesh.joints, mesh.targets);
+  for (const AnimationInfo::Clip& clip : info.animations)
+    text += fmt::format("  animation {}: {:g} s to {:g} s\n", inQuotes(clip.name), clip.start,
+                        clip.end);
+  return text;
+}
+
+std::string animationInfo(const InfoOptions& options) {
+  const AnimationInfo info = readAnimationInfo(options.file);
+  if (options.json) return infoJson(options.file, info);
+  if (isGltf(options.file)) return gltfText(options.file, info);
+  std::string text = fmt::format("{}: {} point cache, {} frames of {} points\n", options.file,
+                                 info.format, info.frames, info.points);
+  if (info.seconds.empty())
+    text += fmt::format("  first frame {:g}, a frame each {:g} frames\n", info.start, info.step);
+  else
+    text += fmt::format("  from {:g} s to {:g} s\n", info.seconds.front(), info.seconds.back());
+  return text;
+}
+
 void run(const InfoOptions& options, Context& context) {
   const std::string e = extension(options.file);
   // A dry run reads too, as only what is in the file tells what it takes.
-  const std::string text = e == ".vdb"                 ? vdbInfo(options)
-                           : e == ".exr"               ? exrInfo(options)
-                           : isFieldFile(options.file) ? mapInfo(options)
-                                                       : meshInfo(options, context);
+  const std::string text = e == ".vdb"                     ? vdbInfo(options)
+                           : e == ".exr"                   ? exrInfo(options)
+                           : isAnimationFile(options.file) ? animationInfo(options)
+                           : isFieldFile(options.file)     ? mapInfo(options)
+                                                           : meshInfo(options, context);
   if (context.dryRun()) return context.plan({"describe " + options.file}, 0);
   context.print(text);
 }
@@ -98,8 +128,8 @@ void run(const InfoOptions& options, Context& context) {
 
 Command makeInfoCommand() {
   auto o = std::make_shared<InfoOptions>();
-  Command c("info", "Say what is in a file: grids, a map, a mesh, or EXR parts");
-  c.positional("FILE", &o->file, "a .vdb, .exr, map or mesh file");
+  Command c("info", "Say what is in a file: grids, a map, a mesh, an animation, or EXR parts");
+  c.positional("FILE", &o->file, "a .vdb, .exr, map, mesh, .mdd, .pc2 or glTF file");
   c.flag("--metadata", &o->metadata,
          "also all metadata of the grids, or all that a map's file says");
   c.flag("--json", &o->json, "machine-readable, with all metadata, on stdout");

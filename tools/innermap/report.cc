@@ -80,6 +80,32 @@ std::string found(const std::string& path, const fs::path& folder) {
   return fs::exists(beside) ? beside.string() : path;
 }
 
+// As the run was told.
+AnimationSettings animationOf(const Json& report) {
+  AnimationSettings settings;
+  const Json* first = at(report, "settings", "first_frame");
+  if (first && first->is_number_integer()) settings.firstFrame = first->get<int>();
+  if (const Json* fps = at(report, "settings", "fps"); fps && fps->is_number())
+    settings.framesPerSecond = fps->get<double>();
+  const Json* restFrame = at(report, "settings", "rest");
+  if (restFrame && restFrame->is_number_integer()) settings.restFrame = restFrame->get<int>();
+  if (textAt(report, "settings", "up") == "z") settings.up = UpAxis::z;
+  settings.mesh = textAt(report, "settings", "mesh");
+  settings.animation = textAt(report, "settings", "animation");
+  return settings;
+}
+
+// Frame `number` of a file, which may hold all of them.
+Mesh readFrame(const std::string& path, std::int64_t number, const Json& report, const Mesh& rest) {
+  if (!isAnimationFile(path)) return readMeshLike(path, rest);
+  const AnimationSettings settings = animationOf(report);
+  const auto source = openFrames({path}, settings);
+  const auto place = std::find(source->numbers.begin(), source->numbers.end(), number);
+  if (place == source->numbers.end())
+    throw DataError(fmt::format("{}: has no frame {}", path, number));
+  return source->read(static_cast<std::size_t>(place - source->numbers.begin()), rest);
+}
+
 void addFrames(Page& page, const Json& report, const Mesh& rest, const fs::path& folder) {
   const Json *files = at(report, "frames", "file"), *numbers = at(report, "frames", "number");
   if (!files || !numbers || !files->is_array() || !numbers->is_array()) return;
@@ -90,8 +116,9 @@ void addFrames(Page& page, const Json& report, const Mesh& rest, const fs::path&
     const Json &file = (*files)[i], &number = (*numbers)[i];
     if (!file.is_string() || !number.is_number()) continue;
     tried(page, [&] {
-      const Mesh mesh = readMeshLike(found(file.get<std::string>(), folder), rest);
-      frames.add(static_cast<std::int64_t>(std::llround(number.get<double>())), mesh.vertices);
+      const std::int64_t which = std::llround(number.get<double>());
+      const std::string path = found(file.get<std::string>(), folder);
+      frames.add(which, readFrame(path, which, report, rest).vertices);
     });
   }
 }
@@ -103,7 +130,11 @@ void addSurfaces(Page& page, const Json& report, const fs::path& folder) {
   const std::string target = textAt(report, "target", "path");
   if (source.empty()) return page.missing.push_back("surfaces: the report names no mesh");
   Mesh rest;
-  if (!tried(page, [&] { rest = readMesh(found(source, folder)); })) return;
+  if (!tried(page, [&] {
+        const std::string path = found(source, folder);
+        rest = isGltf(path) ? readRestPose(path, animationOf(report)) : readMesh(path);
+      }))
+    return;
   if (at(report, "frames", "file")) return addFrames(page, report, rest, folder);
   addMesh(page, rest);
   if (target.empty()) return;

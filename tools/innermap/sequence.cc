@@ -88,7 +88,7 @@ void run(const SequenceOptions& options, Context& context) {
       context.outputFolder(options.output, {"energies.csv", "energies.svg", "report.json"});
   if (!options.grids.empty()) context.outputs(framePaths(pattern, frames));
   const FrameFitterSettings settings = options.frames.fitting;
-  SourceBoundary rest = readRest(options.rest, context);
+  SourceBoundary rest = readRest(options.rest, frames, context);
   requireInterior(rest.solid, options.evaluation.grid.in<LevelSetSettings>());
   const std::uint64_t gridsNeed =
       mapGridMemory(rest.solid, mapGridSettings(options.evaluation), {1, false, false});
@@ -154,7 +154,7 @@ Command makeSequenceCommand() {
       "report.json in a folder. Charges are placed once for all frames; a frame's figures do not "
       "depend on the other frames. A frame that cannot be read or fitted is reported and left out; "
       "the exit code is then 1.");
-  c.positional("SOURCE", &o->rest, "mesh of the rest pose: .obj, .ply, .off or .stl");
+  c.positional("SOURCE", &o->rest, "mesh of the rest pose: .obj, .ply, .off or .stl; or glTF");
   addFrameArgument(c, o->frames);
   c.option("--output", "FOLDER", &o->output, "where the files go; made when missing")
       .shortName("-o")

@@ -12,6 +12,7 @@
 #include "bind/grids.h"
 #include "bind/lists.h"
 #include "bind/meshes.h"
+#include "core/frame_files.h"
 #include "innermap/core/memory.h"
 #include "innermap/transfer/carry.h"
 
@@ -25,13 +26,12 @@ constexpr double kGridAccuracy = 1e-6;  // of the sums of charges
 struct DeformOptions : CarryOptions {
   FittingOptions fitting;
   bool velocity = false;
-  double framesPerSecond = 24, shutter = kUsualShutter;
+  double shutter = kUsualShutter;
 
   void describe(Keywords& k) {
     k.flag("velocity", &velocity,
            "of grids: also a grid velocity for motion blur, world units a second, from the "
            "neighbouring frames");
-    k.number("fps", &framesPerSecond, {1e-6, 1e6}, "frames a second, for velocity");
     k.number("shutter", &shutter, {0, 10},
              "how long the shutter is open, in frames: the grid velocity goes on around the solid "
              "as far as it moves meanwhile");
@@ -96,8 +96,9 @@ py::object Deformation::grids(const py::object& what,
         const std::shared_ptr<const FrameFit> fit = fits.at(index);
         std::vector<CarriedField> fields;
         if (o_.velocity)
-          fields.push_back({"velocity", fits.velocity(index, o_.framesPerSecond),
-                            openvdb::VEC_CONTRAVARIANT_RELATIVE, o_.shutter / o_.framesPerSecond});
+          const double rate = o_.fitting.animation.framesPerSecond;
+          fields.push_back({"velocity", fits.velocity(index, rate),
+                            openvdb::VEC_CONTRAVARIANT_RELATIVE, o_.shutter / rate});
         PushResult result = pusher.push({fit.get(), number}, fields).result;
         std::map<std::string, double> row = rowOf(*fit);
         row["inverted_fraction"] = result.statistics.invertedInside();
@@ -164,7 +165,7 @@ py::object Deformation::file(const std::string& from, const FramePattern& patter
 }
 
 py::object deform(const Arguments& a, DeformOptions& o) {
-  const Mesh rest = meshFrom(a[0], "source");
+  const Mesh rest = restFrom(a[0], o.fitting);
   const FrameSet frames(a[2], o.fitting, rest);
   if (o.velocity && frames.numbers().size() < 2)
     wrongValue("velocity", "needs two frames at least");
@@ -188,12 +189,15 @@ void bindDeform(py::module_& m) {
       m,
       {"deform", "source, inside, frames, output=None",
        "Carries what is inside a rest pose through the frames of an animation.\n\nsource: the rest "
-       "pose, a mesh: (V, F), a path, an innermap.Mesh. inside: points (n, 3), which come back as "
+       "pose, a mesh: (V, F), a path, an innermap.Mesh, or that of a glTF file. inside: points (n, "
+       "3), which come back as "
        "(places (frames, n, 3), found (n,)), NaN where a point lies too far outside; an "
        "innermap.Grids or the path of a .vdb file, which come back as a list of Grids, or are "
        "written to output and figures come back; or the path of a file of geometry (.obj, .ply, "
-       "..., .vtu, .msh), written to output. frames: paths, a pattern ('walk.*.obj'), or an array "
-       "of each frame's vertices. output: a path with #### or %04d for the frame's number. "
+       "..., .vtu, .msh), written to output. frames: paths, a pattern ('walk.*.obj'), a point "
+       "cache (.mdd, .pc2), glTF (.glb, .gltf), or an array of each frame's vertices. output: a "
+       "path with #### or %04d "
+       "for the frame's number. "
        "Figures are a dict of columns: frame, boundary_rms and so on, error, the text of what was "
        "wrong with a frame that is left out. All frames are made, also those whose output is "
        "there. Raises DataError, FileError, MemoryError."},

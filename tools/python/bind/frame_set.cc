@@ -9,6 +9,7 @@
 #include "bind/errors.h"
 #include "bind/lists.h"
 #include "bind/meshes.h"
+#include "core/frame_files.h"
 #include "innermap/core/memory.h"
 #include "innermap/mesh/mesh_file.h"
 
@@ -26,7 +27,17 @@ void FittingOptions::describe(Keywords& k) {
   k.object("numbers", &numbers, "Sequence[int]",
            "of frames that are arrays: their numbers, ascending, for names of files and "
            "velocities; from 0 on if not given");
+  k.settings(innermap::describe(animation));
+  k.text("mesh", &animation.mesh, "which mesh or node of glTF, of several");
+  k.text("animation", &animation.animation, "which animation of glTF, where several move the same");
   k.settings(innermap::describe(fitting));
+}
+
+Mesh restFrom(const py::object& given, const FittingOptions& options) {
+  if (isPath(given))
+    if (const std::string path = pathFrom(given, "source"); isGltf(path))
+      return readRestPose(path, options.animation);
+  return meshFrom(given, "source");
 }
 
 FrameSet::FrameSet(const py::object& given, const FittingOptions& options, const Mesh& rest)
@@ -34,7 +45,7 @@ FrameSet::FrameSet(const py::object& given, const FittingOptions& options, const
   const bool oneText = isPath(given);
   if (oneText || (py::isinstance<py::sequence>(given) && !py::isinstance<py::array>(given) &&
                   py::len(given) > 0 && isPath(py::sequence(given)[0])))
-    takeFiles(given, oneText);
+    takeFiles(given, oneText, options.animation);
   else
     takeMeshes(given);
   if (numbers_.empty()) wrongValue("frames", "is empty");
@@ -43,7 +54,7 @@ FrameSet::FrameSet(const py::object& given, const FittingOptions& options, const
 }
 
 Mesh FrameSet::mesh(std::size_t index) const {
-  if (!files_.empty()) return readMeshLike(files_[index].path, rest_);
+  if (files_) return files_->read(index, rest_);
   Mesh out = rest_;
   out.name = fmt::format("frame {}", numbers_[index]);
   out.vertices = places_[index];
@@ -54,15 +65,15 @@ FrameFits FrameSet::fits(const FrameFitter& fitter) const {
   return {numbers_, [&fitter, this](std::size_t index) { return fitter.fit(mesh(index)); }};
 }
 
-void FrameSet::takeFiles(const py::object& given, bool oneText) {
+void FrameSet::takeFiles(const py::object& given, bool oneText, const AnimationSettings& settings) {
   std::vector<std::string> names;
   if (oneText)
     names.push_back(pathFrom(given, "frames"));
   else
     for (const auto& path : given) names.push_back(pathFrom(path, "frames"));
-  files_ = findFrames(names, meshExtensions()).frames;
-  if (files_.empty()) wrongValue("frames", "no file has a frame number in its name");
-  for (const FrameFile& file : files_) numbers_.push_back(file.number);
+  files_ = openFrames(names, settings);
+  files_->requireLike(rest_);
+  numbers_ = files_->numbers;
 }
 
 void FrameSet::takeMeshes(const py::object& given) {

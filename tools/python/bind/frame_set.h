@@ -6,14 +6,15 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "bind/keywords.h"
-#include "core/frame_files.h"
 #include "innermap/core/error.h"
 #include "innermap/fit/frame_fitter.h"
+#include "innermap/mesh/mesh_file.h"
 
 namespace innermap::python {
 
@@ -22,11 +23,15 @@ void bindSequence(pybind11::module_& m);
 
 struct FittingOptions {
   FrameFitterSettings fitting;
+  AnimationSettings animation;
   pybind11::object only;     // which frames
   pybind11::object numbers;  // of frames that no file names
 
   void describe(Keywords& k);
 };
+
+// A mesh, or the rest pose of a glTF file.
+Mesh restFrom(const pybind11::object& given, const FittingOptions& options);
 
 // From files or from arrays.
 class FrameSet {
@@ -43,13 +48,13 @@ class FrameSet {
   FrameFits fits(const FrameFitter& fitter) const;
 
  private:
-  void takeFiles(const pybind11::object& given, bool oneText);
+  void takeFiles(const pybind11::object& given, bool oneText, const AnimationSettings& settings);
   void takeMeshes(const pybind11::object& given);
   void number(const pybind11::object& numbers);
   void choose(const pybind11::object& only);
 
   const Mesh& rest_;
-  std::vector<FrameFile> files_;
+  std::unique_ptr<FrameSource> files_;
   std::vector<Points> places_;
   std::vector<std::int64_t> numbers_;
   std::vector<std::size_t> wanted_;

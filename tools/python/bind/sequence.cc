@@ -10,6 +10,7 @@
 #include "bind/grids.h"
 #include "bind/lists.h"
 #include "bind/meshes.h"
+#include "core/frame_files.h"
 #include "innermap/core/memory.h"
 #include "innermap/evaluate/grids.h"
 
@@ -53,7 +54,7 @@ std::map<std::string, double> measuresOf(const FrameFit& fit, const MapGrids& gr
 }
 
 py::object sequence(const Arguments& a, SequenceOptions& o) {
-  const Mesh rest = meshFrom(a[0], "source");
+  const Mesh rest = restFrom(a[0], o.fitting);
   const FrameSet frames(a[1], o.fitting, rest);
   std::optional<FramePattern> pattern;
   if (!o.output.is_none()) pattern.emplace("output", pathFrom(o.output, "output"));

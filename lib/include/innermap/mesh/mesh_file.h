@@ -1,4 +1,4 @@
-// Mesh files in: OBJ, PLY, OFF, STL.
+// Mesh files in: OBJ, PLY, OFF, STL; animations of a mesh: files of frames, point caches.
 //
 // The readers are our own. For PLY, OFF and STL no packaged reader keeps non-manifold faces, reads
 // triangle strips and refuses a header that promises more than the file holds before memory is
@@ -7,10 +7,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "innermap/core/setting.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {
@@ -72,5 +76,95 @@ struct PlyExtras {
 // As writeMesh() writes .ply, with further properties of the vertices. Throws DataError for a
 // property that has not a number for each vertex; FileError.
 void writePly(const std::string& path, const Mesh& mesh, const PlyExtras& extras);
+
+// Animations: the vertices of one mesh, frame by frame.
+
+enum class UpAxis { y, z };
+
+struct AnimationSettings {
+  // Number of the first frame of a file that holds several; without, MDD's is 1, PC2's what its
+  // header says, rounded, and glTF's the first from where its animation begins, frame 0 being at 0
+  // seconds. The others follow one by one, in PC2 by its frames a sample.
+  std::optional<int> firstFrame;
+  double framesPerSecond = 24;  // that glTF is baked at
+  // Of glTF: which frame is the rest pose, without it the pose in which the mesh was bound; the
+  // axis that points up in what is made of it, its own being y; names of the mesh, or its node, and
+  // of the animation, where there are several; empty: all animations, unless they move the same.
+  std::optional<int> restFrame;
+  UpAxis up = UpAxis::y;
+  std::string mesh, animation;
+};
+std::vector<Setting> describe(AnimationSettings& settings);
+
+// The frames of an animation; each is read when it is asked for.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+
+  std::vector<std::int64_t> numbers;    // ascending, each once
+  std::vector<std::string> unnumbered;  // files that are left out, having no number in their names
+  std::vector<std::string> notes;       // on what was taken for what
+
+  // The file that holds the frame at this place of `numbers`.
+  virtual const std::string& path(std::size_t index) const = 0;
+  // Its vertices, with the triangles of `rest`: its vertices in the same order; of glTF, whose
+  // files split and reorder them, those that are at the same places in the file's rest pose or
+  // first frame. Throws as readMeshLike.
+  virtual Mesh read(std::size_t index, const Mesh& rest) const = 0;
+  // Tells whether the frame is still the one that a result was made from, as fingerprintOf (core).
+  virtual std::string fingerprint(std::size_t index) const = 0;
+  // Throws DataError when no frame can be one of this mesh, as far as that can be told at once.
+  virtual void requireLike(const Mesh&) const {}
+};
+
+// By the ending: .mdd, .pc2; .glb, .gltf; either, which hold several frames.
+bool isPointCache(const std::string& path);
+bool isGltf(const std::string& path);
+bool isAnimationFile(const std::string& path);
+
+// paths: either files with a frame's number in each name, folders, and patterns with *, ?, #### or
+// %04d; or one animation file. Throws FileError when one names nothing, has no number or that of
+// another, or is damaged; SettingError; MemoryError; Cancelled.
+std::unique_ptr<FrameSource> openFrames(const std::vector<std::string>& paths,
+                                        const AnimationSettings& settings = {});
+
+// The rest pose of a glTF file. Vertices that are split for their normals or texture coordinates,
+// which are alike in place and in how they move, are one, so that the mesh closes. Throws likewise.
+Mesh readRestPose(const std::string& path, const AnimationSettings& settings = {});
+
+// What an animation file says of itself.
+struct AnimationInfo {
+  struct Body {
+    std::string name;
+    std::uint64_t vertices = 0, stored = 0, triangles = 0;  // stored: before they are made one
+    std::uint64_t joints = 0, targets = 0;                  // of a skin; morph targets
+  };
+  struct Clip {
+    std::string name;
+    double start = 0, end = 0;  // seconds
+  };
+  std::string format;                    // "MDD" (LightWave), "PC2" (3ds Max) or "glTF"
+  std::uint64_t frames = 0, points = 0;  // of point caches
+  double start = 0, step = 0;            // of PC2, frames
+  std::vector<float> seconds;            // of each frame of MDD
+  std::vector<Body> meshes;              // of glTF
+  std::vector<Clip> animations;
+};
+
+// Throws FileError for no such file, counts below 1, another size than they make; as openFrames.
+AnimationInfo readAnimationInfo(const std::string& path);
+
+struct PointCacheLayout {
+  std::uint64_t points = 0;
+  std::vector<std::int64_t> numbers;  // of the frames, ascending; in PC2 at even steps
+  double framesPerSecond = 24;        // MDD's seconds count from its first frame
+};
+
+// Writes .mdd or .pc2 by the ending. frames: calls what it is given with the points of each frame,
+// in order, where DataError is thrown for another number of points, or places beyond a float's. The
+// file appears whole when it returns, or not at all. Throws what it throws; DataError when it gave
+// fewer frames; FileError.
+void writePointCache(const std::string& path, const PointCacheLayout& layout,
+                     const std::function<void(const std::function<void(const Points&)>&)>& frames);
 
 }  // namespace innermap
