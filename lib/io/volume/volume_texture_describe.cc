@@ -6,10 +6,23 @@
 #include "innermap/io/volume_texture.h"
 
 namespace innermap {
+namespace {
+
+// Of a file that has no pictures.
+std::string describeFile(const VolumeTextureResult& r, const std::string& path) {
+  std::string text = fmt::format("{}: {}, ", path, r.format);
+  if (r.resolution != openvdb::Coord(0))
+    text +=
+        fmt::format("{} x {} x {} voxels, ", r.resolution.x(), r.resolution.y(), r.resolution.z());
+  return text + fmt::format("{}\n", fmt::join(r.channels, ", "));
+}
+
+}  // namespace
 
 std::string describe(const VolumeTextureResult& r, const std::string& path,
                      const VolumeTextureSettings& settings) {
   std::string text;
+  if (r.slices == 0) return describeFile(r, path);
   if (settings.layout == VolumeLayout::atlas)
     text = fmt::format("{}: {} x {} tiles of {} x {}, {} x {} pixels", path, r.tileColumns,
                        r.tileRows, r.tileWidth, r.tileHeight, r.width, r.height);

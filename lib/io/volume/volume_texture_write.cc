@@ -16,11 +16,11 @@
 #include "core/file.h"
 #include "core/frame_files.h"
 #include "innermap/core/error.h"
-#include "innermap/core/memory.h"
 #include "innermap/core/run.h"
 #include "innermap/io/pictures.h"
 #include "innermap/io/volume_texture.h"
 #include "io/exr/detail/exr_stream.h"
+#include "io/volume/detail/volume_formats.h"
 #include "io/volume/detail/volume_plan.h"
 
 namespace innermap {
@@ -248,21 +248,19 @@ std::string volumeLayoutName(VolumeLayout layout) {
                                           : "parts";
 }
 
-std::uint64_t volumeTextureMemory(const openvdb::GridPtrVec& grids,
-                                  const VolumeTextureSettings& settings) {
+std::uint64_t exrVolumeMemory(const openvdb::GridPtrVec& grids,
+                              const VolumeTextureSettings& settings) {
   return memoryFor(makeVolumePlan(grids, settings), settings.layout);
 }
 
-VolumeTextureResult planVolumeTexture(const std::string& path, const openvdb::GridPtrVec& grids,
-                                      const VolumeTextureSettings& settings) {
+VolumeTextureResult planExrVolume(const std::string& path, const openvdb::GridPtrVec& grids,
+                                  const VolumeTextureSettings& settings) {
   return resultOf(path, makeVolumePlan(grids, settings), settings.layout);
 }
 
-VolumeTextureResult writeVolumeTexture(const std::string& path, const openvdb::GridPtrVec& grids,
-                                       const VolumeTextureSettings& settings) {
+VolumeTextureResult writeExrVolume(const std::string& path, const openvdb::GridPtrVec& grids,
+                                   const VolumeTextureSettings& settings) {
   const VolumePlan plan = makeVolumePlan(grids, settings);
-  requireMemory("the volume texture " + path, memoryFor(plan, settings.layout),
-                "export fewer grids or at a lower resolution");
   VolumeTextureResult result = resultOf(path, plan, settings.layout);
   reportProgress("writing the volume texture", 0);
   const ExrThreads threads;

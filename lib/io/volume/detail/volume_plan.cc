@@ -231,7 +231,9 @@ std::vector<Setting> describe(VolumeTextureSettings& s) {
               "two")
           .rare(),
       axisSetting("axis", &s.axis, "direction across the slices"),
-      Setting("active", &s.active, "also NAME.active: 1 where a voxel is active").rare()};
+      Setting("active", &s.active, "also NAME.active: 1 where a voxel is active").rare(),
+      Setting("zip", &s.zip, "compress NanoVDB files with zlib, which not all programs read")
+          .rare()};
 }
 
 std::vector<Setting> describe(VolumeTextureReadSettings& s) {
