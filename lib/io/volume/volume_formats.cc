@@ -29,6 +29,16 @@ const std::vector<Entry>& table() {
        {writeExrVolume, planExrVolume, exrVolumeMemory}},
       {{".nvdb", "NanoVDB", "the sparse grids as they are, for GPUs", {"half", "zip"}},
        {writeNanoVdb, planNanoVdb, nanoVdbMemory}},
+      {{".vti",
+        "VTK image data",
+        "a dense box, an array a grid, for ParaView",
+        {"resolution", "pad", "cube", "power_of_two"}},
+       {writeVti, planVti, vtiMemory}},
+      {{".dds",
+        "DDS",
+        "a dense box as a volume texture of one to four channels, as of EXR",
+        {"half", "resolution", "pad", "cube", "power_of_two", "axis", "rows"}},
+       {writeDds, planDds, ddsMemory}},
   };
   return entries;
 }

@@ -96,6 +96,12 @@ struct VolumeTextureResult {
 //        `half` Fp16: 16 bits that span the values of each leaf, within 1/65,535 of that span;
 //        class and background stay), vectors Vec3f, int32, int64, bool and masks themselves.
 //        Reference: nanovdb/NanoVDB.h, nanovdb/util/IO.h of OpenVDB 10.
+// .vti:  VTK's XML ImageData, appended raw: the dense box, voxel centres as points, an array a grid
+//        in the grid's own numbers (truth values as UInt8); Origin, Spacing and Direction are the
+//        grids' transform, sheared ones too. Reference: "VTK File Formats", XML.
+// .dds:  a volume texture with the DX10 header, no smaller levels: R, RG or RGBA of 32-bit or half
+//        floats, channels as VolumeChannels::rgba names them; three channels get alpha 1, and
+//        slices, rows and columns are those of EXR. Reference: Microsoft, "DDS_HEADER_DXT10".
 //
 // Throws DataError (no grids, no active voxel, different transforms, a type without numbers, too
 // many voxels), SettingError (also for one that the format does not heed and that is not its

@@ -34,4 +34,16 @@ VolumeTextureResult planNanoVdb(const std::string& path, const openvdb::GridPtrV
 std::uint64_t nanoVdbMemory(const openvdb::GridPtrVec& grids,
                             const VolumeTextureSettings& settings);
 
+VolumeTextureResult writeVti(const std::string& path, const openvdb::GridPtrVec& grids,
+                             const VolumeTextureSettings& settings);
+VolumeTextureResult planVti(const std::string& path, const openvdb::GridPtrVec& grids,
+                            const VolumeTextureSettings& settings);
+std::uint64_t vtiMemory(const openvdb::GridPtrVec& grids, const VolumeTextureSettings& settings);
+
+VolumeTextureResult writeDds(const std::string& path, const openvdb::GridPtrVec& grids,
+                             const VolumeTextureSettings& settings);
+VolumeTextureResult planDds(const std::string& path, const openvdb::GridPtrVec& grids,
+                            const VolumeTextureSettings& settings);
+std::uint64_t ddsMemory(const openvdb::GridPtrVec& grids, const VolumeTextureSettings& settings);
+
 }  // namespace innermap
