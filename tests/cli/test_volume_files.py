@@ -107,4 +107,130 @@ assert pixels.shape == (4, 8, 8, 4) and (pixels[..., 3] == 1).all(), pixels.shap
     fails(1, "export", "g.vdb", "-o", "a.dds", says=["5", "--grids"])
 
 
+def test_nibabel_reads_values_and_places():
+    names = grids()
+    for name in names:
+        for ending in (".nii", ".nii.gz"):
+            innermap("export", "g.vdb", "-o", name + ending, "--grids", name)
+        independent("""
+import sys, numpy, nibabel
+matrix = numpy.array(eval(sys.argv[1]))
+matrix = numpy.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [-3, 2, 6, 1]]) @ matrix
+for ending in (".nii", ".nii.gz"):
+    image = nibabel.load(sys.argv[2] + ending)
+    expected = numpy.load(sys.argv[2] + ".npy").astype("f4")
+    values = numpy.asanyarray(image.dataobj)
+    if values.ndim == 5:
+        assert values.shape[3:] == (1, 3) and image.header["intent_code"] == 1007
+        values = values[:, :, :, 0]
+    assert values.dtype == "f4" and (values == expected).all(), sys.argv[2]
+    for affine, code in (image.get_sform(coded=True), image.get_qform(coded=True)):
+        assert code == 1 and numpy.abs(affine - matrix.T).max() < 1e-5, (affine, matrix.T)
+    assert image.header.get_xyzt_units()[0] == "mm"
+""", MATRIX, name, module="nibabel")
+        innermap("import", name + ".nii.gz", "-o", "back.vdb")
+        independent("""
+import sys, numpy, pyopenvdb as vdb
+grid = vdb.read("back.vdb", sys.argv[1])
+expected = numpy.load(sys.argv[1] + ".npy").astype("f4")
+values = numpy.zeros_like(expected)
+grid.copyToArray(values, ijk=(0, 0, 0))
+assert (values == expected).all()
+there = vdb.read("g.vdb", sys.argv[1]).transform.indexToWorld((-3 + 1, 2 + 2, 6 + 3))
+assert numpy.abs(numpy.subtract(grid.transform.indexToWorld((1, 2, 3)), there)).max() < 1e-5
+""", name, module="pyopenvdb")
+    fails(1, "export", "g.vdb", "-o", "all.nii", says=["3", "--grids", "density"])
+
+
+# What nibabel writes: FILE, and FILE.npy of x, y, z and the value at each voxel that is not 0.
+SCANS = """
+import numpy, nibabel
+rng = numpy.random.default_rng(3)
+turn = numpy.linalg.qr(rng.standard_normal((3, 3)))[0]
+affine = numpy.eye(4)
+affine[:3, :3] = turn * (1.5, 2, 0.75)
+affine[:3, 3] = 12, -40, 7
+labels = rng.choice([0, 1, 614454277], (9, 11, 13)).astype("i4")
+grey = rng.random((9, 11, 13)) * 100
+
+def save(name, image):
+    nibabel.save(image, name)
+    values = numpy.asanyarray(nibabel.load(name).dataobj)
+    at = numpy.argwhere(values)
+    world = nibabel.affines.apply_affine(image.affine, at)
+    numpy.save(name, numpy.column_stack([world, at, values[tuple(at.T)]]))
+
+image = nibabel.Nifti1Image(labels, affine)
+image.set_sform(affine, 2)
+save("labels.nii.gz", image)
+image = nibabel.Nifti1Image(labels, None)
+image.set_qform(affine, 1)
+image.set_sform(None, 0)
+save("quaternion.nii", image)
+image = nibabel.Nifti2Image(labels.astype(">i4"), affine)
+image.header.set_data_dtype(">i4")
+save("second.nii", image)
+big = nibabel.Nifti1Header(endianness=">")
+big.set_data_dtype("f4")
+save("big.nii", nibabel.Nifti1Image(grey, affine, big))
+image = nibabel.Nifti1Image(grey, affine)
+image.header.set_data_dtype("u1")
+image.header.set_slope_inter(0.5, -3)
+nibabel.save(image, "scaled.nii")
+image = nibabel.load("scaled.nii")
+save("scaled.nii.gz", image)
+lost = nibabel.Nifti1Image(labels, None)
+lost.header["pixdim"][1:4] = 2, 3, 4
+lost.set_sform(None, 0)
+lost.set_qform(None, 0)
+nibabel.save(lost, "lost.nii")
+nibabel.save(nibabel.Nifti1Image(numpy.zeros((3, 3, 3, 5), "f4"), affine), "time.nii")
+nibabel.save(nibabel.Nifti1Image(numpy.zeros((3, 3, 3), "c8"), affine), "complex.nii")
+"""
+
+SAME_SCAN = """
+import sys, numpy, pyopenvdb as vdb
+name, kind, tolerance = sys.argv[1:4]
+grid = vdb.readAll("s.vdb")[0][0]
+assert grid.valueTypeName == kind, grid.valueTypeName
+rows = numpy.load(name + ".npy")
+accessor = grid.getConstAccessor()
+assert grid.activeVoxelCount() == len(rows), (name, grid.activeVoxelCount(), len(rows))
+for x, y, z, i, j, k, value in rows[::7]:
+    at = tuple(map(int, (i, j, k)))
+    assert abs(accessor.getValue(at) - value) <= float(tolerance), (at, value)
+    assert numpy.abs(numpy.subtract(grid.transform.indexToWorld(at), (x, y, z))).max() < 2e-5
+"""
+
+
+def test_scans_are_read_where_they_lie():
+    independent(SCANS, module="nibabel")
+    for name, kind, tolerance in (("big.nii", "float", 1e-5), ("scaled.nii.gz", "float", 1e-5)):
+        innermap("import", name, "-o", "s.vdb", "--grids", "scan")
+        independent(SAME_SCAN, name, kind, tolerance, module="pyopenvdb")
+    for name in ("labels.nii.gz", "quaternion.nii", "second.nii"):
+        innermap("import", name, "-o", "s.vdb", "--grids", "label", "--report", "r.json")
+        assert cli.read_json("r.json")["texture"]["grids"] == ["label"]
+        assert "int32" in innermap("info", "s.vdb").stdout
+        # pyopenvdb has no whole numbers: nibabel says whether what is written again is the same.
+        innermap("export", "s.vdb", "-o", "again.nii")
+        independent("""
+import sys, numpy, nibabel
+image = nibabel.load("again.nii")
+values = numpy.asanyarray(image.dataobj)
+rows = numpy.load(sys.argv[1] + ".npy")
+assert values.dtype.kind == "i" and (values != 0).sum() == len(rows)
+first = rows[:, 3:6].min(0)
+at = (rows[:, 3:6] - first).astype(int)
+assert (values[tuple(at.T)] == rows[:, 6]).all()
+assert numpy.abs(nibabel.affines.apply_affine(image.affine, at) - rows[:, :3]).max() < 1e-4
+""", name, module="nibabel")
+    fails(1, "import", "lost.nii", "-o", "l.vdb", says=["lost.nii", "sform", "--as-voxels"])
+    innermap("import", "lost.nii", "-o", "l.vdb", "--as-voxels")
+    assert "2" in innermap("info", "l.vdb").stdout
+    fails(1, "import", "time.nii", "-o", "t.vdb", says=["time.nii", "5 volumes"])
+    fails(1, "import", "complex.nii", "-o", "t.vdb", says=["complex.nii", "32"])
+    fails(1, "import", "labels.nii.gz", "-o", "t.vdb", "--voxel-size", "2", says=["voxel"])
+
+
 cli.run(globals())

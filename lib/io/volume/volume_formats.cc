@@ -17,7 +17,17 @@ namespace {
 struct Entry {
   VolumeFormat format;
   VolumeWriter writer;
+  VolumeReader reader = {};
 };
+
+Entry nifti(const char* ending) {
+  return {{ending,
+           "NIfTI",
+           "a dense box of one grid, for medical programs",
+           {"resolution", "pad", "cube", "power_of_two"}},
+          {writeNifti, planNifti, niftiMemory},
+          {readNifti, niftiNeed, {"background", "as_voxels"}}};
+}
 
 const std::vector<Entry>& table() {
   static const std::vector<Entry> entries{
@@ -26,7 +36,10 @@ const std::vector<Entry>& table() {
         "a dense box in pictures: an atlas of tiles, slices or parts",
         {"layout", "half", "channels", "resolution", "pad", "cube", "power_of_two", "axis",
          "active", "rows", "tiles"}},
-       {writeExrVolume, planExrVolume, exrVolumeMemory}},
+       {writeExrVolume, planExrVolume, exrVolumeMemory},
+       {readExrVolume,
+        exrVolumeNeed,
+        {"layout", "slices", "voxel_size", "axis", "background", "rows", "tiles"}}},
       {{".nvdb", "NanoVDB", "the sparse grids as they are, for GPUs", {"half", "zip"}},
        {writeNanoVdb, planNanoVdb, nanoVdbMemory}},
       {{".vti",
@@ -39,6 +52,8 @@ const std::vector<Entry>& table() {
         "a dense box as a volume texture of one to four channels, as of EXR",
         {"half", "resolution", "pad", "cube", "power_of_two", "axis", "rows"}},
        {writeDds, planDds, ddsMemory}},
+      nifti(".nii"),
+      nifti(".nii.gz"),
   };
   return entries;
 }
@@ -66,28 +81,36 @@ bool sameValue(const SettingValue& a, const SettingValue& b) {
       a);
 }
 
-// Settings that the format does not heed, and that are not their defaults.
-std::vector<std::string> unheeded(const VolumeFormat& format, VolumeTextureSettings settings) {
-  VolumeTextureSettings plain;
+// Throws SettingError for a setting that is not its default and that `heeded` does not name.
+template <class Settings>
+void requireHeeded(const Entry& entry, const std::vector<std::string>& heeded, Settings settings) {
+  requireDescribed(settings);
+  Settings plain;
   const std::vector<Setting> given = describe(settings), usual = describe(plain);
   std::vector<std::string> names;
   for (std::size_t i = 0; i < given.size(); ++i)
     if (!sameValue(given[i].value, usual[i].value)) names.push_back(given[i].name);
-  if (settings.rowsUp) names.push_back("rows");
+  if (settings.rowsUp != plain.rowsUp) names.push_back("rows");
   if (settings.tiles) names.push_back("tiles");
-  const auto heeds = [&](const std::string& name) {
-    return std::find(format.settings.begin(), format.settings.end(), name) != format.settings.end();
-  };
-  names.erase(std::remove_if(names.begin(), names.end(), heeds), names.end());
-  return names;
+  for (const std::string& name : names)
+    if (std::find(heeded.begin(), heeded.end(), name) == heeded.end())
+      throw SettingError(
+          name, fmt::format("has no meaning for {} files; leave it out", entry.format.ending));
 }
 
 const Entry& checked(const std::string& path, const VolumeTextureSettings& settings) {
-  requireDescribed(settings);
   const Entry& entry = entryOf(path);
-  for (const std::string& name : unheeded(entry.format, settings))
-    throw SettingError(
-        name, fmt::format("has no meaning for {} files; leave it out", entry.format.ending));
+  requireHeeded(entry, entry.format.settings, settings);
+  return entry;
+}
+
+const Entry& checked(const std::string& path, const VolumeTextureReadSettings& settings) {
+  const Entry& entry = entryOf(path);
+  if (!entry.reader.read)
+    throw FileError(path, fmt::format("is a {} file, which is written, not read; import the file "
+                                      "that it was made of",
+                                      entry.format.name));
+  requireHeeded(entry, entry.reader.settings, settings);
   return entry;
 }
 
@@ -127,6 +150,19 @@ VolumeTextureResult writeVolumeTexture(const std::string& path, const openvdb::G
   VolumeTextureResult result = entry.writer.write(path, grids, settings);
   result.format = entry.format.name;
   return result;
+}
+
+VolumeTextureNeed volumeTextureReadNeed(const std::string& path,
+                                        const VolumeTextureReadSettings& settings) {
+  return checked(path, settings).reader.need(path, settings);
+}
+
+VolumeTextureContents readVolumeTexture(const std::string& path,
+                                        const VolumeTextureReadSettings& settings) {
+  const Entry& entry = checked(path, settings);
+  VolumeTextureContents contents = entry.reader.read(path, settings);
+  contents.format = entry.format.name;
+  return contents;
 }
 
 }  // namespace innermap

@@ -102,6 +102,10 @@ struct VolumeTextureResult {
 // .dds:  a volume texture with the DX10 header, no smaller levels: R, RG or RGBA of 32-bit or half
 //        floats, channels as VolumeChannels::rgba names them; three channels get alpha 1, and
 //        slices, rows and columns are those of EXR. Reference: Microsoft, "DDS_HEADER_DXT10".
+// .nii, .nii.gz: NIfTI-1 of one grid, the dense box in the grid's own numbers (truth values as
+//        UInt8), sform and, where the axes are at right angles, qform: world units are millimetres
+//        of NIfTI's world, x to the right, y to the front, z up (RAS). Vectors have five dimensions
+//        and NIFTI_INTENT_VECTOR, components as they are. Reference: nifti1.h.
 //
 // Throws DataError (no grids, no active voxel, different transforms, a type without numbers, too
 // many voxels), SettingError (also for one that the format does not heed and that is not its
@@ -165,12 +169,14 @@ struct VolumeTextureReadSettings {
   Vec3 lowerCorner;                      // world position of the box's least corner, with voxelSize
   std::optional<double> background;      // of all grids
   std::optional<std::string> gridClass;  // "level set", "fog volume", "unknown", ...
+  bool asVoxels = false;  // of NIfTI files: along x, y, z from the origin, whatever they say
 };
 
 // Without names, tiles, the order of rows, the lower corner and the class.
 std::vector<Setting> describe(VolumeTextureReadSettings& settings);
 
 struct VolumeTextureContents {
+  std::string format;  // VolumeFormat::name
   openvdb::GridPtrVec grids;
   VolumeLayout layout = VolumeLayout::atlas;
   openvdb::Coord resolution;  // of the dense box
@@ -182,6 +188,13 @@ struct VolumeTextureContents {
 // A voxel is active where NAME.active says so or, without that channel, where its value is not the
 // background as the pixel type holds that; in level sets, not plus or minus that. What is not
 // active has the background exactly; uniform blocks of 8^3 voxels become tiles.
+//
+// NIfTI files (.nii, .nii.gz; NIfTI-1 and NIfTI-2 in one file, either byte order) give one grid,
+// named by `names`, else by the file's intent name or its own; its world is the file's, by sform,
+// else qform, in millimetres where the file says metres or microns. Whole numbers become int32, or
+// int64 where they need it, with scl_slope or scl_inter and floats become float, doubles double,
+// three values a voxel vec3s, as they are in the file. Voxels of the background, 0 unless given,
+// are not active. Of the settings the names, the background, the class and asVoxels count.
 //
 // Files are not trusted. Throws FileError for what cannot be read, for a missing attribute (naming
 // the option that gives it) and for attributes that contradict one another or the pixels;

@@ -20,6 +20,16 @@ struct VolumeWriter {
   Memory memory;
 };
 
+struct VolumeReader {
+  VolumeTextureContents (*read)(const std::string& path,
+                                const VolumeTextureReadSettings& settings) =
+      nullptr;  // null: files of this kind are not read
+  VolumeTextureNeed (*need)(const std::string& path,
+                            const VolumeTextureReadSettings& settings) = nullptr;
+  // Those of VolumeTextureReadSettings that it heeds, by the names in describe(); "tiles", "rows".
+  std::vector<std::string> settings;
+};
+
 VolumeTextureResult writeExrVolume(const std::string& path, const openvdb::GridPtrVec& grids,
                                    const VolumeTextureSettings& settings);
 VolumeTextureResult planExrVolume(const std::string& path, const openvdb::GridPtrVec& grids,
@@ -45,5 +55,18 @@ VolumeTextureResult writeDds(const std::string& path, const openvdb::GridPtrVec&
 VolumeTextureResult planDds(const std::string& path, const openvdb::GridPtrVec& grids,
                             const VolumeTextureSettings& settings);
 std::uint64_t ddsMemory(const openvdb::GridPtrVec& grids, const VolumeTextureSettings& settings);
+
+VolumeTextureResult writeNifti(const std::string& path, const openvdb::GridPtrVec& grids,
+                               const VolumeTextureSettings& settings);
+VolumeTextureResult planNifti(const std::string& path, const openvdb::GridPtrVec& grids,
+                              const VolumeTextureSettings& settings);
+std::uint64_t niftiMemory(const openvdb::GridPtrVec& grids, const VolumeTextureSettings& settings);
+
+// The readers, as readVolumeTexture and volumeTextureReadNeed.
+VolumeTextureContents readExrVolume(const std::string& path,
+                                    const VolumeTextureReadSettings& settings);
+VolumeTextureNeed exrVolumeNeed(const std::string& path, const VolumeTextureReadSettings& settings);
+VolumeTextureContents readNifti(const std::string& path, const VolumeTextureReadSettings& settings);
+VolumeTextureNeed niftiNeed(const std::string& path, const VolumeTextureReadSettings& settings);
 
 }  // namespace innermap

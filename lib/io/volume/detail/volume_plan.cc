@@ -267,6 +267,9 @@ std::vector<Setting> describe(VolumeTextureReadSettings& s) {
       Setting("background", "V", &s.background, "value of what is not active")
           .from(-1e30, 1e30)
           .otherwise("from the file, else 0")
+          .rare(),
+      Setting("as_voxels", &s.asVoxels,
+              "take the voxels of a NIfTI file along x, y, z from the origin, wherever it says")
           .rare()};
 }
 
