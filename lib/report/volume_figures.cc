@@ -131,17 +131,24 @@ Figures surfaceFigures(const SolidTexture& made) {
 
 Figures figures(const VolumeTextureResult& r) {
   const auto& size = r.resolution;
-  return {{"files", r.files.size(), "files", ""},
-          {"width", r.width, "width", "pixels"},
-          {"height", r.height, "height", "pixels"},
-          {"tiles", std::vector<double>{double(r.tileColumns), double(r.tileRows)}, "tiles",
-           "columns and rows"},
-          {"slices", r.slices, "slices", ""},
-          {"resolution", std::vector<double>{double(size.x()), double(size.y()), double(size.z())},
-           "resolution", "voxels along x, y and z"},
-          {"channels", r.channels, "channels", ""},
-          {"clamped", r.clamped, "clamped", "values beyond the pixels' largest number"},
-          {"rounded", r.inexact, "rounded", "whole numbers that the pixels do not have"}};
+  const bool pictures = r.slices > 0, dense = size != openvdb::Coord(0);
+  // The schema lists them all, by a result of nothing.
+  const bool all = r.format.empty();
+  return together(
+      {{{"format", r.format, "format", ""}, {"files", r.files.size(), "files", ""}},
+       when(all || pictures,
+            {{"width", r.width, "width", "pixels"},
+             {"height", r.height, "height", "pixels"},
+             {"tiles", std::vector<double>{double(r.tileColumns), double(r.tileRows)}, "tiles",
+              "columns and rows"},
+             {"slices", r.slices, "slices", ""}}),
+       when(all || dense,
+            {{"resolution",
+              std::vector<double>{double(size.x()), double(size.y()), double(size.z())},
+              "resolution", "voxels along x, y and z"}}),
+       {{"channels", r.channels, "channels", ""},
+        {"clamped", r.clamped, "clamped", "values beyond the pixels' largest number"},
+        {"rounded", r.inexact, "rounded", "whole numbers that the pixels do not have"}}});
 }
 
 Figures geometryFigures(const CarriedGeometry& carried, std::uint64_t directions,

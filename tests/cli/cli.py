@@ -144,6 +144,20 @@ def fails(exit_code, *arguments, says=(), **options):
     return line
 
 
+PYTHON = "/usr/bin/python3"
+
+
+def independent(script, *arguments, module="OpenImageIO"):
+    """Runs a script by the system's Python, which has the programs' own modules."""
+    if not os.path.exists(PYTHON) or subprocess.run(
+            [PYTHON, "-c", f"import {module}, numpy"], capture_output=True, check=False).returncode:
+        raise Skip(f"no {module} module")
+    done = subprocess.run([PYTHON, "-c", script, *map(str, arguments)], capture_output=True,
+                          text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
 def no_leftovers(*allowed):
     """Nothing but `allowed` stands in the folder: no temporary file was left."""
     extra = set(os.listdir(".")) - set(allowed)

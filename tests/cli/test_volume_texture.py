@@ -7,27 +7,14 @@ import struct
 import subprocess
 
 import cli
-from cli import (Skip, alone, fails, file_size_limit, icosphere, innermap, interrupt, nightly,
+from cli import (alone, fails, file_size_limit, icosphere, independent, innermap, interrupt, nightly,
                  no_leftovers)
-
-PYTHON = "/usr/bin/python3"
 
 
 def ball_grid(resolution=40, *more):
     icosphere(subdivisions=3)
     innermap("voxelize", "ball.obj", "-o", "ball.vdb", "--resolution", resolution, "--fog",
              "--quiet", *more)
-
-
-def independent(script, *arguments, module="OpenImageIO"):
-    """Runs a script by the system's Python, which has the programs' own modules."""
-    if not os.path.exists(PYTHON) or subprocess.run(
-            [PYTHON, "-c", f"import {module}, numpy"], capture_output=True, check=False).returncode:
-        raise Skip(f"no {module} module")
-    done = subprocess.run([PYTHON, "-c", script, *map(str, arguments)], capture_output=True,
-                          text=True, timeout=120, check=False)
-    assert done.returncode == 0, done.stderr
-    return done.stdout
 
 
 COMPARE = """

@@ -128,6 +128,21 @@ void volumeTexture(const std::string& path) {
   readVolumeTexture(path);
 }
 
+// Wherever the file says its voxels are, and wherever it does not.
+void scan(const std::string& path) {
+  const MemoryLimit limit(processMemory(kMemory));
+  VolumeTextureReadSettings settings;
+  for (const bool asVoxels : {false, true}) {
+    settings.asVoxels = asVoxels;
+    try {
+      volumeTextureReadNeed(path, settings);
+      readVolumeTexture(path, settings);
+    } catch (const Error&) {
+      if (asVoxels) throw;
+    }
+  }
+}
+
 void foreignVolumeTexture(const std::string& path) {
   const MemoryLimit limit(processMemory(kMemory));
   VolumeTextureReadSettings settings;
@@ -173,6 +188,8 @@ const std::vector<Reader>& readers() {
       {"exr-info", "exr", exrInfo},
       {"exr-volume", "exr", volumeTexture},
       {"exr-foreign", "exr", foreignVolumeTexture},
+      {"nifti", "nii", scan},
+      {"nifti-packed", "nii.gz", scan},
       {"image-exr", "exr", image},
       {"image-png", "png", image},
       {"image-jpg", "jpg", image},

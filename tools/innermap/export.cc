@@ -1,4 +1,4 @@
-// `innermap export`: grids as volume textures in EXR files.
+// `innermap export`: grids as volume textures and in other programs' files.
 #include <fmt/format.h>
 
 #include "commands.h"
@@ -27,7 +27,7 @@ VolumeTextureSettings settingsOf(const ExportOptions& options) {
 
 void fillReport(const VolumeTextureResult& r, const ExportOptions& options, Context& context) {
   Report& report = context.report();
-  report.add("texture", layoutFigures(volumeLayoutName(options.texture.layout)));
+  if (r.slices > 0) report.add("texture", layoutFigures(volumeLayoutName(options.texture.layout)));
   report.add("texture", figures(r));
 }
 
@@ -43,12 +43,12 @@ void run(const ExportOptions& options, Context& context) {
   }
   const std::vector<std::string> names = commaList(options.grids);
   const openvdb::GridPtrVec grids = readGridFile(options.file, names, context);
-  const std::uint64_t need = volumeTextureMemory(grids, settings);
+  const std::uint64_t need = volumeTextureMemory(options.output, grids, settings);
   if (context.dryRun())
-    return context.plan({fmt::format("write {} as a volume texture ({}) to {}", options.file,
-                                     volumeLayoutName(settings.layout), options.output)},
+    return context.plan({fmt::format("write {} as {} to {}", options.file,
+                                     volumeFormatOf(options.output).name, options.output)},
                         need);
-  context.requireMemory("the volume texture " + options.output, need,
+  context.requireMemory("writing " + options.output, need,
                         "export fewer grids or at a lower --resolution");
   const VolumeTextureResult result =
       context.timed("write", [&] { return writeVolumeTexture(options.output, grids, settings); });
@@ -56,6 +56,20 @@ void run(const ExportOptions& options, Context& context) {
     context.warning(warning);
   fillReport(result, options, context);
   context.print(describe(result, options.output, settings));
+}
+
+std::vector<std::string> outputEndings() {
+  std::vector<std::string> endings;
+  for (const VolumeFormat& format : volumeFormats()) endings.push_back(format.ending);
+  return endings;
+}
+
+std::string outputHelp() {
+  std::string text = "The ending of --output is the format:";
+  for (const VolumeFormat& format : volumeFormats())
+    text += fmt::format("{} {}, {}: {}", format.ending == volumeFormats().front().ending ? "" : ";",
+                        format.ending, format.name, format.holds);
+  return text + ".";
 }
 
 void addShapeOptions(Command& c, ExportOptions& o) {
@@ -68,9 +82,11 @@ void addShapeOptions(Command& c, ExportOptions& o) {
 
 Command makeExportCommand() {
   auto o = std::make_shared<ExportOptions>();
-  Command c("export", "Write grids as volume textures for engines: an atlas, slices or parts");
+  Command c("export", "Write grids for engines, renderers and other programs");
   c.description(
-      "The common active box of the grids as a dense texture in EXR, with the background where "
+      outputHelp() +
+      " Of EXR: the common active box of the grids as a dense texture in EXR, with the background "
+      "where "
       "nothing is active. An atlas has its slices as tiles, row-major from the top left. "
       "Attributes "
       "tell tiling, order, voxel size, bounds, matrices and what each grid is; `innermap import` "
@@ -78,11 +94,11 @@ Command makeExportCommand() {
       "R, G, B, A; more than four channels are layers (`density.V`, `Cd.R`).");
   c.positional("FILE", &o->file, "the .vdb file");
   c.option("--output", "FILE", &o->output,
-           "the .exr file; of slices, with #### or %04d for the number, else it is put before the "
-           "extension")
+           "the file, in the format of its ending; of slices, with #### or %04d for the number, "
+           "else it is put before the extension")
       .shortName("-o")
       .required()
-      .writes({".exr"});
+      .writes(outputEndings());
   c.option("--grids", "LIST", &o->grids, "grids to write, with commas between")
       .was("--grid")
       .defaults("all");
@@ -92,6 +108,7 @@ Command makeExportCommand() {
            "down: a slice's first row has the least index (Direct3D, Unreal); up: the largest "
            "(OpenGL, Unity)");
   c.example("innermap export smoke.vdb -o smoke.exr --grids density --resolution 64 --cube --half");
+  c.example("innermap export smoke.vdb -o smoke.nvdb --half");
   c.example("innermap export map.vdb -o 'slices/map.####.exr' --layout slices --grids map,density");
   c.run([o](Context& context) { run(*o, context); });
   return c;

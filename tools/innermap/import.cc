@@ -1,4 +1,4 @@
-// `innermap import`: volume textures back into grids.
+// `innermap import`: volume textures and scans into grids.
 #include <fmt/format.h>
 
 #include "commands.h"
@@ -30,9 +30,11 @@ VolumeTextureReadSettings settingsOf(const ImportOptions& options) {
 }
 
 std::string summary(const VolumeTextureContents& contents, const ImportOptions& options) {
-  std::string text = fmt::format("{}: {} of {} x {} x {} voxels\n", options.output,
-                                 volumeLayoutName(contents.layout), contents.resolution.x(),
-                                 contents.resolution.y(), contents.resolution.z());
+  const bool pictures = contents.format == volumeFormats().front().name;
+  std::string text =
+      fmt::format("{}: {} of {} x {} x {} voxels\n", options.output,
+                  pictures ? volumeLayoutName(contents.layout) : contents.format,
+                  contents.resolution.x(), contents.resolution.y(), contents.resolution.z());
   for (const auto& grid : contents.grids)
     text += fmt::format("  {}: {}, {} active voxels\n", grid->getName(), grid->valueType(),
                         grid->activeVoxelCount());
@@ -44,11 +46,10 @@ void run(const ImportOptions& options, Context& context) {
   context.output(options.output);
   if (context.dryRun()) {
     const VolumeTextureNeed need = volumeTextureReadNeed(options.file, settings);
-    return context.plan(
-        {fmt::format("read the volume texture {}, {} x {} x {} voxels", options.file,
-                     need.resolution.x(), need.resolution.y(), need.resolution.z()),
-         "write grids to " + options.output},
-        need.memory);
+    return context.plan({fmt::format("read {}, {} x {} x {} voxels", options.file,
+                                     need.resolution.x(), need.resolution.y(), need.resolution.z()),
+                         "write grids to " + options.output},
+                        need.memory);
   }
   const VolumeTextureContents contents =
       context.timed("read", [&] { return readVolumeTexture(options.file, settings); });
@@ -64,7 +65,8 @@ void run(const ImportOptions& options, Context& context) {
   }
   Report& report = context.report();
   const auto& size = contents.resolution;
-  report.add("texture", layoutFigures(volumeLayoutName(contents.layout)));
+  if (contents.format == volumeFormats().front().name)
+    report.add("texture", layoutFigures(volumeLayoutName(contents.layout)));
   report.add("texture", figures(ReportImport{{double(size.x()), double(size.y()), double(size.z())},
                                              names,
                                              active,
@@ -76,14 +78,17 @@ void run(const ImportOptions& options, Context& context) {
 
 Command makeImportCommand() {
   auto o = std::make_shared<ImportOptions>();
-  Command c("import", "Read a volume texture back into a .vdb file");
+  Command c("import", "Read a volume texture or a scan into a .vdb file");
   c.description(
       "What `innermap export` writes comes back as it was, within the rounding of the pixels: "
       "types, names, classes, backgrounds and transform stand in the attributes. Voxels that have "
       "the background are inactive. For textures of other programs, options say what the file does "
-      "not; an option wins over an attribute.");
-  c.positional("FILE", &o->file,
-               "the .exr file; of slices, any of the files or a pattern with #### or %04d");
+      "not; an option wins over an attribute. NIfTI files (.nii, .nii.gz) become a grid in their "
+      "own "
+      "world, by sform or qform, in millimetres; labels stay whole numbers.");
+  c.positional(
+      "FILE", &o->file,
+      "the .exr, .nii or .nii.gz file; of slices, any of the files or a pattern with #### or %04d");
   c.option("--output", "FILE", &o->output, "the .vdb file to write")
       .shortName("-o")
       .required()
@@ -110,6 +115,7 @@ Command makeImportCommand() {
       .defaults("from the file, else unknown")
       .advanced();
   c.example("innermap import smoke.exr -o smoke.vdb");
+  c.example("innermap import scan.nii.gz -o scan.vdb");
   c.example(
       "innermap import cloud.exr -o cloud.vdb --tiles 12x12 --voxel-size 0.1 --grids density "
       "--class fog");

@@ -66,10 +66,12 @@ std::uint64_t parseCount(const Option& option, const std::string& text) {
 // What is no regular file may be called anything: /dev/stdout.
 void requireEnding(const Option& option, const std::string& text) {
   if (option.endings.empty() || fileKey(text).empty()) return;
-  std::string ending = std::filesystem::path(text).extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (std::find(option.endings.begin(), option.endings.end(), ending) != option.endings.end())
-    return;
+  std::string name = std::filesystem::path(text).filename().string();
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const std::string& ending : option.endings)
+    if (name.size() > ending.size() &&
+        name.compare(name.size() - ending.size(), ending.size(), ending) == 0)
+      return;
   throw UsageError(fmt::format("{}: '{}' must end in {}, as the file that is written does",
                                option.name, text, fmt::join(option.endings, " or ")));
 }

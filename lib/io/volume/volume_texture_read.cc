@@ -7,6 +7,7 @@
 #include "innermap/io/volume_texture.h"
 #include "io/exr/detail/exr_stream.h"
 #include "io/volume/detail/volume_builder.h"
+#include "io/volume/detail/volume_formats.h"
 #include "io/volume/detail/volume_source.h"
 
 namespace innermap {
@@ -123,8 +124,8 @@ class Reading {
 
 }  // namespace
 
-VolumeTextureNeed volumeTextureReadNeed(const std::string& path,
-                                        const VolumeTextureReadSettings& settings) {
+VolumeTextureNeed exrVolumeNeed(const std::string& path,
+                                const VolumeTextureReadSettings& settings) {
   openvdb::initialize();
   const VolumeSource source(path, settings);
   const VolumeLattice& lattice = source.lattice();
@@ -138,8 +139,8 @@ VolumeTextureNeed volumeTextureReadNeed(const std::string& path,
   return need;
 }
 
-VolumeTextureContents readVolumeTexture(const std::string& path,
-                                        const VolumeTextureReadSettings& settings) {
+VolumeTextureContents readExrVolume(const std::string& path,
+                                    const VolumeTextureReadSettings& settings) {
   openvdb::initialize();
   const ExrThreads threads;
   VolumeSource source(path, settings);

@@ -16,11 +16,11 @@
 #include "core/file.h"
 #include "core/frame_files.h"
 #include "innermap/core/error.h"
-#include "innermap/core/memory.h"
 #include "innermap/core/run.h"
 #include "innermap/io/pictures.h"
 #include "innermap/io/volume_texture.h"
 #include "io/exr/detail/exr_stream.h"
+#include "io/volume/detail/volume_formats.h"
 #include "io/volume/detail/volume_plan.h"
 
 namespace innermap {
@@ -67,8 +67,8 @@ class StripeWriter {
     parallelBlocks(static_cast<std::size_t>(end - begin) * columns, block,
                    [&](std::size_t from, std::size_t to) {
                      PixelCounts counts;
-                     std::vector<float> row(static_cast<std::size_t>(plan_.lattice.width()) *
-                                            plan_.channels.size());
+                     std::vector<double> row(static_cast<std::size_t>(plan_.lattice.width()) *
+                                             plan_.channels.size());
                      for (std::size_t i = from; i < to; ++i)
                        makeRow(first, begin, static_cast<int>(i / columns),
                                static_cast<int>(i % columns), row, counts);
@@ -78,7 +78,7 @@ class StripeWriter {
   }
 
   // One row of one tile, to all channels.
-  void makeRow(int first, int begin, int line, int tile, std::vector<float>& values,
+  void makeRow(int first, int begin, int line, int tile, std::vector<double>& values,
                PixelCounts& counts) {
     const VolumeLattice& lattice = plan_.lattice;
     const auto width = static_cast<std::size_t>(lattice.width());
@@ -94,7 +94,7 @@ class StripeWriter {
         static_cast<std::size_t>(line) * static_cast<std::size_t>(plan_.width()) +
         static_cast<std::size_t>(tile) * width;
     for (std::size_t c = 0; c < plan_.channels.size(); ++c) {
-      const float* from = values.data() + c * width;
+      const double* from = values.data() + c * width;
       if (plan_.half)
         std::copy_n(from, width, reinterpret_cast<half*>(buffers_[c].data()) + at);
       else
@@ -102,14 +102,14 @@ class StripeWriter {
     }
   }
 
-  void sampleRow(int slice, int row, std::vector<float>& values, PixelCounts& counts) const {
+  void sampleRow(int slice, int row, std::vector<double>& values, PixelCounts& counts) const {
     const auto width = static_cast<std::size_t>(plan_.lattice.width());
-    float* next = values.data();
+    double* next = values.data();
     for (std::size_t g = 0; g < plan_.grids.size(); ++g) {
       const VolumeGrid& grid = plan_.grids[g];
-      float* outputs[3] = {next, next + width, next + 2 * width};
+      double* outputs[3] = {next, next + width, next + 2 * width};
       next += width * grid.channels.size();
-      float* active = grid.activeChannel.empty() ? nullptr : next;
+      double* active = grid.activeChannel.empty() ? nullptr : next;
       if (active) next += width;
       const PixelCounts c = plan_.samplers[g]->row(plan_.lattice, slice, row, outputs, active);
       counts.clamped += c.clamped;
@@ -248,21 +248,19 @@ std::string volumeLayoutName(VolumeLayout layout) {
                                           : "parts";
 }
 
-std::uint64_t volumeTextureMemory(const openvdb::GridPtrVec& grids,
-                                  const VolumeTextureSettings& settings) {
+std::uint64_t exrVolumeMemory(const openvdb::GridPtrVec& grids,
+                              const VolumeTextureSettings& settings) {
   return memoryFor(makeVolumePlan(grids, settings), settings.layout);
 }
 
-VolumeTextureResult planVolumeTexture(const std::string& path, const openvdb::GridPtrVec& grids,
-                                      const VolumeTextureSettings& settings) {
+VolumeTextureResult planExrVolume(const std::string& path, const openvdb::GridPtrVec& grids,
+                                  const VolumeTextureSettings& settings) {
   return resultOf(path, makeVolumePlan(grids, settings), settings.layout);
 }
 
-VolumeTextureResult writeVolumeTexture(const std::string& path, const openvdb::GridPtrVec& grids,
-                                       const VolumeTextureSettings& settings) {
+VolumeTextureResult writeExrVolume(const std::string& path, const openvdb::GridPtrVec& grids,
+                                   const VolumeTextureSettings& settings) {
   const VolumePlan plan = makeVolumePlan(grids, settings);
-  requireMemory("the volume texture " + path, memoryFor(plan, settings.layout),
-                "export fewer grids or at a lower resolution");
   VolumeTextureResult result = resultOf(path, plan, settings.layout);
   reportProgress("writing the volume texture", 0);
   const ExrThreads threads;

@@ -1,5 +1,6 @@
-// Grids as volume textures: dense boxes of voxels in EXR files, for engines and renderers that read
-// no OpenVDB; and back into grids, atlases, slices and parts of other programs too.
+// Grids in the files of programs that read no OpenVDB: volume textures, dense boxes of voxels in
+// EXR files, for engines and renderers; and the formats of volumeFormats(). Volume textures come
+// back into grids, atlases, slices and parts of other programs too.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -43,18 +44,35 @@ struct VolumeTextureSettings {
   bool powerOfTwo =
       false;  // the box grows: slices, their sides and the picture's are powers of two
   std::optional<std::pair<int, int>> tiles;  // columns and rows of the atlas; unset: near a square
+  bool zip = false;                          // of NanoVDB files: zlib, which not all readers have
 };
 
 // Without the order of rows and the tiles.
 std::vector<Setting> describe(VolumeTextureSettings& settings);
 
+// A kind of file that grids are written to; which one, the ending of its name says.
+struct VolumeFormat {
+  std::string ending;  // ".exr"
+  std::string name;    // of the format: "EXR"
+  std::string holds;   // what becomes of grids in it, a line
+  // Those of VolumeTextureSettings that it heeds, by the names in describe(); "rows" and "tiles".
+  std::vector<std::string> settings;
+};
+
+// All of them; the first is that of paths with any other ending.
+const std::vector<VolumeFormat>& volumeFormats();
+const VolumeFormat& volumeFormatOf(const std::string& path);
+
 struct VolumeTextureResult {
-  std::vector<std::string> files;     // one, or one a slice
-  std::vector<std::string> channels;  // in the order of the grids
-  int width = 0, height = 0;          // of a picture, pixels
+  std::string format;              // VolumeFormat::name
+  std::vector<std::string> files;  // one, or one a slice
+  std::vector<std::string>
+      channels;  // in the order of the grids; else the names of what is written
+  // Of EXR alone, 0 of other formats:
+  int width = 0, height = 0;  // of a picture, pixels
   int tileColumns = 1, tileRows = 1;
   int slices = 0, tileWidth = 0, tileHeight = 0;
-  openvdb::Coord resolution;  // voxels of the dense box along x, y, z
+  openvdb::Coord resolution;  // voxels of the dense box along x, y, z; 0 where there is none
   openvdb::BBoxd worldBox;
   std::size_t clamped = 0;  // values beyond the pixel type's largest number
   std::size_t inexact = 0;  // whole numbers that the pixel type does not have
@@ -71,8 +89,27 @@ struct VolumeTextureResult {
 // slices: `path` has the number's place as #### or %04d in its last component, else .0000 is put
 // before the extension; numbers start at 0. All files appear whole or none does.
 //
+// Paths with the ending of another format than EXR get that:
+//
+// .nvdb: NanoVDB 32 as its headers write it, a segment a grid, sparse as the grids are: voxels,
+//        tiles, active states, names, classes and transforms. float and double become float (with
+//        `half` Fp16: 16 bits that span the values of each leaf, within 1/65,535 of that span;
+//        class and background stay), vectors Vec3f, int32, int64, bool and masks themselves.
+//        Reference: nanovdb/NanoVDB.h, nanovdb/util/IO.h of OpenVDB 10.
+// .vti:  VTK's XML ImageData, appended raw: the dense box, voxel centres as points, an array a grid
+//        in the grid's own numbers (truth values as UInt8); Origin, Spacing and Direction are the
+//        grids' transform, sheared ones too. Reference: "VTK File Formats", XML.
+// .dds:  a volume texture with the DX10 header, no smaller levels: R, RG or RGBA of 32-bit or half
+//        floats, channels as VolumeChannels::rgba names them; three channels get alpha 1, and
+//        slices, rows and columns are those of EXR. Reference: Microsoft, "DDS_HEADER_DXT10".
+// .nii, .nii.gz: NIfTI-1 of one grid, the dense box in the grid's own numbers (truth values as
+//        UInt8), sform and, where the axes are at right angles, qform: world units are millimetres
+//        of NIfTI's world, x to the right, y to the front, z up (RAS). Vectors have five dimensions
+//        and NIFTI_INTENT_VECTOR, components as they are. Reference: nifti1.h.
+//
 // Throws DataError (no grids, no active voxel, different transforms, a type without numbers, too
-// many voxels), SettingError, MemoryError (before allocating), FileError, Cancelled.
+// many voxels), SettingError (also for one that the format does not heed and that is not its
+// default), MemoryError (before allocating), FileError, Cancelled.
 VolumeTextureResult writeVolumeTexture(const std::string& path, const openvdb::GridPtrVec& grids,
                                        const VolumeTextureSettings& settings = {});
 
@@ -113,7 +150,7 @@ VolumeTextureResult planVolumeTexture(const std::string& path, const openvdb::Gr
                                       const VolumeTextureSettings& settings = {});
 
 // Peak need of writeVolumeTexture beside the grids, bytes.
-std::uint64_t volumeTextureMemory(const openvdb::GridPtrVec& grids,
+std::uint64_t volumeTextureMemory(const std::string& path, const openvdb::GridPtrVec& grids,
                                   const VolumeTextureSettings& settings = {});
 
 // What the file's attributes do not say, or what counts in their place. The messages of errors call
@@ -132,12 +169,14 @@ struct VolumeTextureReadSettings {
   Vec3 lowerCorner;                      // world position of the box's least corner, with voxelSize
   std::optional<double> background;      // of all grids
   std::optional<std::string> gridClass;  // "level set", "fog volume", "unknown", ...
+  bool asVoxels = false;  // of NIfTI files: along x, y, z from the origin, whatever they say
 };
 
 // Without names, tiles, the order of rows, the lower corner and the class.
 std::vector<Setting> describe(VolumeTextureReadSettings& settings);
 
 struct VolumeTextureContents {
+  std::string format;  // VolumeFormat::name
   openvdb::GridPtrVec grids;
   VolumeLayout layout = VolumeLayout::atlas;
   openvdb::Coord resolution;  // of the dense box
@@ -149,6 +188,13 @@ struct VolumeTextureContents {
 // A voxel is active where NAME.active says so or, without that channel, where its value is not the
 // background as the pixel type holds that; in level sets, not plus or minus that. What is not
 // active has the background exactly; uniform blocks of 8^3 voxels become tiles.
+//
+// NIfTI files (.nii, .nii.gz; NIfTI-1 and NIfTI-2 in one file, either byte order) give one grid,
+// named by `names`, else by the file's intent name or its own; its world is the file's, by sform,
+// else qform, in millimetres where the file says metres or microns. Whole numbers become int32, or
+// int64 where they need it, with scl_slope or scl_inter and floats become float, doubles double,
+// three values a voxel vec3s, as they are in the file. Voxels of the background, 0 unless given,
+// are not active. Of the settings the names, the background, the class and asVoxels count.
 //
 // Files are not trusted. Throws FileError for what cannot be read, for a missing attribute (naming
 // the option that gives it) and for attributes that contradict one another or the pixels;

@@ -182,9 +182,8 @@ void listChannels(VolumePlan& plan) {
       throw DataError("the grid name '" + name + "' is too long for an EXR channel; shorten it");
 }
 
-}  // namespace
-
-VolumePlan makeVolumePlan(const openvdb::GridPtrVec& grids, const VolumeTextureSettings& settings) {
+VolumePlan planOf(const openvdb::GridPtrVec& grids, const VolumeTextureSettings& settings,
+                  PixelType pixel) {
   checkSettings(settings);
   if (grids.empty()) throw DataError("there are no grids to export");
   VolumePlan plan;
@@ -195,7 +194,7 @@ VolumePlan makeVolumePlan(const openvdb::GridPtrVec& grids, const VolumeTextureS
   placeLattice(sliceFrame(grids, settings.axis), settings, plan.lattice, resampling);
   placeTiles(settings, plan.lattice);
   for (const auto& grid : grids) {
-    plan.samplers.push_back(makeVolumeSampler(*grid, resampling, settings.half));
+    plan.samplers.push_back(makeVolumeSampler(*grid, resampling, pixel));
     plan.grids.push_back(describe(*grid));
     if (plan.grids.back().name.empty())
       throw DataError("a grid has no name, by which it could be read back; name it");
@@ -203,6 +202,16 @@ VolumePlan makeVolumePlan(const openvdb::GridPtrVec& grids, const VolumeTextureS
   nameChannels(settings, plan.grids);
   listChannels(plan);
   return plan;
+}
+
+}  // namespace
+
+VolumePlan makeVolumePlan(const openvdb::GridPtrVec& grids, const VolumeTextureSettings& settings) {
+  return planOf(grids, settings, settings.half ? PixelType::half : PixelType::single);
+}
+
+VolumePlan makeExactPlan(const openvdb::GridPtrVec& grids, const VolumeTextureSettings& settings) {
+  return planOf(grids, settings, PixelType::number);
 }
 
 std::vector<Setting> describe(VolumeTextureSettings& s) {
@@ -231,7 +240,9 @@ std::vector<Setting> describe(VolumeTextureSettings& s) {
               "two")
           .rare(),
       axisSetting("axis", &s.axis, "direction across the slices"),
-      Setting("active", &s.active, "also NAME.active: 1 where a voxel is active").rare()};
+      Setting("active", &s.active, "also NAME.active: 1 where a voxel is active").rare(),
+      Setting("zip", &s.zip, "compress NanoVDB files with zlib, which not all programs read")
+          .rare()};
 }
 
 std::vector<Setting> describe(VolumeTextureReadSettings& s) {
@@ -256,6 +267,9 @@ std::vector<Setting> describe(VolumeTextureReadSettings& s) {
       Setting("background", "V", &s.background, "value of what is not active")
           .from(-1e30, 1e30)
           .otherwise("from the file, else 0")
+          .rare(),
+      Setting("as_voxels", &s.asVoxels,
+              "take the voxels of a NIfTI file along x, y, z from the origin, wherever it says")
           .rare()};
 }
 

@@ -36,18 +36,20 @@ class Store {
  public:
   using Element = typename openvdb::VecTraits<Value>::ElementType;
 
-  explicit Store(bool asHalf)
-      : half_(asHalf), most_(asHalf ? 65504.0 : std::numeric_limits<float>::max()) {}
+  explicit Store(PixelType type)
+      : type_(type), most_(type == PixelType::half ? 65504.0 : std::numeric_limits<float>::max()) {}
 
-  void put(double value, float& pixel, PixelCounts& counts) const {
-    pixel = pixelValue(value, half_);
+  void put(double value, double& pixel, PixelCounts& counts) const {
+    pixel = value;
+    if (type_ == PixelType::number) return;
+    pixel = pixelValue(value, type_ == PixelType::half);
     if (std::abs(value) > most_ && std::isfinite(value)) ++counts.clamped;
     if constexpr (std::is_integral_v<Element> && !std::is_same_v<Element, bool>)
-      if (static_cast<double>(pixel) != value) ++counts.inexact;
+      if (pixel != value) ++counts.inexact;
   }
 
  private:
-  bool half_;
+  PixelType type_;
   double most_;
 };
 
@@ -78,10 +80,10 @@ class CopySampler : public VolumeSampler {
  public:
   using Value = typename Grid::ValueType;
 
-  CopySampler(const Grid& grid, bool asHalf) : grid_(grid), store_(asHalf) {}
+  CopySampler(const Grid& grid, PixelType pixel) : grid_(grid), store_(pixel) {}
 
-  PixelCounts row(const VolumeLattice& lattice, int slice, int row, float* const* outputs,
-                  float* active) const override {
+  PixelCounts row(const VolumeLattice& lattice, int slice, int row, double* const* outputs,
+                  double* active) const override {
     PixelCounts counts;
     const auto accessor = grid_.getConstUnsafeAccessor();
     openvdb::Coord at = lattice.coord(0, row, slice);
@@ -89,7 +91,7 @@ class CopySampler : public VolumeSampler {
       const Value value = accessor.getValue(at);
       for (int c = 0; c < componentsOf<Value>(); ++c)
         store_.put(component(value, c), outputs[c][i], counts);
-      if (active) active[i] = accessor.isValueOn(at) ? 1.0f : 0.0f;
+      if (active) active[i] = accessor.isValueOn(at) ? 1 : 0;
     }
     return counts;
   }
@@ -107,15 +109,15 @@ class PointSampler : public VolumeSampler {
   static constexpr bool kInterpolates =
       std::is_floating_point_v<typename openvdb::VecTraits<Value>::ElementType>;
 
-  PointSampler(const Grid& grid, const VolumeResampling& resampling, bool asHalf)
-      : grid_(grid), resampling_(resampling), store_(asHalf) {
+  PointSampler(const Grid& grid, const VolumeResampling& resampling, PixelType pixel)
+      : grid_(grid), resampling_(resampling), store_(pixel) {
     const bool one = !kInterpolates || grid.getGridClass() == openvdb::GRID_LEVEL_SET;
     const double side = std::ceil(resampling.scale - 1e-6);
     points_ = one ? 1 : static_cast<int>(std::clamp(side, 1.0, double(kMostPointsASide)));
   }
 
-  PixelCounts row(const VolumeLattice& lattice, int slice, int row, float* const* outputs,
-                  float* active) const override {
+  PixelCounts row(const VolumeLattice& lattice, int slice, int row, double* const* outputs,
+                  double* active) const override {
     PixelCounts counts;
     const auto accessor = grid_.getConstUnsafeAccessor();
     openvdb::Coord at = lattice.coord(0, row, slice);
@@ -123,7 +125,7 @@ class PointSampler : public VolumeSampler {
       double sums[3] = {0, 0, 0};
       const bool on = sample(accessor, at.asVec3d(), sums);
       for (int c = 0; c < kComponents; ++c) store_.put(sums[c], outputs[c][i], counts);
-      if (active) active[i] = on ? 1.0f : 0.0f;
+      if (active) active[i] = on ? 1 : 0;
     }
     return counts;
   }
@@ -205,7 +207,8 @@ float pixelValue(double value, bool asHalf) {
 }
 
 std::unique_ptr<VolumeSampler> makeVolumeSampler(const openvdb::GridBase& grid,
-                                                 const VolumeResampling& resampling, bool asHalf) {
+                                                 const VolumeResampling& resampling,
+                                                 PixelType pixel) {
   using Types = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
                                   openvdb::Int64Grid, openvdb::BoolGrid, openvdb::MaskGrid,
                                   openvdb::Vec3SGrid, openvdb::Vec3DGrid, openvdb::Vec3IGrid>;
@@ -213,9 +216,9 @@ std::unique_ptr<VolumeSampler> makeVolumeSampler(const openvdb::GridBase& grid,
   grid.apply<Types>([&](const auto& typed) {
     using Grid = std::decay_t<decltype(typed)>;
     if (resampling.copies)
-      sampler = std::make_unique<CopySampler<Grid>>(typed, asHalf);
+      sampler = std::make_unique<CopySampler<Grid>>(typed, pixel);
     else
-      sampler = std::make_unique<PointSampler<Grid>>(typed, resampling, asHalf);
+      sampler = std::make_unique<PointSampler<Grid>>(typed, resampling, pixel);
   });
   if (!sampler)
     throw DataError(fmt::format("grid '{}' has the type {}, which has no numbers for a texture",

@@ -17,6 +17,9 @@ struct PixelCounts {
   std::size_t inexact = 0;  // whole numbers that the pixel type does not have
 };
 
+// What values are rounded to. number: none, a double holds them.
+enum class PixelType { half, single, number };
+
 // The float that a pixel holds for a value: a half float's, or single precision's; clamped to the
 // largest one, NaN and infinities as they are.
 float pixelValue(double value, bool asHalf);
@@ -33,10 +36,10 @@ class VolumeSampler {
  public:
   virtual ~VolumeSampler() = default;
 
-  // One row of one slice: lattice.width() floats to each of outputs[0 ... components), and, when
+  // One row of one slice: lattice.width() values to each of outputs[0 ... components), and, when
   // `active` is not null, 1 or 0 to that.
-  virtual PixelCounts row(const VolumeLattice& lattice, int slice, int row, float* const* outputs,
-                          float* active) const = 0;
+  virtual PixelCounts row(const VolumeLattice& lattice, int slice, int row, double* const* outputs,
+                          double* active) const = 0;
 };
 
 // Values of float, double and vector grids are interpolated linearly; the mean over as many points
@@ -44,6 +47,7 @@ class VolumeSampler {
 // Whole numbers, truth values and masks are the nearest voxel's. Throws DataError for types that
 // have no numbers.
 std::unique_ptr<VolumeSampler> makeVolumeSampler(const openvdb::GridBase& grid,
-                                                 const VolumeResampling& resampling, bool asHalf);
+                                                 const VolumeResampling& resampling,
+                                                 PixelType pixel);
 
 }  // namespace innermap

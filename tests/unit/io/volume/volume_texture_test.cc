@@ -288,7 +288,7 @@ TEST(VolumeTexture, RefusesBeforeItWrites) {
     const MemoryLimit limit(100);
     EXPECT_THROW(writeVolumeTexture(path, {scalar()}, settings), MemoryError);
   }
-  EXPECT_GT(volumeTextureMemory({scalar()}, {}), 18u * 8 * 12 * 4);
+  EXPECT_GT(volumeTextureMemory("a.exr", {scalar()}, {}), 18u * 8 * 12 * 4);
   settings = {};
   settings.resolution = -1;
   EXPECT_THROW(writeVolumeTexture(path, {scalar()}, settings), SettingError);

@@ -1,0 +1,236 @@
+#!/usr/bin/env python3
+"""export and import of other programs' volume files, as those programs' own readers see them."""
+
+import cli
+from cli import fails, independent, innermap
+
+# A turned, stretched lattice away from the origin; world = (i, j, k, 1) times the matrix.
+MATRIX = [[0, 0.5, 0, 0], [-0.25, 0, 0, 0], [0, 0, 2, 0], [10, -20, 30, 1]]
+MAKE = f"""
+import sys, numpy, pyopenvdb as vdb
+matrix = {MATRIX}
+rng = numpy.random.default_rng(7)
+grids = []
+for kind, name in (("FloatGrid", "density"), ("Vec3SGrid", "v"), ("FloatGrid", "heat")):
+    make = getattr(vdb, kind, None)
+    if make is None:
+        continue
+    shape = (7, 5, 4)
+    values = rng.random(shape + (3,)) - 2 if name == "v" else rng.random(shape) + 1
+    grid = make()
+    grid.name = name
+    grid.copyFromArray(values, ijk=(-3, 2, 6))
+    grid.transform = vdb.createLinearTransform(matrix)
+    grids.append(grid)
+    numpy.save(name + ".npy", values)
+vdb.write("g.vdb", grids=grids)
+print(" ".join(grid.name for grid in grids))
+"""
+
+
+def grids():
+    """g.vdb, and NAME.npy with the values of its voxels from (-3, 2, 6) on; the names."""
+    return independent(MAKE, module="pyopenvdb").split()
+
+
+def test_vtk_reads_values_names_and_places():
+    names = grids()
+    told = innermap("export", "g.vdb", "-o", "g.vti", "--report", "r.json").stdout
+    assert "7 x 5 x 4" in told and "density" in told, told
+    report = cli.read_json("r.json")["texture"]
+    assert report["channels"] == names and report["resolution"] == [7, 5, 4], report
+    independent("""
+import sys, numpy
+from vtkmodules.vtkIOXML import vtkXMLImageDataReader
+from vtkmodules.util.numpy_support import vtk_to_numpy
+reader = vtkXMLImageDataReader()
+reader.SetFileName("g.vti")
+reader.Update()
+image = reader.GetOutput()
+assert image.GetDimensions() == (7, 5, 4), image.GetDimensions()
+matrix = numpy.array(eval(sys.argv[1]))
+for name in sys.argv[2:]:
+    expected = numpy.load(name + ".npy")
+    array = vtk_to_numpy(image.GetPointData().GetArray(name))
+    for i in range(7):
+        for j in range(5):
+            for k in range(4):
+                point = image.ComputePointId((i, j, k))
+                assert (array[point] == expected[i, j, k].astype(array.dtype)).all(), (name, i, j, k)
+                world = numpy.array([i - 3, j + 2, k + 6, 1.0]) @ matrix
+                assert numpy.abs(image.GetPoint(point) - world[:3]).max() < 1e-9, (i, j, k)
+""", MATRIX, *names, module="vtkmodules")
+    fails(1, "export", "g.vdb", "-o", "h.vti", "--half", says=["half", ".vti"])
+    fails(2, "export", "g.vdb", "-o", "g.png", says=["g.png", ".vti", ".nvdb"])
+    innermap("export", "g.vdb", "-o", "small.vti", "--grids", "density", "--resolution", "3")
+
+
+DDS = """
+import sys, numpy
+data = open(sys.argv[1], "rb").read()
+word = numpy.frombuffer(data[:148], "<u4")
+assert data[:4] == b"DDS " and word[1] == 124 and data[84:88] == b"DX10" and word[19] == 32
+assert word[2] & 0x801007 == 0x801007 and word[20] == 4
+assert word[28] == 0x200000 and word[33] == 4 and word[35] == 1
+formats = {54: ("<f2", 1), 41: ("<f4", 1), 34: ("<f2", 2), 16: ("<f4", 2), 10: ("<f2", 4),
+           2: ("<f4", 4)}
+kind, channels = formats[word[32]]
+height, width, depth = word[3], word[4], word[6]
+assert word[5] == width * channels * int(kind[2])
+pixels = numpy.frombuffer(data[148:], kind).reshape(depth, height, width, channels)
+"""
+
+
+def test_dds_is_as_its_description_says():
+    if "v" not in grids():
+        raise cli.Skip("pyopenvdb has no vectors")
+    innermap("export", "g.vdb", "-o", "y.dds", "--grids", "density")
+    independent(DDS + """
+expected = numpy.load("density.npy").astype("f4")
+assert pixels.shape == (4, 5, 7, 1), pixels.shape
+assert (pixels[..., 0] == expected.transpose(2, 1, 0)).all()
+""", "y.dds")
+    innermap("export", "g.vdb", "-o", "ac.dds", "--grids", "density,v", "--half", "--rows", "up",
+             "--axis", "x")
+    independent(DDS + """
+# Slices along x, columns along z, rows along y from the largest.
+density, v = (numpy.load(n + ".npy") for n in ("density", "v"))
+assert pixels.shape == (7, 5, 4, 4) and kind == "<f2", pixels.shape
+expected = numpy.concatenate([v, density[..., None]], -1)[:, ::-1]
+assert numpy.abs(pixels - expected).max() < 2 / 2048
+assert numpy.abs(pixels - expected).max() > 0
+""", "ac.dds")
+    innermap("export", "g.vdb", "-o", "c.dds", "--grids", "v", "--power-of-two")
+    independent(DDS + """
+assert pixels.shape == (4, 8, 8, 4) and (pixels[..., 3] == 1).all(), pixels.shape
+""", "c.dds")
+    fails(1, "export", "g.vdb", "-o", "a.dds", says=["5", "--grids"])
+
+
+def test_nibabel_reads_values_and_places():
+    names = grids()
+    for name in names:
+        for ending in (".nii", ".nii.gz"):
+            innermap("export", "g.vdb", "-o", name + ending, "--grids", name)
+        independent("""
+import sys, numpy, nibabel
+matrix = numpy.array(eval(sys.argv[1]))
+matrix = numpy.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [-3, 2, 6, 1]]) @ matrix
+for ending in (".nii", ".nii.gz"):
+    image = nibabel.load(sys.argv[2] + ending)
+    expected = numpy.load(sys.argv[2] + ".npy").astype("f4")
+    values = numpy.asanyarray(image.dataobj)
+    if values.ndim == 5:
+        assert values.shape[3:] == (1, 3) and image.header["intent_code"] == 1007
+        values = values[:, :, :, 0]
+    assert values.dtype == "f4" and (values == expected).all(), sys.argv[2]
+    for affine, code in (image.get_sform(coded=True), image.get_qform(coded=True)):
+        assert code == 1 and numpy.abs(affine - matrix.T).max() < 1e-5, (affine, matrix.T)
+    assert image.header.get_xyzt_units()[0] == "mm"
+""", MATRIX, name, module="nibabel")
+        innermap("import", name + ".nii.gz", "-o", "back.vdb")
+        independent("""
+import sys, numpy, pyopenvdb as vdb
+grid = vdb.read("back.vdb", sys.argv[1])
+expected = numpy.load(sys.argv[1] + ".npy").astype("f4")
+values = numpy.zeros_like(expected)
+grid.copyToArray(values, ijk=(0, 0, 0))
+assert (values == expected).all()
+there = vdb.read("g.vdb", sys.argv[1]).transform.indexToWorld((-3 + 1, 2 + 2, 6 + 3))
+assert numpy.abs(numpy.subtract(grid.transform.indexToWorld((1, 2, 3)), there)).max() < 1e-5
+""", name, module="pyopenvdb")
+    fails(1, "export", "g.vdb", "-o", "all.nii", says=["3", "--grids", "density"])
+
+
+# What nibabel writes: FILE, and FILE.npy of x, y, z and the value at each voxel that is not 0.
+SCANS = """
+import numpy, nibabel
+rng = numpy.random.default_rng(3)
+turn = numpy.linalg.qr(rng.standard_normal((3, 3)))[0]
+affine = numpy.eye(4)
+affine[:3, :3] = turn * (1.5, 2, 0.75)
+affine[:3, 3] = 12, -40, 7
+labels = rng.choice([0, 1, 614454277], (9, 11, 13)).astype("i4")
+grey = rng.random((9, 11, 13)) * 100
+
+def save(name, image):
+    nibabel.save(image, name)
+    values = numpy.asanyarray(nibabel.load(name).dataobj)
+    at = numpy.argwhere(values)
+    world = nibabel.affines.apply_affine(image.affine, at)
+    numpy.save(name, numpy.column_stack([world, at, values[tuple(at.T)]]))
+
+image = nibabel.Nifti1Image(labels, affine)
+image.set_sform(affine, 2)
+save("labels.nii.gz", image)
+image = nibabel.Nifti1Image(labels, None)
+image.set_qform(affine, 1)
+image.set_sform(None, 0)
+save("quaternion.nii", image)
+image = nibabel.Nifti2Image(labels.astype(">i4"), affine)
+image.header.set_data_dtype(">i4")
+save("second.nii", image)
+big = nibabel.Nifti1Header(endianness=">")
+big.set_data_dtype("f4")
+save("big.nii", nibabel.Nifti1Image(grey, affine, big))
+image = nibabel.Nifti1Image(grey, affine)
+image.header.set_data_dtype("u1")
+image.header.set_slope_inter(0.5, -3)
+nibabel.save(image, "scaled.nii")
+image = nibabel.load("scaled.nii")
+save("scaled.nii.gz", image)
+lost = nibabel.Nifti1Image(labels, None)
+lost.header["pixdim"][1:4] = 2, 3, 4
+lost.set_sform(None, 0)
+lost.set_qform(None, 0)
+nibabel.save(lost, "lost.nii")
+nibabel.save(nibabel.Nifti1Image(numpy.zeros((3, 3, 3, 5), "f4"), affine), "time.nii")
+nibabel.save(nibabel.Nifti1Image(numpy.zeros((3, 3, 3), "c8"), affine), "complex.nii")
+"""
+
+SAME_SCAN = """
+import sys, numpy, pyopenvdb as vdb
+name, kind, tolerance = sys.argv[1:4]
+grid = vdb.readAll("s.vdb")[0][0]
+assert grid.valueTypeName == kind, grid.valueTypeName
+rows = numpy.load(name + ".npy")
+accessor = grid.getConstAccessor()
+assert grid.activeVoxelCount() == len(rows), (name, grid.activeVoxelCount(), len(rows))
+for x, y, z, i, j, k, value in rows[::7]:
+    at = tuple(map(int, (i, j, k)))
+    assert abs(accessor.getValue(at) - value) <= float(tolerance), (at, value)
+    assert numpy.abs(numpy.subtract(grid.transform.indexToWorld(at), (x, y, z))).max() < 2e-5
+"""
+
+
+def test_scans_are_read_where_they_lie():
+    independent(SCANS, module="nibabel")
+    for name, kind, tolerance in (("big.nii", "float", 1e-5), ("scaled.nii.gz", "float", 1e-5)):
+        innermap("import", name, "-o", "s.vdb", "--grids", "scan")
+        independent(SAME_SCAN, name, kind, tolerance, module="pyopenvdb")
+    for name in ("labels.nii.gz", "quaternion.nii", "second.nii"):
+        innermap("import", name, "-o", "s.vdb", "--grids", "label", "--report", "r.json")
+        assert cli.read_json("r.json")["texture"]["grids"] == ["label"]
+        assert "int32" in innermap("info", "s.vdb").stdout
+        # pyopenvdb has no whole numbers: nibabel says whether what is written again is the same.
+        innermap("export", "s.vdb", "-o", "again.nii")
+        independent("""
+import sys, numpy, nibabel
+image = nibabel.load("again.nii")
+values = numpy.asanyarray(image.dataobj)
+rows = numpy.load(sys.argv[1] + ".npy")
+assert values.dtype.kind == "i" and (values != 0).sum() == len(rows)
+first = rows[:, 3:6].min(0)
+at = (rows[:, 3:6] - first).astype(int)
+assert (values[tuple(at.T)] == rows[:, 6]).all()
+assert numpy.abs(nibabel.affines.apply_affine(image.affine, at) - rows[:, :3]).max() < 1e-4
+""", name, module="nibabel")
+    fails(1, "import", "lost.nii", "-o", "l.vdb", says=["lost.nii", "sform", "--as-voxels"])
+    innermap("import", "lost.nii", "-o", "l.vdb", "--as-voxels")
+    assert "2" in innermap("info", "l.vdb").stdout
+    fails(1, "import", "time.nii", "-o", "t.vdb", says=["time.nii", "5 volumes"])
+    fails(1, "import", "complex.nii", "-o", "t.vdb", says=["complex.nii", "32"])
+    fails(1, "import", "labels.nii.gz", "-o", "t.vdb", "--voxel-size", "2", says=["voxel"])
+
+
+cli.run(globals())
