@@ -5,6 +5,8 @@
 
 import os
 import sys
+import threading
+import time
 
 import bpy
 import numpy as np
@@ -14,6 +16,7 @@ import innermap
 sys.path.insert(0, os.path.join(os.environ["INNERMAP_ROOT"], "tools/blender"))
 import innermap_blender  # noqa: E402
 from innermap_blender import stale  # noqa: E402
+from innermap_blender.job import Job  # noqa: E402
 
 FIRST, LAST, CHARGES = 5, 14, 500
 FRAMES = list(range(FIRST, LAST + 1))
@@ -40,7 +43,7 @@ def cylinder(rings=24, around=24):
         last = (rings - 1) * around
         faces.append((rings * around + 1, last + k, last + (k + 1) % around))
     mesh = bpy.data.meshes.new("body")
-    mesh.from_pydata(places, [], [f[::-1] for f in faces])
+    mesh.from_pydata(places, [], faces)
     body = linked("body", mesh)
     bend = body.modifiers.new("bend", 'SIMPLE_DEFORM')
     bend.deform_method, bend.deform_axis = 'BEND', 'Z'
@@ -294,6 +297,26 @@ def stale_mark():
     assert bpy.ops.innermap.bake() == {'FINISHED'}
     scene.frame_set(FIRST + 2)
     assert not stale.stale_frames(scene)
+
+
+def cancelled():
+    """As Esc does in a window."""
+    s = start()
+    ball, _, _ = things()
+    put_inside(s, ball, fog())
+    job = Job(bpy.context)
+    for _ in job.collect():
+        pass
+    thread = threading.Thread(target=job.compute)
+    thread.start()
+    while not job.stage:
+        time.sleep(0.01)
+    job.cancelled, began = True, time.monotonic()
+    thread.join()
+    print(f"cancelled in {time.monotonic() - began:.2f} s")
+    job.close()
+    assert job.done and not job.error and not job.places
+    assert os.listdir("baked") == [] and not ball.get("innermap_baked")
 
 
 def relative_paths():

@@ -49,6 +49,10 @@ def test_a_changed_body_is_marked():
     scene("stale_mark")
 
 
+def test_cancelling_changes_nothing():
+    scene("cancelled")
+
+
 def test_files_move_with_the_scene():
     scene("relative_paths")
 

@@ -135,9 +135,12 @@ void continueBySpeed(openvdb::Vec3SGrid& velocity, double seconds) {
   constexpr std::uint64_t kBytes = 100;
   const double voxel = velocity.voxelSize()[0];
   openvdb::MaskTree active = activeTopology(velocity);
-  openvdb::MaskTree front;
+  openvdb::MaskTree inner(active), front;
+  openvdb::tools::erodeActiveValues(inner, 1, openvdb::tools::NN_FACE_EDGE_VERTEX,
+                                    openvdb::tools::PRESERVE_TILES);
   for (auto v = velocity.cbeginValueOn(); v; ++v)
-    if (static_cast<double>(v->length()) * seconds > 0) front.setValueOn(v.getCoord());
+    if (static_cast<double>(v->length()) * seconds > 0 && !inner.isValueOn(v.getCoord()))
+      front.setValueOn(v.getCoord());
   for (double reach = voxel; !front.empty(); reach += voxel) {
     requireMemory("continuing the velocity", processMemory(kBytes * 4 * front.activeVoxelCount()),
                   "give a shorter --shutter or a lower resolution");

@@ -103,6 +103,31 @@ TEST(CarryPointsRelease, OutsideIsCutExtendedOrFaded) {
   EXPECT_LE(norm(back.points[2] - points[2]), 1e-5);
 }
 
+// What is placed once goes through any map as points do, with other motions outside.
+TEST(CarryPoints, PlacedPointsServeManyMaps) {
+  const Solid solid(ball());
+  const Points points = {{0, 0, 0.5}, {0, 0, 1 + 0.05 * solid.diagonal()}, {0, 0, 9}};
+  CarryPointsSettings settings;
+  settings.outside.distance = 0.1;
+  const PointPusher pusher(solid, settings);
+  const PlacedPoints placed = pusher.place(points);
+  const std::vector<PointFate> fates = {PointFate::carried, PointFate::carried, PointFate::cut};
+  EXPECT_EQ(placed.fates, fates);
+  for (const double strength : {0.1, 0.3}) {
+    const HarmonicMap map = chargedMap(strength);
+    for (const bool jacobians : {false, true}) {
+      const CarriedPoints once = pusher.push(map, placed, jacobians),
+                          anew = pusher.push(map, points, jacobians);
+      EXPECT_EQ(once.fates, fates);
+      for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(norm(once.points[i] - anew.points[i]), 0);
+    }
+    const RigidMotion motion{rotation(0.3, 0.1), {strength, 2, 3}};
+    const CarriedPoints far = pusher.fadingTo(motion).push(map, placed, false);
+    EXPECT_EQ(far.cut, 0u);
+    EXPECT_LE(norm(far.points[2] - motion(points[2])), 1e-12);
+  }
+}
+
 TEST(CarryPoints, SameForAnyNumberOfThreads) {
   const ComposedMap map = chargedMap();
   const Points points = randomPoints(5000, 0.95);

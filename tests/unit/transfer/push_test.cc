@@ -245,6 +245,26 @@ TEST(Push, FieldsAreCarriedAlong) {
   EXPECT_LT(error, 1e-4);
 }
 
+// As far as it goes while the shutter is open, and no farther.
+TEST(Push, VelocitiesGoOnAroundTheTarget) {
+  const HarmonicMap map = chargedMap();
+  const Solid source(ball());
+  const auto to = levelSetOf(Solid(moved(ball(), map)), 24);
+  const HarmonicMap velocity = affineMap({{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}, {3, 0, 0});
+  const VolumePusher pusher(source, {});
+  std::vector<openvdb::CoordBBox> boxes;
+  const double voxel = to->voxelSize()[0];
+  for (const double shutter : {0.0, 2.5 * voxel / 3}) {
+    const PushResult out = pusher.push(
+        map, *to, {{"v", velocity.field(), openvdb::VEC_CONTRAVARIANT_RELATIVE, shutter}});
+    const auto& grid = static_cast<const openvdb::Vec3SGrid&>(*out.grids[0]);
+    for (auto v = grid.cbeginValueOn(); v; ++v) ASSERT_NEAR((*v)[0], 3, 1e-4);
+    boxes.push_back(grid.evalActiveVoxelBoundingBox());
+  }
+  EXPECT_EQ(boxes[1].min(), boxes[0].min().offsetBy(-3));
+  EXPECT_EQ(boxes[1].max(), boxes[0].max().offsetBy(3));
+}
+
 TEST(Push, OnePusherServesManyMaps) {
   const Solid source(ball());
   const auto grid = sampledScalar(*levelSetOf(source, 24), "s");

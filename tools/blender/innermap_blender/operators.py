@@ -1,6 +1,7 @@
 """Bake, Live, Clear and Check the body."""
 
 import threading
+import time
 
 import bpy
 
@@ -9,24 +10,25 @@ from .geometry import Refused, body_mesh
 from .job import Job
 
 FAULTS = (Refused, ValueError, OSError, library.Missing)
+TOGETHER = 0.2  # seconds of frames that are read before the window is drawn again
 VERDICT = {}  # of bodies: lines for the panel
 
 
-def lines_of(body, report):
+def lines_of(report):
     if report.closed and not report.self_intersections and report.outward:
-        return [f"{body.name}: a solid, {report.triangles} triangles"]
+        return [f"a solid, {report.triangles} triangles"]
     out = []
     if not report.closed:
-        out.append(f"{body.name}: open, {report.open_loops} holes; they are closed by guess")
+        out.append(f"open: {report.open_loops} holes, closed by guess")
     if not report.outward:
-        out.append(f"{body.name}: its faces point inward; that is turned round")
+        out.append("faces point inward; turned round")
     if report.self_intersections:
-        out.append(f"{body.name}: {report.self_intersections} pairs of faces cross each other")
+        out.append(f"{report.self_intersections} pairs of faces cross")
     return out
 
 
 def judge(body, report):
-    VERDICT[body.name] = lines = lines_of(body, report)
+    VERDICT[body.name] = lines = lines_of(report)
     return lines
 
 
@@ -35,10 +37,13 @@ class Working:
 
     bl_options = {'REGISTER', 'UNDO'}
     live = False
+    running = False  # in a window, one at a time
+    shown = ""
 
     @classmethod
     def poll(cls, context):
-        return context.mode == 'OBJECT' and context.scene.innermap.body is not None
+        return not Working.running and context.mode == 'OBJECT' and \
+            context.scene.innermap.body is not None
 
     def fail(self, text):
         self.report({'ERROR'}, text)
@@ -58,7 +63,7 @@ class Working:
         finally:
             job.close()
         for text in judge(job.body, job.report)[:1] if not job.report.closed else ():
-            told.append(('WARNING', text))
+            told.append(('WARNING', f"{job.body.name}: {text}"))
         for kind, text in told[::-1]:
             self.report({kind}, text)
         return {'FINISHED'}
@@ -80,20 +85,25 @@ class Working:
             self.job = Job(context, self.live)
         except FAULTS as error:
             return self.fail(str(error))
-        self.steps, self.thread = self.job.collect(), None
+        self.steps, self.thread, Working.running = self.job.collect(), None, True
         context.window_manager.progress_begin(0, 100)
         self.timer = context.window_manager.event_timer_add(0.05, window=context.window)
         context.window_manager.modal_handler_add(self)
         return {'RUNNING_MODAL'}
 
     def end(self, context):
+        Working.running = False
         context.window_manager.event_timer_remove(self.timer)
         context.window_manager.progress_end()
         context.workspace.status_text_set(None)
 
     def show(self, context, text, share):
+        text = f"Inner map: {text} {share:.0%}    Esc: cancel"
+        if text == self.shown:
+            return
+        self.shown = text
         context.window_manager.progress_update(100 * share)
-        context.workspace.status_text_set(f"Inner map: {text} {share:.0%}    Esc: cancel")
+        context.workspace.status_text_set(text)
 
     def modal(self, context, event):
         job = self.job
@@ -112,8 +122,11 @@ class Working:
         return self.finish()
 
     def collect(self, context):
+        until = time.monotonic() + TOGETHER
         try:
-            share = None if self.job.cancelled else next(self.steps, 1.5)
+            share = None if self.job.cancelled else 0
+            while share is not None and share <= 1 and time.monotonic() < until:
+                share = next(self.steps, 1.5)
         except FAULTS as error:
             self.end(context)
             self.job.close()
@@ -176,7 +189,7 @@ class INNERMAP_OT_check(bpy.types.Operator):
             return {'CANCELLED'}
         lines = judge(body, report)
         good = report.closed and not report.self_intersections
-        self.report({'INFO' if good else 'WARNING'}, "; ".join(lines))
+        self.report({'INFO' if good else 'WARNING'}, f"{body.name}: " + "; ".join(lines))
         stale.look(context.scene)
         return {'FINISHED'}
 

@@ -18,7 +18,7 @@ class InnermapSettings(bpy.types.PropertyGroup):
     rest_frame: IntProperty(
         name="Rest frame", default=1, description="Where the body and what is inside fit together")
     scene_range: BoolProperty(
-        name="Scene's frames", default=True, description="Bake the frames of the scene")
+        name="Scene range", default=True, description="Bake the frames of the scene")
     frame_start: IntProperty(name="First", default=1, min=0)
     frame_end: IntProperty(name="Last", default=10, min=0)
     store: EnumProperty(
@@ -75,7 +75,7 @@ class INNERMAP_PT_main(Panel, bpy.types.Panel):
             col.label(text=line, icon='INFO')
         differs = stale.stale_frames(context.scene)
         if differs:
-            col.label(text=f"The body has changed (frame {differs[0]}): bake again", icon='ERROR')
+            col.label(text=f"Changed (frame {differs[0]})", icon='ERROR')
         row = self.layout.row(align=True)
         row.operator("innermap.bake", icon='REC')
         row.operator("innermap.live", icon='LATTICE_DATA')

@@ -32,7 +32,10 @@ def look(scene):
     """Compares the frame that is shown."""
     body = scene.innermap.body
     baked = scene.get("innermap_poses")
-    if baked is None or body is None or body.mode != 'OBJECT':
+    if baked is None:
+        FOUND.pop(scene.name, None)  # undone
+        return
+    if body is None or body.mode != 'OBJECT':
         return
     known = baked.get(str(scene.frame_current))
     if known is None:
@@ -48,10 +51,16 @@ def stale_frames(scene):
     return sorted(FOUND.get(scene.name, ()))
 
 
+def busy():
+    """While a scene is rendered its own thread changes frames: nothing else may evaluate then."""
+    screen = bpy.context.screen
+    return bpy.app.is_job_running('RENDER') or screen and screen.is_animation_playing
+
+
 @bpy.app.handlers.persistent
 def after_update(scene, depsgraph=None):
     body = scene.innermap.body
-    if body is None or bpy.context.screen and bpy.context.screen.is_animation_playing:
+    if body is None or busy():
         return
     if depsgraph is None or any(u.id.original == body for u in depsgraph.updates):
         look(scene)
