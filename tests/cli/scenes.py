@@ -1,6 +1,7 @@
 """Scenes that several of the command-line tests have, and a Python that reads what they made."""
 
 import math
+import struct
 import subprocess
 
 from cli import Skip, icosphere_arrays, innermap, write_obj
@@ -43,3 +44,17 @@ def debian_python(script, *arguments):
         raise Skip(done.stderr.strip().split("\n")[-1])
     assert done.returncode == 0, done.stderr
     return done.stdout
+
+
+SPLAT_NAMES = (["x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2"] + [f"f_rest_{i}" for i in range(9)] +
+               ["opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"])
+
+
+def write_splats(path, splats, names=None):
+    """A capture of Gaussian splats, colours of degree 1: dicts by these names, 0 where they lack one."""
+    names = names or SPLAT_NAMES
+    with open(path, "wb") as file:
+        file.write(("ply\nformat binary_little_endian 1.0\nelement vertex %d\n" % len(splats) +
+                    "".join(f"property float {name}\n" for name in names) + "end_header\n").encode())
+        for splat in splats:
+            file.write(struct.pack(f"<{len(names)}f", *(splat.get(name, 0) for name in names)))

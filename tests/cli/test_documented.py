@@ -9,6 +9,7 @@ from pathlib import Path
 
 import cli
 from cli import ROOT, innermap, nightly
+from scenes import write_splats
 
 BLOCK = re.compile(r"^```sh\n(.*?)^```", re.M | re.S)
 LONG = {"study", "compare-fem", "hexahedralize", "harmonic"}  # have tests of their own
@@ -92,6 +93,8 @@ def stand_ins():
              "--picture", "spot_texture.png")
     write_scan("scan.ply")
     write_muscle("muscle.vtu")
+    for path in ["capture.ply", "mist.ply", "posed.ply"]:
+        write_splats(path, [{"x": 0.3, "scale_0": -3, "rot_0": 1}])
     innermap("evaluate", "map.ply", "-o", "smoke.vdb", "--resolution", "24")
     shutil.copy("smoke.vdb", "posed.vdb")
     innermap("texture", "spot.obj", "spot_texture.png", "-o", "spot.vdb", "--resolution", "16")

@@ -6,28 +6,17 @@ import os
 import struct
 
 from cli import fails, icosphere_arrays, innermap, read_json, run, write_obj
-from scenes import fitted_ball
+from scenes import SPLAT_NAMES, fitted_ball, write_splats
 
-NAMES = (["x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2"] + [f"f_rest_{i}" for i in range(9)] +
-         ["opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"])
 # At a quarter; seen from +x red is brighter, from +y green, from +z blue.
-SPLAT = dict(zip(NAMES, [0.25, 0, 0, 0.5, 0.5, 0.5, 0, 0, -1, -1, 0, 0, 0, 1, 0, -1.0, -4, -5, -6, 2, 0, 0,
-                         0]))
-
-
-def write_splats(path, splats, names=None):
-    names = names or NAMES
-    with open(path, "wb") as file:
-        file.write(("ply\nformat binary_little_endian 1.0\nelement vertex %d\n" % len(splats) +
-                    "".join(f"property float {name}\n" for name in names) + "end_header\n").encode())
-        for splat in splats:
-            file.write(struct.pack(f"<{len(names)}f", *(splat.get(name, 0) for name in names)))
+SPLAT = dict(zip(SPLAT_NAMES, [0.25, 0, 0, 0.5, 0.5, 0.5, 0, 0, -1, -1, 0, 0, 0, 1, 0, -1, -4, -5, -6,
+                               2, 0, 0, 0]))
 
 
 def read_splats(path):
     with open(path, "rb") as file:
         body = file.read().partition(b"end_header\n")[2]
-    return [dict(zip(NAMES, row)) for row in struct.iter_unpack(f"<{len(NAMES)}f", body)]
+    return [dict(zip(SPLAT_NAMES, row)) for row in struct.iter_unpack(f"<{len(SPLAT_NAMES)}f", body)]
 
 
 def turned(p):
@@ -90,7 +79,7 @@ def test_bad_captures_write_nothing():
                          ({"scale_1": math.inf}, "scale"), ({"f_rest_3": math.nan}, "f_rest")):
         write_splats("bad.ply", [SPLAT, {**SPLAT, **change}])
         fails(1, "push", "map.ply", "bad.ply", "-o", "a.ply", says=["bad.ply", "splat 1", says])
-    for names in (NAMES[:8] + NAMES[9:], NAMES[:-1]):
+    for names in (SPLAT_NAMES[:8] + SPLAT_NAMES[9:], SPLAT_NAMES[:-1]):
         write_splats("bad.ply", [SPLAT], names)
         fails(1, "push", "map.ply", "bad.ply", "-o", "a.ply", says=["bad.ply"])
     with open("cut.ply", "wb") as file, open("bad.ply", "rb") as whole:

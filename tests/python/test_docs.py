@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+import captures
 import cli
 import innermap
 import shapes
@@ -22,6 +23,7 @@ def files():
                          ("stranger", V * [1.2, 1, 0.9]), ("walk.0001", V),
                          ("walk.0002", shapes.twisted(V))):
         cli.write_obj(f"{name}.obj", places.tolist(), F.tolist())
+    captures.write("capture.ply", captures.random_capture(0.5 * V))
     n = 16
     matrix = np.diag([1 / n, 1 / n, 1 / n, 1])
     matrix[:3, 3] = -0.5

@@ -272,13 +272,16 @@ Command makePushCommand() {
       "what each voxel of the source holds is put where the map brings it, so that no mass is "
       "lost. Output voxels are active inside the target and in a skin of two voxels. Of geometry, "
       "each point goes where the map brings it, normals are turned by the inverse transpose of its "
-      "Jacobian, vectors by the Jacobian; all else in the file stays. Points farther outside the "
+      "Jacobian, vectors by the Jacobian; all else in the file stays. Gaussian splats (.ply with "
+      "scale_0, rot_0 and opacity) are stretched and turned, and so are their colours. Points "
+      "farther outside the "
       "solid than --outside (and 0.001 of the diagonal) are left out with what uses them, unless "
       "--fade-to says where they go.");
   c.example("innermap push map.ply smoke.vdb -o posed.vdb --grids density --density");
   c.example("innermap push map.ply fem.vdb -o posed.vdb --stress stress --resolution 256");
   c.example("innermap push map.ply mist.vdb -o posed.vdb --outside 0.1 --fade-to fitted");
   c.example("innermap push map.ply bones.obj -o posed.obj --subdivide 0.001");
+  c.example("innermap push map.ply capture.ply -o posed.ply --outside 0.02");
   c.example("innermap push map.ply muscle.vtu -o posed.msh --vectors fibre");
   return c;
 }

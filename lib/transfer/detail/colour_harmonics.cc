@@ -67,27 +67,27 @@ std::array<Square, kHarmonicDegrees> solvers() {
 void evaluateHarmonics(int degree, const Vec3& d, double* out) {
   const double x = d.x, y = d.y, z = d.z, xx = x * x, yy = y * y, zz = z * z;
   if (degree == 1) {
-    constexpr double k = 0.4886025119029199;
-    out[0] = -k * y;
-    out[1] = k * z;
-    out[2] = -k * x;
+    constexpr double kFirst = 0.4886025119029199;
+    out[0] = -kFirst * y;
+    out[1] = kFirst * z;
+    out[2] = -kFirst * x;
   } else if (degree == 2) {
-    constexpr double k[3] = {1.0925484305920792, 0.31539156525252005, 0.5462742152960396};
-    out[0] = k[0] * x * y;
-    out[1] = -k[0] * y * z;
-    out[2] = k[1] * (2 * zz - xx - yy);
-    out[3] = -k[0] * x * z;
-    out[4] = k[2] * (xx - yy);
+    constexpr double kSecond[3] = {1.0925484305920792, 0.31539156525252005, 0.5462742152960396};
+    out[0] = kSecond[0] * x * y;
+    out[1] = -kSecond[0] * y * z;
+    out[2] = kSecond[1] * (2 * zz - xx - yy);
+    out[3] = -kSecond[0] * x * z;
+    out[4] = kSecond[2] * (xx - yy);
   } else {
-    constexpr double k[5] = {0.5900435899266435, 2.890611442640554, 0.4570457994644658,
-                             0.3731763325901154, 1.445305721320277};
-    out[0] = -k[0] * y * (3 * xx - yy);
-    out[1] = k[1] * x * y * z;
-    out[2] = -k[2] * y * (4 * zz - xx - yy);
-    out[3] = k[3] * z * (2 * zz - 3 * xx - 3 * yy);
-    out[4] = -k[2] * x * (4 * zz - xx - yy);
-    out[5] = k[4] * z * (xx - yy);
-    out[6] = -k[0] * x * (xx - 3 * yy);
+    constexpr double kThird[5] = {0.5900435899266435, 2.890611442640554, 0.4570457994644658,
+                                  0.3731763325901154, 1.445305721320277};
+    out[0] = -kThird[0] * y * (3 * xx - yy);
+    out[1] = kThird[1] * x * y * z;
+    out[2] = -kThird[2] * y * (4 * zz - xx - yy);
+    out[3] = kThird[3] * z * (2 * zz - 3 * xx - 3 * yy);
+    out[4] = -kThird[2] * x * (4 * zz - xx - yy);
+    out[5] = kThird[4] * z * (xx - yy);
+    out[6] = -kThird[0] * x * (xx - 3 * yy);
   }
 }
 

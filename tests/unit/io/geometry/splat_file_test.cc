@@ -175,10 +175,12 @@ TEST(SplatFile, AreCarriedByTheirJacobians) {
   }
 }
 
+// An opacity that stays, stays as it is spelt.
 TEST(SplatFile, TextIsReadToo) {
-  const Row row = splat(9);
-  const std::string out = carriedBytes(bytesOf({row}, true), stay);
-  EXPECT_NE(out.find(" 1.25 7 -2 -3 -4 0.5 -1 0.25 2"), std::string::npos) << out;
+  std::string text = bytesOf({splat(9)}, true);
+  text.replace(text.find(" 1.25 7"), 5, " 1.250");
+  const std::string out = carriedBytes(text, stay);
+  EXPECT_NE(out.find(" 1.250 7 -2 -3 -4 0.5 -1 0.25 2"), std::string::npos) << out;
 }
 
 void expectError(const std::vector<Row>& rows, const std::string& part) {
@@ -246,7 +248,7 @@ TEST(SplatFile, MemoryIsThatOfPointsAndTheFile) {
   const std::string path = write("many.ply", bytesOf(std::vector<Row>(40000, splat(45))));
   const std::uint64_t need = geometryMemory(path), size = test::contents(path).size();
   EXPECT_GT(need, size + 40000 * 150);
-  EXPECT_LT(need, size + 40000 * 1200);
+  EXPECT_LT(need, size + 80000000);  // with one pass
   const MemoryLimit limit(size);
   EXPECT_THROW(readGeometry(path), MemoryError);
 }
