@@ -1,6 +1,11 @@
 #!/usr/bin/env python3
 """export and import of other programs' volume files, as those programs' own readers see them."""
 
+import os
+import re
+import shutil
+import subprocess
+
 import cli
 from cli import fails, independent, innermap
 
@@ -231,6 +236,45 @@ assert numpy.abs(nibabel.affines.apply_affine(image.affine, at) - rows[:, :3]).m
     fails(1, "import", "time.nii", "-o", "t.vdb", says=["time.nii", "5 volumes"])
     fails(1, "import", "complex.nii", "-o", "t.vdb", says=["complex.nii", "32"])
     fails(1, "import", "labels.nii.gz", "-o", "t.vdb", "--voxel-size", "2", says=["voxel"])
+
+
+def usd_of(name, **told):
+    """The text of a .usda file, which has the lines `told`, and which the checker of hosts accepts."""
+    with open(name, encoding="utf-8") as file:
+        text = file.read()
+    assert text.startswith("#usda 1.0\n"), text
+    for key, value in told.items():
+        assert f"    {key} = {value}\n" in text, (key, text)
+    checker = cli.ROOT.parent / "shared" / "hosts" / "usda_check.py"
+    if checker.exists():
+        subprocess.run([cli.PYTHON, checker, name], check=True, capture_output=True)
+    else:
+        print("not checked by ../shared/hosts/usda_check.py, which is not there")
+    return text
+
+
+def test_usd_refers_to_files():
+    names = grids()
+    innermap("export", "g.vdb", "-o", "a-b.usda", "--up", "z", "--meters-per-unit", "0.01")
+    text = usd_of("a-b.usda", defaultPrim='"a_b"', upAxis='"Z"', metersPerUnit="0.01")
+    for name in names:
+        assert f"rel field:{name} = </a_b/{name}>" in text and f'fieldName = "{name}"' in text, text
+    assert text.count("asset filePath = @./g.vdb@") == len(names) and "TimeCode =" not in text
+    # The box of voxels (-3, 2, 6) to (3, 6, 9) by their outer faces.
+    corners = [[sum(p * m for p, m in zip((i, j, k, 1), column)) for column in zip(*MATRIX)]
+               for i in (-3.5, 3.5) for j in (1.5, 6.5) for k in (5.5, 9.5)]
+    box = [tuple(limit(c[a] for c in corners) for a in range(3)) for limit in (min, max)]
+    found = re.search(r"extent = \[\((.*)\), \((.*)\)\]", text)
+    for corner, numbers in zip(box, found.groups()):
+        assert max(abs(a - float(b)) for a, b in zip(corner, numbers.split(","))) < 1e-4, (box, text)
+    os.makedirs("frames")
+    for number in (9, 10, 12):
+        shutil.copy("g.vdb", f"frames/s.{number:04}.vdb")
+    innermap("export", "frames/s.####.vdb", "-o", "s.usda", "--grids", "density", "--fps", "25")
+    text = usd_of("s.usda", startTimeCode="9", endTimeCode="12", timeCodesPerSecond="25")
+    assert "10: @./frames/s.0010.vdb@" in text and "field:v" not in text
+    assert len(re.findall(r"@\./frames/", text)) == 3
+    fails(1, "export", "g.vdb", "-o", "n.usda", "--grids", "none", says=["none"])
 
 
 cli.run(globals())

@@ -1,6 +1,8 @@
 // `innermap export`: grids as volume textures and in other programs' files.
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "commands.h"
 #include "core/frame_files.h"
 #include "innermap/io/pictures.h"
@@ -17,6 +19,7 @@ namespace {
 struct ExportOptions {
   std::string file, output, grids, tiles;
   VolumeTextureSettings texture;
+  UsdVolumeSettings usd;
 };
 
 VolumeTextureSettings settingsOf(const ExportOptions& options) {
@@ -31,7 +34,35 @@ void fillReport(const VolumeTextureResult& r, const ExportOptions& options, Cont
   report.add("texture", figures(r));
 }
 
+// One .vdb file, which stands at all times, or the frames of a pattern or a folder.
+std::vector<UsdFrame> framesOf(const std::string& file) {
+  const std::string name = std::filesystem::path(file).filename().string();
+  if (name.find_first_of("#*?%") == std::string::npos && !std::filesystem::is_directory(file))
+    return {{std::nullopt, file}};
+  std::vector<UsdFrame> frames;
+  for (const FrameFile& frame : findFrames({file}, {".vdb"}).frames)
+    frames.push_back({frame.number, frame.path});
+  return frames;
+}
+
+void runReferences(const ExportOptions& options, Context& context) {
+  context.output(options.output);
+  const std::vector<UsdFrame> frames = framesOf(options.file);
+  for (const UsdFrame& frame : frames)
+    if (frame.number) context.input(frame.path);
+  if (context.dryRun())
+    return context.plan(
+        {fmt::format("refer to {} .vdb files in {}", frames.size(), options.output)}, 0);
+  UsdVolumeSettings settings = options.usd;
+  settings.names = commaList(options.grids);
+  context.timed("write", [&] { writeUsdVolume(options.output, frames, settings); });
+  const std::string format = volumeFormatOf(options.output).name;
+  context.print(fmt::format("{}: {}, refers to {} .vdb file{}\n", options.output, format,
+                            frames.size(), frames.size() == 1 ? "" : "s"));
+}
+
 void run(const ExportOptions& options, Context& context) {
+  if (volumeFormatOf(options.output).refers) return runReferences(options, context);
   const VolumeTextureSettings settings = settingsOf(options);
   if (settings.layout == VolumeLayout::slices) {
     const FramePattern slices("--output", options.output);
@@ -92,7 +123,8 @@ Command makeExportCommand() {
       "tell tiling, order, voxel size, bounds, matrices and what each grid is; `innermap import` "
       "reads them. One scalar grid is the channel Y, a vector R, G, B, a vector and a scalar "
       "R, G, B, A; more than four channels are layers (`density.V`, `Cd.R`).");
-  c.positional("FILE", &o->file, "the .vdb file");
+  c.positional("FILE", &o->file,
+               "the .vdb file; for .usda also a folder or pattern of frames, with #### or *");
   c.option("--output", "FILE", &o->output,
            "the file, in the format of its ending; of slices, with #### or %04d for the number, "
            "else it is put before the extension")
@@ -103,12 +135,14 @@ Command makeExportCommand() {
       .was("--grid")
       .defaults("all");
   c.settings(describe(o->texture));
+  c.settings(describe(o->usd));
   addShapeOptions(c, *o);
   c.choice("--rows", "ORDER", &o->texture.rowsUp, {{"down", false}, {"up", true}},
            "down: a slice's first row has the least index (Direct3D, Unreal); up: the largest "
            "(OpenGL, Unity)");
   c.example("innermap export smoke.vdb -o smoke.exr --grids density --resolution 64 --cube --half");
   c.example("innermap export smoke.vdb -o smoke.nvdb --half");
+  c.example("innermap export 'out/smoke.####.vdb' -o smoke.usda --fps 25");
   c.example("innermap export map.vdb -o 'slices/map.####.exr' --layout slices --grids map,density");
   c.run([o](Context& context) { run(*o, context); });
   return c;

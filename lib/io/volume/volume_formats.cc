@@ -54,6 +54,12 @@ const std::vector<Entry>& table() {
        {writeDds, planDds, ddsMemory}},
       nifti(".nii"),
       nifti(".nii.gz"),
+      {{".usda",
+        "USD",
+        "a volume that refers to the .vdb file, or to a sequence of them",
+        {},
+        true},
+       {}},
   };
   return entries;
 }
@@ -100,6 +106,10 @@ void requireHeeded(const Entry& entry, const std::vector<std::string>& heeded, S
 
 const Entry& checked(const std::string& path, const VolumeTextureSettings& settings) {
   const Entry& entry = entryOf(path);
+  if (entry.format.refers)
+    throw FileError(path,
+                    "would refer to .vdb files, not hold grids; write those, then "
+                    "`innermap export` of them");
   requireHeeded(entry, entry.format.settings, settings);
   return entry;
 }

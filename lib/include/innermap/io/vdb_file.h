@@ -4,6 +4,7 @@
 #include <openvdb/openvdb.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -76,5 +77,31 @@ std::string describe(const VdbInfo& info, const std::string& path, bool metadata
 
 // Bytes that reading the grids of these names takes; empty means all.
 std::uint64_t readMemory(const VdbInfo& info, const std::vector<std::string>& names = {});
+
+// A .usda file that refers to .vdb files, which stay where they are.
+
+struct UsdFrame {
+  std::optional<std::int64_t> number;  // the time; none of a file that stands at all times
+  std::string path;                    // of the .vdb file
+};
+
+struct UsdVolumeSettings {
+  std::vector<std::string> names;  // of the grids; empty means all
+  bool zUp = false;                // what the file says is up: z, or y
+  double metersPerUnit = 1;        // above 0
+  double framesPerSecond = 24;     // above 0
+};
+
+// Without names.
+std::vector<Setting> describe(UsdVolumeSettings& settings);
+
+// Writes a Volume prim named as the file, with an OpenVDBAsset for each grid (fieldName,
+// fieldDataType, filePath relative to the file) and the extent by the active boxes that the grids'
+// statistics say; of numbered frames, which ascend, as time samples, with the times that they begin
+// and end at. Reads headers alone. Reference: Pixar, UsdVol. The file appears whole or not at all.
+// Throws FileError (a grid that is not there, a path that USD cannot refer to), DataError (no
+// files), SettingError, Cancelled.
+void writeUsdVolume(const std::string& path, const std::vector<UsdFrame>& frames,
+                    const UsdVolumeSettings& settings = {});
 
 }  // namespace innermap

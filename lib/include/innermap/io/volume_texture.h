@@ -57,6 +57,7 @@ struct VolumeFormat {
   std::string holds;   // what becomes of grids in it, a line
   // Those of VolumeTextureSettings that it heeds, by the names in describe(); "rows" and "tiles".
   std::vector<std::string> settings;
+  bool refers = false;  // to .vdb files, by writeUsdVolume (vdb_file.h), instead of holding voxels
 };
 
 // All of them; the first is that of paths with any other ending.

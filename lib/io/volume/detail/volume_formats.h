@@ -16,8 +16,8 @@ struct VolumeWriter {
                                         const VolumeTextureSettings& settings);
   using Memory = std::uint64_t (*)(const openvdb::GridPtrVec& grids,
                                    const VolumeTextureSettings& settings);
-  Write write, plan;
-  Memory memory;
+  Write write = nullptr, plan = nullptr;
+  Memory memory = nullptr;
 };
 
 struct VolumeReader {
