@@ -86,6 +86,7 @@ def stand_ins():
     vertices, faces = cli.icosphere_arrays(1)
     for path in ["bones.obj", "posed.obj", "hair.obj"]:
         cli.write_obj(path, [(0.3 * x, 0.3 * y, 0.3 * z) for x, y, z in vertices], faces)
+    innermap("deform", "rest.obj", "rest.obj", "walk.*.obj", "-o", "walk.pc2", "--charges", "100")
     innermap("fit", "rest.obj", "pose.obj", "-o", "map.ply")
     Path("homer_spot").mkdir()
     innermap("fit", "homer.obj", "spot.obj", "-o", "homer_spot/map.ply")
