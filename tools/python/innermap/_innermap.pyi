@@ -483,10 +483,10 @@ def read_volume_texture(
     path: Path, *, names: Union[str, Sequence[str], None] = None,
     layout: Optional[Literal['atlas', 'slices', 'parts']] = None, slices: Optional[int] = None,
     voxel_size: Optional[float] = None, axis: Optional[Literal['x', 'y', 'z']] = None,
-    background: Optional[float] = None, as_voxels: bool = False,
-    tiles: Optional[Tuple[int, int]] = None, rows_up: Optional[bool] = None,
-    lower_corner: Optional[ArrayLike] = None, progress: Optional[Progress] = None,
-    max_memory: Union[int, str, None] = None, threads: int = 0) -> Grids: ...
+    background: Optional[float] = None, as_voxels: bool = False, tiles: Optional[Tuple[int, int]] = None,
+    rows_up: Optional[bool] = None, lower_corner: Optional[ArrayLike] = None,
+    progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+    threads: int = 0) -> Grids: ...
 
 def solid_texture(
     mesh: AnyMesh, image: Optional[Path]=None, *, colours: Optional[ArrayLike] = None,
