@@ -46,6 +46,7 @@ py::object write(const Arguments& a, WriteOptions& o) {
   const VolumeTextureResult made =
       call(o.call, [&]() { return writeVolumeTexture(path, grids, o.texture); });
   py::dict out;
+  out["format"] = made.format;
   out["files"] = made.files;
   out["channels"] = made.channels;
   out["width"] = made.width;
@@ -90,7 +91,9 @@ py::object read(const Arguments& a, ReadOptions& o) {
   }
   VolumeTextureContents contents = call(o.call, [&]() { return readVolumeTexture(path, s); });
   py::dict totals;
-  totals["layout"] = volumeLayoutName(contents.layout);
+  totals["format"] = contents.format;
+  if (contents.format == volumeFormats().front().name)
+    totals["layout"] = volumeLayoutName(contents.layout);
   totals["not_finite"] = contents.notFinite;
   return gridsObject(std::move(contents.grids), totals, o.call);
 }
@@ -101,16 +104,17 @@ void bindVolumeTextures(py::module_& m) {
   define<WriteOptions>(
       m,
       {"write_volume_texture", "path, grids",
-       "Writes grids as a volume texture for engines, dense voxels in EXR pictures whose "
-       "attributes "
-       "say what they are; read_volume_texture() and `innermap import` read them. grids: an "
+       "Writes grids for other programs, in the format of the path's ending: a volume texture for "
+       "engines, dense voxels in EXR pictures whose attributes say what they are, which "
+       "read_volume_texture() and `innermap import` read; or .nvdb, .vti, .dds, .nii. grids: an "
        "innermap.Grids or the path of a .vdb file. Returns files, channels, tiles and sizes. "
        "Raises FileError, DataError, MemoryError."},
       write);
   define<ReadOptions>(
       m,
       {"read_volume_texture", "path",
-       "Reads a volume texture: an innermap.Grids. Of slices, path is any of the files or a "
+       "Reads a volume texture, or a scan in .nii or .nii.gz: an innermap.Grids. Of slices, path "
+       "is any of the files or a "
        "pattern "
        "with #### or %04d. For textures of other programs, keywords say what the file does not. "
        "Raises FileError, MemoryError."},

@@ -493,7 +493,7 @@ def write_volume_texture(
     path: Path, grids: Union[Grids, Path], *, layout: Literal['atlas', 'slices', 'parts'] = 'atlas',
     half: bool = False, channels: Literal['auto', 'rgba', 'layers'] = 'auto',
     resolution: Optional[int] = None, pad: int = 0, cube: bool = False, power_of_two: bool = False,
-    axis: Literal['x', 'y', 'z'] = 'z', active: bool = False,
+    axis: Literal['x', 'y', 'z'] = 'z', active: bool = False, zip: bool = False,
     names: Union[str, Sequence[str], None] = None, rows_up: bool = False,
     tiles: Optional[Tuple[int, int]] = None, progress: Optional[Progress] = None,
     max_memory: Union[int, str, None] = None, threads: int = 0) -> Dict[str, Any]: ...
@@ -502,7 +502,7 @@ def read_volume_texture(
     path: Path, *, names: Union[str, Sequence[str], None] = None,
     layout: Optional[Literal['atlas', 'slices', 'parts']] = None, slices: Optional[int] = None,
     voxel_size: Optional[float] = None, axis: Optional[Literal['x', 'y', 'z']] = None,
-    background: Optional[float] = None, tiles: Optional[Tuple[int, int]] = None,
+    background: Optional[float] = None, as_voxels: bool = False, tiles: Optional[Tuple[int, int]] = None,
     rows_up: Optional[bool] = None, lower_corner: Optional[ArrayLike] = None,
     progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
     threads: int = 0) -> Grids: ...
