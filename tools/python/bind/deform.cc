@@ -95,8 +95,8 @@ py::object Deformation::grids(const py::object& what,
       table.add(number, [&] {
         const std::shared_ptr<const FrameFit> fit = fits.at(index);
         std::vector<CarriedField> fields;
+        const double rate = o_.fitting.animation.framesPerSecond;
         if (o_.velocity)
-          const double rate = o_.fitting.animation.framesPerSecond;
           fields.push_back({"velocity", fits.velocity(index, rate),
                             openvdb::VEC_CONTRAVARIANT_RELATIVE, o_.shutter / rate});
         PushResult result = pusher.push({fit.get(), number}, fields).result;

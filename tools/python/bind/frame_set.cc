@@ -93,8 +93,7 @@ void FrameSet::takeMeshes(const py::object& given) {
 
 void FrameSet::number(const py::object& numbers) {
   constexpr std::int64_t kMost = 999'999'999;  // as in names of files
-  if (files_)
-    wrongValue("numbers", "is for arrays; files have numbers of their own");
+  if (files_) wrongValue("numbers", "is for arrays; files have numbers of their own");
   const std::vector<std::int64_t> given = wholesFrom(numbers, "numbers", 0, kMost);
   if (given.size() != numbers_.size())
     wrongValue("numbers",
