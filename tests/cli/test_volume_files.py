@@ -253,6 +253,53 @@ def usd_of(name, **told):
     return text
 
 
+def test_a_displacement_field_leads_back():
+    """As ANTs takes it: for each place of the target where to look in the source, LPS."""
+    vertices, faces = cli.icosphere_arrays(4)
+    cli.write_obj("ball.obj", vertices, faces)
+    cli.write_obj("bent.obj", [(2 + x + 0.3 * z * z, 1.2 * y, z - 3 + 0.1 * y) for x, y, z in vertices], faces)
+    innermap("fit", "ball.obj", "bent.obj", "-o", "map.ply", "--quiet")
+    innermap("evaluate", "map.ply", "-o", "back.nii.gz", "--inverse", "--resolution", "48", "--report", "r.json",
+             "--quiet")
+    assert cli.read_json("r.json")["inverse"]["inverted_fraction"] > 0.999
+    independent("""
+import nibabel, numpy
+image = nibabel.load("back.nii.gz")
+values = numpy.asarray(image.dataobj)
+assert image.header.get_intent()[0] == "vector" and values.shape[3:] == (1, 3), values.shape
+field = values[:, :, :, 0] * [-1, -1, 1]  # LPS to RAS
+rng = numpy.random.default_rng(3)
+p = rng.normal(size=(1000, 3))
+p *= 0.93 * rng.random((1000, 1)) ** (1 / 3) / numpy.linalg.norm(p, axis=1, keepdims=True)
+# What the map does to points inside: the program's own word.
+numpy.savetxt("points.obj", p, fmt="v %.17g %.17g %.17g")
+numpy.save("points.npy", p)
+numpy.save("affine.npy", image.affine)
+numpy.save("field.npy", field)
+""", module="nibabel")
+    innermap("push", "map.ply", "points.obj", "-o", "images.obj", "--quiet")
+    independent("""
+import numpy
+p, field, affine = (numpy.load(name + ".npy") for name in ("points", "field", "affine"))
+q = numpy.array([[float(x) for x in line.split()[1:4]] for line in open("images.obj") if line.startswith("v ")])
+assert len(q) == len(p)
+i = (numpy.c_[q, numpy.ones(len(q))] @ numpy.linalg.inv(affine).T)[:, :3]
+low = numpy.floor(i).astype(int)
+t = i - low
+back = 0
+for k in numpy.ndindex(2, 2, 2):
+    weight = numpy.prod(numpy.where(k, t, 1 - t), axis=1)
+    back = back + weight[:, None] * field[tuple((low + k).T)]
+voxel = numpy.abs(affine[:3, :3]).sum(0).max()
+error = numpy.linalg.norm(q + back - p, axis=1).max()
+assert error < 0.05 * voxel, (error, voxel)
+""", module="numpy")
+    fails(2, "evaluate", "map.ply", "-o", "map.nii", says=["--inverse"])
+    innermap("evaluate", "map.ply", "-o", "back.vdb", "--inverse", "--resolution", "24", "--quiet")
+    told = innermap("info", "back.vdb").stdout
+    assert "surface" in told and "displacement" in told, told
+
+
 def test_usd_refers_to_files():
     names = grids()
     innermap("export", "g.vdb", "-o", "a-b.usda", "--up", "z", "--meters-per-unit", "0.01")

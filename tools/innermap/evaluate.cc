@@ -1,23 +1,73 @@
 // `innermap evaluate`: a saved map on the voxels of its solid.
 #include "commands.h"
+#include "core/file_bytes.h"
+#include "core/text_scanner.h"
 #include "grid_options.h"
+#include "innermap/io/volume_texture.h"
+#include "innermap/transfer/inverse_map.h"
 #include "inputs.h"
 #include "job_cost.h"
 #include "map_report.h"
+#include "report/figures.h"
 #include "report/verdict.h"
+#include "transfer_options.h"
 
 namespace innermap::tool {
 namespace {
 
 struct EvaluateOptions {
   std::string map, output;
+  bool inverse = false;
   EvaluationOptions evaluation;
   VerdictSettings verdict;
 };
 
+bool isDisplacementField(const std::string& path) {
+  return !equalsIgnoringCase(extensionOf(path), ".vdb");
+}
+
+void requireInverseMemory(const Solid& target, const EvaluateOptions& options,
+                          const Context& context) {
+  requireGridMemory("inverting the map on a grid", options.evaluation.grid, context,
+                    [&](const LatticeChoice& grid) {
+                      return carryMemory(target, {}, grid.in<LevelSetSettings>());
+                    });
+}
+
+// Where each voxel of the target comes from.
+void runInverse(const EvaluateOptions& options, const MappedSolid& mapped, Context& context) {
+  const Solid target = targetSolid(mapped, context);
+  const auto settings = options.evaluation.grid.in<LevelSetSettings>();
+  requireInterior(target, settings);
+  if (context.dryRun())
+    return context.plan({"invert " + options.map + " on its target's voxels",
+                         "write the displacement to " + options.output},
+                        carryMemory(target, {}, settings));
+  requireInverseMemory(target, options, context);
+  const openvdb::FloatGrid::Ptr levelSet =
+      context.timed("level set", [&] { return makeLevelSet(target, settings); });
+  InverseSettings inverse;
+  inverse.accuracy = sumAccuracy(mapped);
+  const BackwardDisplacement back = context.timed("inverse", [&] {
+    return backwardDisplacement(mapped.map, mapped.solid(), *levelSet, inverse);
+  });
+  context.report().add("inverse", figures(back.statistics));
+  if (const std::string warning = back.statistics.warning(); !warning.empty())
+    context.warning(warning);
+  context.print(inverseText(back.statistics));
+  if (isDisplacementField(options.output))
+    context.timed("write", [&] { return writeDisplacementField(options.output, *back.grid); });
+  else
+    writeGridFile(options.output, {levelSet, back.grid}, options.evaluation.names, context);
+}
+
 void run(const EvaluateOptions& options, Context& context) {
+  if (!options.inverse && isDisplacementField(options.output))
+    throw UsageError("--output: only the displacement of --inverse is written to " +
+                     options.output + "; name a .vdb file, or give --inverse");
   context.output(options.output);
   const MappedSolid mapped = readMapFile(options.map, context);
+  if (options.inverse) return runInverse(options, mapped, context);
   const MapGridSettings settings = mapGridSettings(options.evaluation);
   context.expect(evaluationPhases(jobSize(mapped.solid(), settings, mapped.map.sources())));
   requireInterior(mapped.solid(), options.evaluation.grid.in<LevelSetSettings>());
@@ -46,15 +96,21 @@ Command makeEvaluateCommand() {
       "from the origin, where floats do not hold positions well, also map_local: positions less "
       "its metadata innermap_map_local_origin.");
   c.positional("MAP", &o->map, "a map.ply written by fit or map");
-  c.option("--output", "FILE", &o->output, "the grids, a .vdb file")
+  c.option("--output", "FILE", &o->output,
+           "the grids, a .vdb file; with --inverse also .nii or .nii.gz: a displacement field for "
+           "ANTs, ITK and Slicer (LPS)")
       .shortName("-o")
       .required()
-      .writes({".vdb"});
+      .writes({".vdb", ".nii", ".nii.gz"});
+  c.flag("--inverse", &o->inverse,
+         "the way back instead, on the voxels of the target: the grids surface and displacement, "
+         "from each voxel to where it comes from, by which images of the source are resampled");
   c.limitTime("after which folds are no longer repaired");
   addEvaluationOptions(c, o->evaluation);
   c.settings(describe(o->verdict));
   c.example("innermap evaluate map.ply -o map.vdb --resolution 256");
   c.example("innermap evaluate map.ply -o map.vdb --voxel-size 0.01 --names blender");
+  c.example("innermap evaluate map.ply -o field.nii.gz --inverse");
   c.run([o](Context& context) { run(*o, context); });
   return c;
 }

@@ -138,15 +138,16 @@ void reportPush(const PushResult& result, Context& context) {
   for (const std::string& warning : result.warnings) context.warning(warning);
 }
 
+std::string inverseText(const InverseStatistics& s) {
+  return fmt::format(
+      "inverse: found for {1:.4f}% of {0} voxels inside, not for {2}; of {3} outside the "
+      "surface, not for {4}\n",
+      s.inside, 100 * s.invertedInside(), s.failedInside, s.voxels - s.inside,
+      s.failed - s.failedInside);
+}
+
 std::string pushText(const PushResult& result) {
-  const InverseStatistics& s = result.statistics;
-  std::string text;
-  if (result.inverted)
-    text = fmt::format(
-        "inverse: found for {1:.4f}% of {0} voxels inside, not for {2}; of {3} outside the "
-        "surface, not for {4}\n",
-        s.inside, 100 * s.invertedInside(), s.failedInside, s.voxels - s.inside,
-        s.failed - s.failedInside);
+  std::string text = result.inverted ? inverseText(result.statistics) : "";
   for (const CarriedMass& mass : result.masses)
     text += fmt::format(
         "mass of {}: {:.6g} before, {:.6g} after ({:+.3f}%); densities grow at most {:.4g} times\n",

@@ -57,5 +57,6 @@ void reportPush(const PushResult& result, Context& context);
 
 // One line each for the terminal.
 std::string pushText(const PushResult& result);
+std::string inverseText(const InverseStatistics& inverse);
 
 }  // namespace innermap::tool

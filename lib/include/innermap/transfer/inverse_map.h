@@ -79,6 +79,18 @@ Points invertAt(const ComposedMap& map, const Solid& source, const SourceLattice
                 const InvertedMap& inverted, const Points& targets,
                 const InverseSettings& settings = {});
 
+// Where the voxels of the target come from, as images are resampled: the place in the source less
+// the voxel's own, world units.
+struct BackwardDisplacement {
+  openvdb::Vec3SGrid::Ptr grid;  // "displacement", on the voxels of InvertedMap::region; 0 elsewhere
+  InverseStatistics statistics;
+};
+
+// Throws as invertMap() does.
+BackwardDisplacement backwardDisplacement(const ComposedMap& map, const Solid& source,
+                                          const openvdb::FloatGrid& targetLevelSet,
+                                          const InverseSettings& settings = {});
+
 // Points carried through the map of a solid, and back, with its derivative at each.
 
 struct CarryPointsSettings {
