@@ -19,8 +19,8 @@ BackwardDisplacement backwardDisplacement(const ComposedMap& map, const Solid& s
   out.grid->setName("displacement");
   out.grid->setTransform(targetLevelSet.transform().copy());
   out.grid->setVectorType(openvdb::VEC_CONTRAVARIANT_RELATIVE);
-  const openvdb::tree::LeafManager<Vec3STree> leaves(*tree);
-  leaves.foreach([&](Vec3STree::LeafNodeType& leaf, std::size_t l) {
+  openvdb::tree::LeafManager<Vec3STree> leaves(*tree);
+  leaves.foreach ([&](Vec3STree::LeafNodeType& leaf, std::size_t l) {
     std::size_t voxel = inverted.first[l];
     for (auto value = leaf.beginValueOn(); value; ++value) {
       const openvdb::Vec3d place = targetLevelSet.indexToWorld(value.getCoord());

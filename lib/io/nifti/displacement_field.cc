@@ -9,7 +9,7 @@ namespace innermap {
 VolumeTextureResult writeDisplacementField(const std::string& path,
                                            const openvdb::Vec3SGrid& displacement) {
   const openvdb::Vec3SGrid::Ptr lps = displacement.deepCopy();
-  openvdb::tools::foreach(lps->beginValueOn(), [](const auto& value) {
+  openvdb::tools::foreach (lps->beginValueOn(), [](const auto& value) {
     const openvdb::Vec3s v = *value;
     value.setValue(openvdb::Vec3s(-v.x(), -v.y(), v.z()));
   });

@@ -115,10 +115,10 @@ VolumeTextureResult writeVolumeTexture(const std::string& path, const openvdb::G
                                        const VolumeTextureSettings& settings = {});
 
 // A displacement field that ANTs, ITK and Slicer read as a transform: a NIfTI file, packed where it
-// ends in .gz, whose voxels lie as writeVolumeTexture() lays them (RAS) and whose vectors are ITK's:
-// x to the left, y to the back, z up (LPS). To resample images of a map's source into the target's
-// space they take the displacement from there back (see backwardDisplacement()). 0 where the grid
-// is not active. Throws as writeVolumeTexture().
+// ends in .gz, whose voxels lie as writeVolumeTexture() lays them (RAS) and whose vectors are
+// ITK's: x to the left, y to the back, z up (LPS). To resample images of a map's source into the
+// target's space they take the displacement from there back (see backwardDisplacement()). 0 where
+// the grid is not active. Throws as writeVolumeTexture().
 VolumeTextureResult writeDisplacementField(const std::string& path,
                                            const openvdb::Vec3SGrid& displacement);
 

@@ -82,7 +82,8 @@ Points invertAt(const ComposedMap& map, const Solid& source, const SourceLattice
 // Where the voxels of the target come from, as images are resampled: the place in the source less
 // the voxel's own, world units.
 struct BackwardDisplacement {
-  openvdb::Vec3SGrid::Ptr grid;  // "displacement", on the voxels of InvertedMap::region; 0 elsewhere
+  openvdb::Vec3SGrid::Ptr
+      grid;  // "displacement", on the voxels of InvertedMap::region; 0 elsewhere
   InverseStatistics statistics;
 };
 
