@@ -61,6 +61,7 @@ def things():
     field = innermap.harmonic(V, F, V[:, 0], tolerance=1e-2)
     cells = innermap.tetrahedralize(V, F, resolution=4)
     grids = innermap.grids({"density": np.ones((4, 4, 4), np.float32)}, np.eye(4))
+    deformer = innermap.Deformer((V, F), V, charges=100)
     laid = innermap.correspond((V, F), (V[:, ::-1], F[:, ::-1]), candidates=1)
     m.save("m.ply")
     field.save("f.ply")
@@ -72,7 +73,8 @@ def things():
     given = {
         "check": (V, F), "compare_fem": (V, F), "correspond": (V, F, V, F),
         "deform": ((V, F), V, [V]), "fit": (V, F, V), "grids": ({"a": np.ones((2, 2, 2))}, np.eye(4)),
-        "harmonic": (V, F, V[:, 0]), "hexahedralize": (V, F), "load": ("m.ply",),
+        "harmonic": (V, F, V[:, 0]), "hexahedralize": (V, F),
+        "lattice": ((V.min(axis=0), V.max(axis=0)),), "load": ("m.ply",),
         "load_correspondence": ("c.ply", V, F), "polycube": (V, F), "pull": (m, V, "p.vdb"),
         "push": (m, grids, "p.vdb"), "read_cells": ("c.vtu",), "read_mesh": ("ball.obj",),
         "read_vdb": ("g.vdb",), "read_volume_texture": ("g.exr",), "remesh": (m, cells),
@@ -87,9 +89,9 @@ def things():
         if not inspect.isclass(function):
             yield name, function, given[name]
     points = {"__call__": (V,), "inverse": (V,), "contains": (V,), "gradient": (V,),
-              "save": ("s.ply",), "write": ("w.vtu",), "write_vdb": ("w.vdb",),
+              "measure": (V,), "save": ("s.ply",), "write": ("w.vtu",), "write_vdb": ("w.vdb",),
               "__getitem__": ("density",), "__contains__": ("density",), "metadata": ("density",)}
-    for thing in (m, field, cells, grids, laid, m.source):
+    for thing in (m, field, cells, grids, laid, deformer, m.source):
         for name, method in inspect.getmembers(thing, callable):
             if not name.startswith("__") or name in points:
                 yield f"{type(thing).__name__}.{name}", method, points.get(name, ())
