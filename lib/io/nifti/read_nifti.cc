@@ -109,9 +109,10 @@ void shape(NiftiFile& file) {
                                            "files of one each",
                                            dim[4]));
   if ((dim[5] != 1 && dim[5] != 3) || dim[6] > 1 || dim[7] > 1)
-    throw FileError(file.path, fmt::format("has {} x {} x {} values a voxel; files with one, or the "
-                                           "three of a vector, can be read",
-                                           dim[5], dim[6], dim[7]));
+    throw FileError(file.path,
+                    fmt::format("has {} x {} x {} values a voxel; files with one, or the "
+                                "three of a vector, can be read",
+                                dim[5], dim[6], dim[7]));
   file.components = static_cast<int>(dim[5]);
   const std::uint64_t held = file.packed ? mostUnpacked(file.bytes.size()) : file.bytes.size();
   const std::uint64_t value = file.type->bytes * static_cast<std::uint64_t>(file.components);
