@@ -22,8 +22,10 @@ struct EvaluateOptions {
   VerdictSettings verdict;
 };
 
+// .nii or .nii.gz; what is no regular file may be called anything, and gets grids.
 bool isDisplacementField(const std::string& path) {
-  return !equalsIgnoringCase(extensionOf(path), ".vdb");
+  const std::string ending = extensionOf(path);
+  return equalsIgnoringCase(ending, ".nii") || equalsIgnoringCase(ending, ".gz");
 }
 
 void requireInverseMemory(const Solid& target, const EvaluateOptions& options,
