@@ -69,6 +69,8 @@ class Evaluation {
   MapGrids run();
 
  private:
+  bool isFolded(double det) const { return !((settings_.mirrored ? -det : det) > 0); }
+  void markFolds(MapGrids& out) const;
   void repair(const openvdb::MaskGrid& region, std::vector<LeafTotals>& totals,
               MapGrids& out) const;
   LeafTotals store(const LeafValues& values, const MapGrids& out) const;
@@ -101,7 +103,7 @@ void Evaluation::store(const Mat3& j, const Vec3& position, double share, std::s
   totals.volume += share;
   totals.harmonic += share * h;
   totals.deformation += share * psi;
-  if (det <= 0) totals.folded += share;
+  if (isFolded(det)) totals.folded += share;
   ++totals.active;
 }
 
@@ -117,7 +119,7 @@ LeafTotals Evaluation::store(const LeafValues& values, const MapGrids& out) cons
     if (!values.inside[i]) continue;
     const double det = determinant(j);
     ++totals.interior;
-    if (!(det > 0)) ++totals.foldedVoxels;
+    if (isFolded(det)) ++totals.foldedVoxels;
     totals.jacobianMin = std::min(totals.jacobianMin, det);
     totals.jacobianMax = std::max(totals.jacobianMax, det);
   }
@@ -130,13 +132,13 @@ GridPtr named(GridPtr grid, const char* name) {
   return grid;
 }
 
-void markFolds(const openvdb::FloatGrid& levelSet, MapGrids& out) {
+void Evaluation::markFolds(MapGrids& out) const {
   out.folded = named(openvdb::FloatGrid::create(), "folded");
   out.folded->setTransform(out.jacobian->transform().copy());
   auto marks = out.folded->getAccessor();
-  const auto distance = levelSet.getConstAccessor();
+  const auto distance = levelSet_.getConstAccessor();
   for (auto voxel = out.jacobian->cbeginValueOn(); voxel; ++voxel)
-    if (!(*voxel > 0) && distance.getValue(voxel.getCoord()) < 0)
+    if (isFolded(*voxel) && distance.getValue(voxel.getCoord()) < 0)
       marks.setValue(voxel.getCoord(), 1.0f);
 }
 
@@ -174,6 +176,7 @@ void Evaluation::repair(const openvdb::MaskGrid& region, std::vector<LeafTotals>
                         MapGrids& out) const {
   FoldRepairSettings s;
   s.growth = std::pow(unitVolumeScale_, -0.5);
+  s.mirrored = settings_.mirrored;
   const FoldRepair repair = [&] {
     const PartOfStage moving(0, kMoving);
     reportProgress(kRepairing, 0);
@@ -234,7 +237,7 @@ MapGrids Evaluation::run() {
     out.foldedVoxels += t.foldedVoxels;
     interior += t.interior;
   }
-  if (out.jacobian && out.foldedVoxels > 0) markFolds(levelSet_, out);
+  if (out.jacobian && out.foldedVoxels > 0) markFolds(out);
   const double most = settings_.repairUpTo * static_cast<double>(interior);
   if (mayRepair && static_cast<double>(out.foldedVoxels) <= most) repair(*region, totals, out);
   if (!settings_.map) out.map.reset();

@@ -20,14 +20,15 @@
 namespace innermap {
 namespace {
 
-EvaluateSettings evaluateSettings(double targetVolume, double accuracy,
-                                  const MapGridSettings& settings) {
+EvaluateSettings evaluateSettings(const Solid& source, const TargetBoundary& target,
+                                  double accuracy, const MapGridSettings& settings) {
   EvaluateSettings out;
   out.lame = settings.lame;
   out.repairUpTo = settings.repair == RepairFolds::on          ? 1
                    : settings.repair == RepairFolds::automatic ? kRepairedFolds
                                                                : 0;
-  out.targetVolume = targetVolume;
+  out.targetVolume = target.volume;
+  out.mirrored = orientationOf(source, target) < 0;
   out.accuracy = accuracy;
   return out;
 }
@@ -75,7 +76,7 @@ Injectivity injectivityOf(const MappedSolid& mapped, const SolidGrids& grids,
   const double error = boundaryErrorOf(mapped);
   Injectivity out = mapped.injectivity;
   out.voxels.checked = values.interiorVoxels;
-  out.voxels.least = values.jacobianMin;
+  out.voxels.least = target.orientation() < 0 ? -values.jacobianMax : values.jacobianMin;
   out.voxels.folded = values.foldedVoxelsLeft;
   out.repaired = values.foldedVoxels - values.foldedVoxelsLeft;
   const auto distance = grids.surface->getConstAccessor();
@@ -83,7 +84,7 @@ Injectivity injectivityOf(const MappedSolid& mapped, const SolidGrids& grids,
   const Vec3& origin = grids.localOrigin;
   if (out.voxels.folded > 0)
     for (auto voxel = values.jacobian->cbeginValueOn(); voxel; ++voxel) {
-      if (*voxel > 0 || !(distance.getValue(voxel.getCoord()) < 0)) continue;
+      if (target.orientation() * *voxel > 0 || !(distance.getValue(voxel.getCoord()) < 0)) continue;
       const openvdb::Vec3f p = position.getValue(voxel.getCoord());
       if (target.runsThroughItself(origin + Vec3{p.x(), p.y(), p.z()}, error))
         ++out.voxels.foldedAtOverlap;
@@ -172,7 +173,7 @@ SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& sett
   requireInterior(interiorVoxels(*out.surface), solid, mapped.boundary.source.mesh.name);
   timed(out.seconds, "evaluate", [&] {
     EvaluateSettings evaluate =
-        evaluateSettings(mapped.boundary.target.volume, sumAccuracy(mapped), settings);
+        evaluateSettings(solid, mapped.boundary.target, sumAccuracy(mapped), settings);
     evaluate.origin = out.localOrigin = localOriginOf(mapped);
     out.values = evaluateMap(mapped.map, solid, *out.surface, evaluate);
   });
@@ -261,7 +262,7 @@ bool FrameEvaluator::wants(const char* name) const {
 
 MapGrids FrameEvaluator::evaluate(const FrameFit& fit) const {
   EvaluateSettings evaluate =
-      evaluateSettings(fit.boundary.volume, sumAccuracy(fit.error.rms), settings_);
+      evaluateSettings(fitter_.solid(), fit.boundary, sumAccuracy(fit.error.rms), settings_);
   if (settings_.repair != RepairFolds::on) evaluate.repairUpTo = 0;
   evaluate.map = wants("map");
   evaluate.jacobian = wants("jacobian");

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "fit/detail/preimages.h"
-#include "fit/map_sense.h"
 #include "innermap/fit/mapped_solid.h"
 
 namespace innermap {
@@ -48,36 +47,33 @@ std::string listed(const std::vector<std::string>& items) {
 
 std::string percent(double share) { return fmt::format("{:.2g}%", 100 * share); }
 
-// The figures know the least determinant alone, so that of a mirror's image says nothing.
+// Of det J itself.
 std::string leastOf(const DeterminantFigures& f, bool mirrored) {
-  return mirrored ? "" : fmt::format("least {:.3g}", f.least);
+  return mirrored ? fmt::format("greatest {:.3g}", -f.least) : fmt::format("least {:.3g}", f.least);
 }
 
 std::string soundOf(const Kind& kind, bool mirrored) {
-  const std::string least = leastOf(kind.figures, mirrored);
-  return fmt::format("all {} {}{}", kind.figures.checked, kind.name,
-                     least.empty() ? "" : " (" + least + ")");
+  return fmt::format("all {} {} ({})", kind.figures.checked, kind.name,
+                     leastOf(kind.figures, mirrored));
 }
 
 std::string foldedOf(const Kind& kind, bool mirrored) {
   const DeterminantFigures& f = kind.figures;
-  const std::size_t folded = againstSense(f, mirrored);
-  const std::string least = leastOf(f, mirrored);
   std::string out =
-      fmt::format("{} of {} {} ({}{}", folded, f.checked, kind.name,
-                  percent(static_cast<double>(folded) / static_cast<double>(f.checked)),
-                  least.empty() ? "" : ", " + least);
-  if (f.foldedAtOverlap > 0 && !mirrored)
+      fmt::format("{} of {} {} ({}, {}", f.folded, f.checked, kind.name,
+                  percent(static_cast<double>(f.folded) / static_cast<double>(f.checked)),
+                  leastOf(f, mirrored));
+  if (f.foldedAtOverlap > 0)
     out += fmt::format("; {} where the target runs through itself",
                        f.foldedAtOverlap == f.folded ? "all" : std::to_string(f.foldedAtOverlap));
   return out + ")";
 }
 
 std::string determinants(const Injectivity& known) {
-  const bool mirrored = mirrors(known);
+  const bool mirrored = known.mirrored;
   std::vector<std::string> sound, folded;
   for (const Kind& kind : checkedKinds(known))
-    if (againstSense(kind.figures, mirrored) == 0)
+    if (kind.figures.folded == 0)
       sound.push_back(soundOf(kind, mirrored));
     else
       folded.push_back(foldedOf(kind, mirrored));
@@ -174,11 +170,8 @@ std::string surfaces(const Injectivity& known) {
 }
 
 bool folds(const Injectivity& known) {
-  const bool mirrored = mirrors(known);
-  std::size_t folded = known.proof.negative;
-  for (const DeterminantFigures* figures : {&known.inside, &known.boundary, &known.voxels})
-    folded += againstSense(*figures, mirrored);
-  return folded > 0;
+  return known.proof.negative + known.inside.folded + known.boundary.folded + known.voxels.folded >
+         0;
 }
 
 bool windsOtherwise(const DegreeFigures& degree) { return degree.least < 0 || degree.greatest > 1; }
@@ -199,7 +192,7 @@ std::string conclusion(const Injectivity& known) {
   if (notOneToOne(known) || known.proof.whole()) return out;
   if (known.inside.checked == 0 && known.voxels.checked == 0)
     return "Whether the map is one-to-one is not known. ";
-  if (mirrors(known))
+  if (known.mirrored)
     return out +
            "The map mirrors the solid, as its target is inside out; nothing that was checked rules "
            "out that it is one-to-one. ";
@@ -233,19 +226,6 @@ std::string cells(const CellFigures& cells) {
 
 }  // namespace
 
-bool mirrors(const Injectivity& known) {
-  std::size_t turned = 0, checked = 0;
-  for (const DeterminantFigures* figures : {&known.inside, &known.boundary, &known.voxels}) {
-    turned += figures->folded;
-    checked += figures->checked;
-  }
-  return turned > checked - turned;
-}
-
-std::size_t againstSense(const DeterminantFigures& figures, bool mirrored) {
-  return mirrored ? figures.checked - figures.folded : figures.folded;
-}
-
 bool notOneToOne(const Injectivity& known) { return folds(known) || windsOtherwise(known.degree); }
 
 std::string injectivityStatement(const Injectivity& known) {
@@ -259,11 +239,10 @@ std::string injectivityLine(const Injectivity& known) {
   std::vector<std::string> sound, folded;
   for (const Kind& kind : checkedKinds(known)) {
     const DeterminantFigures& f = kind.figures;
-    const std::size_t against = againstSense(f, mirrors(known));
-    if (against == 0)
+    if (f.folded == 0)
       sound.push_back(fmt::format("{} {}", f.checked, kind.name));
     else
-      folded.push_back(fmt::format("{} of {} {}", against, f.checked, kind.name));
+      folded.push_back(fmt::format("{} of {} {}", f.folded, f.checked, kind.name));
   }
   if (sound.empty() && folded.empty()) return "one-to-one: not checked";
   const ProofFigures& p = known.proof;
@@ -277,7 +256,7 @@ std::string injectivityLine(const Injectivity& known) {
   if (p.undecided > 0) out += fmt::format("; {} of the solid undecided", percent(p.undecidedShare));
   if (!folded.empty()) out += "; folded: " + listed(folded);
   if (!sound.empty())
-    out += (mirrors(known) ? "; mirrored, no fold at " : "; no fold at ") + listed(sound);
+    out += (known.mirrored ? "; mirrored, no fold at " : "; no fold at ") + listed(sound);
   if (windsOtherwise(known.degree))
     out += fmt::format("; the boundary winds {} to {}", known.degree.least,
                        times(known.degree.greatest));

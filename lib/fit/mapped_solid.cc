@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "fit/target_shape.h"
 #include "innermap/core/error.h"
 #include "innermap/field/field_file.h"
 
@@ -49,6 +50,7 @@ MappedSolid readMap(const std::string& path) {
   std::vector<HarmonicMap> steps;
   for (HarmonicField& step : file.steps) steps.emplace_back(std::move(step));
   Injectivity known;
+  known.mirrored = orientationOf(pair.solid(), pair.target) < 0;
   known.source = selfIntersectionFigures(pair.source.check);
   known.target = selfIntersectionFigures(pair.targetCheck);
   readInjectivity(file.facts, known);

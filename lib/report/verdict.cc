@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/map_sense.h"
 #include "innermap/field/field_file.h"
 #include "report/figures.h"
 #include "report/report_figures.h"
@@ -75,7 +74,7 @@ std::string foldStatement(double folded, const Injectivity& known, double thresh
   if (folded <= 0) return "nowhere folded inside: one-to-one as far as checked";
   std::string out = fmt::format("{} of the inside is folded (at most: {}): not one-to-one there",
                                 percent(folded), percent(threshold));
-  if (points.foldedAtOverlap > 0 && !mirrors(known))
+  if (points.foldedAtOverlap > 0)
     out += fmt::format(
         ", {} of that where the target runs through itself",
         percent(static_cast<double>(points.foldedAtOverlap) / static_cast<double>(points.folded)));
@@ -101,9 +100,8 @@ void judgeCrossings(const MappedSolid& mapped, const VerdictSettings& settings, 
 }
 
 double foldedOf(const Injectivity& known, const SolidGrids* grids) {
-  const auto shareOf = [mirrored = mirrors(known)](std::uint64_t turned, std::uint64_t all) {
-    if (all == 0) return 0.0;
-    return static_cast<double>(mirrored ? all - turned : turned) / static_cast<double>(all);
+  const auto shareOf = [](std::uint64_t folded, std::uint64_t all) {
+    return all == 0 ? 0.0 : static_cast<double>(folded) / static_cast<double>(all);
   };
   const double inside = shareOf(known.inside.folded, known.inside.checked);
   // The map itself, not what repair made of its grids.

@@ -82,10 +82,12 @@ class Cells {
       return cube.images[static_cast<std::size_t>(cell[i])];
     };
     const Vec3 p = image(0), a = image(1) - p, b = image(2) - p, c = image(3) - p;
-    double determinant = dot(cross(a, b), c) / volume_;
+    const int sense = target_.orientation();
+    double determinant = sense * dot(cross(a, b), c) / volume_;
     // The figure is rounded, its sign is not.
     std::uint64_t exact = 0;
-    const bool positive = orientation(p, image(1), image(2), image(3), exact) == Sign::positive;
+    const bool positive = orientation(p, image(1), image(2), image(3), exact) ==
+                          (sense < 0 ? Sign::negative : Sign::positive);
     out.exact += exact;
     determinant = positive ? std::max(determinant, std::numeric_limits<double>::min())
                            : std::min(determinant, 0.0);
@@ -145,7 +147,7 @@ struct OuterImage {
   std::vector<Triangle> triangles;
 
   // Takes the faces away from the leaves.
-  OuterImage(std::vector<LeafCells>& leaves, const openvdb::Vec3fGrid& map) {
+  OuterImage(std::vector<LeafCells>& leaves, const openvdb::Vec3fGrid& map, bool mirrored) {
     const auto values = map.getConstAccessor();
     std::unordered_map<Coord, int, CoordHash> numbers;
     for (LeafCells& leaf : leaves)
@@ -159,6 +161,7 @@ struct OuterImage {
           }
           t[k] = at->second;
         }
+        if (mirrored) std::swap(t[1], t[2]);
         triangles.push_back(t);
       }
   }
@@ -184,7 +187,7 @@ CellFigures checkCells(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& 
     faces += leaf.faces.size();
   }
   if (out.checked > 0 && out.folded == 0 && faces <= kMostFaces)
-    out.overlaps = overlapsOf(OuterImage(leaves, map));
+    out.overlaps = overlapsOf(OuterImage(leaves, map, target.orientation() < 0));
   return out;
 }
 

@@ -122,20 +122,26 @@ std::vector<std::vector<Coord>> clustersOf(const std::vector<Coord>& voxels, int
   return out;
 }
 
+int senseOf(const FoldRepairSettings& settings) { return settings.mirrored ? -1 : 1; }
+
 using Positions = std::unordered_map<Coord, Vec3, CoordHash>;
 
 // The voxels inside the solid with their images, some of them moved.
 class Voxels {
  public:
-  Voxels(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet, const Positions& moved)
-      : map_(map.getConstAccessor()), distance_(levelSet.getConstAccessor()), moved_(moved) {}
+  Voxels(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& levelSet,
+         const FoldRepairSettings& settings, const Positions& moved)
+      : map_(map.getConstAccessor()),
+        distance_(levelSet.getConstAccessor()),
+        sense_(senseOf(settings)),
+        moved_(moved) {}
 
   bool inside(const Coord& c) const { return distance_.getValue(c) < 0 && map_.isValueOn(c); }
 
-  // World units of the target.
+  // World units of the target; of a mirrored map the images' reflections in x = 0.
   Vec3 original(const Coord& c) const {
     const openvdb::Vec3f p = map_.getValue(c);
-    return {p.x(), p.y(), p.z()};
+    return {sense_ * p.x(), p.y(), p.z()};
   }
 
   Vec3 now(const Coord& c) const {
@@ -163,6 +169,7 @@ class Voxels {
  private:
   openvdb::Vec3fGrid::ConstAccessor map_;
   openvdb::FloatGrid::ConstAccessor distance_;
+  int sense_;
   const Positions& moved_;
 };
 
@@ -367,7 +374,7 @@ std::vector<Coord> repairWith(std::size_t pass, const std::vector<Coord>& folded
   parallelBlocks(clusters.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       if (clusters[c].size() > kMost) continue;
-      const Voxels voxels(map, levelSet, moved);
+      const Voxels voxels(map, levelSet, settings, moved);
       Patch patch(voxels, clusters[c], rings, settings.growth * levelSet.voxelSize()[0]);
       if (patch.tooLarge()) continue;
       done[c] = patch.repair();
@@ -386,19 +393,20 @@ std::vector<Coord> repairWith(std::size_t pass, const std::vector<Coord>& folded
 // Voxels inside whose Jacobian is not above 0, and the corners of cells that are inside out; each
 // once, in order.
 std::vector<Coord> foldedVoxels(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& jacobian,
-                                const openvdb::FloatGrid& levelSet) {
+                                const openvdb::FloatGrid& levelSet,
+                                const FoldRepairSettings& settings) {
   std::vector<const openvdb::Vec3STree::LeafNodeType*> leaves;
   for (auto leaf = map.tree().cbeginLeaf(); leaf; ++leaf) leaves.push_back(&*leaf);
   std::vector<std::vector<Coord>> parts(leaves.size());
   parallelBlocks(leaves.size(), kLeaves, [&](std::size_t begin, std::size_t end) {
     const Positions none;
-    const Voxels voxels(map, levelSet, none);
+    const Voxels voxels(map, levelSet, settings, none);
     auto determinants = jacobian.getConstAccessor();
     for (std::size_t l = begin; l < end; ++l)
       for (auto voxel = leaves[l]->cbeginValueOn(); voxel; ++voxel) {
         const Coord at = voxel.getCoord();
         if (!voxels.inside(at)) continue;
-        if (!(determinants.getValue(at) > 0)) parts[l].push_back(at);
+        if (!(senseOf(settings) * determinants.getValue(at) > 0)) parts[l].push_back(at);
         voxels.forTets(at, [&](std::size_t, const std::array<Coord, 4>& corners) {
           const auto image = [&](std::size_t i) { return voxels.original(corners[i]); };
           std::uint64_t exact = 0;
@@ -417,7 +425,7 @@ std::vector<Coord> foldedVoxels(const openvdb::Vec3fGrid& map, const openvdb::Fl
 FoldRepair repairFolds(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& jacobian,
                        const openvdb::FloatGrid& levelSet, const FoldRepairSettings& settings) {
   Positions moved;
-  const Voxels voxels(map, levelSet, moved);
+  const Voxels voxels(map, levelSet, settings, moved);
   const auto repair = [&](std::vector<Coord> seeds, double from, double to) {
     PartOfStage part(from, to);
     FoldRepairSettings s = settings;
@@ -427,19 +435,22 @@ FoldRepair repairFolds(const openvdb::Vec3fGrid& map, const openvdb::FloatGrid& 
     }
     return seeds;
   };
-  const std::vector<Coord> left = repair(foldedVoxels(map, jacobian, levelSet), 0, 0.8);
+  const std::vector<Coord> left = repair(foldedVoxels(map, jacobian, levelSet, settings), 0, 0.8);
   // Where cells that are inside out are too many, there may be few voxels that are.
   std::vector<Coord> worst;
   auto determinants = jacobian.getConstAccessor();
-  std::copy_if(left.begin(), left.end(), std::back_inserter(worst),
-               [&](const Coord& at) { return !(determinants.getValue(at) > 0); });
+  std::copy_if(left.begin(), left.end(), std::back_inserter(worst), [&](const Coord& at) {
+    return !(senseOf(settings) * determinants.getValue(at) > 0);
+  });
   if (worst.size() < left.size()) repair(worst, 0.8, 1);
   FoldRepair out;
   for (const auto& entry : moved) {
     const Coord& at = entry.first;
-    const auto repaired = repairedAt(voxels, at, levelSet.voxelSize()[0]);
+    std::optional<RepairedVoxel> repaired = repairedAt(voxels, at, levelSet.voxelSize()[0]);
     if (!repaired) continue;
     out.farthest = std::max(out.farthest, norm(repaired->position - voxels.original(at)));
+    repaired->position.x *= senseOf(settings);
+    for (double& slope : repaired->jacobian[0]) slope *= senseOf(settings);
     out.voxels[at] = *repaired;
   }
   return out;

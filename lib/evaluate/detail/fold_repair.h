@@ -12,7 +12,7 @@ namespace innermap {
 
 struct RepairedVoxel {
   Vec3 position;  // world units of the target
-  Mat3 jacobian;  // mean of the tetrahedra about the voxel; of positive determinant
+  Mat3 jacobian;  // mean of the tetrahedra about the voxel; of the map's sign
 };
 
 struct CoordHash {
@@ -27,7 +27,8 @@ struct FoldRepair {
 constexpr const char* kRepairing = "repairing folds";  // the stage
 
 struct FoldRepairSettings {
-  double growth = 1;  // cube root of the volumes' ratio, target to source
+  double growth = 1;      // cube root of the volumes' ratio, target to source
+  bool mirrored = false;  // det J < 0 where nothing is folded
 };
 
 // map, jacobian: of evaluateMap, with the level set of the solid. Folded voxels inside, and corners

@@ -113,7 +113,7 @@ DeterminantFigures determinantsOf(const MappedPoints& mapped, const TargetShape&
                                   double error) {
   DeterminantFigures out;
   for (std::size_t i = 0; i < mapped.points.size(); ++i) {
-    const double determinant = mapped.determinants[i];
+    const double determinant = target.orientation() * mapped.determinants[i];
     out.add(determinant, !(determinant > 0) && target.runsThroughItself(mapped.points[i], error));
   }
   return out;

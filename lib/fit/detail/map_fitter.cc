@@ -162,6 +162,7 @@ bool MapFitter::areBetter(FitOutcome& steps, const FitOutcome& single) {
 
 Injectivity MapFitter::injectivityOf(FitOutcome& out) {
   Injectivity known;
+  known.mirrored = orientation_ < 0;
   known.source = selfIntersectionFigures(pair_.source.check);
   known.target = selfIntersectionFigures(pair_.targetCheck);
   BoundaryCheckSettings s;

@@ -134,10 +134,7 @@ TEST(Injectivity, TargetsThatRunThroughThemselves) {
 
 TEST(Injectivity, AMirrorIsNoFold) {
   Injectivity known = sound();
-  known.inside = figures(20000, 20000, -1);
-  known.cells = {};
-  known.boundary = figures(10000, 10000, -1);
-  known.voxels = figures(5000, 5000, -1);
+  known.mirrored = true;
   EXPECT_FALSE(notOneToOne(known));
   EXPECT_TRUE(says(known, "mirrors"));
   EXPECT_TRUE(says(known, "det J < 0 at all 20000 points inside"));
@@ -147,12 +144,11 @@ TEST(Injectivity, AMirrorIsNoFold) {
 
 TEST(Injectivity, AMirrorFoldsWhereItDoesNotTurnOver) {
   Injectivity known = sound();
-  known.inside = figures(20000, 19996, -1);
-  known.cells = {};
-  known.boundary = figures(10000, 10000, -1);
-  known.voxels = figures(5000, 5000, -1);
+  known.mirrored = true;
+  known.inside = figures(20000, 4, -0.5);
   EXPECT_TRUE(notOneToOne(known));
-  EXPECT_TRUE(says(known, "det J is not below 0 at 4 of 20000 points inside (0.02%)"));
+  EXPECT_TRUE(
+      says(known, "det J is not below 0 at 4 of 20000 points inside (0.02%, greatest 0.5)"));
   EXPECT_NE(injectivityLine(known).find("folded: 4 of 20000 points inside"), std::string::npos);
 }
 

@@ -43,7 +43,8 @@ struct EvaluateSettings {
   // World units of the target. MapGrids::map holds positions less this, and folds are looked for in
   // it: floats hold little of positions that are far from the origin.
   Vec3 origin;
-  double skin = 2;  // active voxels outside the surface, in [0, 3]
+  bool mirrored = false;  // onto a target that is inside out: det J < 0 where nothing is folded
+  double skin = 2;        // active voxels outside the surface, in [0, 3]
   // Of the sums of charges: root mean square error of positions as a fraction of the target's
   // extent, in [1e-12, 1e-3]. The default is what float grids hold.
   double accuracy = 1e-7;
@@ -62,8 +63,9 @@ struct MapGrids {
   // Where voxels were moved to repair folds, the way of each, world units of the target; no grid
   // where there were none. The Jacobian of such a voxel is the mean of the tetrahedra about it.
   openvdb::FloatGrid::Ptr repaired;
-  // 1 at the voxels inside where the map's own determinant is not above 0, before repair, and
-  // active there alone; no grid where there are none, or no Jacobian was asked for.
+  // 1 at the voxels inside where the map's own determinant is not above 0 (mirrored: not below),
+  // before repair, and active there alone; no grid where there are none, or no Jacobian was asked
+  // for.
   openvdb::FloatGrid::Ptr folded;
 
   // Integrals over the solid; cells along the surface count by their share inside.
@@ -71,7 +73,7 @@ struct MapGrids {
   double deformationTotal = 0;  // world units cubed times the density's unit
   double volume = 0;            // of the cells: the solid's, as the grid sees it
   double jacobianMin = 0, jacobianMax = 0;  // over voxels whose centre is inside
-  double foldedFraction = 0;                // share of the volume with det J <= 0
+  double foldedFraction = 0;                // share of the volume that is folded
   std::uint64_t activeVoxels = 0, interiorVoxels = 0;
   std::uint64_t foldedVoxels = 0;      // whose centre is inside; before repair
   std::uint64_t foldedVoxelsLeft = 0;  // after it

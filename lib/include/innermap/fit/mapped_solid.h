@@ -36,7 +36,8 @@ namespace innermap {
 //   about y. An image of the boundary that is within e of the target's surface winds about points
 //   farther than e from that as the target does.
 
-// Determinants of the map's derivative, world units of the target over those of the source, cubed.
+// Determinants of the map's derivative, world units of the target over those of the source, cubed,
+// times the sign that they have where the map is not folded: -1 onto a target that is inside out.
 struct DeterminantFigures {
   std::size_t checked = 0;  // points or cells; none: nothing is known of them
   std::size_t folded = 0;   // of these: not above 0
@@ -96,6 +97,7 @@ struct ProofFigures {
 };
 
 struct Injectivity {
+  bool mirrored = false;  // the target is inside out: det J < 0 wherever the map is not folded
   ProofFigures proof;
   DeterminantFigures inside;    // random, spread evenly
   DeterminantFigures boundary;  // random points of it, uniform by area

@@ -42,6 +42,30 @@ TEST(FoldRepair, CellsAreTurnedRightWhereNoVoxelIsFolded) {
   EXPECT_EQ(lattice.check().folded, 0u);
 }
 
+// Reflected in x = 0, floats are as exact.
+TEST(FoldRepair, AMirroredMapIsRepairedAsItsReflection) {
+  test::Lattice lattice, mirrored;
+  lattice.addBox(Coord(0), Coord(15), stay);
+  mirrored.addBox(Coord(0), Coord(15), [](const Vec3& p) { return Vec3{-p.x, p.y, p.z}; });
+  lattice.map->tree().setValue(Coord(8), {9.7f, 8.2f, 8.1f});
+  mirrored.map->tree().setValue(Coord(8), {-9.7f, 8.2f, 8.1f});
+  const auto minus = ones(mirrored);
+  for (auto voxel = minus->beginValueOn(); voxel; ++voxel) voxel.setValue(-1);
+  FoldRepairSettings settings;
+  settings.mirrored = true;
+  const FoldRepair repair = repairFolds(*lattice.map, *ones(lattice), *lattice.levelSet, {}),
+                   other = repairFolds(*mirrored.map, *minus, *mirrored.levelSet, settings);
+  ASSERT_FALSE(repair.voxels.empty());
+  ASSERT_EQ(other.voxels.size(), repair.voxels.size());
+  EXPECT_DOUBLE_EQ(other.farthest, repair.farthest);
+  for (const auto& [at, voxel] : repair.voxels) {
+    const RepairedVoxel& twin = other.voxels.at(at);
+    EXPECT_NEAR(twin.position.x, -voxel.position.x, 1e-12);
+    EXPECT_NEAR(twin.position.y, voxel.position.y, 1e-12);
+    EXPECT_NEAR(determinant(twin.jacobian), -determinant(voxel.jacobian), 1e-12);
+  }
+}
+
 // A map that flattens the solid to a twentieth: evening that out would push its skin far out.
 TEST(FoldRepair, WhatTheMapStretchesStaysStretched) {
   constexpr float kFlat = 0.05f;
