@@ -9,6 +9,7 @@
 
 #include "evaluate/detail/cell_check.h"
 #include "evaluate/detail/outside_voxels.h"
+#include "evaluate/detail/proof_marks.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/evaluate/grids.h"
@@ -67,6 +68,12 @@ void findOutside(const MappedSolid& mapped, const TargetShape& target, SolidGrid
   if (!out.outside) return;
   out.outsideFraction = static_cast<double>(out.outside->activeVoxelCount()) /
                         static_cast<double>(out.values.interiorVoxels);
+}
+
+// A product of folded steps has the sign of a map that is not, so that its determinant hides them.
+void markProof(const ProofFigures& proof, SolidGrids& out) {
+  out.undecided = markCells(proof.undecidedCells, *out.surface, "undecided");
+  out.values.folded = markCells(proof.negativeCells, *out.surface, "folded", out.values.folded);
 }
 
 // What voxels and the cells between them tell, beside what is known of the map.
@@ -154,6 +161,7 @@ void dropCertificate(openvdb::MetaMap& map) {
 openvdb::GridPtrVec SolidGrids::all() const {
   openvdb::GridPtrVec out{surface, density};
   for (const openvdb::GridBase::Ptr& grid : values.all()) out.push_back(grid);
+  if (undecided) out.push_back(undecided);
   if (outside) out.push_back(outside);
   if (mapLocal) out.push_back(mapLocal);
   return out;
@@ -180,7 +188,10 @@ SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& sett
   out.voxelSize = out.surface->voxelSize()[0];
   const TargetShape target(mapped.boundary);
   timed(out.seconds, "outside", [&] { findOutside(mapped, target, out); });
-  out.injectivity = timed(out.seconds, "cells", [&] { return injectivityOf(mapped, out, target); });
+  out.injectivity = timed(out.seconds, "cells", [&] {
+    markProof(mapped.injectivity.proof, out);
+    return injectivityOf(mapped, out, target);
+  });
   splitMap(mapped, out);
   const openvdb::GridPtrVec all = out.all();
   if (out.mapLocal)

@@ -7,13 +7,6 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kPlaces = 16;
-
-void addPlaces(const ProofCells& cells, Points& places) {
-  for (const ProofCell& cell : cells.places)
-    if (places.size() < kPlaces) places.push_back(cell.center);
-}
-
 bool boundaryIsInjective(const ExpandedMap& map, const BoundaryPair& boundary,
                          const ProofSettings& settings) {
   if (boundary.source.check.selfIntersections > 0) return false;
@@ -33,8 +26,8 @@ ProofFigures proofFigures(const SenseProof& sense, const BoundaryProof& boundary
   out.negativeShare = sense.negative.share;
   out.mirrored = sense.mirrored;
   out.least = sense.least;
-  addPlaces(sense.negative, out.places);
-  addPlaces(sense.undecided, out.places);
+  out.negativeCells = sense.negative.places;
+  out.undecidedCells = sense.undecided.places;
   if (std::isfinite(boundary.error)) out.boundaryError = boundary.error;
   return out;
 }

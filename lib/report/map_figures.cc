@@ -190,7 +190,18 @@ Figures stepFigures(const std::vector<MapStep>& steps) {
        when(!steps.empty(), columns(steps, step))});
 }
 
+// Of cells that are folded, then undecided, the largest first.
+Points unprovenPlaces(const ProofFigures& proof) {
+  constexpr std::size_t kMost = 16;
+  Points out;
+  for (const std::vector<ProofCell>* cells : {&proof.negativeCells, &proof.undecidedCells})
+    for (const ProofCell& cell : *cells)
+      if (out.size() < kMost) out.push_back(cell.center);
+  return out;
+}
+
 Figures figures(const ProofFigures& proof) {
+  const Points places = unprovenPlaces(proof);
   return {
       {"proof_cells", proof.cells, "cells of the proof", "that cover the solid"},
       {"proof_undecided", proof.undecided, "cells undecided", "of which nothing is proven"},
@@ -209,10 +220,10 @@ Figures figures(const ProofFigures& proof) {
       Figure("proof_one_to_one", proof.oneToOne, "one-to-one, proven",
              "1: no two points of the solid go to one; 0: not decided")
           .when(proof.oneToOne >= 0),
-      Figure("proof_places", proof.places, "cells not proven",
+      Figure("proof_places", places, "cells not proven",
              "x, y, z of the first, in the source; of the run that proved alone",
              FigureUnit::length)
-          .when(!proof.places.empty())};
+          .when(!places.empty())};
 }
 
 Figures figures(const Verification& made) {

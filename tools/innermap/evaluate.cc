@@ -93,8 +93,9 @@ Command makeEvaluateCommand() {
       "Writes the grids surface, density, map, jacobian, harmonic_energy and deformation_energy; "
       "values are active inside and in a skin of two voxels. Energies' totals, the least Jacobian, "
       "the folded share and what is known of one-to-one stand in the metadata and the report. "
-      "Where there are such, `folded` marks the voxels that the map folds, `outside` how far "
-      "images lie outside the target. Far "
+      "Where there are such, `folded` marks the voxels that the map folds, `outside` says how "
+      "far images lie outside the target. (`map` marks as `undecided` those where its proof that "
+      "nothing folds came to no end; a map's file does not hold them.) Far "
       "from the origin, where floats do not hold positions well, also map_local: positions less "
       "its metadata innermap_map_local_origin.");
   c.positional("MAP", &o->map, "a map.ply written by fit or map");

@@ -121,6 +121,39 @@ TEST(MapGrids, CellsThatOverlapAreTold) {
   EXPECT_NE(injectivityStatement(known).find("2 times"), std::string::npos);
 }
 
+// Cubes about which nothing is proven, and one that is proven folded though the determinant there,
+// of all steps together, is above 0.
+TEST(MapGrids, MarkTheCellsOfAProof) {
+  MapFit fit = fitMap(ball(3), ball(3));
+  MapGridSettings settings;
+  settings.resolution = 32;
+  const SolidGrids whole = evaluateOnGrid(fit, settings);
+  EXPECT_FALSE(whole.undecided);
+  EXPECT_FALSE(whole.values.folded);
+  ProofFigures& proof = fit.injectivity.proof;
+  proof.undecidedCells = {{{0.25, 0, 0}, 0.125}, {{0, 0, 1}, 0.25}};  // one reaches out of the ball
+  proof.negativeCells = {{{0, -0.5, 0}, 0.125}};
+  const SolidGrids grids = evaluateOnGrid(fit, settings);
+  ASSERT_TRUE(grids.undecided);
+  ASSERT_TRUE(grids.values.folded);
+  const auto marked = [](const openvdb::FloatGrid& marks, const openvdb::Coord& at) {
+    return marks.tree().isValueOn(at) && marks.tree().getValue(at) > 0.5F;
+  };
+  const auto in = [](const std::vector<ProofCell>& cells, const openvdb::Vec3d& p) {
+    return std::any_of(cells.begin(), cells.end(), [&](const ProofCell& cell) {
+      const openvdb::Vec3d way = p - openvdb::Vec3d(cell.center.x, cell.center.y, cell.center.z);
+      return std::max({std::abs(way.x()), std::abs(way.y()), std::abs(way.z())}) <= cell.halfEdge;
+    });
+  };
+  for (auto v = grids.values.map->cbeginValueOn(); v; ++v) {
+    const bool inside = grids.surface->tree().getValue(v.getCoord()) < 0;
+    const openvdb::Vec3d p = grids.surface->indexToWorld(v.getCoord());
+    EXPECT_EQ(marked(*grids.undecided, v.getCoord()), inside && in(proof.undecidedCells, p)) << p;
+    EXPECT_EQ(marked(*grids.values.folded, v.getCoord()), inside && in(proof.negativeCells, p))
+        << p;
+  }
+}
+
 // The target shrinks by a tenth after the fit, so that the images of a shell lie outside it.
 TEST(MapGrids, MarkWhatLandsOutsideTheTarget) {
   const Mesh source = ball(3);

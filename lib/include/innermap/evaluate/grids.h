@@ -45,6 +45,10 @@ struct SolidGrids {
   // How far the image of each voxel inside lies outside the target, world units of that; active
   // where that is more than the error of 99% of the boundary. Null where nothing does.
   openvdb::FloatGrid::Ptr outside;
+  // 1 at the voxels inside where the proof that nothing folds left the cells undecided, and active
+  // there alone; null where there are none, or the map was read from a file. Those that it proves
+  // folded are in values.folded.
+  openvdb::FloatGrid::Ptr undecided;
   double outsideFraction = 0;  // their share of the voxels inside
   double mapRounding = 0;      // MapGrids::rounding, fraction of the target's diagonal
   double voxelSize = 0;        // world units
@@ -52,7 +56,7 @@ struct SolidGrids {
   std::vector<std::string> notes, warnings;
   StageSeconds seconds;  // "voxelize", "evaluate", "outside", "cells"
 
-  // As mapGridNames(), and `repaired`, `folded`, `outside` and `map_local` where there are such.
+  // As mapGridNames(), and `repaired`, `folded`, `undecided`, `outside` and `map_local` where there are such.
   openvdb::GridPtrVec all() const;
 };
 

@@ -90,7 +90,8 @@ struct ProofFigures {
   // No two points of the solid go to one: 1 proven, 0 not decided, -1 not asked. Of a solid with
   // one connected surface that does not cross itself.
   int oneToOne = -1;
-  Points places;  // of cells that are negative, then undecided, the largest first; at most 16
+  // Those cells, the largest first; of the run that proved alone, as a map's file holds none.
+  std::vector<ProofCell> negativeCells, undecidedCells;
 
   // det J has one sign everywhere.
   bool whole() const { return cells > 0 && undecided + negative == 0; }
