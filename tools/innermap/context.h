@@ -14,6 +14,7 @@
 #include "core/file.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"
+#include "innermap/mesh/mesh_file.h"
 #include "job_clock.h"
 #include "report/report.h"
 #include "report/verdict.h"
@@ -37,6 +38,7 @@ struct CommonOptions {
   int threads = 0;
   std::string maxMemory;
   double maxTime = std::numeric_limits<double>::infinity();  // seconds
+  SpaceSettings space;
   bool dryRun = false;
   bool strict = false;
   std::string report;
@@ -75,6 +77,11 @@ class Context {
   void spend(double share, double later = 0);
   // Whether --max-time is over, so that no other part of the job is begun.
   bool timeIsUp();
+
+  // Which axes and units input has and output shall have. All that is read is brought to output's,
+  // by readMeshFile, readGridFile and inOutput (inputs.h) and the frames' AnimationSettings, and
+  // what is computed is in that.
+  const SpaceSettings& space() const { return options_.space; }
 
   bool dryRun() const { return options_.dryRun; }
   // What --dry-run says: a line for each thing that would be done, the seconds that expect() knows

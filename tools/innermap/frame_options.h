@@ -17,7 +17,7 @@ namespace innermap::tool {
 
 struct FrameOptions {
   std::vector<std::string> files;
-  std::string ranges;
+  std::string ranges, usd;
   AnimationSettings animation;
   FrameFitterSettings fitting;
   double tolerance = kUsualTolerance;  // that frames are judged by
@@ -38,6 +38,12 @@ struct Frames {
 // Files without a number that a pattern or folder holds are noted, but for the rest pose. Throws
 // FileError, SettingError.
 Frames listFrames(const FrameOptions& options, const std::string& rest, Context& context);
+
+// Tells of options.usd, which refers to frames of grids. Call it before anything is read.
+void announceUsd(const FrameOptions& options, Context& context);
+// Writes it, of those of the frames wanted that are there.
+void writeUsd(const FrameOptions& options, const FramePattern& pattern, const Frames& frames,
+              Context& context);
 
 // The output of each of the frames wanted.
 std::vector<std::string> framePaths(const FramePattern& pattern, const Frames& frames);

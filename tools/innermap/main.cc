@@ -104,6 +104,7 @@ void runCommand(const std::vector<std::string>& arguments) {
   CommonOptions common;
   parseArguments(command, common, {arguments.begin() + 1, arguments.end()});
   common.maxTime = command.maxTime();
+  common.space = command.space();
   if (common.version) return printVersion();
   if (common.help || common.helpAll) {
     std::fputs(commandHelp(command, common.helpAll).c_str(), stdout);

@@ -80,6 +80,8 @@ FrameEvaluator makeEvaluator(const SequenceOptions& options, const FrameFitter& 
 }
 
 void run(const SequenceOptions& options, Context& context) {
+  if (!options.frames.usd.empty() && options.grids.empty())
+    throw UsageError("--usd: refers to grids; give --grids too");
   gridsToWrite(options);  // refuses names that cannot be before anything is read
   if (!options.gridList.empty()) context.note("--grid-list is now the list of --grids=LIST");
   const Frames frames = listFrames(options.frames, options.rest, context);
@@ -87,6 +89,7 @@ void run(const SequenceOptions& options, Context& context) {
   const auto folder =
       context.outputFolder(options.output, {"energies.csv", "energies.svg", "report.json"});
   if (!options.grids.empty()) context.outputs(framePaths(pattern, frames));
+  announceUsd(options.frames, context);
   const FrameFitterSettings settings = options.frames.fitting;
   SourceBoundary rest = readRest(options.rest, frames, context);
   requireInterior(rest.solid, options.evaluation.grid.in<LevelSetSettings>());
@@ -124,6 +127,7 @@ void run(const SequenceOptions& options, Context& context) {
     rows.push_back(rowOf(frame, *fit, grids, options.frames.tolerance));
     context.print(sequenceLine(rows.back()));
   });
+  writeUsd(options.frames, pattern, frames, context);
   const std::string seconds = secondsText(results, context);
   const std::vector<SequenceRow> table = withBroken(rows, results);
   fillReport(table, context.report());
