@@ -107,9 +107,12 @@ class Context {
   // A folder of files that appear together; `names` are those that may be written. Those of an
   // earlier run that this one does not write again, and its
   // page, go. Files of other names stay untouched. Says which files that are no earlier run's are
-  // replaced, or stay. Null in a dry run.
+  // replaced, or stay; of those that `beside` names it says nothing. Null in a dry run.
   std::unique_ptr<PendingFolder> outputFolder(const std::string& path,
-                                              const std::vector<std::string>& names);
+                                              const std::vector<std::string>& names,
+                                              const std::vector<std::string>& beside = {});
+  // A file that is an output of this run and in place already.
+  void outputInPlace(const std::string& path);
   // Whether all outputs that are sure, but the report, are in place.
   bool allInPlace() const;
 
@@ -167,7 +170,8 @@ class Context {
 
  private:
   void inFolder(const std::string& folder, const std::vector<std::string>& names);
-  void sayWhatIsThere(const std::string& path, const std::vector<std::string>& names);
+  void sayWhatIsThere(const std::string& path, const std::vector<std::string>& names,
+                      const std::vector<std::string>& beside);
   void requireProgram() const;
 
   // The peak with so many bytes more, or with what was asked for before.

@@ -146,13 +146,18 @@ FrameFitter makeFrameFitter(SourceBoundary source, const FrameFitterSettings& se
   return fitter;
 }
 
+void noteJumps(std::int64_t frame, const std::string& jumps, Context& context) {
+  context.note(fmt::format("from frame {} on: {}", frame, jumps));
+}
+
 FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context& context) {
   std::vector<std::int64_t> numbers;
   for (const FrameFile& frame : frames.all) numbers.push_back(frame.number);
   std::shared_ptr<PageFrames> shown;
   if (context.page())
     shown = std::make_shared<PageFrames>(*context.page(), fitter.rest().mesh, frames.wanted.size());
-  return {std::move(numbers), [&, shown, told = false](std::size_t index) mutable {
+  // The first frame of a share need not be the run's.
+  return {std::move(numbers), [&, shown, told = frames.share](std::size_t index) mutable {
             const FrameFile& frame = frames.all[index];
             const Mesh mesh = context.timed(
                 "read", [&] { return frames.source->read(index, fitter.rest().mesh); });
@@ -160,8 +165,7 @@ FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context
             addSeconds(context.report().seconds, fit.seconds);
             for (const std::string& warning : fit.warnings)
               context.warning(fmt::format("frame {}: {}", frame.number, warning));
-            if (!fit.jumps.empty() && !told)
-              context.note(fmt::format("from frame {} on: {}", frame.number, fit.jumps));
+            if (!fit.jumps.empty() && !told) noteJumps(frame.number, fit.jumps, context);
             told = told || !fit.jumps.empty();
             if (shown) shown->add(frame.number, mesh.vertices, fit);
             return fit;

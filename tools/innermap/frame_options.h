@@ -33,6 +33,7 @@ struct Frames {
   AnimationSettings animation;
   std::vector<FrameFile> all;       // the source's, ascending
   std::vector<std::size_t> wanted;  // of all, those that --frames chooses
+  bool share = false;               // wanted are some of a run's that is cut up
 };
 
 // Files without a number that a pattern or folder holds are noted, but for the rest pose. Throws
@@ -55,6 +56,9 @@ SourceBoundary readRest(const std::string& rest, const Frames& frames, Context& 
 // Its fitter; fills the report's "solve".
 FrameFitter makeFrameFitter(SourceBoundary source, const FrameFitterSettings& settings,
                             Context& context);
+
+// Told once in a run: from which frame on its parts move so.
+void noteJumps(std::int64_t frame, const std::string& jumps, Context& context);
 
 // Reads and fits frames.all as they are asked for. All three must outlive the result.
 FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context& context);

@@ -16,6 +16,7 @@
 #include "innermap/mesh/mesh_file.h"
 #include "inputs.h"
 #include "report/page/contents.h"
+#include "report_page.h"
 
 namespace innermap::tool {
 namespace {
@@ -263,6 +264,12 @@ void run(const ReportOptions& options, Context& context) {
 }
 
 }  // namespace
+
+void showOutputs(Page& page, const std::string& report, const std::string& folder) {
+  const Json parsed = Json::parse(report);
+  addSurfaces(page, parsed, folder);
+  addGridsOf(page, parsed, folder);
+}
 
 Command makeReportCommand() {
   auto o = std::make_shared<ReportOptions>();
