@@ -9,7 +9,7 @@ import re
 import sys
 from pathlib import Path
 
-README_LINES = 200
+README_LINES = 150
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)")
 CODE = re.compile(r"^```.*?^```", re.M | re.S)
 SKIPPED = re.compile(r"^(build|out|\.git)")

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "core/byte_order.h"
 #include "innermap/core/error.h"
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "values are copied as they are");
@@ -38,15 +39,6 @@ auto withType(PlyType type, const Body& body) {
       break;
   }
   return body(double{});
-}
-
-template <class T>
-T swapped(T value) {
-  char bytes[sizeof(T)];
-  std::memcpy(bytes, &value, sizeof(T));
-  std::reverse(bytes, bytes + sizeof(T));
-  std::memcpy(&value, bytes, sizeof(T));
-  return value;
 }
 
 }  // namespace
@@ -88,9 +80,9 @@ double PlyBody::nextValue(PlyType type) {
   if (ascii_) return nextNumber(type);
   return withType(type, [&](auto kind) {
     if (sizeof kind > file_.bytes.size() - position_) fail(kTruncated);
-    std::memcpy(&kind, file_.bytes.data() + position_, sizeof kind);
+    kind = numberAt<decltype(kind)>(file_.bytes.data() + position_, bigEndian_);
     position_ += sizeof kind;
-    return static_cast<double>(bigEndian_ ? swapped(kind) : kind);
+    return static_cast<double>(kind);
   });
 }
 
@@ -143,8 +135,9 @@ void PlyBody::put(OutputBuffer& out, PlyType type, double value) const {
       else
         out.print(" {}", kind);
     } else {
-      if (bigEndian_) kind = swapped(kind);
-      out.raw({reinterpret_cast<const char*>(&kind), sizeof kind});
+      char bytes[sizeof kind];
+      putNumber(bytes, kind, bigEndian_);
+      out.raw({bytes, sizeof kind});
     }
     return 0;
   });

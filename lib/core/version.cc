@@ -2,6 +2,6 @@
 
 namespace innermap {
 
-const char* versionText() { return "0.1.0"; }
+const char* versionText() { return INNERMAP_VERSION; }
 
 }  // namespace innermap

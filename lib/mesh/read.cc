@@ -15,7 +15,19 @@ struct Format {
 constexpr Format kFormats[] = {
     {".obj", readObj}, {".ply", readPly}, {".off", readOff}, {".stl", readStl}};
 
+// A mesh of triangles.
+PolygonMesh polygonsOf(Mesh&& mesh) {
+  PolygonMesh out;
+  out.vertices = std::move(mesh.vertices);
+  for (const Triangle& triangle : mesh.triangles) {
+    out.corners.insert(out.corners.end(), triangle.begin(), triangle.end());
+    out.start.push_back(static_cast<int>(out.corners.size()));
+  }
+  return out;
+}
+
 PolygonMesh readPolygons(const std::string& path) {
+  if (isGltf(path)) return polygonsOf(readRestPose(path));
   const std::string extension = extensionOf(path);
   for (const Format& format : kFormats)
     if (equalsIgnoringCase(extension, format.extension))
@@ -23,7 +35,7 @@ PolygonMesh readPolygons(const std::string& path) {
   requireNoScene(path);
   throw FileError(
       path, (!extension.empty() ? "unknown extension " + inQuotes(extension) : "has no extension") +
-                "; meshes are read from .obj, .ply, .off and .stl files");
+                "; meshes are read from .obj, .ply, .off, .stl, .glb and .gltf files");
 }
 
 }  // namespace

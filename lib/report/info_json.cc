@@ -144,4 +144,20 @@ std::string infoJson(const std::string& path, const AnimationInfo& info) {
   return dumped(out);
 }
 
+std::string infoJson(const std::string& path, const VolumeFileInfo& info) {
+  Json out = {
+      {"file", path}, {"kind", "volume"}, {"format", info.format}, {"grids", Json::array()}};
+  for (const VolumeFileInfo::Grid& g : info.grids) {
+    Json grid = {{"name", g.name}, {"type", g.type}, {"class", g.gridClass}};
+    if (g.resolution != openvdb::Coord(0)) grid["resolution"] = json(g.resolution);
+    if (g.activeVoxels) grid["active_voxels"] = *g.activeVoxels;
+    if (g.voxelSize) grid["voxel_size"] = json(*g.voxelSize);
+    if (g.worldBox) grid["world_box"] = {json(g.worldBox->min()), json(g.worldBox->max())};
+    if (!g.files.empty()) grid["files"] = g.files;
+    out["grids"].push_back(std::move(grid));
+  }
+  for (const auto& [key, value] : info.facts) out[key] = value;
+  return dumped(out);
+}
+
 }  // namespace innermap

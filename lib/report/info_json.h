@@ -20,5 +20,6 @@ std::string infoJson(const std::string& path, const std::vector<ExrPart>& parts,
 std::string infoJson(const std::string& path, const FieldFile& file);
 std::string infoJson(const std::string& path, const Mesh& mesh);
 std::string infoJson(const std::string& path, const AnimationInfo& info);
+std::string infoJson(const std::string& path, const VolumeFileInfo& info);
 
 }  // namespace innermap

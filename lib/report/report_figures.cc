@@ -2,6 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+
 #include "report/figures.h"
 
 namespace innermap {
@@ -62,6 +67,40 @@ Figures deformedFigures(const std::vector<DeformedFrame>& frames) {
 
 Figures finishedFigures(std::uint64_t before) {
   return {{"finished_before", before, "finished before", "this run"}};
+}
+
+Figures figures(const FarmFigures& farm) {
+  constexpr std::array<double, 3> kMachines{1, 10, 100};
+  std::map<std::string, double> hosts;
+  std::set<std::string> codes;
+  double sum = 0, longest = 0, setup = 0;
+  std::uint64_t memory = 0;
+  for (const FarmPart& p : farm.parts) {
+    hosts[p.host] += 1;
+    codes.insert(p.code);
+    sum += p.seconds;
+    longest = std::max(longest, p.seconds);
+    setup = std::max(setup, p.setup);
+    memory = std::max(memory, p.memory);
+  }
+  std::vector<std::string> names;
+  std::vector<double> counts, times;
+  for (const auto& [name, count] : hosts) {
+    names.push_back(name);
+    counts.push_back(count);
+  }
+  for (const double n : kMachines) times.push_back(setup + std::max(longest, sum / n));
+  return {
+      {"hosts", names, "machines", "that made frames"},
+      {"host_frames", counts, "frames of each machine", ""},
+      {"code", std::vector<std::string>(codes.begin(), codes.end()), "vector code",
+       "kinds; results of one kind are the same to the bit"},
+      {"seconds", sum, "time of all frames", "one after the other", kSeconds},
+      {"setup_seconds", setup, "set-up", "of a worker, before its first frame", kSeconds},
+      {"peak_memory_bytes", memory, "peak memory", "of the worker with most", FigureUnit::bytes},
+      {"machines", std::vector<double>(kMachines.begin(), kMachines.end()),
+       "so many machines alike", ""},
+      {"machines_seconds", times, "would take", "at best", kSeconds}};
 }
 
 Figures leftFigures(std::uint64_t left) {

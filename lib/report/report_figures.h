@@ -49,6 +49,17 @@ Figures frameSeconds(double mean, double least, double most);
 const char* missedMark(bool misses);
 Figures judgedFigures(double tolerance, const std::vector<std::int64_t>& missed);
 
+// "farm": how the parts of a run were made that was cut into shares.
+struct FarmPart {
+  std::string host, code;         // the machine; its kind of vector code
+  double seconds = 0, setup = 0;  // of a frame; of its worker before the first one
+  std::uint64_t memory = 0;       // bytes
+};
+struct FarmFigures {
+  std::vector<FarmPart> parts;
+};
+Figures figures(const FarmFigures& farm);
+
 // Beside the sections.
 Figures outsideFigures(double share);
 Figures stoppedByTimeFigures();

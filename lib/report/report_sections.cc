@@ -120,7 +120,8 @@ std::vector<ReportSection> mapSections(const Unknown& u) {
        "Of an animation; lists have one value a frame.",
        merged({frameFigures({}), deformedFigures({}), finishedFigures(0), leftFigures(0),
                frameSeconds(0, 0, 0), judgedFigures(0, {})}),
-       {}}};
+       {}},
+      {"farm", "Farm", "How a run in shares was made.", figures(FarmFigures{}), {}}};
 }
 
 std::vector<ReportSection> carrySections(const Unknown& u) {

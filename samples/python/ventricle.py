@@ -20,40 +20,19 @@ import numpy as np
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+from make_ventricle import ACROSS, DEEP, THICK, ventricle  # noqa: E402
+
 INNER, OUTER, WANTED = 60.0, -60.0, 1e-2  # degrees, degrees, share of the field's span
-ACROSS, DEEP, THICK = 2.5, 6.5, 1.0       # of the cavity, and the wall: centimetres
 
 
-def shell(around=48, along=20):
-    """A half ellipsoid with a cavity, the base open: V, F and triangles of inside, outside, base."""
-    V, F, parts = [], [], {}
-
-    def bowl(radius, depth):
-        first = len(V)
-        for i in range(along):  # from the base down; the apex is one point
-            t = 0.5 * np.pi * i / along
-            for j in range(around):
-                a = 2 * np.pi * j / around
-                V.append((radius * np.cos(t) * np.cos(a), radius * np.cos(t) * np.sin(a),
-                          -depth * np.sin(t)))
-        V.append((0, 0, -depth))
-        ring = [[first + i * around + j % around for j in range(around + 1)] for i in range(along)]
-        for upper, lower in zip(ring, ring[1:]):
-            for j in range(around):
-                F.extend([(upper[j], lower[j], lower[j + 1]), (upper[j], lower[j + 1], upper[j + 1])])
-        F.extend((ring[-1][j], len(V) - 1, ring[-1][j + 1]) for j in range(around))
-        return ring[0]
-
-    outer = bowl(ACROSS + THICK, DEEP + THICK)
-    parts["outside"] = np.arange(len(F))
-    inner = bowl(ACROSS, DEEP)
-    parts["inside"] = np.arange(len(parts["outside"]), len(F))
-    for i in parts["inside"]:
-        F[i] = F[i][::-1]
-    for j in range(around):
-        F.extend([(outer[j], outer[j + 1], inner[j]), (inner[j], outer[j + 1], inner[j + 1])])
-    parts["base"] = np.arange(len(F) - 2 * around, len(F))
-    return np.array(V), np.array(F), parts
+def shell():
+    """The mesh, V and F, and the triangles of inside, outside, base and apex, which is part of the outside."""
+    V, groups = ventricle(around=48, along=20)
+    ends = np.cumsum([0] + [len(some) for some in groups.values()])
+    parts = {name: np.arange(a, b) for name, a, b in zip(groups, ends, ends[1:])}
+    parts["outside"] = np.concatenate([parts["outside"], parts["apex"]])
+    return np.array(V), np.array([face for some in groups.values() for face in some]), parts
 
 
 def unit(v):
@@ -150,11 +129,9 @@ def draw_layer(axes, depth, height, wanted, name):
 def main():
     picture = Path(sys.argv[1] if len(sys.argv) > 1 else "out/ventricle.png")
     V, F, parts = shell()
-    middles = V[F].mean(axis=1)
-    apex = parts["outside"][middles[parts["outside"], 2] < -(DEEP + 0.93 * THICK)]
     depth = innermap.harmonic(V, F, fix=[(parts["inside"], 0), (parts["outside"], 1)],
                               tolerance=WANTED)
-    height = innermap.harmonic(V, F, fix=[(apex, 0), (parts["base"], 1)], tolerance=WANTED)
+    height = innermap.harmonic(V, F, fix=[(parts["apex"], 0), (parts["base"], 1)], tolerance=WANTED)
     for name, field in (("depth", depth), ("height", height)):
         print(f"{name}: {field.charges} charges, 99% of the surface within "
               f"{field.boundary_error.p99:.1e} of what was given there")

@@ -2,60 +2,18 @@
 """Animations in one file: point caches as frames, read and written."""
 
 import json
+import math
 import os
+import random
 import struct
 
 import cli
+from caches import TIMES, as_float, cached_frames, read_pc2, write_gltf, write_mdd, write_morphs, write_pc2
 from cli import fails, innermap
-from frames import FIGURES, ball_frames, moved, read_energies, twisted
+from frames import FIGURES, moved, read_energies
 
 EXPORTS = cli.ROOT.parent / "shared" / "hosts" / "exports"
 SMALL = ["--charges", "400", "--resolution", "24", "--quiet"]
-TIMES = {1: 0.1, 2: 0.2, 3: 0.3, 4: 0.4}
-
-
-def as_float(x):
-    return struct.unpack("f", struct.pack("f", x))[0]
-
-
-def write_mdd(path, frames, fps=24):
-    points = len(frames[0])
-    with open(path, "wb") as file:
-        file.write(struct.pack(">2i", len(frames), points))
-        file.write(struct.pack(f">{len(frames)}f", *(i / fps for i in range(len(frames)))))
-        for frame in frames:
-            file.write(struct.pack(f">{3 * points}f", *(c for p in frame for c in p)))
-
-
-def write_pc2(path, frames, start=1.0, step=1.0):
-    points = len(frames[0])
-    with open(path, "wb") as file:
-        file.write(struct.pack("<12siiffi", b"POINTCACHE2", 1, points, start, step, len(frames)))
-        for frame in frames:
-            file.write(struct.pack(f"<{3 * points}f", *(c for p in frame for c in p)))
-
-
-def read_pc2(path):
-    with open(path, "rb") as file:
-        content = file.read()
-    _, _, points, start, step, frames = struct.unpack("<12siiffi", content[:32])
-    assert len(content) == 32 + 12 * points * frames
-    flat = struct.unpack(f"<{3 * points * frames}f", content[32:])
-    places = [flat[i:i + 3] for i in range(0, len(flat), 3)]
-    return start, step, [places[i:i + points] for i in range(0, len(places), points)]
-
-
-def cached_frames(motion=twisted):
-    """Files frames/f.0001.obj..., and the same numbers in walk.mdd and walk.pc2."""
-    vertices, faces = cli.icosphere_arrays(3)
-    frames = [[tuple(map(as_float, motion(v, t))) for v in vertices] for t in TIMES.values()]
-    ball_frames(motion, {})
-    os.makedirs("frames")
-    for number, frame in zip(TIMES, frames):
-        cli.write_obj(f"frames/f.{number:04d}.obj", frame, faces)
-    write_mdd("walk.mdd", frames)
-    write_pc2("walk.pc2", frames, start=101)
-    return frames
 
 
 def test_caches_are_frames():
@@ -158,32 +116,48 @@ def test_caches_of_blender():
         assert rows[0]["deformation"] < 1e-6 < rows[-1]["deformation"]
 
 
-def write_gltf(path):
-    """A ball of split vertices that is moved and grows, from frame 12 to 36 of 24 a second."""
-    vertices, faces = cli.icosphere_arrays(3)
-    corners = [vertices[i] for f in faces for i in f]
-    data = struct.pack(f"<{3 * len(corners)}f", *(c for p in corners for c in p))
-    keys = struct.pack("<2f", 0.5, 1.5), struct.pack("<6f", 0, 0, 0, 1, -2, 0.5), \
-        struct.pack("<6f", 1, 1, 1, 1.5, 1.5, 1.5)
-    parts, views, at = [data, *keys], [], 0
-    for part in parts:
-        views.append({"buffer": 0, "byteOffset": at, "byteLength": len(part)})
-        at += len(part)
-    kinds = [("VEC3", len(corners)), ("SCALAR", 2), ("VEC3", 2), ("VEC3", 2)]
-    with open(path.replace(".gltf", ".bin"), "wb") as file:
-        file.write(b"".join(parts))
-    scene = {
-        "asset": {"version": "2.0"}, "bufferViews": views,
-        "buffers": [{"byteLength": at, "uri": path.replace(".gltf", ".bin")}],
-        "accessors": [{"bufferView": i, "componentType": 5126, "count": n, "type": kind}
-                      for i, (kind, n) in enumerate(kinds)],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-        "nodes": [{"name": "ball", "mesh": 0}],
-        "animations": [{"name": "move", "samplers": [{"input": 1, "output": 2}, {"input": 1, "output": 3}],
-                        "channels": [{"sampler": i, "target": {"node": 0, "path": path}}
-                                     for i, path in enumerate(("translation", "scale"))]}]}
-    with open(path, "w", encoding="ascii") as file:
-        json.dump(scene, file)
+def test_the_gallop_is_one_animation_in_all_files():
+    """The horse's frames as OBJ, MDD, PC2 and glTF: by bits where the numbers are, else as the fit is."""
+    gallop = cli.MODELS / "horse-gallop"
+    if not gallop.exists():
+        raise cli.Skip(f"no models at {gallop}")
+    rest, faces = read_obj(gallop / "reference.obj")
+    frames = [read_obj(gallop / f"frame.{number:04}.obj")[0] for number in (1, 13, 25)]
+    cli.write_obj("rest.obj", rest, faces)
+    os.makedirs("files")
+    for number, frame in enumerate(frames, 1):
+        cli.write_obj(f"files/f.{number:04}.obj", frame, faces)
+    write_mdd("walk.mdd", frames)
+    write_pc2("walk.pc2", frames)
+    order = list(range(len(faces)))
+    random.Random(7).shuffle(order)
+    write_morphs("walk.gltf", rest, faces, frames, order)
+    middle = [sum(p[a] for p in rest) / len(rest) for a in range(3)]
+    # The middles of the trunk: points that are safely inside.
+    inside = [tuple(0.05 * x + 0.95 * m for x, m in zip(p, middle)) for p in rest[::40]]
+    cli.write_obj("inside.obj", inside, [(i, i + 1, i + 2) for i in range(len(inside) - 2)])
+    made = {}
+    for source in ("files", "walk.mdd", "walk.pc2", "walk.gltf"):
+        innermap("deform", "rest.obj", "inside.obj", source, "-o", "out.pc2", "--charges", "800", "--quiet",
+                 "--outside", "0.05")
+        made[source] = read_pc2("out.pc2")[2]
+    assert made["files"] == made["walk.mdd"] == made["walk.pc2"] and len(made["files"]) == 3
+    diagonal = math.dist(*(tuple(limit(p[a] for p in rest) for a in range(3)) for limit in (min, max)))
+    worst = max(math.dist(p, q) for a, b in zip(made["files"], made["walk.gltf"]) for p, q in zip(a, b))
+    assert worst < 1e-6 * diagonal, worst / diagonal
+    moves = max(math.dist(p, q) for p, q in zip(made["files"][0], made["files"][1]))
+    assert moves > 1e-3 * diagonal, moves
+
+
+def read_obj(path):
+    """Vertices as floats have them, and faces."""
+    vertices, faces = [], []
+    with open(path, encoding="utf-8") as file:
+        for line in file:
+            if line.startswith("v "):
+                vertices.append(tuple(as_float(float(x)) for x in line.split()[1:4]))
+            elif line.startswith("f "):
+                faces.append(tuple(int(c.split("/")[0]) - 1 for c in line.split()[1:]))
     return vertices, faces
 
 

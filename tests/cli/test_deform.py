@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """innermap deform: a volume carried through an animation."""
 
+import json
 import os
 import subprocess
 
@@ -60,6 +61,26 @@ def test_frame_numbers_are_kept():
     for output, name in [("p%02d.vdb", "p12.vdb"), ("q.vdb", "q.0012.vdb"), ("#.vdb", "12.vdb")]:
         deform("--frames", "12", output=output)
         assert os.path.exists(name), name
+
+
+def test_usd_refers_to_the_frames():
+    ball_frames(rigid, {1: 0.1, 2: 0.3, 5: 0.5})
+    volume()
+    deform("--usd", "out/d.usda", "--frames", "2,5", "--fps", "30", "--up", "z")
+    info = json.loads(innermap("info", "out/d.usda", "--json").stdout)
+    assert info["upAxis"] == '"Z"' and info["startTimeCode"] == "2" and info["endTimeCode"] == "5", info
+    assert info["timeCodesPerSecond"] == "30" and info["metersPerUnit"] == "1", info
+    grids = {g["name"]: g["files"] for g in info["grids"]}
+    assert grids == {name: ["./d.0002.vdb", "./d.0005.vdb"] for name in ("surface", "density")}, grids
+    # Also where all frames are finished already.
+    os.remove("out/d.usda")
+    deform("--usd", "out/d.usda", "--frames", "2,5", "--fps", "30", "--up", "z")
+    assert os.path.exists("out/d.usda")
+    innermap("sequence", "rest.obj", "frames", "-o", "e", "--usd", "e.usda", "--grids", "--resolution", "16", *SMALL)
+    files = {g["name"]: g["files"] for g in json.loads(innermap("info", "e.usda", "--json").stdout)["grids"]}
+    assert files["harmonic_energy"] == [f"./e/energy.{n:04}.vdb" for n in (1, 2, 5)], files
+    fails(2, "sequence", "rest.obj", "frames", "-o", "x", "--usd", "x.usda", says=["--grids"])
+    fails(2, "deform", "rest.obj", "rest.obj", "frames", "-o", "x.obj", "--usd", "x.usda", says=["--usd"])
 
 
 def test_a_rigid_motion_keeps_the_volume():

@@ -14,12 +14,13 @@ from scenes import write_splats
 BLOCK = re.compile(r"^```sh\n(.*?)^```", re.M | re.S)
 LONG = {"study", "compare-fem", "hexahedralize", "harmonic"}  # have tests of their own
 GENERATED = {"commands.md", "benchmarks.md"}
+TASKS = {"recipes.md", "tutorial.md"}  # whole, in test_recipes.py
 
 
 def documented():
     """(page, arguments) of each command, without those that stand for any (SOURCE, FOLDER)."""
     for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]:
-        if page.name in GENERATED:
+        if page.name in GENERATED | TASKS:
             continue
         for block in BLOCK.findall(page.read_text(encoding="utf-8")):
             for line in block.replace("\\\n", " ").splitlines():

@@ -12,7 +12,11 @@ COMMANDS = ["check", "voxelize", "slice", "info", "help", "map", "fit", "evaluat
 def test_version_is_the_projects():
     text = (cli.ROOT / "CMakeLists.txt").read_text()
     version = re.search(r"project\(innermap VERSION ([0-9.]+)", text).group(1)
-    assert innermap("--version").stdout == f"innermap {version}\n"
+    lines = innermap("--version").stdout.splitlines()
+    assert re.fullmatch(rf"innermap {re.escape(version)}( \(commit [0-9a-f]{{10,}}(-dirty)?\))?", lines[0]), lines
+    for library in ("OpenVDB", "TBB", "OpenEXR", "OpenImageIO", "OpenBLAS", "zlib"):
+        assert re.search(rf"\b{library} [0-9]+\.[0-9]+", " ".join(lines[1:])), (library, lines)
+    assert max(map(len, lines)) <= 80, lines
 
 
 def test_help_lists_every_command():

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """export and import of other programs' volume files, as those programs' own readers see them."""
 
+import json
 import os
 import re
 import shutil
@@ -295,6 +296,9 @@ error = numpy.linalg.norm(q + back - p, axis=1).max()
 assert error < 0.05 * voxel, (error, voxel)
 """, module="numpy")
     fails(2, "evaluate", "map.ply", "-o", "map.nii", says=["--inverse"])
+    for option in (["--repair", "off"], ["--lame-mu", "1"], ["--warn-folded", "0.5"]):
+        fails(2, "evaluate", "map.ply", "-o", "x.vdb", "--inverse", *option, says=[option[0], "--inverse"])
+    assert "time: about" in innermap("evaluate", "map.ply", "-o", "x.vdb", "--inverse", "--dry-run").stdout
     innermap("evaluate", "map.ply", "-o", "back.vdb", "--inverse", "--resolution", "24", "--quiet")
     told = innermap("info", "back.vdb").stdout
     assert "surface" in told and "displacement" in told, told
@@ -302,7 +306,7 @@ assert error < 0.05 * voxel, (error, voxel)
 
 def test_usd_refers_to_files():
     names = grids()
-    innermap("export", "g.vdb", "-o", "a-b.usda", "--up", "z", "--meters-per-unit", "0.01")
+    innermap("export", "g.vdb", "-o", "a-b.usda", "--up", "z", "--unit-scale", "0.01")
     text = usd_of("a-b.usda", defaultPrim='"a_b"', upAxis='"Z"', metersPerUnit="0.01")
     for name in names:
         assert f"rel field:{name} = </a_b/{name}>" in text and f'fieldName = "{name}"' in text, text
@@ -322,6 +326,89 @@ def test_usd_refers_to_files():
     assert "10: @./frames/s.0010.vdb@" in text and "field:v" not in text
     assert len(re.findall(r"@\./frames/", text)) == 3
     fails(1, "export", "g.vdb", "-o", "n.usda", "--grids", "none", says=["none"])
+
+
+LABELS = """
+import sys, numpy, nibabel
+# Voxels of 1 x 2 x 3 mm, x mirrored as scanners have it; two boxes, a voxel of a third label.
+affine = numpy.diag([-1.0, 2, 3, 1])
+affine[:3, 3] = 10, -20, 5
+labels = numpy.zeros((20, 16, 12), numpy.uint8)
+labels[2:8, 3:9, 2:8] = 2
+labels[10:18, 3:13, 2:10] = 5
+image = nibabel.Nifti1Image(labels, affine)
+nibabel.save(image, "scan.nii.gz")
+nibabel.save(nibabel.Nifti1Image(numpy.random.default_rng(1).random((24, 24, 24)).astype("f4"), affine), "grey.nii")
+"""
+
+
+def test_labels_of_a_scan_are_solids():
+    independent(LABELS, module="nibabel")
+    innermap("voxelize", "scan.nii.gz", "-o", "each.vdb", "--each-label", "--fog", "--report", "r.json", "--quiet")
+    grids = {g["name"]: g for g in told("each.vdb")["grids"]}
+    assert set(grids) == {"surface_2", "density_2", "surface_5", "density_5"}, grids
+    for label, size in ((2, (6, 12, 18)), (5, (8, 20, 24))):
+        grid = grids[f"surface_{label}"]
+        assert grid["class"] == "level set" and grid["metadata"]["innermap_label"] == str(label), grid
+        assert abs(grid["voxel_size"][0] - 1) < 1e-6, grid
+        # The box with a band of three voxels to each side.
+        box = [b - a + 1 for a, b in zip(*grid["box"])]
+        assert all(s + 4 <= n <= s + 8 for n, s in zip(box, size)), (box, size)
+    innermap("voxelize", "scan.nii.gz", "-o", "five.vdb", "--labels", "5", "--report", "r.json", "--quiet")
+    volume = cli.read_json("r.json")["source"]["volume"]
+    assert 0.93 < volume / (8 * 20 * 24) <= 1 + 1e-6, volume
+    innermap("voxelize", "scan.nii.gz", "-o", "all.vdb", "--voxel-size", "2", "--report", "r.json", "--quiet")
+    volume = cli.read_json("r.json")["source"]["volume"]
+    assert 0.93 < volume / (8 * 20 * 24 + 6 * 12 * 18) <= 1 + 1e-6, volume
+    assert [g["name"] for g in told("all.vdb")["grids"]] == ["surface"]
+    assert "2 labels" in innermap("voxelize", "scan.nii.gz", "-o", "x.vdb", "--each-label", "--dry-run").stdout
+    fails(1, "voxelize", "scan.nii.gz", "-o", "x.vdb", "--labels", "3", says=["3", "2, 5"])
+    fails(2, "voxelize", "scan.nii.gz", "-o", "x.vdb", "--labels", "a", says=["--labels"])
+    fails(1, "voxelize", "grey.nii", "-o", "x.vdb", says=["no label"])
+    cli.cube()
+    fails(2, "voxelize", "cube.obj", "-o", "x.vdb", "--labels", "3", says=["--labels"])
+
+
+def told(path):
+    return json.loads(innermap("info", path, "--json").stdout)
+
+
+def test_info_of_every_format():
+    names = grids()
+    innermap("export", "g.vdb", "-o", "g.nvdb")
+    innermap("export", "g.vdb", "-o", "g.vti")
+    innermap("export", "g.vdb", "-o", "g.usda", "--up", "z")
+    innermap("export", "g.vdb", "-o", "g.dds", "--grids", "density", "--half")
+    innermap("export", "g.vdb", "-o", "g.nii.gz", "--grids", "density")
+    corners = [[sum(p * m for p, m in zip((i, j, k, 1), column)) for column in zip(*MATRIX)]
+               for i in (-3.5, 3.5) for j in (1.5, 6.5) for k in (5.5, 9.5)]
+    box = [[limit(c[a] for c in corners) for a in range(3)] for limit in (min, max)]
+    for file, kind in (("g.nvdb", "NanoVDB"), ("g.vti", "VTK image data"), ("g.nii.gz", "NIfTI"), ("g.dds", "DDS"),
+                       ("g.usda", "USD")):
+        info = told(file)
+        assert info["format"] == kind and info["kind"] == "volume", info
+        assert kind in innermap("info", file).stdout
+        first = info["grids"][0]
+        if kind != "USD":
+            assert first["resolution"] == [7, 5, 4], info
+        if kind not in ("USD", "DDS"):
+            assert sorted(first["voxel_size"]) == [0.25, 0.5, 2], first
+        if kind in ("VTK image data", "NIfTI"):
+            assert max(abs(a - b) for p, q in zip(first["world_box"], box) for a, b in zip(p, q)) < 1e-4, (first, box)
+        if kind in ("NanoVDB", "VTK image data", "USD"):
+            assert [g["name"] for g in info["grids"]] == names, info
+    assert told("g.nvdb")["grids"][0]["active_voxels"] == 140
+    assert told("g.dds")["grids"][0]["type"] == "R16F"
+    assert told("g.usda")["grids"][0]["files"] == ["./g.vdb"] and told("g.usda")["upAxis"] == '"Z"'
+    for file in ("g.nvdb", "g.vti", "g.dds", "g.nii.gz", "g.usda"):
+        with open(file, "rb") as stream:
+            content = stream.read()
+        for size in (0, 3, 60, 200, len(content) // 2):
+            with open("cut." + file.split(".", 1)[1], "wb") as stream:
+                stream.write(content[:size])
+            done = subprocess.run([cli.PROGRAM, "info", "cut." + file.split(".", 1)[1]], capture_output=True,
+                                  check=False)
+            assert done.returncode in (0, 1), (file, size, done)
 
 
 cli.run(globals())

@@ -185,6 +185,12 @@ OptionBuilder Command::limitTime(const std::string& help) {
   return option("--max-time", "S", maxTime_.get(), help).unit("seconds").above(0);
 }
 
+void Command::addSpace() {
+  group("axes and units");
+  settings(describe(*space_));
+  group("");
+}
+
 std::vector<Option> commonOptionTable(CommonOptions& common) {
   Command c("", "");
   c.option("--threads", "N", &common.threads, "number of threads; 0 means all cores")

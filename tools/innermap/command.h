@@ -68,6 +68,9 @@ class Command {
   OptionBuilder limitTime(const std::string& help);
   // Seconds; infinity: no limit.
   double maxTime() const { return maxTime_->value_or(std::numeric_limits<double>::infinity()); }
+  // Adds --up, --unit-scale, --out-up, --out-unit-scale, for Context::space().
+  void addSpace();
+  const SpaceSettings& space() const { return *space_; }
   void run(std::function<void(Context&)> body) { body_ = std::move(body); }
 
   const std::string& name() const { return name_; }
@@ -83,6 +86,7 @@ class Command {
   std::vector<std::string> examples_;
   std::function<void(Context&)> body_;
   std::unique_ptr<std::optional<double>> maxTime_ = std::make_unique<std::optional<double>>();
+  std::unique_ptr<SpaceSettings> space_ = std::make_unique<SpaceSettings>();
 };
 
 // "max_charges": "--max-charges".

@@ -9,34 +9,17 @@
 namespace innermap::tool {
 
 std::vector<Command> allCommands() {
-  constexpr Command (*kMakers[])() = {makeMapCommand,
-                                      makeCorrespondCommand,
-                                      makeSphereCommand,
-                                      makeFitCommand,
-                                      makeEvaluateCommand,
-                                      makeVerifyCommand,
-                                      makeSequenceCommand,
-                                      makeDeformCommand,
-                                      makeHarmonicCommand,
-                                      makeWeightsCommand,
-                                      makeTextureCommand,
-                                      makePushCommand,
-                                      makePullCommand,
-                                      makeTransferDistanceCommand,
-                                      makeCheckCommand,
-                                      makeVoxelizeCommand,
-                                      makeTetrahedralizeCommand,
-                                      makePolycubeCommand,
-                                      makeHexahedralizeCommand,
-                                      makeRemeshCommand,
-                                      makeCompareFemCommand,
-                                      makeStudyCommand,
-                                      makeSliceCommand,
-                                      makeExportCommand,
-                                      makeImportCommand,
-                                      makeInfoCommand,
-                                      makeReportCommand,
-                                      makeHelpCommand};
+  constexpr Command (*kMakers[])() = {
+      makeMapCommand,        makeCorrespondCommand,    makeSphereCommand,
+      makeFitCommand,        makeEvaluateCommand,      makeVerifyCommand,
+      makeSequenceCommand,   makeDeformCommand,        makeJoinCommand,
+      makeHarmonicCommand,   makeWeightsCommand,       makeTextureCommand,
+      makePushCommand,       makePullCommand,          makeTransferDistanceCommand,
+      makeCheckCommand,      makeVoxelizeCommand,      makeTetrahedralizeCommand,
+      makePolycubeCommand,   makeHexahedralizeCommand, makeRemeshCommand,
+      makeCompareFemCommand, makeStudyCommand,         makeSliceCommand,
+      makeExportCommand,     makeImportCommand,        makeInfoCommand,
+      makeReportCommand,     makeHelpCommand};
   std::vector<Command> out;
   out.reserve(std::size(kMakers));
   for (const auto make : kMakers) out.push_back(make());
@@ -47,7 +30,7 @@ std::vector<Topic> commandTopics() {
   std::vector<Topic> topics = {
       {"maps", {"map", "correspond", "sphere", "fit", "evaluate", "verify", "study"}},
       {"what goes through a map", {"push", "pull", "transfer-distance", "remesh"}},
-      {"animation", {"sequence", "deform"}},
+      {"animation", {"sequence", "deform", "join"}},
       {"solids",
        {"check", "voxelize", "texture", "harmonic", "weights", "tetrahedralize", "hexahedralize",
         "polycube"}},

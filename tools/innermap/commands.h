@@ -32,6 +32,7 @@ Command makeTransferDistanceCommand();
 Command makeExportCommand();
 Command makeImportCommand();
 Command makeReportCommand();
+Command makeJoinCommand();
 Command makeVerifyCommand();
 Command makeInfoCommand();
 Command makeHelpCommand();

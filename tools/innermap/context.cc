@@ -170,11 +170,14 @@ bool isOurs(const std::filesystem::path& folder) {
 
 }  // namespace
 
+void Context::outputInPlace(const std::string& path) { ordered_.emplace_back("", path); }
+
 std::unique_ptr<PendingFolder> Context::outputFolder(const std::string& path,
-                                                     const std::vector<std::string>& names) {
+                                                     const std::vector<std::string>& names,
+                                                     const std::vector<std::string>& beside) {
   auto folder = std::make_unique<PendingFolder>(path);
   inFolder(path, names);
-  sayWhatIsThere(path, names);
+  sayWhatIsThere(path, names, beside);
   if (isOurs(path)) {
     stale_ = names;
     stale_.emplace_back(kPageName);
@@ -202,14 +205,17 @@ std::string someOf(std::vector<std::string> names) {
 
 }  // namespace
 
-void Context::sayWhatIsThere(const std::string& path, const std::vector<std::string>& names) {
+void Context::sayWhatIsThere(const std::string& path, const std::vector<std::string>& names,
+                             const std::vector<std::string>& beside) {
+  const auto has = [](const std::vector<std::string>& list, const std::string& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
   std::vector<std::string> replaced, others;
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(path, ignored)) {
     const std::string name = entry.path().filename().string();
-    if (name.compare(0, 1, ".") == 0) continue;
-    const bool known = std::find(names.begin(), names.end(), name) != names.end();
-    (known ? replaced : others).push_back(name);
+    if (name.compare(0, 1, ".") == 0 || has(beside, name)) continue;
+    (has(names, name) ? replaced : others).push_back(name);
   }
   if (!replaced.empty() && !isOurs(path))
     warning(fmt::format("{}: replaces {}, and no report.json says that an earlier run wrote {}",

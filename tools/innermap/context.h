@@ -14,6 +14,7 @@
 #include "core/file.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"
+#include "innermap/mesh/mesh_file.h"
 #include "job_clock.h"
 #include "report/report.h"
 #include "report/verdict.h"
@@ -37,6 +38,7 @@ struct CommonOptions {
   int threads = 0;
   std::string maxMemory;
   double maxTime = std::numeric_limits<double>::infinity();  // seconds
+  SpaceSettings space;
   bool dryRun = false;
   bool strict = false;
   std::string report;
@@ -76,6 +78,11 @@ class Context {
   // Whether --max-time is over, so that no other part of the job is begun.
   bool timeIsUp();
 
+  // Which axes and units input has and output shall have. All that is read is brought to output's,
+  // by readMeshFile, readGridFile and inOutput (inputs.h) and the frames' AnimationSettings, and
+  // what is computed is in that.
+  const SpaceSettings& space() const { return options_.space; }
+
   bool dryRun() const { return options_.dryRun; }
   // What --dry-run says: a line for each thing that would be done, the seconds that expect() knows
   // of, and the peak of the process (also whether it is over the limit), on stdout. bytes: the need
@@ -100,9 +107,12 @@ class Context {
   // A folder of files that appear together; `names` are those that may be written. Those of an
   // earlier run that this one does not write again, and its
   // page, go. Files of other names stay untouched. Says which files that are no earlier run's are
-  // replaced, or stay. Null in a dry run.
+  // replaced, or stay; of those that `beside` names it says nothing. Null in a dry run.
   std::unique_ptr<PendingFolder> outputFolder(const std::string& path,
-                                              const std::vector<std::string>& names);
+                                              const std::vector<std::string>& names,
+                                              const std::vector<std::string>& beside = {});
+  // A file that is an output of this run and in place already.
+  void outputInPlace(const std::string& path);
   // Whether all outputs that are sure, but the report, are in place.
   bool allInPlace() const;
 
@@ -160,7 +170,8 @@ class Context {
 
  private:
   void inFolder(const std::string& folder, const std::vector<std::string>& names);
-  void sayWhatIsThere(const std::string& path, const std::vector<std::string>& names);
+  void sayWhatIsThere(const std::string& path, const std::vector<std::string>& names,
+                      const std::vector<std::string>& beside);
   void requireProgram() const;
 
   // The peak with so many bytes more, or with what was asked for before.

@@ -35,13 +35,14 @@ struct DeformOptions {
 };
 
 // What decides an output beside the frames' files.
-std::string settingsText(const DeformOptions& o) {
+std::string settingsText(const DeformOptions& o, const SpaceSettings& space) {
   const FrameFitterSettings& f = o.frames.fitting;
   const TransferOptions& t = o.transfer;
   const auto number = [](const auto& v) { return v ? fmt::format("{:.17g}", double(*v)) : "-"; };
   const AnimationSettings& a = o.frames.animation;
-  const std::string rest =
-      fmt::format("{};{};{}", number(a.restFrame), static_cast<int>(a.up), a.mesh);
+  const std::string rest = fmt::format("{};{};{};{};{};{};{}", number(a.restFrame), a.mesh,
+                                       a.animation, number(space.up), number(space.unitScale),
+                                       number(space.outUp), number(space.outUnitScale));
   return fmt::format(
       "{};{};{};{};{};{};{};{};{};{};{};{};{:.17g};{};{};{};{};{};{}", versionText(), f.sources,
       frameCollocation(f), number(f.distance), f.seed, t.grids, static_cast<int>(t.carry.sampling),
@@ -53,11 +54,11 @@ std::string settingsText(const DeformOptions& o) {
 // Tells which inputs and settings an output was made from.
 class Inputs {
  public:
-  Inputs(const DeformOptions& options, const Frames& frames)
+  Inputs(const DeformOptions& options, const Frames& frames, const SpaceSettings& space)
       : frames_(frames),
         neighbours_(options.velocity),
         common_(fmt::format("rest {}, volume {}, settings {:016x}", fingerprintOf(options.rest),
-                            fingerprintOf(options.volume), hashOf(settingsText(options)))) {}
+                            fingerprintOf(options.volume), hashOf(settingsText(options, space)))) {}
 
   std::string of(std::size_t index) const {
     std::string text = common_ + ", frame " + fingerprint(index);
@@ -200,6 +201,7 @@ void check(const DeformOptions& options, const Frames& frames) {
                  options.geometry);
   if (isGeometryFile(options.volume)) {
     if (options.velocity) throw UsageError("--velocity: is for volumes; leave it out");
+    if (!options.frames.usd.empty()) throw UsageError("--usd: is for volumes; leave it out");
     if (cache && equalsIgnoringCase(extensionOf(options.volume), ".stl"))
       throw FileError(options.volume,
                       "has no vertices that a point cache could hold; save it as .ply first");
@@ -268,6 +270,7 @@ void run(const DeformOptions& options, Context& context) {
     context.output(options.output);
   else
     context.outputs(framePaths(pattern, frames));
+  announceUsd(options.frames, context);
   if (isGeometryFile(options.volume))
     return deformGeometry({options.rest, options.volume, options.output, options.framesPerSecond(),
                            options.frames, options.transfer, options.geometry},
@@ -281,10 +284,10 @@ void run(const DeformOptions& options, Context& context) {
   std::optional<Inputs> inputs;
   Frames left;
   context.timed("compare", [&] {
-    inputs.emplace(options, frames);
+    inputs.emplace(options, frames, context.space());
     left = framesLeft(options, frames, pattern, *inputs, context);
   });
-  if (left.wanted.empty()) return;
+  if (left.wanted.empty()) return writeUsd(options.frames, pattern, frames, context);
   SourceBoundary rest = readRest(options.rest, frames, context);
   openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
   requireFrameMemory(options.frames.fitting, memoryOf(options, rest.solid, grids), context);
@@ -301,6 +304,7 @@ void run(const DeformOptions& options, Context& context) {
     });
     context.print(lineOf(frame, rows[index], seconds.front().second, options.frames.tolerance));
   });
+  writeUsd(options.frames, pattern, frames, context);
   context.report().add("grid", voxelSizeFigures(deformer.voxelSize()));
   // Of those that were made now; the others' are missing.
   std::vector<DeformedFrame> made(results.size());
@@ -355,6 +359,8 @@ Command makeDeformCommand() {
       .atMost(10);
   addTransferOptions(c, o->transfer);
   addGeometryOptions(c, o->geometry, false);
+  c.example(
+      "innermap deform rest.obj smoke.vdb walk.pc2 -o 'out/smoke.####.vdb' --usd out/smoke.usda");
   c.example("innermap deform rest.obj bones.obj 'walk.*.obj' -o 'out/bones.####.obj'");
   c.example("innermap deform rest.obj hair.obj walk.pc2 -o out/hair.pc2");
   c.example("innermap deform rest.obj smoke.vdb 'walk.*.obj' -o 'out/smoke.####.vdb' --density");

@@ -11,6 +11,7 @@
 #include "frame_loop.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/mesh/mesh_file.h"
+#include "inputs.h"
 #include "job_cost.h"
 #include "report/report_figures.h"
 
@@ -55,7 +56,9 @@ class Deformer {
     row.carried = context_.timed("carry", [&] {
       return carryFile(
           *file_,
-          [&](const Points& points, bool jacobians) { return pusher.push(map, points, jacobians); },
+          fromInput([&](const Points& points,
+                        bool jacobians) { return pusher.push(map, points, jacobians); },
+                    context_),
           settings, context_);
     });
     warnOf(*file_, row.carried, job_.transfer, fmt::format("frame {}: ", frame.number), context_);

@@ -36,11 +36,32 @@ void requireInverseMemory(const Solid& target, const EvaluateOptions& options,
                     });
 }
 
+// Throws UsageError for what only maps' grids heed.
+void requireInverseOptions(const EvaluateOptions& o) {
+  const EvaluateOptions plain;
+  const std::pair<const char*, bool> given[] = {
+      {"--repair", o.evaluation.repair != plain.evaluation.repair},
+      {"--lame-lambda", o.evaluation.lame.lambda != plain.evaluation.lame.lambda},
+      {"--lame-mu", o.evaluation.lame.mu != plain.evaluation.lame.mu},
+      {"--warn-folded", o.verdict.maxFolded != plain.verdict.maxFolded},
+      {"--warn-outside", o.verdict.maxOutside != plain.verdict.maxOutside},
+      {"--warn-crossings", o.verdict.maxCrossings != plain.verdict.maxCrossings}};
+  for (const auto& [option, changed] : given)
+    if (changed)
+      throw UsageError(std::string(option) + ": has no effect with --inverse; leave it out");
+}
+
+std::vector<JobPhase> inversePhases(const JobSize& size) {
+  return {stageOf("level set", size), stageOf("covering the target", size),
+          stageOf("inverting the map", size), stageOf("writing the VDB file", size)};
+}
+
 // Where each voxel of the target comes from.
 void runInverse(const EvaluateOptions& options, const MappedSolid& mapped, Context& context) {
   const Solid target = targetSolid(mapped, context);
   const auto settings = options.evaluation.grid.in<LevelSetSettings>();
   requireInterior(target, settings);
+  context.expect(inversePhases(jobSize(target, settings, mapped.map.sources())));
   if (context.dryRun())
     return context.plan({"invert " + options.map + " on its target's voxels",
                          "write the displacement to " + options.output},
@@ -67,6 +88,7 @@ void run(const EvaluateOptions& options, Context& context) {
   if (!options.inverse && isDisplacementField(options.output))
     throw UsageError("--output: only the displacement of --inverse is written to " +
                      options.output + "; name a .vdb file, or give --inverse");
+  if (options.inverse) requireInverseOptions(options);
   context.output(options.output);
   const MappedSolid mapped = readMapFile(options.map, context);
   if (options.inverse) return runInverse(options, mapped, context);

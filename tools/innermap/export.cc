@@ -55,6 +55,7 @@ void runReferences(const ExportOptions& options, Context& context) {
         {fmt::format("refer to {} .vdb files in {}", frames.size(), options.output)}, 0);
   UsdVolumeSettings settings = options.usd;
   settings.names = commaList(options.grids);
+  settings.space = context.space();
   context.timed("write", [&] { writeUsdVolume(options.output, frames, settings); });
   const std::string format = volumeFormatOf(options.output).name;
   context.print(fmt::format("{}: {}, refers to {} .vdb file{}\n", options.output, format,
@@ -140,6 +141,7 @@ Command makeExportCommand() {
   c.choice("--rows", "ORDER", &o->texture.rowsUp, {{"down", false}, {"up", true}},
            "down: a slice's first row has the least index (Direct3D, Unreal); up: the largest "
            "(OpenGL, Unity)");
+  c.addSpace();
   c.example("innermap export smoke.vdb -o smoke.exr --grids density --resolution 64 --cube --half");
   c.example("innermap export smoke.vdb -o smoke.nvdb --half");
   c.example("innermap export 'out/smoke.####.vdb' -o smoke.usda --fps 25");

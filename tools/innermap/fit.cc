@@ -21,7 +21,9 @@ void run(const FitOptions& options, Context& context) {
   context.output(options.output);
   Mesh source = readMeshFile(options.source, context);
   requireMeshMemory(options.target, context);
-  Mesh target = context.timed("read", [&] { return readMeshLike(options.target, source); });
+  Mesh target = context.timed("read", [&] {
+    return inOutput(options.target, readMeshLike(options.target, source), context);
+  });
   const FitMapSettings settings = fitMapSettings(options.fitting, source.vertices.size());
   const double places = bentPlaces(source, target.vertices, settings.tolerance);
   BoundaryPair pair = makeBoundaryPair(std::move(source), std::move(target));
@@ -59,6 +61,7 @@ Command makeFitCommand() {
   c.limitTime("after which refining and steps end");
   addFittingOptions(c, o->fitting);
   c.settings(describe(o->verdict));
+  c.addSpace();
   c.example("innermap fit rest.obj pose.obj -o map.ply");
   c.example("innermap fit rest.obj pose.obj -o map.ply --tolerance 1e-4 --best-effort");
   c.example("innermap fit rest.obj pose.obj -o map.ply --charges 4000 --distance 0.02");

@@ -50,7 +50,8 @@ std::string tryFrame(std::size_t index, const std::function<void(std::size_t)>& 
 }  // namespace
 
 std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& context,
-                                   const std::function<void(std::size_t)>& body) {
+                                   const std::function<void(std::size_t)>& body,
+                                   const std::function<void(const FrameResult&)>& ended) {
   std::vector<FrameResult> results;
   std::size_t finished = 0;
   try {
@@ -71,6 +72,7 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
         context.warning(fmt::format("frame {} is left out: {}", result.file.number, result.error));
       else
         ++finished;
+      if (ended) ended(result);
       results.push_back(std::move(result));
     }
   } catch (const Cancelled&) {
@@ -80,15 +82,19 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
   }
   context.setPart("");
   if (context.page()) context.page()->frame.reset();
-  context.report().add("frames", frameFigures(results));
   const std::size_t left = frames.wanted.size() - results.size();
-  context.report().add("frames", leftFigures(left));
   if (left > 0)
     context.warning(fmt::format("{} of {} frames are left, from {} on, as --max-time ended", left,
                                 frames.wanted.size(),
                                 frames.all[frames.wanted[results.size()]].number));
-  sayBroken(results, context);
+  concludeFrames(results, left, context);
   return results;
+}
+
+void concludeFrames(const std::vector<FrameResult>& results, std::size_t left, Context& context) {
+  context.report().add("frames", frameFigures(results));
+  context.report().add("frames", leftFigures(left));
+  sayBroken(results, context);
 }
 
 void writeFrame(const FrameFile& frame, const std::function<void()>& write) {

@@ -16,12 +16,16 @@ class OutputFailure : public Error {
   using Error::Error;
 };
 
-// Calls `body` for all wanted frames, with the frame's place in frames.all. FileErrors and
-// DataErrors of it make a broken frame. On cancelling, throws CancelledLate when `stays` is true
-// and frames were finished. Throws DataError when all frames are broken. Fills the report's
-// "frames" and sets the context's failure when some are.
+// Calls `body` for all wanted frames, with the frame's place in frames.all, and `ended` after each.
+// FileErrors and DataErrors of `body` make a broken frame. On cancelling, throws CancelledLate when
+// `stays` is true and frames were finished. Then calls concludeFrames().
 std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& context,
-                                   const std::function<void(std::size_t)>& body);
+                                   const std::function<void(std::size_t)>& body,
+                                   const std::function<void(const FrameResult&)>& ended = {});
+
+// Fills the report's "frames" and sets the context's failure when some are broken. Throws DataError
+// when all are.
+void concludeFrames(const std::vector<FrameResult>& results, std::size_t left, Context& context);
 
 // Calls `write`; its FileErrors become OutputFailures that name the frame.
 void writeFrame(const FrameFile& frame, const std::function<void()>& write);

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "core/file.h"
 #include "innermap/core/memory.h"
 #include "innermap/field/fit.h"
+#include "innermap/io/vdb_file.h"
 #include "inputs.h"
 #include "map_report.h"
 #include "report/page/contents.h"
@@ -16,6 +19,12 @@ std::string span(const std::vector<FrameFile>& frames) {
   return frames.size() == 1 ? fmt::format("the only one is {}", frames.front().number)
                             : fmt::format("there are {} from {} to {}", frames.size(),
                                           frames.front().number, frames.back().number);
+}
+
+std::vector<std::string> withFilesBeside(const std::string& path) {
+  std::vector<std::string> all = filesBeside(path);
+  all.push_back(path);
+  return all;
 }
 
 }  // namespace
@@ -41,6 +50,10 @@ void addFrameOptions(Command& command, FrameOptions& o) {
               "which animation of glTF, where several move the same")
       .defaults("all");
   command.limitTime("no frame begins later, but for the first; those that are left are counted");
+  command
+      .option("--usd", "FILE", &o.usd,
+              "also write a .usda file that refers to the frames' grids, for Solaris and usdview")
+      .writes({".usda"});
   command.settings(describe(o.fitting));
   command
       .option(
@@ -50,15 +63,19 @@ void addFrameOptions(Command& command, FrameOptions& o) {
       .unit("fraction of the frame's diagonal")
       .range(1e-12, 1);
   command.settings(describe(o.verdict, true));
+  command.addSpace();
 }
 
 Frames listFrames(const FrameOptions& options, const std::string& rest, Context& context) {
   if (options.files.empty() && !isGltf(rest))
     throw UsageError("FRAMES: is missing; give files, a folder, a pattern, or an animation file");
   Frames frames;
-  frames.source = openFrames(options.files.empty() ? std::vector<std::string>{rest} : options.files,
-                             options.animation);
   frames.animation = options.animation;
+  frames.animation.space = context.space();
+  frames.source = openFrames(options.files.empty() ? std::vector<std::string>{rest} : options.files,
+                             frames.animation);
+  if (isGltf(rest))
+    for (const std::string& path : filesBeside(rest)) context.input(path);
   std::vector<std::string> left;
   for (const std::string& path : frames.source->unnumbered)
     if (!isSameFile(path, rest)) left.push_back(path);
@@ -71,7 +88,7 @@ Frames listFrames(const FrameOptions& options, const std::string& rest, Context&
     frames.all.push_back({frames.source->numbers[i], frames.source->path(i)});
   for (std::size_t i = 0; i < frames.all.size(); ++i)
     if (frames.all[i].path != (i == 0 ? rest : frames.all[i - 1].path))
-      context.input(frames.all[i].path);
+      for (const std::string& path : withFilesBeside(frames.all[i].path)) context.input(path);
   std::optional<FrameRanges> ranges;
   if (!options.ranges.empty()) ranges.emplace("--frames", options.ranges);
   for (std::size_t i = 0; i < frames.all.size(); ++i)
@@ -80,6 +97,28 @@ Frames listFrames(const FrameOptions& options, const std::string& rest, Context&
     throw SettingError("--frames", fmt::format("'{}' has none of the frames; {}", options.ranges,
                                                span(frames.all)));
   return frames;
+}
+
+void announceUsd(const FrameOptions& options, Context& context) {
+  if (!options.usd.empty()) context.output(options.usd);
+}
+
+void writeUsd(const FrameOptions& options, const FramePattern& pattern, const Frames& frames,
+              Context& context) {
+  if (options.usd.empty()) return;
+  std::vector<UsdFrame> there;
+  std::error_code ignored;
+  for (const std::size_t index : frames.wanted) {
+    const std::int64_t number = frames.all[index].number;
+    if (std::filesystem::is_regular_file(pattern.path(number), ignored))
+      there.push_back({number, pattern.path(number)});
+  }
+  UsdVolumeSettings settings;
+  settings.framesPerSecond = options.animation.framesPerSecond;
+  // The grids are in it already.
+  settings.space.up = context.space().upOfOutput();
+  settings.space.unitScale = context.space().unitOfOutput();
+  context.timed("write", [&] { writeUsdVolume(options.usd, there, settings); });
 }
 
 std::vector<std::string> framePaths(const FramePattern& pattern, const Frames& frames) {
@@ -107,13 +146,18 @@ FrameFitter makeFrameFitter(SourceBoundary source, const FrameFitterSettings& se
   return fitter;
 }
 
+void noteJumps(std::int64_t frame, const std::string& jumps, Context& context) {
+  context.note(fmt::format("from frame {} on: {}", frame, jumps));
+}
+
 FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context& context) {
   std::vector<std::int64_t> numbers;
   for (const FrameFile& frame : frames.all) numbers.push_back(frame.number);
   std::shared_ptr<PageFrames> shown;
   if (context.page())
     shown = std::make_shared<PageFrames>(*context.page(), fitter.rest().mesh, frames.wanted.size());
-  return {std::move(numbers), [&, shown, told = false](std::size_t index) mutable {
+  // The first frame of a share need not be the run's.
+  return {std::move(numbers), [&, shown, told = frames.share](std::size_t index) mutable {
             const FrameFile& frame = frames.all[index];
             const Mesh mesh = context.timed(
                 "read", [&] { return frames.source->read(index, fitter.rest().mesh); });
@@ -121,8 +165,7 @@ FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context
             addSeconds(context.report().seconds, fit.seconds);
             for (const std::string& warning : fit.warnings)
               context.warning(fmt::format("frame {}: {}", frame.number, warning));
-            if (!fit.jumps.empty() && !told)
-              context.note(fmt::format("from frame {} on: {}", frame.number, fit.jumps));
+            if (!fit.jumps.empty() && !told) noteJumps(frame.number, fit.jumps, context);
             told = told || !fit.jumps.empty();
             if (shown) shown->add(frame.number, mesh.vertices, fit);
             return fit;

@@ -17,7 +17,7 @@ namespace innermap::tool {
 
 struct FrameOptions {
   std::vector<std::string> files;
-  std::string ranges;
+  std::string ranges, usd;
   AnimationSettings animation;
   FrameFitterSettings fitting;
   double tolerance = kUsualTolerance;  // that frames are judged by
@@ -33,11 +33,18 @@ struct Frames {
   AnimationSettings animation;
   std::vector<FrameFile> all;       // the source's, ascending
   std::vector<std::size_t> wanted;  // of all, those that --frames chooses
+  bool share = false;               // wanted are some of a run's that is cut up
 };
 
 // Files without a number that a pattern or folder holds are noted, but for the rest pose. Throws
 // FileError, SettingError.
 Frames listFrames(const FrameOptions& options, const std::string& rest, Context& context);
+
+// Tells of options.usd, which refers to frames of grids. Call it before anything is read.
+void announceUsd(const FrameOptions& options, Context& context);
+// Writes it, of those of the frames wanted that are there.
+void writeUsd(const FrameOptions& options, const FramePattern& pattern, const Frames& frames,
+              Context& context);
 
 // The output of each of the frames wanted.
 std::vector<std::string> framePaths(const FramePattern& pattern, const Frames& frames);
@@ -49,6 +56,9 @@ SourceBoundary readRest(const std::string& rest, const Frames& frames, Context& 
 // Its fitter; fills the report's "solve".
 FrameFitter makeFrameFitter(SourceBoundary source, const FrameFitterSettings& settings,
                             Context& context);
+
+// Told once in a run: from which frame on its parts move so.
+void noteJumps(std::int64_t frame, const std::string& jumps, Context& context);
 
 // Reads and fits frames.all as they are asked for. All three must outlive the result.
 FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context& context);

@@ -23,6 +23,7 @@ void writeGridFile(const std::string& path, const openvdb::GridPtrVec& grids,
   if (context.page()) addGrids(*context.page(), grids);
   VdbWriteSettings settings;
   settings.names = names;
+  if (context.space().given()) sayInGrids(grids, context.space());
   context.timed("write", [&] { writeVdb(path, grids, metadata, settings); });
 }
 

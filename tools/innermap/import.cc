@@ -51,8 +51,9 @@ void run(const ImportOptions& options, Context& context) {
                          "write grids to " + options.output},
                         need.memory);
   }
-  const VolumeTextureContents contents =
+  VolumeTextureContents contents =
       context.timed("read", [&] { return readVolumeTexture(options.file, settings); });
+  moveGrids(contents.grids, inputToOutput(context.space()));
   if (contents.notFinite > 0)
     context.warning(
         fmt::format("{}: {} values are infinite or no numbers", options.file, contents.notFinite));
@@ -114,6 +115,7 @@ Command makeImportCommand() {
            "class of the grids")
       .defaults("from the file, else unknown")
       .advanced();
+  c.addSpace();
   c.example("innermap import smoke.exr -o smoke.vdb");
   c.example("innermap import scan.nii.gz -o scan.vdb");
   c.example(

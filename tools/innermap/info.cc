@@ -11,6 +11,7 @@
 #include "innermap/field/field_file.h"
 #include "innermap/io/exr_slices.h"
 #include "innermap/io/vdb_file.h"
+#include "innermap/io/volume_texture.h"
 #include "innermap/mesh/mesh_file.h"
 #include "inputs.h"
 #include "report/info_json.h"
@@ -85,6 +86,15 @@ std::string exrInfo(const InfoOptions& options) {
   return describe(parts, options.file) + (volume ? describe(*volume) : "");
 }
 
+bool isVolumeFile(const std::string& path) {
+  return volumeFormatOf(path).name != volumeFormats().front().name;
+}
+
+std::string volumeInfo(const InfoOptions& options) {
+  const VolumeFileInfo info = readVolumeFileInfo(options.file);
+  return options.json ? infoJson(options.file, info) : describe(info, options.file);
+}
+
 std::string gltfText(const std::string& path, const AnimationInfo& info) {
   std::string text = fmt::format("{}: glTF, {} meshes, {} animations\n", path, info.meshes.size(),
                                  info.animations.size());
@@ -117,6 +127,7 @@ void run(const InfoOptions& options, Context& context) {
   // A dry run reads too, as only what is in the file tells what it takes.
   const std::string text = e == ".vdb"                     ? vdbInfo(options)
                            : e == ".exr"                   ? exrInfo(options)
+                           : isVolumeFile(options.file)    ? volumeInfo(options)
                            : isAnimationFile(options.file) ? animationInfo(options)
                            : isFieldFile(options.file)     ? mapInfo(options)
                                                            : meshInfo(options, context);
@@ -128,8 +139,13 @@ void run(const InfoOptions& options, Context& context) {
 
 Command makeInfoCommand() {
   auto o = std::make_shared<InfoOptions>();
-  Command c("info", "Say what is in a file: grids, a map, a mesh, an animation, or EXR parts");
-  c.positional("FILE", &o->file, "a .vdb, .exr, map, mesh, .mdd, .pc2 or glTF file");
+  Command c(
+      "info",
+      "Say what is in a file: grids, a map, a mesh, an animation, or a volume of another format");
+  c.positional(
+      "FILE", &o->file,
+      "a .vdb, .exr, .nvdb, .vti, .dds, .nii, .nii.gz or .usda file, a map, mesh, .mdd, .pc2 or "
+      "glTF file");
   c.flag("--metadata", &o->metadata,
          "also all metadata of the grids, or all that a map's file says");
   c.flag("--json", &o->json, "machine-readable, with all metadata, on stdout");

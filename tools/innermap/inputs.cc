@@ -21,18 +21,40 @@ void requireMeshMemory(const std::string& path, const Context& context) {
 
 Mesh readMeshFile(const std::string& path, Context& context) {
   requireMeshMemory(path, context);
-  Mesh mesh = context.timed("read", [&] { return readMesh(path); });
+  for (const std::string& beside : filesBeside(path)) context.input(beside);
+  Mesh mesh = context.timed("read", [&] { return readMesh(path, context.space()); });
   if (context.page()) addMesh(*context.page(), mesh);
   return mesh;
+}
+
+Mesh inOutput(const std::string& path, Mesh mesh, const Context& context) {
+  move(mesh.vertices,
+       isGltf(path) ? gltfToOutput(context.space()) : inputToOutput(context.space()));
+  return mesh;
+}
+
+PointCarry fromInput(PointCarry carry, const Context& context) {
+  const Similarity toOutput = inputToOutput(context.space());
+  if (toOutput.isIdentity()) return carry;
+  return [=, carry = std::move(carry)](const Points& points, bool jacobians) {
+    Points there = points;
+    move(there, toOutput);
+    CarriedPoints out = carry(there, jacobians);
+    for (Mat3& jacobian : out.jacobians) jacobian = product(jacobian, toOutput.matrix());
+    return out;
+  };
 }
 
 openvdb::GridPtrVec readGridFile(const std::string& path, const std::vector<std::string>& names,
                                  Context& context) {
   VdbReadSettings settings;
   settings.names = names;
-  context.requireMemory("reading " + path, readMemory(readVdbInfo(path), names),
+  const Similarity toOutput = inputToOutput(context.space());
+  context.requireMemory("reading " + path,
+                        (toOutput.isIdentity() ? 1 : 2) * readMemory(readVdbInfo(path), names),
                         "read fewer of its grids or raise --max-memory");
   openvdb::GridPtrVec grids = context.timed("read", [&] { return readVdb(path, settings).grids; });
+  moveGrids(grids, toOutput);
   if (context.page()) addGrids(*context.page(), grids);
   return grids;
 }

@@ -9,6 +9,7 @@
 #include "context.h"
 #include "innermap/fit/mapped_solid.h"
 #include "innermap/mesh/mesh.h"
+#include "innermap/transfer/inverse_map.h"
 
 namespace innermap::tool {
 
@@ -19,9 +20,16 @@ constexpr double kMeshByte = 2.6;
 void requireMeshMemory(const std::string& path, const Context& context);
 
 // Throws as these, and as innermap::readMesh does.
+// In output's space.
 Mesh readMeshFile(const std::string& path, Context& context);
 
-// The grids of these names, or all. Throws as innermap::readVdb does.
+// What was read otherwise.
+Mesh inOutput(const std::string& path, Mesh mesh, const Context& context);
+// Carries points that are in input's space.
+PointCarry fromInput(PointCarry carry, const Context& context);
+
+// The grids of these names, or all, in output's space. Throws as innermap::readVdb and moveGrids
+// do.
 openvdb::GridPtrVec readGridFile(const std::string& path, const std::vector<std::string>& names,
                                  Context& context);
 

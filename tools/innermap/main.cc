@@ -14,10 +14,10 @@
 #include "core/file.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
-#include "innermap/core/version.h"
 #include "run_record.h"
 #include "signals.h"
 #include "terminal_progress.h"
+#include "version.h"
 
 namespace innermap::tool {
 namespace {
@@ -94,7 +94,7 @@ void runCommand(const std::vector<std::string>& arguments) {
     return;
   }
   const std::string& first = arguments.front();
-  const auto printVersion = [] { std::printf("innermap %s\n", versionText()); };
+  const auto printVersion = [] { std::fputs(versionAndLibraries().c_str(), stdout); };
   if (first == "--version" || first == "-V") return printVersion();
   if (first == "--help" || first == "-h" || first == "--help-all") {
     std::fputs(generalHelp().c_str(), stdout);
@@ -104,6 +104,7 @@ void runCommand(const std::vector<std::string>& arguments) {
   CommonOptions common;
   parseArguments(command, common, {arguments.begin() + 1, arguments.end()});
   common.maxTime = command.maxTime();
+  common.space = command.space();
   if (common.version) return printVersion();
   if (common.help || common.helpAll) {
     std::fputs(commandHelp(command, common.helpAll).c_str(), stdout);

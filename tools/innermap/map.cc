@@ -59,8 +59,10 @@ Meshes readMeshes(const MapOptions& options, Context& context) {
   Meshes meshes;
   meshes.source = readMeshFile(options.source, context);
   if (!options.correspondence.empty()) {
-    meshes.target = context.timed(
-        "read", [&] { return readCorrespondence(options.correspondence, meshes.source); });
+    meshes.target = context.timed("read", [&] {
+      return inOutput(options.correspondence,
+                      readCorrespondence(options.correspondence, meshes.source), context);
+    });
     if (!options.target.empty())
       requireOnTarget(meshes.target, readMeshFile(options.target, context));
     return meshes;
@@ -68,7 +70,7 @@ Meshes readMeshes(const MapOptions& options, Context& context) {
   requireMeshMemory(options.target, context);
   TargetMesh target =
       context.timed("read", [&] { return readTarget(options.target, meshes.source); });
-  meshes.target = std::move(target.mesh);
+  meshes.target = inOutput(options.target, std::move(target.mesh), context);
   meshes.related = target.related;
   if (!meshes.related && context.page()) addMesh(*context.page(), meshes.target);
   return meshes;
@@ -257,6 +259,7 @@ Command makeMapCommand() {
   addFittingOptions(c, o->fitting);
   addEvaluationOptions(c, o->evaluation);
   c.settings(describe(o->verdict));
+  c.addSpace();
   c.group("slices and picture");
   c.choice("--slice-axis", "AXIS", &o->slices.axis, {{"x", 0}, {"y", 1}, {"z", 2}}, "of slices.exr")
       .advanced();

@@ -199,11 +199,12 @@ void runGeometry(Way way, const CarryOptions& options, Context& context) {
       options.through.empty()
           ? carryOf(way, mapped, settings, context)
           : carryThrough(readThrough(options.through, mapped, context), way == Way::push, settings);
+  const PointCarry whole = fromInput(carry, context);
   const double diagonal =
       way == Way::push ? boundingBox(moved).diagonal() : mapped.solid().diagonal();
   const CarryGeometrySettings how{options.geometry.subdivide * diagonal, options.geometry.splats};
   const CarriedGeometry carried =
-      context.timed("carry", [&] { return carryFile(*file, carry, how, context); });
+      context.timed("carry", [&] { return carryFile(*file, whole, how, context); });
   warnOf(*file, carried, options.transfer, "", context);
   context.detail(reportGeometry(*file, carried, context));
   context.judge(judgeMap(mapped, nullptr, options.verdict, MapOrigin::file));
@@ -254,6 +255,7 @@ Command makeCarryCommand(Way way, const std::string& name, const std::string& su
   addTransferOptions(c, o->transfer);
   addGeometryOptions(c, o->geometry, true);
   c.settings(describe(o->verdict));
+  c.addSpace();
   c.run([o, way](Context& context) { run(way, *o, context); });
   return c;
 }

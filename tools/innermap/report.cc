@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -15,6 +16,7 @@
 #include "innermap/mesh/mesh_file.h"
 #include "inputs.h"
 #include "report/page/contents.h"
+#include "report_page.h"
 
 namespace innermap::tool {
 namespace {
@@ -81,6 +83,23 @@ std::string found(const std::string& path, const fs::path& folder) {
 }
 
 // As the run was told.
+SpaceSettings spaceOf(const Json& report) {
+  SpaceSettings space;
+  const auto axis = [&](const char* key, std::optional<UpAxis>* up) {
+    const std::string text = textAt(report, "settings", key);
+    if (text == "y" || text == "z") *up = text == "z" ? UpAxis::z : UpAxis::y;
+  };
+  const auto unit = [&](const char* key, std::optional<double>* metres) {
+    if (const Json* v = at(report, "settings", key); v && v->is_number())
+      *metres = v->get<double>();
+  };
+  axis("up", &space.up);
+  axis("out_up", &space.outUp);
+  unit("unit_scale", &space.unitScale);
+  unit("out_unit_scale", &space.outUnitScale);
+  return space;
+}
+
 AnimationSettings animationOf(const Json& report) {
   AnimationSettings settings;
   const Json* first = at(report, "settings", "first_frame");
@@ -89,17 +108,25 @@ AnimationSettings animationOf(const Json& report) {
     settings.framesPerSecond = fps->get<double>();
   const Json* restFrame = at(report, "settings", "rest");
   if (restFrame && restFrame->is_number_integer()) settings.restFrame = restFrame->get<int>();
-  if (textAt(report, "settings", "up") == "z") settings.up = UpAxis::z;
+  settings.space = spaceOf(report);
   settings.mesh = textAt(report, "settings", "mesh");
   settings.animation = textAt(report, "settings", "animation");
   return settings;
 }
 
+// Files that hold all frames, each opened once.
+using Sources = std::map<std::string, std::unique_ptr<FrameSource>>;
+
 // Frame `number` of a file, which may hold all of them.
-Mesh readFrame(const std::string& path, std::int64_t number, const Json& report, const Mesh& rest) {
-  if (!isAnimationFile(path)) return readMeshLike(path, rest);
-  const AnimationSettings settings = animationOf(report);
-  const auto source = openFrames({path}, settings);
+Mesh readFrame(const std::string& path, std::int64_t number, const Json& report, const Mesh& rest,
+               Sources& sources) {
+  if (!isAnimationFile(path)) {
+    Mesh mesh = readMeshLike(path, rest);
+    move(mesh.vertices, inputToOutput(spaceOf(report)));
+    return mesh;
+  }
+  std::unique_ptr<FrameSource>& source = sources[path];
+  if (!source) source = openFrames({path}, animationOf(report));
   const auto place = std::find(source->numbers.begin(), source->numbers.end(), number);
   if (place == source->numbers.end())
     throw DataError(fmt::format("{}: has no frame {}", path, number));
@@ -111,6 +138,7 @@ void addFrames(Page& page, const Json& report, const Mesh& rest, const fs::path&
   if (!files || !numbers || !files->is_array() || !numbers->is_array()) return;
   const std::size_t count = std::min(files->size(), numbers->size());
   PageFrames frames(page, rest, count);
+  Sources sources;
   for (std::size_t i = 0; i < count; ++i) {
     throwIfCancelled();
     const Json &file = (*files)[i], &number = (*numbers)[i];
@@ -118,7 +146,7 @@ void addFrames(Page& page, const Json& report, const Mesh& rest, const fs::path&
     tried(page, [&] {
       const std::int64_t which = std::llround(number.get<double>());
       const std::string path = found(file.get<std::string>(), folder);
-      frames.add(which, readFrame(path, which, report, rest).vertices);
+      frames.add(which, readFrame(path, which, report, rest, sources).vertices);
     });
   }
 }
@@ -132,14 +160,15 @@ void addSurfaces(Page& page, const Json& report, const fs::path& folder) {
   Mesh rest;
   if (!tried(page, [&] {
         const std::string path = found(source, folder);
-        rest = isGltf(path) ? readRestPose(path, animationOf(report)) : readMesh(path);
+        rest = isGltf(path) ? readRestPose(path, animationOf(report))
+                            : readMesh(path, spaceOf(report));
       }))
     return;
   if (at(report, "frames", "file")) return addFrames(page, report, rest, folder);
   addMesh(page, rest);
   if (target.empty()) return;
   tried(page, [&] {
-    const Mesh other = readMesh(found(target, folder));
+    const Mesh other = readMesh(found(target, folder), spaceOf(report));
     if (other.triangles == rest.triangles && other.vertices.size() == rest.vertices.size())
       showPair(page, rest, other.vertices);
     else
@@ -235,6 +264,12 @@ void run(const ReportOptions& options, Context& context) {
 }
 
 }  // namespace
+
+void showOutputs(Page& page, const std::string& report, const std::string& folder) {
+  const Json parsed = Json::parse(report);
+  addSurfaces(page, parsed, folder);
+  addGridsOf(page, parsed, folder);
+}
 
 Command makeReportCommand() {
   auto o = std::make_shared<ReportOptions>();

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "commands.h"
+#include "core/file.h"
 #include "frame_loop.h"
 #include "grid_options.h"
 #include "job_cost.h"
@@ -12,7 +13,8 @@
 #include "report/figures.h"
 #include "report/page/page.h"
 #include "report/report_figures.h"
-#include "report/sequence_table.h"
+#include "sequence_result.h"
+#include "share.h"
 
 namespace innermap::tool {
 namespace {
@@ -22,6 +24,7 @@ constexpr const char* kEnergies = "energies";  // --grids alone
 struct SequenceOptions {
   std::string rest, output;
   std::string grids, gridList;  // to write, and what their list was called once
+  ShareOptions farm;
   FrameOptions frames;
   EvaluationOptions evaluation;
 };
@@ -80,13 +83,27 @@ FrameEvaluator makeEvaluator(const SequenceOptions& options, const FrameFitter& 
 }
 
 void run(const SequenceOptions& options, Context& context) {
+  if (!options.frames.usd.empty() && options.grids.empty())
+    throw UsageError("--usd: refers to grids; give --grids too");
+  if (!options.frames.usd.empty() && !options.farm.share.empty())
+    throw UsageError(
+        "--usd: refers to all frames, which a share does not make; leave it out, and `innermap "
+        "export` the .vdb files to a .usda file afterwards");
+  applyCpuTarget(options.farm);
   gridsToWrite(options);  // refuses names that cannot be before anything is read
   if (!options.gridList.empty()) context.note("--grid-list is now the list of --grids=LIST");
-  const Frames frames = listFrames(options.frames, options.rest, context);
+  Frames frames = listFrames(options.frames, options.rest, context);
   const FramePattern pattern("--output", options.output + "/energy.####.vdb");
-  const auto folder =
-      context.outputFolder(options.output, {"energies.csv", "energies.svg", "report.json"});
+  std::unique_ptr<PendingFolder> folder;
+  std::optional<FrameShare> share;
+  if (options.farm.share.empty())
+    folder = context.outputFolder(options.output, sequenceFiles());
+  else
+    share.emplace(options.farm.share, options.output, fingerprintOf(options.rest),
+                  options.grids.empty() ? nullptr : &pattern, frames, context);
+  if (frames.wanted.empty()) return;
   if (!options.grids.empty()) context.outputs(framePaths(pattern, frames));
+  announceUsd(options.frames, context);
   const FrameFitterSettings settings = options.frames.fitting;
   SourceBoundary rest = readRest(options.rest, frames, context);
   requireInterior(rest.solid, options.evaluation.grid.in<LevelSetSettings>());
@@ -98,19 +115,24 @@ void run(const SequenceOptions& options, Context& context) {
   phases.insert(phases.end() - 1, stageOf("level set", size));
   context.expect(phases);
   if (context.dryRun())
-    return context.plan(
-        {framesPlan(settings, frames),
-         "write energies.csv, energies.svg and report.json" +
-             std::string(!options.grids.empty() ? " and the grids of each frame" : "") + " to " +
-             options.output},
-        frameFitterMemory(settings, gridsNeed));
+    return context.plan({framesPlan(settings, frames),
+                         "write " +
+                             std::string(share ? "a part of each frame"
+                                               : "energies.csv, energies.svg and report.json") +
+                             (!options.grids.empty() ? " and the grids of each frame" : "") +
+                             " to " + options.output},
+                        frameFitterMemory(settings, gridsNeed));
   requireFrameMemory(settings, gridsNeed, context);
   const FrameFitter fitter = makeFrameFitter(std::move(rest), settings, context);
   const FrameEvaluator evaluator = makeEvaluator(options, fitter, context);
   FrameFits fits = makeFrameFits(fitter, frames, context);
+  const SequenceJudge judge{fitter.rest().mesh.name, options.frames.tolerance,
+                            options.frames.verdict};
+  if (share) share->begin(partValues(judge));
   std::vector<SequenceRow> rows;
+  PartValues made;
   context.print(sequenceHeader());
-  const auto results = runFrames(frames, !options.grids.empty(), context, [&](std::size_t index) {
+  const auto makeFrame = [&](std::size_t index) {
     const FrameFile& frame = frames.all[index];
     const std::shared_ptr<const FrameFit> fit = fits.at(index);
     const MapGrids grids = context.timed("evaluate", [&] { return evaluator.evaluate(*fit); });
@@ -122,23 +144,17 @@ void run(const SequenceOptions& options, Context& context) {
     else if (context.page())
       addGrids(*context.page(), evaluator.grids({fit.get(), frame.number}, grids));
     rows.push_back(rowOf(frame, *fit, grids, options.frames.tolerance));
+    if (share) made = partValues(rows.back(), fit->jumps);
     context.print(sequenceLine(rows.back()));
-  });
-  const std::string seconds = secondsText(results, context);
-  const std::vector<SequenceRow> table = withBroken(rows, results);
-  fillReport(table, context.report());
-  std::vector<JudgedFrame> judged;
-  for (const SequenceRow& r : rows)
-    judged.push_back({r.file.number, r.error.p99, r.folded, r.outside});
-  context.judge(judgeFrames(judged, options.frames.tolerance, options.frames.verdict));
-  context.timed("write", [&] {
-    folder->write("energies.csv",
-                  [&](const std::string& path) { writeSequenceTable(path, table); });
-    folder->write("energies.svg", [&](const std::string& path) {
-      writeChart(path, sequenceChart(table, fitter.rest().mesh.name));
-    });
-  });
-  context.print(seconds);
+  };
+  const auto frameEnded = [&](const FrameResult& result) {
+    if (share) share->ended(result, made);
+  };
+  const auto results =
+      runFrames(frames, share || !options.grids.empty(), context, makeFrame, frameEnded);
+  if (share) return share->conclude(results);
+  writeUsd(options.frames, pattern, frames, context);
+  concludeSequence(judge, rows, results, context, *folder);
   context.finish(*folder);
 }
 
@@ -168,6 +184,7 @@ Command makeSequenceCommand() {
            fmt::format("{}", fmt::join(mapGridNames(), ", ")))
       .implied(kEnergies);
   c.option("--grid-list", "LIST", &o->gridList, "formerly the LIST of --grids=LIST").advanced();
+  addShareOptions(c, o->farm);
   c.example("innermap sequence rest.obj 'frames/*.obj' -o energies");
   c.example("innermap sequence rest.obj 'walk.####.obj' -o energies --frames 1-48x2 --grids");
   c.run([o](Context& context) { run(*o, context); });

@@ -89,6 +89,11 @@ OutsideSettings outsideSettings(const TransferOptions& options, const Points& fr
 
 openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& options,
                                Context& context) {
+  const bool tensors = !options.stress.empty() || !options.strain.empty();
+  if (tensors && !inputToOutput(context.space()).isIdentity())
+    throw UsageError(
+        "--stress and --strain: are carried in the axes and unit that they have; leave out "
+        "--out-up and --out-unit-scale");
   openvdb::GridPtrVec grids = readGridFile(path, commaList(options.grids), context);
   if (grids.empty()) throw FileError(path, "holds no grid");
   requireCarriable(grids, carrySettings(options));

@@ -100,8 +100,8 @@ std::vector<Deformation> deformationsOf(const Points& from, const Points& to,
 
 // What lays `to` on `from` best by least squares over the vertices, weighted by area, when scaled
 // by 1 / growth. As the way back, from there to `to`.
-Similarity alignment(const Points& from, const Points& to, const std::vector<Triangle>& triangles,
-                     double growth) {
+ScaledMotion alignment(const Points& from, const Points& to, const std::vector<Triangle>& triangles,
+                       double growth) {
   std::vector<double> weight(from.size(), 0);
   for (const Triangle& t : triangles)
     for (const int v : t)
@@ -121,7 +121,7 @@ Similarity alignment(const Points& from, const Points& to, const std::vector<Tri
     covariance += weight[v] * (vector(to[v]) - b) * (vector(from[v]) - a).transpose();
   const bool mirrored = signedVolume(from, triangles) * signedVolume(to, triangles) < 0;
   const Matrix3d r = rotationOf(covariance, mirrored ? -1 : 1);
-  Similarity out;
+  ScaledMotion out;
   out.scale = growth;
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k) out.rotation[i][k] = r(i, k);
@@ -129,7 +129,7 @@ Similarity alignment(const Points& from, const Points& to, const std::vector<Tri
   return out;
 }
 
-Points movedBack(const Similarity& motion, const Points& points) {
+Points movedBack(const ScaledMotion& motion, const Points& points) {
   const Mat3 back = transposed(motion.rotation);
   Points out;
   out.reserve(points.size());
@@ -141,7 +141,7 @@ Points movedBack(const Similarity& motion, const Points& points) {
 }  // namespace
 
 struct ShapePath::Implementation {
-  Similarity rest;
+  ScaledMotion rest;
   Points from, to;  // `to` as at(1)
   std::vector<Triangle> triangles;
   std::vector<Deformation> deformations;
@@ -183,7 +183,7 @@ ShapePath::ShapePath(const Points& from, const Points& to, const std::vector<Tri
 ShapePath::~ShapePath() = default;
 ShapePath::ShapePath(ShapePath&&) noexcept = default;
 
-const Similarity& ShapePath::rest() const { return implementation_->rest; }
+const ScaledMotion& ShapePath::rest() const { return implementation_->rest; }
 
 Points ShapePath::at(double t) const {
   const Implementation& d = *implementation_;
@@ -210,7 +210,7 @@ Points ShapePath::at(double t) const {
   return out;
 }
 
-HarmonicField movedBy(const Similarity& motion, const HarmonicField& field) {
+HarmonicField movedBy(const ScaledMotion& motion, const HarmonicField& field) {
   const auto turned = [&](const Matrix& rows, std::size_t r) {
     return motion.scale * (motion.rotation * Vec3{rows(r, 0), rows(r, 1), rows(r, 2)});
   };

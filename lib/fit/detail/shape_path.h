@@ -18,7 +18,7 @@ namespace innermap {
 
 // p -> scale rotation p + translation. The rotation has a reflection in it where a path leads to a
 // mirror's image.
-struct Similarity {
+struct ScaledMotion {
   double scale = 1;
   Mat3 rotation{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   Vec3 translation;
@@ -39,7 +39,7 @@ class ShapePath {
   Points at(double t) const;
 
   // From at(1) to `to`.
-  const Similarity& rest() const;
+  const ScaledMotion& rest() const;
 
  private:
   struct Implementation;
@@ -47,6 +47,6 @@ class ShapePath {
 };
 
 // The field p -> motion(field(p)). Three channels.
-HarmonicField movedBy(const Similarity& motion, const HarmonicField& field);
+HarmonicField movedBy(const ScaledMotion& motion, const HarmonicField& field);
 
 }  // namespace innermap

@@ -6,39 +6,31 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <optional>
 
+#include "core/byte_order.h"
 #include "core/file_bytes.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"
 #include "io/nifti/detail/gzip.h"
 #include "io/nifti/detail/nifti_header.h"
+#include "io/volume/detail/volume_file_info.h"
 #include "io/volume/detail/volume_formats.h"
 
 namespace innermap {
 namespace {
 
 template <class T>
-T raw(const char* at, bool swapped) {
-  char ordered[sizeof(T)];
-  for (std::size_t k = 0; k < sizeof(T); ++k) ordered[k] = at[swapped ? sizeof(T) - 1 - k : k];
-  T value;
-  std::memcpy(&value, ordered, sizeof(T));
-  return value;
-}
-
-template <class T>
 double real(const char* at, bool swapped) {
-  return static_cast<double>(raw<T>(at, swapped));
+  return static_cast<double>(numberAt<T>(at, swapped));
 }
 
 template <class T>
 std::int64_t whole(const char* at, bool swapped) {
-  const T value = raw<T>(at, swapped);
+  const T value = numberAt<T>(at, swapped);
   if constexpr (std::is_same_v<T, std::uint64_t>)
     return static_cast<std::int64_t>(
         std::min<T>(value, static_cast<T>(std::numeric_limits<std::int64_t>::max())));
@@ -227,6 +219,39 @@ openvdb::GridBase::Ptr gridOf(const NiftiFile& file, const char* values, double 
 VolumeTextureNeed niftiNeed(const std::string& path, const VolumeTextureReadSettings& settings) {
   const NiftiFile file = open(path, settings);
   return {file.size(), file.memory()};
+}
+
+VolumeFileInfo niftiInfo(const std::string& path) {
+  VolumeTextureReadSettings settings;
+  const auto told = [&] {
+    try {
+      return open(path, settings);
+    } catch (const FileError&) {  // it may lack orientation alone
+      settings.asVoxels = true;
+      return open(path, settings);
+    }
+  };
+  const NiftiFile file = told();
+  VolumeFileInfo::Grid grid;
+  grid.name = nameOf(file, {});
+  grid.type = file.components == 3                   ? "vec3s"
+              : file.labels()                        ? (file.type->wide ? "int64" : "int32")
+              : file.type->wide && !file.type->whole ? "double"
+                                                     : "float";
+  grid.resolution = file.size();
+  openvdb::Vec3d voxel;
+  for (int a = 0; a < 3; ++a) {
+    const openvdb::Vec4d row = file.place.row(a);
+    voxel[a] = openvdb::Vec3d(row[0], row[1], row[2]).length();
+  }
+  grid.voxelSize = voxel;
+  grid.worldBox = boxOf(file.place, grid.resolution);
+  VolumeFileInfo info;
+  info.grids.push_back(grid);
+  info.facts.emplace_back("place by", settings.asVoxels       ? "voxels: the file says none"
+                                      : file.header.sform > 0 ? "sform"
+                                                              : "qform");
+  return info;
 }
 
 VolumeTextureContents readNifti(const std::string& path,

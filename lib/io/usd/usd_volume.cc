@@ -146,20 +146,27 @@ std::string layerMetadata(const std::string& root, const std::vector<UsdFrame>& 
   return text + fmt::format(
                     "    metersPerUnit = {}\n    timeCodesPerSecond = {}\n"
                     "    upAxis = \"{}\"\n)\n\n",
-                    settings.metersPerUnit, settings.framesPerSecond, settings.zUp ? "Z" : "Y");
+                    settings.space.unitOfOutput(), settings.framesPerSecond,
+                    settings.space.upOfOutput() == UpAxis::z ? "Z" : "Y");
+}
+
+// Of row vectors, as USD has them.
+std::string transformOp(const Similarity& by) {
+  if (by.isIdentity()) return "";
+  const Mat3 m = by.matrix();
+  std::string rows;
+  for (int a = 0; a < 3; ++a)
+    rows += fmt::format("({}, {}, {}, 0), ", m[0][a] + 0.0, m[1][a] + 0.0, m[2][a] + 0.0);
+  return fmt::format(
+      "    matrix4d xformOp:transform = ( {}(0, 0, 0, 1) )\n"
+      "    uniform token[] xformOpOrder = [\"xformOp:transform\"]\n",
+      rows);
 }
 
 }  // namespace
 
 std::vector<Setting> describe(UsdVolumeSettings& s) {
-  return {Setting("up", "AXIS", choiceOf<bool>(&s.zUp, {{"y", false}, {"z", true}}),
-                  "the axis that a .usda file says is up")
-              .rare(),
-          Setting("meters_per_unit", "L", &s.metersPerUnit, "what a .usda file says a unit is")
-              .in("metres")
-              .above(0, 1e9)
-              .rare(),
-          Setting("fps", "N", &s.framesPerSecond, "frames a second of a .usda file")
+  return {Setting("fps", "N", &s.framesPerSecond, "frames a second of a .usda file")
               .above(0, 1e6)
               .rare()};
 }
@@ -174,6 +181,7 @@ void writeUsdVolume(const std::string& path, const std::vector<UsdFrame>& frames
   const std::string root = primName(std::filesystem::path(path).stem().string(), roots);
   std::string text = layerMetadata(root, frames, settings);
   text += fmt::format("def Volume \"{}\"\n{{\n", root);
+  text += transformOp(inputToOutput(settings.space));
   if (!scene.extents.empty()) text += attribute("    ", "float3[] extent", scene.extents, textOf);
   std::set<std::string> taken;
   std::string prims;

@@ -18,7 +18,8 @@ namespace {
 // A file a frame.
 class FramesInFiles : public FrameSource {
  public:
-  explicit FramesInFiles(const std::vector<std::string>& paths) {
+  FramesInFiles(const std::vector<std::string>& paths, const SpaceSettings& space)
+      : toOutput_(inputToOutput(space)) {
     FrameList list = findFrames(paths, meshExtensions());
     if (list.frames.empty())
       throw DataError(fmt::format("{}: none of the {} files has a frame number in its name",
@@ -30,17 +31,22 @@ class FramesInFiles : public FrameSource {
 
   const std::string& path(std::size_t index) const override { return files_.at(index).path; }
   Mesh read(std::size_t index, const Mesh& rest) const override {
-    return readMeshLike(path(index), rest);
+    Mesh mesh = readMeshLike(path(index), rest);
+    move(mesh.vertices, toOutput_);
+    requireNearOrigin(mesh);
+    return mesh;
   }
   std::string fingerprint(std::size_t index) const override { return fingerprintOf(path(index)); }
 
  private:
+  const Similarity toOutput_;
   std::vector<FrameFile> files_;
 };
 
 class FramesOfCache : public FrameSource {
  public:
-  FramesOfCache(const std::string& path, const AnimationSettings& settings) : cache_(path) {
+  FramesOfCache(const std::string& path, const AnimationSettings& settings)
+      : toOutput_(inputToOutput(settings.space)), cache_(path) {
     const double rounded = std::round(cache_.step());
     const bool whole = rounded >= 1 && std::abs(cache_.step() - rounded) < 1e-3;
     if (!whole)
@@ -64,6 +70,7 @@ class FramesOfCache : public FrameSource {
     Mesh mesh = rest;
     mesh.name = cache_.path() + ", frame " + std::to_string(numbers.at(index));
     mesh.vertices = cache_.read(index);
+    move(mesh.vertices, toOutput_);
     requireNearOrigin(mesh);
     return mesh;
   }
@@ -81,26 +88,23 @@ class FramesOfCache : public FrameSource {
   }
 
  private:
+  const Similarity toOutput_;
   PointCache cache_;
 };
 
 }  // namespace
 
 std::vector<Setting> describe(AnimationSettings& s) {
-  return {
-      Setting("first_frame", "N", &s.firstFrame,
-              "number of the first frame of a file that holds several; the others follow")
-          .from(-1e9, 1e9)
-          .otherwise("1 of .mdd, what .pc2 says, by its seconds of glTF"),
-      Setting("fps", "N", &s.framesPerSecond,
-              "frames per second: that glTF is baked at, of velocities, and in .mdd files")
-          .above(0, 1e6),
-      Setting("rest", "N", &s.restFrame, "which frame of glTF is the rest pose")
-          .from(-1e9, 1e9)
-          .otherwise("as its mesh was bound"),
-      Setting("up", "AXIS",
-              choiceOf(&s.up, {std::pair<std::string, UpAxis>{"y", UpAxis::y}, {"z", UpAxis::z}}),
-              "what points up in the meshes made of glTF, where y does; z turns them")};
+  return {Setting("first_frame", "N", &s.firstFrame,
+                  "number of the first frame of a file that holds several; the others follow")
+              .from(-1e9, 1e9)
+              .otherwise("1 of .mdd, what .pc2 says, by its seconds of glTF"),
+          Setting("fps", "N", &s.framesPerSecond,
+                  "frames per second: that glTF is baked at, of velocities, and in .mdd files")
+              .above(0, 1e6),
+          Setting("rest", "N", &s.restFrame, "which frame of glTF is the rest pose")
+              .from(-1e9, 1e9)
+              .otherwise("as its mesh was bound")};
 }
 
 bool isAnimationFile(const std::string& path) { return isPointCache(path) || isGltf(path); }
@@ -117,7 +121,7 @@ std::unique_ptr<FrameSource> openFrames(const std::vector<std::string>& paths,
     if (isGltf(path)) return openGltfFrames(path, settings);
     return std::make_unique<FramesOfCache>(path, settings);
   }
-  return std::make_unique<FramesInFiles>(paths);
+  return std::make_unique<FramesInFiles>(paths, settings.space);
 }
 
 AnimationInfo readAnimationInfo(const std::string& path) {

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <utility>
 
 #include "core/base64.h"
+#include "core/byte_order.h"
 #include "core/file_bytes.h"
 #include "core/text_scanner.h"
 #include "innermap/core/error.h"
@@ -26,9 +26,7 @@ const Json* member(const Json& of, const char* key) {
 }
 
 std::uint32_t wordAt(const std::string& bytes, std::size_t at) {
-  std::uint32_t word = 0;
-  std::memcpy(&word, bytes.data() + at, sizeof word);
-  return word;
+  return numberAt<std::uint32_t>(bytes.data() + at);
 }
 
 // "%20" is a blank.
@@ -78,9 +76,7 @@ constexpr Component kComponents[] = {{5120, 1, 127},   {5121, 1, 255},        {5
 
 template <class Number>
 double as(const char* bytes) {
-  Number value;
-  std::memcpy(&value, bytes, sizeof value);
-  return static_cast<double>(value);
+  return static_cast<double>(numberAt<Number>(bytes));
 }
 
 double numberOf(int component, const char* bytes) {
@@ -198,7 +194,7 @@ std::uint64_t GltfFile::size(const Json& of, const char* key, std::uint64_t miss
   return found->get<std::uint64_t>();
 }
 
-std::string GltfFile::bufferAt(const std::string& uri) const {
+std::string GltfFile::bufferAt(const std::string& uri) {
   if (uri.compare(0, 5, "data:") == 0) {
     const std::size_t comma = uri.find(";base64,");
     if (comma == uri.npos) fail("has a buffer in another text than base64");
@@ -211,9 +207,8 @@ std::string GltfFile::bufferAt(const std::string& uri) const {
   if (leaves)
     fail("has a buffer outside its folder, " + inQuotes(uri) +
          ", which is not read; export it as .glb");
-  return readFileBytes((std::filesystem::path(path_).parent_path() / file).string(),
-                       "a buffer of " + path_)
-      .bytes;
+  filesBeside_.push_back((std::filesystem::path(path_).parent_path() / file).string());
+  return readFileBytes(filesBeside_.back(), "a buffer of " + path_).bytes;
 }
 
 void GltfFile::readBuffers(std::string binary) {

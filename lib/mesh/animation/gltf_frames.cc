@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <memory>
+#include <mutex>
 #include <set>
 
 #include "core/file.h"
@@ -47,7 +50,7 @@ std::vector<GltfClip> chosenClips(const GltfFile& file, std::vector<GltfClip> cl
 class GltfMotion {
  public:
   GltfMotion(const std::string& path, const AnimationSettings& settings)
-      : settings_(settings), path_(path) {
+      : settings_(settings), toOutput_(gltfToOutput(settings.space)), path_(path) {
     const GltfFile file(path);
     nodes_ = readGltfNodes(file);
     body_ = readGltfBody(file, nodes_, chooseGltfBody(file, nodes_, settings.mesh));
@@ -70,10 +73,10 @@ class GltfMotion {
     for (const GltfClip& clip : clips_)
       for (const GltfChannel& channel : clip.channels)
         posed.nodes[channel.node].values[channel.value] = channel.at(time);
-    return turned(body_.placed(posed, true));
+    return inOutput(body_.placed(posed, true));
   }
 
-  Points bound() const { return turned(body_.placed(nodes_, false)); }
+  Points bound() const { return inOutput(body_.placed(nodes_, false)); }
 
   Points rest() const {
     if (!settings_.restFrame) return bound();
@@ -106,15 +109,15 @@ class GltfMotion {
     frames_ = static_cast<std::int64_t>(last - begin_) + 1;
   }
 
-  Points turned(Points points) const {
-    for (Vec3& p : points) {
+  Points inOutput(Points points) const {
+    for (const Vec3& p : points)
       if (!isFinite(p)) throw FileError(path_, "puts a vertex nowhere: damaged; export it again");
-      if (settings_.up == UpAxis::z) p = {p.x, -p.z, p.y};
-    }
+    move(points, toOutput_);
     return points;
   }
 
   const AnimationSettings settings_;
+  const Similarity toOutput_;
   const std::string path_;
   GltfNodes nodes_;
   GltfBody body_;
@@ -135,7 +138,8 @@ class FramesOfGltf : public FrameSource {
   const std::string& path(std::size_t) const override { return motion_.path(); }
 
   Mesh read(std::size_t index, const Mesh& rest) const override {
-    const std::vector<int> which = verticesOf(rest);
+    const std::shared_ptr<const Match> match = matchOf(rest);
+    const std::vector<int>& which = match->vertices;
     const Points frame = motion_.frame(static_cast<std::int64_t>(index));
     Mesh mesh = rest;
     mesh.name = fmt::format("{}, frame {}", motion_.path(), numbers.at(index));
@@ -151,9 +155,26 @@ class FramesOfGltf : public FrameSource {
                        hashOf({reinterpret_cast<const char*>(frame.data()), bytes}));
   }
 
-  void requireLike(const Mesh& rest) const override { verticesOf(rest); }
+  void requireLike(const Mesh& rest) const override { matchOf(rest); }
 
  private:
+  struct Match {
+    Points rest;
+    std::vector<int> vertices;
+  };
+
+  // Found once for a rest pose, which is that of all frames.
+  std::shared_ptr<const Match> matchOf(const Mesh& rest) const {
+    const auto same = [&](const Points& points) {
+      return points.size() == rest.vertices.size() &&
+             std::memcmp(points.data(), rest.vertices.data(), points.size() * sizeof(Vec3)) == 0;
+    };
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!match_ || !same(match_->rest))
+      match_ = std::make_shared<const Match>(Match{rest.vertices, verticesOf(rest)});
+    return match_;
+  }
+
   // The vertex of the file that each vertex of the rest pose is.
   std::vector<int> verticesOf(const Mesh& rest) const {
     std::vector<int> found;
@@ -203,6 +224,8 @@ class FramesOfGltf : public FrameSource {
   }
 
   GltfMotion motion_;
+  mutable std::mutex mutex_;
+  mutable std::shared_ptr<const Match> match_;  // of the last rest pose
 };
 
 }  // namespace
@@ -227,6 +250,10 @@ Mesh readRestPose(const std::string& path, const AnimationSettings& settings) {
   validate(mesh);
   requireNearOrigin(mesh);
   return mesh;
+}
+
+std::vector<std::string> filesBeside(const std::string& path) {
+  return isGltf(path) ? GltfFile(path).filesBeside() : std::vector<std::string>();
 }
 
 AnimationInfo readGltfInfo(const std::string& path) {

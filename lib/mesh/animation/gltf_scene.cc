@@ -111,7 +111,11 @@ std::vector<double> GltfChannel::at(double time) const {
     return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(width));
   };
   const std::size_t middle = parts / 2;
-  const auto above = std::upper_bound(times.begin(), times.end(), time);
+  // Keys' times are floats: one of a frame may come a hair after the frame's own time.
+  constexpr double kHair = 1e-6;
+  const double reached =
+      interpolation == Interpolation::step ? time + kHair * std::max(1.0, std::abs(time)) : time;
+  const auto above = std::upper_bound(times.begin(), times.end(), reached);
   if (above == times.begin()) return key(0, middle);
   if (above == times.end()) return key(times.size() - 1, middle);
   const auto next = static_cast<std::size_t>(above - times.begin());

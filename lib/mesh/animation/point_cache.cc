@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 
+#include "core/byte_order.h"
 #include "core/text_scanner.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
@@ -28,29 +28,6 @@ std::uint64_t countOf(const std::string& path, const char* bytes, bool big, cons
 }
 
 }  // namespace
-
-template <class Number>
-Number numberAt(const char* bytes, bool big) {
-  char ordered[sizeof(Number)];
-  std::memcpy(ordered, bytes, sizeof(Number));
-  if (big) std::reverse(ordered, ordered + sizeof(Number));
-  Number value;
-  std::memcpy(&value, ordered, sizeof(Number));
-  return value;
-}
-
-template <class Number>
-void appendNumber(std::string& to, Number value, bool big) {
-  char bytes[sizeof(Number)];
-  std::memcpy(bytes, &value, sizeof(Number));
-  if (big) std::reverse(bytes, bytes + sizeof(Number));
-  to.append(bytes, sizeof(Number));
-}
-
-template std::int32_t numberAt(const char*, bool);
-template float numberAt(const char*, bool);
-template void appendNumber(std::string&, std::int32_t, bool);
-template void appendNumber(std::string&, float, bool);
 
 bool isPointCache(const std::string& path) { return endsAs(path, ".mdd") || endsAs(path, ".pc2"); }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <ostream>
 
+#include "core/byte_order.h"
 #include "core/file.h"
 #include "innermap/core/error.h"
 #include "innermap/mesh/mesh_file.h"

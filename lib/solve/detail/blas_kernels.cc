@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <initializer_list>
+#include <string>
 
 // Absent from OpenBLAS built for one processor, and from other libraries.
 // NOLINTBEGIN(readability-identifier-naming): not ours.
@@ -41,17 +42,26 @@ bool isFallback(const char* kernels) {
 
 }  // namespace
 
+const char* blasKernels() { return openblas_get_corename ? openblas_get_corename() : ""; }
+
+void useBlasKernels(const char* name) {
+  if (!gotoblas_dynamic_init || !gotoblas_dynamic_quit) return;
+  const char* before = std::getenv(kVariable);
+  const std::string kept = before ? before : "";
+  setenv(kVariable, name, 1);
+  gotoblas_dynamic_quit();
+  gotoblas_dynamic_init();
+  if (before)
+    setenv(kVariable, kept.c_str(), 1);
+  else
+    unsetenv(kVariable);
+}
+
 const char* chooseBlasKernels() {
   if (!openblas_get_corename) return "";
-  if (!gotoblas_dynamic_init || !gotoblas_dynamic_quit) return openblas_get_corename();
   const char* fitting = fittingKernels();
-  if (fitting && !std::getenv(kVariable) && isFallback(openblas_get_corename())) {
-    setenv(kVariable, fitting, 1);
-    gotoblas_dynamic_quit();
-    gotoblas_dynamic_init();
-    unsetenv(kVariable);
-  }
-  return openblas_get_corename();
+  if (fitting && !std::getenv(kVariable) && isFallback(blasKernels())) useBlasKernels(fitting);
+  return blasKernels();
 }
 
 }  // namespace innermap

@@ -12,4 +12,11 @@ namespace innermap {
 // environment. Returns the name of the kernels in use; empty for another BLAS.
 const char* chooseBlasKernels();
 
+// Makes OpenBLAS use the kernels of this name ("Haswell"), as far as it was built with a choice. At
+// the same times.
+void useBlasKernels(const char* name);
+
+// Those in use; empty for another BLAS.
+const char* blasKernels();
+
 }  // namespace innermap

@@ -12,6 +12,7 @@
 #include "transfer/detail/carrier.h"
 #include "transfer/detail/continue_values.h"
 #include "transfer/detail/sampling.h"
+#include "transfer/moved_vector.h"
 
 namespace innermap {
 namespace {
@@ -21,22 +22,6 @@ constexpr int kContinuedLayers = 3;
 // In folds the determinant passes through 0; a voxel there is filled from no less of the source
 // than this, or one voxel would hold the mass of all.
 constexpr double kLeastDeterminant = 1e-2;
-
-Vec3 movedVector(const Vec3& v, const Mat3& a, openvdb::VecType type) {
-  switch (type) {
-    case openvdb::VEC_COVARIANT:
-      return transposed(inverse(a)) * v;
-    case openvdb::VEC_COVARIANT_NORMALIZE: {
-      const Vec3 moved = transposed(inverse(a)) * v;
-      const double length = norm(moved);
-      return length > 0 ? moved / length : moved;
-    }
-    case openvdb::VEC_CONTRAVARIANT_RELATIVE:
-      return a * v;
-    default:
-      return v;
-  }
-}
 
 bool isAttribute(const openvdb::GridBase& grid, bool density) {
   return !density && grid.getGridClass() != openvdb::GRID_LEVEL_SET &&

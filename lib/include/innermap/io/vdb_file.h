@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "innermap/core/setting.h"
+#include "innermap/mesh/mesh_file.h"
 
 namespace innermap {
 
@@ -78,6 +79,14 @@ std::string describe(const VdbInfo& info, const std::string& path, bool metadata
 // Bytes that reading the grids of these names takes; empty means all.
 std::uint64_t readMemory(const VdbInfo& info, const std::vector<std::string>& names = {});
 
+// Grids in other axes and units (mesh/mesh_file.h): each becomes one of the same voxels and values
+// on a turned lattice, whose axes stay along the world's where they were. Distances of level sets
+// are scaled, positions moved, other vectors turned by their vector type. Throws DataError for
+// frustums, and for staggered grids that would be turned; Cancelled.
+void moveGrids(openvdb::GridPtrVec& grids, const Similarity& by);
+// Into their metadata, of output: innermap_up ("y", "z"), innermap_metres_per_unit (double).
+void sayInGrids(const openvdb::GridPtrVec& grids, const SpaceSettings& space);
+
 // A .usda file that refers to .vdb files, which stay where they are.
 
 struct UsdFrame {
@@ -87,12 +96,13 @@ struct UsdFrame {
 
 struct UsdVolumeSettings {
   std::vector<std::string> names;  // of the grids; empty means all
-  bool zUp = false;                // what the file says is up: z, or y
-  double metersPerUnit = 1;        // above 0
-  double framesPerSecond = 24;     // above 0
+  // What the file says is up, and a unit: output's. Where that is not input's, the grids' own, the
+  // prim has a transform.
+  SpaceSettings space;
+  double framesPerSecond = 24;  // above 0
 };
 
-// Without names.
+// The last alone.
 std::vector<Setting> describe(UsdVolumeSettings& settings);
 
 // Writes a Volume prim named as the file, with an OpenVDBAsset for each grid (fieldName,

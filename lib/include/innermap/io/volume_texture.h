@@ -14,6 +14,7 @@
 
 #include "innermap/core/setting.h"
 #include "innermap/core/vec3.h"
+#include "innermap/mesh/mesh.h"
 
 namespace innermap {
 
@@ -142,6 +143,28 @@ struct VolumeTextureInfo {
 // not all that are needed. Throws FileError.
 std::optional<VolumeTextureInfo> readVolumeTextureInfo(const std::string& path);
 
+// What a file of the other formats says of itself, without its values: of .nvdb and .usda all
+// grids, of .vti, .nii and .nii.gz what stands in the header, of .dds all that there is, a size and
+// a type.
+struct VolumeFileInfo {
+  struct Grid {
+    std::string name, type;                     // as the file names it; "" where it does not
+    std::string gridClass;                      // "level set" and so on; "" where it is not said
+    openvdb::Coord resolution;                  // voxels of the (active) box; 0: not said
+    std::optional<std::uint64_t> activeVoxels;  // where they are counted
+    std::optional<openvdb::Vec3d> voxelSize;    // world units
+    std::optional<openvdb::BBoxd> worldBox;     // by outer faces
+    std::vector<std::string> files;             // that a .usda file refers to, as it does
+  };
+  std::string format;  // VolumeFormat::name
+  std::vector<Grid> grids;
+  std::vector<std::pair<std::string, std::string>> facts;  // of the whole file
+};
+
+// By the ending, of all but .exr. Throws FileError for what is no such file, or cut short.
+VolumeFileInfo readVolumeFileInfo(const std::string& path);
+std::string describe(const VolumeFileInfo& info, const std::string& path);
+
 // For a terminal: a few indented lines.
 std::string describe(const VolumeTextureInfo& info);
 
@@ -210,6 +233,20 @@ struct VolumeTextureContents {
 // MemoryError before allocating; SettingError; Cancelled.
 VolumeTextureContents readVolumeTexture(const std::string& path,
                                         const VolumeTextureReadSettings& settings = {});
+
+// A label of a scan and its voxels' surface.
+struct LabelMesh {
+  std::int64_t label = 0;  // of the first, where several are one
+  std::uint64_t voxels = 0;
+  Mesh mesh;
+};
+
+// The surfaces between voxels that have one of these labels and those that do not, halfway between
+// their middles, in the grid's world, facing outwards: one of each label, or one of all together.
+// labels: without, all but 0. grid: int32, int64, or float with whole numbers. Throws DataError for
+// other grids, for a label that no voxel has (saying which there are); Cancelled.
+std::vector<LabelMesh> labelMeshes(const openvdb::GridBase& grid,
+                                   const std::vector<std::int64_t>& labels, bool together);
 
 // What readVolumeTexture would read, without reading pixels. Throws as that does.
 struct VolumeTextureNeed {

@@ -1,4 +1,4 @@
-// Mesh files in: OBJ, PLY, OFF, STL; animations of a mesh: files of frames, point caches.
+// Mesh files in: OBJ, PLY, OFF, STL, glTF; animations of a mesh: files of frames, point caches.
 //
 // The readers are our own. For PLY, OFF and STL no packaged reader keeps non-manifold faces, reads
 // triangle strips and refuses a header that promises more than the file holds before memory is
@@ -15,14 +15,15 @@
 #include <vector>
 
 #include "innermap/core/setting.h"
+#include "innermap/core/vec3.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {
 
-// ".obj" and so on, of the files that readMesh reads.
+// ".obj" and so on, of the files that hold one mesh in one pose.
 const std::vector<std::string>& meshExtensions();
 
-// Reads by the extension (case-insensitive) .obj, .ply, .off, .stl.
+// Reads by the extension (case-insensitive) .obj, .ply, .off, .stl, .glb, .gltf.
 //
 // Vertices keep the file's order and number, loose ones included. STL corners are welded where
 // their coordinates are equal bit by bit, in order of first appearance (STL has no connectivity).
@@ -32,7 +33,8 @@ const std::vector<std::string>& meshExtensions();
 // OBJ: v (with optional colour), vt, f with negative indices; groups and materials are ignored.
 // PLY: ASCII, binary little and big endian, any numeric types; vertex x y z, red green blue (uchar
 // or float), s t / u v; face vertex_indices or vertex_index; tristrips.
-// OFF: OFF, COFF, NOFF, STOFF and comments. STL: ASCII and binary, told apart by size.
+// OFF: OFF, COFF, NOFF, STOFF and comments. STL: ASCII and binary, told apart by size. glTF: as
+// readRestPose(), of the only mesh.
 //
 // Throws FileError: missing file, unknown extension, wrong or truncated content (with the line or
 // byte), counts beyond the file's size, indices out of range, NaN or infinite coordinates, no
@@ -77,9 +79,47 @@ struct PlyExtras {
 // property that has not a number for each vertex; FileError.
 void writePly(const std::string& path, const Mesh& mesh, const PlyExtras& extras);
 
-// Animations: the vertices of one mesh, frame by frame.
+// Axes and units: most files do not tell theirs.
 
 enum class UpAxis { y, z };
+
+struct SpaceSettings {
+  // What input has: the axis that points up (without: y), and metres a unit (without: 1). glTF has
+  // y up and metres; it is brought to these first.
+  std::optional<UpAxis> up;
+  std::optional<double> unitScale;
+  // What output shall have; without, what input has.
+  std::optional<UpAxis> outUp;
+  std::optional<double> outUnitScale;
+
+  bool given() const { return up || unitScale || outUp || outUnitScale; }
+  UpAxis upOfOutput() const { return outUp.value_or(up.value_or(UpAxis::y)); }
+  double unitOfOutput() const { return outUnitScale.value_or(unitScale.value_or(1)); }
+};
+std::vector<Setting> describe(SpaceSettings& settings);
+
+// From one space to another: a turn about x by quarters, then a scaling.
+struct Similarity {
+  int quarters = 0;  // 1: y up becomes z up, (x, y, z) to (x, -z, y); -1: back
+  double scale = 1;
+
+  bool isIdentity() const { return quarters == 0 && scale == 1; }
+  Vec3 turned(const Vec3& v) const {
+    return quarters == 0 ? v : quarters > 0 ? Vec3{v.x, -v.z, v.y} : Vec3{v.x, v.z, -v.y};
+  }
+  Vec3 operator()(const Vec3& p) const { return scale * turned(p); }
+  Mat3 matrix() const;
+};
+
+// Throw SettingError for a unit that is not above 0.
+Similarity inputToOutput(const SpaceSettings& settings);
+Similarity gltfToOutput(const SpaceSettings& settings);
+void move(Points& points, const Similarity& by);
+
+// As readMesh(path), in the space of output.
+Mesh readMesh(const std::string& path, const SpaceSettings& space);
+
+// Animations: the vertices of one mesh, frame by frame.
 
 struct AnimationSettings {
   // Number of the first frame of a file that holds several; without, MDD's is 1, PC2's what its
@@ -87,14 +127,14 @@ struct AnimationSettings {
   // seconds. The others follow one by one, in PC2 by its frames a sample.
   std::optional<int> firstFrame;
   double framesPerSecond = 24;  // that glTF is baked at
-  // Of glTF: which frame is the rest pose, without it the pose in which the mesh was bound; the
-  // axis that points up in what is made of it, its own being y; names of the mesh, or its node, and
-  // of the animation, where there are several; empty: all animations, unless they move the same.
+  // Of glTF: which frame is the rest pose, without it the pose in which the mesh was bound; names
+  // of the mesh, or its node, and of the animation, where there are several; empty: all animations,
+  // unless they move the same.
   std::optional<int> restFrame;
-  UpAxis up = UpAxis::y;
   std::string mesh, animation;
+  SpaceSettings space;  // frames are in that of output
 };
-std::vector<Setting> describe(AnimationSettings& settings);
+std::vector<Setting> describe(AnimationSettings& settings);  // without the space
 
 // The frames of an animation; each is read when it is asked for.
 class FrameSource {
@@ -107,9 +147,9 @@ class FrameSource {
 
   // The file that holds the frame at this place of `numbers`.
   virtual const std::string& path(std::size_t index) const = 0;
-  // Its vertices, with the triangles of `rest`: its vertices in the same order; of glTF, whose
-  // files split and reorder them, those that are at the same places in the file's rest pose or
-  // first frame. Throws as readMeshLike.
+  // Its vertices, with the triangles of `rest`, which is in output's space: its vertices in the
+  // same order; of glTF, whose files split and reorder them, those that are at the same places in
+  // the file's rest pose or first frame. Throws as readMeshLike.
   virtual Mesh read(std::size_t index, const Mesh& rest) const = 0;
   // Tells whether the frame is still the one that a result was made from, as fingerprintOf (core).
   virtual std::string fingerprint(std::size_t index) const = 0;
@@ -131,6 +171,9 @@ std::unique_ptr<FrameSource> openFrames(const std::vector<std::string>& paths,
 // The rest pose of a glTF file. Vertices that are split for their normals or texture coordinates,
 // which are alike in place and in how they move, are one, so that the mesh closes. Throws likewise.
 Mesh readRestPose(const std::string& path, const AnimationSettings& settings = {});
+
+// The files that this one takes bytes from: of .gltf its buffers. Throws likewise.
+std::vector<std::string> filesBeside(const std::string& path);
 
 // What an animation file says of itself.
 struct AnimationInfo {

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "core/base64.h"
+#include "core/byte_order.h"
 #include "core/text_scanner.h"
 #include "innermap/core/error.h"
 
@@ -82,15 +83,6 @@ class ByteSource {
   int held_ = 0, taken_ = 0;
 };
 
-template <class T>
-T fromBytes(const char* bytes, bool bigEndian) {
-  char ordered[sizeof(T)];
-  for (std::size_t k = 0; k < sizeof(T); ++k) ordered[k] = bytes[bigEndian ? sizeof(T) - 1 - k : k];
-  T value;
-  std::memcpy(&value, ordered, sizeof(T));
-  return value;
-}
-
 // The bytes of a binary array.
 class BinaryArray {
  public:
@@ -124,8 +116,8 @@ class BinaryArray {
     char bytes[8];
     const std::size_t size = encoding_.longHeader ? 8 : 4;
     if (!source_.read(bytes, size)) fail(file_, array_, kCutShort);
-    if (encoding_.longHeader) return fromBytes<std::uint64_t>(bytes, encoding_.bigEndian);
-    return fromBytes<std::uint32_t>(bytes, encoding_.bigEndian);
+    if (encoding_.longHeader) return numberAt<std::uint64_t>(bytes, encoding_.bigEndian);
+    return numberAt<std::uint32_t>(bytes, encoding_.bigEndian);
   }
 
   std::string inflateBlocks(std::uint64_t blocks) {
@@ -168,7 +160,7 @@ template <class From, class To>
 std::vector<To> converted(const std::string& bytes, bool bigEndian) {
   std::vector<To> out(bytes.size() / sizeof(From));
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const From value = fromBytes<From>(bytes.data() + i * sizeof(From), bigEndian);
+    const From value = numberAt<From>(bytes.data() + i * sizeof(From), bigEndian);
     if constexpr (std::is_floating_point_v<From> && !std::is_floating_point_v<To>)
       out[i] = value >= -9e18 && value <= 9e18 ? static_cast<To>(value) : -1;
     else

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/byte_order.h"
 #include "innermap/core/error.h"
 
 namespace innermap {
@@ -18,12 +19,7 @@ class Fields {
 
   template <class T>
   T at(std::size_t place) const {
-    char ordered[sizeof(T)];
-    for (std::size_t k = 0; k < sizeof(T); ++k)
-      ordered[k] = bytes_[place + (swapped_ ? sizeof(T) - 1 - k : k)];
-    T value;
-    std::memcpy(&value, ordered, sizeof(T));
-    return value;
+    return numberAt<T>(bytes_.data() + place, swapped_);
   }
   std::string text(std::size_t place, std::size_t size) const {
     const std::string all = bytes_.substr(place, size);
@@ -165,7 +161,7 @@ std::array<double, 3> quaternionOf(const double r[3][3]) {
 
 template <class T>
 void put(std::string& bytes, std::size_t place, T value) {
-  std::memcpy(&bytes[place], &value, sizeof(T));
+  putNumber(&bytes[place], value);
 }
 
 void putQform(std::string& bytes, const openvdb::Mat4d& place, const double length[3]) {

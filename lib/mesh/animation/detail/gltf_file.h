@@ -23,6 +23,8 @@ class GltfFile {
   explicit GltfFile(const std::string& path);
 
   const std::string& path() const { return path_; }
+  // That were read beside it.
+  const std::vector<std::string>& filesBeside() const { return filesBeside_; }
   const Json& root() const { return json_; }
 
   [[noreturn]] void fail(const std::string& what) const;  // FileError
@@ -49,7 +51,7 @@ class GltfFile {
   void readContainer(std::string bytes);
   void refuseCompression() const;
   void readBuffers(std::string binary);
-  std::string bufferAt(const std::string& uri) const;
+  std::string bufferAt(const std::string& uri);
   std::uint64_t size(const Json& of, const char* key, std::uint64_t missing) const;
   // The bytes of a view from `offset` on.
   std::string_view view(int index, std::uint64_t offset, std::uint64_t* stride) const;
@@ -57,7 +59,7 @@ class GltfFile {
 
   std::string path_;
   Json json_;
-  std::vector<std::string> buffers_;
+  std::vector<std::string> buffers_, filesBeside_;
 };
 
 }  // namespace innermap

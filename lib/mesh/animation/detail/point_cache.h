@@ -55,10 +55,4 @@ class PointCache {
   float start_ = 0, step_ = 1;
 };
 
-// Numbers of four bytes, int32 or float, in a file's order.
-template <class Number>
-Number numberAt(const char* bytes, bool big);
-template <class Number>
-void appendNumber(std::string& to, Number value, bool big);
-
 }  // namespace innermap

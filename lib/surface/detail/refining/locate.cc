@@ -17,21 +17,22 @@ Vec3 latticeCoordinates(const Vec3& p, const std::array<Vec3, 2>& period) {
 Locator::Locator(const std::vector<Triangle>& triangles, const Layout& layout)
     : periodic_(layout.space == ModelSpace::torus),
       period_(layout.period),
-      cones_(triangles.size()),
-      neighbours_(neighboursOf(triangles)) {
+      cones_(triangles.size()) {
+  const Neighbours neighbours = neighboursOf(triangles);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     Cone& cone = cones_[t];
     for (int k = 0; k < 3; ++k) {
       const Vec3 a = layout.corner(triangles, static_cast<int>(t), (k + 1) % 3),
                  b = layout.corner(triangles, static_cast<int>(t), (k + 2) % 3);
       cone.side[k] = cross(a, b - a);
+      cone.next[k] = neighbours[t][k].triangle;
     }
   }
   if (periodic_) {
     crossing_.resize(triangles.size());
     for (std::size_t t = 0; t < triangles.size(); ++t)
       for (int k = 0; k < 3; ++k) {
-        const Neighbour n = neighbours_[t][k];
+        const Neighbour n = neighbours[t][k];
         crossing_[t][k] =
             layout.shift[t][(k + 1) % 3] - layout.shift[n.triangle][(n.corner + 2) % 3];
       }
@@ -96,12 +97,6 @@ Located Locator::hintFor(const Vec3& p) const {
   return hint;
 }
 
-Located Locator::step(const Located& from, int corner) const {
-  Located to{neighbours_[from.triangle][corner].triangle, from.shift};
-  if (periodic_) to.shift = to.shift + crossing_[from.triangle][corner];
-  return to;
-}
-
 Located Locator::find(const Vec3& p, const Located& hint, Weights& w) const {
   Located at = hint;
   // Where a step is to begin looking for a way out: not the same side always, or walks may circle.
@@ -121,7 +116,8 @@ Located Locator::find(const Vec3& p, const Located& hint, Weights& w) const {
         if (w[k] < rounding) leave = k;
       }
     }
-    at = step(at, leave);
+    if (periodic_) at.shift = at.shift + crossing_[at.triangle][leave];
+    at.triangle = cones_[at.triangle].next[leave];
   }
   at = search(p, hint);
   w = cones_[at.triangle].weights(local(p, at));

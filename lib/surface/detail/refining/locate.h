@@ -26,6 +26,7 @@ class Locator {
   // which rounding leaves exact for short edges too.
   struct Cone {
     Vec3 side[3];
+    int next[3] = {};  // the triangle beyond each side
 
     Weights weights(const Vec3& p) const {
       return {dot(p, side[0]), dot(p, side[1]), dot(p, side[2])};
@@ -58,7 +59,6 @@ class Locator {
     return static_cast<double>(s.a) * period_[0] + static_cast<double>(s.b) * period_[1];
   }
   Located hintFor(const Vec3& p) const;
-  Located step(const Located& from, int corner) const;
   Located search(const Vec3& p, const Located& hint) const;
   Vec3 cellCenter(std::size_t cell) const;
   std::size_t cellOf(const Vec3& p, Shift* shift) const;
@@ -66,7 +66,6 @@ class Locator {
   bool periodic_ = false;
   std::array<Vec3, 2> period_{};
   std::vector<Cone> cones_;
-  Neighbours neighbours_;
   std::vector<std::array<Shift, 3>> crossing_;  // torus: of the frame, across each edge
   int cells_ = 1;                               // along each side of the table
   std::vector<Located> hints_;

@@ -78,6 +78,7 @@ void PullbackEnergy::gather(int v) {
     reach_ += norm(star_.back().b - star_.back().a);
   }
   reach_ /= static_cast<double>(star_.size());
+  found_.assign(star_.size() * samples_.size(), Located{});
   double least = kInfinite, sum = 0;
   for (const StarTriangle& t : star_) {
     const double det = tripleProduct(image_.place[v], t.a, t.b);
@@ -87,7 +88,7 @@ void PullbackEnergy::gather(int v) {
   squeezed_ = least < kThin * sum / static_cast<double>(star_.size());
 }
 
-double PullbackEnergy::of(const StarTriangle& t, const Vec3& place, Located& where,
+double PullbackEnergy::of(const StarTriangle& t, const Vec3& place, Located& where, Located* found,
                           double most) const {
   const Vec3 e = t.a - place, f = t.b - place;
   double sum = 0;
@@ -97,7 +98,8 @@ double PullbackEnergy::of(const StarTriangle& t, const Vec3& place, Located& whe
   Locator::Weights weights;
   for (const Vec2& s : samples_) {
     const Vec3 x = place + (s.x * e + s.y * f);
-    where = target_.locator().find(x, where, weights);
+    where = target_.locator().find(x, found->triangle < 0 ? where : *found, weights);
+    *found++ = where;
     const TargetMetric::Plane p = target_.project(where, weights, e, f);
     const double det = half * p.det();
     if (!(det > 0)) return kInfinite;
@@ -118,9 +120,12 @@ double PullbackEnergy::below(double most, const Vec3& place) const {
   for (const StarTriangle& t : star_)
     if (!(tripleProduct(place, t.a, t.b) > 0)) return kInfinite;
   double sum = 0;
-  Located where = target_.locator().find(place);
+  Located where = found_.front();
+  if (where.triangle < 0) where = target_.locator().find(place);
+  Located* found = found_.data();
   for (const StarTriangle& t : star_) {
-    sum += of(t, place, where, most - sum);
+    sum += of(t, place, where, found, most - sum);
+    found += samples_.size();
     if (sum > most) break;
   }
   return sum;
@@ -162,7 +167,8 @@ double PullbackEnergy::ofTriangle(int t) const {
   const Vec3& place = image_.place[mesh_.triangle(t)[0]];
   if (!(tripleProduct(place, star.a, star.b) > 0)) return kInfinite;
   Located where = target_.locator().find(place);
-  return of(star, place, where, kInfinite);
+  std::vector<Located> found(samples_.size());
+  return of(star, place, where, found.data(), kInfinite);
 }
 
 double PullbackEnergy::total() const {

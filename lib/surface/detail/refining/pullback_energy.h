@@ -39,8 +39,10 @@ class PullbackEnergy : public StarEnergy {
     Vec3 a, b;
     double cotFree, cotA, cotB, area;
   };
-  // `where`: any place near by, and the last one found. Infinite where it is above `most`.
-  double of(const StarTriangle& t, const Vec3& place, Located& where, double most) const;
+  // `where`: any place near by, and the last one found. `found`: where each sample was found
+  // before, or triangle -1; where it is now. Infinite where the energy is above `most`.
+  double of(const StarTriangle& t, const Vec3& place, Located& where, Located* found,
+            double most) const;
   StarTriangle starTriangle(int t, int corner) const;
 
   const ProgressiveMesh& mesh_;
@@ -52,6 +54,9 @@ class PullbackEnergy : public StarEnergy {
   std::vector<Vec2> samples_;  // weights of the second and third corner, next to one another
   std::vector<RestTriangle> rest_;
   std::vector<StarTriangle> star_;
+  // Where each sample of star_ was found last, or triangle -1: the places that are tried for a
+  // vertex are next to one another, the samples of one place are not.
+  mutable std::vector<Located> found_;
   bool squeezed_ = false;
   double reach_ = 0;  // mean distance of the gathered ring
 };

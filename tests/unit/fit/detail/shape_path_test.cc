@@ -18,7 +18,7 @@ double farthest(const Points& a, const Points& b) {
   return most;
 }
 
-Points mapped(const Points& points, const Similarity& motion) {
+Points mapped(const Points& points, const ScaledMotion& motion) {
   Points out;
   for (const Vec3& p : points) out.push_back(motion(p));
   return out;
@@ -49,7 +49,7 @@ TEST(ShapePath, BeginsAndEndsExactly) {
 
 TEST(ShapePath, LeavesOutSimilarities) {
   const Mesh from = bar();
-  const Similarity motion{2.5, turnAboutZ(2), {10, -3, 4}};
+  const ScaledMotion motion{2.5, turnAboutZ(2), {10, -3, 4}};
   const ShapePath path(from.vertices, mapped(from.vertices, motion), from.triangles, 2.5);
   EXPECT_LT(farthest(path.at(0.5), from.vertices), 1e-8);
   EXPECT_NEAR(path.rest().scale, 2.5, 1e-12);
@@ -91,7 +91,7 @@ TEST(MovedBy, MovesTheField) {
   Matrix weights(2, 3);
   for (std::size_t i = 0; i < 6; ++i) weights.data()[i] = std::sin(i + 1.0);
   const HarmonicField field({{2, 0, 0}, {0, 3, 1}}, weights, affine);
-  const Similarity motion{0.5, turnAboutZ(0.7), {1, 2, 3}};
+  const ScaledMotion motion{0.5, turnAboutZ(0.7), {1, 2, 3}};
   const HarmonicField movedField = movedBy(motion, field);
   const Points at{{0.1, 0.2, 0.3}, {-1, 0.5, 0}};
   const Matrix before = field.evaluate(at).values, after = movedField.evaluate(at).values;

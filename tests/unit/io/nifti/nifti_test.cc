@@ -65,6 +65,31 @@ TEST(Nifti, GridsComeBackWithTypesNamesAndPlaces) {
     ASSERT_EQ(accessor.getValue(*at - kBox.min()), 614454277 + (*at).x());
 }
 
+// ITK's axes: x to the left, y to the back; 0 where nothing is active; the grid stays as it was.
+TEST(Nifti, DisplacementFieldsAreOfITK) {
+  const TemporaryFolder folder;
+  openvdb::initialize();
+  const auto field = block<openvdb::Vec3SGrid>(
+      "displacement", kBox,
+      [](auto c) { return openvdb::Vec3s(float(c.x()), float(2 * c.y()), float(3 * c.z())); }, 0.5);
+  field->tree().setValueOff(kBox.min());
+  const std::string path = folder.file("field.nii.gz");
+  writeDisplacementField(path, *field);
+  const auto back = openvdb::gridPtrCast<openvdb::Vec3SGrid>(readVolumeTexture(path).grids.front());
+  const auto accessor = back->getConstAccessor();
+  for (auto at = kBox.begin(); at != kBox.end(); ++at) {
+    const Coord c = *at;
+    const openvdb::Vec3s v = accessor.getValue(c - kBox.min());
+    if (c == kBox.min())
+      ASSERT_EQ(v, openvdb::Vec3s(0));
+    else
+      ASSERT_EQ(v, openvdb::Vec3s(float(-c.x()), float(-2 * c.y()), float(3 * c.z())));
+  }
+  EXPECT_EQ(
+      field->getConstAccessor().getValue(kBox.max()),
+      openvdb::Vec3s(float(kBox.max().x()), float(2 * kBox.max().y()), float(3 * kBox.max().z())));
+}
+
 TEST(Nifti, DamagedFilesAreRefusedOrRead) {
   const TemporaryFolder folder;
   const MemoryLimit limit(processMemory(std::uint64_t(64) << 20));

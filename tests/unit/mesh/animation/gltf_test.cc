@@ -192,7 +192,7 @@ TEST_F(Gltf, JointsPull) {
   expectPlace(apex(path, 6), 0, 0, 2);
   expectPlace(apex(path, 24), 0, 0, 5);
   AnimationSettings settings;
-  settings.up = UpAxis::z;
+  settings.space.up = UpAxis::z;
   settings.firstFrame = 100;
   expectPlace(apex(path, 112, settings), 0, -3, 0);
   settings = {};
@@ -358,7 +358,7 @@ class GltfExports : public ::testing::Test {
   // The largest distance, fractions of the diagonal, of these frames.
   double error(const std::string& name, UpAxis up, const std::vector<std::int64_t>& numbers) const {
     AnimationSettings settings;
-    settings.up = up;
+    settings.space.up = up;
     const auto source = openFrames({folder_ + name}, settings);
     EXPECT_EQ(readRestPose(folder_ + name, settings).vertices.size(), rest_.vertices.size());
     double worst = 0;

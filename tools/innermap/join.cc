@@ -1,0 +1,169 @@
+// `innermap join`: one run's files from the parts that its shares left.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "commands.h"
+#include "report/page/page.h"
+#include "report_page.h"
+#include "sequence_result.h"
+#include "share.h"
+
+namespace innermap::tool {
+namespace {
+
+struct JoinOptions {
+  std::string folder;
+  bool partial = false;
+};
+
+ReportValue reportValue(const FigureValue& value) {
+  struct Visitor {
+    ReportValue operator()(std::uint64_t v) const { return static_cast<std::int64_t>(v); }
+    ReportValue operator()(const bool& v) const { return v; }
+    ReportValue operator()(const std::int64_t& v) const { return v; }
+    ReportValue operator()(const double& v) const { return v; }
+    ReportValue operator()(const std::string& v) const { return v; }
+    ReportValue operator()(const std::vector<double>& v) const { return v; }
+    ReportValue operator()(const std::vector<std::string>& v) const { return v; }
+  };
+  return std::visit(Visitor{}, value);
+}
+
+// The report becomes that of the run, as far as the frames have it in common.
+void takeRun(const PartRun& run, Context& context) {
+  Report& report = context.report();
+  report.command = run.command;
+  report.run->commandLine = run.commandLine;
+  report.run->date = run.date;
+  report.run->settings.clear();
+  for (const auto& [name, value] : run.reported)
+    report.run->settings.emplace_back(name, reportValue(value));
+  for (const auto& [key, value] : run.figures) report.add("", {Figure(key, value, "")});
+  for (const std::string& text : run.notes) context.note(text);
+  for (const std::string& text : run.warnings) context.warning(text);
+}
+
+// "AVX2 on a, b; AVX3 on c", where there are several kinds.
+void nameMix(const std::vector<Part>& parts, Context& context) {
+  std::map<std::string, std::vector<std::string>> hosts;
+  for (const Part& part : parts) {
+    std::vector<std::string>& names = hosts[part.code];
+    if (std::find(names.begin(), names.end(), part.host) == names.end()) names.push_back(part.host);
+  }
+  if (hosts.size() < 2) return;
+  std::vector<std::string> kinds;
+  for (const auto& [code, names] : hosts)
+    kinds.push_back(fmt::format("{} on {}", code, fmt::join(names, ", ")));
+  context.warning(fmt::format(
+      "frames were made by different kinds of vector code ({}), which may differ in the last bits",
+      fmt::join(kinds, "; ")));
+}
+
+// What all commands for frames have.
+std::vector<FrameResult> resultsOf(const JoinedParts& joined, Context& context) {
+  std::vector<FrameResult> results;
+  FarmFigures farm;
+  std::vector<std::string> told;
+  bool jumped = false;
+  for (const Part& part : joined.parts) {
+    const auto file = std::find_if(joined.run.frames.begin(), joined.run.frames.end(),
+                                   [&](const FrameFile& f) { return f.number == part.frame; });
+    results.push_back({*file, part.seconds, part.broken});
+    farm.parts.push_back({part.host, part.code, part.seconds, part.setup, part.memory});
+    addSeconds(context.report().seconds, part.stageSeconds);
+    const std::string jumps = textAt(part.values, "jumps");
+    if (!jumps.empty() && !jumped) noteJumps(part.frame, jumps, context);
+    jumped = jumped || !jumps.empty();
+    // Neighbours of two frames are told of by both.
+    for (const std::string& text : part.warnings) {
+      if (std::find(told.begin(), told.end(), text) != told.end()) continue;
+      told.push_back(text);
+      context.warning(text);
+    }
+  }
+  nameMix(joined.parts, context);
+  context.report().add("farm", figures(farm));
+  return results;
+}
+
+// Frames whose grids are not there are not made.
+void dropWithoutOutput(const FramePattern& pattern, JoinedParts& joined) {
+  std::vector<Part> whole;
+  for (Part& part : joined.parts)
+    if (!part.broken.empty() || hasOutput(part, pattern.path(part.frame)))
+      whole.push_back(std::move(part));
+    else
+      joined.missing.push_back(part.frame);
+  joined.parts = std::move(whole);
+  std::sort(joined.missing.begin(), joined.missing.end());
+}
+
+void requireAll(const JoinedParts& joined, bool partial, Context& context) {
+  if (joined.missing.empty()) return;
+  const std::string text = fmt::format("{} of {} frames are not made: {}", joined.missing.size(),
+                                       joined.run.frames.size(), framesText(joined.missing));
+  if (!partial) throw DataError(text + "; make their shares, or join what is there with --partial");
+  if (joined.parts.empty()) throw DataError(text);
+  context.warning(text);
+}
+
+void joinSequence(const JoinOptions& options, JoinedParts joined, Context& context) {
+  const FramePattern pattern("FOLDER", options.folder + "/energy.####.vdb");
+  const bool grids = !textAt(joined.run.settings, "grids").empty();
+  if (grids) dropWithoutOutput(pattern, joined);
+  requireAll(joined, options.partial, context);
+  std::vector<std::string> beside{"parts"};
+  for (const Part& part : joined.parts)
+    beside.push_back(std::filesystem::path(pattern.path(part.frame)).filename().string());
+  const auto folder = context.outputFolder(options.folder, sequenceFiles(), beside);
+  if (context.dryRun())
+    return context.plan({fmt::format("join {} frames", joined.parts.size()),
+                         "write energies.csv, energies.svg and report.json to " + options.folder},
+                        0);
+  takeRun(joined.run, context);
+  const std::vector<FrameResult> results = resultsOf(joined, context);
+  std::vector<SequenceRow> rows;
+  context.print(sequenceHeader());
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (!results[i].error.empty()) continue;
+    rows.push_back(sequenceRow(joined.parts[i].values));
+    rows.back().file = results[i].file;
+    context.print(sequenceLine(rows.back()));
+    if (grids) context.outputInPlace(pattern.path(results[i].file.number));
+  }
+  concludeFrames(results, joined.missing.size(), context);
+  concludeSequence(sequenceJudge(joined.run.values), rows, results, context, *folder);
+  if (context.page())
+    showOutputs(*context.page(), reportJson(context.finishedReport()), options.folder);
+  context.finish(*folder);
+}
+
+void run(const JoinOptions& options, Context& context) {
+  JoinedParts joined = context.timed("read", [&] { return readParts(options.folder); });
+  if (joined.run.command == "sequence") return joinSequence(options, std::move(joined), context);
+  throw DataError(options.folder + ": the parts are of '" + joined.run.command +
+                  "', which has nothing to join");
+}
+
+}  // namespace
+
+Command makeJoinCommand() {
+  auto o = std::make_shared<JoinOptions>();
+  Command c("join", "Join the shares of a run that was made on several machines");
+  c.description(
+      "Reads the parts that sequence with --share left in FOLDER/parts, and writes what one run "
+      "would have written: energies.csv, energies.svg and report.json, with the same figures "
+      "whatever the shares were. Frames that are not made yet are named, and nothing is written "
+      "unless --partial is given. Parts of two runs, of another version, that are cut off, or that "
+      "two workers made with other results are refused. Others may write parts meanwhile.");
+  c.positional("FOLDER", &o->folder, "the output of a run with --share");
+  c.flag("--partial", &o->partial, "join the frames that are there");
+  c.example("innermap join energies");
+  c.run([o](Context& context) { run(*o, context); });
+  return c;
+}
+
+}  // namespace innermap::tool

@@ -1,0 +1,81 @@
+#include "sequence_result.h"
+
+#include "frame_loop.h"
+
+namespace innermap::tool {
+
+std::vector<std::string> sequenceFiles() { return {"energies.csv", "energies.svg", "report.json"}; }
+
+void concludeSequence(const SequenceJudge& judge, const std::vector<SequenceRow>& rows,
+                      const std::vector<FrameResult>& results, Context& context,
+                      PendingFolder& folder) {
+  const std::string seconds = secondsText(results, context);
+  const std::vector<SequenceRow> table = withBroken(rows, results);
+  fillReport(table, context.report());
+  std::vector<JudgedFrame> judged;
+  for (const SequenceRow& r : rows)
+    judged.push_back({r.file.number, r.error.p99, r.folded, r.outside});
+  context.judge(judgeFrames(judged, judge.tolerance, judge.verdict));
+  context.timed("write", [&] {
+    folder.write("energies.csv", [&](const std::string& path) { writeSequenceTable(path, table); });
+    folder.write("energies.svg", [&](const std::string& path) {
+      writeChart(path, sequenceChart(table, judge.rest));
+    });
+  });
+  context.print(seconds);
+}
+
+namespace {
+
+// Calls visit(key, member) for all that a row is made of.
+template <class Row, class Visit>
+void eachOf(Row& r, const Visit& visit) {
+  visit("harmonic", r.harmonic);
+  visit("deformation", r.deformation);
+  visit("deformation_mean", r.deformationMean);
+  visit("rms", r.error.rms);
+  visit("p99", r.error.p99);
+  visit("max", r.error.max);
+  visit("jacobian_min", r.jacobianMin);
+  visit("jacobian_max", r.jacobianMax);
+  visit("folded", r.folded);
+  visit("outside", r.outside);
+  visit("volume", r.volume);
+}
+
+}  // namespace
+
+PartValues partValues(const SequenceRow& row, const std::string& jumps) {
+  PartValues values;
+  eachOf(row, [&](const char* key, double value) { values.emplace_back(key, value); });
+  values.emplace_back("samples", static_cast<std::uint64_t>(row.error.samples));
+  values.emplace_back("misses", row.misses);
+  values.emplace_back("jumps", jumps);
+  return values;
+}
+
+SequenceRow sequenceRow(const PartValues& values) {
+  SequenceRow row;
+  eachOf(row, [&](const char* key, double& value) { value = numberAt(values, key); });
+  row.error.samples = static_cast<decltype(row.error.samples)>(countAt(values, "samples"));
+  row.misses = countAt(values, "misses") != 0;
+  return row;
+}
+
+PartValues partValues(const SequenceJudge& judge) {
+  return {{"rest", judge.rest},
+          {"tolerance", judge.tolerance},
+          {"max_folded", judge.verdict.maxFolded},
+          {"max_outside", judge.verdict.maxOutside}};
+}
+
+SequenceJudge sequenceJudge(const PartValues& values) {
+  SequenceJudge judge;
+  judge.rest = textAt(values, "rest");
+  judge.tolerance = numberAt(values, "tolerance");
+  judge.verdict.maxFolded = numberAt(values, "max_folded");
+  judge.verdict.maxOutside = numberAt(values, "max_outside");
+  return judge;
+}
+
+}  // namespace innermap::tool

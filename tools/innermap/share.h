@@ -1,0 +1,64 @@
+// Shares of the frames of a run: what workers on a farm make, and `join` puts together.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "frame_loop.h"
+#include "report/parts.h"
+
+namespace innermap::tool {
+
+struct ShareOptions {
+  std::string share;      // empty: all
+  std::string cpuTarget;  // empty: the processor's best
+};
+
+// --share and --cpu-target.
+void addShareOptions(Command& command, ShareOptions& options);
+
+// Before anything is computed. Throws SettingError.
+void applyCpuTarget(const ShareOptions& options);
+
+// A worker's side of it. Its output has no report of the run, but a folder parts/.
+class FrameShare {
+ public:
+  // Cuts frames.wanted down to those of the share that are not finished yet: those that have no
+  // part or, where `outputs` is given, no whole file. inputs: fingerprints of what is read
+  // beside frames. Throws SettingError, FileError, DataError (parts of another run).
+  FrameShare(const std::string& share, const std::string& folder, const std::string& inputs,
+             const FramePattern* outputs, Frames& frames, Context& context);
+
+  // After all that frames have in common is made, and told to the context.
+  void begin(const PartValues& values);
+
+  // After a frame. values: its figures, of a good one.
+  void ended(const FrameResult& result, PartValues values);
+
+  // After the last one: what is left is a failure, so that an engine starts the task again.
+  void conclude(const std::vector<FrameResult>& results);
+
+ private:
+  Context& context_;
+  const Frames& frames_;
+  PartRun run_;
+  std::vector<std::string> inputs_;  // by index in frames.all; of those of the share
+  std::optional<PartFolder> folder_;
+  std::optional<FramePattern> outputs_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  double setup_ = 0;
+  std::size_t finished_ = 0, warnings_ = 0;
+  StageSeconds seconds_;  // of the report, before the frame
+
+  bool isMade(std::int64_t frame, const std::string& input) const;
+  const std::string& inputOf(const FrameFile& file) const;
+};
+
+// Whether the file that belongs to a part is there, whole.
+bool hasOutput(const Part& part, const std::string& path);
+
+std::string hostName();  // of this machine
+
+}  // namespace innermap::tool

@@ -1,0 +1,42 @@
+#include "version.h"
+
+#include <OpenEXR/OpenEXRConfig.h>
+#include <OpenImageIO/oiioversion.h>
+#include <fmt/format.h>
+#include <openvdb/version.h>
+#include <zlib.h>
+
+#include <sstream>
+
+#include "commit.h"
+#include "innermap/core/version.h"
+
+// Not by a header: cblas.h may be another library's.
+extern "C" char* openblas_get_config(void);
+extern "C" const char* TBB_runtime_version();
+
+namespace innermap::tool {
+namespace {
+
+// Of "OpenBLAS 0.3.21 NO_AFFINITY ..." the second word.
+std::string openblasVersion() {
+  std::istringstream words(openblas_get_config());
+  std::string name, version;
+  words >> name >> version;
+  return version;
+}
+
+}  // namespace
+
+std::string versionAndLibraries() {
+  const std::string commit = *INNERMAP_COMMIT ? " (commit " INNERMAP_COMMIT ")" : "";
+  return fmt::format(
+      "innermap {}{}\n"
+      "OpenVDB {}, TBB {}, OpenEXR {}, OpenImageIO {}\n"
+      "OpenBLAS {}, zlib {}, fmt {}.{}.{}, compiler {}\n",
+      versionText(), commit, OPENVDB_LIBRARY_VERSION_STRING, TBB_runtime_version(),
+      OPENEXR_VERSION_STRING, OIIO_VERSION_STRING, openblasVersion(), zlibVersion(),
+      FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100, __VERSION__);
+}
+
+}  // namespace innermap::tool
