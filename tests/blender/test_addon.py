@@ -53,6 +53,16 @@ def test_cancelling_changes_nothing():
     scene("cancelled")
 
 
+def test_objects_have_files_of_their_own():
+    scene("names")
+
+
+def test_presets_are_kept():
+    os.environ["BLENDER_USER_SCRIPTS"] = os.path.abspath("scripts")
+    os.makedirs("scripts")
+    scene("presets")
+
+
 def test_files_move_with_the_scene():
     scene("relative_paths")
 
