@@ -63,6 +63,12 @@ def test_presets_are_kept():
     scene("presets")
 
 
+@cli.nightly
+def test_blur_of_fog_is_as_long_as_the_bodys():
+    blender("--python", cli.ROOT / "samples/render/motion_blur.py", "--", os.path.abspath("blur.png"), "16")
+    assert os.path.getsize("blur.png") > 1000
+
+
 def test_files_move_with_the_scene():
     scene("relative_paths")
 
