@@ -241,8 +241,15 @@ def live():
     later.location = (-1, 0, 0.1)
     later.modifiers.new("Lattice", 'LATTICE').object = ball.modifiers["Inner map"].object
     compare(s, later, vertices, 1e-3)
+    # Again: the same lattice object, so that what was added still follows.
+    lattice = later.modifiers["Lattice"].object
+    assert bpy.ops.innermap.live() == {'FINISHED'}
+    assert later.modifiers["Lattice"].object == lattice == ball.modifiers["Inner map"].object
+    assert len([ob for ob in bpy.data.objects if ob.type == 'LATTICE']) == 1
+    compare(s, later, vertices, 1e-3)
+    later.modifiers.clear()
     assert bpy.ops.innermap.clear() == {'FINISHED'}
-    assert not len(ball.modifiers)
+    assert not len(ball.modifiers) and not [ob for ob in bpy.data.objects if ob.type == 'LATTICE']
 
 
 def refuses(operator, *words):
@@ -270,6 +277,10 @@ def errors():
     body.modifiers.remove(decimate)
     wire.shape_key_add(name="own")
     refuses(bpy.ops.innermap.bake, "wire", "shape keys")
+    wire.shape_key_clear()
+    twin = linked("twin", wire.data)
+    refuses(bpy.ops.innermap.bake, "wire", "single user")
+    bpy.data.objects.remove(twin)
     s.targets.objects.unlink(wire)
     body.scale = (1, 1, 1)
     body.keyframe_insert("scale", frame=FIRST)
@@ -317,6 +328,41 @@ def cancelled():
     job.close()
     assert job.done and not job.error and not job.places
     assert os.listdir("baked") == [] and not ball.get("innermap_baked")
+
+
+def names():
+    """Names that make the same file's name keep files of their own; points outside stay as at rest."""
+    s = start()
+    ball, _, _ = things()
+    ball.name = "a b"
+    other = linked("a/b", ball.data.copy())
+    other.location = (-1, 0, 0.1)
+    far = linked("far", ball.data.copy())
+    far.location = (0, 0, 5)
+    put_inside(s, ball, other, far)
+    bpy.context.scene.frame_set(FIRST)
+    rest = vertices(far)
+    assert bpy.ops.innermap.bake() == {'FINISHED'}
+    assert len({ob.modifiers[0].filepath for ob in (ball, other, far)}) == 3
+    compare(s, ball, vertices, 2e-6)
+    bpy.context.scene.frame_set(LAST)
+    assert np.abs(vertices(far) - rest).max() < 1e-6
+
+
+def presets():
+    s = start()
+    s.quality, s.charges, s.store, s.outside = 'CUSTOM', 777, 'KEYS', 0.25
+    assert bpy.ops.innermap.preset_add(name="mine") == {'FINISHED'}
+    path = bpy.utils.preset_paths("innermap")[-1]
+    assert os.listdir(path) == ["mine.py"], os.listdir(path)
+    s.quality, s.charges, s.store, s.outside = 'DRAFT', 100, 'CACHE', 0
+    body = s.body
+    assert bpy.ops.script.execute_preset(filepath=os.path.join(path, "mine.py"),
+                                         menu_idname="INNERMAP_MT_presets") == {'FINISHED'}
+    assert (s.quality, s.charges, s.store, round(s.outside, 6)) == ('CUSTOM', 777, 'KEYS', 0.25)
+    assert s.body == body
+    assert bpy.ops.innermap.preset_add(name="mine", remove_name=True) == {'FINISHED'}
+    assert os.listdir(path) == []
 
 
 def relative_paths():

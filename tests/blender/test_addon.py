@@ -53,6 +53,22 @@ def test_cancelling_changes_nothing():
     scene("cancelled")
 
 
+def test_objects_have_files_of_their_own():
+    scene("names")
+
+
+def test_presets_are_kept():
+    os.environ["BLENDER_USER_SCRIPTS"] = os.path.abspath("scripts")
+    os.makedirs("scripts")
+    scene("presets")
+
+
+@cli.nightly
+def test_blur_of_fog_is_as_long_as_the_bodys():
+    blender("--python", cli.ROOT / "samples/render/motion_blur.py", "--", os.path.abspath("blur.png"), "16")
+    assert os.path.getsize("blur.png") > 1000
+
+
 def test_files_move_with_the_scene():
     scene("relative_paths")
 

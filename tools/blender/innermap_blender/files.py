@@ -2,6 +2,7 @@
 
 import os
 import struct
+import zlib
 
 import bpy
 import numpy as np
@@ -38,4 +39,6 @@ def stored(path, settings):
 
 
 def file_name(ob):
-    return bpy.path.clean_name(ob.name)
+    """Of its own for each object: "a b" and "a/b" would both be "a_b"."""
+    clean = bpy.path.clean_name(ob.name)
+    return clean if clean == ob.name else f"{clean}-{zlib.crc32(ob.name.encode()):08x}"

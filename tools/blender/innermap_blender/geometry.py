@@ -72,11 +72,13 @@ def key_points(ob):
 def rest_points(ob):
     if ob.type == 'MESH':
         if ob.data.shape_keys and ob.get("innermap_baked") != 'KEYS':
+            active = ob.active_shape_key_index
             key = ob.shape_key_add(name="innermap", from_mix=True)
             try:
                 return coordinates(key.data)
             finally:
                 ob.shape_key_remove(key)
+                ob.active_shape_key_index = active
         return coordinates(ob.data.vertices)
     if ob.type == 'CURVES':
         return coordinates(ob.data.points, "position")

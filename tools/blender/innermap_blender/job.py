@@ -44,6 +44,7 @@ class Job:
         if first < 0:
             raise Refused("Frames: must not be negative")
         self.frames = list(range(first, last + 1))
+        self.carried = []  # of each volume, for the thread: name, file, place, name of what is made
         self.values = {
             "charges": settings.charges if settings.quality == 'CUSTOM' else CHARGES[settings.quality]}
         self.outside = 1.0 if live else settings.outside
@@ -54,12 +55,20 @@ class Job:
             raise Refused("Inside: put meshes, curves, hair or volumes into the collection, or "
                           "select them")
         for ob in self.objects:
+            self.require_own_data(ob)
             if targets.own_shape_keys(ob) and not live and \
                     (ob.type == 'CURVE' or settings.store == 'KEYS'):
                 raise Refused(f"{ob.name}: has shape keys of its own; apply them" +
                               (" or store meshes as caches" if ob.type == 'MESH' else ""))
         self.folder = "" if live else files.folder_of(settings)
         self.made = None
+
+    def require_own_data(self, ob):
+        """Keys and the file of a volume stand in the data, which other objects may have too."""
+        in_data = ob.type in {'CURVE', 'VOLUME'} or ob.type == 'MESH' and self.settings.store == 'KEYS'
+        if in_data and not self.live and ob.data.users > 1:
+            raise Refused(f"{ob.name}: shares its data with other objects; make it a single user "
+                          "(Object > Relations)")
 
     # In Blender's thread.
 
@@ -80,6 +89,11 @@ class Job:
             self.scene.frame_set(now)
         if self.volumes:
             self.made = tempfile.mkdtemp(prefix=".baking-", dir=self.folder)
+            render = self.scene.render
+            self.with_velocity = self.settings.velocity and len(self.frames) > 1
+            self.keep_mass = self.settings.density
+            self.fps = render.fps / render.fps_base
+            self.shutter = render.motion_blur_shutter
 
     def check(self):
         self.report = self.library.check(self.rest, self.triangles)
@@ -89,6 +103,8 @@ class Job:
 
     def take_points(self):
         self.spans, points, self.volumes, count = [], [], [], 0
+        self.at_rest = []  # of each span, in the object's space
+        self.body_name = self.body.name
         if self.live:
             self.lattice = self.library.lattice((self.rest.min(axis=0), self.rest.max(axis=0)),
                                                 resolution=self.settings.lattice)
@@ -97,7 +113,8 @@ class Job:
             if ob.type == 'VOLUME':
                 self.take_volume(ob)
                 continue
-            found = apply(matrix(evaluated(ob).matrix_world), rest_points(ob))
+            self.at_rest.append(rest_points(ob))
+            found = apply(matrix(evaluated(ob).matrix_world), self.at_rest[-1])
             self.spans.append((ob, count, count + len(found)))
             points.append(found)
             count += len(found)
@@ -110,7 +127,9 @@ class Job:
         if ob.parent:
             moved = (ob.parent.matrix_world @ ob.matrix_parent_inverse).to_3x3() @ moved
         place.translation -= moved
-        self.volumes.append((ob, rest, bpy.path.abspath(rest["frame_path"]), matrix(place)))
+        self.volumes.append((ob, rest))
+        self.carried.append((ob.name, bpy.path.abspath(rest["frame_path"]), matrix(place),
+                             files.file_name(ob) + ".####.vdb"))
 
     def take_pose(self, frame):
         places = body_places(self.body)
@@ -130,7 +149,7 @@ class Job:
     def compute(self):
         try:
             self.carry_points()
-            for volume in self.volumes:
+            for volume in self.carried:
                 self.carry_volume(*volume)
         except Stopped:
             self.cancelled = True
@@ -151,37 +170,29 @@ class Job:
                 self.tick(f"frame {frame}", i / len(self.frames))
                 self.places.append(deformer(pose))
             except self.library.Error as error:
-                raise Refused(f"{self.body.name}, frame {frame}: {error}") from error
+                raise Refused(f"{self.body_name}, frame {frame}: {error}") from error
         # The error of the one that is farthest from the rest says enough.
         far = int(np.argmax([np.abs(pose - self.rest).max() for pose in self.poses]))
         self.figures = {"frame": self.frames[far], **deformer.measure(self.poses[far])}
 
-    def carry_volume(self, ob, _rest, path, place):
+    def carry_volume(self, name, path, place, pattern):
         back = np.linalg.inv(place)
-        settings = self.settings
-        out = self.made_pattern(ob)
         try:
             table = self.library.deform(
                 (apply(back, self.rest), self.triangles), path,
-                [apply(back, pose) for pose in self.poses], out, numbers=self.frames,
-                velocity=settings.velocity and len(self.frames) > 1, fps=self.fps(),
-                shutter=self.scene.render.motion_blur_shutter, outside=self.outside,
-                densities=["density"] if settings.density and self.has_density(path) else None,
+                [apply(back, pose) for pose in self.poses], os.path.join(self.made, pattern),
+                numbers=self.frames, velocity=self.with_velocity, fps=self.fps,
+                shutter=self.shutter, outside=self.outside,
+                densities=["density"] if self.keep_mass and self.has_density(path) else None,
                 names="blender", progress=self.tick, **self.values)
         except self.library.Error as error:
-            raise Refused(f"{ob.name}: {error}") from error
+            raise Refused(f"{name}: {error}") from error
         for frame, wrong in zip(table["frame"], table["error"]):
             if wrong:
-                raise Refused(f"{ob.name}, frame {frame}: {wrong}")
+                raise Refused(f"{name}, frame {frame}: {wrong}")
 
     def has_density(self, path):
         return "density" in self.library.read_vdb(path)
-
-    def fps(self):
-        return self.scene.render.fps / self.scene.render.fps_base
-
-    def made_pattern(self, ob):
-        return os.path.join(self.made, files.file_name(ob) + ".####.vdb")
 
     # In Blender's thread again.
 
@@ -193,12 +204,11 @@ class Job:
                               for inverse, places in zip(self.inverse, self.places)])
             missing = ~self.found[begin:end]
             if missing.any():
-                local[:, missing] = rest_points(ob)[missing]
+                local[:, missing] = self.at_rest[number][missing]
                 lost.append(f"{int(missing.sum())} of {ob.name}")
             self.play(ob, local)
-        for ob, rest, _, _ in self.volumes:
-            pattern = os.path.join(self.folder, files.file_name(ob) + ".####.vdb")
-            made = self.made_pattern(ob)
+        for (ob, rest), (_, _, _, name) in zip(self.volumes, self.carried):
+            pattern, made = os.path.join(self.folder, name), os.path.join(self.made, name)
             targets.clear(ob)
             targets.move_frames(made, pattern, self.frames)
             first = self.library.read_vdb(pattern.replace("####", f"{self.frames[0]:04d}"))
@@ -235,22 +245,25 @@ class Job:
     def write_lattice(self):
         points, counts, cell = self.lattice
         name = f"{targets.NAME} of {self.body.name}"
-        for ob in self.objects:
-            targets.clear(ob)
-        old = bpy.data.objects.get(name)
-        if old and old.get("innermap_lattice"):
-            bpy.data.lattices.remove(old.data)
+        # The object stays, for what else has a modifier with it.
+        lattice = next((ob for ob in bpy.data.objects if ob.get("innermap_lattice")
+                        and ob.get("innermap_body") == self.body), None)
         data = bpy.data.lattices.new(name)
         data.points_u, data.points_v, data.points_w = counts
         data.interpolation_type_u = data.interpolation_type_v = data.interpolation_type_w = \
             'KEY_CATMULL_ROM'
-        lattice = bpy.data.objects.new(name, data)
-        self.scene.collection.objects.link(lattice)
+        if lattice:
+            old, lattice.data = lattice.data, data
+            bpy.data.lattices.remove(old)
+        else:
+            lattice = bpy.data.objects.new(name, data)
+            self.scene.collection.objects.link(lattice)
+            lattice["innermap_lattice"], lattice["innermap_body"] = True, self.body
         middle = (points.min(axis=0) + points.max(axis=0)) / 2
         lattice.location, lattice.scale = middle, (cell,) * 3  # its points are one unit apart
-        lattice["innermap_lattice"] = True
         targets.play_keys(lattice, (np.array(self.places) - middle) / cell, self.frames)
         for ob in self.objects:
+            targets.clear(ob, keep=lattice)
             ob.modifiers.new(targets.NAME, 'LATTICE').object = lattice
             ob["innermap_baked"] = 'LIVE'
 

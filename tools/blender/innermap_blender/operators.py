@@ -9,7 +9,8 @@ from . import library, stale, targets
 from .geometry import Refused, body_mesh
 from .job import Job
 
-FAULTS = (Refused, ValueError, OSError, library.Missing)
+# RuntimeError is the base of the module's own.
+FAULTS = (Refused, ValueError, OSError, RuntimeError, library.Missing)
 TOGETHER = 0.2  # seconds of frames that are read before the window is drawn again
 VERDICT = {}  # of bodies: lines for the panel
 
@@ -58,6 +59,8 @@ class Working:
                 self.report({'WARNING'}, "cancelled; nothing was changed")
                 return {'CANCELLED'}
             told = job.write()
+        except ReferenceError:
+            return self.fail("an object was deleted meanwhile; bake again")
         except FAULTS as error:
             return self.fail(str(error))
         finally:
@@ -106,9 +109,20 @@ class Working:
         context.workspace.status_text_set(text)
 
     def modal(self, context, event):
+        try:
+            return self.step(context, event)
+        except BaseException:  # or no other bake could begin until Blender is started again
+            self.job.cancelled = True
+            if Working.running:
+                self.end(context)
+            raise
+
+    def step(self, context, event):
         job = self.job
         if event.type == 'ESC':
             job.cancelled = True
+        if event.type == 'Z' and (event.ctrl or event.oskey):
+            return {'RUNNING_MODAL'}  # undoing makes all objects anew, which the job knows
         if event.type != 'TIMER':
             # While the animation is stepped through nothing else may change the scene.
             return {'PASS_THROUGH'} if self.thread and event.type != 'ESC' else {'RUNNING_MODAL'}
@@ -162,6 +176,10 @@ class INNERMAP_OT_clear(bpy.types.Operator):
     bl_label = "Clear"
     bl_description = "Takes away what was baked; files stay where they are"
     bl_options = {'REGISTER', 'UNDO'}
+
+    @classmethod
+    def poll(cls, context):
+        return not Working.running and context.mode == 'OBJECT'
 
     def execute(self, context):
         baked = [ob for ob in context.scene.objects if ob.get("innermap_baked")]

@@ -1,11 +1,16 @@
 """The settings of a scene, and the panel that shows them."""
 
 import bpy
+from bl_operators.presets import AddPresetBase
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, \
     StringProperty
 
 from . import stale
 from .operators import VERDICT
+
+
+# What a preset keeps: how things are carried and stored, not which.
+PRESET = ("store", "quality", "charges", "outside", "density", "velocity", "lattice", "folder")
 
 
 class InnermapSettings(bpy.types.PropertyGroup):
@@ -55,11 +60,32 @@ class Panel:
         return col
 
 
+class INNERMAP_MT_presets(bpy.types.Menu):
+    bl_label = "Presets"
+    preset_subdir = "innermap"
+    preset_operator = "script.execute_preset"
+    draw = bpy.types.Menu.draw_preset
+
+
+class INNERMAP_OT_preset_add(AddPresetBase, bpy.types.Operator):
+    bl_idname = "innermap.preset_add"
+    bl_label = "Add a preset"
+    bl_description = "Keeps these settings under a name, for any scene"
+    preset_menu = "INNERMAP_MT_presets"
+    preset_subdir = "innermap"
+    preset_defines = ["settings = bpy.context.scene.innermap"]
+    preset_values = [f"settings.{name}" for name in PRESET]
+
+
 class INNERMAP_PT_main(Panel, bpy.types.Panel):
     bl_label = "Inner map"
 
     def draw(self, context):
         s = context.scene.innermap
+        row = self.layout.row(align=True)
+        row.menu("INNERMAP_MT_presets", text=bpy.types.INNERMAP_MT_presets.bl_label)
+        row.operator("innermap.preset_add", text="", icon='ADD')
+        row.operator("innermap.preset_add", text="", icon='REMOVE').remove_active = True
         col = self.column(self.layout)
         for name in ("body", "targets", "rest_frame", "scene_range"):
             col.prop(s, name)
@@ -93,7 +119,7 @@ class INNERMAP_PT_options(Panel, bpy.types.Panel):
             col.prop(context.scene.innermap, name)
 
 
-CLASSES = (InnermapSettings, INNERMAP_PT_main, INNERMAP_PT_options)
+CLASSES = (InnermapSettings, INNERMAP_MT_presets, INNERMAP_OT_preset_add, INNERMAP_PT_main, INNERMAP_PT_options)
 
 
 def register():

@@ -27,16 +27,19 @@ def own_shape_keys(ob):
         ob.get("innermap_baked") not in {'KEYS', 'CURVE'}
 
 
-def clear(ob):
-    """Takes away what was baked onto an object; True if there was something."""
+def clear(ob, keep=None):
+    """Takes away what was baked onto an object, but for the lattice `keep`; True if there was something."""
     kind = ob.get("innermap_baked")
     if not kind:
         return False
     for modifier in [m for m in ob.modifiers if m.name == NAME]:
         helper = getattr(modifier, "object", None) if kind == 'LIVE' else None
+        tree = getattr(modifier, "node_group", None) if kind == 'HAIR' else None
         ob.modifiers.remove(modifier)
-        if helper and helper.users <= 1 and helper.get("innermap_lattice"):
+        if helper and helper != keep and helper.users <= 1 and helper.get("innermap_lattice"):
             bpy.data.lattices.remove(helper.data)
+        if tree:
+            bpy.data.node_groups.remove(tree)
     if kind in {'KEYS', 'CURVE'} and ob.data.shape_keys:
         for key in list(ob.data.shape_keys.key_blocks)[::-1]:
             ob.shape_key_remove(key)
@@ -50,6 +53,9 @@ def clear(ob):
 
 def first_modifier(ob, kind):
     modifier = ob.modifiers.new(NAME, kind)
+    if hasattr(ob.modifiers, "move"):  # Blender 4
+        ob.modifiers.move(len(ob.modifiers) - 1, 0)
+        return ob.modifiers[0]
     with bpy.context.temp_override(object=ob):
         bpy.ops.object.modifier_move_to_index(modifier=modifier.name, index=0)
     return ob.modifiers[0]
@@ -79,9 +85,26 @@ def play_keys(ob, places, frames):
     for frame, block in ((frames[0], blocks[1]), (frames[-1], blocks[-1])):
         keys.eval_time = block.frame
         keys.keyframe_insert("eval_time", frame=frame)
-    for curve in keys.animation_data.action.fcurves:
+    for curve in curves_of(keys.animation_data):
         for point in curve.keyframe_points:
             point.interpolation = 'LINEAR'
+
+
+def curves_of(animation):
+    """The curves of an action; Blender 5 has them in the bag of the slot that is animated."""
+    action = animation.action
+    if hasattr(action, "fcurves"):
+        return action.fcurves
+    bags = (strip.channelbag(animation.action_slot) for layer in action.layers for strip in layer.strips)
+    return [curve for bag in bags if bag for curve in bag.fcurves]
+
+
+def new_socket(tree, way):
+    """way: 'INPUT' or 'OUTPUT' of a geometry."""
+    if hasattr(tree, "interface"):  # Blender 4
+        tree.interface.new_socket("Geometry", in_out=way, socket_type='NodeSocketGeometry')
+    else:
+        (tree.inputs if way == 'INPUT' else tree.outputs).new('NodeSocketGeometry', "Geometry")
 
 
 def play_hair(ob, path, places, frames, settings):
@@ -95,8 +118,8 @@ def play_hair(ob, path, places, frames, settings):
     play_cache(carrier, path, places, frames, settings)
     ob["innermap_points"] = carrier
     tree = bpy.data.node_groups.new(f"{NAME} {ob.name}", 'GeometryNodeTree')
-    tree.inputs.new('NodeSocketGeometry', "Geometry")
-    tree.outputs.new('NodeSocketGeometry', "Geometry")
+    new_socket(tree, 'INPUT')
+    new_socket(tree, 'OUTPUT')
     node = tree.nodes.new
     start, end, info, sample, position, index, move = map(node, (
         'NodeGroupInput', 'NodeGroupOutput', 'GeometryNodeObjectInfo', 'GeometryNodeSampleIndex',
@@ -114,9 +137,6 @@ def play_hair(ob, path, places, frames, settings):
 
 
 def clear_hair(ob):
-    tree = bpy.data.node_groups.get(f"{NAME} {ob.name}")
-    if tree:
-        bpy.data.node_groups.remove(tree)
     carrier = ob.pop("innermap_points", None)
     if carrier:
         bpy.data.meshes.remove(carrier.data)
@@ -125,6 +145,10 @@ def clear_hair(ob):
 # Volumes. Blender draws a .vdb half a voxel off along each axis: an object that plays what was
 # baked is moved back by that, and what it was before stands in its property innermap_rest.
 
+PLAYED = ("is_sequence", "frame_start", "frame_duration", "frame_offset", "velocity_unit",
+          "velocity_scale")
+
+
 def rest_volume(ob):
     """What a volume was before anything was baked onto it."""
     if ob.get("innermap_baked") == 'VOLUME':
@@ -132,8 +156,9 @@ def rest_volume(ob):
     grids = evaluated(ob).data.grids  # of a sequence, those of the frame
     if not grids.load() or not len(grids):
         raise ValueError(f"{ob.name}: {ob.data.filepath} has no grids ({grids.error_message})")
+    played = {name: getattr(ob.data, name) for name in PLAYED}
     return {"filepath": ob.data.filepath, "frame_path": grids.frame_filepath,
-            "is_sequence": ob.data.is_sequence, "delta": list(ob.delta_location)}
+            "delta": list(ob.delta_location), **played}
 
 
 def play_volume(ob, pattern, rest, frames, settings, grid):
@@ -152,8 +177,10 @@ def clear_volume(ob):
     rest = ob.pop("innermap_rest", None)
     if rest is None:
         return
-    ob.data.filepath, ob.data.is_sequence = rest["filepath"], bool(rest["is_sequence"])
-    ob.data.frame_offset = 0
+    ob.data.filepath = rest["filepath"]
+    for name in PLAYED:
+        if name in rest:
+            setattr(ob.data, name, type(getattr(ob.data, name))(rest[name]))
     ob.delta_location = rest["delta"]
 
 
