@@ -13,15 +13,6 @@ find_dependency(hwy)
 # compressed .vtu files
 find_dependency(ZLIB)
 
-# OpenImageIO's own package asks for OpenCV's headers, which nothing here needs.
-if(NOT TARGET innermap_oiio)
-  find_library(INNERMAP_OIIO OpenImageIO REQUIRED)
-  find_library(INNERMAP_OIIO_UTIL OpenImageIO_Util REQUIRED)
-  add_library(innermap_oiio INTERFACE IMPORTED)
-  set_target_properties(innermap_oiio PROPERTIES
-    INTERFACE_LINK_LIBRARIES "${INNERMAP_OIIO};${INNERMAP_OIIO_UTIL}")
-endif()
-
 if(NOT TARGET innermap_lapacke)
   find_library(INNERMAP_LAPACKE lapacke REQUIRED)
   find_library(INNERMAP_OPENBLAS openblas REQUIRED)

@@ -9,7 +9,7 @@ function(innermap_own_target target)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE OFF
                         BUILD_RPATH ${INNERMAP_MODULES_BUILD_FOLDER})
   get_target_property(type ${target} TYPE)
-  if(type MATCHES "EXECUTABLE|MODULE" AND NOT target MATCHES "innermap_images")
+  if(INNERMAP_BUILD_PICTURES AND type MATCHES "EXECUTABLE|MODULE" AND NOT target MATCHES "innermap_images")
     add_dependencies(${target} innermap_images)
   endif()
   target_compile_options(${target} PRIVATE -fPIC)

@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 """What a job shows of how far it is: on a terminal one bar, elsewhere lines."""
 
+import fcntl
 import os
 import pty
 import re
+import struct
 import subprocess
+import termios
 import time
 
 import cli
@@ -114,6 +117,42 @@ def test_more_voxels_are_said_to_take_longer():
         said.append(cli.dry_run("evaluate", "map.ply", "-o", "a.vdb", "--resolution", resolution,
                                 "--max-memory", "100GB").seconds)
     assert said[1] > said[0], said
+
+
+def shown(columns, *arguments, **more):
+    """All that a terminal of so many columns is shown, without the bar, and whether the run succeeded."""
+    ours, theirs = pty.openpty()
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+    environment = {name: value for name, value in os.environ.items() if name != "NO_COLOR"}
+    with subprocess.Popen([cli.PROGRAM, *arguments], stderr=theirs, stdout=theirs,
+                          env={**environment, "TERM": "xterm", **more}):
+        os.close(theirs)
+        text = b""
+        while True:
+            try:
+                text += os.read(ours, 65536)
+            except OSError:  # the other end is closed
+                break
+    os.close(ours)
+    return [line.split("\x1b[K")[-1] for line in text.decode().replace("\r\n", "\n").split("\n")]
+
+
+def test_a_run_ends_within_the_terminal():
+    pair()
+    colour = re.compile(r"\x1b\[[0-9;]*m")
+    arguments = ("fit", "ball.obj", "egg.obj", "-o", "map.ply", "--charges", "300", "--threads", "1")
+    for columns in (80, 50):
+        lines = shown(columns, *arguments)
+        assert any(colour.search(line) for line in lines), lines
+        plain = [colour.sub("", line) for line in lines]
+        assert max(map(len, plain)) <= columns, plain
+        assert len(plain) <= (24 if columns == 80 else 40), plain
+        assert any("map.ply" in line for line in plain[-3:]), plain
+        assert plain == shown(columns, *arguments, NO_COLOR="1") == shown(columns, *arguments, TERM="dumb")[-len(plain):]
+    # A pipe gets the same words, each finding on a line of its own, without colours.
+    piped = innermap(*arguments).stdout
+    assert "\x1b" not in piped
+    assert " ".join(piped.split()) in " ".join(" ".join(plain).split())
 
 
 cli.run(globals())

@@ -17,6 +17,8 @@ def test_version_is_the_projects():
     for library in ("OpenVDB", "TBB", "OpenEXR", "OpenImageIO", "OpenBLAS", "zlib"):
         assert re.search(rf"\b{library} [0-9]+\.[0-9]+", " ".join(lines[1:])), (library, lines)
     assert max(map(len, lines)) <= 80, lines
+    assert f"\nversion: {version}\n" in (cli.ROOT / "CITATION.cff").read_text()
+    assert f"\n## {version}" in (cli.ROOT / "CHANGELOG.md").read_text()
 
 
 def test_help_lists_every_command():

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "conclusion.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/pictures.h"
@@ -260,7 +261,10 @@ void Context::notePictures() {
 void Context::say(const std::string& kind, const std::string& text) {
   if (options_.quiet) return;
   progress_.clear();
-  std::fprintf(stderr, "innermap: %s%s\n", kind.c_str(), text.c_str());
+  const TerminalText style = TerminalText::of(stderr);
+  std::string line = style.wrapped("innermap: " + kind + text, 10);
+  if (!kind.empty()) line.replace(10, kind.size(), style.doubtful(kind));
+  std::fprintf(stderr, "%s\n", line.c_str());
 }
 
 void Context::note(const std::string& text) {
@@ -292,66 +296,15 @@ void Context::judge(const Verdict& verdict) {
   }
 }
 
-namespace {
-
-std::string titleOf(const std::string& name) {
-  std::string out = name;
-  std::replace(out.begin(), out.end(), '_', ' ');
-  return out;
-}
-
-// "out/: map.ply 1.2 MB, map.vdb 30 MB", a line a folder; of many files of one kind the first, the
-// last and all together.
-std::vector<std::string> writtenLines(const std::vector<ReportOutput>& outputs) {
-  constexpr std::size_t kMany = 8;
-  std::vector<std::pair<std::string, std::vector<const ReportOutput*>>> folders;
-  for (const ReportOutput& o : outputs) {
-    const std::string folder = std::filesystem::path(o.path).parent_path().string();
-    if (folders.empty() || folders.back().first != folder) folders.push_back({folder, {}});
-    folders.back().second.push_back(&o);
-  }
-  std::vector<std::string> lines;
-  for (const auto& [folder, files] : folders) {
-    std::string text = "wrote " + (folder.empty() ? "" : folder + "/: ");
-    std::uint64_t bytes = 0;
-    const auto nameOf = [](const ReportOutput* o) {
-      return std::filesystem::path(o->path).filename().string();
-    };
-    std::vector<std::string> names;
-    for (const ReportOutput* o : files) {
-      bytes += o->bytes;
-      names.push_back(nameOf(o) + " (" + formatBytes(o->bytes) + ")");
-    }
-    lines.push_back(
-        text + (files.size() > kMany
-                    ? fmt::format("{} files, {} to {} ({})", files.size(), nameOf(files.front()),
-                                  nameOf(files.back()), formatBytes(bytes))
-                    : fmt::format("{}", fmt::join(names, ", "))));
-  }
-  return lines;
-}
-
-std::string verdictText(const std::vector<ReportFinding>& verdict, std::size_t unmet) {
-  std::string text = unmet == 0 ? fmt::format("verdict: all {} met\n", verdict.size())
-                                : fmt::format("verdict: {} of {} not met\n", unmet, verdict.size());
-  for (const ReportFinding& f : verdict) {
-    text +=
-        fmt::format("  {:<7} {}: {}\n", f.met ? "met" : "NOT MET", titleOf(f.name), f.statement);
-    if (!f.advice.empty()) text += "          try: " + f.advice + "\n";
-  }
-  return text;
-}
-
-}  // namespace
-
 void Context::conclude() {
   if (dryRun()) return;
   noteTime();
   std::vector<std::string> unmet;
   for (const ReportFinding& f : report_.verdict)
     if (!f.met) unmet.push_back(titleOf(f.name));
-  if (!report_.verdict.empty()) print(verdictText(report_.verdict, unmet.size()));
-  if (!details_.empty()) print(details_);
+  const TerminalText style = TerminalText::of(stdout);
+  if (!report_.verdict.empty()) print(verdictText(report_.verdict, unmet.size(), style));
+  if (!details_.empty()) print(style.wrapped(details_, 2));
   std::vector<ReportOutput> outputs = outputsNow();
   std::error_code none;
   if (std::filesystem::is_regular_file(options_.report, none))

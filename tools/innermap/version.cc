@@ -1,19 +1,27 @@
 #include "version.h"
 
 #include <OpenEXR/OpenEXRConfig.h>
-#include <OpenImageIO/oiioversion.h>
 #include <fmt/format.h>
 #include <openvdb/version.h>
 #include <zlib.h>
 
 #include <sstream>
 
+#ifdef INNERMAP_BUILD_PICTURES
+#include <OpenImageIO/oiioversion.h>
+#define INNERMAP_PICTURES "OpenImageIO " OIIO_VERSION_STRING
+#else
+#define INNERMAP_PICTURES "no OpenImageIO"
+#endif
+
 #include "commit.h"
 #include "innermap/core/version.h"
 
 // Not by a header: cblas.h may be another library's.
+// NOLINTBEGIN(readability-identifier-naming)
 extern "C" char* openblas_get_config(void);
 extern "C" const char* TBB_runtime_version();
+// NOLINTEND(readability-identifier-naming)
 
 namespace innermap::tool {
 namespace {
@@ -32,11 +40,12 @@ std::string versionAndLibraries() {
   const std::string commit = *INNERMAP_COMMIT ? " (commit " INNERMAP_COMMIT ")" : "";
   return fmt::format(
       "innermap {}{}\n"
-      "OpenVDB {}, TBB {}, OpenEXR {}, OpenImageIO {}\n"
+      "OpenVDB {}, TBB {}, OpenEXR {}, " INNERMAP_PICTURES
+      "\n"
       "OpenBLAS {}, zlib {}, fmt {}.{}.{}, compiler {}\n",
       versionText(), commit, OPENVDB_LIBRARY_VERSION_STRING, TBB_runtime_version(),
-      OPENEXR_VERSION_STRING, OIIO_VERSION_STRING, openblasVersion(), zlibVersion(),
-      FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100, __VERSION__);
+      OPENEXR_VERSION_STRING, openblasVersion(), zlibVersion(), FMT_VERSION / 10000,
+      FMT_VERSION / 100 % 100, FMT_VERSION % 100, __VERSION__);
 }
 
 }  // namespace innermap::tool
