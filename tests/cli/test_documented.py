@@ -109,6 +109,8 @@ def stand_ins():
     innermap("tetrahedralize", "homer.obj", "-o", "homer.vtu", "--resolution", "12")
     innermap("remesh", "homer_spot/map.ply", "homer.vtu", "-o", "spot.vtu")
     innermap("map", "rest.obj", "pose.obj", "-o", "out", "--resolution", "16")
+    # To join: as docs/farm.md calls it, or the parts would be another run's.
+    innermap("sequence", "rest.obj", "frames/*.obj", "-o", "energies", "--share", "1/1")
 
 
 def each_command(whole):

@@ -178,13 +178,6 @@ def test_parts_that_do_not_belong_together():
     fails(1, "join", "out", says=["version that made them"])
 
 
-def rewrite(part, change):
-    """The same part with other figures, under the name that a worker would have given it."""
-    text = part.read_text(encoding="utf-8")
-    assert change[0] in text
-    part.write_text(text.replace(*change), encoding="utf-8")
-
-
 def test_workers_that_disagree():
     make_frames(2)
     share("1/1", "out")
@@ -203,6 +196,67 @@ def test_workers_that_disagree():
         if part != other:
             part.unlink()
     assert "elsewhere" in innermap("join", "out").stderr  # a mix is named
+
+
+def test_shares_of_deform():
+    make_frames(5)
+    innermap("voxelize", "rest.obj", "-o", "smoke.vdb", "--resolution", "12")
+    command = ["deform", "rest.obj", "smoke.vdb", "frames/*.obj", "--charges", "200", "--velocity"]
+    innermap(*command, "-o", "whole/s.####.vdb")
+    for text in ["2/2", "1/2", "5/9"]:
+        innermap(*command, "-o", "cut/s.####.vdb", "--share", text)
+    assert sorted(os.listdir("cut")) == sorted(os.listdir("whole"))
+    for grid in Path("whole").iterdir():
+        assert grid.read_bytes() == (Path("cut") / grid.name).read_bytes(), grid
+    fails(2, "deform", "rest.obj", "rest.obj", "frames/*.obj", "-o", "all.pc2", "--share", "1/2",
+          says=["one file"])
+    fails(1, "join", "cut", says=["--share"])
+
+
+def test_jobs_make_the_run():
+    make_frames(5)
+    os.makedirs("it's here")
+    for name in ["rest.obj", "frames"]:
+        shutil.move(name, "it's here")
+    os.chdir("it's here")
+    innermap(*COMMAND, "-o", "whole", *SMALL)
+    told = innermap(*COMMAND, "-o", "cut", *SMALL, "--jobs", "jobs.txt", "--tasks", "3").stdout
+    assert "3 shares of 5 frames" in told and not Path("cut").exists()
+    lines = Path("jobs.txt").read_text(encoding="utf-8").splitlines()
+    assert len(lines) == 3
+    os.chdir("/")
+    for line in lines:
+        subprocess.run(["sh", "-c", line], check=True, capture_output=True)
+    os.chdir(lines[0][len("cd '"):lines[0].index("' &&")].replace("'\\''", "'"))
+    innermap("join", "cut")
+    assert_same("whole", "cut")
+    innermap(*COMMAND, "-o", "cut2", *SMALL, "--jobs=jobs.sh", "--tasks=2")
+    innermap(*COMMAND, "-o", "cut3", *SMALL, "--jobs", "jobs.json")
+    # Slurm as a stand-in, which runs each task at once.
+    Path("sbatch").write_text("""#!/bin/sh
+for word; do case $word in --array=1-*) last=${word#--array=1-};; esac; wrapped=$word; done
+for id in $(seq ${last:-1}); do SLURM_ARRAY_TASK_ID=$id sh -c "$wrapped" >&2 || exit 1; done
+echo 17
+""", encoding="utf-8")
+    os.chmod("sbatch", 0o755)
+    done = subprocess.run(["./jobs.sh", "--partition=day"], check=True, capture_output=True, text=True,
+                          env={**os.environ, "PATH": os.getcwd() + ":" + os.environ["PATH"]})
+    assert done.stdout == "array 17, join 17\n"
+    assert_same("whole", "cut2")
+    template = cli.read_json("jobs.json")
+    assert [step["name"] for step in template["steps"]] == ["Shares", "Join"]
+    for step in template["steps"]:
+        run = step["script"]["actions"]["onRun"]
+        words = [word.replace("{{Task.Param.Share}}", "1") for word in run["args"]]
+        subprocess.run([run["command"], *words], check=True, capture_output=True)
+    assert_same("whole", "cut3")
+    check = cli.ROOT.parent / "shared" / "hosts" / "openjd_check.py"
+    if check.exists():
+        subprocess.run([sys.executable, check, "jobs.json"], check=True)
+    fails(1, *COMMAND, "-o", "a", "--jobs", "jobs.py", says=["--jobs", ".txt", "OpenJD"])
+    fails(2, *COMMAND, "-o", "a", "--jobs", "j.txt", "--share", "1/2", says=["--share"])
+    fails(2, *COMMAND, "-o", "a", "--tasks", "3", says=["--jobs"])
+    fails(1, *COMMAND, "-o", "a\nb", "--jobs", "j.txt", says=["line break"])
 
 
 def random_run(seed, count, whole):

@@ -16,6 +16,7 @@
 #include "inputs.h"
 #include "job_cost.h"
 #include "report/report_figures.h"
+#include "share.h"
 #include "transfer_options.h"
 
 namespace innermap::tool {
@@ -29,6 +30,7 @@ struct DeformOptions {
   FrameOptions frames;
   TransferOptions transfer;
   GeometryOptions geometry;
+  ShareOptions farm;
   bool velocity = false, force = false;
   double shutter = kUsualShutter;
   double framesPerSecond() const { return frames.animation.framesPerSecond; }
@@ -207,6 +209,9 @@ void check(const DeformOptions& options, const Frames& frames) {
                       "has no vertices that a point cache could hold; save it as .ply first");
   } else if (extension != ".vdb")
     throw UsageError("--output: '" + options.output + "' must end in .vdb, as in a.####.vdb");
+  if (cache && inShares(options.farm))
+    throw UsageError("--output: all frames go into one file, '" + options.output +
+                     "'; for shares give a file a frame");
   if (options.velocity && frames.all.size() < 2)
     throw UsageError("--velocity: needs at least two frames; give more or leave it out");
   // Refuses what makes no sense before anything is read; which motion fits is not known yet.
@@ -241,12 +246,27 @@ std::uint64_t memoryOf(const DeformOptions& options, const Solid& solid,
   return transferMemory(solid, grids, options.transfer, {true, options.velocity ? 1 : 0});
 }
 
-void expectFrames(const DeformOptions& options, const Solid& solid,
-                  const openvdb::GridPtrVec& grids, const Frames& frames, Context& context) {
+std::vector<JobPhase> phasesOf(const DeformOptions& options, const Solid& solid,
+                               const openvdb::GridPtrVec& grids, const Frames& frames) {
   const std::size_t charges = options.frames.fitting.sources;
+  if (grids.empty())  // geometry, which takes no time beside the fit
+    return framePhases(charges, frames.wanted.size(), stageOf("frames: volume", JobSize{}));
   JobSize size = jobSize(solid, outputSettings(grids, options.transfer.grid), charges);
   size.items = static_cast<double>(grids.size()) * size.inside;
-  context.expect(framePhases(charges, frames.wanted.size(), stageOf("frames: volume", size)));
+  return framePhases(charges, frames.wanted.size(), stageOf("frames: volume", size));
+}
+
+// The outputs are the result: there is nothing to join.
+void writeJobs(const DeformOptions& options, const Frames& frames, Context& context) {
+  const SourceBoundary rest = readRest(options.rest, frames, context);
+  openvdb::GridPtrVec grids;
+  std::uint64_t others = 0;
+  if (!isGeometryFile(options.volume)) {
+    grids = readVolume(options.volume, options.transfer, context);
+    others = memoryOf(options, rest.solid, grids);
+  }
+  writeShareJobs(options.farm, frames.wanted.size(), phasesOf(options, rest.solid, grids, frames),
+                 frameFitterMemory(options.frames.fitting, others), "", context);
 }
 
 void plan(const DeformOptions& options, const Frames& frames, const FramePattern& pattern,
@@ -260,9 +280,14 @@ void plan(const DeformOptions& options, const Frames& frames, const FramePattern
 }
 
 void run(const DeformOptions& options, Context& context) {
+  applyCpuTarget(options.farm);
   const FramePattern pattern("--output", options.output);
-  const Frames frames = listFrames(options.frames, options.rest, context);
+  Frames frames = listFrames(options.frames, options.rest, context);
   check(options, frames);
+  announceUsd(options.frames, inShares(options.farm), context);
+  if (writesJobs(options.farm, context)) return writeJobs(options, frames, context);
+  cutToShare(options.farm.share, frames);
+  if (frames.wanted.empty()) return context.print("the share has no frames\n");
   // Made first, and gone again if nothing comes into it.
   std::optional<PendingFolder> folder;
   if (!context.dryRun()) folder.emplace(pattern.folder());
@@ -270,7 +295,6 @@ void run(const DeformOptions& options, Context& context) {
     context.output(options.output);
   else
     context.outputs(framePaths(pattern, frames));
-  announceUsd(options.frames, context);
   if (isGeometryFile(options.volume))
     return deformGeometry({options.rest, options.volume, options.output, options.framesPerSecond(),
                            options.frames, options.transfer, options.geometry},
@@ -278,7 +302,7 @@ void run(const DeformOptions& options, Context& context) {
   if (context.dryRun()) {
     const SourceBoundary rest = readRest(options.rest, frames, context);
     const openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
-    expectFrames(options, rest.solid, grids, frames, context);
+    context.expect(phasesOf(options, rest.solid, grids, frames));
     return plan(options, frames, pattern, memoryOf(options, rest.solid, grids), context);
   }
   std::optional<Inputs> inputs;
@@ -291,7 +315,7 @@ void run(const DeformOptions& options, Context& context) {
   SourceBoundary rest = readRest(options.rest, frames, context);
   openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
   requireFrameMemory(options.frames.fitting, memoryOf(options, rest.solid, grids), context);
-  expectFrames(options, rest.solid, grids, left, context);
+  context.expect(phasesOf(options, rest.solid, grids, left));
   Deformer deformer(options, left, std::move(rest), std::move(grids), context);
   std::map<std::size_t, DeformRow> rows;
   context.print(fmt::format("{:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "frame", "voxels",
@@ -359,6 +383,7 @@ Command makeDeformCommand() {
       .atMost(10);
   addTransferOptions(c, o->transfer);
   addGeometryOptions(c, o->geometry, false);
+  addShareOptions(c, o->farm, "The files of all shares are those of one run");
   c.example(
       "innermap deform rest.obj smoke.vdb walk.pc2 -o 'out/smoke.####.vdb' --usd out/smoke.usda");
   c.example("innermap deform rest.obj bones.obj 'walk.*.obj' -o 'out/bones.####.obj'");

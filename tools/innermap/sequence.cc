@@ -85,10 +85,7 @@ FrameEvaluator makeEvaluator(const SequenceOptions& options, const FrameFitter& 
 void run(const SequenceOptions& options, Context& context) {
   if (!options.frames.usd.empty() && options.grids.empty())
     throw UsageError("--usd: refers to grids; give --grids too");
-  if (!options.frames.usd.empty() && !options.farm.share.empty())
-    throw UsageError(
-        "--usd: refers to all frames, which a share does not make; leave it out, and `innermap "
-        "export` the .vdb files to a .usda file afterwards");
+  announceUsd(options.frames, inShares(options.farm), context);
   applyCpuTarget(options.farm);
   gridsToWrite(options);  // refuses names that cannot be before anything is read
   if (!options.gridList.empty()) context.note("--grid-list is now the list of --grids=LIST");
@@ -96,14 +93,14 @@ void run(const SequenceOptions& options, Context& context) {
   const FramePattern pattern("--output", options.output + "/energy.####.vdb");
   std::unique_ptr<PendingFolder> folder;
   std::optional<FrameShare> share;
-  if (options.farm.share.empty())
+  const bool asJobs = writesJobs(options.farm, context);
+  if (!asJobs && options.farm.share.empty())
     folder = context.outputFolder(options.output, sequenceFiles());
-  else
+  if (!options.farm.share.empty())
     share.emplace(options.farm.share, options.output, fingerprintOf(options.rest),
                   options.grids.empty() ? nullptr : &pattern, frames, context);
   if (frames.wanted.empty()) return;
-  if (!options.grids.empty()) context.outputs(framePaths(pattern, frames));
-  announceUsd(options.frames, context);
+  if (!options.grids.empty() && !asJobs) context.outputs(framePaths(pattern, frames));
   const FrameFitterSettings settings = options.frames.fitting;
   SourceBoundary rest = readRest(options.rest, frames, context);
   requireInterior(rest.solid, options.evaluation.grid.in<LevelSetSettings>());
@@ -114,6 +111,9 @@ void run(const SequenceOptions& options, Context& context) {
                                              stageOf("frames: grids", withNearSums(size)));
   phases.insert(phases.end() - 1, stageOf("level set", size));
   context.expect(phases);
+  if (asJobs)
+    return writeShareJobs(options.farm, frames.wanted.size(), phases,
+                          frameFitterMemory(settings, gridsNeed), options.output, context);
   if (context.dryRun())
     return context.plan({framesPlan(settings, frames),
                          "write " +
@@ -184,7 +184,9 @@ Command makeSequenceCommand() {
            fmt::format("{}", fmt::join(mapGridNames(), ", ")))
       .implied(kEnergies);
   c.option("--grid-list", "LIST", &o->gridList, "formerly the LIST of --grids=LIST").advanced();
-  addShareOptions(c, o->farm);
+  addShareOptions(c, o->farm,
+                  "Its figures go to parts/ in the output's folder, and innermap join makes one "
+                  "run of all; frames that are finished are not made again");
   c.example("innermap sequence rest.obj 'frames/*.obj' -o energies");
   c.example("innermap sequence rest.obj 'walk.####.obj' -o energies --frames 1-48x2 --grids");
   c.run([o](Context& context) { run(*o, context); });

@@ -4,12 +4,16 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <limits>
+#include <sstream>
 
 #include "core/file.h"
 #include "core/share.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/version.h"
+#include "report/jobs.h"
 #include "run_record.h"
 
 namespace innermap::tool {
@@ -17,10 +21,12 @@ namespace {
 
 constexpr const char* kShare = "--share";
 constexpr const char* kCpuTarget = "--cpu-target";
+constexpr const char* kJobs = "--jobs";
+constexpr const char* kTasks = "--tasks";
 
 // Change no result, or where it goes.
 bool decides(const std::string& setting) {
-  for (const char* other : {"share", "output", "max_time", "force"})
+  for (const char* other : {"share", "jobs", "tasks", "output", "max_time", "force"})
     if (setting == other) return false;
   return true;
 }
@@ -29,16 +35,41 @@ FigureValue partValue(const ReportValue& value) {
   return std::visit([](const auto& v) -> FigureValue { return v; }, value);
 }
 
-// As a run without --share would have been called.
-std::vector<std::string> withoutShare(const std::vector<std::string>& commandLine) {
+// Without these options and their values.
+std::vector<std::string> without(const std::vector<std::string>& commandLine,
+                                 const std::vector<std::string>& options) {
   std::vector<std::string> out;
   for (std::size_t i = 0; i < commandLine.size(); ++i) {
-    if (commandLine[i] == kShare)
+    const std::string& word = commandLine[i];
+    const std::string name = word.substr(0, word.find('='));
+    if (std::find(options.begin(), options.end(), name) == options.end())
+      out.push_back(word);
+    else if (name.size() == word.size())
       ++i;
-    else if (commandLine[i].rfind(std::string(kShare) + "=", 0) != 0)
-      out.push_back(commandLine[i]);
   }
   return out;
+}
+
+// This program, by its name where that is found.
+std::string programName() {
+  namespace fs = std::filesystem;
+  std::error_code failed;
+  const fs::path own = fs::read_symlink("/proc/self/exe", failed);
+  if (failed) return "innermap";
+  std::istringstream folders(environmentVariable("PATH").value_or(""));
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (std::error_code none; fs::equivalent(fs::path(folder) / "innermap", own, none))
+      return "innermap";
+  return own.string();
+}
+
+// Each takes at least a minute, and as long as setting up, so that this is half of all at most.
+std::uint64_t usualTasks(double setup, double perFrame, std::size_t frames) {
+  constexpr double kLeast = 60, kMost = 1000;  // seconds; tasks, as many as Slurm takes as it comes
+  const double least = std::max(kLeast, setup);
+  const double most = std::min(kMost, static_cast<double>(frames));
+  return static_cast<std::uint64_t>(
+      std::clamp(std::floor(perFrame * static_cast<double>(frames) / least), 1.0, most));
 }
 
 PartRun runOf(const std::string& inputs, const Frames& frames, const Report& report) {
@@ -47,7 +78,7 @@ PartRun runOf(const std::string& inputs, const Frames& frames, const Report& rep
   run.version = versionText();
   run.inputs = inputs;
   for (const std::size_t index : frames.wanted) run.frames.push_back(frames.all[index]);
-  run.commandLine = withoutShare(report.run->commandLine);
+  run.commandLine = without(report.run->commandLine, {kShare});
   run.date = report.run->date;
   for (const auto& [name, value] : report.run->settings) {
     const bool isShare = name == settingKey(kShare);
@@ -62,15 +93,14 @@ constexpr const char* kOutput = "output";  // the fingerprint of a frame's file
 
 }  // namespace
 
-void addShareOptions(Command& command, ShareOptions& options) {
+void addShareOptions(Command& command, ShareOptions& options, const std::string& results) {
   command.group("machines");
   command
-      .option(kShare, "K/N", &options.share,
-              "make only the K-th of N shares of the frames, 3/40 say, or 'auto': the task of "
-              "Slurm's job array, or OpenCue's, that this process is. The figures go to "
-              "parts/ in the output's folder, and innermap join makes one run of them; what is "
-              "finished is not "
-              "made again")
+      .option(
+          kShare, "K/N", &options.share,
+          "make only the K-th of N shares of the frames, 3/40 say, or 'auto': the task of Slurm's "
+          "job array, or OpenCue's, that this process is. " +
+              results)
       .advanced();
   command
       .option(kCpuTarget, "NAME", &options.cpuTarget,
@@ -79,10 +109,75 @@ void addShareOptions(Command& command, ShareOptions& options) {
                           fmt::join(cpuNames(), " or ")))
       .defaults("this processor's best")
       .advanced();
+  command
+      .option(kJobs, "FILE", &options.jobs,
+              "compute nothing, but write the run as jobs in shares: .txt a command a line (GNU "
+              "parallel, cuecmd, PDG), .sh or .sbatch a script that submits a job array to Slurm "
+              "and the join "
+              "after it, .json or .yaml an OpenJD template; with the time and memory that "
+              "--dry-run tells, and a margin")
+      .advanced();
+  command.option(kTasks, "N", &options.tasks, "how many shares --jobs makes")
+      .range(1, static_cast<double>(Share::kMost))
+      .defaults("so many that each takes a minute or more")
+      .advanced();
+}
+
+bool writesJobs(const ShareOptions& options, Context& context) {
+  if (options.jobs.empty()) {
+    if (options.tasks) throw UsageError("--tasks: is for --jobs; leave it out");
+    return false;
+  }
+  if (!options.share.empty())
+    throw UsageError("--jobs: makes the shares itself; leave out --share");
+  if (context.page())
+    throw UsageError("--html: the jobs have no page; give --html to innermap join");
+  requireJobsFile(kJobs, options.jobs);
+  return true;
+}
+
+void writeShareJobs(const ShareOptions& options, std::size_t frames,
+                    const std::vector<JobPhase>& phases, std::uint64_t bytes,
+                    const std::string& joined, Context& context) {
+  const double all = totalSeconds(phases), perFrame = phases.back().seconds / double(frames);
+  const double setup = all - phases.back().seconds;
+  Jobs jobs;
+  jobs.tasks =
+      std::min<std::uint64_t>(options.tasks.value_or(usualTasks(setup, perFrame, frames)), frames);
+  const ReportRun& run = *context.report().run;
+  jobs.name = "innermap " + context.report().command;
+  jobs.folder = std::filesystem::current_path().string();
+  jobs.command = without(run.commandLine, {kJobs, kTasks});
+  jobs.command.front() = programName();
+  if (!joined.empty()) jobs.join = {jobs.command.front(), "join", joined};
+  jobs.seconds = setup + perFrame * std::ceil(double(frames) / double(jobs.tasks));
+  jobs.memory = processMemory(bytes);
+  jobs.cores = static_cast<std::uint64_t>(run.threads);
+  const std::string told =
+      fmt::format("{} shares of {} frames to {}: about {:.0f} s and {} each", jobs.tasks, frames,
+                  options.jobs, std::max(1.0, jobs.seconds), formatBytes(jobs.memory));
+  if (context.dryRun()) return context.plan({"write " + told}, 0);
+  context.output(options.jobs);
+  context.timed("write", [&] { writeJobs(kJobs, options.jobs, jobs); });
+  context.print(told + "\n");
+}
+
+bool inShares(const ShareOptions& options) {
+  return !options.share.empty() || !options.jobs.empty();
 }
 
 void applyCpuTarget(const ShareOptions& options) {
   if (!options.cpuTarget.empty()) keepToCpu(kCpuTarget, options.cpuTarget);
+}
+
+std::string cutToShare(const std::string& share, Frames& frames) {
+  if (share.empty()) return "";
+  const Share cut = parseShare(kShare, share);
+  const auto [first, last] = cut.range(frames.wanted.size());
+  frames.wanted = {frames.wanted.begin() + static_cast<std::ptrdiff_t>(first),
+                   frames.wanted.begin() + static_cast<std::ptrdiff_t>(last)};
+  frames.share = true;
+  return fmt::format("{}/{}", cut.number, cut.of);
 }
 
 FrameShare::FrameShare(const std::string& share, const std::string& folder,
@@ -95,13 +190,8 @@ FrameShare::FrameShare(const std::string& share, const std::string& folder,
   if (context.page())
     throw UsageError("--html: a share has no page of its own; give --html to innermap join");
   if (outputs) outputs_ = *outputs;
-  const Share cut = parseShare(kShare, share);
-  const auto [first, last] = cut.range(frames.wanted.size());
-  const auto at = [&](std::size_t i) {
-    return frames.wanted.begin() + static_cast<std::ptrdiff_t>(i);
-  };
-  std::vector<std::size_t> mine(at(first), at(last));
-  frames.share = true;
+  const std::string numbers = cutToShare(share, frames);
+  const std::vector<std::size_t> mine = frames.wanted;
   if (!context.dryRun()) folder_.emplace(folder, run_);
   frames.wanted.clear();
   for (const std::size_t index : mine) {
@@ -112,8 +202,8 @@ FrameShare::FrameShare(const std::string& share, const std::string& folder,
     if (!isMade(frames.all[index].number, inputs_[index])) frames.wanted.push_back(index);
   }
   finished_ = mine.size() - frames.wanted.size();
-  context.print(fmt::format("share {}/{}: {} of {} frames, {} of them finished already\n",
-                            cut.number, cut.of, mine.size(), run_.frames.size(), finished_));
+  context.print(fmt::format("share {}: {} of {} frames, {} of them finished already\n", numbers,
+                            mine.size(), run_.frames.size(), finished_));
 }
 
 bool FrameShare::isMade(std::int64_t frame, const std::string& input) const {

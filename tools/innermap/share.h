@@ -14,13 +14,32 @@ namespace innermap::tool {
 struct ShareOptions {
   std::string share;      // empty: all
   std::string cpuTarget;  // empty: the processor's best
+  std::string jobs;       // a file to write, or empty
+  std::optional<std::uint64_t> tasks;
 };
 
-// --share and --cpu-target.
-void addShareOptions(Command& command, ShareOptions& options);
+// --share, --cpu-target, --jobs, --tasks. results: what becomes of a share, a sentence.
+void addShareOptions(Command& command, ShareOptions& options, const std::string& results);
+
+// Whether other processes make parts of the run, too.
+bool inShares(const ShareOptions& options);
 
 // Before anything is computed. Throws SettingError.
 void applyCpuTarget(const ShareOptions& options);
+
+// Whether --jobs is given. Throws UsageError, SettingError for what does not go with it.
+bool writesJobs(const ShareOptions& options, Context& context);
+
+// What --jobs writes in place of the run. phases: of a run over so many frames, the last of them
+// the frames'; bytes: beyond what the process has by now. joined: the folder that `join` is given;
+// empty: there is nothing to join.
+void writeShareJobs(const ShareOptions& options, std::size_t frames,
+                    const std::vector<JobPhase>& phases, std::uint64_t bytes,
+                    const std::string& joined, Context& context);
+
+// Cuts frames.wanted down to those of the share, and returns it with its numbers, "3/40". All stay
+// where `share` is empty.
+std::string cutToShare(const std::string& share, Frames& frames);
 
 // A worker's side of it. Its output has no report of the run, but a folder parts/.
 class FrameShare {
