@@ -31,7 +31,8 @@ std::optional<CoarseMap> relaxCoarse(const CoarseSurface& coarse, const Layout& 
   out.image = start;
   const std::size_t vertices = coarse.surface.vertices.size();
   ProgressiveMesh mesh(vertices, coarse.surface.triangles, coarse.shift);
-  PullbackEnergy energy(coarse.surface, mesh, out.image, target, settings.samples);
+  PullbackEnergy energy(coarse.surface, mesh, out.image, target, settings.samples,
+                        settings.leastParts);
   RelaxSettings relax;
   relax.steps = 1;
   std::vector<char> fixed(vertices, 0), held(vertices, 0);
