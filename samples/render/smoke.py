@@ -61,7 +61,7 @@ def main():
     V, F = innermap.read_mesh(HORSES / "reference.obj")
     size = np.ptp(V, axis=0)
     grids = smoke(V, F)
-    poses = [V] + [innermap.read_mesh(HORSES / f"frame.{k:04d}.obj")[0] for k in FRAMES]
+    poses = [V] + [innermap.read_mesh(HORSES / f"frame.{k:04d}.obj").vertices for k in FRAMES]
     skin = studio.glass("skin", (0.75, 0.85, 0.95), 0.05, 0.75, 2.2)
     up, long = 1, int(np.argmax(size))
     print("sizes", size, "up", up, "along", long)
@@ -72,7 +72,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         for i, pose in enumerate(poses):
             path = str(Path(folder) / f"{i}.vdb")
-            posed = grids if i == 0 else innermap.push(innermap.fit(V, F, pose, charges=4000, one_to_one="off"), grids,
+            posed = grids if i == 0 else innermap.push(innermap.fit(V, F, pose, tolerance=3e-3, one_to_one="off"), grids,
                                                        densities=["density"], resolution=130)
             posed.write_vdb(path)
             middle = (pose.min(axis=0) + pose.max(axis=0)) / 2
