@@ -1,6 +1,5 @@
 """Smoke in a horse at rest, and in frames of its gallop. Needs the test models beside the project.
 
-    innermap voxelize reference.obj -o out/horse/rest.vdb --fog --resolution 160
     PYTHONPATH=build/release/python blender -b --factory-startup --python-exit-code 1 \
         --python samples/render/smoke.py -- OUT.jpg [SAMPLES]
 """
@@ -56,17 +55,16 @@ def cloud(scale):
 
 def main():
     out, samples = studio.arguments(__doc__)
-    made = studio.scene((1440, 420), samples, 0.5)
+    made = studio.scene((1240, 380), samples, 0.35)
     made.cycles.volume_bounces = 0
     V, F = innermap.read_mesh(HORSES / "reference.obj")
     size = np.ptp(V, axis=0)
     grids = smoke(V, F)
     poses = [V] + [innermap.read_mesh(HORSES / f"frame.{k:04d}.obj").vertices for k in FRAMES]
-    skin = studio.glass("skin", (0.75, 0.85, 0.95), 0.05, 0.75, 2.2)
+    skin = studio.glass("skin", (0.70, 0.85, 0.95), 0.06, 0.9, 1.6)
     up, long = 1, int(np.argmax(size))
-    print("sizes", size, "up", up, "along", long)
     height = size[up]
-    cloud_made = cloud(60 / height)
+    cloud_made = cloud(34 / height)
     turn = Euler((np.pi / 2, 0, 0)).to_matrix().to_4x4()
     spin = Euler((0, 0, np.pi / 2 if long == 2 else 0)).to_matrix().to_4x4()
     with tempfile.TemporaryDirectory() as folder:
@@ -77,7 +75,7 @@ def main():
             posed.write_vdb(path)
             middle = (pose.min(axis=0) + pose.max(axis=0)) / 2
             place = spin @ turn
-            shift = Vector(((i - 1.5) * 1.16 * size[long], 0, 0)) - (place @ Vector((middle[0], pose[:, 1].min(),
+            shift = Vector(((i - 1.5) * 1.24 * size[long], 0, 0)) - (place @ Vector((middle[0], pose[:, 1].min(),
                                                                                     middle[2])))
             body = studio.mesh("horse", pose, F, skin)
             body.visible_shadow = False
@@ -90,10 +88,10 @@ def main():
             for ob, off in ((body, Vector((0, 0, 0))), (volume, half)):
                 ob.matrix_world = place
                 ob.location = shift - (place.to_3x3() @ off)
-        studio.floor(0)
-        wide = 4.75 * size[long]
+        studio.floor(0, (0.045, 0.07, 0.095))
+        wide = 5.15 * size[long]
         studio.camera((0, -9 * height, 1.5 * height), (0, 0, 0.5 * height), across=wide)
-        studio.light((-3 * height, -3 * height, 5 * height), (0, 0, 0), 2 * height, 260 * height ** 2, (1, 0.96, 0.9))
+        studio.light((-3 * height, -3 * height, 5 * height), (0, 0, 0), 2 * height, 170 * height ** 2, (1, 0.96, 0.9))
         studio.light((4 * height, -4 * height, 3 * height), (0, 0, 0), 3 * height, 120 * height ** 2, (0.85, 0.93, 1))
         studio.render(out, 0.06)
 
