@@ -46,7 +46,7 @@ def show(points, cells, faces, share, kept, at):
     P = (middle + SHRUNK * (corners - middle)).reshape(-1, 3)
     first = corners.shape[1] * np.arange(len(corners))[:, None, None]
     quads = (first + np.array(faces)[None]).reshape(-1, len(faces[0]))
-    rgb = np.repeat(studio.ramp(0.08 + 0.84 * share[kept]), corners.shape[1], axis=0)
+    rgb = np.repeat(studio.ramp(0.92 - 0.80 * share[kept]), corners.shape[1], axis=0)
     return studio.mesh("cells", P, quads, studio.painted("cells", 0.5, 0.25), rgb, at, smooth=False)
 
 
@@ -60,7 +60,7 @@ def bar(at, width, words, camera):
     colour.layer_name = "rgb"
     links.new(colour.outputs[0], ink.inputs[0])
     links.new(ink.outputs[0], out.inputs["Surface"])
-    studio.mesh("scale", points, faces, made, np.repeat(studio.ramp(0.08 + 0.84 * steps), 2, axis=0))
+    studio.mesh("scale", points, faces, made, np.repeat(studio.ramp(0.92 - 0.80 * steps), 2, axis=0))
     name, low, high = words
     studio.label(name, (at[0], at[1] + 0.13, at[2]), 0.085, camera)
     for text, x in ((low, -0.5), (high, 0.5)):
@@ -69,29 +69,29 @@ def bar(at, width, words, camera):
 
 def main():
     out, samples = studio.arguments(__doc__)
-    studio.scene((1280, 760), samples, 0.5)
+    studio.scene((1100, 640), samples, 0.5)
     V, F = innermap.read_mesh(studio.ROOT / "samples/gecko.obj")
     tetra = innermap.tetrahedralize(V, F, resolution=34)
     points, cells = np.asarray(tetra.points), tetra.cells_dict["tetra"]
     angle = least_angle(points[cells])
     kept = points[cells].mean(axis=1)[:, 2] < 0.0
-    show(points, cells, TETRA_FACES, np.clip((angle - 10) / 50, 0, 1), kept, (-0.95, 0.12, 0))
+    show(points, cells, TETRA_FACES, np.clip((angle - 10) / 50, 0, 1), kept, (-1.0, 0.20, 0))
     V, F = innermap.read_mesh(studio.ROOT / "samples/torus.obj")
     cubes = innermap.hexahedralize(V, F)
-    points, cells = 0.72 * np.asarray(cubes.points), cubes.cells_dict["hexahedron"]
+    points, cells = 0.60 * np.asarray(cubes.points), cubes.cells_dict["hexahedron"]
     quality = scaled_jacobian(points[cells])
     print(f"least angle {angle.min():.1f}, scaled Jacobian {quality.min():.2f} to {quality.max():.2f}")
     middle = points[cells].mean(axis=1)
     kept = (middle[:, 2] < 0) | ((middle[:, 1] > 0) & (middle[:, 0] < 0.25))
-    show(points, cells, HEXA_FACES, np.clip((quality - 0.3) / 0.7, 0, 1), kept, (0.98, 0.17, 0))
+    show(points, cells, HEXA_FACES, np.clip((quality - 0.3) / 0.7, 0, 1), kept, (1.05, 0.12, 0))
     studio.mesh("floor", [(-40, -40, -0.33), (40, -40, -0.33), (40, 40, -0.33), (-40, 40, -0.33)],
                 [(0, 1, 2, 3)], studio.plain("paper", studio.PAPER, 0.9))
-    camera = studio.camera((0, -1.5, 8), (0, -0.1, 0), across=4.0)
-    bar((-0.95, -1.22, 0.1), 0.9, ("least dihedral angle, degrees", "10", "60"), camera)
-    bar((0.98, -1.22, 0.1), 0.9, ("scaled Jacobian", "0.3", "1"), camera)
+    camera = studio.camera((0, -0.6, 8), (0, -0.04, 0), across=4.6)
+    bar((-1.0, -1.21, 0.1), 0.9, ("least dihedral angle, degrees", "10", "60"), camera)
+    bar((1.05, -1.21, 0.1), 0.9, ("scaled Jacobian", "0.3", "1"), camera)
     studio.light((-3, 2.5, 4.5), (0, 0, 0), 2, 260, (1, 0.95, 0.88))
     studio.light((4, -3, 4), (0, 0, 0), 4, 80, (0.85, 0.93, 1))
-    studio.render(out, 0.04)
+    studio.render(out, 0.09)
 
 
 if __name__ == "__main__":
