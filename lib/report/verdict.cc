@@ -133,18 +133,17 @@ std::string listOf(const std::vector<std::int64_t>& numbers) {
 std::vector<Setting> describe(VerdictSettings& s, bool frames) {
   std::vector<Setting> out{
       Setting("warn_folded", "SHARE", &s.maxFolded,
-              "of the inside that may be folded; more is warned of")
+              "warn if more than this share of the inside folds")
           .from(0, 1)
           .was("max_folded"),
       Setting("warn_outside", "SHARE", &s.maxOutside,
-              "of the inside that may land outside the target; more is warned of")
+              "warn if more than this share of the inside lands outside the target")
           .from(0, 1)
           .was("max_outside")};
   if (!frames)
     out.push_back(
         Setting("warn_crossings", "N", &s.maxCrossings,
-                "pairs of the target's triangles that may pass through each other; more is warned "
-                "of")
+                "warn if more than this many pairs of the target's triangles cross each other")
             .from(0, 1e15)
             .was("max_crossings"));
   return out;
@@ -227,16 +226,16 @@ Verdict judgeTexture(const BoundaryError& error, double tolerance) {
 }
 
 std::vector<Setting> describe(CarryVerdictSettings& s) {
-  return {Setting("warn_density", "TIMES", &s.maxDensity,
-                  "that densities may grow, beyond what the solids' volumes explain; more is "
-                  "warned of")
-              .above(0)
-              .was("max_density"),
-          Setting("warn_lost", "SHARE", &s.maxLost,
-                  "of the inside where the output's voxels may be over 1.5 times as coarse as what "
-                  "comes there; more is warned of")
-              .from(0, 1)
-              .was("max_lost")};
+  return {
+      Setting("warn_density", "TIMES", &s.maxDensity,
+              "warn if densities grow more than this, beyond what the solids' volumes explain")
+          .above(0)
+          .was("max_density"),
+      Setting("warn_lost", "SHARE", &s.maxLost,
+              "warn if, in more than this share of the inside, the output's voxels are over 1.5 "
+              "times as coarse as the input's")
+          .from(0, 1)
+          .was("max_lost")};
 }
 
 Verdict judgeDensity(const JudgedDensity& d, const CarryVerdictSettings& settings) {

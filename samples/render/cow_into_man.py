@@ -21,7 +21,7 @@ import studio  # noqa: E402
 RUN = Path(os.environ.get("COW_MAN", studio.ROOT / "out/cow_man"))
 CHECK = 0.105   # the edge of a cube, in the cow's units
 ACROSS = 900    # pixels along the picture of a cut
-MIDDLE_OF_COW, NECK_OF_COW = 0.004, -0.30
+MIDDLE_OF_COW, NECK_OF_COW = 0.004, -0.19
 
 
 def checks(P):

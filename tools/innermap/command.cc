@@ -195,26 +195,26 @@ std::vector<Option> commonOptionTable(CommonOptions& common) {
   Command c("", "");
   c.option("--threads", "N", &common.threads, "number of threads; 0 means all cores")
       .range(0, 1024);
-  c.option("--max-memory", "SIZE", &common.maxMemory,
-           "memory that may be used, such as 800M or 4GB; what needs more is refused before it "
-           "starts")
+  c.option(
+       "--max-memory", "SIZE", &common.maxMemory,
+       "use no more memory than this, such as 800M or 4GB; refuse to start a run that needs more")
       .defaults("80% of the machine's");
   c.flag("--dry-run", &common.dryRun,
-         "say what would be done and how much memory it needs; write nothing");
-  c.option("--report", "FILE", &common.report, "write what was done, with times, as JSON");
-  c.flag("--json", &common.json, "print the report on stdout, in place of other text");
+         "say what the run would do and how much memory and time it needs; write nothing");
+  c.option("--report", "FILE", &common.report, "write the report, with figures and times, as JSON");
+  c.flag("--json", &common.json, "print the report on stdout instead of other text");
   c.option("--html", "FILE", &common.html,
-           "also write a page to look at, one file for any browser: numbers with their meaning, "
-           "surfaces, sections; report.html beside the outputs, or FILE")
+           "also write a page for any browser, in one file: numbers with their meaning, surfaces, "
+           "sections; report.html beside the outputs, or FILE")
       .implied(kPageBesideOutputs);
   c.flag("--strict", &common.strict,
-         "exit code 1 when the verdict that the run ends with is not met; files are written all "
-         "the same");
-  c.flag("--quiet", &common.quiet, "nothing on stderr but errors").shortName("-q");
-  c.flag("--verbose", &common.verbose, "a line on stderr as each stage begins, with the seconds");
-  c.flag("--help", &common.help, "help on what is usual").shortName("-h");
-  c.flag("--help-all", &common.helpAll, "help on every option");
-  c.flag("--version", &common.version, "the program's version").shortName("-V");
+         "end with exit code 1 if the verdict is not met; write all files nevertheless");
+  c.flag("--quiet", &common.quiet, "print nothing on stderr but errors").shortName("-q");
+  c.flag("--verbose", &common.verbose,
+         "print a line on stderr as each stage begins, with the seconds");
+  c.flag("--help", &common.help, "show help on the usual options").shortName("-h");
+  c.flag("--help-all", &common.helpAll, "show help on every option");
+  c.flag("--version", &common.version, "show the program's version").shortName("-V");
   return c.options();
 }
 

@@ -351,15 +351,12 @@ Command makeDeformCommand() {
   auto o = std::make_shared<DeformOptions>();
   Command c("deform", "Carry a volume or geometry in a rest pose through an animation");
   c.description(
-      "INSIDE, grids or geometry, lives inside SOURCE. For each frame SOURCE's inside is mapped "
-      "onto "
-      "the "
-      "frame's and what is inside is carried along, as push does. The set-up is made once "
-      "for all frames, all outputs have one voxel size and one lattice, and a frame's result does "
-      "not depend on which others are made. Frames whose output is there already, made from the "
-      "same files and settings, are skipped (of geometry all are made). A frame that cannot be "
-      "read or fitted is reported and "
-      "left out; the exit code is then 1.");
+      "INSIDE, grids or geometry, lies inside SOURCE. For each frame, deform maps the inside of "
+      "SOURCE onto that of the frame and carries INSIDE along, as push does. It sets up once for "
+      "all frames. All outputs have the same voxel size and lattice, and a frame does not depend "
+      "on which others are made. It skips frames whose output was already made from the same "
+      "files and settings (for geometry it makes all). It reports and skips a frame that cannot "
+      "be read or fitted; the exit code is then 1.");
   c.positional("SOURCE", &o->rest, "mesh of the rest pose: .obj, .ply, .off or .stl; or glTF");
   c.positional("INSIDE", &o->volume,
                "what is carried, in the rest pose's world space: grids (.vdb) or geometry (.obj, "

@@ -238,10 +238,10 @@ Command makeMapCommand() {
   Command c("map", "Map the inside of a solid onto another: fit, evaluate, slice, report");
   c.description(
       "Writes map.ply (the map itself), map.vdb (its grids), slices.exr, section.png and "
-      "report.json into a folder. Where SOURCE and TARGET have the same faces and vertex order, "
-      "each vertex goes to its like. Any other TARGET is a shape that SOURCE is laid onto first, "
-      "as innermap correspond does; correspondence.ply and correspondence.png then show how. The "
-      "shapes that a map in steps goes through are shown by steps.png.");
+      "report.json into a folder. If SOURCE and TARGET have the same faces and vertex order, "
+      "each vertex goes to its counterpart. Otherwise SOURCE is first laid onto TARGET, as "
+      "innermap correspond does; correspondence.ply and correspondence.png then show how. "
+      "steps.png shows the shapes that a map in steps goes through.");
   c.positional("SOURCE", &o->source, "mesh of the solid: .obj, .ply, .off or .stl");
   c.positional("TARGET", &o->target,
                "the same mesh with its vertices moved, or any other mesh; may be left out with "

@@ -267,18 +267,17 @@ Command makePushCommand() {
                                "Carry grids or geometry inside a map's source solid to its target",
                                "source");
   c.description(
-      "For each voxel of the target the point of the source that the map brings there is found, by "
-      "Newton's method, and the grids are sampled at it. Scalars keep their values; vectors move "
-      "by their vector type (invariant, covariant, "
-      "contravariant); level sets become distances again. Densities (--density) are not sampled: "
-      "what each voxel of the source holds is put where the map brings it, so that no mass is "
-      "lost. Output voxels are active inside the target and in a skin of two voxels. Of geometry, "
-      "each point goes where the map brings it, normals are turned by the inverse transpose of its "
-      "Jacobian, vectors by the Jacobian; all else in the file stays. Gaussian splats (.ply with "
-      "scale_0, rot_0 and opacity) are stretched and turned, and so are their colours. Points "
-      "farther outside the "
-      "solid than --outside (and 0.001 of the diagonal) are left out with what uses them, unless "
-      "--fade-to says where they go.");
+      "For each voxel of the target, push finds the point of the source that the map brings "
+      "there, by Newton's method, and samples the grids at it. Scalars keep their values. "
+      "Vectors move by their vector type (invariant, covariant, contravariant). Level sets "
+      "become distances again. Densities (--density) are not sampled: push puts what each voxel "
+      "of the source holds where the map brings it, so no mass is lost. Output voxels are active "
+      "inside the target and in a skin of two voxels. Of geometry, each point goes where the map "
+      "brings it; normals turn by the inverse transpose of the Jacobian, vectors by the "
+      "Jacobian; the rest of the file stays. Gaussian splats (.ply with scale_0, rot_0 and "
+      "opacity) stretch and turn with their colours. Points farther outside the solid than "
+      "--outside (and 0.001 of the diagonal) are left out with what uses them, unless --fade-to "
+      "says where they go.");
   c.example("innermap push map.ply smoke.vdb -o posed.vdb --grids density --density");
   c.example("innermap push map.ply fem.vdb -o posed.vdb --stress stress --resolution 256");
   c.example("innermap push map.ply mist.vdb -o posed.vdb --outside 0.1 --fade-to fitted");

@@ -164,12 +164,11 @@ Command makeSequenceCommand() {
   auto o = std::make_shared<SequenceOptions>();
   Command c("sequence", "Measure the energy of each frame of an animation against its rest pose");
   c.description(
-      "Each frame's map is that of the inside of SOURCE onto the frame's; its harmonic energy (3 "
-      "for "
-      "a rigid motion) and deformation energy (0 for one) go to energies.csv, energies.svg and "
+      "Maps the inside of SOURCE onto that of each frame. The harmonic energy (3 for a rigid "
+      "motion) and deformation energy (0 for one) go to energies.csv, energies.svg and "
       "report.json in a folder. Charges are placed once for all frames; a frame's figures do not "
-      "depend on the other frames. A frame that cannot be read or fitted is reported and left out; "
-      "the exit code is then 1.");
+      "depend on the other frames. A frame that cannot be read or fitted is reported and "
+      "skipped; the exit code is then 1.");
   c.positional("SOURCE", &o->rest, "mesh of the rest pose: .obj, .ply, .off or .stl; or glTF");
   addFrameArgument(c, o->frames);
   c.option("--output", "FOLDER", &o->output, "where the files go; made when missing")

@@ -33,14 +33,14 @@ RigidMotion parseMotion(const std::string& text) {
 }  // namespace
 
 void addTransferOptions(Command& c, TransferOptions& o) {
-  c.group("grids that are carried");
-  c.option("--grids", "LIST", &o.grids, "grids to carry, with commas between").defaults("all");
+  c.group("grids to carry");
+  c.option("--grids", "LIST", &o.grids, "carry only these grids; commas between names")
+      .defaults("all");
   c.settings(only(describe(o.carry), {"sampling"}));
-  c.flag(
-      "--density", &o.carry.allDensities,
-      "scalars are densities: divided by the change of volume; where they are pushed, their mass "
-      "is kept exactly");
-  c.option("--densities", "LIST", &o.densities, "only these scalars are densities")
+  c.flag("--density", &o.carry.allDensities,
+         "treat scalars as densities: divide them by the change of volume; push and deform keep "
+         "their mass exactly");
+  c.option("--densities", "LIST", &o.densities, "treat only these scalars as densities")
       .defaults("none")
       .advanced();
   c.option("--stress", "LIST", &o.stress,
