@@ -28,7 +28,7 @@ void FittingOptions::describe(Keywords& k) {
            "of frames that are arrays: their numbers, ascending, for names of files and "
            "velocities; from 0 on if not given");
   k.settings(innermap::describe(animation));
-  k.settings(only(innermap::describe(animation.space), {"up", "unit_scale"}));
+  k.settings(innermap::only(innermap::describe(animation.space), {"up", "unit_scale"}));
   k.text("mesh", &animation.mesh, "which mesh or node of glTF, of several");
   k.text("animation", &animation.animation, "which animation of glTF, where several move the same");
   k.settings(innermap::describe(fitting));

@@ -433,9 +433,9 @@ def deform(
     source: AnyMesh, inside: Any, frames: Any, output: Optional[Path]=None, *, velocity: bool = False,
     shutter: float = 0.5, only: Optional[str] = None, numbers: Optional[Sequence[int]] = None,
     first_frame: Optional[int] = None, fps: float = 24, rest: Optional[int] = None,
-    up: Literal['y', 'z'] = 'y', mesh: str = '', animation: str = '', charges: int = 8000,
-    collocation: Optional[int] = None, distance: Optional[float] = None, seed: int = 1,
-    grids: Union[str, Sequence[str], None] = None,
+    up: Optional[Literal['y', 'z']] = None, unit_scale: Optional[float] = None, mesh: str = '',
+    animation: str = '', charges: int = 8000, collocation: Optional[int] = None,
+    distance: Optional[float] = None, seed: int = 1, grids: Union[str, Sequence[str], None] = None,
     densities: Union[bool, str, Sequence[str], None] = None,
     stresses: Union[str, Sequence[str], None] = None, strains: Union[str, Sequence[str], None] = None,
     sampling: Literal['nearest', 'linear', 'quadratic'] = 'linear',
@@ -450,12 +450,13 @@ def sequence(
     source: AnyMesh, frames: Any, *, output: Optional[Path] = None,
     grids: Union[str, Sequence[str], None] = None, only: Optional[str] = None,
     numbers: Optional[Sequence[int]] = None, first_frame: Optional[int] = None, fps: float = 24,
-    rest: Optional[int] = None, up: Literal['y', 'z'] = 'y', mesh: str = '', animation: str = '',
-    charges: int = 8000, collocation: Optional[int] = None, distance: Optional[float] = None,
-    seed: int = 1, resolution: Optional[int] = None, voxel_size: Optional[float] = None,
-    lame_lambda: float = 0.0335, lame_mu: float = 0.0224,
-    names: Literal['innermap', 'blender', 'houdini'] = 'innermap', progress: Optional[Progress] = None,
-    max_memory: Union[int, str, None] = None, threads: int = 0) -> Dict[str, Any]: ...
+    rest: Optional[int] = None, up: Optional[Literal['y', 'z']] = None,
+    unit_scale: Optional[float] = None, mesh: str = '', animation: str = '', charges: int = 8000,
+    collocation: Optional[int] = None, distance: Optional[float] = None, seed: int = 1,
+    resolution: Optional[int] = None, voxel_size: Optional[float] = None, lame_lambda: float = 0.0335,
+    lame_mu: float = 0.0224, names: Literal['innermap', 'blender', 'houdini'] = 'innermap',
+    progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
+    threads: int = 0) -> Dict[str, Any]: ...
 
 def grids(
     arrays: Mapping[str, ArrayLike], matrix: ArrayLike, *, background: Optional[float] = None,
