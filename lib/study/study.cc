@@ -260,12 +260,18 @@ Study runStudy(const BoundaryPair& pair, const StudySettings& settings,
   Runner runner(pair, settings);
   const std::uint64_t most = memoryLeft();
   if (visitor) visitor(nullptr, 0, runs.size());
-  for (const StudyRun& run : runs) {
+  if (settings.share < 1 || settings.share > settings.shares)
+    throw SettingError("share", "must be 1 to the number of shares");
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const StudyRun& run = runs[i];
     throwIfCancelled();
     std::optional<StudyRow> row = keptRuns.find(run);
     const std::uint64_t need = studyMemory(run);
     if (row) {
       ++study.kept;
+    } else if (i % settings.shares != settings.share - 1) {
+      ++study.left;
+      continue;
     } else if (need > most) {
       row = tooLarge(run, need);
     } else if (outOfTime()) {

@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 
 import cli
+import slurm
 from cli import PROGRAM, fails, innermap, nightly
 from frames import ball_frames, break_frame, twisted
 
@@ -213,6 +214,25 @@ def test_shares_of_deform():
     fails(1, "join", "cut", says=["--share"])
 
 
+def test_shares_of_a_study():
+    make_frames(1)
+    command = ["study", "rest.obj", "frames/f.0001.obj", "--charges", "50,100", "--points", "2,4",
+               "--distances", "0.05", "--radius-ratios", "none", "--grid", "none", "--resolution", "8"]
+    innermap(*command, "-o", "whole")
+    for text in ["2/2", "1/2"]:
+        told = innermap(*command, "-o", "cut", "--share", text).stdout
+        assert os.listdir("cut") == ["runs"], told
+    made = innermap(*command, "-o", "cut").stdout
+    rows = {}
+    for folder in ["whole", "cut"]:
+        with open(f"{folder}/study.csv", encoding="utf-8", newline="") as file:
+            rows[folder] = [{k: v for k, v in row.items() if "seconds" not in k and k != "kept"}
+                            for row in csv.DictReader(file)]
+    assert rows["whole"] == rows["cut"] and len(rows["cut"]) > 2, made
+    assert cli.read_json("cut/report.json")["study"]["made"] == 0
+    fails(1, *command, "-o", "x", "--share", "3/2", says=["--share"])
+
+
 def test_jobs_make_the_run():
     make_frames(5)
     os.makedirs("it's here")
@@ -302,6 +322,38 @@ def random_runs(number):
 
 def test_random_cuts_and_kills():
     random_runs(4)
+
+
+@nightly
+def test_slurm_ends_a_run_whose_node_is_killed():
+    make_frames(24)
+    innermap(*COMMAND, "-o", "whole", *SMALL, "--grids", "--threads", "1")
+    with slurm.running("slurm") as farm:
+        innermap(*COMMAND, "-o", "cut", *SMALL, "--grids", "--threads", "1", "--jobs", "jobs.sh",
+                 "--tasks", "24")
+        job = farm.run("./jobs.sh", "--mem=100", "--output=/dev/null").split()[-1]
+        farm.wait(lambda: len(list(Path("cut/parts").glob("frame.*"))) > 3 and len(farm.steps("n2")) > 1, 60,
+                  "frames, and a task on n2")
+        farm.kill_node("n2")
+        farm.wait(lambda: not farm.run("squeue", "-h", "-o", "%i").split(), 300, f"job {job} to end")
+    assert_same("whole", "cut")
+
+
+@nightly
+def test_parallel_ends_a_run_whose_worker_is_killed():
+    if not shutil.which("parallel"):
+        raise cli.Skip("no parallel")
+    make_frames(12)
+    innermap(*COMMAND, "-o", "whole", *SMALL, "--grids", "--threads", "1")
+    innermap(*COMMAND, "-o", "cut", *SMALL, "--grids", "--threads", "1", "--jobs", "jobs.txt", "--tasks", "6")
+    lines = Path("jobs.txt").read_text(encoding="utf-8").splitlines()
+    # The first attempt at one task kills itself.
+    lines[2] = f"if mkdir once; then (sleep 0.3; kill -9 $$) & {lines[2]}; sleep 1; else {lines[2]}; fi"
+    done = subprocess.run(["parallel", "-j2", "--retries", "3", "--joblog", "log"],
+                          input="\n".join(lines) + "\n", text=True, capture_output=True, check=False)
+    assert done.returncode == 0 and Path("once").exists(), done.stderr
+    innermap("join", "cut")
+    assert_same("whole", "cut")
 
 
 @nightly

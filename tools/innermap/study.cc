@@ -10,6 +10,7 @@
 #include <ostream>
 
 #include "commands.h"
+#include "core/share.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"
 #include "innermap/correspond/mesh_correspondence.h"
@@ -25,9 +26,12 @@
 namespace innermap::tool {
 namespace {
 
+constexpr const char* kShareOption = "--share";
+
 struct StudyOptions {
   std::string source, target, output, correspondence;
   std::string sources, collocation, distances, radiusRatios;
+  std::string share;
   StudySettings settings;
 };
 
@@ -78,6 +82,11 @@ StudySettings settingsOf(const StudyOptions& options) {
   settings.distances = studyList("--distances", options.distances);
   settings.radiusRatios = studyList("--radius-ratios", options.radiusRatios);
   settings.folder = (std::filesystem::path(options.output) / "runs").string();
+  if (!options.share.empty()) {
+    const Share share = parseShare(kShareOption, options.share);
+    settings.share = share.number;
+    settings.shares = share.of;
+  }
   return settings;
 }
 
@@ -123,11 +132,14 @@ void plan(const StudyOptions& options, const BoundaryPair& pair, const StudySett
 std::vector<double> workOf(const BoundaryPair& pair, const StudySettings& settings) {
   constexpr double kSmall = 0.06, kThousandCubed = 0.25, kAPoint = 0.06;  // measured
   std::vector<double> work{0};
-  for (const StudyRun& run : studyRuns(pair.solid(), settings)) {
+  const std::vector<StudyRun> runs = studyRuns(pair.solid(), settings);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const StudyRun& run = runs[i];
+    const bool others = i % settings.shares != settings.share - 1;
     const double thousands = static_cast<double>(run.sources) / 1000;
     const double own =
         kSmall + std::pow(thousands, 3) * (kThousandCubed + kAPoint * run.collocation);
-    work.push_back(work.back() + (isKept(pair, run, settings) ? 0 : own));
+    work.push_back(work.back() + (others || isKept(pair, run, settings) ? 0 : own));
   }
   return work;
 }
@@ -197,11 +209,26 @@ void writeFiles(const Study& study, const StudyFindings& findings, const StudySe
   });
 }
 
+void concludeShare(const Study& study, const StudySettings& settings, Context& context) {
+  context.print(fmt::format(
+      "share {}/{}: {} runs made, {} there already, {} of others left; the same command without "
+      "--share takes all from {}\n",
+      settings.share, settings.shares, study.made, study.kept, study.left, settings.folder));
+  const std::size_t here = study.rows.size() + study.left;
+  const std::size_t own = (here - settings.share + settings.shares) / settings.shares;
+  if (study.left > here - own)
+    context.failAfterwards("runs of the share are left, as --max-time ended; start it again");
+}
+
 void run(const StudyOptions& options, Context& context) {
   const StudySettings settings = settingsOf(options);
   std::vector<std::string> names{"study.csv", "study.json", "study.html", "report.json"};
   for (const std::string& name : studyChartNames()) names.push_back(name);
-  const auto folder = context.outputFolder(options.output, names);
+  std::unique_ptr<PendingFolder> folder;
+  if (options.share.empty())
+    folder = context.outputFolder(options.output, names);
+  else if (context.page())
+    throw UsageError("--html: a share has no page of its own; give --html to the study without it");
   const BoundaryPair pair = readPair(options, context);
   LevelSetSettings grid;
   grid.resolution = settings.resolution;
@@ -211,6 +238,7 @@ void run(const StudyOptions& options, Context& context) {
   expectRuns(work, context);
   if (context.dryRun()) return plan(options, pair, settings, context);
   Study study = context.timed("runs", [&] { return makeRuns(pair, settings, work, context); });
+  if (!options.share.empty()) return concludeShare(study, settings, context);
   const StudyFindings findings = studyFindings(study);
   if (study.left > 0)
     study.warnings.push_back(fmt::format(
@@ -255,6 +283,12 @@ void addListOptions(Command& c, StudyOptions& o) {
 void addFitOptions(Command& c, StudyOptions& o) {
   c.settings(describe(o.settings));
   c.limitTime("no run begins later; the same command goes on another time");
+  c.option(
+       kShareOption, "K/N", &o.share,
+       "make only every N-th run from the K-th on, 3/40 say, or 'auto': the task of Slurm's job "
+       "array, or OpenCue's. They go to runs/; the same command without --share takes "
+       "all from there, and makes what is missing")
+      .advanced();
 }
 
 }  // namespace

@@ -67,9 +67,12 @@ struct StudySettings {
   // Where finished runs are kept, a file each, to be taken from there by the next study of the same
   // boundaries, settings and version; made when missing. Empty: nowhere.
   std::string folder;
+  // Of the runs, only every shares-th is made, from the share-th on (1 to shares); the others are
+  // taken from the folder, or left.
+  std::size_t share = 1, shares = 1;
 };
 
-// Without the lists and the folder.
+// Without the lists, the folder and the share.
 std::vector<Setting> describe(StudySettings& settings);
 
 // What became of a run. Errors are fractions of the target's diagonal; what is not known is NaN.
@@ -100,7 +103,7 @@ struct Study {
   std::size_t vertices = 0;        // of the source mesh
   double spacing = 0;              // of one charge: sqrt(area), fraction of the source's diagonal
   std::size_t made = 0, kept = 0;  // of the rows
-  std::size_t left = 0;            // runs that the deadline left for another time
+  std::size_t left = 0;            // runs of other shares, or that the deadline left
   std::vector<std::string> warnings;
 };
 
