@@ -127,6 +127,9 @@ def check_looks(page):
     assert seen(page, "#cut-x")["sum"] != picture["sum"]
     page.pdf("page.pdf")
     assert os.path.getsize("page.pdf") > 20_000
+    with open("page.pdf", "rb") as file:
+        pages = len(re.findall(rb"/Type */Page\b", file.read()))
+    assert pages == 2, pages
     os.remove("page.pdf")
 
 
@@ -146,6 +149,12 @@ def test_hollow_ball():
         check_looks(page)
         choose(page, "#right-shows", "2")
         assert page.value("document.querySelector('.captions').textContent").endswith("bent.obj")
+        findings = report["verdict"]["findings"]
+        unmet = sum(not finding["met"] for finding in findings)
+        headline = page.value("document.querySelector('#verdict').textContent")
+        assert headline.startswith("✗" if unmet else "✓") and str(len(findings)) in headline, headline
+        assert page.value("document.querySelector('#why').open") is False
+        assert page.value("document.querySelector('#why p').textContent") == report["one_to_one"]["statement"]
         text = page.value("document.body.innerText")
         for wanted in ("innermap map", "Boundary error", "Seconds by stage", report["version"],
                        " ".join(report["command_line"])):

@@ -72,11 +72,16 @@ function summarySection() {
     else if (worst) out.push(element("li", {}, `99% of the boundary lies within ${shortNumber(worst.p99)} of the target's diagonal`));
     if (report.inside) good(report.inside.folded === 0, `${written(report.inside.folded, "share")} of the inside is folded, ${written(report.inside.outside, "share")} lands outside the target`);
   }
-  for (const text of report.warnings || []) out.push(element("li", {class: "bad"}, element("strong", {}, "! "), text));
+  // What a finding says already is not said again as a warning.
+  for (const text of (report.warnings || []).filter((text) => !list.some((f) => f.statement === text))) out.push(element("li", {class: "bad"}, element("strong", {}, "! "), text));
   for (const text of report.notes || []) out.push(element("li", {}, text));
   for (const text of page.missing) out.push(element("li", {class: "missing"}, "Not shown: " + text));
-  if (report.one_to_one && report.one_to_one.statement) out.push(element("li", {}, "One-to-one? " + report.one_to_one.statement));
-  return out.length ? section("summary", "In short", element("ul", {class: "findings"}, ...out)) : null;
+  const unmet = list.filter((f) => !f.met).length, statement = report.one_to_one && report.one_to_one.statement;
+  const headline = list.length ? element("p", {id: "verdict", class: unmet ? "bad" : "good"}, element("strong", {},
+    unmet ? `✗ ${unmet} of ${list.length} not met` : `✓ All ${list.length} met`)) : null;
+  const why = statement ? element("details", {id: "why"}, element("summary", {}, "Why: what was proven and checked"), element("p", {}, statement)) : null;
+  if (!out.length && !why) return null;
+  return section("summary", "In short", headline, element("ul", {class: "findings"}, ...out), why);
 }
 
 function fitSection() {
@@ -89,8 +94,12 @@ function fitSection() {
     add({title: "Residual at the fitted points, by iteration", x: solve.residuals.map((_, i) => i), xLabel: "iteration", logarithmic: true,
          series: [{name: "residual", y: solve.residuals}]});
   if ((solve.tried_distances || []).length && solve.tried_errors)
-    add({title: "Error held out, by distance of the charges", x: solve.tried_distances, xLabel: "distance", logX: true, logarithmic: true,
-         series: [{name: "error", y: solve.tried_errors}]});
+  {
+    // In the order of the axis, not of the search.
+    const tried = solve.tried_distances.map((x, i) => [x, solve.tried_errors[i]]).sort((a, b) => a[0] - b[0]);
+    add({title: "Error held out, by distance of the charges", x: tried.map((t) => t[0]), xLabel: "distance", logX: true, logarithmic: true,
+         series: [{name: "error", y: tried.map((t) => t[1])}]});
+  }
   if (report.steps && (report.steps.to || []).length && report.steps.p99 && report.steps.folded) {
     add({title: "Error of each step", x: report.steps.to, xLabel: "part of the way", logarithmic: true, series: [{name: "error", y: report.steps.p99}]});
     add({title: "Share that each step folds", x: report.steps.to, xLabel: "part of the way", series: [{name: "folded", y: report.steps.folded}]});
