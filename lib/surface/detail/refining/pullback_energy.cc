@@ -122,7 +122,8 @@ double PullbackEnergy::below(double most, const Vec3& place) const {
   for (const StarTriangle& t : star_)
     if (!(tripleProduct(place, t.a, t.b) > 0)) return kInfinite;
   double sum = 0;
-  Located where = found_.front();
+  Located where;
+  if (!found_.empty()) where = found_.front();  // before grown() there are no samples
   if (where.triangle < 0) where = target_.locator().find(place);
   Located* found = found_.data();
   for (const StarTriangle& t : star_) {
