@@ -31,8 +31,7 @@ std::optional<CoarseMap> relaxCoarse(const CoarseSurface& coarse, const Layout& 
   out.image = start;
   const std::size_t vertices = coarse.surface.vertices.size();
   ProgressiveMesh mesh(vertices, coarse.surface.triangles, coarse.shift);
-  PullbackEnergy energy(coarse.surface, mesh, out.image, target, settings.samples,
-                        settings.leastParts);
+  PullbackEnergy energy(coarse.surface, mesh, out.image, target, settings.samples);
   RelaxSettings relax;
   relax.steps = 1;
   std::vector<char> fixed(vertices, 0), held(vertices, 0);

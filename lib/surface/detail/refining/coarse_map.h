@@ -32,8 +32,7 @@ struct CoarseMap {
 struct CoarseMapSettings {
   std::vector<Anchor> fixed;  // coarse vertices that must be at their targets
   std::vector<Anchor> drawn;  // brought near their targets, then set free
-  double samples = 1100;      // of the energy
-  int leastParts = 2;         // PullbackEnergy
+  double samples = 2500;      // of the energy
   int sweeps = 8;             // that lower it
   double near = 0.01;         // how far `drawn` may stay away, radians
   int patience = 20;          // FlowSettings

@@ -30,14 +30,12 @@ std::vector<Vec2> triangleSamples(int m) {
 }
 
 PullbackEnergy::PullbackEnergy(const ClosedSurface& source, const ProgressiveMesh& mesh,
-                               const Layout& image, const TargetMetric& target, double samples,
-                               int leastParts)
+                               const Layout& image, const TargetMetric& target, double samples)
     : mesh_(mesh),
       image_(image),
       target_(target),
       points_(source.vertices),
       samplesWanted_(samples),
-      leastParts_(leastParts),
       rest_(source.triangles.size()) {
   const double scale = unitAreaScale(source.vertices, source.triangles);
   const Vec3 center = boundingBox(points_).center();
@@ -47,8 +45,8 @@ PullbackEnergy::PullbackEnergy(const ClosedSurface& source, const ProgressiveMes
 void PullbackEnergy::grown(std::size_t vertices) {
   const double triangles = 2.0 * static_cast<double>(vertices);
   slack_ = 0.02 * 1.5 / std::sqrt(triangles);  // of an equilateral triangle's edge
-  const int m = std::clamp(static_cast<int>(std::ceil(std::sqrt(samplesWanted_ / triangles))),
-                           leastParts_, 10);
+  const int m =
+      std::clamp(static_cast<int>(std::ceil(std::sqrt(samplesWanted_ / triangles))), 2, 10);
   samples_ = triangleSamples(m);
 }
 
@@ -122,7 +120,8 @@ double PullbackEnergy::below(double most, const Vec3& place) const {
   for (const StarTriangle& t : star_)
     if (!(tripleProduct(place, t.a, t.b) > 0)) return kInfinite;
   double sum = 0;
-  Located where = found_.front();
+  Located where;
+  if (!found_.empty()) where = found_.front();  // before grown() there are no samples
   if (where.triangle < 0) where = target_.locator().find(place);
   Located* found = found_.data();
   for (const StarTriangle& t : star_) {

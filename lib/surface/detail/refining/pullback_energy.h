@@ -18,12 +18,9 @@ namespace innermap {
 class PullbackEnergy : public StarEnergy {
  public:
   // All must outlive it; `image` is the layout of `mesh`'s vertices on the target's space. Summed
-  // at `samples` points of all triangles or more, those of a triangle the centroids of its parts,
-  // `leastParts` along a side or more.
+  // at `samples` points of all triangles or more.
   PullbackEnergy(const ClosedSurface& source, const ProgressiveMesh& mesh, const Layout& image,
-                 const TargetMetric& target, double samples, int leastParts = 2);
-
-  void sampleAt(double samples) { samplesWanted_ = samples; }  // from the next grown() on
+                 const TargetMetric& target, double samples);
 
   void grown(std::size_t vertices) override;
   void changed(int triangle) override;
@@ -53,7 +50,6 @@ class PullbackEnergy : public StarEnergy {
   const TargetMetric& target_;
   Points points_;
   double samplesWanted_;
-  int leastParts_;
   double slack_ = 0;
   std::vector<Vec2> samples_;  // weights of the second and third corner, next to one another
   std::vector<RestTriangle> rest_;

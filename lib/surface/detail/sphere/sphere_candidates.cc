@@ -252,8 +252,7 @@ Candidates sphereCandidates(const ClosedSurface& a, const Layout& la, const Limb
   Trial trial(la, target, settings, normals);
   if (starts.size() > kSecondRound) {
     CoarseMapSettings quick;
-    quick.samples = 100;  // one a triangle
-    quick.leastParts = 1;
+    quick.samples = 450;
     quick.sweeps = 3;
     quick.near = 0.1;
     quick.patience = 5;
