@@ -87,11 +87,11 @@ def main():
     studio.mesh("floor", [(-40, -40, -0.33), (40, -40, -0.33), (40, 40, -0.33), (-40, 40, -0.33)],
                 [(0, 1, 2, 3)], studio.plain("paper", studio.PAPER, 0.9))
     camera = studio.camera((0, -0.6, 8), (0, -0.04, 0), across=4.6)
-    bar((-1.0, -1.21, 0.1), 0.9, ("least dihedral angle, degrees", "10", "60"), camera)
-    bar((1.05, -1.21, 0.1), 0.9, ("scaled Jacobian", "0.3", "1"), camera)
+    bar((-1.0, -1.24, 0.1), 0.9, ("least dihedral angle, degrees", "10", "60"), camera)
+    bar((1.05, -1.24, 0.1), 0.9, ("scaled Jacobian", "0.3", "1"), camera)
     studio.light((-3, 2.5, 4.5), (0, 0, 0), 2, 260, (1, 0.95, 0.88))
     studio.light((4, -3, 4), (0, 0, 0), 4, 80, (0.85, 0.93, 1))
-    studio.render(out, 0.09)
+    studio.render(out, 0.05)
 
 
 if __name__ == "__main__":
