@@ -56,7 +56,8 @@ struct SolidGrids {
   std::vector<std::string> notes, warnings;
   StageSeconds seconds;  // "voxelize", "evaluate", "outside", "cells"
 
-  // As mapGridNames(), and `repaired`, `folded`, `undecided`, `outside` and `map_local` where there are such.
+  // As mapGridNames(), and `repaired`, `folded`, `undecided`, `outside` and `map_local` where there
+  // are such.
   openvdb::GridPtrVec all() const;
 };
 
