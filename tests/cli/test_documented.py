@@ -2,9 +2,11 @@
 """The commands of README.md and docs/ as they stand there: each is accepted and runs, with small
 stand-ins for the files that it names."""
 
+import gzip
 import re
 import shlex
 import shutil
+import struct
 from pathlib import Path
 
 import cli
@@ -71,6 +73,21 @@ def write_muscle(path):
 """)
 
 
+def write_labels(path):
+    """A scan of 8 x 8 x 8 voxels, two cubes of which are the organs 2 and 5; by NIfTI-1's header."""
+    header = bytearray(352)
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, 3, 8, 8, 8, 1, 1, 1, 1)
+    struct.pack_into("<2h", header, 70, 2, 8)  # bytes
+    struct.pack_into("<8f", header, 76, 1, 1, 1, 1, 1, 1, 1, 1)
+    struct.pack_into("<3f", header, 108, 352, 1, 0)
+    struct.pack_into("<h", header, 254, 1)
+    struct.pack_into("<12f", header, 280, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0)
+    header[344:348] = b"n+1\0"
+    voxels = [2 if x < 4 else 5 if x > 4 and y > 2 else 0 for z in range(8) for y in range(8) for x in range(8)]
+    Path(path).write_bytes(gzip.compress(bytes(header) + bytes(voxels)))
+
+
 def stand_ins():
     Path("samples").symlink_to(ROOT / "samples")
     for path in ["homer.obj", "spot.obj"]:
@@ -101,6 +118,7 @@ def stand_ins():
     shutil.copy("smoke.vdb", "posed.vdb")
     innermap("export", "smoke.vdb", "-o", "scan.nii.gz", "--grids", "density")
     innermap("import", "scan.nii.gz", "-o", "scan.vdb")
+    write_labels("labels.nii.gz")
     shutil.copy("scan.vdb", "posed_scan.vdb")
     Path("out").mkdir()
     shutil.copy("smoke.vdb", "out/smoke.0001.vdb")

@@ -2,6 +2,7 @@
 """The tasks of docs/recipes.md and docs/tutorial.md, done by their text alone: each command as it is written, in a
 folder that has the samples and the program and nothing else."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -35,8 +36,10 @@ def checkout(folder):
 def done(name, commands, folder):
     """Runs the commands; every file that they name has to be there afterwards."""
     checkout(folder)
-    ran = subprocess.run(["bash", "-e"], input=commands, cwd=folder, capture_output=True, text=True, check=False,
-                         timeout=1800)
+    # Debian's Blender takes the first python3 that it finds for its own; the system's has numpy.
+    system = {**os.environ, "PATH": "/usr/bin:" + os.environ["PATH"]}
+    ran = subprocess.run(["bash", "-e"], input=commands, cwd=folder, env=system, capture_output=True, text=True,
+                         check=False, timeout=1800)
     assert ran.returncode == 0, f"{name}: {ran.stdout[-1500:]}{ran.stderr[-1500:]}"
     named = set(re.findall(r"\bout/[\w./*#]+", commands))
     assert named, f"{name}: makes nothing"

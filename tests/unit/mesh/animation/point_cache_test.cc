@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "core/byte_order.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/mesh/mesh_file.h"
