@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "core/file_bytes.h"
 #include "core/memory_limit.h"
 #include "innermap/core/memory.h"
 #include "innermap/correspond/mesh_correspondence.h"
@@ -14,6 +15,7 @@
 #include "innermap/io/vdb_file.h"
 #include "innermap/io/volume_texture.h"
 #include "innermap/mesh/mesh_file.h"
+#include "report/detail/part_json.h"
 
 namespace innermap::fuzz {
 namespace {
@@ -143,6 +145,23 @@ void scan(const std::string& path) {
   }
 }
 
+// What `innermap info` says of the formats that are not VDB or EXR.
+void volumeInfo(const std::string& path) {
+  const MemoryLimit limit(kMemory);
+  describe(readVolumeFileInfo(path), path);
+}
+
+// What a share leaves of its run, or of a frame.
+void part(const std::string& path) {
+  const MemoryLimit limit(kMemory);
+  const std::string content = readFileBytes(path, "a part").bytes;
+  try {
+    runJson(parseRun(path, content));
+  } catch (const Error&) {
+    partJson(parsePart(path, content, "r"), "r");
+  }
+}
+
 void foreignVolumeTexture(const std::string& path) {
   const MemoryLimit limit(processMemory(kMemory));
   VolumeTextureReadSettings settings;
@@ -190,6 +209,11 @@ const std::vector<Reader>& readers() {
       {"exr-foreign", "exr", foreignVolumeTexture},
       {"nifti", "nii", scan},
       {"nifti-packed", "nii.gz", scan},
+      {"info-nvdb", "nvdb", volumeInfo},
+      {"info-vti", "vti", volumeInfo},
+      {"info-dds", "dds", volumeInfo},
+      {"info-usda", "usda", volumeInfo},
+      {"part", "json", part},
       {"image-exr", "exr", image},
       {"image-png", "png", image},
       {"image-jpg", "jpg", image},

@@ -9,9 +9,9 @@ namespace innermap {
 VolumeTextureResult writeDisplacementField(const std::string& path,
                                            const openvdb::Vec3SGrid& displacement) {
   const openvdb::Vec3SGrid::Ptr lps = displacement.deepCopy();
-  openvdb::tools::foreach (lps->beginValueOn(), [](const auto& value) {
+  openvdb::tools::foreach (lps->beginValueAll(), [](const auto& value) {
     const openvdb::Vec3s v = *value;
-    value.setValue(openvdb::Vec3s(-v.x(), -v.y(), v.z()));
+    value.setValue(value.isValueOn() ? openvdb::Vec3s(-v.x(), -v.y(), v.z()) : openvdb::Vec3s(0));
   });
   return writeNifti(path, {lps}, {});
 }

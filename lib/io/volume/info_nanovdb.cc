@@ -111,6 +111,7 @@ VolumeFileInfo nanoVdbInfo(const std::string& path) {
     if (values > file.size() - at) throw FileError(path, "is cut short; export it again");
     at += values;
   }
+  if (info.grids.empty()) throw FileError(path, "is no NanoVDB file");
   return info;
 }
 
