@@ -284,7 +284,7 @@ void run(const DeformOptions& options, Context& context) {
   const FramePattern pattern("--output", options.output);
   Frames frames = listFrames(options.frames, options.rest, context);
   check(options, frames);
-  announceUsd(options.frames, inShares(options.farm), context);
+  requireUsdOfAll(options.frames, inShares(options.farm));
   if (writesJobs(options.farm, context)) return writeJobs(options, frames, context);
   cutToShare(options.farm.share, frames);
   if (frames.wanted.empty()) return context.print("the share has no frames\n");
@@ -295,6 +295,7 @@ void run(const DeformOptions& options, Context& context) {
     context.output(options.output);
   else
     context.outputs(framePaths(pattern, frames));
+  announceUsd(options.frames, context);
   if (isGeometryFile(options.volume))
     return deformGeometry({options.rest, options.volume, options.output, options.framesPerSecond(),
                            options.frames, options.transfer, options.geometry},

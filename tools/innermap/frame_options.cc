@@ -99,13 +99,15 @@ Frames listFrames(const FrameOptions& options, const std::string& rest, Context&
   return frames;
 }
 
-void announceUsd(const FrameOptions& options, bool inShares, Context& context) {
-  if (options.usd.empty()) return;
-  if (inShares)
+void requireUsdOfAll(const FrameOptions& options, bool inShares) {
+  if (!options.usd.empty() && inShares)
     throw UsageError(
         "--usd: refers to all frames, of which a share makes some; leave it out, and `innermap "
         "export` the .vdb files to a .usda file afterwards");
-  context.output(options.usd);
+}
+
+void announceUsd(const FrameOptions& options, Context& context) {
+  if (!options.usd.empty()) context.output(options.usd);
 }
 
 void writeUsd(const FrameOptions& options, const FramePattern& pattern, const Frames& frames,

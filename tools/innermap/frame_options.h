@@ -40,9 +40,10 @@ struct Frames {
 // FileError, SettingError.
 Frames listFrames(const FrameOptions& options, const std::string& rest, Context& context);
 
-// Tells of options.usd, which refers to frames of grids. Call it before anything is read. Throws
-// UsageError where the frames are made in shares.
-void announceUsd(const FrameOptions& options, bool inShares, Context& context);
+// options.usd refers to all frames. Throws UsageError where they are made in shares.
+void requireUsdOfAll(const FrameOptions& options, bool inShares);
+// Tells of options.usd. Call it before anything is read.
+void announceUsd(const FrameOptions& options, Context& context);
 // Writes it, of those of the frames wanted that are there.
 void writeUsd(const FrameOptions& options, const FramePattern& pattern, const Frames& frames,
               Context& context);

@@ -85,7 +85,7 @@ FrameEvaluator makeEvaluator(const SequenceOptions& options, const FrameFitter& 
 void run(const SequenceOptions& options, Context& context) {
   if (!options.frames.usd.empty() && options.grids.empty())
     throw UsageError("--usd: refers to grids; give --grids too");
-  announceUsd(options.frames, inShares(options.farm), context);
+  requireUsdOfAll(options.frames, inShares(options.farm));
   applyCpuTarget(options.farm);
   gridsToWrite(options);  // refuses names that cannot be before anything is read
   if (!options.gridList.empty()) context.note("--grid-list is now the list of --grids=LIST");
@@ -101,6 +101,7 @@ void run(const SequenceOptions& options, Context& context) {
                   options.grids.empty() ? nullptr : &pattern, frames, context);
   if (frames.wanted.empty()) return;
   if (!options.grids.empty() && !asJobs) context.outputs(framePaths(pattern, frames));
+  announceUsd(options.frames, context);
   const FrameFitterSettings settings = options.frames.fitting;
   SourceBoundary rest = readRest(options.rest, frames, context);
   requireInterior(rest.solid, options.evaluation.grid.in<LevelSetSettings>());

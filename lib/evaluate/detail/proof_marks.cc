@@ -30,6 +30,7 @@ openvdb::FloatGrid::Ptr markCells(const std::vector<ProofCell>& cells,
     throwIfCancelled();
     openvdb::CoordBBox box = voxelsOf(cell, levelSet);
     box.intersect(solid);
+    if (box.empty()) continue;  // between the voxels' centres; its iterator does not end
     for (auto at = box.beginXYZ(); at; ++at)
       if (distance.getValue(*at) < 0) voxels.setValue(*at, 1);
   }
