@@ -134,7 +134,7 @@ TEST(MapGrids, MarkTheCellsOfAProof) {
   proof.undecidedCells = {{{0.25, 0, 0}, 0.125}, {{0, 0, 1}, 0.25}};  // one reaches out of the ball
   // Some between the voxels' centres.
   for (int i = 0; i < 50; ++i)
-    proof.undecidedCells.push_back({{-0.5 + 0.013 * i, 0.4, 0.2}, 0.011});
+    proof.undecidedCells.push_back({{-0.5 + 0.013 * i, 0.4, 0.01 * i}, 0.011});
   proof.negativeCells = {{{0, -0.5, 0}, 0.125}};
   const SolidGrids grids = evaluateOnGrid(fit, settings);
   ASSERT_TRUE(grids.undecided);
