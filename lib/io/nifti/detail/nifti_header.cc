@@ -93,6 +93,11 @@ openvdb::Mat4d matrixOf(const std::string& path, const double rows[3][4], double
     }
   if (!(std::abs(m.det()) > 1e-12 * size * size * size))
     throw FileError(path, "has a matrix that lays its voxels flat; export the file again");
+  constexpr double kLeastVolume = 1e-14;  // OpenVDB takes less for singular
+  if (std::abs(m.det()) < kLeastVolume)
+    throw FileError(path, fmt::format("has voxels of {:.3g} mm, too small to be laid out; give its "
+                                      "header a larger unit",
+                                      size));
   return m;
 }
 
