@@ -36,13 +36,15 @@ std::string between(std::string_view text, char mark) {
 }  // namespace
 
 VolumeFileInfo usdInfo(const std::string& path) {
-  const FileBytes file = readFileBytes(path, "a USD text file");
-  if (file.bytes.compare(0, 9, "#usda 1.0") != 0)
+  const OpenFile file(path, "a USD text file");
+  if (file.size() > kMostBytes) throw FileError(path, "is too large to refer to volumes");
+  std::string text(file.size(), '\0');
+  file.read(0, text.data(), text.size());
+  if (text.compare(0, 9, "#usda 1.0") != 0)
     throw FileError(path, "does not begin with #usda 1.0: no USD text file");
-  if (file.bytes.size() > kMostBytes) throw FileError(path, "is too large to refer to volumes");
   VolumeFileInfo info;
   bool asset = false;
-  std::string_view rest = file.bytes;
+  std::string_view rest = text;
   while (!rest.empty()) {
     const std::size_t end = std::min(rest.find('\n'), rest.size() - 1);
     const std::string_view line = trimmed(rest.substr(0, end + (rest[end] != '\n')));

@@ -59,6 +59,8 @@ std::string gridText(const Grid& grid) {
   return text + "\n";
 }
 
+}  // namespace
+
 // Microsoft, "DDS_HEADER" and "DDS_HEADER_DXT10".
 VolumeFileInfo ddsInfo(const std::string& path) {
   constexpr std::size_t kHeader = 148;
@@ -86,29 +88,6 @@ VolumeFileInfo ddsInfo(const std::string& path) {
     grid.type = name == kNames.end() ? fmt::format("DXGI format {}", word(32)) : name->second;
   }
   info.grids.push_back(grid);
-  return info;
-}
-
-using Reader = VolumeFileInfo (*)(const std::string&);
-
-Reader readerOf(const std::string& format) {
-  static const std::map<std::string, Reader> readers{{"NanoVDB", nanoVdbInfo},
-                                                     {"VTK image data", vtiInfo},
-                                                     {"DDS", ddsInfo},
-                                                     {"NIfTI", niftiInfo},
-                                                     {"USD", usdInfo}};
-  const auto found = readers.find(format);
-  return found == readers.end() ? nullptr : found->second;
-}
-
-}  // namespace
-
-VolumeFileInfo readVolumeFileInfo(const std::string& path) {
-  const std::string& format = volumeFormatOf(path).name;
-  const Reader reader = readerOf(format);
-  if (!reader) throw FileError(path, "has an ending of none of these formats");
-  VolumeFileInfo info = reader(path);
-  info.format = format;
   return info;
 }
 

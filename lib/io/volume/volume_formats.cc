@@ -10,6 +10,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/volume_texture.h"
+#include "io/volume/detail/volume_file_info.h"
 
 namespace innermap {
 namespace {
@@ -18,6 +19,7 @@ struct Entry {
   VolumeFormat format;
   VolumeWriter writer;
   VolumeReader reader = {};
+  VolumeFileInfo (*info)(const std::string& path) = nullptr;  // null: `innermap info` has its own
 };
 
 Entry nifti(const char* ending) {
@@ -26,7 +28,8 @@ Entry nifti(const char* ending) {
            "a dense box of one grid, for medical programs",
            {"resolution", "pad", "cube", "power_of_two"}},
           {writeNifti, planNifti, niftiMemory},
-          {readNifti, niftiNeed, {"background", "as_voxels"}}};
+          {readNifti, niftiNeed, {"background", "as_voxels"}},
+          niftiInfo};
 }
 
 const std::vector<Entry>& table() {
@@ -41,17 +44,23 @@ const std::vector<Entry>& table() {
         exrVolumeNeed,
         {"layout", "slices", "voxel_size", "axis", "background", "rows", "tiles"}}},
       {{".nvdb", "NanoVDB", "the sparse grids as they are, for GPUs", {"half", "zip"}},
-       {writeNanoVdb, planNanoVdb, nanoVdbMemory}},
+       {writeNanoVdb, planNanoVdb, nanoVdbMemory},
+       {},
+       nanoVdbInfo},
       {{".vti",
         "VTK image data",
         "a dense box, an array a grid, for ParaView",
         {"resolution", "pad", "cube", "power_of_two"}},
-       {writeVti, planVti, vtiMemory}},
+       {writeVti, planVti, vtiMemory},
+       {},
+       vtiInfo},
       {{".dds",
         "DDS",
         "a dense box as a volume texture of one to four channels, as of EXR",
         {"half", "resolution", "pad", "cube", "power_of_two", "axis", "rows"}},
-       {writeDds, planDds, ddsMemory}},
+       {writeDds, planDds, ddsMemory},
+       {},
+       ddsInfo},
       nifti(".nii"),
       nifti(".nii.gz"),
       {{".usda",
@@ -59,7 +68,9 @@ const std::vector<Entry>& table() {
         "a volume that refers to the .vdb file, or to a sequence of them",
         {},
         true},
-       {}},
+       {},
+       {},
+       usdInfo},
   };
   return entries;
 }
@@ -160,6 +171,14 @@ VolumeTextureResult writeVolumeTexture(const std::string& path, const openvdb::G
   VolumeTextureResult result = entry.writer.write(path, grids, settings);
   result.format = entry.format.name;
   return result;
+}
+
+VolumeFileInfo readVolumeFileInfo(const std::string& path) {
+  const Entry& entry = entryOf(path);
+  if (!entry.info) throw FileError(path, "has an ending of none of these formats");
+  VolumeFileInfo info = entry.info(path);
+  info.format = entry.format.name;
+  return info;
 }
 
 VolumeTextureNeed volumeTextureReadNeed(const std::string& path,

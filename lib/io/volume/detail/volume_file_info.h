@@ -8,6 +8,7 @@
 namespace innermap {
 
 VolumeFileInfo nanoVdbInfo(const std::string& path);
+VolumeFileInfo ddsInfo(const std::string& path);
 VolumeFileInfo vtiInfo(const std::string& path);
 VolumeFileInfo niftiInfo(const std::string& path);
 VolumeFileInfo usdInfo(const std::string& path);
