@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "innermap/core/run.h"
 #include "lattice/detail/lattice_topology.h"
@@ -16,12 +17,11 @@ constexpr float kFineSteps = 1000, kHalfSteps = 8;
 constexpr int kFarSteps = 20;
 constexpr std::size_t kMostCores = 60;  // evenly out of more
 
-// The nodes of the lattice that can be reached from `start` over nodes for which `open` holds.
+// The nodes of the lattice that can be reached from `out` over nodes for which `open` holds.
 template <class Open>
-std::vector<std::size_t> reached(const BccLattice& lattice, std::size_t start, const Open& open,
-                                 std::vector<bool>& seen) {
-  std::vector<std::size_t> out{start};
-  seen[start] = true;
+std::vector<std::size_t> reached(const BccLattice& lattice, std::vector<std::size_t> out,
+                                 const Open& open, std::vector<bool>& seen) {
+  for (const std::size_t start : out) seen[start] = true;
   for (std::size_t k = 0; k < out.size(); ++k)
     for (int d = 0; d < kDirections; ++d) {
       const std::size_t next = lattice.neighbour(out[k], d);
@@ -86,7 +86,7 @@ void fillPockets(const BccLattice& lattice, Sides& sides) {
   const std::size_t corner =
       1 + lattice.size()[0] * (1 + static_cast<std::size_t>(lattice.size()[1]));
   reached(
-      lattice, corner, [&](std::size_t n) { return sides[n] != NodeSide::inside && middle(n); },
+      lattice, {corner}, [&](std::size_t n) { return sides[n] != NodeSide::inside && middle(n); },
       seen);
   for (std::size_t n = 0; n < sides.size(); ++n)
     sides[n] = seen[n] || !middle(n) ? NodeSide::outside : NodeSide::inside;
@@ -99,7 +99,7 @@ std::vector<std::vector<std::size_t>> piecesInside(const BccLattice& lattice, co
     if (seen[n] || sides[n] != NodeSide::inside) continue;
     throwIfCancelled();
     found.push_back(reached(
-        lattice, n, [&](std::size_t m) { return sides[m] == NodeSide::inside; }, seen));
+        lattice, {n}, [&](std::size_t m) { return sides[m] == NodeSide::inside; }, seen));
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.size() > b.size(); });
@@ -127,6 +127,53 @@ SolidParts partsOf(const LatticeSigns& signs, bool onePiece) {
 
 namespace {
 
+// Cores of a part without pockets. What is outside the part hangs together, so that pockets are
+// found among the part's own nodes, few of the lattice's.
+class Cores {
+ public:
+  Cores(const BccLattice& lattice, const Sides& part, const std::vector<float>& order)
+      : lattice_(lattice), part_(part), order_(order) {
+    for (std::size_t n = 0; n < part.size(); ++n) {
+      if (!inPart(n)) continue;
+      if (nodes_.empty() || order[n] > order[deepest_]) deepest_ = n;
+      nodes_.push_back(n);
+      for (int d = 0; d < kDirections; ++d)
+        if (!inPart(lattice.neighbour(n, d))) {
+          rim_.push_back(n);
+          break;
+        }
+    }
+  }
+
+  std::size_t deepest() const { return deepest_; }
+
+  // What hangs together with the deepest node over nodes of at least that order, pockets filled.
+  Sides at(float least) const {
+    std::vector<bool> seen(part_.size(), false);
+    Sides sides = sidesOf(
+        part_.size(), reached(
+                          lattice_, {deepest_},
+                          [&](std::size_t n) { return inPart(n) && order_[n] >= least; }, seen));
+    const auto open = [&](std::size_t n) { return inPart(n) && sides[n] != NodeSide::inside; };
+    std::vector<std::size_t> starts;
+    std::copy_if(rim_.begin(), rim_.end(), std::back_inserter(starts), open);
+    std::vector<bool> left(part_.size(), false);
+    reached(lattice_, starts, open, left);
+    for (const std::size_t n : nodes_)
+      if (!left[n]) sides[n] = NodeSide::inside;
+    return sides;
+  }
+
+ private:
+  bool inPart(std::size_t n) const { return part_[n] == NodeSide::inside; }
+
+  const BccLattice& lattice_;
+  const Sides& part_;
+  const std::vector<float>& order_;
+  std::vector<std::size_t> nodes_, rim_;  // the part's; those beside a node outside it
+  std::size_t deepest_ = 0;
+};
+
 // Whether each piece of the part that was not grown has a node on a buried sheet: a handle of the
 // solid's own would be cut anywhere.
 bool isCutAtSheets(const LatticeSigns& signs, const Sides& part, const std::vector<float>& order) {
@@ -146,21 +193,12 @@ bool growWithHandles(LatticeSigns& signs, const Sides& part, int handles,
   const SolidTopology wanted{1, 0, handles};
   signs.side = part;
   if (latticeTopology(signs) == wanted) return true;
-  std::size_t deepest = 0;
-  for (std::size_t n = 0; n < part.size(); ++n)
-    if (part[n] == NodeSide::inside &&
-        (part[deepest] != NodeSide::inside || order[n] > order[deepest]))
-      deepest = n;
+  const Cores cores(signs.lattice, part, order);
+  const std::size_t deepest = cores.deepest();
   for (const float core : coresOf(part, order)) {
     throwIfCancelled();
     if (!(core <= order[deepest])) break;
-    std::vector<bool> seen(part.size(), false);
-    signs.side = sidesOf(
-        part.size(),
-        reached(
-            signs.lattice, deepest,
-            [&](std::size_t n) { return part[n] == NodeSide::inside && order[n] >= core; }, seen));
-    fillPockets(signs.lattice, signs.side);
+    signs.side = cores.at(core);
     if (!(latticeTopology(signs) == wanted)) continue;
     changeSimply(signs, part, NodeSide::inside, order);
     return true;

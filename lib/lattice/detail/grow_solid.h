@@ -24,10 +24,10 @@ void fillPockets(const BccLattice& lattice, Sides& sides);
 // What hangs together inside; of that the largest alone with `onePiece`.
 SolidParts partsOf(const LatticeSigns& signs, bool onePiece);
 
-// Sets the sides to what is grown of `part` by `order` (highest first) from the largest of its
-// cores {order at least some value} that has so many handles. Where none are wanted and every core
-// has some, it grows from the node of the highest order, if that cuts at buried sheets (order below
-// 0) alone. Otherwise false, and the sides are the part's.
+// Sets the sides to what is grown of `part` (without pockets) by `order` (highest first) from the
+// largest of its cores {order at least some value} that has so many handles. Where none are wanted
+// and every core has some, it grows from the node of the highest order, if that cuts at buried
+// sheets (order below 0) alone. Otherwise false, and the sides are the part's.
 bool growWithHandles(LatticeSigns& signs, const Sides& part, int handles,
                      const std::vector<float>& order);
 
