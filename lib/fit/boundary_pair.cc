@@ -10,15 +10,8 @@
 namespace innermap {
 namespace {
 
-constexpr double kNoVolume = 1e-9;     // of the diagonal cubed
-constexpr double kFlat = 1e-9;         // of the diagonal
-constexpr std::size_t kListed = 4096;  // crossings that are placed
-
-MeshReport check(const Mesh& mesh) {
-  CheckSettings settings;
-  settings.listed = kListed;
-  return checkMesh(mesh, settings);
-}
+constexpr double kNoVolume = 1e-9;  // of the diagonal cubed
+constexpr double kFlat = 1e-9;      // of the diagonal
 
 // Whether all points of the triangles lie in one plane.
 bool isFlat(const Mesh& mesh) {
@@ -63,7 +56,7 @@ void warnOfCrossings(const std::string& what, const MeshReport& report, const st
 
 SourceBoundary makeSourceBoundary(Mesh mesh) {
   StageSeconds seconds;
-  const MeshReport checked = timed(seconds, "check", [&] { return check(mesh); });
+  const MeshReport checked = timed(seconds, "check", [&] { return checkCrossings(mesh); });
   refuseTangle(mesh, checked.selfIntersections);
   const Solid solid = timed(seconds, "solid", [&] { return Solid(mesh); });
   SourceBoundary out{std::move(mesh), checked, solid, {}, {}, std::move(seconds)};
@@ -121,7 +114,7 @@ BoundaryPair makeBoundaryPair(Mesh source, Mesh target) {
                     "; lay the one onto the other first (mesh_correspondence.h)");
   SourceBoundary from = makeSourceBoundary(std::move(source));
   StageSeconds seconds = from.seconds;
-  const MeshReport checked = timed(seconds, "check", [&] { return check(target); });
+  const MeshReport checked = timed(seconds, "check", [&] { return checkCrossings(target); });
   refuseTangle(target, checked.selfIntersections);
   TargetBoundary to = makeTargetBoundary(from.solid, target);
   addSeconds(seconds, to.seconds);

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/detail/boundary_check.h"
 #include "fit/detail/inside_check.h"
 #include "fit/detail/problem_samples.h"
+#include "fit/detail/solid_proof.h"
 #include "fit/detail/streams.h"
 #include "fit/detail/value_jumps.h"
+#include "fit/tangle.h"
 #include "innermap/core/error.h"
 #include "innermap/field/fit.h"
 #include "innermap/field/harmonic_field.h"
@@ -97,13 +100,12 @@ std::uint64_t frameFitterMemory(const FrameFitterSettings& settings, std::uint64
 }
 
 FrameFitter::FrameFitter(SourceBoundary rest, const FrameFitterSettings& settings)
-    : rest_(std::move(rest)) {
+    : rest_(std::move(rest)), settings_(settings) {
   std::vector<SourceLevel> levels = timed(seconds_, "sample", [&] {
     SampleSettings sample;
     sample.seed = seedOf(settings.seed, Stream::collocation);
     collocation_ =
         samplesAt(blueNoiseSamples(solid().surface(), frameCollocation(settings), sample));
-    seed_ = settings.seed;
     inside_ = pointsInside(solid(), kInside);
     lines_ = std::make_shared<const CrossingLines>(solid());
     return levelsOf(solid(), settings);
@@ -146,7 +148,7 @@ FrameFit FrameFitter::fit(const Mesh& frame) const {
     // By fast sums, to a hundredth of what is measured.
     e.accuracy = std::max(1e-2 * solution.residual, 1e-12 * boundary.diagonal);
     CertificateSettings certificate;
-    certificate.seed = seed_;
+    certificate.seed = settings_.seed;
     return certify(
         solid(),
         [&](const std::vector<SurfacePoint>& places) {
@@ -154,14 +156,6 @@ FrameFit FrameFitter::fit(const Mesh& frame) const {
                                 boundary.targetsOf(solid(), places), boundary.diagonal, e);
         },
         certificate);
-  });
-  double folded = 0, outside = 0;
-  timed(seconds, "inside", [&] {
-    const MappedPoints mapped =
-        mapPoints(HarmonicMap(field), inside_, kSumAccuracy * boundary.diagonal);
-    const TargetShape target(solid(), boundary);
-    folded = foldedShare(mapped.determinants, target.orientation());
-    outside = outsideShare(mapped.points, target, error.p99 * boundary.diagonal);
   });
   std::vector<std::string> warnings = boundary.warnings;
   if (error.max > kDoubtfulError)
@@ -172,15 +166,48 @@ FrameFit FrameFitter::fit(const Mesh& frame) const {
   std::string jumps =
       jumpsText(lines_->jumps(solid(), boundary.moved, kLeastJumpTold * boundary.diagonal),
                 boundary.diagonal, "the diagonal");
-  return {std::move(boundary),
-          std::move(field),
-          error,
-          folded,
-          outside,
-          solution.iterations,
-          std::move(jumps),
-          std::move(warnings),
-          std::move(seconds)};
+  FrameFit out{std::move(boundary),
+               std::move(field),
+               error,
+               0,
+               0,
+               {},
+               solution.iterations,
+               std::move(jumps),
+               std::move(warnings),
+               std::move(seconds)};
+  examine(frame, out);
+  return out;
+}
+
+BoundaryPair FrameFitter::pairOf(const Mesh& frame, const TargetBoundary& boundary) const {
+  return {rest_, frame, checkCrossings(frame), boundary, {}, {}, {}};
+}
+
+void FrameFitter::examine(const Mesh& frame, FrameFit& fit) const {
+  const ComposedMap map = HarmonicMap(fit.field);
+  Injectivity& known = fit.injectivity;
+  std::optional<BoundaryPair> pair;
+  if (settings_.prove != Prove::off)
+    timed(fit.seconds, "check", [&] {
+      pair.emplace(pairOf(frame, fit.boundary));
+      known = injectivityOf(*pair);
+    });
+  const double diagonal = fit.boundary.diagonal;
+  timed(fit.seconds, "inside", [&] {
+    const MappedPoints mapped = mapPoints(map, inside_, kSumAccuracy * diagonal);
+    const TargetShape target = pair ? TargetShape(*pair) : TargetShape(solid(), fit.boundary);
+    fit.folded = foldedShare(mapped.determinants, target.orientation());
+    fit.outside = outsideShare(mapped.points, target, fit.error.p99 * diagonal);
+    known.mirrored = target.orientation() < 0;
+    known.inside = determinantsOf(mapped, target, fit.error.p99 * diagonal);
+    known.outside = fit.outside;
+    if (pair) checkBoundary(map, *pair, target, fit.error.p99, settings_.seed, known);
+  });
+  if (pair)
+    timed(fit.seconds, "proof", [&] {
+      known.proof = tryProof(map, *pair, settings_.prove, settings_.proofCells, fit.warnings);
+    });
 }
 
 HarmonicField velocityAt(const NumberedFit& frame, const std::optional<NumberedFit>& before,

@@ -3,23 +3,10 @@
 
 #include <cmath>
 
-#include "fit/detail/preimages.h"
+#include "fit/detail/proof_words.h"
 #include "innermap/fit/mapped_solid.h"
 
 namespace innermap {
-
-bool countsPreimages(const Injectivity& known) {
-  return known.proof.cells > 0 && known.proof.boundaryError > 0 && known.source.pairs == 0;
-}
-
-std::string preimages(const ProofFigures& p) {
-  std::string out = fmt::format(
-      "each point farther than {:.3g} from the target's surface has as many preimages as that "
-      "surface winds about it{}: one inside, none outside",
-      p.boundaryError, p.mirrored ? ", the other way round" : "");
-  if (!p.whole()) out += ", not counting those in cells that are undecided or turned over";
-  return out;
-}
 
 namespace {
 
@@ -90,28 +77,31 @@ std::string determinants(const Injectivity& known) {
 
 // "3 cells, 0.1% of the solid at most, "
 std::string cellsOf(std::size_t count, double share) {
-  return fmt::format("{} cell{}, {} of the solid at most, ", count, count == 1 ? "" : "s",
-                     percent(share));
+  return fmt::format("{} cell{}, {}% of the solid at most, ", count, count == 1 ? "" : "s",
+                     atMost(100 * share, 2));
 }
+
+// Cells on which det J is proven to have the map's sign.
+std::size_t decided(const ProofFigures& p) { return p.cells - p.undecided - p.negative; }
 
 std::string proofWords(const ProofFigures& p) {
   if (p.cells == 0) return "";
   const char* sign = p.mirrored ? "<" : ">";
   std::string out =
       p.whole() ? fmt::format(
-                      "Proven: det J {} 0 everywhere in the solid, on {} cells (size {:.3g} "
+                      "Proven: det J {} 0 everywhere in the solid, on {} cells (size {} "
                       "at least). ",
-                      sign, p.cells, p.least)
-                : fmt::format("Proven: det J {} 0 in {:.6g}% of the solid at least, on {} cells. ",
-                              sign, 100 * p.proven, p.cells - p.undecided - p.negative);
+                      sign, p.cells, atLeast(p.least))
+                : fmt::format("Proven: det J {} 0 in {}% of the solid at least, on {} cells. ",
+                              sign, atLeast(100 * p.proven, 6), decided(p));
   if (p.negative > 0)
     out += "On " + cellsOf(p.negative, p.negativeShare) + "it has the other sign everywhere. ";
   if (p.undecided > 0) out += "On " + cellsOf(p.undecided, p.undecidedShare) + "it is undecided. ";
   if (p.boundaryError > 0)
     out += fmt::format(
-        "No point of the boundary is farther than {:.3g} of the target's diagonal from where it "
+        "No point of the boundary is farther than {} of the target's diagonal from where it "
         "should be. ",
-        p.boundaryError);
+        atMost(p.boundaryError));
   if (p.oneToOne > 0)
     out += "No two points of the solid go to one: it is mapped one-to-one as a whole. ";
   if (p.oneToOne == 0) out += "Whether any two points of the solid go to one is not decided. ";
@@ -159,7 +149,9 @@ std::string crossing(const char* what, const SelfIntersectionFigures& figures) {
 
 std::string surfaces(const Injectivity& known) {
   if (known.source.pairs == 0 && known.target.pairs == 0)
-    return "Neither surface runs through itself. ";
+    return known.solid.caps == 0 ? "Neither surface runs through itself. "
+                                 : "Neither surface runs through itself, but for the caps that "
+                                   "close it, which were not looked at. ";
   std::string out;
   if (known.source.pairs > 0)
     out += crossing("source", known.source) + "What overlaps there is mapped as one solid. ";
@@ -169,43 +161,78 @@ std::string surfaces(const Injectivity& known) {
   return out;
 }
 
-bool folds(const Injectivity& known) {
+// The signs of det J that were found somewhere: that of the target's sense, and the other.
+struct Signs {
+  bool kept = false, turned = false;
+  bool both() const { return kept && turned; }
+};
+
+Signs signsOf(const Injectivity& known) {
+  const ProofFigures& p = known.proof;
+  Signs out{p.cells > 0 && decided(p) > 0, p.negative > 0};
+  if (p.mirrored != known.mirrored) std::swap(out.kept, out.turned);
+  for (const DeterminantFigures* f : {&known.inside, &known.boundary, &known.voxels}) {
+    out.kept = out.kept || f->checked > f->folded;
+    out.turned = out.turned || (f->folded > 0 && f->least < 0);  // 0 has no sign
+  }
+  return out;
+}
+
+bool anyFolded(const Injectivity& known) {
   return known.proof.negative + known.inside.folded + known.boundary.folded + known.voxels.folded >
          0;
 }
 
-bool windsOtherwise(const DegreeFigures& degree) { return degree.least < 0 || degree.greatest > 1; }
+// Each part of a solid may be turned over as a whole, so that only twice tells of all together.
+bool windsOtherwise(const Injectivity& known) {
+  const DegreeFigures& d = known.degree;
+  return d.greatest > 1 || d.least < -1 ||
+         (known.solid.parts == 1 && d.least < 0 && d.greatest > 0);
+}
 
-std::string conclusion(const Injectivity& known) {
+std::string windingWords(const Injectivity& known) {
   const DegreeFigures& degree = known.degree;
   std::string out;
-  if (folds(known)) out += "So the map is not one-to-one: it is turned over at those places. ";
   if (degree.greatest > 1)
     out += fmt::format("So the map is not one-to-one: its boundary winds up to {} about a point. ",
                        times(degree.greatest));
-  if (degree.least < 0)
+  if (degree.least < 0 && windsOtherwise(known))
     out += fmt::format(
         "So the map is not one-to-one: its boundary winds {} about a point, and what goes there "
         "is turned over. ",
         times(degree.least));
-  if (countsPreimages(known)) out += "By these proofs " + preimages(known.proof) + ". ";
+  return out;
+}
+
+std::string foldWords(const Injectivity& known) {
+  if (!signsOf(known).both()) return "";
+  return known.solid.parts == 1
+             ? "So the map is not one-to-one: it is turned over at those places. "
+             : "The solid has several parts: on each that is turned over at some of its places and "
+               "not at others the map is not one-to-one. ";
+}
+
+std::string conclusion(const Injectivity& known) {
+  const DegreeFigures& degree = known.degree;
+  std::string out = foldWords(known) + windingWords(known);
+  if (countsPreimages(known)) out += "By these proofs " + preimages(known) + ". ";
   if (notOneToOne(known) || known.proof.whole()) return out;
   if (known.inside.checked == 0 && known.voxels.checked == 0)
     return "Whether the map is one-to-one is not known. ";
+  if (signsOf(known).both()) return out;
   if (known.mirrored)
     return out +
            "The map mirrors the solid, as its target is inside out; nothing that was checked rules "
            "out that it is one-to-one. ";
-  if (degree.checked == 0 || degree.least != 1)
+  if (degree.checked == 0 || degree.least != 1 || anyFolded(known))
     return out +
            "Nothing that was checked rules out that the map is one-to-one; nothing proves it. ";
   if (countsPreimages(known)) return out;
   return fmt::format(
       "Where det J > 0 everywhere inside, as many points go to a place as the image of the "
-      "boundary "
-      "winds about it: then exactly one goes to each of those {} points, and to all that can be "
-      "joined to them without coming nearer to the target's surface than that. That det J > 0 "
-      "between the points that were checked is not proved. ",
+      "boundary winds about it: then exactly one goes to each of those {} points, and to all that "
+      "can be joined to them without meeting that image. That det J > 0 between the points that "
+      "were checked is not proved. ",
       degree.checked);
 }
 
@@ -226,7 +253,9 @@ std::string cells(const CellFigures& cells) {
 
 }  // namespace
 
-bool notOneToOne(const Injectivity& known) { return folds(known) || windsOtherwise(known.degree); }
+bool notOneToOne(const Injectivity& known) {
+  return windsOtherwise(known) || (known.solid.parts == 1 && signsOf(known).both());
+}
 
 std::string injectivityStatement(const Injectivity& known) {
   std::string out = proofWords(known.proof) + determinants(known) + boundary(known) +
@@ -248,16 +277,18 @@ std::string injectivityLine(const Injectivity& known) {
   const ProofFigures& p = known.proof;
   std::string out = notOneToOne(known) ? "not one-to-one"
                     : p.oneToOne > 0   ? "one-to-one, proven"
-                    : p.whole() && countsPreimages(known)
-                        ? fmt::format("one-to-one, proven deeper than {:.3g}", p.boundaryError)
-                    : p.whole() ? "nowhere folded, proven"
-                                : "one-to-one as far as checked";
+                    : countsPointsOnce(known)
+                        ? "one-to-one, proven deeper than " + atMost(p.boundaryError)
+                    : p.whole()        ? "nowhere folded, proven"
+                    : anyFolded(known) ? "turned over in places"
+                                       : "one-to-one as far as checked";
   if (p.negative > 0) out += fmt::format("; proven to fold on {} cells", p.negative);
-  if (p.undecided > 0) out += fmt::format("; {} of the solid undecided", percent(p.undecidedShare));
+  if (p.undecided > 0)
+    out += fmt::format("; {}% of the solid undecided", atMost(100 * p.undecidedShare, 2));
   if (!folded.empty()) out += "; folded: " + listed(folded);
   if (!sound.empty())
     out += (known.mirrored ? "; mirrored, no fold at " : "; no fold at ") + listed(sound);
-  if (windsOtherwise(known.degree))
+  if (windsOtherwise(known))
     out += fmt::format("; the boundary winds {} to {}", known.degree.least,
                        times(known.degree.greatest));
   if (known.target.pairs > 0)

@@ -36,6 +36,19 @@ Setting toleranceSetting(SettingValue tolerance) {
       .from(kSmallestTolerance, 1);
 }
 
+std::vector<Setting> describeProof(Prove* prove, double* cells, const std::string& more) {
+  return {Setting("prove", "WHAT",
+                  choiceOf<Prove>(
+                      prove, {{"off", Prove::off}, {"core", Prove::core}, {"full", Prove::full}}),
+                  "core: where nothing folds, on whole cells, and how far the boundary is off at "
+                  "most; full: also that no two points go to one, which takes longer; off: only "
+                  "points are checked"),
+          Setting("proof_cells", "N", cells,
+                  "cells that {prove} looks at a charge before it leaves the rest undecided" + more)
+              .from(1, 1e6)
+              .rare()};
+}
+
 std::size_t shellCollocation(const ShellSettings& shell) {
   if (shell.collocation > 0) return shell.collocation;
   const double perSource =
@@ -82,7 +95,7 @@ Setting maxSourcesSetting(std::size_t* most) {
 }
 
 std::vector<Setting> describe(FitMapSettings& s) {
-  return {
+  std::vector<Setting> out{
       maxSourcesSetting(&s.maxSources),
       Setting("interpolation", "NAME",
               choiceOf<Interpolation>(&s.interpolation, {{"auto", Interpolation::automatic},
@@ -101,21 +114,13 @@ std::vector<Setting> describe(FitMapSettings& s) {
                   "out of the target; on: until nothing that is checked or proven folds; off: one "
                   "harmonic map",
                   100 * kManyFolds, 100 * kManyOutside)),
-      Setting("max_steps", "N", &s.maxSteps, "steps at most").from(1, 256).rare(),
-      Setting("prove", "WHAT",
-              choiceOf<Prove>(&s.prove,
-                              {{"off", Prove::off}, {"core", Prove::core}, {"full", Prove::full}}),
-              "core: where nothing folds, on whole cells, and how far the boundary is off at most; "
-              "full: also that no two points go to one, which takes longer; off: only points are "
-              "checked"),
-      Setting(
-          "proof_cells", "N", &s.proofCells,
-          fmt::format("cells that {{prove}} looks at a charge before it leaves the rest undecided; "
-                      "with {{one_to_one}} on {:g} at least",
-                      ProofSettings().cellsPerCharge))
-          .from(1, 1e6)
-          .rare(),
-      seedSetting(&s.seed)};
+      Setting("max_steps", "N", &s.maxSteps, "steps at most").from(1, 256).rare()};
+  for (Setting& setting : describeProof(
+           &s.prove, &s.proofCells,
+           fmt::format("; with {{one_to_one}} on {:g} at least", ProofSettings().cellsPerCharge)))
+    out.push_back(std::move(setting));
+  out.push_back(seedSetting(&s.seed));
+  return out;
 }
 
 void requireInRange(const FitMapSettings& settings) {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "fit/target_shape.h"
+#include "fit/detail/boundary_check.h"
 #include "innermap/core/error.h"
 #include "innermap/field/field_file.h"
 
@@ -49,10 +49,7 @@ MappedSolid readMap(const std::string& path) {
   pair.seconds = std::move(seconds);
   std::vector<HarmonicMap> steps;
   for (HarmonicField& step : file.steps) steps.emplace_back(std::move(step));
-  Injectivity known;
-  known.mirrored = orientationOf(pair.solid(), pair.target) < 0;
-  known.source = selfIntersectionFigures(pair.source.check);
-  known.target = selfIntersectionFigures(pair.targetCheck);
+  Injectivity known = injectivityOf(pair);
   readInjectivity(file.facts, known);
   return {ComposedMap(std::move(steps)), std::move(pair), std::move(file.facts), std::move(known)};
 }

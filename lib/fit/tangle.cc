@@ -5,6 +5,13 @@
 #include "innermap/core/error.h"
 
 namespace innermap {
+
+MeshReport checkCrossings(const Mesh& mesh) {
+  CheckSettings settings;
+  settings.listed = 4096;
+  return checkMesh(mesh, settings);
+}
+
 void refuseTangle(const Mesh& mesh, std::size_t crossings) {
   if (crossings <= kMostCrossings * mesh.triangles.size()) return;
   throw DataError(

@@ -1,11 +1,15 @@
-// Meshes that are nothing but crossings.
+// Boundaries are checked for crossings, and refused where they are nothing else.
 #pragma once
 
 #include <cstddef>
 
+#include "innermap/mesh/check.h"
 #include "innermap/mesh/mesh.h"
 
 namespace innermap {
+
+// checkMesh() with so many crossings placed as a target's overlaps are told by.
+MeshReport checkCrossings(const Mesh& mesh);
 
 // Pairs that cross, a triangle: a body in clothes that cross its skin has 0.2.
 constexpr std::size_t kMostCrossings = 16;

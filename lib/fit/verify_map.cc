@@ -4,8 +4,9 @@
 #include <cmath>
 
 #include "fit/detail/exposed_pair.h"
-#include "fit/detail/preimages.h"
+#include "fit/detail/proof_words.h"
 #include "fit/detail/sense_claims.h"
+#include "fit/detail/solid_proof.h"
 #include "fit/detail/stated_proof.h"
 #include "innermap/fit/mapped_solid.h"
 #include "mesh/winding_number.h"
@@ -39,12 +40,13 @@ ClaimResult weaker(ClaimResult a, ClaimResult b) {
 class Verifier {
  public:
   Verifier(const MappedSolid& mapped, const ProofFigures& claimed, const VerifySettings& settings)
-      : map_(mapped.map),
+      : source_(mapped.boundary.source),
+        map_(mapped.map),
         expanded_(mapped.map),
         solid_(mapped.solid().repaired().mesh),
         exposed_(exposedPair(mapped.boundary)),
         winding_(solid_.vertices, solid_.triangles),
-        crosses_(mapped.injectivity.source.pairs > 0),
+        known_(mapped.injectivity),
         claimed_(claimed),
         settings_(settings) {}
 
@@ -54,10 +56,8 @@ class Verifier {
     out.claims = sense();
     if (claimed_.boundaryError > 0) out.claims.push_back(boundary());
     out.found = proofFigures(sense_, boundary_);
-    Injectivity known;
-    known.proof = claimed_;
-    known.source.pairs = crosses_ ? 1 : 0;
-    if (countsPreimages(known)) out.claims.push_back(preimagesOf(out.claims));
+    known_.proof = claimed_;
+    if (countsPreimages(known_)) out.claims.push_back(preimagesOf(out.claims));
     if (claimed_.oneToOne > 0) out.claims.push_back(oneToOne());
     if (settings_.sample > 0) out.claims.push_back(agreement());
     return out;
@@ -90,7 +90,7 @@ class Verifier {
     std::vector<Claim> claims;
     withMoreCells(
         [&](const ProofSettings& s) {
-          sense_ = proveSense(expanded_, solid_, s);
+          sense_ = proveSolid(expanded_, source_.solid, s);
           claims = senseClaims(claimed_, sense_, evidence());
         },
         [&] {
@@ -124,21 +124,21 @@ class Verifier {
     Claim out;
     out.name = "boundary";
     out.claimed = fmt::format(
-        "no point of the boundary is farther than {:.6g} of the target's diagonal from where it "
+        "no point of the boundary is farther than {} of the target's diagonal from where it "
         "should be",
-        claimed_.boundaryError);
+        atMost(claimed_.boundaryError, 6));
     withMoreCells([&](const ProofSettings& s) { boundBoundary(s); },
                   [&] { return boundaryHolds() || boundaryFails(); });
     if (boundaryHolds()) {
       out.result = ClaimResult::holds;
-      out.found = fmt::format("none is farther than {:.6g}", boundary_.error);
+      out.found = "none is farther than " + atMost(boundary_.error, 6);
       return out;
     }
     if (boundaryFails()) out.result = ClaimResult::fails;
     out.found =
         std::isfinite(boundary_.error)
-            ? fmt::format("{:.6g} at one point, none farther than {:.6g}", boundary_.seen,
-                          boundary_.error)
+            ? fmt::format("{:.6g} at one point, none farther than {}", boundary_.seen,
+                          atMost(boundary_.error, 6))
             : fmt::format("{:.6g} at one point; near some it cannot be bounded", boundary_.seen);
     out.places = {boundary_.seenAt};
     return out;
@@ -165,7 +165,7 @@ class Verifier {
   Claim preimagesOf(const std::vector<Claim>& claims) const {
     Claim out;
     out.name = "preimages";
-    out.claimed = preimages(claimed_);
+    out.claimed = preimages(known_);
     out.result = ClaimResult::holds;
     for (const Claim& claim : claims)
       if (claim.name == "sense" || claim.name == "boundary")
@@ -182,7 +182,7 @@ class Verifier {
     Claim out;
     out.name = "one-to-one";
     out.claimed = "no two points of the solid go to one";
-    if (crosses_ || !sense_.whole()) {
+    if (!sense_.whole() || !isEmbedded(source_)) {
       out.found =
           "does not follow, as the surface crosses itself or the sign of det J is not known";
       return out;
@@ -229,12 +229,13 @@ class Verifier {
     return out;
   }
 
+  const SourceBoundary& source_;
   const ComposedMap& map_;
   const ExpandedMap expanded_;
   const Mesh& solid_;
   const ExposedPair exposed_;
   const WindingNumber winding_;
-  const bool crosses_;
+  Injectivity known_;
   const ProofFigures claimed_;
   const VerifySettings settings_;
   SenseProof sense_;

@@ -148,8 +148,8 @@ int genusOf(const std::vector<Triangle>& triangles, const std::vector<EdgeUse>& 
 // Volume and genus, with seams joined. The volume is that with the remaining loops capped as repair
 // does, but oriented as in the file.
 void checkSolid(const Mesh& mesh, MeshReport& report) {
-  const std::vector<int> to = joinedVertices(mesh.vertices, mesh.triangles, &report.seamEdges);
-  const std::vector<Triangle> joined = mapped(mesh.triangles, to);
+  const std::vector<Triangle> joined =
+      joinedTriangles(mesh.vertices, mesh.triangles, &report.seamEdges);
   const std::vector<EdgeUse> edges = sortedEdges(joined);
   report.genus = genusOf(joined, edges);
   const Vec3 center = boundingBox(mesh).center();
@@ -187,8 +187,7 @@ void checkCrossings(const Mesh& mesh, const CheckSettings& settings, MeshReport&
 
 // As repair() finds it.
 void checkSides(const Mesh& mesh, MeshReport& report) {
-  const std::vector<Triangle> joined =
-      mapped(mesh.triangles, joinedVertices(mesh.vertices, mesh.triangles));
+  const std::vector<Triangle> joined = joinedTriangles(mesh.vertices, mesh.triangles);
   std::vector<Triangle> kept;
   for (const int t : cleanTriangles(joined).kept) kept.push_back(joined[t]);
   report.oneSidedEdges = orient(mesh.vertices, kept, sortedEdges(kept)).conflicts;

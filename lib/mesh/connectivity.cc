@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "core/disjoint_sets.h"
+#include "mesh/detail/topology.h"
 
 namespace innermap {
 namespace {
@@ -99,6 +100,23 @@ std::vector<int> joinedVertices(const Points& vertices, const std::vector<Triang
     i = j;
   }
   return sets.representatives();
+}
+
+std::vector<Triangle> joinedTriangles(const Points& vertices,
+                                      const std::vector<Triangle>& triangles,
+                                      std::size_t* seamEdges) {
+  return mapped(triangles, joinedVertices(vertices, triangles, seamEdges));
+}
+
+std::vector<int> piecesByEdges(const std::vector<Triangle>& triangles) {
+  DisjointSets pieces(triangles.size());
+  forEachEdge(sortedEdges(triangles), [&](const EdgeUse* begin, const EdgeUse* end) {
+    if (end - begin == 2) pieces.unite(begin[0].triangle, begin[1].triangle);
+  });
+  std::vector<int> out = pieces.representatives();
+  for (std::size_t t = 0; t < out.size(); ++t)
+    if (hasRepeatedVertex(triangles[t])) out[t] = -1;
+  return out;
 }
 
 }  // namespace innermap

@@ -33,6 +33,11 @@ std::vector<EdgeUse> sortedEdges(const std::vector<Triangle>& triangles);
 void forEachEdge(const std::vector<EdgeUse>& edges,
                  const std::function<void(const EdgeUse* begin, const EdgeUse* end)>& visit);
 
+// Of each triangle the first one of its piece: what hangs together by edges of just two triangles.
+// (Solids that touch along an edge do not: each may be mapped in its own way.) -1 of one with a
+// repeated vertex. #triangles.
+std::vector<int> piecesByEdges(const std::vector<Triangle>& triangles);
+
 // For each vertex the lowest of those it is one with (itself where there are none): files often
 // split vertices where texture coordinates or normals jump, and the solid does not end there. Two
 // vertices are one where two boundary edges coincide bit by bit and run in opposite directions;
@@ -40,5 +45,10 @@ void forEachEdge(const std::vector<EdgeUse>& edges,
 // `seamEdges` receives the number of edges closed.
 std::vector<int> joinedVertices(const Points& vertices, const std::vector<Triangle>& triangles,
                                 std::size_t* seamEdges = nullptr);
+
+// The triangles with such vertices made one.
+std::vector<Triangle> joinedTriangles(const Points& vertices,
+                                      const std::vector<Triangle>& triangles,
+                                      std::size_t* seamEdges = nullptr);
 
 }  // namespace innermap

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/bvh.h"
-#include "core/disjoint_sets.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"
@@ -177,15 +176,12 @@ void cutLeaves(const StepTrees& steps, const std::vector<Pair>& pairs, PatchTree
   tree.cut(steps, leaves);
 }
 
-bool isConnected(const std::vector<Triangle>& triangles) {
-  const std::vector<EdgeUse> edges = sortedEdges(triangles);
-  DisjointSets parts(triangles.size());
-  std::size_t count = triangles.size();
-  forEachEdge(edges, [&](const EdgeUse* begin, const EdgeUse* end) {
-    for (const EdgeUse* use = begin + 1; use < end; ++use)
-      if (parts.unite(begin->triangle, use->triangle)) --count;
-  });
-  return count == 1;
+// Vertices that a file doubled along seams count as one.
+bool isConnected(const Mesh& mesh) {
+  std::vector<int> pieces = piecesByEdges(joinedTriangles(mesh.vertices, mesh.triangles));
+  std::sort(pieces.begin(), pieces.end());
+  pieces.erase(std::unique(pieces.begin(), pieces.end()), pieces.end());
+  return pieces.size() == 1;
 }
 
 }  // namespace
@@ -208,7 +204,7 @@ EmbeddingProof proveEmbedding(const ExpandedMap& expanded, const Mesh& surface,
   const StepTrees& steps = *expansions;
   PatchTree tree(steps, surface, scale, patches);
   EmbeddingProof out;
-  out.connected = isConnected(surface.triangles);
+  out.connected = isConnected(surface);
   std::vector<Pair> pairs = {{0, 0}};
   while (!pairs.empty()) {
     reportProgress("proving that the boundary does not meet itself",

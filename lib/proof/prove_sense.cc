@@ -82,7 +82,8 @@ void splitCell(const StepTrees& steps, const SolidCells& cells, const OpenCell& 
 }
 
 void requireClosed(const Mesh& mesh) {
-  const std::vector<EdgeUse> edges = sortedEdges(mesh.triangles);
+  // What a file doubled along seams is closed there.
+  const std::vector<EdgeUse> edges = sortedEdges(joinedTriangles(mesh.vertices, mesh.triangles));
   std::size_t open = 0;
   forEachEdge(edges, [&](const EdgeUse* begin, const EdgeUse* end) {
     int forward = 0;
@@ -96,7 +97,7 @@ void requireClosed(const Mesh& mesh) {
         mesh.name, open));
 }
 
-double volumeOf(const Mesh& mesh) {
+double volumeOf(const Mesh& mesh, const ProofSettings& settings) {
   if (mesh.triangles.empty())
     throw DataError(mesh.name + ": nothing can be proven inside, as it has no triangles");
   validate(mesh);
@@ -107,7 +108,7 @@ double volumeOf(const Mesh& mesh) {
     throw DataError(mesh.name +
                     ": nothing can be proven inside, as it encloses no volume, or is "
                     "turned inside out");
-  return volume;
+  return settings.volume > 0 ? settings.volume : volume;
 }
 
 double volumeOfCell(const SolidCells& cells, CellKey key) {
@@ -227,7 +228,7 @@ SenseProof proveSense(const ExpandedMap& expanded, const Mesh& solid,
   if (map.steps().size() > kMostSteps)
     throw DataError(fmt::format("a map in {} steps is too long for a proof; {} are taken at most",
                                 map.steps().size(), kMostSteps));
-  const double volume = volumeOf(solid);
+  const double volume = volumeOf(solid, settings);
   const std::uint64_t limit = cellLimit(map, settings);
   const SolidCells cells(solid);
   requireMemory("proving that nothing folds",

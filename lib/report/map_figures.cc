@@ -251,7 +251,10 @@ Figures figures(const Injectivity& known) {
   const DegreeFigures& degree = known.degree;
   return together(
       {{{"statement", injectivityStatement(known), "in words",
-         "what was checked, what was found and what follows"}},
+         "what was checked, what was found and what follows"},
+        {"parts", known.solid.parts, "parts", "of the solid, not connected with one another"},
+        {"surfaces", known.solid.surfaces, "closed surfaces",
+         "that bound it: one of each part and each cavity"}},
        determinantFigures("inside", "points inside", "that were checked", known.inside),
        {Figure("outside", known.outside, "outside",
                "share of the points inside that land outside the target by more than the boundary "

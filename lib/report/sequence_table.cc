@@ -11,22 +11,58 @@
 
 namespace innermap {
 
+namespace {
+
+// A row has no lists.
+Figures proofOf(const ProofFigures& proof) {
+  Figures out = when(proof.cells > 0, figures(proof));
+  out.erase(std::remove_if(out.begin(), out.end(),
+                           [](const Figure& f) {
+                             return std::holds_alternative<std::vector<double>>(f.value);
+                           }),
+            out.end());
+  return out;
+}
+
+}  // namespace
+
+SequenceRow sequenceRow(const FrameFit& fit, const MapGrids& grids) {
+  SequenceRow row;
+  row.outside = fit.outside;
+  row.error = fit.error;
+  row.harmonic = grids.harmonicTotal;
+  row.deformation = grids.deformationTotal;
+  row.deformationMean = grids.volume > 0 ? grids.deformationTotal / grids.volume : 0;
+  row.jacobianMin = grids.jacobianMin;
+  row.jacobianMax = grids.jacobianMax;
+  row.folded = grids.foldedFraction;
+  row.volume = fit.boundary.volume;
+  row.proof = fit.injectivity.proof;
+  if (fit.injectivity.boundary.checked > 0) row.statement = injectivityStatement(fit.injectivity);
+  return row;
+}
+
 Figures figures(const SequenceRow& r) {
   constexpr auto kShare = FigureUnit::share, kDiagonals = FigureUnit::diagonals;
-  return when(r.broken.empty(),
-              {{"harmonic", r.harmonic, "harmonic energy", "3 for a rigid motion"},
-               {"deformation", r.deformation, "deformation energy", "0 for a rigid motion"},
-               {"deformation_mean", r.deformationMean, "deformation, mean", "of a unit of volume"},
-               {"boundary_rms", r.error.rms, "boundary error", "root mean square", kDiagonals},
-               {"boundary_p99", r.error.p99, "boundary error", "99% within", kDiagonals},
-               {"boundary_max", r.error.max, "boundary error", "largest", kDiagonals},
-               {"jacobian_min", r.jacobianMin, "least change of volume", "0 or less: folded there"},
-               {"jacobian_max", r.jacobianMax, "greatest change of volume", ""},
-               {"folded_fraction", r.folded, "folded", "of the volume", kShare},
-               {"volume", r.volume, "volume", "of the frame's solid", FigureUnit::volume},
-               {"outside_fraction", r.outside, "outside", "of the inside", kShare},
-               {"tolerance_met", !r.misses, "tolerance met", "1: it is"},
-               {"seconds", r.seconds, "time", "", FigureUnit::seconds}});
+  return when(
+      r.broken.empty(),
+      together(
+          {{{"harmonic", r.harmonic, "harmonic energy", "3 for a rigid motion"},
+            {"deformation", r.deformation, "deformation energy", "0 for a rigid motion"},
+            {"deformation_mean", r.deformationMean, "deformation, mean", "of a unit of volume"},
+            {"boundary_rms", r.error.rms, "boundary error", "root mean square", kDiagonals},
+            {"boundary_p99", r.error.p99, "boundary error", "99% within", kDiagonals},
+            {"boundary_max", r.error.max, "boundary error", "largest", kDiagonals},
+            {"jacobian_min", r.jacobianMin, "least change of volume", "0 or less: folded there"},
+            {"jacobian_max", r.jacobianMax, "greatest change of volume", ""},
+            {"folded_fraction", r.folded, "folded", "of the volume", kShare},
+            {"volume", r.volume, "volume", "of the frame's solid", FigureUnit::volume},
+            {"outside_fraction", r.outside, "outside", "of the inside", kShare},
+            {"tolerance_met", !r.misses, "tolerance met", "1: it is"},
+            {"seconds", r.seconds, "time", "", FigureUnit::seconds}},
+           proofOf(r.proof),
+           {Figure("statement", r.statement, "one-to-one, in words", "what was proven and checked")
+                .when(!r.statement.empty())}}));
 }
 
 Figures worstFigures(const std::vector<SequenceRow>& rows) {

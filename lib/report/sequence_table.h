@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "innermap/evaluate/grids.h"
 #include "innermap/field/fit.h"
+#include "innermap/fit/frame_fitter.h"
 #include "report/report.h"
 #include "report/report_figures.h"
 #include "report/svg_chart.h"
@@ -18,11 +20,16 @@ struct SequenceRow {
   bool misses = false;  // the tolerance
   double jacobianMin = 0, jacobianMax = 0, folded = 0, outside = 0;
   double volume = 0;  // of the frame's solid, world units cubed; 0 when its parts cancel
+  ProofFigures proof;
+  std::string statement;  // of one-to-one; empty where nothing was to be proven
   double seconds = 0;
   std::string broken;  // why; all figures are then missing
 };
 
-// Not known of a frame that is broken.
+// Without its file, what it is judged by and its seconds.
+SequenceRow sequenceRow(const FrameFit& fit, const MapGrids& grids);
+
+// Not known of a frame that is broken; of its proof without places.
 Figures figures(const SequenceRow& row);
 // The largest boundary errors of all rows.
 Figures worstFigures(const std::vector<SequenceRow>& rows);

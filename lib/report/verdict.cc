@@ -72,7 +72,7 @@ void judgeBoundary(const MappedSolid& mapped, MapOrigin origin, Verdict& out) {
 std::string foldStatement(double folded, const Injectivity& known, double threshold) {
   const DeterminantFigures& points = known.inside;
   if (folded <= 0) return "nowhere folded inside: one-to-one as far as checked";
-  std::string out = fmt::format("{} of the inside is folded (at most: {}): not one-to-one there",
+  std::string out = fmt::format("{} of the inside is folded (at most: {}): turned over there",
                                 percent(folded), percent(threshold));
   if (points.foldedAtOverlap > 0)
     out += fmt::format(
@@ -195,8 +195,8 @@ Verdict judgeFrames(const std::vector<JudgedFrame>& frames, double tolerance,
   const std::string advice = "more --charges; map these frames by `innermap map --one-to-one on`";
   const JudgedFrame folded = worst([](const JudgedFrame& f) { return f.folded; });
   text = folded.folded > 0 ? fmt::format(
-                                 "up to {} of the inside is folded, in frame {} (at most: {}): not "
-                                 "one-to-one there",
+                                 "up to {} of the inside is folded, in frame {} (at most: {}): "
+                                 "turned over there",
                                  percent(folded.folded), folded.number, percent(settings.maxFolded))
                            : "nowhere folded inside, in no frame: one-to-one as far as checked";
   out.findings.push_back({finding("folds", text, folded.folded, settings.maxFolded, advice)});

@@ -72,7 +72,7 @@ bool needsJacobians(const Geometry& geometry) {
   return !geometry.directions.empty() || geometry.splats.degree >= 0;
 }
 
-void carryDirections(const Geometry& geometry, CarriedGeometry& out) {
+void carryDirections(const Geometry& geometry, bool mirrored, CarriedGeometry& out) {
   for (const Directions& directions : geometry.directions) {
     Points turned(directions.values.size());
     for (std::size_t i = 0; i < turned.size(); ++i) {
@@ -83,7 +83,7 @@ void carryDirections(const Geometry& geometry, CarriedGeometry& out) {
     out.directions.push_back(std::move(turned));
   }
   for (const Mat3& j : out.points.jacobians)
-    if (!(determinant(j) > 0)) ++out.folded;
+    if (!((mirrored ? -determinant(j) : determinant(j)) > 0)) ++out.folded;
 }
 
 void numberThose(const Geometry& geometry, CarriedGeometry& out) {
@@ -125,7 +125,7 @@ CarriedGeometry carryGeometry(Geometry& geometry, const PointCarry& carry,
   }
   out.added = geometry.ownPoints - out.ownPoints;
   out.points = carry(geometry.points, needsJacobians(geometry));
-  carryDirections(geometry, out);
+  carryDirections(geometry, settings.mirrored, out);
   numberThose(geometry, out);
   return out;
 }

@@ -59,6 +59,22 @@ def test_what_is_written():
         assert report["seconds"][stage] >= 0
 
 
+def test_each_frame_says_what_is_proven():
+    ball_frames(twisted, {1: 0.2, 2: 0.4})
+    innermap("sequence", "rest.obj", "frames", "-o", "out", "--prove", "full", *SMALL)
+    rows, energies = read_energies("out"), cli.read_json("out/report.json")["energies"]
+    for i, row in enumerate(rows):
+        assert int(row["proof_cells"]) > 0 and float(row["proof_one_to_one"]) == 1, row
+        assert float(row["proof_undecided"]) == float(row["proof_negative"]) == 0, row
+        assert float(row["proof_proven_share"]) == 1 and float(row["proof_least"]) > 0, row
+        assert row["boundary_max"] <= float(row["proof_boundary_error"]) < 1.1 * row["boundary_max"], row
+        assert row["statement"] == energies["statement"][i] != "", row
+    assert rows[0]["statement"] != rows[1]["statement"]
+    innermap("sequence", "rest.obj", "frames", "-o", "off", "--prove", "off", *SMALL)
+    for row in read_energies("off"):
+        assert row["proof_cells"] == row["proof_boundary_error"] == row["statement"] == "", row
+
+
 def test_grids_of_each_frame():
     ball_frames(twisted, {1: 0.1, 120: 0.2, 12345: 0.3})
     innermap("sequence", "rest.obj", "frames/*.obj", "-o", "out", "--grids", *SMALL)

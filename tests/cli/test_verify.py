@@ -207,6 +207,25 @@ def test_a_mirrored_map_is_proven_again():
     assert verified(file.claiming(mirrored=0), exit_code=1)["sense"] == "fails"
 
 
+def test_of_two_parts_each_point_is_proven_and_no_more():
+    """One to one as a whole is not, as one part might lie in the other; the rest is."""
+    vertices, faces = icosphere_arrays(2)
+    other = [(x + 3, y, z) for x, y, z in vertices]
+    count = len(vertices)
+    both = faces + [tuple(v + count for v in face) for face in faces]
+    write_obj("two.obj", vertices + other, both)
+    write_obj("bent.obj", [bent(p, 0.1) for p in vertices + other], both)
+    innermap("fit", "two.obj", "bent.obj", "-o", "map.ply", "--quiet", "--tolerance", "0.01", "--prove",
+             "full", "--report", "fit.json")
+    known = read_json("fit.json")["one_to_one"]
+    assert known["parts"] == known["surfaces"] == 2, known
+    assert known["proof_undecided"] == known["proof_negative"] == 0, known
+    assert known["proof_one_to_one"] == 0, known
+    file = MapFile("map.ply")
+    assert set(verified(file.claiming())) == {"sense", "least", "boundary", "preimages", "agreement"}
+    assert verified(file.claiming(one_to_one=1), exit_code=1)["one-to-one"] == "cannot be shown"
+
+
 def dented(p):
     """A ball pushed in deeply; one harmonic map folds there."""
     angle = math.acos(max(-1.0, min(1.0, p[2])))

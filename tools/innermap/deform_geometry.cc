@@ -53,6 +53,7 @@ class Deformer {
     row.judged = {frame.number, fit->error.p99, fit->folded, fit->outside};
     CarryGeometrySettings settings;
     settings.splats = job_.geometry.splats;
+    settings.mirrored = fit->injectivity.mirrored;
     row.carried = context_.timed("carry", [&] {
       return carryFile(
           *file_,

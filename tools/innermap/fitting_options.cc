@@ -99,10 +99,26 @@ void requireFittingMemory(const FitMapSettings& settings, std::size_t vertices,
                         {"--charges", 1, settings.shell->sources, need}, "raise --max-memory");
 }
 
+namespace {
+
 // The more charges, the more rounds until they do.
 constexpr double kRoundsPower = 1.4;
+// Thousands, of so many thousand places.
+double likelyCharges(double places) { return 1 + 2 * places; }
 
-std::vector<JobPhase> fittingPhases(const FitMapSettings& settings, double places, bool laidOn) {
+// In thousands of charges. With --one-to-one on proofs come in between, when a fit is to go on.
+std::vector<JobPhase> proofPhases(const FitMapSettings& settings, double charges) {
+  if (settings.prove == Prove::off || settings.oneToOne == OneToOne::on) return {};
+  JobSize size;
+  size.charges = charges;
+  std::vector<JobPhase> phases{stageOf("proving that nothing folds", size),
+                               stageOf("bounding the boundary's error", size)};
+  if (settings.prove == Prove::full)
+    phases.push_back(stageOf("proving that the boundary does not meet itself", size));
+  return phases;
+}
+
+std::vector<JobPhase> chargePhases(const FitMapSettings& settings, double places, bool laidOn) {
   JobSize size;
   if (settings.shell) {
     const double sources = static_cast<double>(settings.shell->sources) / 1000;
@@ -115,6 +131,16 @@ std::vector<JobPhase> fittingPhases(const FitMapSettings& settings, double place
   if (settings.oneToOne == OneToOne::off) return phases;
   phases.push_back(stageOf("going in steps", size));
   phases.back().perhaps = !laidOn;
+  return phases;
+}
+
+}  // namespace
+
+std::vector<JobPhase> fittingPhases(const FitMapSettings& settings, double places, bool laidOn) {
+  std::vector<JobPhase> phases = chargePhases(settings, places, laidOn);
+  const double charges =
+      settings.shell ? static_cast<double>(settings.shell->sources) / 1000 : likelyCharges(places);
+  for (JobPhase& phase : proofPhases(settings, charges)) phases.push_back(std::move(phase));
   return phases;
 }
 

@@ -33,8 +33,8 @@ void requireFittingMemory(const FitMapSettings& settings, std::size_t vertices,
 // "fit 2000 charges to 8000 boundary points", for --dry-run.
 std::string fittingPlan(const FitMapSettings& settings);
 
-// The fit's part of a job, for Context::expect. places: bentPlaces() or likelyPlaces(); laidOn: the
-// source is laid onto a stranger, which mostly takes steps.
+// The fit's part of a job and the proofs about it, for Context::expect. places: bentPlaces() or
+// likelyPlaces(); laidOn: the source is laid onto a stranger, which mostly takes steps.
 std::vector<JobPhase> fittingPhases(const FitMapSettings& settings, double places, bool laidOn);
 
 }  // namespace innermap::tool

@@ -94,10 +94,8 @@ void warnOf(const GeometryFile& file, const CarriedGeometry& carried,
                     "that was found",
                     part, points.failed));
   if (carried.folded > 0)
-    context.warning(
-        fmt::format("{}at {} points the map turns space inside out; directions there "
-                    "mean little",
-                    part, carried.folded));
+    context.warning(fmt::format("{}at {} points the map folds; directions there mean little", part,
+                                carried.folded));
   if (carried.splats.capped > 0)
     context.warning(
         fmt::format("{}{} splats shrink so much that no opacity keeps what they dim; they have the "

@@ -109,6 +109,8 @@ void runHarmonic(const HarmonicOptions& options,
   HarmonicFitSettings settings = options.fit;
   FitMapSettings like;
   like.tolerance = settings.tolerance;
+  like.oneToOne = OneToOne::off;
+  like.prove = Prove::off;
   const std::uint64_t need = std::max(
       fitMapMemory(like, vertices), harmonicGridMemory(boundary.solid, known.names.size(), grids));
   LevelSetSettings cells;
@@ -118,7 +120,6 @@ void runHarmonic(const HarmonicOptions& options,
   JobSize size = jobSize(boundary.solid, grids);
   size.items = static_cast<double>(known.names.size()) * size.inside;
   std::vector<JobPhase> phases = fittingPhases(like, likelyPlaces(vertices, like.tolerance), false);
-  phases.pop_back();  // no steps
   for (JobPhase& phase : phases) phase.seconds *= 1 + 0.1 * static_cast<double>(known.names.size());
   for (const char* stage : {"level set", "evaluating the field", "writing the VDB file"})
     phases.push_back(stageOf(stage, size));

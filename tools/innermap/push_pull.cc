@@ -202,7 +202,8 @@ void runGeometry(Way way, const CarryOptions& options, Context& context) {
   const PointCarry whole = fromInput(carry, context);
   const double diagonal =
       way == Way::push ? boundingBox(moved).diagonal() : mapped.solid().diagonal();
-  const CarryGeometrySettings how{options.geometry.subdivide * diagonal, options.geometry.splats};
+  const CarryGeometrySettings how{options.geometry.subdivide * diagonal, options.geometry.splats,
+                                  mapped.injectivity.mirrored};
   const CarriedGeometry carried =
       context.timed("carry", [&] { return carryFile(*file, whole, how, context); });
   warnOf(*file, carried, options.transfer, "", context);

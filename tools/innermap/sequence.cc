@@ -48,23 +48,6 @@ std::vector<std::string> gridsToWrite(const SequenceOptions& options) {
   return names;
 }
 
-SequenceRow rowOf(const FrameFile& frame, const FrameFit& fit, const MapGrids& grids,
-                  double tolerance) {
-  SequenceRow row;
-  row.misses = !(fit.error.p99 <= tolerance);
-  row.outside = fit.outside;
-  row.file = frame;
-  row.error = fit.error;
-  row.harmonic = grids.harmonicTotal;
-  row.deformation = grids.deformationTotal;
-  row.deformationMean = grids.volume > 0 ? grids.deformationTotal / grids.volume : 0;
-  row.jacobianMin = grids.jacobianMin;
-  row.jacobianMax = grids.jacobianMax;
-  row.folded = grids.foldedFraction;
-  row.volume = fit.boundary.volume;
-  return row;
-}
-
 // Those that are written, or else those that the page shows.
 std::vector<std::string> gridsToMake(const SequenceOptions& options, Context& context) {
   const std::vector<std::string> written = gridsToWrite(options);
@@ -108,8 +91,12 @@ void run(const SequenceOptions& options, Context& context) {
   const std::uint64_t gridsNeed =
       mapGridMemory(rest.solid, mapGridSettings(options.evaluation), {1, false, false});
   const JobSize size = jobSize(rest.solid, mapGridSettings(options.evaluation), settings.sources);
-  std::vector<JobPhase> phases = framePhases(settings.sources, frames.wanted.size(),
-                                             stageOf("frames: grids", withNearSums(size)));
+  JobPhase each = stageOf("frames: grids", withNearSums(size));
+  if (settings.prove != Prove::off)
+    each.seconds +=
+        stageOf(settings.prove == Prove::full ? "frames: full proof" : "frames: proof", size)
+            .seconds;
+  std::vector<JobPhase> phases = framePhases(settings.sources, frames.wanted.size(), each);
   phases.insert(phases.end() - 1, stageOf("level set", size));
   context.expect(phases);
   if (asJobs)
@@ -144,7 +131,10 @@ void run(const SequenceOptions& options, Context& context) {
       });
     else if (context.page())
       addGrids(*context.page(), evaluator.grids({fit.get(), frame.number}, grids));
-    rows.push_back(rowOf(frame, *fit, grids, options.frames.tolerance));
+    SequenceRow row = sequenceRow(*fit, grids);
+    row.file = frame;
+    row.misses = !(fit->error.p99 <= options.frames.tolerance);
+    rows.push_back(std::move(row));
     if (share) made = partValues(rows.back(), fit->jumps);
     context.print(sequenceLine(rows.back()));
   };
@@ -176,6 +166,8 @@ Command makeSequenceCommand() {
       .shortName("-o")
       .required();
   addFrameOptions(c, o->frames);
+  FrameFitterSettings& fitting = o->frames.fitting;
+  c.settings(describeProof(&fitting.prove, &fitting.proofCells));
   addEvaluationOptions(c, o->evaluation);
   c.option(
        "--grids", "LIST", &o->grids,

@@ -51,6 +51,10 @@ PartValues partValues(const SequenceRow& row, const std::string& jumps) {
   values.emplace_back("samples", static_cast<std::uint64_t>(row.error.samples));
   values.emplace_back("misses", row.misses);
   values.emplace_back("jumps", jumps);
+  values.emplace_back("statement", row.statement);
+  Injectivity known;
+  known.proof = row.proof;
+  for (const auto& [key, number] : injectivityFacts(known)) values.emplace_back(key, number);
   return values;
 }
 
@@ -59,6 +63,13 @@ SequenceRow sequenceRow(const PartValues& values) {
   eachOf(row, [&](const char* key, double& value) { value = numberAt(values, key); });
   row.error.samples = static_cast<decltype(row.error.samples)>(countAt(values, "samples"));
   row.misses = countAt(values, "misses") != 0;
+  row.statement = textAt(values, "statement");
+  Facts facts;
+  for (const auto& [key, value] : values)
+    if (const auto* text = std::get_if<std::string>(&value)) facts.emplace_back(key, *text);
+  Injectivity known;
+  readInjectivity(facts, known);
+  row.proof = known.proof;
   return row;
 }
 

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "fit/detail/inside_check.h"
 #include "fit/detail/refined_surface.h"
 #include "fit/detail/streams.h"
 #include "innermap/core/run.h"
+#include "mesh/connectivity.h"
 #include "sample/surface_samples.h"
 
 namespace innermap {
@@ -14,7 +16,29 @@ namespace {
 
 constexpr std::size_t kBoundary = 10000, kFewTriangles = 10000;
 constexpr double kInTarget = 2000;
-constexpr double kThinnest = 0.01;  // volume over the diagonal's cube, for the lattice's spacing
+constexpr double kThinnest = 0.01;     // volume over the diagonal's cube, for the lattice's spacing
+constexpr double kSumAccuracy = 1e-7;  // of the target's diagonal
+
+SolidFigures figuresOf(const Solid& solid) {
+  const Mesh& mesh = solid.repaired().mesh;
+  const std::vector<int> pieces = piecesByEdges(joinedTriangles(mesh.vertices, mesh.triangles));
+  const Vec3 center = solid.box().center();
+  std::map<int, double> volumes;
+  for (std::size_t t = 0; t < pieces.size(); ++t) {
+    const Triangle& corners = mesh.triangles[t];
+    volumes[pieces[t]] +=
+        dot(mesh.vertices[corners[0]] - center,
+            cross(mesh.vertices[corners[1]] - center, mesh.vertices[corners[2]] - center));
+  }
+  SolidFigures out;
+  out.surfaces = volumes.size();
+  const auto parts = std::count_if(volumes.begin(), volumes.end(),
+                                   [](const auto& volume) { return volume.second > 0; });
+  out.parts = std::max<std::size_t>(1, static_cast<std::size_t>(parts));
+  out.caps = static_cast<std::size_t>(solid.repaired().caps);
+  out.overlaps = solid.overlaps();
+  return out;
+}
 
 Points imagesOf(const ComposedMap& map, const Points& points,
                 const BoundaryCheckSettings& settings) {
@@ -41,6 +65,15 @@ WindingNumber imageOf(const ComposedMap& map, const Mesh& surface,
 }
 
 }  // namespace
+
+Injectivity injectivityOf(const BoundaryPair& pair) {
+  Injectivity out;
+  out.mirrored = orientationOf(pair.solid(), pair.target) < 0;
+  out.solid = figuresOf(pair.solid());
+  out.source = selfIntersectionFigures(pair.source.check);
+  out.target = selfIntersectionFigures(pair.targetCheck);
+  return out;
+}
 
 DeterminantFigures boundaryDeterminants(const ComposedMap& map, const BoundaryPair& pair,
                                         const TargetShape& target,
@@ -79,6 +112,17 @@ DegreeFigures boundaryDegree(const ComposedMap& map, const BoundaryPair& pair,
   out.least = *least;
   out.greatest = *greatest;
   return out;
+}
+
+void checkBoundary(const ComposedMap& map, const BoundaryPair& pair, const TargetShape& target,
+                   double error, std::uint64_t seed, Injectivity& known) {
+  BoundaryCheckSettings s;
+  s.error = error * pair.target.diagonal;
+  s.accuracy = kSumAccuracy * pair.target.diagonal;
+  s.seed = seed;
+  known.boundaryError = error;
+  known.boundary = boundaryDeterminants(map, pair, target, s);
+  known.degree = boundaryDegree(map, pair, target, s);
 }
 
 }  // namespace innermap

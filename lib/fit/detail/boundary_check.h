@@ -1,5 +1,5 @@
-// What a map does at the boundary of its solid: determinants there, and how often the image winds
-// about points of the target.
+// What is known of a map's boundaries, and what it does at that of its solid: determinants there,
+// and how often the image winds about points of the target.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,9 @@
 #include "innermap/fit/mapped_solid.h"
 
 namespace innermap {
+
+// Before a map is looked at: of its boundaries.
+Injectivity injectivityOf(const BoundaryPair& pair);
 
 struct BoundaryCheckSettings {
   double error = 0;        // the boundary's largest, world units
@@ -28,5 +31,9 @@ DeterminantFigures boundaryDeterminants(const ComposedMap& map, const BoundaryPa
 // winding is counted the other way round. Throws Cancelled.
 DegreeFigures boundaryDegree(const ComposedMap& map, const BoundaryPair& pair,
                              const TargetShape& target, const BoundaryCheckSettings& settings);
+
+// Adds both. error: that 99% of the boundary keep, fraction of the target's diagonal.
+void checkBoundary(const ComposedMap& map, const BoundaryPair& pair, const TargetShape& target,
+                   double error, std::uint64_t seed, Injectivity& known);
 
 }  // namespace innermap

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "innermap/fit/boundary_pair.h"
-#include "innermap/fit/mapped_solid.h"
+#include "innermap/mesh/mesh.h"
 
 namespace innermap {
 
@@ -14,8 +14,5 @@ struct ExposedPair {
 };
 
 ExposedPair exposedPair(const BoundaryPair& boundary);
-
-// What is said of both proofs.
-ProofFigures proofFigures(const SenseProof& sense, const BoundaryProof& boundary);
 
 }  // namespace innermap

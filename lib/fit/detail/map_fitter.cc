@@ -7,6 +7,7 @@
 
 #include "fit/detail/boundary_check.h"
 #include "fit/detail/pair_problem.h"
+#include "fit/detail/solid_proof.h"
 #include "fit/detail/step_fit.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"
@@ -19,9 +20,8 @@ constexpr std::size_t kInside = 20000, kPlaces = 16;
 // What a thousand charges fold is near what the whole fit does, where that is so much: no need to
 // go on to it.
 constexpr double kHopelessFolds = 2 * kManyFolds;
-constexpr double kWorthIt = 0.2;        // of one map's folds may be left by steps
-constexpr double kProofSeconds = 5e-4;  // a charge, on two cores; most take less
-constexpr double kSumAccuracy = 1e-7;   // of the target's diagonal, of what is checked inside
+constexpr double kWorthIt = 0.2;       // of one map's folds may be left by steps
+constexpr double kSumAccuracy = 1e-7;  // of the target's diagonal, of what is checked inside
 
 // A fit with a number of charges.
 FitOutcome outcomeOf(const FitResult& fit, const FitProblem& problem, const ShellSettings& shell) {
@@ -161,20 +161,11 @@ bool MapFitter::areBetter(FitOutcome& steps, const FitOutcome& single) {
 }
 
 Injectivity MapFitter::injectivityOf(FitOutcome& out) {
-  Injectivity known;
-  known.mirrored = orientation_ < 0;
-  known.source = selfIntersectionFigures(pair_.source.check);
-  known.target = selfIntersectionFigures(pair_.targetCheck);
-  BoundaryCheckSettings s;
-  s.error = out.error.p99 * pair_.target.diagonal;
-  s.accuracy = kSumAccuracy * pair_.target.diagonal;
-  s.seed = settings_.seed;
+  Injectivity known = innermap::injectivityOf(pair_);
   timed(seconds, "inside", [&] {
     known.inside = out.inside.determinants;
     known.outside = out.inside.outside;
-    known.boundary = boundaryDeterminants(out.map, pair_, *target_, s);
-    known.boundaryError = out.error.p99;
-    known.degree = boundaryDegree(out.map, pair_, *target_, s);
+    checkBoundary(out.map, pair_, *target_, out.error.p99, settings_.seed, known);
   });
   prove(out);
   if (out.proof) known.proof = *out.proof;
@@ -183,24 +174,11 @@ Injectivity MapFitter::injectivityOf(FitOutcome& out) {
 
 void MapFitter::prove(FitOutcome& out) {
   if (settings_.prove == Prove::off || out.proof) return;
-  timed(seconds, "proof", [&] { out.proof = proofOf(out.map); });
-}
-
-// Needs time in proportion to the charges, and is left where that is out, or memory: the map stands
-// without it.
-ProofFigures MapFitter::proofOf(const ComposedMap& map) {
-  if (outOfTime(kProofSeconds * static_cast<double>(map.sources()))) return {};
-  ProofSettings s;
-  const double cells = settings_.proofCells;
-  s.cellsPerCharge = settings_.oneToOne == OneToOne::on ? std::max(cells, s.cellsPerCharge) : cells;
-  try {
-    return proveMap(map, pair_, s, settings_.prove == Prove::full);
-  } catch (const DataError& e) {
-    warnings.push_back(std::string("nothing is proven: ") + e.what());
-  } catch (const MemoryError& e) {
-    warnings.push_back(std::string("nothing is proven: ") + e.what());
-  }
-  return {};
+  const bool on = settings_.oneToOne == OneToOne::on;
+  const double cells =
+      on ? std::max(settings_.proofCells, ProofSettings().cellsPerCharge) : settings_.proofCells;
+  timed(seconds, "proof",
+        [&] { out.proof = tryProof(out.map, pair_, settings_.prove, cells, warnings); });
 }
 
 // Onto a target that is turned inside out somewhere no map is one-to-one.

@@ -61,7 +61,6 @@ class MapFitter {
 
  private:
   void prove(FitOutcome& out);
-  ProofFigures proofOf(const ComposedMap& map);
   bool foldsTooMuch(const FitOutcome& out) const;
   bool areBetter(FitOutcome& steps, const FitOutcome& single);
   bool mayTakeSteps() const;

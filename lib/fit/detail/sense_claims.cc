@@ -4,16 +4,21 @@
 
 #include <algorithm>
 
+#include "fit/detail/proof_words.h"
+
 namespace innermap {
 namespace {
 
 constexpr std::size_t kPlaces = 16;
 
-std::string percent(double share) { return fmt::format("{:.6g}%", 100 * share); }
+constexpr int kDigits = 6;
+
+std::string shareAtLeast(double share) { return atLeast(100 * share, kDigits) + "%"; }
+std::string shareAtMost(double share) { return atMost(100 * share, kDigits) + "%"; }
 
 std::string cellsOf(const ProofCells& cells) {
   return fmt::format("{} cell{}, {} of the solid at most,", cells.count,
-                     cells.count == 1 ? "" : "s", percent(cells.share));
+                     cells.count == 1 ? "" : "s", shareAtMost(cells.share));
 }
 
 std::string sign(bool mirrored) { return mirrored ? "det J < 0" : "det J > 0"; }
@@ -37,7 +42,7 @@ void refuteSense(const ProofFigures& p, const SenseProof& found, const SenseEvid
     claim.places = {*evidence.chargeInside};
   } else if (found.proven.count > 0 && found.mirrored != p.mirrored) {
     claim.found =
-        fmt::format("{} on {} of the solid", sign(found.mirrored), percent(found.provenShare));
+        fmt::format("{} on {} of the solid", sign(found.mirrored), shareAtLeast(found.provenShare));
     claim.places = centersOf(found.proven.places);
   } else if (p.whole() && found.negative.count > 0) {
     claim.found = "the other sign on " + cellsOf(found.negative) + " everywhere";
@@ -46,7 +51,7 @@ void refuteSense(const ProofFigures& p, const SenseProof& found, const SenseEvid
     claim.result = ClaimResult::unshown;
     claim.found =
         fmt::format("{} in {} of the solid at least; on {} it is undecided", sign(found.mirrored),
-                    percent(found.provenShare), cellsOf(found.undecided));
+                    shareAtLeast(found.provenShare), cellsOf(found.undecided));
     claim.places = centersOf(found.undecided.places);
   }
 }
@@ -55,8 +60,9 @@ Claim senseClaim(const ProofFigures& p, const SenseProof& found, const SenseEvid
   Claim out;
   out.name = "sense";
   const double share = claimedShare(p);
-  out.claimed = sign(p.mirrored) + (p.whole() ? " everywhere in the solid"
-                                              : " in " + percent(share) + " of the solid at least");
+  out.claimed =
+      sign(p.mirrored) + (p.whole() ? " everywhere in the solid"
+                                    : " in " + shareAtLeast(share) + " of the solid at least");
   const bool shown = p.whole() ? found.whole() : found.provenShare >= share - kClaimDigits;
   if (!shown || found.proven.count == 0 || found.mirrored != p.mirrored || evidence.chargeInside) {
     refuteSense(p, found, evidence, out);
@@ -64,15 +70,16 @@ Claim senseClaim(const ProofFigures& p, const SenseProof& found, const SenseEvid
   }
   out.result = ClaimResult::holds;
   out.found = found.whole() ? fmt::format("so it is, on {} cells", found.proven.count)
-                            : fmt::format("in {} at least, on {} cells", percent(found.provenShare),
-                                          found.proven.count);
+                            : fmt::format("in {} at least, on {} cells",
+                                          shareAtLeast(found.provenShare), found.proven.count);
   return out;
 }
 
 Claim undecidedClaim(const ProofFigures& p, const SenseProof& found) {
   Claim out;
   out.name = "undecided";
-  out.claimed = "the sign of det J is known but for " + percent(p.undecidedShare) + " of the solid";
+  out.claimed =
+      "the sign of det J is known but for " + shareAtMost(p.undecidedShare) + " of the solid";
   out.found = found.undecided.count == 0 ? "it is known everywhere"
                                          : "on " + cellsOf(found.undecided) + " it is not known";
   out.result = found.undecided.share <= p.undecidedShare + kClaimDigits ? ClaimResult::holds
@@ -99,19 +106,19 @@ Claim leastClaim(const ProofFigures& p, const SenseProof& found, const SenseEvid
   Claim out;
   out.name = "least";
   const double share = claimedShare(p);
-  out.claimed = fmt::format("|det J| is {:.6g} at least {}", p.least,
-                            p.whole() ? "there" : "in " + percent(share) + " of the solid");
+  out.claimed = fmt::format("|det J| is {} at least {}", atLeast(p.least, kDigits),
+                            p.whole() ? "there" : "in " + shareAtLeast(share) + " of the solid");
   const bool shown =
       p.whole() ? found.whole() && found.weak.count == 0 : found.leastShare >= share - kClaimDigits;
   if (shown) {
     out.result = ClaimResult::holds;
-    out.found = found.whole() ? "so it is" : "in " + percent(found.leastShare) + " at least";
+    out.found = found.whole() ? "so it is" : "in " + shareAtLeast(found.leastShare) + " at least";
   } else if (p.whole() && evidence.lowAt) {
     out.result = ClaimResult::fails;
-    out.found = fmt::format("{:.6g} at most at one point", evidence.low);
+    out.found = atMost(evidence.low, kDigits) + " at most at one point";
     out.places = {*evidence.lowAt};
   } else {
-    out.found = "in " + percent(found.leastShare) + " of the solid at least";
+    out.found = "in " + shareAtLeast(found.leastShare) + " of the solid at least";
     out.places = centersOf(found.weak.places);
   }
   return out;

@@ -27,7 +27,8 @@ struct LeafStarts {
 struct LatticeImages {
   openvdb::Vec3SGrid::Ptr images;
   openvdb::FloatGrid::Ptr outside;  // distance from the solid, world units
-  bool mirrored = false;            // the map turns most of the inside over
+  bool mirrored = false;  // most of the inside has a negative Jacobian: also where no target tells
+                          // of the sense, as through cells
 };
 LatticeImages imagesOf(const ExtendedMap& map, const openvdb::MaskGrid& region,
                        const openvdb::math::Transform& target);

@@ -219,7 +219,10 @@ TEST(Injectivity, AProofSaysWhatFollowsAndTakesThePlaceOfWhatPointsSuggest) {
   known.proof = proven();
   EXPECT_FALSE(notOneToOne(known));
   EXPECT_TRUE(says(known, "Proven: det J > 0 everywhere in the solid, on 5000 cells"));
-  EXPECT_TRUE(says(known, "each point farther than 0.004 from the target's surface has as many"));
+  EXPECT_TRUE(
+      says(known,
+           "each point farther than 0.004 of the target's diagonal from the target's surface "
+           "has as many preimages as that surface winds about it: one inside, none outside"));
   EXPECT_FALSE(says(known, kUnproved));
   EXPECT_FALSE(says(known, kThen));
   EXPECT_EQ(injectivityLine(known).substr(0, 39), "one-to-one, proven deeper than 0.004; n");
@@ -247,10 +250,88 @@ TEST(Injectivity, CellsThatAreUndecidedOrFoldedAreNoProof) {
   EXPECT_FALSE(notOneToOne(known));
   EXPECT_FALSE(known.proof.whole());
   EXPECT_TRUE(says(known, "On 7 cells, 0.1% of the solid at most, it is undecided."));
-  EXPECT_TRUE(says(known, "not counting those in cells that are undecided or turned over"));
+  EXPECT_TRUE(says(known, "surface, and outside of the images of cells that are undecided or"));
   known.proof.negative = 2;
   EXPECT_TRUE(notOneToOne(known));
   EXPECT_TRUE(says(known, kNot));
+}
+
+// Whatever a bound is, the sentence holds.
+TEST(Injectivity, BoundsAreRoundedToTheSideOnWhichTheyHold) {
+  Injectivity known = sound();
+  known.proof = proven();
+  known.proof.least = 0.0199996;
+  known.proof.boundaryError = 0.010501;
+  EXPECT_TRUE(says(known, "(size 0.0199 at least)"));
+  EXPECT_TRUE(says(known, "is farther than 0.0106 of"));
+  EXPECT_TRUE(says(known, "each point farther than 0.0106 of"));
+  EXPECT_NE(injectivityLine(known).find("deeper than 0.0106;"), std::string::npos);
+  known.proof.undecided = 1;
+  known.proof.undecidedShare = 1.01e-9;
+  known.proof.proven = 1 - 1e-9;
+  EXPECT_TRUE(says(known, "det J > 0 in 99.9999% of the solid at least"));
+  EXPECT_TRUE(says(known, "On 1 cell, 1.1e-07% of the solid at most"));
+}
+
+// Two balls, one of which is mirrored, may be mapped one-to-one.
+TEST(Injectivity, OfSeveralPartsEachMayBeTurnedOver) {
+  Injectivity known = sound();
+  known.solid = {2, 2, 0, false};
+  known.inside = figures(20000, 9000, -0.5);
+  known.degree = {1500, -1, 1};
+  EXPECT_FALSE(notOneToOne(known));
+  EXPECT_FALSE(says(known, kNot));
+  EXPECT_TRUE(says(known, "on each that is turned over at some of its places and not at others"));
+  EXPECT_EQ(injectivityLine(known).substr(0, 22), "turned over in places;");
+  known.proof = proven();
+  known.proof.negative = 100;
+  EXPECT_FALSE(says(known, kNot));
+  known.degree = {1500, 1, 2};  // two parts, in one place
+  EXPECT_TRUE(says(known, kNot));
+  known.solid.parts = 1;  // a cavity has a surface, too
+  known.degree = {1500, 1, 1};
+  EXPECT_TRUE(notOneToOne(known));
+}
+
+TEST(Injectivity, WhatIsTurnedOverAllThroughAndADeterminantOfZeroRuleNothingOut) {
+  Injectivity known = sound();
+  known.inside = figures(20000, 20000, -0.5);
+  known.boundary = figures(10000, 10000, -0.5);
+  known.voxels = {};
+  EXPECT_FALSE(says(known, kNot));
+  EXPECT_FALSE(says(known, kThen));
+  known = sound();
+  known.inside = figures(20000, 3, 0);
+  EXPECT_TRUE(says(known, "det J is not above 0 at 3 of 20000 points inside"));
+  EXPECT_FALSE(notOneToOne(known));
+  EXPECT_FALSE(says(known, kThen));
+}
+
+// How often the target's surface winds about a point is known of one that does not cross itself,
+// and of no more than one.
+TEST(Injectivity, ThatOnePointGoesToEachIsSaidOfSurfacesThatWindOnce) {
+  const auto saysOne = [](const Injectivity& known) {
+    const bool line = injectivityLine(known).find("one-to-one, proven deeper") == 0;
+    EXPECT_EQ(line, says(known, "one inside, none outside"));
+    EXPECT_TRUE(says(known, "has as many preimages as that surface winds about it"));
+    return line;
+  };
+  Injectivity known = sound();
+  known.proof = proven();
+  EXPECT_TRUE(saysOne(known));
+  known.solid = {2, 2, 0, false};  // one ball may lie in the other
+  EXPECT_FALSE(saysOne(known));
+  known.solid = {1, 2, 0, false};
+  EXPECT_FALSE(saysOne(known));
+  known.solid = {1, 1, 3, false};  // caps may cross
+  EXPECT_FALSE(saysOne(known));
+  EXPECT_TRUE(says(known, "Neither surface runs through itself, but for the caps"));
+  known.solid = {};
+  known.target = {1, {{0, 0, 0}}};
+  EXPECT_FALSE(saysOne(known));
+  known.target = {};
+  known.solid.overlaps = true;
+  EXPECT_FALSE(says(known, "as many preimages"));
 }
 
 TEST(Injectivity, FactsGiveTheFiguresBack) {

@@ -51,6 +51,24 @@ TEST(ProveEmbedding, PartsThatRunIntoEachOtherAreNotProven) {
   }
 }
 
+// Each of two boxes that touch along an edge may be mapped in its own way.
+TEST(ProveEmbedding, WhatTouchesAlongAnEdgeIsNotConnected) {
+  Mesh boxes = shapes::joined(shapes::box({-0.5, -0.5, -0.5}, {0, 0, 0.5}),
+                              shapes::box({0, 0, -0.5}, {0.5, 0.5, 0.5}));
+  const auto at = [&](double z) {
+    std::vector<int> out;
+    for (std::size_t v = 0; v < boxes.vertices.size(); ++v)
+      if (norm(boxes.vertices[v] - Vec3{0, 0, z}) < 1e-12) out.push_back(static_cast<int>(v));
+    return out;
+  };
+  for (const double z : {-0.5, 0.5}) {
+    const std::vector<int> same = at(z);
+    ASSERT_EQ(same.size(), 2u);
+    for (Triangle& t : boxes.triangles) std::replace(t.begin(), t.end(), same[1], same[0]);
+  }
+  EXPECT_FALSE(proveEmbedding(gentle(1), boxes).connected);
+}
+
 TEST(ProveEmbedding, FoldedSurfacesAreNotProven) {
   const Vec3 p{1, 0, 0};
   std::vector<testing::Charge> charges = testing::chargesAbout(200, 1.9, 0.004, 1);

@@ -58,6 +58,17 @@ TEST(CarryGeometry, TurnsDirectionsAndLeavesOutWhatIsCut) {
   EXPECT_EQ(carried.folded, 0u);
 }
 
+// Onto a target that is inside out det J is below 0 where nothing folds.
+TEST(CarryGeometry, FoldsAreToldByTheMapsSense) {
+  for (const bool mirrored : {false, true}) {
+    Geometry g = line(3);
+    g.directions.push_back({"n", DirectionKind::normal, {{0, 1, 0}}, {0}});
+    CarryGeometrySettings settings;
+    settings.mirrored = mirrored;
+    EXPECT_EQ(carryGeometry(g, bend, settings).folded, mirrored ? 2u : 0u);
+  }
+}
+
 TEST(CarryGeometry, Limits) {
   Geometry g = line(2);
   CarryGeometrySettings settings;

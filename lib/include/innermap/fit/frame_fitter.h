@@ -18,6 +18,7 @@
 #include "innermap/field/fit.h"
 #include "innermap/field/harmonic_field.h"
 #include "innermap/fit/boundary_pair.h"
+#include "innermap/fit/mapped_solid.h"
 #include "innermap/solve/solver.h"
 
 namespace innermap {
@@ -29,8 +30,11 @@ struct FrameFitterSettings {
   std::size_t collocation = 0;     // boundary points, at least sources + 4; 0: 3 a source
   std::optional<double> distance;  // at most 4 spacings for over kMostDenseSources charges
   std::uint64_t seed = 1;
+  Prove prove = Prove::off;         // of each frame's map
+  double proofCells = kProofCells;  // as in FitMapSettings
 };
 
+// Without prove and proofCells; see describeProof.
 std::vector<Setting> describe(FrameFitterSettings& settings);
 
 // Boundary points of these settings: `collocation`, or its default.
@@ -58,13 +62,16 @@ struct FrameFit {
   // Of some thousand points inside: the share whose Jacobian determinant is not above 0, and the
   // share whose image is farther out of the frame's solid than error.p99.
   double folded = 0, outside = 0;
+  // The same of a map of its own; with Prove::off `mirrored`, `inside` and `outside`
+  // alone.
+  Injectivity injectivity;
   int iterations = 0;
   // Where exposed parts cross and slide along each other by more than kLeastJumpTold, and
   // how far, in words; empty where none do. The charges stand where they stand, so the fit blends
   // there.
   std::string jumps;
   std::vector<std::string> warnings;
-  StageSeconds seconds;  // "solid", "solve", "certificate", "inside"
+  StageSeconds seconds;  // "solid", "solve", "certificate", "inside", "check", "proof"
 };
 
 // Immutable once made; safe from any number of threads.
@@ -97,12 +104,14 @@ class FrameFitter {
     std::vector<SurfacePoint> onSurface;  // of solid().surface()
   };
   Samples samplesAt(std::vector<SurfacePoint> onSurface) const;
+  BoundaryPair pairOf(const Mesh& frame, const TargetBoundary& boundary) const;
+  void examine(const Mesh& frame, FrameFit& fit) const;
 
   SourceBoundary rest_;
+  FrameFitterSettings settings_;
   Samples collocation_;
   Points inside_;
   std::shared_ptr<const CrossingLines> lines_;
-  std::uint64_t seed_ = 1;
   std::optional<IterativeSolver> solver_;
   std::size_t levels_ = 0;
   double distance_ = 0;

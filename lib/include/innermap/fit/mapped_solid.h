@@ -29,9 +29,10 @@ namespace innermap {
 //   Edinburgh 88A, 1981, where boundary values are those of a one-to-one map; Meisters and Olech,
 //   "Locally one-to-one mappings and a classical theorem on schlicht functions", Duke Math. J. 30,
 //   1963;
-// - a one-to-one map of a connected solid has the same degree, 1 or -1, about all points that it
-//   reaches, and det J nowhere changes its sign: a fold, and a boundary that winds otherwise than
-//   once or not at all about some point, rule it out;
+// - a one-to-one map has the degree 1 or -1 about each point that it reaches, the same about all
+//   that a connected part of the solid reaches, and on such a part det J nowhere changes its sign
+//   (it may be 0: Wood, "Lewy's theorem fails in higher dimensions", Math. Scand. 1991). So both
+//   signs on one part rule it out, and so does a boundary that winds twice about some point;
 // - moving the boundary by less than the distance of y from it does not change how often it winds
 //   about y. An image of the boundary that is within e of the target's surface winds about points
 //   farther than e from that as the target does.
@@ -97,8 +98,17 @@ struct ProofFigures {
   bool whole() const { return cells > 0 && undecided + negative == 0; }
 };
 
+// The solid as it was fitted, with the caps that close it.
+struct SolidFigures {
+  std::size_t parts = 1;     // not connected with one another
+  std::size_t surfaces = 1;  // closed ones that bound it: one of each part and each cavity
+  std::size_t caps = 0;
+  bool overlaps = false;  // some of these surfaces lies inside others, or inside itself
+};
+
 struct Injectivity {
   bool mirrored = false;  // the target is inside out: det J < 0 wherever the map is not folded
+  SolidFigures solid;
   ProofFigures proof;
   DeterminantFigures inside;    // random, spread evenly
   DeterminantFigures boundary;  // random points of it, uniform by area
@@ -111,12 +121,13 @@ struct Injectivity {
   SelfIntersectionFigures source, target;
 };
 
-// Whether something that was found rules out that the map is one-to-one: a fold at one of the
-// points or voxels, or a boundary that winds about some point otherwise than once or not at all.
-// What the target does to maps that meet it exactly is not asked.
+// Whether something that was found rules out that the map is one-to-one: det J of both signs on a
+// connected solid, or a boundary that winds twice, or both ways, about points. What the target does
+// to maps that meet it exactly is not asked.
 bool notOneToOne(const Injectivity& known);
 
 // What was checked, what was found and what follows, no more than that: plain English, one line.
+// Bounds are rounded to the side on which they still hold.
 std::string injectivityStatement(const Injectivity& known);
 
 // The short of it, for terminals: "no fold at 20033 points inside, ...".
@@ -126,6 +137,15 @@ std::string injectivityLine(const Injectivity& known);
 // back; what facts do not say stays as it is in `known`, as does what they say out of range.
 Facts injectivityFacts(const Injectivity& known);
 void readInjectivity(const Facts& facts, Injectivity& known);
+
+// What is proven of a map that was fitted. core: where det J has one sign on whole cells of the
+// solid, and how far the boundary is from its target at most. full: that no two points go to one,
+// too; see proveMap.
+enum class Prove { off, core, full };
+constexpr double kProofCells = 8;  // a charge; maps in one piece need 4 to 7
+
+// FitMapSettings::proofCells and those of frames, as settings. more: of their number, in words.
+std::vector<Setting> describeProof(Prove* prove, double* cells, const std::string& more = "");
 
 // Proves what it can; see proof/prove.h. full: also that the boundary does not meet itself, which
 // takes some ten times as long. Throws what those do.

@@ -63,12 +63,15 @@ struct ProofSettings {
   // from 1e-3 to 1.
   double errorMargin = 0.02;
   bool keepProven = false;  // the places of proven cells too
+  // Of the solid, world units cubed, of which shares are taken; 0: what its mesh encloses. To be
+  // given where parts of the mesh overlap, which would count twice; at most what they fill.
+  double volume = 0;
   // proveSense cuts proven cells further until |det J| is at least that on them; see
   // SenseProof::weak. Not below 0.
   double least = 0;
 };
 
-// Without keepProven and least.
+// Without keepProven, volume and least.
 std::vector<Setting> describe(ProofSettings& settings);
 
 // Need in bytes of proveSense or proveBoundaryError, about a surface of so many triangles; an upper
@@ -85,8 +88,7 @@ struct ProofCell {
 struct ProofCells {
   std::size_t count = 0;
   double volume = 0;  // of whole cubes, which reach out of the solid beside its surface
-  double share = 0;   // of the solid's volume, at most: the cubes' volume over that, in [0, 1];
-                      // where the surface covers a place twice it counts twice
+  double share = 0;   // of the solid's volume, at most: the cubes' volume over that, in [0, 1]
   std::vector<ProofCell> places;  // largest first
 };
 
@@ -140,7 +142,7 @@ BoundaryProof proveBoundaryError(const ExpandedMap& map, const Mesh& surface, co
 // as its connected boundary and proveSense() finds one sign (Meisters and Olech 1963).
 struct EmbeddingProof {
   bool proven = false;
-  bool connected = false;      // the surface is one piece, joined by edges
+  bool connected = false;      // the surface is one piece, joined by edges of two triangles
   std::size_t undecided = 0;   // pairs of patches that may meet, where their number was up
   Points places;               // of the first of them, at most 16; world units of the source
   std::uint64_t examined = 0;  // pairs

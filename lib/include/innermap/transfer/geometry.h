@@ -139,6 +139,7 @@ struct CarryGeometrySettings {
   // them: world units of what is carried to; 0 splits none. Not negative.
   double subdivide = 0;
   SplatOpacity splats = SplatOpacity::look;  // of what has splats alone
+  bool mirrored = false;  // as Injectivity: det J < 0 where the map does not fold
 };
 
 // Of `subdivide`, as a share of the diagonal of the solid that is carried to.
@@ -156,8 +157,7 @@ struct CarriedGeometry {
   CarriedSplats splats;
   std::uint64_t ownPoints = 0;    // those of the file that were there before edges were split
   std::uint64_t added = 0;        // on split edges
-  std::uint64_t folded = 0;       // points where the map turns space inside out, where Jacobians
-                                  // were taken
+  std::uint64_t folded = 0;       // points where the map folds, where Jacobians were taken
   std::uint64_t cutElements = 0;  // elements with a point that is cut
   // New numbers of the points that stay, -1 for others; and whether each element stays.
   std::vector<int> number;

@@ -80,7 +80,7 @@ function tidied(report) {
     for (const key of keys) {
       const list = (report[section] || {})[key];
       if (list === undefined) continue;
-      if (Array.isArray(list)) report[section][key] = list.map((v) => (typeof v === "number" ? v : NaN));
+      if (Array.isArray(list)) report[section][key] = list.map((v) => (typeof v === "number" || (key === "statement" && typeof v === "string") ? v : NaN));
       else delete report[section][key];
     }
   return report;

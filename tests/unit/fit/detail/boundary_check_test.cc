@@ -23,6 +23,34 @@ BoundaryCheckSettings settingsFor(const MapFit& fit) {
   return settings;
 }
 
+SolidFigures figuresOf(const Mesh& mesh) {
+  return injectivityOf(makeBoundaryPair(mesh, mesh)).solid;
+}
+
+TEST(BoundaryCheck, PartsAndSurfacesOfTheSolidAreCounted) {
+  const auto expect = [](const Mesh& mesh, std::size_t parts, std::size_t surfaces,
+                         std::size_t caps, bool overlaps) {
+    const SolidFigures found = figuresOf(mesh);
+    EXPECT_EQ(found.parts, parts);
+    EXPECT_EQ(found.surfaces, surfaces);
+    EXPECT_EQ(found.caps, caps);
+    EXPECT_EQ(found.overlaps, overlaps);
+  };
+  const Mesh whole = ball(1);
+  const auto two = [&](double apart) {
+    return shapes::joined(whole, shapes::transformed(whole, 1, {apart, 0, 0}));
+  };
+  expect(whole, 1, 1, 0, false);
+  expect(two(3), 2, 2, 0, false);
+  expect(two(1), 2, 2, 0, true);
+  const Mesh cavity = shapes::flipped(shapes::icosphere(1, 0.5, {}));
+  expect(shapes::joined(whole, cavity), 1, 2, 0, false);
+  Mesh open = whole;
+  open.triangles.resize(open.triangles.size() - 4);
+  EXPECT_EQ(figuresOf(open).surfaces, 1u);
+  EXPECT_GT(figuresOf(open).caps, 0u);
+}
+
 TEST(BoundaryCheck, AnAffineMapHasItsDeterminantAndDegreeOne) {
   const Mesh source = ball();
   const MapFit fit = fitted(source, moved(source, affineMap));
