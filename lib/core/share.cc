@@ -2,20 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cstdlib>
 
+#include "core/text_scanner.h"
 #include "innermap/core/error.h"
 
 namespace innermap {
 namespace {
-
-std::optional<std::int64_t> wholeNumber(std::string_view text) {
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return {};
-  return value;
-}
 
 // The numbers of an engine's tasks, and the one of this process.
 struct Tasks {
@@ -40,7 +33,7 @@ std::optional<Share> slurmShare(const std::string& setting, const Environment& e
   if (!own) return {};
   const auto number = [&](const char* name) {
     const auto text = environment(name);
-    const auto value = text ? wholeNumber(*text) : std::nullopt;
+    const auto value = text ? parseInteger(*text) : std::nullopt;
     if (!value)
       throw SettingError(setting, fmt::format("'auto': {} is {}; write 3/40, say", name,
                                               text ? "'" + *text + "'" : "not set"));
@@ -66,10 +59,10 @@ std::optional<Share> cueShare(const std::string& setting, const Environment& env
   const std::size_t cross = range->find('x'), dash = range->find('-', 1);
   const std::string_view text(*range);
   const auto part = [&](std::size_t from, std::size_t to) {
-    return wholeNumber(text.substr(from, to == std::string::npos ? to : to - from)).value_or(-1);
+    return parseInteger(text.substr(from, to == std::string::npos ? to : to - from)).value_or(-1);
   };
   Tasks tasks;
-  tasks.own = wholeNumber(*own).value_or(-1);
+  tasks.own = parseInteger(*own).value_or(-1);
   tasks.first = part(0, std::min(dash, cross));
   tasks.last = dash == std::string::npos ? tasks.first : part(dash + 1, cross);
   tasks.step = cross == std::string::npos ? 1 : part(cross + 1, std::string::npos);
@@ -78,13 +71,18 @@ std::optional<Share> cueShare(const std::string& setting, const Environment& env
 
 }  // namespace
 
-std::pair<std::size_t, std::size_t> Share::range(std::size_t things) const {
-  // In 128 bits, as things times kMost may be over 64.
-  const auto upTo = [&](std::uint64_t shares) {
-    __extension__ using Wide = unsigned __int128;
-    return static_cast<std::size_t>(static_cast<Wide>(things) * shares / of);
-  };
-  return {upTo(number - 1), upTo(number)};
+std::pair<std::size_t, std::size_t> Share::range(const std::vector<std::uint64_t>& weights) const {
+  // Sums times kMost may be over 64 bits.
+  __extension__ using Wide = unsigned __int128;
+  Wide total = 0, until = 0;
+  for (const std::uint64_t weight : weights) total += weight;
+  std::pair<std::size_t, std::size_t> out{0, 0};
+  for (const std::uint64_t weight : weights) {
+    until += weight;
+    if (until * of <= total * (number - 1)) ++out.first;
+    if (until * of <= total * number) ++out.second;
+  }
+  return out;
 }
 
 std::optional<std::string> environmentVariable(const std::string& name) {
@@ -104,8 +102,8 @@ Share parseShare(const std::string& setting, const std::string& text,
   }
   const std::size_t slash = text.find('/');
   const std::string_view all(text);
-  const auto number = wholeNumber(all.substr(0, slash));
-  const auto of = slash == std::string::npos ? std::nullopt : wholeNumber(all.substr(slash + 1));
+  const auto number = parseInteger(all.substr(0, slash));
+  const auto of = slash == std::string::npos ? std::nullopt : parseInteger(all.substr(slash + 1));
   if (!number || !of)
     throw SettingError(setting,
                        "'" + text + "' is no share; write 3/40, the third of forty, or auto");

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace innermap {
 
@@ -15,9 +16,10 @@ struct Share {
 
   std::uint64_t number = 1, of = 1;  // 1 to `of`, which is at most kMost
 
-  // Of so many things in a row this share has [first, second), which may be empty. The shares of
-  // one `of` have each thing once, and differ by one thing at most.
-  std::pair<std::size_t, std::size_t> range(std::size_t things) const;
+  // Of things in a row that take so long each, above 0, this share has [first, second), which may
+  // be empty. The shares of one `of` have each thing once, and take as long as each other but for
+  // one thing at most.
+  std::pair<std::size_t, std::size_t> range(const std::vector<std::uint64_t>& weights) const;
 };
 
 // The value of an environment variable, none where it is not set.

@@ -13,7 +13,8 @@ namespace innermap {
 namespace {
 
 using Leaf = openvdb::MaskTree::LeafNodeType;
-using Lower = openvdb::MaskTree::RootNodeType::ChildNodeType::ChildNodeType;
+using Upper = openvdb::MaskTree::RootNodeType::ChildNodeType;
+using Lower = Upper::ChildNodeType;
 
 std::vector<std::unique_ptr<Leaf>> leavesBelow(const openvdb::FloatTree& distances, float iso) {
   std::vector<const openvdb::FloatTree::LeafNodeType*> from;
@@ -52,6 +53,10 @@ std::uint64_t maskBelow(const openvdb::FloatTree& distances, float iso, openvdb:
     out.addLeaf(leaf.release());
     ++leaves;
   }
+  // Where there are tiles alone, no leaf has made a node.
+  for (auto upper = distances.root().cbeginChildOn(); upper; ++upper)
+    if (!out.probeConstNode<Upper>(upper.getCoord()))
+      out.root().addChild(new Upper(upper.getCoord(), false));
   for (auto upper = out.root().beginChildOn(); upper; ++upper) {
     for (auto lower = upper->beginChildOn(); lower; ++lower)
       leaves += fillTiles(*lower, distances, iso);

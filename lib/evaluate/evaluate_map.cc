@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
+#include <set>
+#include <utility>
 
 #include "evaluate/active_region.h"
 #include "evaluate/detail/fold_repair.h"
+#include "evaluate/detail/map_values.h"
 #include "evaluate/topology.h"
 #include "evaluate/visit_field.h"
 #include "innermap/core/error.h"
@@ -19,28 +21,6 @@ constexpr double kMoving = 0.9;  // of repairing folds; then what was moved is e
 
 using FloatLeaf = openvdb::FloatTree::LeafNodeType;
 using Vec3Leaf = openvdb::Vec3STree::LeafNodeType;
-
-// What one leaf adds to the totals; summed in the leaves' order so that the sums do not depend on
-// the threads.
-struct LeafTotals {
-  double harmonic = 0, deformation = 0, volume = 0, folded = 0;
-  double rounding = 0;
-  double jacobianMin = std::numeric_limits<double>::infinity(), jacobianMax = -jacobianMin;
-  std::uint64_t active = 0, interior = 0, foldedVoxels = 0;
-
-  void add(const LeafTotals& t) {
-    harmonic += t.harmonic;
-    deformation += t.deformation;
-    volume += t.volume;
-    folded += t.folded;
-    active += t.active;
-    interior += t.interior;
-    foldedVoxels += t.foldedVoxels;
-    rounding = std::max(rounding, t.rounding);
-    jacobianMin = std::min(jacobianMin, t.jacobianMin);
-    jacobianMax = std::max(jacobianMax, t.jacobianMax);
-  }
-};
 
 // Where the leaves' values go.
 struct LeafOutput {
@@ -66,16 +46,20 @@ class Evaluation {
     accuracy_ = settings.accuracy * targetExtent(map, solid);
   }
 
-  MapGrids run();
+  MapValues values() const;
+  MapGrids conclude(MapValues values) const;
 
  private:
+  using LeafTotals = std::map<openvdb::Coord, MapTotals>;
+
   bool isFolded(double det) const { return !((settings_.mirrored ? -det : det) > 0); }
   void markFolds(MapGrids& out) const;
-  void repair(const openvdb::MaskGrid& region, std::vector<LeafTotals>& totals,
-              MapGrids& out) const;
-  LeafTotals store(const LeafValues& values, const MapGrids& out) const;
+  bool mayRepair() const { return settings_.repairUpTo > 0; }
+  void repair(MapValues& values) const;
+  LeafTotals leavesOf(const std::set<openvdb::Coord>& blocks, const MapValues& values) const;
+  MapTotals store(const LeafValues& values, const MapGrids& out) const;
   void store(const Mat3& j, const Vec3& position, double share, std::size_t offset,
-             const LeafOutput& out, LeafTotals& totals) const;
+             const LeafOutput& out, MapTotals& totals) const;
 
   const ComposedMap& map_;
   const Solid& solid_;
@@ -86,7 +70,7 @@ class Evaluation {
 };
 
 void Evaluation::store(const Mat3& j, const Vec3& position, double share, std::size_t offset,
-                       const LeafOutput& out, LeafTotals& totals) const {
+                       const LeafOutput& out, MapTotals& totals) const {
   const double det = determinant(j), h = unitVolumeScale_ * harmonicEnergyDensity(j),
                psi = deformationEnergyDensity(j, settings_.lame);
   const auto at = static_cast<openvdb::Index>(offset);
@@ -107,9 +91,9 @@ void Evaluation::store(const Mat3& j, const Vec3& position, double share, std::s
   ++totals.active;
 }
 
-LeafTotals Evaluation::store(const LeafValues& values, const MapGrids& out) const {
+MapTotals Evaluation::store(const LeafValues& values, const MapGrids& out) const {
   const LeafOutput leaf(out, values.origin);
-  LeafTotals totals;
+  MapTotals totals;
   for (std::size_t i = 0; i < values.count; ++i) {
     Mat3 j;
     for (std::size_t r = 0; r < 3; ++r)
@@ -171,9 +155,47 @@ class RepairedLeaf {
   std::vector<double> values_, gradients_;
 };
 
+// A mask without voxels, on the lattice of a grid.
+openvdb::MaskGrid::Ptr maskLike(const openvdb::GridBase& grid) {
+  const openvdb::MaskGrid::Ptr mask = openvdb::MaskGrid::create();
+  mask->setTransform(grid.transform().copy());
+  return mask;
+}
+
+std::vector<openvdb::Coord> leafOrigins(const openvdb::MaskGrid& region) {
+  std::vector<openvdb::Coord> origins;
+  for (auto leaf = region.tree().cbeginLeaf(); leaf; ++leaf) origins.push_back(leaf->origin());
+  return origins;
+}
+
+void addLeaf(const MapGrids& grids, const openvdb::Coord& at, openvdb::MaskGrid& region) {
+  region.tree().touchLeaf(at)->topologyUnion(*grids.map->tree().probeConstLeaf(at));
+}
+
+// What was summed for the leaves of these blocks. Where others made the values they are made again,
+// to the same bits.
+Evaluation::LeafTotals Evaluation::leavesOf(const std::set<openvdb::Coord>& blocks,
+                                            const MapValues& values) const {
+  LeafTotals leaves;
+  for (const auto& [origin, totals] : values.leaves)
+    if (blocks.count(blockOf(origin)) > 0) leaves.emplace(origin, totals);
+  if (!values.leaves.empty()) return leaves;
+  const openvdb::MaskGrid::Ptr region = maskLike(*values.grids.map);
+  for (auto leaf = values.grids.map->tree().cbeginLeaf(); leaf; ++leaf)
+    if (blocks.count(blockOf(leaf->origin())) > 0) addLeaf(values.grids, leaf->origin(), *region);
+  const std::vector<openvdb::Coord> origins = leafOrigins(*region);
+  for (const openvdb::Coord& origin : origins) leaves.emplace(origin, MapTotals());
+  visitField(map_, solid_, levelSet_, *region,
+             [&](std::size_t leaf, const LeafValues& found) {
+               leaves.at(origins[leaf]) = store(found, values.grids);
+             },
+             {accuracy_, kRepairing});
+  return leaves;
+}
+
 // The leaves are evaluated once more where a voxel was moved: the grids hold floats.
-void Evaluation::repair(const openvdb::MaskGrid& region, std::vector<LeafTotals>& totals,
-                        MapGrids& out) const {
+void Evaluation::repair(MapValues& values) const {
+  MapGrids& out = values.grids;
   FoldRepairSettings s;
   s.growth = std::pow(unitVolumeScale_, -0.5);
   s.mirrored = settings_.mirrored;
@@ -185,68 +207,82 @@ void Evaluation::repair(const openvdb::MaskGrid& region, std::vector<LeafTotals>
   if (repair.voxels.empty() && out.foldedVoxels == 0) return;
   out.repairedFarthest = repair.farthest;
   out.repaired = named(openvdb::FloatGrid::create(), "repaired");
-  out.repaired->setTransform(region.transform().copy());
+  out.repaired->setTransform(out.map->transform().copy());
   auto ways = out.repaired->getAccessor();
-  std::map<openvdb::Coord, std::size_t> numbers;
-  for (auto leaf = region.tree().cbeginLeaf(); leaf; ++leaf)
-    numbers.emplace(leaf->origin(), numbers.size());
-  const openvdb::MaskGrid::Ptr again = openvdb::MaskGrid::create();
-  again->setTransform(region.transform().copy());
+  const openvdb::MaskGrid::Ptr again = maskLike(*out.map);
+  std::set<openvdb::Coord> blocks;
   const auto before = out.map->getConstAccessor();
   for (const auto& [at, voxel] : repair.voxels) {
     const openvdb::Vec3f p = before.getValue(at);
     ways.setValue(at, static_cast<float>(norm(voxel.position - Vec3{p.x(), p.y(), p.z()})));
-    again->tree().touchLeaf(at)->topologyUnion(*region.tree().probeConstLeaf(at));
+    addLeaf(out, at, *again);
+    blocks.insert(blockOf(at));
   }
-  std::vector<openvdb::Coord> origins;
-  for (auto leaf = again->tree().cbeginLeaf(); leaf; ++leaf) origins.push_back(leaf->origin());
   const PartOfStage evaluating(kMoving, 1);
+  LeafTotals leaves = leavesOf(blocks, values);
+  const std::vector<openvdb::Coord> origins = leafOrigins(*again);
   visitField(map_, solid_, levelSet_, *again,
-             [&](std::size_t leaf, const LeafValues& values) {
-               totals[numbers.at(origins[leaf])] =
-                   store(RepairedLeaf(values, repair, settings_.origin).leaf(), out);
+             [&](std::size_t leaf, const LeafValues& found) {
+               leaves.at(origins[leaf]) =
+                   store(RepairedLeaf(found, repair, settings_.origin).leaf(), out);
              },
              {accuracy_, kRepairing});
+  for (BlockTotals& b : values.blocks) {
+    if (blocks.count(b.block) == 0) continue;
+    b.totals = {};
+    for (const auto& [origin, totals] : leaves)
+      if (blockOf(origin) == b.block) b.totals.add(totals);
+  }
 }
 
-MapGrids Evaluation::run() {
+MapValues Evaluation::values() const {
   constexpr std::uint64_t kMaskBytes = 1;
-  const bool mayRepair = settings_.repairUpTo > 0;
-  const bool wantsMap = settings_.map || mayRepair, wantsJacobian = settings_.jacobian || mayRepair;
+  const bool wantsMap = settings_.map || mayRepair(),
+             wantsJacobian = settings_.jacobian || mayRepair();
   RegionSettings where;
   where.skin = settings_.skin;
   where.bytesPerVoxel = kMaskBytes + (wantsMap ? 12 : 0) + (wantsJacobian ? 4 : 0) +
                         (settings_.harmonicEnergy ? 4 : 0) + (settings_.deformationEnergy ? 4 : 0);
   const openvdb::MaskGrid::Ptr region = activeRegion(levelSet_, where);
-  MapGrids out;
-  if (wantsMap) {
-    out.map = named(vectorGridOn(*region), "map");
-    out.map->setVectorType(openvdb::VEC_INVARIANT);
-  }
-  if (wantsJacobian) out.jacobian = named(floatGridOn(*region), "jacobian");
-  if (settings_.harmonicEnergy) out.harmonicEnergy = named(floatGridOn(*region), "harmonic_energy");
-  if (settings_.deformationEnergy)
-    out.deformationEnergy = named(floatGridOn(*region), "deformation_energy");
-
-  std::vector<LeafTotals> totals(region->tree().leafCount());
+  MapValues out;
+  EvaluateSettings wanted = settings_;
+  wanted.map = wantsMap;
+  wanted.jacobian = wantsJacobian;
+  MapGrids& grids = out.grids = mapGridsOn(*region, wanted);
+  for (const openvdb::Coord& origin : leafOrigins(*region))
+    out.leaves.emplace_back(origin, MapTotals());
   visitField(map_, solid_, levelSet_, *region,
-             [&](std::size_t leaf, const LeafValues& values) { totals[leaf] = store(values, out); },
+             [&](std::size_t leaf, const LeafValues& values) {
+               out.leaves[leaf].second = store(values, grids);
+             },
              {accuracy_, "evaluating the map"});
+  for (const auto& [origin, totals] : out.leaves) {
+    if (out.blocks.empty() || out.blocks.back().block != blockOf(origin))
+      out.blocks.push_back({blockOf(origin), {}});
+    out.blocks.back().totals.add(totals);
+  }
+  return out;
+}
+
+MapGrids Evaluation::conclude(MapValues values) const {
+  MapGrids& out = values.grids;
+  std::sort(values.blocks.begin(), values.blocks.end(),
+            [](const BlockTotals& a, const BlockTotals& b) { return a.block < b.block; });
   std::uint64_t interior = 0;
-  for (const LeafTotals& t : totals) {
-    out.foldedVoxels += t.foldedVoxels;
-    interior += t.interior;
+  for (const BlockTotals& b : values.blocks) {
+    out.foldedVoxels += b.totals.foldedVoxels;
+    interior += b.totals.interior;
   }
   if (out.jacobian && out.foldedVoxels > 0) markFolds(out);
   const double most = settings_.repairUpTo * static_cast<double>(interior);
-  if (mayRepair && static_cast<double>(out.foldedVoxels) <= most) repair(*region, totals, out);
+  if (mayRepair() && static_cast<double>(out.foldedVoxels) <= most) repair(values);
   if (!settings_.map) out.map.reset();
   if (!settings_.jacobian) {
     out.jacobian.reset();
     out.folded.reset();
   }
-  LeafTotals sum;
-  for (const LeafTotals& t : totals) sum.add(t);
+  MapTotals sum;
+  for (const BlockTotals& b : values.blocks) sum.add(b.totals);
   const double cell = voxel_ * voxel_ * voxel_;
   out.volume = sum.volume * cell;
   // By the volume that the voxels sum to, so that a rigid map has 3 at every resolution.
@@ -259,7 +295,17 @@ MapGrids Evaluation::run() {
   out.activeVoxels = sum.active;
   out.rounding = sum.rounding;
   out.interiorVoxels = sum.interior;
-  return out;
+  return std::move(out);
+}
+
+void require(const EvaluateSettings& settings) {
+  if (!(settings.lame.lambda >= 0) || !(settings.lame.mu >= 0))
+    throw SettingError("Lame constants", "must not be negative");
+  if (!(settings.skin >= 0 && settings.skin <= 3))
+    throw SettingError("skin", "must lie in [0, 3] voxels");
+  if (!(settings.accuracy >= 1e-12 && settings.accuracy <= 1e-3))
+    throw SettingError("accuracy", "must lie in [1e-12, 1e-3] of the target's extent");
+  if (!(settings.targetVolume >= 0)) throw SettingError("target volume", "must not be negative");
 }
 
 }  // namespace
@@ -285,16 +331,67 @@ double targetExtent(const ComposedMap& map, const Solid& solid) {
   return extent > 0 ? extent : 1;
 }
 
+MapGrids mapGridsOn(const openvdb::MaskGrid& region, const EvaluateSettings& wanted) {
+  MapGrids grids;
+  if (wanted.map) {
+    grids.map = named(vectorGridOn(region), "map");
+    grids.map->setVectorType(openvdb::VEC_INVARIANT);
+  }
+  if (wanted.jacobian) grids.jacobian = named(floatGridOn(region), "jacobian");
+  if (wanted.harmonicEnergy) grids.harmonicEnergy = named(floatGridOn(region), "harmonic_energy");
+  if (wanted.deformationEnergy)
+    grids.deformationEnergy = named(floatGridOn(region), "deformation_energy");
+  return grids;
+}
+
+void MapTotals::add(const MapTotals& t) {
+  harmonic += t.harmonic;
+  deformation += t.deformation;
+  volume += t.volume;
+  folded += t.folded;
+  active += t.active;
+  interior += t.interior;
+  foldedVoxels += t.foldedVoxels;
+  rounding = std::max(rounding, t.rounding);
+  jacobianMin = std::min(jacobianMin, t.jacobianMin);
+  jacobianMax = std::max(jacobianMax, t.jacobianMax);
+}
+
+std::array<double, MapTotals::kNumbers> MapTotals::numbers() const {
+  return {harmonic,
+          deformation,
+          volume,
+          folded,
+          rounding,
+          jacobianMin,
+          jacobianMax,
+          static_cast<double>(active),
+          static_cast<double>(interior),
+          static_cast<double>(foldedVoxels)};
+}
+
+MapTotals MapTotals::of(const double* n) {
+  const auto count = [](double number) {
+    return number > 0 && number < 1e15 ? static_cast<std::uint64_t>(number) : 0;
+  };
+  return {n[0], n[1], n[2], n[3], n[4], n[5], n[6], count(n[7]), count(n[8]), count(n[9])};
+}
+
+MapValues mapValues(const ComposedMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
+                    const EvaluateSettings& settings) {
+  require(settings);
+  return Evaluation(map, solid, levelSet, settings).values();
+}
+
+MapGrids concludeValues(const ComposedMap& map, const Solid& solid,
+                        const openvdb::FloatGrid& levelSet, const EvaluateSettings& settings,
+                        MapValues values) {
+  return Evaluation(map, solid, levelSet, settings).conclude(std::move(values));
+}
+
 MapGrids evaluateMap(const ComposedMap& map, const Solid& solid, const openvdb::FloatGrid& levelSet,
                      const EvaluateSettings& settings) {
-  if (!(settings.lame.lambda >= 0) || !(settings.lame.mu >= 0))
-    throw SettingError("Lame constants", "must not be negative");
-  if (!(settings.skin >= 0 && settings.skin <= 3))
-    throw SettingError("skin", "must lie in [0, 3] voxels");
-  if (!(settings.accuracy >= 1e-12 && settings.accuracy <= 1e-3))
-    throw SettingError("accuracy", "must lie in [1e-12, 1e-3] of the target's extent");
-  if (!(settings.targetVolume >= 0)) throw SettingError("target volume", "must not be negative");
-  return Evaluation(map, solid, levelSet, settings).run();
+  return concludeValues(map, solid, levelSet, settings, mapValues(map, solid, levelSet, settings));
 }
 
 }  // namespace innermap

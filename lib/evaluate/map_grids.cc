@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <initializer_list>
 #include <string_view>
 #include <utility>
 
 #include "evaluate/detail/cell_check.h"
+#include "evaluate/detail/map_blocks.h"
 #include "evaluate/detail/outside_voxels.h"
 #include "evaluate/detail/proof_marks.h"
 #include "innermap/core/error.h"
@@ -167,23 +169,30 @@ openvdb::GridPtrVec SolidGrids::all() const {
   return out;
 }
 
-SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& settings) {
+namespace {
+
+EvaluateSettings evaluateSettings(const MappedSolid& mapped, const MapGridSettings& settings) {
+  EvaluateSettings out =
+      evaluateSettings(mapped.solid(), mapped.boundary.target, sumAccuracy(mapped), settings);
+  out.origin = localOriginOf(mapped);
+  return out;
+}
+
+// All that takes the whole of a level set and of its voxels' values. out: with the surface.
+SolidGrids conclude(const MappedSolid& mapped, const MapGridSettings& settings, SolidGrids out,
+                    const std::function<MapValues(const EvaluateSettings&)>& values) {
   const Solid& solid = mapped.solid();
-  const LevelSetSettings levelSet = levelSetSettings(settings);
-  SolidGrids out;
-  const std::string note = voxelSizeNote(solid, levelSet);
+  const std::string note = voxelSizeNote(solid, levelSetSettings(settings));
   if (!note.empty()) out.notes.push_back(note);
   timed(out.seconds, "voxelize", [&] {
-    out.surface = makeLevelSet(solid, levelSet);
     out.density = makeFog(*out.surface);
     out.warnings = checkLevelSet(*out.surface, solid).warnings;
   });
   requireInterior(interiorVoxels(*out.surface), solid, mapped.boundary.source.mesh.name);
   timed(out.seconds, "evaluate", [&] {
-    EvaluateSettings evaluate =
-        evaluateSettings(solid, mapped.boundary.target, sumAccuracy(mapped), settings);
-    evaluate.origin = out.localOrigin = localOriginOf(mapped);
-    out.values = evaluateMap(mapped.map, solid, *out.surface, evaluate);
+    const EvaluateSettings evaluate = evaluateSettings(mapped, settings);
+    out.localOrigin = evaluate.origin;
+    out.values = concludeValues(mapped.map, solid, *out.surface, evaluate, values(evaluate));
   });
   out.voxelSize = out.surface->voxelSize()[0];
   const TargetShape target(mapped.boundary);
@@ -204,6 +213,42 @@ SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& sett
   insertTotals(all, out.values);
   insert(all, {{"lame_lambda", settings.lame.lambda}, {"lame_mu", settings.lame.mu}});
   return out;
+}
+
+}  // namespace
+
+SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& settings) {
+  SolidGrids out;
+  timed(out.seconds, "voxelize",
+        [&] { out.surface = makeLevelSet(mapped.solid(), levelSetSettings(settings)); });
+  const openvdb::FloatGrid::Ptr surface = out.surface;
+  return conclude(mapped, settings, std::move(out), [&](const EvaluateSettings& evaluate) {
+    return mapValues(mapped.map, mapped.solid(), *surface, evaluate);
+  });
+}
+
+MapBlock evaluateBlock(const MappedSolid& mapped, const MapGridSettings& settings,
+                       const openvdb::Coord& origin) {
+  const openvdb::FloatGrid::Ptr surface =
+      makeLevelSetBlock(mapped.solid(), levelSetSettings(settings), origin);
+  const MapValues values =
+      mapValues(mapped.map, mapped.solid(), *surface, evaluateSettings(mapped, settings));
+  MapBlock out{values.grids.all(), {}};
+  out.grids.insert(out.grids.begin(), surface);
+  out.totals = numbersOf(values.blocks.empty() ? BlockTotals{origin, {}} : values.blocks.front());
+  return out;
+}
+
+SolidGrids joinBlocks(const MappedSolid& mapped, const MapGridSettings& settings,
+                      std::vector<MapBlock> blocks) {
+  SolidGrids out;
+  MapValues values = timed(out.seconds, "join", [&] {
+    const auto transform =
+        transformFor(mapped.solid(), voxelSizeFor(mapped.solid(), levelSetSettings(settings)));
+    return mergeBlocks(blocks, transform, out.surface);
+  });
+  return conclude(mapped, settings, std::move(out),
+                  [&](const EvaluateSettings&) { return std::move(values); });
 }
 
 bool needsLocalMap(const Points& target, double tolerance) {
@@ -241,6 +286,11 @@ std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings,
   return 2 * levelSetMemory(solid, levelSet) +
          static_cast<std::uint64_t>((kVoxel + (kind.local ? kLocal : 0)) * voxels +
                                     std::max(between, cells) + kOther);
+}
+
+std::uint64_t mapBlockMemory(const MapGridKind& kind) {
+  constexpr std::uint64_t kBlock = 350'000'000, kSteps = 250'000'000;
+  return kBlock + (kind.steps > 1 ? kSteps : 0);
 }
 
 void describeMap(const openvdb::GridPtrVec& grids, const MappedSolid& mapped) {

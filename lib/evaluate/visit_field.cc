@@ -12,8 +12,8 @@
 namespace innermap {
 namespace {
 
-// Leaves that are planned and summed together: bounds the memory for what is not visited yet, which
-// of maps in steps is all that the first one gives.
+// Leaves that are planned and summed together, of one block at most: bounds the memory for what is
+// not visited yet, which of maps in steps is all that the first one gives.
 constexpr std::size_t kLeavesTogether = 4096, kLeavesTogetherInSteps = 1024;
 constexpr std::size_t kLeafPoints = 512;
 
@@ -195,6 +195,15 @@ void requireAccuracy(const VisitSettings& settings) {
   if (!(settings.accuracy > 0)) throw SettingError("accuracy", "of the sums must be above 0");
 }
 
+// Of the leaves that are visited together from `begin` on, which are in their tree's order.
+std::size_t endOfBatch(const Leaves& leaves, std::size_t begin, std::size_t most) {
+  const openvdb::Coord block = blockOf(leaves.leaf(begin).origin());
+  const std::size_t last = std::min(begin + most, leaves.leafCount());
+  std::size_t end = begin + 1;
+  while (end < last && blockOf(leaves.leaf(end).origin()) == block) ++end;
+  return end;
+}
+
 void visitAll(const HarmonicField& field, const ComposedMap* map, const Solid& solid,
               const openvdb::FloatGrid& levelSet, const openvdb::MaskGrid& region,
               const LeafVisitor& visit, const VisitSettings& settings) {
@@ -203,9 +212,10 @@ void visitAll(const HarmonicField& field, const ComposedMap* map, const Solid& s
   const Leaves leaves(region.tree());
   const std::size_t together =
       map && map->steps().size() > 1 ? kLeavesTogetherInSteps : kLeavesTogether;
-  for (std::size_t begin = 0; begin < leaves.leafCount(); begin += together)
-    visitLeaves(field, map, solid, levelSet, leaves, begin,
-                std::min(begin + together, leaves.leafCount()), visit, settings);
+  for (std::size_t begin = 0, end = 0; begin < leaves.leafCount(); begin = end) {
+    end = endOfBatch(leaves, begin, together);
+    visitLeaves(field, map, solid, levelSet, leaves, begin, end, visit, settings);
+  }
 }
 
 // f: a field or a map.

@@ -15,6 +15,14 @@
 
 namespace innermap {
 
+// The block of 128 voxels along each side that a voxel lies in: its origin. Leaves are summed with
+// others of their block only, so that what a leaf gets does not depend on which blocks are visited.
+inline openvdb::Coord blockOf(const openvdb::Coord& voxel) {
+  return voxel &
+         ~(static_cast<int>(openvdb::MaskTree::RootNodeType::ChildNodeType::ChildNodeType::DIM) -
+           1);
+}
+
 // The active voxels of one leaf. Outside the solid the field is not evaluated (it is singular at
 // the sources there) but extended from the closest boundary point c: the value is f(c) + J(c) (p -
 // c), the gradient J(c).

@@ -9,6 +9,7 @@
 #include "innermap/core/memory.h"
 #include "levelset/detail/band.h"
 #include "levelset/detail/narrow_band.h"
+#include "levelset/level_set_settings.h"
 
 namespace innermap {
 namespace {
@@ -73,6 +74,13 @@ void checkReach(const Solid& solid, const Vec3& origin, double voxelSize) {
 }
 
 static_assert(kSmallestVoxel == kLeastVoxel);
+
+FloatGrid::Ptr makeBand(const Solid& solid, const LevelSetSettings& settings, const Coord* block) {
+  const double h = voxelSizeFor(solid, settings);
+  const Vec3 origin = settings.origin.value_or(latticeOrigin(solid.box(), h));
+  checkReach(solid, origin, h);
+  return narrowBand(solid.body(), origin, h, settings.halfWidth * h, block);
+}
 
 }  // namespace
 
@@ -166,13 +174,15 @@ std::uint64_t levelSetMemory(const Solid& solid, const LevelSetSettings& setting
 
 FloatGrid::Ptr makeLevelSet(const Solid& solid, const LevelSetSettings& settings) {
   requireDescribed(settings);
-  const double h = voxelSizeFor(solid, settings);
   if (limitsMemory())
     requireMemory("level set", levelSetMemory(solid, settings),
                   "a larger voxel size, a lower resolution or a smaller half width would fit");
-  const Vec3 origin = settings.origin.value_or(latticeOrigin(solid.box(), h));
-  checkReach(solid, origin, h);
-  return narrowBand(solid.body(), origin, h, settings.halfWidth * h);
+  return makeBand(solid, settings, nullptr);
+}
+
+FloatGrid::Ptr makeLevelSetBlock(const Solid& solid, const LevelSetSettings& settings,
+                                 const Coord& block) {
+  return makeBand(solid, settings, &block);
 }
 
 std::vector<Setting> describe(LevelSetSettings& s) {

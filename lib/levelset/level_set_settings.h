@@ -15,4 +15,9 @@ LevelSetSettings levelSetSettings(const Settings& settings) {
   return out;
 }
 
+// makeLevelSet() of one block of voxels, as voxelBlocks() has them: its values, and all else is
+// outside.
+openvdb::FloatGrid::Ptr makeLevelSetBlock(const Solid& solid, const LevelSetSettings& settings,
+                                          const openvdb::Coord& block);
+
 }  // namespace innermap

@@ -46,14 +46,16 @@ std::string line(const Jobs& jobs, const std::vector<std::string>& command,
   return share.empty() ? out : out + " --share " + share;
 }
 
-std::uint64_t secondsToAsk(const Jobs& jobs) {
-  return 60 + static_cast<std::uint64_t>(std::ceil(kTimeMargin * jobs.seconds));
+std::uint64_t secondsToAsk(const JobNeed& job) {
+  return 60 + static_cast<std::uint64_t>(std::ceil(kTimeMargin * job.seconds));
 }
 
-std::uint64_t mebibytesToAsk(const Jobs& jobs) {
+std::uint64_t minutesToAsk(const JobNeed& job) { return (secondsToAsk(job) + 59) / 60; }
+
+std::uint64_t mebibytesToAsk(const JobNeed& job) {
   constexpr double kMebibyte = 1 << 20, kBeside = 200e6;
   return static_cast<std::uint64_t>(
-      std::ceil((kMemoryMargin * static_cast<double>(jobs.memory) + kBeside) / kMebibyte));
+      std::ceil((kMemoryMargin * static_cast<double>(job.memory) + kBeside) / kMebibyte));
 }
 
 std::string linesText(const Jobs& jobs) {
@@ -64,7 +66,6 @@ std::string linesText(const Jobs& jobs) {
 }
 
 std::string slurmText(const Jobs& jobs) {
-  const std::uint64_t minutes = (secondsToAsk(jobs) + 59) / 60;
   std::string out = fmt::format(
       "#!/bin/sh\n"
       "# {} in {} shares, for Slurm: run this file where sbatch is.\n"
@@ -76,26 +77,28 @@ std::string slurmText(const Jobs& jobs) {
       "set -e\n"
       "array=$(sbatch --parsable --job-name={} --array=1-{} --requeue --cpus-per-task={} --mem={}M "
       "--time={} \"$@\" --wrap {})\n",
-      jobs.name, jobs.tasks, jobs.seconds, jobs.memory / 1'000'000, kTimeMargin, kMemoryMargin,
-      jobs.cores, quoted(jobs.name), jobs.tasks, jobs.cores, mebibytesToAsk(jobs), minutes,
+      jobs.name, jobs.tasks, jobs.task.seconds, jobs.task.memory / 1'000'000, kTimeMargin,
+      kMemoryMargin, jobs.cores, quoted(jobs.name), jobs.tasks, jobs.cores,
+      mebibytesToAsk(jobs.task), minutesToAsk(jobs.task),
       quoted(line(jobs, jobs.command, fmt::format("$SLURM_ARRAY_TASK_ID/{}", jobs.tasks))));
   if (!jobs.join.empty())
     out += fmt::format(
         "join=$(sbatch --parsable --job-name={} --dependency=afterok:\"$array\" --requeue "
         "--mem={}M --time={} \"$@\" --wrap {})\n"
         "echo \"array $array, join $join\"\n",
-        quoted(jobs.name + " join"), mebibytesToAsk(jobs), minutes,
+        quoted(jobs.name + " join"), mebibytesToAsk(jobs.joining), minutesToAsk(jobs.joining),
         quoted(line(jobs, jobs.join, "")));
   return out;
 }
 
-Json openJdStep(const Jobs& jobs, const std::string& name, const std::string& command) {
+Json openJdStep(const Jobs& jobs, const JobNeed& need, const std::string& name,
+                const std::string& command) {
   Json step{{"name", name}};
   step["hostRequirements"]["amounts"] =
-      Json::array({Json{{"name", "amount.worker.memory"}, {"min", mebibytesToAsk(jobs)}},
+      Json::array({Json{{"name", "amount.worker.memory"}, {"min", mebibytesToAsk(need)}},
                    Json{{"name", "amount.worker.vcpu"}, {"min", jobs.cores}}});
   step["script"]["actions"]["onRun"] = Json{
-      {"command", "sh"}, {"args", Json::array({"-c", command})}, {"timeout", secondsToAsk(jobs)}};
+      {"command", "sh"}, {"args", Json::array({"-c", command})}, {"timeout", secondsToAsk(need)}};
   return step;
 }
 
@@ -109,12 +112,12 @@ std::string openJdText(const std::string& setting, const Jobs& jobs) {
   };
   if (braces(task, task.rfind("{{Task.Param")) || braces(join, join.size()))
     throw SettingError(setting, "'{{' in a file's name cannot be written into an OpenJD template");
-  Json frames = openJdStep(jobs, "Shares", task);
+  Json frames = openJdStep(jobs, jobs.task, "Shares", task);
   const Json share{{"name", "Share"}, {"type", "INT"}, {"range", fmt::format("1-{}", jobs.tasks)}};
   frames["parameterSpace"]["taskParameterDefinitions"] = Json::array({share});
   Json steps = Json::array({frames});
   if (!jobs.join.empty()) {
-    Json last = openJdStep(jobs, "Join", join);
+    Json last = openJdStep(jobs, jobs.joining, "Join", join);
     last["dependencies"] = Json::array({Json{{"dependsOn", "Shares"}}});
     steps.push_back(last);
   }

@@ -7,15 +7,20 @@
 
 namespace innermap {
 
+// What a job is expected to take.
+struct JobNeed {
+  double seconds = 0;
+  std::uint64_t memory = 0;  // bytes
+};
+
 struct Jobs {
   std::string name;                  // "innermap sequence"
   std::string folder;                // where commands run
   std::vector<std::string> command;  // of a task, to which --share K/N is added
   std::vector<std::string> join;     // once all tasks are done; may be empty
   std::uint64_t tasks = 1;
-  double seconds = 0;        // expected of a task
-  std::uint64_t memory = 0;  // bytes, expected of a task
-  std::uint64_t cores = 1;   // that a task uses
+  JobNeed task, joining;
+  std::uint64_t cores = 1;  // that a task uses
 };
 
 // What engines are told is so many times what is expected, beside a minute, and 200 MB: estimates

@@ -30,11 +30,14 @@ struct PartRun {
   std::vector<std::string> notes, warnings;
 };
 
-// Of one frame.
+// What the parts of a run are of: "frame" or, of a volume that is one in the end, "block".
+std::string unitOf(const PartRun& run);
+
+// Of one of them.
 struct Part {
-  std::int64_t frame = 0;
-  std::string input;   // the frame's fingerprint; empty where it cannot be read
-  std::string broken;  // why there is no result, or empty
+  std::int64_t frame = 0;  // its number
+  std::string input;       // the frame's fingerprint; empty where it cannot be read
+  std::string broken;      // why there is no result, or empty
   PartValues values;
   std::vector<std::string> warnings;
 

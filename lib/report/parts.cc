@@ -94,10 +94,15 @@ std::string difference(const PartRun& a, const PartRun& b) {
       return fmt::format("{} {} and {}", a.settings[i].first, one, two);
   }
   if (a.inputs != b.inputs) return "the content of the files that they read";
-  return fmt::format("{} and {} frames, or their numbers", a.frames.size(), b.frames.size());
+  return fmt::format("{} and {} {}s, or their numbers", a.frames.size(), b.frames.size(),
+                     unitOf(a));
 }
 
 }  // namespace
+
+std::string unitOf(const PartRun& run) {
+  return run.command == "sequence" || run.command == "deform" ? "frame" : "block";
+}
 
 PartFolder::PartFolder(const std::string& folder, const PartRun& run)
     : folder_(partsOf(folder)), fingerprint_(fingerprintOf(run)) {
@@ -163,7 +168,7 @@ PartRun theRun(const std::string& folder) {
 
 // One of a frame: a good one rather than a broken one.
 void keep(std::map<std::int64_t, std::pair<Part, std::string>>& found, Part part,
-          const std::string& path) {
+          const std::string& path, const std::string& unit) {
   const std::int64_t frame = part.frame;
   const auto at = found.find(frame);
   if (at == found.end()) {
@@ -173,7 +178,7 @@ void keep(std::map<std::int64_t, std::pair<Part, std::string>>& found, Part part
   const bool newIsGood = part.broken.empty(), oldIsGood = at->second.first.broken.empty();
   if (newIsGood && oldIsGood)
     throw DataError(fmt::format(
-        "frame {} was made twice with other results: {} ({}, {}) and {} ({}, {}); {}", frame,
+        "{} {} was made twice with other results: {} ({}, {}) and {} ({}, {}); {}", unit, frame,
         at->second.second, at->second.first.host, at->second.first.code, path, part.host, part.code,
         at->second.first.input != part.input
             ? "its file was changed in between: remove the older one"
@@ -197,9 +202,9 @@ JoinedParts readParts(const std::string& folder) {
     const fs::path path = fs::path(place) / names[i];
     Part part = readPart(path, fingerprint);
     if (wanted.count(part.frame) == 0)
-      throw DataError(
-          fmt::format("{}: frame {} is none of the run's; remove it", path.string(), part.frame));
-    keep(found, std::move(part), path.string());
+      throw DataError(fmt::format("{}: {} {} is none of the run's; remove it", path.string(),
+                                  unitOf(out.run), part.frame));
+    keep(found, std::move(part), path.string(), unitOf(out.run));
   }
   for (const FrameFile& frame : out.run.frames)
     if (const auto at = found.find(frame.number); at != found.end())
@@ -257,6 +262,12 @@ std::uint64_t countAt(const PartValues& values, const std::string& key) {
   if (const auto* b = std::get_if<bool>(value)) return *b ? 1 : 0;
   const auto* count = std::get_if<std::uint64_t>(value);
   return count ? *count : 0;
+}
+
+std::vector<double> numbersAt(const PartValues& values, const std::string& key) {
+  const FigureValue* value = valueAt(values, key);
+  const auto* numbers = value ? std::get_if<std::vector<double>>(value) : nullptr;
+  return numbers ? *numbers : std::vector<double>();
 }
 
 std::string textAt(const PartValues& values, const std::string& key) {

@@ -1,9 +1,9 @@
 // The files that the shares of a run leave, from which it is joined: OUTPUT/parts/.
 //
 // run.HASH.json says which run it is; its name has the hash of all that decides results.
-// frame.0012.HASH.json has the figures of one frame, HASH being of what must be the same whoever
-// makes it. So two workers at one frame write the same file, and bits that differ make a second
-// one, which is found. Files appear whole; no clock is looked at.
+// frame.0012.HASH.json has the figures of one frame or block, HASH being of what must be the same
+// whoever makes it. So two workers at one frame write the same file, and bits that differ make a
+// second one, which is found. Files appear whole; no clock is looked at.
 #pragma once
 
 #include <cstdint>
@@ -44,8 +44,8 @@ struct JoinedParts {
 // are cut off or changed, or that two workers made with other bits: it says which, and what to do.
 JoinedParts readParts(const std::string& folder);
 
-// Whether the file of a frame is there, by its size; fingerprint: what fingerprintOf() told of it
-// when it was written.
+// Whether the file of a frame or block is there, by its size; fingerprint: what fingerprintOf()
+// told of it when it was written.
 bool isWhole(const std::string& path, const std::string& fingerprint);
 
 // "3, 4, 7 and 12 more"
@@ -67,5 +67,6 @@ void keepToCpu(const std::string& setting, const std::string& name);
 double numberAt(const PartValues& values, const std::string& key);
 std::uint64_t countAt(const PartValues& values, const std::string& key);  // also of a bool
 std::string textAt(const PartValues& values, const std::string& key);
+std::vector<double> numbersAt(const PartValues& values, const std::string& key);
 
 }  // namespace innermap

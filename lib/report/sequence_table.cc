@@ -43,26 +43,15 @@ SequenceRow sequenceRow(const FrameFit& fit, const MapGrids& grids) {
 }
 
 Figures figures(const SequenceRow& r) {
-  constexpr auto kShare = FigureUnit::share, kDiagonals = FigureUnit::diagonals;
-  return when(
-      r.broken.empty(),
-      together(
-          {{{"harmonic", r.harmonic, "harmonic energy", "3 for a rigid motion"},
-            {"deformation", r.deformation, "deformation energy", "0 for a rigid motion"},
-            {"deformation_mean", r.deformationMean, "deformation, mean", "of a unit of volume"},
-            {"boundary_rms", r.error.rms, "boundary error", "root mean square", kDiagonals},
-            {"boundary_p99", r.error.p99, "boundary error", "99% within", kDiagonals},
-            {"boundary_max", r.error.max, "boundary error", "largest", kDiagonals},
-            {"jacobian_min", r.jacobianMin, "least change of volume", "0 or less: folded there"},
-            {"jacobian_max", r.jacobianMax, "greatest change of volume", ""},
-            {"folded_fraction", r.folded, "folded", "of the volume", kShare},
-            {"volume", r.volume, "volume", "of the frame's solid", FigureUnit::volume},
-            {"outside_fraction", r.outside, "outside", "of the inside", kShare},
-            {"tolerance_met", !r.misses, "tolerance met", "1: it is"},
-            {"seconds", r.seconds, "time", "", FigureUnit::seconds}},
-           proofOf(r.proof),
-           {Figure("statement", r.statement, "one-to-one, in words", "what was proven and checked")
-                .when(!r.statement.empty())}}));
+  Figures out;
+  eachNumber(r, [&](const auto&... figure) { out.emplace_back(figure...); });
+  out.emplace_back("tolerance_met", !r.misses, "tolerance met", "1: it is");
+  out.emplace_back("seconds", r.seconds, "time", "", FigureUnit::seconds);
+  return when(r.broken.empty(),
+              together({std::move(out), proofOf(r.proof),
+                        {Figure("statement", r.statement, "one-to-one, in words",
+                                "what was proven and checked")
+                             .when(!r.statement.empty())}}));
 }
 
 Figures worstFigures(const std::vector<SequenceRow>& rows) {

@@ -29,6 +29,24 @@ struct SequenceRow {
 // Without its file, what it is judged by and its seconds.
 SequenceRow sequenceRow(const FrameFit& fit, const MapGrids& grids);
 
+// Calls visit(key, member, name, meaning, unit) for each number that the row and its part have.
+template <class Row, class Visit>
+void eachNumber(Row& r, const Visit& visit) {
+  constexpr auto kNone = FigureUnit::none, kShare = FigureUnit::share,
+                 kDiagonals = FigureUnit::diagonals;
+  visit("harmonic", r.harmonic, "harmonic energy", "3 for a rigid motion", kNone);
+  visit("deformation", r.deformation, "deformation energy", "0 for a rigid motion", kNone);
+  visit("deformation_mean", r.deformationMean, "deformation, mean", "of a unit of volume", kNone);
+  visit("boundary_rms", r.error.rms, "boundary error", "root mean square", kDiagonals);
+  visit("boundary_p99", r.error.p99, "boundary error", "99% within", kDiagonals);
+  visit("boundary_max", r.error.max, "boundary error", "largest", kDiagonals);
+  visit("jacobian_min", r.jacobianMin, "least change of volume", "0 or less: folded there", kNone);
+  visit("jacobian_max", r.jacobianMax, "greatest change of volume", "", kNone);
+  visit("folded_fraction", r.folded, "folded", "of the volume", kShare);
+  visit("volume", r.volume, "volume", "of the frame's solid", FigureUnit::volume);
+  visit("outside_fraction", r.outside, "outside", "of the inside", kShare);
+}
+
 // Not known of a frame that is broken; of its proof without places.
 Figures figures(const SequenceRow& row);
 // The largest boundary errors of all rows.

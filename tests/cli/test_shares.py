@@ -11,6 +11,8 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
+
 import cli
 import slurm
 from cli import PROGRAM, fails, innermap, nightly
@@ -231,6 +233,74 @@ def test_shares_of_a_study():
     assert rows["whole"] == rows["cut"] and len(rows["cut"]) > 2, made
     assert cli.read_json("cut/report.json")["study"]["made"] == 0
     fails(1, *command, "-o", "x", "--share", "3/2", says=["--share"])
+
+
+LONG = ["evaluate", "map.ply", "--resolution", "270", "--repair", "on", "--quiet"]
+
+
+def folded_rod():
+    """A map of a rod of three blocks, which folds."""
+    v, f = cli.icosphere_arrays(3)
+    v = np.array(v) * [20, 1, 1]
+    cli.write_obj("rod.obj", v, f)
+    pinched = v.copy()
+    pinched[:, 0] += 3 * np.exp(-((v[:, 0] - 2) / 2) ** 2) * v[:, 1]
+    cli.write_obj("pinched.obj", pinched, f)
+    innermap("fit", "rod.obj", "pinched.obj", "-o", "map.ply", "--charges", "300", "--quiet")
+
+
+def results(path):
+    report = cli.read_json(path)
+    kept = {k: report.get(k) for k in ["energy", "jacobian", "grid", "repair", "one_to_one", "warnings", "verdict"]}
+    return json.dumps(kept)
+
+
+def test_the_shares_of_a_volume_are_one_run():
+    folded_rod()
+    innermap(*LONG, "-o", "whole.vdb", "--report", "whole.json")
+    assert cli.read_json("whole.json")["repair"]["folded_voxels"] > 0
+    fails(1, "join", "cut.vdb.shares", says=["--share"])
+    innermap(*LONG, "-o", "cut.vdb", "--share", "2/2")
+    fails(1, "join", "cut.vdb.shares", says=["not made", "blocks"])
+    for text in ["1/2", "4/7"]:
+        told = innermap(*LONG, "-o", "cut.vdb", "--share", text).stdout
+    assert "finished already" in told and not Path("cut.vdb").exists()
+    innermap("join", "cut.vdb.shares", "--report", "cut.json", "--quiet")
+    assert Path("cut.vdb").read_bytes() == Path("whole.vdb").read_bytes()
+    assert results("cut.json") == results("whole.json")
+    report = cli.read_json("cut.json")
+    assert report["command"] == "evaluate" and len(report["farm"]["host_frames"]) == 1
+    blocks = sorted(Path("cut.vdb.shares").glob("block.*.vdb"))
+    assert len(blocks) >= 3
+
+    fails(1, *LONG, "-o", "cut.vdb", "--share", "1/2", "--lame-mu", "0.5", says=["another run", "lame_mu"])
+    fails(2, "join", "cut.vdb.shares", "--partial", says=["--partial"])
+    fails(2, *LONG[:2], "-o", "x.vdb", "--inverse", "--share", "1/2", says=["--inverse"])
+    shutil.copytree("cut.vdb.shares", "other")
+    fails(1, "join", "other", says=["other", ".shares"])
+    # A block that is cut off is missing; one of another block's voxels is told of.
+    whole = blocks[0].read_bytes()
+    blocks[0].write_bytes(whole[:-100])
+    fails(1, "join", "cut.vdb.shares", says=["1 of", "blocks", "1"])
+    blocks[0].write_bytes(whole[:-100] + bytes(100))
+    fails(1, "join", "cut.vdb.shares", says=[blocks[0].name, "not as it was written"])
+    blocks[0].unlink()
+    innermap(*LONG, "-o", "cut.vdb", "--share", "1/1")  # makes what is missing
+    assert blocks[0].read_bytes() == whole
+    innermap("fit", "rod.obj", "pinched.obj", "-o", "map.ply", "--charges", "250", "--quiet")
+    fails(1, "join", "cut.vdb.shares", says=["cut.vdb.shares", "other files"])
+
+
+def test_jobs_make_a_volume():
+    folded_rod()
+    innermap(*LONG, "-o", "whole.vdb")
+    innermap(*LONG, "-o", "cut.vdb", "--jobs", "jobs.json", "--tasks", "2")
+    for step in cli.read_json("jobs.json")["steps"]:
+        run = step["script"]["actions"]["onRun"]
+        for share_number in "12" if step["name"] == "Shares" else "1":
+            words = [word.replace("{{Task.Param.Share}}", share_number) for word in run["args"]]
+            subprocess.run([run["command"], *words], check=True, capture_output=True)
+    assert Path("cut.vdb").read_bytes() == Path("whole.vdb").read_bytes()
 
 
 def test_jobs_make_the_run():

@@ -20,7 +20,7 @@
 namespace innermap::tool {
 
 Context::Context(const CommonOptions& options, TerminalProgress& progress)
-    : options_(options), progress_(progress) {
+    : options_(options), progress_(progress), space_(options.space) {
   maxMemory_ = options.maxMemory.empty() ? availableMemory() / 10 * 8
                                          : parseBytes("--max-memory", options.maxMemory);
   if (!options.html.empty()) page_ = std::make_unique<Page>();

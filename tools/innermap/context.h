@@ -20,8 +20,9 @@
 #include "report/verdict.h"
 
 namespace innermap {
+struct JoinedParts;
 struct Page;
-}
+}  // namespace innermap
 
 namespace innermap::tool {
 
@@ -81,7 +82,15 @@ class Context {
   // Which axes and units input has and output shall have. All that is read is brought to output's,
   // by readMeshFile, readGridFile and inOutput (inputs.h) and the frames' AnimationSettings, and
   // what is computed is in that.
-  const SpaceSettings& space() const { return options_.space; }
+  const SpaceSettings& space() const { return space_; }
+
+  // What workers left of this run, for `join`, which has the command conclude it: the command takes
+  // these in place of what it would compute. Null in other runs.
+  void joins(std::shared_ptr<const JoinedParts> parts, const SpaceSettings& space) {
+    joined_ = std::move(parts);
+    space_ = space;
+  }
+  const JoinedParts* joined() const { return joined_.get(); }
 
   bool dryRun() const { return options_.dryRun; }
   // What --dry-run says: a line for each thing that would be done, the seconds that expect() knows
@@ -203,6 +212,8 @@ class Context {
   std::unique_ptr<Page> page_;
   std::string pagePath_;
   std::string failure_, details_;
+  std::shared_ptr<const JoinedParts> joined_;
+  SpaceSettings space_;
   double expectedSeconds_ = 0;
   std::map<std::string, std::string> inputs_, outputs_;       // by fileKey
   std::vector<std::pair<std::string, std::string>> ordered_;  // outputs: key when told, path

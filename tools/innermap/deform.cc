@@ -265,8 +265,10 @@ void writeJobs(const DeformOptions& options, const Frames& frames, Context& cont
     grids = readVolume(options.volume, options.transfer, context);
     others = memoryOf(options, rest.solid, grids);
   }
-  writeShareJobs(options.farm, frames.wanted.size(), phasesOf(options, rest.solid, grids, frames),
-                 frameFitterMemory(options.frames.fitting, others), "", context);
+  writeShareJobs(options.farm,
+                 {frames.wanted.size(), phasesOf(options, rest.solid, grids, frames),
+                  frameFitterMemory(options.frames.fitting, others)},
+                 context);
 }
 
 void plan(const DeformOptions& options, const Frames& frames, const FramePattern& pattern,
@@ -381,7 +383,7 @@ Command makeDeformCommand() {
       .atMost(10);
   addTransferOptions(c, o->transfer);
   addGeometryOptions(c, o->geometry, false);
-  addShareOptions(c, o->farm, "The files of all shares are those of one run");
+  addShareOptions(c, o->farm, "frames", "The files of all shares are those of one run");
   c.example(
       "innermap deform rest.obj smoke.vdb walk.pc2 -o 'out/smoke.####.vdb' --usd out/smoke.usda");
   c.example("innermap deform rest.obj bones.obj 'walk.*.obj' -o 'out/bones.####.obj'");

@@ -1,5 +1,7 @@
 // `innermap evaluate`: a saved map on the voxels of its solid.
+#include "block_share.h"
 #include "commands.h"
+#include "core/file.h"
 #include "core/file_bytes.h"
 #include "core/text_scanner.h"
 #include "grid_options.h"
@@ -20,6 +22,7 @@ struct EvaluateOptions {
   bool inverse = false;
   EvaluationOptions evaluation;
   VerdictSettings verdict;
+  ShareOptions farm;
 };
 
 // .nii or .nii.gz; what is no regular file may be called anything, and gets grids.
@@ -84,23 +87,71 @@ void runInverse(const EvaluateOptions& options, const MappedSolid& mapped, Conte
     writeGridFile(options.output, {levelSet, back.grid}, options.evaluation.names, context);
 }
 
+void makeShare(const EvaluateOptions& options, const MappedSolid& mapped,
+               const MapGridSettings& settings, Context& context) {
+  BlockWork work;
+  work.output = options.output;
+  work.inputs = fingerprintOf(options.map);
+  work.blocks = voxelBlocks(mapped.solid(), settings);
+  work.make = [&](const openvdb::Coord& block) { return evaluateBlock(mapped, settings, block); };
+  const std::uint64_t need = mapBlockMemory(mapGridKind(mapped));
+  context.requireMemory("evaluating a block of the volume", need, "raise --max-memory");
+  makeShare(options.farm, work, context);
+  if (context.dryRun())
+    context.plan(
+        {"evaluate a share of " + options.map, "write its blocks to " + sharesOf(options.output)},
+        need);
+}
+
+// The first phases are the workers', and writing their blocks.
+void writeJobs(const EvaluateOptions& options, const MappedSolid& mapped,
+               const MapGridSettings& settings, Context& context) {
+  const Solid& solid = mapped.solid();
+  const std::vector<JobPhase> all =
+      evaluationPhases(jobSize(solid, settings, mapped.map.sources()));
+  ShareRun run;
+  run.unit = "block";
+  run.units = voxelBlocks(solid, settings).size();
+  JobPhase blocks{"blocks"};
+  blocks.seconds = all[0].seconds + all[1].seconds + all.back().seconds;
+  run.phases = {blocks};
+  run.bytes = mapBlockMemory(mapGridKind(mapped));
+  run.joined = sharesOf(options.output);
+  run.joining = {all.begin() + 2, all.end()};
+  run.joiningBytes = mapGridMemory(solid, settings, mapGridKind(mapped));
+  writeShareJobs(options.farm, run, context);
+}
+
+SolidGrids makeGrids(const EvaluateOptions& options, const MappedSolid& mapped,
+                     const MapGridSettings& settings, Context& context) {
+  if (!context.joined()) return evaluateOnGrid(mapped, settings);
+  return joinBlocks(mapped, settings,
+                    readShares(options.output, fingerprintOf(options.map), context));
+}
+
 void run(const EvaluateOptions& options, Context& context) {
   if (!options.inverse && isDisplacementField(options.output))
     throw UsageError("--output: only the displacement of --inverse is written to " +
                      options.output + "; name a .vdb file, or give --inverse");
+  if (options.inverse && inShares(options.farm))
+    throw UsageError("--inverse: is not made in shares; leave out --share and --jobs");
   if (options.inverse) requireInverseOptions(options);
-  context.output(options.output);
+  applyCpuTarget(options.farm);
+  const bool asJobs = writesJobs(options.farm, context);
+  if (options.farm.share.empty() && !asJobs) context.output(options.output);
   const MappedSolid mapped = readMapFile(options.map, context);
   if (options.inverse) return runInverse(options, mapped, context);
   const MapGridSettings settings = mapGridSettings(options.evaluation);
   context.expect(evaluationPhases(jobSize(mapped.solid(), settings, mapped.map.sources())));
+  if (!options.farm.share.empty()) return makeShare(options, mapped, settings, context);
+  if (asJobs) return writeJobs(options, mapped, settings, context);
   requireInterior(mapped.solid(), options.evaluation.grid.in<LevelSetSettings>());
   if (context.dryRun())
     return context.plan({"evaluate " + options.map, "write grids to " + options.output},
                         mapGridMemory(mapped.solid(), settings, mapGridKind(mapped)));
   requireEvaluationMemory(mapped.solid(), options.evaluation.grid, context, mapGridKind(mapped));
   context.spend(Context::kMostOfTime);
-  const SolidGrids grids = evaluateOnGrid(mapped, settings);
+  const SolidGrids grids = makeGrids(options, mapped, settings, context);
   reportGrids(grids, settings.lame, context);
   context.judge(judgeMap(mapped, &grids, options.verdict, MapOrigin::file));
   writeGridFile(options.output, grids.all(), options.evaluation.names, context);
@@ -133,6 +184,9 @@ Command makeEvaluateCommand() {
   c.limitTime("after which folds are no longer repaired");
   addEvaluationOptions(c, o->evaluation);
   c.settings(describe(o->verdict));
+  addShareOptions(c, o->farm, "blocks of 128 voxels along each side",
+                  "They go to OUTPUT.shares, and innermap join makes one file of all; blocks that "
+                  "are finished are not made again");
   c.example("innermap evaluate map.ply -o map.vdb --resolution 256");
   c.example("innermap evaluate map.ply -o map.vdb --voxel-size 0.01 --names blender");
   c.example("innermap evaluate map.ply -o field.nii.gz --inverse");

@@ -59,8 +59,8 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
       if (!results.empty() && context.timeIsUp()) break;
       FrameResult result;
       result.file = frames.all[index];
-      context.setPart(fmt::format("frame {} ({} of {})", result.file.number, results.size() + 1,
-                                  frames.wanted.size()));
+      context.setPart(fmt::format("{} {} ({} of {})", frames.unit, result.file.number,
+                                  results.size() + 1, frames.wanted.size()));
       reportProgress("frames", static_cast<double>(results.size()) /
                                    static_cast<double>(frames.wanted.size()));
       if (Page* page = context.page())
@@ -69,7 +69,8 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
       result.error = tryFrame(index, body);
       result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
       if (!result.error.empty())
-        context.warning(fmt::format("frame {} is left out: {}", result.file.number, result.error));
+        context.warning(
+            fmt::format("{} {} is left out: {}", frames.unit, result.file.number, result.error));
       else
         ++finished;
       if (ended) ended(result);
@@ -77,15 +78,15 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
     }
   } catch (const Cancelled&) {
     if (!stays || finished == 0) throw;
-    throw CancelledLate(
-        fmt::format("cancelled; {} of {} frames are in place", finished, frames.wanted.size()));
+    throw CancelledLate(fmt::format("cancelled; {} of {} {}s are in place", finished,
+                                    frames.wanted.size(), frames.unit));
   }
   context.setPart("");
   if (context.page()) context.page()->frame.reset();
   const std::size_t left = frames.wanted.size() - results.size();
   if (left > 0)
-    context.warning(fmt::format("{} of {} frames are left, from {} on, as --max-time ended", left,
-                                frames.wanted.size(),
+    context.warning(fmt::format("{} of {} {}s are left, from {} on, as --max-time ended", left,
+                                frames.wanted.size(), frames.unit,
                                 frames.all[frames.wanted[results.size()]].number));
   concludeFrames(results, left, context);
   return results;

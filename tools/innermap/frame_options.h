@@ -29,7 +29,9 @@ void addFrameArgument(Command& command, FrameOptions& options);
 void addFrameOptions(Command& command, FrameOptions& options);
 
 struct Frames {
-  std::shared_ptr<const FrameSource> source;
+  std::shared_ptr<const FrameSource> source;  // none of what is cut up and is no animation
+  std::string unit = "frame";                 // what one of them is called
+  std::vector<std::uint64_t> weights;         // of all, how long each takes; empty: all alike
   AnimationSettings animation;
   std::vector<FrameFile> all;       // the source's, ascending
   std::vector<std::size_t> wanted;  // of all, those that --frames chooses

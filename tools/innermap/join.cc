@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 
+#include "block_share.h"
 #include "commands.h"
 #include "report/page/page.h"
 #include "report_page.h"
@@ -32,7 +33,7 @@ ReportValue reportValue(const FigureValue& value) {
   return std::visit(Visitor{}, value);
 }
 
-// The report becomes that of the run, as far as the frames have it in common.
+// The report becomes that of the run.
 void takeRun(const PartRun& run, Context& context) {
   Report& report = context.report();
   report.command = run.command;
@@ -41,15 +42,20 @@ void takeRun(const PartRun& run, Context& context) {
   report.run->settings.clear();
   for (const auto& [name, value] : run.reported)
     report.run->settings.emplace_back(name, reportValue(value));
+}
+
+// What all frames have in common.
+void takeFindings(const PartRun& run, Context& context) {
+  Report& report = context.report();
   for (const auto& [key, value] : run.figures) report.add("", {Figure(key, value, "")});
   for (const std::string& text : run.notes) context.note(text);
   for (const std::string& text : run.warnings) context.warning(text);
 }
 
 // "AVX2 on a, b; AVX3 on c", where there are several kinds.
-void nameMix(const std::vector<Part>& parts, Context& context) {
+void nameMix(const JoinedParts& joined, Context& context) {
   std::map<std::string, std::vector<std::string>> hosts;
-  for (const Part& part : parts) {
+  for (const Part& part : joined.parts) {
     std::vector<std::string>& names = hosts[part.code];
     if (std::find(names.begin(), names.end(), part.host) == names.end()) names.push_back(part.host);
   }
@@ -58,11 +64,11 @@ void nameMix(const std::vector<Part>& parts, Context& context) {
   for (const auto& [code, names] : hosts)
     kinds.push_back(fmt::format("{} on {}", code, fmt::join(names, ", ")));
   context.warning(fmt::format(
-      "frames were made by different kinds of vector code ({}), which may differ in the last bits",
-      fmt::join(kinds, "; ")));
+      "{}s were made by different kinds of vector code ({}), which may differ in the last bits",
+      unitOf(joined.run), fmt::join(kinds, "; ")));
 }
 
-// What all commands for frames have.
+// What all commands have; results: of each frame or block.
 std::vector<FrameResult> resultsOf(const JoinedParts& joined, Context& context) {
   std::vector<FrameResult> results;
   FarmFigures farm;
@@ -84,16 +90,16 @@ std::vector<FrameResult> resultsOf(const JoinedParts& joined, Context& context) 
       context.warning(text);
     }
   }
-  nameMix(joined.parts, context);
+  nameMix(joined, context);
   context.report().add("farm", figures(farm));
   return results;
 }
 
-// Frames whose grids are not there are not made.
-void dropWithoutOutput(const FramePattern& pattern, JoinedParts& joined) {
+// What has no grids is not made; broken: but for frames that cannot be.
+void dropWithoutOutput(const FramePattern& pattern, bool broken, JoinedParts& joined) {
   std::vector<Part> whole;
   for (Part& part : joined.parts)
-    if (!part.broken.empty() || hasOutput(part, pattern.path(part.frame)))
+    if (part.broken.empty() ? hasOutput(part, pattern.path(part.frame)) : broken)
       whole.push_back(std::move(part));
     else
       joined.missing.push_back(part.frame);
@@ -103,8 +109,9 @@ void dropWithoutOutput(const FramePattern& pattern, JoinedParts& joined) {
 
 void requireAll(const JoinedParts& joined, bool partial, Context& context) {
   if (joined.missing.empty()) return;
-  const std::string text = fmt::format("{} of {} frames are not made: {}", joined.missing.size(),
-                                       joined.run.frames.size(), framesText(joined.missing));
+  const std::string text =
+      fmt::format("{} of {} {}s are not made: {}", joined.missing.size(), joined.run.frames.size(),
+                  unitOf(joined.run), framesText(joined.missing));
   if (!partial) throw DataError(text + "; make their shares, or join what is there with --partial");
   if (joined.parts.empty()) throw DataError(text);
   context.warning(text);
@@ -113,7 +120,7 @@ void requireAll(const JoinedParts& joined, bool partial, Context& context) {
 void joinSequence(const JoinOptions& options, JoinedParts joined, Context& context) {
   const FramePattern pattern("FOLDER", options.folder + "/energy.####.vdb");
   const bool grids = !textAt(joined.run.settings, "grids").empty();
-  if (grids) dropWithoutOutput(pattern, joined);
+  if (grids) dropWithoutOutput(pattern, true, joined);
   requireAll(joined, options.partial, context);
   std::vector<std::string> beside{"parts"};
   for (const Part& part : joined.parts)
@@ -124,6 +131,7 @@ void joinSequence(const JoinOptions& options, JoinedParts joined, Context& conte
                          "write energies.csv, energies.svg and report.json to " + options.folder},
                         0);
   takeRun(joined.run, context);
+  takeFindings(joined.run, context);
   const std::vector<FrameResult> results = resultsOf(joined, context);
   std::vector<SequenceRow> rows;
   context.print(sequenceHeader());
@@ -141,9 +149,34 @@ void joinSequence(const JoinOptions& options, JoinedParts joined, Context& conte
   context.finish(*folder);
 }
 
+// A volume: the command that was run in shares takes the blocks in place of making them, and goes
+// on as it does with its own.
+void joinVolume(const JoinOptions& options, JoinedParts joined, Context& context) {
+  if (options.partial)
+    throw UsageError("--partial: is for frames; a volume needs all of its blocks");
+  const std::string output = outputOf(options.folder);
+  dropWithoutOutput(blockPattern(options.folder), false, joined);
+  requireAll(joined, false, context);
+  const Command command = findCommand(joined.run.command);
+  CommonOptions common;
+  const std::vector<std::string>& line = joined.run.commandLine;
+  parseArguments(command, common,
+                 {line.begin() + std::min<std::ptrdiff_t>(2, line.size()), line.end()});
+  for (const Option& option : command.options()) {
+    const auto text = std::get_if<std::string*>(&option.target);
+    if (text && option.isInput) context.input(**text);
+    if (text && option.name == "--output") **text = output;
+  }
+  takeRun(joined.run, context);
+  resultsOf(joined, context);
+  context.joins(std::make_shared<const JoinedParts>(std::move(joined)), command.space());
+  command.execute(context);
+}
+
 void run(const JoinOptions& options, Context& context) {
   JoinedParts joined = context.timed("read", [&] { return readParts(options.folder); });
   if (joined.run.command == "sequence") return joinSequence(options, std::move(joined), context);
+  if (joined.run.command == "evaluate") return joinVolume(options, std::move(joined), context);
   throw DataError(options.folder + ": the parts are of '" + joined.run.command +
                   "', which has nothing to join");
 }
@@ -158,10 +191,15 @@ Command makeJoinCommand() {
       "would have written: energies.csv, energies.svg and report.json, with the same figures "
       "whatever the shares were. Frames that are not made yet are named, and nothing is written "
       "unless --partial is given. Parts of two runs, of another version, that are cut off, or that "
-      "two workers made with other results are refused. Others may write parts meanwhile.");
-  c.positional("FOLDER", &o->folder, "the output of a run with --share");
+      "two workers made with other results are refused. Others may write parts meanwhile. "
+      "Of the blocks that evaluate with --share left in map.vdb.shares it makes map.vdb: it reads "
+      "the map again, repairs folds, looks at the cells between voxels and sums energies, and so "
+      "needs the memory of the whole.");
+  c.positional("FOLDER", &o->folder,
+               "the output of a run with --share; of a volume, the folder .shares beside it");
   c.flag("--partial", &o->partial, "join the frames that are there");
   c.example("innermap join energies");
+  c.example("innermap join map.vdb.shares");
   c.run([o](Context& context) { run(*o, context); });
   return c;
 }

@@ -100,8 +100,10 @@ void run(const SequenceOptions& options, Context& context) {
   phases.insert(phases.end() - 1, stageOf("level set", size));
   context.expect(phases);
   if (asJobs)
-    return writeShareJobs(options.farm, frames.wanted.size(), phases,
-                          frameFitterMemory(settings, gridsNeed), options.output, context);
+    return writeShareJobs(
+        options.farm,
+        {frames.wanted.size(), phases, frameFitterMemory(settings, gridsNeed), options.output},
+        context);
   if (context.dryRun())
     return context.plan({framesPlan(settings, frames),
                          "write " +
@@ -176,7 +178,7 @@ Command makeSequenceCommand() {
            fmt::format("{}", fmt::join(mapGridNames(), ", ")))
       .implied(kEnergies);
   c.option("--grid-list", "LIST", &o->gridList, "formerly the LIST of --grids=LIST").advanced();
-  addShareOptions(c, o->farm,
+  addShareOptions(c, o->farm, "frames",
                   "Its figures go to parts/ in the output's folder, and innermap join makes one "
                   "run of all; frames that are finished are not made again");
   c.example("innermap sequence rest.obj 'frames/*.obj' -o energies");

@@ -25,29 +25,10 @@ void concludeSequence(const SequenceJudge& judge, const std::vector<SequenceRow>
   context.print(seconds);
 }
 
-namespace {
-
-// Calls visit(key, member) for all that a row is made of.
-template <class Row, class Visit>
-void eachOf(Row& r, const Visit& visit) {
-  visit("harmonic", r.harmonic);
-  visit("deformation", r.deformation);
-  visit("deformation_mean", r.deformationMean);
-  visit("rms", r.error.rms);
-  visit("p99", r.error.p99);
-  visit("max", r.error.max);
-  visit("jacobian_min", r.jacobianMin);
-  visit("jacobian_max", r.jacobianMax);
-  visit("folded", r.folded);
-  visit("outside", r.outside);
-  visit("volume", r.volume);
-}
-
-}  // namespace
-
 PartValues partValues(const SequenceRow& row, const std::string& jumps) {
   PartValues values;
-  eachOf(row, [&](const char* key, double value) { values.emplace_back(key, value); });
+  eachNumber(
+      row, [&](const char* key, double value, const auto&...) { values.emplace_back(key, value); });
   values.emplace_back("samples", static_cast<std::uint64_t>(row.error.samples));
   values.emplace_back("misses", row.misses);
   values.emplace_back("jumps", jumps);
@@ -60,7 +41,8 @@ PartValues partValues(const SequenceRow& row, const std::string& jumps) {
 
 SequenceRow sequenceRow(const PartValues& values) {
   SequenceRow row;
-  eachOf(row, [&](const char* key, double& value) { value = numberAt(values, key); });
+  eachNumber(
+      row, [&](const char* key, double& value, const auto&...) { value = numberAt(values, key); });
   row.error.samples = static_cast<decltype(row.error.samples)>(countAt(values, "samples"));
   row.misses = countAt(values, "misses") != 0;
   row.statement = textAt(values, "statement");

@@ -93,14 +93,15 @@ constexpr const char* kOutput = "output";  // the fingerprint of a frame's file
 
 }  // namespace
 
-void addShareOptions(Command& command, ShareOptions& options, const std::string& results) {
+void addShareOptions(Command& command, ShareOptions& options, const std::string& units,
+                     const std::string& results) {
   command.group("machines");
   command
-      .option(
-          kShare, "K/N", &options.share,
-          "make only the K-th of N shares of the frames, 3/40 say, or 'auto': the task of Slurm's "
-          "job array, or OpenCue's, that this process is. " +
-              results)
+      .option(kShare, "K/N", &options.share,
+              "make only the K-th of N shares of the " + units +
+                  ", 3/40 say, or 'auto': the task of Slurm's job array, or OpenCue's, that this "
+                  "process is. " +
+                  results)
       .advanced();
   command
       .option(kCpuTarget, "NAME", &options.cpuTarget,
@@ -136,30 +137,31 @@ bool writesJobs(const ShareOptions& options, Context& context) {
   return true;
 }
 
-void writeShareJobs(const ShareOptions& options, std::size_t frames,
-                    const std::vector<JobPhase>& phases, std::uint64_t bytes,
-                    const std::string& joined, Context& context) {
-  const double all = totalSeconds(phases), perFrame = phases.back().seconds / double(frames);
-  const double setup = all - phases.back().seconds;
+void writeShareJobs(const ShareOptions& options, const ShareRun& run, Context& context) {
+  const double units = static_cast<double>(run.units), perUnit = run.phases.back().seconds / units;
+  const double setup = totalSeconds(run.phases) - run.phases.back().seconds;
   Jobs jobs;
-  jobs.tasks =
-      std::min<std::uint64_t>(options.tasks.value_or(usualTasks(setup, perFrame, frames)), frames);
-  const ReportRun& run = *context.report().run;
+  jobs.tasks = std::min<std::uint64_t>(
+      options.tasks.value_or(usualTasks(setup, perUnit, run.units)), run.units);
+  const ReportRun& told = *context.report().run;
   jobs.name = "innermap " + context.report().command;
   jobs.folder = std::filesystem::current_path().string();
-  jobs.command = without(run.commandLine, {kJobs, kTasks});
+  jobs.command = without(told.commandLine, {kJobs, kTasks});
   jobs.command.front() = programName();
-  if (!joined.empty()) jobs.join = {jobs.command.front(), "join", joined};
-  jobs.seconds = setup + perFrame * std::ceil(double(frames) / double(jobs.tasks));
-  jobs.memory = processMemory(bytes);
-  jobs.cores = static_cast<std::uint64_t>(run.threads);
-  const std::string told =
-      fmt::format("{} shares of {} frames to {}: about {:.0f} s and {} each", jobs.tasks, frames,
-                  options.jobs, std::max(1.0, jobs.seconds), formatBytes(jobs.memory));
-  if (context.dryRun()) return context.plan({"write " + told}, 0);
+  if (!run.joined.empty()) jobs.join = {jobs.command.front(), "join", run.joined};
+  jobs.task = {setup + perUnit * std::ceil(units / static_cast<double>(jobs.tasks)),
+               processMemory(run.bytes)};
+  jobs.joining = jobs.task;
+  if (!run.joining.empty())
+    jobs.joining = {totalSeconds(run.joining), processMemory(run.joiningBytes)};
+  jobs.cores = static_cast<std::uint64_t>(told.threads);
+  const std::string text = fmt::format(
+      "{} shares of {} {}s to {}: about {:.0f} s and {} each", jobs.tasks, run.units, run.unit,
+      options.jobs, std::max(1.0, jobs.task.seconds), formatBytes(jobs.task.memory));
+  if (context.dryRun()) return context.plan({"write " + text}, 0);
   context.output(options.jobs);
   context.timed("write", [&] { writeJobs(kJobs, options.jobs, jobs); });
-  context.print(told + "\n");
+  context.print(text + "\n");
 }
 
 bool inShares(const ShareOptions& options) {
@@ -173,7 +175,10 @@ void applyCpuTarget(const ShareOptions& options) {
 std::string cutToShare(const std::string& share, Frames& frames) {
   if (share.empty()) return "";
   const Share cut = parseShare(kShare, share);
-  const auto [first, last] = cut.range(frames.wanted.size());
+  std::vector<std::uint64_t> weights;
+  for (const std::size_t index : frames.wanted)
+    weights.push_back(frames.weights.empty() ? 1 : frames.weights[index]);
+  const auto [first, last] = cut.range(weights);
   frames.wanted = {frames.wanted.begin() + static_cast<std::ptrdiff_t>(first),
                    frames.wanted.begin() + static_cast<std::ptrdiff_t>(last)};
   frames.share = true;
@@ -196,14 +201,14 @@ FrameShare::FrameShare(const std::string& share, const std::string& folder,
   frames.wanted.clear();
   for (const std::size_t index : mine) {
     try {
-      inputs_[index] = frames.source->fingerprint(index);
+      if (frames.source) inputs_[index] = frames.source->fingerprint(index);
     } catch (const FileError&) {  // a frame that cannot be read is told of in its turn
     }
     if (!isMade(frames.all[index].number, inputs_[index])) frames.wanted.push_back(index);
   }
   finished_ = mine.size() - frames.wanted.size();
-  context.print(fmt::format("share {}: {} of {} frames, {} of them finished already\n", numbers,
-                            mine.size(), run_.frames.size(), finished_));
+  context.print(fmt::format("share {}: {} of {} {}s, {} of them finished already\n", numbers,
+                            mine.size(), run_.frames.size(), frames.unit, finished_));
 }
 
 bool FrameShare::isMade(std::int64_t frame, const std::string& input) const {
@@ -259,12 +264,17 @@ void FrameShare::ended(const FrameResult& result, PartValues values) {
 
 void FrameShare::conclude(const std::vector<FrameResult>& results) {
   if (results.size() < frames_.wanted.size() && context_.failure().empty())
-    context_.failAfterwards(fmt::format("{} frames of the share are left; start it again",
-                                        frames_.wanted.size() - results.size()));
+    context_.failAfterwards(fmt::format("{} {}s of the share are left; start it again",
+                                        frames_.wanted.size() - results.size(), frames_.unit));
 }
 
 bool hasOutput(const Part& part, const std::string& path) {
   return isWhole(path, textAt(part.values, kOutput));
+}
+
+void requireOutput(const Part& part, const std::string& path) {
+  if (fingerprintOf(path) != textAt(part.values, kOutput))
+    throw DataError(path + ": is not as it was written; remove it, and make its share again");
 }
 
 std::string hostName() {

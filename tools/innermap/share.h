@@ -1,4 +1,4 @@
-// Shares of the frames of a run: what workers on a farm make, and `join` puts together.
+// Shares of the frames or blocks of a run: what workers on a farm make, and `join` puts together.
 #pragma once
 
 #include <chrono>
@@ -18,8 +18,10 @@ struct ShareOptions {
   std::optional<std::uint64_t> tasks;
 };
 
-// --share, --cpu-target, --jobs, --tasks. results: what becomes of a share, a sentence.
-void addShareOptions(Command& command, ShareOptions& options, const std::string& results);
+// --share, --cpu-target, --jobs, --tasks. units: "frames"; results: what becomes of a share, a
+// sentence.
+void addShareOptions(Command& command, ShareOptions& options, const std::string& units,
+                     const std::string& results);
 
 // Whether other processes make parts of the run, too.
 bool inShares(const ShareOptions& options);
@@ -30,12 +32,19 @@ void applyCpuTarget(const ShareOptions& options);
 // Whether --jobs is given. Throws UsageError, SettingError for what does not go with it.
 bool writesJobs(const ShareOptions& options, Context& context);
 
-// What --jobs writes in place of the run. phases: of a run over so many frames, the last of them
-// the frames'; bytes: beyond what the process has by now. joined: the folder that `join` is given;
-// empty: there is nothing to join.
-void writeShareJobs(const ShareOptions& options, std::size_t frames,
-                    const std::vector<JobPhase>& phases, std::uint64_t bytes,
-                    const std::string& joined, Context& context);
+// A run that is to be made in shares.
+struct ShareRun {
+  std::size_t units = 0;               // frames, or blocks
+  std::vector<JobPhase> phases;        // of the whole, the last of them the units'
+  std::uint64_t bytes = 0;             // of a share, beyond what the process has by now
+  std::string joined = {};             // the folder that `join` is given; empty: nothing to join
+  std::vector<JobPhase> joining = {};  // of the join; empty: it needs what a share does, or less
+  std::uint64_t joiningBytes = 0;      // as bytes
+  std::string unit = "frame";
+};
+
+// What --jobs writes in place of the run.
+void writeShareJobs(const ShareOptions& options, const ShareRun& run, Context& context);
 
 // Cuts frames.wanted down to those of the share, and returns it with its numbers, "3/40". All stay
 // where `share` is empty.
@@ -75,8 +84,10 @@ class FrameShare {
   const std::string& inputOf(const FrameFile& file) const;
 };
 
-// Whether the file that belongs to a part is there, whole.
+// Whether the file that belongs to a part is there, whole, by its size.
 bool hasOutput(const Part& part, const std::string& path);
+// Throws DataError where it is not what was written, by its content.
+void requireOutput(const Part& part, const std::string& path);
 
 std::string hostName();  // of this machine
 

@@ -25,14 +25,21 @@ struct Band::Level {
   std::vector<Coord> corners;
 };
 
-Band::Band(const SolidBody& body, const Vec3& origin, double voxelSize, double lower, double upper)
-    : body_(body), origin_(origin), voxelSize_(voxelSize), lower_(lower), upper_(upper) {}
+Band::Band(const SolidBody& body, const Vec3& origin, double voxelSize, double lower, double upper,
+           const openvdb::CoordBBox& within)
+    : body_(body),
+      origin_(origin),
+      voxelSize_(voxelSize),
+      lower_(lower),
+      upper_(upper),
+      within_(within) {}
 
 Vec3 Band::position(const Coord& voxel) const {
   return origin_ + voxelSize_ * Vec3{double(voxel[0]), double(voxel[1]), double(voxel[2])};
 }
 
 bool Band::mayTouch(const Coord& corner, int size) const {
+  if (!within_.hasOverlap({corner, corner.offsetBy(size - 1)})) return false;
   const double half = 0.5 * (size - 1) * voxelSize_;
   const Vec3 center = position(corner) + Vec3{half, half, half};
   const double radius = (blockRadius(size) + kSlack) * voxelSize_;

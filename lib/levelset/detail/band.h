@@ -17,8 +17,9 @@ class Band {
   static constexpr int kLeaf = 8;  // voxels along a side of a leaf
   static constexpr int kLeafVoxels = kLeaf * kLeaf * kLeaf;
 
-  // Keeps a reference to the body.
-  Band(const SolidBody& body, const Vec3& origin, double voxelSize, double lower, double upper);
+  // Keeps a reference to the body. within: leaves that meet it are all that there are.
+  Band(const SolidBody& body, const Vec3& origin, double voxelSize, double lower, double upper,
+       const openvdb::CoordBBox& within = openvdb::CoordBBox::inf());
 
   // Origins of the leaves (multiples of 8) that may have voxels in the band, in a fixed order.
   std::vector<openvdb::Coord> leaves() const;
@@ -43,6 +44,7 @@ class Band {
   const SolidBody& body_;
   Vec3 origin_;
   double voxelSize_, lower_, upper_;
+  openvdb::CoordBBox within_;
 };
 
 }  // namespace innermap

@@ -20,6 +20,7 @@ namespace {
 using openvdb::Coord;
 using openvdb::FloatGrid;
 using Leaf = FloatGrid::TreeType::LeafNodeType;
+using BlockNode = FloatGrid::TreeType::RootNodeType::ChildNodeType::ChildNodeType;
 
 constexpr int kMinAcross = 4;
 constexpr double kUsualHalfWidth = 3;  // voxels
@@ -95,6 +96,18 @@ std::unique_ptr<Leaf> makeLeaf(const SolidBody& body, const Band& band, const Co
   return leaf;
 }
 
+// Tiles of a block inside and outside as the flood fill of the whole has them, which looks no
+// farther than the node where that has leaves.
+void fillBlock(const SolidBody& body, const Band& band, const Coord& block,
+               FloatGrid::TreeType& tree) {
+  constexpr int kHalf = BlockNode::DIM / 2;
+  const float outside = tree.background();
+  if (auto* node = tree.probeNode<BlockNode>(block))
+    openvdb::tools::SignedFloodFillOp<FloatGrid::TreeType>(outside, -outside, 1)(*node);
+  else if (body.inside(band.position(block.offsetBy(kHalf))))
+    tree.addTile(BlockNode::LEVEL + 1, block, -outside, false);
+}
+
 }  // namespace
 
 double voxelSizeAcross(const Box3& box, int resolution) {
@@ -122,11 +135,13 @@ openvdb::math::Transform::Ptr latticeTransform(const Vec3& origin, double voxelS
   return transform;
 }
 
-FloatGrid::Ptr narrowBand(const SolidBody& body, const Vec3& origin, double voxelSize,
-                          double width) {
+FloatGrid::Ptr narrowBand(const SolidBody& body, const Vec3& origin, double voxelSize, double width,
+                          const Coord* block) {
   openvdb::initialize();
   const float background = backgroundOf(width);
-  const Band band(body, origin, voxelSize, 0, background);
+  const Band band(
+      body, origin, voxelSize, 0, background,
+      block ? openvdb::CoordBBox::createCube(*block, BlockNode::DIM) : openvdb::CoordBBox::inf());
   const std::vector<Coord> origins = band.leaves();
   std::vector<std::unique_ptr<Leaf>> leaves(origins.size());
   parallelBlocks(
@@ -141,7 +156,10 @@ FloatGrid::Ptr narrowBand(const SolidBody& body, const Vec3& origin, double voxe
   for (std::unique_ptr<Leaf>& leaf : leaves) {
     if (leaf) grid->tree().addLeaf(leaf.release());
   }
-  openvdb::tools::signedFloodFill(grid->tree(), true, 1, 1);
+  if (block)
+    fillBlock(body, band, *block, grid->tree());
+  else
+    openvdb::tools::signedFloodFill(grid->tree(), true, 1, 1);
   grid->setTransform(latticeTransform(origin, voxelSize));
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
   grid->setName("surface");

@@ -19,9 +19,10 @@ Vec3 latticeOrigin(const Box3& box, double voxelSize);
 
 openvdb::math::Transform::Ptr latticeTransform(const Vec3& origin, double voxelSize);
 
-// Level set with exact distances up to `width` (world units). Throws Cancelled.
+// Level set with exact distances up to `width` (world units). block: if given, only the node of
+// that origin, with the values that it has in the whole; all else is outside. Throws Cancelled.
 openvdb::FloatGrid::Ptr narrowBand(const SolidBody& body, const Vec3& origin, double voxelSize,
-                                   double width);
+                                   double width, const openvdb::Coord* block = nullptr);
 
 // Volume of the body in world units cubed, from the fog of a level set `resolution` voxels along
 // the longest side.

@@ -69,6 +69,46 @@ struct SolidGrids {
 // threads.
 SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& settings = {});
 
+// How mapGridMemory() counts: harmonic maps one after another, whether there is a map_local, and
+// whether the cells between the voxels are looked at, as FrameEvaluator does not.
+struct MapGridKind {
+  std::size_t steps = 1;
+  bool local = false, cells = true;
+};
+MapGridKind mapGridKind(const MappedSolid& mapped);
+
+// The same in shares: block by block, on whichever machine, and joined to the grids of one run.
+
+// A cube of 128 voxels along each side; its origin, the lowest of them, is a multiple of that.
+struct VoxelBlock {
+  openvdb::Coord origin;
+  std::uint64_t voxels = 0;  // inside, roughly; along the surface as many as take that long
+};
+
+// Those in which evaluateOnGrid() may have voxels, ascending by origin: the same on all machines.
+// Throws SettingError, Cancelled.
+std::vector<VoxelBlock> voxelBlocks(const Solid& solid, const MapGridSettings& settings);
+
+struct MapBlock {
+  // surface, map (less SolidGrids::localOrigin), jacobian, harmonic_energy and deformation_energy,
+  // before repair, with the values that they have in one run; outside the block they are empty.
+  openvdb::GridPtrVec grids;
+  std::vector<double> totals;  // for joinBlocks()
+};
+
+// Its memory does not grow with the number of voxels of the whole. Throws as evaluateOnGrid().
+MapBlock evaluateBlock(const MappedSolid& mapped, const MapGridSettings& settings,
+                       const openvdb::Coord& origin);
+
+// What evaluateOnGrid() returns, to the bit, from all blocks, each once: repairs folds, looks at
+// cells and sums totals. Takes the blocks' voxels. Throws DataError for grids that are no such
+// blocks of this map, and as evaluateOnGrid().
+SolidGrids joinBlocks(const MappedSolid& mapped, const MapGridSettings& settings,
+                      std::vector<MapBlock> blocks);
+
+// Need of evaluateBlock() in bytes, of any block.
+std::uint64_t mapBlockMemory(const MapGridKind& kind);
+
 // The maps of a sequence's frames on the voxels of its rest pose.
 class FrameEvaluator {
  public:
@@ -106,14 +146,6 @@ const std::vector<std::string>& mapGridNames();
 // `map_local` is made too: floats hold positions no better than to a tenth of the tolerance, a
 // fraction of its diagonal.
 bool needsLocalMap(const Points& target, double tolerance);
-
-// How mapGridMemory() counts: harmonic maps one after another, whether there is a map_local, and
-// whether the cells between the voxels are looked at, as FrameEvaluator does not.
-struct MapGridKind {
-  std::size_t steps = 1;
-  bool local = false, cells = true;
-};
-MapGridKind mapGridKind(const MappedSolid& mapped);
 
 // Need of evaluateOnGrid() in bytes, from the solid's volume and area. Throws Cancelled.
 std::uint64_t mapGridMemory(const Solid& solid, const MapGridSettings& settings,
