@@ -18,7 +18,8 @@ constexpr double kClearance = 0.97;   // of the distance
 constexpr double kAlongNormal = 0.6;  // share of candidates; the others reach over convex edges
 constexpr double kFewTaken = 0.02;    // of a round's candidates: it is full
 constexpr int kMostRounds = 24;
-constexpr double kCandidates = 4;  // a round, for each point that has room
+constexpr double kCandidates = 4;                     // a round, for each point that has room
+constexpr std::size_t kParts = 16, kLeastPart = 128;  // of a round
 
 struct Candidate {
   SurfacePoint address;
@@ -88,21 +89,27 @@ std::vector<Candidate> throwDarts(
   std::vector<Candidate> kept;
   const double room = area / (spacing * spacing);
   const std::size_t round = static_cast<std::size_t>(std::clamp(kCandidates * room, 64.0, 4e6));
+  // By parts: what is near points that are taken already need not be looked at any closer.
+  const std::size_t part = std::max(kLeastPart, round / kParts);
+  std::vector<Candidate> candidates;
   std::size_t drawn = 0;
   for (int r = 0; r < kMostRounds && area > 0; ++r, drawn += round) {
-    std::vector<Candidate> candidates(round);
-    parallelBlocks(
-        round, 64,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) candidates[i] = propose(drawn + i, taken);
-        },
-        "placing points");
     std::size_t fresh = 0;
-    for (const Candidate& c : candidates) {
-      if (!c.good || taken.anyNearer(c.position, spacing)) continue;
-      taken.add(c.position);
-      kept.push_back(c);
-      ++fresh;
+    for (std::size_t first = 0; first < round; first += part) {
+      candidates.resize(std::min(part, round - first));
+      parallelBlocks(
+          candidates.size(), 16,
+          [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+              candidates[i] = propose(drawn + first + i, taken);
+          },
+          "placing points");
+      for (const Candidate& c : candidates) {
+        if (!c.good || taken.anyNearer(c.position, spacing)) continue;
+        taken.add(c.position);
+        kept.push_back(c);
+        ++fresh;
+      }
     }
     if (static_cast<double>(fresh) < kFewTaken * static_cast<double>(round)) break;
   }

@@ -16,6 +16,15 @@ namespace {
 
 using Range = std::pair<std::uint32_t, std::uint32_t>;
 
+constexpr std::uint32_t kManyPoints = 8192;  // whose parts are worth a thread each
+
+template <typename Body>
+void forParts(std::size_t parts, std::uint32_t points, const Body& body) {
+  if (points >= kManyPoints)
+    return parallelBlocks(parts, 1, [&](std::size_t part, std::size_t) { body(part); });
+  for (std::size_t part = 0; part < parts; ++part) body(part);
+}
+
 template <typename Item>
 Box3 boxOf(const std::vector<Item>& items, Range range) {
   Box3 box;
@@ -39,8 +48,11 @@ void halve(std::vector<Item>& items, Range range, std::size_t leafSize, int time
     return x < y || (x == y && a.index < b.index);
   });
   const std::uint32_t middle = range.first + count / 2;
-  halve(items, {range.first, middle}, leafSize, times - 1, out);
-  halve(items, {middle, range.second}, leafSize, times - 1, out);
+  const Range halves[2] = {{range.first, middle}, {middle, range.second}};
+  std::vector<Range> parts[2];
+  forParts(2, count,
+           [&](std::size_t h) { halve(items, halves[h], leafSize, times - 1, parts[h]); });
+  for (const std::vector<Range>& some : parts) out.insert(out.end(), some.begin(), some.end());
 }
 
 template <typename Item>
@@ -78,8 +90,10 @@ BallTree::BallTree(const Points& points, double reach, std::size_t leafSize, int
                        if (node.count() <= leafSize) continue;
                        parts.clear();
                        halve(items, {node.begin, node.end}, leafSize, halvings, parts);
-                       for (const Range& part : parts)
-                         children[n].push_back(makeNode(items, reach, part, node.depth + 1));
+                       children[n].resize(parts.size());
+                       forParts(parts.size(), node.count(), [&](std::size_t c) {
+                         children[n][c] = makeNode(items, reach, parts[c], node.depth + 1);
+                       });
                      }
                    });
     for (std::size_t n = 0; n < children.size(); ++n) {

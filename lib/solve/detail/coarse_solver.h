@@ -1,5 +1,6 @@
 // Dense regularised least squares for a few charges and the affine part: the
-// coarse level of IterativeSolver.
+// coarse level of IterativeSolver. By the normal equations, as their solution only
+// preconditions, and regularisation bounds what they lose.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +8,6 @@
 #include "innermap/core/matrix.h"
 #include "innermap/core/vec3.h"
 #include "innermap/solve/solver.h"
-#include "solve/detail/blocked_qr.h"
 
 namespace innermap {
 
@@ -27,8 +27,8 @@ class CoarseSolver {
 
  private:
   std::vector<std::size_t> rows_;
-  BlockedQr qr_;
-  Matrix triangle_;
+  Matrix matrix_;  // at these rows
+  Matrix factor_;  // of its normal matrix: lower triangle
 };
 
 std::uint64_t coarseSolverMemory(std::size_t sources);
