@@ -6,6 +6,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 
 namespace innermap {
@@ -145,9 +146,14 @@ std::string withNames(const std::string& help,
 void requireInRange(const std::vector<Setting>& settings) {
   for (const Setting& s : settings) {
     const std::optional<double> number = std::visit(NumberOf{}, s.value);
-    if (!number || number == s.automatic || s.range.holds(*number)) continue;
-    throw SettingError(s.name, s.range.refusal(fmt::format("{:g}", *number), s.unit));
+    if (number && number != s.automatic) requireNumber(s.name, *number, s.range, s.unit);
   }
+}
+
+void requireNumber(const std::string& name, double value, const NumberRange& range,
+                   const std::string& unit) {
+  if (!range.holds(value))
+    throw SettingError(name, range.refusal(fmt::format("{:g}", value), unit));
 }
 
 }  // namespace innermap

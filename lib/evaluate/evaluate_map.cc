@@ -6,12 +6,12 @@
 #include <set>
 #include <utility>
 
+#include "core/require_number.h"
 #include "evaluate/active_region.h"
 #include "evaluate/detail/fold_repair.h"
 #include "evaluate/detail/map_values.h"
 #include "evaluate/topology.h"
 #include "evaluate/visit_field.h"
-#include "innermap/core/error.h"
 #include "innermap/core/run.h"
 
 namespace innermap {
@@ -299,13 +299,11 @@ MapGrids Evaluation::conclude(MapValues values) const {
 }
 
 void require(const EvaluateSettings& settings) {
-  if (!(settings.lame.lambda >= 0) || !(settings.lame.mu >= 0))
-    throw SettingError("Lame constants", "must not be negative");
-  if (!(settings.skin >= 0 && settings.skin <= 3))
-    throw SettingError("skin", "must lie in [0, 3] voxels");
-  if (!(settings.accuracy >= 1e-12 && settings.accuracy <= 1e-3))
-    throw SettingError("accuracy", "must lie in [1e-12, 1e-3] of the target's extent");
-  if (!(settings.targetVolume >= 0)) throw SettingError("target volume", "must not be negative");
+  requireNumber("lambda", settings.lame.lambda, {0});
+  requireNumber("mu", settings.lame.mu, {0});
+  requireNumber("skin", settings.skin, {0, 3}, "voxels");
+  requireNumber("accuracy", settings.accuracy, {1e-12, 1e-3}, "of the target's extent");
+  requireNumber("target volume", settings.targetVolume, {0});
 }
 
 }  // namespace

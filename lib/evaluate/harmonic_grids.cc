@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "core/require_number.h"
 #include "evaluate/active_region.h"
 #include "evaluate/topology.h"
 #include "evaluate/visit_field.h"
@@ -89,9 +89,8 @@ void check(const HarmonicField& field, const std::vector<std::string>& names,
     if (name.empty() || !known.insert(name).second)
       throw SettingError("channels", fmt::format("the name '{}' is {}", name,
                                                  name.empty() ? "empty" : "taken already"));
-  if (!(settings.accuracy >= 1e-12 && settings.accuracy <= 1e-3))
-    throw SettingError("accuracy", "must lie in [1e-12, 1e-3] of the values' span");
-  if (!(settings.span > 0)) throw SettingError("span", "must be positive");
+  requireNumber("accuracy", settings.accuracy, {1e-12, 1e-3}, "of the values' span");
+  requireNumber("span", settings.span, above(0));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "core/require_number.h"
 #include "field/detail/refinement_marks.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
@@ -97,12 +98,9 @@ void AdaptiveFitting::check() const {
   if (!(settings_.tolerance >= kSmallestTolerance && settings_.tolerance <= 1))
     throw SettingError("tolerance",
                        "must lie in 1e-12 (double precision holds no less) to 1 of the diagonal");
-  if (settings_.firstSources < 10 || settings_.firstSources > 5000)
-    throw SettingError("first sources", "must lie in 10 to 5000");
-  if (settings_.maxSources < settings_.firstSources || settings_.maxSources > kMaxCharges)
-    throw SettingError("max sources", "must lie in " + std::to_string(settings_.firstSources) +
-                                          " to " + std::to_string(kMaxCharges));
-  if (settings_.patience < 1) throw SettingError("patience", "must be at least 1");
+  requireNumber("first sources", settings_.firstSources, {10, 5000});
+  requireNumber("max sources", settings_.maxSources, {double(settings_.firstSources), kMaxCharges});
+  requireNumber("patience", settings_.patience, {1});
   if (!(problem_.diagonal > 0) || !(problem_.area > 0) || !(problem_.unit > 0))
     throw DataError("fit: the boundary has no extent");
 }

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <string>
 
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"
@@ -152,8 +153,8 @@ void Fitting::check() const {
   if (settings_.sources < 1 || settings_.sources > (iterates ? kMaxCharges : kMostDense))
     throw SettingError("charges", iterates ? "must lie in 1 to 1000000"
                                            : "must lie in 1 to 20000 for the dense solver");
-  if (settings_.distance && !(*settings_.distance >= 1e-4 && *settings_.distance <= 2))
-    throw SettingError("distance", "must lie in 0.0001 to 2 of the diagonal");
+  if (settings_.distance)
+    requireNumber("distance", *settings_.distance, {1e-4, 2}, "of the diagonal");
   if (!(problem_.diagonal > 0) || !(problem_.area > 0))
     throw DataError("fit: the boundary has no extent");
   checkShape(problem_.surface);

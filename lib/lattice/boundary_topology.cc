@@ -2,7 +2,6 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <tuple>
 
 #include "core/disjoint_sets.h"

@@ -1,6 +1,5 @@
 #include "lattice/keep_topology.h"
 
-#include <algorithm>
 #include <optional>
 
 #include "innermap/core/run.h"

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/random.h"
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"
@@ -91,7 +92,7 @@ void refuseTangles(const std::vector<int>& handles, const std::string& name) {
 std::vector<int> wantedHandles(const Solid& solid, const LatticeSigns& signs,
                                const SolidParts& parts, const OuterSurfaceSettings& settings) {
   if (settings.handles) {
-    if (*settings.handles < 0) throw SettingError("handles", "must be at least 0");
+    requireNumber("handles", *settings.handles, {0});
     std::vector<int> handles(parts.parts.size(), 0);
     handles[0] = *settings.handles;
     return handles;

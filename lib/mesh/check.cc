@@ -1,7 +1,6 @@
 #include "innermap/mesh/check.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <tuple>
 

@@ -9,6 +9,7 @@
 #include <queue>
 
 #include "core/disjoint_sets.h"
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "mesh/detail/topology.h"
@@ -266,8 +267,7 @@ UvCharts uvCharts(const Mesh& mesh) {
 
 UvGroups uvGroups(const Mesh& mesh, const UvCharts& charts, const UvGroupSettings& settings) {
   const int most = settings.most;
-  if (most < kFewestGroups || most > kMostGroups)
-    throw SettingError("UV groups", "must lie in 2 to 64");
+  requireNumber("UV groups", most, {kFewestGroups, kMostGroups});
   Division division(mesh, charts);
   division.run();
   UvGroups out;

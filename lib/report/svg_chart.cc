@@ -9,6 +9,7 @@
 
 #include "core/file.h"
 #include "core/markup.h"
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 
 namespace innermap {
@@ -256,11 +257,9 @@ std::string cellPanel(const SvgPanel& panel, const Place& p) {
 
 void checkChart(const SvgChart& chart) {
   if (chart.panels.empty()) throw DataError("chart: there is nothing to show");
-  if (chart.panelsAcross < 1 || chart.panelsAcross > 8)
-    throw SettingError("panels across", "must lie between 1 and 8");
+  requireNumber("panels across", chart.panelsAcross, {1, 8});
   for (const int size : {chart.panelWidth, chart.panelHeight})
-    if (size < 160 || size > 4096)
-      throw SettingError("size of panels", "must lie between 160 and 4096 pixels");
+    requireNumber("size of panels", size, {160, 4096}, "pixels");
   for (const SvgPanel& panel : chart.panels) {
     for (const SvgSeries& s : panel.series)
       if (s.x.size() != s.y.size())

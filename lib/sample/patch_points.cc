@@ -7,7 +7,7 @@
 #include "core/pi.h"
 #include "core/point_grid.h"
 #include "core/random.h"
-#include "innermap/core/error.h"
+#include "core/require_number.h"
 #include "innermap/core/run.h"
 #include "levelset/offset_surface.h"
 
@@ -75,8 +75,8 @@ class Patch {
 };
 
 void check(const PatchSettings& settings) {
-  if (!(settings.spacing > 0) || !(settings.reach > 0))
-    throw SettingError("patch", "spacing and reach must be positive");
+  requireNumber("spacing", settings.spacing, above(0));
+  requireNumber("reach", settings.reach, above(0));
 }
 
 // Throws darts: `propose(i)` gives candidate i (on any thread), of which those stay that are good
@@ -128,8 +128,7 @@ Vec3 randomDirection(double u, double v) {
 Points patchSources(const Solid& solid, const Points& marks, double distance,
                     const Points& existing, const PatchSettings& settings) {
   check(settings);
-  if (!(distance >= 1e-6 && distance <= 2))
-    throw SettingError("distance", "must lie in 1e-6 to 2 (fraction of the diagonal)");
+  requireNumber("distance", distance, {1e-6, 2}, "fraction of the diagonal");
   const Mesh& surface = solid.surface();
   const double diagonal = solid.diagonal(), away = distance * diagonal,
                spacing = settings.spacing * diagonal;

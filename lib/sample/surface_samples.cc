@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/random.h"
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "sample/detail/sample_elimination.h"
@@ -36,9 +37,7 @@ std::vector<double> cumulativeAreas(const Mesh& mesh) {
 
 std::vector<SurfacePoint> randomSamples(const Mesh& mesh, std::size_t count,
                                         const SampleSettings& settings) {
-  if (count > kMaxSamples) {
-    throw SettingError("samples", "must be at most 100 million, not " + std::to_string(count));
-  }
+  requireNumber("samples", count, {0, kMaxSamples});
   const std::vector<double> cumulative = cumulativeAreas(mesh);
   const CounterRandom random(settings.seed, kStream);
   std::vector<SurfacePoint> samples(count);
@@ -61,9 +60,7 @@ std::vector<SurfacePoint> randomSamples(const Mesh& mesh, std::size_t count,
 
 std::vector<SurfacePoint> blueNoiseSamples(const Mesh& mesh, std::size_t count,
                                            const SampleSettings& settings) {
-  if (count > kMaxSamples / 5) {
-    throw SettingError("samples", "must be at most 20 million, not " + std::to_string(count));
-  }
+  requireNumber("samples", count, {0, kMaxSamples / 5});
   const std::vector<SurfacePoint> candidates = randomSamples(mesh, candidatesFor(count), settings);
   Points points(candidates.size());
   // About the centre: positions far from the origin lose digits that distances need.

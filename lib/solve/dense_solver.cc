@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"
@@ -241,8 +242,7 @@ double DenseSolver::Factors::chooseRegularization(const Projected& rhs, Regulari
 DenseSolution DenseSolver::Factors::solve(const Matrix& values, Regularization method,
                                           const Matrix& heldOutValues,
                                           std::optional<double> regularization) const {
-  if (regularization && !(*regularization >= 0 && *regularization <= 1))
-    throw SettingError("regularization", "must lie in [0, 1]");
+  if (regularization) requireNumber("regularization", *regularization, {0, 1});
   if (!regularization && (heldOutModes_.empty() || heldOutValues.empty()))
     throw SettingError("regularization", "give one, or held-out points to choose it by");
   const Projected rhs = project(values);

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "core/random.h"
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/solve/kernel_sum.h"
@@ -28,9 +28,8 @@ std::vector<std::size_t> evenly(std::size_t wanted, std::size_t count) {
 }
 
 void check(const FastSumSettings& settings) {
-  if (!(settings.accuracy >= 1e-12 && settings.accuracy <= 0.1))
-    throw SettingError("accuracy", "of sums must lie in 1e-12 to 0.1");
-  if (!(settings.absolute >= 0)) throw SettingError("accuracy", "of sums must not be negative");
+  requireNumber("accuracy", settings.accuracy, {1e-12, 0.1});
+  requireNumber("accuracy", settings.absolute, {0});
 }
 
 bool useHierarchy(const SumSize& size, SumMethod method) {

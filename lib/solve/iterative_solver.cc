@@ -5,6 +5,7 @@
 #include <numeric>
 #include <string>
 
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"
@@ -164,8 +165,7 @@ void IterativeSolver::Levels::check(const Collocation& collocation,
                                     const std::vector<SourceLevel>& levels, bool first) const {
   if (first && levels.empty())
     throw SettingError("charges", "there are none; use at least one level of them");
-  if (!(settings_.accuracy >= kFinestProduct && settings_.accuracy <= kCoarsestProduct))
-    throw SettingError("accuracy", "must lie in 1e-12 to 1e-3");
+  requireNumber("accuracy", settings_.accuracy, {kFinestProduct, kCoarsestProduct});
   for (const SourceLevel& level : levels) {
     if (!(level.spacing > 0) || !(level.distance > 0))
       throw SettingError("iterative solver", "spacing and distance must be positive");

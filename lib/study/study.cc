@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"
@@ -57,13 +58,11 @@ void checkRun(const StudyRun& run) {
   if (run.sources < kFewestSources || run.sources > kMostSources)
     throw SettingError("charges",
                        fmt::format("must lie between {} and {}", kFewestSources, kMostSources));
-  if (!(run.collocation >= 1 && run.collocation <= 100))
-    throw SettingError("collocation", "must lie between 1 and 100 points a charge");
+  requireNumber("collocation", run.collocation, {1, 100}, "points a charge");
   if (run.placement == ChargePlacement::offset) {
-    if (!(run.at >= 1e-4 && run.at <= 2))
-      throw SettingError("distances", "must lie between 0.0001 and 2 of the diagonal");
-  } else if (!(run.at > 1 && run.at <= 100)) {
-    throw SettingError("radius ratios", "must lie above 1, up to 100");
+    requireNumber("distances", run.at, {1e-4, 2}, "of the diagonal");
+  } else {
+    requireNumber("radius ratios", run.at, {1, 100, true});
   }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"
@@ -31,8 +32,7 @@ struct ShellLandmark {
 };
 
 void check(const CorrespondSettings& settings) {
-  if (settings.candidates < 1 || settings.candidates > 64)
-    throw SettingError("candidates", "must be from 1 to 64");
+  requireNumber("candidates", settings.candidates, {1, 64});
   if (!(settings.subdivide >= 0 && settings.subdivide < 1))
     throw SettingError("subdivide", "must be a share of the diagonal from 0 to 1");
 }

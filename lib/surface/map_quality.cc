@@ -1,10 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
-#include "innermap/core/error.h"
+#include "core/require_number.h"
 #include "innermap/core/run.h"
 #include "innermap/mesh/check.h"
 #include "innermap/surface/correspond.h"
@@ -272,8 +271,7 @@ class Measurement {
 }  // namespace
 
 MapQuality mapQuality(const Correspondence& map, const MapQualitySettings& settings) {
-  if (settings.samples < 1 || settings.samples > 100000000)
-    throw SettingError("samples", "must be from 1 to 1e8");
+  requireNumber("samples", settings.samples, {1, 1e8});
   reportProgress(kStage, 0);
   return Measurement(map, settings).run();
 }

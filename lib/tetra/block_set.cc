@@ -3,15 +3,14 @@
 #include <cstdint>
 #include <unordered_map>
 
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 #include "innermap/tetra/hexahedralize.h"
 
 namespace innermap {
 namespace {
 
-void requirePieces(int pieces) {
-  if (pieces < 1 || pieces > 1000) throw SettingError("pieces", "must be from 1 to 1000");
-}
+void requirePieces(int pieces) { requireNumber("pieces", pieces, {1, 1000}); }
 
 // Vertices of a lattice of pieces, made as they are met.
 class LatticeVertices {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <limits>
 
-#include "innermap/core/error.h"
+#include "core/require_number.h"
 #include "innermap/core/run.h"
 #include "innermap/tetra/hexahedralize.h"
 #include "mesh/triangle_tree.h"
@@ -62,7 +62,7 @@ std::size_t inwardFaces(const Mesh& boundary, const Solid& solid) {
 
 BoundaryFit boundaryFit(const CellMesh& mesh, const Solid& solid,
                         const BoundaryFitSettings& settings) {
-  if (settings.samples < 1) throw SettingError("samples", "must be at least 1");
+  requireNumber("samples", settings.samples, {1});
   Mesh boundary;
   boundary.name = "boundary of " + mesh.name;
   boundary.vertices = mesh.vertices;

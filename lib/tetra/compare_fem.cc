@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "core/random.h"
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"
@@ -153,11 +154,9 @@ void checkSettings(const CompareFemSettings& settings) {
       !std::is_sorted(settings.resolutions.begin(), settings.resolutions.end()) ||
       settings.resolutions.front() < 4 || settings.resolutions.back() > 1024)
     throw SettingError("resolutions", "must ascend, from 4 to 1024");
-  for (const std::size_t n : settings.charges)
-    if (n < 16 || n > 20000) throw SettingError("charges", "must lie between 16 and 20000");
+  for (const std::size_t n : settings.charges) requireNumber("charges", n, {16, 20000});
   for (const double t : settings.tolerances)
-    if (!(t >= kSmallestTolerance && t <= 1))
-      throw SettingError("tolerances", "must lie between 1e-12 and 1");
+    requireNumber("tolerances", t, {kSmallestTolerance, 1});
   requireDescribed(settings);
 }
 

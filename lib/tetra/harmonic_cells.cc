@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/tetra/compare_fem.h"
@@ -171,7 +172,7 @@ HarmonicCells harmonicOnCells(const CellMesh& mesh, const Matrix& boundaryValues
                               const HarmonicCellsSettings& settings) {
   if (!(settings.residual > 0 && settings.residual < 1))
     throw SettingError("residual", "must lie between 0 and 1");
-  if (settings.maxIterations < 1) throw SettingError("maxIterations", "must be at least 1");
+  requireNumber("maxIterations", settings.maxIterations, {1});
   if (!mesh.hexahedra.empty() || mesh.tetrahedra.empty())
     throw DataError(mesh.name + ": finite elements are for tetrahedra alone");
   if (boundaryValues.rows() != mesh.vertices.size())

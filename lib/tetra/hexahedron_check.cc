@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "innermap/core/error.h"
+#include "core/require_number.h"
 #include "innermap/core/run.h"
 #include "innermap/tetra/hexahedralize.h"
 #include "lattice/cell_signs.h"
@@ -158,8 +158,7 @@ JacobianBounds leastJacobian(const Points& vertices, const Hexahedron& cell, int
 }
 
 HexahedronCheck checkHexahedra(const CellMesh& mesh, const HexahedronCheckSettings& settings) {
-  if (settings.halvings < 0 || settings.halvings > kMostHalvings)
-    throw SettingError("halvings", "must be from 0 to 10");
+  requireNumber("halvings", settings.halvings, {0, kMostHalvings});
   const std::size_t count = mesh.hexahedra.size();
   std::vector<HexahedronCheck> parts((count + kCellsABlock - 1) / kCellsABlock);
   parallelBlocks(

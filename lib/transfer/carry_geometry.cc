@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"
@@ -108,8 +109,7 @@ void numberThose(const Geometry& geometry, CarriedGeometry& out) {
 
 CarriedGeometry carryGeometry(Geometry& geometry, const PointCarry& carry,
                               const CarryGeometrySettings& settings) {
-  if (!(settings.subdivide >= 0) || !std::isfinite(settings.subdivide))
-    throw SettingError("subdivide", "must not be negative");
+  requireNumber("subdivide", settings.subdivide, {0});
   if (settings.splats == SplatOpacity::mass && geometry.splats.degree < 0)
     throw SettingError("splats", "is for Gaussian splats; there are none, so leave it out");
   CarriedGeometry out;

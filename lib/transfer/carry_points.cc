@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/require_number.h"
 #include "evaluate/active_region.h"
 #include "evaluate/extended_places.h"
 #include "innermap/core/error.h"
@@ -133,12 +134,9 @@ void pushPart(const ExtendedMap& extended, const Limits& limits, const Points& p
 }  // namespace
 
 void requireInRange(const CarryPointsSettings& s) {
-  if (!(s.outside.distance >= 0 && s.outside.distance <= 1))
-    throw SettingError("outside", "must lie in [0, 1] of the diagonal");
-  if (!(s.skin >= 0 && s.skin <= 0.1))
-    throw SettingError("skin", "must lie in [0, 0.1] of the diagonal");
-  if (!(s.accuracy >= 1e-12 && s.accuracy <= 1e-3))
-    throw SettingError("accuracy", "must lie in [1e-12, 1e-3] of the target's extent");
+  requireNumber("outside", s.outside.distance, {0, 1}, "of the diagonal");
+  requireNumber("skin", s.skin, {0, 0.1}, "of the diagonal");
+  requireNumber("accuracy", s.accuracy, {1e-12, 1e-3}, "of the target's extent");
 }
 
 struct PointPusher::Data {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/require_number.h"
 #include "evaluate/active_region.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
@@ -266,12 +267,9 @@ double shareInverted(std::uint64_t voxels, std::uint64_t failed) {
 }  // namespace
 
 void requireInRange(const InverseSettings& s) {
-  if (!(s.tolerance >= 1e-6 && s.tolerance <= kInverted))
-    throw SettingError("tolerance", "of the inverse must lie in [1e-6, 0.01] voxels");
-  if (!(s.outside.distance >= 0 && s.outside.distance <= 1))
-    throw SettingError("outside", "must lie in [0, 1] of the diagonal");
-  if (!(s.accuracy >= 1e-12 && s.accuracy <= 1e-3))
-    throw SettingError("accuracy", "must lie in [1e-12, 1e-3] of the target's extent");
+  requireNumber("tolerance", s.tolerance, {1e-6, kInverted}, "voxels");
+  requireNumber("outside", s.outside.distance, {0, 1}, "of the diagonal");
+  requireNumber("accuracy", s.accuracy, {1e-12, 1e-3}, "of the target's extent");
 }
 
 double InverseStatistics::invertedInside() const { return shareInverted(inside, failedInside); }

@@ -1,3 +1,4 @@
+#include "core/require_number.h"
 #include "evaluate/active_region.h"
 #include "innermap/core/error.h"
 #include "innermap/evaluate/evaluate_map.h"
@@ -120,8 +121,7 @@ PullResult Pull::run(const openvdb::GridPtrVec& grids) {
 PullResult pullGrids(const ComposedMap& map, const Solid& source,
                      const openvdb::FloatGrid& levelSet, const openvdb::GridPtrVec& grids,
                      const PullSettings& settings) {
-  if (!(settings.accuracy >= 1e-12 && settings.accuracy <= 1e-3))
-    throw SettingError("accuracy", "must lie in [1e-12, 1e-3] of the target's extent");
+  requireNumber("accuracy", settings.accuracy, {1e-12, 1e-3}, "of the target's extent");
   return Pull(map, source, levelSet, settings).run(grids);
 }
 

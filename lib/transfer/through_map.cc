@@ -1,4 +1,3 @@
-#include <algorithm>
 
 #include "innermap/core/run.h"
 #include "innermap/transfer/inverse_map.h"

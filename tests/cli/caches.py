@@ -54,32 +54,39 @@ def cached_frames(motion=twisted):
     return frames
 
 
+def write_scene(path, arrays, scene):
+    """A glTF file and its .bin; arrays: (bytes, type, count) of floats, an accessor each."""
+    binary = path.replace(".gltf", ".bin")
+    views, at = [], 0
+    for data, _, _ in arrays:
+        views.append({"buffer": 0, "byteOffset": at, "byteLength": len(data)})
+        at += len(data)
+    with open(binary, "wb") as file:
+        file.write(b"".join(data for data, _, _ in arrays))
+    with open(path, "w", encoding="ascii") as file:
+        json.dump({"asset": {"version": "2.0"}, "bufferViews": views,
+                   "buffers": [{"byteLength": at, "uri": binary}],
+                   "accessors": [{"bufferView": i, "componentType": 5126, "type": kind, "count": count}
+                                 for i, (_, kind, count) in enumerate(arrays)], **scene}, file)
+
+
+def floats(rows):
+    return b"".join(struct.pack(f"<{len(row)}f", *row) for row in rows)
+
+
 def write_gltf(path):
     """A ball of split vertices that is moved and grows, from frame 12 to 36 of 24 a second."""
     vertices, faces = cli.icosphere_arrays(3)
     corners = [vertices[i] for f in faces for i in f]
-    data = struct.pack(f"<{3 * len(corners)}f", *(c for p in corners for c in p))
-    keys = struct.pack("<2f", 0.5, 1.5), struct.pack("<6f", 0, 0, 0, 1, -2, 0.5), \
-        struct.pack("<6f", 1, 1, 1, 1.5, 1.5, 1.5)
-    parts, views, at = [data, *keys], [], 0
-    for part in parts:
-        views.append({"buffer": 0, "byteOffset": at, "byteLength": len(part)})
-        at += len(part)
-    kinds = [("VEC3", len(corners)), ("SCALAR", 2), ("VEC3", 2), ("VEC3", 2)]
-    with open(path.replace(".gltf", ".bin"), "wb") as file:
-        file.write(b"".join(parts))
-    scene = {
-        "asset": {"version": "2.0"}, "bufferViews": views,
-        "buffers": [{"byteLength": at, "uri": path.replace(".gltf", ".bin")}],
-        "accessors": [{"bufferView": i, "componentType": 5126, "count": n, "type": kind}
-                      for i, (kind, n) in enumerate(kinds)],
+    arrays = [(floats(corners), "VEC3", len(corners)), (floats([(0.5, 1.5)]), "SCALAR", 2),
+              (floats([(0, 0, 0), (1, -2, 0.5)]), "VEC3", 2),
+              (floats([(1, 1, 1), (1.5, 1.5, 1.5)]), "VEC3", 2)]
+    write_scene(path, arrays, {
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
         "nodes": [{"name": "ball", "mesh": 0}],
         "animations": [{"name": "move", "samplers": [{"input": 1, "output": 2}, {"input": 1, "output": 3}],
-                        "channels": [{"sampler": i, "target": {"node": 0, "path": path}}
-                                     for i, path in enumerate(("translation", "scale"))]}]}
-    with open(path, "w", encoding="ascii") as file:
-        json.dump(scene, file)
+                        "channels": [{"sampler": i, "target": {"node": 0, "path": moved}}
+                                     for i, moved in enumerate(("translation", "scale"))]}]})
     return vertices, faces
 
 
@@ -88,28 +95,17 @@ def write_morphs(path, rest, faces, frames, order):
     Every triangle has vertices of its own, and triangles come in this order."""
     corners = [i for f in order for i in faces[f]]
     steps, count = len(frames), len(corners)
-    parts = [b"".join(struct.pack("<3f", *rest[i]) for i in corners)]
+    arrays = [(floats(rest[i] for i in corners), "VEC3", count)]
     for frame in frames:
-        parts.append(b"".join(struct.pack("<3f", *(a - b for a, b in zip(frame[i], rest[i]))) for i in corners))
-    parts.append(struct.pack(f"<{steps}f", *((k + 1) / 24 for k in range(steps))))
-    parts.append(struct.pack(f"<{steps * steps}f", *(float(a == b) for a in range(steps) for b in range(steps))))
-    kinds = [("VEC3", count)] * (1 + steps) + [("SCALAR", steps), ("SCALAR", steps * steps)]
-    views, at = [], 0
-    for part in parts:
-        views.append({"buffer": 0, "byteOffset": at, "byteLength": len(part)})
-        at += len(part)
-    with open(path.replace(".gltf", ".bin"), "wb") as file:
-        file.write(b"".join(parts))
-    scene = {
-        "asset": {"version": "2.0"}, "bufferViews": views,
-        "buffers": [{"byteLength": at, "uri": path.replace(".gltf", ".bin")}],
-        "accessors": [{"bufferView": i, "componentType": 5126, "count": n, "type": kind}
-                      for i, (kind, n) in enumerate(kinds)],
+        moves = ([a - b for a, b in zip(frame[i], rest[i])] for i in corners)
+        arrays.append((floats(moves), "VEC3", count))
+    arrays.append((floats([(k + 1) / 24] for k in range(steps)), "SCALAR", steps))
+    shown = ([float(a == b)] for a in range(steps) for b in range(steps))
+    arrays.append((floats(shown), "SCALAR", steps * steps))
+    write_scene(path, arrays, {
         "meshes": [{"weights": [0.0] * steps,
                     "primitives": [{"attributes": {"POSITION": 0},
                                     "targets": [{"POSITION": 1 + k} for k in range(steps)]}]}],
         "nodes": [{"mesh": 0}],
         "animations": [{"samplers": [{"input": 1 + steps, "output": 2 + steps, "interpolation": "STEP"}],
-                        "channels": [{"sampler": 0, "target": {"node": 0, "path": "weights"}}]}]}
-    with open(path, "w", encoding="ascii") as file:
-        json.dump(scene, file)
+                        "channels": [{"sampler": 0, "target": {"node": 0, "path": "weights"}}]}]})

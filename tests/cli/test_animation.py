@@ -5,7 +5,6 @@ import json
 import math
 import os
 import random
-import struct
 
 import cli
 from caches import TIMES, as_float, cached_frames, read_pc2, write_gltf, write_mdd, write_morphs, write_pc2
@@ -56,8 +55,7 @@ def test_geometry_is_written_to_caches():
     start, step, frames = read_pc2("out/i.pc2")
     assert (start, step, len(frames)) == (101, 1, 4)
     for number, frame in zip(TIMES, frames):
-        with open(f"files/i.{number:04d}.obj", encoding="ascii") as file:
-            places = [tuple(map(float, line.split()[1:])) for line in file if line.startswith("v ")]
+        places = cli.read_obj(f"files/i.{number:04d}.obj")[0]
         assert len(places) == len(frame)
         for p, q in zip(places, frame):
             assert max(abs(as_float(a) - b) for a, b in zip(p, q)) < 1e-6
@@ -121,8 +119,9 @@ def test_the_gallop_is_one_animation_in_all_files():
     gallop = cli.MODELS / "horse-gallop"
     if not gallop.exists():
         raise cli.Skip(f"no models at {gallop}")
-    rest, faces = read_obj(gallop / "reference.obj")
-    frames = [read_obj(gallop / f"frame.{number:04}.obj")[0] for number in (1, 13, 25)]
+    _, faces = cli.read_obj(gallop / "reference.obj")
+    rest, *frames = ([tuple(map(as_float, v)) for v in cli.read_obj(gallop / name)[0]] for name in
+                     ("reference.obj", "frame.0001.obj", "frame.0013.obj", "frame.0025.obj"))
     cli.write_obj("rest.obj", rest, faces)
     os.makedirs("files")
     for number, frame in enumerate(frames, 1):
@@ -147,18 +146,6 @@ def test_the_gallop_is_one_animation_in_all_files():
     assert worst < 1e-6 * diagonal, worst / diagonal
     moves = max(math.dist(p, q) for p, q in zip(made["files"][0], made["files"][1]))
     assert moves > 1e-3 * diagonal, moves
-
-
-def read_obj(path):
-    """Vertices as floats have them, and faces."""
-    vertices, faces = [], []
-    with open(path, encoding="utf-8") as file:
-        for line in file:
-            if line.startswith("v "):
-                vertices.append(tuple(as_float(float(x)) for x in line.split()[1:4]))
-            elif line.startswith("f "):
-                faces.append(tuple(int(c.split("/")[0]) - 1 for c in line.split()[1:]))
-    return vertices, faces
 
 
 def test_gltf_is_rest_pose_and_frames():

@@ -22,11 +22,6 @@ def bent(p):
     return x + 0.2 * y * z, 1.1 * y, z - 0.1 * x * y
 
 
-def points_of(path):
-    with open(path, encoding="utf-8") as file:
-        return [tuple(map(float, line.split()[1:4])) for line in file if line.startswith("v ")]
-
-
 def near(a, b, within):
     assert len(a) == len(b) > 0
     worst = max(math.dist(p, q) for p, q in zip(a, b))
@@ -57,11 +52,11 @@ def test_maps_and_what_they_carry():
     cli.write_obj("in_m.obj", [moved(p) for p in inner], inner_faces)
     innermap("push", "a.ply", "in.obj", "-o", "a.obj", *OUT, "--quiet")
     innermap("push", "b.ply", "in_m.obj", "-o", "b.obj", "--quiet")
-    near(points_of("a.obj"), points_of("b.obj"), 1e-7)
-    near(points_of("a.obj"), [moved(bent(p)) for p in inner], 2e-4)
+    near(cli.read_obj("a.obj")[0], cli.read_obj("b.obj")[0], 1e-7)
+    near(cli.read_obj("a.obj")[0], [moved(bent(p)) for p in inner], 2e-4)
     # As they are without options, and back.
     innermap("push", "a.ply", "in_m.obj", "-o", "c.obj", "--quiet")
-    near(points_of("c.obj"), points_of("a.obj"), 1e-9)
+    near(cli.read_obj("c.obj")[0], cli.read_obj("a.obj")[0], 1e-9)
 
 
 def test_grids_are_turned_voxel_by_voxel():

@@ -4,12 +4,10 @@
 import json
 import os
 import resource
-import signal
 import subprocess
 
 import cli
-from cli import (alone, cube, fails, file_size_limit, icosphere, innermap, interrupt, nightly,
-                 no_leftovers)
+from cli import cube, fails, file_size_limit, icosphere, innermap, no_leftovers
 
 
 def test_quiet_says_nothing_and_progress_is_plain_lines():
@@ -21,24 +19,6 @@ def test_quiet_says_nothing_and_progress_is_plain_lines():
     assert done.stderr and "\r" not in done.stderr and "\x1b" not in done.stderr
     stages = done.stderr.strip().split("\n")
     assert len(set(stages)) == len(stages), stages
-
-
-def test_progress_is_a_bar_on_a_terminal():
-    cube()
-    try:
-        import pty
-        primary, secondary = pty.openpty()
-    except (ImportError, OSError) as error:
-        raise cli.Skip(f"no terminal here: {error}")
-    environment = dict(os.environ, TERM="xterm")
-    subprocess.run([cli.PROGRAM, "voxelize", "cube.obj", "-o", "a.vdb", "--resolution", "16"],
-                   stderr=secondary, stdout=subprocess.DEVNULL, env=environment, check=True)
-    os.close(secondary)
-    text = os.read(primary, 100000).decode()
-    os.close(primary)
-    assert "\r" in text and "%" in text
-    bar, written = text.split("innermap: wrote ")
-    assert bar.endswith("\r\x1b[K") and "\x1b[K" not in written, "the bar is not taken away"
 
 
 def test_json_is_the_report_on_stdout():
@@ -149,25 +129,6 @@ def test_a_limit_on_address_space_is_no_trap():
         said.add("address space" if "ulimit -v" in done.stderr else "memory")
         no_leftovers("ball.obj", "bent.obj")
     assert {"done", "address space"} <= said, said
-
-
-@nightly
-@alone
-def test_signals_stop_within_a_second_and_leave_nothing():
-    icosphere(subdivisions=6)
-    caught = 0
-    for after, number in [(0, signal.SIGINT), (0.4, signal.SIGINT), (1, signal.SIGTERM),
-                          (2, signal.SIGINT)]:
-        code, seconds = interrupt("voxelize", "ball.obj", "-o", "a.vdb", "--resolution", "1500",
-                                  "--half-width", "10", "--fog", after=after, number=number)
-        if code is None:
-            os.path.exists("a.vdb") and os.remove("a.vdb")
-            continue
-        assert code == 130, code
-        assert seconds < cli.AT_ONCE, seconds
-        no_leftovers("ball.obj")
-        caught += 1
-    assert caught >= 2, "the run was too short to be interrupted"
 
 
 def test_broken_pipe_is_an_error_not_a_crash():

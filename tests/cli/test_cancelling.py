@@ -2,16 +2,17 @@
 """Cancelling, once a mechanism: commands that write one file, a folder, and frames, two of each.
 
 What is counted are stages that a run begins after the signal, not seconds, so that other work on the
-machine does not matter. How soon a command ends is measured by a test beside its others,
-which tests/nightly runs alone.
+machine does not matter. How soon each command ends, tests/nightly measures, with nothing beside it.
 """
 
 import os
+import shutil
 import signal
 import subprocess
+import time
 
 import cli
-from cli import innermap
+from cli import alone, innermap, nightly
 
 # The stage that a signal meets may end, and the next may have begun when it comes.
 MOST_STAGES_AFTER = 2
@@ -98,6 +99,72 @@ def test_commands_that_write_frames():
           at=(1, 9))
     stops(["deform", "ball.obj", "in.vdb", "frames", "-o", "out/d.vdb", "--charges", 600], whole_frames,
           at=(1, 9))
+
+
+# Each takes some seconds at least.
+LONG = [
+    "voxelize ball.obj -o a.vdb --resolution 1500 --half-width 10 --fog",
+    "correspond ball.obj bent.obj -o a.ply",
+    "fit ball.obj bent.obj -o a.ply --tolerance 1e-7",
+    "map ball.obj bent.obj -o out --charges 3000",
+    "push m.ply in.vdb -o a.vdb --resolution 300 --density",
+    "transfer-distance m.ply -o out --resolution 400",
+    "tetrahedralize ball.obj -o a.vtu --resolution 256",
+    "compare-fem ball.obj --functions -o out --resolutions 64,128",
+    "hexahedralize ring.obj -o a.vtu",
+    "texture coloured.obj -o a.vdb --resolution 400",
+    "export in.vdb -o a.exr --resolution 900",
+    "sequence ball.obj frames -o out --grids --charges 3500 --resolution 96",
+    "deform ball.obj in.vdb frames -o out/d.vdb --charges 3500",
+]
+
+
+def interrupt(*arguments, after):
+    """Starts innermap and signals it `after` seconds after its first line of progress; (exit code,
+    seconds it took to end), or (None, 0) when it had ended by then."""
+    process = subprocess.Popen([cli.PROGRAM, *arguments, "--verbose"], stdout=subprocess.DEVNULL,
+                               stderr=subprocess.PIPE, text=True)
+    process.stderr.readline()
+    time.sleep(after)
+    if process.poll() is not None:
+        process.communicate()
+        return None, 0.0
+    start = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    try:
+        process.communicate(timeout=30)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        raise
+    return process.returncode, time.monotonic() - start
+
+
+@nightly
+@alone
+def test_each_command_ends_at_once():
+    pair(5)
+    frames(5, 30)
+    cli.torus("ring.obj", n=90, m=36)
+    with open("ball.obj", encoding="ascii") as plain, open("coloured.obj", "w", encoding="ascii") as file:
+        for line in plain:
+            file.write(line.strip() + (" 1 0.5 0\n" if line.startswith("v ") else "\n"))
+    innermap("voxelize", "ball.obj", "-o", "in.vdb", "--resolution", 100, "--fog", "--quiet")
+    innermap("fit", "ball.obj", "bent.obj", "-o", "m.ply", "--tolerance", 1e-2, "--quiet")
+    inputs = os.listdir(".")
+    for command in LONG:
+        caught = 0
+        for after in (0.1, 1.5):
+            code, seconds = interrupt(*command.split(), after=after)
+            for name in os.listdir("out") if os.path.exists("out") else []:
+                assert "frames" in command and not name.startswith("."), (command, name)
+                innermap("info", f"out/{name}")
+            shutil.rmtree("out", ignore_errors=True)
+            if code is None:
+                break
+            assert code == 130 and seconds < cli.AT_ONCE, (command, after, code, seconds)
+            cli.no_leftovers(*inputs)
+            caught += 1
+        assert caught, f"too short to be interrupted: {command}"
 
 
 cli.run(globals())

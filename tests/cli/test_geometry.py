@@ -7,9 +7,9 @@ import os
 import struct
 import subprocess
 
-from cli import (MODELS, ROOT, Skip, fails, icosphere_arrays, innermap, nightly, read_json, run,
-                 write_obj)
-from scenes import debian_python, fitted_ball, swirl
+from cli import (MODELS, ROOT, Skip, fails, icosphere_arrays, independent, innermap, nightly,
+                 read_json, run, write_obj)
+from scenes import fitted_ball, swirl, write_splats
 
 
 def obj_rows(path, keyword):
@@ -151,20 +151,20 @@ def agree(a, b):
 
 def test_cells_by_two_other_readers():
     fitted_ball(swirl, "--interpolation", "smooth")
-    debian_python(MAKE_CELLS)
+    independent(MAKE_CELLS)
     innermap("push", "map.ply", "cells.vtu", "-o", "posed.vtu", "--vectors", "fibre", "--report",
              "r.json")
     report = read_json("r.json")["geometry"]
     assert report["cells_inverted_before"] == 0 and report["points_outside"] == 0, report
-    vtu = json.loads(debian_python(BY_MESHIO, "posed.vtu"))
-    agree(vtu, json.loads(debian_python(BY_VTK, "posed.vtu")))
+    vtu = json.loads(independent(BY_MESHIO, "posed.vtu"))
+    agree(vtu, json.loads(independent(BY_VTK, "posed.vtu")))
     assert vtu[4] == report["cells_inverted_after"] == 0 and vtu[0] == report["points"]
     assert vtu[1] + vtu[2] == report["cells"]
     innermap("push", "map.ply", "cells.vtu", "-o", "posed.msh", "--vectors", "fibre", "--quiet")
-    agree(vtu, json.loads(debian_python(BY_MESHIO, "posed.msh")))
+    agree(vtu, json.loads(independent(BY_MESHIO, "posed.msh")))
     done = innermap("push", "map.ply", "cells.vtu", "-o", "posed.mesh", "--vectors", "fibre")
     assert "'fibre'" in done.stderr, done.stderr
-    agree(vtu[:5], json.loads(debian_python(BY_MESHIO, "posed.mesh"))[:5])
+    agree(vtu[:5], json.loads(independent(BY_MESHIO, "posed.mesh"))[:5])
     # And Gmsh, of both.
     try:
         for name in ("posed.msh", "posed.mesh"):
@@ -176,7 +176,7 @@ def test_cells_by_two_other_readers():
         raise Skip("no gmsh") from missing
     # There and back: the places and the vectors.
     innermap("pull", "map.ply", "posed.msh", "-o", "back.vtu", "--quiet")
-    off = debian_python("import meshio, numpy as np\na, b = meshio.read('cells.vtu'), meshio.read('back.vtu')\n"
+    off = independent("import meshio, numpy as np\na, b = meshio.read('cells.vtu'), meshio.read('back.vtu')\n"
                  "print(abs(a.points - b.points).max(), abs(a.point_data['fibre'] - "
                  "b.point_data['fibre']).max(), abs(a.point_data['heat'] - b.point_data['heat']).max(),"
                  "sum(abs(x - y).sum() for x, y in zip(a.cell_data['part'], b.cell_data['part'])))")
@@ -198,6 +198,23 @@ def test_frames():
         assert largest(obj_rows(f"core.000{frame}.obj", "v"), expected) < 2e-3
     fails(2, "deform", "ball.obj", "core.obj", "walk.1.obj", "-o", "c.obj", "--velocity",
           says=["--velocity"])
+
+
+def test_captures_of_splats():
+    """What becomes of them: unit tests, and tests/python/test_splats.py."""
+    fitted_ball(swirl, subdivisions=3)
+    splat = {"x": 0.25, "scale_0": -4, "scale_1": -5, "scale_2": -6, "rot_0": 1}
+    write_splats("cap.ply", [splat, {**splat, "x": 3}])
+    for command, source in (("push", "cap.ply"), ("pull", "posed.ply")):
+        innermap(command, "map.ply", source, "-o", "posed.ply" if command == "push" else "back.ply",
+                 "--splats", "mass", "--report", "r.json")
+        report = read_json("r.json")["geometry"]
+        assert report["splats"] and report["opacities_capped"] == 0, report
+        assert report["points_cut"] == (command == "push"), report
+    write_splats("bad.ply", [{**splat, "rot_0": 0}])
+    fails(1, "push", "map.ply", "bad.ply", "-o", "a.ply", says=["bad.ply", "splat 0", "length 0"])
+    fails(2, "push", "map.ply", "a.vdb", "-o", "b.vdb", "--splats", "mass", says=["--splats"])
+    fails(1, "push", "map.ply", "ball.obj", "-o", "a.obj", "--splats", "mass", says=["splats"])
 
 
 def test_what_is_refused():

@@ -3,9 +3,8 @@
 
 import os
 
-import cli
-from cli import (AT_ONCE, MODELS, Skip, alone, cube, fails, icosphere_arrays, innermap, interrupt,
-                 nightly, no_leftovers, read_json, run, torus, write_obj)
+from cli import (MODELS, Skip, alone, fails, icosphere_arrays, innermap, nightly, no_leftovers,
+                 read_json, read_obj, run, torus, write_obj)
 
 
 def read_hexahedra(path):
@@ -66,8 +65,7 @@ def test_polycube_can_be_mapped():
     assert read_json("check.json")["source"]["genus"] == 1, check
     report = read_json("report.json")["polycube"]
     assert report["across"] == 10 and 0 < report["missed"] < 0.2
-    with open("cubes.obj", encoding="ascii") as file:
-        vertices = [tuple(map(float, line.split()[1:])) for line in file if line.startswith("v ")]
+    vertices = read_obj("cubes.obj")[0]
     assert len(vertices) == report["vertices"]
     # They stand on the lattice of a third of a block.
     for axis in range(3):
@@ -88,6 +86,7 @@ def test_bad_input_is_refused():
         fails(1, command, "ball.obj", "-o", out, "--max-memory", "1M", says=["1 MB"])
         fails(2, command, "ball.obj", "-o", "out.stl", says=["out.stl"])
         fails(1, command, "ball.obj", "-o", out, "--blocks", 65, says=["--blocks"])
+    fails(1, "hexahedralize", "ball.obj", "-o", "out.vtu", "--pieces", 17, says=["--pieces"])
     torus("ring.obj")
     fails(1, "polycube", "ring.obj", "-o", "out.obj", "--blocks", 2,
           says=["1 handle and 0 cavities"])
@@ -104,24 +103,6 @@ def test_holes_are_closed_and_parts_united():
     apart = [(x + 3, y, z) for x, y, z in vertices]
     write_obj("apart.obj", vertices + apart, faces + shifted)
     fails(1, "polycube", "apart.obj", "-o", "two_out.obj", says=["2 bodies"])
-
-
-def test_dry_run_says_the_memory():
-    cube()
-    for command, out in (("polycube", "out.obj"), ("hexahedralize", "out.vtu")):
-        cli.dry_run(command, "cube.obj", "-o", out)
-
-
-@nightly
-@alone
-def test_can_be_stopped():
-    torus("ring.obj", n=90, m=36)
-    for after in (0.5, 4):
-        code, seconds = interrupt("hexahedralize", "ring.obj", "-o", "ring.vtu", after=after)
-        assert code in (None, 130), code
-        assert seconds < AT_ONCE, seconds
-        if code == 130:
-            no_leftovers("ring.obj")
 
 
 @nightly

@@ -4,12 +4,9 @@
 import math
 import os
 import random
-import signal
-import subprocess
 
-from cli import (AT_ONCE, MODELS, Skip, alone, cube, fails, file_size_limit, icosphere,
-                 icosphere_arrays, innermap, interrupt, nightly, no_leftovers, read_json, run,
-                 write_obj)
+from cli import (MODELS, Skip, cube, fails, file_size_limit, icosphere, icosphere_arrays,
+                 independent, innermap, nightly, read_json, run, write_obj)
 
 FILES = ["map.ply", "map.vdb", "report.json", "section.png", "slices.exr"]
 
@@ -50,12 +47,7 @@ print(np.sqrt(np.mean(e)))
 
 def interior_rms(scale=1.0, shift=0.0):
     """Error of the file's map against harmonic() inside, read with OpenVDB's own module."""
-    done = subprocess.run(["/usr/bin/python3", "-c", INTERIOR, "out/map.vdb", str(scale),
-                           str(shift)], capture_output=True, text=True, check=False)
-    if "No module" in done.stderr:
-        raise Skip("no pyopenvdb")
-    assert done.returncode == 0, done.stderr
-    return float(done.stdout)
+    return float(independent(INTERIOR, "out/map.vdb", scale, shift))
 
 
 def test_harmonic_deformation_is_exact_inside():
@@ -133,28 +125,22 @@ def test_parts_give_what_map_gives():
     assert "400 charges" in told and "interpolation: smooth" in told, told
 
 
-def test_same_files_for_any_number_of_threads():
-    pair(lambda p: (p[0] + 0.2 * math.sin(3 * p[1]), p[1], p[2] + 0.1 * abs(p[0])))
-    mapped("--threads", "1")
-    os.rename("out", "one")
-    mapped("--threads", "2")
-    # OpenVDB puts a random identifier of 36 letters into the header, behind 21 bytes.
-    for name, start in [("map.ply", 0), ("map.vdb", 57), ("slices.exr", 0), ("section.png", 0)]:
-        with open(f"one/{name}", "rb") as one, open(f"out/{name}", "rb") as two:
-            assert one.read()[start:] == two.read()[start:], name
-
-
-def test_settings_of_the_paper():
+def test_settings_are_those_used():
     pair(harmonic)
     vertices = 2562
-    for options, sources in [(("--charge-ratio", "0.1"), round(0.1 * vertices)),
-                             (("--distance", "0.2", "--method", "tsvd"), 400),
-                             (("--radius-ratio", "2", "--regularization", "1e-12"), 400)]:
-        innermap("fit", "ball.obj", "target.obj", "-o", "m.ply", "--quiet", "--report", "r.json",
-                 *(() if "--charge-ratio" in options else ("--charges", "400")), *options)
+    few = ("--charges", "400")
+    for options, used in [
+            (("--charge-ratio", "0.1"), {"sources": round(0.1 * vertices)}),
+            ((*few, "--distance", "0.2", "--method", "tsvd"), {"sources": 400}),
+            ((*few, "--radius-ratio", "2", "--regularization", "1e-12"), {"sources": 400}),
+            ((*few, "--solver", "dense"), {"method": "tikhonov", "iterations": 0}),
+            (("--charges", "800", "--solver", "iterative", "--interpolation", "linear"),
+             {"method": "iterative", "interpolation": "linear"}),
+            ((*few, "--interpolation", "smooth"), {"interpolation": "smooth"})]:
+        innermap("fit", "ball.obj", "target.obj", "-o", "m.ply", "--quiet", "--report", "r.json", *options)
         report = read_json("r.json")
-        assert report["solve"]["sources"] == sources, report["solve"]
-        assert report["boundary_error"]["rms"] < 2e-3, report["boundary_error"]
+        assert used.items() <= report["solve"].items(), (options, report["solve"])
+        assert report["boundary_error"]["rms"] < 2e-3, (options, report["boundary_error"])
 
 
 def test_open_mesh_is_capped_on_both_sides():
@@ -266,24 +252,6 @@ def test_a_mesh_that_runs_through_itself_is_mapped_by_its_outer_surface():
     assert os.path.exists("out/correspondence.source.ply")
     assert report["boundary_error"]["p99"] < 5e-3, report["boundary_error"]
     assert report["inside"]["folded"] < 2e-3, report["inside"]
-
-
-@nightly
-@alone
-def test_interrupt_leaves_nothing():
-    pair(lambda p: (p[0], p[1], p[2] + 0.2 * abs(p[0])), subdivisions=5)
-    caught = 0
-    for after in [0.1, 1, 6]:
-        code, seconds = interrupt("map", "ball.obj", "target.obj", "-o", "out", "--charges", "3000",
-                                  after=after, number=signal.SIGINT)
-        if code is None:
-            continue
-        assert code == 130, code
-        assert seconds < AT_ONCE, seconds
-        no_leftovers("ball.obj", "target.obj", "out")
-        assert not os.path.exists("out") or not os.listdir("out"), os.listdir("out")
-        caught += 1
-    assert caught
 
 
 def test_horse():

@@ -4,9 +4,9 @@
 import math
 import os
 
-from cli import (MODELS, Skip, dry_run, fails, icosphere_arrays, innermap, nightly, read_json, run,
-                 write_obj)
-from scenes import cells_and_map, debian_python
+from cli import (MODELS, Skip, dry_run, fails, icosphere_arrays, independent, innermap, nightly,
+                 read_json, run, write_obj)
+from scenes import cells_and_map
 
 
 def test_no_cell_stays_inverted():
@@ -23,7 +23,7 @@ def test_no_cell_stays_inverted():
     assert report["boundary"]["to_surface"]["rms"] < 5e-3, report["boundary"]
     assert os.path.getsize("cut.png") > 1000
     # VTK counts the same, here and at the places that the vertices came from.
-    out = debian_python("""
+    out = independent("""
 import sys, vtk
 from vtk.util.numpy_support import vtk_to_numpy as n
 r = vtk.vtkXMLUnstructuredGridReader(); r.SetFileName(sys.argv[1]); r.Update()
@@ -54,15 +54,6 @@ def test_keeps_connectivity_and_brings_back():
     assert back["remesh"]["boundary_vertices_max"] < 2e-3, back["remesh"]
 
 
-def test_the_same_for_one_thread_and_two():
-    cells_and_map(resolution=12)
-    for threads in 1, 2:
-        innermap("remesh", "map.ply", "ball.vtu", "-o", f"{threads}.vtu", "--threads", threads,
-                 "--quiet")
-    with open("1.vtu", "rb") as one, open("2.vtu", "rb") as two:
-        assert one.read() == two.read()
-
-
 def test_through_agrees_with_the_mesh():
     """Vertices of the mesh, carried as points through it, meet it, and come back."""
     cells_and_map(resolution=16)
@@ -72,7 +63,7 @@ def test_through_agrees_with_the_mesh():
     geometry = read_json("push.json")["geometry"]
     assert geometry["cells_inverted_after"] == 0, geometry
     innermap("pull", "map.ply", "pushed.vtu", "-o", "back.vtu", "--through", "dented.vtu", "--quiet")
-    out = debian_python("""
+    out = independent("""
 import sys, vtk, numpy as np
 from vtk.util.numpy_support import vtk_to_numpy as n
 def points(f):

@@ -5,7 +5,7 @@ import math
 import os
 
 import cli
-from cli import alone, fails, innermap, interrupt, nightly, no_leftovers
+from cli import alone, fails, innermap, nightly, no_leftovers
 from frames import FIGURES, ball_frames, break_frame, moved, read_energies, rigid, twisted
 
 SMALL = ["--charges", "400", "--resolution", "24", "--quiet"]
@@ -169,35 +169,6 @@ def test_limits_and_dry_run():
     fails(1, "sequence", "rest.obj", "frames", "-o", "x", "--distance", "0.5",
           says=["--distance", "4 spacings"])
     no_leftovers("rest.obj", "frames")
-
-
-def test_full_disk_and_folders_that_cannot_be():
-    ball_frames(moved, {1: 0.1, 2: 0.2})
-    for size in [0, 300]:
-        fails(1, "sequence", "rest.obj", "frames", "-o", "out", *SMALL, says=["out/energies"],
-              preexec_fn=cli.file_size_limit(size))
-    fails(1, "sequence", "rest.obj", "frames", "-o", "out", "--grids", *SMALL,
-          says=["energy.0001.vdb", "frame 1"], preexec_fn=cli.file_size_limit(1000))
-    fails(1, "sequence", "rest.obj", "frames", "-o", "rest.obj", *SMALL, says=["rest.obj"])
-
-
-@nightly
-@alone
-def test_cancelling_leaves_whole_files():
-    ball_frames(twisted, {n: 0.02 * n for n in range(1, 60)}, subdivisions=4)
-    caught = 0
-    for after in [0, 0.5, 2.5]:
-        code, seconds = interrupt("sequence", "rest.obj", "frames", "-o", "out", "--grids",
-                                  "--charges", "3500", "--resolution", "96", after=after)
-        if code is None:
-            continue
-        assert code == 130, code
-        assert seconds < cli.AT_ONCE, seconds
-        caught += 1
-        for name in os.listdir("out") if os.path.exists("out") else []:
-            assert name.startswith("energy."), name
-            innermap("info", os.path.join("out", name))
-    assert caught >= 2, "the run was too short to be interrupted"
 
 
 def minima(values):

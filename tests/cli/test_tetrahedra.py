@@ -4,11 +4,9 @@
 import csv
 import math
 import os
-import signal
 
-from cli import (AT_ONCE, MODELS, ROOT, Skip, alone, cube, dry_run, fails, icosphere,
-                 icosphere_arrays, innermap, interrupt, nightly, no_leftovers, read_json, run,
-                 torus, write_obj)
+from cli import (MODELS, ROOT, Skip, cube, dry_run, fails, icosphere, icosphere_arrays, innermap,
+                 nightly, no_leftovers, read_json, run, torus, write_obj)
 
 
 def read_medit(path):
@@ -191,46 +189,6 @@ def test_memory_is_said_before():
     fails(1, "compare-fem", "ball.obj", "--functions", "-o", "x", "--resolutions", "16,200",
           "--max-memory", "300M", says=("300 MB", "--resolutions"))
     no_leftovers("ball.obj")
-
-
-@nightly
-def test_memory_claimed_is_memory_used():
-    # Half a million to seven million tetrahedra.
-    icosphere("ball.obj", 4)
-    base = None
-    for resolution in (16, 100, 140):
-        claim = dry_run("tetrahedralize", "ball.obj", "-o", "x.vtu", "--resolution", resolution).memory
-        innermap("tetrahedralize", "ball.obj", "-o", "x.vtu", "--resolution", resolution,
-                 "--report", "r.json")
-        peak = read_json("r.json")["peak_memory_bytes"]
-        if base is None:
-            base = peak
-        elif peak > 200e6:
-            assert peak - base < claim < 2 * peak, (resolution, claim, peak, base)
-
-
-@nightly
-@alone
-def test_cancelling_leaves_nothing():
-    icosphere("ball.obj", 5)
-    for number in (signal.SIGINT, signal.SIGTERM):
-        code, seconds = interrupt("tetrahedralize", "ball.obj", "-o", "x.vtu", "--resolution", 256,
-                                  after=0.3, number=number)
-        assert code == 130, code
-        assert seconds < AT_ONCE, seconds
-    code, seconds = interrupt("compare-fem", "ball.obj", "--functions", "-o", "out",
-                              "--resolutions", "64,128", after=2)
-    assert code == 130 and seconds < AT_ONCE, (code, seconds)
-    no_leftovers("ball.obj")
-
-
-def test_the_result_does_not_depend_on_threads():
-    torus("ring.obj")
-    for threads in (1, 3):
-        innermap("tetrahedralize", "ring.obj", "-o", f"{threads}.mesh", "--resolution", 40,
-                 "--threads", threads)
-    with open("1.mesh", "rb") as one, open("3.mesh", "rb") as three:
-        assert one.read() == three.read()
 
 
 def test_compare_fem_on_functions():

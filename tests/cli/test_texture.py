@@ -7,16 +7,13 @@ Grids are read by pyopenvdb; what needs it is skipped where it is not installed.
 import json
 import math
 import os
-import random
 import shutil
-import struct
 import subprocess
-import zlib
 
 import cli
-from cli import MODELS, alone, fails, icosphere_arrays, innermap, nightly, no_leftovers
+from cli import MODELS, fails, icosphere_arrays, innermap, no_leftovers
+from scenes import MAJOR, MINOR, around, unrolled_ring, write_mesh, write_png
 
-PYTHON = "/usr/bin/python3"  # the system's has pyopenvdb
 
 # Prints, for each active voxel of a grid inside the solid or not: place, value, signed distance.
 READER = """
@@ -35,51 +32,11 @@ for item in grid.citerOnValues():
 
 def voxels(path, name):
     """[(place, value, signed distance)] of a grid's active voxels."""
-    done = subprocess.run([PYTHON, "-c", READER, path, name], capture_output=True, text=True,
-                          timeout=300)
-    if "No module named" in done.stderr:
-        raise cli.Skip("pyopenvdb is not installed")
-    assert done.returncode == 0, done.stderr
-    return [json.loads(line) for line in done.stdout.splitlines()]
-
-
-def write_png(path, size, colour):
-    """colour(u, v) in 0..1, v upward; 8 bits, said to be sRGB."""
-    width, height = size
-    rows = bytearray()
-    for y in range(height):
-        rows.append(0)
-        for x in range(width):
-            rows += bytes(round(255 * c) for c in colour((x + 0.5) / width, 1 - (y + 0.5) / height))
-
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + \
-            struct.pack(">I", zlib.crc32(kind + data))
-
-    with open(path, "wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n" +
-                   chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) +
-                   chunk(b"sRGB", b"\0") + chunk(b"IDAT", zlib.compress(bytes(rows))) +
-                   chunk(b"IEND", b""))
-    return path
+    return [json.loads(line) for line in cli.independent(READER, path, name).splitlines()]
 
 
 def linear(encoded):
     return encoded / 12.92 if encoded <= 0.04045 else ((encoded + 0.055) / 1.055) ** 2.4
-
-
-def write_mesh(path, vertices, faces, uvs, uv_faces):
-    """uv_faces: a tuple of indices into uvs for each face, or None."""
-    with open(path, "w", encoding="ascii") as file:
-        for v in vertices:
-            file.write("v {:.17g} {:.17g} {:.17g}\n".format(*v))
-        for uv in uvs:
-            file.write("vt {:.17g} {:.17g}\n".format(*uv))
-        for face, uv in zip(faces, uv_faces):
-            corners = [str(i + 1) for i in face] if uv is None else \
-                [f"{i + 1}/{j + 1}" for i, j in zip(face, uv)]
-            file.write("f " + " ".join(corners) + "\n")
-    return path
 
 
 def planar_ball(path="ball.obj", subdivisions=3, bare=()):
@@ -90,38 +47,8 @@ def planar_ball(path="ball.obj", subdivisions=3, bare=()):
                       [None if i in bare else f for i, f in enumerate(faces)])
 
 
-MAJOR, MINOR = 1.0, 0.5
-
-
-def unrolled_ring(path="ring.obj", n=64, m=32):
-    """A torus about z, u around the axis and v around the tube: one chart that meets itself along
-    two circles, where u and v jump from 1 to 0."""
-    vertices, uvs, faces, uv_faces = [], [], [], []
-    for i in range(n):
-        for j in range(m):
-            a, b = 2 * math.pi * i / n, 2 * math.pi * j / m
-            r = MAJOR + MINOR * math.cos(b)
-            vertices.append((r * math.cos(a), r * math.sin(a), MINOR * math.sin(b)))
-    for i in range(n + 1):
-        for j in range(m + 1):
-            uvs.append((i / n, j / m))
-    for i in range(n):
-        for j in range(m):
-            quad = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
-            for k, l in [(1, 2), (2, 3)]:
-                corners = [quad[0], quad[k], quad[l]]
-                faces.append(tuple(x % n * m + y % m for x, y in corners))
-                uv_faces.append(tuple(x * (m + 1) + y for x, y in corners))
-    return write_mesh(path, vertices, faces, uvs, uv_faces)
-
-
 def ramp(u, v):
     return u, v, 0.25
-
-
-def around(u, v):
-    """Meets itself on all sides."""
-    return 0.5 + 0.4 * math.cos(2 * math.pi * u), 0.5 + 0.3 * math.sin(2 * math.pi * v), 0.5
 
 
 def texture(*arguments, **options):
@@ -345,35 +272,6 @@ def test_options_that_make_no_sense():
     text = innermap("texture", "ball.obj", "good.png", "-o", "t.vdb", "--dry-run").stdout
     assert "t.vdb" in text
     no_leftovers("ball.obj", "good.png")
-
-
-@nightly
-@alone
-def test_nothing_is_left_half_written():
-    planar_ball()
-    write_png("good.png", (64, 64), ramp)
-    before = set(os.listdir("."))
-    fails(1, "texture", "ball.obj", "good.png", "-o", "t.vdb", "--resolution", "32",
-          preexec_fn=cli.file_size_limit(20000), says=["t.vdb"])
-    code, seconds = cli.interrupt("texture", "ball.obj", "good.png", "-o", "t.vdb", "--resolution",
-                                  "256", "--mode", "colour", after=0.8)
-    assert code in (130, None) and seconds < 10, (code, seconds)
-    left = set(os.listdir(".")) - before
-    assert not left or (code is None and left == {"t.vdb"}), left
-
-
-def test_same_grids_for_any_number_of_threads():
-    unrolled_ring(n=24, m=12)
-    write_png("around.png", (64, 32), around)
-    seed = random.randrange(1000)
-    print(f"seed {seed}", end=" ")
-    for way in [["--seams", "blend"], ["--mode", "colour"]]:
-        values = []
-        for threads in ["1", "3"]:
-            texture("ring.obj", "around.png", "-o", "t.vdb", "--resolution", "24", "--threads",
-                    threads, "--seed", str(seed), *way)
-            values.append(voxels("t.vdb", "Cd"))
-        assert values[0] == values[1], way
 
 
 def test_spot_shows_no_seam_in_colour_mode():

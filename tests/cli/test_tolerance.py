@@ -1,18 +1,11 @@
 #!/usr/bin/env python3
 """--tolerance: charges where the error is, and what is said when it cannot be met."""
 
-import math
 import os
 
-from cli import (AT_ONCE, MODELS, Skip, alone, error_line, fails, icosphere_arrays, innermap,
-                 interrupt, nightly, no_leftovers, read_json, run, write_obj)
-
-
-def kinked(p):
-    """Smooth but for a fold beside (1, 0, 0)."""
-    x, y, z = p
-    near = math.exp(-6 * ((x - 1) ** 2 + y * y + z * z))
-    return (x + 0.2 * abs(y) * near, y + 0.1 * x * z, z)
+from cli import (MODELS, Skip, error_line, fails, icosphere_arrays, innermap, no_leftovers,
+                 read_json, run, write_obj)
+from scenes import kinked
 
 
 def pair(function=kinked, subdivisions=4):
@@ -117,35 +110,12 @@ def test_limit_of_memory_is_kept():
     assert report["peak_memory_bytes"] < 340e6, report["peak_memory_bytes"]
 
 
-def test_same_file_for_any_number_of_threads():
-    pair()
-    files = []
-    for threads in ["1", "2"]:
-        fit("--tolerance", "3e-4", "--interpolation", "linear", "--threads", threads)
-        with open("m.ply", "rb") as file:
-            files.append(file.read())
-    assert files[0] == files[1]
-
-
 def test_dry_run_says_what_would_be_done():
     pair(subdivisions=2)
     told = innermap("fit", "ball.obj", "target.obj", "-o", "m.ply", "--tolerance", "1e-4",
                     "--dry-run").stdout
     assert "0.0001" in told and "100000 charges" in told, told
     no_leftovers("ball.obj", "target.obj")
-
-
-@nightly
-@alone
-def test_interrupt_leaves_nothing():
-    pair()
-    for after in [0.5, 2, 4]:
-        code, seconds = interrupt("fit", "ball.obj", "target.obj", "-o", "m.ply", "--tolerance",
-                                  "1e-7", after=after)
-        if code is None:
-            continue
-        assert code == 130 and seconds < AT_ONCE, (code, seconds)
-        no_leftovers("ball.obj", "target.obj")
 
 
 def test_horse():

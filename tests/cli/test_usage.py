@@ -21,13 +21,6 @@ def test_version_is_the_projects():
     assert f"\n## {version}" in (cli.ROOT / "CHANGELOG.md").read_text()
 
 
-def test_help_lists_every_command():
-    text = innermap("--help").stdout
-    assert innermap("help").stdout == text
-    for command in COMMANDS:
-        assert re.search(rf"^  {command} ", text, re.M), command
-
-
 def test_each_command_has_help_with_an_example_and_the_common_options():
     for command in COMMANDS:
         text = innermap(command, "--help").stdout
@@ -44,14 +37,6 @@ def test_help_shows_units_ranges_and_defaults():
     assert "above 0 up to " in text and "default: by --resolution]" in text
     assert "[from 4 to 4096; default: 128" in text
     assert "[innermap, blender, houdini; default: innermap]" in text
-
-
-def test_markdown_has_every_option():
-    text = innermap("help", "--markdown").stdout
-    for command in COMMANDS:
-        assert f"### innermap {command}\n" in text
-    for option in ["--voxel-size LENGTH", "--axis AXIS", "--threads N"]:
-        assert f"{option}`" in text, option
 
 
 def test_mistyped_commands_and_options():

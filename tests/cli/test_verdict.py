@@ -3,11 +3,9 @@
 
 import json
 import math
-import subprocess
 
-from cli import icosphere, icosphere_arrays, innermap, no_leftovers, read_json, run, write_obj
+from cli import icosphere, independent, icosphere_arrays, innermap, no_leftovers, read_json, run, write_obj
 
-PYTHON = "/usr/bin/python3"  # has pyopenvdb, another may not
 READ = """
 import json, sys, pyopenvdb as vdb
 out = {}
@@ -75,9 +73,8 @@ def mapped(target, *options, exit_code=0):
 
 def grids(path):
     """{name: (edge of a voxel, {index: value of each active voxel})}, by another reader."""
-    done = subprocess.run([PYTHON, "-c", READ, path], capture_output=True, text=True, check=True)
     return {name: (edge, {tuple(ijk): value for ijk, value in on})
-            for name, (edge, on) in json.loads(done.stdout).items()}
+            for name, (edge, on) in json.loads(independent(READ, path)).items()}
 
 
 def largest(path, name):
@@ -158,7 +155,7 @@ def test_a_target_that_runs_through_itself():
 
 def density(path):
     """A cube of density 1 about a ball of radius 1, in voxels of 1 / 12."""
-    subprocess.run([PYTHON, "-c", WRITE, path], check=True)
+    independent(WRITE, path)
 
 
 def test_a_density_that_is_crushed():

@@ -36,7 +36,7 @@ print(" ".join(grid.name for grid in grids))
 
 def grids():
     """g.vdb, and NAME.npy with the values of its voxels from (-3, 2, 6) on; the names."""
-    return independent(MAKE, module="pyopenvdb").split()
+    return independent(MAKE).split()
 
 
 def test_vtk_reads_values_names_and_places():
@@ -65,7 +65,7 @@ for name in sys.argv[2:]:
                 assert (array[point] == expected[i, j, k].astype(array.dtype)).all(), (name, i, j, k)
                 world = numpy.array([i - 3, j + 2, k + 6, 1.0]) @ matrix
                 assert numpy.abs(image.GetPoint(point) - world[:3]).max() < 1e-9, (i, j, k)
-""", MATRIX, *names, module="vtkmodules")
+""", MATRIX, *names)
     fails(1, "export", "g.vdb", "-o", "h.vti", "--half", says=["half", ".vti"])
     fails(2, "export", "g.vdb", "-o", "g.png", says=["g.png", ".vti", ".nvdb"])
     innermap("export", "g.vdb", "-o", "small.vti", "--grids", "density", "--resolution", "3")
@@ -133,7 +133,7 @@ for ending in (".nii", ".nii.gz"):
     for affine, code in (image.get_sform(coded=True), image.get_qform(coded=True)):
         assert code == 1 and numpy.abs(affine - matrix.T).max() < 1e-5, (affine, matrix.T)
     assert image.header.get_xyzt_units()[0] == "mm"
-""", MATRIX, name, module="nibabel")
+""", MATRIX, name)
         innermap("import", name + ".nii.gz", "-o", "back.vdb")
         independent("""
 import sys, numpy, pyopenvdb as vdb
@@ -144,7 +144,7 @@ grid.copyToArray(values, ijk=(0, 0, 0))
 assert (values == expected).all()
 there = vdb.read("g.vdb", sys.argv[1]).transform.indexToWorld((-3 + 1, 2 + 2, 6 + 3))
 assert numpy.abs(numpy.subtract(grid.transform.indexToWorld((1, 2, 3)), there)).max() < 1e-5
-""", name, module="pyopenvdb")
+""", name)
     fails(1, "export", "g.vdb", "-o", "all.nii", says=["3", "--grids", "density"])
 
 
@@ -210,10 +210,10 @@ for x, y, z, i, j, k, value in rows[::7]:
 
 
 def test_scans_are_read_where_they_lie():
-    independent(SCANS, module="nibabel")
+    independent(SCANS)
     for name, kind, tolerance in (("big.nii", "float", 1e-5), ("scaled.nii.gz", "float", 1e-5)):
         innermap("import", name, "-o", "s.vdb", "--grids", "scan")
-        independent(SAME_SCAN, name, kind, tolerance, module="pyopenvdb")
+        independent(SAME_SCAN, name, kind, tolerance)
     for name in ("labels.nii.gz", "quaternion.nii", "second.nii"):
         innermap("import", name, "-o", "s.vdb", "--grids", "label", "--report", "r.json")
         assert cli.read_json("r.json")["texture"]["grids"] == ["label"]
@@ -230,7 +230,7 @@ first = rows[:, 3:6].min(0)
 at = (rows[:, 3:6] - first).astype(int)
 assert (values[tuple(at.T)] == rows[:, 6]).all()
 assert numpy.abs(nibabel.affines.apply_affine(image.affine, at) - rows[:, :3]).max() < 1e-4
-""", name, module="nibabel")
+""", name)
     fails(1, "import", "lost.nii", "-o", "l.vdb", says=["lost.nii", "sform", "--as-voxels"])
     innermap("import", "lost.nii", "-o", "l.vdb", "--as-voxels")
     assert "2" in innermap("info", "l.vdb").stdout
@@ -277,7 +277,7 @@ numpy.savetxt("points.obj", p, fmt="v %.17g %.17g %.17g")
 numpy.save("points.npy", p)
 numpy.save("affine.npy", image.affine)
 numpy.save("field.npy", field)
-""", module="nibabel")
+""")
     innermap("push", "map.ply", "points.obj", "-o", "images.obj", "--quiet")
     independent("""
 import numpy
@@ -294,7 +294,7 @@ for k in numpy.ndindex(2, 2, 2):
 voxel = numpy.abs(affine[:3, :3]).sum(0).max()
 error = numpy.linalg.norm(q + back - p, axis=1).max()
 assert error < 0.05 * voxel, (error, voxel)
-""", module="numpy")
+""")
     fails(2, "evaluate", "map.ply", "-o", "map.nii", says=["--inverse"])
     for option in (["--repair", "off"], ["--lame-mu", "1"], ["--warn-folded", "0.5"]):
         fails(2, "evaluate", "map.ply", "-o", "x.vdb", "--inverse", *option, says=[option[0], "--inverse"])
@@ -343,7 +343,7 @@ nibabel.save(nibabel.Nifti1Image(numpy.random.default_rng(1).random((24, 24, 24)
 
 
 def test_labels_of_a_scan_are_solids():
-    independent(LABELS, module="nibabel")
+    independent(LABELS)
     innermap("voxelize", "scan.nii.gz", "-o", "each.vdb", "--each-label", "--fog", "--report", "r.json", "--quiet")
     grids = {g["name"]: g for g in told("each.vdb")["grids"]}
     assert set(grids) == {"surface_2", "density_2", "surface_5", "density_5"}, grids

@@ -1,12 +1,11 @@
 """Grids, meshes, cells, files and points through a map, and frames: as the program does them."""
 
-import json
-
 import numpy as np
 
 import cli
 import innermap
 import shapes
+from caches import write_gltf
 
 
 def a_map():
@@ -187,30 +186,11 @@ def test_takes_point_caches():
 
 
 def test_takes_gltf_as_rest_pose_and_frames():
-    V, F, _ = frames()
-    parts = [V[F].astype("<f4"), np.array([0, 1], "<f4"), np.array([[0, 0, 0], [2, 0, 0]], "<f4")]
-    offsets = np.cumsum([0] + [p.nbytes for p in parts])
-    with open("ball.bin", "wb") as file:
-        for part in parts:
-            part.tofile(file)
-    counts = [("VEC3", 3 * len(F)), ("SCALAR", 2), ("VEC3", 2)]
-    with open("ball.gltf", "w", encoding="ascii") as file:
-        json.dump({
-            "asset": {"version": "2.0"},
-            "buffers": [{"byteLength": int(offsets[-1]), "uri": "ball.bin"}],
-            "bufferViews": [{"buffer": 0, "byteOffset": int(o), "byteLength": p.nbytes}
-                            for o, p in zip(offsets, parts)],
-            "accessors": [{"bufferView": i, "componentType": 5126, "type": kind, "count": n}
-                          for i, (kind, n) in enumerate(counts)],
-            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-            "nodes": [{"mesh": 0}],
-            "animations": [{"samplers": [{"input": 1, "output": 2}],
-                            "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}],
-        }, file)
-    X = 0.5 * V[:20]
+    write_gltf("ball.gltf")
+    X = 0.5 * shapes.ball(1)[0]
     places, found = innermap.deform("ball.gltf", X, "ball.gltf", charges=400, fps=2)
-    assert places.shape == (3, 20, 3) and found.all()
-    assert np.abs(places[1] - X - [1, 0, 0]).max() < 1e-5
+    assert places.shape == (3, len(X), 3) and found.all()
+    assert np.abs(places[1] - 1.25 * X - [0.5, -1, 0.25]).max() < 1e-5
 
 
 if __name__ == "__main__":

@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <numeric>
-#include <type_traits>
 
 #include "lists.h"
 #include "spelling.h"
@@ -179,6 +178,18 @@ OptionBuilder Command::setting(const Setting& s) {
 
 OptionBuilder Command::flag(const std::string& name, bool* target, const std::string& help) {
   return option(name, "", target, help);
+}
+
+OptionBuilder Command::outputFile(std::string* path, std::vector<std::string> endings,
+                                  const std::string& help) {
+  return option("--output", "FILE", path, help)
+      .shortName("-o")
+      .required()
+      .writes(std::move(endings));
+}
+
+OptionBuilder Command::outputFolder(std::string* path, const std::string& help) {
+  return option("--output", "FOLDER", path, help).shortName("-o").required();
 }
 
 OptionBuilder Command::limitTime(const std::string& help) {

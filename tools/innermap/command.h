@@ -55,6 +55,11 @@ class Command {
     return option(name, placeholder, choiceOf(target, values), help);
   }
   OptionBuilder flag(const std::string& name, bool* target, const std::string& help);
+  // -o, --output: a file with one of these endings; a folder. Both required.
+  OptionBuilder outputFile(std::string* path, std::vector<std::string> endings,
+                           const std::string& help);
+  OptionBuilder outputFolder(std::string* path,
+                             const std::string& help = "where the files go; made when missing");
   // An option for each setting of the library: max_charges is --max-charges; a flag that is on is
   // turned off by --no-NAME.
   void settings(const std::vector<Setting>& described);

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include "commands.h"
 #include "correspondence.h"
@@ -18,11 +17,9 @@
 #include "innermap/mesh/mesh_file.h"
 #include "inputs.h"
 #include "lists.h"
-#include "map_report.h"
 #include "report/figures.h"
 #include "report/svg_chart.h"
 #include "report/table.h"
-#include "section_options.h"
 
 namespace innermap::tool {
 namespace {
@@ -278,9 +275,7 @@ Command makeCompareFemCommand() {
       "claims. Writes comparison.csv, curves.svg, section.png and report.json.");
   c.positional("SOURCE", &o->source, "mesh file: .obj, .ply, .off or .stl");
   c.positional("TARGET", &o->target, "a pose of it; left out with --functions").optional();
-  c.option("--output", "FOLDER", &o->output, "where the files go; made when missing")
-      .shortName("-o")
-      .required();
+  c.outputFolder(&o->output);
   c.flag("--functions", &o->functions, "compare on known harmonic functions in SOURCE");
   c.option("--resolutions", "LIST", &o->resolutions,
            "cells of the tetrahedra's lattice along the longest side, each from 4 to 1024, "

@@ -29,8 +29,6 @@ std::uint64_t memoryOf(const Options& options, std::size_t countA, std::size_t c
 }
 
 void run(const Options& options, Context& context) {
-  requirePly("--output", options.output);
-  if (!options.sourceOutput.empty()) requirePly("--source-out", options.sourceOutput);
   context.output(options.output);
   context.output(sourceOutputOf(options), false);
   if (!options.picture.empty()) {
@@ -91,10 +89,7 @@ Command makeCorrespondCommand() {
       kLandmarkFormat);
   c.positional("SOURCE", &o->a, "mesh of the first solid: .obj, .ply, .off or .stl");
   c.positional("TARGET", &o->b, "mesh of the second solid");
-  c.option("--output", "FILE", &o->output, "SOURCE on TARGET, a .ply file")
-      .shortName("-o")
-      .required()
-      .writes({".ply"});
+  c.outputFile(&o->output, {".ply"}, "SOURCE on TARGET, a .ply file");
   c.option(
        "--source-out", "FILE", &o->sourceOutput,
        "SOURCE with the same vertices as the output, written when its triangles were split or its "

@@ -50,12 +50,6 @@ void addCorrespondOptions(Command& c, CorrespondOptions& o) {
   addClose(c, o.close);
 }
 
-void requirePly(const std::string& option, const std::string& path) {
-  const std::string extension = path.size() < 5 ? "" : path.substr(path.size() - 4);
-  if (extension != ".ply" && extension != ".PLY")
-    throw UsageError(option + ": '" + path + "' must end in .ply");
-}
-
 Mesh takeCleanSurface(Mesh mesh, const LayOutSettings& settings, Context& context) {
   CleanSurface clean = context.timed("surface", [&] { return cleanSurface(mesh, settings); });
   for (const std::string& note : clean.notes) context.note(note);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <string>
 
 #include "command.h"
@@ -24,9 +23,6 @@ struct CorrespondOptions {
 void addSurfaceOptions(Command& command, SurfaceOptions& options);
 // Without --seed.
 void addCorrespondOptions(Command& command, CorrespondOptions& options);
-
-// Throws UsageError unless `path`, the value of `option`, ends in .ply.
-void requirePly(const std::string& option, const std::string& path);
 
 // Lays the mesh out and tells: notes, seconds.
 LaidOutMesh layOut(Mesh mesh, const SurfaceOptions& options, Context& context);

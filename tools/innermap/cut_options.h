@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "command.h"
 #include "innermap/io/pictures.h"

@@ -13,7 +13,6 @@
 #include "frame_loop.h"
 #include "innermap/core/version.h"
 #include "innermap/io/vdb_file.h"
-#include "inputs.h"
 #include "job_cost.h"
 #include "report/report_figures.h"
 #include "share.h"

@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "frame_loop.h"
-#include "innermap/levelset/level_set.h"
 #include "innermap/mesh/mesh_file.h"
 #include "inputs.h"
 #include "job_cost.h"

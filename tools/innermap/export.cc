@@ -126,12 +126,10 @@ Command makeExportCommand() {
       "R, G, B, A; more than four channels are layers (`density.V`, `Cd.R`).");
   c.positional("FILE", &o->file,
                "the .vdb file; for .usda also a folder or pattern of frames, with #### or *");
-  c.option("--output", "FILE", &o->output,
-           "the file, in the format of its ending; of slices, with #### or %04d for the number, "
-           "else it is put before the extension")
-      .shortName("-o")
-      .required()
-      .writes(outputEndings());
+  c.outputFile(
+      &o->output, outputEndings(),
+      "the file, in the format of its ending; of slices, with #### or %04d for the number, "
+      "else it is put before the extension");
   c.option("--grids", "LIST", &o->grids, "grids to write, with commas between")
       .was("--grid")
       .defaults("all");

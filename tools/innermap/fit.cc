@@ -54,10 +54,7 @@ Command makeFitCommand() {
       "certificate is the error at 20,000 boundary points that took no part in the fit.");
   c.positional("SOURCE", &o->source, "mesh of the solid: .obj, .ply, .off or .stl");
   c.positional("TARGET", &o->target, "the same mesh with its vertices moved");
-  c.option("--output", "FILE", &o->output, "the map, a .ply file")
-      .shortName("-o")
-      .required()
-      .writes({".ply"});
+  c.outputFile(&o->output, {".ply"}, "the map, a .ply file");
   c.limitTime("after which refining and steps end");
   addFittingOptions(c, o->fitting);
   c.settings(describe(o->verdict));

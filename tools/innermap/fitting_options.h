@@ -1,7 +1,6 @@
 // Options of `fit` and `map` that say how a map is fitted.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>

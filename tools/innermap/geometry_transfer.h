@@ -1,7 +1,6 @@
 // Geometry in place of volumes: what `pull`, `push` and `deform` share.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 

@@ -1,7 +1,5 @@
 #include "grid_options.h"
 
-#include <fmt/format.h>
-
 #include "innermap/core/memory.h"
 #include "report/page/page.h"
 

@@ -1,12 +1,10 @@
 // Options that say how fine the grids that a command writes are, and what they are called.
 #pragma once
 
-#include <fmt/format.h>
 #include <openvdb/openvdb.h>
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 
 #include "command.h"

@@ -1,9 +1,7 @@
 // `innermap harmonic`: a harmonic field from what is known on a solid's surface.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <limits>
-#include <map>
 
 #include "commands.h"
 #include "harmonic_options.h"

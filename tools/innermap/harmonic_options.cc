@@ -66,10 +66,7 @@ HarmonicGridSettings gridSettingsOf(const HarmonicOptions& options) {
 void addHarmonicOptions(Command& command, HarmonicOptions& o, const std::string& defaultGrids) {
   o.grids = defaultGrids;
   command.positional("MESH", &o.mesh, "mesh of the solid: .obj, .ply, .off or .stl");
-  command.option("--output", "FILE", &o.output, "the grids, a .vdb file")
-      .shortName("-o")
-      .required()
-      .writes({".vdb"});
+  command.outputFile(&o.output, {".vdb"}, "the grids, a .vdb file");
   command
       .option("--field", "FILE", &o.field,
               "also the field itself in double precision, a .ply file of charges and weights")

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "cell_report.h"
 #include "commands.h"
 #include "cut_options.h"
@@ -12,11 +10,9 @@
 #include "innermap/io/cell_file.h"
 #include "innermap/io/solid_pictures.h"
 #include "innermap/mesh/mesh_file.h"
-#include "inputs.h"
 #include "job_cost.h"
 #include "polycube_report.h"
 #include "report/figures.h"
-#include "section_options.h"
 
 namespace innermap::tool {
 namespace {
@@ -29,11 +25,6 @@ struct Options {
 };
 
 void claimOutputs(const Options& options, Context& context) {
-  for (const auto& [option, path] : {std::make_pair("--output", &options.output),
-                                     std::make_pair("--in-blocks", &options.inBlocks)})
-    if (!path->empty() && !isCellFile(*path))
-      throw UsageError(std::string(option) + " " + *path + ": must end in .vtu, .msh or .mesh");
-  if (!options.cubes.empty()) requireMeshFile("--polycube", options.cubes);
   for (const std::string* path : {&options.output, &options.inBlocks, &options.cubes,
                                   &options.picture, &options.cubesPicture})
     if (!path->empty()) context.output(*path);
@@ -134,12 +125,9 @@ Command makeHexahedralizeCommand() {
       "not followed. One closed body, whose mesh may have any number of handles and cavities. "
       "Ends with exit code 1 where some hexahedra could not be turned right.");
   addFillOptions(c, o->mesh, o->settings.polycube, o->surface);
-  c.option("--output", "FILE", &o->output,
-           "the .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file to write, with each cell's "
-           "scaled_jacobian (.vtu and .msh)")
-      .shortName("-o")
-      .required()
-      .writes({".vtu", ".msh", ".mesh"});
+  c.outputFile(&o->output, {".vtu", ".msh", ".mesh"},
+               "the .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file to write, with each cell's "
+               "scaled_jacobian (.vtu and .msh)");
   c.limitTime("after which fitting, untangling and shaping end");
   c.settings(without(describe(o->settings), {"blocks"}));
   c.option("--polycube", "FILE", &o->cubes, "also write the polycube's surface, .obj or .ply")

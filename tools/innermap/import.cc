@@ -90,10 +90,7 @@ Command makeImportCommand() {
   c.positional(
       "FILE", &o->file,
       "the .exr, .nii or .nii.gz file; of slices, any of the files or a pattern with #### or %04d");
-  c.option("--output", "FILE", &o->output, "the .vdb file to write")
-      .shortName("-o")
-      .required()
-      .writes({".vdb"});
+  c.outputFile(&o->output, {".vdb"}, "the .vdb file to write");
   c.option("--grids", "LIST", &o->grids,
            "grids to read, with commas between; of a file that does not say what its channels are, "
            "their names: R, G, B together and X, Y, Z are a vector")

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 namespace innermap::tool {
@@ -120,73 +119,6 @@ double totalSeconds(const std::vector<JobPhase>& phases) {
   for (const JobPhase& p : phases)
     if (!p.perhaps) total += p.seconds;
   return total;
-}
-
-// As measured on samples/ and models of some ten thousand triangles: shares in percent, and the
-// seconds that all take together on an idle machine.
-std::vector<JobPhase> usualPhases(const std::string& command) {
-  static const std::map<std::string, double> kSeconds = {
-      {"map", 6},        {"fit", 3},  {"sequence", 12},         {"deform", 40},
-      {"correspond", 9}, {"push", 2}, {"transfer-distance", 3}, {"texture", 16}};
-  static const std::map<std::string, std::vector<JobPhase>> kPhases = {
-      {"map", {{"reading", 1}, {"fitting", 5}}},  // until more is known
-      {"fit", {{"reading", 1}, {"fitting", 5}}},
-      {"sequence", {{"reading", 5}, {"level set", 5}, {"factoring", 20}, {"frames", 70}}},
-      {"deform", {{"reading", 5}, {"level set", 5}, {"factoring", 20}, {"frames", 70}}},
-      {"correspond",
-       {{"repairing", 7, false, "reading"},
-        {"trying rotations", 6},
-        {"trying first maps", 45},
-        {"judging first maps", 12},
-        {"refining the map", 27},
-        {"measuring the map", 3}}},
-      {"evaluate",
-       {{"checking", 30, false, "reading"},
-        {"level set", 33},
-        {"evaluating the map", 12},
-        {"checking cells", 15},
-        {"writing the VDB file", 10}}},
-      {"texture",
-       {{"placing samples", 3},
-        {"offset surface", 3},
-        {"filling the kernel matrix", 1},
-        {"factoring", 9},
-        {"factoring clusters", 11},
-        {"solving", 8},
-        {"level set", 4},
-        {"continuing inwards", 40},
-        {"meeting the surface", 18},
-        {"writing the VDB file", 3}}},
-      {"push",
-       {{"checking", 15, false, "reading"},
-        {"reading the VDB file", 4},
-        {"level set", 30},
-        {"covering the target", 12},
-        {"inverting the map", 20},
-        {"carrying the grids", 13},
-        {"writing the VDB file", 6}}},
-      {"transfer-distance",
-       {{"checking", 30, false, "reading"},
-        {"level set", 22},
-        {"distances", 36},
-        {"drawing the section", 12}}},
-      {"tetrahedralize",
-       {{"reading", 20},
-        {"level set", 25},
-        {"filling with tetrahedra", 20},
-        {"measuring cells", 20},
-        {"comparing the boundaries", 10},
-        {"writing cells", 5}}},
-      {"voxelize", {{"reading", 10}, {"level set", 70}, {"writing the VDB file", 20}}},
-      {"slice", {{"reading the VDB file", 50}, {"drawing the section", 50}}}};
-  const std::string name = command == "pull" ? "push" : command;
-  const auto found = kPhases.find(name);
-  if (found == kPhases.end()) return {};
-  std::vector<JobPhase> phases = found->second;
-  const auto seconds = kSeconds.find(name);
-  const double scale = (seconds == kSeconds.end() ? 1.5 : seconds->second) / totalSeconds(phases);
-  for (JobPhase& phase : phases) phase.seconds *= scale;
-  return phases;
 }
 
 }  // namespace innermap::tool

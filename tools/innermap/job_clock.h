@@ -65,8 +65,4 @@ class JobClock {
 
 double totalSeconds(const std::vector<JobPhase>& phases);
 
-// What commands mostly do; empty where they are over at once. Commands that know better call
-// Context::expect themselves.
-std::vector<JobPhase> usualPhases(const std::string& command);
-
 }  // namespace innermap::tool

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <new>
 #include <regex>
@@ -112,7 +111,6 @@ void runCommand(const std::vector<std::string>& arguments) {
   }
   // Signals may come until the very end of the process.
   static TerminalProgress progress(TerminalProgress::styleFor(common.quiet, common.verbose));
-  progress.expect(usualPhases(command.name()));
   handleSignals(progress);
   const RunScope scope(progress);
   try {

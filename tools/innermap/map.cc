@@ -247,9 +247,7 @@ Command makeMapCommand() {
                "the same mesh with its vertices moved, or any other mesh; may be left out with "
                "--correspond")
       .optional();
-  c.option("--output", "FOLDER", &o->output, "where the files go; made when missing")
-      .shortName("-o")
-      .required();
+  c.outputFolder(&o->output);
   c.limitTime("after which trying, refining, steps and repairs end; the rest takes what it takes");
   c.option("--correspond", "FILE", &o->correspondence,
            "SOURCE's vertices on TARGET, as innermap correspond or an earlier map wrote them")

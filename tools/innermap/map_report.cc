@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "innermap/mesh/check.h"
 #include "report/figures.h"
 #include "report/page/contents.h"

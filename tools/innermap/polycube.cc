@@ -1,15 +1,12 @@
 // `innermap polycube`: a solid as a few equal cubes.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "commands.h"
 #include "innermap/core/memory.h"
 #include "innermap/mesh/mesh_file.h"
 #include "innermap/tetra/hexahedralize.h"
-#include "inputs.h"
 #include "polycube_report.h"
 #include "report/report_figures.h"
 
@@ -24,7 +21,6 @@ struct PolycubeOptions {
 };
 
 void run(const PolycubeOptions& options, Context& context) {
-  requireMeshFile("--output", options.output);
   context.output(options.output);
   if (!options.picture.empty()) context.output(options.picture);
   const Mesh mesh = readCleanSurface(options.mesh, options.surface, context);
@@ -58,10 +54,7 @@ Command makePolycubeCommand() {
       "does. The surface's vertices stand close enough to be mapped (innermap map OUT MESH "
       "--aligned). One closed body, whose mesh may have any number of handles and cavities.");
   addFillOptions(c, o->mesh, o->settings, o->surface);
-  c.option("--output", "FILE", &o->output, "the surface of the cubes, a .obj or .ply file")
-      .shortName("-o")
-      .required()
-      .writes({".obj", ".ply"});
+  c.outputFile(&o->output, {".obj", ".ply"}, "the surface of the cubes, a .obj or .ply file");
   c.option("--pieces", "K", &o->pieces, "squares along a block's edge, of two triangles each")
       .range(1, kMostBlockPieces)
       .defaults("as many as give 3000 vertices");

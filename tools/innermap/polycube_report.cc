@@ -3,15 +3,10 @@
 #include <fmt/format.h>
 
 #include "innermap/io/solid_pictures.h"
-#include "map_report.h"
 #include "report/figures.h"
 
 namespace innermap::tool {
 namespace {
-
-bool endsWith(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
 
 // Each triangle with corners of its own, so that it is shaded flat.
 PictureSurface flat(const Mesh& mesh, const std::string& label, const Vec3& colour) {
@@ -35,11 +30,6 @@ void addFillOptions(Command& c, std::string& mesh, PolycubeSettings& polycube,
   c.positional("MESH", &mesh, "mesh file: .obj, .ply, .off or .stl");
   c.settings(describe(polycube));
   addSurfaceOptions(c, surface);
-}
-
-void requireMeshFile(const std::string& option, const std::string& path) {
-  if (!endsWith(path, ".obj") && !endsWith(path, ".ply"))
-    throw UsageError(option + " " + path + ": must end in .obj or .ply");
 }
 
 void reportPolycube(const Polycube& cube, Context& context) {

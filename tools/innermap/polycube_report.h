@@ -13,9 +13,6 @@ namespace innermap::tool {
 void addFillOptions(Command& c, std::string& mesh, PolycubeSettings& polycube,
                     SurfaceOptions& surface);
 
-// Throws UsageError unless the path ends in .obj or .ply.
-void requireMeshFile(const std::string& option, const std::string& path);
-
 // "polycube"; a line, and one for each part that is missed.
 void reportPolycube(const Polycube& cube, Context& context);
 

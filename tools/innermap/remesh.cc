@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 
 #include "cell_report.h"
@@ -16,7 +15,6 @@
 #include "inputs.h"
 #include "job_cost.h"
 #include "report/figures.h"
-#include "section_options.h"
 
 namespace innermap::tool {
 namespace {
@@ -28,9 +26,7 @@ struct RemeshOptions {
 };
 
 void reportRemesh(const Remesh& result, double diagonal, Context& context) {
-  Report& report = context.report();
-  report.add("remesh", figures(result, diagonal));
-  addSeconds(report.seconds, result.seconds);
+  context.report().add("remesh", figures(result, diagonal));
   context.print(fmt::format(
       "inverted: {} carried, {} repaired; vertices moved rms {:.2e}, max {:.2e}, {} swaps, {} "
       "collapses\nboundary's vertices off the surface: rms {:.2e}, max {:.2e} (of the diagonal)\n",
@@ -61,8 +57,6 @@ void write(const RemeshOptions& options, Remesh& result, Context& context) {
 void run(const RemeshOptions& options, Context& context) {
   if (!isCellFile(options.cells))
     throw UsageError(options.cells + ": must be a .vtu, .msh or .mesh file");
-  if (!isCellFile(options.output))
-    throw UsageError("--output " + options.output + ": must end in .vtu, .msh or .mesh");
   context.output(options.output);
   if (!options.picture.empty()) context.output(options.picture);
   const MappedSolid mapped = readMapFile(options.map, context);
@@ -95,8 +89,7 @@ void run(const RemeshOptions& options, Context& context) {
   const Mesh& onto = surface ? *surface : own;
   context.spend(Context::kMostOfTime);
   Remesh result = remeshCells(file.mesh, mapped, settings);
-  for (const std::string& note : result.notes) context.note(note);
-  for (const std::string& warning : result.warnings) context.warning(warning);
+  context.tell(result);
   reportRemesh(result, boundingBox(onto).diagonal(), context);
   reportCells(result.mesh, result.quality, result.proof, context);
   if (const std::string map = linearMapStatement(result.sourceProof, result.proof); !map.empty())
@@ -131,11 +124,8 @@ Command makeRemeshCommand() {
                "the mesh whose surface the boundary goes onto, as it was given to map; left out: "
                "the map's own, the source's triangles where it takes them")
       .optional();
-  c.option("--output", "FILE", &o->output,
-           "the .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file to write")
-      .shortName("-o")
-      .required()
-      .writes({".vtu", ".msh", ".mesh"});
+  c.outputFile(&o->output, {".vtu", ".msh", ".mesh"},
+               "the .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file to write");
   c.limitTime("after which repairing and improving end");
   c.settings(describe(o->settings));
   addCellPicture(

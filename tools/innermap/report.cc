@@ -11,7 +11,6 @@
 
 #include "commands.h"
 #include "innermap/core/run.h"
-#include "innermap/field/field_file.h"
 #include "innermap/io/vdb_file.h"
 #include "innermap/mesh/mesh_file.h"
 #include "inputs.h"

@@ -3,9 +3,6 @@
 
 #include <openvdb/openvdb.h>
 
-#include <optional>
-#include <string>
-
 #include "command.h"
 #include "innermap/io/pictures.h"
 #include "innermap/levelset/solid.h"

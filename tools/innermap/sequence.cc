@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "commands.h"
 #include "core/file.h"
@@ -164,9 +163,7 @@ Command makeSequenceCommand() {
       "skipped; the exit code is then 1.");
   c.positional("SOURCE", &o->rest, "mesh of the rest pose: .obj, .ply, .off or .stl; or glTF");
   addFrameArgument(c, o->frames);
-  c.option("--output", "FOLDER", &o->output, "where the files go; made when missing")
-      .shortName("-o")
-      .required();
+  c.outputFolder(&o->output);
   addFrameOptions(c, o->frames);
   FrameFitterSettings& fitting = o->frames.fitting;
   c.settings(describeProof(&fitting.prove, &fitting.proofCells));

@@ -1,7 +1,6 @@
 // What `sequence` writes of its frames, whoever made them.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 

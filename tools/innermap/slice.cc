@@ -11,7 +11,6 @@
 #include "inputs.h"
 #include "lists.h"
 #include "report/figures.h"
-#include "section_options.h"
 
 namespace innermap::tool {
 namespace {

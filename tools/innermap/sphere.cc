@@ -6,7 +6,6 @@
 #include "innermap/core/memory.h"
 #include "innermap/mesh/mesh_file.h"
 #include "inputs.h"
-#include "map_report.h"
 #include "report/figures.h"
 #include "report/report_figures.h"
 
@@ -19,7 +18,6 @@ struct Options {
 };
 
 void run(const Options& options, Context& context) {
-  requirePly("--output", options.output);
   context.output(options.output);
   Mesh mesh = readMeshFile(options.mesh, context);
   const std::size_t vertices = mesh.vertices.size();
@@ -55,10 +53,7 @@ Command makeSphereCommand() {
       "that "
       "runs through itself the outer surface is laid out.");
   c.positional("MESH", &o->mesh, "a closed mesh: .obj, .ply, .off or .stl");
-  c.option("--output", "FILE", &o->output, "the .ply file to write")
-      .shortName("-o")
-      .required()
-      .writes({".ply"});
+  c.outputFile(&o->output, {".ply"}, "the .ply file to write");
   addSurfaceOptions(c, o->surface);
   c.example("innermap sphere cow.obj -o cow_sphere.ply");
   c.run([o](Context& context) { run(*o, context); });

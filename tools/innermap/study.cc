@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <ostream>
 
 #include "commands.h"
 #include "core/share.h"
@@ -307,9 +306,7 @@ Command makeStudyCommand() {
       "ended, one with other lists makes the new runs alone. Runs over --max-memory are left out.");
   c.positional("SOURCE", &o->source, "mesh file: .obj, .ply, .off or .stl");
   c.positional("TARGET", &o->target, "a pose of it; left out with --correspond").optional();
-  c.option("--output", "FOLDER", &o->output, "where the files go; made when missing")
-      .shortName("-o")
-      .required();
+  c.outputFolder(&o->output);
   c.option("--correspond", "FILE", &o->correspondence,
            "SOURCE's vertices on an unrelated target, as innermap correspond wrote them")
       .reads();

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "cell_report.h"
 #include "commands.h"
@@ -16,7 +15,6 @@
 #include "job_cost.h"
 #include "map_report.h"
 #include "report/figures.h"
-#include "section_options.h"
 
 namespace innermap::tool {
 namespace {
@@ -69,8 +67,6 @@ void fillReport(const Tetrahedralization& result, const Mesh& mesh, const Solid&
 }
 
 void run(const TetrahedralizeOptions& options, Context& context) {
-  if (!isCellFile(options.output))
-    throw UsageError("--output " + options.output + ": must end in .vtu, .msh or .mesh");
   context.output(options.output);
   if (!options.picture.empty()) context.output(options.picture);
   const Mesh mesh = readMeshFile(options.mesh, context);
@@ -128,11 +124,8 @@ Command makeTetrahedralizeCommand() {
       "with a lattice twice as fine. Each cell's least and greatest dihedral angle stand in the "
       "file (.vtu and .msh).");
   c.positional("MESH", &o->mesh, "mesh file: .obj, .ply, .off or .stl");
-  c.option("--output", "FILE", &o->output,
-           "the .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file to write")
-      .shortName("-o")
-      .required()
-      .writes({".vtu", ".msh", ".mesh"});
+  c.outputFile(&o->output, {".vtu", ".msh", ".mesh"},
+               "the .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file to write");
   c.settings(without(describe(o->settings), {"keep_topology"}));
   c.flag("--any-topology", &o->anyTopology,
          "warn, and go on, where the solid's topology cannot be kept")

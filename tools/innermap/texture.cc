@@ -148,10 +148,7 @@ Command makeTextureCommand() {
   c.positional("IMAGE", &o->image,
                "the texture, in any format of OpenImageIO; with <UDIM> in its name, a set of tiles")
       .optional();
-  c.option("--output", "FILE", &o->output, "the .vdb file to write")
-      .shortName("-o")
-      .required()
-      .writes({".vdb"});
+  c.outputFile(&o->output, {".vdb"}, "the .vdb file to write");
   c.settings(describe(o->texture));
   c.settings(describe(o->images));
   c.settings(describe(o->grid));

@@ -127,9 +127,7 @@ Command makeTransferDistanceCommand() {
       "`surface`), sections of both in the same colours, blue to red (source.png, target.png), "
       "and report.json into a folder.");
   c.positional("MAP", &o->map, "a map.ply written by fit or map");
-  c.option("--output", "FOLDER", &o->output, "where the five files go; made when missing")
-      .shortName("-o")
-      .required();
+  c.outputFolder(&o->output, "where the five files go; made when missing");
   c.settings(describe(o->grid, "each solid"));
   addSectionOptions(c, o->section);
   c.option("--range", "LO,HI", &o->range, "distances that are blue and red")

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "innermap/transfer/carry.h"
 #include "inputs.h"
 #include "lists.h"

@@ -1,8 +1,6 @@
 // `innermap verify`: what a map's file claims to be proven, proven again.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "commands.h"
 #include "innermap/fit/mapped_solid.h"
 #include "inputs.h"

@@ -11,6 +11,7 @@
 #include "innermap/io/volume_texture.h"
 #include "innermap/levelset/level_set.h"
 #include "inputs.h"
+#include "job_cost.h"
 #include "lists.h"
 #include "map_report.h"
 #include "report/figures.h"
@@ -76,6 +77,8 @@ void runMesh(const VoxelizeOptions& options, Context& context) {
   const double voxelSize = voxelSizeFor(solid, settings);
   if (const std::string note = voxelSizeNote(solid, settings); !note.empty()) context.note(note);
   const std::uint64_t need = voxelizeMemory(solid, settings, mesh, options.fog, options.attributes);
+  const JobSize size = jobSize(solid, settings);
+  context.expect({stageOf("level set", size), stageOf("writing the VDB file", size)});
   if (context.dryRun())
     return context.plan({fmt::format("voxelize {} with voxels of {:.6g} to {}", options.mesh,
                                      voxelSize, options.output)},

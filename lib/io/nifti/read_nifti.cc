@@ -8,7 +8,6 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <optional>
 
 #include "core/byte_order.h"
 #include "core/file_bytes.h"

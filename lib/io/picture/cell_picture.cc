@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 #include "innermap/io/solid_pictures.h"
 #include "io/picture/detail/picture.h"
@@ -101,7 +102,7 @@ void checkSettings(const CellMesh& mesh, const std::vector<double>& values,
                    const CellPictureSettings& settings) {
   if (values.size() != mesh.tetrahedra.size() + mesh.hexahedra.size())
     throw DataError("picture of " + mesh.name + ": not as many values as cells");
-  if (!(settings.at >= 0 && settings.at <= 1)) throw SettingError("at", "must lie between 0 and 1");
+  requireNumber("at", settings.at, {0, 1});
   if (!(norm(settings.direction) > 0))
     throw SettingError("direction", "must have a length above 0");
   if (!(std::abs(settings.red - settings.blue) > 0))

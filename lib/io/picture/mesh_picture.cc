@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/io/solid_pictures.h"
@@ -216,8 +217,7 @@ double aspect(const PictureSurface& surface, const std::vector<Vec3>& from) {
 }
 
 void check(const std::vector<PictureSurface>& surfaces, const MeshPictureSettings& settings) {
-  if (settings.pixels < 64 || settings.pixels > 4096)
-    throw SettingError("pixels", "must be from 64 to 4096");
+  requireNumber("pixels", settings.pixels, {64, 4096});
   if (settings.from.empty()) throw SettingError("from", "give one direction at least");
   for (const Vec3& direction : settings.from)
     if (!(norm(direction) > 0) || !isFinite(direction))

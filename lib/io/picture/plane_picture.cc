@@ -1,6 +1,6 @@
-#include <algorithm>
 #include <cmath>
 
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 #include "innermap/io/solid_pictures.h"
 #include "io/picture/detail/picture.h"
@@ -46,8 +46,8 @@ PictureSurface planeSurface(const Box3& box, const PlaneFunction& function,
 void writePlanePicture(const std::string& path, const Box3& box,
                        const std::vector<PlaneFunction>& functions,
                        const PlanePictureSettings& settings) {
-  if (settings.axis < 0 || settings.axis > 2) throw SettingError("axis", "must be 0, 1 or 2");
-  if (!(settings.at >= 0 && settings.at <= 1)) throw SettingError("at", "must lie between 0 and 1");
+  requireNumber("axis", settings.axis, {0, 2});
+  requireNumber("at", settings.at, {0, 1});
   if (!(std::abs(settings.red - settings.blue) > 0))
     throw SettingError("red", "must differ from blue");
   if (functions.empty() || box.empty()) throw DataError("picture of a plane: nothing to show");

@@ -1,6 +1,5 @@
 // What a .usda file says of its volumes, of which it needs to hold no more than writeUsdVolume()
 // writes: attributes of a line each, and samples.
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <string_view>

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <istream>
-#include <map>
-#include <set>
 
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"

@@ -1,8 +1,5 @@
 // Grids in other axes and units.
-#include <fmt/format.h>
 
-#include <array>
-#include <limits>
 #include <type_traits>
 
 #include "evaluate/topology.h"

@@ -1,5 +1,4 @@
 // What NanoVDB files say of their grids, from the segments' headers: nanovdb/util/IO.h.
-#include <fmt/format.h>
 
 #include <cstring>
 

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <map>
 #include <queue>
-#include <set>
 
 #include "innermap/core/run.h"
 #include "innermap/lattice/cell_mesh.h"

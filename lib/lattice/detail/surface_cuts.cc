@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "innermap/core/run.h"
 #include "innermap/core/vec3.h"

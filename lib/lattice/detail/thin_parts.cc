@@ -1,7 +1,6 @@
 #include "lattice/detail/thin_parts.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <mutex>
 

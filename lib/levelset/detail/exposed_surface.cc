@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
-#include <numeric>
 #include <unordered_map>
 
 #include "core/disjoint_sets.h"

@@ -2,7 +2,6 @@
 
 #include <cstdlib>
 #include <cstring>
-#include <initializer_list>
 #include <string>
 
 // Absent from OpenBLAS built for one processor, and from other libraries.

@@ -4,7 +4,6 @@
 #include <lapacke.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "core/point_grid.h"
 #include "innermap/core/error.h"

@@ -9,7 +9,6 @@
 #include <fstream>
 #include <map>
 #include <ostream>
-#include <string_view>
 
 #include "core/file.h"
 #include "core/unfinished.h"

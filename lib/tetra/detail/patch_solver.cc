@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <unordered_map>
 
 #include "innermap/core/run.h"
 #include "lattice/untangle.h"

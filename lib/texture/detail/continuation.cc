@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/pi.h"
+#include "core/require_number.h"
 #include "evaluate/active_region.h"
 #include "evaluate/visit_field.h"
 #include "innermap/core/error.h"
@@ -196,11 +197,9 @@ std::vector<Vec3fGrid::Ptr> continueInside(const HarmonicField& field, const Sol
                                            const ContinuationSettings& settings) {
   if (field.channels() % 3 != 0)
     throw DataError("continuation: the number of channels is not a multiple of three");
-  if (!(settings.skin >= 0 && settings.skin <= 3))
-    throw SettingError("skin", "must lie in [0, 3] voxels");
-  if (!(settings.spacing >= 0) || !std::isfinite(settings.spacing))
-    throw SettingError("spacing", "must not be negative");
-  if (!(settings.accuracy > 0)) throw SettingError("accuracy", "must be positive");
+  requireNumber("skin", settings.skin, {0, 3}, "voxels");
+  requireNumber("spacing", settings.spacing, {0});
+  requireNumber("accuracy", settings.accuracy, above(0));
   return Continuation(field, solid, levelSet, boundary, settings).run();
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "innermap/core/error.h"
+#include "core/require_number.h"
 #include "innermap/core/run.h"
 
 namespace innermap {
@@ -17,7 +17,7 @@ double Segment::distance(const Vec3& p) const {
 
 openvdb::MaskGrid::Ptr voxelsNear(const std::vector<Segment>& segments,
                                   const openvdb::FloatGrid& levelSet, double reach) {
-  if (!(reach > 0) || !std::isfinite(reach)) throw SettingError("reach", "must be positive");
+  requireNumber("reach", reach, above(0));
   auto out = openvdb::MaskGrid::create();
   out->setTransform(levelSet.transform().copy());
   auto near = out->getAccessor();

@@ -1,7 +1,6 @@
 #include "transfer/detail/cell_nodes.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "innermap/core/run.h"

@@ -1,6 +1,5 @@
 #include "transfer/detail/leaf_index.h"
 
-#include <algorithm>
 #include <array>
 #include <optional>
 

@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <string>
 
+#include "core/require_number.h"
 #include "evaluate/active_region.h"
 #include "evaluate/topology.h"
 #include "innermap/core/error.h"
@@ -151,8 +150,7 @@ void addAround(openvdb::MaskGrid& region, const Solid& solid, double distance,
 
 SourceLattice makeSourceLattice(const Solid& solid, const OutsideSettings& outside,
                                 const openvdb::GridPtrVec& grids) {
-  if (!(outside.distance >= 0 && outside.distance <= 1))
-    throw SettingError("outside", "must lie in [0, 1] of the diagonal");
+  requireNumber("outside", outside.distance, {0, 1}, "of the diagonal");
   SourceLattice out;
   LevelSetSettings settings;
   settings.resolution = latticeResolution(solid, outside, grids);

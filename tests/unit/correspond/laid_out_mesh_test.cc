@@ -33,29 +33,6 @@ TEST(LayOutMesh, TakesACleanMeshAsItIs) {
   EXPECT_EQ(laid.seconds[1].first, "lay out");
 }
 
-TEST(LayOutMesh, ClosesTheHolesOfAnOpenMesh) {
-  const LaidOutMesh laid = layOutMesh(opened(blob("open.obj", 2, 0.5), 6));
-  EXPECT_FALSE(laid.outer);
-  EXPECT_GT(laid.shells().caps, 0);
-  EXPECT_EQ(static_cast<int>(laid.caps().size()), laid.shells().caps);
-  EXPECT_TRUE(anyHas(laid.notes, "open.obj: ")) << "what was capped";
-}
-
-TEST(LayOutMesh, TakesTheOuterSurfaceOfPartsThatOverlap) {
-  const Mesh mesh = overlapping("two.obj");
-  LayOutSettings settings;
-  settings.outerResolution = 20;
-  const LaidOutMesh laid = layOutMesh(mesh, settings);
-  ASSERT_TRUE(laid.outer);
-  EXPECT_FALSE(laid.ownNumbers());
-  EXPECT_EQ(laid.shells().mesh.vertices.size(), laid.outer->mesh.vertices.size());
-  EXPECT_EQ(laid.handles(), 0);
-  EXPECT_EQ(laid.shells().shells.size(), 1u);
-  EXPECT_EQ(laid.mesh.vertices.size(), mesh.vertices.size());
-  EXPECT_LT(laid.volume(), signedVolume(mesh)) << "what is in both balls counts once";
-  EXPECT_TRUE(anyHas(laid.notes, "two.obj: "));
-}
-
 TEST(LayOutMesh, KnowsTheCapsOfAnOpenMeshThatOverlaps) {
   LayOutSettings settings;
   settings.outerResolution = 20;
@@ -117,29 +94,6 @@ TEST(LayOutMesh, CanBeCancelled) {
   LayOutSettings settings;
   const RunScope scope(run);
   EXPECT_THROW(layOutMesh(blob("a.obj", 1, 0.5), settings), Cancelled);
-}
-
-TEST(OnSphere, KeepsTheMeshAndFlipsNothing) {
-  Mesh mesh = blob("a.obj", 2, 0.8, {2, 1, 0.7});
-  mesh.vertices.push_back({0, 0, 0});  // loose
-  const MeshOnSphere sphere = onSphere(layOutMesh(mesh));
-  EXPECT_EQ(sphere.mesh.triangles, mesh.triangles);
-  ASSERT_EQ(sphere.mesh.vertices.size(), mesh.vertices.size());
-  for (const Vec3& p : sphere.mesh.vertices) EXPECT_NEAR(norm(p), 1, 1e-12);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    EXPECT_GT(
-        tripleProduct(sphere.mesh.vertices[a], sphere.mesh.vertices[b], sphere.mesh.vertices[c]),
-        0);
-  }
-  EXPECT_EQ(sphere.quality.flips, 0u);
-  EXPECT_NEAR(sphere.quality.degree, 1, 1e-9);
-}
-
-TEST(OnSphere, RefusesHandles) {
-  const LaidOutMesh laid = layOutMesh(shapes::torus(12, 8));
-  EXPECT_EQ(laid.handles(), 1);
-  EXPECT_THROW(onSphere(laid), DataError);
 }
 
 TEST(LayOutMemory, GrowsWithTheVertices) { EXPECT_GT(layOutMemory(20000), layOutMemory(10000)); }

@@ -48,7 +48,7 @@ TEST(ReadLandmarks, TakesVerticesPointsAndBoth) {
   EXPECT_EQ(list.pairs[3].onB.vertex, 4);
 }
 
-TEST(ReadLandmarks, NamesFileAndLineOfWhatItRefuses) {
+TEST(Landmarks, FileAndLineOfWhatIsRefusedAreNamed) {
   const std::vector<std::vector<std::string>> cases = {
       {"", "is empty"},
       {"# nothing\n", "no landmarks"},
@@ -61,18 +61,8 @@ TEST(ReadLandmarks, NamesFileAndLineOfWhatItRefuses) {
       {"1.5 2\n", "line 1", "1.5"},
       {"99999999999999999999 2\n", "line 1"},
       {"nan 0 0 1 0 0\n", "line 1", "nan"},
-      {std::string(5000, '1') + " 2\n", "line 1", "too long"}};
-  for (const std::vector<std::string>& words : cases) {
-    const std::string message = refusalOf(words[0]);
-    EXPECT_NE(message.find("pairs.txt: "), std::string::npos) << words[0];
-    for (std::size_t i = 1; i < words.size(); ++i)
-      EXPECT_NE(message.find(words[i]), std::string::npos) << words[i] << " in " << message;
-  }
-  EXPECT_THROW(readLandmarks("no such file.txt"), FileError);
-}
-
-TEST(PlaceLandmarks, NamesFileAndLineOfPlacesThatCannotBe) {
-  const std::vector<std::vector<std::string>> cases = {
+      {std::string(5000, '1') + " 2\n", "line 1", "too long"},
+      // Places that cannot be.
       {"42 1\n", "line 1", "42", "a.obj"},
       {"# c\n1 162\n", "line 2", "162", "b.obj"},
       {"0 0 0 0 0 0\n", "line 1", "away from", "a.obj"},
@@ -84,6 +74,7 @@ TEST(PlaceLandmarks, NamesFileAndLineOfPlacesThatCannotBe) {
     for (std::size_t i = 1; i < words.size(); ++i)
       EXPECT_NE(message.find(words[i]), std::string::npos) << words[i] << " in " << message;
   }
+  EXPECT_THROW(readLandmarks("no such file.txt"), FileError);
 }
 
 TEST(PlaceLandmarks, CountsThePairsOfAListThatIsFromNoFile) {

@@ -67,30 +67,6 @@ double integral(const Function& f) {
   return sum;
 }
 
-TEST(EvaluateMap, RigidMotionsHaveNoDeformationEnergy) {
-  const Vec3 x = turned({1, 0, 0}), y = turned({0, 1, 0}), z = turned({0, 0, 1});
-  const Mat3 m{{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
-  const MapGrids g = evaluate(affineMap(m, {5, 6, 7}), Solid(cube()), 32);
-  EXPECT_LT(g.deformationTotal, 1e-28);
-  EXPECT_NEAR(g.harmonicTotal, 3, 1e-12);
-  EXPECT_GT(std::abs(g.volume - 8), 1e-3);  // the voxels' volume is not the solid's
-  EXPECT_NEAR(g.jacobianMin, 1, 1e-12);
-  EXPECT_NEAR(g.jacobianMax, 1, 1e-12);
-  EXPECT_EQ(g.foldedFraction, 0);
-}
-
-TEST(EvaluateMap, UniformScalingHasClosedForms) {
-  const double s = 1.7;
-  EvaluateSettings settings;
-  settings.targetVolume = 8 * s * s * s;
-  const MapGrids g =
-      evaluate(affineMap({{{s, 0, 0}, {0, s, 0}, {0, 0, s}}}, {}), Solid(cube()), 32, settings);
-  const double e = s * s - 1, psi = e * e * (4.5 * 0.0335 + 3 * 0.0224);
-  EXPECT_NEAR(g.harmonicTotal, 3, 1e-12);  // unit volumes: as the identity
-  EXPECT_NEAR(g.deformationTotal, psi * g.volume, 1e-9);
-  EXPECT_NEAR(g.volume, 8, 8 * 0.01);
-}
-
 TEST(EvaluateMap, ReflectionIsFoldedEverywhere) {
   const MapGrids g =
       evaluate(affineMap({{{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {}), Solid(cube()), 24);
@@ -194,18 +170,6 @@ TEST(EvaluateMap, ManyChargesAreSummedToTheAccuracy) {
               3 * (accuracy * extent + rounding));
     EXPECT_LT(jacobian, 1e-2);
   }
-}
-
-TEST(EvaluateMap, SameBitsForAnyNumberOfThreads) {
-  const Solid solid(cube());
-  const MapGrids all = evaluate(chargedMap(), solid, 40);
-  const ThreadLimit one(1);
-  const MapGrids single = evaluate(chargedMap(), solid, 40);
-  EXPECT_EQ(all.harmonicTotal, single.harmonicTotal);
-  EXPECT_EQ(all.deformationTotal, single.deformationTotal);
-  EXPECT_EQ(all.jacobianMin, single.jacobianMin);
-  for (auto v = all.map->cbeginValueOn(); v; ++v)
-    ASSERT_EQ(*v, single.map->tree().getValue(v.getCoord()));
 }
 
 // A charge just outside a face of the cube pushes it in until it folds.

@@ -5,7 +5,6 @@
 #include "core/memory_limit.h"
 #include "fit/test_pairs.h"
 #include "innermap/core/error.h"
-#include "innermap/core/memory.h"
 #include "innermap/evaluate/grids.h"
 #include "innermap/fit/fit_map.h"
 #include "innermap/levelset/level_set.h"
@@ -185,12 +184,6 @@ TEST(MapGrids, MarkWhatLandsOutsideTheTarget) {
   EXPECT_EQ(out, grids.outside->activeVoxelCount());
 }
 
-TEST(MapGrids, VoxelSizeStandsInForTheResolution) {
-  MapGridSettings settings;
-  settings.voxelSize = 0.2;
-  EXPECT_DOUBLE_EQ(evaluateOnGrid(affineFit(), settings).voxelSize, 0.2);
-}
-
 TEST(MapGrids, CountTheirMemory) {
   const Solid solid(ball(2));
   MapGridSettings settings;
@@ -207,21 +200,6 @@ TEST(MapGrids, CountTheirMemory) {
     const MemoryLimit limit(1000);
     EXPECT_THROW(evaluateOnGrid(affineFit(), settings), MemoryError);
   }
-}
-
-// A plate between two layers of voxel centres, wherever the lattice begins: ten would fit between.
-TEST(MapGrids, SolidsThinnerThanTheVoxelsAreRefused) {
-  const Mesh plate = shapes::box({0, 0, 0}, {1, 1, 1e-3});
-  FitMapSettings fitting;
-  fitting.shell = ShellSettings{};
-  fitting.shell->sources = 50;
-  const MapFit fit = fitMap(plate, moved(plate, affineMap), fitting);
-  MapGridSettings settings;
-  settings.voxelSize = 0.1;
-  const Solid& solid = fit.solid();
-  const double layer = transformFor(solid, settings.voxelSize)->worldToIndex({0.5, 0.5, 0}).z();
-  ASSERT_NE(std::floor(layer), layer);
-  EXPECT_THROW(evaluateOnGrid(fit, settings), DataError);
 }
 
 class Frames : public testing::Test {

@@ -243,19 +243,6 @@ TEST(AdaptiveFit, DoesNotChaseJumps) {
   EXPECT_LT(2 * known.field.sources().size(), unknown.field.sources().size());
 }
 
-TEST(AdaptiveFit, SameForAnyNumberOfThreads) {
-  const auto weights = [] {
-    Ball ball;
-    ball.settings.tolerance = 5e-4;
-    return fitToTolerance(ball.problem, ball.settings).field.weights();
-  };
-  const Matrix all = weights();
-  const ThreadLimit one(1);
-  const Matrix single = weights();
-  ASSERT_EQ(all.rows(), single.rows());
-  EXPECT_TRUE(std::equal(all.data(), all.data() + 3 * all.rows(), single.data()));
-}
-
 TEST(AdaptiveFit, RefusesBadSettings) {
   for (const double tolerance : {0.0, -1.0, 1e-13, 2.0, std::nan("")}) {
     Ball ball;

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "fit/test_pairs.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"

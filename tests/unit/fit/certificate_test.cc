@@ -12,7 +12,6 @@
 #include "innermap/core/run.h"
 #include "innermap/fit/fit_map.h"
 #include "innermap/fit/surface_problem.h"
-#include "sample/surface_samples.h"
 
 namespace innermap {
 namespace {

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "core/temporary_folder.h"
 #include "fit/test_pairs.h"
 #include "innermap/core/error.h"

@@ -3,7 +3,6 @@
 
 #include <set>
 
-#include "core/random.h"
 #include "innermap/core/error.h"
 #include "innermap/io/pictures.h"
 #include "io/test_files.h"

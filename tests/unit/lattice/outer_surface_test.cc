@@ -101,17 +101,6 @@ TEST(OuterSurface, LeavesOutOtherPiecesIfOnePieceIsWanted) {
   EXPECT_NEAR(one.leftOutShare, 1.0 / 9, 0.02);
 }
 
-TEST(OuterSurface, IsTheSameForAnyNumberOfThreads) {
-  const Mesh coil = shapes::coil(2.2 * kPi);
-  const Mesh many = outer(coil, 32, 0).mesh;
-  const ThreadLimit one(1);
-  const Mesh single = outer(coil, 32, 0).mesh;
-  EXPECT_EQ(many.triangles, single.triangles);
-  ASSERT_EQ(many.vertices.size(), single.vertices.size());
-  for (std::size_t v = 0; v < many.vertices.size(); ++v)
-    EXPECT_EQ(norm(many.vertices[v] - single.vertices[v]), 0);
-}
-
 TEST(OuterSurface, RefusesWhatCannotBe) {
   const Mesh ball = shapes::icosphere(2);
   EXPECT_THROW(outer(ball, 7), SettingError);

@@ -112,22 +112,6 @@ TEST(LevelSet, OverlapsCavitiesAndHoles) {
   }
 }
 
-TEST(LevelSet, SameForAnyNumberOfThreads) {
-  const Solid solid(shapes::torus(60, 30));
-  FloatGrid::Ptr one, four;
-  {
-    const ThreadLimit limit(1);
-    one = makeLevelSet(solid, resolution(50));
-  }
-  {
-    const ThreadLimit limit(4);
-    four = makeLevelSet(solid, resolution(50));
-  }
-  ASSERT_TRUE(one->tree().hasSameTopology(four->tree()));
-  auto other = four->cbeginValueAll();
-  for (auto value = one->cbeginValueAll(); value; ++value, ++other) EXPECT_EQ(*value, *other);
-}
-
 TEST(LevelSet, ScaleAndPlaceDoNotMatter) {
   const Mesh mesh = shapes::torus(60, 30);
   const Solid solid(mesh);

@@ -5,8 +5,6 @@
 #include <chrono>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "core/random.h"
 #include "innermap/core/error.h"

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/random.h"
 #include "innermap/core/run.h"
 #include "mesh/shapes.h"
 

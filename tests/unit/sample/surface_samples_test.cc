@@ -31,11 +31,6 @@ bool operator==(const SurfacePoint& x, const SurfacePoint& y) {
   return x.triangle == y.triangle && x.barycentric == y.barycentric;
 }
 
-void expectSame(const std::vector<SurfacePoint>& x, const std::vector<SurfacePoint>& y) {
-  ASSERT_EQ(x.size(), y.size());
-  for (std::size_t i = 0; i < x.size(); ++i) ASSERT_TRUE(x[i] == y[i]) << i;
-}
-
 TEST(RandomSamples, UniformByArea) {
   // Areas 1 : 4 : 0 : 20, and places within a triangle by their third coordinate.
   Mesh mesh;
@@ -104,20 +99,6 @@ TEST(BlueNoise, SamplesKeepTheirDistance) {
     for (const Vec3& p : points) ++octants[(p.x > 0) + 2 * (p.y > 0) + 4 * (p.z > 0)];
     for (const int count : octants) EXPECT_NEAR(count, n / 8.0, 0.04 * n / 8.0);
   }
-}
-
-TEST(BlueNoise, SameForAnyNumberOfThreads) {
-  const Mesh mesh = shapes::torus(40, 20);
-  std::vector<SurfacePoint> one, four;
-  {
-    const ThreadLimit limit(1);
-    one = blueNoiseSamples(mesh, 4000);
-  }
-  {
-    const ThreadLimit limit(4);
-    four = blueNoiseSamples(mesh, 4000);
-  }
-  expectSame(one, four);
 }
 
 TEST(BlueNoise, ScaleAndPlaceDoNotMatter) {

@@ -2,7 +2,6 @@
 
 #include "core/memory_limit.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/solve/kernel_sum.h"
 #include "innermap/solve/solver.h"
 #include "solve/points.h"
@@ -116,20 +115,6 @@ TEST(DenseSolver, OneFactorizationServesManyRightHandSides) {
     for (std::size_t j = 0; j < p.sources.size(); ++j)
       EXPECT_NEAR(s.weights(j, 0), all.weights(j, k), 1e-6);
   }
-}
-
-TEST(DenseSolver, SameBitsForAnyNumberOfThreads) {
-  const Problem p;
-  const Matrix b = harmonicValues(p.collocation), h = harmonicValues(p.heldOut);
-  const auto weights = [&] {
-    return DenseSolver(p.collocation, p.sources, p.heldOut)
-        .solve(b, Regularization::truncatedSvd, h)
-        .weights;
-  };
-  const Matrix all = weights();
-  const ThreadLimit one(1);
-  const Matrix single = weights();
-  EXPECT_TRUE(std::equal(all.data(), all.data() + 450, single.data()));
 }
 
 TEST(DenseSolver, PointsInAPlaneAreNoTrouble) {

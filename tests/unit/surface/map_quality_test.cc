@@ -211,18 +211,6 @@ TEST(MapQuality, SliversDoNotCount) {
   EXPECT_LT(q.energyBackward, 5);
 }
 
-TEST(MapQuality, IsTheSameForAnyNumberOfThreads) {
-  const SurfaceShells a = closedSurfaces(shapes::icosphere(2)),
-                      b = closedSurfaces(scaled(shapes::icosphere(3), {3, 1, 1}));
-  const Correspondence map =
-      through(a, onSphere(turned(a.shells[0].vertices, 0.7)), b, onSphere(b.shells[0].vertices));
-  const MapQuality many = mapQuality(map);
-  const ThreadLimit limit(1);
-  const MapQuality one = mapQuality(map);
-  EXPECT_EQ(std::memcmp(&many.energyForward, &one.energyForward, 2 * sizeof(double)), 0);
-  EXPECT_EQ(std::memcmp(&many.stretch, &one.stretch, sizeof one.stretch), 0);
-}
-
 TEST(MapQuality, CanBeCancelledAndChecksItsSettings) {
   const SurfaceShells a = closedSurfaces(shapes::icosphere(1));
   const Layout layout = onSphere(a.shells[0].vertices);

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "core/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
@@ -100,23 +98,6 @@ TEST(ImproveCells, GoodOnesStay) {
   const CellImprovement done = improveCells(c.mesh, surface, c.cells);
   EXPECT_EQ(done.poorBefore, 0u);
   EXPECT_EQ(done.origin.size(), c.mesh.tetrahedra.size());
-}
-
-TEST(ImproveCells, SameForAnyNumberOfThreads) {
-  std::vector<Tetrahedron> first;
-  Points places;
-  for (const int threads : {1, 2}) {
-    const ThreadLimit limit(threads);
-    Case c;
-    improveCells(c.mesh, c.surface, c.cells);
-    if (first.empty()) {
-      first = c.mesh.tetrahedra;
-      places = c.cells.positions;
-    }
-    EXPECT_EQ(first, c.mesh.tetrahedra);
-    for (std::size_t v = 0; v < places.size(); ++v)
-      ASSERT_EQ(0, norm(places[v] - c.cells.positions[v]));
-  }
 }
 
 TEST(ImproveCells, SaysWhatIsWrongAndIsCancelled) {

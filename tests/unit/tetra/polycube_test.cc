@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include "innermap/core/error.h"
 #include "innermap/mesh/check.h"
 #include "innermap/tetra/hexahedralize.h"
 #include "mesh/shapes.h"
@@ -70,25 +69,6 @@ TEST(Polycube, TellsWhatIsMissed) {
   ASSERT_FALSE(cube.missedParts.empty());
   EXPECT_GT(cube.missedParts[0].centre.x, 1.2);
   EXPECT_GT(cube.missed, cube.missedParts[0].volume);
-}
-
-TEST(Polycube, RefusesWhatItCannotDo) {
-  const Mesh ball = shapes::icosphere(3);
-  EXPECT_THROW(makePolycube(ball, across(1)), SettingError);
-  EXPECT_THROW(makePolycube(ball, across(65)), SettingError);
-  Mesh open = ball;
-  open.triangles.resize(open.triangles.size() - 20);
-  EXPECT_NO_THROW(makePolycube(open, across(8))) << "capped";
-  Mesh two = ball;
-  append(two, shapes::icosphere(3, 1, {3, 0, 0}), false);
-  EXPECT_THROW(makePolycube(two, across(8)), DataError);
-  // Two blocks have no hole; the message says how many do.
-  try {
-    makePolycube(shapes::torus(60, 24), across(2));
-    FAIL();
-  } catch (const DataError& e) {
-    EXPECT_NE(std::string(e.what()).find("1 handle"), std::string::npos);
-  }
 }
 
 }  // namespace

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/tetra/cells.h"
 #include "innermap/tetra/tetrahedralize.h"
 #include "tetra/kuhn_mesh.h"
@@ -18,42 +16,6 @@ CellMesh filled(const Solid& solid, int resolution) {
   TetrahedralizeSettings settings;
   settings.resolution = resolution;
   return tetrahedralize(solid, settings);
-}
-
-const MappedSolid& dented() {
-  static const MappedSolid mapped = test::dentedBall();
-  return mapped;
-}
-
-const CellField* fieldOf(const CellMesh& mesh, const std::string& name) {
-  for (const CellField& f : mesh.vertexFields)
-    if (f.name == name) return &f;
-  return nullptr;
-}
-
-TEST(RemeshCellsRelease, ADentedBallIsTurnedRight) {
-  const CellMesh mesh = filled(dented().solid(), 24);
-  const Remesh made = remeshCells(mesh, dented());
-  EXPECT_GT(made.invertedCarried, 0u);
-  EXPECT_EQ(made.inverted, 0u);
-  EXPECT_EQ(made.repair.notLanded, 0u);
-  EXPECT_LT(made.boundaryMax, 1e-8);
-  EXPECT_GT(made.quality.dihedral.least, 1);
-  EXPECT_GT(made.quality.dihedral.onePercent, 8);
-  ASSERT_NE(fieldOf(made.mesh, "source"), nullptr);
-  // Nothing of the source is lost or inverted: the two are a map.
-  const LinearCellMap map(made.mesh);
-  EXPECT_LT(norm(map.pull(map.push({0.2, 0.1, -0.4}).image).image - Vec3{0.2, 0.1, -0.4}), 1e-9);
-}
-
-TEST(RemeshCellsRelease, KeepsTheConnectivityWhereAsked) {
-  const CellMesh mesh = filled(dented().solid(), 16);
-  RemeshSettings settings;
-  settings.keepConnectivity = true;
-  const Remesh made = remeshCells(mesh, dented(), settings);
-  EXPECT_EQ(made.inverted, 0u);
-  EXPECT_EQ(made.mesh.tetrahedra, mesh.tetrahedra);
-  EXPECT_EQ(made.mesh.vertices.size(), mesh.vertices.size());
 }
 
 TEST(RemeshCells, AffineMapsNeedNoRepairAndTurnFields) {
@@ -108,30 +70,6 @@ TEST(RemeshCells, AffineMapsNeedNoRepairAndTurnFields) {
   }
 }
 
-TEST(RemeshCellsRelease, BringsATargetsMeshBack) {
-  const CellMesh mesh = filled(makeTargetSolid(dented().boundary), 20);
-  RemeshSettings settings;
-  settings.back = true;
-  settings.coarse = 20;
-  const Remesh made = remeshCells(mesh, dented(), settings);
-  EXPECT_EQ(made.inverted, 0u);
-  EXPECT_LT(made.boundaryMax, 1e-8);
-  EXPECT_GT(made.quality.dihedral.least, 1);
-}
-
-TEST(RemeshCellsRelease, SameForAnyNumberOfThreads) {
-  const CellMesh mesh = filled(dented().solid(), 14);
-  Points first;
-  for (const int threads : {1, 2}) {
-    const ThreadLimit limit(threads);
-    const Remesh made = remeshCells(mesh, dented());
-    if (first.empty()) first = made.mesh.vertices;
-    ASSERT_EQ(first.size(), made.mesh.vertices.size());
-    for (std::size_t v = 0; v < first.size(); ++v)
-      ASSERT_EQ(0, norm(first[v] - made.mesh.vertices[v]));
-  }
-}
-
 TEST(RemeshCells, InvertedInputIsCounted) {
   const MappedSolid mapped = test::affineBall();
   CellMesh mesh = filled(mapped.solid(), 8);
@@ -140,19 +78,6 @@ TEST(RemeshCells, InvertedInputIsCounted) {
   EXPECT_EQ(made.invertedAtRest, 1u);
   EXPECT_LE(made.inverted, 1u);
   EXPECT_FALSE(made.notes.empty());
-}
-
-TEST(RemeshCells, RefusesSettingsAndIsCancelled) {
-  const MappedSolid mapped = test::affineBall();
-  const CellMesh mesh = filled(mapped.solid(), 6);
-  RemeshSettings settings;
-  settings.coarse = 3;
-  EXPECT_THROW(remeshCells(mesh, mapped, settings), SettingError);
-  settings = {};
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(remeshCells(mesh, mapped, settings), Cancelled);
 }
 
 }  // namespace

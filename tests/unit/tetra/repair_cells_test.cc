@@ -134,21 +134,6 @@ TEST(RepairCells, AnchorsHoldTheBoundary) {
   EXPECT_LT(ways[1], 0.5 * ways[0]);
 }
 
-TEST(RepairCells, SameForAnyNumberOfThreads) {
-  const CellMesh mesh = kuhnMesh(8);
-  const Mesh surface = surfaceOf(mesh);
-  Points first;
-  for (const int threads : {1, 2}) {
-    const ThreadLimit limit(threads);
-    CarriedCells cells = atRest(mesh, surface);
-    shake(cells, 0.3, 9);
-    repairCells(mesh, surface, cells);
-    if (first.empty()) first = cells.positions;
-    for (std::size_t v = 0; v < first.size(); ++v)
-      ASSERT_EQ(0, norm(first[v] - cells.positions[v])) << v;
-  }
-}
-
 TEST(RepairCells, SaysWhatIsWrongAndIsCancelled) {
   const CellMesh mesh = kuhnMesh(3);
   const Mesh surface = surfaceOf(mesh);

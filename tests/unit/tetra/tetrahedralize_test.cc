@@ -5,10 +5,6 @@
 #include <algorithm>
 #include <map>
 
-#include "core/memory_limit.h"
-#include "core/pi.h"
-#include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/tetra/cells.h"
 #include "mesh/shapes.h"
 
@@ -94,17 +90,6 @@ TEST(Tetrahedralize, EveryCellHasAVertexInside) {
   EXPECT_EQ(std::count(used.begin(), used.end(), false), 0);
 }
 
-TEST(Tetrahedralize, AnEdgeIsALatticeCell) {
-  const Solid solid(shapes::icosphere(3));
-  TetrahedralizeSettings settings;
-  settings.edge = 0.1;
-  const CellMesh mesh = tetrahedralize(solid, settings);
-  // Twelve tetrahedra fill a cell; more, smaller ones along the surface.
-  const double inCells = 12 * solid.volume() / 1e-3;
-  EXPECT_GT(static_cast<double>(mesh.tetrahedra.size()), inCells);
-  EXPECT_LT(static_cast<double>(mesh.tetrahedra.size()), 1.5 * inCells);
-}
-
 // Two slabs that are joined along one side, `gap` apart: a lattice coarser than that joins them.
 Mesh clamp(double gap) {
   const double a = 0.5 - 0.5 * gap, b = 0.5 + 0.5 * gap;
@@ -154,26 +139,6 @@ TEST(Tetrahedralize, ThinWallsAreNotLost) {
   }
 }
 
-TEST(Tetrahedralize, RefusesWithAResolutionThatWouldDo) {
-  // 30 balls in two cells of the lattice.
-  Mesh many = shapes::icosphere(2);
-  for (int i = 0; i < 30; ++i)
-    many = shapes::joined(many, shapes::icosphere(1, 0.01, {0.021 * i, 1.1, 0}));
-  const Solid solid(many);
-  try {
-    tetrahedralize(solid, across(16));
-    FAIL() << "31 components at a resolution of 16";
-  } catch (const DataError& e) {
-    EXPECT_NE(std::string(e.what()).find("31 components"), std::string::npos) << e.what();
-  }
-  TetrahedralizeSettings settings = across(16);
-  settings.keepTopology = false;
-  const Tetrahedralization result = tetrahedralization(solid, settings);
-  ASSERT_FALSE(result.warnings.empty());
-  EXPECT_TRUE(boundaryTopology(result.mesh.vertices, boundaryTriangles(result.mesh)).solid ==
-              result.topology);
-}
-
 TEST(Tetrahedralize, OpenAndOverlappingMeshes) {
   Mesh open = shapes::icosphere(3);
   open.triangles.resize(open.triangles.size() - 4);
@@ -185,81 +150,6 @@ TEST(Tetrahedralize, OpenAndOverlappingMeshes) {
     EXPECT_TRUE(result.warnings.empty());
     EXPECT_EQ(shellOf(result.mesh).euler, 2);
   }
-}
-
-TEST(Tetrahedralize, SharpEdgesAreKept) {
-  const Solid solid(shapes::box({0, 0, 0}, {1, 0.8, 0.6}));
-  TetrahedralizeSettings settings = across(20);
-  settings.features = 30;
-  const Tetrahedralization result = tetrahedralization(solid, settings);
-  EXPECT_EQ(result.sharpCurves, 12u);
-  EXPECT_EQ(result.keptCurves, 12u);
-  EXPECT_LT(result.sharpMax, 0.3 * result.edge);
-  const CellQuality quality = cellQuality(result.mesh);
-  EXPECT_EQ(quality.invertedTetrahedra, 0u);
-  EXPECT_GE(quality.dihedral.least, 5 - 1e-4);
-  EXPECT_LE(quality.greatestAngle, 170 + 1e-4);
-  const Tetrahedralization blunt = tetrahedralization(solid, across(20));
-  EXPECT_LT(std::abs(volumeOf(result.mesh) - solid.volume()),
-            0.3 * std::abs(volumeOf(blunt.mesh) - solid.volume()));
-  settings.features = 100;
-  EXPECT_EQ(tetrahedralization(solid, settings).sharpCurves, 0u);
-  settings.features = 200;
-  EXPECT_THROW(tetrahedralization(solid, settings), SettingError);
-}
-
-TEST(Tetrahedralize, SaysItsMemory) {
-  const Solid solid(shapes::icosphere(3));
-  const StuffingNeed need = tetrahedralizeNeed(solid, across(32));
-  const CellMesh mesh = tetrahedralize(solid, across(32));
-  EXPECT_GE(need.tetrahedra, mesh.tetrahedra.size());
-  EXPECT_GE(need.vertices, mesh.vertices.size());
-  EXPECT_LT(static_cast<double>(need.tetrahedra),
-            1.3 * static_cast<double>(mesh.tetrahedra.size()));
-  TetrahedralizeSettings settings = across(1024);
-  {
-    const MemoryLimit limit(100'000'000);
-    EXPECT_THROW(tetrahedralize(solid, settings), MemoryError);
-  }
-}
-
-TEST(Tetrahedralize, UnitsDoNotMatter) {
-  const Solid solid(shapes::icosphere(3));
-  const CellMesh mesh = tetrahedralize(solid, across(16));
-  for (const double scale : {1e-9, 1e6}) {
-    const Solid other(shapes::transformed(shapes::icosphere(3), scale, {}));
-    const CellMesh scaled = tetrahedralize(other, across(16));
-    expectWellShaped(scaled);
-    EXPECT_NEAR(static_cast<double>(scaled.tetrahedra.size()),
-                static_cast<double>(mesh.tetrahedra.size()), 20);
-    EXPECT_NEAR(volumeOf(scaled) / solid.volume(), std::pow(scale, 3), 0.02 * std::pow(scale, 3));
-  }
-}
-
-TEST(Tetrahedralize, ThreadsDoNotMatter) {
-  const Solid solid(shapes::torus(64, 32));
-  const CellMesh many = tetrahedralize(solid, across(40));
-  const ThreadLimit one(1);
-  const CellMesh few = tetrahedralize(solid, across(40));
-  ASSERT_EQ(many.tetrahedra, few.tetrahedra);
-  for (std::size_t v = 0; v < many.vertices.size(); ++v)
-    EXPECT_EQ(squaredNorm(many.vertices[v] - few.vertices[v]), 0);
-}
-
-TEST(Tetrahedralize, RefusesNonsenseAndCancels) {
-  const Solid solid(shapes::icosphere(2));
-  EXPECT_THROW(tetrahedralize(solid, across(3)), SettingError);
-  EXPECT_THROW(tetrahedralize(solid, across(2000)), SettingError);
-  TetrahedralizeSettings settings;
-  settings.edge = 1;
-  EXPECT_THROW(tetrahedralize(solid, settings), SettingError);
-  settings.edge = -0.1;
-  EXPECT_THROW(tetrahedralize(solid, settings), SettingError);
-  RunContext run;
-  run.cancel();
-  settings = across(32);
-  const RunScope scope(run);
-  EXPECT_THROW(tetrahedralize(solid, settings), Cancelled);
 }
 
 }  // namespace

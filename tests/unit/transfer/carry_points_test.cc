@@ -128,17 +128,6 @@ TEST(CarryPoints, PlacedPointsServeManyMaps) {
   }
 }
 
-TEST(CarryPoints, SameForAnyNumberOfThreads) {
-  const ComposedMap map = chargedMap();
-  const Points points = randomPoints(5000, 0.95);
-  const PointPusher pusher{Solid(ball())};
-  const CarriedPoints many = pusher.push(map, points, true);
-  const ThreadLimit one(1);
-  const CarriedPoints few = pusher.push(map, points, true);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    EXPECT_LE(norm(many.points[i] - few.points[i]), 0.0);
-}
-
 TEST(CarryPoints, DirectionsTurn) {
   const Mat3 stretch{{{2, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   // The plane x + y = 0 becomes x / 2 + y = 0.

@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/memory_limit.h"
 #include "field/affine_map.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"
@@ -53,29 +51,6 @@ TEST(DistanceTransfer, DepthIsExactEverywhereInside) {
   // Beyond any narrow band, and all of the box.
   EXPECT_GT(deepest, 10 * surface->voxelSize()[0]);
   EXPECT_NEAR(double(inside) * std::pow(surface->voxelSize()[0], 3), 2.1 * 1.3 * 1.7, 0.1);
-}
-
-TEST(DistanceTransfer, ThroughASimilarityDistancesScale) {
-  const Mesh mesh = shapes::box(kLower, kUpper);
-  const double c = std::cos(0.7), s = std::sin(0.7);
-  const Mat3 m{{{2 * c, -2 * s, 0}, {2 * s, 2 * c, 0}, {0, 0, 2}}};
-  const Vec3 shift{3, -1, 0.5};
-  const HarmonicMap map = affineMap(m, shift);
-  Mesh moved = mesh;
-  for (Vec3& v : moved.vertices)
-    v = {dot(Vec3{m[0][0], m[0][1], m[0][2]}, v) + shift.x,
-         dot(Vec3{m[1][0], m[1][1], m[1][2]}, v) + shift.y, 2 * v.z + shift.z};
-  const Solid source(mesh), target(moved);
-  const auto surface = levelSet(source);
-  const auto own = depthInside(source, *surface);
-  EvaluateSettings settings;
-  settings.jacobian = settings.harmonicEnergy = settings.deformationEnergy = false;
-  const MapGrids grids = evaluateMap(map, source, *surface, settings);
-  const auto through = depthThrough(*grids.map, target);
-  EXPECT_EQ(through->activeVoxelCount(), own->activeVoxelCount());
-  const auto accessor = own->getConstAccessor();
-  for (auto v = through->cbeginValueOn(); v; ++v)
-    ASSERT_NEAR(*v, 2 * accessor.getValue(v.getCoord()), 2e-5);
 }
 
 TEST(DistanceTransfer, OneCallGivesBothSolidsAndTheFigures) {
@@ -126,38 +101,6 @@ TEST(DistanceTransfer, OverlappingTargetsAreTheirUnion) {
   for (int i = 0; i < 9; ++i)
     EXPECT_NEAR(depth->tree().getValue(openvdb::Coord(i, 0, 0)), 1 - std::abs(-1.2 + 0.3 * i),
                 1e-5 + 2 * target.gap());
-}
-
-TEST(DistanceTransfer, SameForAnyNumberOfThreads) {
-  const Solid solid(shapes::box(kLower, kUpper));
-  const auto surface = levelSet(solid);
-  openvdb::FloatGrid::Ptr first;
-  for (const int threads : {1, 2, 4}) {
-    const ThreadLimit limit(threads);
-    const auto depth = depthInside(solid, *surface);
-    if (!first) first = depth;
-    ASSERT_EQ(depth->activeVoxelCount(), first->activeVoxelCount());
-    const auto accessor = first->getConstAccessor();
-    for (auto v = depth->cbeginValueOn(); v; ++v) ASSERT_EQ(*v, accessor.getValue(v.getCoord()));
-  }
-}
-
-TEST(DistanceTransfer, MemoryAndCancellingAreMinded) {
-  const Solid solid(shapes::box(kLower, kUpper));
-  const auto surface = levelSet(solid);
-  DepthSettings settings;
-  {
-    const MemoryLimit limit(1000);
-    EXPECT_THROW(depthInside(solid, *surface, settings), MemoryError);
-  }
-  settings = {};
-  settings.skin = 30;
-  EXPECT_THROW(depthInside(solid, *surface, settings), SettingError);
-  settings = {};
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(depthInside(solid, *surface, settings), Cancelled);
 }
 
 }  // namespace

@@ -157,18 +157,6 @@ TEST(InverseMapRelease, OutsideEndsAtTheDistanceOrGoesOn) {
   EXPECT_GT(beyond, 1000u);
 }
 
-TEST(InverseMap, SameForAnyNumberOfThreads) {
-  const HarmonicMap map = chargedMap(1);
-  std::vector<Points> found;
-  for (const int threads : {1, 2}) {
-    ThreadLimit limit(threads);
-    found.push_back(invert(map, ball(), 24).sources);
-  }
-  ASSERT_EQ(found[0].size(), found[1].size());
-  for (std::size_t i = 0; i < found[0].size(); ++i)
-    for (int a = 0; a < 3; ++a) ASSERT_EQ(found[0][i][a], found[1][i][a]);
-}
-
 TEST(InverseMap, InvertsPointsBetweenVoxels) {
   const HarmonicMap map = chargedMap();
   const Solid source(ball()), target(moved(ball(), map));

@@ -7,9 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/memory_limit.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/transfer/push_pull.h"
 #include "transfer/test_maps.h"
 
@@ -235,55 +233,6 @@ TEST(PushDensity, WhatLiesAroundIsKeptToo) {
   EXPECT_NEAR(cut.before / (2 * 4.18879 * std::pow(reach, 3)), 1, 0.02);
   EXPECT_NEAR(cut.before + cut.left, faded.before, 1e-6);
   EXPECT_NEAR(cut.after / cut.before, 1, 1e-5);
-}
-
-TEST(PushDensity, SameBytesForAnyNumberOfThreads) {
-  Draws draw(7);
-  const HarmonicMap map = chargedMap();
-  const Solid source(ball());
-  const auto to = levelSetOf(Solid(moved(ball(), map)), 40);
-  const auto grid = randomDensity<openvdb::DoubleGrid>(20, openvdb::math::Mat4d::identity(), draw);
-  const auto run = [&](int threads) {
-    const ThreadLimit limit(threads);
-    return pushed(map, source, *to, grid);
-  };
-  const PushResult one = run(1), four = run(4);
-  auto other = static_cast<const openvdb::DoubleGrid&>(*four.grids[0]).getConstAccessor();
-  EXPECT_EQ(one.grids[0]->activeVoxelCount(), four.grids[0]->activeVoxelCount());
-  for (auto v = static_cast<const openvdb::DoubleGrid&>(*one.grids[0]).cbeginValueOn(); v; ++v) {
-    const double a = *v, b = other.getValue(v.getCoord());
-    ASSERT_EQ(std::memcmp(&a, &b, sizeof a), 0);
-  }
-  EXPECT_EQ(one.masses[0].largestCompression, four.masses[0].largestCompression);
-}
-
-class CancelIn : public RunContext {
- public:
-  explicit CancelIn(std::string stage) : stage_(std::move(stage)) {}
-  void report(std::string_view stage, double) override {
-    if (stage == stage_) cancel();
-  }
-
- private:
-  std::string stage_;
-};
-
-TEST(PushDensity, MemoryAndCancellingAreMinded) {
-  const HarmonicMap map = chargedMap();
-  const Solid source(ball());
-  const auto to = levelSetOf(Solid(moved(ball(), map)), 32);
-  const auto grid = sampledScalar(*levelSetOf(source, 32), "density");
-  PushSettings settings;
-  {
-    const MemoryLimit limit(50'000'000);
-    EXPECT_THROW(pushed(map, source, *to, grid, settings), MemoryError);
-  }
-  for (const char* stage :
-       {"finding what is in the solid", "mapping the densities", "carrying the densities"}) {
-    CancelIn run(stage);
-    const RunScope scope(run);
-    EXPECT_THROW(pushed(map, source, *to, grid, settings), Cancelled) << stage;
-  }
 }
 
 // Two boxes a fifth of a voxel apart, and a sheet of dipoles between them that drives them asunder:

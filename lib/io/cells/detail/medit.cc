@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <iterator>
-#include <optional>
 
 #include "core/output_buffer.h"
 #include "core/text_scanner.h"

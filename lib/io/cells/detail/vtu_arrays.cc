@@ -7,8 +7,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <limits>
-#include <optional>
 #include <string_view>
 
 #include "core/base64.h"

@@ -7,7 +7,6 @@
 #include <OpenEXR/ImfVecAttribute.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "innermap/core/error.h"

@@ -1,7 +1,6 @@
 #include "surface/detail/refining/map_samples.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/random.h"
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "surface/detail/topology/adjacency.h"
-
 namespace innermap {
 namespace {
 

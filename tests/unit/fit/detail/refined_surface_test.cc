@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "mesh/shapes.h"
-#include "sample/surface_samples.h"
 
 namespace innermap {
 namespace {

@@ -3,10 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <limits>
-#include <sstream>
 
 #include "core/memory_limit.h"
 #include "core/temporary_folder.h"

@@ -4,7 +4,6 @@
 
 #include <cstring>
 #include <fstream>
-#include <sstream>
 
 #include "core/memory_limit.h"
 #include "core/temporary_folder.h"

@@ -2,9 +2,7 @@
 // cli/test_volume_files.py.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <random>

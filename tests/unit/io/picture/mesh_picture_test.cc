@@ -100,14 +100,6 @@ TEST(MeshPicture, HasAColumnForEachSurfaceAndARowForEachDirection) {
   EXPECT_GT(pixel(p, 24 + 124 + 25, 94 + 124).y, 0.3);
 }
 
-TEST(MeshPicture, IsTheSameForAnyNumberOfThreads) {
-  const test::TemporaryFolder folder;
-  writeMeshPicture(folder.file("a.png"), {square()}, frontal());
-  const ThreadLimit limit(1);
-  writeMeshPicture(folder.file("b.png"), {square()}, frontal());
-  EXPECT_EQ(readImage(folder.file("a.png")).pixels.rgb, readImage(folder.file("b.png")).pixels.rgb);
-}
-
 TEST(MeshPicture, RefusesWhatCannotBeShown) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("a.png");

@@ -4,7 +4,6 @@
 
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
-#include "innermap/mesh/mesh_file.h"
 
 namespace innermap {
 namespace {

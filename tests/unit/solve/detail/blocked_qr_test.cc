@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "core/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
@@ -30,13 +28,6 @@ TEST(BlockedQr, TurnsTheMatrixIntoItsTriangle) {
       for (std::size_t i = 0; i < rows; ++i)
         ASSERT_NEAR(b(i, j), i < columns ? r(i, j) : 0, 1e-12) << i << ", " << j;
   }
-}
-
-TEST(BlockedQr, SameBitsForAnyNumberOfThreads) {
-  const Matrix a = randomMatrix(900, 400, 3), r = BlockedQr(a).upperTriangle();
-  const ThreadLimit one(1);
-  const Matrix single = BlockedQr(a).upperTriangle();
-  EXPECT_TRUE(std::equal(r.data(), r.data() + 160000, single.data()));
 }
 
 TEST(BlockedQr, RefusesWideMatrices) { EXPECT_THROW(BlockedQr(Matrix(3, 4)), SettingError); }

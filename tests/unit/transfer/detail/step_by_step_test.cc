@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "transfer/test_maps.h"
 
 namespace innermap {

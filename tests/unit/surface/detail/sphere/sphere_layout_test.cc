@@ -5,7 +5,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "core/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/mesh/mesh_file.h"

@@ -133,15 +133,6 @@ TEST(TorusLayout, BearsNoiseAndDegenerateTriangles) {
   }
 }
 
-TEST(TorusLayout, SameForAnyNumberOfThreads) {
-  const ClosedSurface surface = shapes::shaken(closed(shapes::torus(40, 20), 1), 0.01);
-  const Layout some = layOutTorus(surface);
-  const ThreadLimit one(1);
-  const Layout again = layOutTorus(surface);
-  for (std::size_t v = 0; v < some.place.size(); ++v)
-    ASSERT_EQ(squaredNorm(some.place[v] - again.place[v]), 0.0);
-}
-
 TEST(TorusLayout, OtherGeneraAreRefused) {
   EXPECT_THROW(layOutTorus(closed(shapes::icosphere(2), 0)), DataError);
   const ClosedSurface torus = closed(shapes::torus(30, 20), 1);
