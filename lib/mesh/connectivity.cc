@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "core/disjoint_sets.h"
-#include "mesh/detail/topology.h"
 
 namespace innermap {
 namespace {
@@ -105,7 +104,11 @@ std::vector<int> joinedVertices(const Points& vertices, const std::vector<Triang
 std::vector<Triangle> joinedTriangles(const Points& vertices,
                                       const std::vector<Triangle>& triangles,
                                       std::size_t* seamEdges) {
-  return mapped(triangles, joinedVertices(vertices, triangles, seamEdges));
+  const std::vector<int> to = joinedVertices(vertices, triangles, seamEdges);
+  std::vector<Triangle> out = triangles;
+  for (Triangle& t : out)
+    for (int& v : t) v = to[v];
+  return out;
 }
 
 std::vector<int> piecesByEdges(const std::vector<Triangle>& triangles) {

@@ -154,16 +154,19 @@ def test_deforms_files_as_the_program_does():
 def test_measures_a_sequence_as_the_program_does():
     V, F, poses = frames()
     table = innermap.sequence("rest.obj", "pose.*.obj", charges=800, resolution=32,
-                              output="module.####.vdb", grids="jacobian")
+                              output="module.####.vdb", grids="jacobian", prove="core")
     cli.innermap("sequence", "rest.obj", "pose.*.obj", "-o", "program", "--charges", "800",
-                 "--resolution", "32")
+                 "--resolution", "32", "--prove", "core")
     report = cli.read_json("program/report.json")
-    for name in ("harmonic", "deformation", "boundary_p99", "folded_fraction", "volume"):
+    for name in ("harmonic", "deformation", "boundary_p99", "folded_fraction", "volume", "proof_cells",
+                 "proof_boundary_error"):
         assert np.allclose(table[name], report["energies"][name], rtol=1e-6, atol=1e-12), name
+    assert table["statement"] == report["energies"]["statement"] and all(table["statement"])
     assert abs(table["harmonic"][0] - 3) < 0.02 < table["harmonic"][2] - 3, table["harmonic"]
     assert list(innermap.read_vdb("module.0001.vdb")) == ["jacobian"]
     poses[1] = poses[1] * 0  # bounds no solid
-    table = innermap.sequence((V, F), poses, charges=800, resolution=32)
+    table = innermap.sequence((V, F), poses, charges=800, resolution=32, prove="off")
+    assert "proof_cells" not in table and "statement" not in table, table.keys()
     assert table["error"][1] and not table["error"][0] and np.isnan(table["harmonic"][1])
 
 

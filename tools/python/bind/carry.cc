@@ -229,7 +229,9 @@ py::object Job::file(const std::string& from, const py::object& path) const {
                                 : map_.mapped->solid().diagonal();
   ReadGeometrySettings reading = geometrySettings(o_);
   return dictOf(call(o_.call, [&]() {
-    return carryFile(from, to, reading, {o_.subdivide * diagonal, o_.splats}, carryOf());
+    return carryFile(from, to, reading,
+                     {o_.subdivide * diagonal, o_.splats, map_.mapped->injectivity.mirrored},
+                     carryOf());
   }));
 }
 

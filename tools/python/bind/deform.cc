@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 #include "bind/arrays.h"
 #include "bind/carry_options.h"
@@ -58,7 +57,7 @@ class Deformation {
       const std::int64_t number = frames_.numbers()[index];
       table.add(number, [&] {
         const std::shared_ptr<const FrameFit> fit = fits.at(index);
-        each(number, HarmonicMap(fit->field), carrier.pusherTo(fit->boundary));
+        each(number, *fit, carrier.pusherTo(fit->boundary));
         return rowOf(*fit);
       });
     }
@@ -100,9 +99,9 @@ py::object Deformation::grids(const py::object& what,
           fields.push_back({"velocity", fits.velocity(index, rate),
                             openvdb::VEC_CONTRAVARIANT_RELATIVE, o_.shutter / rate});
         PushResult result = pusher.push({fit.get(), number}, fields).result;
-        std::map<std::string, double> row = rowOf(*fit);
-        row["inverted_fraction"] = result.statistics.invertedInside();
-        row["voxels"] = static_cast<double>(result.statistics.voxels);
+        Figures row = rowOf(*fit);
+        row.emplace_back("inverted_fraction", result.statistics.invertedInside(), "inverted");
+        row.emplace_back("voxels", result.statistics.voxels, "voxels");
         VdbWriteSettings writing;
         writing.names = o_.names;
         if (pattern)
@@ -130,8 +129,8 @@ py::object Deformation::points(const Points& points) const {
   runCall(o_.call, [&]() {
     const FrameCarrier carrier(fitterOf(rest_, o_.fitting, o_.call, 0), outside_);
     placed = carrier.place(points);
-    forFrames(carrier, table, [&](std::int64_t, const HarmonicMap& map, const PointPusher& pusher) {
-      places.push_back(placesOf(pusher.push(map, placed, false)));
+    forFrames(carrier, table, [&](std::int64_t, const FrameFit& fit, const PointPusher& pusher) {
+      places.push_back(placesOf(pusher.push(HarmonicMap(fit.field), placed, false)));
     });
   });
   for (std::size_t i = 0; i < table.error.size(); ++i)
@@ -153,13 +152,14 @@ py::object Deformation::file(const std::string& from, const FramePattern& patter
   runCall(o_.call, [&]() {
     const FrameCarrier carrier(fitterOf(rest_, o_.fitting, o_.call, geometryMemory(from)),
                                outside_);
-    forFrames(carrier, table,
-              [&](std::int64_t number, const HarmonicMap& map, const PointPusher& pusher) {
-                carryFile(from, pattern.path(number), reading, {0, o_.splats},
-                          [&](const Points& points, bool jacobians) {
-                            return pusher.push(map, points, jacobians);
-                          });
-              });
+    forFrames(
+        carrier, table, [&](std::int64_t number, const FrameFit& fit, const PointPusher& pusher) {
+          const HarmonicMap map(fit.field);
+          carryFile(from, pattern.path(number), reading, {0, o_.splats, fit.injectivity.mirrored},
+                    [&](const Points& points, bool jacobians) {
+                      return pusher.push(map, points, jacobians);
+                    });
+        });
   });
   return table.dict();
 }

@@ -11,6 +11,7 @@
 #include "bind/arrays.h"
 #include "bind/carry_options.h"
 #include "bind/errors.h"
+#include "bind/figures.h"
 #include "bind/frame_set.h"
 #include "bind/lists.h"
 #include "bind/meshes.h"
@@ -118,11 +119,7 @@ py::object carry(const Arguments& a, DeformOptions& o) {
 py::object measure(const Arguments& a, DeformOptions& o) {
   const auto self = py::cast<std::shared_ptr<PyDeformer>>(a[0]);
   const Mesh frame = frameFrom(*self, a[1]);
-  py::dict out;
-  for (const auto& [name, value] :
-       call(o.call, [&] { return rowOf(self->carrier.fitter().fit(frame)); }))
-    out[name.c_str()] = value;
-  return std::move(out);
+  return dictOf(call(o.call, [&] { return rowOf(self->carrier.fitter().fit(frame)); }));
 }
 
 struct LatticeOptions {

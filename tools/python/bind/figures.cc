@@ -57,7 +57,8 @@ void bindFigures(py::module_& m) {
                     "The largest that was met, also where the largest was looked for.")
       .def_readonly("p99_bound", &BoundaryError::p99Bound,
                     "With 95% confidence 99% of the boundary is within it.")
-      .def_readonly("bound", &BoundaryError::bound, "With 95% confidence all of it is within it.")
+      .def_readonly("bound", &BoundaryError::bound,
+                    "An estimate: all of it is within it. Map.prove() bounds it.")
       .def_readonly("samples", &BoundaryError::samples, "Points at which it was measured.")
       .def("__repr__", [](const BoundaryError& e) {
         return fmt::format(

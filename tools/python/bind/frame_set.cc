@@ -12,6 +12,7 @@
 #include "core/frame_files.h"
 #include "innermap/core/memory.h"
 #include "innermap/mesh/mesh_file.h"
+#include "report/sequence_table.h"
 
 namespace py = pybind11;
 
@@ -112,9 +113,8 @@ void FrameSet::choose(const py::object& only) {
   if (wanted_.empty()) throw SettingError("only", "has none of the frames");
 }
 
-void FrameTable::add(std::int64_t number,
-                     const std::function<std::map<std::string, double>()>& body) {
-  std::map<std::string, double> row;
+void FrameTable::add(std::int64_t number, const std::function<Figures()>& body) {
+  Figures row;
   std::string failure;
   try {
     row = body();
@@ -123,11 +123,18 @@ void FrameTable::add(std::int64_t number,
   } catch (const DataError& problem) {
     failure = problem.what();
   }
-  for (const auto& [name, value] : row)
-    columns.try_emplace(name, frame.size(), kNone).first->second.push_back(value);
+  for (const Figure& figure : row) {
+    if (!figure.known) continue;
+    if (const auto* text = std::get_if<std::string>(&figure.value))
+      texts.try_emplace(figure.key, frame.size()).first->second.push_back(*text);
+    else
+      columns.try_emplace(figure.key, frame.size(), kNone)
+          .first->second.push_back(numberOf(figure));
+  }
   frame.push_back(number);
   error.push_back(failure);
   for (auto& [name, values] : columns) values.resize(frame.size(), kNone);
+  for (auto& [name, values] : texts) values.resize(frame.size());
 }
 
 py::dict FrameTable::dict() const {
@@ -136,14 +143,16 @@ py::dict FrameTable::dict() const {
   py::dict out;
   out["frame"] = arrayOf(frame);
   for (const auto& [name, values] : columns) out[name.c_str()] = arrayOf(values);
+  for (const auto& [name, values] : texts) out[name.c_str()] = values;
   out["error"] = error;
   return out;
 }
 
-std::map<std::string, double> rowOf(const FrameFit& fit) {
-  return {{"boundary_rms", fit.error.rms},   {"boundary_p99", fit.error.p99},
-          {"boundary_max", fit.error.max},   {"folded_fraction", fit.folded},
-          {"outside_fraction", fit.outside}, {"volume", fit.boundary.volume}};
+Figures rowOf(const FrameFit& fit) {
+  Figures row = only(figures(sequenceRow(fit, {})), {"boundary_rms", "boundary_p99", "boundary_max",
+                                                     "outside_fraction", "volume"});
+  row.emplace_back("folded_fraction", fit.folded, "folded");
+  return row;
 }
 
 FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, const CallOptions& call,

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bind/keywords.h"
+#include "core/figure.h"
 #include "innermap/core/error.h"
 #include "innermap/fit/frame_fitter.h"
 #include "innermap/mesh/mesh_file.h"
@@ -65,13 +66,16 @@ struct FrameTable {
   std::vector<std::int64_t> frame;
   std::vector<std::string> error;
   std::map<std::string, std::vector<double>> columns;
+  std::map<std::string, std::vector<std::string>> texts;
 
-  void add(std::int64_t number, const std::function<std::map<std::string, double>()>& figures);
+  // Figures that are not known in any frame have no column.
+  void add(std::int64_t number, const std::function<Figures()>& figures);
   // Throws DataError where no frame could be used.
   pybind11::dict dict() const;
 };
 
-std::map<std::string, double> rowOf(const FrameFit& fit);
+// What is told of a frame's fit alone.
+Figures rowOf(const FrameFit& fit);
 
 // others: memory that is needed beside it, bytes.
 FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, const CallOptions& call,

@@ -13,6 +13,7 @@
 #include "core/frame_files.h"
 #include "innermap/core/memory.h"
 #include "innermap/evaluate/grids.h"
+#include "report/sequence_table.h"
 
 namespace py = pybind11;
 
@@ -34,6 +35,7 @@ struct SequenceOptions {
              "written to output: of surface, density, map, jacobian, harmonic_energy, "
              "deformation_energy; the two energies if not given");
     fitting.describe(k);
+    k.settings(describeProof(&fitting.fitting.prove, &fitting.fitting.proofCells));
     k.settings(innermap::describe(grid));
     k.settings(innermap::describe(lame));
     k.setting(namesSetting(&names));
@@ -42,15 +44,11 @@ struct SequenceOptions {
 };
 
 // The columns of the program's energies.csv, but for what tells of its run.
-std::map<std::string, double> measuresOf(const FrameFit& fit, const MapGrids& grids) {
-  std::map<std::string, double> row = rowOf(fit);
-  row["harmonic"] = grids.harmonicTotal;
-  row["deformation"] = grids.deformationTotal;
-  row["deformation_mean"] = grids.volume > 0 ? grids.deformationTotal / grids.volume : 0;
-  row["jacobian_min"] = grids.jacobianMin;
-  row["jacobian_max"] = grids.jacobianMax;
-  row["folded_fraction"] = grids.foldedFraction;
-  return row;
+Figures measuresOf(const FrameFit& fit, const MapGrids& grids) {
+  Figures out;
+  for (Figure& figure : figures(sequenceRow(fit, grids)))
+    if (figure.key != "tolerance_met" && figure.key != "seconds") out.push_back(std::move(figure));
+  return out;
 }
 
 py::object sequence(const Arguments& a, SequenceOptions& o) {
@@ -94,8 +92,10 @@ void bindSequence(py::module_& m) {
        "program's energies.csv has them: frame, harmonic (3 for a rigid motion), deformation (0 "
        "for one), deformation_mean, boundary_rms, boundary_p99, boundary_max (fractions of the "
        "frame's diagonal), jacobian_min, jacobian_max, folded_fraction, outside_fraction, volume "
-       "(world units cubed), and error, the text of what was wrong with a frame that could not be "
-       "used, whose figures are NaN.\n\nsource and frames as deform() takes them. Raises "
+       "(world units cubed), with prove what is proven of each map, as prove() of a Map names it, "
+       "and statement, the same and what was checked in words, and error, the text of what was "
+       "wrong with a frame that could not be used, whose figures are NaN.\n\nsource and frames as "
+       "deform() takes them. Raises "
        "DataError where no frame can be used, FileError, MemoryError."},
       sequence);
 }
