@@ -233,6 +233,10 @@ def test_shares_of_a_study():
     assert rows["whole"] == rows["cut"] and len(rows["cut"]) > 2, made
     assert cli.read_json("cut/report.json")["study"]["made"] == 0
     fails(1, *command, "-o", "x", "--share", "3/2", says=["--share"])
+    told = innermap(*command, "-o", "jobs", "--jobs", "study.json", "--tasks", "2").stdout
+    assert f"2 shares of {len(rows['cut'])} runs" in told and not Path("jobs").exists(), told
+    words = [step["script"]["actions"]["onRun"]["args"][1] for step in cli.read_json("study.json")["steps"]]
+    assert " --share " in words[0] and words[0].startswith(words[1]), words
 
 
 LONG = ["evaluate", "map.ply", "--resolution", "270", "--repair", "on", "--quiet"]
@@ -394,6 +398,24 @@ def random_runs(number):
 
 def test_random_cuts_and_kills():
     random_runs(4)
+
+
+@nightly
+def test_the_shares_of_a_large_volume():
+    """Equal grids, and a worker's memory is an eighth of the whole's, and what the map takes."""
+    poses = cli.MODELS / "horse-poses"
+    if not poses.exists():
+        raise cli.Skip(f"no models in {cli.MODELS}")
+    fixed = 120e6
+    innermap("fit", poses / "reference.obj", poses / "pose-02.obj", "-o", "map.ply", "--charges", "2000", "-q")
+    command = ["evaluate", "map.ply", "--resolution", "1024", "-q"]
+    innermap(*command, "-o", "whole.vdb", "--report", "whole.json")
+    whole = cli.read_json("whole.json")["peak_memory_bytes"]
+    for k in range(1, 17):
+        innermap(*command, "-o", "cut.vdb", "--share", f"{k}/16", "--report", "part.json")
+        assert cli.read_json("part.json")["peak_memory_bytes"] < whole / 8 + fixed, k
+    innermap("join", "cut.vdb.shares", "-q")
+    assert Path("cut.vdb").read_bytes() == Path("whole.vdb").read_bytes()
 
 
 @nightly

@@ -1,5 +1,7 @@
 """What the program writes the module reads, and the other way round; other programs' modules."""
 
+from pathlib import Path
+
 import numpy as np
 
 import cli
@@ -31,6 +33,22 @@ def test_program_and_module_share_maps():
         info = cli.innermap("info", f"{name}.vdb", "--json").stdout
         grids[name] = [line for line in info.split("\n") if "active" in line or '"name"' in line]
     assert grids["theirs"] == grids["ours"] == grids["out/map"]
+
+
+def test_writes_jobs_as_the_program_does():
+    V, F = shapes.ball(2)
+    innermap.fit(V, F, shapes.twisted(V), charges=100).save("map.ply")
+    words = ["evaluate", "map.ply", "-o", "it's.vdb", "--resolution", "12"]
+    cli.innermap(*words, "--jobs", "theirs.txt")
+    theirs = Path("theirs.txt").read_text(encoding="utf-8")
+    program = theirs.split("&& ")[1].split(" evaluate")[0]
+    innermap.jobs("ours.txt", [program, *words])
+    assert Path("ours.txt").read_text(encoding="utf-8") == theirs and "--share 1/1" in theirs
+    innermap.jobs("ours.json", ["a"], join=["b"], seconds=10, memory=10**9, join_memory=2 * 10**9)
+    steps = cli.read_json("ours.json")["steps"]
+    asked = [step["hostRequirements"]["amounts"][0]["min"] for step in steps]
+    assert 1192 < asked[0] < 1500 and 2384 < asked[1] < 3000, asked
+    assert steps[0]["script"]["actions"]["onRun"]["timeout"] == 100
 
 
 def test_lays_out_on_the_sphere_as_the_program_does():

@@ -74,6 +74,7 @@ def things():
         "check": (V, F), "compare_fem": (V, F), "correspond": (V, F, V, F),
         "deform": ((V, F), V, [V]), "fit": (V, F, V), "grids": ({"a": np.ones((2, 2, 2))}, np.eye(4)),
         "harmonic": (V, F, V[:, 0]), "hexahedralize": (V, F),
+        "jobs": ("j.txt", ["innermap", "evaluate", "m.ply", "-o", "m.vdb"]),
         "lattice": ((V.min(axis=0), V.max(axis=0)),), "load": ("m.ply",),
         "load_correspondence": ("c.ply", V, F), "polycube": (V, F), "pull": (m, V, "p.vdb"),
         "push": (m, grids, "p.vdb"), "read_cells": ("c.vtu",), "read_mesh": ("ball.obj",),

@@ -132,7 +132,7 @@ bool writesJobs(const ShareOptions& options, Context& context) {
   if (!options.share.empty())
     throw UsageError("--jobs: makes the shares itself; leave out --share");
   if (context.page())
-    throw UsageError("--html: the jobs have no page; give --html to innermap join");
+    throw UsageError("--html: the jobs have no page; give --html to the command that joins them");
   requireJobsFile(kJobs, options.jobs);
   return true;
 }
@@ -149,6 +149,7 @@ void writeShareJobs(const ShareOptions& options, const ShareRun& run, Context& c
   jobs.command = without(told.commandLine, {kJobs, kTasks});
   jobs.command.front() = programName();
   if (!run.joined.empty()) jobs.join = {jobs.command.front(), "join", run.joined};
+  if (run.sameCommand) jobs.join = jobs.command;
   jobs.task = {setup + perUnit * std::ceil(units / static_cast<double>(jobs.tasks)),
                processMemory(run.bytes)};
   jobs.joining = jobs.task;

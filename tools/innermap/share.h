@@ -41,6 +41,7 @@ struct ShareRun {
   std::vector<JobPhase> joining = {};  // of the join; empty: it needs what a share does, or less
   std::uint64_t joiningBytes = 0;      // as bytes
   std::string unit = "frame";
+  bool sameCommand = false;  // without --share it joins
 };
 
 // What --jobs writes in place of the run.

@@ -20,17 +20,16 @@
 #include "map_report.h"
 #include "report/figures.h"
 #include "report/study_files.h"
+#include "share.h"
 #include "signals.h"
 
 namespace innermap::tool {
 namespace {
 
-constexpr const char* kShareOption = "--share";
-
 struct StudyOptions {
   std::string source, target, output, correspondence;
   std::string sources, collocation, distances, radiusRatios;
-  std::string share;
+  ShareOptions farm;
   StudySettings settings;
 };
 
@@ -81,8 +80,8 @@ StudySettings settingsOf(const StudyOptions& options) {
   settings.distances = studyList("--distances", options.distances);
   settings.radiusRatios = studyList("--radius-ratios", options.radiusRatios);
   settings.folder = (std::filesystem::path(options.output) / "runs").string();
-  if (!options.share.empty()) {
-    const Share share = parseShare(kShareOption, options.share);
+  if (!options.farm.share.empty()) {
+    const Share share = parseShare("--share", options.farm.share);
     settings.share = share.number;
     settings.shares = share.of;
   }
@@ -143,10 +142,28 @@ std::vector<double> workOf(const BoundaryPair& pair, const StudySettings& settin
   return work;
 }
 
-void expectRuns(const std::vector<double>& work, Context& context) {
+JobPhase runsPhase(const std::vector<double>& work) {
   JobSize size;
   size.items = work.back();
-  JobPhase runs = stageOf("runs", size);
+  return stageOf("runs", size);
+}
+
+void writeJobs(const StudyOptions& options, const BoundaryPair& pair, const StudySettings& settings,
+               const std::vector<double>& work, Context& context) {
+  const std::vector<StudyRun> runs = studyRuns(pair.solid(), settings);
+  ShareRun all;
+  all.unit = "run";
+  all.units = runs.size();
+  all.phases = {runsPhase(work)};
+  for (const StudyRun& run : runs)
+    if (const std::uint64_t need = studyMemory(run); need <= memoryLeft())
+      all.bytes = std::max(all.bytes, need);
+  all.sameCommand = true;
+  writeShareJobs(options.farm, all, context);
+}
+
+void expectRuns(const std::vector<double>& work, Context& context) {
+  JobPhase runs = runsPhase(work);
   runs.seconds = std::min(runs.seconds, currentRun()->secondsLeft());
   context.expect({runs});
 }
@@ -221,10 +238,12 @@ void concludeShare(const Study& study, const StudySettings& settings, Context& c
 
 void run(const StudyOptions& options, Context& context) {
   const StudySettings settings = settingsOf(options);
+  applyCpuTarget(options.farm);
+  const bool asJobs = writesJobs(options.farm, context);
   std::vector<std::string> names{"study.csv", "study.json", "study.html", "report.json"};
   for (const std::string& name : studyChartNames()) names.push_back(name);
   std::unique_ptr<PendingFolder> folder;
-  if (options.share.empty())
+  if (!inShares(options.farm))
     folder = context.outputFolder(options.output, names);
   else if (context.page())
     throw UsageError("--html: a share has no page of its own; give --html to the study without it");
@@ -235,9 +254,10 @@ void run(const StudyOptions& options, Context& context) {
   const std::vector<double> work = workOf(pair, settings);
   context.spend(1);
   expectRuns(work, context);
+  if (asJobs) return writeJobs(options, pair, settings, work, context);
   if (context.dryRun()) return plan(options, pair, settings, context);
   Study study = context.timed("runs", [&] { return makeRuns(pair, settings, work, context); });
-  if (!options.share.empty()) return concludeShare(study, settings, context);
+  if (!options.farm.share.empty()) return concludeShare(study, settings, context);
   const StudyFindings findings = studyFindings(study);
   if (study.left > 0)
     study.warnings.push_back(fmt::format(
@@ -282,12 +302,9 @@ void addListOptions(Command& c, StudyOptions& o) {
 void addFitOptions(Command& c, StudyOptions& o) {
   c.settings(describe(o.settings));
   c.limitTime("no run begins later; the same command goes on another time");
-  c.option(
-       kShareOption, "K/N", &o.share,
-       "make only every N-th run from the K-th on, 3/40 say, or 'auto': the task of Slurm's job "
-       "array, or OpenCue's. They go to runs/; the same command without --share takes "
-       "all from there, and makes what is missing")
-      .advanced();
+  addShareOptions(c, o.farm, "runs",
+                  "It is every N-th run from the K-th on. They go to runs/; the same command "
+                  "without --share takes all from there, and makes what is missing");
 }
 
 }  // namespace

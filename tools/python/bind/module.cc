@@ -61,6 +61,7 @@ PYBIND11_MODULE(_innermap, m) {
   bindVolumeTextures(m);
   bindSolidTexture(m);
   bindStudy(m);
+  bindJobs(m);
   for (const auto& item : py::dict(m.attr("__dict__")))
     if (py::hasattr(item.second, "__module__") && py::cast<std::string>(item.first)[0] != '_')
       py::setattr(item.second, "__module__", py::str("innermap"));

@@ -24,7 +24,7 @@ __all__ = [
     'BoundaryError', 'Cancelled', 'Cells', 'Correspondence', 'DataError', 'Deformer', 'Error', 'Field',
     'FileError', 'Folds', 'Grids', 'Map', 'Mesh', 'MeshReport', 'SettingError',
     'check', 'compare_fem', 'correspond', 'deform', 'fit', 'grids', 'harmonic', 'hexahedralize',
-    'lattice', 'load', 'load_correspondence', 'polycube', 'pull', 'push', 'read_cells', 'read_mesh',
+    'jobs', 'lattice', 'load', 'load_correspondence', 'polycube', 'pull', 'push', 'read_cells', 'read_mesh',
     'read_vdb', 'read_volume_texture', 'remesh', 'sequence', 'solid_texture', 'sphere', 'study',
     'tetrahedralize', 'transfer_distance', 'voxelize', 'weights', 'write_mesh', 'write_section',
     'write_slices', 'write_volume_texture',
@@ -532,3 +532,8 @@ def study(
     folder: Optional[Path] = None, progress: Optional[Progress] = None,
     max_memory: Union[int, str, None] = None, threads: int = 0,
     max_time: Optional[float] = None) -> Tuple[Dict[str, Any], Dict[str, Any]]: ...
+
+def jobs(
+    path: Path, command: Sequence[str], *, tasks: int = 1, join: Optional[Sequence[str]] = None,
+    seconds: float = 0, memory: int = 0, join_seconds: float = 0, join_memory: int = 0, cores: int = 1,
+    folder: str = '', name: str = 'innermap') -> None: ...
