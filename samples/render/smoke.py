@@ -53,46 +53,59 @@ def cloud(scale):
     return made
 
 
+def posed(V, F, pose, grids):
+    """The smoke at rest, or where the pose takes it."""
+    if pose is V:
+        return grids
+    fit = innermap.fit(V, F, pose, tolerance=3e-3, one_to_one="off")
+    return innermap.push(fit, grids, densities=["density"], resolution=130)
+
+
+def stand(pose, F, grids, path, materials, foot):
+    """A horse of glass with its smoke, which `path` will hold, with the middle of its box above `foot`, facing
+    along x. Gives back what it made."""
+    grids.write_vdb(path)
+    size, middle = np.ptp(pose, axis=0), (pose.min(axis=0) + pose.max(axis=0)) / 2
+    turn = Euler((np.pi / 2, 0, 0)).to_matrix().to_4x4()
+    place = Euler((0, 0, np.pi / 2 if np.argmax(size) == 2 else 0)).to_matrix().to_4x4() @ turn
+    shift = Vector(foot) - place @ Vector((middle[0], 0, middle[2]))
+    body = studio.mesh("horse", pose, F, materials[0])
+    body.visible_shadow = False
+    data = bpy.data.volumes.new("smoke")
+    data.filepath = path
+    data.grids.load()
+    data.materials.append(materials[1])
+    volume = studio.linked("smoke", data)
+    half = Vector((0.5, 0.5, 0.5)) * float(np.asarray(grids.matrix)[0, 0])  # Blender's voxels begin at their corner
+    for ob, off in ((body, Vector((0, 0, 0))), (volume, half)):
+        ob.matrix_world = place
+        ob.location = shift - (place.to_3x3() @ off)
+    return body, volume
+
+
+def materials(height):
+    return studio.glass("skin", (0.70, 0.85, 0.95), 0.06, 0.9, 1.6), cloud(34 / height)
+
+
+def surroundings(height, wide):
+    """Floor, camera and lights for horses so high, in a picture so wide."""
+    studio.floor(0, (0.045, 0.07, 0.095))
+    studio.camera((0, -9 * height, 1.5 * height), (0, 0, 0.5 * height), across=wide)
+    studio.light((-3 * height, -3 * height, 5 * height), (0, 0, 0), 2 * height, 170 * height ** 2, (1, 0.96, 0.9))
+    studio.light((4 * height, -4 * height, 3 * height), (0, 0, 0), 3 * height, 120 * height ** 2, (0.85, 0.93, 1))
+
+
 def main():
     out, samples = studio.arguments(__doc__)
-    made = studio.scene((1240, 380), samples, 0.35)
-    made.cycles.volume_bounces = 0
+    studio.scene((1240, 380), samples, 0.35).cycles.volume_bounces = 0
     V, F = innermap.read_mesh(HORSES / "reference.obj")
-    size = np.ptp(V, axis=0)
-    grids = smoke(V, F)
-    poses = [V] + [innermap.read_mesh(HORSES / f"frame.{k:04d}.obj").vertices for k in FRAMES]
-    skin = studio.glass("skin", (0.70, 0.85, 0.95), 0.06, 0.9, 1.6)
-    up, long = 1, int(np.argmax(size))
-    height = size[up]
-    cloud_made = cloud(34 / height)
-    turn = Euler((np.pi / 2, 0, 0)).to_matrix().to_4x4()
-    spin = Euler((0, 0, np.pi / 2 if long == 2 else 0)).to_matrix().to_4x4()
+    height, long = np.ptp(V, axis=0)[1], np.ptp(V, axis=0).max()
+    grids, made = smoke(V, F), materials(height)
     with tempfile.TemporaryDirectory() as folder:
-        for i, pose in enumerate(poses):
-            path = str(Path(folder) / f"{i}.vdb")
-            posed = grids if i == 0 else innermap.push(innermap.fit(V, F, pose, tolerance=3e-3, one_to_one="off"), grids,
-                                                       densities=["density"], resolution=130)
-            posed.write_vdb(path)
-            middle = (pose.min(axis=0) + pose.max(axis=0)) / 2
-            place = spin @ turn
-            shift = Vector(((i - 1.5) * 1.24 * size[long], 0, 0)) - (place @ Vector((middle[0], pose[:, 1].min(),
-                                                                                    middle[2])))
-            body = studio.mesh("horse", pose, F, skin)
-            body.visible_shadow = False
-            data = bpy.data.volumes.new("smoke")
-            data.filepath = path
-            data.grids.load()
-            data.materials.append(cloud_made)
-            volume = studio.linked("smoke", data)
-            half = Vector((0.5, 0.5, 0.5)) * float(np.asarray(grids.matrix if i == 0 else posed.matrix)[0, 0])
-            for ob, off in ((body, Vector((0, 0, 0))), (volume, half)):
-                ob.matrix_world = place
-                ob.location = shift - (place.to_3x3() @ off)
-        studio.floor(0, (0.045, 0.07, 0.095))
-        wide = 5.15 * size[long]
-        studio.camera((0, -9 * height, 1.5 * height), (0, 0, 0.5 * height), across=wide)
-        studio.light((-3 * height, -3 * height, 5 * height), (0, 0, 0), 2 * height, 170 * height ** 2, (1, 0.96, 0.9))
-        studio.light((4 * height, -4 * height, 3 * height), (0, 0, 0), 3 * height, 120 * height ** 2, (0.85, 0.93, 1))
+        for i, pose in enumerate([V] + [innermap.read_mesh(HORSES / f"frame.{k:04d}.obj").vertices for k in FRAMES]):
+            stand(pose, F, posed(V, F, pose, grids), str(Path(folder) / f"{i}.vdb"), made,
+                  ((i - 1.5) * 1.24 * long, 0, -pose[:, 1].min()))
+        surroundings(height, 5.15 * long)
         studio.render(out, 0.06)
 
 

@@ -212,18 +212,23 @@ def without_noise(image, strength, reach=5):
     return total / weights
 
 
-def render(out, strength=0.06, quality=90):
-    """Draws into OUT, JPEG or PNG by its ending, and takes the noise away."""
+def drawn(strength):
+    """The picture without noise, as an image of Blender and as its pixels, sRGB from below."""
     settings = bpy.context.scene.render
     settings.filepath = str(Path(bpy.app.tempdir) / "noisy.png")
     settings.image_settings.file_format = 'PNG'
     bpy.ops.render.render(write_still=True)
-    image = bpy.data.images.load(settings.filepath)
+    image = bpy.data.images.load(settings.filepath, check_existing=False)
     wide, high = image.size
     pixels = np.array(image.pixels[:]).reshape(high, wide, -1)[..., :3]
-    if strength:
-        pixels = without_noise(pixels, strength)
-    image.pixels = np.concatenate([pixels, np.ones((high, wide, 1))], axis=2).astype(np.float32).ravel()
+    return image, without_noise(pixels, strength) if strength else pixels
+
+
+def render(out, strength=0.06, quality=90):
+    """Draws into OUT, JPEG or PNG by its ending, and takes the noise away."""
+    image, pixels = drawn(strength)
+    image.pixels = np.concatenate([pixels, np.ones((*pixels.shape[:2], 1))], axis=2).astype(np.float32).ravel()
+    settings = bpy.context.scene.render
     settings.image_settings.file_format = 'JPEG' if out.endswith("jpg") else 'PNG'
     settings.image_settings.quality = quality
     image.save_render(out)

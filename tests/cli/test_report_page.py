@@ -28,6 +28,16 @@ SEEN = """(selector => {
   }
   return {colours: colours.size, share: 4 * drawn / data.length, sum};
 })(SELECTOR)"""
+# Points of a section in the colour of folds.
+MARKED = """(() => { const c = document.querySelector("#cut-z"), to = document.createElement("canvas");
+  [to.width, to.height] = [c.width, c.height];
+  const context = to.getContext("2d");
+  context.drawImage(c, 0, 0);
+  const data = context.getImageData(0, 0, c.width, c.height).data;
+  let count = 0;
+  for (let i = 0; i < data.length; i += 4)
+    count += data[i] > 250 && Math.abs(data[i + 1] - 230) < 4 && data[i + 2] < 6;
+  return count; })()"""
 SETTLED = "new Promise(done => requestAnimationFrame(() => setTimeout(done, 60)))"
 
 
@@ -106,13 +116,15 @@ def check_sections(page, grids):
             assert picture["colours"] > 10 and 0.02 < picture["share"] < 0.98, (grid, axis, picture)
     before = {axis: seen(page, "#cut-" + axis)["sum"] for axis in "xyz"}
     place = page.value("document.querySelector('#slide-z ~ output').textContent")
-    choose(page, "#slide-z", 20)
+    choose(page, "#slide-z", 9)
     assert seen(page, "#cut-z")["sum"] != before["z"], "the slider does nothing"
     assert page.value("document.querySelector('#slide-z ~ output').textContent") != place
+    slider = "Number(document.querySelector('#slide-x').value)"
+    at = page.value(slider)
     page.value("document.querySelector('#slide-x').focus()")
     page.press("ArrowRight", 39)
     page.value(SETTLED)
-    assert page.value("document.querySelector('#slide-x').value") == "49", "no keys on sliders"
+    assert page.value(slider) == at + 1, "no keys on sliders"
 
 
 def check_looks(page):
@@ -190,6 +202,25 @@ def test_values_are_the_grids():
         check_quiet(page)
 
 
+def test_own_resolution():
+    """Voxel by voxel where a page can hold it; else sections through the middle are."""
+    cli.icosphere(subdivisions=4)
+    innermap("voxelize", "ball.obj", "-o", "coarse.vdb", "--resolution", "120", "--html=coarse.html", "--quiet")
+    innermap("voxelize", "ball.obj", "-o", "fine.vdb", "--resolution", "400", "--html=fine.html", "--quiet")
+    coarse, fine = (data_of(name + ".html")["grids"][0] for name in ("coarse", "fine"))
+    assert coarse["stride"] == 1 and "planes" not in coarse, coarse["stride"]
+    assert fine["stride"] > 1 and [p["across"] for p in fine["planes"]] == [0, 1, 2]
+    assert all(p["stride"] == 1 and max(p["blocks"]) >= 400 for p in fine["planes"])
+    with Browser() as browser:
+        page = browser.open("fine.html")
+        width = "document.querySelector('#cut-z').width"
+        assert page.value(width) % fine["planes"][2]["blocks"][0] == 0
+        middle = seen(page, "#cut-z")
+        choose(page, "#slide-z", page.value("Number(document.querySelector('#slide-z').value)") + 1)
+        assert page.value(width) % fine["blocks"][0] == 0 and seen(page, "#cut-z")["sum"] != middle["sum"]
+        check_quiet(page)
+
+
 def test_folds_are_marked():
     """A ball turned over in its middle: places that fold are said, shown and gone to."""
     vertices, faces = cli.icosphere_arrays(4)
@@ -202,12 +233,13 @@ def test_folds_are_marked():
     assert cli.read_json("out/report.json")["inside"]["folded"] > 0
     with Browser() as browser:
         page = browser.open("out/report.html")
-        choose(page, "#grid-shown", "jacobian")
-        assert page.value("document.querySelector('#next-fold') !== null")
         sliders = "[...'xyz'].map(a => document.querySelector('#slide-' + a).value).join()"
-        before = page.value(sliders)
-        page.value("document.querySelector('#next-fold').click()")
-        assert page.value(sliders) != before
+        for grid in ("jacobian", "deformation_energy"):  # marks stand in the sections of all grids
+            choose(page, "#grid-shown", grid)
+            before = page.value(sliders)
+            page.value("document.querySelector('#next-folded').click()")
+            assert page.value(sliders) != before
+            assert page.value(MARKED) > 10, grid
         picture = seen(page, "canvas.surfaces")
         page.value("[...document.querySelectorAll('button.mark')].find(b => b.textContent.startsWith('fold')).click()")
         page.value(SETTLED)

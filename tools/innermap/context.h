@@ -28,8 +28,8 @@ namespace innermap::tool {
 class TerminalProgress;
 
 // Bytes that making a page takes, which holds so many vertices and blocks at most; measured: 1 to
-// 23 MB.
-constexpr std::uint64_t kPageMemory = 25'000'000;
+// 23 MB while grids had at most 96 blocks, and three times as many values now.
+constexpr std::uint64_t kPageMemory = 60'000'000;
 // What --html is without a file's name.
 constexpr const char* kPageBesideOutputs = "report.html beside the outputs";
 

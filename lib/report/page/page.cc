@@ -75,6 +75,8 @@ Json json(const PageGrid& grid) {
               {"grid_least", grid.least},
               {"grid_greatest", grid.greatest}};
   if (grid.frame) out["frame"] = *grid.frame;
+  if (grid.across) out["across"] = *grid.across;
+  for (const PageGrid& plane : grid.planes) out["planes"].push_back(json(plane));
   out.update(json(grid.values));
   return out;
 }

@@ -49,6 +49,9 @@ struct PageGrid {
   double least = 0, greatest = 0;  // of the grid itself
   Quantised values;                // x fastest; none where the grid has none
   std::optional<std::int64_t> frame;
+  // Of blocks of several voxels: planes through the middle, voxel by voxel.
+  std::vector<PageGrid> planes;
+  std::optional<int> across;  // of a plane: the axis that it is across
 };
 
 // A frame of an animation.

@@ -1,13 +1,15 @@
 // Line charts and bars.
 
-function ticksOf(least, greatest, logarithmic) {
+function ticksOf(least, greatest, logarithmic, whole = false) {
   if (logarithmic) {
-    const out = [];
-    for (let e = Math.floor(Math.log10(least)); e <= Math.ceil(Math.log10(greatest)); ++e) out.push(10 ** e);
-    const some = out.filter((t) => t >= least * 0.999 && t <= greatest * 1.001);
-    return some.length >= 2 ? some : [least, greatest];
+    for (const digits of [[1], [1, 2, 5]]) {
+      const out = [];
+      for (let e = Math.floor(Math.log10(least)); e <= Math.ceil(Math.log10(greatest)); ++e) out.push(...digits.map((d) => d * 10 ** e));
+      const some = out.filter((t) => t >= least * 0.999 && t <= greatest * 1.001);
+      if (some.length >= 3) return some;
+    }
   }
-  const raw = (greatest - least) / 4, power = 10 ** Math.floor(Math.log10(raw));
+  const raw = Math.max(whole ? 1 : 0, (greatest - least) / 4), power = 10 ** Math.floor(Math.log10(raw));
   const step = [1, 2, 5, 10].map((f) => f * power).find((s) => s >= raw), out = [];
   for (let t = Math.ceil(least / step) * step; t <= greatest + 1e-9 * step; t += step) out.push(Math.abs(t) < 1e-9 * step ? 0 : t);
   return out;
@@ -16,7 +18,7 @@ function ticksOf(least, greatest, logarithmic) {
 // chart: {title, x: [...], xLabel, series: [{name, y: [...]}], logarithmic, logX, cursor, level: {value, text}}
 // Returns {node, setCursor(x)}.
 function lineChart(chart) {
-  const width = 460, height = 220, left = 62, right = 12, top = 12, bottom = 36;
+  const width = 460, height = 220, left = 62, right = 24, top = 14, bottom = 38;
   // What has no place on either axis is left out.
   const placed = (x) => Number.isFinite(x) && (!chart.logX || x > 0);
   chart.series = chart.series.map((s) => ({name: s.name, y: chart.x.map((x, i) => (placed(x) ? s.y[i] : NaN))}));
@@ -39,7 +41,7 @@ function lineChart(chart) {
   for (const t of ticksOf(y0, y1, chart.logarithmic))
     svg.append(drawing("line", {x1: left, x2: width - right, y1: py(t), y2: py(t), class: "grid"}),
                drawing("text", {x: left - 6, y: py(t) + 4, "text-anchor": "end"}, shortNumber(t)));
-  for (const t of ticksOf(x0, x1, chart.logX))
+  for (const t of ticksOf(x0, x1, chart.logX, xs.every(Number.isInteger)))
     svg.append(drawing("text", {x: px(t), y: height - bottom + 16, "text-anchor": "middle"}, shortNumber(t)));
   svg.append(drawing("text", {x: (left + width - right) / 2, y: height - 4, "text-anchor": "middle", class: "label"}, chart.xLabel));
   if (chart.level)

@@ -21,7 +21,9 @@ const aboutOne = (name) => /jacobian|stretch/.test(name);
 // The scale of a quantity for these values: {share(v), colour(v), kind, lower, upper, inverse(share)}.
 // The range leaves out the last hundredth at either end, so that one odd value does not hide the rest.
 function scaleFor(name, values, logarithmic) {
-  const [least, low, high, greatest] = quantiles(values, [0, 0.01, 0.99, 1]);
+  // What folds has a mark, and no place on a scale of ratios.
+  const kept = aboutOne(name) ? values.filter((v) => v > 0) : values, shown = kept.length ? kept : values;
+  const [least, low, high, greatest] = quantiles(shown, [0, 0.01, 0.99, 1]);
   if (aboutOne(name)) {
     const far = Math.max(Math.log(1.02), Math.abs(Math.log(Math.max(low, 1e-3))), Math.abs(Math.log(Math.max(high, 1e-3))));
     return makeScale("diverging", -far, far, Math.log, Math.exp);

@@ -148,6 +148,14 @@ async function surfacesSection() {
       renderer.render(panel.scene, camera);
     });
   }
+  // A page that is printed has another size, for which WebGL draws too late.
+  const printed = element("canvas", {class: "printed"});
+  function drawForPrint() {
+    draw();
+    [printed.width, printed.height] = [canvas.width, canvas.height];
+    printed.getContext("2d").drawImage(canvas, 0, 0);
+  }
+  window.addEventListener("beforeprint", drawForPrint);
   controls.addEventListener("change", draw);
   new ResizeObserver(draw).observe(canvas);
 
@@ -287,7 +295,7 @@ async function surfacesSection() {
   const cut = panels.find((p) => p.shape.vertices < p.shape.given_vertices);
   const node = section("surfaces", panels.length > 1 ? "Surfaces, before and after" : "Surface",
     controlsRow, element("div", {class: "captions", style: `grid-template-columns: repeat(${panels.length}, 1fr)`}, ...captions),
-    canvas, legendPlace, words, told,
+    canvas, printed, legendPlace, words, told,
     marks.length ? element("div", {class: "marks"}, element("h3", {}, "Places to look at"),
       element("p", {}, ...marks.map((m) => element("button", {type: "button", class: "mark", onclick: () => focus(m)}, m.text)))) : null,
     cut ? element("p", {class: "hint"}, `Shown with ${cut.shape.vertices} of ${cut.shape.given_vertices} vertices.`) : null,
