@@ -88,6 +88,7 @@ class AdaptiveFitting {
   std::optional<HarmonicField> field_;
   std::optional<AdaptiveResult> best_;
   double bestScore_ = 0;
+  std::size_t bestRound_ = 0;  // from 1
   std::vector<AdaptiveRound> rounds_;
   AdaptiveEnd end_ = AdaptiveEnd::met;
   std::uint64_t requests_ = 0;
@@ -269,6 +270,7 @@ void AdaptiveFitting::keepIfBest() {
   const double now = score(rounds_.back().error);
   if (best_ && !(now < bestScore_)) return;
   bestScore_ = now;
+  bestRound_ = rounds_.size();
   best_.emplace(AdaptiveResult{*field_,
                                {},
                                AdaptiveEnd::met,
@@ -307,6 +309,8 @@ AdaptiveResult AdaptiveFitting::run() {
   const auto errorsAtChecks = [&](const HarmonicField& field) {
     return boundaryErrors(field, checks.collocation(), checks.values, problem_.unit, {0});
   };
+  std::vector<double> checked;   // errors at the checks
+  std::size_t checkedRound = 0;  // of the field that has them
   int outliers = 0;
   for (std::uint64_t round = 1;; ++round) {
     const auto began = std::chrono::steady_clock::now();
@@ -325,7 +329,8 @@ AdaptiveResult AdaptiveFitting::run() {
       break;
     }
     if (error.p99 <= kMargin * settings_.tolerance && RefinementMarks::isTame(error)) {
-      std::vector<double> others = errorsAtChecks(*field_);
+      std::vector<double> others = checked = errorsAtChecks(*field_);
+      checkedRound = rounds_.size();
       const BoundaryError other = marks_->awayFromJumps(checks.points, others);
       if (other.p99 <= kMargin * settings_.tolerance && RefinementMarks::isTame(other)) break;
     }
@@ -341,7 +346,8 @@ AdaptiveResult AdaptiveFitting::run() {
     if (!refine(marks_->byLevel(fresh.points, errors, error))) break;
   }
   AdaptiveResult out = std::move(*best_);
-  out.error = summarizeErrors(errorsAtChecks(out.field));
+  out.error =
+      summarizeErrors(checkedRound == bestRound_ ? std::move(checked) : errorsAtChecks(out.field));
   if (end_ != AdaptiveEnd::stopped && out.error.p99 <= settings_.tolerance)
     out.end = AdaptiveEnd::met;
   else

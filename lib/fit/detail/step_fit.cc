@@ -37,7 +37,7 @@ constexpr int kLastPatience = 3;  // what the last step does not reach is missed
 // all there are.
 constexpr double kStepSources = 15000;
 // Of the target's diagonal. Sums, and where points inside go; the mesh about an intermediate shape.
-constexpr double kSumAccuracy = 1e-7, kChord = 1e-3;
+constexpr double kSumAccuracy = 1e-6, kChord = 1e-3;
 
 struct Step {
   MapStep record;
@@ -134,20 +134,21 @@ class StepFitter {
     s.outlierRounds = to < 1 ? 0 : kOutlierRounds;
     s.patience = to < 1 ? kPatience : kLastPatience;
     const double half = (to - at_) / 2;
+    InsideAfter inside(*this);
     if (mayHalve && half >= kShortest)
-      s.goOn = [this, half](const HarmonicField& field, int round) {
+      s.goOn = [this, half, &inside](const HarmonicField& field, int round) {
         if (round > 1 && half < kShortestFitted) return true;
-        return foldedShare(insideAfter(HarmonicMap(field)).determinants, 1) <=
+        return foldedShare(inside.of(field).determinants, 1) <=
                allowed(round == 1 ? kCoarseFoldShare : kFoldShare);
       };
     AdaptiveResult fit = fitToTolerance(boundary_.problem(ways, unit_), s);
     if (fit.end == AdaptiveEnd::maxSources && s.maxSources < settings_.maxSources)
       fit.end = AdaptiveEnd::noGain;
-    HarmonicMap map(fit.field);
-    MappedPoints inside = insideAfter(map);
+    MappedPoints ends = inside.of(fit.field);
     const MapStep record{at_, to, fit.field.sources().size(), fit.error.p99,
-                         foldedShare(inside.determinants, 1)};
-    return {record, std::move(fit), std::move(map), std::move(inside)};
+                         foldedShare(ends.determinants, 1)};
+    HarmonicMap map(fit.field);
+    return {record, std::move(fit), std::move(map), std::move(ends)};
   }
 
   bool foldsTooMuch(const Step& step) const {
@@ -168,9 +169,25 @@ class StepFitter {
     }
   }
 
-  MappedPoints insideAfter(const HarmonicMap& step) const {
-    return mapPoints(step, inside_, kSumAccuracy * unit_);
-  }
+  // Where a step takes the points inside. The field that is asked for last is kept: the one that a
+  // fit gives is mostly that of its last round.
+  class InsideAfter {
+   public:
+    explicit InsideAfter(const StepFitter& fitter) : fitter_(fitter) {}
+
+    const MappedPoints& of(const HarmonicField& field) {
+      if (!field_ || field_->sources().data() != field.sources().data()) {
+        field_ = field;
+        points_ = mapPoints(HarmonicMap(field), fitter_.inside_, kSumAccuracy * fitter_.unit_);
+      }
+      return points_;
+    }
+
+   private:
+    const StepFitter& fitter_;
+    std::optional<HarmonicField> field_;
+    MappedPoints points_;
+  };
 
   void take(Step step, bool last) {
     if (end_ == AdaptiveEnd::met) end_ = step.fit.end;
