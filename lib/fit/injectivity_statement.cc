@@ -150,8 +150,8 @@ std::string crossing(const char* what, const SelfIntersectionFigures& figures) {
 std::string surfaces(const Injectivity& known) {
   if (known.source.pairs == 0 && known.target.pairs == 0)
     return known.solid.caps == 0 ? "Neither surface runs through itself. "
-                                 : "Neither surface runs through itself, but for the caps that "
-                                   "close it, which were not looked at. ";
+                                 : "Neither surface runs through itself; the caps that "
+                                   "close it were not looked at. ";
   std::string out;
   if (known.source.pairs > 0)
     out += crossing("source", known.source) + "What overlaps there is mapped as one solid. ";

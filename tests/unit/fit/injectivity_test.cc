@@ -325,7 +325,7 @@ TEST(Injectivity, ThatOnePointGoesToEachIsSaidOfSurfacesThatWindOnce) {
   EXPECT_FALSE(saysOne(known));
   known.solid = {1, 1, 3, false};  // caps may cross
   EXPECT_FALSE(saysOne(known));
-  EXPECT_TRUE(says(known, "Neither surface runs through itself, but for the caps"));
+  EXPECT_TRUE(says(known, "Neither surface runs through itself; the caps"));
   known.solid = {};
   known.target = {1, {{0, 0, 0}}};
   EXPECT_FALSE(saysOne(known));

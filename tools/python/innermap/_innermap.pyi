@@ -453,6 +453,7 @@ def sequence(
     rest: Optional[int] = None, up: Optional[Literal['y', 'z']] = None,
     unit_scale: Optional[float] = None, mesh: str = '', animation: str = '', charges: int = 8000,
     collocation: Optional[int] = None, distance: Optional[float] = None, seed: int = 1,
+    prove: Literal['off', 'core', 'full'] = 'off', proof_cells: float = 8,
     resolution: Optional[int] = None, voxel_size: Optional[float] = None, lame_lambda: float = 0.0335,
     lame_mu: float = 0.0224, names: Literal['innermap', 'blender', 'houdini'] = 'innermap',
     progress: Optional[Progress] = None, max_memory: Union[int, str, None] = None,
