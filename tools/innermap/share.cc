@@ -252,11 +252,11 @@ void FrameShare::ended(const FrameResult& result, PartValues values) {
   part.seconds = result.seconds;
   part.setup = setup_;
   part.memory = peakMemory();
-  for (const auto& [stage, seconds] : report.seconds) {
+  for (const auto& stage : report.seconds) {
     const auto before = std::find_if(seconds_.begin(), seconds_.end(),
-                                     [&](const auto& s) { return s.first == stage; });
-    part.stageSeconds.emplace_back(stage,
-                                   seconds - (before == seconds_.end() ? 0 : before->second));
+                                     [&](const auto& s) { return s.first == stage.first; });
+    part.stageSeconds.emplace_back(stage.first,
+                                   stage.second - (before == seconds_.end() ? 0 : before->second));
   }
   warnings_ = report.warnings.size();
   seconds_ = report.seconds;
