@@ -58,7 +58,7 @@ Command makeFitCommand() {
       .shortName("-o")
       .required()
       .writes({".ply"});
-  c.limitTime("after which refining and steps end");
+  c.limitTime("stop refining and stepping after this time");
   addFittingOptions(c, o->fitting);
   c.settings(describe(o->verdict));
   c.addSpace();
