@@ -107,7 +107,7 @@ Setting Setting::was(std::string former) const {
 }
 
 Setting seedSetting(std::uint64_t* seed) {
-  return Setting("seed", "N", seed, "of all random choices").from(0, 1e15).rare();
+  return Setting("seed", "N", seed, "seed of all random choices").from(0, 1e15).rare();
 }
 
 Setting axisSetting(const std::string& name, int* axis, const std::string& help) {

@@ -78,17 +78,17 @@ std::vector<std::string> notesOn(const OuterSurface& outer, const std::string& n
   std::vector<std::string> notes;
   const SolidTopology& t = outer.topology;
   notes.push_back(fmt::format(
-      "{}: the outer surface of its solid is mapped: {} vertices, {}; 99% of the mesh's "
-      "visible part lies within {:.2g} of the diagonal of it, all of that within {:.2g}",
+      "{}: innermap maps the outer surface of its solid: {} vertices, {}; 99% of the mesh's "
+      "visible part lies within {:.2g} of the diagonal of it, all of it within {:.2g}",
       name, outer.mesh.vertices.size(), describe(t), outer.apartP99, outer.apartMax));
   if (!outer.caps.empty())
     notes.push_back(fmt::format("{}: {} hole{} capped", name, outer.caps.size(),
                                 outer.caps.size() == 1 ? "" : "s"));
   if (outer.insideOut > kFewInsideOut)
-    notes.push_back(fmt::format(
-        "{}: {:.2g}% of its surface is turned inside out (winding number -1), and what that "
-        "encloses is left out; turn those faces round, or move that part back",
-        name, 100 * outer.insideOut));
+    notes.push_back(
+        fmt::format("{}: {:.2g}% of its surface is turned inside out (winding number -1), and the "
+                    "part inside it is left out; flip those faces, or move that part back",
+                    name, 100 * outer.insideOut));
   if (outer.leftOut > 0)
     notes.push_back(
         fmt::format("{}: {} left out, {:.2g}% of the volume", name,
@@ -279,16 +279,17 @@ MeshOnSphere onSphere(const LaidOutMesh& laid) {
 }
 
 std::vector<Setting> describe(LayOutSettings& s) {
-  return {Setting("surface_resolution", "N", &s.outerResolution,
-                  "cells across of the outer surface, which is taken for a mesh that runs through "
-                  "itself, overlaps or is not manifold")
-              .from(8, 1024)
-              .otherwise(0, "80, more for thin solids")
-              .rare(),
-          Setting("genus", "N", &s.handles, "handles of that outer surface")
-              .from(0, 1000)
-              .otherwise("the mesh's own; of several pieces, those that stay at other resolutions")
-              .rare()};
+  return {
+      Setting("surface_resolution", "N", &s.outerResolution,
+              "cells across the outer surface, which replaces a mesh that runs through itself, "
+              "overlaps or is not manifold")
+          .from(8, 1024)
+          .otherwise(0, "80, more for thin solids")
+          .rare(),
+      Setting("genus", "N", &s.handles, "handles of the outer surface")
+          .from(0, 1000)
+          .otherwise("the mesh's own; for several pieces, those that other resolutions have too")
+          .rare()};
 }
 
 }  // namespace innermap

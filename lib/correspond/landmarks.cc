@@ -52,10 +52,10 @@ class Finder {
     const double distance = file_.closest(place.point).distance / diagonal_;
     if (!(distance <= kOnSurface))
       failAt(list_, pair,
-             fmt::format(
-                 "the point ({:.6g}, {:.6g}, {:.6g}) is {:.2g} of the diagonal away from {}; "
-                 "at most {} is taken for the surface",
-                 place.point.x, place.point.y, place.point.z, distance, mesh.name, kOnSurface));
+             fmt::format("the point ({:.6g}, {:.6g}, {:.6g}) is {:.2g} of the diagonal away from "
+                         "{}; give a place within {}",
+                         place.point.x, place.point.y, place.point.z, distance, mesh.name,
+                         kOnSurface));
     requireOnShells(place.point, pair);
     return place.point;
   }

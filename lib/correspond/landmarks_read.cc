@@ -64,12 +64,11 @@ class LineReader {
 }  // namespace
 
 const char kLandmarkFormat[] =
-    "A landmark file has a pair of places a line, first on SOURCE, then on TARGET: two vertices "
-    "(`12 240`), "
-    "two points of three coordinates, or one of each with the vertex marked by a v (`v12 0.1 0.5 "
-    "2`). Vertices are counted from 0 in the file's order (in OBJ files, their number less 1). "
-    "Commas may stand between the numbers, # starts a comment. A point on SOURCE is taken as the "
-    "nearest vertex.";
+    "A landmark file has one pair of places on each line, first on SOURCE, then on TARGET: two "
+    "vertices (`12 240`), two points of three coordinates, or one of each with the vertex marked "
+    "by a v (`v12 0.1 0.5 2`). Vertices are counted from 0 in the file's order (in OBJ files, "
+    "their number less 1). Commas may stand between the numbers; # starts a comment. A point on "
+    "SOURCE stands for the nearest vertex.";
 
 LandmarkList readLandmarks(const std::string& path) {
   FileBytes file = readFileBytes(path, "a text file of landmarks");

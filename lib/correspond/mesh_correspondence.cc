@@ -224,25 +224,23 @@ void requireOnTarget(const Mesh& moved, const Mesh& target) {
 std::vector<Setting> describe(MeshCorrespondenceSettings& s) {
   std::vector<Setting> out{
       Setting("aligned", &s.aligned,
-              "the two stand in the same pose and orientation: prefer agreeing normals and places"),
+              "prefer agreeing normals and places, if both stand in the same pose and orientation"),
       Setting("candidates", "N", &s.candidates,
-              "ways to lay one on the other that are refined: those whose coarse harmonic maps of "
-              "the inside stretch and fold it least; of them the one that does so least is taken")
+              "refine this many ways to lay one on the other, and take the one whose harmonic map "
+              "stretches and folds the inside least")
           .from(1, 64)
           .rare(),
       Setting("choose", "N", &s.way.choose,
-              "of the ways to lay one on the other that differ, the one of this number by "
-              "preference; a note tells where the second is about as good as the first")
+              "take the N-th best of the ways that differ; a note appears if the second is about "
+              "as good as the first")
           .from(1, 64),
       Setting("mirror", &s.way.mirror,
-              "the best way that turns left into right of what is taken otherwise, for bodies that "
-              "are the same on both sides"),
-      Setting("refine", &s.refine,
-              "only the best way to lay one on the other, not refined: fast, rough")
-          .rare(),
+              "take the best way that swaps left and right, for bodies that are the same on both "
+              "sides"),
+      Setting("refine", &s.refine, "take the best way without refining it: fast, rough").rare(),
       Setting("subdivide", "T", &s.subdivide,
-              "split the source's triangles until they follow the target within it, and write it "
-              "so split too; 0: never")
+              "split the source's triangles until they follow the target within T, and write the "
+              "split source too; 0: never")
           .in("fraction of the target's diagonal")
           .from(0, 1)
           .rare(),

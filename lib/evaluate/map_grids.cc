@@ -367,8 +367,8 @@ Setting repairSetting(RepairFolds* repair) {
                  choiceOf<RepairFolds>(repair, {{"auto", RepairFolds::automatic},
                                                 {"on", RepairFolds::on},
                                                 {"off", RepairFolds::off}}),
-                 fmt::format("take folds out of the grids, where `repaired` says how far voxels "
-                             "were moved; auto: where at most {:g}% of the voxels is folded",
+                 fmt::format("move folded voxels until the grids do not fold; the grid `repaired` "
+                             "says how far. auto: if at most {:g}% of the voxels fold",
                              100 * kRepairedFolds))
       .rare();
 }

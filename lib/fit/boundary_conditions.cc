@@ -163,8 +163,8 @@ double removeJumps(const Mesh& mesh, BoundaryConditions& conditions) {
 
 Setting creaseSetting(double* angle) {
   return Setting("crease_angle", "DEGREES", angle,
-                 "triangles that meet at less stand for a smooth surface: what flows through it is "
-                 "counted along interpolated normals; 0: along each triangle's own")
+                 "triangles that meet at a smaller angle count as smooth, and flux goes along "
+                 "interpolated normals; 0: along each triangle's own")
       .from(0, 90)
       .rare();
 }

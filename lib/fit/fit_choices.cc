@@ -35,19 +35,20 @@ FitMapSettings FitChoices::settings(bool laidOn) const {
 }
 
 std::vector<Setting> describe(FitChoices& c) {
-  Setting tolerance = toleranceSetting(&c.tolerance)
-                          .otherwise(fmt::format("{:g}; {:g} where one mesh is laid onto the other "
-                                                 "first",
-                                                 c.fit.tolerance, kLaidOnTolerance));
-  tolerance.help += "; not with what places a number of charges";
+  Setting tolerance =
+      toleranceSetting(&c.tolerance)
+          .otherwise(fmt::format("{:g}; {:g} if one mesh is first laid onto the other",
+                                 c.fit.tolerance, kLaidOnTolerance));
+  tolerance.help += "; not together with options that set a number of charges";
   std::vector<Setting> out{
       std::move(tolerance),
-      Setting("charges", "N", &c.sources, "charges on one shell, in place of {tolerance}")
+      Setting("charges", "N", &c.sources,
+              "place this many charges on one shell, in place of {tolerance}")
           .from(1, kMaxCharges)
           .was("sources")
-          .otherwise(fmt::format("{} where another choice asks for such a shell", c.shell.sources)),
+          .otherwise(fmt::format("{} if another option asks for such a shell", c.shell.sources)),
       Setting("collocation", "N", &c.collocation,
-              "boundary points that such a shell is fitted to, at least 4 more than charges")
+              "fit such a shell to this many boundary points, at least 4 more than charges")
           .from(8, 1e7)
           .otherwise("4 a charge; 3 a charge above 3000")
           .rare()};

@@ -65,17 +65,16 @@ void noteJumps(MapFit& fit, const std::vector<ValueJump>& jumps) {
 void noteProducts(MapFit& fit) {
   if (fit.solve.productError > 0)
     fit.notes.push_back(
-        fmt::format("the charges nearly cancel: their sums were exact to {:.1g} of the values, as "
-                    "far as rounding lets them be; more collocation points a charge help",
+        fmt::format("the charges nearly cancel: their sums were exact to {:.1g} of the values, "
+                    "about as well as rounding allows; use more collocation points a charge",
                     fit.solve.productError));
 }
 
 void warnOfError(MapFit& fit) {
   if (fit.error.max > kDoubtfulError)
-    fit.warnings.push_back(
-        fmt::format("the boundary error reaches {:.2g} of the diagonal: this map is not to be "
-                    "trusted; use {}",
-                    fit.error.max, fit.tolerance ? "a smaller tolerance" : "more charges"));
+    fit.warnings.push_back(fmt::format(
+        "the boundary error reaches {:.2g} of the diagonal: do not trust this map; use {}",
+        fit.error.max, fit.tolerance ? "a smaller tolerance" : "more charges"));
 }
 
 }  // namespace

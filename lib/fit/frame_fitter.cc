@@ -160,8 +160,8 @@ FrameFit FrameFitter::fit(const Mesh& frame) const {
   std::vector<std::string> warnings = boundary.warnings;
   if (error.max > kDoubtfulError)
     warnings.push_back(
-        fmt::format("the boundary error reaches {:.2g} of the diagonal: this map is not to be "
-                    "trusted; use more charges",
+        fmt::format("the boundary error reaches {:.2g} of the diagonal: do not trust this map; use "
+                    "more charges",
                     error.max));
   std::string jumps =
       jumpsText(lines_->jumps(solid(), boundary.moved, kLeastJumpTold * boundary.diagonal),
@@ -271,11 +271,11 @@ std::vector<Setting> describe(FrameFitterSettings& s) {
               .from(1, kMaxCharges)
               .was("sources")
               .rare(),
-          Setting("collocation", "N", &s.collocation, "boundary points that frames are fitted to")
+          Setting("collocation", "N", &s.collocation, "boundary points to fit each frame to")
               .from(8, 1e7)
               .otherwise(0, "3 a charge")
               .rare(),
-          Setting("distance", "D", &s.distance, "of the charges from the surface")
+          Setting("distance", "D", &s.distance, "distance of the charges from the surface")
               .in("fraction of the rest pose's diagonal")
               .from(1e-4, 2)
               .otherwise("1.25 spacings of the charges")

@@ -31,7 +31,7 @@ SettingChoice regularizationChoice(Regularization* method) {
 
 Setting toleranceSetting(SettingValue tolerance) {
   return Setting("tolerance", "T", std::move(tolerance),
-                 "charges are placed where the error is until 99% of the boundary lies within it")
+                 "add charges where the error is until 99% of the boundary lies within T")
       .in("fraction of the target's diagonal")
       .from(kSmallestTolerance, 1);
 }
@@ -57,38 +57,37 @@ std::size_t shellCollocation(const ShellSettings& shell) {
 }
 
 std::vector<Setting> describe(ShellSettings& s) {
-  return {
-      Setting("distance", "D", &s.distance,
-              "of the charges of such a shell from the surface (O-Distance)")
-          .in("fraction of the source's diagonal")
-          .from(1e-4, 2)
-          .otherwise("chosen by held-out error")
-          .rare(),
-      Setting("radius_ratio", "R", &s.radiusRatio,
-              "charges on a sphere, in place of a shell: its radius as a multiple of half the "
-              "diagonal (R-Ratio)")
-          .above(1, 100)
-          .rare(),
-      Setting("solver", "NAME",
-              choiceOf<FitSolver>(&s.solver, {{"auto", FitSolver::automatic},
-                                              {"dense", FitSolver::dense},
-                                              {"iterative", FitSolver::iterative}}),
-              "of such a shell. dense: all at once, for up to some 3000 charges; iterative: for "
-              "many; auto: by their number")
-          .rare(),
-      Setting("method", "NAME", regularizationChoice(&s.method),
-              "regularisation: Tikhonov's, or truncation of singular values (the paper's)")
-          .rare(),
-      Setting("regularization", "T", &s.regularization,
-              "threshold of singular values, or Tikhonov's lambda")
-          .in("fraction of the largest singular value")
-          .from(0, 1)
-          .otherwise("chosen by held-out error")
-          .rare()};
+  return {Setting("distance", "D", &s.distance,
+                  "distance of such a shell's charges from the surface (O-Distance)")
+              .in("fraction of the source's diagonal")
+              .from(1e-4, 2)
+              .otherwise("chosen by held-out error")
+              .rare(),
+          Setting("radius_ratio", "R", &s.radiusRatio,
+                  "place the charges on a sphere instead of a shell; its radius as a multiple of "
+                  "half the diagonal (R-Ratio)")
+              .above(1, 100)
+              .rare(),
+          Setting("solver", "NAME",
+                  choiceOf<FitSolver>(&s.solver, {{"auto", FitSolver::automatic},
+                                                  {"dense", FitSolver::dense},
+                                                  {"iterative", FitSolver::iterative}}),
+                  "solver for such a shell. dense: all charges at once, for up to some 3000; "
+                  "iterative: for more; auto: by their number")
+              .rare(),
+          Setting("method", "NAME", regularizationChoice(&s.method),
+                  "regularisation: Tikhonov's, or truncation of singular values (the paper's)")
+              .rare(),
+          Setting("regularization", "T", &s.regularization,
+                  "threshold of singular values, or Tikhonov's lambda")
+              .in("fraction of the largest singular value")
+              .from(0, 1)
+              .otherwise("chosen by held-out error")
+              .rare()};
 }
 
 Setting maxSourcesSetting(std::size_t* most) {
-  return Setting("max_charges", "N", most, "charges that {tolerance} may take")
+  return Setting("max_charges", "N", most, "most charges that {tolerance} may use")
       .from(1000, kMaxCharges)
       .was("max_sources")
       .rare();
@@ -101,20 +100,20 @@ std::vector<Setting> describe(FitMapSettings& s) {
               choiceOf<Interpolation>(&s.interpolation, {{"auto", Interpolation::automatic},
                                                          {"linear", Interpolation::linear},
                                                          {"smooth", Interpolation::smooth}}),
-              "what the target is between vertices: linear, as its triangles; smooth, when "
-              "vertices sample a smooth deformation; auto: by the error at held-out vertices")
+              "shape of the target between its vertices. linear: flat triangles; smooth: a smooth "
+              "deformation that the vertices sample; auto: the one with the smaller error at "
+              "held-out vertices")
           .rare(),
       Setting("one_to_one", "WHEN",
               choiceOf<OneToOne>(
                   &s.oneToOne,
                   {{"auto", OneToOne::automatic}, {"on", OneToOne::on}, {"off", OneToOne::off}}),
               fmt::format(
-                  "go in steps through intermediate shapes where one harmonic map folds; "
-                  "auto: where it folds over {:g}% of the inside or takes over {:g}% of it "
-                  "out of the target; on: until nothing that is checked or proven folds; off: one "
-                  "harmonic map",
+                  "go in steps through intermediate shapes if one harmonic map folds. auto: if it "
+                  "folds over {:g}% of the inside or takes over {:g}% of it out of the target; on: "
+                  "until nothing that is checked or proven folds; off: one harmonic map",
                   100 * kManyFolds, 100 * kManyOutside)),
-      Setting("max_steps", "N", &s.maxSteps, "steps at most").from(1, 256).rare()};
+      Setting("max_steps", "N", &s.maxSteps, "most steps").from(1, 256).rare()};
   for (Setting& setting : describeProof(
            &s.prove, &s.proofCells,
            fmt::format("; with {{one_to_one}} on {:g} at least", ProofSettings().cellsPerCharge)))

@@ -20,17 +20,16 @@ std::vector<Setting> describe(SpaceSettings& s) {
   constexpr double kMost = 1e9;
   return {
       Setting("up", "AXIS", choiceOf(&s.up, axes),
-              "what points up in the files that are read; glTF, which has y up, is turned to "
-              "that")
+              "axis that points up in the input files; glTF, which has y up, is turned to match")
           .otherwise("y"),
       Setting("unit_scale", "L", &s.unitScale,
-              "what a unit of the files that are read is; glTF, in metres, is scaled to that")
+              "length of one unit in the input files; glTF, in metres, is scaled to match")
           .in("metres")
           .above(0, kMost)
           .otherwise("1"),
-      Setting("out_up", "AXIS", choiceOf(&s.outUp, axes), "what shall point up in what is written")
+      Setting("out_up", "AXIS", choiceOf(&s.outUp, axes), "axis that points up in the output files")
           .otherwise("as {up}"),
-      Setting("out_unit_scale", "L", &s.outUnitScale, "what a unit of what is written shall be")
+      Setting("out_unit_scale", "L", &s.outUnitScale, "length of one unit in the output files")
           .in("metres")
           .above(0, kMost)
           .otherwise("as {unit_scale}")};

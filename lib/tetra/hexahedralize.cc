@@ -135,10 +135,10 @@ void measure(const Mesh& surface, const HexahedralizeSettings& settings, Hexahed
 void tell(Hexahedralization& out) {
   const HexahedronCheck& check = out.after;
   if (!check.proven())
-    out.warnings.push_back(fmt::format(
-        "{} hexahedra are inverted somewhere, {} of them at a corner, and {} are not proven not to "
-        "be; try other numbers of blocks",
-        check.inverted, check.invertedCorners, check.undecided));
+    out.warnings.push_back(
+        fmt::format("{} hexahedra are inverted somewhere, {} of them at a corner, and {} are not "
+                    "proven right side out; try other numbers of blocks",
+                    check.inverted, check.invertedCorners, check.undecided));
   const auto& parts = out.polycube.missedParts;
   if (!parts.empty())
     out.notes.push_back(fmt::format(

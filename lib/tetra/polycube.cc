@@ -145,8 +145,8 @@ struct Search {
         missedParts(shares, found->blocks, found->shift, volume * std::pow(found->blocks.edge, 3));
     if (found->grown)
       out.notes.push_back(
-          fmt::format("no threshold gives {} across blocks of the mesh's topology: grown from one "
-                      "block; thin parts may be missed",
+          fmt::format("no threshold gives {} across blocks of the mesh's topology: they are grown "
+                      "from one block and may miss thin parts",
                       across));
     out.blocks = std::move(found->blocks);
     return out;

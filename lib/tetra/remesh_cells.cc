@@ -271,8 +271,7 @@ class Remesher {
   void warn() {
     if (out_.invertedAtRest > 0)
       out_.notes.push_back(
-          fmt::format("{} cells of the mesh given are inverted; regular ones were "
-                      "taken for their shapes",
+          fmt::format("{} cells of the given mesh are inverted; regular shapes take their place",
                       out_.invertedAtRest));
     if (out_.inverted > 0)
       out_.warnings.push_back(
@@ -311,23 +310,24 @@ std::uint64_t remeshMemory(const CellMesh& mesh) {
 }
 
 std::vector<Setting> describe(RemeshSettings& s) {
-  return {Setting("back", &s.back,
-                  "the cells fill the map's target and are brought to its source; a surface is the "
-                  "source's")
-              .rare(),
-          Setting("keep_connectivity", &s.keepConnectivity,
-                  "move vertices alone: cells and their numbers stay as they are"),
-          Setting("angle", "ANGLE", &s.angle,
-                  "tetrahedra with a dihedral angle below it, or as near to 180, are improved")
-              .in("degrees")
-              .from(1, 30)
-              .rare(),
-          Setting("coarse", "N", &s.coarse,
-                  "cells along the longest side of the mesh that is repaired first where many "
-                  "cells are inverted, or with {back} stands for the inverse map; 0: none, or 64 "
-                  "with {back}")
-              .from(0, 256)
-              .rare()};
+  return {
+      Setting(
+          "back", &s.back,
+          "bring cells that fill the map's target back to its source; SURFACE is then the source's")
+          .rare(),
+      Setting("keep_connectivity", &s.keepConnectivity,
+              "only move vertices: cells and their numbers stay"),
+      Setting("angle", "ANGLE", &s.angle,
+              "improve tetrahedra with a dihedral angle below this, or as near to 180")
+          .in("degrees")
+          .from(1, 30)
+          .rare(),
+      Setting("coarse", "N", &s.coarse,
+              "cells along the longest side of a coarse mesh, which remesh repairs first if many "
+              "cells are inverted, and which with {back} stands for the inverse map; 0: none, or "
+              "64 with {back}")
+          .from(0, 256)
+          .rare()};
 }
 
 }  // namespace innermap

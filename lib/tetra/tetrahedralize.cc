@@ -201,7 +201,7 @@ StuffingNeed tetrahedralizeNeed(const Solid& solid, const TetrahedralizeSettings
 std::vector<Setting> describe(TetrahedralizeSettings& s) {
   return {
       Setting("resolution", "N", &s.resolution,
-              "cells of the lattice along the longest side of the mesh's box; each takes twelve "
+              "cells of the lattice along the longest side of the mesh's box; each makes twelve "
               "tetrahedra")
           .from(kLeastAcross, kMostAcross),
       Setting("edge", "LENGTH", &s.edge, "side of a cell of the lattice, in place of {resolution}")
@@ -210,9 +210,8 @@ std::vector<Setting> describe(TetrahedralizeSettings& s) {
           .otherwise(0, "by {resolution}")
           .rare(),
       Setting("features", "ANGLE", &s.features,
-              "keep edges of the surface that are sharper than this, between the normals of "
-              "their triangles, as edges of tetrahedra; dihedral angles then lie in 5 to 170 "
-              "degrees")
+              "keep edges of the surface as edges of tetrahedra if the normals beside them differ "
+              "by more than this; dihedral angles then lie between 5 and 170 degrees")
           .in("degrees")
           .from(1, 179),
       Setting("keep_topology", &s.keepTopology,

@@ -325,18 +325,16 @@ SolidTexture makeSolidTexture(const Mesh& mesh, const TextureLookup& image,
 
 std::vector<Setting> describe(SolidTextureSettings& s) {
   return {
-      Setting(
-          "mode", "MODE",
-          choiceOf<TextureMode>(
-              &s.mode, {{"uv", TextureMode::coordinates}, {"colour", TextureMode::imageColours}}),
-          "uv: the texture coordinates are continued and the image is looked up at each voxel's; "
-          "colour: the colours themselves are"),
+      Setting("mode", "MODE",
+              choiceOf<TextureMode>(&s.mode, {{"uv", TextureMode::coordinates},
+                                              {"colour", TextureMode::imageColours}}),
+              "uv: continue the texture coordinates and look up the image at each voxel; colour: "
+              "continue the colours themselves"),
       Setting("seams", "WAY",
               choiceOf<TextureSeams>(
                   &s.seams, {{"keep", TextureSeams::keep}, {"blend", TextureSeams::blend}}),
-              "with {mode} uv. keep: the coordinates are continued as they are and sweep through "
-              "the image below a seam; blend: those of each chart for themselves, and their "
-              "colours mixed"),
+              "for {mode} uv. keep: continue the coordinates as they are, which sweep through the "
+              "image below a seam; blend: continue each chart by itself and mix their colours"),
       Setting("charges", "N", &s.sources, "number of charges")
           .was("sources")
           .from(100, 1e6)

@@ -45,10 +45,10 @@ std::vector<Setting> describe(CarrySettings& s) {
                   choiceOf<Sampling>(&s.sampling, {{"nearest", Sampling::nearest},
                                                    {"linear", Sampling::linear},
                                                    {"quadratic", Sampling::quadratic}}),
-                  "between voxels; whole numbers are always taken from the nearest"),
+                  "how to sample between voxels; whole numbers always come from the nearest"),
           Setting("density_limit", "TIMES", &s.densityLimit,
-                  "that a density may grow at most; what comes together beyond it is left out, and "
-                  "how much is said")
+                  "most times that a density may grow; innermap leaves out the mass beyond it and "
+                  "reports how much")
               .above(0, 1e300)
               .otherwise(std::numeric_limits<double>::infinity(), "none")};
 }

@@ -200,8 +200,8 @@ Setting splatsSetting(SplatOpacity* opacity) {
   return Setting(
       "splats", "OPACITY",
       choiceOf<SplatOpacity>(opacity, {{"look", SplatOpacity::look}, {"mass", SplatOpacity::mass}}),
-      "of Gaussian splats: their opacity stays (look), or falls as their cross section "
-      "grows (mass), so that they dim light as a fog of the same mass does");
+      "opacity of Gaussian splats. look: it stays; mass: it falls as their cross section grows, as "
+      "a fog of the same mass thins out");
 }
 
 }  // namespace innermap

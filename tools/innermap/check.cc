@@ -156,12 +156,13 @@ Command makeCheckCommand() {
       "degenerate triangles, inconsistent orientation, loose vertices and self-intersections. "
       "Findings are no failure: the exit code is 0.");
   c.positional("MESH", &o->mesh, "mesh file: .obj, .ply, .off or .stl");
-  c.flag("--json", &o->json, "machine-readable findings on stdout");
-  c.option("--listed", "N", &o->check.listed, "self-intersections that are placed; all are counted")
+  c.flag("--json", &o->json, "print machine-readable findings on stdout");
+  c.option("--listed", "N", &o->check.listed,
+           "list the places of at most this many self-intersections; the count has all")
       .range(0, 1e6);
   c.option("--outer", "FILE", &o->outer,
-           "also write the closed surface that stands for MESH where it is laid onto another solid "
-           "or filled: its outer surface if it runs through itself, else MESH; .ply or .obj")
+           "also write the closed surface that other commands use in place of MESH: its outer "
+           "surface if it runs through itself, else MESH; .ply or .obj")
       .writes({".ply", ".obj"});
   c.settings(describe(o->layOut));
   c.example("innermap check horse.obj");

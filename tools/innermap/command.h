@@ -59,7 +59,7 @@ class Command {
   OptionBuilder outputFile(std::string* path, std::vector<std::string> endings,
                            const std::string& help);
   OptionBuilder outputFolder(std::string* path,
-                             const std::string& help = "where the files go; made when missing");
+                             const std::string& help = "folder for the files; made if missing");
   // An option for each setting of the library: max_charges is --max-charges; a flag that is on is
   // turned off by --no-NAME.
   void settings(const std::vector<Setting>& described);

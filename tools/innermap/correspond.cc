@@ -76,16 +76,12 @@ Command makeCorrespondCommand() {
   Command c("correspond", "Lay the surface of one solid onto that of another, of any connectivity");
   c.description(
       std::string(
-          "Writes SOURCE with its vertices moved onto TARGET's surface, so that it is a target for "
-          "map, fit "
-          "and "
-          "the rest, and each vertex's `triangle` of TARGET (counted from 0) and barycentric "
-          "coordinates "
-          "`b0 b1 b2`. The map is one-to-one between the two surfaces, each point of TARGET is "
-          "reached "
-          "once; the triangles between the moved vertices cut corners where TARGET is finer than "
-          "SOURCE "
-          "(--subdivide). Solids of the same number of handles, with as many shells (cavities). ") +
+          "Writes SOURCE with its vertices moved onto TARGET's surface, as a target for map, fit "
+          "and other commands. Each vertex also gets its `triangle` of TARGET (counted from 0) and "
+          "barycentric coordinates `b0 b1 b2`. The map between the two surfaces is one-to-one and "
+          "reaches each point of TARGET. Triangles between the moved vertices cut corners where "
+          "TARGET is finer than SOURCE (see --subdivide). Both solids need the same number of "
+          "handles and of shells (cavities). ") +
       kLandmarkFormat);
   c.positional("SOURCE", &o->a, "mesh of the first solid: .obj, .ply, .off or .stl");
   c.positional("TARGET", &o->b, "mesh of the second solid");
@@ -97,12 +93,12 @@ Command makeCorrespondCommand() {
       .defaults("the output's name with .source.ply")
       .writes({".ply"})
       .advanced();
-  c.limitTime("after which trying and refining end");
+  c.limitTime("stop trying and refining after this time");
   addCorrespondOptions(c, o->correspond);
   c.setting(seedSetting(&o->correspond.map.seed));
   c.option("--picture", "FILE", &o->picture,
-           "a .png with SOURCE's coordinates as colours, on both; where another way is about as "
-           "good, that goes to the same name with .other.png")
+           "also write a .png with SOURCE's coordinates as colours on both; if another way is "
+           "about as good, it goes to the same name with .other.png")
       .writes({".png"});
   c.example("innermap correspond cow.obj man.obj -o cow_on_man.ply --picture cow_on_man.png");
   c.example(

@@ -32,8 +32,7 @@ void tell(const LaidOutMesh& laid, Context& context) {
 }
 
 void addClose(Command& c, bool& close) {
-  c.flag("--close", &close, "no longer needed: the holes of an open mesh are closed by caps")
-      .advanced();
+  c.flag("--close", &close, "no longer needed: innermap caps the holes of an open mesh").advanced();
 }
 
 }  // namespace
@@ -45,7 +44,8 @@ void addSurfaceOptions(Command& c, SurfaceOptions& o) {
 
 void addCorrespondOptions(Command& c, CorrespondOptions& o) {
   c.group("laying SOURCE onto TARGET");
-  c.option("--landmarks", "FILE", &o.landmarks, "pairs of places that are kept exactly").reads();
+  c.option("--landmarks", "FILE", &o.landmarks, "pairs of places that the result keeps exactly")
+      .reads();
   c.settings(without(describe(o.map), {"seed"}));
   addClose(c, o.close);
 }

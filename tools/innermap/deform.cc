@@ -365,9 +365,9 @@ Command makeDeformCommand() {
                ".ply, .off, .stl; cells in .vtu, .msh, .mesh)");
   addFrameArgument(c, o->frames);
   c.option("--output", "FILES", &o->output,
-           "the files to write, of INSIDE's kind, #### or %04d standing for the frame's number; "
-           "without, it is put before the ending; or a point cache of geometry's points (.mdd, "
-           ".pc2), all frames in one; the folder is made when missing")
+           "the files to write, of INSIDE's kind, with #### or %04d for the frame's number, which "
+           "otherwise goes before the ending; or one point cache (.mdd, .pc2) with all frames of "
+           "geometry; the folder is made if missing")
       .shortName("-o")
       .required();
   addFrameOptions(c, o->frames);
@@ -376,8 +376,8 @@ Command makeDeformCommand() {
          "also write a grid velocity (v with --names houdini) for motion blur, in world units per "
          "second, from the neighbouring frames");
   c.option("--shutter", "FRAMES", &o->shutter,
-           "how long the shutter is open, for --velocity: the grid goes on around the solid as far "
-           "as it moves meanwhile, or the outer part of the blur is cut off")
+           "time that the shutter is open, for --velocity: the grid extends around the solid as "
+           "far as it moves in that time, which keeps the blur whole")
       .atLeast(0)
       .atMost(10);
   addTransferOptions(c, o->transfer);

@@ -128,8 +128,8 @@ Points cachePoints(const std::string& input, const CarriedGeometry& carried) {
   const auto cut = std::count(carried.number.begin(), end, -1);
   if (cut > 0)
     throw OutputFailure(
-        fmt::format("{}: {} points lie too far outside and would be cut, and a "
-                    "point cache has all; raise --outside, or write files",
+        fmt::format("{}: {} points lie too far outside and would be cut, but a point cache needs "
+                    "all; raise --outside, or write files",
                     input, cut));
   return {carried.points.points.begin(),
           carried.points.points.begin() + static_cast<std::ptrdiff_t>(carried.ownPoints)};

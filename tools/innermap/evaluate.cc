@@ -164,13 +164,13 @@ Command makeEvaluateCommand() {
   Command c("evaluate", "Evaluate a saved map on the voxels of its solid");
   c.description(
       "Writes the grids surface, density, map, jacobian, harmonic_energy and deformation_energy; "
-      "values are active inside and in a skin of two voxels. Energies' totals, the least Jacobian, "
-      "the folded share and what is known of one-to-one stand in the metadata and the report. "
-      "Where there are such, `folded` marks the voxels that the map folds, `outside` says how "
-      "far images lie outside the target. (`map` marks as `undecided` those where its proof that "
-      "nothing folds came to no end; a map's file does not hold them.) Far "
-      "from the origin, where floats do not hold positions well, also map_local: positions less "
-      "its metadata innermap_map_local_origin.");
+      "values are active inside and in a skin of two voxels. The metadata and the report have the "
+      "energies' totals, the least Jacobian, the folded share and what is known of one-to-one. "
+      "Where there are such, `folded` marks the voxels that the map folds, `outside` says how far "
+      "images lie outside the target. (`map` marks as `undecided` those where its proof that "
+      "nothing folds came to no end; a map's file does not hold them.) Far from the origin, where "
+      "floats do not hold positions well, also map_local: positions less its metadata "
+      "innermap_map_local_origin.");
   c.positional("MAP", &o->map, "a map.ply written by fit or map");
   c.option("--output", "FILE", &o->output,
            "the grids, a .vdb file; with --inverse also .nii or .nii.gz: a displacement field for "
@@ -179,9 +179,10 @@ Command makeEvaluateCommand() {
       .required()
       .writes({".vdb", ".nii", ".nii.gz"});
   c.flag("--inverse", &o->inverse,
-         "the way back instead, on the voxels of the target: the grids surface and displacement, "
-         "from each voxel to where it comes from, by which images of the source are resampled");
-  c.limitTime("after which folds are no longer repaired");
+         "write the inverse map instead, on the voxels of the target: the grids surface and "
+         "displacement, from each voxel to where it comes from; other programs resample images of "
+         "the source by it");
+  c.limitTime("stop repairing folds after this time");
   addEvaluationOptions(c, o->evaluation);
   c.settings(describe(o->verdict));
   addShareOptions(c, o->farm, "blocks of 128 voxels along each side",

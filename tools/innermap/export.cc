@@ -117,19 +117,17 @@ Command makeExportCommand() {
   Command c("export", "Write grids for engines, renderers and other programs");
   c.description(
       outputHelp() +
-      " Of EXR: the common active box of the grids as a dense texture in EXR, with the background "
-      "where "
+      " EXR holds the common active box of the grids as a dense texture, with the background where "
       "nothing is active. An atlas has its slices as tiles, row-major from the top left. "
-      "Attributes "
-      "tell tiling, order, voxel size, bounds, matrices and what each grid is; `innermap import` "
-      "reads them. One scalar grid is the channel Y, a vector R, G, B, a vector and a scalar "
-      "R, G, B, A; more than four channels are layers (`density.V`, `Cd.R`).");
+      "Attributes tell tiling, order, voxel size, bounds, matrices and what each grid is; "
+      "`innermap import` reads them. One scalar grid is the channel Y, a vector R, G, B, a vector "
+      "and a scalar R, G, B, A; more than four channels are layers (`density.V`, `Cd.R`).");
   c.positional("FILE", &o->file,
                "the .vdb file; for .usda also a folder or pattern of frames, with #### or *");
   c.outputFile(
       &o->output, outputEndings(),
-      "the file, in the format of its ending; of slices, with #### or %04d for the number, "
-      "else it is put before the extension");
+      "the file, in the format of its ending; for slices with #### or %04d for the number, "
+      "which otherwise goes before the ending");
   c.option("--grids", "LIST", &o->grids, "grids to write, with commas between")
       .was("--grid")
       .defaults("all");

@@ -55,7 +55,7 @@ Command makeFitCommand() {
   c.positional("SOURCE", &o->source, "mesh of the solid: .obj, .ply, .off or .stl");
   c.positional("TARGET", &o->target, "the same mesh with its vertices moved");
   c.outputFile(&o->output, {".ply"}, "the map, a .ply file");
-  c.limitTime("after which refining and steps end");
+  c.limitTime("stop refining and stepping after this time");
   addFittingOptions(c, o->fitting);
   c.settings(describe(o->verdict));
   c.addSpace();

@@ -31,8 +31,9 @@ void requireOne(bool first, const std::string& a, bool second, const std::string
 void addFittingOptions(Command& command, FittingOptions& o) {
   command.group("fit of the map");
   command.settings(describe(static_cast<FitChoices&>(o)));
-  command.flag("--best-effort", &o.bestEffort,
-               "exit code 0 also when the tolerance cannot be met; files are written either way");
+  command.flag(
+      "--best-effort", &o.bestEffort,
+      "end with exit code 0 even if the tolerance is not met; the files are written either way");
   command
       .option("--charge-ratio", "R", &o.sourceRatio,
               "charges as a multiple of the source's vertices (sRatio), in place of --charges")

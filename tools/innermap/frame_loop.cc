@@ -85,7 +85,7 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
   if (context.page()) context.page()->frame.reset();
   const std::size_t left = frames.wanted.size() - results.size();
   if (left > 0)
-    context.warning(fmt::format("{} of {} {}s are left, from {} on, as --max-time ended", left,
+    context.warning(fmt::format("--max-time ended: {} of {} {}s are left, from {} on", left,
                                 frames.wanted.size(), frames.unit,
                                 frames.all[frames.wanted[results.size()]].number));
   concludeFrames(results, left, context);

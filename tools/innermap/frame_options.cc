@@ -44,22 +44,23 @@ void addFrameOptions(Command& command, FrameOptions& o) {
   command.option("--frames", "LIST", &o.ranges, "which frames: 12, 1-48, 1-48x2 (every second)")
       .defaults("all");
   command.settings(describe(o.animation));
-  command.option("--mesh", "NAME", &o.animation.mesh, "which mesh or node of glTF, of several");
+  command.option("--mesh", "NAME", &o.animation.mesh,
+                 "mesh or node of glTF to read, if it has several");
   command
       .option("--animation", "NAME", &o.animation.animation,
-              "which animation of glTF, where several move the same")
+              "animation of glTF to read, if several move the same")
       .defaults("all");
-  command.limitTime("no frame begins later, but for the first; those that are left are counted");
+  command.limitTime(
+      "begin no frame after this time, except the first; the run reports how many are left");
   command
       .option("--usd", "FILE", &o.usd,
               "also write a .usda file that refers to the frames' grids, for Solaris and usdview")
       .writes({".usda"});
   command.settings(describe(o.fitting));
   command
-      .option(
-          "--tolerance", "T", &o.tolerance,
-          "within which 99% of each frame's boundary should lie; frames that miss it are marked "
-          "and warned of")
+      .option("--tolerance", "T", &o.tolerance,
+              "99% of each frame's boundary should lie within T; the run marks frames that miss it "
+              "and warns")
       .unit("fraction of the frame's diagonal")
       .range(1e-12, 1);
   command.settings(describe(o.verdict, true));

@@ -22,7 +22,8 @@ void addGeometryOptions(Command& c, GeometryOptions& o, bool subdivide) {
            "vectors and turned by the map's Jacobian")
       .defaults("those that the file declares");
   c.option("--normals", "LIST", &o.normals,
-           "likewise those that are normals of surfaces, turned by its inverse transpose")
+           "of geometry: properties or fields that are normals of surfaces, turned by the inverse "
+           "transpose of the Jacobian")
       .defaults("nx, ny, nz; those that the file declares");
   if (subdivide) c.setting(subdivideSetting(&o.subdivide));
   c.setting(splatsSetting(&o.splats));
@@ -90,16 +91,15 @@ void warnOf(const GeometryFile& file, const CarriedGeometry& carried,
                             : "; give --outside to keep them"));
   if (points.failed > 0)
     context.warning(
-        fmt::format("{}at {} points the map has no inverse; they have the nearest place "
-                    "that was found",
-                    part, points.failed));
+        fmt::format("{}at {} points the map has no inverse; they get the nearest place found", part,
+                    points.failed));
   if (carried.folded > 0)
     context.warning(fmt::format("{}at {} points the map folds; directions there mean little", part,
                                 carried.folded));
   if (carried.splats.capped > 0)
     context.warning(
-        fmt::format("{}{} splats shrink so much that no opacity keeps what they dim; they have the "
-                    "largest, 0.99 or what they had",
+        fmt::format("{}{} splats shrink so much that no opacity dims as much as before; they get "
+                    "the largest, 0.99 or their own",
                     part, carried.splats.capped));
   const GeometryFile::Inverted inverted = file.inverted(carried);
   if (inverted.after > inverted.before)

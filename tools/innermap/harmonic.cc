@@ -152,25 +152,25 @@ class Conditions {
 
 Command makeHarmonicCommand() {
   auto o = std::make_shared<FieldOptions>();
-  Command c("harmonic", "A harmonic field inside a solid, from values and fluxes on its surface");
+  Command c("harmonic",
+            "Compute a harmonic field inside a solid from values and fluxes on its surface");
   c.description(
-      "No tetrahedra are needed. Values are given by groups of an OBJ (--fix), then nothing flows "
-      "through the rest of the surface, or by vertices; vertices without a value leave the "
-      "triangles about them without flux. Writes, of each channel, values, gradients, their "
-      "directions and their lengths, with the surface and its fog; the certificate says how far "
+      "It needs no tetrahedra. Values belong to groups of an OBJ (--fix) or to vertices. With "
+      "groups, nothing flows through the rest of the surface; with vertices, nothing flows through "
+      "triangles with a vertex that has no value. Writes values, gradients, their directions and "
+      "their lengths for each channel, with the surface and its fog. The certificate says how far "
       "the field may be off.");
   addHarmonicOptions(c, o->harmonic, "value,gradient,direction,magnitude");
   c.option("--fix", "LIST", &o->fix,
-           "values on groups, objects or materials of an OBJ, GROUP=VALUE,...; of several channels "
-           "GROUP=VALUE:VALUE,...");
+           "values on groups, objects or materials of an OBJ: GROUP=VALUE,...; for several "
+           "channels GROUP=VALUE:VALUE,...");
   c.option("--property", "LIST", &o->properties,
-           "channels are these properties of a PLY's vertices");
-  c.option(
-       "--table", "FILE", &o->table,
-       "channels are the columns of a text file of lines VERTEX,VALUE,..., vertices counted from "
-       "0; its first line may name them")
+           "take these properties of a PLY's vertices as channels");
+  c.option("--table", "FILE", &o->table,
+           "take the columns of a text file as channels: lines VERTEX,VALUE,..., vertices counted "
+           "from 0; the first line may name them")
       .reads();
-  c.flag("--vertex-colours", &o->colours, "channels are the colours of the mesh's vertices");
+  c.flag("--vertex-colours", &o->colours, "take the colours of the mesh's vertices as channels");
   c.option("--flux", "LIST", &o->flux,
            "derivatives along the outward normal on groups, GROUP=VALUE,..., in values' units per "
            "world unit, in place of 0 or of a value");

@@ -39,7 +39,7 @@ void reportHarmonic(const HarmonicFit& fit, const HarmonicOptions& options, Cont
   if (options.bestEffort)
     context.warning(text);
   else
-    context.failAfterwards(text + "; what is written is marked so (--best-effort: exit code 0)");
+    context.failAfterwards(text + "; the files say so (--best-effort: exit code 0)");
 }
 
 HarmonicGridSettings gridSettingsOf(const HarmonicOptions& options) {
@@ -69,17 +69,16 @@ void addHarmonicOptions(Command& command, HarmonicOptions& o, const std::string&
   command.outputFile(&o.output, {".vdb"}, "the grids, a .vdb file");
   command
       .option("--field", "FILE", &o.field,
-              "also the field itself in double precision, a .ply file of charges and weights")
+              "also write the field in double precision, a .ply file of charges and weights")
       .writes({".ply"});
-  command.limitTime("after which charges are no longer added");
+  command.limitTime("stop adding charges after this time");
   command.settings(describe(o.fit));
   command.setting(creaseSetting(&o.creaseAngle));
-  command.flag("--best-effort", &o.bestEffort, "a tolerance that is not met is a warning");
+  command.flag("--best-effort", &o.bestEffort, "only warn if the tolerance is not met");
   command.settings(describe(o.grid));
   command.option(
       "--grids", "LIST", &o.grids,
-      "what is written of each channel, of value, gradient, direction (unit vectors) and "
-      "magnitude");
+      "what to write for each channel, of value, gradient, direction (unit vectors) and magnitude");
   command.setting(namesSetting(&o.names));
 }
 
@@ -97,7 +96,7 @@ void runHarmonic(const HarmonicOptions& options,
     if (share > 0)
       context.note(
           fmt::format("values that touch are joined: on {:.2g}% of the surface, the triangles "
-                      "along their borders, they go over into one another",
+                      "along their borders, they blend",
                       100 * share));
   }
   const std::size_t vertices = mesh.vertices.size();

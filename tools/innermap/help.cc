@@ -237,8 +237,8 @@ std::string markdownHelp() {
 Command makeHelpCommand() {
   auto o = std::make_shared<HelpOptions>();
   Command c("help", "Show the help of a command, or the commands");
-  c.positional("COMMAND", &o->command, "the command to explain").optional();
-  c.flag("--all", &o->all, "every option of the command, as its --help-all");
+  c.positional("COMMAND", &o->command, "command to explain").optional();
+  c.flag("--all", &o->all, "show every option of the command, as its --help-all");
   c.flag("--man", &o->man, "as a page for man: innermap help map --man | man -l -");
   c.option("--completion", "SHELL", &o->completion,
            "a script that completes the command line: . <(innermap help --completion bash)")

@@ -105,10 +105,9 @@ void run(const Options& options, Context& context) {
   fillReport(result, context);
   writeAll(options, mesh, result, context);
   if (!result.after.proven())
-    context.failAfterwards(
-        fmt::format("{} hexahedra are inverted or not proven not to be; they are "
-                    "written all the same",
-                    result.after.inverted + result.after.undecided));
+    context.failAfterwards(fmt::format(
+        "{} hexahedra are inverted, or not proven right side out; the file has them all the same",
+        result.after.inverted + result.after.undecided));
 }
 
 }  // namespace
@@ -117,18 +116,17 @@ Command makeHexahedralizeCommand() {
   auto o = std::make_shared<Options>();
   Command c("hexahedralize", "Fill a mesh with hexahedra");
   c.description(
-      "A polycube stands in for the solid (innermap polycube); its blocks, cut into hexahedra and "
-      "with a layer of more around them, are carried into the solid by the harmonic map of one "
-      "onto "
-      "the other, and there evened out with their boundary on the surface until none is inverted, "
-      "which the Bernstein coefficients of each one's Jacobian prove. Sharp edges are drawn near, "
-      "not followed. One closed body, whose mesh may have any number of handles and cavities. "
-      "Ends with exit code 1 where some hexahedra could not be turned right.");
+      "hexahedralize first makes a polycube of the solid (innermap polycube) and cuts its blocks "
+      "into hexahedra, with one more layer around them. A harmonic map carries them into the "
+      "solid. There it moves their vertices, those of the boundary along the surface, until no "
+      "hexahedron is inverted. The Bernstein coefficients of each Jacobian prove it. Hexahedra "
+      "come near sharp edges but do not follow them. MESH is one closed body with any number of "
+      "handles and cavities. The exit code is 1 if some hexahedra stay inverted.");
   addFillOptions(c, o->mesh, o->settings.polycube, o->surface);
   c.outputFile(&o->output, {".vtu", ".msh", ".mesh"},
                "the .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file to write, with each cell's "
                "scaled_jacobian (.vtu and .msh)");
-  c.limitTime("after which fitting, untangling and shaping end");
+  c.limitTime("stop fitting, untangling and shaping after this time");
   c.settings(without(describe(o->settings), {"blocks"}));
   c.option("--polycube", "FILE", &o->cubes, "also write the polycube's surface, .obj or .ply")
       .writes({".obj", ".ply"})

@@ -81,19 +81,18 @@ Command makeImportCommand() {
   auto o = std::make_shared<ImportOptions>();
   Command c("import", "Read a volume texture or a scan into a .vdb file");
   c.description(
-      "What `innermap export` writes comes back as it was, within the rounding of the pixels: "
-      "types, names, classes, backgrounds and transform stand in the attributes. Voxels that have "
-      "the background are inactive. For textures of other programs, options say what the file does "
+      "What `innermap export` writes comes back as it was, within the rounding of the pixels: the "
+      "attributes hold types, names, classes, backgrounds and transform. Voxels that have the "
+      "background are inactive. For textures of other programs, options say what the file does "
       "not; an option wins over an attribute. NIfTI files (.nii, .nii.gz) become a grid in their "
-      "own "
-      "world, by sform or qform, in millimetres; labels stay whole numbers.");
+      "own world, by sform or qform, in millimetres; labels stay whole numbers.");
   c.positional(
       "FILE", &o->file,
       "the .exr, .nii or .nii.gz file; of slices, any of the files or a pattern with #### or %04d");
   c.outputFile(&o->output, {".vdb"}, "the .vdb file to write");
   c.option("--grids", "LIST", &o->grids,
-           "grids to read, with commas between; of a file that does not say what its channels are, "
-           "their names: R, G, B together and X, Y, Z are a vector")
+           "grids to read, with commas between; if the file does not say what its channels are, "
+           "names for them (R, G, B together and X, Y, Z are one vector)")
       .defaults("all")
       .was("--grid");
   c.settings(describe(o->texture));

@@ -147,8 +147,8 @@ Command makeInfoCommand() {
       "a .vdb, .exr, .nvdb, .vti, .dds, .nii, .nii.gz or .usda file, a map, mesh, .mdd, .pc2 or "
       "glTF file");
   c.flag("--metadata", &o->metadata,
-         "also all metadata of the grids, or all that a map's file says");
-  c.flag("--json", &o->json, "machine-readable, with all metadata, on stdout");
+         "also show all metadata of the grids, or all that a map's file says");
+  c.flag("--json", &o->json, "print machine-readable text with all metadata on stdout");
   c.example("innermap info map.vdb");
   c.example("innermap info map.vdb --json | jq '.grids[].name'");
   c.run([o](Context& context) { run(*o, context); });

@@ -238,17 +238,17 @@ Command makeMapCommand() {
   Command c("map", "Map the inside of a solid onto another: fit, evaluate, slice, report");
   c.description(
       "Writes map.ply (the map itself), map.vdb (its grids), slices.exr, section.png and "
-      "report.json into a folder. If SOURCE and TARGET have the same faces and vertex order, "
-      "each vertex goes to its counterpart. Otherwise SOURCE is first laid onto TARGET, as "
-      "innermap correspond does; correspondence.ply and correspondence.png then show how. "
-      "steps.png shows the shapes that a map in steps goes through.");
+      "report.json into a folder. If SOURCE and TARGET have the same faces and vertex order, each "
+      "vertex goes to its counterpart. Otherwise map first lays SOURCE onto TARGET, as innermap "
+      "correspond does, and shows how in correspondence.ply and correspondence.png. If the map "
+      "goes in steps, steps.png shows the shapes on the way.");
   c.positional("SOURCE", &o->source, "mesh of the solid: .obj, .ply, .off or .stl");
-  c.positional("TARGET", &o->target,
-               "the same mesh with its vertices moved, or any other mesh; may be left out with "
-               "--correspond")
+  c.positional(
+       "TARGET", &o->target,
+       "the same mesh with its vertices moved, or any other mesh; not needed with --correspond")
       .optional();
   c.outputFolder(&o->output);
-  c.limitTime("after which trying, refining, steps and repairs end; the rest takes what it takes");
+  c.limitTime("stop trying, refining, stepping and repairing after this time; the rest still runs to its end");
   c.option("--correspond", "FILE", &o->correspondence,
            "SOURCE's vertices on TARGET, as innermap correspond or an earlier map wrote them")
       .reads();
@@ -259,7 +259,8 @@ Command makeMapCommand() {
   c.settings(describe(o->verdict));
   c.addSpace();
   c.group("slices and picture");
-  c.choice("--slice-axis", "AXIS", &o->slices.axis, {{"x", 0}, {"y", 1}, {"z", 2}}, "of slices.exr")
+  c.choice("--slice-axis", "AXIS", &o->slices.axis, {{"x", 0}, {"y", 1}, {"z", 2}},
+           "axis across the slices of slices.exr")
       .advanced();
   c.option("--slices", "N", &o->slices.count, "parts of slices.exr")
       .range(1, 4096)

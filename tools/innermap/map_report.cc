@@ -55,7 +55,7 @@ void reportTolerance(const MapFit& fit, const FitMapSettings& settings, bool bes
   if (bestEffort)
     context.warning(text);
   else
-    context.failAfterwards(text + "; what is written is marked so (--best-effort: exit code 0)");
+    context.failAfterwards(text + "; the files say so (--best-effort: exit code 0)");
 }
 
 }  // namespace

@@ -46,13 +46,12 @@ void run(const PolycubeOptions& options, Context& context) {
 
 Command makePolycubeCommand() {
   auto o = std::make_shared<PolycubeOptions>();
-  Command c("polycube", "Stand a few equal cubes in for a solid");
+  Command c("polycube", "Approximate a solid by equal cubes");
   c.description(
-      "Blocks that lie along the axes, as near to the solid as so many can be, with its handles "
-      "and "
-      "cavities; where no such set is found the command fails and names a number of blocks that "
-      "does. The surface's vertices stand close enough to be mapped (innermap map OUT MESH "
-      "--aligned). One closed body, whose mesh may have any number of handles and cavities.");
+      "Writes the surface of blocks that lie along the axes, as near to the solid as their number "
+      "allows, with its handles and cavities. If polycube finds no such blocks, it fails and names "
+      "a number that works. The surface's vertices are close enough together to map it (innermap "
+      "map OUT MESH --aligned). MESH is one closed body with any number of handles and cavities.");
   addFillOptions(c, o->mesh, o->settings, o->surface);
   c.outputFile(&o->output, {".obj", ".ply"}, "the surface of the cubes, a .obj or .ply file");
   c.option("--pieces", "K", &o->pieces, "squares along a block's edge, of two triangles each")

@@ -104,8 +104,8 @@ void noteVoxelSize(const openvdb::GridPtrVec& grids, const TransferOptions& opti
   const double from = finestVoxel(grids);
   context.used("--voxel-size", growth * from);
   context.note(
-      fmt::format("voxels of {:.4g}: those of the grids, {:.4g}, times {:.4g}, by which "
-                  "the solid that they go to is larger; --voxel-size takes others",
+      fmt::format("voxels of {:.4g}: the grids' {:.4g} times {:.4g}, the growth of the solid; "
+                  "choose others with --voxel-size",
                   growth * from, from, growth));
 }
 
@@ -250,8 +250,8 @@ Command makeCarryCommand(Way way, const std::string& name, const std::string& su
       .shortName("-o")
       .required();
   c.option("--through", "CELLS", &o->through,
-           "go by the piecewise linear map of this mesh that remesh wrote (.vtu or .msh) instead: "
-           "what is carried agrees with the mesh and is nowhere folded; not for densities")
+           "use the piecewise linear map of this mesh from remesh (.vtu or .msh) instead; the "
+           "result agrees with the mesh and folds nowhere; not for densities")
       .reads();
   addTransferOptions(c, o->transfer);
   addGeometryOptions(c, o->geometry, true);
@@ -268,17 +268,16 @@ Command makePushCommand() {
                                "Carry grids or geometry inside a map's source solid to its target",
                                "source");
   c.description(
-      "For each voxel of the target, push finds the point of the source that the map brings "
-      "there, by Newton's method, and samples the grids at it. Scalars keep their values. "
-      "Vectors move by their vector type (invariant, covariant, contravariant). Level sets "
-      "become distances again. Densities (--density) are not sampled: push puts what each voxel "
-      "of the source holds where the map brings it, so no mass is lost. Output voxels are active "
-      "inside the target and in a skin of two voxels. Of geometry, each point goes where the map "
-      "brings it; normals turn by the inverse transpose of the Jacobian, vectors by the "
-      "Jacobian; the rest of the file stays. Gaussian splats (.ply with scale_0, rot_0 and "
-      "opacity) stretch and turn with their colours. Points farther outside the solid than "
-      "--outside (and 0.001 of the diagonal) are left out with what uses them, unless --fade-to "
-      "says where they go.");
+      "For each voxel of the target, push finds the point of the source that the map brings there, "
+      "by Newton's method, and samples the grids at it. Scalars keep their values. Vectors move by "
+      "their vector type (invariant, covariant, contravariant). Level sets become distances again. "
+      "Densities (--density) are not sampled: push puts what each voxel of the source holds where "
+      "the map brings it, so no mass is lost. Output voxels are active inside the target and in a "
+      "skin of two voxels. For geometry, each point goes where the map takes it. The Jacobian "
+      "turns vectors, and its inverse transpose turns normals; the rest of the file stays. "
+      "Gaussian splats (.ply with scale_0, rot_0 and opacity) stretch and turn with their colours. "
+      "push leaves out points farther outside the solid than --outside (and 0.001 of the diagonal) "
+      "and all that uses them, unless --fade-to says where they go.");
   c.example("innermap push map.ply smoke.vdb -o posed.vdb --grids density --density");
   c.example("innermap push map.ply fem.vdb -o posed.vdb --stress stress --resolution 256");
   c.example("innermap push map.ply mist.vdb -o posed.vdb --outside 0.1 --fade-to fitted");

@@ -107,26 +107,25 @@ void run(const RemeshOptions& options, Context& context) {
 
 Command makeRemeshCommand() {
   auto o = std::make_shared<RemeshOptions>();
-  Command c("remesh", "Carry the cells that fill one solid onto another, none of them inverted");
+  Command c("remesh", "Carry the cells that fill one solid onto another, with none inverted");
   c.description(
-      "Vertices inside go by the map, those of the boundary by their places on the surface. Cells "
-      "that this turns inside out are repaired by moving vertices, those of the boundary along the "
-      "surface; then tetrahedra with poor angles are improved by swapping edges and faces, by "
-      "drawing edges together and by moving vertices. Vertices keep the places that they came from "
-      "as the field `source`: the two together are a piecewise linear map, which push and pull "
-      "take with --through. The command says what is proven of the cells as written: whether one "
-      "is inverted, and whether two overlap. Vectors and normals among the fields are turned by "
-      "it.");
+      "The map moves the vertices inside; those of the boundary go by their places on the surface. "
+      "remesh repairs cells that turn inside out by moving vertices, those of the boundary along "
+      "the surface. Then it improves tetrahedra with poor angles: it swaps edges and faces, "
+      "collapses edges and moves vertices. The field `source` keeps where each vertex came from. "
+      "Both places together are a piecewise linear map, which push and pull take with --through; "
+      "it also turns vectors and normals among the fields. remesh reports what it proves of the "
+      "written cells: whether one is inverted, and whether two overlap.");
   c.positional("MAP", &o->map, "a map.ply written by fit or map");
   c.positional("CELLS", &o->cells,
                "tetrahedra or hexahedra that fill the map's source: .vtu, .msh or .mesh");
   c.positional("SURFACE", &o->surface,
-               "the mesh whose surface the boundary goes onto, as it was given to map; left out: "
-               "the map's own, the source's triangles where it takes them")
+               "mesh whose surface the boundary goes onto, as you gave it to map; without it, the "
+               "source's triangles where the map takes them")
       .optional();
   c.outputFile(&o->output, {".vtu", ".msh", ".mesh"},
                "the .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file to write");
-  c.limitTime("after which repairing and improving end");
+  c.limitTime("stop repairing and improving after this time");
   c.settings(describe(o->settings));
   addCellPicture(
       c, o->picture, o->cut,

@@ -277,9 +277,9 @@ Command makeReportCommand() {
       "Reads report.json and what it belongs to: map.ply, .vdb files, and the meshes that the "
       "report names. The page is one file that needs no network: the numbers with their meaning, "
       "the surfaces before and after, sections through the volume, how the fit went, time and "
-      "memory, the command and its settings. What is missing is left out, and said. --html of the "
-      "other commands writes the same page as they run.");
-  c.positional("FOLDER", &o->folder, "that a command of innermap wrote, with a report.json");
+      "memory, the command and its settings. The page leaves out what is missing and names it. "
+      "Other commands write the same page with --html.");
+  c.positional("FOLDER", &o->folder, "folder that a command of innermap wrote, with a report.json");
   c.option("--output", "FILE", &o->output, "the page")
       .shortName("-o")
       .defaults("report.html in the folder");

@@ -7,7 +7,7 @@ namespace innermap::tool {
 void addSectionOptions(Command& c, SectionOptions& o) {
   c.option("--section", kCutPlaceholder, &o.cut,
            "plane of the picture: x, y or z, and the fraction of the box along it, as in x=0.5")
-      .defaults("where the solid is thinnest, near the middle, where most is cut")
+      .defaults("across the thinnest direction, near the middle, where the cut is largest")
       .was("--section-axis,--section-at");
   c.setting(colormapSetting(&o.colormap));
   c.setting(scaleSetting(&o.scale));

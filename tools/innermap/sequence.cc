@@ -157,10 +157,10 @@ Command makeSequenceCommand() {
   Command c("sequence", "Measure the energy of each frame of an animation against its rest pose");
   c.description(
       "Maps the inside of SOURCE onto that of each frame. The harmonic energy (3 for a rigid "
-      "motion) and deformation energy (0 for one) go to energies.csv, energies.svg and "
-      "report.json in a folder. Charges are placed once for all frames; a frame's figures do not "
-      "depend on the other frames. A frame that cannot be read or fitted is reported and "
-      "skipped; the exit code is then 1.");
+      "motion) and deformation energy (0 for one) go to energies.csv, energies.svg and report.json "
+      "in a folder. sequence places charges once for all frames, and a frame's figures do not "
+      "depend on the other frames. It reports and skips a frame that cannot be read or fitted; the "
+      "exit code is then 1.");
   c.positional("SOURCE", &o->rest, "mesh of the rest pose: .obj, .ply, .off or .stl; or glTF");
   addFrameArgument(c, o->frames);
   c.outputFolder(&o->output);
@@ -168,11 +168,10 @@ Command makeSequenceCommand() {
   FrameFitterSettings& fitting = o->frames.fitting;
   c.settings(describeProof(&fitting.prove, &fitting.proofCells));
   addEvaluationOptions(c, o->evaluation);
-  c.option(
-       "--grids", "LIST", &o->grids,
-       "also write grids over the rest pose, energy.####.vdb a frame; the energies', or those of "
-       "LIST, with commas between: " +
-           fmt::format("{}", fmt::join(mapGridNames(), ", ")))
+  c.option("--grids", "LIST", &o->grids,
+           "also write grids over the rest pose, one energy.####.vdb for each frame: both "
+           "energies, or those in LIST, with commas between: " +
+               fmt::format("{}", fmt::join(mapGridNames(), ", ")))
       .implied(kEnergies);
   c.option("--grid-list", "LIST", &o->gridList, "formerly the LIST of --grids=LIST").advanced();
   addShareOptions(c, o->farm, "frames",

@@ -114,9 +114,10 @@ Command makeSliceCommand() {
   auto o = std::make_shared<SliceOptions>();
   Command c("slice", "Cut a .vdb file into EXR slices, and draw a section");
   c.description(
-      "The EXR file has a part a slice and a channel a grid (`jacobian.V`, `map.X`), cropped to "
-      "the active box; each slice is a layer of voxels, with its place as attributes. The picture "
-      "shows one grid, by default from blue (least) to red (most), or colours as they are.");
+      "The EXR file has one part for each slice and one channel for each grid (`jacobian.V`, "
+      "`map.X`), cropped to the active box; each slice is a layer of voxels, with its place as "
+      "attributes. The picture shows one grid, by default from blue (least) to red (most), or "
+      "colours as they are.");
   c.positional("FILE", &o->file, "the .vdb file");
   c.option("--output", "FILE", &o->output, "the .exr file to write")
       .shortName("-o")

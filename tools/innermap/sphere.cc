@@ -46,12 +46,11 @@ void run(const Options& options, Context& context) {
 
 Command makeSphereCommand() {
   auto o = std::make_shared<Options>();
-  Command c("sphere", "Lay a closed surface without handles out on the unit sphere");
+  Command c("sphere", "Lay out a closed surface without handles on the unit sphere");
   c.description(
-      "Writes the mesh with its vertices on the unit sphere about the origin, no triangle flipped, "
-      "areas near their share. Each shell (a cavity, say) covers the sphere by itself. Of a mesh "
-      "that "
-      "runs through itself the outer surface is laid out.");
+      "Writes the mesh with its vertices on the unit sphere about the origin. No triangle flips, "
+      "and areas keep about their share. Each shell (a cavity, for example) covers the sphere by "
+      "itself. If a mesh runs through itself, sphere lays out its outer surface.");
   c.positional("MESH", &o->mesh, "a closed mesh: .obj, .ply, .off or .stl");
   c.outputFile(&o->output, {".ply"}, "the .ply file to write");
   addSurfaceOptions(c, o->surface);

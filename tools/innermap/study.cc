@@ -189,8 +189,8 @@ Study makeRuns(const BoundaryPair& pair, const StudySettings& settings,
   } catch (const Cancelled&) {
     if (finished == 0) throw;
     throw CancelledLate(fmt::format(
-        "cancelled; {} of {} runs are kept in {}, and the same command goes on after them",
-        finished, runs, settings.folder));
+        "cancelled; {} of {} runs are kept in {}; the same command continues after them", finished,
+        runs, settings.folder));
   }
 }
 
@@ -261,8 +261,7 @@ void run(const StudyOptions& options, Context& context) {
   const StudyFindings findings = studyFindings(study);
   if (study.left > 0)
     study.warnings.push_back(fmt::format(
-        "{} runs are left, as --max-time ended; the same command goes on after those that are "
-        "kept in {}",
+        "--max-time ended: {} runs are left; the same command continues after those kept in {}",
         study.left, settings.folder));
   const auto failed = std::count_if(study.rows.begin(), study.rows.end(),
                                     [](const StudyRow& row) { return !row.failure.empty(); });
@@ -292,8 +291,8 @@ void addListOptions(Command& c, StudyOptions& o) {
       .was("--sources");
   c.option("--points", "LIST", &o.collocation, "boundary points a charge, each 1 to 100");
   c.option("--distances", "LIST", &o.distances,
-           "of the charges from the surface (O-Distance), fractions of the source's diagonal, each "
-           "0.0001 to 2");
+           "distances of the charges from the surface (O-Distance), as fractions of the source's "
+           "diagonal, each 0.0001 to 2");
   c.option("--radius-ratios", "LIST", &o.radiusRatios,
            "of spheres of charges, multiples of half the diagonal (R-Ratio), each above 1 up to "
            "100");
@@ -301,9 +300,9 @@ void addListOptions(Command& c, StudyOptions& o) {
 
 void addFitOptions(Command& c, StudyOptions& o) {
   c.settings(describe(o.settings));
-  c.limitTime("no run begins later; the same command goes on another time");
+  c.limitTime("begin no run after this time; the same command continues later");
   addShareOptions(c, o.farm, "runs",
-                  "It is every N-th run from the K-th on. They go to runs/; the same command "
+                  "It makes every N-th run from the K-th on. They go to runs/; the same command "
                   "without --share takes all from there, and makes what is missing");
 }
 
@@ -313,16 +312,17 @@ Command makeStudyCommand() {
   auto o = std::make_shared<StudyOptions>();
   Command c("study", "Study how a map's error and stability depend on its settings");
   c.description(
-      "Fits the map from SOURCE to TARGET again and again, one harmonic map by a dense solve each: "
-      "with other numbers of charges, boundary points a charge, distances of the charges and "
-      "radii of a sphere of charges, each alone and each two together. Writes study.csv and "
-      "study.json (errors at the fit's own points and at fresh ones, energies, weights, condition, "
-      "folds, seconds), charts (figure5.svg has the paper's C-Error over the paper's settings), "
-      "study.html with all of it and in words which settings are best, and report.json. Each "
-      "finished run is kept in the folder's runs/: a study that was stopped goes on where it "
-      "ended, one with other lists makes the new runs alone. Runs over --max-memory are left out.");
+      "Fits the map from SOURCE to TARGET again and again, each time as one harmonic map by a "
+      "dense solve. It varies the number of charges, the boundary points for each charge, the "
+      "distance of the charges and the radius of a sphere of charges: each alone, and each two "
+      "together. Writes study.csv and study.json (errors at the fit's own points and at fresh "
+      "ones, energies, weights, condition, folds, seconds), charts (figure5.svg has the paper's "
+      "C-Error over the paper's settings), study.html with all of it and the best settings in "
+      "words, and report.json. The folder's runs/ keeps each finished run: a study that was "
+      "stopped continues where it ended, and one with other lists makes only the new runs. study "
+      "leaves out runs that need more than --max-memory.");
   c.positional("SOURCE", &o->source, "mesh file: .obj, .ply, .off or .stl");
-  c.positional("TARGET", &o->target, "a pose of it; left out with --correspond").optional();
+  c.positional("TARGET", &o->target, "a pose of SOURCE; not with --correspond").optional();
   c.outputFolder(&o->output);
   c.option("--correspond", "FILE", &o->correspondence,
            "SOURCE's vertices on an unrelated target, as innermap correspond wrote them")

@@ -118,17 +118,16 @@ Command makeTetrahedralizeCommand() {
   auto o = std::make_shared<TetrahedralizeOptions>();
   Command c("tetrahedralize", "Fill a mesh with tetrahedra");
   c.description(
-      "Dihedral angles lie in 10 to 165 degrees; the boundary has the solid's components, cavities "
-      "and handles, or the command fails and names a resolution that would do. Open, dirty and "
-      "overlapping meshes work: a solid whose own surface does not tell its topology is compared "
-      "with a lattice twice as fine. Each cell's least and greatest dihedral angle stand in the "
-      "file (.vtu and .msh).");
+      "Dihedral angles lie between 10 and 165 degrees. The boundary has the solid's components, "
+      "cavities and handles; otherwise the command fails and names a resolution that works. Open, "
+      "dirty and overlapping meshes work: if a solid's own surface does not tell its topology, "
+      "tetrahedralize compares it with a lattice twice as fine. The file (.vtu and .msh) has each "
+      "cell's least and greatest dihedral angle.");
   c.positional("MESH", &o->mesh, "mesh file: .obj, .ply, .off or .stl");
   c.outputFile(&o->output, {".vtu", ".msh", ".mesh"},
                "the .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file to write");
   c.settings(without(describe(o->settings), {"keep_topology"}));
-  c.flag("--any-topology", &o->anyTopology,
-         "warn, and go on, where the solid's topology cannot be kept")
+  c.flag("--any-topology", &o->anyTopology, "only warn if the solid's topology cannot be kept")
       .advanced();
   addCellPicture(c, o->picture, o->cut,
                  "a .png of the cells behind a cut, coloured by their least dihedral angle");

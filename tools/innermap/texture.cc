@@ -141,9 +141,9 @@ Command makeTextureCommand() {
   Command c("texture", "Continue a surface's texture into its solid");
   c.description(
       "Writes the grids surface, density, Cd (linear colour) and uv; values are active inside and "
-      "in a skin of two voxels, which has the colours of the closest surface. Without IMAGE, the "
-      "mesh's vertex colours are continued. Seams' share of the solid, the jump of the texture's "
-      "own colours across them and the error at the surface stand in the report.");
+      "in a skin of two voxels, which has the colours of the closest surface. Without IMAGE, "
+      "texture continues the mesh's vertex colours. The report has the seams' share of the solid, "
+      "the jump of the texture's own colours across them and the error at the surface.");
   c.positional("MESH", &o->mesh, "mesh file with texture coordinates or vertex colours");
   c.positional("IMAGE", &o->image,
                "the texture, in any format of OpenImageIO; with <UDIM> in its name, a set of tiles")
@@ -153,8 +153,7 @@ Command makeTextureCommand() {
   c.settings(describe(o->images));
   c.settings(describe(o->grid));
   c.option("--tolerance", "T", &o->tolerance,
-           "within which 99% of the surface should have its values; where it has not, that is "
-           "warned of")
+           "warn unless 99% of the surface has its values within T")
       .unit("of values in 0 to 1")
       .above(0);
   c.setting(namesSetting(&o->names));

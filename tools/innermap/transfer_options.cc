@@ -51,8 +51,9 @@ void addTransferOptions(Command& c, TransferOptions& o) {
       .advanced();
   c.setting(outsideSetting(&o.outside));
   c.option("--fade-to", "MOTION", &o.fadeTo,
-           "what the map fades to with --outside: cut (it ends there), identity, fitted (the best "
-           "rigid motion of the surface), or twelve numbers, a rigid motion's 3 x 4 matrix by rows")
+           "motion that the map fades to with --outside: cut (the map ends there), identity, "
+           "fitted (the best rigid motion of the surface), or twelve numbers, a rigid motion's 3 x "
+           "4 matrix by rows")
       .advanced();
   c.settings(only(describe(o.carry), {"density_limit"}));
   c.settings(describe(o.verdict));

@@ -168,10 +168,10 @@ Command makeVoxelizeCommand() {
   auto o = std::make_shared<VoxelizeOptions>();
   Command c("voxelize", "Turn a mesh or labels of a scan into an OpenVDB level set");
   c.description(
-      "The distance is exact in the band; inside and outside are told by the winding number, so "
-      "open, dirty and overlapping meshes work. The result is checked against the mesh's volume "
-      "and surface. Labels of a scan are solids whose surface runs halfway between voxels; their "
-      "voxels are as fine as the scan's, unless it is said otherwise.");
+      "The distance is exact in the band. The winding number tells inside from outside, so open, "
+      "dirty and overlapping meshes work. voxelize checks the result against the mesh's volume and "
+      "surface. Labels of a scan are solids whose surface runs halfway between voxels; the "
+      "output's voxels are as fine as the scan's unless you choose another size.");
   c.positional("MESH", &o->mesh,
                "mesh file: .obj, .ply, .off, .stl or glTF; or a scan of labels, .nii or .nii.gz");
   c.option("--output", "FILE", &o->output, "the .vdb file to write")
@@ -184,11 +184,11 @@ Command makeVoxelizeCommand() {
   c.flag("--attributes", &o->attributes,
          "also carry texture coordinates (`uv`) and vertex colours (`Cd`) onto the band");
   c.option("--labels", "LIST", &o->labels,
-           "of a scan: whose voxels are the solid, whole numbers with commas between")
+           "of a scan: labels of the solid, whole numbers with commas between")
       .defaults("all but 0");
   c.flag("--each-label", &o->each,
-         "of a scan: a solid of each label, `surface_3` of label 3, on one lattice; else one of "
-         "all together");
+         "of a scan: make a solid of each label, `surface_3` for label 3, on one lattice; "
+         "otherwise one of all together");
   c.setting(namesSetting(&o->names));
   c.addSpace();
   c.example("innermap voxelize labels.nii.gz -o organs.vdb --labels 2,5 --each-label");

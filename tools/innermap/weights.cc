@@ -38,11 +38,11 @@ Command makeWeightsCommand() {
   auto o = std::make_shared<WeightOptions>();
   o->harmonic.fit.tolerance =
       1e-2;  // where groups touch, a finer one is spent on the border's kinks
-  Command c("weights", "Harmonic weights of groups of a surface, inside the solid");
+  Command c("weights", "Compute harmonic weights inside a solid from groups of its surface");
   c.description(
-      "A channel for each group: 1 on it, 0 on the other groups, nothing flows through the rest of "
-      "the surface. Groups that touch go over into one another on the triangles along their "
-      "border. All are fitted at once and sum up to 1 everywhere.");
+      "Each group gets a channel: 1 on the group, 0 on the other groups, and no flux through the "
+      "rest of the surface. Where groups touch, weights blend over the triangles along the border. "
+      "One fit makes all channels, and they sum to 1 everywhere.");
   addHarmonicOptions(c, o->harmonic, "value");
   c.option("--groups", "LIST", &o->groups, "groups, objects or materials of the OBJ, by name")
       .defaults("all that have faces");

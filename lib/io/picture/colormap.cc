@@ -63,10 +63,8 @@ Vec3 colormapColour(Colormap map, double t) {
 }
 
 Setting colormapSetting(Colormap* colormap) {
-  return {
-      "colormap", "NAME", choiceOf<Colormap>(colormap, colormapNames()),
-      "colours of the picture, from the least to the most; all are told apart by people who are "
-      "colour-blind"};
+  return {"colormap", "NAME", choiceOf<Colormap>(colormap, colormapNames()),
+          "colours of the picture, from least to most; colour-blind people can tell them apart"};
 }
 
 }  // namespace innermap

@@ -366,36 +366,35 @@ Setting scaleSetting(SectionScale* scale) {
                                                 {"linear", SectionScale::linear},
                                                 {"log", SectionScale::logarithmic},
                                                 {"about-1", SectionScale::about1}}),
-                 "how values go along the colours: log and about-1, whose middle is 1, by their "
-                 "ratios; auto: about-1 for a jacobian, with folds in a colour of their own, log "
-                 "where values are over 100 times apart, linear with a range")
+                 "how colours follow values. linear: by differences; log: by ratios; about-1: by "
+                 "ratios, with 1 in the middle; auto: about-1 for a jacobian, with folds in a "
+                 "colour of their own, log if values differ over 100 times, linear with a range")
       .rare();
 }
 
 std::vector<Setting> describe(SectionSettings& s) {
-  return {
-      Setting("component", "PART",
-              choiceOf<Component>(&s.component, {{"x", Component::x},
-                                                 {"y", Component::y},
-                                                 {"z", Component::z},
-                                                 {"length", Component::length}}),
-              "of a vector grid in the picture")
-          .rare(),
-      Setting("colour", &s.colour,
-              "the picture shows a vector grid's values as red, green and blue; by default of Cd"),
-      axisSetting("axis", &s.axis, "direction across the cut"),
-      Setting("at", "T", &s.at, "where the picture cuts")
-          .in("fraction of the box along the axis")
-          .from(0, 1),
-      Setting("position", "P", &s.position, "where the picture cuts, in place of {at}")
-          .in("world units")
-          .from(-1e12, 1e12)
-          .rare(),
-      colormapSetting(&s.colormap),
-      scaleSetting(&s.scale),
-      Setting("pixels", "N", &s.pixels, "longer side of the section in the picture")
-          .from(64, 8192)
-          .rare()};
+  return {Setting("component", "PART",
+                  choiceOf<Component>(&s.component, {{"x", Component::x},
+                                                     {"y", Component::y},
+                                                     {"z", Component::z},
+                                                     {"length", Component::length}}),
+                  "of a vector grid in the picture")
+              .rare(),
+          Setting("colour", &s.colour,
+                  "show a vector grid's values as red, green and blue; the default for Cd"),
+          axisSetting("axis", &s.axis, "direction across the cut"),
+          Setting("at", "T", &s.at, "where the picture cuts")
+              .in("fraction of the box along the axis")
+              .from(0, 1),
+          Setting("position", "P", &s.position, "where the picture cuts, in place of {at}")
+              .in("world units")
+              .from(-1e12, 1e12)
+              .rare(),
+          colormapSetting(&s.colormap),
+          scaleSetting(&s.scale),
+          Setting("pixels", "N", &s.pixels, "longer side of the section in the picture")
+              .from(64, 8192)
+              .rare()};
 }
 
 }  // namespace innermap

@@ -78,14 +78,14 @@ std::vector<Setting> describe(TextureImageSettings& s) {
                   choiceOf<ColourSpace>(&s.colourSpace, {{"auto", ColourSpace::automatic},
                                                          {"linear", ColourSpace::linear},
                                                          {"srgb", ColourSpace::srgb}}),
-                  "of the image; auto: as the file says, else sRGB for 8 bits and linear for more; "
-                  "vertex colours are linear unless srgb is given"),
+                  "colour space of the image. auto: as the file says, else sRGB for 8 bits and "
+                  "linear for more; vertex colours are linear unless you give srgb"),
           Setting("wrap", "WAY",
                   choiceOf<Wrap>(&s.wrap, {{"repeat", Wrap::repeat},
                                            {"clamp", Wrap::clamp},
                                            {"mirror", Wrap::mirror},
                                            {"black", Wrap::black}}),
-                  "what stands beyond the image's borders")
+                  "how the image continues beyond its borders")
               .rare()};
 }
 

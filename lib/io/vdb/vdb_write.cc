@@ -100,7 +100,7 @@ Setting namesSetting(NamingScheme* names) {
           choiceOf<NamingScheme>(names, {{"innermap", NamingScheme::innermap},
                                          {"blender", NamingScheme::blender},
                                          {"houdini", NamingScheme::houdini}}),
-          "what the grids are called in the file"};
+          "names of the grids in the file"};
 }
 
 }  // namespace innermap

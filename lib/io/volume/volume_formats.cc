@@ -128,8 +128,8 @@ const Entry& checked(const std::string& path, const VolumeTextureSettings& setti
 const Entry& checked(const std::string& path, const VolumeTextureReadSettings& settings) {
   const Entry& entry = entryOf(path);
   if (!entry.reader.read)
-    throw FileError(path, fmt::format("is a {} file, which is written, not read; import the file "
-                                      "that it was made of",
+    throw FileError(path, fmt::format("is a {} file, which innermap writes but does not read; "
+                                      "import the file that it was made of",
                                       entry.format.name));
   requireHeeded(entry, entry.reader.settings, settings);
   return entry;

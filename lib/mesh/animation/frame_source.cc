@@ -98,13 +98,13 @@ std::vector<Setting> describe(AnimationSettings& s) {
   return {Setting("first_frame", "N", &s.firstFrame,
                   "number of the first frame of a file that holds several; the others follow")
               .from(-1e9, 1e9)
-              .otherwise("1 of .mdd, what .pc2 says, by its seconds of glTF"),
+              .otherwise("1 for .mdd, the file's own for .pc2, by seconds for glTF"),
           Setting("fps", "N", &s.framesPerSecond,
-                  "frames per second: that glTF is baked at, of velocities, and in .mdd files")
+                  "frames per second for baking glTF, for velocities and in .mdd files")
               .above(0, 1e6),
-          Setting("rest", "N", &s.restFrame, "which frame of glTF is the rest pose")
+          Setting("rest", "N", &s.restFrame, "frame of glTF to take as the rest pose")
               .from(-1e9, 1e9)
-              .otherwise("as its mesh was bound")};
+              .otherwise("the pose in which its mesh was bound")};
 }
 
 bool isAnimationFile(const std::string& path) { return isPointCache(path) || isGltf(path); }

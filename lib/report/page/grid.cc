@@ -113,7 +113,8 @@ int strideOf(const Lattice& lattice, const std::optional<PageFrame>& frame) {
   double stride = std::min(longest / kUsualBlocks, std::max(strideFor(lattice.values, kMostValues),
                                                             strideFor(volume, kMostBox)));
   if (frame) {
-    const double frames = static_cast<double>(frame->of / frameStep(frame->of));
+    const std::size_t shown = frame->of / frameStep(frame->of);
+    const auto frames = static_cast<double>(shown);
     stride = std::min(
         longest / kFewestBlocks,
         std::max(longest / kUsualBlocks, strideFor(lattice.values, kFrameValues / frames)));

@@ -30,7 +30,7 @@ struct CallOptions {
   // For functions that improve a result until a deadline.
   void describeTime(Keywords& k,
                     const char* doc =
-                        "seconds after which trying, refining and repairing end, with a "
+                        "stop trying, refining and repairing after this many seconds, with a "
                         "RuntimeWarning: another call may differ; no limit if not given");
 };
 

@@ -51,8 +51,9 @@ void CarryOptions::describe(Keywords& k) {
   describeOutside(k, &outside, &fadeTo);
   k.object("vectors", &vectors, "str or Sequence[str]",
            "of geometry: properties or fields that are vectors, turned by the Jacobian");
-  k.object("normals", &normals, "str or Sequence[str]",
-           "of geometry: those that are normals, turned by its inverse transpose");
+  k.object(
+      "normals", &normals, "str or Sequence[str]",
+      "of geometry: those that are normals, which the inverse transpose of the Jacobian turns");
   k.setting(splatsSetting(&splats));
   k.settings(innermap::describe(lattice, "the solid", "as fine as those of the grids"));
   k.setting(namesSetting(&names));

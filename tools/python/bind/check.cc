@@ -92,8 +92,8 @@ void bindCheck(py::module_& m) {
       .def("__repr__", &reprOf);
   define<CheckOptions>(m,
                        {"check", "*mesh",
-                        "What is wrong with a mesh, and what it means for a map: a MeshReport.\n\n"
-                        "mesh: V, F or whatever stands for a mesh."},
+                        "Check a mesh: what is wrong with it and what that means for a map. "
+                        "Returns a MeshReport.\n\nmesh: V, F or whatever stands for a mesh."},
                        check);
 }
 

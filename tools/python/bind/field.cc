@@ -159,7 +159,7 @@ void bindProperties(py::class_<PyField, std::shared_ptr<PyField>>& field) {
           [](const PyField& self) {
             return self.fit ? self.fit->notes : self.solid->boundary.notes;
           },
-          "What was done on the way, a line each.")
+          "Notes on the way, one line each.")
       .def_property_readonly(
           "warnings",
           [](const PyField& self) {

@@ -30,8 +30,8 @@ void FittingOptions::describe(Keywords& k) {
            "velocities; from 0 on if not given");
   k.settings(innermap::describe(animation));
   k.settings(innermap::only(innermap::describe(animation.space), {"up", "unit_scale"}));
-  k.text("mesh", &animation.mesh, "which mesh or node of glTF, of several");
-  k.text("animation", &animation.animation, "which animation of glTF, where several move the same");
+  k.text("mesh", &animation.mesh, "mesh or node of glTF to read, if it has several");
+  k.text("animation", &animation.animation, "animation of glTF to read, if several move the same");
   k.settings(innermap::describe(fitting));
 }
 

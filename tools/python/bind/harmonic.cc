@@ -94,7 +94,7 @@ std::shared_ptr<PyField> fitted(const Mesh& mesh, BoundaryConditions& conditions
     if (joined > 0)
       fit.notes.push_back(
           fmt::format("values that touch are joined: on {:.2g}% of the surface, the triangles "
-                      "along their borders, they go over into one another",
+                      "along their borders, they blend",
                       100 * joined));
     return std::make_pair(std::move(boundary), std::move(fit));
   });
@@ -168,14 +168,13 @@ void bindHarmonic(py::module_& m) {
   define<WeightOptions>(
       m,
       {"weights", "*mesh_and_groups",
-       "Harmonic weights of groups of a surface, inside the solid: of each group a channel, 1 on "
-       "it, 0 on the others, nothing flows through the rest. They sum up to 1 everywhere. Groups "
-       "that touch go over into one another on the triangles along their border. Returns an "
-       "innermap.Field with the groups' names.\n\n"
-       "weights(V, F, {'head': head, 'arm': arm})\n"
-       "weights('body.obj', ['head', 'arm'])\n\n"
-       "Raises DataError: fewer than two groups, one without triangles (a point or a line inside "
-       "cannot hold a weight: give it as a small ball or tube), a triangle in two of them."},
+       "Compute harmonic weights inside a solid from groups of its surface. Each group gets a "
+       "channel: 1 on the group, 0 on the others, and no flux through the rest. Weights sum to 1 "
+       "everywhere. Where groups touch, weights blend over the triangles along the border. Returns "
+       "an innermap.Field with the groups' names.\n\nweights(V, F, {'head': head, 'arm': "
+       "arm})\nweights('body.obj', ['head', 'arm'])\n\nRaises DataError: fewer than two groups, "
+       "one without triangles (a point or a line inside cannot hold a weight: give it as a small "
+       "ball or tube), a triangle in two of them."},
       weights);
 }
 

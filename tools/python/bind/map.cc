@@ -254,18 +254,18 @@ void bindMap(py::module_& m) {
       .def_property_readonly(
           "statement",
           [](const PyMap& self) { return injectivityStatement(self.mapped->injectivity); },
-          "What was checked of the map's being one-to-one, what was found and what follows.")
+          "Whether the map is one-to-one: what was checked and found, and what follows.")
       .def_property_readonly(
           "one_to_one", [](const PyMap& self) { return dictOf(figures(self.mapped->injectivity)); },
           "The figures of the statement, by name.")
       .def_property_readonly(
           "facts", [](const PyMap& self) { return factsOf(self.mapped->facts); },
           "What the map's file says of it: settings and results, as text by name.")
-      .def_property_readonly("notes", &notesOf, "What was done on the way, a line each.")
+      .def_property_readonly("notes", &notesOf, "Notes on the way, one line each.")
       .def_property_readonly("warnings", &warningsOf, "What makes the map doubtful, a line each.")
       .def_property_readonly(
           "steps", [](const PyMap& self) { return self.mapped->map.steps().size(); },
-          "How many harmonic maps it is made of, one after the other.")
+          "Number of harmonic maps that it chains.")
       .def_property_readonly(
           "charges", [](const PyMap& self) { return self.mapped->map.sources(); },
           "Charges of all steps.")

@@ -128,7 +128,7 @@ Mesh takeTarget(const Arguments& arguments, std::size_t& at, const Mesh& source)
 }
 
 void describeClose(Keywords& k, bool* close) {
-  k.flag("close", close, "no longer needed: the holes of an open mesh are closed by caps");
+  k.flag("close", close, "no longer needed: innermap caps the holes of an open mesh");
 }
 
 void bindMeshes(py::module_& m) {

@@ -29,8 +29,9 @@ struct RemeshOptions {
     k.settings(innermap::describe(settings));
     k.object("vectors", &vectors, "list[str]",
              "fields that are vectors, turned by the Jacobian, beside those that a file says are");
-    k.object("normals", &normals, "list[str]",
-             "likewise normals of surfaces, turned by its inverse transpose");
+    k.object(
+        "normals", &normals, "list[str]",
+        "fields that are normals of surfaces, turned by the inverse transpose of the Jacobian");
     call.describe(k);
     call.describeTime(k);
   }

@@ -1,4 +1,4 @@
-// Memory is said before it is used.
+// How much memory a task needs, asked before it begins.
 #pragma once
 
 #include <cstdint>
@@ -47,9 +47,9 @@ std::uint64_t peakMemory();
 // and writers, stacks of threads, code that was not touched before.
 constexpr std::uint64_t kLibrariesAtWork = 24'000'000;
 
-// The peak that this process is going to have when work takes `bytes` beyond what it holds by now:
-// the program, its libraries and what was read. All functions ...Memory() of the library say such
-// bytes; limits of programs are on the sum.
+// The peak of this process if work takes `bytes` beyond what it holds now: the program, its
+// libraries and all that was read. All functions ...Memory() of the library give such bytes; a
+// program's limit is on the sum.
 std::uint64_t processMemory(std::uint64_t bytes);
 
 // The most bytes that processMemory() puts within memoryLimit(), at least 1; the largest number

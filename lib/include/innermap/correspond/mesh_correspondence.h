@@ -1,5 +1,5 @@
-// One mesh on another that was never related to it: from two files' meshes to a target with the
-// first one's vertices.
+// Lays one mesh on another of any connectivity: from two files' meshes to a target with the first
+// one's vertices.
 #pragma once
 
 #include <cstddef>

@@ -60,12 +60,12 @@ struct MapGrids {
   openvdb::FloatGrid::Ptr jacobian;           // det of the map's gradient
   openvdb::FloatGrid::Ptr harmonicEnergy;     // density, both solids scaled to unit volume
   openvdb::FloatGrid::Ptr deformationEnergy;  // density psi
-  // Where voxels were moved to repair folds, the way of each, world units of the target; no grid
-  // where there were none. The Jacobian of such a voxel is the mean of the tetrahedra about it.
+  // How far each voxel was moved to repair folds, world units of the target; null if none was. The
+  // Jacobian of such a voxel is the mean of the tetrahedra about it.
   openvdb::FloatGrid::Ptr repaired;
-  // 1 at the voxels inside where the map's own determinant is not above 0 (mirrored: not below),
-  // before repair, and active there alone; no grid where there are none, or no Jacobian was asked
-  // for.
+  // Active, and 1, at the voxels inside where the map's own determinant, before repair, is not
+  // above 0 (of a mirrored map: not below). Null if there are none, or if the settings ask for no
+  // Jacobian.
   openvdb::FloatGrid::Ptr folded;
 
   // Integrals over the solid; cells along the surface count by their share inside.
@@ -78,8 +78,8 @@ struct MapGrids {
   std::uint64_t foldedVoxels = 0;      // whose centre is inside; before repair
   std::uint64_t foldedVoxelsLeft = 0;  // after it
   double repairedFarthest = 0;         // greatest value of `repaired`
-  // The largest way by which rounding to floats moves a position, not less any origin, of the
-  // active voxels; world units of the target.
+  // Farthest that rounding to floats moves a position of an active voxel, the origin not taken off;
+  // world units of the target.
   double rounding = 0;
 
   std::vector<openvdb::GridBase::Ptr> all() const;  // those that were asked for

@@ -19,8 +19,8 @@
 
 namespace innermap {
 
-// Whether folds are repaired (EvaluateSettings::repairUpTo). automatic: where at most
-// kRepairedFolds of the voxels inside is folded, and not in sequences.
+// Whether to repair folds (EvaluateSettings::repairUpTo). automatic: if at most kRepairedFolds of
+// the voxels inside fold, and not in sequences.
 enum class RepairFolds { automatic, on, off };
 constexpr double kRepairedFolds = 5e-3;
 Setting repairSetting(RepairFolds* repair);
@@ -45,9 +45,9 @@ struct SolidGrids {
   // How far the image of each voxel inside lies outside the target, world units of that; active
   // where that is more than the error of 99% of the boundary. Null where nothing does.
   openvdb::FloatGrid::Ptr outside;
-  // 1 at the voxels inside where the proof that nothing folds left the cells undecided, and active
-  // there alone; null where there are none, or the map was read from a file. Those that it proves
-  // folded are in values.folded.
+  // Active, and 1, at the voxels inside whose cells the proof that nothing folds left undecided.
+  // Null if there are none, or if the map comes from a file. The cells that it proves folded are in
+  // values.folded.
   openvdb::FloatGrid::Ptr undecided;
   double outsideFraction = 0;  // their share of the voxels inside
   double mapRounding = 0;      // MapGrids::rounding, fraction of the target's diagonal

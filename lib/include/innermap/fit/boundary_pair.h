@@ -1,7 +1,7 @@
 // The two boundaries of a map: the source's solid, and where each of its points goes.
 //
-// Source and target have the same triangles. What repair adds to the source (caps of open loops)
-// moves with it; see repairedPositions.
+// Source and target have the same triangles. Caps of open loops, which repair adds to the source,
+// move with it; see repairedPositions.
 #pragma once
 
 #include <string>

@@ -1,12 +1,12 @@
 // The main job in one call: from two boundaries to the harmonic map of the inside, with its
 // certificate.
 //
-// Charges are placed just outside the source and their weights solved for, so that the map meets
+// fitMap places charges just outside the source and solves for their weights, so that the map meets
 // the target at boundary points (the method of fundamental solutions: Li, Guo, Wang, He, Gu and
 // Qin, "Meshless harmonic volumetric mapping using fundamental solution methods", IEEE T-ASE 6(3),
-// 2009). By default charges are added where the error is until 99% of the boundary lies within a
+// 2009). By default it adds charges where the error is until 99% of the boundary lies within a
 // tolerance; see field/fit.h. FitMapSettings::shell asks for a number of charges on one
-// shell instead, as in the paper; see field/fit.h.
+// shell instead, as in the paper.
 //
 // In space one harmonic map may fold, and between unrelated solids most do. Such a map is made in
 // steps through intermediate shapes, each harmonic; see ComposedMap.
@@ -44,13 +44,13 @@ SettingChoice regularizationChoice(Regularization* method);
 // Boundary points of these settings: `collocation`, or its default.
 std::size_t shellCollocation(const ShellSettings& shell);
 
-// What is done about folds. automatic: steps, where one harmonic map folds more than kManyFolds of
-// the inside or takes more than kManyOutside of it out of the target; where its first charges fold
-// twice that share, it is not fitted to the end. Steps then fold at most kFewFolds of the points
-// inside that are checked: single points beside the surface fold where charges are near them, which
-// smaller steps seldom cure. on: steps until no such point is folded, and no cell that is proven to
-// be. off: one harmonic map, of which folds are counted. More charges where a map folds do not cure
-// it: a horse's pose folds on 0.035% of its volume with 6,400 charges and with 26,600.
+// What to do about folds. automatic: go in steps if one harmonic map folds more than kManyFolds of
+// the inside or takes more than kManyOutside of it out of the target. If its first charges fold
+// twice that share, the map is not fitted to the end. Steps then fold at most kFewFolds of the
+// checked points inside: single points beside the surface fold where charges are near, and smaller
+// steps seldom help. on: smaller steps until no checked point folds and no cell is proven to. off:
+// one harmonic map, whose folds are counted. More charges do not cure folds: a horse's pose folds
+// on 0.035% of its volume with 6,400 charges and with 26,600.
 enum class OneToOne { automatic, on, off };
 constexpr double kManyFolds = 5e-3, kManyOutside = 1e-2, kFewFolds = 4e-4;
 
@@ -63,7 +63,7 @@ constexpr double kLaidOnTolerance = 2e-3;
 constexpr std::uint64_t kStepsMemory = 700'000'000;
 
 struct FitMapSettings {
-  // 99% of the boundary shall lie within it; fraction of the target's diagonal, in
+  // 99% of the boundary should lie within it; fraction of the target's diagonal, in
   // [kSmallestTolerance, 1]. Not used with `shell`.
   double tolerance = 1e-3;
   std::size_t maxSources = 100000;  // that the tolerance may take
@@ -159,10 +159,10 @@ struct MapFit : MappedSolid {
   StageSeconds seconds;  // "sample", "fit", "certificate", "inside", "steps", "proof"
 };
 
-// Need in bytes of a fit to so many vertices of the source, beside their boundaries, and of looking
-// at what it gives; with a tolerance, of its first level of charges. How many follow, and whether
-// the map goes in steps, is not known beforehand: charges are added while the process stays within
-// the limit on memory, and where steps do not fit the single map is kept.
+// Bytes that a fit to so many vertices of the source needs beside their boundaries, with measuring
+// its result; with a tolerance, for its first level of charges. Nobody knows beforehand how many
+// follow and whether the map goes in steps: fitMap adds charges while the process stays within the
+// limit on memory, and keeps the single map if steps do not fit.
 std::uint64_t fitMapMemory(const FitMapSettings& settings, std::size_t vertices);
 
 // A tolerance that cannot be met is no error: see MapFit::tolerance. Throws SettingError, DataError

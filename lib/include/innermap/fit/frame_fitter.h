@@ -1,5 +1,5 @@
-// Maps of one rest pose onto many frames: charges and boundary points are placed and factored once,
-// each frame is a right-hand side.
+// Maps of one rest pose onto many frames: charges and boundary points are placed and factored once;
+// each frame is one right-hand side.
 //
 // All frames of a fitter have the same charges, so their fields can be combined weight by weight:
 // velocities are such combinations, harmonic fields themselves.

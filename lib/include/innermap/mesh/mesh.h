@@ -54,8 +54,8 @@ Vec3 areaVector(const Mesh& mesh, int triangle);
 // Of the vertices that triangles use; loose vertices do not count.
 Box3 boundingBox(const Mesh& mesh);
 
-// How far from the origin a mesh may lie, in its own diagonals: beyond, doubles hold less of its
-// positions than what is computed with them is worth (1e-8 of the diagonal there).
+// How far from the origin a mesh may lie, in its own diagonals: beyond, doubles hold its positions
+// less exactly than innermap computes (1e-8 of the diagonal there).
 constexpr double kMostFromOrigin = 1e8;
 
 // Throws DataError when a vertex that a triangle uses is farther than that from the origin along an

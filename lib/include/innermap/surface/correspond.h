@@ -1,4 +1,4 @@
-// Where each point of one closed surface lies on another that was never related to it.
+// Where each point of one closed surface lies on another of any connectivity.
 //
 // Both are laid out on a common model space; rotations of it and matched
 // limb tips give candidates, which are refined by lowering the symmetric Dirichlet energy both

@@ -1,6 +1,6 @@
-// A solid filled with hexahedra, by way of a polycube: its blocks are cut into hexahedra, a layer
-// is laid around them, and a map of the polycube onto the solid carries all of them there, where
-// they are turned right side out, evened out, and proven so.
+// Fills a solid with hexahedra by way of a polycube: cuts its blocks into hexahedra, adds a layer
+// around them, carries all by a map of the polycube onto the solid, and moves vertices there until
+// each hexahedron is proven right side out.
 //
 // After Li, Guo, Wang, He, Gu and Qin, "Meshless Harmonic Volumetric Mapping Using Fundamental
 // Solution Methods" (IEEE T-ASE 6(3), 2009), who map polycubes, and Gregson, Sheffer and Zhang,
@@ -209,8 +209,8 @@ struct Hexahedralization {
   StageSeconds seconds;
 };
 
-// Where some hexahedra cannot be turned right and the number of blocks was not given, more blocks
-// are tried; what is left is told by `after` and a warning. Throws as makePolycube() and
+// If some hexahedra stay inverted and the settings give no number of blocks, tries more blocks;
+// `after` and a warning tell what is left. Throws as makePolycube() and
 // correspondMeshes(); SettingError, MemoryError (before anything is done), Cancelled.
 // Deterministic for a seed, whatever the number of threads.
 Hexahedralization hexahedralize(const Mesh& mesh, const HexahedralizeSettings& settings = {});

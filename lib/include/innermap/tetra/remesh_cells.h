@@ -1,5 +1,5 @@
-// The mesh of one solid made that of another by a map between them: carried, and repaired until no
-// cell is inside out.
+// Makes the mesh of one solid that of another by a map between them: carries it, and repairs it
+// until no cell is inside out.
 #pragma once
 
 #include <cstddef>
@@ -33,20 +33,20 @@ struct CellImprovement {
   std::vector<int> origin;
 };
 
-// Works on the tetrahedra of `mesh` as they lie at `carried`: edges and faces are swapped for
-// others, edges drawn together, vertices moved, those of the boundary along the surface, wherever
-// that raises the least angle there (after Klingner and Shewchuk, "Aggressive tetrahedral mesh
-// improvement", 2007). The boundary's triangles stay as they are but for their corners' places;
-// only a vertex that is off the surface is drawn into a neighbour that is not. No tetrahedron
-// becomes inverted, neither carried nor in the mesh itself: the piecewise linear map between the
-// two stays one. Vertices that are not used any more stay, unused. Meshes with hexahedra are left
-// as they are. Deterministic, the same for any number of threads. Throws SettingError, DataError
+// Improves the tetrahedra of `mesh` as they lie at `carried`. Swaps edges and faces, collapses
+// edges and moves vertices, those of the boundary along the surface, wherever that raises the least
+// angle there (after Klingner and Shewchuk, "Aggressive tetrahedral mesh improvement", 2007). The
+// boundary keeps its triangles, though their corners may move; an edge of it collapses only if one
+// end is off the surface, into the end that is on it. No tetrahedron becomes inverted, neither
+// carried nor in the mesh itself, so the two stay a piecewise linear map. Vertices no longer used
+// stay in the list. Meshes with hexahedra stay as they are.
+// Deterministic, the same for any number of threads. Throws SettingError, DataError
 // where sizes disagree, Cancelled.
 CellImprovement improveCells(CellMesh& mesh, const Mesh& surface, CarriedCells& carried,
                              const ImproveCellsSettings& settings = {});
 
-// Cells that a map turned inside out, turned right again by moving vertices, those of the boundary
-// along a surface.
+// Repairs cells that a map turned inside out by moving vertices, those of the boundary along a
+// surface.
 
 struct RepairCellsSettings {
   // A cell counts as turned right where det J / (|J|^2 / 3)^(3/2) of its tetrahedra is at least
@@ -81,13 +81,13 @@ struct CellRepair {
 // Patches of inverted cells and 2, 4, 6, 9 rings of vertices about them are untangled (untangle.h)
 // with the boundary fixed; then patches of 3, 5, 8, 12 rings with the boundary held by springs
 // along the surface's normals; then the boundary is laid back on the surface as far as no cell
-// turns. Patches run side by side. What remains is told by the numbers returned. Deterministic, the
+// turns. Patches run side by side. The numbers returned tell what remains. Deterministic, the
 // same for any number of threads. Throws SettingError, DataError where sizes disagree, Cancelled.
 CellRepair repairCells(const CellMesh& mesh, const Mesh& surface, CarriedCells& carried,
                        const RepairCellsSettings& settings = {});
 
 struct RemeshSettings {
-  // The other way: the mesh fills the map's target and is brought to its source.
+  // The other way: brings a mesh that fills the map's target to its source.
   bool back = false;
   // The boundary goes onto this surface, which must be the solid's own but for how it is cut into
   // triangles; null: onto that of the map, whose triangles are the source's.
@@ -128,18 +128,18 @@ struct Remesh {
 // Carries the mesh (tetra/cells.h), repairs it and improves its tetrahedra's shapes, in turns until
 // the boundary lies on the surface.
 //
-// Coarse to fine: where many cells are inverted, meshes of the source of `coarse`, twice as many,
-// ... cells, as long as they are coarser than `mesh`, are carried and repaired first, each from the
-// one before, and the ways that took are interpolated to the next: all of them, or of the vertices
-// inside alone, or none, whichever leaves the fewest inverted.
+// Coarse to fine: if many cells are inverted, it first carries and repairs meshes of the source
+// that are coarser than `mesh`: of `coarse` cells, twice as many, and so on. Each starts from the
+// displacements of the one before: those of all vertices, of the vertices inside alone, or none,
+// whichever leaves the fewest inverted.
 //
-// Back: a harmonic map is not inverted where it folds. Instead a mesh of the source is carried and
-// repaired; with that it is piecewise linear and one-to-one, and the vertices of the target's mesh
-// are found in its tetrahedra; those of the boundary by their places on the surface. What that
-// inverts is repaired as above.
+// Back: a harmonic map that folds has no inverse. So a mesh of the source is carried and repaired,
+// which gives a piecewise linear, one-to-one map. The vertices of the target's mesh are found in
+// its tetrahedra, those of the boundary by their places on the surface. Cells that this inverts are
+// repaired as above.
 //
-// Fields: vectors and normals are turned by the Jacobian of the piecewise linear map, of a vertex
-// by the mean of that of the cells about it; changed cells have the values of the one that was
+// Fields: the Jacobian of the piecewise linear map turns vectors and normals; at a vertex, the mean
+// of the Jacobians of the cells about it. Changed cells take the values of the cell that was
 // there. Deterministic, the same for any number of threads. Throws SettingError, DataError as
 // carryCells, MemoryError, Cancelled.
 Remesh remeshCells(const CellMesh& mesh, const MappedSolid& mapped,

@@ -1,9 +1,9 @@
 // A surface's texture continued into its solid: from texture coordinates with an image, or from
 // vertex colours, to grids of colours that meet them at the surface.
 //
-// What is continued is fitted by charges outside the solid (fitField, iterative), so it is harmonic
-// inside, and what they miss at the surface is added there and fades inwards within a spacing of
-// theirs. See also Takayama, Sorkine, Nealen and Igarashi, "Volumetric Modeling with Diffusion
+// Charges outside the solid fit the values (fitField, iterative), so they are harmonic inside. What
+// the charges miss at the surface is added there, and fades inwards within a spacing of the
+// charges. See also Takayama, Sorkine, Nealen and Igarashi, "Volumetric Modeling with Diffusion
 // Surfaces" (SIGGRAPH Asia 2010), which continue colours by the same equation on a mesh.
 #pragma once
 

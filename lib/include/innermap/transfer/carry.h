@@ -48,8 +48,8 @@ std::vector<Setting> describe(CarrySettings& settings);
 // Whether the settings make a density of a grid: scalars of a float or double grid that fill space.
 bool isDensity(const openvdb::GridBase& grid, const CarrySettings& settings);
 
-// Throws DataError for grids that pushing and pulling refuse: a type that cannot be carried, a name
-// that settings have and no grid, a tensor whose parts are missing or doubled.
+// Throws DataError for grids that cannot be pushed or pulled: an unknown type, a name in the
+// settings that no grid has, a tensor whose parts are missing or doubled.
 void requireCarriable(const openvdb::GridPtrVec& grids, const CarrySettings& settings);
 
 // The least edge of a voxel of the grids, world units: that of the output unless told otherwise,
@@ -143,7 +143,7 @@ struct OutsideSettings {
 // Of OutsideSettings::distance.
 inline Setting outsideSetting(double* distance) {
   return Setting("outside", "D", distance,
-                 "carry also what is around the solid, up to this distance from it")
+                 "also carry what lies around the solid, up to this distance")
       .in("fraction of the diagonal")
       .from(0, 1);
 }

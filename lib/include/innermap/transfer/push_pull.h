@@ -1,13 +1,13 @@
 // Push forward: grids that live in a source solid, carried to the target by the solid's map.
 //
-// For each voxel q of the target the point p with f(p) = q is found: cells of a lattice through the
-// source are mapped, those whose image holds q give the start, Newton steps with the analytic
-// Jacobian do the rest. The grids are sampled at p.
+// For each voxel q of the target, finds the point p with f(p) = q: it maps the cells of a lattice
+// through the source, starts in those whose image holds q, and goes on by Newton steps with the
+// analytic Jacobian. It samples the grids at p.
 //
-// Densities are not sampled, or what the map crushes below a voxel would be lost, but remapped so
-// that their mass is kept whatever the map does. Their voxels, or parts of them where the target's
-// are finer, are cut into six tetrahedra each, whose corners are mapped; the image of each is cut
-// along the target's voxels, which get what their parts hold (Powell and Abel, "An exact general
+// Samples of a density would lose what the map crushes below a voxel. So densities are remapped,
+// and keep their mass whatever the map does. Each of their voxels, or parts of it if the target's
+// are finer, is cut into six tetrahedra whose corners are mapped; the image of each is cut along
+// the target's voxels, which get what their parts hold (Powell and Abel, "An exact general
 // remeshing scheme applied to physically conservative voxelization", J. Comput. Phys. 297, 2015).
 // Within a voxel of the source a density is linear, with limited slopes (Dukowicz and Kodis,
 // "Accurate conservative remapping (rezoning) for arbitrary Lagrangian-Eulerian computations", SIAM
@@ -54,7 +54,7 @@ struct PushResult {
   std::vector<std::string> warnings;
 };
 
-// Keeps what the source alone decides; serves any number of maps (the frames of a sequence).
+// Keeps all that depends on the source alone; serves any number of maps (the frames of a sequence).
 // Immutable; one push at a time uses all threads.
 class VolumePusher {
  public:

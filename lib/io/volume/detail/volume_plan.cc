@@ -102,7 +102,7 @@ void placeTiles(const VolumeTextureSettings& s, VolumeLattice& lattice) {
   if (s.powerOfTwo && s.tiles &&
       (powerOfTwo(lattice.tileColumns) != lattice.tileColumns ||
        powerOfTwo(lattice.tileRows) != lattice.tileRows))
-    throw SettingError("tiles", "must be powers of two when the picture's sides are to be");
+    throw SettingError("tiles", "must be powers of two if the picture's sides are");
   const std::int64_t longest = std::max(std::int64_t(lattice.width()) * lattice.tileColumns,
                                         std::int64_t(lattice.height()) * lattice.tileRows);
   if (longest > kLongestAtlas)
@@ -236,11 +236,11 @@ std::vector<Setting> describe(VolumeTextureSettings& s) {
       Setting("pad", "N", &s.pad, "voxels about the active box").from(0, 4096).rare(),
       Setting("cube", &s.cube, "widen the box to a cube").rare(),
       Setting("power_of_two", &s.powerOfTwo,
-              "widen the box so that the slices' number and sides and the picture's are powers of "
-              "two")
+              "widen the box until the number and sides of the slices, and the picture's sides, "
+              "are powers of two")
           .rare(),
       axisSetting("axis", &s.axis, "direction across the slices"),
-      Setting("active", &s.active, "also NAME.active: 1 where a voxel is active").rare(),
+      Setting("active", &s.active, "also write NAME.active: 1 where a voxel is active").rare(),
       Setting("zip", &s.zip, "compress NanoVDB files with zlib, which not all programs read")
           .rare()};
 }
@@ -253,7 +253,7 @@ std::vector<Setting> describe(VolumeTextureReadSettings& s) {
                                                                 {"parts", VolumeLayout::parts}}),
               "what the pictures are")
           .otherwise("from the file"),
-      Setting("slices", "N", &s.slices, "slices, when fewer than tiles, parts or files")
+      Setting("slices", "N", &s.slices, "number of slices, if fewer than tiles, parts or files")
           .from(1, 65536)
           .otherwise("from the file, else all")
           .rare(),

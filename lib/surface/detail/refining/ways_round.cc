@@ -101,9 +101,9 @@ std::size_t wantedWay(const std::vector<JudgedMap>& maps, const std::vector<std:
   if (wanted.mirror) {
     for (std::size_t m = 1; m < maps.size(); ++m)
       if (mirrored(maps[m], maps[0])) return ways[m];
-    throw SettingError("mirror", name +
-                                     " was laid on the target in no way that turns left into "
-                                     "right; give landmarks instead");
+    throw SettingError(
+        "mirror",
+        name + " has no way onto the target that swaps left and right; give landmarks instead");
   }
   const std::size_t count = ways.empty() ? 0 : 1 + *std::max_element(ways.begin(), ways.end());
   if (wanted.choose >= 1 && static_cast<std::size_t>(wanted.choose) <= count)
