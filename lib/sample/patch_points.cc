@@ -147,9 +147,10 @@ Points patchSources(const Solid& solid, const Points& marks, double distance,
       if (dot(direction, normal) < 0) direction = -direction;
     }
     c.position = foot + away * direction;
-    if (!along && !(moveToDistance(solid, away, c.position) <= 0.03 * away)) return c;
+    if (!along && !(moveToDistance(solid, away, c.position) <= (1 - kClearance) * away)) return c;
+    // What was moved to the distance has been looked at there.
     c.good = !taken.anyNearer(c.position, spacing) &&
-             solid.closest(c.position, kClearance * away).onSurface.triangle < 0 &&
+             (!along || solid.closest(c.position, kClearance * away).onSurface.triangle < 0) &&
              !solid.inside(c.position);
     return c;
   };
