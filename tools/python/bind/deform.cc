@@ -1,9 +1,6 @@
 // deform(): what is inside, through the frames of an animation.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <map>
-
 #include "bind/arrays.h"
 #include "bind/carry_options.h"
 #include "bind/deformer.h"
@@ -50,18 +47,13 @@ class Deformation {
   py::object file(const std::string& from, const FramePattern& pattern) const;
 
  private:
-  // each: of a frame's number, its fit and the pusher to it.
-  template <class Each>
-  void forFrames(const FrameCarrier& carrier, FrameTable& table, const Each& each) const {
-    FrameFits fits = frames_.fits(carrier.fitter());
-    for (const std::size_t index : frames_.wanted()) {
-      const std::int64_t number = frames_.numbers()[index];
-      table.add(number, [&] {
-        const std::shared_ptr<const FrameFit> fit = fits.at(index);
-        each(number, HarmonicMap(fit->field), carrier.pusherTo(fit->boundary));
-        return rowOf(*fit);
-      });
-    }
+  // carry: of a frame's number, its map and the pusher to it.
+  template <class Carry>
+  FrameTable table(const FrameCarrier& carrier, const Carry& carry) const {
+    return frames_.table(carrier.fitter(), [&](const FittedFrame& frame, FrameRow&) {
+      const FrameFit& fit = *frame.fit.fit;
+      carry(frame.fit.number, HarmonicMap(fit.field), carrier.pusherTo(fit.boundary));
+    });
   }
 
   const Mesh& rest_;
@@ -79,41 +71,33 @@ py::object Deformation::grids(const py::object& what,
   settings.push.outside = outside_.settings;
   settings.push.accuracy = kGridAccuracy;
   settings.fadeToFitted = outside_.fitted;
-  FrameTable table;
   std::vector<PushResult> results;
-  runCall(o_.call, [&]() {
+  const FrameTable made = call(o_.call, [&]() {
     settings.output = o_.output(given, 1);
-    const FrameFitter fitter = fitterOf(rest_, o_.fitting, o_.call, 0);
-    requireMemory(o_.call, "carrying the grids",
+    const FrameFitter fitter = fitterOf(rest_, o_.fitting, 0);
+    requireMemory("carrying the grids",
                   carryMemory(fitter.solid(), given, settings.output, outside_.settings,
                               settings.push.carry, {true, o_.velocity ? 1 : 0}),
                   "use a lower resolution");
-    FrameFits fits = frames_.fits(fitter);
     const FramePusher pusher(fitter, given, settings);
-    for (const std::size_t index : frames_.wanted()) {
-      const std::int64_t number = frames_.numbers()[index];
-      table.add(number, [&] {
-        const std::shared_ptr<const FrameFit> fit = fits.at(index);
-        std::vector<CarriedField> fields;
-        const double rate = o_.fitting.animation.framesPerSecond;
-        if (o_.velocity)
-          fields.push_back({"velocity", fits.velocity(index, rate),
-                            openvdb::VEC_CONTRAVARIANT_RELATIVE, o_.shutter / rate});
-        PushResult result = pusher.push({fit.get(), number}, fields).result;
-        std::map<std::string, double> row = rowOf(*fit);
-        row["inverted_fraction"] = result.statistics.invertedInside();
-        row["voxels"] = static_cast<double>(result.statistics.voxels);
-        VdbWriteSettings writing;
-        writing.names = o_.names;
-        if (pattern)
-          writeVdb(pattern->path(number), result.grids, {}, writing);
-        else
-          results.push_back(std::move(result));
-        return row;
-      });
-    }
+    return frames_.table(fitter, [&](const FittedFrame& frame, FrameRow& row) {
+      std::vector<CarriedField> fields;
+      const double rate = o_.fitting.animation.framesPerSecond;
+      if (o_.velocity)
+        fields.push_back({"velocity", frame.all.velocity(frame.index, rate),
+                          openvdb::VEC_CONTRAVARIANT_RELATIVE, o_.shutter / rate});
+      PushResult result = pusher.push(frame.fit, fields).result;
+      row["inverted_fraction"] = result.statistics.invertedInside();
+      row["voxels"] = static_cast<double>(result.statistics.voxels);
+      VdbWriteSettings writing;
+      writing.names = o_.names;
+      if (pattern)
+        writeVdb(pattern->path(frame.fit.number), result.grids, {}, writing);
+      else
+        results.push_back(std::move(result));
+    });
   });
-  const py::dict figures = table.dict();
+  const py::dict figures = made.dict();
   if (pattern) return figures;
   py::list out;
   for (PushResult& result : results) {
@@ -124,19 +108,18 @@ py::object Deformation::grids(const py::object& what,
 }
 
 py::object Deformation::points(const Points& points) const {
-  FrameTable table;
   std::vector<Points> places;
   PlacedPoints placed;
-  runCall(o_.call, [&]() {
-    const FrameCarrier carrier(fitterOf(rest_, o_.fitting, o_.call, 0), outside_);
+  const FrameTable made = call(o_.call, [&]() {
+    const FrameCarrier carrier(fitterOf(rest_, o_.fitting, 0), outside_);
     placed = carrier.place(points);
-    forFrames(carrier, table, [&](std::int64_t, const HarmonicMap& map, const PointPusher& pusher) {
+    return table(carrier, [&](std::int64_t, const HarmonicMap& map, const PointPusher& pusher) {
       places.push_back(placesOf(pusher.push(map, placed, false)));
     });
   });
-  for (std::size_t i = 0; i < table.error.size(); ++i)
-    if (!table.error[i].empty())
-      throw DataError(fmt::format("frame {}: {}", table.frame[i], table.error[i]));
+  for (std::size_t i = 0; i < made.error.size(); ++i)
+    if (!made.error[i].empty())
+      throw DataError(fmt::format("frame {}: {}", made.frame[i], made.error[i]));
   py::array_t<double> out({static_cast<py::ssize_t>(places.size()),
                            static_cast<py::ssize_t>(points.size()), py::ssize_t(3)});
   double* to = out.mutable_data();
@@ -149,19 +132,17 @@ py::object Deformation::points(const Points& points) const {
 py::object Deformation::file(const std::string& from, const FramePattern& pattern) const {
   ReadGeometrySettings reading = geometrySettings(o_);
   requireWritableAs(from, pattern.path(0));
-  FrameTable table;
-  runCall(o_.call, [&]() {
-    const FrameCarrier carrier(fitterOf(rest_, o_.fitting, o_.call, geometryMemory(from)),
-                               outside_);
-    forFrames(carrier, table,
-              [&](std::int64_t number, const HarmonicMap& map, const PointPusher& pusher) {
-                carryFile(from, pattern.path(number), reading, {0, o_.splats},
-                          [&](const Points& points, bool jacobians) {
-                            return pusher.push(map, points, jacobians);
-                          });
-              });
+  const FrameTable made = call(o_.call, [&]() {
+    const FrameCarrier carrier(fitterOf(rest_, o_.fitting, geometryMemory(from)), outside_);
+    return table(carrier,
+                 [&](std::int64_t number, const HarmonicMap& map, const PointPusher& pusher) {
+                   carryFile(from, pattern.path(number), reading, {0, o_.splats},
+                             [&](const Points& points, bool jacobians) {
+                               return pusher.push(map, points, jacobians);
+                             });
+                 });
   });
-  return table.dict();
+  return made.dict();
 }
 
 py::object deform(const Arguments& a, DeformOptions& o) {

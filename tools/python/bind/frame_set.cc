@@ -62,8 +62,18 @@ Mesh FrameSet::mesh(std::size_t index) const {
   return out;
 }
 
-FrameFits FrameSet::fits(const FrameFitter& fitter) const {
-  return {numbers_, [&fitter, this](std::size_t index) { return fitter.fit(mesh(index)); }};
+FrameTable FrameSet::table(const FrameFitter& fitter,
+                           const std::function<void(const FittedFrame&, FrameRow&)>& each) const {
+  FrameFits fits(numbers_, [&](std::size_t index) { return fitter.fit(mesh(index)); });
+  FrameTable out;
+  for (const std::size_t index : wanted_)
+    out.add(numbers_[index], [&] {
+      const std::shared_ptr<const FrameFit> fit = fits.at(index);
+      FrameRow row = rowOf(*fit);
+      each({index, {fit.get(), numbers_[index]}, fits}, row);
+      return row;
+    });
+  return out;
 }
 
 void FrameSet::takeFiles(const py::object& given, bool oneText, const AnimationSettings& settings) {
@@ -112,9 +122,8 @@ void FrameSet::choose(const py::object& only) {
   if (wanted_.empty()) throw SettingError("only", "has none of the frames");
 }
 
-void FrameTable::add(std::int64_t number,
-                     const std::function<std::map<std::string, double>()>& body) {
-  std::map<std::string, double> row;
+void FrameTable::add(std::int64_t number, const std::function<FrameRow()>& body) {
+  FrameRow row;
   std::string failure;
   try {
     row = body();
@@ -140,16 +149,15 @@ py::dict FrameTable::dict() const {
   return out;
 }
 
-std::map<std::string, double> rowOf(const FrameFit& fit) {
+FrameRow rowOf(const FrameFit& fit) {
   return {{"boundary_rms", fit.error.rms},   {"boundary_p99", fit.error.p99},
           {"boundary_max", fit.error.max},   {"folded_fraction", fit.folded},
           {"outside_fraction", fit.outside}, {"volume", fit.boundary.volume}};
 }
 
-FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, const CallOptions& call,
-                     std::uint64_t others) {
-  const FrameFitterSettings settings = o.fitting;
-  requireMemory(call, fmt::format("a sequence with {} charges", settings.sources),
+FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, std::uint64_t others) {
+  const FrameFitterSettings& settings = o.fitting;
+  requireMemory(fmt::format("a sequence with {} charges", settings.sources),
                 frameFitterMemory(settings, others), "use fewer charges");
   return FrameFitter(makeSourceBoundary(rest), settings);
 }

@@ -7,7 +7,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +32,28 @@ struct FittingOptions {
 // A mesh, or the rest pose of a glTF file.
 Mesh restFrom(const pybind11::object& given, const FittingOptions& options);
 
+// Figures of a frame by name.
+using FrameRow = std::map<std::string, double>;
+FrameRow rowOf(const FrameFit& fit);
+
+// Columns of figures, a row a frame; a frame that cannot be used has its error and NaN.
+struct FrameTable {
+  std::vector<std::int64_t> frame;
+  std::vector<std::string> error;
+  std::map<std::string, std::vector<double>> columns;
+
+  void add(std::int64_t number, const std::function<FrameRow()>& figures);
+  // Throws DataError where no frame could be used.
+  pybind11::dict dict() const;
+};
+
+// One of the frames wanted: its place among all, its fit and its number, and the fits of all.
+struct FittedFrame {
+  std::size_t index;
+  NumberedFit fit;
+  FrameFits& all;
+};
+
 // From files or from arrays.
 class FrameSet {
  public:
@@ -40,14 +61,14 @@ class FrameSet {
   FrameSet(const pybind11::object& given, const FittingOptions& options, const Mesh& rest);
 
   const std::vector<std::int64_t>& numbers() const { return numbers_; }
-  const std::vector<std::size_t>& wanted() const { return wanted_; }
 
-  // Without the lock of the interpreter.
-  Mesh mesh(std::size_t index) const;
-  // All references must outlive them.
-  FrameFits fits(const FrameFitter& fitter) const;
+  // A row for each of the frames wanted: what its fit tells, and what `each` adds. Without the lock
+  // of the interpreter.
+  FrameTable table(const FrameFitter& fitter,
+                   const std::function<void(const FittedFrame&, FrameRow&)>& each) const;
 
  private:
+  Mesh mesh(std::size_t index) const;
   void takeFiles(const pybind11::object& given, bool oneText, const AnimationSettings& settings);
   void takeMeshes(const pybind11::object& given);
   void number(const pybind11::object& numbers);
@@ -60,21 +81,7 @@ class FrameSet {
   std::vector<std::size_t> wanted_;
 };
 
-// Columns of figures, a row a frame; a frame that cannot be used has its error and NaN.
-struct FrameTable {
-  std::vector<std::int64_t> frame;
-  std::vector<std::string> error;
-  std::map<std::string, std::vector<double>> columns;
-
-  void add(std::int64_t number, const std::function<std::map<std::string, double>()>& figures);
-  // Throws DataError where no frame could be used.
-  pybind11::dict dict() const;
-};
-
-std::map<std::string, double> rowOf(const FrameFit& fit);
-
 // others: memory that is needed beside it, bytes.
-FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, const CallOptions& call,
-                     std::uint64_t others);
+FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, std::uint64_t others);
 
 }  // namespace innermap::python
