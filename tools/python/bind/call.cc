@@ -193,9 +193,8 @@ void keepPythonError(const py::error_already_set& error) {
   static_cast<CallRun&>(currentRun()->whole()).keep(error);
 }
 
-void requireMemory(const CallOptions& options, const std::string& what, std::uint64_t bytes,
-                   const std::string& advice) {
-  innermap::requireMemory(what, processMemory(bytes), options.maxMemory, advice);
+void requireMemory(const std::string& what, std::uint64_t bytes, const std::string& advice) {
+  innermap::requireMemory(what, processMemory(bytes), advice);
 }
 
 void runCall(const CallOptions& options, const std::function<void()>& work) {

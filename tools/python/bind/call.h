@@ -50,9 +50,19 @@ auto call(const CallOptions& options, Work&& work) -> decltype(work()) {
   return std::move(*out);
 }
 
-// Throws MemoryError where a job that takes as many bytes would take the process over the limit.
-void requireMemory(const CallOptions& options, const std::string& what, std::uint64_t bytes,
-                   const std::string& advice);
+// Within a call: throws MemoryError where a job that takes as many bytes would take the process
+// over the call's limit.
+void requireMemory(const std::string& what, std::uint64_t bytes, const std::string& advice);
+
+// For work that is over at once: with the lock released. Gives None.
+template <class Work>
+pybind11::object withoutLock(Work&& work) {
+  {
+    const pybind11::gil_scoped_release unlocked;
+    work();
+  }
+  return pybind11::none();
+}
 
 // The error of Python that a callable raised: the call ends with it.
 void keepPythonError(const pybind11::error_already_set& error);

@@ -95,7 +95,7 @@ void Job::carryGrids(const openvdb::GridPtrVec& given, const CarrySettings& carr
   const double from = push_ ? source.volume() : target.volume(),
                to = push_ ? target.volume() : source.volume();
   const LevelSetSettings output = o_.output(given, voxelGrowth(from, to));
-  requireMemory(o_.call, "carrying the grids",
+  requireMemory("carrying the grids",
                 carryMemory(push_ ? target : source, given, output, outside_, carry, {push_, 0}),
                 "use a lower resolution");
   std::optional<ThroughMap> through;

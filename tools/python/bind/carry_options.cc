@@ -1,9 +1,5 @@
 #include "bind/carry_options.h"
 
-#include <fmt/format.h>
-
-#include <limits>
-
 #include "bind/arrays.h"
 #include "bind/errors.h"
 #include "bind/lists.h"
@@ -11,6 +7,7 @@
 #include "innermap/transfer/geometry.h"
 
 namespace py = pybind11;
+using namespace py::literals;
 
 namespace innermap::python {
 namespace {
@@ -103,12 +100,8 @@ LevelSetSettings CarryOptions::output(const openvdb::GridPtrVec& carried, double
 py::dict totalsOf(const PushResult& result) {
   py::dict out, masses;
   for (const CarriedMass& mass : result.masses) {
-    py::dict of;
-    of["before"] = mass.before;
-    of["after"] = mass.after;
-    of["left"] = mass.left;
-    of["cut"] = mass.cut;
-    of["largest_ratio"] = mass.largestRatio;
+    py::dict of("before"_a = mass.before, "after"_a = mass.after, "left"_a = mass.left,
+                "cut"_a = mass.cut, "largest_ratio"_a = mass.largestRatio);
     masses[mass.name.c_str()] = of;
   }
   out["mass"] = masses;
@@ -140,9 +133,8 @@ FileFigures carryFile(const std::string& from, const std::string& to,
                       const ReadGeometrySettings& reading, const CarryGeometrySettings& settings,
                       const PointCarry& carry) {
   const auto file = readGeometry(from, reading);
-  innermap::requireMemory("carrying the geometry",
-                          processMemory(carryGeometryMemory(file->geometry)),
-                          "cut the file into parts");
+  requireMemory("carrying the geometry", carryGeometryMemory(file->geometry),
+                "cut the file into parts");
   const CarriedGeometry carried = carryGeometry(file->geometry, carry, settings);
   FileFigures out;
   out.lost = writeGeometry(to, *file, carried);

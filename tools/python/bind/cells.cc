@@ -4,7 +4,6 @@
 #include <pybind11/numpy.h>
 
 #include <algorithm>
-#include <map>
 
 #include "bind/arrays.h"
 #include "bind/errors.h"
@@ -12,12 +11,12 @@
 #include "bind/keywords.h"
 #include "bind/lists.h"
 #include "bind/meshes.h"
-#include "innermap/core/memory.h"
 #include "innermap/io/cell_file.h"
 #include "innermap/tetra/cells.h"
 #include "report/figures.h"
 
 namespace py = pybind11;
+using namespace py::literals;
 
 namespace innermap::python {
 namespace {
@@ -230,25 +229,18 @@ Mesh surfaceOf(const PyCells& cells) {
   return mesh;
 }
 
-struct LongOptions {
-  CallOptions call;
-  void describe(Keywords& k) { call.describe(k); }
-};
-
-py::object quality(const Arguments& a, LongOptions& o) {
+py::object quality(const Arguments& a, CallOptions& o) {
   const auto& cells = py::cast<const PyCells&>(a[0]);
-  const CellQuality found = call(o.call, [&]() { return cellQuality(cells.mesh); });
-  py::dict out;
-  out["least_dihedral"] = arrayOf(found.leastDihedral);
-  out["greatest_dihedral"] = arrayOf(found.greatestDihedral);
-  out["scaled_jacobian"] = arrayOf(found.scaledJacobian);
-  out["inverted"] = found.invertedTetrahedra + found.invertedHexahedra;
-  return std::move(out);
+  const CellQuality found = call(o, [&]() { return cellQuality(cells.mesh); });
+  return py::dict("least_dihedral"_a = arrayOf(found.leastDihedral),
+                  "greatest_dihedral"_a = arrayOf(found.greatestDihedral),
+                  "scaled_jacobian"_a = arrayOf(found.scaledJacobian),
+                  "inverted"_a = found.invertedTetrahedra + found.invertedHexahedra);
 }
 
-py::object prove(const Arguments& a, LongOptions& o) {
+py::object prove(const Arguments& a, CallOptions& o) {
   const auto& cells = py::cast<const PyCells&>(a[0]);
-  return python::dictOf(innermap::figures(call(o.call, [&]() {
+  return python::dictOf(innermap::figures(call(o, [&]() {
     validate(cells.mesh);
     return proveCells(cells.mesh);
   })));
@@ -338,13 +330,13 @@ void bindCells(py::module_& m) {
                            c.mesh.vertices.size(), c.mesh.tetrahedra.size(),
                            c.mesh.hexahedra.size());
       });
-  define<LongOptions>(cells,
+  define<CallOptions>(cells,
                       {"quality", "self",
                        "Shapes of the cells: least_dihedral and greatest_dihedral of tetrahedra, "
                        "degrees, scaled_jacobian of hexahedra, arrays of one number a cell, and "
                        "inverted, how many are inside out."},
                       quality);
-  define<LongOptions>(
+  define<CallOptions>(
       cells,
       {"prove", "self",
        "What is proven of the cells with their points as they are, by exact signs: a dict. "
@@ -358,13 +350,13 @@ void bindCells(py::module_& m) {
                      "Writes a .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT) file, whole or not at all. "
                      "Returns the names of fields that the format cannot hold. Raises FileError."},
                     write);
-  define<LongOptions>(m,
+  define<CallOptions>(m,
                       {"read_cells", "path",
                        "Reads tetrahedra and hexahedra of a .vtu, .msh or .mesh file: an "
                        "innermap.Cells. Raises FileError, MemoryError."},
-                      [](const Arguments& a, LongOptions& o) {
+                      [](const Arguments& a, CallOptions& o) {
                         if (!isPath(a[0])) wrongType("path", "expects a path");
-                        return cellsObject(cellsFrom(a[0], "path", o.call));
+                        return cellsObject(cellsFrom(a[0], "path", o));
                       });
 }
 

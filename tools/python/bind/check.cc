@@ -9,6 +9,7 @@
 #include "innermap/core/memory.h"
 
 namespace py = pybind11;
+using namespace py::literals;
 
 namespace innermap::python {
 namespace {
@@ -24,11 +25,9 @@ struct CheckOptions {
 };
 
 py::object check(const Arguments& a, CheckOptions& o) {
-  std::size_t at = 0;
-  const Mesh mesh = takeMesh(a, at, "mesh");
-  if (at < a.size()) throw py::type_error("check() takes one mesh");
+  const Mesh mesh = onlyMesh(a, "check");
   return py::cast(call(o.call, [&]() {
-    requireMemory(o.call, "checking the mesh", checkMemory(mesh), "raise max_memory");
+    requireMemory("checking the mesh", checkMemory(mesh), "raise max_memory");
     CheckSettings settings;
     settings.selfIntersections = o.selfIntersections;
     return checkMesh(mesh, settings);
@@ -38,11 +37,8 @@ py::object check(const Arguments& a, CheckOptions& o) {
 py::list findingsOf(const MeshReport& report) {
   py::list out;
   for (const Finding& finding : findings(report)) {
-    py::dict one;
-    one["name"] = finding.name;
-    one["count"] = finding.count;
-    one["what"] = finding.what;
-    one["meaning"] = finding.meaning;
+    py::dict one("name"_a = finding.name, "count"_a = finding.count, "what"_a = finding.what,
+                 "meaning"_a = finding.meaning);
     out.append(one);
   }
   return out;

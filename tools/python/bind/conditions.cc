@@ -10,7 +10,6 @@
 #include "bind/call.h"
 #include "bind/errors.h"
 #include "bind/lists.h"
-#include "bind/meshes.h"
 #include "innermap/io/geometry_file.h"
 
 namespace py = pybind11;

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "bind/arrays.h"
 #include "bind/errors.h"
 #include "bind/figures.h"
@@ -96,20 +94,15 @@ py::object save(const Arguments& a, NoOptions&) {
   const std::string path = pathFrom(a[1], "path");
   if (path.size() < 5 || path.compare(path.size() - 4, 4, ".ply") != 0)
     wrongValue("path", "must end in .ply, got '" + path + "'");
-  if (self.onTarget.empty()) {
-    writeMesh(path, self.target());
-    return py::none();
-  }
-  {
-    const py::gil_scoped_release unlocked;
+  return withoutLock([&] {
+    if (self.onTarget.empty()) return writeMesh(path, self.target());
     if (self.changed) {
       Mesh source = self.source;
       source.colours.clear();
       writeMesh(path.substr(0, path.size() - 4) + ".source.ply", source);
     }
     writeCorrespondence(path, self.source, self.positions, self.onTarget);
-  }
-  return py::none();
+  });
 }
 
 // A file of the program has addresses beside the places; any other mesh may serve too.
@@ -129,18 +122,13 @@ std::vector<SurfacePoint> addressesIn(const std::string& path, const Mesh& sourc
   return out;
 }
 
-struct LoadOptions {
-  CallOptions call;
-  void describe(Keywords& k) { call.describe(k); }
-};
-
-py::object loadCorrespondence(const Arguments& a, LoadOptions& o) {
+py::object loadCorrespondence(const Arguments& a, CallOptions& o) {
   if (a.empty()) throw py::type_error("load_correspondence() lacks its argument 'path'");
   const std::string path = pathFrom(a[0], "path");
   std::size_t at = 1;
   auto out = std::make_shared<PyCorrespondence>();
   out->source = takeMesh(a, at, "source");
-  runCall(o.call, [&]() {
+  runCall(o, [&]() {
     out->positions = readCorrespondence(path, out->source).vertices;
     out->onTarget = addressesIn(path, out->source);
   });
@@ -229,7 +217,7 @@ void bindCorrespondence(py::module_& m) {
        "whatever stands for a mesh; both closed, with as many handles and as many shells. Returns "
        "a Correspondence. Raises DataError, MemoryError."},
       correspondTwo);
-  define<LoadOptions>(m,
+  define<CallOptions>(m,
                       {"load_correspondence", "path, *source",
                        "Reads the places of a mesh's vertices on another, as "
                        "Correspondence.save() or the program wrote them. source: the mesh that "

@@ -1,8 +1,6 @@
 // deform(): what is inside, through the frames of an animation.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "bind/arrays.h"
 #include "bind/carry_options.h"
 #include "bind/deformer.h"
@@ -49,18 +47,14 @@ class Deformation {
   py::object file(const std::string& from, const FramePattern& pattern) const;
 
  private:
-  // each: of a frame's number, its fit and the pusher to it.
-  template <class Each>
-  void forFrames(const FrameCarrier& carrier, FrameTable& table, const Each& each) const {
-    FrameFits fits = frames_.fits(carrier.fitter());
-    for (const std::size_t index : frames_.wanted()) {
-      const std::int64_t number = frames_.numbers()[index];
-      table.add(number, [&] {
-        const std::shared_ptr<const FrameFit> fit = fits.at(index);
-        each(number, *fit, carrier.pusherTo(fit->boundary));
-        return rowOf(*fit);
-      });
-    }
+  // carry: of a frame's number, its fit and the pusher to it.
+  template <class Carry>
+  FrameTable table(const FrameCarrier& carrier, const Carry& carry) const {
+    return frames_.table(carrier.fitter(), [&](const FittedFrame& frame) {
+      const FrameFit& fit = *frame.fit.fit;
+      carry(frame.fit.number, fit, carrier.pusherTo(fit.boundary));
+      return rowOf(fit);
+    });
   }
 
   const Mesh& rest_;
@@ -78,41 +72,35 @@ py::object Deformation::grids(const py::object& what,
   settings.push.outside = outside_.settings;
   settings.push.accuracy = kGridAccuracy;
   settings.fadeToFitted = outside_.fitted;
-  FrameTable table;
   std::vector<PushResult> results;
-  runCall(o_.call, [&]() {
+  const FrameTable made = call(o_.call, [&]() {
     settings.output = o_.output(given, 1);
-    const FrameFitter fitter = fitterOf(rest_, o_.fitting, o_.call, 0);
-    requireMemory(o_.call, "carrying the grids",
+    const FrameFitter fitter = fitterOf(rest_, o_.fitting, 0);
+    requireMemory("carrying the grids",
                   carryMemory(fitter.solid(), given, settings.output, outside_.settings,
                               settings.push.carry, {true, o_.velocity ? 1 : 0}),
                   "use a lower resolution");
-    FrameFits fits = frames_.fits(fitter);
     const FramePusher pusher(fitter, given, settings);
-    for (const std::size_t index : frames_.wanted()) {
-      const std::int64_t number = frames_.numbers()[index];
-      table.add(number, [&] {
-        const std::shared_ptr<const FrameFit> fit = fits.at(index);
-        std::vector<CarriedField> fields;
-        const double rate = o_.fitting.animation.framesPerSecond;
-        if (o_.velocity)
-          fields.push_back({"velocity", fits.velocity(index, rate),
-                            openvdb::VEC_CONTRAVARIANT_RELATIVE, o_.shutter / rate});
-        PushResult result = pusher.push({fit.get(), number}, fields).result;
-        Figures row = rowOf(*fit);
-        row.emplace_back("inverted_fraction", result.statistics.invertedInside(), "inverted");
-        row.emplace_back("voxels", result.statistics.voxels, "voxels");
-        VdbWriteSettings writing;
-        writing.names = o_.names;
-        if (pattern)
-          writeVdb(pattern->path(number), result.grids, {}, writing);
-        else
-          results.push_back(std::move(result));
-        return row;
-      });
-    }
+    return frames_.table(fitter, [&](const FittedFrame& frame) {
+      std::vector<CarriedField> fields;
+      const double rate = o_.fitting.animation.framesPerSecond;
+      if (o_.velocity)
+        fields.push_back({"velocity", frame.all.velocity(frame.index, rate),
+                          openvdb::VEC_CONTRAVARIANT_RELATIVE, o_.shutter / rate});
+      PushResult result = pusher.push(frame.fit, fields).result;
+      Figures row = rowOf(*frame.fit.fit);
+      row.emplace_back("inverted_fraction", result.statistics.invertedInside(), "inverted");
+      row.emplace_back("voxels", result.statistics.voxels, "voxels");
+      VdbWriteSettings writing;
+      writing.names = o_.names;
+      if (pattern)
+        writeVdb(pattern->path(frame.fit.number), result.grids, {}, writing);
+      else
+        results.push_back(std::move(result));
+      return row;
+    });
   });
-  const py::dict figures = table.dict();
+  const py::dict figures = made.dict();
   if (pattern) return figures;
   py::list out;
   for (PushResult& result : results) {
@@ -123,19 +111,18 @@ py::object Deformation::grids(const py::object& what,
 }
 
 py::object Deformation::points(const Points& points) const {
-  FrameTable table;
   std::vector<Points> places;
   PlacedPoints placed;
-  runCall(o_.call, [&]() {
-    const FrameCarrier carrier(fitterOf(rest_, o_.fitting, o_.call, 0), outside_);
+  const FrameTable made = call(o_.call, [&]() {
+    const FrameCarrier carrier(fitterOf(rest_, o_.fitting, 0), outside_);
     placed = carrier.place(points);
-    forFrames(carrier, table, [&](std::int64_t, const FrameFit& fit, const PointPusher& pusher) {
+    return table(carrier, [&](std::int64_t, const FrameFit& fit, const PointPusher& pusher) {
       places.push_back(placesOf(pusher.push(HarmonicMap(fit.field), placed, false)));
     });
   });
-  for (std::size_t i = 0; i < table.error.size(); ++i)
-    if (!table.error[i].empty())
-      throw DataError(fmt::format("frame {}: {}", table.frame[i], table.error[i]));
+  for (std::size_t i = 0; i < made.error.size(); ++i)
+    if (!made.error[i].empty())
+      throw DataError(fmt::format("frame {}: {}", made.frame[i], made.error[i]));
   py::array_t<double> out({static_cast<py::ssize_t>(places.size()),
                            static_cast<py::ssize_t>(points.size()), py::ssize_t(3)});
   double* to = out.mutable_data();
@@ -148,20 +135,17 @@ py::object Deformation::points(const Points& points) const {
 py::object Deformation::file(const std::string& from, const FramePattern& pattern) const {
   ReadGeometrySettings reading = geometrySettings(o_);
   requireWritableAs(from, pattern.path(0));
-  FrameTable table;
-  runCall(o_.call, [&]() {
-    const FrameCarrier carrier(fitterOf(rest_, o_.fitting, o_.call, geometryMemory(from)),
-                               outside_);
-    forFrames(
-        carrier, table, [&](std::int64_t number, const FrameFit& fit, const PointPusher& pusher) {
-          const HarmonicMap map(fit.field);
-          carryFile(from, pattern.path(number), reading, {0, o_.splats, fit.injectivity.mirrored},
-                    [&](const Points& points, bool jacobians) {
-                      return pusher.push(map, points, jacobians);
-                    });
-        });
+  const FrameTable made = call(o_.call, [&]() {
+    const FrameCarrier carrier(fitterOf(rest_, o_.fitting, geometryMemory(from)), outside_);
+    return table(carrier, [&](std::int64_t number, const FrameFit& fit, const PointPusher& pusher) {
+      const HarmonicMap map(fit.field);
+      carryFile(from, pattern.path(number), reading, {0, o_.splats, fit.injectivity.mirrored},
+                [&](const Points& points, bool jacobians) {
+                  return pusher.push(map, points, jacobians);
+                });
+    });
   });
-  return table.dict();
+  return made.dict();
 }
 
 py::object deform(const Arguments& a, DeformOptions& o) {

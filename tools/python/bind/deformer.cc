@@ -61,7 +61,7 @@ std::shared_ptr<PyDeformer> makeDeformer(const py::object& source, const py::obj
   fitting.fitting = o.fitting;
   return call(o.call, [&] {
     const std::uint64_t kept = 3 * sizeof(Vec3) * points.size();
-    FrameCarrier carrier(fitterOf(rest, fitting, o.call, kept), outside);
+    FrameCarrier carrier(fitterOf(rest, fitting, kept), outside);
     PlacedPoints placed = carrier.place(points);
     return std::make_shared<PyDeformer>(PyDeformer{rest, std::move(carrier), std::move(placed)});
   });
@@ -101,25 +101,20 @@ Mesh frameFrom(const PyDeformer& self, const py::object& given) {
   return out;
 }
 
-struct DeformOptions {
-  CallOptions call;
-  void describe(Keywords& k) { call.describe(k); }
-};
-
-py::object carry(const Arguments& a, DeformOptions& o) {
+py::object carry(const Arguments& a, CallOptions& o) {
   const auto self = py::cast<std::shared_ptr<PyDeformer>>(a[0]);
   const Mesh frame = frameFrom(*self, a[1]);
-  return arrayOf(call(o.call, [&] {
+  return arrayOf(call(o, [&] {
     const FrameSolution solution = self->carrier.fitter().solve(frame);
     const PointPusher pusher = self->carrier.pusherTo(solution.boundary);
     return placesOf(pusher.push(HarmonicMap(solution.field), self->placed, false));
   }));
 }
 
-py::object measure(const Arguments& a, DeformOptions& o) {
+py::object measure(const Arguments& a, CallOptions& o) {
   const auto self = py::cast<std::shared_ptr<PyDeformer>>(a[0]);
   const Mesh frame = frameFrom(*self, a[1]);
-  return dictOf(call(o.call, [&] { return rowOf(self->carrier.fitter().fit(frame)); }));
+  return dictOf(call(o, [&] { return rowOf(self->carrier.fitter().fit(frame)); }));
 }
 
 struct LatticeOptions {
@@ -198,14 +193,14 @@ void bindDeformer(py::module_& m) {
       "factored once, a pose is one solve. It does not change, and several threads may use it at "
       "once.");
   deformer.def(py::init(&madeFrom), py::arg("source"), py::arg("X"), constructorText().c_str());
-  define<DeformOptions>(
+  define<CallOptions>(
       deformer,
       {"__call__", "self, frame",
        "Where the points are in a pose, (n, 3), as deform() has them; NaN where found is "
        "False.\n\nframe: places of the rest pose's vertices, (vertices, 3), or a mesh of its "
        "connectivity. Raises DataError."},
       carry);
-  define<DeformOptions>(
+  define<CallOptions>(
       deformer,
       {"measure", "self, frame",
        "How good the map to a pose is: a dict of boundary_rms, boundary_p99, boundary_max "

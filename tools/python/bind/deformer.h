@@ -4,8 +4,6 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
-#include <optional>
-
 #include "innermap/fit/frame_fitter.h"
 #include "innermap/transfer/inverse_map.h"
 

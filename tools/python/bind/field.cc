@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "bind/arrays.h"
-#include "bind/errors.h"
 #include "bind/figures.h"
 #include "bind/grids.h"
 #include "bind/keywords.h"
@@ -80,7 +79,7 @@ HarmonicGrids gridsOf(const PyField& field, const FieldGridOptions& o) {
   HarmonicGrids grids = call(o.call, [&]() {
     auto settings = o.grid.in(o.settings);
     settings.span = field.span;
-    requireMemory(o.call, "evaluating the field on a grid",
+    requireMemory("evaluating the field on a grid",
                   harmonicGridMemory(solid.boundary.solid, solid.names.size(), settings),
                   "use a lower resolution");
     return evaluateHarmonic(solid.field, solid.boundary.solid, solid.names, settings);
@@ -115,11 +114,7 @@ py::object writeFieldVdb(const Arguments& a, WriteFieldOptions& o) {
 py::object save(const Arguments& a, NoOptions&) {
   const auto solid = py::cast<const PyField&>(a[0]).solid;
   const std::string path = pathFrom(a[1], "path");
-  {
-    const py::gil_scoped_release unlocked;
-    writeSolidField(path, *solid);
-  }
-  return py::none();
+  return withoutLock([&] { writeSolidField(path, *solid); });
 }
 
 std::string reprOf(const PyField& field) {

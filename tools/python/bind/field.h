@@ -5,8 +5,6 @@
 
 #include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "innermap/fit/fit_harmonic.h"
 

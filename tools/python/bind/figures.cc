@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "bind/arrays.h"
 
 namespace py = pybind11;

@@ -3,9 +3,6 @@
 
 #include <pybind11/pybind11.h>
 
-#include <optional>
-#include <string>
-
 #include "core/figure.h"
 #include "innermap/field/field_file.h"
 #include "innermap/field/fit.h"

@@ -1,9 +1,6 @@
 // Solids filled with tetrahedra and hexahedra, and stood in for by cubes.
-#include <fmt/format.h>
 
-#include "bind/arrays.h"
 #include "bind/cells.h"
-#include "bind/errors.h"
 #include "bind/figures.h"
 #include "bind/keywords.h"
 #include "bind/meshes.h"
@@ -14,35 +11,24 @@
 #include "report/figures.h"
 
 namespace py = pybind11;
+using namespace py::literals;
 
 namespace innermap::python {
 namespace {
 
-struct TetrahedralizeOptions {
-  TetrahedralizeSettings settings;
-  CallOptions call;
-
-  void describe(Keywords& k) {
-    k.settings(innermap::describe(settings));
-    call.describe(k);
-  }
-};
+using TetrahedralizeOptions = SettingsOptions<TetrahedralizeSettings>;
 
 py::object tetrahedra(const Arguments& a, TetrahedralizeOptions& o) {
-  std::size_t at = 0;
-  const Mesh mesh = takeMesh(a, at, "mesh");
+  const Mesh mesh = onlyMesh(a, "tetrahedralize");
   Tetrahedralization made =
       call(o.call, [&]() { return tetrahedralization(Solid(mesh), o.settings); });
   const CellQuality quality = call(o.call, [&]() { return cellQuality(made.mesh); });
   setQualityFields(made.mesh, quality);
-  py::dict figures;
-  figures["edge"] = made.edge;
-  figures["components"] = made.topology.components;
-  figures["cavities"] = made.topology.cavities;
-  figures["handles"] = made.topology.handles;
-  figures["least_dihedral"] = quality.dihedral.least;
-  figures["greatest_dihedral"] = quality.greatestAngle;
-  figures["inverted"] = quality.invertedTetrahedra;
+  py::dict figures("edge"_a = made.edge, "components"_a = made.topology.components,
+                   "cavities"_a = made.topology.cavities, "handles"_a = made.topology.handles,
+                   "least_dihedral"_a = quality.dihedral.least,
+                   "greatest_dihedral"_a = quality.greatestAngle,
+                   "inverted"_a = quality.invertedTetrahedra);
   figures["proof"] =
       dictOf(innermap::figures(call(o.call, [&]() { return proveCells(made.mesh); })));
   figures["notes"] = made.notes;
@@ -88,28 +74,23 @@ struct HexahedralizeOptions : BlockOptions {
 };
 
 py::object hexahedra(const Arguments& a, HexahedralizeOptions& o) {
-  std::size_t at = 0;
-  const Mesh mesh = takeMesh(a, at, "mesh");
+  const Mesh mesh = onlyMesh(a, "hexahedralize");
   o.settings.polycube = o.polycube;
   Hexahedralization made = call(o.call, [&]() {
-    const HexahedralizeSettings settings = o.settings;
     const Mesh surface = o.surfaceToFill(mesh);
-    requireMemory(o.call, "hexahedra", hexahedralizeMemory(surface, settings),
+    requireMemory("hexahedra", hexahedralizeMemory(surface, o.settings),
                   "use fewer blocks or pieces");
-    return hexahedralize(surface, settings);
+    return hexahedralize(surface, o.settings);
   });
-  py::dict figures;
-  figures["proven"] = made.after.proven();
-  figures["inverted"] = made.after.inverted;
-  figures["inverted_before"] = made.before.inverted;
-  figures["proof"] = dictOf(innermap::figures(made.proof));
-  figures["scaled_jacobian_least"] = made.quality.jacobian.least;
-  figures["scaled_jacobian_mean"] = made.quality.jacobian.mean;
-  figures["polycube"] = figuresOf(made.polycube);
-  figures["polycube_surface"] = blockSurface(made.polycube.blocks, made.pieces);
-  figures["in_blocks"] = cellsObject(std::move(made.inBlocks));
-  figures["notes"] = made.notes;
-  figures["warnings"] = made.warnings;
+  py::dict figures("proven"_a = made.after.proven(), "inverted"_a = made.after.inverted,
+                   "inverted_before"_a = made.before.inverted,
+                   "proof"_a = dictOf(innermap::figures(made.proof)),
+                   "scaled_jacobian_least"_a = made.quality.jacobian.least,
+                   "scaled_jacobian_mean"_a = made.quality.jacobian.mean,
+                   "polycube"_a = figuresOf(made.polycube),
+                   "polycube_surface"_a = blockSurface(made.polycube.blocks, made.pieces),
+                   "in_blocks"_a = cellsObject(std::move(made.inBlocks)), "notes"_a = made.notes,
+                   "warnings"_a = made.warnings);
   return cellsObject(std::move(made.mesh), figures);
 }
 
@@ -125,12 +106,11 @@ struct PolycubeOptions : BlockOptions {
 };
 
 py::object polycube(const Arguments& a, PolycubeOptions& o) {
-  std::size_t at = 0;
-  const Mesh mesh = takeMesh(a, at, "mesh");
+  const Mesh mesh = onlyMesh(a, "polycube");
   Mesh surface;
   const Polycube made = call(o.call, [&]() {
     const Mesh toFill = o.surfaceToFill(mesh);
-    requireMemory(o.call, "a polycube", polycubeMemory(toFill, o.polycube), "use fewer blocks");
+    requireMemory("a polycube", polycubeMemory(toFill, o.polycube), "use fewer blocks");
     Polycube cube = makePolycube(toFill, o.polycube);
     surface = blockSurface(cube.blocks, o.pieces.value_or(usualPieces(cube.blocks)));
     return cube;

@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 
 #include "bind/arrays.h"
 #include "bind/call.h"
@@ -92,10 +91,9 @@ py::object fit(const Arguments& a, FitOptions& o) {
     job.target = likeSource(laid->source, laid->positions, job.target.name);
   }
   return py::cast(std::make_shared<PyMap>(call(o.call, [&]() {
-    const FitMapSettings with = settings;
-    requireMemory(o.call, "fitting the map", fitMapMemory(with, job.source.vertices.size()),
+    requireMemory("fitting the map", fitMapMemory(settings, job.source.vertices.size()),
                   "use fewer charges or raise max_memory");
-    return fitMap(job.source, job.target, with);
+    return fitMap(job.source, job.target, settings);
   })));
 }
 

@@ -63,8 +63,16 @@ Mesh FrameSet::mesh(std::size_t index) const {
   return out;
 }
 
-FrameFits FrameSet::fits(const FrameFitter& fitter) const {
-  return {numbers_, [&fitter, this](std::size_t index) { return fitter.fit(mesh(index)); }};
+FrameTable FrameSet::table(const FrameFitter& fitter,
+                           const std::function<Figures(const FittedFrame&)>& each) const {
+  FrameFits fits(numbers_, [&](std::size_t index) { return fitter.fit(mesh(index)); });
+  FrameTable out;
+  for (const std::size_t index : wanted_)
+    out.add(numbers_[index], [&] {
+      const std::shared_ptr<const FrameFit> fit = fits.at(index);
+      return each({index, {fit.get(), numbers_[index]}, fits});
+    });
+  return out;
 }
 
 void FrameSet::takeFiles(const py::object& given, bool oneText, const AnimationSettings& settings) {
@@ -155,10 +163,9 @@ Figures rowOf(const FrameFit& fit) {
   return row;
 }
 
-FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, const CallOptions& call,
-                     std::uint64_t others) {
-  const FrameFitterSettings settings = o.fitting;
-  requireMemory(call, fmt::format("a sequence with {} charges", settings.sources),
+FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, std::uint64_t others) {
+  const FrameFitterSettings& settings = o.fitting;
+  requireMemory(fmt::format("a sequence with {} charges", settings.sources),
                 frameFitterMemory(settings, others), "use fewer charges");
   return FrameFitter(makeSourceBoundary(rest), settings);
 }

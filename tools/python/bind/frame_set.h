@@ -7,7 +7,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,33 +33,6 @@ struct FittingOptions {
 // A mesh, or the rest pose of a glTF file.
 Mesh restFrom(const pybind11::object& given, const FittingOptions& options);
 
-// From files or from arrays.
-class FrameSet {
- public:
-  // rest: must outlive it.
-  FrameSet(const pybind11::object& given, const FittingOptions& options, const Mesh& rest);
-
-  const std::vector<std::int64_t>& numbers() const { return numbers_; }
-  const std::vector<std::size_t>& wanted() const { return wanted_; }
-
-  // Without the lock of the interpreter.
-  Mesh mesh(std::size_t index) const;
-  // All references must outlive them.
-  FrameFits fits(const FrameFitter& fitter) const;
-
- private:
-  void takeFiles(const pybind11::object& given, bool oneText, const AnimationSettings& settings);
-  void takeMeshes(const pybind11::object& given);
-  void number(const pybind11::object& numbers);
-  void choose(const pybind11::object& only);
-
-  const Mesh& rest_;
-  std::unique_ptr<FrameSource> files_;
-  std::vector<Points> places_;
-  std::vector<std::int64_t> numbers_;
-  std::vector<std::size_t> wanted_;
-};
-
 // Columns of figures, a row a frame; a frame that cannot be used has its error and NaN.
 struct FrameTable {
   std::vector<std::int64_t> frame;
@@ -77,8 +49,40 @@ struct FrameTable {
 // What is told of a frame's fit alone.
 Figures rowOf(const FrameFit& fit);
 
+// One of the frames wanted: its place among all, its fit and its number, and the fits of all.
+struct FittedFrame {
+  std::size_t index;
+  NumberedFit fit;
+  FrameFits& all;
+};
+
+// From files or from arrays.
+class FrameSet {
+ public:
+  // rest: must outlive it.
+  FrameSet(const pybind11::object& given, const FittingOptions& options, const Mesh& rest);
+
+  const std::vector<std::int64_t>& numbers() const { return numbers_; }
+
+  // A row for each of the frames wanted, made by `each`. Without the lock of the interpreter.
+  FrameTable table(const FrameFitter& fitter,
+                   const std::function<Figures(const FittedFrame&)>& each) const;
+
+ private:
+  Mesh mesh(std::size_t index) const;
+  void takeFiles(const pybind11::object& given, bool oneText, const AnimationSettings& settings);
+  void takeMeshes(const pybind11::object& given);
+  void number(const pybind11::object& numbers);
+  void choose(const pybind11::object& only);
+
+  const Mesh& rest_;
+  std::unique_ptr<FrameSource> files_;
+  std::vector<Points> places_;
+  std::vector<std::int64_t> numbers_;
+  std::vector<std::size_t> wanted_;
+};
+
 // others: memory that is needed beside it, bytes.
-FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, const CallOptions& call,
-                     std::uint64_t others);
+FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, std::uint64_t others);
 
 }  // namespace innermap::python

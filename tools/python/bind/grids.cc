@@ -201,7 +201,7 @@ openvdb::GridPtrVec takeGrids(const py::object& grids, const std::string& argume
   openvdb::GridPtrVec out = call(options, [&]() {
     VdbReadSettings settings;
     settings.names = names;
-    requireMemory(options, "reading " + path, readMemory(readVdbInfo(path), names),
+    requireMemory("reading " + path, readMemory(readVdbInfo(path), names),
                   "read fewer of its grids");
     return readVdb(path, settings).grids;
   });

@@ -4,8 +4,6 @@
 #include <openvdb/openvdb.h>
 #include <pybind11/pybind11.h>
 
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -80,16 +80,15 @@ std::shared_ptr<PyField> fitted(const Mesh& mesh, BoundaryConditions& conditions
   if (!conditions.function) namesFrom(names, conditions.values.columns());  // before the work
   conditions.creaseAngle = o.creaseAngle;
   auto made = call(o.call, [&]() {
-    const auto settings = o.fit;
     FitMapSettings like;
-    like.tolerance = settings.tolerance;
-    requireMemory(o.call, "the harmonic field", fitMapMemory(like, mesh.vertices.size()),
+    like.tolerance = o.fit.tolerance;
+    requireMemory("the harmonic field", fitMapMemory(like, mesh.vertices.size()),
                   "raise max_memory");
     const bool corners =
         !conditions.function && conditions.values.rows() == 3 * mesh.triangles.size();
     const double joined = corners ? removeJumps(mesh, conditions) : 0;
     SourceBoundary boundary = makeSourceBoundary(mesh);
-    HarmonicFit fit = fitHarmonic(boundary, conditions, settings);
+    HarmonicFit fit = fitHarmonic(boundary, conditions, o.fit);
     if (unitSum) fit.field = withUnitSum(fit.field);
     if (joined > 0)
       fit.notes.push_back(

@@ -109,6 +109,24 @@ struct NoOptions {
   void describe(Keywords&) {}
 };
 
+// Found by the type of its argument, which a member of that name would hide.
+template <class Settings>
+std::vector<Setting> described(Settings& settings) {
+  return describe(settings);
+}
+
+// Settings as the library describes them, and what every long call takes.
+template <class Settings>
+struct SettingsOptions {
+  Settings settings;
+  CallOptions call;
+
+  void describe(Keywords& k) {
+    k.settings(described(settings));
+    call.describe(k);
+  }
+};
+
 // "name(positional)\n--\n\ndoc": what pybind11's own def() takes for a docstring that
 // inspect.signature understands.
 std::string documented(const char* signature, const char* doc);

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "bind/arrays.h"
-#include "bind/errors.h"
 #include "bind/figures.h"
 #include "bind/keywords.h"
 #include "bind/meshes.h"
@@ -70,11 +69,7 @@ py::object inverseMap(const Arguments& a, InverseOptions& o) {
 py::object save(const Arguments& a, NoOptions&) {
   const auto mapped = py::cast<const PyMap&>(a[0]).mapped;
   const std::string path = pathFrom(a[1], "path");
-  {
-    const py::gil_scoped_release unlocked;
-    writeMap(path, *mapped);
-  }
-  return py::none();
+  return withoutLock([&] { writeMap(path, *mapped); });
 }
 
 struct ProveOptions {
@@ -126,15 +121,7 @@ py::object proofCells(const Arguments& a, ProofCellsOptions& o) {
                         cellsArray(proof.negative));
 }
 
-struct VerifyOptions {
-  VerifySettings settings;
-  CallOptions call;
-
-  void describe(Keywords& k) {
-    k.settings(innermap::describe(settings));
-    call.describe(k);
-  }
-};
+using VerifyOptions = SettingsOptions<VerifySettings>;
 
 py::object verify(const Arguments& a, VerifyOptions& o) {
   const auto mapped = py::cast<const PyMap&>(a[0]).mapped;

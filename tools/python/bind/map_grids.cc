@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include "bind/arrays.h"
-#include "bind/figures.h"
 #include "bind/grids.h"
 #include "bind/keywords.h"
 #include "bind/map.h"
@@ -12,6 +11,7 @@
 #include "innermap/levelset/level_set.h"
 
 namespace py = pybind11;
+using namespace py::literals;
 
 namespace innermap::python {
 namespace {
@@ -39,8 +39,8 @@ struct WriteMapOptions : MapGridOptions {
   }
 };
 
-void requireGridMemory(const PyMap& map, const MapGridSettings& settings, const CallOptions& call) {
-  requireMemory(call, "evaluating the map on a grid",
+void requireGridMemory(const PyMap& map, const MapGridSettings& settings) {
+  requireMemory("evaluating the map on a grid",
                 mapGridMemory(map.mapped->solid(), settings, mapGridKind(*map.mapped)),
                 "use a lower resolution");
 }
@@ -50,25 +50,23 @@ SolidGrids gridsOf(const PyMap& map, const MapGridOptions& o) {
     auto settings = o.grid.in(MapGridSettings{});
     settings.lame = o.lame;
     settings.repair = o.repair;
-    requireGridMemory(map, settings, o.call);
+    requireGridMemory(map, settings);
     return evaluateOnGrid(*map.mapped, settings);
   });
 }
 
 py::object evaluate(const Arguments& a, MapGridOptions& o) {
   const SolidGrids grids = gridsOf(py::cast<const PyMap&>(a[0]), o);
-  py::dict totals;
-  totals["harmonic_energy"] = grids.values.harmonicTotal;
-  totals["deformation_energy"] = grids.values.deformationTotal;
-  totals["volume"] = grids.values.volume;
-  totals["jacobian_min"] = grids.values.jacobianMin;
-  totals["jacobian_max"] = grids.values.jacobianMax;
-  totals["folded_fraction"] = grids.values.foldedFraction;
-  totals["folded_voxels"] = grids.values.foldedVoxels;
-  totals["folded_voxels_left"] = grids.values.foldedVoxelsLeft;
-  totals["outside_fraction"] = grids.outsideFraction;
-  totals["interior_voxels"] = grids.values.interiorVoxels;
-  totals["one_to_one"] = injectivityStatement(grids.injectivity);
+  py::dict totals("harmonic_energy"_a = grids.values.harmonicTotal,
+                  "deformation_energy"_a = grids.values.deformationTotal,
+                  "volume"_a = grids.values.volume, "jacobian_min"_a = grids.values.jacobianMin,
+                  "jacobian_max"_a = grids.values.jacobianMax,
+                  "folded_fraction"_a = grids.values.foldedFraction,
+                  "folded_voxels"_a = grids.values.foldedVoxels,
+                  "folded_voxels_left"_a = grids.values.foldedVoxelsLeft,
+                  "outside_fraction"_a = grids.outsideFraction,
+                  "interior_voxels"_a = grids.values.interiorVoxels,
+                  "one_to_one"_a = injectivityStatement(grids.injectivity));
   return gridsObject(grids.all(), totals, o.call);
 }
 
@@ -84,20 +82,12 @@ struct Folds {
   Points places;
 };
 
-struct FoldOptions {
-  LatticeChoice grid;
-  CallOptions call;
-
-  void describe(Keywords& k) {
-    k.settings(innermap::describe(grid));
-    call.describe(k);
-  }
-};
+using FoldOptions = SettingsOptions<LatticeChoice>;
 
 Folds foldsOf(const PyMap& map, const FoldOptions& o) {
   const MappedSolid& mapped = *map.mapped;
-  requireGridMemory(map, o.grid.in(MapGridSettings{}), o.call);
-  const auto levelSet = makeLevelSet(mapped.solid(), o.grid.in(LevelSetSettings{}));
+  requireGridMemory(map, o.settings.in(MapGridSettings{}));
+  const auto levelSet = makeLevelSet(mapped.solid(), o.settings.in(LevelSetSettings{}));
   EvaluateSettings settings;
   settings.map = settings.harmonicEnergy = settings.deformationEnergy = false;
   const MapGrids grids = evaluateMap(mapped.map, mapped.solid(), *levelSet, settings);

@@ -14,11 +14,6 @@ namespace py = pybind11;
 namespace innermap::python {
 namespace {
 
-struct ReadOptions {
-  CallOptions call;
-  void describe(Keywords& k) { call.describe(k); }
-};
-
 Mesh meshOf(py::handle vertices, py::handle triangles, const std::string& name,
             const std::string& v, const std::string& f) {
   Mesh mesh;
@@ -114,6 +109,13 @@ Mesh takeMesh(const Arguments& arguments, std::size_t& at, const std::string& na
   return meshOf(first, arguments[at++], name, "V", "F");
 }
 
+Mesh onlyMesh(const Arguments& arguments, const std::string& function) {
+  std::size_t at = 0;
+  Mesh mesh = takeMesh(arguments, at, "mesh");
+  if (at < arguments.size()) throw py::type_error(function + "() takes one mesh");
+  return mesh;
+}
+
 Mesh takeTarget(const Arguments& arguments, std::size_t& at, const Mesh& source) {
   const py::object& given = arguments[at++];
   if (!isArrayLike(given)) return meshFrom(given, "target");
@@ -133,31 +135,27 @@ void describeClose(Keywords& k, bool* close) {
 
 void bindMeshes(py::module_& m) {
   bindMeshClass(m);
-  define<ReadOptions>(
+  define<CallOptions>(
       m,
       {"read_mesh", "path",
        "Reads a mesh: .obj, .ply, .off or .stl, vertices in the order of the file, polygons cut "
        "into triangles. Returns an innermap.Mesh; V, F = read_mesh(path) has its arrays. Raises "
        "FileError."},
-      [](const Arguments& a, ReadOptions& o) {
+      [](const Arguments& a, CallOptions& o) {
         const std::string path = pathFrom(a[0], "path");
-        return py::cast(std::make_shared<Mesh>(call(o.call, [&]() { return readMesh(path); })));
+        return py::cast(std::make_shared<Mesh>(call(o, [&]() { return readMesh(path); })));
       });
   define<NoOptions>(
       m,
       {"write_mesh", "path, *mesh",
        "Writes a mesh to a .ply or .obj file. mesh: V, F or whatever stands for a mesh. Raises "
        "FileError."},
-      [](const Arguments& a, NoOptions&) -> py::object {
+      [](const Arguments& a, NoOptions&) {
         if (a.empty()) throw py::type_error("write_mesh() lacks its argument 'path'");
         std::size_t at = 1;
         const std::string path = pathFrom(a[0], "path");
         const Mesh mesh = takeMesh(a, at, "mesh");
-        {
-          const py::gil_scoped_release unlocked;
-          writeMesh(path, mesh);
-        }
-        return py::none();
+        return withoutLock([&] { writeMesh(path, mesh); });
       });
 }
 

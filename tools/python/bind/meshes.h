@@ -27,6 +27,8 @@ void describeClose(Keywords& k, bool* close);
 // name: of the mesh in messages ("source"); at: the argument that it begins with, moved behind it.
 Mesh takeMesh(const Arguments& arguments, std::size_t& at, const std::string& name);
 Mesh meshFrom(const pybind11::object& object, const std::string& name);
+// Of a function that takes one mesh and nothing else.
+Mesh onlyMesh(const Arguments& arguments, const std::string& function);
 // The source with other places, V_target, or a mesh as one argument.
 Mesh takeTarget(const Arguments& arguments, std::size_t& at, const Mesh& source);
 

@@ -13,6 +13,7 @@
 #include "report/figures.h"
 
 namespace py = pybind11;
+using namespace py::literals;
 
 namespace innermap::python {
 namespace {
@@ -46,21 +47,16 @@ py::object remesh(const Arguments& a, RemeshOptions& o) {
   if (!o.surface.is_none()) surface = meshFrom(o.surface, "surface");
   if (surface) o.settings.surface = &*surface;
   Remesh made = call(o.call, [&]() {
-    requireMemory(o.call, "carrying the cells", remeshMemory(cells), "use a coarser mesh");
+    requireMemory("carrying the cells", remeshMemory(cells), "use a coarser mesh");
     return remeshCells(cells, *map.mapped, o.settings);
   });
-  py::dict figures;
-  figures["inverted"] = made.inverted;
-  figures["inverted_at_rest"] = made.invertedAtRest;
-  figures["inverted_carried"] = made.invertedCarried;
-  figures["proof"] = dictOf(innermap::figures(made.proof));
-  figures["linear_map"] = linearMapStatement(made.sourceProof, made.proof);
-  figures["swaps"] = made.swaps;
-  figures["collapses"] = made.collapses;
-  figures["boundary_rms"] = made.boundaryRms;
-  figures["boundary_max"] = made.boundaryMax;
-  figures["notes"] = made.notes;
-  figures["warnings"] = made.warnings;
+  py::dict figures("inverted"_a = made.inverted, "inverted_at_rest"_a = made.invertedAtRest,
+                   "inverted_carried"_a = made.invertedCarried,
+                   "proof"_a = dictOf(innermap::figures(made.proof)),
+                   "linear_map"_a = linearMapStatement(made.sourceProof, made.proof),
+                   "swaps"_a = made.swaps, "collapses"_a = made.collapses,
+                   "boundary_rms"_a = made.boundaryRms, "boundary_max"_a = made.boundaryMax,
+                   "notes"_a = made.notes, "warnings"_a = made.warnings);
   return cellsObject(std::move(made.mesh), figures);
 }
 
@@ -100,17 +96,15 @@ py::object compareFem(const Arguments& a, CompareOptions& o) {
   if (at < a.size()) target = takeTarget(a, at, source);
   if (at < a.size()) throw py::type_error("compare_fem() takes a source and a target");
   return tableOf(call(o.call, [&]() {
-    const CompareFemSettings settings = o.settings;
     if (target) {
       const BoundaryPair pair = makeBoundaryPair(source, *target);
-      requireMemory(o.call, "finite elements", compareFemMemory(pair.solid(), settings),
+      requireMemory("finite elements", compareFemMemory(pair.solid(), o.settings),
                     "use lower resolutions");
-      return compareFemOnMap(pair, settings);
+      return compareFemOnMap(pair, o.settings);
     }
     const Solid solid(source);
-    requireMemory(o.call, "finite elements", compareFemMemory(solid, settings),
-                  "use lower resolutions");
-    return compareFemOnFunctions(solid, settings);
+    requireMemory("finite elements", compareFemMemory(solid, o.settings), "use lower resolutions");
+    return compareFemOnFunctions(solid, o.settings);
   }));
 }
 

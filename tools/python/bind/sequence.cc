@@ -1,17 +1,11 @@
 // sequence(): the maps of an animation, measured.
-#include <fmt/format.h>
 
-#include <algorithm>
-#include <map>
-
-#include "bind/arrays.h"
 #include "bind/errors.h"
 #include "bind/frame_set.h"
 #include "bind/grids.h"
 #include "bind/lists.h"
 #include "bind/meshes.h"
 #include "core/frame_files.h"
-#include "innermap/core/memory.h"
 #include "innermap/evaluate/grids.h"
 #include "report/sequence_table.h"
 
@@ -59,27 +53,21 @@ py::object sequence(const Arguments& a, SequenceOptions& o) {
   std::vector<std::string> names = textsFrom(o.grids, "grids");
   if (!pattern && !names.empty()) wrongValue("grids", "is for output; give it too");
   if (pattern && names.empty()) names = {"harmonic_energy", "deformation_energy"};
-  FrameTable table;
-  runCall(o.call, [&]() {
+  const FrameTable made = call(o.call, [&]() {
     auto settings = o.grid.in(MapGridSettings{});
     settings.lame = o.lame;
-    const FrameFitter fitter = fitterOf(rest, o.fitting, o.call, 0);
+    const FrameFitter fitter = fitterOf(rest, o.fitting, 0);
     const FrameEvaluator evaluator(fitter, names, settings);
-    FrameFits fits = frames.fits(fitter);
-    for (const std::size_t index : frames.wanted()) {
-      const std::int64_t number = frames.numbers()[index];
-      table.add(number, [&] {
-        const std::shared_ptr<const FrameFit> fit = fits.at(index);
-        const MapGrids grids = evaluator.evaluate(*fit);
-        VdbWriteSettings writing;
-        writing.names = o.names;
-        if (pattern)
-          writeVdb(pattern->path(number), evaluator.grids({fit.get(), number}, grids), {}, writing);
-        return measuresOf(*fit, grids);
-      });
-    }
+    return frames.table(fitter, [&](const FittedFrame& frame) {
+      const MapGrids grids = evaluator.evaluate(*frame.fit.fit);
+      VdbWriteSettings writing;
+      writing.names = o.names;
+      if (pattern)
+        writeVdb(pattern->path(frame.fit.number), evaluator.grids(frame.fit, grids), {}, writing);
+      return measuresOf(*frame.fit.fit, grids);
+    });
   });
-  return table.dict();
+  return made.dict();
 }
 
 }  // namespace

@@ -1,11 +1,8 @@
 // A surface's texture continued into its solid.
 #include "innermap/texture/solid_texture.h"
 
-#include <fmt/format.h>
-
 #include "bind/arrays.h"
 #include "bind/errors.h"
-#include "bind/figures.h"
 #include "bind/grids.h"
 #include "bind/keywords.h"
 #include "bind/meshes.h"
@@ -14,6 +11,7 @@
 #include "innermap/io/pictures.h"
 
 namespace py = pybind11;
+using namespace py::literals;
 
 namespace innermap::python {
 namespace {
@@ -62,7 +60,7 @@ py::object texture(const Arguments& a, TextureOptions& o) {
     const SolidTexturePlan plan = planSolidTexture(std::move(mesh), settings);
     std::vector<UdimTile> tiles;
     if (isTiled(image)) tiles = udimTiles(plan.mesh());
-    requireMemory(o.call, "the solid texture",
+    requireMemory("the solid texture",
                   plan.memory + (image.empty() ? 0 : textureImageMemory(image, tiles)),
                   "use larger voxels or fewer charges");
     TextureLookup lookup;
@@ -71,12 +69,9 @@ py::object texture(const Arguments& a, TextureOptions& o) {
                    const Vec2& uv, const Vec2& u, const Vec2& v) { return images.at(uv, u, v); };
     return makeSolidTexture(plan, lookup);
   });
-  py::dict totals;
-  totals["fit_error"] = made.fit.error;
-  totals["colour_error"] = made.colourError;
-  totals["sources"] = made.fit.sources;
-  totals["notes"] = made.notes;
-  totals["warnings"] = made.warnings;
+  py::dict totals("fit_error"_a = made.fit.error, "colour_error"_a = made.colourError,
+                  "sources"_a = made.fit.sources, "notes"_a = made.notes,
+                  "warnings"_a = made.warnings);
   return gridsObject(made.grids(), totals, o.call);
 }
 

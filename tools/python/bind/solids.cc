@@ -7,27 +7,20 @@
 namespace py = pybind11;
 
 namespace innermap::python {
-namespace {
-
-struct ContainsOptions {
-  CallOptions call;
-  void describe(Keywords& k) { call.describe(k); }
-};
-
-}  // namespace
+namespace {}  // namespace
 
 void defineContains(py::handle scope, const std::function<Solid(const py::object&)>& solidOf) {
-  define<ContainsOptions>(
+  define<CallOptions>(
       scope,
       {"contains", "self, X",
        "Which points are inside the source's solid: (n,) bool.\n\nX: (n, 3), world units of the "
        "source."},
-      [solidOf](const Arguments& a, ContainsOptions& o) -> py::object {
+      [solidOf](const Arguments& a, CallOptions& o) -> py::object {
         const Solid solid = solidOf(a[0]);
         const Points points = pointsFrom(a[1], "X");
         py::array_t<bool> out(static_cast<py::ssize_t>(points.size()));
         bool* is = out.mutable_data();
-        runCall(o.call, [&]() {
+        runCall(o, [&]() {
           constexpr std::size_t kBlock = 256;
           parallelBlocks(
               points.size(), kBlock,

@@ -26,11 +26,9 @@ struct SphereOptions {
 };
 
 py::object sphere(const Arguments& a, SphereOptions& o) {
-  std::size_t at = 0;
-  const Mesh mesh = takeMesh(a, at, "mesh");
-  if (at < a.size()) throw py::type_error("sphere() takes one mesh");
+  const Mesh mesh = onlyMesh(a, "sphere");
   MeshOnSphere made = call(o.call, [&]() {
-    requireMemory(o.call, "the layout", layOutMemory(mesh.vertices.size()), "use a coarser mesh");
+    requireMemory("the layout", layOutMemory(mesh.vertices.size()), "use a coarser mesh");
     return onSphere(layOutMesh(mesh, o.settings));
   });
   return py::make_tuple(std::make_shared<Mesh>(std::move(made.mesh)),

@@ -1,5 +1,4 @@
 // Volume textures in EXR files, out and in.
-#include <fmt/format.h>
 
 #include "bind/arrays.h"
 #include "bind/errors.h"
@@ -8,11 +7,11 @@
 #include "bind/lists.h"
 #include "bind/meshes.h"
 #include "bind/volumes.h"
-#include "innermap/core/memory.h"
 #include "innermap/io/pictures.h"
 #include "innermap/io/volume_texture.h"
 
 namespace py = pybind11;
+using namespace py::literals;
 
 namespace innermap::python {
 namespace {
@@ -45,18 +44,13 @@ py::object write(const Arguments& a, WriteOptions& o) {
   if (!o.tiles.is_none()) o.texture.tiles = tilesFrom(o.tiles);
   const VolumeTextureResult made =
       call(o.call, [&]() { return writeVolumeTexture(path, grids, o.texture); });
-  py::dict out;
-  out["format"] = made.format;
-  out["files"] = made.files;
-  out["channels"] = made.channels;
-  out["width"] = made.width;
-  out["height"] = made.height;
-  out["tiles"] = py::make_tuple(made.tileColumns, made.tileRows);
-  out["slices"] = made.slices;
-  out["resolution"] = py::make_tuple(made.resolution.x(), made.resolution.y(), made.resolution.z());
-  out["clamped"] = made.clamped;
-  out["rounded"] = made.inexact;
-  return std::move(out);
+  return py::dict("format"_a = made.format, "files"_a = made.files, "channels"_a = made.channels,
+                  "width"_a = made.width, "height"_a = made.height,
+                  "tiles"_a = py::make_tuple(made.tileColumns, made.tileRows),
+                  "slices"_a = made.slices,
+                  "resolution"_a =
+                      py::make_tuple(made.resolution.x(), made.resolution.y(), made.resolution.z()),
+                  "clamped"_a = made.clamped, "rounded"_a = made.inexact);
 }
 
 struct ReadOptions {

@@ -12,6 +12,7 @@
 
 #include "bind/arrays.h"
 #include "bind/errors.h"
+#include "bind/figures.h"
 #include "bind/grids.h"
 #include "bind/keywords.h"
 #include "bind/lists.h"
@@ -23,8 +24,10 @@
 #include "innermap/io/pictures.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/transfer/distance_transfer.h"
+#include "report/figures.h"
 
 namespace py = pybind11;
+using namespace py::literals;
 
 namespace innermap::python {
 namespace {
@@ -157,15 +160,14 @@ struct VoxelizeOptions {
 };
 
 py::object voxelize(const Arguments& a, VoxelizeOptions& o) {
-  std::size_t at = 0;
-  const Mesh mesh = takeMesh(a, at, "mesh");
+  const Mesh mesh = onlyMesh(a, "voxelize");
   openvdb::GridPtrVec made;
   const LevelSetCheck check = call(o.call, [&]() {
     LevelSetSettings settings = o.levelSet;
     settings.resolution = o.grid.resolution.value_or(0);
     settings.voxelSize = o.grid.voxelSize.value_or(0);
     const Solid solid(mesh);
-    requireMemory(o.call, "voxelizing", voxelizeMemory(solid, settings, mesh, o.fog, o.attributes),
+    requireMemory("voxelizing", voxelizeMemory(solid, settings, mesh, o.fog, o.attributes),
                   "use larger voxels");
     const openvdb::FloatGrid::Ptr surface = makeLevelSet(solid, settings);
     made.push_back(surface);
@@ -174,34 +176,22 @@ py::object voxelize(const Arguments& a, VoxelizeOptions& o) {
       for (const auto& grid : makeAttributeGrids(*surface, solid, mesh)) made.push_back(grid);
     return checkLevelSet(*surface, solid);
   });
-  py::dict totals;
-  totals["mesh_volume"] = check.meshVolume;
-  totals["grid_volume"] = check.gridVolume;
-  totals["volume_error"] = check.volumeError;
-  totals["lost_surface"] = check.lostSurface;
+  py::dict totals = dictOf(figures(check));
   totals["warnings"] = check.warnings;
   return gridsObject(std::move(made), totals, o.call);
 }
 
-struct DistanceOptions {
-  LatticeChoice grid;
-  CallOptions call;
-
-  void describe(Keywords& k) {
-    k.settings(innermap::describe(grid));
-    call.describe(k);
-  }
-};
+using DistanceOptions = SettingsOptions<LatticeChoice>;
 
 py::object distance(const Arguments& a, DistanceOptions& o) {
   if (!py::isinstance<PyMap>(a[0])) wrongType("map", "expects an innermap.Map");
   const MappedSolid& mapped = *py::cast<const PyMap&>(a[0]).mapped;
   const DistanceTransfer made = call(o.call, [&]() {
-    auto settings = o.grid.in(DistanceTransferSettings{});
-    settings.resolution = o.grid.resolution.value_or(0);
+    auto settings = o.settings.in(DistanceTransferSettings{});
+    settings.resolution = o.settings.resolution.value_or(0);
     settings.accuracy = sumAccuracy(mapped);
     const Solid target = makeTargetSolid(mapped.boundary);
-    requireMemory(o.call, "transferring the distance",
+    requireMemory("transferring the distance",
                   distanceTransferMemory(mapped.solid(), target, settings),
                   "use a lower resolution");
     return transferDistance(mapped.map, mapped.solid(), target, settings);
@@ -210,12 +200,8 @@ py::object distance(const Arguments& a, DistanceOptions& o) {
       target{made.target.surface, made.target.depth};
   describeMap(source, mapped);
   describeMap(target, mapped);
-  py::dict totals;
-  totals["largest_in_target"] = made.target.figures.largest;
-  totals["largest_through_map"] = made.throughFigures.largest;
-  totals["largest_in_source"] = made.source.figures.largest;
-  totals["outside_fraction"] = made.outsideFraction;
-  return py::make_tuple(gridsObject(source, totals, o.call), gridsObject(target, {}, o.call));
+  return py::make_tuple(gridsObject(source, dictOf(figures(made)), o.call),
+                        gridsObject(target, {}, o.call));
 }
 
 struct SliceOptions {
@@ -234,16 +220,11 @@ py::object writeSlices(const Arguments& a, SliceOptions& o) {
   const std::string path = pathFrom(a[0], "path");
   const openvdb::GridPtrVec given = takeGrids(a[1], "grids", textsFrom(o.names, "names"), o.call);
   const ExrSliceResult made = call(o.call, [&]() {
-    const ExrSliceSettings settings = o.slices;
-    requireMemory(o.call, "slices", exrSliceMemory(given, settings), "slice fewer grids");
-    return writeExrSlices(path, given, settings);
+    requireMemory("slices", exrSliceMemory(given, o.slices), "slice fewer grids");
+    return writeExrSlices(path, given, o.slices);
   });
-  py::dict out;
-  out["slices"] = made.slices;
-  out["width"] = made.columns;
-  out["height"] = made.rows;
-  out["clamped"] = made.clamped;
-  return std::move(out);
+  return py::dict("slices"_a = made.slices, "width"_a = made.columns, "height"_a = made.rows,
+                  "clamped"_a = made.clamped);
 }
 
 struct SectionOptions {
@@ -270,13 +251,8 @@ py::object writeSection(const Arguments& a, SectionOptions& o) {
   if (!o.range.is_none()) o.section.range = pairFrom(o.range, "range");
   const SectionResult made =
       call(o.call, [&]() { return writeSectionImage(path, given, o.section); });
-  py::dict out;
-  out["grid"] = made.grid;
-  out["position"] = made.position;
-  out["least"] = made.least;
-  out["most"] = made.most;
-  out["range"] = py::make_tuple(made.lower, made.upper);
-  return std::move(out);
+  return py::dict("grid"_a = made.grid, "position"_a = made.position, "least"_a = made.least,
+                  "most"_a = made.most, "range"_a = py::make_tuple(made.lower, made.upper));
 }
 
 }  // namespace
