@@ -47,11 +47,11 @@ Figures figures(const SequenceRow& r) {
   eachNumber(r, [&](const auto&... figure) { out.emplace_back(figure...); });
   out.emplace_back("tolerance_met", !r.misses, "tolerance met", "1: it is");
   out.emplace_back("seconds", r.seconds, "time", "", FigureUnit::seconds);
-  return when(r.broken.empty(),
-              together({std::move(out), proofOf(r.proof),
-                        {Figure("statement", r.statement, "one-to-one, in words",
-                                "what was proven and checked")
-                             .when(!r.statement.empty())}}));
+  return when(r.broken.empty(), together({std::move(out),
+                                          proofOf(r.proof),
+                                          {Figure("statement", r.statement, "one-to-one, in words",
+                                                  "what was proven and checked")
+                                               .when(!r.statement.empty())}}));
 }
 
 Figures worstFigures(const std::vector<SequenceRow>& rows) {

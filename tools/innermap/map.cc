@@ -248,7 +248,9 @@ Command makeMapCommand() {
        "the same mesh with its vertices moved, or any other mesh; not needed with --correspond")
       .optional();
   c.outputFolder(&o->output);
-  c.limitTime("stop trying, refining, stepping and repairing after this time; the rest still runs to its end");
+  c.limitTime(
+      "stop trying, refining, stepping and repairing after this time; the rest still runs to its "
+      "end");
   c.option("--correspond", "FILE", &o->correspondence,
            "SOURCE's vertices on TARGET, as innermap correspond or an earlier map wrote them")
       .reads();
