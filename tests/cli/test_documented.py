@@ -88,7 +88,7 @@ def write_labels(path):
     Path(path).write_bytes(gzip.compress(bytes(header) + bytes(voxels)))
 
 
-def stand_ins():
+def stand_ins(whole):
     Path("samples").symlink_to(ROOT / "samples")
     for path in ["homer.obj", "spot.obj"]:
         write_ball(path, thin=0.3)
@@ -129,10 +129,13 @@ def stand_ins():
     innermap("map", "rest.obj", "pose.obj", "-o", "out", "--resolution", "16")
     # To join: as docs/farm.md calls it, or the parts would be another run's.
     innermap("sequence", "rest.obj", "frames/*.obj", "-o", "energies", "--share", "1/1")
+    # Otherwise the page's own commands make it, larger.
+    if not whole:
+        innermap("evaluate", "map.ply", "-o", "map.vdb", "--resolution", "24", "--share", "1/1")
 
 
 def each_command(whole):
-    stand_ins()
+    stand_ins(whole)
     commands = list(documented())
     assert len(commands) > 35, len(commands)
     for page, words in commands:
