@@ -3,6 +3,7 @@
 
 import csv
 import json
+import math
 import os
 import random
 import shutil
@@ -10,8 +11,6 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-
-import numpy as np
 
 import cli
 import slurm
@@ -245,11 +244,9 @@ LONG = ["evaluate", "map.ply", "--resolution", "270", "--repair", "on", "--quiet
 def folded_rod():
     """A map of a rod of three blocks, which folds."""
     v, f = cli.icosphere_arrays(3)
-    v = np.array(v) * [20, 1, 1]
+    v = [(20 * x, y, z) for x, y, z in v]
     cli.write_obj("rod.obj", v, f)
-    pinched = v.copy()
-    pinched[:, 0] += 3 * np.exp(-((v[:, 0] - 2) / 2) ** 2) * v[:, 1]
-    cli.write_obj("pinched.obj", pinched, f)
+    cli.write_obj("pinched.obj", [(x + 3 * math.exp(-((x - 2) / 2) ** 2) * y, y, z) for x, y, z in v], f)
     innermap("fit", "rod.obj", "pinched.obj", "-o", "map.ply", "--charges", "300", "--quiet")
 
 
