@@ -91,7 +91,7 @@ def main():
     bar((1.05, -1.24, 0.1), 0.9, ("scaled Jacobian", "0.3", "1"), camera)
     studio.light((-3, 2.5, 4.5), (0, 0, 0), 2, 260, (1, 0.95, 0.88))
     studio.light((4, -3, 4), (0, 0, 0), 4, 80, (0.85, 0.93, 1))
-    studio.render(out, 0.05)
+    studio.render(out, 0.025)
 
 
 if __name__ == "__main__":
