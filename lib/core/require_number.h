@@ -1,6 +1,7 @@
 // Checks of numbers that have no Setting of their own.
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "innermap/core/setting.h"
