@@ -44,7 +44,10 @@ std::vector<Setting> describeProof(Prove* prove, double* cells, const std::strin
                   "most; full: also that no two points go to one, which takes longer; off: only "
                   "points are checked"),
           Setting("proof_cells", "N", cells,
-                  "cells that {prove} looks at a charge before it leaves the rest undecided" + more)
+                  fmt::format("cells that {{prove}} looks at a charge before it leaves the rest "
+                              "undecided; at least {:g} with full",
+                              ProofSettings().cellsPerCharge) +
+                      more)
               .from(1, 1e6)
               .rare()};
 }
@@ -114,9 +117,7 @@ std::vector<Setting> describe(FitMapSettings& s) {
                   "until nothing that is checked or proven folds; off: one harmonic map",
                   100 * kManyFolds, 100 * kManyOutside)),
       Setting("max_steps", "N", &s.maxSteps, "most steps").from(1, 256).rare()};
-  for (Setting& setting : describeProof(
-           &s.prove, &s.proofCells,
-           fmt::format("; with {{one_to_one}} on {:g} at least", ProofSettings().cellsPerCharge)))
+  for (Setting& setting : describeProof(&s.prove, &s.proofCells, " or {one_to_one} on"))
     out.push_back(std::move(setting));
   out.push_back(seedSetting(&s.seed));
   return out;

@@ -68,7 +68,7 @@ ProofFigures tryProof(const ComposedMap& map, const BoundaryPair& boundary, Prov
   if (prove == Prove::off || outOfTime(kProofSeconds * static_cast<double>(map.sources())))
     return {};
   ProofSettings s;
-  s.cellsPerCharge = cells;
+  s.cellsPerCharge = prove == Prove::full ? std::max(cells, ProofSettings().cellsPerCharge) : cells;
   try {
     return proveMap(map, boundary, s, prove == Prove::full);
   } catch (const DataError& e) {

@@ -73,7 +73,8 @@ struct FitMapSettings {
   int maxSteps = 16;
   Prove prove = Prove::core;
   // ProofSettings::cellsPerCharge. Of maps in three to five steps this leaves 1 to 3% of the solid
-  // undecided, where a hundred leave 0.01%. With oneToOne on as many as ProofSettings has at least.
+  // undecided, where a hundred leave 0.01%. With oneToOne on, and with Prove::full, as many as
+  // ProofSettings has at least.
   double proofCells = kProofCells;
   std::uint64_t seed = 1;
 };
