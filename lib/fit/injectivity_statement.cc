@@ -102,6 +102,8 @@ std::string proofWords(const ProofFigures& p) {
         "No point of the boundary is farther than {} of the target's diagonal from where it "
         "should be. ",
         atMost(p.boundaryError));
+  else
+    out += "How far the boundary is off at most is not decided. ";
   if (p.oneToOne > 0)
     out += "No two points of the solid go to one: it is mapped one-to-one as a whole. ";
   if (p.oneToOne == 0) out += "Whether any two points of the solid go to one is not decided. ";

@@ -19,9 +19,8 @@ std::vector<Setting> describe(ProofSettings& s) {
 
 std::uint64_t proofMemory(const ComposedMap& map, std::size_t triangles,
                           const ProofSettings& settings) {
-  const std::uint64_t pieces =
-      std::max<std::uint64_t>(proof::cellLimit(map, settings), 8 * std::uint64_t{triangles});
-  return proof::FieldTree::memory(map.sources()) + proof::kBytesPerPiece * pieces;
+  return 2 * proof::FieldTree::memory(map.sources()) +
+         proof::kBytesPerPiece * proof::pieceLimit(map, triangles, settings);
 }
 
 }  // namespace innermap

@@ -22,14 +22,25 @@ constexpr double kExact = 1e-11;  // of the diagonal: an error that is as good a
 // Pieces that one thread splits in one go; triangles at first, eight times as many.
 constexpr std::size_t kBlock = 32;
 
-// Of the surface's area over the number of pieces that may be looked at: where a piece so small has
-// no bound, as the image of the boundary runs into charges of a later step, none is to be had.
-constexpr double kLeastArea = 1e-2;
+// Of the surface's area over the number of pieces that may be looked at: where a piece whose
+// longest edge has so small a square has no bound, the image of the boundary runs into charges of a
+// later step, and none is to be had.
+constexpr double kLeastSquare = 1e-4;
+// Parts of a triangle after so many halvings are looked at with finer expansions: what others cut
+// off does not shrink with them.
+constexpr int kFineHalvings = 6;
 // Pieces without a bound that are cut in one go.
 constexpr std::uint64_t kDive = 1024;
 
 double areaOf(const SurfacePiece& piece) {
   return 0.5 * norm(cross(piece.at[1] - piece.at[0], piece.at[2] - piece.at[0]));
+}
+
+// Of the longest edge: a needle has no area, but reaches as far as other pieces.
+double squaredLength(const SurfacePiece& piece) {
+  double out = 0;
+  for (int i = 0; i < 3; ++i) out = std::max(out, squaredNorm(piece.at[(i + 1) % 3] - piece.at[i]));
+  return out;
 }
 
 struct Witness {
@@ -76,6 +87,7 @@ class BoundarySearch {
                  double margin, std::uint64_t limit)
       : map_(map),
         steps_(steps),
+        fine_(map, scale, kFineFarRatio),
         scale_(scale),
         diagonal_(diagonal),
         margin_(margin),
@@ -85,7 +97,7 @@ class BoundarySearch {
   void begin(const std::vector<SurfacePiece>& triangles) {
     double area = 0;
     for (const SurfacePiece& piece : triangles) area += areaOf(piece);
-    leastArea_ = kLeastArea * area / static_cast<double>(limit_);
+    leastSquare_ = kLeastSquare * area / static_cast<double>(limit_);
     round(triangles, 0);
   }
 
@@ -126,8 +138,8 @@ class BoundarySearch {
       for (std::size_t i = begin; i < end; ++i) cut(pieces[i], times, out.pieces);
       SetGroup group;
       for (std::size_t i = 0; i < out.pieces.size(); i += kLanes)
-        boundPieces(steps_, group, out.pieces.data() + i, std::min(kLanes, out.pieces.size() - i),
-                    out.witness);
+        boundPieces(out.pieces[i].halvings < kFineHalvings ? steps_ : fine_, group,
+                    out.pieces.data() + i, std::min(kLanes, out.pieces.size() - i), out.witness);
     });
     Witness best;
     for (const BlockPieces& block : blocks) takeBetter(block.witness, best);
@@ -152,7 +164,7 @@ class BoundarySearch {
     for (const SurfacePiece& piece : open_) {
       if (!std::isinf(piece.most)) continue;
       unbounded_ = true;
-      hopeless_ = hopeless_ || areaOf(piece) < leastArea_;
+      hopeless_ = hopeless_ || squaredLength(piece) < leastSquare_;
     }
   }
 
@@ -166,7 +178,7 @@ class BoundarySearch {
     using Rank = std::tuple<double, double, std::size_t>;
     std::vector<Rank> order;
     for (std::size_t i = 0; i < open_.size(); ++i)
-      order.emplace_back(-open_[i].most, areaOf(open_[i]), i);
+      order.emplace_back(-open_[i].most, squaredLength(open_[i]), i);
     const auto last = order.begin() + static_cast<std::ptrdiff_t>(most);
     std::nth_element(order.begin(), last, order.end());
     std::vector<char> takes(open_.size(), 0);
@@ -193,9 +205,10 @@ class BoundarySearch {
 
   const ComposedMap& map_;
   const StepTrees& steps_;
+  const StepTrees fine_;
   const double scale_, diagonal_, margin_;
   const std::uint64_t limit_;
-  double leastArea_ = 0;
+  double leastSquare_ = 0;
   bool unbounded_ = false, hopeless_ = false;  // of the open pieces: some have no bound; none will
   std::vector<SurfacePiece> open_;
   std::uint64_t examined_ = 0;
@@ -227,8 +240,7 @@ BoundaryProof proveBoundaryError(const ExpandedMap& expanded, const Mesh& surfac
   requireDescribed(settings);
   const ComposedMap& map = expanded.map();
   const double diagonal = targetDiagonal(surface, target);
-  const std::uint64_t limit =
-      std::max<std::uint64_t>(cellLimit(map, settings), 8 * surface.triangles.size());
+  const std::uint64_t limit = pieceLimit(map, surface.triangles.size(), settings);
   requireMemory("bounding the boundary's error",
                 proofMemory(map, surface.triangles.size(), settings),
                 "look at fewer cells a charge");

@@ -65,8 +65,8 @@ LaneSets octants(const Vec3& center, double half) {
 
 }  // namespace
 
-FieldTree::FieldTree(const HarmonicField& field, double scale)
-    : charges_(packed(field, scale)), root_(std::make_unique<Node>()) {
+FieldTree::FieldTree(const HarmonicField& field, double scale, double farRatio)
+    : farRatio_(farRatio), charges_(packed(field, scale)), root_(std::make_unique<Node>()) {
   StepExpansion& expansion = root_->expansion;
   expansion = affineExpansion(field, scale);
   Box3 box;
@@ -90,7 +90,7 @@ void FieldTree::split(const Node& parent) const {
   std::vector<std::uint8_t> far(count);
   Numbers all(kCoefficients * kLanes);
   LaneRemainders added, near;
-  classify(charges(), from.near.data(), count, sets, far.data(), added, near);
+  classify(charges(), from.near.data(), count, sets, farRatio_, far.data(), added, near);
   moveExpansion(from, sets, all.data());
   addCharges(charges(), from.near.data(), far.data(), 0, count, sets, all.data());
   addInherited(from, sets, added);

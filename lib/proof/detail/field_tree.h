@@ -21,7 +21,9 @@ namespace innermap::proof {
 class FieldTree {
  public:
   // Lengths before and after the step are multiplied by `scale`, a power of two: no digit changes.
-  FieldTree(const HarmonicField& field, double scale);
+  FieldTree(const HarmonicField& field, double scale, double farRatio = kFarRatio);
+
+  double farRatio() const { return farRatio_; }
 
   const double* charges() const { return charges_.data(); }  // kChargeStride each
 
@@ -47,6 +49,7 @@ class FieldTree {
   };
   void split(const Node& parent) const;
 
+  double farRatio_;
   std::vector<double> charges_;
   std::unique_ptr<Node> root_;  // the affine part, and all charges near: it holds everywhere
 };

@@ -29,8 +29,8 @@ HWY_INLINE hn::Mask<D> MaskOf(std::uint8_t bits, std::size_t lane) {
 }
 
 void Classify(const double* HWY_RESTRICT charges, const std::uint32_t* HWY_RESTRICT list,
-              std::size_t count, const LaneSets& sets, std::uint8_t* HWY_RESTRICT farLanes,
-              LaneRemainders& far, LaneRemainders& near) {
+              std::size_t count, const LaneSets& sets, double farRatio,
+              std::uint8_t* HWY_RESTRICT farLanes, LaneRemainders& far, LaneRemainders& near) {
   const D d;
   const V one = Number(1), infinite = Number(std::numeric_limits<double>::infinity());
   std::fill_n(farLanes, count, std::uint8_t{0});
@@ -45,7 +45,7 @@ void Classify(const double* HWY_RESTRICT charges, const std::uint32_t* HWY_RESTR
       const V x = Number(q[0]) - cx, y = Number(q[1]) - cy, z = Number(q[2]) - cz;
       const V distance = hn::Sqrt(hn::MulAdd(x, x, hn::MulAdd(y, y, z * z)));
       const V inverse = one / distance, ratio = radius * inverse;
-      const auto isFar = hn::Le(ratio, Number(kFarRatio));
+      const auto isFar = hn::Le(ratio, Number(farRatio));
       const auto known = hn::Le(ratio, Number(kNearRatio));
       std::uint8_t bits[8] = {};
       hn::StoreMaskBits(d, isFar, bits);
@@ -301,9 +301,9 @@ HWY_EXPORT(AddAboutOne);
 HWY_EXPORT(MoveExpansion);
 
 void classify(const double* charges, const std::uint32_t* list, std::size_t count,
-              const LaneSets& sets, std::uint8_t* farLanes, LaneRemainders& far,
+              const LaneSets& sets, double farRatio, std::uint8_t* farLanes, LaneRemainders& far,
               LaneRemainders& near) {
-  HWY_DYNAMIC_DISPATCH(Classify)(charges, list, count, sets, farLanes, far, near);
+  HWY_DYNAMIC_DISPATCH(Classify)(charges, list, count, sets, farRatio, farLanes, far, near);
 }
 
 void addCharges(const double* charges, const std::uint32_t* list, const std::uint8_t* lanes,

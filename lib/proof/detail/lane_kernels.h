@@ -37,13 +37,16 @@ constexpr std::size_t kChargeStride = 8;
 // Charges are far from a set when its radius is at most this part of their distance: then they
 // enter its expansion.
 constexpr double kFarRatio = 0.36;
+// What an expansion cuts off is some 1e-5 of all that it holds, however small a set within its node
+// is; with this ratio some 1e-8, and nodes take twice the time.
+constexpr double kFineFarRatio = 0.2;
 // Charges nearer than radius / kNearRatio to a centre leave nothing known about that set.
 constexpr double kNearRatio = 0.8;
 
 // Tells far from near charges: bit l of farLanes[i] is set where charge list[i] is far from set l.
 // Writes what both lots add to the remainders; infinite where nothing is known.
 void classify(const double* charges, const std::uint32_t* list, std::size_t count,
-              const LaneSets& sets, std::uint8_t* farLanes, LaneRemainders& far,
+              const LaneSets& sets, double farRatio, std::uint8_t* farLanes, LaneRemainders& far,
               LaneRemainders& near);
 
 // Adds what an expansion about another centre brings along when it is moved.

@@ -94,7 +94,8 @@ void SetGroup::expandAbout(const FieldTree& tree, const StepExpansion& from,
   const LaneSets one = oneSet(ball);
   LaneRemainders added, none;
   far_.resize(farOfOwn_.size());
-  classify(tree.charges(), farOfOwn_.data(), farOfOwn_.size(), one, far_.data(), added, none);
+  classify(tree.charges(), farOfOwn_.data(), farOfOwn_.size(), one, tree.farRatio(), far_.data(),
+           added, none);
   add(added, none);
   addInherited(from, one, added);
   moveExpansion(from, one, coefficients_.data());
@@ -111,7 +112,7 @@ bool SetGroup::sortCharges(const FieldTree& tree, const StepExpansion& from,
                            const GroupBall& ball) {
   own_.near.clear();
   farOfOwn_.clear();
-  const double far = ball.radius / kFarRatio * (1 + 1e-12);
+  const double far = ball.radius / tree.farRatio() * (1 + 1e-12);
   for (const std::uint32_t j : from.near) {
     const double* q = tree.charges() + kChargeStride * j;
     const bool isFar = squaredNorm(Vec3{q[0], q[1], q[2]} - ball.center) > far * far;
@@ -131,7 +132,8 @@ bool SetGroup::computeStep(const FieldTree& tree, LaneSets& sets, std::uint8_t n
   const std::size_t count = from.near.size();
   far_.resize(count);
   LaneRemainders remainder, near;
-  classify(tree.charges(), from.near.data(), count, sets, far_.data(), remainder, near);
+  classify(tree.charges(), from.near.data(), count, sets, tree.farRatio(), far_.data(), remainder,
+           near);
   if (!(lanesBelow(near.gradient, std::numeric_limits<double>::infinity()) & needed)) return false;
   if (pays) expandAbout(tree, node, ball);
   addInherited(from, sets, remainder);

@@ -25,6 +25,7 @@ void cut(const SurfacePiece& piece, int times, std::vector<SurfacePiece>& out) {
   const Vec3 middle = 0.5 * (piece.at[a] + piece.at[b]), goes = 0.5 * (piece.to[a] + piece.to[b]);
   for (const int replaced : {a, b}) {
     SurfacePiece half = piece;
+    ++half.halvings;
     half.at[replaced] = middle;
     half.to[replaced] = goes;
     cut(half, times - 1, out);

@@ -15,6 +15,7 @@ namespace innermap::proof {
 // A triangle or a part of one, and where its corners go; scaled.
 struct SurfacePiece {
   std::array<Vec3, 3> at, to;
+  int halvings = 0;                                       // of the triangle, until it
   double most = std::numeric_limits<double>::infinity();  // no error on it is larger
 };
 

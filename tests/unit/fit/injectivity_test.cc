@@ -256,6 +256,15 @@ TEST(Injectivity, CellsThatAreUndecidedOrFoldedAreNoProof) {
   EXPECT_TRUE(says(known, kNot));
 }
 
+TEST(Injectivity, AMissingBoundIsNamed) {
+  Injectivity known = sound();
+  known.proof = proven();
+  const char* const kMissing = "How far the boundary is off at most is not decided.";
+  EXPECT_FALSE(says(known, kMissing));
+  known.proof.boundaryError = 0;
+  EXPECT_TRUE(says(known, kMissing));
+}
+
 // Whatever a bound is, the sentence holds.
 TEST(Injectivity, BoundsAreRoundedToTheSideOnWhichTheyHold) {
   Injectivity known = sound();

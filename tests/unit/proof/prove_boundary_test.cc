@@ -100,6 +100,24 @@ TEST(ProveBoundaryError, AChargeOnTheSurfaceHasNoBound) {
   EXPECT_LT(proof.examined, 2000u);  // no work for what is not to be had
 }
 
+// What the expansions of the first step cut off is larger than the distance of that charge.
+TEST(ProveBoundaryError, AChargeOfALaterStepMayBeNear) {
+  const Mesh mesh = shapes::icosphere(1);
+  const HarmonicMap first = mapOf(affineOf(kIdentity), testing::chargesAbout(1500, 1.5, 0.04, 3));
+  const Vec3 middle = (mesh.vertices[mesh.triangles[7][0]] + mesh.vertices[mesh.triangles[7][1]] +
+                       mesh.vertices[mesh.triangles[7][2]]) /
+                      3;
+  const Vec3 on = first(middle), out = inverse(transposed(first.jacobian(middle))) * middle;
+  const HarmonicMap second =
+      mapOf(affineOf(kIdentity), {{on + (2e-4 / norm(out)) * out, {0, 1e-7, 0}}});
+  const ComposedMap map({first, second});
+  Points target;
+  for (const Vec3& v : mesh.vertices) target.push_back(map(v));
+  const BoundaryProof proof = proveBoundaryError(map, mesh, target);
+  EXPECT_TRUE(proof.close);
+  EXPECT_GE(proof.error, sampledError(map, mesh, target, 20));
+}
+
 TEST(ProveBoundaryError, ThreadsDoNotMatter) {
   const Mesh mesh = shapes::icosphere(3);
   const ComposedMap map(mapOf(affineOf(kIdentity), testing::chargesAbout(700, 1.4, 0.01, 2)));
