@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "core/text_scanner.h"
@@ -114,6 +115,11 @@ Share parseShare(const std::string& setting, const std::string& text,
     throw SettingError(setting, fmt::format("'{}' is no share of {}: they are 1/{} to {}/{}", text,
                                             *of, *of, *of, *of));
   return {static_cast<std::uint64_t>(*number), static_cast<std::uint64_t>(*of)};
+}
+
+std::uint64_t taskRestarts(const Environment& environment) {
+  const auto count = parseInteger(environment("SLURM_RESTART_COUNT").value_or("0"));
+  return static_cast<std::uint64_t>(std::max<std::int64_t>(0, count.value_or(0)));
 }
 
 }  // namespace innermap

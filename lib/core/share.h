@@ -36,4 +36,8 @@ std::optional<std::string> environmentVariable(const std::string& name);
 Share parseShare(const std::string& setting, const std::string& text,
                  const Environment& environment = environmentVariable);
 
+// How often the engine has started this process's task again, by Slurm's SLURM_RESTART_COUNT; 0
+// where nothing tells.
+std::uint64_t taskRestarts(const Environment& environment = environmentVariable);
+
 }  // namespace innermap

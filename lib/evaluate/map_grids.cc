@@ -227,25 +227,25 @@ SolidGrids evaluateOnGrid(const MappedSolid& mapped, const MapGridSettings& sett
   });
 }
 
-MapBlock evaluateBlock(const MappedSolid& mapped, const MapGridSettings& settings,
-                       const openvdb::Coord& origin) {
+GridBlock evaluateBlock(const MappedSolid& mapped, const MapGridSettings& settings,
+                        const openvdb::Coord& origin) {
   const openvdb::FloatGrid::Ptr surface =
       makeLevelSetBlock(mapped.solid(), levelSetSettings(settings), origin);
   const MapValues values =
       mapValues(mapped.map, mapped.solid(), *surface, evaluateSettings(mapped, settings));
-  MapBlock out{values.grids.all(), {}};
+  GridBlock out{values.grids.all(), {}};
   out.grids.insert(out.grids.begin(), surface);
-  out.totals = numbersOf(values.blocks.empty() ? BlockTotals{origin, {}} : values.blocks.front());
+  out.totals = totalsOf(values.blocks.empty() ? BlockTotals{origin, {}} : values.blocks.front());
   return out;
 }
 
 SolidGrids joinBlocks(const MappedSolid& mapped, const MapGridSettings& settings,
-                      std::vector<MapBlock> blocks) {
+                      std::vector<GridBlock> blocks) {
   SolidGrids out;
   MapValues values = timed(out.seconds, "join", [&] {
     const auto transform =
         transformFor(mapped.solid(), voxelSizeFor(mapped.solid(), levelSetSettings(settings)));
-    return mergeBlocks(blocks, transform, out.surface);
+    return mergeBlocks(std::move(blocks), transform, out.surface);
   });
   return conclude(mapped, settings, std::move(out),
                   [&](const EvaluateSettings&) { return std::move(values); });

@@ -6,6 +6,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/levelset/level_set.h"
+#include "levelset/level_set_settings.h"
 #include "mesh/triangle_tree.h"
 
 namespace innermap {
@@ -96,10 +97,8 @@ openvdb::GridBase::Ptr carry(const FloatGrid& levelSet, const Carrier& carrier, 
         }
       },
       "attributes");
-  auto grid = Vec3SGrid::create(tree);
-  grid->setTransform(levelSet.transform().copy());
-  grid->setName(name);
-  grid->setVectorType(openvdb::VEC_INVARIANT);
+  const Vec3SGrid::Ptr grid = attributeGrid(levelSet, name);
+  grid->setTree(tree);
   return grid;
 }
 
@@ -113,6 +112,14 @@ void checkFits(const Solid& solid, const Mesh& mesh) {
 }
 
 }  // namespace
+
+Vec3SGrid::Ptr attributeGrid(const FloatGrid& levelSet, const std::string& name) {
+  auto grid = Vec3SGrid::create();
+  grid->setTransform(levelSet.transform().copy());
+  grid->setName(name);
+  grid->setVectorType(openvdb::VEC_INVARIANT);
+  return grid;
+}
 
 std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const FloatGrid& levelSet,
                                                        const Solid& solid, const Mesh& mesh) {

@@ -185,6 +185,14 @@ FloatGrid::Ptr makeLevelSetBlock(const Solid& solid, const LevelSetSettings& set
   return makeBand(solid, settings, &block);
 }
 
+FloatGrid::Ptr emptyLevelSet(const Solid& solid, const LevelSetSettings& settings) {
+  const double h = voxelSizeFor(solid, settings);
+  auto grid = FloatGrid::create(static_cast<float>(settings.halfWidth * h));
+  grid->setTransform(transformFor(solid, h));
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  return grid;
+}
+
 std::vector<Setting> describe(LevelSetSettings& s) {
   return {Setting("half_width", "W", &s.halfWidth, "width of the band on each side of the surface")
               .in("voxels")

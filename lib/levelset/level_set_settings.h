@@ -20,4 +20,10 @@ LevelSetSettings levelSetSettings(const Settings& settings) {
 openvdb::FloatGrid::Ptr makeLevelSetBlock(const Solid& solid, const LevelSetSettings& settings,
                                           const openvdb::Coord& block);
 
+// makeLevelSet() without voxels: on its lattice, as wide.
+openvdb::FloatGrid::Ptr emptyLevelSet(const Solid& solid, const LevelSetSettings& settings);
+
+// As makeAttributeGrids() begins each of its grids, without voxels.
+openvdb::Vec3SGrid::Ptr attributeGrid(const openvdb::FloatGrid& levelSet, const std::string& name);
+
 }  // namespace innermap

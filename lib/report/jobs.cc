@@ -46,16 +46,19 @@ std::string line(const Jobs& jobs, const std::vector<std::string>& command,
   return share.empty() ? out : out + " --share " + share;
 }
 
+constexpr double kTimes = 4, kBeside = 60;                // seconds
+constexpr double kMemoryTimes = 1.25, kMemoryMore = 200;  // MB
+
 std::uint64_t secondsToAsk(const JobNeed& job) {
-  return 60 + static_cast<std::uint64_t>(std::ceil(kTimeMargin * job.seconds));
+  return static_cast<std::uint64_t>(std::ceil(kTimes * job.seconds + kBeside));
 }
 
 std::uint64_t minutesToAsk(const JobNeed& job) { return (secondsToAsk(job) + 59) / 60; }
 
 std::uint64_t mebibytesToAsk(const JobNeed& job) {
-  constexpr double kMebibyte = 1 << 20, kBeside = 200e6;
-  return static_cast<std::uint64_t>(
-      std::ceil((kMemoryMargin * static_cast<double>(job.memory) + kBeside) / kMebibyte));
+  constexpr double kMebibyte = 1 << 20, kMegabyte = 1e6;
+  return static_cast<std::uint64_t>(std::ceil(
+      (kMemoryTimes * static_cast<double>(job.memory) + kMemoryMore * kMegabyte) / kMebibyte));
 }
 
 std::string linesText(const Jobs& jobs) {
@@ -65,29 +68,40 @@ std::string linesText(const Jobs& jobs) {
   return out;
 }
 
+// A line of a script: VARIABLE=$(sbatch ...). after: the variable of the job that comes before.
+std::string submission(const std::string& variable, const std::string& name, const JobNeed& need,
+                       const std::string& after, const std::string& more,
+                       const std::string& command) {
+  return fmt::format(
+      "{}=$(sbatch --parsable --job-name={}{}{} --requeue --mem={}M --time={} \"$@\" --wrap {})\n",
+      variable, quoted(name),
+      after.empty() ? "" : fmt::format(" --dependency=afterok:\"${}\"", after), more,
+      mebibytesToAsk(need), minutesToAsk(need), quoted(command));
+}
+
 std::string slurmText(const Jobs& jobs) {
+  const std::string cores = fmt::format(" --cpus-per-task={}", jobs.cores);
+  const bool begins = !jobs.first.empty(), joins = !jobs.join.empty();
   std::string out = fmt::format(
       "#!/bin/sh\n"
       "# {} in {} shares, for Slurm: run this file where sbatch is.\n"
-      "# A task is expected to take {:.0f} s and {} MB. It asks for {:g} times the time and a "
-      "minute,\n"
-      "# for {:g} times the memory and 200 MB, and for {} cores. It goes back into the queue when "
-      "its\n"
-      "# node fails; what is finished is not made again.\n"
-      "set -e\n"
-      "array=$(sbatch --parsable --job-name={} --array=1-{} --requeue --cpus-per-task={} --mem={}M "
-      "--time={} \"$@\" --wrap {})\n",
-      jobs.name, jobs.tasks, jobs.task.seconds, jobs.task.memory / 1'000'000, kTimeMargin,
-      kMemoryMargin, jobs.cores, quoted(jobs.name), jobs.tasks, jobs.cores,
-      mebibytesToAsk(jobs.task), minutesToAsk(jobs.task),
-      quoted(line(jobs, jobs.command, fmt::format("$SLURM_ARRAY_TASK_ID/{}", jobs.tasks))));
-  if (!jobs.join.empty())
-    out += fmt::format(
-        "join=$(sbatch --parsable --job-name={} --dependency=afterok:\"$array\" --requeue "
-        "--mem={}M --time={} \"$@\" --wrap {})\n"
-        "echo \"array $array, join $join\"\n",
-        quoted(jobs.name + " join"), mebibytesToAsk(jobs.joining), minutesToAsk(jobs.joining),
-        quoted(line(jobs, jobs.join, "")));
+      "# A task is expected to take {:.0f} s and {} MB, and uses {} cores. It asks for {}.\n"
+      "# It goes back into the queue when its node fails; what is finished is not made again.\n"
+      "set -e\n",
+      jobs.name, jobs.tasks, jobs.task.seconds, jobs.task.memory / 1'000'000, jobs.cores,
+      marginsText());
+  if (begins)
+    out += submission("first", jobs.name + " first", jobs.beginning, "", cores,
+                      line(jobs, jobs.first, ""));
+  out += submission("array", jobs.name, jobs.task, begins ? "first" : "",
+                    fmt::format(" --array=1-{}{}", jobs.tasks, cores),
+                    line(jobs, jobs.command, fmt::format("$SLURM_ARRAY_TASK_ID/{}", jobs.tasks)));
+  if (joins)
+    out += submission("join", jobs.name + " join", jobs.joining, "array", "",
+                      line(jobs, jobs.join, ""));
+  if (begins || joins)
+    out += fmt::format("echo \"{}array $array{}\"\n", begins ? "first $first, " : "",
+                       joins ? ", join $join" : "");
   return out;
 }
 
@@ -103,24 +117,34 @@ Json openJdStep(const Jobs& jobs, const JobNeed& need, const std::string& name,
 }
 
 // In a template "{{" begins a reference.
+void requireNoReference(const std::string& setting, const std::string& text, std::size_t allowed) {
+  if (const std::size_t at = text.find("{{"); at != std::string::npos && at < allowed)
+    throw SettingError(setting, "'{{' in a file's name cannot be written into an OpenJD template");
+}
+
 std::string openJdText(const std::string& setting, const Jobs& jobs) {
+  Json steps = Json::array();
+  const auto add = [&](const JobNeed& need, const std::string& name, const std::string& command) {
+    Json step = openJdStep(jobs, need, name, command);
+    if (!steps.empty())
+      step["dependencies"] = Json::array({Json{{"dependsOn", steps.back()["name"]}}});
+    steps.push_back(step);
+  };
+  const auto addOne = [&](const JobNeed& need, const std::string& name,
+                          const std::vector<std::string>& words) {
+    if (words.empty()) return;
+    const std::string command = line(jobs, words, "");
+    requireNoReference(setting, command, command.size());
+    add(need, name, command);
+  };
+  addOne(jobs.beginning, "First", jobs.first);
   const std::string task =
       line(jobs, jobs.command, fmt::format("{{{{Task.Param.Share}}}}/{}", jobs.tasks));
-  const std::string join = line(jobs, jobs.join, "");
-  const auto braces = [](const std::string& text, std::size_t allowed) {
-    return text.find("{{") != std::string::npos && text.find("{{") < allowed;
-  };
-  if (braces(task, task.rfind("{{Task.Param")) || braces(join, join.size()))
-    throw SettingError(setting, "'{{' in a file's name cannot be written into an OpenJD template");
-  Json frames = openJdStep(jobs, jobs.task, "Shares", task);
+  requireNoReference(setting, task, task.rfind("{{Task.Param"));
+  add(jobs.task, "Shares", task);
   const Json share{{"name", "Share"}, {"type", "INT"}, {"range", fmt::format("1-{}", jobs.tasks)}};
-  frames["parameterSpace"]["taskParameterDefinitions"] = Json::array({share});
-  Json steps = Json::array({frames});
-  if (!jobs.join.empty()) {
-    Json last = openJdStep(jobs, jobs.joining, "Join", join);
-    last["dependencies"] = Json::array({Json{{"dependsOn", "Shares"}}});
-    steps.push_back(last);
-  }
+  steps.back()["parameterSpace"]["taskParameterDefinitions"] = Json::array({share});
+  addOne(jobs.joining, "Join", jobs.join);
   const Json root{
       {"specificationVersion", "jobtemplate-2023-09"}, {"name", jobs.name}, {"steps", steps}};
   return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -128,13 +152,23 @@ std::string openJdText(const std::string& setting, const Jobs& jobs) {
 
 }  // namespace
 
+std::string marginsText() {
+  return fmt::format("{:g} times the time and {:g} s, {:g} times the memory and {:g} MB", kTimes,
+                     kBeside, kMemoryTimes, kMemoryMore);
+}
+
 void requireJobsFile(const std::string& setting, const std::string& path) {
   engineOf(setting, path);
 }
 
 void writeJobs(const std::string& setting, const std::string& path, const Jobs& jobs) {
   const Engine engine = engineOf(setting, path);
+  if (engine == Engine::lines && !jobs.first.empty())
+    throw SettingError(setting, "'" + path +
+                                    "': lines have no order, and one command must end before the "
+                                    "others begin; choose .sh, .sbatch, .json or .yaml");
   std::vector<std::string> words = jobs.command;
+  words.insert(words.end(), jobs.first.begin(), jobs.first.end());
   words.insert(words.end(), jobs.join.begin(), jobs.join.end());
   words.push_back(jobs.folder);
   for (const std::string& word : words)

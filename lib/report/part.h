@@ -42,10 +42,12 @@ struct Part {
   std::vector<std::string> warnings;
 
   // May differ from worker to worker.
-  std::string host, code;    // the machine; the kind of vector code
-  double seconds = 0;        // for the frame
-  double setup = 0;          // of the worker, before its first frame
-  std::uint64_t memory = 0;  // its peak so far, bytes
+  std::string host, code;      // the machine; the kind of vector code
+  double seconds = 0;          // for the frame
+  double setup = 0;            // of the worker, before its first frame
+  std::uint64_t memory = 0;    // its peak so far, bytes
+  std::uint64_t restarts = 0;  // of the worker's task, as far as the engine tells
+  std::uint64_t failures = 0;  // not in the file: parts of the same frame that are broken
   std::vector<std::pair<std::string, double>> stageSeconds;  // of the report, for this frame
 };
 

@@ -183,7 +183,9 @@ void keep(std::map<std::int64_t, std::pair<Part, std::string>>& found, Part part
         at->second.first.input != part.input
             ? "its file was changed in between: remove the older one"
             : "remove one of them, and make all with one --cpu-target"));
+  const std::uint64_t failures = at->second.first.failures + 1;
   if (newIsGood) at->second = {std::move(part), path};
+  at->second.first.failures = failures;
 }
 
 }  // namespace

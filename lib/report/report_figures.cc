@@ -74,8 +74,10 @@ Figures figures(const FarmFigures& farm) {
   std::map<std::string, double> hosts;
   std::set<std::string> codes;
   double sum = 0, longest = 0, setup = 0;
-  std::uint64_t memory = 0;
+  std::uint64_t memory = 0, restarted = 0, failures = 0;
   for (const FarmPart& p : farm.parts) {
+    restarted += p.restarts > 0;
+    failures += p.failures;
     hosts[p.host] += 1;
     codes.insert(p.code);
     sum += p.seconds;
@@ -98,6 +100,8 @@ Figures figures(const FarmFigures& farm) {
       {"seconds", sum, "time of all frames", "one after the other", kSeconds},
       {"setup_seconds", setup, "set-up", "of a worker, before its first frame", kSeconds},
       {"peak_memory_bytes", memory, "peak memory", "of the worker with most", FigureUnit::bytes},
+      {"restarted", restarted, "made by restarted tasks", "frames, as far as the engine tells"},
+      {"failed_tries", failures, "failed tries", "of frames that were tried again"},
       {"machines", std::vector<double>(kMachines.begin(), kMachines.end()),
        "so many machines alike", ""},
       {"machines_seconds", times, "would take", "at best", kSeconds}};

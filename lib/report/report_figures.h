@@ -51,9 +51,10 @@ Figures judgedFigures(double tolerance, const std::vector<std::int64_t>& missed)
 
 // "farm": how the parts of a run were made that was cut into shares.
 struct FarmPart {
-  std::string host, code;         // the machine; its kind of vector code
-  double seconds = 0, setup = 0;  // of a frame; of its worker before the first one
-  std::uint64_t memory = 0;       // bytes
+  std::string host, code;                    // the machine; its kind of vector code
+  double seconds = 0, setup = 0;             // of a frame; of its worker before the first one
+  std::uint64_t memory = 0;                  // bytes
+  std::uint64_t restarts = 0, failures = 0;  // as Part has them
 };
 struct FarmFigures {
   std::vector<FarmPart> parts;

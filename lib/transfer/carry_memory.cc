@@ -3,6 +3,7 @@
 #include <string>
 
 #include "innermap/transfer/carry.h"
+#include "innermap/transfer/push_pull.h"
 #include "transfer/detail/carrier.h"
 #include "transfer/detail/carry_density.h"
 
@@ -69,6 +70,23 @@ std::uint64_t carryMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
   return 3 * levelSetMemory(solid, output) +
          static_cast<std::uint64_t>(kOther + std::max(inverse + field, density) +
                                     bytesPerVoxel * (inside + kReach * area));
+}
+
+// A block of 128 voxels along each side that is full.
+std::uint64_t carryBlockMemory(const Solid& other, const openvdb::GridPtrVec& grids, bool pushed) {
+  // Bytes of a voxel: what the inverse and its starts take. And of what the lattice through the
+  // source takes, and what else does not grow.
+  constexpr double kVoxels = 128.0 * 128 * 128, kInverted = 120, kLattice = 150e6, kOther = 50e6;
+  double voxel = 8 + (pushed ? kInverted : 0);
+  std::uint64_t kept = 0;  // copies that go on beyond the surface
+  for (const openvdb::GridBase::Ptr& grid : grids) {
+    voxel += bytesOf(*grid);
+    kept += grid->memUsage();
+  }
+  LevelSetSettings given;
+  given.voxelSize = finestVoxel(grids);
+  return kept + (pushed ? 0 : levelSetMemory(other, given)) +
+         static_cast<std::uint64_t>(kOther + (pushed ? kLattice : 0) + voxel * kVoxels);
 }
 
 }  // namespace innermap

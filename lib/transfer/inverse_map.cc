@@ -12,6 +12,7 @@
 #include "innermap/core/run.h"
 #include "innermap/evaluate/evaluate_map.h"
 #include "transfer/detail/cell_images.h"
+#include "transfer/detail/invert_block.h"
 #include "transfer/detail/leaf_index.h"
 #include "transfer/detail/newton.h"
 #include "transfer/detail/step_by_step.h"
@@ -61,14 +62,17 @@ class Inversion {
              std::min(settings.accuracy * targetExtent(map, source),
                       0.1 * settings.tolerance * voxel_)) {}
 
-  InvertedMap run(const openvdb::FloatGrid& targetLevelSet);
+  LatticeImages images() const { return imagesOf(map_, *lattice_.region, target_); }
+  InvertedMap run(const openvdb::FloatGrid& targetLevelSet, const LatticeImages& images);
   NewtonResult solve(const Points& targets, Points& sources) const;
 
  private:
   void chooseRegion(const openvdb::FloatGrid& targetLevelSet, const LatticeImages& images);
   void dropUncovered(std::vector<LeafStarts>& starts);
   void number(InvertedMap& out) const;
-  void invert(const std::vector<LeafStarts>& starts, InvertedMap& out);
+  void invertBlock(const LeafIndex& leaves, LeafStarts* starts,
+                   const openvdb::FloatGrid& targetLevelSet, InvertedMap& out);
+  void invert(const LeafIndex& leaves, const LeafStarts* starts, InvertedMap& out);
   std::size_t invertFailures(const LeafIndex& leaves, const openvdb::FloatGrid& targetLevelSet,
                              bool stepByStep, InvertedMap& out);
   std::size_t solve(Batch& batch, InvertedMap& out);
@@ -83,8 +87,11 @@ class Inversion {
   double voxel_;
   ExtendedMap map_;
   openvdb::MaskGrid::Ptr solid_,
-      region_;                          // of the target; with what is around it
-  std::vector<std::bitset<512>> good_;  // inverted, of the region's leaves
+      region_;  // of the target; with what is around it
+  // The block of voxels that is inverted: by itself, so that what its voxels get does not depend on
+  // which others there are. Its first leaf among all, and which voxels are inverted.
+  std::size_t begin_ = 0;
+  std::vector<std::bitset<512>> good_;
 };
 
 void Inversion::chooseRegion(const openvdb::FloatGrid& targetLevelSet,
@@ -128,17 +135,14 @@ NewtonResult Inversion::solve(const Points& targets, Points& sources) const {
   return solveNewton(map_, targets, sources, newton);
 }
 
-void Inversion::invert(const std::vector<LeafStarts>& starts, InvertedMap& out) {
-  out.sources.resize(out.first.back());
-  out.jacobians.resize(out.first.back());
-  good_.assign(starts.size(), {});
+void Inversion::invert(const LeafIndex& leaves, const LeafStarts* starts, InvertedMap& out) {
+  good_.assign(leaves.size(), {});
   const openvdb::math::Transform& source = lattice_.levelSet->transform();
-  const LeafIndex leaves(region_->tree());
   std::size_t l = 0;
   while (l < leaves.size()) {
     Batch batch;
     for (; l < leaves.size() && batch.targets.size() < kTogether; ++l) {
-      std::size_t i = out.first[l];
+      std::size_t i = out.first[begin_ + l];
       for (auto voxel = leaves[l].cbeginValueOn(); voxel; ++voxel, ++i) {
         const openvdb::Vec3d start(starts[l].source[voxel.pos()]);
         batch.add(toVec3(target_.indexToWorld(voxel.getCoord())),
@@ -148,7 +152,7 @@ void Inversion::invert(const std::vector<LeafStarts>& starts, InvertedMap& out) 
     }
     solve(batch, out);
     reportProgress("inverting the map",
-                   static_cast<double>(l) / static_cast<double>(leaves.size()));
+                   static_cast<double>(begin_ + l) / static_cast<double>(out.first.size() - 1));
   }
 }
 
@@ -180,7 +184,7 @@ void Inversion::fillFailures(const LeafIndex& leaves, InvertedMap& out) const {
       std::uint16_t n = 0;
       for (auto voxel = leaves[p.leaf].cbeginValueOn(); voxel; ++voxel) r[voxel.pos()] = n++;
     }
-    return out.first[p.leaf] + r[p.offset];
+    return out.first[begin_ + p.leaf] + r[p.offset];
   };
   std::vector<std::bitset<512>> has = good_;
   spreadToNeighbours(leaves, has, [&](LeafPlace from, LeafPlace to) {
@@ -198,7 +202,7 @@ std::size_t Inversion::invertFailures(const LeafIndex& leaves,
   auto distance = targetLevelSet.getConstAccessor();
   Batch batch;
   for (std::size_t l = 0; l < leaves.size(); ++l) {
-    std::size_t i = out.first[l];
+    std::size_t i = out.first[begin_ + l];
     for (auto voxel = leaves[l].cbeginValueOn(); voxel; ++voxel, ++i)
       if (!good_[l][voxel.pos()] && distance.getValue(voxel.getCoord()) < 0)
         batch.add(toVec3(target_.indexToWorld(voxel.getCoord())), out.sources[i],
@@ -235,16 +239,10 @@ void Inversion::count(const LeafIndex& leaves, const openvdb::FloatGrid& targetL
     }
 }
 
-InvertedMap Inversion::run(const openvdb::FloatGrid& targetLevelSet) {
-  const LatticeImages images = imagesOf(map_, *lattice_.region, target_);
-  chooseRegion(targetLevelSet, images);
-  std::vector<LeafStarts> starts = findStarts(images, *region_);
-  if (region_ != solid_) dropUncovered(starts);
-  spreadStarts(*region_, starts);
-  InvertedMap out;
-  number(out);
-  invert(starts, out);
-  const LeafIndex leaves(region_->tree());
+void Inversion::invertBlock(const LeafIndex& leaves, LeafStarts* starts,
+                            const openvdb::FloatGrid& targetLevelSet, InvertedMap& out) {
+  spreadStarts(leaves, starts);
+  invert(leaves, starts, out);
   fillFailures(leaves, out);
   const auto again = [&](bool stepByStep) {
     return invertFailures(leaves, targetLevelSet, stepByStep, out) > 0;
@@ -253,10 +251,26 @@ InvertedMap Inversion::run(const openvdb::FloatGrid& targetLevelSet) {
   if (map_.map().steps().size() > 1)
     for (int round = 0; round < kRounds && again(true); ++round) continue;
   count(leaves, targetLevelSet, out.statistics);
-  if (out.statistics.voxels > 0 && out.statistics.inverted == 0)
-    throw DataError(
-        "inverse: not one voxel of the target comes from the source; the map does not reach it, or "
-        "the target lies elsewhere than the map's own");
+}
+
+InvertedMap Inversion::run(const openvdb::FloatGrid& targetLevelSet, const LatticeImages& images) {
+  chooseRegion(targetLevelSet, images);
+  std::vector<LeafStarts> starts = findStarts(images, *region_);
+  if (region_ != solid_) dropUncovered(starts);
+  InvertedMap out;
+  number(out);
+  out.sources.resize(out.first.back());
+  out.jacobians.resize(out.first.back());
+  std::vector<const LeafIndex::Leaf*> block;
+  begin_ = 0;
+  for (auto leaf = region_->tree().cbeginLeaf(); leaf;) {
+    block.push_back(leaf.getLeaf());
+    ++leaf;
+    if (leaf && blockOf(leaf->origin()) == blockOf(block.front()->origin())) continue;
+    invertBlock(LeafIndex(block), starts.data() + begin_, targetLevelSet, out);
+    begin_ += block.size();
+    block.clear();
+  }
   return out;
 }
 
@@ -291,7 +305,30 @@ std::string InverseStatistics::warning() const {
 InvertedMap invertMap(const ComposedMap& map, const Solid& source, const SourceLattice& lattice,
                       const openvdb::FloatGrid& targetLevelSet, const InverseSettings& settings) {
   requireInRange(settings);
-  return Inversion(map, source, lattice, targetLevelSet.transform(), settings).run(targetLevelSet);
+  Inversion inversion(map, source, lattice, targetLevelSet.transform(), settings);
+  InvertedMap out = inversion.run(targetLevelSet, inversion.images());
+  requireInverted(out.statistics);
+  return out;
+}
+
+void requireInverted(const InverseStatistics& statistics) {
+  if (statistics.voxels > 0 && statistics.inverted == 0)
+    throw DataError(
+        "inverse: not one voxel of the target comes from the source; the map does not reach it, or "
+        "the target lies elsewhere than the map's own");
+}
+
+LatticeImages imagesOf(const ComposedMap& map, const Solid& source, const SourceLattice& lattice,
+                       const openvdb::math::Transform& target, const InverseSettings& settings) {
+  requireInRange(settings);
+  return Inversion(map, source, lattice, target, settings).images();
+}
+
+InvertedMap invertBlock(const ComposedMap& map, const Solid& source, const SourceLattice& lattice,
+                        const LatticeImages& images, const openvdb::FloatGrid& targetLevelSet,
+                        const InverseSettings& settings) {
+  return Inversion(map, source, lattice, targetLevelSet.transform(), settings)
+      .run(targetLevelSet, images);
 }
 
 Points invertAt(const ComposedMap& map, const Solid& source, const SourceLattice& lattice,

@@ -1,71 +1,74 @@
 #include "core/require_number.h"
 #include "evaluate/active_region.h"
+#include "evaluate/grid_blocks.h"
 #include "innermap/core/error.h"
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/transfer/inverse_map.h"
 #include "innermap/transfer/push_pull.h"
+#include "levelset/level_set_settings.h"
+#include "transfer/detail/block_figures.h"
 #include "transfer/detail/carry_output.h"
 #include "transfer/detail/extended_map.h"
 #include "transfer/detail/source_lattice.h"
 
 namespace innermap {
-namespace {
 
-class Pull {
- public:
-  Pull(const ComposedMap& map, const Solid& source, const openvdb::FloatGrid& levelSet,
-       const PullSettings& settings)
-      : settings_(settings),
-        map_(map, source, levelSet, settings.outside,
-             settings.accuracy * targetExtent(map, source)) {}
+struct VolumePuller::Data {
+  ComposedMap map;
+  Solid source;
+  openvdb::GridPtrVec grids;
+  PullSettings settings;
+  double accuracy = 0;  // world units of the target
+  Carriers carriers;
+  std::vector<std::string> warnings;
 
-  PullResult run(const openvdb::GridPtrVec& grids);
-
- private:
-  openvdb::MaskGrid::Ptr region(const openvdb::GridPtrVec& grids) const;
+  ExtendedMap extended(const openvdb::FloatGrid& levelSet) const {
+    return {map, source, levelSet, settings.outside, accuracy};
+  }
+  openvdb::MaskGrid::Ptr region(const ExtendedMap& extended) const;
   Points movedBack(const Points& positions) const;
-  void carryThrough(const openvdb::MaskGrid& region, CarryOutput& output) const;
-
-  ResamplingFigures carryByMap(const openvdb::MaskGrid& region, const openvdb::GridPtrVec& grids,
-                               const CarryOutput& output);
-
-  const PullSettings& settings_;
-  ExtendedMap map_;
+  std::vector<BlockFigures> carry(const ExtendedMap& extended, const openvdb::MaskGrid& region,
+                                  const CarryOutput& output) const;
+  void carryThrough(const openvdb::MaskGrid& region, const CarryOutput& output) const;
+  std::vector<ResamplingFigures> carryByMap(const ExtendedMap& extended,
+                                            const openvdb::MaskGrid& region,
+                                            const CarryOutput& output) const;
+  PullResult conclude(const CarryFigures& all, CarryOutput& output) const;
 };
 
 // Of the source's solid, and what is around it as far as the map is extended.
-openvdb::MaskGrid::Ptr Pull::region(const openvdb::GridPtrVec& grids) const {
+openvdb::MaskGrid::Ptr VolumePuller::Data::region(const ExtendedMap& extended) const {
   RegionSettings inside;
-  inside.skin = settings_.skin;
+  inside.skin = settings.skin;
   inside.bytesPerVoxel = outputBytesPerVoxel(grids);
-  openvdb::MaskGrid::Ptr region = activeRegion(map_.levelSet(), inside);
-  if (!(settings_.outside.distance > 0)) return region;
-  addAround(*region, map_.solid(), map_.reach(), outputBytesPerVoxel(grids) + 16);
+  openvdb::MaskGrid::Ptr region = activeRegion(extended.levelSet(), inside);
+  if (!(settings.outside.distance > 0)) return region;
+  addAround(*region, source, extended.reach(), outputBytesPerVoxel(grids) + 16);
   return region;
 }
 
 // The inverse map at positions of the target, found only when a grid holds positions.
-Points Pull::movedBack(const Points& positions) const {
-  if (settings_.through) {
+Points VolumePuller::Data::movedBack(const Points& positions) const {
+  if (settings.through) {
     Points images;
     std::vector<Mat3> jacobians;
-    settings_.through->pull(positions, images, jacobians);
+    settings.through->pull(positions, images, jacobians);
     return images;
   }
-  if (!settings_.targetLevelSet)
+  if (!settings.targetLevelSet)
     throw DataError(
         "pull: positions (contravariant absolute vectors) need the "
         "target's level set");
-  const SourceLattice lattice = makeSourceLattice(map_.solid(), {}, {});
+  const SourceLattice lattice = makeSourceLattice(source, {}, {});
   InverseSettings inverse;
-  inverse.accuracy = settings_.accuracy;
-  const InvertedMap inverted =
-      invertMap(map_.map(), map_.solid(), lattice, *settings_.targetLevelSet, inverse);
-  return invertAt(map_.map(), map_.solid(), lattice, inverted, positions, inverse);
+  inverse.accuracy = settings.accuracy;
+  const InvertedMap inverted = invertMap(map, source, lattice, *settings.targetLevelSet, inverse);
+  return invertAt(map, source, lattice, inverted, positions, inverse);
 }
 
-void Pull::carryThrough(const openvdb::MaskGrid& region, CarryOutput& output) const {
-  forLeavesThrough(region, settings_.through->push,
+void VolumePuller::Data::carryThrough(const openvdb::MaskGrid& region,
+                                      const CarryOutput& output) const {
+  forLeavesThrough(region, settings.through->push,
                    [&](std::size_t, const openvdb::Coord& origin, const Points& images,
                        const std::vector<Mat3>& jacobians) {
                      std::vector<Site> sites;
@@ -75,13 +78,13 @@ void Pull::carryThrough(const openvdb::MaskGrid& region, CarryOutput& output) co
                    });
 }
 
-ResamplingFigures Pull::carryByMap(const openvdb::MaskGrid& region,
-                                   const openvdb::GridPtrVec& grids, const CarryOutput& output) {
-  ResamplingFigures all;
-  all.inputVoxel = finestVoxel(grids);
-  all.outputVoxel = map_.levelSet().voxelSize()[0];
-  std::vector<ResamplingFigures> parts(region.tree().leafCount(), all);
-  map_.visit(
+// One for each leaf of the region.
+std::vector<ResamplingFigures> VolumePuller::Data::carryByMap(const ExtendedMap& extended,
+                                                              const openvdb::MaskGrid& region,
+                                                              const CarryOutput& output) const {
+  std::vector<ResamplingFigures> parts(region.tree().leafCount(),
+                                       voxelsOf(grids, extended.levelSet().voxelSize()[0]));
+  extended.visit(
       region,
       [&](std::size_t number, const LeafValues& leaf, const std::vector<ExtendedSample>& samples) {
         std::vector<Site> sites;
@@ -93,36 +96,87 @@ ResamplingFigures Pull::carryByMap(const openvdb::MaskGrid& region,
         output.carry(leaf.origin, sites.data());
       },
       "pulling the grids");
-  for (const ResamplingFigures& part : parts) all.add(part);
-  all.finish();
-  return all;
+  return parts;
 }
 
-PullResult Pull::run(const openvdb::GridPtrVec& grids) {
-  PullResult out;
-  if (settings_.targetLevelSet && !(settings_.outside.distance > 0))
-    requireMeeting(grids, *settings_.targetLevelSet, "of the map's target", out.warnings);
-  const Carriers carriers = makeCarriers(grids, settings_.carry, settings_.targetLevelSet);
-  const openvdb::MaskGrid::Ptr active = region(grids);
-  CarryOutput output(carriers, *active, map_.levelSet());
-  if (settings_.through)
-    carryThrough(*active, output);
+// What it tells of each block, in their order.
+std::vector<BlockFigures> VolumePuller::Data::carry(const ExtendedMap& extended,
+                                                    const openvdb::MaskGrid& region,
+                                                    const CarryOutput& output) const {
+  std::vector<ResamplingFigures> parts;
+  if (settings.through)
+    carryThrough(region, output);
   else
-    out.resampling = carryByMap(*active, grids, output);
+    parts = carryByMap(extended, region, output);
+  std::vector<BlockFigures> blocks;
+  std::size_t number = 0;
+  for (auto leaf = region.tree().cbeginLeaf(); leaf; ++leaf, ++number) {
+    CarryFigures& figures = figuresAt(blockOf(leaf->origin()), blocks);
+    figures.inverse.voxels += leaf->onVoxelCount();
+    if (!parts.empty()) figures.resampling.add(parts[number]);
+  }
+  return blocks;
+}
+
+PullResult VolumePuller::Data::conclude(const CarryFigures& all, CarryOutput& output) const {
+  PullResult out;
+  out.warnings = warnings;
   out.grids.resize(grids.size());
   output.finish([&](const Points& points) { return movedBack(points); }, out.grids);
-  noteOutside(out.grids, settings_.outside);
-  out.voxels = active->activeVoxelCount();
+  noteOutside(out.grids, settings.outside);
+  out.voxels = all.inverse.voxels;
+  if (settings.through) return out;
+  out.resampling = all.resampling;
+  out.resampling.finish();
   return out;
 }
 
-}  // namespace
+VolumePuller::VolumePuller(const ComposedMap& map, const Solid& source,
+                           const openvdb::GridPtrVec& grids, const PullSettings& settings) {
+  requireNumber("accuracy", settings.accuracy, {1e-12, 1e-3}, "of the target's extent");
+  auto data = std::make_shared<Data>(
+      Data{map, source, grids, settings, settings.accuracy * targetExtent(map, source), {}, {}});
+  const openvdb::FloatGrid* target = settings.targetLevelSet;
+  if (target && !(settings.outside.distance > 0))
+    requireMeeting(grids, *target, "of the map's target", data->warnings);
+  data->carriers = makeCarriers(grids, settings.carry, target);
+  data_ = std::move(data);
+}
+
+PullResult VolumePuller::pull(const openvdb::FloatGrid& levelSet) const {
+  const ExtendedMap extended = data_->extended(levelSet);
+  const openvdb::MaskGrid::Ptr region = data_->region(extended);
+  CarryOutput output(data_->carriers, *region, levelSet);
+  CarryFigures all;
+  all.resampling = voxelsOf(data_->grids, levelSet.voxelSize()[0]);
+  for (const BlockFigures& block : data_->carry(extended, *region, output)) all.add(block.figures);
+  return data_->conclude(all, output);
+}
+
+GridBlock VolumePuller::pullBlock(const LevelSetSettings& output,
+                                  const openvdb::Coord& origin) const {
+  requireNoOutside(data_->settings.outside);
+  const openvdb::FloatGrid::Ptr levelSet = makeLevelSetBlock(data_->source, output, origin);
+  const ExtendedMap extended = data_->extended(*levelSet);
+  const openvdb::MaskGrid::Ptr region = data_->region(extended);
+  const CarryOutput carried(data_->carriers, *region, *levelSet);
+  std::vector<BlockFigures> figures = data_->carry(extended, *region, carried);
+  if (figures.empty()) figures.push_back({origin, {}});
+  return {carried.blockGrids(), totalsOf(sumsOf(figures.front()))};
+}
+
+PullResult VolumePuller::join(const LevelSetSettings& output, std::vector<GridBlock> blocks) const {
+  const openvdb::FloatGrid::Ptr nothing = emptyLevelSet(data_->source, output);
+  GridBlocks all(std::move(blocks), nothing->transformPtr(), kCarryNumbers);
+  CarryOutput carried(data_->carriers, *data_->region(data_->extended(*nothing)), *nothing);
+  carried.take(all);
+  return data_->conclude(sumOf(all, voxelsOf(data_->grids, nothing->voxelSize()[0])), carried);
+}
 
 PullResult pullGrids(const ComposedMap& map, const Solid& source,
                      const openvdb::FloatGrid& levelSet, const openvdb::GridPtrVec& grids,
                      const PullSettings& settings) {
-  requireNumber("accuracy", settings.accuracy, {1e-12, 1e-3}, "of the target's extent");
-  return Pull(map, source, levelSet, settings).run(grids);
+  return VolumePuller(map, source, grids, settings).pull(levelSet);
 }
 
 }  // namespace innermap

@@ -12,11 +12,14 @@
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/evaluate/grids.h"
 #include "innermap/transfer/push_pull.h"
+#include "levelset/level_set_settings.h"
+#include "transfer/detail/block_figures.h"
 #include "transfer/detail/carry_density.h"
 #include "transfer/detail/carry_output.h"
 #include "transfer/detail/density_voxels.h"
 #include "transfer/detail/extended_map.h"
 #include "transfer/detail/field_grid.h"
+#include "transfer/detail/invert_block.h"
 #include "transfer/detail/source_lattice.h"
 
 namespace innermap {
@@ -45,22 +48,25 @@ int partsOf(const openvdb::GridBase& density, const Solid& source,
   return std::clamp(static_cast<int>(ratio + 1 - kLarger), 1, kMost);
 }
 
-ResamplingFigures resamplingOf(const InvertedMap& inverted, const openvdb::FloatGrid& target,
-                               const openvdb::GridPtrVec& grids) {
-  ResamplingFigures out;
-  out.inputVoxel = finestVoxel(grids);
-  out.outputVoxel = target.voxelSize()[0];
+// Of each block, in their order.
+std::vector<BlockFigures> resamplingOf(const InvertedMap& inverted,
+                                       const openvdb::FloatGrid& target,
+                                       const openvdb::GridPtrVec& grids) {
+  const ResamplingFigures voxels = voxelsOf(grids, target.voxelSize()[0]);
   const auto distance = target.getConstAccessor();
+  std::vector<BlockFigures> out;
   std::size_t next = 0;
-  for (auto leaf = inverted.region->tree().cbeginLeaf(); leaf; ++leaf)
+  for (auto leaf = inverted.region->tree().cbeginLeaf(); leaf; ++leaf) {
+    ResamplingFigures here = voxels;
     for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel, ++next) {
       if (!(distance.getValue(voxel.getCoord()) < 0)) continue;
       Mat3 jacobian;
       for (std::size_t k = 0; k < 9; ++k)
         jacobian[k / 3][k % 3] = static_cast<double>(inverted.jacobians[next][k]);
-      out.add(determinant(jacobian));
+      here.add(determinant(jacobian));
     }
-  out.finish();
+    figuresAt(blockOf(leaf->origin()), out).resampling.add(here);
+  }
   return out;
 }
 
@@ -76,10 +82,11 @@ struct VolumePusher::Data {
   std::vector<std::string> warnings;
 
   openvdb::MaskGrid::Ptr regionOf(const openvdb::FloatGrid& target) const;
+  PushResult result(const CarryFigures& figures) const;
   ExtendedMap extended(const ComposedMap& map) const;
   Vec3 inSolid(const Vec3& p) const;
-  void carrySampled(const ComposedMap& map, const openvdb::FloatGrid& target,
-                    const InvertedMap& inverted, openvdb::GridPtrVec& out) const;
+  void carrySampled(const InvertedMap& inverted, const CarryOutput& output) const;
+  void finish(const ComposedMap& map, CarryOutput& output, openvdb::GridPtrVec& out) const;
   void carryDensities(const ComposedMap& map, const openvdb::FloatGrid& target,
                       const openvdb::MaskGrid& region, PushResult& out) const;
 };
@@ -131,9 +138,8 @@ Vec3 VolumePusher::Data::inSolid(const Vec3& p) const {
   return source.closest(p, std::numeric_limits<double>::infinity()).position;
 }
 
-void VolumePusher::Data::carrySampled(const ComposedMap& map, const openvdb::FloatGrid& target,
-                                      const InvertedMap& inverted, openvdb::GridPtrVec& out) const {
-  CarryOutput output(sampled, *inverted.region, target);
+void VolumePusher::Data::carrySampled(const InvertedMap& inverted,
+                                      const CarryOutput& output) const {
   std::vector<openvdb::Coord> origins;
   for (auto leaf = inverted.region->tree().cbeginLeaf(); leaf; ++leaf)
     origins.push_back(leaf->origin());
@@ -153,6 +159,10 @@ void VolumePusher::Data::carrySampled(const ComposedMap& map, const openvdb::Flo
         }
       },
       "carrying the grids");
+}
+
+void VolumePusher::Data::finish(const ComposedMap& map, CarryOutput& output,
+                                openvdb::GridPtrVec& out) const {
   output.finish(
       [&](const Points& points) {
         Points images;
@@ -180,14 +190,28 @@ void VolumePusher::Data::carryDensities(const ComposedMap& map, const openvdb::F
   }
 }
 
+// What comes of an inverse, but for the grids.
+PushResult VolumePusher::Data::result(const CarryFigures& figures) const {
+  PushResult out;
+  out.warnings = warnings;
+  out.grids.resize(grids.size());
+  out.inverted = true;
+  out.statistics = figures.inverse;
+  const std::string doubt = figures.inverse.warning();
+  if (!doubt.empty()) out.warnings.push_back(doubt);
+  if (!grids.empty()) out.resampling = figures.resampling;
+  out.resampling.finish();
+  return out;
+}
+
 PushResult VolumePusher::push(const ComposedMap& map, const openvdb::FloatGrid& targetLevelSet,
                               const std::vector<CarriedField>& fields) const {
   const Data& d = *data_;
   PushResult out;
-  out.warnings = d.warnings;
-  out.grids.resize(d.grids.size());
   openvdb::MaskGrid::Ptr region;
   if (d.sampled.empty() && fields.empty()) {
+    out.warnings = d.warnings;
+    out.grids.resize(d.grids.size());
     region = d.regionOf(targetLevelSet);
     out.statistics.voxels = region->activeVoxelCount();
   } else {
@@ -196,16 +220,72 @@ PushResult VolumePusher::push(const ComposedMap& map, const openvdb::FloatGrid& 
             ? invertThrough(*d.settings.through, d.regionOf(targetLevelSet))
             : invertMap(map, d.source, d.lattice, targetLevelSet, inverseSettings(d.settings));
     region = inverted.region;
-    out.inverted = true;
-    out.statistics = inverted.statistics;
-    const std::string doubt = inverted.statistics.warning();
-    if (!doubt.empty()) out.warnings.push_back(doubt);
-    if (!d.grids.empty()) out.resampling = resamplingOf(inverted, targetLevelSet, d.grids);
-    d.carrySampled(map, targetLevelSet, inverted, out.grids);
+    CarryFigures all;
+    all.inverse = inverted.statistics;
+    all.resampling = voxelsOf(d.grids, targetLevelSet.voxelSize()[0]);
+    for (const BlockFigures& block : resamplingOf(inverted, targetLevelSet, d.grids))
+      all.add(block.figures);
+    out = d.result(all);
+    CarryOutput sampled(d.sampled, *region, targetLevelSet);
+    d.carrySampled(inverted, sampled);
+    d.finish(map, sampled, out.grids);
     for (const CarriedField& field : fields)
       out.grids.push_back(fieldGrid(field, d.source, d.lattice, inverted, d.settings.accuracy));
   }
   d.carryDensities(map, targetLevelSet, *region, out);
+  noteOutside(out.grids, d.settings.outside);
+  return out;
+}
+
+struct BlockPusher::Data {
+  std::shared_ptr<const VolumePusher::Data> pusher;
+  ComposedMap map;
+  const Solid& target;
+  LevelSetSettings output;
+  std::optional<LatticeImages> images;  // once a block is pushed
+
+  InvertedMap inverted(const openvdb::FloatGrid& levelSet);
+};
+
+BlockPusher::BlockPusher(const VolumePusher& pusher, const ComposedMap& map, const Solid& target,
+                         const LevelSetSettings& output)
+    : data_(std::make_shared<Data>(Data{pusher.data_, map, target, output, {}})) {
+  requireNoOutside(pusher.data_->settings.outside);
+  if (!pusher.data_->densities.empty())
+    throw DataError(
+        "densities: their mass is summed over all of the volume, so they are not pushed in shares; "
+        "push them in one run, or let them be sampled");
+}
+
+InvertedMap BlockPusher::Data::inverted(const openvdb::FloatGrid& levelSet) {
+  const VolumePusher::Data& d = *pusher;
+  if (d.settings.through) return invertThrough(*d.settings.through, d.regionOf(levelSet));
+  const InverseSettings inverse = inverseSettings(d.settings);
+  if (!images) images = imagesOf(map, d.source, d.lattice, levelSet.transform(), inverse);
+  return invertBlock(map, d.source, d.lattice, *images, levelSet, inverse);
+}
+
+GridBlock BlockPusher::push(const openvdb::Coord& origin) const {
+  const VolumePusher::Data& d = *data_->pusher;
+  const openvdb::FloatGrid::Ptr levelSet = makeLevelSetBlock(data_->target, data_->output, origin);
+  const InvertedMap inverted = data_->inverted(*levelSet);
+  const CarryOutput output(d.sampled, *inverted.region, *levelSet);
+  d.carrySampled(inverted, output);
+  std::vector<BlockFigures> figures = resamplingOf(inverted, *levelSet, d.grids);
+  figuresAt(origin, figures).inverse = inverted.statistics;
+  return {output.blockGrids(), totalsOf(sumsOf(figures.front()))};
+}
+
+PushResult BlockPusher::join(std::vector<GridBlock> blocks) const {
+  const VolumePusher::Data& d = *data_->pusher;
+  const openvdb::FloatGrid::Ptr nothing = emptyLevelSet(data_->target, data_->output);
+  GridBlocks all(std::move(blocks), nothing->transformPtr(), kCarryNumbers);
+  CarryOutput output(d.sampled, *d.regionOf(*nothing), *nothing);
+  output.take(all);
+  const CarryFigures figures = sumOf(all, voxelsOf(d.grids, nothing->voxelSize()[0]));
+  if (!d.settings.through) requireInverted(figures.inverse);
+  PushResult out = d.result(figures);
+  d.finish(data_->map, output, out.grids);
   noteOutside(out.grids, d.settings.outside);
   return out;
 }

@@ -3,7 +3,6 @@
 
 import csv
 import json
-import math
 import os
 import random
 import shutil
@@ -180,6 +179,52 @@ def test_parts_that_do_not_belong_together():
     fails(1, "join", "out", says=["version that made them"])
 
 
+def test_a_clock_that_runs_behind_plays_no_part():
+    make_frames(3)
+    share("1/2", "cut")
+    for path, day in zip(Path("cut/parts").iterdir(), [1, 10**6]):
+        os.utime(path, (day * 86400, day * 86400))
+    assert "1 of them finished already" in share("1/2", "cut").stdout
+    share("2/2", "cut")
+    innermap(*COMMAND, "-o", "whole", *SMALL)
+    innermap("join", "cut", "-q")
+    assert_same("whole", "cut")
+
+
+def test_a_disk_that_is_full_and_a_folder_that_is_deleted():
+    make_frames(3)
+    innermap(*COMMAND, "-o", "whole", *SMALL, "--grids")
+    share("1/3", "cut", "--grids")
+    size = Path("cut/energy.0001.vdb").stat().st_size
+    fails(1, *COMMAND, "-o", "cut", *SMALL, "--grids", "--share", "2/3", says=["cut/energy.0002.vdb", "frame 2"],
+          preexec_fn=cli.file_size_limit(size // 2))
+    assert sorted(os.listdir("cut")) == ["energy.0001.vdb", "parts"]
+    fails(1, "join", "cut", says=["2 of 3", "2, 3"])
+    worker = subprocess.Popen([PROGRAM, *COMMAND, "-o", "cut", *SMALL, "--grids", "--share", "1/1"],
+                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    while len(list(Path("cut/parts").glob("frame.*"))) < 2 and worker.poll() is None:
+        time.sleep(0.01)
+    shutil.rmtree("cut", ignore_errors=True)
+    said = worker.communicate()[1]
+    # Whichever it was at: it fails and names the folder, or had ended.
+    assert worker.returncode == 0 or (worker.returncode == 1 and "cut" in said), said
+    share("1/1", "cut", "--grids")
+    innermap("join", "cut", "-q")
+    assert_same("whole", "cut")
+
+
+def test_restarts_and_failures_are_told_of():
+    make_frames(4)
+    break_frame("frames/f.0002.obj")
+    share("1/2", "cut", exit_code=1)
+    shutil.copy("frames/f.0001.obj", "frames/f.0002.obj")
+    share("1/2", "cut", env={**os.environ, "SLURM_RESTART_COUNT": "2"})
+    share("2/2", "cut", env={**os.environ, "SLURM_RESTART_COUNT": "x"})
+    innermap("join", "cut")
+    farm = cli.read_json("cut/report.json")["farm"]
+    assert farm["restarted"] == 1 and farm["failed_tries"] == 1, farm
+
+
 def test_workers_that_disagree():
     make_frames(2)
     share("1/1", "out")
@@ -236,72 +281,6 @@ def test_shares_of_a_study():
     assert f"2 shares of {len(rows['cut'])} runs" in told and not Path("jobs").exists(), told
     words = [step["script"]["actions"]["onRun"]["args"][1] for step in cli.read_json("study.json")["steps"]]
     assert " --share " in words[0] and words[0].startswith(words[1]), words
-
-
-LONG = ["evaluate", "map.ply", "--resolution", "270", "--repair", "on", "--quiet"]
-
-
-def folded_rod():
-    """A map of a rod of three blocks, which folds."""
-    v, f = cli.icosphere_arrays(3)
-    v = [(20 * x, y, z) for x, y, z in v]
-    cli.write_obj("rod.obj", v, f)
-    cli.write_obj("pinched.obj", [(x + 3 * math.exp(-((x - 2) / 2) ** 2) * y, y, z) for x, y, z in v], f)
-    innermap("fit", "rod.obj", "pinched.obj", "-o", "map.ply", "--charges", "300", "--quiet")
-
-
-def results(path):
-    report = cli.read_json(path)
-    kept = {k: report.get(k) for k in ["energy", "jacobian", "grid", "repair", "one_to_one", "warnings", "verdict"]}
-    return json.dumps(kept)
-
-
-def test_the_shares_of_a_volume_are_one_run():
-    folded_rod()
-    innermap(*LONG, "-o", "whole.vdb", "--report", "whole.json")
-    assert cli.read_json("whole.json")["repair"]["folded_voxels"] > 0
-    fails(1, "join", "cut.vdb.shares", says=["--share"])
-    innermap(*LONG, "-o", "cut.vdb", "--share", "2/2")
-    fails(1, "join", "cut.vdb.shares", says=["not made", "blocks"])
-    for text in ["1/2", "4/7"]:
-        told = innermap(*LONG, "-o", "cut.vdb", "--share", text).stdout
-    assert "finished already" in told and not Path("cut.vdb").exists()
-    innermap("join", "cut.vdb.shares", "--report", "cut.json", "--quiet")
-    assert Path("cut.vdb").read_bytes() == Path("whole.vdb").read_bytes()
-    assert results("cut.json") == results("whole.json")
-    report = cli.read_json("cut.json")
-    assert report["command"] == "evaluate" and len(report["farm"]["host_frames"]) == 1
-    blocks = sorted(Path("cut.vdb.shares").glob("block.*.vdb"))
-    assert len(blocks) >= 3
-
-    fails(1, *LONG, "-o", "cut.vdb", "--share", "1/2", "--lame-mu", "0.5", says=["another run", "lame_mu"])
-    fails(2, "join", "cut.vdb.shares", "--partial", says=["--partial"])
-    fails(2, *LONG[:2], "-o", "x.vdb", "--inverse", "--share", "1/2", says=["--inverse"])
-    shutil.copytree("cut.vdb.shares", "other")
-    fails(1, "join", "other", says=["other", ".shares"])
-    # A block that is cut off is missing; one of another block's voxels is told of.
-    whole = blocks[0].read_bytes()
-    blocks[0].write_bytes(whole[:-100])
-    fails(1, "join", "cut.vdb.shares", says=["1 of", "blocks", "1"])
-    blocks[0].write_bytes(whole[:-100] + bytes(100))
-    fails(1, "join", "cut.vdb.shares", says=[blocks[0].name, "not as it was written"])
-    blocks[0].unlink()
-    innermap(*LONG, "-o", "cut.vdb", "--share", "1/1")  # makes what is missing
-    assert blocks[0].read_bytes() == whole
-    innermap("fit", "rod.obj", "pinched.obj", "-o", "map.ply", "--charges", "250", "--quiet")
-    fails(1, "join", "cut.vdb.shares", says=["cut.vdb.shares", "other files"])
-
-
-def test_jobs_make_a_volume():
-    folded_rod()
-    innermap(*LONG, "-o", "whole.vdb")
-    innermap(*LONG, "-o", "cut.vdb", "--jobs", "jobs.json", "--tasks", "2")
-    for step in cli.read_json("jobs.json")["steps"]:
-        run = step["script"]["actions"]["onRun"]
-        for share_number in "12" if step["name"] == "Shares" else "1":
-            words = [word.replace("{{Task.Param.Share}}", share_number) for word in run["args"]]
-            subprocess.run([run["command"], *words], check=True, capture_output=True)
-    assert Path("cut.vdb").read_bytes() == Path("whole.vdb").read_bytes()
 
 
 def test_jobs_make_the_run():
@@ -395,24 +374,6 @@ def random_runs(number):
 
 def test_random_cuts_and_kills():
     random_runs(4)
-
-
-@nightly
-def test_the_shares_of_a_large_volume():
-    """Equal grids, and a worker's memory is an eighth of the whole's, and what the map takes."""
-    poses = cli.MODELS / "horse-poses"
-    if not poses.exists():
-        raise cli.Skip(f"no models in {cli.MODELS}")
-    fixed = 120e6
-    innermap("fit", poses / "reference.obj", poses / "pose-02.obj", "-o", "map.ply", "--charges", "2000", "-q")
-    command = ["evaluate", "map.ply", "--resolution", "1024", "-q"]
-    innermap(*command, "-o", "whole.vdb", "--report", "whole.json")
-    whole = cli.read_json("whole.json")["peak_memory_bytes"]
-    for k in range(1, 17):
-        innermap(*command, "-o", "cut.vdb", "--share", f"{k}/16", "--report", "part.json")
-        assert cli.read_json("part.json")["peak_memory_bytes"] < whole / 8 + fixed, k
-    innermap("join", "cut.vdb.shares", "-q")
-    assert Path("cut.vdb").read_bytes() == Path("whole.vdb").read_bytes()
 
 
 @nightly

@@ -46,8 +46,10 @@ def test_writes_jobs_as_the_program_does():
     assert (share, part) == ("--share", "1/1") and command[-4:] == words[2:], theirs
     innermap.jobs("ours.txt", command)
     assert Path("ours.txt").read_text(encoding="utf-8") == theirs
-    innermap.jobs("ours.json", ["a"], join=["b"], seconds=10, memory=10**9, join_memory=2 * 10**9)
-    steps = cli.read_json("ours.json")["steps"]
+    shapes.refuses((lambda: innermap.jobs("a.txt", ["a"], first=["f"]), innermap.SettingError, "order"))
+    innermap.jobs("ours.json", ["a"], first=["f"], join=["b"], seconds=10, memory=10**9, join_memory=2 * 10**9)
+    first, *steps = cli.read_json("ours.json")["steps"]
+    assert first["name"] == "First" and steps[0]["dependencies"] == [{"dependsOn": "First"}], first
     asked = [step["hostRequirements"]["amounts"][0]["min"] for step in steps]
     assert 1192 < asked[0] < 1500 and 2384 < asked[1] < 3000, asked
     assert steps[0]["script"]["actions"]["onRun"]["timeout"] == 100

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "innermap/io/vdb_file.h"
+#include "job_cost.h"
 
 namespace innermap::tool {
 namespace {
@@ -42,19 +43,54 @@ FramePattern blockPattern(const std::string& shares) {
   return {"--output", (std::filesystem::path(shares) / "block.####.vdb").string()};
 }
 
+BlockWork evaluationWork(const Solid& solid, const EvaluationOptions& options, std::size_t charges,
+                         const MapGridKind& kind) {
+  const MapGridSettings settings = mapGridSettings(options);
+  const std::vector<JobPhase> all = evaluationPhases(jobSize(solid, settings, charges));
+  BlockWork work;
+  work.stage = "evaluate";
+  work.blocks = [&solid, grid = options.grid] {
+    return voxelBlocks(solid, grid.in<LevelSetSettings>());
+  };
+  work.memory = mapBlockMemory(kind);
+  work.joinMemory = mapGridMemory(solid, settings, kind);
+  // Folds, what is outside, and cells are the join's.
+  work.making = {all[0], all[1], all.back()};
+  work.joining = {all.begin() + 2, all.end()};
+  return work;
+}
+
+void addBlockOptions(Command& command, ShareOptions& options) {
+  addShareOptions(command, options, "blocks of 128 voxels along each side",
+                  "They go to OUTPUT.shares, and innermap join makes one file of all; blocks that "
+                  "are finished are not made again");
+}
+
+void beginBlocks(const ShareOptions& options, const std::string& output, Context& context) {
+  applyCpuTarget(options);
+  if (!writesJobs(options, context) && !inShares(options)) context.output(output);
+}
+
+namespace {
+
 void makeShare(const ShareOptions& options, const BlockWork& work, Context& context) {
-  Frames frames = framesOf(work.blocks);
+  const std::vector<VoxelBlock> blocks = work.blocks();
+  context.requireMemory("making a block of the volume", work.memory, "raise --max-memory");
+  Frames frames = framesOf(blocks);
   const std::string folder = sharesOf(work.output);
   const FramePattern pattern = blockPattern(folder);
   FrameShare share(options.share, folder, work.inputs, &pattern, frames, context);
-  if (frames.wanted.empty() || context.dryRun()) return;
+  if (context.dryRun())
+    return context.plan({"do a share of: " + work.doing, "write its blocks to " + folder},
+                        work.memory);
+  if (frames.wanted.empty()) return;
   context.outputs(framePaths(pattern, frames));
   share.begin({});
   PartValues made;
   const auto makeBlock = [&](std::size_t index) {
     const FrameFile& file = frames.all[index];
-    const MapBlock block =
-        context.timed("evaluate", [&] { return work.make(work.blocks[index].origin); });
+    const GridBlock block =
+        context.timed(work.stage, [&] { return work.make(blocks[index].origin); });
     writeFrame(file, [&] {
       context.timed("write", [&] { writeVdb(pattern.path(file.number), block.grids); });
     });
@@ -64,8 +100,33 @@ void makeShare(const ShareOptions& options, const BlockWork& work, Context& cont
                            [&](const FrameResult& result) { share.ended(result, made); }));
 }
 
-std::vector<MapBlock> readShares(const std::string& output, const std::string& inputs,
-                                 Context& context) {
+}  // namespace
+
+ShareRun shareRun(const BlockWork& work) {
+  ShareRun run;
+  run.unit = "block";
+  run.units = work.blocks().size();
+  JobPhase blocks{"blocks"};
+  blocks.seconds = totalSeconds(work.making);
+  run.phases = {blocks};
+  run.bytes = work.memory;
+  run.joined = sharesOf(work.output);
+  run.joining = work.joining;
+  run.joiningBytes = work.joinMemory;
+  return run;
+}
+
+bool madeInShares(const ShareOptions& options, const BlockWork& work, Context& context) {
+  if (!inShares(options)) return false;
+  if (options.share.empty())
+    writeShareJobs(options, shareRun(work), context);
+  else
+    makeShare(options, work, context);
+  return true;
+}
+
+std::vector<GridBlock> readShares(const std::string& output, const std::string& inputs,
+                                  Context& context) {
   const std::string folder = sharesOf(output);
   const JoinedParts& joined = *context.joined();
   if (joined.run.inputs != inputs)
@@ -73,12 +134,12 @@ std::vector<MapBlock> readShares(const std::string& output, const std::string& i
                     ": its parts were made from other files than those that are there "
                     "now; make the shares again");
   const FramePattern pattern = blockPattern(folder);
-  std::vector<MapBlock> blocks;
+  std::vector<GridBlock> blocks;
   context.timed("read", [&] {
     for (const Part& part : joined.parts) {
       const std::string path = pattern.path(part.frame);
       requireOutput(part, path);
-      blocks.push_back({readVdb(path).grids, numbersAt(part.values, kTotals)});
+      blocks.push_back({readVdb(path).grids, numbersAt(part.values, kTotals), path});
     }
   });
   return blocks;

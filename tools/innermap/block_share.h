@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "grid_options.h"
 #include "innermap/evaluate/grids.h"
 #include "share.h"
 
@@ -17,19 +18,39 @@ std::string outputOf(const std::string& shares);
 // Where the voxels of a block go.
 FramePattern blockPattern(const std::string& shares);
 
+// As addShareOptions().
+void addBlockOptions(Command& command, ShareOptions& options);
+
+// Before anything is read: looks at the options, and tells of the output unless it is made in
+// shares. Throws UsageError, SettingError, FileError.
+void beginBlocks(const ShareOptions& options, const std::string& output, Context& context);
+
+// A run that makes one volume.
 struct BlockWork {
-  std::string output;              // of the whole
-  std::string inputs;              // fingerprints of what is read
-  std::vector<VoxelBlock> blocks;  // all of the run
-  std::function<MapBlock(const openvdb::Coord&)> make;
+  std::string output;                               // of the whole
+  std::string inputs;                               // fingerprints of what is read
+  std::string doing;                                // "evaluate map.ply"
+  std::string stage;                                // of the report's seconds
+  std::function<std::vector<VoxelBlock>()> blocks;  // all of the run
+  std::function<GridBlock(const openvdb::Coord&)> make;
+  std::uint64_t memory = 0, joinMemory = 0;  // of a block; of the join; bytes
+  std::vector<JobPhase> making, joining;     // of all blocks; of the join
 };
 
-// A worker's side: makes those blocks of its share that are not there yet.
-void makeShare(const ShareOptions& options, const BlockWork& work, Context& context);
+// That of a map's grids, but for output, inputs, doing and make. solid: must outlive it.
+BlockWork evaluationWork(const Solid& solid, const EvaluationOptions& options, std::size_t charges,
+                         const MapGridKind& kind);
+
+// The jobs that make it.
+ShareRun shareRun(const BlockWork& work);
+
+// With --share makes those blocks of the share that are not there yet, with --jobs writes the jobs,
+// and returns true; false where the run is to make all by itself. Throws as these do.
+bool madeInShares(const ShareOptions& options, const BlockWork& work, Context& context);
 
 // The side of the command that `join` has conclude the run: all blocks. Throws FileError, DataError
 // (other inputs than the parts', a file that is not as it was written).
-std::vector<MapBlock> readShares(const std::string& output, const std::string& inputs,
-                                 Context& context);
+std::vector<GridBlock> readShares(const std::string& output, const std::string& inputs,
+                                  Context& context);
 
 }  // namespace innermap::tool

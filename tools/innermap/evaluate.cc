@@ -87,39 +87,15 @@ void runInverse(const EvaluateOptions& options, const MappedSolid& mapped, Conte
     writeGridFile(options.output, {levelSet, back.grid}, options.evaluation.names, context);
 }
 
-void makeShare(const EvaluateOptions& options, const MappedSolid& mapped,
-               const MapGridSettings& settings, Context& context) {
-  BlockWork work;
+BlockWork blockWork(const EvaluateOptions& options, const MappedSolid& mapped,
+                    const MapGridSettings& settings) {
+  BlockWork work =
+      evaluationWork(mapped.solid(), options.evaluation, mapped.map.sources(), mapGridKind(mapped));
   work.output = options.output;
   work.inputs = fingerprintOf(options.map);
-  work.blocks = voxelBlocks(mapped.solid(), settings);
+  work.doing = "evaluate " + options.map;
   work.make = [&](const openvdb::Coord& block) { return evaluateBlock(mapped, settings, block); };
-  const std::uint64_t need = mapBlockMemory(mapGridKind(mapped));
-  context.requireMemory("evaluating a block of the volume", need, "raise --max-memory");
-  makeShare(options.farm, work, context);
-  if (context.dryRun())
-    context.plan(
-        {"evaluate a share of " + options.map, "write its blocks to " + sharesOf(options.output)},
-        need);
-}
-
-// The first phases are the workers', and writing their blocks.
-void writeJobs(const EvaluateOptions& options, const MappedSolid& mapped,
-               const MapGridSettings& settings, Context& context) {
-  const Solid& solid = mapped.solid();
-  const std::vector<JobPhase> all =
-      evaluationPhases(jobSize(solid, settings, mapped.map.sources()));
-  ShareRun run;
-  run.unit = "block";
-  run.units = voxelBlocks(solid, settings).size();
-  JobPhase blocks{"blocks"};
-  blocks.seconds = all[0].seconds + all[1].seconds + all.back().seconds;
-  run.phases = {blocks};
-  run.bytes = mapBlockMemory(mapGridKind(mapped));
-  run.joined = sharesOf(options.output);
-  run.joining = {all.begin() + 2, all.end()};
-  run.joiningBytes = mapGridMemory(solid, settings, mapGridKind(mapped));
-  writeShareJobs(options.farm, run, context);
+  return work;
 }
 
 SolidGrids makeGrids(const EvaluateOptions& options, const MappedSolid& mapped,
@@ -136,15 +112,12 @@ void run(const EvaluateOptions& options, Context& context) {
   if (options.inverse && inShares(options.farm))
     throw UsageError("--inverse: is not made in shares; leave out --share and --jobs");
   if (options.inverse) requireInverseOptions(options);
-  applyCpuTarget(options.farm);
-  const bool asJobs = writesJobs(options.farm, context);
-  if (options.farm.share.empty() && !asJobs) context.output(options.output);
+  beginBlocks(options.farm, options.output, context);
   const MappedSolid mapped = readMapFile(options.map, context);
   if (options.inverse) return runInverse(options, mapped, context);
   const MapGridSettings settings = mapGridSettings(options.evaluation);
   context.expect(evaluationPhases(jobSize(mapped.solid(), settings, mapped.map.sources())));
-  if (!options.farm.share.empty()) return makeShare(options, mapped, settings, context);
-  if (asJobs) return writeJobs(options, mapped, settings, context);
+  if (madeInShares(options.farm, blockWork(options, mapped, settings), context)) return;
   requireInterior(mapped.solid(), options.evaluation.grid.in<LevelSetSettings>());
   if (context.dryRun())
     return context.plan({"evaluate " + options.map, "write grids to " + options.output},
@@ -185,9 +158,7 @@ Command makeEvaluateCommand() {
   c.limitTime("stop repairing folds after this time");
   addEvaluationOptions(c, o->evaluation);
   c.settings(describe(o->verdict));
-  addShareOptions(c, o->farm, "blocks of 128 voxels along each side",
-                  "They go to OUTPUT.shares, and innermap join makes one file of all; blocks that "
-                  "are finished are not made again");
+  addBlockOptions(c, o->farm);
   c.example("innermap evaluate map.ply -o map.vdb --resolution 256");
   c.example("innermap evaluate map.ply -o map.vdb --voxel-size 0.01 --names blender");
   c.example("innermap evaluate map.ply -o field.nii.gz --inverse");

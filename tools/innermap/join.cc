@@ -78,7 +78,8 @@ std::vector<FrameResult> resultsOf(const JoinedParts& joined, Context& context) 
     const auto file = std::find_if(joined.run.frames.begin(), joined.run.frames.end(),
                                    [&](const FrameFile& f) { return f.number == part.frame; });
     results.push_back({*file, part.seconds, part.broken});
-    farm.parts.push_back({part.host, part.code, part.seconds, part.setup, part.memory});
+    farm.parts.push_back({part.host, part.code, part.seconds, part.setup, part.memory,
+                          part.restarts, part.failures});
     addSeconds(context.report().seconds, part.stageSeconds);
     const std::string jumps = textAt(part.values, "jumps");
     if (!jumps.empty() && !jumped) noteJumps(part.frame, jumps, context);
@@ -164,7 +165,7 @@ void joinVolume(const JoinOptions& options, JoinedParts joined, Context& context
                  {line.begin() + std::min<std::ptrdiff_t>(2, line.size()), line.end()});
   for (const Option& option : command.options()) {
     const auto text = std::get_if<std::string*>(&option.target);
-    if (text && option.isInput) context.input(**text);
+    if (text && option.isInput && !(*text)->empty()) context.input(**text);
     if (text && option.name == "--output") **text = output;
   }
   takeRun(joined.run, context);
@@ -176,7 +177,8 @@ void joinVolume(const JoinOptions& options, JoinedParts joined, Context& context
 void run(const JoinOptions& options, Context& context) {
   JoinedParts joined = context.timed("read", [&] { return readParts(options.folder); });
   if (joined.run.command == "sequence") return joinSequence(options, std::move(joined), context);
-  if (joined.run.command == "evaluate") return joinVolume(options, std::move(joined), context);
+  for (const char* volume : {"evaluate", "push", "pull", "voxelize"})
+    if (joined.run.command == volume) return joinVolume(options, std::move(joined), context);
   throw DataError(options.folder + ": the parts are of '" + joined.run.command +
                   "', which has nothing to join");
 }
@@ -192,8 +194,9 @@ Command makeJoinCommand() {
       "whatever the shares were. Frames that are not made yet are named, and nothing is written "
       "unless --partial is given. Parts of two runs, of another version, that are cut off, or that "
       "two workers made with other results are refused. Others may write parts meanwhile. "
-      "Of the blocks that evaluate with --share left in map.vdb.shares it makes map.vdb: it reads "
-      "the map again, repairs folds, looks at the cells between voxels and sums energies, and so "
+      "Of the blocks that evaluate, push, pull or voxelize with --share left in map.vdb.shares it "
+      "makes map.vdb: it reads the command's inputs again, and does what takes the whole volume, "
+      "such as repairing folds, making fog, and turning carried level sets into distances. So it "
       "needs the memory of the whole.");
   c.positional("FOLDER", &o->folder,
                "the output of a run with --share; of a volume, the folder .shares beside it");

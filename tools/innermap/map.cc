@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
+#include "block_share.h"
 #include "commands.h"
+#include "core/file.h"
 #include "correspondence.h"
 #include "fitting_options.h"
 #include "grid_options.h"
@@ -13,6 +16,7 @@
 #include "innermap/mesh/mesh_file.h"
 #include "inputs.h"
 #include "job_cost.h"
+#include "map_jobs.h"
 #include "map_report.h"
 #include "report/page/contents.h"
 #include "report/verdict.h"
@@ -21,7 +25,8 @@
 namespace innermap::tool {
 namespace {
 
-constexpr double kRepairShare = 0.3;  // of what --max-time leaves when the fit has ended
+constexpr double kRepairShare = 0.3;       // of what --max-time leaves when the fit has ended
+constexpr std::size_t kLikelyCharges = 2;  // a vertex
 
 struct MapOptions {
   std::string source, target, output, correspondence;
@@ -32,6 +37,7 @@ struct MapOptions {
   ExrSliceSettings slices;
   std::string sectionGrid = "deformation_energy";
   SectionOptions section;
+  ShareOptions farm;
 };
 
 void writePictures(const SolidGrids& solidGrids, const MapFit& fit, PendingFolder& folder,
@@ -88,9 +94,8 @@ JobSize gridSize(const MapOptions& options, const Mesh& source) {
   const double longest = std::max({size.x, size.y, size.z});
   const double voxel =
       grid.voxelSize ? *grid.voxelSize : longest / grid.resolution.value_or(kUsualResolution);
-  constexpr std::size_t kLikely = 2;  // charges a vertex
   return jobSize(std::abs(signedVolume(source)), surfaceArea(source), voxel,
-                 kLikely * source.vertices.size());
+                 kLikelyCharges * source.vertices.size());
 }
 
 bool laidOn(const MapOptions& options, const Meshes& meshes) {
@@ -164,6 +169,32 @@ void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
   context.plan(lines, need);
 }
 
+// The fit is one job, whose map the shares of the voxels read.
+void writeJobs(const MapOptions& options, Context& context) {
+  const Meshes meshes = readMeshes(options, context);
+  if (laidOn(options, meshes))
+    throw UsageError(
+        "--jobs: fits the same mesh with its vertices moved; make the map of other meshes in one "
+        "run, and give its map.ply to innermap evaluate --jobs");
+  const Solid solid = solidToMap(options, meshes, context);
+  const std::size_t vertices = meshes.source.vertices.size();
+  const FitMapSettings fitting = fittingFor(options, meshes);
+  BlockWork work = evaluationWork(solid, options.evaluation, kLikelyCharges * vertices,
+                                  {1, needsLocalMap(meshes.target.vertices, fitting.tolerance)});
+  work.output = (std::filesystem::path(options.output) / "map.vdb").string();
+  ShareRun run = shareRun(work);
+  const MapCommands commands = mapCommands(
+      {context.report().run->commandLine.begin() + 2, context.report().run->commandLine.end()},
+      options.source, options.target, options.output);
+  run.first = commands.fit;
+  run.command = commands.evaluate;
+  run.beginning = fittingPhases(
+      fitting, bentPlaces(meshes.source, meshes.target.vertices, fitting.tolerance), false);
+  run.beginningBytes = fitMapMemory(fitting, vertices);
+  if (!context.dryRun()) makeFolder(options.output);
+  writeShareJobs(options.farm, run, context);
+}
+
 // Lays the source onto the target where they are not related, and puts that into the folder.
 BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& folder,
                       Context& context) {
@@ -191,6 +222,7 @@ BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& f
 
 void run(const MapOptions& options, Context& context) {
   checkFittingOptions(options.fitting);
+  if (writesJobs(options.farm, context)) return writeJobs(options, context);
   std::vector<std::string> files{"map.ply",     "map.vdb",   "slices.exr",
                                  "section.png", "steps.png", "report.json"};
   if (options.correspondence.empty())
@@ -271,6 +303,8 @@ Command makeMapCommand() {
   c.option("--section-grid", "NAME", &o->sectionGrid, "grid shown in section.png")
       .choices(mapGridNames());
   addSectionOptions(c, o->section);
+  c.group("machines");
+  addJobsOptions(c, o->farm);
   c.example("innermap map rest.obj pose.obj -o out");
   c.example("innermap map cow.obj man.obj -o out");
   c.example("innermap map rest.obj pose.obj -o out --tolerance 3e-4 --resolution 256");

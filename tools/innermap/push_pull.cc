@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "block_share.h"
+#include "carry_job.h"
 #include "commands.h"
 #include "geometry_transfer.h"
 #include "innermap/core/memory.h"
@@ -18,22 +20,12 @@
 namespace innermap::tool {
 namespace {
 
-enum class Way { push, pull };
-
 struct CarryOptions {
   std::string map, volume, output, through;
   VerdictSettings verdict;
   TransferOptions transfer;
   GeometryOptions geometry;
-};
-
-// What both read.
-struct Job {
-  MappedSolid mapped;
-  Solid target;
-  OutsideSettings outside;
-  openvdb::GridPtrVec grids;
-  std::optional<ThroughMap> through;
+  ShareOptions farm;
 };
 
 LinearCellMap readThrough(const std::string& path, const MappedSolid& mapped, Context& context) {
@@ -41,7 +33,7 @@ LinearCellMap readThrough(const std::string& path, const MappedSolid& mapped, Co
   return linearMapOf(mesh, mapped);
 }
 
-Job read(const CarryOptions& options, Context& context) {
+CarryJob read(const CarryOptions& options, Context& context) {
   MappedSolid mapped = readMapFile(options.map, context);
   const OutsideSettings outside = outsideSettings(
       options.transfer, mapped.solid().repaired().mesh.vertices, mapped.boundary.target.moved);
@@ -50,51 +42,6 @@ Job read(const CarryOptions& options, Context& context) {
   std::optional<ThroughMap> through;
   if (!options.through.empty()) through = throughMap(readThrough(options.through, mapped, context));
   return {std::move(mapped), std::move(target), outside, std::move(grids), std::move(through)};
-}
-
-double growthOf(Way way, const Job& job) {
-  const double from = job.mapped.solid().volume(), to = job.target.volume();
-  return way == Way::push ? voxelGrowth(from, to) : voxelGrowth(to, from);
-}
-
-void expectCarrying(Way way, const Job& job, const TransferOptions& options, double growth,
-                    Context& context) {
-  const std::size_t charges = job.mapped.map.sources();
-  const double asGiven = finestVoxel(job.grids);
-  const auto sizeOf = [&](const Solid& solid, const LevelSetSettings& settings) {
-    return jobSize(solid, settings, charges);
-  };
-  LevelSetSettings given;
-  given.voxelSize = asGiven;
-  const Solid& source = job.mapped.solid();
-  const Solid& to = way == Way::push ? job.target : source;
-  JobSize made = sizeOf(to, outputSettings(job.grids, options.grid, growth));
-  made.items = static_cast<double>(job.grids.size()) * made.inside;
-  const JobSize from = sizeOf(way == Way::push ? source : job.target, given);
-  JobPhase levelSets = stageOf("level set", made, 2);
-  levelSets.seconds = (levelSets.seconds + stageOf("level set", from, 2).seconds) / 2;
-  std::vector<JobPhase> phases = {levelSets};
-  const CarrySettings carry = carrySettings(options);
-  std::size_t densities = 0;
-  for (const openvdb::GridBase::Ptr& grid : job.grids) densities += isDensity(*grid, carry);
-  if (way == Way::pull) {
-    phases.push_back(stageOf("pulling the grids", made));
-  } else {
-    if (densities < job.grids.size()) {
-      phases.push_back(stageOf("covering the target", made));
-      phases.push_back(stageOf("inverting the map", made));
-      phases.push_back(stageOf("carrying the grids", made));
-    }
-    if (densities > 0) {
-      JobSize held = from;
-      held.items = static_cast<double>(densities) * from.inside;
-      phases.push_back(stageOf("finding what is in the solid", held));
-      phases.push_back(stageOf("mapping the densities", held));
-      phases.push_back(stageOf("carrying the densities", held));
-    }
-  }
-  phases.push_back(stageOf("writing the VDB file", made));
-  context.expect(phases);
 }
 
 // A voxel size that nobody asked for is said where it is not the grids' own.
@@ -109,54 +56,153 @@ void noteVoxelSize(const openvdb::GridPtrVec& grids, const TransferOptions& opti
                   growth * from, from, growth));
 }
 
-openvdb::GridPtrVec push(const Job& job, const TransferOptions& options, Context& context) {
+PushSettings pushSettings(const CarryJob& job, const TransferOptions& options) {
   PushSettings settings;
   settings.carry = carrySettings(options);
   settings.outside = job.outside;
   settings.accuracy = sumAccuracy(job.mapped);
   settings.through = job.through ? &*job.through : nullptr;
+  return settings;
+}
+
+// The voxels and the solid that grids are carried to.
+LevelSetSettings outputOf(Way way, const CarryJob& job, const TransferOptions& options) {
+  return outputSettings(job.grids, options.grid, growthOf(way, job));
+}
+
+std::string inputsOf(const CarryOptions& options) {
+  std::string out = fingerprintOf(options.map) + " " + fingerprintOf(options.volume);
+  return options.through.empty() ? out : out + " " + fingerprintOf(options.through);
+}
+
+PushResult pushed(const CarryJob& job, const CarryOptions& options, Context& context) {
+  const TransferOptions& o = options.transfer;
+  if (context.joined()) {
+    const VolumePusher pusher(job.mapped.solid(), job.grids, pushSettings(job, o));
+    const BlockPusher blocks(pusher, job.mapped.map, job.target, outputOf(Way::push, job, o));
+    return blocks.join(readShares(options.output, inputsOf(options), context));
+  }
   const openvdb::FloatGrid::Ptr levelSet =
-      outputLevelSet(job.target, job.grids, options, context, growthOf(Way::push, job));
-  const PushResult result = context.timed("push", [&] {
-    return VolumePusher(job.mapped.solid(), job.grids, settings).push(job.mapped.map, *levelSet);
+      outputLevelSet(job.target, job.grids, o, context, growthOf(Way::push, job));
+  return context.timed("push", [&] {
+    return VolumePusher(job.mapped.solid(), job.grids, pushSettings(job, o))
+        .push(job.mapped.map, *levelSet);
   });
+}
+
+openvdb::GridPtrVec push(const CarryJob& job, const CarryOptions& options, Context& context) {
+  const PushResult result = pushed(job, options, context);
   reportPush(result, context);
   context.detail(pushText(result));
   const double volumes = volumeRatio(job.mapped.solid().volume(), job.target.volume());
+  const double limit = options.transfer.carry.densityLimit;
   for (const CarriedMass& mass : result.masses)
-    context.judge(judgeDensity(
-        {mass.name, "", std::min(mass.largestRatio, settings.carry.densityLimit), volumes},
-        options.verdict));
-  context.judge(judgeResampling(result.resampling, options.verdict));
+    context.judge(judgeDensity({mass.name, "", std::min(mass.largestRatio, limit), volumes},
+                               options.transfer.verdict));
+  context.judge(judgeResampling(result.resampling, options.transfer.verdict));
   return result.grids;
 }
 
-openvdb::GridPtrVec pull(const Job& job, const TransferOptions& options, Context& context) {
+// With the target's level set, which is none of the output's.
+struct Puller {
+  openvdb::FloatGrid::Ptr target;
+  VolumePuller puller;
+};
+
+Puller pullerOf(const CarryJob& job, const TransferOptions& options, Context& context) {
   PullSettings settings;
   settings.carry = carrySettings(options);
   settings.outside = job.outside;
   settings.accuracy = sumAccuracy(job.mapped);
   settings.through = job.through ? &*job.through : nullptr;
-  const TransferOptions plain;  // the target's level set is none of the output's
-  const openvdb::FloatGrid::Ptr target = outputLevelSet(job.target, job.grids, plain, context);
+  const openvdb::FloatGrid::Ptr target =
+      outputLevelSet(job.target, job.grids, TransferOptions(), context);
   settings.targetLevelSet = target.get();
-  const Solid& source = job.mapped.solid();
+  return {target, VolumePuller(job.mapped.map, job.mapped.solid(), job.grids, settings)};
+}
+
+PullResult pulled(const CarryJob& job, const CarryOptions& options, Context& context) {
+  const TransferOptions& o = options.transfer;
+  const Puller puller = pullerOf(job, o, context);
+  if (context.joined())
+    return puller.puller.join(outputOf(Way::pull, job, o),
+                              readShares(options.output, inputsOf(options), context));
   const openvdb::FloatGrid::Ptr levelSet =
-      outputLevelSet(source, job.grids, options, context, growthOf(Way::pull, job));
-  const PullResult result = context.timed(
-      "pull", [&] { return pullGrids(job.mapped.map, source, *levelSet, job.grids, settings); });
+      outputLevelSet(job.mapped.solid(), job.grids, o, context, growthOf(Way::pull, job));
+  return context.timed("pull", [&] { return puller.puller.pull(*levelSet); });
+}
+
+openvdb::GridPtrVec pull(const CarryJob& job, const CarryOptions& options, Context& context) {
+  const PullResult result = pulled(job, options, context);
   for (const std::string& warning : result.warnings) context.warning(warning);
   context.report().add("pull", pulledFigures(result.voxels));
   context.detail(fmt::format("pulled {} grids, {} voxels\n", result.grids.size(), result.voxels));
-  const double volumes = volumeRatio(job.target.volume(), source.volume());
+  const double volumes = volumeRatio(job.target.volume(), job.mapped.solid().volume());
+  const CarrySettings carry = carrySettings(options.transfer);
   for (const openvdb::GridBase::Ptr& grid : job.grids)
-    if (result.resampling.largestGrowth > 0 && isDensity(*grid, settings.carry))
-      context.judge(judgeDensity(
-          {grid->getName(), "",
-           std::min(result.resampling.largestGrowth, settings.carry.densityLimit), volumes},
-          options.verdict));
-  context.judge(judgeResampling(result.resampling, options.verdict));
+    if (result.resampling.largestGrowth > 0 && isDensity(*grid, carry))
+      context.judge(
+          judgeDensity({grid->getName(), "",
+                        std::min(result.resampling.largestGrowth, carry.densityLimit), volumes},
+                       options.transfer.verdict));
+  context.judge(judgeResampling(result.resampling, options.transfer.verdict));
   return result.grids;
+}
+
+// Throws UsageError for what is not made in shares.
+void requireCuttable(Way way, const CarryOptions& options, const CarryJob& job) {
+  if (!inShares(options.farm)) return;
+  if (options.transfer.outside > 0)
+    throw UsageError(
+        "--outside: what lies around the solid is carried in one run; leave out --share and "
+        "--jobs");
+  const CarrySettings carry = carrySettings(options.transfer);
+  for (const openvdb::GridBase::Ptr& grid : job.grids)
+    if (way == Way::push && isDensity(*grid, carry))
+      throw UsageError(fmt::format(
+          "--density: push sums the mass of '{}' over all of the volume; leave out --share and "
+          "--jobs, or carry other grids by --grids",
+          grid->getName()));
+}
+
+// What makes blocks is set up with the first of them.
+std::function<GridBlock(const openvdb::Coord&)> blockMaker(Way way, const CarryJob& job,
+                                                           const CarryOptions& options,
+                                                           Context& context) {
+  const LevelSetSettings output = outputOf(way, job, options.transfer);
+  if (way == Way::pull)
+    return [&, output,
+            puller = std::make_shared<std::optional<Puller>>()](const openvdb::Coord& block) {
+      if (!*puller) puller->emplace(pullerOf(job, options.transfer, context));
+      return (*puller)->puller.pullBlock(output, block);
+    };
+  return [&, output,
+          pusher = std::make_shared<std::optional<BlockPusher>>()](const openvdb::Coord& block) {
+    if (!*pusher)
+      pusher->emplace(
+          VolumePusher(job.mapped.solid(), job.grids, pushSettings(job, options.transfer)),
+          job.mapped.map, job.target, output);
+    return (*pusher)->push(block);
+  };
+}
+
+BlockWork blockWork(Way way, const CarryJob& job, const CarryOptions& options,
+                    const std::vector<JobPhase>& phases, Context& context) {
+  const bool pushes = way == Way::push;
+  const Solid& solid = pushes ? job.target : job.mapped.solid();
+  BlockWork work;
+  work.output = options.output;
+  work.inputs = inputsOf(options);
+  work.stage = pushes ? "push" : "pull";
+  work.doing = fmt::format("{} {} by {}", work.stage, options.volume, options.map);
+  work.blocks = [&, way] { return voxelBlocks(solid, outputOf(way, job, options.transfer)); };
+  work.make = blockMaker(way, job, options, context);
+  work.memory = carryBlockMemory(pushes ? job.mapped.solid() : job.target, job.grids, pushes);
+  work.joinMemory =
+      transferMemory(solid, job.grids, options.transfer, {pushes, 0}, growthOf(way, job));
+  work.making = phases;
+  work.joining = {phases.back(), phases.back()};
+  return work;
 }
 
 // Peak need in bytes of carrying geometry, beyond what its file takes.
@@ -214,13 +260,19 @@ void runGeometry(Way way, const CarryOptions& options, Context& context) {
 
 void run(Way way, const CarryOptions& options, Context& context) {
   requireFitting(options.volume, options.output, options.transfer, options.geometry);
-  context.output(options.output);
-  if (isGeometryFile(options.volume)) return runGeometry(way, options, context);
-  const Job job = read(options, context);
+  const bool geometry = isGeometryFile(options.volume);
+  if (geometry && inShares(options.farm))
+    throw UsageError("--share and --jobs: geometry is carried in one run; leave them out");
+  beginBlocks(options.farm, options.output, context);
+  if (geometry) return runGeometry(way, options, context);
+  const CarryJob job = read(options, context);
   const Solid& solid = way == Way::push ? job.target : job.mapped.solid();
   const double growth = growthOf(way, job);
   const CarryKind kind{way == Way::push, 0};
-  expectCarrying(way, job, options.transfer, growth, context);
+  const std::vector<JobPhase> phases = carryingPhases(way, job, options.transfer, growth);
+  context.expect(phases);
+  requireCuttable(way, options, job);
+  if (madeInShares(options.farm, blockWork(way, job, options, phases, context), context)) return;
   if (context.dryRun())
     return context.plan({fmt::format("{} {} grids of {} by {}", way == Way::push ? "push" : "pull",
                                      job.grids.size(), options.volume, options.map),
@@ -228,8 +280,7 @@ void run(Way way, const CarryOptions& options, Context& context) {
                         transferMemory(solid, job.grids, options.transfer, kind, growth));
   requireTransferMemory(solid, job.grids, options.transfer, context, kind, growth);
   noteVoxelSize(job.grids, options.transfer, growth, context);
-  const openvdb::GridPtrVec grids =
-      (way == Way::push ? push : pull)(job, options.transfer, context);
+  const openvdb::GridPtrVec grids = (way == Way::push ? push : pull)(job, options, context);
   context.judge(judgeMap(job.mapped, nullptr, options.verdict, MapOrigin::file));
   describeMap(grids, job.mapped);
   writeGridFile(options.output, grids, options.transfer.names, context);
@@ -256,6 +307,7 @@ Command makeCarryCommand(Way way, const std::string& name, const std::string& su
   addTransferOptions(c, o->transfer);
   addGeometryOptions(c, o->geometry, true);
   c.settings(describe(o->verdict));
+  addBlockOptions(c, o->farm);
   c.addSpace();
   c.run([o, way](Context& context) { run(way, *o, context); });
   return c;

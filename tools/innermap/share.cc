@@ -110,13 +110,17 @@ void addShareOptions(Command& command, ShareOptions& options, const std::string&
                           fmt::join(cpuNames(), " or ")))
       .defaults("this processor's best")
       .advanced();
+  addJobsOptions(command, options);
+}
+
+void addJobsOptions(Command& command, ShareOptions& options) {
   command
       .option(kJobs, "FILE", &options.jobs,
               "compute nothing, but write the run as jobs in shares: .txt a command a line (GNU "
               "parallel, cuecmd, PDG), .sh or .sbatch a script that submits a job array to Slurm "
-              "and the join "
-              "after it, .json or .yaml an OpenJD template; with the time and memory that "
-              "--dry-run tells, and a margin")
+              "and the join after it, .json or .yaml an OpenJD template. Of what --dry-run tells "
+              "they ask for " +
+                  marginsText())
       .advanced();
   command.option(kTasks, "N", &options.tasks, "how many shares --jobs makes")
       .range(1, static_cast<double>(Share::kMost))
@@ -146,8 +150,11 @@ void writeShareJobs(const ShareOptions& options, const ShareRun& run, Context& c
   const ReportRun& told = *context.report().run;
   jobs.name = "innermap " + context.report().command;
   jobs.folder = std::filesystem::current_path().string();
-  jobs.command = without(told.commandLine, {kJobs, kTasks});
+  jobs.command = run.command.empty() ? without(told.commandLine, {kJobs, kTasks}) : run.command;
   jobs.command.front() = programName();
+  jobs.first = run.first;
+  if (!jobs.first.empty()) jobs.first.front() = jobs.command.front();
+  jobs.beginning = {totalSeconds(run.beginning), processMemory(run.beginningBytes)};
   if (!run.joined.empty()) jobs.join = {jobs.command.front(), "join", run.joined};
   if (run.sameCommand) jobs.join = jobs.command;
   jobs.task = {setup + perUnit * std::ceil(units / static_cast<double>(jobs.tasks)),
@@ -252,6 +259,7 @@ void FrameShare::ended(const FrameResult& result, PartValues values) {
   part.seconds = result.seconds;
   part.setup = setup_;
   part.memory = peakMemory();
+  part.restarts = taskRestarts();
   for (const auto& stage : report.seconds) {
     const auto before = std::find_if(seconds_.begin(), seconds_.end(),
                                      [&](const auto& s) { return s.first == stage.first; });

@@ -23,6 +23,9 @@ struct ShareOptions {
 void addShareOptions(Command& command, ShareOptions& options, const std::string& units,
                      const std::string& results);
 
+// --jobs and --tasks alone: of commands that are no share themselves.
+void addJobsOptions(Command& command, ShareOptions& options);
+
 // Whether other processes make parts of the run, too.
 bool inShares(const ShareOptions& options);
 
@@ -42,6 +45,10 @@ struct ShareRun {
   std::uint64_t joiningBytes = 0;      // as bytes
   std::string unit = "frame";
   bool sameCommand = false;  // without --share it joins
+  // Words of the command of a share; empty: this one. And of one before all of them, if any.
+  std::vector<std::string> command = {}, first = {};
+  std::vector<JobPhase> beginning = {};  // of `first`
+  std::uint64_t beginningBytes = 0;
 };
 
 // What --jobs writes in place of the run.

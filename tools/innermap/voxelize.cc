@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "block_share.h"
 #include "commands.h"
 #include "core/text_scanner.h"
 #include "grid_options.h"
@@ -25,6 +26,7 @@ struct VoxelizeOptions {
   LatticeChoice grid;
   LevelSetSettings levelSet;
   bool fog = false, attributes = false, each = false;
+  ShareOptions farm;
 };
 
 void fillReport(const openvdb::FloatGrid& levelSet, const Solid& solid, const Mesh& mesh,
@@ -34,16 +36,13 @@ void fillReport(const openvdb::FloatGrid& levelSet, const Solid& solid, const Me
                                  interiorVoxels(levelSet)));
 }
 
+// surface: the level set, with attributes behind it where these are made already.
 openvdb::GridPtrVec makeGrids(const VoxelizeOptions& options, const Solid& solid, const Mesh& mesh,
-                              const LevelSetSettings& settings, Context& context) {
-  const openvdb::FloatGrid::Ptr levelSet =
-      context.timed("level set", [&] { return makeLevelSet(solid, settings); });
-  openvdb::GridPtrVec grids = {levelSet};
-  if (options.fog) context.timed("fog", [&] { grids.push_back(makeFog(*levelSet)); });
-  if (options.attributes)
-    context.timed("attributes", [&] {
-      for (const auto& grid : makeAttributeGrids(*levelSet, solid, mesh)) grids.push_back(grid);
-    });
+                              openvdb::GridPtrVec surface, Context& context) {
+  const auto levelSet = openvdb::gridPtrCast<openvdb::FloatGrid>(surface.front());
+  openvdb::GridPtrVec grids = std::move(surface);
+  if (options.fog)
+    context.timed("fog", [&] { grids.insert(grids.begin() + 1, makeFog(*levelSet)); });
   context.timed("check", [&] {
     const LevelSetCheck check = checkLevelSet(*levelSet, solid);
     for (const std::string& warning : check.warnings) context.warning(warning);
@@ -52,6 +51,43 @@ openvdb::GridPtrVec makeGrids(const VoxelizeOptions& options, const Solid& solid
   });
   if (!options.each) fillReport(*levelSet, solid, mesh, context.report());
   return grids;
+}
+
+// The level set, and attributes.
+openvdb::GridPtrVec makeSurface(const VoxelizeOptions& options, const Solid& solid,
+                                const Mesh& mesh, const LevelSetSettings& settings,
+                                Context& context) {
+  if (context.joined())
+    return joinVoxelized(solid, settings,
+                         readShares(options.output, fingerprintOf(options.mesh), context));
+  const openvdb::FloatGrid::Ptr levelSet =
+      context.timed("level set", [&] { return makeLevelSet(solid, settings); });
+  openvdb::GridPtrVec out{levelSet};
+  if (options.attributes)
+    context.timed("attributes", [&] {
+      for (const auto& grid : makeAttributeGrids(*levelSet, solid, mesh)) out.push_back(grid);
+    });
+  return out;
+}
+
+BlockWork blockWork(const VoxelizeOptions& options, const Solid& solid, const Mesh& mesh,
+                    const LevelSetSettings& settings) {
+  constexpr std::uint64_t kSurface = 40'000'000, kAttribute = 60'000'000;  // bytes, at most
+  const JobSize size = jobSize(solid, settings);
+  BlockWork work;
+  work.output = options.output;
+  work.inputs = fingerprintOf(options.mesh);
+  work.doing = "voxelize " + options.mesh;
+  work.stage = "level set";
+  work.blocks = [&] { return voxelBlocks(solid, settings); };
+  work.make = [&](const openvdb::Coord& block) {
+    return voxelizeBlock(solid, settings, options.attributes ? &mesh : nullptr, block);
+  };
+  work.memory = kSurface + (options.attributes ? 2 * kAttribute : 0);
+  work.joinMemory = voxelizeMemory(solid, settings, mesh, options.fog, options.attributes);
+  work.making = {stageOf("level set", size), stageOf("writing the VDB file", size)};
+  work.joining = {stageOf("writing the VDB file", size, 2)};
+  return work;
 }
 
 void write(const VoxelizeOptions& options, const openvdb::GridPtrVec& grids, Context& context) {
@@ -79,12 +115,16 @@ void runMesh(const VoxelizeOptions& options, Context& context) {
   const std::uint64_t need = voxelizeMemory(solid, settings, mesh, options.fog, options.attributes);
   const JobSize size = jobSize(solid, settings);
   context.expect({stageOf("level set", size), stageOf("writing the VDB file", size)});
+  if (madeInShares(options.farm, blockWork(options, solid, mesh, settings), context)) return;
   if (context.dryRun())
     return context.plan({fmt::format("voxelize {} with voxels of {:.6g} to {}", options.mesh,
                                      voxelSize, options.output)},
                         need);
   requireNeed(options, need, voxelSize, context);
-  write(options, makeGrids(options, solid, mesh, settings, context), context);
+  write(options,
+        makeGrids(options, solid, mesh, makeSurface(options, solid, mesh, settings, context),
+                  context),
+        context);
 }
 
 // A scan of labels.
@@ -136,7 +176,9 @@ void runScan(const VoxelizeOptions& options, Context& context) {
     need += voxelizeMemory(solid, settings, label.mesh, options.fog, false);
     if (context.dryRun()) continue;
     requireNeed(options, need, voxelSize, context);
-    for (const auto& grid : makeGrids(options, solid, label.mesh, settings, context)) {
+    for (const auto& grid :
+         makeGrids(options, solid, label.mesh,
+                   makeSurface(options, solid, label.mesh, settings, context), context)) {
       if (options.each) {
         grid->setName(fmt::format("{}_{}", grid->getName(), label.label));
         grid->insertMeta("innermap_label", openvdb::Int64Metadata(label.label));
@@ -155,8 +197,12 @@ void runScan(const VoxelizeOptions& options, Context& context) {
 }
 
 void run(const VoxelizeOptions& options, Context& context) {
-  context.output(options.output);
-  if (isScan(options.mesh)) return runScan(options, context);
+  const bool scan = isScan(options.mesh);
+  if (scan && inShares(options.farm))
+    throw UsageError(
+        "--share and --jobs: labels of a scan are voxelized in one run; leave them out");
+  beginBlocks(options.farm, options.output, context);
+  if (scan) return runScan(options, context);
   if (!options.labels.empty()) throw UsageError("--labels: is for scans (.nii, .nii.gz)");
   if (options.each) throw UsageError("--each-label: is for scans (.nii, .nii.gz)");
   runMesh(options, context);
@@ -190,6 +236,7 @@ Command makeVoxelizeCommand() {
          "of a scan: make a solid of each label, `surface_3` for label 3, on one lattice; "
          "otherwise one of all together");
   c.setting(namesSetting(&o->names));
+  addBlockOptions(c, o->farm);
   c.addSpace();
   c.example("innermap voxelize labels.nii.gz -o organs.vdb --labels 2,5 --each-label");
   c.example("innermap voxelize bunny.obj -o bunny.vdb --resolution 256 --fog");

@@ -10,12 +10,12 @@
 
 namespace innermap {
 
-// As MapBlock has them.
-std::vector<double> numbersOf(const BlockTotals& totals);
+// As GridBlock has them.
+std::vector<double> totalsOf(const BlockTotals& totals);
 
 // Takes the voxels of the blocks. transform: of the whole; surface becomes its level set. Throws
 // DataError where the blocks are no such.
-MapValues mergeBlocks(std::vector<MapBlock>& blocks, const openvdb::math::Transform::Ptr& transform,
+MapValues mergeBlocks(std::vector<GridBlock> blocks, const openvdb::math::Transform::Ptr& transform,
                       openvdb::FloatGrid::Ptr& surface);
 
 }  // namespace innermap

@@ -175,6 +175,7 @@ std::string partJson(const Part& part, const std::string& run) {
                    {"seconds", part.seconds},
                    {"setup_seconds", part.setup},
                    {"peak_memory_bytes", part.memory},
+                   {"restarts", part.restarts},
                    {"stages", stages}}}});
 }
 
@@ -215,6 +216,7 @@ Part parsePart(const std::string& path, const std::string& content, const std::s
     part.seconds = number(at(made, "seconds"));
     part.setup = number(at(made, "setup_seconds"));
     part.memory = static_cast<std::uint64_t>(integer(at(made, "peak_memory_bytes")));
+    part.restarts = static_cast<std::uint64_t>(integer(at(made, "restarts")));
     for (const Json& item : list(at(made, "stages")))
       part.stageSeconds.emplace_back(text(pairOf(item)[0]), number(item[1]));
     return part;

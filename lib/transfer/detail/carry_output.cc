@@ -70,6 +70,25 @@ void CarryOutput::carry(const openvdb::Coord& origin, const Site* sites) const {
     carriers_[c]->carry(origin, sites, levelSet_, outputs_[c]);
 }
 
+// By number: names of input grids may be the same, or none.
+openvdb::GridPtrVec CarryOutput::blockGrids() const {
+  openvdb::GridPtrVec out;
+  for (const openvdb::GridPtrVec& grids : outputs_)
+    for (const openvdb::GridBase::Ptr& grid : grids) {
+      out.push_back(grid->copyGrid());
+      out.back()->setName(std::to_string(out.size()));
+      out.back()->setSaveFloatAsHalf(false);
+    }
+  return out;
+}
+
+void CarryOutput::take(GridBlocks& blocks) const {
+  std::size_t number = 0;
+  for (const openvdb::GridPtrVec& grids : outputs_)
+    for (const openvdb::GridBase::Ptr& grid : grids)
+      blocks.mergeInto(*grid, std::to_string(++number));
+}
+
 void CarryOutput::finish(const std::function<Points(const Points&)>& movePositions,
                          openvdb::GridPtrVec& grids) {
   for (std::size_t c = 0; c < carriers_.size(); ++c) {

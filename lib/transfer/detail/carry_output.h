@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluate/grid_blocks.h"
 #include "innermap/transfer/carry.h"
 #include "transfer/detail/carrier.h"
 
@@ -23,6 +24,10 @@ class CarryOutput {
 
   // For the active voxels of the region's leaf at `origin`, in order. From any thread.
   void carry(const openvdb::Coord& origin, const Site* sites) const;
+
+  // Their voxels as GridBlock has them, and taken from all blocks.
+  openvdb::GridPtrVec blockGrids() const;
+  void take(GridBlocks& blocks) const;
 
   // Each at its place in `grids`. movePositions: of values that are positions.
   void finish(const std::function<Points(const Points&)>& movePositions,

@@ -7,7 +7,6 @@
 #include "evaluate/topology.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
-#include "transfer/detail/leaf_index.h"
 
 namespace innermap {
 namespace {
@@ -289,15 +288,13 @@ std::vector<LeafStarts> findStarts(const LatticeImages& lattice, const openvdb::
   return out;
 }
 
-std::vector<std::bitset<512>> spreadStarts(const openvdb::MaskGrid& region,
-                                           std::vector<LeafStarts>& starts) {
+void spreadStarts(const LeafIndex& leaves, LeafStarts* starts) {
   std::vector<std::bitset<512>> has;
-  for (const LeafStarts& leaf : starts) has.push_back(leaf.covered);
-  spreadToNeighbours(LeafIndex(region.tree()), has, [&](LeafPlace from, LeafPlace to) {
+  for (std::size_t l = 0; l < leaves.size(); ++l) has.push_back(starts[l].covered);
+  spreadToNeighbours(leaves, has, [&](LeafPlace from, LeafPlace to) {
     starts[to.leaf].source[to.offset] = starts[from.leaf].source[from.offset];
     starts[to.leaf].outside[to.offset] = starts[from.leaf].outside[from.offset];
   });
-  return has;
 }
 
 }  // namespace innermap

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "transfer/detail/extended_map.h"
+#include "transfer/detail/leaf_index.h"
 
 namespace innermap {
 
@@ -43,9 +44,8 @@ openvdb::MaskGrid::Ptr touchedLeaves(const LatticeImages& lattice, double mostOu
 // like the whole (`mirrored`: with a negative Jacobian), of those the first.
 std::vector<LeafStarts> findStarts(const LatticeImages& lattice, const openvdb::MaskGrid& region);
 
-// Voxels of `region` that nothing covers start where their nearest covered neighbour does. They
-// stay uncovered, but for a start; returns for each leaf which voxels have one.
-std::vector<std::bitset<512>> spreadStarts(const openvdb::MaskGrid& region,
-                                           std::vector<LeafStarts>& starts);
+// Voxels of the leaves that nothing covers start where their nearest covered neighbour does. They
+// stay uncovered, but for a start. starts: the leaves' own.
+void spreadStarts(const LeafIndex& leaves, LeafStarts* starts);
 
 }  // namespace innermap

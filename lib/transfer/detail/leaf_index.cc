@@ -40,11 +40,16 @@ std::optional<LeafPlace> neighbourWith(const LeafIndex& region,
 
 }  // namespace
 
-LeafIndex::LeafIndex(const openvdb::MaskTree& region) {
-  for (auto leaf = region.cbeginLeaf(); leaf; ++leaf) {
-    byOrigin_.emplace(keyOf(leaf->origin()), static_cast<std::uint32_t>(leaves_.size()));
-    leaves_.push_back(leaf.getLeaf());
-  }
+LeafIndex::LeafIndex(const openvdb::MaskTree& region)
+    : LeafIndex([&] {
+        std::vector<const Leaf*> leaves;
+        for (auto leaf = region.cbeginLeaf(); leaf; ++leaf) leaves.push_back(leaf.getLeaf());
+        return leaves;
+      }()) {}
+
+LeafIndex::LeafIndex(std::vector<const Leaf*> leaves) : leaves_(std::move(leaves)) {
+  for (std::size_t l = 0; l < leaves_.size(); ++l)
+    byOrigin_.emplace(keyOf(leaves_[l]->origin()), static_cast<std::uint32_t>(l));
 }
 
 std::uint32_t LeafIndex::find(const openvdb::Coord& ijk) const {

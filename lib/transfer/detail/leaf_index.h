@@ -18,6 +18,7 @@ class LeafIndex {
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
   explicit LeafIndex(const openvdb::MaskTree& region);
+  explicit LeafIndex(std::vector<const Leaf*> leaves);
 
   std::size_t size() const { return leaves_.size(); }
   const Leaf& operator[](std::size_t i) const { return *leaves_[i]; }

@@ -15,6 +15,7 @@
 #include "innermap/field/harmonic_field.h"
 #include "innermap/fit/frame_fitter.h"
 #include "innermap/fit/mapped_solid.h"
+#include "innermap/levelset/level_set.h"
 #include "innermap/levelset/solid.h"
 
 namespace innermap {
@@ -85,29 +86,38 @@ struct VoxelBlock {
   std::uint64_t voxels = 0;  // inside, roughly; along the surface as many as take that long
 };
 
-// Those in which evaluateOnGrid() may have voxels, ascending by origin: the same on all machines.
-// Throws SettingError, Cancelled.
-std::vector<VoxelBlock> voxelBlocks(const Solid& solid, const MapGridSettings& settings);
+// Those in which a level set of the solid may have voxels inside or in its band, ascending by
+// origin: the same on all machines. Throws SettingError, Cancelled.
+std::vector<VoxelBlock> voxelBlocks(const Solid& solid, const LevelSetSettings& settings);
 
-struct MapBlock {
-  // surface, map (less SolidGrids::localOrigin), jacobian, harmonic_energy and deformation_energy,
-  // before repair, with the values that they have in one run; outside the block they are empty.
-  openvdb::GridPtrVec grids;
-  std::vector<double> totals;  // for joinBlocks()
+// What a share makes of a block: of one run's grids the voxels of this block, as far as they can be
+// made without the others.
+struct GridBlock {
+  openvdb::GridPtrVec grids;                   // outside the block they are empty
+  std::vector<double> totals;                  // its origin, and sums, for what joins the blocks
+  std::string name = "a block of the volume";  // for errors: its file, say
 };
 
-// Its memory does not grow with the number of voxels of the whole. Throws as evaluateOnGrid().
-MapBlock evaluateBlock(const MappedSolid& mapped, const MapGridSettings& settings,
-                       const openvdb::Coord& origin);
+// surface, map (less SolidGrids::localOrigin), jacobian, harmonic_energy and deformation_energy,
+// before repair. Its memory does not grow with the number of voxels of the whole. Throws as
+// evaluateOnGrid().
+GridBlock evaluateBlock(const MappedSolid& mapped, const MapGridSettings& settings,
+                        const openvdb::Coord& origin);
 
 // What evaluateOnGrid() returns, to the bit, from all blocks, each once: repairs folds, looks at
 // cells and sums totals. Takes the blocks' voxels. Throws DataError for grids that are no such
 // blocks of this map, and as evaluateOnGrid().
 SolidGrids joinBlocks(const MappedSolid& mapped, const MapGridSettings& settings,
-                      std::vector<MapBlock> blocks);
+                      std::vector<GridBlock> blocks);
 
 // Need of evaluateBlock() in bytes, of any block.
 std::uint64_t mapBlockMemory(const MapGridKind& kind);
+
+// The same of makeLevelSet() and, with a mesh, makeAttributeGrids(): these grids, in this order.
+GridBlock voxelizeBlock(const Solid& solid, const LevelSetSettings& settings,
+                        const Mesh* attributes, const openvdb::Coord& origin);
+openvdb::GridPtrVec joinVoxelized(const Solid& solid, const LevelSetSettings& settings,
+                                  std::vector<GridBlock> blocks);
 
 // The maps of a sequence's frames on the voxels of its rest pose.
 class FrameEvaluator {

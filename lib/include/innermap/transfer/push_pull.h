@@ -24,6 +24,7 @@
 #include <string>
 #include <vector>
 
+#include "innermap/evaluate/grids.h"
 #include "innermap/field/harmonic_field.h"
 #include "innermap/fit/frame_fitter.h"
 #include "innermap/levelset/level_set.h"
@@ -74,8 +75,29 @@ class VolumePusher {
                   const std::vector<CarriedField>& fields = {}) const;
 
  private:
+  friend class BlockPusher;
   struct Data;
   std::shared_ptr<const Data> data_;
+};
+
+// VolumePusher::push() in shares (evaluate/grids.h), to the level set that makeLevelSet(target,
+// output) is, without outside settings, densities and fields.
+class BlockPusher {
+ public:
+  // Throws SettingError, DataError for outside settings and densities. target: must outlive it.
+  BlockPusher(const VolumePusher& pusher, const ComposedMap& map, const Solid& target,
+              const LevelSetSettings& output);
+
+  // The voxels of a block. Throws as VolumePusher::push. One at a time.
+  GridBlock push(const openvdb::Coord& origin) const;
+  // From all blocks, each once, what push() of one run returns, to the bit: level sets become
+  // distances there, and positions are moved. Throws as that, DataError for what are no such
+  // blocks.
+  PushResult join(std::vector<GridBlock> blocks) const;
+
+ private:
+  struct Data;
+  std::shared_ptr<Data> data_;
 };
 
 struct FramePushSettings {
@@ -134,12 +156,37 @@ struct PullResult {
   std::vector<std::string> warnings;
 };
 
-// For each voxel p of the source, the grids' values at f(p), moved back by what they are. levelSet:
-// of `source`, half-width at least the skin; its transform is that of the output, which is active
-// where the signed distance is at most the skin (with outside settings: the outside distance).
-// Names, classes, backgrounds, vector types and metadata stay; level sets are rebuilt as distances,
-// and where one is the target's own surface, to a voxel, it becomes the source's.
-// Throws as VolumePusher does.
+// Keeps all that depends on the grids; immutable. settings.targetLevelSet must outlive it.
+class VolumePuller {
+ public:
+  // Throws as VolumePusher does.
+  VolumePuller(const ComposedMap& map, const Solid& source, const openvdb::GridPtrVec& grids,
+               const PullSettings& settings = {});
+
+  // For each voxel p of the source, the grids' values at f(p), moved back by what they are.
+  // levelSet: of `source`, half-width at least the skin; its transform is that of the output, which
+  // is active where the signed distance is at most the skin (with outside settings: the outside
+  // distance). Names, classes, backgrounds, vector types and metadata stay; level sets are rebuilt
+  // as distances, and where one is the target's own surface, to a voxel, it becomes the source's.
+  PullResult pull(const openvdb::FloatGrid& levelSet) const;
+
+  // The same in shares (evaluate/grids.h), of the level set that makeLevelSet(source, output) is,
+  // without outside settings: the voxels of a block; and from all of them, each once, what pull()
+  // returns, to the bit: level sets become distances there, and positions are moved. Throw as
+  // pull(), SettingError for outside settings, DataError for what are no such blocks.
+  GridBlock pullBlock(const LevelSetSettings& output, const openvdb::Coord& origin) const;
+  PullResult join(const LevelSetSettings& output, std::vector<GridBlock> blocks) const;
+
+ private:
+  struct Data;
+  std::shared_ptr<const Data> data_;
+};
+
+// Need of pushing or pulling a block in bytes, of any block, with the grids read already. other:
+// the solid that they live in.
+std::uint64_t carryBlockMemory(const Solid& other, const openvdb::GridPtrVec& grids, bool pushed);
+
+// One of them.
 PullResult pullGrids(const ComposedMap& map, const Solid& source,
                      const openvdb::FloatGrid& levelSet, const openvdb::GridPtrVec& grids,
                      const PullSettings& settings = {});
