@@ -191,7 +191,7 @@ EmbeddingProof proveEmbedding(const ExpandedMap& expanded, const Mesh& surface,
   requireDescribed(settings);
   const ComposedMap& map = expanded.map();
   if (surface.triangles.empty())
-    throw DataError(surface.name + ": has no triangles, so that there is nothing to prove");
+    throw DataError(surface.name + ": has no triangles, so there is nothing to prove");
   validate(surface);
   const std::uint64_t patches =
       std::max<std::uint64_t>(cellLimit(map, settings), 2 * surface.triangles.size());

@@ -69,11 +69,9 @@ std::string slurmText(const Jobs& jobs) {
   std::string out = fmt::format(
       "#!/bin/sh\n"
       "# {} in {} shares, for Slurm: run this file where sbatch is.\n"
-      "# A task is expected to take {:.0f} s and {} MB. It asks for {:g} times the time and a "
-      "minute,\n"
-      "# for {:g} times the memory and 200 MB, and for {} cores. It goes back into the queue when "
-      "its\n"
-      "# node fails; what is finished is not made again.\n"
+      "# A task should take {:.0f} s and {} MB. It asks for {:g} times the time and a minute,\n"
+      "# for {:g} times the memory and 200 MB, and for {} cores. It goes back into the queue when\n"
+      "# its node fails, and then skips finished work.\n"
       "set -e\n"
       "array=$(sbatch --parsable --job-name={} --array=1-{} --requeue --cpus-per-task={} --mem={}M "
       "--time={} \"$@\" --wrap {})\n",

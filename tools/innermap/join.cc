@@ -64,7 +64,7 @@ void nameMix(const JoinedParts& joined, Context& context) {
   for (const auto& [code, names] : hosts)
     kinds.push_back(fmt::format("{} on {}", code, fmt::join(names, ", ")));
   context.warning(fmt::format(
-      "{}s were made by different kinds of vector code ({}), which may differ in the last bits",
+      "workers used different vector instructions for the {}s ({}), so the last bits may differ",
       unitOf(joined.run), fmt::join(kinds, "; ")));
 }
 
@@ -110,9 +110,9 @@ void dropWithoutOutput(const FramePattern& pattern, bool broken, JoinedParts& jo
 void requireAll(const JoinedParts& joined, bool partial, Context& context) {
   if (joined.missing.empty()) return;
   const std::string text =
-      fmt::format("{} of {} {}s are not made: {}", joined.missing.size(), joined.run.frames.size(),
+      fmt::format("{} of {} {}s are missing: {}", joined.missing.size(), joined.run.frames.size(),
                   unitOf(joined.run), framesText(joined.missing));
-  if (!partial) throw DataError(text + "; make their shares, or join what is there with --partial");
+  if (!partial) throw DataError(text + "; make their shares, or join the others with --partial");
   if (joined.parts.empty()) throw DataError(text);
   context.warning(text);
 }
@@ -152,8 +152,7 @@ void joinSequence(const JoinOptions& options, JoinedParts joined, Context& conte
 // A volume: the command that was run in shares takes the blocks in place of making them, and goes
 // on as it does with its own.
 void joinVolume(const JoinOptions& options, JoinedParts joined, Context& context) {
-  if (options.partial)
-    throw UsageError("--partial: is for frames; a volume needs all of its blocks");
+  if (options.partial) throw UsageError("--partial: is for frames; a volume needs all blocks");
   const std::string output = outputOf(options.folder);
   dropWithoutOutput(blockPattern(options.folder), false, joined);
   requireAll(joined, false, context);
@@ -177,7 +176,7 @@ void run(const JoinOptions& options, Context& context) {
   JoinedParts joined = context.timed("read", [&] { return readParts(options.folder); });
   if (joined.run.command == "sequence") return joinSequence(options, std::move(joined), context);
   if (joined.run.command == "evaluate") return joinVolume(options, std::move(joined), context);
-  throw DataError(options.folder + ": the parts are of '" + joined.run.command +
+  throw DataError(options.folder + ": holds parts of '" + joined.run.command +
                   "', which has nothing to join");
 }
 
@@ -187,16 +186,17 @@ Command makeJoinCommand() {
   auto o = std::make_shared<JoinOptions>();
   Command c("join", "Join the shares of a run that was made on several machines");
   c.description(
-      "Reads the parts that sequence with --share left in FOLDER/parts, and writes what one run "
-      "would have written: energies.csv, energies.svg and report.json, with the same figures "
-      "whatever the shares were. Frames that are not made yet are named, and nothing is written "
-      "unless --partial is given. Parts of two runs, of another version, that are cut off, or that "
-      "two workers made with other results are refused. Others may write parts meanwhile. "
-      "Of the blocks that evaluate with --share left in map.vdb.shares it makes map.vdb: it reads "
-      "the map again, repairs folds, looks at the cells between voxels and sums energies, and so "
-      "needs the memory of the whole.");
+      "Reads the parts that sequence --share left in FOLDER/parts, and writes the files of one "
+      "run: energies.csv, energies.svg and report.json. The figures are the same however you cut "
+      "the run. If frames are missing, join names them and writes nothing, unless you give "
+      "--partial. It refuses parts of two runs or of another version, parts that are cut off, and "
+      "frames that two workers made with different results. Workers may write more parts "
+      "meanwhile. From the blocks that evaluate --share left in map.vdb.shares, join makes "
+      "map.vdb. It reads the map again, repairs folds, checks the cells between voxels and sums "
+      "energies, so it needs the memory of the whole volume.");
   c.positional("FOLDER", &o->folder,
-               "the output of a run with --share; of a volume, the folder .shares beside it");
+               "the output folder of a run with --share; for a volume, the folder .shares beside "
+               "the output");
   c.flag("--partial", &o->partial, "join the frames that are there");
   c.example("innermap join energies");
   c.example("innermap join map.vdb.shares");

@@ -67,7 +67,7 @@ std::string whyEnded(AdaptiveEnd end, std::size_t maxSources) {
     case AdaptiveEnd::maxMemory:
       return "--max-memory is reached";
     case AdaptiveEnd::jumps:
-      return "it holds but where parts that cross slide along each other";
+      return "it holds except where parts cross and slide along each other";
     case AdaptiveEnd::noGain:
       return "more charges do not help";
     case AdaptiveEnd::time:
@@ -76,7 +76,7 @@ std::string whyEnded(AdaptiveEnd end, std::size_t maxSources) {
     case AdaptiveEnd::stopped:
       break;
   }
-  return "vertices are all that --interpolation smooth fits";
+  return "--interpolation smooth fits the vertices alone";
 }
 
 ReportMesh reportOf(const Mesh& mesh, double volume) {
