@@ -229,16 +229,15 @@ BoundaryProof proveBoundaryError(const ExpandedMap& expanded, const Mesh& surfac
   const double diagonal = targetDiagonal(surface, target);
   const std::uint64_t limit =
       std::max<std::uint64_t>(cellLimit(map, settings), 8 * surface.triangles.size());
-  requireMemory("bounding the boundary's error",
-                proofMemory(map, surface.triangles.size(), settings),
+  requireMemory("bounding the error", proofMemory(map, surface.triangles.size(), settings),
                 "look at fewer cells a charge");
   const double scale = proofScale(boundingBox(surface));
   const auto steps = expanded.expansions(scale);
   BoundarySearch search(map, *steps, scale, diagonal, settings.errorMargin, limit);
-  reportProgress("bounding the boundary's error", 0);
+  reportProgress("bounding the error", 0);
   search.begin(sortedPieces(surface, target, scale));
   while (search.mayGoOn()) {
-    reportProgress("bounding the boundary's error",
+    reportProgress("bounding the error",
                    static_cast<double>(search.examined()) / static_cast<double>(limit));
     search.goOn(limit - search.examined());
   }
