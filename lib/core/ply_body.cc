@@ -14,7 +14,7 @@ static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "values are copied as t
 namespace innermap {
 namespace {
 
-const char kTruncated[] = "the file is cut short or its header promises too much; export it again";
+const char kTruncated[] = "the file is cut short or its header claims too much; export it again";
 
 // body(T{}) for the C++ type.
 template <class Body>

@@ -101,9 +101,10 @@ std::vector<std::string> notesOn(const OuterSurface& outer, const std::string& n
     places += fmt::format("{}({:.4g}, {:.4g}, {:.4g}), {:.2g} across", c ? "; " : "", at.x, at.y,
                           at.z, size);
   }
-  notes.push_back(fmt::format("{}: its parts are cut apart where they meet, in {} place{}: {}{}",
-                              name, outer.cuts.size(), outer.cuts.size() == 1 ? "" : "s", places,
-                              outer.cuts.size() > kNotedCuts ? "; smaller ones" : ""));
+  notes.push_back(
+      fmt::format("{}: innermap cut its parts apart where they meet, in {} place{}: {}{}", name,
+                  outer.cuts.size(), outer.cuts.size() == 1 ? "" : "s", places,
+                  outer.cuts.size() > kNotedCuts ? "; smaller ones" : ""));
   return notes;
 }
 
@@ -124,8 +125,8 @@ void makeAlike(const Mesh& mesh, const Mesh& other, LayOutSettings settings, Cle
     return;  // no part has so many: the two are refused for what they have
   }
   cut.notes.push_back(fmt::format(
-      "{}: its parts together have {} handle{}, it is cut until it has {} as {} has", mesh.name,
-      *clean.handles, *clean.handles == 1 ? "" : "s", *like.handles, other.name));
+      "{}: its parts together have {} handle{}; innermap cuts it until it has {}, like {}",
+      mesh.name, *clean.handles, *clean.handles == 1 ? "" : "s", *like.handles, other.name));
   clean = std::move(cut);
 }
 

@@ -100,10 +100,9 @@ TargetBoundary makeTargetBoundary(const Solid& source, const Mesh& target) {
   out.volume = timed(out.seconds, "solid", [&] { return volumeOf(moved, source.overlaps()); });
   if (!(out.volume > kNoVolume * std::pow(out.diagonal, 3))) {
     out.volume = 0;
-    out.warnings.push_back(
-        target.name +
-        ": its parts cancel to no volume, so it is turned inside out somewhere; the harmonic "
-        "energy is not scaled to its unit volume");
+    out.warnings.push_back(target.name +
+                           ": its parts cancel to no volume, so it is inside out somewhere; the "
+                           "harmonic energy is not scaled to unit volume");
   }
   return out;
 }

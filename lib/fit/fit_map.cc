@@ -50,11 +50,11 @@ Facts factsOf(const BoundaryPair& pair, const FitOutcome& out, std::uint64_t see
 
 void noteSteps(MapFit& fit, double singleFolded, std::size_t singleSources) {
   if (fit.steps.empty()) return;
-  fit.notes.push_back(fmt::format(
-      "one harmonic map, of {} charges, folds {:.2g}% of the inside; in {} steps {:.2g}% is folded "
-      "and {:.2g}% taken out of the target",
-      singleSources, 100 * singleFolded, fit.steps.size(), 100 * fit.inside.folded,
-      100 * fit.inside.outside));
+  fit.notes.push_back(
+      fmt::format("one harmonic map, of {} charges, folds {:.2g}% of the inside; in {} steps "
+                  "{:.2g}% folds and {:.2g}% lands outside the target",
+                  singleSources, 100 * singleFolded, fit.steps.size(), 100 * fit.inside.folded,
+                  100 * fit.inside.outside));
 }
 
 void noteJumps(MapFit& fit, const std::vector<ValueJump>& jumps) {

@@ -106,7 +106,7 @@ std::string proofWords(const ProofFigures& p) {
     out += "How far the boundary is off at most is not decided. ";
   if (p.oneToOne > 0)
     out += "No two points of the solid go to one: it is mapped one-to-one as a whole. ";
-  if (p.oneToOne == 0) out += "Whether any two points of the solid go to one is not decided. ";
+  if (p.oneToOne == 0) out += "It is not decided whether two points of the solid go to one. ";
   return out;
 }
 
@@ -118,17 +118,15 @@ std::string boundary(const Injectivity& known) {
   std::string out;
   if (known.outside > 0)
     out += percent(known.outside) +
-           " of the points inside come to lie outside the target by more than the error of 99% of "
-           "the boundary. ";
+           " of the points inside land outside the target by more than the error of 99% of the "
+           "boundary. ";
   const DegreeFigures& degree = known.degree;
   const std::string within = fmt::format(
       "99% of the boundary's image is within {:.2g} of the target's diagonal of the target",
       known.boundaryError);
   if (degree.checked > 0)
     out += fmt::format(
-        "{}, and winds {} about the {} points checked inside the target that are deeper than "
-        "that{}. ",
-        within,
+        "{}, and winds {} about the {} points checked deeper inside the target{}. ", within,
         degree.least == degree.greatest
             ? times(degree.least)
             : fmt::format("{} to {}", degree.least, times(degree.greatest)),
@@ -151,12 +149,12 @@ std::string crossing(const char* what, const SelfIntersectionFigures& figures) {
 
 std::string surfaces(const Injectivity& known) {
   if (known.source.pairs == 0 && known.target.pairs == 0)
-    return known.solid.caps == 0 ? "Neither surface runs through itself. "
-                                 : "Neither surface runs through itself; the caps that "
-                                   "close it were not looked at. ";
+    return known.solid.caps == 0
+               ? "Neither surface runs through itself. "
+               : "Neither surface runs through itself; the caps over holes were not checked. ";
   std::string out;
   if (known.source.pairs > 0)
-    out += crossing("source", known.source) + "What overlaps there is mapped as one solid. ";
+    out += crossing("source", known.source) + "Parts that overlap there are mapped as one solid. ";
   if (known.target.pairs > 0) out += crossing("target", known.target);
   if (known.target.pairs > 0 && known.source.pairs == 0)
     out += "No continuous map that meets this target exactly can be one-to-one. ";
@@ -200,18 +198,17 @@ std::string windingWords(const Injectivity& known) {
                        times(degree.greatest));
   if (degree.least < 0 && windsOtherwise(known))
     out += fmt::format(
-        "So the map is not one-to-one: its boundary winds {} about a point, and what goes there "
-        "is turned over. ",
+        "So the map is not one-to-one: its boundary winds {} about a point, and turns over the "
+        "points that go there. ",
         times(degree.least));
   return out;
 }
 
 std::string foldWords(const Injectivity& known) {
   if (!signsOf(known).both()) return "";
-  return known.solid.parts == 1
-             ? "So the map is not one-to-one: it is turned over at those places. "
-             : "The solid has several parts: on each that is turned over at some of its places and "
-               "not at others the map is not one-to-one. ";
+  return known.solid.parts == 1 ? "So the map is not one-to-one: it turns over those places. "
+                                : "The solid has several parts: on a part that is turned over only "
+                                  "in places, the map is not one-to-one. ";
 }
 
 std::string conclusion(const Injectivity& known) {
@@ -220,21 +217,20 @@ std::string conclusion(const Injectivity& known) {
   if (countsPreimages(known)) out += "By these proofs " + preimages(known) + ". ";
   if (notOneToOne(known) || known.proof.whole()) return out;
   if (known.inside.checked == 0 && known.voxels.checked == 0)
-    return "Whether the map is one-to-one is not known. ";
+    return "It is not known whether the map is one-to-one. ";
   if (signsOf(known).both()) return out;
   if (known.mirrored)
     return out +
-           "The map mirrors the solid, as its target is inside out; nothing that was checked rules "
-           "out that it is one-to-one. ";
+           "The map mirrors the solid, as its target is inside out; no check rules out that it is "
+           "one-to-one. ";
   if (degree.checked == 0 || degree.least != 1 || anyFolded(known))
-    return out +
-           "Nothing that was checked rules out that the map is one-to-one; nothing proves it. ";
+    return out + "No check rules out that the map is one-to-one, and none proves it. ";
   if (countsPreimages(known)) return out;
   return fmt::format(
-      "Where det J > 0 everywhere inside, as many points go to a place as the image of the "
-      "boundary winds about it: then exactly one goes to each of those {} points, and to all that "
-      "can be joined to them without meeting that image. That det J > 0 between the points that "
-      "were checked is not proved. ",
+      "If det J > 0 everywhere inside, as many points go to a place as the image of the boundary "
+      "winds about it. Then exactly one point goes to each of those {} points, and to all places "
+      "that can be reached from them without crossing that image. Between the checked points, det "
+      "J > 0 is not proven. ",
       degree.checked);
 }
 
@@ -245,8 +241,7 @@ std::string cells(const CellFigures& cells) {
       "solid, turns none of them over",
       cells.local ? "map_local" : "map", cells.checked, percent(cells.share));
   if (cells.overlaps == 0) return what + ", and is one-to-one as a whole. ";
-  if (cells.overlaps < 0)
-    return what + ". That is local: whether their images overlap is not shown. ";
+  if (cells.overlaps < 0) return what + ". That is local: their images may still overlap. ";
   return what + fmt::format(
                     ", but is not one-to-one: their images overlap at {} place{} of their "
                     "boundary. ",

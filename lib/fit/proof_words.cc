@@ -42,7 +42,7 @@ std::string preimages(const Injectivity& known) {
       "each point farther than {} of the target's diagonal from the target's surface{} has as many "
       "preimages as that surface winds about it{}{}",
       atMost(p.boundaryError),
-      p.whole() ? "" : ", and outside of the images of cells that are undecided or turned over,",
+      p.whole() ? "" : ", and outside the images of undecided and turned-over cells,",
       p.mirrored ? ", the other way round" : "",
       windsOnce(known) ? ": one inside, none outside" : "");
 }

@@ -135,11 +135,10 @@ class Verifier {
       return out;
     }
     if (boundaryFails()) out.result = ClaimResult::fails;
-    out.found =
-        std::isfinite(boundary_.error)
-            ? fmt::format("{:.6g} at one point, none farther than {}", boundary_.seen,
-                          atMost(boundary_.error, 6))
-            : fmt::format("{:.6g} at one point; near some it cannot be bounded", boundary_.seen);
+    out.found = std::isfinite(boundary_.error)
+                    ? fmt::format("{:.6g} at one point, none farther than {}", boundary_.seen,
+                                  atMost(boundary_.error, 6))
+                    : fmt::format("{:.6g} at one point; no bound near some others", boundary_.seen);
     out.places = {boundary_.seenAt};
     return out;
   }
@@ -173,8 +172,8 @@ class Verifier {
     // Without these two it may still be so.
     if (out.result == ClaimResult::fails) out.result = ClaimResult::unshown;
     out.found = out.result == ClaimResult::holds
-                    ? "follows from what is shown of det J and boundary"
-                    : "does not follow from what is shown";
+                    ? "follows from the proofs of det J and the boundary"
+                    : "does not follow from the proofs above";
     return out;
   }
 
@@ -191,8 +190,7 @@ class Verifier {
         proveEmbedding(expanded_, solid_, proofSettings(settings_.proofCells));
     if (proof.proven && proof.connected) out.result = ClaimResult::holds;
     out.found = out.result == ClaimResult::holds
-                    ? "the boundary, which is connected, does not meet "
-                      "itself"
+                    ? "the boundary is connected and does not meet itself"
                 : proof.connected ? fmt::format("{} pairs of patches may meet", proof.undecided)
                                   : "the boundary is not connected";
     out.places = proof.places;
@@ -251,15 +249,14 @@ std::string wordOf(ClaimResult result) {
 }
 
 std::vector<Setting> describe(VerifySettings& s) {
-  return {Setting("proof_cells", "N", &s.proofCells,
-                  "cells for each charge that are looked at, at most, before a claim counts as not "
-                  "shown")
-              .from(1, 1e6),
-          Setting("sample", "N", &s.sample,
-                  "cells, and triangles of the boundary, that are checked in another way too; 0: "
-                  "none")
-              .from(0, 1e6),
-          seedSetting(&s.seed)};
+  return {
+      Setting("proof_cells", "N", &s.proofCells,
+              "look at so many cells for each charge, at most, before a claim counts as not shown")
+          .from(1, 1e6),
+      Setting("sample", "N", &s.sample,
+              "check so many cells, and triangles of the boundary, in another way too; 0: none")
+          .from(0, 1e6),
+      seedSetting(&s.seed)};
 }
 
 bool Verification::holds() const { return allHold(claims); }
@@ -272,7 +269,7 @@ Verification verifyMap(const MappedSolid& mapped, const VerifySettings& settings
   Claim form;
   form.name = "form";
   form.result = ClaimResult::fails;
-  form.claimed = "something is proven";
+  form.claimed = "a proof";
   form.found = stated.fault;
   return {{form}, {}, {}};
 }

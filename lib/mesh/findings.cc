@@ -48,10 +48,10 @@ void addSolid(const MeshReport& report, Findings& out) {
     crossings += fmt::format(", the first at ({:.6g}, {:.6g}, {:.6g}), triangles {} and {}",
                              c.place.x, c.place.y, c.place.z, c.first, c.second);
   }
-  out.add(
-      "self_intersections", report.selfIntersections, crossings,
-      "between unrelated meshes its outer surface is taken (--outer writes it); else overlapping "
-      "parts become one solid by their winding number, and no map onto it is one-to-one there");
+  out.add("self_intersections", report.selfIntersections, crossings,
+          "between unrelated meshes innermap maps its outer surface (--outer writes it); between "
+          "poses of one mesh, overlapping parts become one solid by their winding number, and no "
+          "map onto it is one-to-one there");
 }
 
 void addBoundary(const MeshReport& report, Findings& out) {
@@ -94,8 +94,8 @@ void addManifold(const MeshReport& report, Findings& out) {
     edges += fmt::format(", the first between vertices {} and {}", report.nonManifoldEdges[0][0],
                          report.nonManifoldEdges[0][1]);
   out.add("non_manifold_edges", report.nonManifoldEdges.size(), edges,
-          "the solid is what has winding number over one half; walls inside it have no volume and "
-          "are ignored");
+          "the solid is the region with a winding number over one half; walls inside it have no "
+          "volume and are ignored");
   std::string vertices = counted(report.nonManifoldVertices.size(), "vertex", "vertices") +
                          " where separate fans of triangles touch";
   if (!report.nonManifoldVertices.empty())
@@ -127,10 +127,10 @@ void addParts(const MeshReport& report, Findings& out) {
           fmt::format("{} separate components", components),
           "the solid is their union, less the cavities; one map serves all of them, so parts that "
           "lie close but move apart need more source points");
-  out.add("seams", report.seamEdges,
-          counted(report.seamEdges, "edge", "edges") + " along which vertices are doubled",
-          "they are treated as joined where the positions are equal; keep them together in the "
-          "target too");
+  out.add(
+      "seams", report.seamEdges,
+      counted(report.seamEdges, "edge", "edges") + " along which vertices are doubled",
+      "innermap joins them where their positions are equal; keep them together in the target too");
   out.add("loose_vertices", report.looseVertices.size(),
           counted(report.looseVertices.size(), "vertex", "vertices") + " that no triangle uses",
           "they are ignored");

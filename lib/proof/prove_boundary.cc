@@ -247,10 +247,10 @@ BoundaryProof proveBoundaryError(const ExpandedMap& expanded, const Mesh& surfac
   const double scale = proofScale(boundingBox(surface));
   const auto steps = expanded.expansions(scale);
   BoundarySearch search(map, *steps, scale, diagonal, settings.errorMargin, limit);
-  reportProgress("bounding the boundary's error", 0);
+  reportProgress("bounding the error", 0);
   search.begin(sortedPieces(surface, target, scale));
   while (search.mayGoOn()) {
-    reportProgress("bounding the boundary's error",
+    reportProgress("bounding the error",
                    static_cast<double>(search.examined()) / static_cast<double>(limit));
     search.goOn(limit - search.examined());
   }

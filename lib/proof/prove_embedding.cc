@@ -191,12 +191,12 @@ EmbeddingProof proveEmbedding(const ExpandedMap& expanded, const Mesh& surface,
   requireDescribed(settings);
   const ComposedMap& map = expanded.map();
   if (surface.triangles.empty())
-    throw DataError(surface.name + ": has no triangles, so that there is nothing to prove");
+    throw DataError(surface.name + ": has no triangles, so there is nothing to prove");
   validate(surface);
   const std::uint64_t patches =
       std::max<std::uint64_t>(cellLimit(map, settings), 2 * surface.triangles.size());
   const std::uint64_t limit = kPairsPerPatch * patches / map.steps().size();
-  requireMemory("proving that the boundary does not meet itself",
+  requireMemory("proving one-to-one",
                 FieldTree::memory(map.sources()) + kBytesPerPatch * patches + kBytesPerPair * limit,
                 "look at fewer cells a charge");
   const double scale = proofScale(boundingBox(surface));
@@ -207,7 +207,7 @@ EmbeddingProof proveEmbedding(const ExpandedMap& expanded, const Mesh& surface,
   out.connected = isConnected(surface);
   std::vector<Pair> pairs = {{0, 0}};
   while (!pairs.empty()) {
-    reportProgress("proving that the boundary does not meet itself",
+    reportProgress("proving one-to-one",
                    std::min(1.0, static_cast<double>(out.examined) / static_cast<double>(limit)));
     out.examined += pairs.size();
     pairs = undecidedPairs(steps, tree, pairs);

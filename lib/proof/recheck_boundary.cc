@@ -168,7 +168,7 @@ Recheck recheckBoundary(const ComposedMap& map, const Mesh& surface, const Point
         outcomes[begin] = examine(map, triangleOf(surface, target, t),
                                   bound * diagonal * (1 + 1e-12), settings.terms);
       },
-      "checking the boundary's error in another way");
+      "checking the error again");
   for (const TriangleOutcome& outcome : outcomes) {
     out.least = std::max(out.least, outcome.sure / diagonal);
     if (outcome.decided) {

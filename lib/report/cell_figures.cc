@@ -56,11 +56,11 @@ Figures rowOf(const ComparedRow& r) {
 
 Figures figures(const CellProof& proof) {
   return {
-      {"statement", statementOf(proof), "in words", "what is proven of them as written"},
+      {"statement", statementOf(proof), "in words", "proof for the cells as written"},
       {"not_right_side_out", proof.inverted, "not right side out", "somewhere inside; proven"},
       {"undecided", proof.undecided, "not decided", "within rounding"},
       {"right_side_out", proof.rightSideOut(), "right side out", "all of them, proven"},
-      {"one_to_one", proof.oneToOne(), "one-to-one", "nor do any two overlap: globally, proven"},
+      {"one_to_one", proof.oneToOne(), "one-to-one", "no two overlap: proven globally"},
       {"meetings", proof.meetings, "boundary meets itself",
        "places where it crosses or touches itself, or may"},
       {"exact", proof.exact, "signs by exact arithmetic", "as rounding might have turned them"}};
@@ -136,7 +136,7 @@ Figures figures(const Hexahedralization& made) {
 
 Figures figures(const Polycube& cube) {
   const auto part = [](const MissedPart& p) -> Figures {
-    return {{"volume", p.volume, "volumes", "of parts over half a block from all blocks",
+    return {{"volume", p.volume, "volumes", "of parts farther than half a block from all blocks",
              FigureUnit::share},
             {"x", p.centre.x, "x", "", FigureUnit::length},
             {"y", p.centre.y, "y", "", FigureUnit::length},
@@ -160,7 +160,7 @@ Figures figures(const Remesh& made, double diagonal) {
           {"inverted", made.inverted, "inverted", "after repair"},
           {"from_coarse", made.fromCoarse, "coarse cells first", "as the map alone did not do"},
           {"linear_map", linearMapStatement(made.sourceProof, made.proof), "linear map",
-           "what is proven of the map that is linear on the cells"},
+           "proof for the map that is linear on the cells"},
           {"swaps", made.swaps, "swaps", ""},
           {"collapses", made.collapses, "collapses", ""},
           {"moved_rms", made.repair.moved / diagonal, "moved", "root mean square", kDiagonals},

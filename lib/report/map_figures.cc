@@ -84,8 +84,7 @@ Figures boundaryErrorFigures(const MapFit* fit) {
         {"vertices_max", fit ? fit->verticesMax : unknown, "largest at vertices", "at any vertex",
          kDiagonals},
         {"triangles", fit ? fit->triangles : unknown, "triangles' error",
-         "how far the flat triangles are from a smooth surface that the vertices may be samples of",
-         kDiagonals},
+         "how far the flat triangles are from a smooth surface through the vertices", kDiagonals},
         {"smooth_bound", fit ? fit->smoothBound : 0, "bound against a smooth surface",
          "the bound above and the triangles' error together", kDiagonals}}});
 }
@@ -99,7 +98,7 @@ Figures boundaryErrorFigures(const HarmonicFit& fit) {
 namespace {
 
 Figures toleranceFigures(double wanted, double reached, bool met) {
-  return {{"wanted", wanted, "wanted", "99% of the boundary was to lie within this", kDiagonals},
+  return {{"wanted", wanted, "wanted", "99% of the boundary should lie within this", kDiagonals},
           {"reached", reached, "reached", "99% lies within this", kDiagonals},
           {"met", met, "met", "whether it does"}};
 }
@@ -112,7 +111,7 @@ Figures toleranceFigures(const MapFit* fit, const std::string& ended) {
   return together(
       {toleranceFigures(t.wanted, t.reached, t.met),
        when(!t.met,
-            {{"ended", ended, "why no more", "what ended the fit before it was met"},
+            {{"ended", ended, "why no more", "why the fit ended before it was met"},
              {"missed", error.missed, "missed", "of the boundary, where it is not met", kShare},
              {"worst_at", error.maxAt, "largest error's place", "x, y, z in the source",
               FigureUnit::length}})});
@@ -212,7 +211,7 @@ Figures figures(const ProofFigures& proof) {
        kShare},
       {"proof_negative_share", proof.negativeShare, "proven folded", "share of the volume, at most",
        kShare},
-      {"proof_mirrored", proof.mirrored, "mirrored", "the map turns left into right everywhere"},
+      {"proof_mirrored", proof.mirrored, "mirrored", "the map swaps left and right everywhere"},
       {"proof_least", proof.least, "least det J", "its size where its sign is proven, at least"},
       Figure("proof_boundary_error", proof.boundaryError, "boundary error, proven",
              "no point of the boundary is farther off", kDiagonals)
@@ -251,7 +250,7 @@ Figures figures(const Injectivity& known) {
   const DegreeFigures& degree = known.degree;
   return together(
       {{{"statement", injectivityStatement(known), "in words",
-         "what was checked, what was found and what follows"},
+         "what innermap checked, what it found and what follows"},
         {"parts", known.solid.parts, "parts", "of the solid, not connected with one another"},
         {"surfaces", known.solid.surfaces, "closed surfaces",
          "that bound it: one of each part and each cavity"}},
@@ -265,12 +264,13 @@ Figures figures(const Injectivity& known) {
                           known.boundary),
        {Figure("boundary_error", known.boundaryError, "boundary error", "of 99% of it", kDiagonals)
             .when(known.boundaryError > 0)},
-       when(degree.checked > 0, {{"degree_checked", degree.checked, "places deep inside",
-                                  "about which the boundary's image was wound"},
-                                 {"degree_least", degree.least, "least winding",
-                                  "1 where the boundary goes round once, as it should"},
-                                 {"degree_greatest", degree.greatest, "greatest winding",
-                                  "1 where the boundary goes round once, as it should"}}),
+       when(degree.checked > 0,
+            {{"degree_checked", degree.checked, "places deep inside",
+              "about which innermap counted how often the boundary's image winds"},
+             {"degree_least", degree.least, "least winding",
+              "1 where the boundary goes round once, as it should"},
+             {"degree_greatest", degree.greatest, "greatest winding",
+              "1 where the boundary goes round once, as it should"}}),
        determinantFigures("voxels", "voxels", "that were checked, by their centres, after repair",
                           known.voxels),
        {Figure("repaired", known.repaired, "repaired", "voxels that were folded before")

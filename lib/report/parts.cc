@@ -60,14 +60,14 @@ std::string framePrefix(std::int64_t frame) { return fmt::format("frame.{:04}.",
 PartRun readRun(const fs::path& path) {
   PartRun run = parseRun(path.string(), readText(path));
   if (run.version != versionText())
-    throw DataError(fmt::format(
-        "{}: parts made by innermap {}, and this is {}; use the version that made them, "
-        "or remove {} and make them again",
-        path.string(), run.version, versionText(), path.parent_path().string()));
+    throw DataError(
+        fmt::format("{}: innermap {} made these parts, and this is {}; use that version, or remove "
+                    "{} and make them again",
+                    path.string(), run.version, versionText(), path.parent_path().string()));
   if (path.filename() != runName(fingerprintOf(run)))
     throw DataError(path.string() +
-                    ": is not as it was written (its name does not fit); remove it, and make a "
-                    "share again");
+                    ": has changed since it was written (its name does not fit); remove it, and "
+                    "make a share again");
   return run;
 }
 
@@ -75,8 +75,8 @@ Part readPart(const fs::path& path, const std::string& run) {
   Part part = parsePart(path.string(), readText(path), run);
   if (path.filename() != partName(part, run))
     throw DataError(path.string() +
-                    ": is not as it was written (its name does not fit); remove it, and make its "
-                    "share again");
+                    ": has changed since it was written (its name does not fit); remove it, and "
+                    "make its share again");
   return part;
 }
 
@@ -111,7 +111,7 @@ PartFolder::PartFolder(const std::string& folder, const PartRun& run)
     if (name == runName(fingerprint_)) continue;
     const PartRun other = readRun(fs::path(folder_) / name);
     throw DataError(fmt::format(
-        "{}: holds parts of another run, which differs in {}; give another --output, or remove it",
+        "{}: holds parts of another run (they differ in {}); give another --output, or remove it",
         folder_, difference(other, run)));
   }
   // Without the run, it is made from the beginning.
@@ -160,8 +160,8 @@ PartRun theRun(const std::string& folder) {
   if (names.size() > 1) {
     const PartRun other = readRun(fs::path(folder) / names[1]);
     throw DataError(fmt::format(
-        "{}: holds parts of {} runs ({}, {}), which differ in {}; remove those of one of them",
-        folder, names.size(), names[0], names[1], difference(run, other)));
+        "{}: holds parts of {} runs ({}, {}; they differ in {}); remove the parts of one", folder,
+        names.size(), names[0], names[1], difference(run, other)));
   }
   return run;
 }
@@ -178,7 +178,7 @@ void keep(std::map<std::int64_t, std::pair<Part, std::string>>& found, Part part
   const bool newIsGood = part.broken.empty(), oldIsGood = at->second.first.broken.empty();
   if (newIsGood && oldIsGood)
     throw DataError(fmt::format(
-        "{} {} was made twice with other results: {} ({}, {}) and {} ({}, {}); {}", unit, frame,
+        "{} {} was made twice with different results: {} ({}, {}) and {} ({}, {}); {}", unit, frame,
         at->second.second, at->second.first.host, at->second.first.code, path, part.host, part.code,
         at->second.first.input != part.input
             ? "its file was changed in between: remove the older one"

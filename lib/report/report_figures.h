@@ -15,7 +15,7 @@
 
 namespace innermap {
 
-// "source" and "target"
+// "source", "target" and "laid"
 struct ReportMesh {
   std::string path;
   std::uint64_t vertices = 0, triangles = 0;

@@ -125,8 +125,8 @@ SvgChart stability(const Study& study) {
   addPanel(chart, study, "charges on an offset", distanceAxis(), "dimensionless", sizes);
   addPanel(chart, study, "charges on a sphere", radiusAxis(), "dimensionless", sizes);
   const std::string y = "error at fresh points / at the fit's own";
-  addPanel(chart, study, "what the fit does not see: distance", distanceAxis(), y, ratio);
-  addPanel(chart, study, "what the fit does not see: boundary points", pointsAxis(), y, ratio);
+  addPanel(chart, study, "error between the fit's points: distance", distanceAxis(), y, ratio);
+  addPanel(chart, study, "error between the fit's points: boundary points", pointsAxis(), y, ratio);
   addPanel(chart, study, "folds: distance", distanceAxis(), "% of the volume folded", folded,
            false);
   addPanel(chart, study, "folds: number of charges", chargesAxis(), "% of the volume folded",
@@ -238,17 +238,16 @@ std::vector<std::string> studyChartNames() {
 std::vector<StudyChart> studyCharts(const Study& study, const std::string& subtitle) {
   std::vector<StudyChart> all{
       {"figure5.svg",
-       "What the paper measures: the sum of squared errors at the points that were fitted to. As a "
-       "sum it grows with their number, which (b) shows, and (a) too, as each charge has its "
-       "points.",
+       "The paper's measure: the sum of squared errors at the points of the fit. It grows with "
+       "their number, as (b) shows, and (a) too, since each charge has its points.",
        figureFive(study)},
       {"errors.svg",
-       "The error where the fit did not look decides; where it leaves the fit's own error, the fit "
-       "swings between its points.",
+       "The error between the fit's points decides. If it is larger than the fit's own error, the "
+       "fit swings between its points.",
        errors(study)},
       {"stability.svg",
-       "Large weights cancel each other and cost digits; an error that the fit does not see is one "
-       "that the C-Error hides.",
+       "Large weights cancel each other and cost digits. The C-Error hides errors between the "
+       "fit's points.",
        stability(study)},
       {"energies.svg", "What the settings do to the energies, taken from voxels.", energies(study)},
       {"cost.svg", "The lower left is best.", cost(study)},

@@ -30,7 +30,7 @@ Figures wayFigures(const ShellCorrespondence& shell) {
             {"energy", m.energy, "energy", ""},
             {"score", m.score, "score", ""},
             {"turn", m.turn, "turn", "", FigureUnit::degrees},
-            {"way", m.way, "way", "what differs little has the same number, as --choose takes it"}};
+            {"way", m.way, "way", "ways that differ little share a number, as in --choose"}};
   };
   const auto both = [](const std::array<double, 2>& a) { return std::vector<double>{a[0], a[1]}; };
   return together(
@@ -55,7 +55,7 @@ Figures outerSurfaceFigures(const std::optional<OuterSurface>& taken) {
   const auto cut = [](const SurfaceCut& c) { return placeFigures(c.place, c.size); };
   return together(
       {{{"taken", taken.has_value(), "outer surface",
-         "it was taken in place of a mesh that crosses itself"}},
+         "innermap maps it in place of a mesh that crosses itself"}},
        when(taken.has_value(),
             together(
                 {{{"edge", outer.edge, "lattice's cells", "their edge", FigureUnit::length},
@@ -81,11 +81,11 @@ Figures figures(const Quantiles& q) {
 }
 
 Figures figures(const LayoutQuality& q) {
-  return {{"flips", q.flips, "flips", "triangles of the layout that are turned over"},
-          {"degree", q.degree, "degree",
-           "how often the one surface covers the other; 1 as it should be"},
-          {"area_ratio_log10", q.areaRatioLog10, "area ratios",
-           "decades between the smallest and the largest on the layout"}};
+  return {
+      {"flips", q.flips, "flips", "triangles of the layout that are turned over"},
+      {"degree", q.degree, "degree", "how often the one surface covers the other; it should be 1"},
+      {"area_ratio_log10", q.areaRatioLog10, "area ratios",
+       "decades between the smallest and the largest on the layout"}};
 }
 
 Figures correspondenceFigures(const MeshCorrespondence* map) {
@@ -118,7 +118,7 @@ Figures correspondenceFigures(const MeshCorrespondence* map) {
          "self-intersections that it had"},
         {"landmarks", landmarks, "landmarks", "pairs of points that were given"},
         Figure("landmark_error", map ? map->landmarkError : 0, "landmark error",
-               "farthest that one is from its like", kDiagonals)
+               "largest distance between the two", kDiagonals)
             .when(landmarks > 0),
         {"vertices", map ? map->source.vertices.size() : 0, "vertices",
          "of the source as it was laid"},

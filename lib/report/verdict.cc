@@ -39,7 +39,7 @@ std::string boundaryAdvice(MapOrigin origin, bool toTolerance) {
 }
 
 std::string foldAdvice(MapOrigin origin, bool toTolerance, OneToOne oneToOne) {
-  const std::string laid = ", pairs of places in --landmarks, or --aligned where both stand alike";
+  const std::string laid = ", pairs of places in --landmarks, or --aligned if both stand alike";
   if (origin == MapOrigin::file)
     return "fit the map again with --one-to-one on, a smaller --tolerance, or for solids that were "
            "never related --landmarks or --aligned";
@@ -198,7 +198,7 @@ Verdict judgeFrames(const std::vector<JudgedFrame>& frames, double tolerance,
                                  "up to {} of the inside is folded, in frame {} (at most: {}): "
                                  "turned over there",
                                  percent(folded.folded), folded.number, percent(settings.maxFolded))
-                           : "nowhere folded inside, in no frame: one-to-one as far as checked";
+                           : "no frame folds inside: one-to-one as far as checked";
   out.findings.push_back({finding("folds", text, folded.folded, settings.maxFolded, advice)});
   const JudgedFrame outside = worst([](const JudgedFrame& f) { return f.outside; });
   add(out, "", outsideFigures(outside.outside));
@@ -251,8 +251,8 @@ Verdict judgeDensity(const JudgedDensity& d, const CarryVerdictSettings& setting
                   usual, settings.maxDensity * usual);
   out.findings.push_back(
       {finding("density", text, times, settings.maxDensity,
-               fmt::format("--density-limit {:.3g}, which leaves out what comes together "
-                           "beyond that and says how much; or a map that is one-to-one",
+               fmt::format("--density-limit {:.3g}, which leaves out the mass beyond that and says "
+                           "how much; or a map that is one-to-one",
                            kLayers * usual))});
   return out;
 }
@@ -263,8 +263,8 @@ Verdict judgeResampling(const ResamplingFigures& f, const CarryVerdictSettings& 
   add(out, "resampling", figures(f));
   out.findings.push_back({finding(
       "resampling",
-      fmt::format("in {} of the inside the voxels, of {:.4g}, are over {:g} times as coarse "
-                  "as the input's, of {:.4g}, come there (at most: {})",
+      fmt::format("in {} of the inside the output's voxels ({:.4g}) are over {:g} times as coarse "
+                  "as the input's ({:.4g}) after the map (at most: {})",
                   percent(f.coarserShare), f.outputVoxel, kCoarser, f.inputVoxel,
                   percent(settings.maxLost)),
       f.coarserShare, settings.maxLost,

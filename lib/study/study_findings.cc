@@ -153,9 +153,7 @@ std::string pointsAdvice(const Study& study) {
   for (const StudyRow& row : rows)
     if (row.rms <= 1.1 * least)
       return fmt::format(
-          "Boundary points a charge: {:.3g} will do; more of them lower the error by no more than "
-          "a "
-          "tenth.",
+          "Boundary points a charge: {:.3g} are enough; more lower the error by at most a tenth.",
           row.collocation);
   return {};
 }
@@ -170,11 +168,11 @@ std::string misleadingAdvice(const Rows& rows) {
     if (!worst || ratio > worst->rms / worst->collocationRms) worst = &row;
   }
   if (!worst)
-    return "The C-Error can be trusted: nowhere is the error between the collocation "
-           "points over twice that at them.";
+    return "The C-Error can be trusted: in no run is the error between the collocation points more "
+           "than twice the error at them.";
   return fmt::format(
-      "The C-Error misleads in {} of {} runs: between the collocation points the error is over "
-      "twice that at them, most with {}: {:.3g} times.",
+      "The C-Error misleads in {} of {} runs: between the collocation points the error is more "
+      "than twice the error at them, most with {}: {:.3g} times.",
       count, rows.size(), describeRun(*worst), worst->rms / worst->collocationRms);
 }
 
@@ -197,7 +195,7 @@ std::string edgesAdvice(const Study& study, const StudyRow& best) {
     beyond.push_back(best.placement == ChargePlacement::sphere ? "larger spheres"
                                                                : "farther charges");
   if (beyond.empty()) return {};
-  return fmt::format("The best is at the end of what was tried; {} may be better still.",
+  return fmt::format("The best is at the end of the list; {} may be better still.",
                      fmt::join(beyond, " and "));
 }
 

@@ -96,8 +96,8 @@ class ShellBuilder {
     });
     if (!crowded.empty())
       throw DataError(fmt::format(
-          "{}: {} edge{} more than two triangles, between the vertices {} (counted from 0); part "
-          "what meets there",
+          "{}: {} edge{} more than two triangles, between the vertices {} (counted from 0); "
+          "separate the parts that meet there",
           nameOf(mesh_), crowded.size(), crowded.size() == 1 ? " has" : "s have", named(crowded)));
     if (!oneSided.empty())
       throw DataError(fmt::format(

@@ -93,9 +93,8 @@ void measure(const CellMesh& mesh, const std::vector<ClosestPoint>& found, doubl
   if (far > 0)
     throw DataError(fmt::format(
         "{}: {} of {} vertices of the boundary are not on the map's solid, the farthest {:.3g} "
-        "from "
-        "its surface, {:.3g} of its diagonal: the mesh must fill the solid, without hanging nodes, "
-        "in the same place and units; what lies inside it otherwise is carried by push",
+        "from its surface, {:.3g} of its diagonal: the mesh must fill the solid, without hanging "
+        "nodes, in the same place and units; carry other geometry with push",
         mesh.name.empty() ? "mesh" : mesh.name, far, found.size(), out.boundaryMax,
         out.boundaryMax / diagonal));
 }

@@ -141,11 +141,11 @@ void tell(Hexahedralization& out) {
                     check.inverted, check.invertedCorners, check.undecided));
   const auto& parts = out.polycube.missedParts;
   if (!parts.empty())
-    out.notes.push_back(fmt::format(
-        "no block covers {} part{} of the solid, the largest ({:.2g} of its volume) about "
-        "({:.4g}, {:.4g}, {:.4g}): hexahedra are drawn into {} from the side",
-        parts.size(), parts.size() == 1 ? "" : "s", parts[0].volume, parts[0].centre.x,
-        parts[0].centre.y, parts[0].centre.z, parts.size() == 1 ? "it" : "them"));
+    out.notes.push_back(
+        fmt::format("no block covers {} part{} of the solid, the largest ({:.2g} of its volume) "
+                    "about ({:.4g}, {:.4g}, {:.4g}): hexahedra stretch into {} from the side",
+                    parts.size(), parts.size() == 1 ? "" : "s", parts[0].volume, parts[0].centre.x,
+                    parts[0].centre.y, parts[0].centre.z, parts.size() == 1 ? "it" : "them"));
 }
 
 Hexahedralization attempt(const Mesh& mesh, const HexahedralizeSettings& settings, int blocks) {
@@ -184,9 +184,8 @@ Hexahedralization hexahedralize(const Mesh& mesh, const HexahedralizeSettings& s
       const auto bad = [](const Hexahedralization& h) {
         return h.after.inverted + h.after.undecided;
       };
-      other.notes.push_back(
-          fmt::format("{} blocks across, as hexahedra of {} could not all be turned right", more,
-                      best.polycube.across));
+      other.notes.push_back(fmt::format("{} blocks across, as some hexahedra of {} stayed inverted",
+                                        more, best.polycube.across));
       if (bad(other) < bad(best)) best = std::move(other);
     } catch (const DataError&) {
       break;  // so many blocks have another topology

@@ -95,7 +95,7 @@ std::string statementOf(const CellProof& proof) {
     case CellProof::Overlap::unknown:
       break;
   }
-  out += ". That is local: whether cells overlap is not shown";
+  out += ". That is local: cells may still overlap";
   if (proof.meetings > 0) out += ", as their boundary touches itself at " + places(proof.meetings);
   return out + ".";
 }
@@ -104,11 +104,11 @@ std::string linearMapStatement(const CellProof& from, const CellProof& to) {
   // Asked of tetrahedra alone: on a hexahedron no map is linear.
   if (from.boundary.empty() || to.boundary.empty()) return "";
   if (from.oneToOne() && to.oneToOne())
-    return "So are they where they came from: the map that is linear on them is one-to-one, "
-           "globally.";
+    return "The same holds for the cells that they came from: the map that is linear on them is "
+           "one-to-one, globally.";
   if (from.rightSideOut() && to.rightSideOut())
-    return "So are they where they came from: the map that is linear on them is one-to-one on each "
-           "cell; that it is globally is not shown.";
+    return "The same holds for the cells that they came from: the map that is linear on them is "
+           "one-to-one on each cell, but not proven to be so globally.";
   return "";
 }
 

@@ -106,8 +106,7 @@ class Remesher {
     const CellRepair repair = repaired(lattice, targetSurface(mapped_), there);
     if (repair.invertedAfter > 0)
       out_.notes.push_back(
-          fmt::format("{} of the {} tetrahedra that stand for the inverse map stay "
-                      "inverted and are left out",
+          fmt::format("{} of the {} tetrahedra for the inverse map stay inverted and are left out",
                       repair.invertedAfter, repair.cells));
     CarriedCells cells =
         carryCellsBack(given_, mapped_, {&lattice, &there.positions}, carrySettings()).cells;
@@ -271,7 +270,7 @@ class Remesher {
   void warn() {
     if (out_.invertedAtRest > 0)
       out_.notes.push_back(
-          fmt::format("{} cells of the given mesh are inverted; regular shapes take their place",
+          fmt::format("{} cells of the input are inverted; remesh gives them regular shapes",
                       out_.invertedAtRest));
     if (out_.inverted > 0)
       out_.warnings.push_back(

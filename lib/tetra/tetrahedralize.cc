@@ -154,7 +154,7 @@ void keepSharpEdges(const Solid& solid, const TetrahedralizeSettings& settings, 
     result.notes.push_back(fmt::format("no edge is sharper than {:g} degrees", *settings.features));
   if (fit.kept < fit.curves)
     result.warnings.push_back(fmt::format(
-        "{} of {} sharp curves have no path of the mesh's edges: a finer lattice may have",
+        "{} of {} sharp curves have no path of the mesh's edges; a finer lattice may help",
         fit.curves - fit.kept, fit.curves));
 }
 
@@ -174,8 +174,7 @@ Tetrahedralization tetrahedralization(const Solid& solid, const TetrahedralizeSe
         solid.repaired().mesh.name));
   if (result.changedNodes > 0)
     result.notes.push_back(
-        fmt::format("{} nodes of the lattice, in walls and gaps too thin for "
-                    "it, were taken to be inside or outside all the same",
+        fmt::format("{} nodes of the lattice changed sides, in walls and gaps too thin for it",
                     result.changedNodes));
   warpNodes(signs);
   StuffedMesh stuffing = stuffed(signs);
@@ -215,8 +214,7 @@ std::vector<Setting> describe(TetrahedralizeSettings& s) {
           .in("degrees")
           .from(1, 179),
       Setting("keep_topology", &s.keepTopology,
-              "warn, and go on, where the solid's components, cavities and handles cannot be "
-              "kept")
+              "only warn if the solid's components, cavities and handles cannot be kept")
           .rare()};
 }
 

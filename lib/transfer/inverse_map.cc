@@ -297,8 +297,8 @@ std::string InverseStatistics::warning() const {
   if (failedAt.empty() || 1 - invertedInside() <= kMany) return {};
   const Vec3& at = failedAt.front();
   return fmt::format(
-      "{:.3g}% of the voxels inside come from nowhere in the source, the first near ({:.6g}, "
-      "{:.6g}, {:.6g}); they have the values of their neighbours",
+      "{:.3g}% of the voxels inside have no origin in the source, the first near ({:.6g}, {:.6g}, "
+      "{:.6g}); they take the values of their neighbours",
       100 * (1 - invertedInside()), at.x, at.y, at.z);
 }
 

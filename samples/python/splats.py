@@ -13,10 +13,12 @@ from pathlib import Path
 
 import innermap
 import numpy as np
-from PIL import Image, ImageDraw
+from matplotlib import font_manager
+from PIL import Image, ImageDraw, ImageFont
 
 SAMPLES = Path(__file__).resolve().parent.parent
 COUNT, WIDTH, HEIGHT = 24000, 460, 270
+LETTERS = ImageFont.truetype(font_manager.findfont("DejaVu Sans"), 15)
 C0, C1 = 0.28209479177387814, 0.4886025119029199
 NAMES = (["x", "y", "z", "nx", "ny", "nz"] + [f"f_dc_{i}" for i in range(3)] +
          [f"f_rest_{i}" for i in range(9)] + ["opacity"] + [f"scale_{i}" for i in range(3)] +
@@ -156,7 +158,7 @@ def main():
         target = np.array(target)
         image = render(splats, target + [1.5, 2.6, 8.0], target)
         sheet.paste(Image.fromarray((255 * np.clip(image, 0, 1)).astype(np.uint8)), (k * WIDTH, 26))
-        ImageDraw.Draw(sheet).text((k * WIDTH + 20, 8), title, fill="black")
+        ImageDraw.Draw(sheet).text((k * WIDTH + 20, 6), title, fill="black", font=LETTERS)
     sheet.save(picture, optimize=True)
     print(f"splats: {picture}")
 

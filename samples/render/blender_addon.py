@@ -1,9 +1,9 @@
-"""Draws docs/hosts/blender.png: a gecko at rest and in a stride, marbles and a ball of fog around each of
+"""Draws docs/hosts/blender.jpg: a gecko at rest and in a stride, marbles and a ball of fog around each of
 them, which the add-on for Blender carried. Marbles are a mesh and the fog is a volume: that each marble stays in
 the middle of its fog shows that both go the same way.
 
     PYTHONPATH=build/release/python blender -b --factory-startup --python-exit-code 1 \
-        --python samples/render/blender_addon.py -- OUT.png [SAMPLES]
+        --python samples/render/blender_addon.py -- OUT.jpg [SAMPLES]
 """
 import sys
 import tempfile
@@ -176,7 +176,7 @@ def main(out, samples, folder):
                            for frame in (FIRST, LAST)], axis=1)
     image = bpy.data.images.new("both", both.shape[1], both.shape[0])
     image.pixels = both.astype(np.float32).ravel()
-    image.filepath_raw, image.file_format = out, 'PNG'
+    image.filepath_raw, image.file_format = out, 'JPEG'
     image.save()
 
 

@@ -248,7 +248,10 @@ def test_a_mesh_that_runs_through_itself_is_mapped_by_its_outer_surface():
     assert outer["taken"] and outer["handles"] == 0, outer
     assert outer["cuts"]["y"] and min(outer["cuts"]["y"]) > 0, outer  # where the ends meet
     # The map is that of the outer surface, which stands in the folder.
-    assert report["source"]["vertices"] >= outer["vertices"] > len(vertices), (report["source"], outer)
+    assert report["laid"]["vertices"] >= outer["vertices"] > len(vertices), (report["laid"], outer)
+    # Both meshes as their files have them.
+    assert report["source"]["vertices"] == report["target"]["vertices"] == len(vertices), report
+    assert report["laid"]["path"] == "out/correspondence.ply", report["laid"]
     assert os.path.exists("out/correspondence.source.ply")
     assert report["boundary_error"]["p99"] < 5e-3, report["boundary_error"]
     assert report["inside"]["folded"] < 2e-3, report["inside"]

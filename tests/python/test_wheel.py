@@ -2,12 +2,14 @@
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 import venv
 from pathlib import Path
 
 import cli
+from cli import nightly
 
 ROOT = Path(os.environ["INNERMAP_ROOT"])
 # What tests and their caller put before Python's own paths would hide what is installed.
@@ -44,12 +46,18 @@ def tree():
     return {path for path in Path("environment").rglob("*") if "__pycache__" not in path.parts}
 
 
-def test_pip_installs_a_checkout():
+def offline():
+    """What runs a command without network, where this user may cut it off."""
+    words = ("unshare", "--net")
+    return words if shutil.which(words[0]) and subprocess.run([*words, "true"], check=False).returncode == 0 else ()
+
+
+def check_install(*settings):
     venv.create("environment", system_site_packages=True, with_pip=True)
     python = str(Path.cwd() / "environment/bin/python3")
     before = tree()
-    install = (python, "-m", "pip", "install", "--no-index", "--disable-pip-version-check", str(ROOT))
-    said = run(*install, f"--config-settings=build-dir={os.environ['INNERMAP_BUILD']}")
+    said = run(*offline(), python, "-m", "pip", "install", "--no-index", "--disable-pip-version-check",
+               str(ROOT), *settings)
     assert "Successfully installed innermap-" in said, said
     for name, sample in (("rest.obj", "gecko.obj"), ("pose.obj", "gecko_step.obj")):
         Path(name).symlink_to(ROOT / "samples" / sample)
@@ -57,6 +65,16 @@ def test_pip_installs_a_checkout():
     run(python, "-c", first_example() + PICTURES, FOLDER=str(Path.cwd() / "environment"))
     run(python, "-m", "pip", "uninstall", "-y", "innermap")
     assert tree() == before, tree() - before
+
+
+def test_pip_installs_a_checkout():
+    check_install(f"--config-settings=build-dir={os.environ['INNERMAP_BUILD']}")
+
+
+@nightly
+def test_pip_builds_a_checkout():
+    """From the sources, in build/wheel."""
+    check_install()
 
 
 def test_a_build_without_the_module_is_refused():

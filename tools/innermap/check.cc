@@ -158,7 +158,7 @@ Command makeCheckCommand() {
   c.positional("MESH", &o->mesh, "mesh file: .obj, .ply, .off or .stl");
   c.flag("--json", &o->json, "print machine-readable findings on stdout");
   c.option("--listed", "N", &o->check.listed,
-           "list the places of at most this many self-intersections; the count has all")
+           "list the places of at most this many self-intersections; the total counts all")
       .range(0, 1e6);
   c.option("--outer", "FILE", &o->outer,
            "also write the closed surface that other commands use in place of MESH: its outer "

@@ -264,15 +264,14 @@ Command makeCompareFemCommand() {
   auto o = std::make_shared<CompareOptions>();
   Command c("compare-fem", "Compare maps by charges with maps by finite elements");
   c.description(
-      "Makes the harmonic map of the inside of SOURCE onto that of TARGET (of the same "
-      "connectivity) in two ways from the same boundary map: by linear finite elements on "
-      "tetrahedra of several sizes (conjugate gradients with an incomplete Cholesky factor), and "
-      "by charges to several tolerances. It is one map, not in steps. Errors are differences from "
-      "a finer fit of charges, in fractions of TARGET's diagonal (values) and relative "
-      "(gradients). With --functions it solves for three known harmonic functions instead; errors "
-      "are then relative, of the worst of the three. Seconds are wall time from the solid to the "
-      "function; memory is what each method asks for. Writes comparison.csv, curves.svg, "
-      "section.png and report.json.");
+      "Maps the inside of SOURCE onto that of TARGET (of the same connectivity) in two ways: by "
+      "linear finite elements on tetrahedra of several sizes (conjugate gradients with an "
+      "incomplete Cholesky factor), and by charges to several tolerances. Both use the same "
+      "boundary map, and one harmonic map, not steps. Errors are differences from a finer fit of "
+      "charges, in fractions of TARGET's diagonal (values) and relative (gradients). With "
+      "--functions it solves for three known harmonic functions instead; errors are then relative, "
+      "for the worst of the three. Seconds are wall time from the solid to the function; memory is "
+      "the need of each method. Writes comparison.csv, curves.svg, section.png and report.json.");
   c.positional("SOURCE", &o->source, "mesh file: .obj, .ply, .off or .stl");
   c.positional("TARGET", &o->target, "a pose of SOURCE; not with --functions").optional();
   c.outputFolder(&o->output);

@@ -79,7 +79,7 @@ void Context::plan(const std::vector<std::string>& lines, std::uint64_t need) {
 void Context::requireProgram() const {
   if (const std::uint64_t own = processMemory(0); own > maxMemory_)
     throw MemoryError(
-        fmt::format("the program, its libraries and what was read so far take {} of memory, more "
+        fmt::format("the program, its libraries and the files read so far take {} of memory, more "
                     "than the limit of {}; raise --max-memory",
                     formatBytes(own), formatBytes(maxMemory_)));
 }
@@ -222,7 +222,7 @@ void Context::sayWhatIsThere(const std::string& path, const std::vector<std::str
     warning(fmt::format("{}: replaces {}, and no report.json says that an earlier run wrote {}",
                         path, someOf(replaced), replaced.size() == 1 ? "it" : "them"));
   if (!others.empty() && !isOurs(path))
-    note(fmt::format("{} holds other things, which stay as they are: {}", path, someOf(others)));
+    note(fmt::format("{} holds other files, which stay as they are: {}", path, someOf(others)));
 }
 
 void Context::inFolder(const std::string& folder, const std::vector<std::string>& names) {
@@ -312,8 +312,7 @@ void Context::conclude() {
   for (const std::string& line : writtenLines(outputs)) say("", line);
   if (options_.strict && !unmet.empty() && failure_.empty())
     failAfterwards(
-        fmt::format("--strict: the verdict is not met ({}); the files are written all "
-                    "the same",
+        fmt::format("--strict: the verdict is not met ({}); all files are written nevertheless",
                     fmt::join(unmet, ", ")));
 }
 

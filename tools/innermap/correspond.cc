@@ -65,7 +65,7 @@ void run(const Options& options, Context& context) {
                                   [](const std::string& path, const auto& write) { write(path); });
     });
   if (moved.changed)
-    context.note(fmt::format("{} has A with the same {} vertices: give both to innermap map",
+    context.note(fmt::format("{} has SOURCE with the same {} vertices: give both to innermap map",
                              sourceOutputOf(options), moved.source.vertices.size()));
 }
 

@@ -361,8 +361,8 @@ Command makeDeformCommand() {
       "be read or fitted; the exit code is then 1.");
   c.positional("SOURCE", &o->rest, "mesh of the rest pose: .obj, .ply, .off or .stl; or glTF");
   c.positional("INSIDE", &o->volume,
-               "what is carried, in the rest pose's world space: grids (.vdb) or geometry (.obj, "
-               ".ply, .off, .stl; cells in .vtu, .msh, .mesh)");
+               "the things to carry, in the rest pose's world space: grids (.vdb) or geometry "
+               "(.obj, .ply, .off, .stl; cells in .vtu, .msh, .mesh)");
   addFrameArgument(c, o->frames);
   c.option("--output", "FILES", &o->output,
            "the files to write, of INSIDE's kind, with #### or %04d for the frame's number, which "
@@ -382,7 +382,7 @@ Command makeDeformCommand() {
       .atMost(10);
   addTransferOptions(c, o->transfer);
   addGeometryOptions(c, o->geometry, false);
-  addShareOptions(c, o->farm, "frames", "The files of all shares are those of one run");
+  addShareOptions(c, o->farm, "frames", "All shares together write the files of one run");
   c.example(
       "innermap deform rest.obj smoke.vdb walk.pc2 -o 'out/smoke.####.vdb' --usd out/smoke.usda");
   c.example("innermap deform rest.obj bones.obj 'walk.*.obj' -o 'out/bones.####.obj'");

@@ -51,7 +51,7 @@ void requireInverseOptions(const EvaluateOptions& o) {
       {"--warn-crossings", o.verdict.maxCrossings != plain.verdict.maxCrossings}};
   for (const auto& [option, changed] : given)
     if (changed)
-      throw UsageError(std::string(option) + ": has no effect with --inverse; leave it out");
+      throw UsageError(std::string(option) + ": does nothing with --inverse; leave it out");
 }
 
 std::vector<JobPhase> inversePhases(const JobSize& size) {
@@ -110,7 +110,7 @@ void run(const EvaluateOptions& options, Context& context) {
     throw UsageError("--output: only the displacement of --inverse is written to " +
                      options.output + "; name a .vdb file, or give --inverse");
   if (options.inverse && inShares(options.farm))
-    throw UsageError("--inverse: is not made in shares; leave out --share and --jobs");
+    throw UsageError("--inverse: cannot be cut into shares; leave out --share and --jobs");
   if (options.inverse) requireInverseOptions(options);
   beginBlocks(options.farm, options.output, context);
   const MappedSolid mapped = readMapFile(options.map, context);
@@ -138,12 +138,11 @@ Command makeEvaluateCommand() {
   c.description(
       "Writes the grids surface, density, map, jacobian, harmonic_energy and deformation_energy; "
       "values are active inside and in a skin of two voxels. The metadata and the report have the "
-      "energies' totals, the least Jacobian, the folded share and what is known of one-to-one. "
-      "Where there are such, `folded` marks the voxels that the map folds, `outside` says how far "
-      "images lie outside the target. (`map` marks as `undecided` those where its proof that "
-      "nothing folds came to no end; a map's file does not hold them.) Far from the origin, where "
-      "floats do not hold positions well, also map_local: positions less its metadata "
-      "innermap_map_local_origin.");
+      "energies' totals, the least Jacobian, the folded share, and whether the map is one-to-one. "
+      "If the map folds voxels, the grid `folded` marks them. If images lie outside the target, "
+      "`outside` says how far. (Only innermap map writes `undecided`, the voxels that its proof "
+      "left open.) Far from the origin, where floats hold positions badly, evaluate also writes "
+      "map_local: positions minus the point in its metadata innermap_map_local_origin.");
   c.positional("MAP", &o->map, "a map.ply written by fit or map");
   c.option("--output", "FILE", &o->output,
            "the grids, a .vdb file; with --inverse also .nii or .nii.gz: a displacement field for "

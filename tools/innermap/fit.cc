@@ -49,9 +49,10 @@ Command makeFitCommand() {
   auto o = std::make_shared<FitOptions>();
   Command c("fit", "Fit a harmonic map to two meshes of the same connectivity");
   c.description(
-      "Weighs charges outside the source solid so that the map meets the target on the boundary. "
-      "The file holds charges and weights in double precision and both boundaries. Its "
-      "certificate is the error at 20,000 boundary points that took no part in the fit.");
+      "Places charges outside the source solid and finds their weights, with which the map meets "
+      "the target on the boundary. The file holds charges and weights in double precision, and "
+      "both boundaries. Its certificate is the error at 20,000 boundary points that took no part "
+      "in the fit.");
   c.positional("SOURCE", &o->source, "mesh of the solid: .obj, .ply, .off or .stl");
   c.positional("TARGET", &o->target, "the same mesh with its vertices moved");
   c.outputFile(&o->output, {".ply"}, "the map, a .ply file");

@@ -113,9 +113,8 @@ std::vector<JobPhase> proofPhases(const FitMapSettings& settings, double charges
   JobSize size;
   size.charges = charges;
   std::vector<JobPhase> phases{stageOf("proving that nothing folds", size),
-                               stageOf("bounding the boundary's error", size)};
-  if (settings.prove == Prove::full)
-    phases.push_back(stageOf("proving that the boundary does not meet itself", size));
+                               stageOf("bounding the error", size)};
+  if (settings.prove == Prove::full) phases.push_back(stageOf("proving one-to-one", size));
   return phases;
 }
 

@@ -103,8 +103,8 @@ Frames listFrames(const FrameOptions& options, const std::string& rest, Context&
 void requireUsdOfAll(const FrameOptions& options, bool inShares) {
   if (!options.usd.empty() && inShares)
     throw UsageError(
-        "--usd: refers to all frames, of which a share makes some; leave it out, and `innermap "
-        "export` the .vdb files to a .usda file afterwards");
+        "--usd: refers to all frames, but a share makes only some; leave it out, and afterwards "
+        "write the .usda file with `innermap export`");
 }
 
 void announceUsd(const FrameOptions& options, Context& context) {

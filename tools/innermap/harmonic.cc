@@ -155,11 +155,11 @@ Command makeHarmonicCommand() {
   Command c("harmonic",
             "Compute a harmonic field inside a solid from values and fluxes on its surface");
   c.description(
-      "It needs no tetrahedra. Values belong to groups of an OBJ (--fix) or to vertices. With "
-      "groups, nothing flows through the rest of the surface; with vertices, nothing flows through "
-      "triangles with a vertex that has no value. Writes values, gradients, their directions and "
-      "their lengths for each channel, with the surface and its fog. The certificate says how far "
-      "the field may be off.");
+      "Needs no tetrahedra. Give values for groups of an OBJ (--fix) or for vertices. With groups, "
+      "nothing flows through the rest of the surface. With vertices, nothing flows through a "
+      "triangle if one of its vertices has no value. For each channel, harmonic writes values, "
+      "gradients, their directions and their lengths, with the surface and its fog. The "
+      "certificate says how far the field may be off.");
   addHarmonicOptions(c, o->harmonic, "value,gradient,direction,magnitude");
   c.option("--fix", "LIST", &o->fix,
            "values on groups, objects or materials of an OBJ: GROUP=VALUE,...; for several "

@@ -95,8 +95,8 @@ void runHarmonic(const HarmonicOptions& options,
     const double share = removeJumps(mesh, known.conditions);
     if (share > 0)
       context.note(
-          fmt::format("values that touch are joined: on {:.2g}% of the surface, the triangles "
-                      "along their borders, they blend",
+          fmt::format("groups with different values touch: along their borders, on {:.2g}% of the "
+                      "surface, the values blend",
                       100 * share));
   }
   const std::size_t vertices = mesh.vertices.size();

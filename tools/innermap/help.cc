@@ -179,7 +179,7 @@ std::string shortHelp() {
   for (const char* name : {"map", "deform", "push", "voxelize", "check", "info"})
     text += commandLine(name);
   return text +
-         "\nmore: innermap --help lists all commands, innermap COMMAND --help tells of one\n";
+         "\nmore: innermap --help lists all commands, innermap COMMAND --help explains one\n";
 }
 
 std::string generalHelp() {

@@ -106,7 +106,7 @@ void run(const Options& options, Context& context) {
   writeAll(options, mesh, result, context);
   if (!result.after.proven())
     context.failAfterwards(fmt::format(
-        "{} hexahedra are inverted, or not proven right side out; the file has them all the same",
+        "{} hexahedra are inverted, or not proven right side out; the file still holds them",
         result.after.inverted + result.after.undecided));
 }
 

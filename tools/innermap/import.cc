@@ -81,11 +81,11 @@ Command makeImportCommand() {
   auto o = std::make_shared<ImportOptions>();
   Command c("import", "Read a volume texture or a scan into a .vdb file");
   c.description(
-      "What `innermap export` writes comes back as it was, within the rounding of the pixels: the "
-      "attributes hold types, names, classes, backgrounds and transform. Voxels that have the "
-      "background are inactive. For textures of other programs, options say what the file does "
-      "not; an option wins over an attribute. NIfTI files (.nii, .nii.gz) become a grid in their "
-      "own world, by sform or qform, in millimetres; labels stay whole numbers.");
+      "Restores files of `innermap export`, up to the rounding of the pixels: their attributes "
+      "hold types, names, classes, backgrounds and transform. Voxels with the background's value "
+      "are inactive. For textures of other programs, give by options what the file does not say; "
+      "an option wins over an attribute. NIfTI files (.nii, .nii.gz) become a grid in their own "
+      "world, by sform or qform, in millimetres; labels stay whole numbers.");
   c.positional(
       "FILE", &o->file,
       "the .exr, .nii or .nii.gz file; of slices, any of the files or a pattern with #### or %04d");

@@ -139,9 +139,8 @@ void run(const InfoOptions& options, Context& context) {
 
 Command makeInfoCommand() {
   auto o = std::make_shared<InfoOptions>();
-  Command c(
-      "info",
-      "Say what is in a file: grids, a map, a mesh, an animation, or a volume of another format");
+  Command c("info",
+            "Describe a file: grids, a map, a mesh, an animation, or a volume of another format");
   c.positional(
       "FILE", &o->file,
       "a .vdb, .exr, .nvdb, .vti, .dds, .nii, .nii.gz or .usda file, a map, mesh, .mdd, .pc2 or "

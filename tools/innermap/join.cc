@@ -64,7 +64,7 @@ void nameMix(const JoinedParts& joined, Context& context) {
   for (const auto& [code, names] : hosts)
     kinds.push_back(fmt::format("{} on {}", code, fmt::join(names, ", ")));
   context.warning(fmt::format(
-      "{}s were made by different kinds of vector code ({}), which may differ in the last bits",
+      "workers used different vector instructions for the {}s ({}), so the last bits may differ",
       unitOf(joined.run), fmt::join(kinds, "; ")));
 }
 
@@ -111,9 +111,9 @@ void dropWithoutOutput(const FramePattern& pattern, bool broken, JoinedParts& jo
 void requireAll(const JoinedParts& joined, bool partial, Context& context) {
   if (joined.missing.empty()) return;
   const std::string text =
-      fmt::format("{} of {} {}s are not made: {}", joined.missing.size(), joined.run.frames.size(),
+      fmt::format("{} of {} {}s are missing: {}", joined.missing.size(), joined.run.frames.size(),
                   unitOf(joined.run), framesText(joined.missing));
-  if (!partial) throw DataError(text + "; make their shares, or join what is there with --partial");
+  if (!partial) throw DataError(text + "; make their shares, or join the others with --partial");
   if (joined.parts.empty()) throw DataError(text);
   context.warning(text);
 }
@@ -153,8 +153,7 @@ void joinSequence(const JoinOptions& options, JoinedParts joined, Context& conte
 // A volume: the command that was run in shares takes the blocks in place of making them, and goes
 // on as it does with its own.
 void joinVolume(const JoinOptions& options, JoinedParts joined, Context& context) {
-  if (options.partial)
-    throw UsageError("--partial: is for frames; a volume needs all of its blocks");
+  if (options.partial) throw UsageError("--partial: is for frames; a volume needs all blocks");
   const std::string output = outputOf(options.folder);
   dropWithoutOutput(blockPattern(options.folder), false, joined);
   requireAll(joined, false, context);
@@ -199,7 +198,8 @@ Command makeJoinCommand() {
       "such as repairing folds, making fog, and turning carried level sets into distances. So it "
       "needs the memory of the whole.");
   c.positional("FOLDER", &o->folder,
-               "the output of a run with --share; of a volume, the folder .shares beside it");
+               "the output folder of a run with --share; for a volume, the folder .shares beside "
+               "the output");
   c.flag("--partial", &o->partial, "join the frames that are there");
   c.example("innermap join energies");
   c.example("innermap join map.vdb.shares");

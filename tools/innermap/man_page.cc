@@ -108,11 +108,11 @@ std::string manPage(const Command& command) {
 std::string generalManPage() {
   std::string text = head("innermap", "harmonic maps of solids, into OpenVDB and EXR");
   text += ".SH SYNOPSIS\n.B innermap\n.I COMMAND\n[options]\n.SH DESCRIPTION\n";
-  text +=
-      flowed(
-          "innermap maps the inside of one solid smoothly onto the inside of another, and writes "
-          "the map, and what is carried through it, where renderers and simulators can use it.") +
-      "\n";
+  text += flowed(
+              "innermap maps the inside of one solid smoothly onto the inside of another. It "
+              "writes the map, and the volumes and geometry that go through it, in files for "
+              "renderers and simulators.") +
+          "\n";
   for (const Topic& topic : commandTopics()) {
     if (!topic.commands.empty()) text += ".SS " + roff(topic.title) + "\n";
     for (const std::string& name : topic.commands)

@@ -207,8 +207,7 @@ BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& f
   const MeshCorrespondence moved =
       correspondMeshes(std::move(meshes.source), std::move(meshes.target), correspond, context);
   const Mesh target = moved.target(name);
-  folder.write("correspondence.ply",
-               [&](const std::string& path) { writeCorrespondence(path, moved); });
+  folder.write(kLaidFile, [&](const std::string& path) { writeCorrespondence(path, moved); });
   if (moved.changed)
     folder.write("correspondence.source.ply",
                  [&](const std::string& path) { writeMesh(path, moved.source); });
@@ -226,8 +225,8 @@ void run(const MapOptions& options, Context& context) {
   std::vector<std::string> files{"map.ply",     "map.vdb",   "slices.exr",
                                  "section.png", "steps.png", "report.json"};
   if (options.correspondence.empty())
-    for (const char* name : {"correspondence.ply", "correspondence.source.ply",
-                             "correspondence.png", "correspondence.other.png"})
+    for (const char* name :
+         {kLaidFile, "correspondence.source.ply", "correspondence.png", "correspondence.other.png"})
       files.emplace_back(name);
   const auto folder = context.outputFolder(options.output, files);
   Meshes meshes = readMeshes(options, context);
@@ -235,8 +234,12 @@ void run(const MapOptions& options, Context& context) {
   if (context.dryRun()) return plan(options, meshes, context);
   const bool laid = laidOn(options, meshes);
   context.spend(kLayingTimeShare, later);
+  const bool strangers = !meshes.related;
   BoundaryPair pair = makePair(options, std::move(meshes), *folder, context);
-  reportBoundaries(pair, context);
+  if (strangers)
+    reportLaid(pair, options.output + "/" + kLaidFile, context);
+  else
+    reportBoundaries(pair, context);
   const std::size_t vertices = pair.source.mesh.vertices.size();
   const FitMapSettings fitting = fitMapSettings(options.fitting, vertices, laid);
   requireFittingMemory(fitting, vertices, context);

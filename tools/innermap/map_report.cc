@@ -25,6 +25,11 @@ void fillSource(const SourceBoundary& source, Report& report) {
                                         capBoxes(source.solid.repaired()), source.solid.volume())));
 }
 
+ReportMesh targetOf(const BoundaryPair& pair) {
+  return reportOf(pair.targetMesh, pair.targetCheck,
+                  capBoxes(pair.solid().repaired(), pair.target.moved), pair.target.volume);
+}
+
 void reportSteps(const MapFit& fit, OneToOne wanted, Context& context) {
   const InsideFigures& inside = fit.inside;
   if (inside.samples == 0) return;
@@ -67,7 +72,7 @@ std::string whyEnded(AdaptiveEnd end, std::size_t maxSources) {
     case AdaptiveEnd::maxMemory:
       return "--max-memory is reached";
     case AdaptiveEnd::jumps:
-      return "it holds but where parts that cross slide along each other";
+      return "it holds except where parts cross and slide along each other";
     case AdaptiveEnd::noGain:
       return "more charges do not help";
     case AdaptiveEnd::time:
@@ -76,7 +81,7 @@ std::string whyEnded(AdaptiveEnd end, std::size_t maxSources) {
     case AdaptiveEnd::stopped:
       break;
   }
-  return "vertices are all that --interpolation smooth fits";
+  return "--interpolation smooth fits the vertices alone";
 }
 
 ReportMesh reportOf(const Mesh& mesh, double volume) {
@@ -104,10 +109,14 @@ void reportSource(const SourceBoundary& source, Context& context) {
 void reportBoundaries(const BoundaryPair& pair, Context& context) {
   context.tell(pair);
   fillSource(pair.source, context.report());
-  context.report().add(
-      "target",
-      figures(reportOf(pair.targetMesh, pair.targetCheck,
-                       capBoxes(pair.solid().repaired(), pair.target.moved), pair.target.volume)));
+  context.report().add("target", figures(targetOf(pair)));
+}
+
+void reportLaid(const BoundaryPair& pair, const std::string& path, Context& context) {
+  context.tell(pair);
+  ReportMesh laid = targetOf(pair);
+  laid.path = path;
+  context.report().add("laid", figures(laid));
 }
 
 void reportFit(const MapFit& fit, const FitMapSettings& settings, bool bestEffort,

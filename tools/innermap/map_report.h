@@ -22,6 +22,10 @@ void reportSolid(const Mesh& mesh, const Solid& solid, Report& report);
 void reportSource(const SourceBoundary& source, Context& context);
 void reportBoundaries(const BoundaryPair& pair, Context& context);
 
+// The same of a source that was laid onto a stranger: its image there, written to `path`, is the
+// report's "laid"; "source" and "target" stay those of the two meshes as they were given.
+void reportLaid(const BoundaryPair& pair, const std::string& path, Context& context);
+
 // The same and "solve", "boundary_error" and "tolerance"; a line for the terminal. A tolerance that
 // is not met is a warning with `bestEffort`, else the context's failure.
 void reportFit(const MapFit& fit, const FitMapSettings& settings, bool bestEffort,

@@ -293,7 +293,7 @@ Command makeCarryCommand(Way way, const std::string& name, const std::string& su
   Command c(name, summary);
   c.positional("MAP", &o->map, "a map.ply written by fit or map");
   c.positional("INSIDE", &o->volume,
-               "what is carried, in the " + inputSpace +
+               "the things to carry, in the " + inputSpace +
                    "'s world space: grids (.vdb) or geometry (.obj, .ply, .off, .stl; cells in "
                    ".vtu, .msh, .mesh)");
   c.option("--output", "FILE", &o->output,
@@ -323,13 +323,13 @@ Command makePushCommand() {
       "For each voxel of the target, push finds the point of the source that the map brings there, "
       "by Newton's method, and samples the grids at it. Scalars keep their values. Vectors move by "
       "their vector type (invariant, covariant, contravariant). Level sets become distances again. "
-      "Densities (--density) are not sampled: push puts what each voxel of the source holds where "
-      "the map brings it, so no mass is lost. Output voxels are active inside the target and in a "
-      "skin of two voxels. For geometry, each point goes where the map takes it. The Jacobian "
-      "turns vectors, and its inverse transpose turns normals; the rest of the file stays. "
-      "Gaussian splats (.ply with scale_0, rot_0 and opacity) stretch and turn with their colours. "
-      "push leaves out points farther outside the solid than --outside (and 0.001 of the diagonal) "
-      "and all that uses them, unless --fade-to says where they go.");
+      "Densities (--density) are not sampled: push carries the mass of each source voxel to its "
+      "image, so no mass is lost. Output voxels are active inside the target and in a skin of two "
+      "voxels. For geometry, each point goes where the map takes it. The Jacobian turns vectors, "
+      "and its inverse transpose turns normals; the rest of the file stays. Gaussian splats (.ply "
+      "with scale_0, rot_0 and opacity) stretch and turn with their colours. push leaves out "
+      "points farther outside the solid than --outside (and 0.001 of the diagonal) and all that "
+      "uses them, unless --fade-to says where they go.");
   c.example("innermap push map.ply smoke.vdb -o posed.vdb --grids density --density");
   c.example("innermap push map.ply fem.vdb -o posed.vdb --stress stress --resolution 256");
   c.example("innermap push map.ply mist.vdb -o posed.vdb --outside 0.1 --fade-to fitted");
@@ -345,7 +345,7 @@ Command makePullCommand() {
       "target");
   c.description(
       "Each voxel p of the source gets the grids' values at f(p), where the map brings it. "
-      "Everything else is as with push, the other way round.");
+      "Otherwise pull works like push, in the other direction.");
   c.example("innermap pull map.ply posed.vdb -o rest.vdb");
   c.example("innermap pull map.ply posed.obj -o bones.obj");
   return c;

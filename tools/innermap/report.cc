@@ -274,11 +274,11 @@ Command makeReportCommand() {
   auto o = std::make_shared<ReportOptions>();
   Command c("report", "Make the page of an output folder, to look at in a browser");
   c.description(
-      "Reads report.json and what it belongs to: map.ply, .vdb files, and the meshes that the "
-      "report names. The page is one file that needs no network: the numbers with their meaning, "
-      "the surfaces before and after, sections through the volume, how the fit went, time and "
-      "memory, the command and its settings. The page leaves out what is missing and names it. "
-      "Other commands write the same page with --html.");
+      "Reads report.json, map.ply, .vdb files, and the meshes that the report names. The page is "
+      "one file that needs no network: the numbers with their meaning, the surfaces before and "
+      "after, sections through the volume, how the fit went, time and memory, the command and its "
+      "settings. The page leaves out missing files and names them. Other commands write the same "
+      "page with --html.");
   c.positional("FOLDER", &o->folder, "folder that a command of innermap wrote, with a report.json");
   c.option("--output", "FILE", &o->output, "the page")
       .shortName("-o")

@@ -175,8 +175,8 @@ Command makeSequenceCommand() {
       .implied(kEnergies);
   c.option("--grid-list", "LIST", &o->gridList, "formerly the LIST of --grids=LIST").advanced();
   addShareOptions(c, o->farm, "frames",
-                  "Its figures go to parts/ in the output's folder, and innermap join makes one "
-                  "run of all; frames that are finished are not made again");
+                  "Its figures go to parts/ in the output folder; innermap join puts all shares "
+                  "together. A share skips frames that are finished");
   c.example("innermap sequence rest.obj 'frames/*.obj' -o energies");
   c.example("innermap sequence rest.obj 'walk.####.obj' -o energies --frames 1-48x2 --grids");
   c.run([o](Context& context) { run(*o, context); });

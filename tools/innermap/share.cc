@@ -98,16 +98,17 @@ void addShareOptions(Command& command, ShareOptions& options, const std::string&
   command.group("machines");
   command
       .option(kShare, "K/N", &options.share,
-              "make only the K-th of N shares of the " + units +
-                  ", 3/40 say, or 'auto': the task of Slurm's job array, or OpenCue's, that this "
-                  "process is. " +
+              "make only share K of N of the " + units +
+                  ", for example 3/40. auto: take both numbers from Slurm's job array or from "
+                  "OpenCue. " +
                   results)
       .advanced();
   command
-      .option(kCpuTarget, "NAME", &options.cpuTarget,
-              fmt::format("keep to the vector instructions of {}, so that newer processors compute "
-                          "the same bits",
-                          fmt::join(cpuNames(), " or ")))
+      .option(
+          kCpuTarget, "NAME", &options.cpuTarget,
+          fmt::format(
+              "use only the vector instructions of {}, to get the same bits on newer processors",
+              fmt::join(cpuNames(), " or ")))
       .defaults("this processor's best")
       .advanced();
   addJobsOptions(command, options);
@@ -122,9 +123,9 @@ void addJobsOptions(Command& command, ShareOptions& options) {
               "they ask for " +
                   marginsText())
       .advanced();
-  command.option(kTasks, "N", &options.tasks, "how many shares --jobs makes")
+  command.option(kTasks, "N", &options.tasks, "number of shares for --jobs")
       .range(1, static_cast<double>(Share::kMost))
-      .defaults("so many that each takes a minute or more")
+      .defaults("as many as take a minute or more each")
       .advanced();
 }
 
@@ -134,9 +135,8 @@ bool writesJobs(const ShareOptions& options, Context& context) {
     return false;
   }
   if (!options.share.empty())
-    throw UsageError("--jobs: makes the shares itself; leave out --share");
-  if (context.page())
-    throw UsageError("--html: the jobs have no page; give --html to the command that joins them");
+    throw UsageError("--jobs: cuts the run into shares itself; leave out --share");
+  if (context.page()) throw UsageError("--html: jobs make no page; give --html to innermap join");
   requireJobsFile(kJobs, options.jobs);
   return true;
 }
@@ -273,8 +273,9 @@ void FrameShare::ended(const FrameResult& result, PartValues values) {
 
 void FrameShare::conclude(const std::vector<FrameResult>& results) {
   if (results.size() < frames_.wanted.size() && context_.failure().empty())
-    context_.failAfterwards(fmt::format("{} {}s of the share are left; start it again",
-                                        frames_.wanted.size() - results.size(), frames_.unit));
+    context_.failAfterwards(
+        fmt::format("{} {}s of the share are left; start the same command again",
+                    frames_.wanted.size() - results.size(), frames_.unit));
 }
 
 bool hasOutput(const Part& part, const std::string& path) {
@@ -283,7 +284,8 @@ bool hasOutput(const Part& part, const std::string& path) {
 
 void requireOutput(const Part& part, const std::string& path) {
   if (fingerprintOf(path) != textAt(part.values, kOutput))
-    throw DataError(path + ": is not as it was written; remove it, and make its share again");
+    throw DataError(path +
+                    ": has changed since it was written; remove it, and make its share again");
 }
 
 std::string hostName() {

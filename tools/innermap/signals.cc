@@ -76,7 +76,7 @@ void onRequest(int) {
   } catch (...) {
   }
   // There is none where it could not be allocated.
-  if (!current) why = "an error could not be told, as happens when memory is exhausted";
+  if (!current) why = "an error occurred that could not be described; memory may be exhausted";
   say("innermap: ");
   append(why);
   append("\n");

@@ -113,11 +113,11 @@ void plan(const StudyOptions& options, const BoundaryPair& pair, const StudySett
     const bool isThere = isKept(pair, runs[i], settings), fits = need <= room;
     kept += isThere;
     if (!isThere && fits) most = std::max(most, need);
-    lines.push_back(
-        fmt::format("run {} of {}: {}: {}", i + 1, runs.size(), describeRun(runs[i]),
-                    isThere ? "kept from before"
-                    : fits  ? "about " + formatBytes(need)
-                           : "about " + formatBytes(need) + ", over the limit, so it is left out"));
+    lines.push_back(fmt::format("run {} of {}: {}: {}", i + 1, runs.size(), describeRun(runs[i]),
+                                isThere ? "kept from before"
+                                : fits
+                                    ? "about " + formatBytes(need)
+                                    : "about " + formatBytes(need) + ", over the limit: left out"));
   }
   lines.push_back(
       fmt::format("make {} runs, take {} from {}", runs.size() - kept, kept, settings.folder));
@@ -302,8 +302,8 @@ void addFitOptions(Command& c, StudyOptions& o) {
   c.settings(describe(o.settings));
   c.limitTime("begin no run after this time; the same command continues later");
   addShareOptions(c, o.farm, "runs",
-                  "It makes every N-th run from the K-th on. They go to runs/; the same command "
-                  "without --share takes all from there, and makes what is missing");
+                  "A share makes every N-th run from the K-th on, in runs/. The same command "
+                  "without --share then collects all runs and makes the missing ones");
 }
 
 }  // namespace

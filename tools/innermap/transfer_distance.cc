@@ -121,11 +121,11 @@ Command makeTransferDistanceCommand() {
   auto o = std::make_shared<TransferDistanceOptions>();
   Command c("transfer-distance", "Carry the target's distance field through a map onto its source");
   c.description(
-      "The map takes a voxel p of the source to f(p); p gets the distance of f(p) from the "
-      "target's surface, exact everywhere inside and positive there. Writes source.vdb (`distance` "
-      "through the map, the solid's own `source_distance`, `surface`), target.vdb (`distance`, "
-      "`surface`), sections of both in the same colours, blue to red (source.png, target.png), and "
-      "report.json into a folder.");
+      "The map takes a voxel p of the source to f(p). p gets the distance of f(p) from the "
+      "target's surface, which is exact and positive everywhere inside. Writes source.vdb "
+      "(`distance` through the map, the solid's own `source_distance`, `surface`), target.vdb "
+      "(`distance`, `surface`), sections of both in the same colours, blue to red (source.png, "
+      "target.png), and report.json into a folder.");
   c.positional("MAP", &o->map, "a map.ply written by fit or map");
   c.outputFolder(&o->output, "folder for the five files; made if missing");
   c.settings(describe(o->grid, "each solid"));

@@ -30,10 +30,10 @@ std::string textOf(const Claim& claim) {
 std::string textOf(const VerifyOptions& options, const Verification& made) {
   if (made.claims.empty())
     return options.map +
-           ": claims nothing to be proven, so nothing was looked at (innermap fit and map prove, "
-           "unless with --prove off)\n";
+           ": claims no proof, so there is nothing to check (innermap fit and map prove, unless "
+           "you give --prove off)\n";
   std::string text = fmt::format("{}: {}\n", options.map,
-                                 made.holds() ? "each claim holds" : "not each claim holds");
+                                 made.holds() ? "all claims hold" : "some claims do not hold");
   for (const Claim& claim : made.claims) text += textOf(claim);
   return text;
 }
@@ -45,14 +45,14 @@ std::string failureOf(const VerifyOptions& options, const Verification& made) {
     if (claim.result != ClaimResult::holds)
       names +=
           fmt::format("{}{} ({})", names.empty() ? "" : ", ", claim.name, wordOf(claim.result));
-  if (!names.empty()) return fmt::format("{}: not each claim holds: {}", options.map, names);
+  if (!names.empty()) return fmt::format("{}: some claims do not hold: {}", options.map, names);
   if (options.required != Required::nothing && made.claims.empty())
-    return fmt::format("{}: claims nothing to be proven, as --require asks for", options.map);
+    return fmt::format("{}: claims no proof, but --require asks for one", options.map);
   const bool whole = made.claimed.whole() && made.claimed.boundaryError > 0;
   if (options.required == Required::whole && !whole)
     return fmt::format(
-        "{}: does not claim that det J has one sign everywhere and that its boundary's error is "
-        "bounded, as --require whole asks for",
+        "{}: --require whole asks for two claims: that det J has one sign everywhere, and a bound "
+        "of the boundary's error; the file does not make both",
         options.map);
   return "";
 }
@@ -75,20 +75,20 @@ void run(const VerifyOptions& options, Context& context) {
 
 Command makeVerifyCommand() {
   auto o = std::make_shared<VerifyOptions>();
-  Command c("verify", "Prove again what a map's file claims to be proven of it");
+  Command c("verify", "Check the proofs that a map's file claims");
   c.description(
-      "Reads the map's file alone: its charges, its mesh and where that goes. Says of each claim "
-      "what is claimed, what was found, and whether it holds, fails or cannot be shown; a claim "
-      "that is weaker than what is shown holds. A random sample of cells and triangles is checked "
-      "in another way too, with intervals and plain sums. Exit code 1 unless each claim holds. "
-      "What the file says of points that were looked at (99% of the boundary, points inside) is "
-      "no proof and is not checked. A file that claims nothing does not fail, unless --require "
-      "asks for a claim.");
+      "Proves each claim again from the map's file alone: its charges, its mesh and its target. "
+      "For each claim it prints the claim, the finding, and the answer: holds, fails, or cannot be "
+      "shown. A claim holds if verify proves as much or more. verify also checks a random sample "
+      "of cells and triangles in another way, with intervals and plain sums. The exit code is 1 "
+      "unless all claims hold. The file's figures for sampled points (99% of the boundary, points "
+      "inside) are no proofs, so verify does not check them. A file that claims nothing does not "
+      "fail, unless --require asks for a claim.");
   c.positional("MAP", &o->map, "a map.ply written by fit or map");
   c.choice("--require", "WHAT", &o->required,
            {{"nothing", Required::nothing}, {"proof", Required::proof}, {"whole", Required::whole}},
-           "what has to be claimed, else the exit code is 1: anything (proof), or that det J has "
-           "one sign everywhere and how large the boundary's error is at most (whole)");
+           "end with exit code 1 unless the file claims this. proof: anything; whole: that det J "
+           "has one sign everywhere, and a bound of the boundary's error");
   c.settings(describe(o->settings));
   c.example("innermap verify map.ply");
   c.example("innermap verify map.ply --require whole --json | jq .verification");

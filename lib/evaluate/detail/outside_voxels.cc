@@ -80,7 +80,7 @@ openvdb::FloatGrid::Ptr outsideVoxels(const openvdb::Vec3fGrid& map,
           search.look(images, leaves[l]->origin(), 8, found[l]);
         }
       },
-      "looking for what is outside");
+      "looking outside the target");
   openvdb::FloatGrid::Ptr out;
   for (const auto& ofLeaf : found)
     for (const auto& [voxel, distance] : ofLeaf) {

@@ -199,8 +199,8 @@ bool MapFitter::roomForSteps() {
   const std::uint64_t need = processMemory(kStepsMemory);
   if (need <= memoryLimit()) return true;
   warnings.push_back(
-      fmt::format("one harmonic map folds {:.2g}% of the inside; going in steps may need about "
-                  "{}, more than the limit of {}, so that is left",
+      fmt::format("one harmonic map folds {:.2g}% of the inside; steps may need about {}, more "
+                  "than the limit of {}, so innermap takes none",
                   100 * singleFolded, formatBytes(need), formatBytes(memoryLimit())));
   return false;
 }

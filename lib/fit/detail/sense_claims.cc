@@ -38,7 +38,7 @@ void refuteSense(const ProofFigures& p, const SenseProof& found, const SenseEvid
                  Claim& claim) {
   claim.result = ClaimResult::fails;
   if (evidence.chargeInside) {
-    claim.found = "a charge lies in the solid, so that the map is not even defined there";
+    claim.found = "a charge lies in the solid, where the map is not even defined";
     claim.places = {*evidence.chargeInside};
   } else if (found.proven.count > 0 && found.mirrored != p.mirrored) {
     claim.found =
@@ -69,7 +69,7 @@ Claim senseClaim(const ProofFigures& p, const SenseProof& found, const SenseEvid
     return out;
   }
   out.result = ClaimResult::holds;
-  out.found = found.whole() ? fmt::format("so it is, on {} cells", found.proven.count)
+  out.found = found.whole() ? fmt::format("yes, on {} cells", found.proven.count)
                             : fmt::format("in {} at least, on {} cells",
                                           shareAtLeast(found.provenShare), found.proven.count);
   return out;
@@ -79,7 +79,7 @@ Claim undecidedClaim(const ProofFigures& p, const SenseProof& found) {
   Claim out;
   out.name = "undecided";
   out.claimed =
-      "the sign of det J is known but for " + shareAtMost(p.undecidedShare) + " of the solid";
+      "the sign of det J is known except in " + shareAtMost(p.undecidedShare) + " of the solid";
   out.found = found.undecided.count == 0 ? "it is known everywhere"
                                          : "on " + cellsOf(found.undecided) + " it is not known";
   out.result = found.undecided.share <= p.undecidedShare + kClaimDigits ? ClaimResult::holds
@@ -92,10 +92,10 @@ Claim foldedClaim(const SenseProof& found) {
   Claim out;
   out.name = "folded";
   out.claimed = "the map folds";
-  out.found = found.whole() ? "it does so nowhere"
+  out.found = found.whole() ? "it folds nowhere"
               : found.negative.count > 0
                   ? "the other sign on " + cellsOf(found.negative) + " everywhere"
-                  : "no cell where it does";
+                  : "no cell where it folds";
   out.result = found.negative.count > 0 ? ClaimResult::holds
                : found.whole()          ? ClaimResult::fails
                                         : ClaimResult::unshown;
@@ -112,7 +112,7 @@ Claim leastClaim(const ProofFigures& p, const SenseProof& found, const SenseEvid
       p.whole() ? found.whole() && found.weak.count == 0 : found.leastShare >= share - kClaimDigits;
   if (shown) {
     out.result = ClaimResult::holds;
-    out.found = found.whole() ? "so it is" : "in " + shareAtLeast(found.leastShare) + " at least";
+    out.found = found.whole() ? "yes" : "in " + shareAtLeast(found.leastShare) + " at least";
   } else if (p.whole() && evidence.lowAt) {
     out.result = ClaimResult::fails;
     out.found = atMost(evidence.low, kDigits) + " at most at one point";

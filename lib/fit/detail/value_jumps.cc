@@ -81,7 +81,7 @@ CrossingLines::CrossingLines(const Solid& solid) {
           }
         }
       },
-      "looking for parts that slide along each other");
+      "looking for sliding parts");
   for (std::size_t c = 0; c < crossings.size(); ++c)
     for (const Vec3& p : found[c]) {
       places_.push_back(p);

@@ -50,10 +50,10 @@ class FramesOfCache : public FrameSource {
     const double rounded = std::round(cache_.step());
     const bool whole = rounded >= 1 && std::abs(cache_.step() - rounded) < 1e-3;
     if (!whole)
-      notes.push_back(fmt::format(
-          "{}: a frame each {:g} frames; they are numbered one by one, so velocities are those of "
-          "the cache played at one a frame",
-          path, cache_.step()));
+      notes.push_back(
+          fmt::format("{}: holds a frame for each {:g} frames of the scene; innermap numbers them "
+                      "one by one, so velocities fit a cache that plays one a frame",
+                      path, cache_.step()));
     const bool isMdd = cache_.format() == PointCacheFormat::mdd;
     const auto step = static_cast<std::int64_t>(whole ? rounded : 1);
     const std::int64_t first = settings.firstFrame ? *settings.firstFrame

@@ -21,9 +21,10 @@ bool endsAs(const std::string& path, const char* ending) {
 std::uint64_t countOf(const std::string& path, const char* bytes, bool big, const char* what) {
   const auto count = numberAt<std::int32_t>(bytes, big);
   if (count < 1)
-    throw FileError(path, fmt::format("tells of {} {}: no such point cache, or a damaged one; "
-                                      "export it again",
-                                      count, what));
+    throw FileError(
+        path,
+        fmt::format("claims {} {}: not a point cache of this kind, or damaged; export it again",
+                    count, what));
   return static_cast<std::uint64_t>(count);
 }
 
@@ -79,13 +80,12 @@ void PointCache::requireSize(std::uint64_t header, std::uint64_t ofFrame) const 
   // By division, as the product of two wrong counts may be over 64 bits.
   const std::uint64_t rest = file_.size() - header;
   if (rest / ofFrame < frames_)
-    throw FileError(path(), fmt::format("is cut short, or its header is damaged: it tells of {} "
-                                        "frames of {} points, and holds {}; export it again",
+    throw FileError(path(), fmt::format("is cut short, or its header is damaged: it claims {} "
+                                        "frames of {} points, but holds {}; export it again",
                                         frames_, points_, rest / ofFrame));
   if (rest != frames_ * ofFrame)
-    throw FileError(path(),
-                    fmt::format("has {} bytes more than its header tells of; export it again",
-                                rest - frames_ * ofFrame));
+    throw FileError(path(), fmt::format("has {} bytes more than its header claims; export it again",
+                                        rest - frames_ * ofFrame));
 }
 
 std::vector<float> PointCache::seconds() const {

@@ -137,7 +137,7 @@ double keepCarried(openvdb::MaskTree& active, const Grid& grid, const Solid& sol
               leaves[l]->setValueOff(voxel.pos());
           }
       },
-      "finding what is in the solid");
+      "finding the inside");
   double sum = 0;
   for (const double s : sums) sum += s;
   return sum;

@@ -145,7 +145,7 @@ void addAround(openvdb::MaskGrid& region, const Solid& solid, double distance,
               leaves[l]->setValueOff(voxel.pos());
           }
       },
-      "finding what is around the solid");
+      "finding the surroundings");
 }
 
 SourceLattice makeSourceLattice(const Solid& solid, const OutsideSettings& outside,

@@ -34,8 +34,8 @@ bool says(const Injectivity& known, const std::string& what) {
 }
 
 constexpr const char* kNot = "So the map is not one-to-one";
-constexpr const char* kThen = "then exactly one goes to each";
-constexpr const char* kUnproved = "not proved";
+constexpr const char* kThen = "Then exactly one point goes to each";
+constexpr const char* kUnproved = "is not proven";
 constexpr const char* kWhole = "is one-to-one as a whole";
 constexpr const char* kNoMap = "No continuous map";
 
@@ -56,15 +56,14 @@ TEST(Injectivity, SaysWhatWasCheckedAndWhatFollows) {
 }
 
 TEST(Injectivity, SaysNothingOfWhatWasNotChecked) {
-  EXPECT_EQ(
-      injectivityStatement({}),
-      "No points inside were checked. Neither surface runs through itself. Whether the map is "
-      "one-to-one is not known.");
+  EXPECT_EQ(injectivityStatement({}),
+            "No points inside were checked. Neither surface runs through itself. It is not known "
+            "whether the map is one-to-one.");
   EXPECT_EQ(injectivityLine({}), "one-to-one: not checked");
   EXPECT_TRUE(injectivityFacts({}).empty());
   Injectivity grid;
   grid.voxels = figures(5000, 0, 0.5);
-  EXPECT_TRUE(says(grid, "nothing proves it"));
+  EXPECT_TRUE(says(grid, "none proves it"));
   EXPECT_FALSE(says(grid, "points inside"));
   EXPECT_FALSE(says(grid, "winds"));
   EXPECT_FALSE(says(grid, kThen));
@@ -238,7 +237,7 @@ TEST(Injectivity, AProofOfTheWholeIsSaidAndSoIsItsFailure) {
   EXPECT_TRUE(says(known, "No two points of the solid go to one: it is mapped one-to-one"));
   EXPECT_EQ(injectivityLine(known).substr(0, 19), "one-to-one, proven;");
   known.proof.oneToOne = 0;
-  EXPECT_TRUE(says(known, "Whether any two points of the solid go to one is not decided."));
+  EXPECT_TRUE(says(known, "It is not decided whether two points of the solid go to one."));
   EXPECT_EQ(injectivityLine(known).substr(0, 32), "one-to-one, proven deeper than 0");
 }
 
@@ -250,7 +249,7 @@ TEST(Injectivity, CellsThatAreUndecidedOrFoldedAreNoProof) {
   EXPECT_FALSE(notOneToOne(known));
   EXPECT_FALSE(known.proof.whole());
   EXPECT_TRUE(says(known, "On 7 cells, 0.1% of the solid at most, it is undecided."));
-  EXPECT_TRUE(says(known, "surface, and outside of the images of cells that are undecided or"));
+  EXPECT_TRUE(says(known, "surface, and outside the images of undecided and turned-over cells,"));
   known.proof.negative = 2;
   EXPECT_TRUE(notOneToOne(known));
   EXPECT_TRUE(says(known, kNot));
@@ -290,7 +289,7 @@ TEST(Injectivity, OfSeveralPartsEachMayBeTurnedOver) {
   known.degree = {1500, -1, 1};
   EXPECT_FALSE(notOneToOne(known));
   EXPECT_FALSE(says(known, kNot));
-  EXPECT_TRUE(says(known, "on each that is turned over at some of its places and not at others"));
+  EXPECT_TRUE(says(known, "on a part that is turned over only in places"));
   EXPECT_EQ(injectivityLine(known).substr(0, 22), "turned over in places;");
   known.proof = proven();
   known.proof.negative = 100;

@@ -160,21 +160,21 @@ class Working:
 class INNERMAP_OT_bake(Working, bpy.types.Operator):
     bl_idname = "innermap.bake"
     bl_label = "Bake"
-    bl_description = "Carries what is inside the body through its animation"
+    bl_description = "Carry the objects inside the body through its animation"
 
 
 class INNERMAP_OT_live(Working, bpy.types.Operator):
     bl_idname = "innermap.live"
     bl_label = "Live"
-    bl_description = ("Makes a lattice that follows the body's inside; whatever has a Lattice "
-                      "modifier with it follows too, also what is changed or added later")
+    bl_description = ("Make a lattice that follows the body's inside. Objects with its Lattice "
+                      "modifier follow too, also if you change or add them later")
     live = True
 
 
 class INNERMAP_OT_clear(bpy.types.Operator):
     bl_idname = "innermap.clear"
     bl_label = "Clear"
-    bl_description = "Takes away what was baked; files stay where they are"
+    bl_description = "Remove the bake; files stay where they are"
     bl_options = {'REGISTER', 'UNDO'}
 
     @classmethod

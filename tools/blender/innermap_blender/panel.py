@@ -21,7 +21,7 @@ class InnermapSettings(bpy.types.PropertyGroup):
         type=bpy.types.Collection, name="Inside",
         description="Meshes, curves, hair and volumes that are carried; the selected ones if empty")
     rest_frame: IntProperty(
-        name="Rest frame", default=1, description="Where the body and what is inside fit together")
+        name="Rest frame", default=1, description="Frame in which the body and the objects inside fit together")
     scene_range: BoolProperty(
         name="Scene range", default=True, description="Bake the frames of the scene")
     frame_start: IntProperty(name="First", default=1, min=0)
@@ -38,7 +38,7 @@ class InnermapSettings(bpy.types.PropertyGroup):
     charges: IntProperty(name="Charges", default=4000, min=50, max=100000)
     outside: FloatProperty(
         name="Outside", default=0.02, min=0, max=1,
-        description="Carry also what is so far outside, a fraction of the body's diagonal")
+        description="Also carry things up to this far outside, as a fraction of the body's diagonal")
     density: BoolProperty(
         name="Keep mass", default=True,
         description="A grid named density gets thinner where the body swells and denser where it "

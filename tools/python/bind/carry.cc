@@ -271,9 +271,12 @@ void bindCarry(py::module_& m) {
       "has what became of each mass, and warnings. Raises DataError, SettingError, FileError, "
       "MemoryError.";
   const std::string push =
-      std::string("Carries what is inside a map's source to its target.\n\n") + (kinds + 1);
+      std::string("Carries grids, geometry or points inside a map's source to its target.\n\n") +
+      (kinds + 1);
   const std::string pull =
-      std::string("Brings what is inside a map's target back to its source.\n\n") + (kinds + 1);
+      std::string(
+          "Brings grids, geometry or points inside a map's target back to its source.\n\n") +
+      (kinds + 1);
   define<WayOptions>(m, {"push", "map, inside, path=None", push.c_str()},
                      [](const Arguments& a, WayOptions& o) { return carry(true, a, o); });
   define<WayOptions>(m, {"pull", "map, inside, path=None", pull.c_str()},

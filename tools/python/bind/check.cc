@@ -88,8 +88,8 @@ void bindCheck(py::module_& m) {
       .def("__repr__", &reprOf);
   define<CheckOptions>(m,
                        {"check", "*mesh",
-                        "Check a mesh: what is wrong with it and what that means for a map. "
-                        "Returns a MeshReport.\n\nmesh: V, F or whatever stands for a mesh."},
+                        "Check a mesh: each fault, and its meaning for a map. Returns a "
+                        "MeshReport.\n\nmesh: V, F or anything that stands for a mesh."},
                        check);
 }
 

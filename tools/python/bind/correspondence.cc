@@ -214,8 +214,8 @@ void bindCorrespondence(py::module_& m) {
       {"correspond", "*meshes",
        "Lays the surface of one solid onto that of another, of any connectivity: one-to-one, each "
        "point of the target reached once.\n\nmeshes: the source and the target, each as V, F or "
-       "whatever stands for a mesh; both closed, with as many handles and as many shells. Returns "
-       "a Correspondence. Raises DataError, MemoryError."},
+       "anything that stands for a mesh; both closed, with as many handles and as many shells. "
+       "Returns a Correspondence. Raises DataError, MemoryError."},
       correspondTwo);
   define<CallOptions>(m,
                       {"load_correspondence", "path, *source",

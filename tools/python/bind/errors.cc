@@ -59,8 +59,8 @@ void translate(std::exception_ptr thrown) {  // NOLINT(performance-unnecessary-v
 
 void bindErrors(py::module_& m) {
   classes.error = define(m, "Error",
-                         "What the library has to say: which file, argument or setting, what is "
-                         "wrong with it and what to do.",
+                         "The library's message: which file, argument or setting, what is wrong "
+                         "with it and what to do.",
                          py::reinterpret_borrow<py::object>(PyExc_RuntimeError));
   classes.file = define(m, "FileError", "A file cannot be read, written or understood.",
                         bases(classes.error, PyExc_OSError));

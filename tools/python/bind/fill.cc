@@ -127,8 +127,8 @@ void bindFill(py::module_& m) {
        "Fills a solid with tetrahedra: an innermap.Cells whose cell_data has each cell's "
        "least_dihedral and greatest_dihedral, degrees.\n\nDihedral angles lie in 10 to 165 "
        "degrees, with features in 5 to 170 (isosurface stuffing; Labelle and Shewchuk 2007). mesh: "
-       "V, F or whatever stands for a mesh. Raises DataError where the topology cannot be kept, "
-       "naming a resolution that does; MemoryError."},
+       "V, F or anything that stands for a mesh. Raises DataError where the topology cannot be "
+       "kept, naming a resolution that does; MemoryError."},
       tetrahedra);
   define<HexahedralizeOptions>(
       m,

@@ -152,17 +152,14 @@ void bindHarmonic(py::module_& m) {
   define<HarmonicOptions>(
       m,
       {"harmonic", "*mesh_and_values",
-       "A harmonic field inside a solid, from what is known on its surface; no tetrahedra are "
-       "needed. Returns an innermap.Field.\n\n"
-       "harmonic(V, F, values): any number of channels in one solve.\n"
-       "harmonic(V, F, fix=[(inner, 0), (outer, 1)]): values on parts of the surface, nothing "
-       "flows through the rest.\n"
-       "harmonic('heart.obj', fix={'endo': 0, 'epi': 1}): by the file's groups.\n\n"
-       "V: (n, 3) float64, world units. F: (m, 3) integers; or whatever stands for a mesh. A "
-       "tolerance that cannot be met is no error, see Field.tolerance_met. Points and lines inside "
-       "cannot hold a value in three dimensions: give them as small balls or tubes, closed parts "
-       "of "
-       "the surface. Raises DataError, SettingError, MemoryError."},
+       "A harmonic field inside a solid, from values on its surface; no tetrahedra are needed. "
+       "Returns an innermap.Field.\n\nharmonic(V, F, values): any number of channels in one "
+       "solve.\nharmonic(V, F, fix=[(inner, 0), (outer, 1)]): values on parts of the surface, "
+       "nothing flows through the rest.\nharmonic('heart.obj', fix={'endo': 0, 'epi': 1}): by the "
+       "file's groups.\n\nV: (n, 3) float64, world units. F: (m, 3) integers; or anything that "
+       "stands for a mesh. A tolerance that cannot be met is no error, see Field.tolerance_met. "
+       "Points and lines inside cannot hold a value in three dimensions: give them as small balls "
+       "or tubes, closed parts of the surface. Raises DataError, SettingError, MemoryError."},
       harmonic);
   define<WeightOptions>(
       m,

@@ -241,7 +241,7 @@ void bindMap(py::module_& m) {
       .def_property_readonly(
           "statement",
           [](const PyMap& self) { return injectivityStatement(self.mapped->injectivity); },
-          "Whether the map is one-to-one: what was checked and found, and what follows.")
+          "Whether the map is one-to-one: what innermap checked and found, and what follows.")
       .def_property_readonly(
           "one_to_one", [](const PyMap& self) { return dictOf(figures(self.mapped->injectivity)); },
           "The figures of the statement, by name.")

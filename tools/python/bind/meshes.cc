@@ -145,18 +145,17 @@ void bindMeshes(py::module_& m) {
         const std::string path = pathFrom(a[0], "path");
         return py::cast(std::make_shared<Mesh>(call(o, [&]() { return readMesh(path); })));
       });
-  define<NoOptions>(
-      m,
-      {"write_mesh", "path, *mesh",
-       "Writes a mesh to a .ply or .obj file. mesh: V, F or whatever stands for a mesh. Raises "
-       "FileError."},
-      [](const Arguments& a, NoOptions&) {
-        if (a.empty()) throw py::type_error("write_mesh() lacks its argument 'path'");
-        std::size_t at = 1;
-        const std::string path = pathFrom(a[0], "path");
-        const Mesh mesh = takeMesh(a, at, "mesh");
-        return withoutLock([&] { writeMesh(path, mesh); });
-      });
+  define<NoOptions>(m,
+                    {"write_mesh", "path, *mesh",
+                     "Writes a mesh to a .ply or .obj file. mesh: V, F or anything that stands for "
+                     "a mesh. Raises FileError."},
+                    [](const Arguments& a, NoOptions&) {
+                      if (a.empty()) throw py::type_error("write_mesh() lacks its argument 'path'");
+                      std::size_t at = 1;
+                      const std::string path = pathFrom(a[0], "path");
+                      const Mesh mesh = takeMesh(a, at, "mesh");
+                      return withoutLock([&] { writeMesh(path, mesh); });
+                    });
 }
 
 }  // namespace innermap::python

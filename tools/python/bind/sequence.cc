@@ -80,11 +80,10 @@ void bindSequence(py::module_& m) {
        "program's energies.csv has them: frame, harmonic (3 for a rigid motion), deformation (0 "
        "for one), deformation_mean, boundary_rms, boundary_p99, boundary_max (fractions of the "
        "frame's diagonal), jacobian_min, jacobian_max, folded_fraction, outside_fraction, volume "
-       "(world units cubed), with prove what is proven of each map, as prove() of a Map names it, "
-       "and statement, the same and what was checked in words, and error, the text of what was "
-       "wrong with a frame that could not be used, whose figures are NaN.\n\nsource and frames as "
-       "deform() takes them. Raises "
-       "DataError where no frame can be used, FileError, MemoryError."},
+       "(world units cubed), error: why a frame could not be used; its figures are then NaN. With "
+       "prove also the proofs of each map, named as in Map.prove(), and statement: proofs and "
+       "checks in words.\n\nsource and frames as deform() takes them. Raises DataError where no "
+       "frame can be used, FileError, MemoryError."},
       sequence);
 }
 

@@ -44,10 +44,9 @@ void bindSphere(py::module_& m) {
        "Lays a closed surface without handles out on the unit sphere about the origin, one-to-one, "
        "areas near their share: (surface, figures), an innermap.Mesh with the mesh's own vertices "
        "and faces, or those of the outer surface where the mesh runs through itself, and a dict: "
-       "flips, degree "
-       "(1: covered once), area_ratio_log10 (of the smallest triangle to its share).\n\nEach "
-       "shell, a cavity say, covers the sphere by itself. mesh: V, F or whatever stands for a "
-       "mesh. Raises DataError for handles, MemoryError."},
+       "flips, degree (1: covered once), area_ratio_log10 (of the smallest triangle to its "
+       "share).\n\nEach shell, a cavity say, covers the sphere by itself. mesh: V, F or anything "
+       "that stands for a mesh. Raises DataError for handles, MemoryError."},
       sphere);
 }
 

@@ -264,7 +264,7 @@ std::vector<Setting> describe(VolumeTextureReadSettings& s) {
       Setting("axis", "AXIS", choiceOf<std::optional<int>>(&s.axis, {{"x", 0}, {"y", 1}, {"z", 2}}),
               "direction across the slices")
           .otherwise("from the file, else z"),
-      Setting("background", "V", &s.background, "value of what is not active")
+      Setting("background", "V", &s.background, "value of inactive voxels")
           .from(-1e30, 1e30)
           .otherwise("from the file, else 0")
           .rare(),

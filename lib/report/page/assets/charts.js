@@ -15,10 +15,17 @@ function ticksOf(least, greatest, logarithmic, whole = false) {
   return out;
 }
 
+// As short as they can be while no two read alike.
+function labelsOf(ticks) {
+  let digits = 3;
+  while (digits < 9 && new Set(ticks.map((t) => shortNumber(t, digits))).size < ticks.length) ++digits;
+  return ticks.map((t) => [t, shortNumber(t, digits)]);
+}
+
 // chart: {title, x: [...], xLabel, series: [{name, y: [...]}], logarithmic, logX, cursor, level: {value, text}}
 // Returns {node, setCursor(x)}.
 function lineChart(chart) {
-  const width = 460, height = 220, left = 62, right = 24, top = 14, bottom = 38;
+  const width = 400, height = 200, left = 62, right = 24, top = 14, bottom = 38;
   // What has no place on either axis is left out.
   const placed = (x) => Number.isFinite(x) && (!chart.logX || x > 0);
   chart.series = chart.series.map((s) => ({name: s.name, y: chart.x.map((x, i) => (placed(x) ? s.y[i] : NaN))}));
@@ -38,11 +45,11 @@ function lineChart(chart) {
   const py = (y) => height - bottom - along(y, y0, y1, chart.logarithmic) * (height - top - bottom);
   const svg = drawing("svg", {viewBox: `0 0 ${width} ${height}`, role: "img", class: "chart"},
                       drawing("title", {}, chart.title));
-  for (const t of ticksOf(y0, y1, chart.logarithmic))
+  for (const [t, label] of labelsOf(ticksOf(y0, y1, chart.logarithmic)))
     svg.append(drawing("line", {x1: left, x2: width - right, y1: py(t), y2: py(t), class: "grid"}),
-               drawing("text", {x: left - 6, y: py(t) + 4, "text-anchor": "end"}, shortNumber(t)));
-  for (const t of ticksOf(x0, x1, chart.logX, xs.every(Number.isInteger)))
-    svg.append(drawing("text", {x: px(t), y: height - bottom + 16, "text-anchor": "middle"}, shortNumber(t)));
+               drawing("text", {x: left - 6, y: py(t) + 4, "text-anchor": "end"}, label));
+  for (const [t, label] of labelsOf(ticksOf(x0, x1, chart.logX, xs.every(Number.isInteger))))
+    svg.append(drawing("text", {x: px(t), y: height - bottom + 16, "text-anchor": "middle"}, label));
   svg.append(drawing("text", {x: (left + width - right) / 2, y: height - 4, "text-anchor": "middle", class: "label"}, chart.xLabel));
   if (chart.level)
     svg.append(drawing("line", {x1: left, x2: width - right, y1: py(chart.level.value), y2: py(chart.level.value), class: "level"}),

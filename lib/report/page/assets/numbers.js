@@ -31,12 +31,13 @@ function numberTable(key, title, told) {
   const rows = leaves(page.report[key] || {}, key).filter(([path]) => path !== "one_to_one.statement");  // said above
   if (!rows.length) return null;
   return element("section", {class: "numbers"}, element("h3", {}, title), told ? element("p", {class: "hint"}, told) : null,
-    element("table", {}, element("tbody", {}, ...rows.map(([path, value]) => {
+    element("table", {}, element("colgroup", {}, element("col", {class: "name"}), element("col", {class: "value"}), element("col")),
+      element("tbody", {}, ...rows.map(([path, value]) => {
       const known = meaningOf(path), [name, meaning, how] = known || fallback(path), text = typeof value === "string";
       return element("tr", {"data-key": path, "data-known": String(known !== null)},
         element("th", {scope: "row"}, name),
-        element("td", {class: text ? (value.length < 24 ? "text short" : "text") : "number", colspan: meaning ? 1 : 2}, written(value, how)),
-        meaning ? element("td", {class: "meaning"}, meaning) : null);
+        element("td", {class: text ? "text" : "number", colspan: meaning || !text ? 1 : 2}, written(value, how)),
+        meaning || !text ? element("td", {class: "meaning"}, meaning) : null);
     }))));
 }
 
@@ -111,7 +112,7 @@ function costSection() {
   const seconds = Object.entries(page.report.seconds || {}).filter(([, s]) => typeof s === "number");
   if (!seconds.length) return null;
   const total = seconds.reduce((sum, [, s]) => sum + s, 0), memory = page.report.memory_after_bytes || {};
-  const rows = seconds.map(([stage, s]) => [stage, s, shortNumber(s) + " s" + (memory[stage] ? ", " + bytesText(memory[stage]) : "")]);
+  const rows = seconds.map(([stage, s]) => [stage.replace(/_/g, " "), s, shortNumber(s) + " s" + (memory[stage] ? ", " + bytesText(memory[stage]) : "")]);
   return section("cost", "Time and memory",
     element("p", {}, `${shortNumber(total)} s in all; at most ${bytesText(page.report.peak_memory_bytes || 0)} of memory.`),
     bars("Seconds by stage" + (Object.keys(memory).length ? ", and the most memory by its end" : ""), rows));
@@ -127,7 +128,7 @@ function runSection() {
   return section("run", "The run",
     text ? element("p", {}, "Command:") : null, text ? element("pre", {class: "command"}, text) : null,
     facts.length ? element("p", {}, facts.map(([name, value]) => `${name} ${value}`).join(" · ")) : null,
-    outputs.length ? element("table", {}, element("tbody", {}, ...outputs.map((o) => element("tr", {}, element("th", {scope: "row"}, o.path), element("td", {class: "number"}, bytesText(o.bytes)))))) : null,
+    outputs.length ? element("table", {class: "outputs"}, element("tbody", {}, ...outputs.map((o) => element("tr", {}, element("th", {scope: "row"}, o.path), element("td", {class: "number"}, bytesText(o.bytes)))))) : null,
     Object.keys(settings).length ? element("details", {}, element("summary", {}, "Settings as used"), element("table", {class: "settings"}, element("tbody", {},
       ...leaves(settings).map(([name, value]) => element("tr", {}, element("th", {scope: "row"}, name), element("td", {class: "text"}, written(value)))))))
       : null);

@@ -11,7 +11,7 @@ const gridWords = {
   "map z": "z of where each place goes, world units of the target",
   repaired: "how far each voxel was moved to take a fold out of the grids, world units",
   folded: "1 where the map itself folds, before any repair",
-  undecided: "1 where the proof came to no end",
+  undecided: "1 where the proof did not decide",
   outside: "how far each voxel lands out of the target",
 };
 const preferredGrids = ["deformation_energy", "jacobian", "harmonic_energy"];

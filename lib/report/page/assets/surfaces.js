@@ -66,6 +66,7 @@ function marksOf(panels) {
   add("tolerance.worst_at", "largest error", 0);
   add("source.cap_places", "cap", 0);
   add("target.cap_places", "cap of the target", 1);
+  add("laid.cap_places", "cap, laid", 1);
   add("outer_surface.cap_places", "cap", 0);
   add("correspondence.source_outer_surface.cap_places", "cap", 0);
   add("correspondence.target_outer_surface.cap_places", "cap of the target", 1);

@@ -73,8 +73,8 @@ TorusClasses torusClasses(const ClosedSurface& surface, const HalfEdges& edges,
   const long long crossing = crossingNumber(basis, out.meridian, out.longitude);
   if (std::abs(crossing) != 1)
     throw DataError(
-        fmt::format("{}: passes through itself where its handle closes (see `innermap "
-                    "check`), so that no loop around the handle bounds inside",
+        fmt::format("{}: passes through itself where its handle closes (see `innermap check`), so "
+                    "no loop around the handle bounds a disc inside; repair it",
                     surface.name));
   for (long long& c : out.longitude) c *= crossing;
   return out;
