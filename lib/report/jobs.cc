@@ -85,8 +85,8 @@ std::string slurmText(const Jobs& jobs) {
   std::string out = fmt::format(
       "#!/bin/sh\n"
       "# {} in {} shares, for Slurm: run this file where sbatch is.\n"
-      "# A task is expected to take {:.0f} s and {} MB, and uses {} cores. It asks for {}.\n"
-      "# It goes back into the queue when its node fails; what is finished is not made again.\n"
+      "# A task should take {:.0f} s and {} MB, on {} cores. It asks for {}.\n"
+      "# It goes back into the queue when its node fails, and then skips finished work.\n"
       "set -e\n",
       jobs.name, jobs.tasks, jobs.task.seconds, jobs.task.memory / 1'000'000, jobs.cores,
       marginsText());

@@ -62,8 +62,8 @@ BlockWork evaluationWork(const Solid& solid, const EvaluationOptions& options, s
 
 void addBlockOptions(Command& command, ShareOptions& options) {
   addShareOptions(command, options, "blocks of 128 voxels along each side",
-                  "They go to OUTPUT.shares, and innermap join makes one file of all; blocks that "
-                  "are finished are not made again");
+                  "The blocks go to OUTPUT.shares; innermap join makes one file of all. A share "
+                  "skips blocks that are finished");
 }
 
 void beginBlocks(const ShareOptions& options, const std::string& output, Context& context) {

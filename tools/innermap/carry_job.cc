@@ -40,7 +40,7 @@ std::vector<JobPhase> carryingPhases(Way way, const CarryJob& job, const Transfe
     if (densities > 0) {
       JobSize held = from;
       held.items = static_cast<double>(densities) * from.inside;
-      phases.push_back(stageOf("finding what is in the solid", held));
+      phases.push_back(stageOf("finding the inside", held));
       phases.push_back(stageOf("mapping the densities", held));
       phases.push_back(stageOf("carrying the densities", held));
     }

@@ -178,7 +178,7 @@ void run(const JoinOptions& options, Context& context) {
   if (joined.run.command == "sequence") return joinSequence(options, std::move(joined), context);
   for (const char* volume : {"evaluate", "push", "pull", "voxelize"})
     if (joined.run.command == volume) return joinVolume(options, std::move(joined), context);
-  throw DataError(options.folder + ": the parts are of '" + joined.run.command +
+  throw DataError(options.folder + ": holds parts of '" + joined.run.command +
                   "', which has nothing to join");
 }
 
@@ -188,15 +188,15 @@ Command makeJoinCommand() {
   auto o = std::make_shared<JoinOptions>();
   Command c("join", "Join the shares of a run that was made on several machines");
   c.description(
-      "Reads the parts that sequence with --share left in FOLDER/parts, and writes what one run "
-      "would have written: energies.csv, energies.svg and report.json, with the same figures "
-      "whatever the shares were. Frames that are not made yet are named, and nothing is written "
-      "unless --partial is given. Parts of two runs, of another version, that are cut off, or that "
-      "two workers made with other results are refused. Others may write parts meanwhile. "
-      "Of the blocks that evaluate, push, pull or voxelize with --share left in map.vdb.shares it "
-      "makes map.vdb: it reads the command's inputs again, and does what takes the whole volume, "
-      "such as repairing folds, making fog, and turning carried level sets into distances. So it "
-      "needs the memory of the whole.");
+      "Reads the parts that sequence --share left in FOLDER/parts, and writes the files of one "
+      "run: energies.csv, energies.svg and report.json. The figures are the same however you cut "
+      "the run. If frames are missing, join names them and writes nothing, unless you give "
+      "--partial. It refuses parts of two runs or of another version, parts that are cut off, and "
+      "frames that two workers made with different results. Workers may write more parts "
+      "meanwhile. From the blocks that evaluate, push, pull or voxelize --share left in "
+      "map.vdb.shares, join makes map.vdb. It reads the command's inputs again and does what takes "
+      "the whole volume, such as repairing folds, making fog, and turning carried level sets into "
+      "distances, so it needs the memory of the whole volume.");
   c.positional("FOLDER", &o->folder,
                "the output folder of a run with --share; for a volume, the folder .shares beside "
                "the output");

@@ -25,6 +25,7 @@
 namespace innermap::tool {
 namespace {
 
+constexpr const char* kLaidFile = "correspondence.ply";
 constexpr double kRepairShare = 0.3;       // of what --max-time leaves when the fit has ended
 constexpr std::size_t kLikelyCharges = 2;  // a vertex
 
