@@ -37,7 +37,7 @@ def test_the_shares_of_a_volume_are_one_run():
     assert cli.read_json("whole.json")["repair"]["folded_voxels"] > 0
     fails(1, "join", "cut.vdb.shares", says=["--share"])
     innermap(*LONG, "-o", "cut.vdb", "--share", "2/2")
-    fails(1, "join", "cut.vdb.shares", says=["not made", "blocks"])
+    fails(1, "join", "cut.vdb.shares", says=["missing", "blocks"])
     for text in ["1/2", "4/7"]:
         told = innermap(*LONG, "-o", "cut.vdb", "--share", text).stdout
     assert "finished already" in told and not Path("cut.vdb").exists()
@@ -59,7 +59,7 @@ def test_the_shares_of_a_volume_are_one_run():
     blocks[0].write_bytes(whole[:-100])
     fails(1, "join", "cut.vdb.shares", says=["1 of", "blocks", "1"])
     blocks[0].write_bytes(whole[:-100] + bytes(100))
-    fails(1, "join", "cut.vdb.shares", says=[blocks[0].name, "not as it was written"])
+    fails(1, "join", "cut.vdb.shares", says=[blocks[0].name, "changed since it was written"])
     blocks[0].unlink()
     innermap(*LONG, "-o", "cut.vdb", "--share", "1/1")  # makes what is missing
     assert blocks[0].read_bytes() == whole
