@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "section.h"
 

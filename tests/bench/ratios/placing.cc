@@ -1,7 +1,6 @@
 // What comes before the fit: reading, checking, the solid, points on and outside the surface.
 #include <cmath>
 
-#include "innermap/core/memory.h"
 #include "innermap/levelset/solid.h"
 #include "innermap/mesh/check.h"
 #include "innermap/mesh/mesh_file.h"

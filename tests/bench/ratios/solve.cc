@@ -1,8 +1,6 @@
 // Uniform shells of charges: the iterative solver, and beside it the dense one and plain QR.
 #include <lapacke.h>
 
-#include <algorithm>
-
 #include "innermap/field/field_file.h"
 #include "innermap/mesh/mesh_file.h"
 #include "innermap/solve/kernel_sum.h"
