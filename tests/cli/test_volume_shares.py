@@ -16,12 +16,12 @@ from cli import fails, innermap, nightly
 LONG = ["evaluate", "map.ply", "--resolution", "270", "--repair", "on", "--quiet"]
 
 
-def folded_rod():
-    """A map of a rod of three blocks, which folds."""
+def folded_rod(at=2, by=3, over=2):
+    """A map of a rod of three blocks, which folds about x = at."""
     v, f = cli.icosphere_arrays(3)
     v = [(20 * x, y, z) for x, y, z in v]
     cli.write_obj("rod.obj", v, f)
-    cli.write_obj("pinched.obj", [(x + 3 * math.exp(-((x - 2) / 2) ** 2) * y, y, z) for x, y, z in v], f)
+    cli.write_obj("pinched.obj", [(x + by * math.exp(-((x - at) / over) ** 2) * y, y, z) for x, y, z in v], f)
     innermap("fit", "rod.obj", "pinched.obj", "-o", "map.ply", "--charges", "300", "--quiet")
 
 
@@ -117,9 +117,10 @@ def test_the_shares_of_voxelize_are_one_run():
 
 
 def test_the_shares_of_push_and_pull_are_one_run():
-    folded_rod()
-    innermap(*LONG, "-o", "rest.vdb")  # a level set, positions, a fog, scalars; some of it folds
+    folded_rod(at=-2.15, by=6, over=1)  # where two blocks meet: voxels there are not inverted
+    innermap(*LONG, "-o", "rest.vdb")  # a level set, positions, a fog, scalars
     assert_one_run("push", "map.ply", "rest.vdb", "--resolution", "270", "-q")
+    assert cli.read_json("whole.json")["inverse"]["not_inverted"] > 0
     assert_one_run("pull", "map.ply", "rest.vdb", "--resolution", "270", "--density", "-q")
     innermap("push", "map.ply", "rest.vdb", "-o", "cut.vdb", "--share", "1/2", "-q")
     fails(1, "push", "map.ply", "rest.vdb", "-o", "cut.vdb", "--share", "2/2", "--sampling", "nearest",
