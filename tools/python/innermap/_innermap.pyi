@@ -536,6 +536,6 @@ def study(
 
 def jobs(
     path: Path, command: Sequence[str], *, tasks: int = 1, first: Optional[Sequence[str]] = None,
-    join: Optional[Sequence[str]] = None, seconds: float = 0, memory: int = 0,
-    first_seconds: float = 0, first_memory: int = 0, join_seconds: float = 0, join_memory: int = 0, cores: int = 1,
+    join: Optional[Sequence[str]] = None, seconds: float = 0, memory: int = 0, first_seconds: float = 0,
+    first_memory: int = 0, join_seconds: float = 0, join_memory: int = 0, cores: int = 1,
     folder: str = '', name: str = 'innermap') -> None: ...
