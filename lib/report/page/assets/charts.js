@@ -18,8 +18,8 @@ function ticksOf(least, greatest, logarithmic, whole = false) {
 // As short as they can be while no two read alike.
 function labelsOf(ticks) {
   let digits = 3;
-  while (digits < 9 && new Set(ticks.map((t) => shortNumber(t, digits))).size < ticks.length) ++digits;
-  return ticks.map((t) => [t, shortNumber(t, digits)]);
+  while (digits < 9 && new Set(ticks.map((t) => numberText(t, digits))).size < ticks.length) ++digits;
+  return ticks.map((t) => [t, numberText(t, digits)]);
 }
 
 // chart: {title, x: [...], xLabel, series: [{name, y: [...]}], logarithmic, logX, cursor, level: {value, text}}

@@ -27,12 +27,13 @@ function leaves(object, before = "") {
   });
 }
 
+const numberColumns = () => element("colgroup", {}, element("col", {class: "name"}), element("col", {class: "value"}), element("col"));
+
 function numberTable(key, title, told) {
   const rows = leaves(page.report[key] || {}, key).filter(([path]) => path !== "one_to_one.statement");  // said above
   if (!rows.length) return null;
   return element("section", {class: "numbers"}, element("h3", {}, title), told ? element("p", {class: "hint"}, told) : null,
-    element("table", {}, element("colgroup", {}, element("col", {class: "name"}), element("col", {class: "value"}), element("col")),
-      element("tbody", {}, ...rows.map(([path, value]) => {
+    element("table", {}, numberColumns(), element("tbody", {}, ...rows.map(([path, value]) => {
       const known = meaningOf(path), [name, meaning, how] = known || fallback(path), text = typeof value === "string";
       return element("tr", {"data-key": path, "data-known": String(known !== null)},
         element("th", {scope: "row"}, name),
@@ -51,7 +52,7 @@ function numbersSection() {
   const tables = [...words.sections.filter(([key]) => !shownElsewhere.includes(key)),
                   ...others.filter((key) => !loose.includes(key)).map((key) => [key, key.replace(/_/g, " "), ""])]
     .map(([key, title, meaning]) => numberTable(key, title, meaning));
-  tables.push(loose.length ? element("section", {class: "numbers"}, element("h3", {}, "Other"), element("table", {}, element("tbody", {},
+  tables.push(loose.length ? element("section", {class: "numbers"}, element("h3", {}, "Other"), element("table", {}, numberColumns(), element("tbody", {},
     ...loose.map((key) => {
       const told = meaningOf(key), [name, meaning, how] = told || fallback(key);
       return element("tr", {"data-key": key, "data-known": String(told !== null)}, element("th", {scope: "row"}, name),

@@ -55,10 +55,12 @@ function legend(scale, name) {
                  words ? element("figcaption", {}, words) : null);
 }
 
-function shortNumber(v, digits = 3) {
+function numberText(v, digits) {
   if (!Number.isFinite(v)) return "–";
   if (v === 0) return "0";
   const size = Math.abs(v);
   if (size >= 1e-3 && size < 1e5) return String(Number(v.toPrecision(digits)));
   return v.toExponential(digits - 2).replace("e+", "e");
 }
+
+const shortNumber = (v) => numberText(v, 3);
