@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "evaluate/topology.h"
 #include "innermap/core/error.h"
 #include "innermap/io/pictures.h"
 
@@ -10,15 +11,6 @@ namespace innermap {
 namespace {
 
 constexpr std::int64_t kLongestSide = 65536;
-
-// Calls body(grid) with the grid's own type; false when it is none of those with numbers.
-template <class Body>
-bool withType(const openvdb::GridBase& grid, const Body& body) {
-  using Types = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
-                                  openvdb::Int64Grid, openvdb::BoolGrid, openvdb::MaskGrid,
-                                  openvdb::Vec3SGrid, openvdb::Vec3DGrid, openvdb::Vec3IGrid>;
-  return grid.apply<Types>(body);
-}
 
 template <class Value>
 constexpr int componentsOf() {
@@ -35,7 +27,7 @@ float component(const Value& value, int c) {
 
 int componentCount(const openvdb::GridBase& grid) {
   int count = 0;
-  const bool known = withType(grid, [&](const auto& typed) {
+  const bool known = grid.apply<GridTypes>([&](const auto& typed) {
     count = componentsOf<typename std::decay_t<decltype(typed)>::ValueType>();
   });
   if (!known)
@@ -161,7 +153,7 @@ std::vector<SliceChannel> sliceGrid(const openvdb::GridBase& grid, const SliceFr
   for (const std::string& name : channelNames(grid))
     channels.push_back({name, std::vector<float>(frame.rows() * frame.columns(), 0.0f)});
   const bool everywhere = grid.getGridClass() == openvdb::GRID_LEVEL_SET;
-  withType(grid, [&](const auto& typed) {
+  grid.apply<GridTypes>([&](const auto& typed) {
     using Value = typename std::decay_t<decltype(typed)>::ValueType;
     const auto accessor = typed.getConstAccessor();
     std::size_t i = 0;
@@ -180,7 +172,7 @@ std::vector<SliceChannel> sliceGrid(const openvdb::GridBase& grid, const SliceFr
 std::vector<float> sliceMask(const openvdb::GridPtrVec& grids, const SliceFrame& frame, int layer) {
   std::vector<float> mask(frame.rows() * frame.columns(), 0.0f);
   for (const openvdb::GridBase::Ptr& grid : grids)
-    withType(*grid, [&](const auto& typed) {
+    grid->apply<GridTypes>([&](const auto& typed) {
       const auto accessor = typed.getConstAccessor();
       std::size_t i = 0;
       for (std::size_t row = 0; row < frame.rows(); ++row)

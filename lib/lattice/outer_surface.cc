@@ -22,6 +22,7 @@
 #include "lattice/detail/thin_parts.h"
 #include "lattice/fit_boundary.h"
 #include "lattice/stuffing.h"
+#include "levelset/level_set_settings.h"
 #include "mesh/triangle_tree.h"
 
 namespace innermap {
@@ -39,20 +40,13 @@ constexpr double kNodeBytes = 60;
 // OpenVDB's voxels have a least size: a smaller solid is taken a thousand units across.
 constexpr double kSmallestSide = kMostAcross * kSmallestVoxel, kEnlargedSide = 1000;
 
-double longestSide(const Solid& solid) {
-  const Vec3 e = solid.box().extent();
-  return std::max({e.x, e.y, e.z});
-}
-
 double spacingFor(const Solid& solid, const OuterSurfaceSettings& settings) {
   if (settings.resolution == 0) {
     // Thin solids get more voxels by themselves.
     const double usual = voxelSizeFor(solid, {}) * kUsualResolution / kUsualAcross;
     return std::max(usual, longestSide(solid) / kMostAcross);
   }
-  if (settings.resolution < kLeastAcross || settings.resolution > kMostAcross)
-    throw SettingError("resolution", fmt::format("must be from {} to {} cells across, or 0",
-                                                 kLeastAcross, kMostAcross));
+  requireNumber("resolution", settings.resolution, {kLeastAcross, kMostAcross}, "cells across");
   return longestSide(solid) / settings.resolution;
 }
 

@@ -21,11 +21,6 @@ using Leaf = FloatTree::LeafNodeType;
 
 std::string formatLength(double length) { return fmt::format("{:.4g}", length); }
 
-double longestSide(const Solid& solid) {
-  const Vec3 e = solid.box().extent();
-  return std::max({e.x, e.y, e.z});
-}
-
 // Mean thickness: that of plates, half of that of needles, a third of that of balls.
 double thicknessOf(const Solid& solid) { return 2 * solid.volume() / solid.area(); }
 
@@ -83,6 +78,11 @@ FloatGrid::Ptr makeBand(const Solid& solid, const LevelSetSettings& settings, co
 }
 
 }  // namespace
+
+double longestSide(const Solid& solid) {
+  const Vec3 e = solid.box().extent();
+  return std::max({e.x, e.y, e.z});
+}
 
 double voxelSizeFor(const Solid& solid, const LevelSetSettings& settings) {
   const double longest = longestSide(solid);

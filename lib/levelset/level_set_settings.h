@@ -5,8 +5,10 @@
 
 namespace innermap {
 
-// settings: of any job that has resolution and voxelSize as LevelSetSettings
-// has them.
+// Of the solid's box, world units.
+double longestSide(const Solid& solid);
+
+// settings: of any job that has resolution and voxelSize as LevelSetSettings has them.
 template <class Settings>
 LevelSetSettings levelSetSettings(const Settings& settings) {
   LevelSetSettings out;

@@ -6,6 +6,7 @@
 
 #include "core/pi.h"
 #include "core/random.h"
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "levelset/offset_surface.h"
@@ -15,13 +16,10 @@
 namespace innermap {
 namespace {
 
-constexpr std::size_t kMaxSources = 10'000'000;
+constexpr double kMaxSources = 10'000'000;
 
 void checkCount(const SourceSettings& settings) {
-  if (settings.count < 1 || settings.count > kMaxSources) {
-    throw SettingError(
-        "charges", fmt::format("must lie between 1 and {}, not {}", kMaxSources, settings.count));
-  }
+  requireNumber("charges", static_cast<double>(settings.count), {1, kMaxSources});
 }
 
 Points relativeTo(Points points, const Vec3& center) {
@@ -139,9 +137,7 @@ Points sourceShell(const Solid& solid, double distance, const SourceSettings& se
 
 Points sourceSphere(const Solid& solid, double ratio, const SourceSettings& settings) {
   checkCount(settings);
-  if (!(ratio > 1 && ratio <= 100)) {
-    throw SettingError("ratio", "must be over 1 and at most 100 (times half the diagonal)");
-  }
+  requireNumber("ratio", ratio, {1, 100, true}, "times half the diagonal");
   const CounterRandom random(settings.seed, 0x737068657265);
   Points candidates(5 * settings.count);
   parallelBlocks(candidates.size(), 4096, [&](std::size_t begin, std::size_t end) {

@@ -5,6 +5,11 @@
 namespace innermap {
 namespace {
 
+template <auto kMember>
+double of(const Study&, const StudyRow& row) {
+  return static_cast<double>(row.*kMember);
+}
+
 double ratio(std::size_t count, const Study& study) {
   return static_cast<double>(count) / static_cast<double>(study.vertices);
 }
@@ -13,12 +18,9 @@ double ratio(std::size_t count, const Study& study) {
 
 const std::vector<StudyColumn>& studyColumns() {
   static const std::vector<StudyColumn> all{
-      {"sources", "charges",
-       [](const Study&, const StudyRow& r) { return static_cast<double>(r.sources); }, true},
-      {"points", "boundary points",
-       [](const Study&, const StudyRow& r) { return static_cast<double>(r.points); }, true},
-      {"points_per_source", nullptr, [](const Study&, const StudyRow& r) { return r.collocation; },
-       true},
+      {"sources", "charges", of<&StudyRow::sources>, true},
+      {"points", "boundary points", of<&StudyRow::points>, true},
+      {"points_per_source", nullptr, of<&StudyRow::collocation>, true},
       {"s_ratio", nullptr, [](const Study& s, const StudyRow& r) { return ratio(r.sources, s); },
        true},
       {"c_ratio", nullptr, [](const Study& s, const StudyRow& r) { return ratio(r.points, s); },
@@ -40,27 +42,21 @@ const std::vector<StudyColumn>& studyColumns() {
          return r.placement == ChargePlacement::sphere ? r.at : StudyRow::kNone;
        },
        true},
-      {"c_error", "C-Error", [](const Study&, const StudyRow& r) { return r.cError; }},
-      {"collocation_rms", "its rms",
-       [](const Study&, const StudyRow& r) { return r.collocationRms; }},
-      {"rms", "fresh rms", [](const Study&, const StudyRow& r) { return r.rms; }},
-      {"p99", "fresh 99%", [](const Study&, const StudyRow& r) { return r.p99; }},
-      {"max", "largest", [](const Study&, const StudyRow& r) { return r.max; }},
-      {"harmonic_energy", "harmonic energy",
-       [](const Study&, const StudyRow& r) { return r.harmonicEnergy; }},
-      {"deformation_energy", "deformation energy",
-       [](const Study&, const StudyRow& r) { return r.deformationEnergy; }},
-      {"jacobian_min", "least det J",
-       [](const Study&, const StudyRow& r) { return r.jacobianMin; }},
-      {"folded", "folded", [](const Study&, const StudyRow& r) { return r.folded; }},
-      {"weights", "weights", [](const Study&, const StudyRow& r) { return r.weights; }},
-      {"condition", "condition", [](const Study&, const StudyRow& r) { return r.condition; }},
-      {"regularization", "regularisation",
-       [](const Study&, const StudyRow& r) { return r.regularization; }},
-      {"rank", "rank", [](const Study&, const StudyRow& r) { return static_cast<double>(r.rank); }},
-      {"seconds", "seconds", [](const Study&, const StudyRow& r) { return r.seconds; }},
-      {"seconds_overall", nullptr,
-       [](const Study&, const StudyRow& r) { return r.secondsOverall; }}};
+      {"c_error", "C-Error", of<&StudyRow::cError>},
+      {"collocation_rms", "its rms", of<&StudyRow::collocationRms>},
+      {"rms", "fresh rms", of<&StudyRow::rms>},
+      {"p99", "fresh 99%", of<&StudyRow::p99>},
+      {"max", "largest", of<&StudyRow::max>},
+      {"harmonic_energy", "harmonic energy", of<&StudyRow::harmonicEnergy>},
+      {"deformation_energy", "deformation energy", of<&StudyRow::deformationEnergy>},
+      {"jacobian_min", "least det J", of<&StudyRow::jacobianMin>},
+      {"folded", "folded", of<&StudyRow::folded>},
+      {"weights", "weights", of<&StudyRow::weights>},
+      {"condition", "condition", of<&StudyRow::condition>},
+      {"regularization", "regularisation", of<&StudyRow::regularization>},
+      {"rank", "rank", of<&StudyRow::rank>},
+      {"seconds", "seconds", of<&StudyRow::seconds>},
+      {"seconds_overall", nullptr, of<&StudyRow::secondsOverall>}};
   return all;
 }
 

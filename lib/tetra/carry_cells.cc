@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/tetra/cells.h"
@@ -123,9 +124,7 @@ struct BoundaryWay {
 
 CellCarry carry(const CellMesh& mesh, const BoundaryWay& way, const CarryCellsSettings& settings,
                 const std::function<Points(const Points&)>& inner) {
-  if (!(settings.farthest > 0 && settings.farthest <= 1))
-    throw SettingError("farthest",
-                       fmt::format("{} is not over 0 and at most 1", settings.farthest));
+  requireNumber("farthest", settings.farthest, {0, 1, true});
   validate(mesh);
   if (mesh.tetrahedra.empty() && mesh.hexahedra.empty())
     throw DataError((mesh.name.empty() ? "mesh" : mesh.name) + ": has no cells");

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/pi.h"
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/tetra/remesh_cells.h"
@@ -106,10 +107,8 @@ std::vector<int> assemble(const std::vector<CellPatch>& patches,
 
 void require(const CellMesh& mesh, const CarriedCells& carried,
              const ImproveCellsSettings& settings) {
-  if (!(settings.angle >= 1 && settings.angle <= 30))
-    throw SettingError("angle", fmt::format("{} is not in 1 to 30", settings.angle));
-  if (settings.passes < 1 || settings.passes > 100)
-    throw SettingError("passes", fmt::format("{} is not in 1 to 100", settings.passes));
+  requireNumber("angle", settings.angle, {1, 30}, "degrees");
+  requireNumber("passes", settings.passes, {1, 100});
   const std::size_t count = mesh.vertices.size();
   if (carried.positions.size() != count || carried.onSurface.size() != count)
     throw DataError(fmt::format("{}: {} vertices, of which {} were carried, {} with places",

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/require_number.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/tetra/remesh_cells.h"
@@ -23,10 +24,8 @@ constexpr double kLanded = 1e-9;  // of the surface's diagonal
 
 void require(const CellMesh& mesh, const Mesh& surface, const CarriedCells& carried,
              const RepairCellsSettings& settings) {
-  if (!(settings.least > 0 && settings.least <= 0.1))
-    throw SettingError("least", fmt::format("{} is not over 0 and at most 0.1", settings.least));
-  if (!(settings.anchor >= 0))
-    throw SettingError("anchor", fmt::format("{} is negative", settings.anchor));
+  requireNumber("least", settings.least, {0, 0.1, true});
+  requireNumber("anchor", settings.anchor, {0});
   const std::size_t count = mesh.vertices.size();
   if (carried.positions.size() != count || carried.onSurface.size() != count)
     throw DataError(fmt::format("{}: {} vertices, of which {} were carried, {} with places",

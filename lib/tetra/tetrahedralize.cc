@@ -13,6 +13,7 @@
 #include "lattice/lattice_signs.h"
 #include "lattice/sharp_edges.h"
 #include "lattice/stuffing.h"
+#include "levelset/level_set_settings.h"
 
 namespace innermap {
 namespace {
@@ -20,11 +21,6 @@ namespace {
 constexpr int kLeastAcross = 4, kMostAcross = 1024;
 
 constexpr double kMostLost = 1e-3;  // of the surface, without a warning
-
-double longestSide(const Solid& solid) {
-  const Vec3 e = solid.box().extent();
-  return std::max({e.x, e.y, e.z});
-}
 
 double spacingFor(const Solid& solid, const TetrahedralizeSettings& settings) {
   const double longest = longestSide(solid);

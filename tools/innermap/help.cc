@@ -9,30 +9,18 @@
 #include "innermap/core/version.h"
 #include "lists.h"
 #include "report/report_sections.h"
+#include "terminal_text.h"
 
 namespace innermap::tool {
 namespace {
 
-constexpr std::size_t kWidth = 96, kColumn = 30;
+constexpr std::size_t kColumn = 30;
 
-// Breaks `text` into lines of at most kWidth that start at `indent`; the first starts at `at`.
-std::string wrapped(const std::string& text, std::size_t indent, std::size_t at) {
-  std::string result;
-  std::size_t column = at;
-  for (std::size_t from = 0; from < text.size();) {
-    const std::size_t space = std::min(text.find(' ', from), text.size());
-    const std::string word = text.substr(from, space - from);
-    if (column + word.size() > kWidth && column > indent) {
-      if (!result.empty()) result.pop_back();
-      result += "\n" + std::string(indent, ' ');
-      column = indent;
-    }
-    result += word + " ";
-    column += word.size() + 1;
-    from = space + 1;
-  }
-  if (!result.empty()) result.pop_back();
-  return result;
+// In lines of a page, which go on at column `hang`.
+std::string wrapped(const std::string& lines, std::size_t hang) {
+  TerminalText page;
+  page.width = 96;
+  return page.wrapped(lines, hang);
 }
 
 }  // namespace
@@ -75,7 +63,7 @@ std::string optionLine(const Option& o) {
     line += "\n" + std::string(kColumn, ' ');
   else
     line.resize(kColumn, ' ');
-  return line + wrapped(text, kColumn, kColumn) + "\n";
+  return wrapped(line + text, kColumn) + "\n";
 }
 
 // Groups in the order in which they begin, the usual options of each first.
@@ -132,15 +120,15 @@ std::string titleAndUsage() {
 }
 
 std::string commandLine(const std::string& name) {
-  return fmt::format("  {:<19}{}\n", name, wrapped(findCommand(name).summary(), 21, 21));
+  return wrapped(fmt::format("  {:<19}{}\n", name, findCommand(name).summary()), 21);
 }
 
 // "options of every command: --threads, ..."
 std::string namesOnly(const std::vector<Option>& options) {
   std::vector<std::string> names;
   for (const Option& o : options) names.push_back(o.name);
-  return "\n" +
-         wrapped(fmt::format("{}: {}", options.front().group, fmt::join(names, ", ")), 4, 0) + "\n";
+  return "\n" + wrapped(fmt::format("{}: {}", options.front().group, fmt::join(names, ", ")), 4) +
+         "\n";
 }
 
 // What an installation takes.
@@ -200,7 +188,7 @@ std::string generalHelp() {
 std::string commandHelp(const Command& command, bool all) {
   CommonOptions common;
   std::string text = command.summary() + "\n\nusage: " + usageLine(command) + "\n";
-  if (!command.description().empty()) text += "\n" + wrapped(command.description(), 0, 0) + "\n";
+  if (!command.description().empty()) text += "\n" + wrapped(command.description(), 0) + "\n";
   text += argumentSection(command.options());
   text += optionGroups(command.options(), all);
   const std::vector<Option> every = allOptions(command, common);

@@ -80,8 +80,4 @@ std::vector<double> BlockShares::shares(const BlockSet& lattice, int shift) cons
   return out;
 }
 
-std::uint64_t blockSharesMemory(const Solid& solid, int across) {
-  return levelSetMemory(solid, voxelsFor(solid, across));
-}
-
 }  // namespace innermap

@@ -36,7 +36,4 @@ class BlockShares {
   std::vector<float> share_;  // of half blocks, x fastest
 };
 
-// Bytes for the level set that it takes.
-std::uint64_t blockSharesMemory(const Solid& solid, int across);
-
 }  // namespace innermap

@@ -2,13 +2,13 @@
 
 #include <openvdb/tools/Prune.h>
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
 #include <type_traits>
 
+#include "evaluate/topology.h"
 #include "innermap/core/run.h"
 #include "io/volume/detail/volume_sampler.h"
 
@@ -211,10 +211,7 @@ class TypedBuilder : public VolumeBuilder {
 template <class Body>
 bool withVolumeType(const std::string& type, const Body& body) {
   bool found = false;
-  using Types = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
-                                  openvdb::Int64Grid, openvdb::BoolGrid, openvdb::MaskGrid,
-                                  openvdb::Vec3SGrid, openvdb::Vec3DGrid, openvdb::Vec3IGrid>;
-  Types::foreach ([&](const auto& value) {
+  GridTypes::foreach ([&](const auto& value) {
     using Grid = std::decay_t<decltype(value)>;
     // OpenVDB calls a mask's values bool too.
     constexpr bool kMask = std::is_same_v<Grid, openvdb::MaskGrid>;

@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include "evaluate/topology.h"
 #include "innermap/core/error.h"
 #include "innermap/io/pictures.h"
 
@@ -119,10 +120,7 @@ VolumeGrid describe(const openvdb::GridBase& grid) {
   d.gridClass = openvdb::GridBase::gridClassToString(grid.getGridClass());
   d.vectorType = openvdb::GridBase::vecTypeToString(grid.getVectorType());
   d.channels = channelNames(grid);
-  using Types = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
-                                  openvdb::Int64Grid, openvdb::BoolGrid, openvdb::Vec3SGrid,
-                                  openvdb::Vec3DGrid, openvdb::Vec3IGrid>;
-  grid.apply<Types>([&](const auto& typed) {
+  grid.apply<GridTypes>([&](const auto& typed) {
     const auto background = typed.background();
     if constexpr (openvdb::VecTraits<std::decay_t<decltype(background)>>::IsVec)
       d.background = openvdb::Vec3d(background);

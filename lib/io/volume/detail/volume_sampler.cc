@@ -10,6 +10,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "evaluate/topology.h"
 #include "innermap/core/error.h"
 
 namespace innermap {
@@ -209,11 +210,8 @@ float pixelValue(double value, bool asHalf) {
 std::unique_ptr<VolumeSampler> makeVolumeSampler(const openvdb::GridBase& grid,
                                                  const VolumeResampling& resampling,
                                                  PixelType pixel) {
-  using Types = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
-                                  openvdb::Int64Grid, openvdb::BoolGrid, openvdb::MaskGrid,
-                                  openvdb::Vec3SGrid, openvdb::Vec3DGrid, openvdb::Vec3IGrid>;
   std::unique_ptr<VolumeSampler> sampler;
-  grid.apply<Types>([&](const auto& typed) {
+  grid.apply<GridTypes>([&](const auto& typed) {
     using Grid = std::decay_t<decltype(typed)>;
     if (resampling.copies)
       sampler = std::make_unique<CopySampler<Grid>>(typed, pixel);
