@@ -4,8 +4,8 @@
 
 #include <sstream>
 
+#include "core/expect.h"
 #include "core/file_bytes.h"
-#include "core/memory_limit.h"
 #include "innermap/core/memory.h"
 #include "innermap/correspond/mesh_correspondence.h"
 #include "innermap/field/field_file.h"

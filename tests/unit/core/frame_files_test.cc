@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "core/expect.h"
 #include "core/temporary_folder.h"
 #include "innermap/core/error.h"
 
@@ -37,12 +38,7 @@ std::string found(const std::vector<std::string>& arguments) {
 }
 
 std::string refusal(const std::vector<std::string>& arguments) {
-  try {
-    found(arguments);
-  } catch (const FileError& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusalOf<FileError>([&] { found(arguments); });
 }
 
 TEST(FrameNumber, IsTheLastOfTheName) {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/memory_limit.h"
+#include "core/expect.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 
@@ -37,13 +37,9 @@ TEST(Memory, SizesAreSaidInThreeDigits) {
 TEST(Memory, OverTheLimitIsRefusedWithAdvice) {
   EXPECT_NO_THROW(requireMemory("x", 100, 100, ""));
   EXPECT_NO_THROW(requireMemory("x", ~0ull, ""));
-  try {
-    requireMemory("the grid", 2000000000, 1000000000, "use larger voxels");
-    FAIL();
-  } catch (const MemoryError& e) {
-    EXPECT_STREQ(e.what(),
-                 "the grid needs 2 GB of memory, more than the limit of 1 GB; use larger voxels");
-  }
+  EXPECT_EQ(test::refusalOf<MemoryError>(
+                [] { requireMemory("the grid", 2000000000, 1000000000, "use larger voxels"); }),
+            "the grid needs 2 GB of memory, more than the limit of 1 GB; use larger voxels");
 }
 
 TEST(Memory, PeakGrowsWithUse) {
@@ -92,18 +88,13 @@ TEST(Memory, TheLimitIsTheRuns) {
 TEST(Memory, SaysWhatSizeWouldFit) {
   const SizeOption size{"points", 1, 1000, [](std::uint64_t n) { return 10 * n; }};
   EXPECT_NO_THROW(requireMemoryFor("this", 400, 500, size, "wait"));
-  try {
-    requireMemoryFor("this", 600, 505, size, "wait");
-    FAIL();
-  } catch (const MemoryError& error) {
-    EXPECT_NE(std::string(error.what()).find("points 50 "), std::string::npos);
-  }
-  try {
-    requireMemoryFor("this", 600, 5, size, "wait");
-    FAIL();
-  } catch (const MemoryError& error) {
-    EXPECT_EQ(std::string(error.what()).find("points 1 "), std::string::npos);
-  }
+  const auto said = [&](std::uint64_t limit) {
+    return test::refusalOf<MemoryError>(
+        [&] { requireMemoryFor("this", 600, limit, size, "wait"); });
+  };
+  EXPECT_NE(said(505).find("points 50 "), std::string::npos) << said(505);
+  EXPECT_NE(said(5), "accepted");
+  EXPECT_EQ(said(5).find("points 1 "), std::string::npos) << said(5);
 }
 
 }  // namespace

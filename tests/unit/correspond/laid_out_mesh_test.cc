@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "core/expect.h"
 #include "core/pi.h"
 #include "fit/blobs.h"
-#include "innermap/core/run.h"
 #include "innermap/correspond/mesh_correspondence.h"
 #include "mesh/test_meshes.h"
 
@@ -34,9 +34,7 @@ TEST(LayOutMesh, TakesACleanMeshAsItIs) {
 }
 
 TEST(LayOutMesh, KnowsTheCapsOfAnOpenMeshThatOverlaps) {
-  LayOutSettings settings;
-  settings.outerResolution = 20;
-  const LaidOutMesh laid = layOutMesh(opened(overlapping("two.obj"), 6), settings);
+  const LaidOutMesh laid = layOutMesh(opened(overlapping("two.obj"), 6), {.outerResolution = 20});
   ASSERT_TRUE(laid.outer);
   EXPECT_FALSE(laid.caps().empty());
   EXPECT_TRUE(anyHas(laid.notes, "capped"));
@@ -50,16 +48,13 @@ TEST(LayOutMeshes, CutsTheUnionOfSeveralPiecesAsTheOtherHas) {
              shapes::box({2.95, 0.3, 0.15}, {3.95, 3.8, 0.85})));
   ring.name = "ring.obj";
   const Mesh ball = blob("ball.obj", 2, 0.5);
-  LayOutSettings coarse;
-  coarse.outerResolution = 16;
-  const auto [a, b] = layOutMeshes(ball, ring, coarse);
+  const auto [a, b] = layOutMeshes(ball, ring, {.outerResolution = 16});
   EXPECT_EQ(a.handles(), 0);
   EXPECT_EQ(b.handles(), 0);
   ASSERT_TRUE(b.outer);
   EXPECT_FALSE(b.outer->cuts.empty());
   EXPECT_TRUE(anyHas(b.notes, "cut until it has 0 as ball.obj"));
-  coarse.handles = 1;
-  const CleanSurface asked = cleanSurface(ring, coarse);
+  const CleanSurface asked = cleanSurface(ring, {.outerResolution = 16, .handles = 1});
   EXPECT_FALSE(asked.handlesOfUnion) << "what is asked for stays";
   EXPECT_EQ(asked.handles, 1);
 }
@@ -71,13 +66,10 @@ TEST(LayOutMesh, KeepsTheHandlesOfAMeshThatRunsThroughItself) {
   ASSERT_TRUE(laid.outer);
   EXPECT_EQ(laid.handles(), 0);
   EXPECT_FALSE(laid.outer->cuts.empty());
-  LayOutSettings settings;
-  settings.handles = 1;
-  const LaidOutMesh ring = layOutMesh(mesh, settings);
+  const LaidOutMesh ring = layOutMesh(mesh, {.handles = 1});
   EXPECT_EQ(ring.handles(), 1);
   EXPECT_TRUE(ring.outer->cuts.empty());
-  settings.handles = 3;
-  EXPECT_THROW(layOutMesh(mesh, settings), DataError);
+  EXPECT_THROW(layOutMesh(mesh, {.handles = 3}), DataError);
 }
 
 TEST(LayOutMesh, RefusesSettingsOutOfRange) {
@@ -89,11 +81,7 @@ TEST(LayOutMesh, RefusesSettingsOutOfRange) {
 }
 
 TEST(LayOutMesh, CanBeCancelled) {
-  RunContext run;
-  run.cancel();
-  LayOutSettings settings;
-  const RunScope scope(run);
-  EXPECT_THROW(layOutMesh(blob("a.obj", 1, 0.5), settings), Cancelled);
+  test::expectCancels([&] { layOutMesh(blob("a.obj", 1, 0.5), {}); });
 }
 
 TEST(LayOutMemory, GrowsWithTheVertices) { EXPECT_GT(layOutMemory(20000), layOutMemory(10000)); }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "core/expect.h"
 #include "fit/blobs.h"
 #include "innermap/core/error.h"
 #include "innermap/correspond/mesh_correspondence.h"
@@ -15,16 +16,12 @@ struct Balls {
   LaidOutMesh b = layOutMesh(shapes::blob("b.obj", 2, 0.5));
 };
 
-// What reading and placing says of a file of this text; empty: nothing.
+// What reading and placing says of a file of this text.
 std::string refusalOf(const std::string& text) {
   static const Balls balls;
   const TemporaryFolder folder;
-  try {
-    placeLandmarks(readLandmarks(folder.write("pairs.txt", text)), balls.a, balls.b);
-  } catch (const FileError& error) {
-    return error.what();
-  }
-  return "";
+  const std::string path = folder.write("pairs.txt", text);
+  return test::refusalOf<FileError>([&] { placeLandmarks(readLandmarks(path), balls.a, balls.b); });
 }
 
 TEST(ReadLandmarks, TakesVerticesPointsAndBoth) {
@@ -84,12 +81,9 @@ TEST(PlaceLandmarks, CountsThePairsOfAListThatIsFromNoFile) {
   list.pairs[0].onA.vertex = list.pairs[0].onB.vertex = 0;
   list.pairs[1].onA.vertex = 1;
   list.pairs[1].onB.vertex = 5000;
-  try {
-    placeLandmarks(list, balls.a, balls.b);
-    FAIL();
-  } catch (const FileError& error) {
-    EXPECT_EQ(std::string(error.what()).find("landmarks: pair 2: "), 0u) << error.what();
-  }
+  const std::string said =
+      test::refusalOf<FileError>([&] { placeLandmarks(list, balls.a, balls.b); });
+  EXPECT_EQ(said.find("landmarks: pair 2: "), 0u) << said;
 }
 
 TEST(PlaceLandmarks, FindsVerticesExactlyAndPointsAtTheNearestVertex) {

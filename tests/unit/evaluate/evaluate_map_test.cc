@@ -2,11 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "core/memory_limit.h"
+#include "core/expect.h"
 #include "core/random.h"
 #include "field/affine_map.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"
 
@@ -40,9 +39,7 @@ HarmonicMap chargedMap() {
 }
 
 openvdb::FloatGrid::Ptr levelSet(const Solid& solid, int resolution) {
-  LevelSetSettings settings;
-  settings.resolution = resolution;
-  return makeLevelSet(solid, settings);
+  return makeLevelSet(solid, {.resolution = resolution});
 }
 
 MapGrids evaluate(const HarmonicMap& map, const Solid& solid, int resolution,
@@ -151,9 +148,7 @@ TEST(EvaluateMap, ManyChargesAreSummedToTheAccuracy) {
   const Solid solid(cube());
   const openvdb::FloatGrid::Ptr surface = levelSet(solid, 48);
   for (const double accuracy : {1e-4, 1e-7}) {
-    EvaluateSettings settings;
-    settings.accuracy = accuracy;
-    const MapGrids grids = evaluateMap(map, solid, *surface, settings);
+    const MapGrids grids = evaluateMap(map, solid, *surface, {.accuracy = accuracy});
     double squared = 0, jacobian = 0;
     std::size_t count = 0;
     for (auto it = grids.map->cbeginValueOn(); it; ++it) {
@@ -185,8 +180,7 @@ HarmonicMap foldedMap() {
 
 TEST(EvaluateMap, FoldsAreRepairedAndNothingElse) {
   const Solid solid(cube());
-  EvaluateSettings settings;
-  const MapGrids folded = evaluate(foldedMap(), solid, 64, settings);
+  const MapGrids folded = evaluate(foldedMap(), solid, 64, {});
   ASSERT_GT(folded.foldedVoxels, 10u);
   EXPECT_EQ(folded.foldedVoxelsLeft, folded.foldedVoxels);
   EXPECT_LT(folded.jacobianMin, 0);
@@ -197,10 +191,8 @@ TEST(EvaluateMap, FoldsAreRepairedAndNothingElse) {
     EXPECT_LE(folded.jacobian->tree().getValue(v.getCoord()), 0);
   const double share =
       static_cast<double>(folded.foldedVoxels) / static_cast<double>(folded.interiorVoxels);
-  settings.repairUpTo = 0.9 * share;
-  EXPECT_FALSE(evaluate(foldedMap(), solid, 64, settings).repaired);
-  settings.repairUpTo = 1.1 * share;
-  const MapGrids grids = evaluate(foldedMap(), solid, 64, settings);
+  EXPECT_FALSE(evaluate(foldedMap(), solid, 64, {.repairUpTo = 0.9 * share}).repaired);
+  const MapGrids grids = evaluate(foldedMap(), solid, 64, {.repairUpTo = 1.1 * share});
   EXPECT_EQ(grids.foldedVoxels, folded.foldedVoxels);
   EXPECT_EQ(grids.foldedVoxelsLeft, 0u);
   EXPECT_GT(grids.jacobianMin, 0);
@@ -226,8 +218,7 @@ TEST(EvaluateMap, FoldsAreRepairedAndNothingElse) {
 
 TEST(EvaluateMap, NoRepairWithoutFoldsNorForTheCallersGridsAlone) {
   const Solid solid(cube());
-  EvaluateSettings settings;
-  settings.repairUpTo = 1;
+  EvaluateSettings settings{.repairUpTo = 1};
   EXPECT_FALSE(evaluate(chargedMap(), solid, 40, settings).repaired);
   settings.map = settings.jacobian = false;
   const MapGrids grids = evaluate(foldedMap(), solid, 64, settings);
@@ -246,15 +237,9 @@ TEST(EvaluateMap, RefusesBadSettingsAndStopsWhenCancelled) {
   settings.skin = 7;
   EXPECT_THROW(evaluateMap(chargedMap(), solid, *surface, settings), SettingError);
   settings = {};
-  {
-    const MemoryLimit limit(1000);
-    EXPECT_THROW(evaluateMap(chargedMap(), solid, *surface, settings), MemoryError);
-  }
-  RunContext run;
-  run.cancel();
+  test::expectOverLimit(1000, [&] { evaluateMap(chargedMap(), solid, *surface, settings); });
   settings = {};
-  const RunScope scope(run);
-  EXPECT_THROW(evaluateMap(chargedMap(), solid, *surface, settings), Cancelled);
+  test::expectCancels([&] { evaluateMap(chargedMap(), solid, *surface, settings); });
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/memory_limit.h"
+#include "core/expect.h"
 #include "innermap/core/error.h"
 #include "innermap/evaluate/grids.h"
 #include "mesh/shapes.h"
@@ -19,9 +19,8 @@ HarmonicField affineField() {
 
 TEST(HarmonicGrids, ValuesGradientsDirectionsAndMagnitudes) {
   const Solid solid(shapes::icosphere(2));
-  HarmonicGridSettings settings;
-  settings.resolution = 24;
-  const HarmonicGrids grids = evaluateHarmonic(affineField(), solid, {"a", "b"}, settings);
+  const HarmonicGrids grids =
+      evaluateHarmonic(affineField(), solid, {"a", "b"}, {.resolution = 24});
   ASSERT_EQ(grids.fields.size(), 8u);
   const auto value = openvdb::gridPtrCast<openvdb::FloatGrid>(grids.fields[0]);
   const auto gradient = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grids.fields[1]);
@@ -46,17 +45,14 @@ TEST(HarmonicGrids, ValuesGradientsDirectionsAndMagnitudes) {
 
 TEST(HarmonicGrids, OnlyWhatIsAskedFor) {
   const Solid solid(shapes::icosphere(2));
-  HarmonicGridSettings settings;
-  settings.resolution = 16;
+  HarmonicGridSettings settings{.resolution = 16};
   settings.gradients = settings.directions = settings.magnitudes = false;
   EXPECT_EQ(evaluateHarmonic(affineField(), solid, {"a", "b"}, settings).all().size(), 4u);
 }
 
 TEST(HarmonicGrids, SayWhatTheFieldIs) {
-  HarmonicGridSettings settings;
-  settings.resolution = 16;
   const auto grids =
-      evaluateHarmonic(affineField(), Solid(shapes::icosphere(2)), {"a", "b"}, settings);
+      evaluateHarmonic(affineField(), Solid(shapes::icosphere(2)), {"a", "b"}, {.resolution = 16});
   describeField(grids.all(), {{"span", "3"}});
   for (const openvdb::GridBase::Ptr& grid : grids.all())
     EXPECT_EQ(grid->metaValue<std::string>("innermap_span"), "3");
@@ -67,14 +63,8 @@ TEST(HarmonicGrids, RefusesBadNamesAndSettings) {
   for (const std::vector<std::string>& names :
        {std::vector<std::string>{"a"}, {"a", ""}, {"a", "a"}, {"surface", "b"}})
     EXPECT_THROW(evaluateHarmonic(affineField(), solid, names), SettingError);
-  HarmonicGridSettings settings;
-  settings.accuracy = 1;
-  EXPECT_THROW(evaluateHarmonic(affineField(), solid, {"a", "b"}, settings), SettingError);
-  settings = {};
-  {
-    const MemoryLimit limit(1000);
-    EXPECT_THROW(evaluateHarmonic(affineField(), solid, {"a", "b"}, settings), MemoryError);
-  }
+  EXPECT_THROW(evaluateHarmonic(affineField(), solid, {"a", "b"}, {.accuracy = 1}), SettingError);
+  test::expectOverLimit(1000, [&] { evaluateHarmonic(affineField(), solid, {"a", "b"}, {}); });
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/memory_limit.h"
+#include "core/expect.h"
 #include "core/pi.h"
 #include "core/point_grid.h"
 #include "field/sphere_problem.h"
@@ -136,10 +136,7 @@ TEST(AdaptiveFit, SaysWhichLimitItReached) {
     r = fitToTolerance(ball.problem, ball.settings);
   }
   EXPECT_EQ(r.end, AdaptiveEnd::maxMemory);
-  {
-    const MemoryLimit limit(1000);
-    EXPECT_THROW(fitToTolerance(ball.problem, ball.settings), MemoryError);
-  }
+  test::expectOverLimit(1000, [&] { fitToTolerance(ball.problem, ball.settings); });
 }
 
 TEST(AdaptiveFit, EndsWhereItIsToldToAfterAnyRound) {

@@ -47,8 +47,7 @@ TEST(ComposedMap, JacobianIsTheDerivative) {
 
 TEST(ComposedMap, ManyPointsAgreeWithSingleOnes) {
   const Points points = testing::randomPoints(500, 3);
-  EvaluateFieldSettings settings;
-  settings.gradients = true;
+  EvaluateFieldSettings settings{.gradients = true};
   for (const double accuracy : {0.0, 1e-9}) {
     settings.accuracy = accuracy;
     const FieldSamples s = kMap.evaluate(points, settings);

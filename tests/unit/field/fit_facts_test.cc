@@ -8,11 +8,7 @@ namespace innermap {
 namespace {
 
 TEST(FitFacts, AreReadAsTheyWereWritten) {
-  BoundaryError error;
-  error.rms = 1e-4;
-  error.p99 = 0.000312345678;
-  error.max = 2e-3;
-  error.samples = 20000;
+  BoundaryError error{.rms = 1e-4, .p99 = 0.000312345678, .max = 2e-3, .samples = 20000};
   Facts facts = factsOf(error);
   for (const auto& fact : factsOfTolerance(1e-3, 5e-4, true)) facts.push_back(fact);
   const FitFacts read = fitFacts(facts);

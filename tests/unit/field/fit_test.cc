@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/memory_limit.h"
+#include "core/expect.h"
 #include "field/sphere_problem.h"
 #include "innermap/core/error.h"
 
@@ -11,9 +11,7 @@ namespace {
 
 TEST(Fit, SmoothValuesChooseAFarShell) {
   const FitProblem p = testing::ballProblem(1600);
-  FitSettings s;
-  s.sources = 400;
-  const FitResult r = fitField(p, s);
+  const FitResult r = fitField(p, {.sources = 400});
   // The nearest shell is at 0.8 sqrt(4 pi / 400) / sqrt(12) = 0.041.
   EXPECT_GT(r.distance, 0.2);
   EXPECT_GE(r.trials.size(), 3u);
@@ -31,17 +29,12 @@ TEST(Fit, KinkedValuesChooseANearShell) {
   };
   kink(p.surface.points, p.surface.values);
   kink(p.surface.heldOut, p.surface.heldOutValues);
-  FitSettings s;
-  s.sources = 800;
-  EXPECT_LT(fitField(p, s).distance, 0.1);
+  EXPECT_LT(fitField(p, {.sources = 800}).distance, 0.1);
 }
 
 TEST(Fit, GivenDistanceIsTaken) {
   const FitProblem p = testing::ballProblem(900);
-  FitSettings s;
-  s.sources = 200;
-  s.distance = 0.123;
-  const FitResult r = fitField(p, s);
+  const FitResult r = fitField(p, {.sources = 200, .distance = 0.123});
   EXPECT_EQ(r.distance, 0.123);
   EXPECT_TRUE(r.trials.empty());
   EXPECT_EQ(r.field.sources().size(), 200u);
@@ -54,9 +47,7 @@ TEST(Fit, DistancesWithoutRoomArePassedOver) {
     if (distance > 0.15) throw DataError("no room");
     return place(count, distance);
   };
-  FitSettings s;
-  s.sources = 400;
-  EXPECT_LE(fitField(p, s).distance, 0.15);
+  EXPECT_LE(fitField(p, {.sources = 400}).distance, 0.15);
 }
 
 // Values at the vertices from a smooth function, between them off by 1e-3.
@@ -75,14 +66,11 @@ FitProblem sampledProblem() {
 
 TEST(Fit, SmoothSamplesAreFittedAtTheVertices) {
   const FitProblem p = sampledProblem();
-  FitSettings s;
-  s.sources = 400;
-  const FitResult r = fitField(p, s);
+  const FitResult r = fitField(p, {.sources = 400});
   EXPECT_TRUE(r.smooth);
   const Points inside = testing::spherePoints(500, 0.7, 0.3);
   EXPECT_LT(measureBoundaryError(r.field, inside, testing::harmonicMapValues(inside), 1).max, 1e-7);
-  s.interpolation = Interpolation::linear;
-  const FitResult linear = fitField(p, s);
+  const FitResult linear = fitField(p, {.sources = 400, .interpolation = Interpolation::linear});
   EXPECT_FALSE(linear.smooth);
   EXPECT_GT(measureBoundaryError(linear.field, inside, testing::harmonicMapValues(inside), 1).max,
             1e-6);
@@ -90,25 +78,20 @@ TEST(Fit, SmoothSamplesAreFittedAtTheVertices) {
 
 TEST(Fit, OnlySmoothSamplesHaveASmoothFit) {
   FitProblem p = sampledProblem();
-  FitSettings s;
-  s.sources = 400;
-  const std::optional<FitResult> r = fitSmooth(p, s);
+  const std::optional<FitResult> r = fitSmooth(p, {.sources = 400});
   ASSERT_TRUE(r);
   EXPECT_TRUE(r->smooth);
   p.vertices.values = p.surface.values;
   p.vertices.heldOutValues = p.surface.heldOutValues;
-  EXPECT_FALSE(fitSmooth(p, s));
-  s.interpolation = Interpolation::smooth;
-  EXPECT_TRUE(fitSmooth(p, s));
+  EXPECT_FALSE(fitSmooth(p, {.sources = 400}));
+  EXPECT_TRUE(fitSmooth(p, {.sources = 400, .interpolation = Interpolation::smooth}));
 }
 
 TEST(Fit, RoughVerticesStayLinear) {
   FitProblem p = sampledProblem();
   p.vertices.values = p.surface.values;
   p.vertices.heldOutValues = p.surface.heldOutValues;
-  FitSettings s;
-  s.sources = 400;
-  EXPECT_FALSE(fitField(p, s).smooth);
+  EXPECT_FALSE(fitField(p, {.sources = 400}).smooth);
 }
 
 TEST(Fit, FewVerticesTakeFewerSources) {
@@ -118,10 +101,9 @@ TEST(Fit, FewVerticesTakeFewerSources) {
   for (std::size_t k = 0; k < 3; ++k)
     std::copy_n(p.vertices.values.column(k), 300, values.column(k));
   p.vertices.values = values;
-  FitSettings s;
-  s.sources = 400;
-  s.interpolation = Interpolation::smooth;
-  EXPECT_EQ(fitField(p, s).field.sources().size(), 150u);
+  EXPECT_EQ(
+      fitField(p, {.sources = 400, .interpolation = Interpolation::smooth}).field.sources().size(),
+      150u);
 }
 
 TEST(FitRelease, ManySourcesAreSolvedForIteratively) {
@@ -130,13 +112,10 @@ TEST(FitRelease, ManySourcesAreSolvedForIteratively) {
     p.surface.values(i, 0) += std::abs(std::sin(5 * p.surface.points[i].x));
   for (std::size_t i = 0; i < p.surface.heldOut.size(); ++i)
     p.surface.heldOutValues(i, 0) += std::abs(std::sin(5 * p.surface.heldOut[i].x));
-  FitSettings s;
-  s.sources = 4000;
-  const FitResult many = fitField(p, s);
+  const FitResult many = fitField(p, {.sources = 4000});
   EXPECT_TRUE(many.iterative);
   EXPECT_GE(many.residuals.size(), 2u);
-  s.sources = 1000;
-  const FitResult few = fitField(p, s);
+  const FitResult few = fitField(p, {.sources = 1000});
   EXPECT_FALSE(few.iterative);
   const auto rms = [&](const FitResult& r) {
     return measureBoundaryError(r.field, p.surface.heldOut, p.surface.heldOutValues, 1).rms;
@@ -144,24 +123,19 @@ TEST(FitRelease, ManySourcesAreSolvedForIteratively) {
   // Kinks: at least first order in the spacing, so half, and something for points that are random
   // instead of blue noise: 3 a source for the many, 12 for the few.
   EXPECT_LT(rms(many), 0.7 * rms(few));
-  s.distance = 0.5;
-  s.solver = FitSolver::iterative;
-  EXPECT_THROW(fitField(p, s), SettingError);
+  EXPECT_THROW(fitField(p, {.sources = 1000, .solver = FitSolver::iterative, .distance = 0.5}),
+               SettingError);
 }
 
 TEST(Fit, RefusesBadSettings) {
   const FitProblem p = testing::ballProblem(900);
-  FitSettings s;
-  s.sources = 0;
+  FitSettings s{.sources = 0};
   EXPECT_THROW(fitField(p, s), SettingError);
   s.sources = 200;
   s.distance = -1;
   EXPECT_THROW(fitField(p, s), SettingError);
   s.distance.reset();
-  {
-    const MemoryLimit limit(1000);
-    EXPECT_THROW(fitField(p, s), MemoryError);
-  }
+  test::expectOverLimit(1000, [&] { fitField(p, s); });
 }
 
 }  // namespace

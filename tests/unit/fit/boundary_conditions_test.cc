@@ -14,8 +14,7 @@ namespace {
 TEST(BoundaryConditions, WhatDoesNotFitIsRefused) {
   const Mesh mesh = shapes::icosphere(1);
   const SourceBoundary boundary = makeSourceBoundary(mesh);
-  BoundaryConditions conditions;
-  conditions.values = Matrix(mesh.vertices.size() + 1, 1);
+  BoundaryConditions conditions{.values = Matrix(mesh.vertices.size() + 1, 1)};
   EXPECT_THROW(fitHarmonic(boundary, conditions), DataError);
   conditions.values = Matrix(mesh.vertices.size(), 0);
   EXPECT_THROW(fitHarmonic(boundary, conditions), DataError);
@@ -31,9 +30,7 @@ TEST(BoundaryConditions, WhatDoesNotFitIsRefused) {
   conditions.flux = Matrix(mesh.triangles.size(), 2);
   EXPECT_THROW(fitHarmonic(boundary, conditions), DataError);
   conditions.flux = Matrix();
-  HarmonicFitSettings settings;
-  settings.tolerance = 2;
-  EXPECT_THROW(fitHarmonic(boundary, conditions, settings), SettingError);
+  EXPECT_THROW(fitHarmonic(boundary, conditions, {.tolerance = 2}), SettingError);
 }
 
 Matrix column(const std::vector<double>& values) {
@@ -98,8 +95,7 @@ struct Halves {
 };
 
 Halves halves(bool apart) {
-  Halves out;
-  out.mesh = shapes::icosphere(2);
+  Halves out{.mesh = shapes::icosphere(2)};
   const int count = static_cast<int>(out.mesh.vertices.size());
   if (apart) {
     const Points copy = out.mesh.vertices;
@@ -136,9 +132,7 @@ TEST(BoundaryConditions, JumpsBecomeContinuousAndKeepTheirSum) {
           EXPECT_NEAR(value, 0.5, 0.2);  // the icosphere is its own mirror image
         }
       }
-    HarmonicFitSettings settings;
-    settings.tolerance = 1e-2;
-    EXPECT_TRUE(fitHarmonic(makeSourceBoundary(h.mesh), h.conditions, settings).met);
+    EXPECT_TRUE(fitHarmonic(makeSourceBoundary(h.mesh), h.conditions, {.tolerance = 1e-2}).met);
   }
 }
 

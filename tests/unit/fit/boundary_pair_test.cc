@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/expect.h"
 #include "fit/test_pairs.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -87,10 +87,7 @@ TEST(BoundaryPair, RefusesTargetsWithoutExtentFlatOnesAndOtherConnectivity) {
 }
 
 TEST(BoundaryPair, Cancels) {
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(makeBoundaryPair(ball(2), ball(2)), Cancelled);
+  test::expectCancels([&] { makeBoundaryPair(ball(2), ball(2)); });
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 
+#include "core/expect.h"
 #include "fit/known_maps.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
@@ -169,8 +170,7 @@ TEST(Certificate, FindsWhatStandsOutBesideAVertex) {
 }
 
 TEST(Certificate, IsTheSameForAnyNumberOfThreads) {
-  FitMapSettings settings;
-  settings.oneToOne = OneToOne::off;
+  FitMapSettings settings{.oneToOne = OneToOne::off};
   settings.shell.emplace();
   settings.shell->sources = 100;
   const Mesh source = ball();
@@ -187,15 +187,9 @@ TEST(Certificate, RefusesAndCancels) {
   const auto none = [](const std::vector<SurfacePoint>& places) {
     return std::vector<double>(places.size(), 0.0);
   };
-  CertificateSettings settings;
   EXPECT_EQ(certify(solid, none).bound, 0);
-  settings.samples = 0;
-  EXPECT_THROW(certify(solid, none, settings), SettingError);
-  RunContext run;
-  run.cancel();
-  settings.samples = 1000;
-  const RunScope scope(run);
-  EXPECT_THROW(certify(solid, none, settings), Cancelled);
+  EXPECT_THROW(certify(solid, none, {.samples = 0}), SettingError);
+  test::expectCancels([&] { certify(solid, none, {.samples = 1000}); });
 }
 
 TEST(Certificate, VerticesOnceEach) {

@@ -57,8 +57,7 @@ const Known kPolynomial{
     }};
 
 Mesh cylinder(int around) {
-  Mesh mesh;
-  mesh.name = "cylinder";
+  Mesh mesh{.name = "cylinder"};
   const double half = 0.5;
   mesh.vertices = {{0, 0, -half}, {0, 0, half}};
   for (int i = 0; i < around; ++i) {
@@ -118,9 +117,8 @@ void expectWithin(const Mesh& mesh, const Known& known, const IsFree& isFree, do
                   double inside) {
   SCOPED_TRACE(mesh.name);
   const SourceBoundary boundary = makeSourceBoundary(mesh);
-  HarmonicFitSettings settings;
-  settings.tolerance = tolerance;
-  const HarmonicFit fit = fitHarmonic(boundary, conditionsOf(mesh, known, isFree), settings);
+  const HarmonicFit fit =
+      fitHarmonic(boundary, conditionsOf(mesh, known, isFree), {.tolerance = tolerance});
   EXPECT_TRUE(fit.met);
   EXPECT_LE(fit.error.p99, tolerance);
   const double error = errorInside(fit, boundary.solid, known);
@@ -160,8 +158,7 @@ TEST(FitHarmonicRelease, FluxThroughTheOuterSideOfAShell) {
 
 // Half of a ring about the z axis, cut at y = 0.
 Mesh halfRing(int along, int around) {
-  Mesh mesh;
-  mesh.name = "half ring";
+  Mesh mesh{.name = "half ring"};
   for (int j = 0; j <= along; ++j)
     for (int i = 0; i < around; ++i) {
       const double a = kPi * j / along, b = 2 * kPi * i / around, r = 1 + 0.35 * std::cos(b);
@@ -194,9 +191,7 @@ TEST(FitHarmonicRelease, FacetsOfASmoothSideTakeFewCharges) {
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     conditions.values(v, 0) = mesh.vertices[v].x > 0 ? 0 : 1;
   conditions.function = nullptr;
-  HarmonicFitSettings settings;
-  settings.tolerance = 3e-3;
-  settings.maxSources = 6000;
+  HarmonicFitSettings settings{.tolerance = 3e-3, .maxSources = 6000};
   const HarmonicFit smooth = fitHarmonic(boundary, conditions, settings);
   EXPECT_TRUE(smooth.met);
   // The ring's triangles are off its surface by (pi / 32)^2 1.35 / 8 = 1.6e-3.
@@ -233,9 +228,8 @@ TEST(FitHarmonic, TheBoundHoldsWhereTheFieldIsSingular) {
   }
   const IsFree isFree = [](const Vec3& p, const Vec3& n) { return n.y < -0.5 && p.x < 0; };
   const SourceBoundary boundary = makeSourceBoundary(split);
-  HarmonicFitSettings settings;
-  settings.tolerance = 3e-2;
-  const HarmonicFit fit = fitHarmonic(boundary, conditionsOf(split, kRoot, isFree), settings);
+  const HarmonicFit fit =
+      fitHarmonic(boundary, conditionsOf(split, kRoot, isFree), {.tolerance = 3e-2});
   const double error = errorInside(fit, boundary.solid, kRoot);
   EXPECT_TRUE(fit.met);
   EXPECT_LE(error, fit.bound);
@@ -246,8 +240,7 @@ TEST(FitHarmonic, TheBoundHoldsWhereTheFieldIsSingular) {
 // Of corners: values jump from triangle to triangle.
 TEST(FitHarmonic, ChannelsOfGroupsSumUpToOne) {
   const Mesh mesh = shapes::box({-1, -0.5, -0.5}, {1, 0.5, 0.5});
-  BoundaryConditions conditions;
-  conditions.values = Matrix(3 * mesh.triangles.size(), 2);
+  BoundaryConditions conditions{.values = Matrix(3 * mesh.triangles.size(), 2)};
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
     const Vec3 area = areaVector(mesh, t);
     const double along = area.x / norm(area);
@@ -273,8 +266,7 @@ TEST(FitHarmonic, CornersOfAnOpenMeshHaveValues) {
   Mesh mesh = shapes::box({0, 0, 0}, {1, 1, 1});
   mesh.triangles.pop_back();
   mesh.triangles.pop_back();
-  BoundaryConditions conditions;
-  conditions.values = Matrix(3 * mesh.triangles.size(), 1);
+  BoundaryConditions conditions{.values = Matrix(3 * mesh.triangles.size(), 1)};
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t c = 0; c < 3; ++c)
       conditions.values(3 * t + c, 0) = mesh.vertices[mesh.triangles[t][c]].x;
@@ -287,14 +279,11 @@ TEST(FitHarmonic, CornersOfAnOpenMeshHaveValues) {
 TEST(FitHarmonic, SaysWhereValuesJump) {
   const Mesh mesh = shapes::joined(shapes::box({-1, -1, -1}, {1, 1, 1}),
                                    shapes::box({-0.4, -0.3, 0.5}, {0.4, 0.3, 2}));
-  BoundaryConditions conditions;
-  conditions.values = Matrix(mesh.vertices.size(), 1);
+  BoundaryConditions conditions{.values = Matrix(mesh.vertices.size(), 1)};
   for (std::size_t v = mesh.vertices.size() / 2; v < mesh.vertices.size(); ++v)
     conditions.values(v, 0) = 1;
-  HarmonicFitSettings settings;
-  settings.tolerance = 5e-2;
-  settings.maxSources = 4000;
-  const HarmonicFit fit = fitHarmonic(makeSourceBoundary(mesh), conditions, settings);
+  const HarmonicFit fit =
+      fitHarmonic(makeSourceBoundary(mesh), conditions, {.tolerance = 5e-2, .maxSources = 4000});
   ASSERT_EQ(fit.notes.size(), 1u);
   EXPECT_NE(fit.notes.front().find("differ by up to 1 of"), std::string::npos) << fit.notes.front();
 }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/memory_limit.h"
+#include "core/expect.h"
 #include "fit/test_pairs.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
@@ -49,8 +49,7 @@ TEST(FitMap, CertificateBoundsTheErrorInside) {
   const Mesh source = ball();
   const Mesh target = moved(source, harmonicPolynomial);
   for (const Interpolation interpolation : {Interpolation::linear, Interpolation::automatic}) {
-    FitMapSettings settings;
-    settings.interpolation = interpolation;
+    FitMapSettings settings{.interpolation = interpolation};
     const MapFit fit = fitMap(source, target, settings);
     EXPECT_TRUE(fit.tolerance->met);
     EXPECT_LE(fit.error.p99, settings.tolerance);
@@ -77,9 +76,7 @@ Vec3 dented(const Vec3& p) {
 
 TEST(FitMapRelease, GoesInStepsWhereOneMapFolds) {
   const Mesh source = ball(4), target = moved(source, dented);
-  FitMapSettings settings;
-  settings.tolerance = 2e-3;
-  settings.oneToOne = OneToOne::off;
+  FitMapSettings settings{.tolerance = 2e-3, .oneToOne = OneToOne::off};
   const MapFit single = fitMap(source, target, settings);
   EXPECT_EQ(single.map.steps().size(), 1u);
   EXPECT_GT(single.inside.folded, 5e-3);
@@ -106,10 +103,8 @@ TEST(FitMapRelease, GoesInStepsWhereOneMapFolds) {
 
 TEST(FitMap, StepsThatDoNotFitAreLeft) {
   const Mesh source = ball(4);
-  FitMapSettings settings;
-  settings.tolerance = 1e-2;
   const MemoryLimit limit(kStepsMemory);
-  const MapFit fit = fitMap(source, moved(source, dented), settings);
+  const MapFit fit = fitMap(source, moved(source, dented), {.tolerance = 1e-2});
   EXPECT_EQ(fit.map.steps().size(), 1u);
   EXPECT_GT(fit.inside.folded, kManyFolds);
   const bool said = std::any_of(fit.warnings.begin(), fit.warnings.end(), [](const auto& warning) {
@@ -121,10 +116,7 @@ TEST(FitMap, StepsThatDoNotFitAreLeft) {
 // The certificate of the whole: against the map's own values at boundary points.
 TEST(FitMapRelease, StepsAreCertifiedEndToEnd) {
   const Mesh source = ball(4), target = moved(source, dented);
-  FitMapSettings settings;
-  settings.tolerance = 4e-3;
-  settings.oneToOne = OneToOne::on;
-  const MapFit fit = fitMap(source, target, settings);
+  const MapFit fit = fitMap(source, target, {.tolerance = 4e-3, .oneToOne = OneToOne::on});
   double farthest = 0;
   for (std::size_t v = 0; v < source.vertices.size(); ++v)
     farthest = std::max(farthest, norm(fit.map(source.vertices[v]) - target.vertices[v]));
@@ -134,8 +126,7 @@ TEST(FitMapRelease, StepsAreCertifiedEndToEnd) {
 
 TEST(FitMap, SaysWhatItKnowsOfOneToOne) {
   const Mesh source = ball();
-  FitMapSettings settings;
-  const Injectivity known = fitMap(source, moved(source, harmonicPolynomial), settings).injectivity;
+  const Injectivity known = fitMap(source, moved(source, harmonicPolynomial), {}).injectivity;
   // The determinant of harmonicPolynomial is about 1 + 0.2 x, and 0.796 at x = -1.
   EXPECT_NEAR(known.inside.least, 0.81, 0.02);
   EXPECT_NEAR(known.boundary.least, 0.795, 0.01);
@@ -146,8 +137,7 @@ TEST(FitMap, SaysWhatItKnowsOfOneToOne) {
   EXPECT_GT(known.degree.checked, 1500u);
   EXPECT_EQ(known.cells.checked, 0u);
   EXPECT_FALSE(notOneToOne(known));
-  settings.oneToOne = OneToOne::off;
-  EXPECT_GT(fitMap(source, source, settings).injectivity.inside.checked, 15000u);
+  EXPECT_GT(fitMap(source, source, {.oneToOne = OneToOne::off}).injectivity.inside.checked, 15000u);
 }
 
 TEST(FitMap, OneStepIsEnoughForGentleMaps) {
@@ -156,10 +146,8 @@ TEST(FitMap, OneStepIsEnoughForGentleMaps) {
   EXPECT_TRUE(fit.steps.empty());
   EXPECT_EQ(fit.inside.folded, 0);
   EXPECT_GT(fit.inside.samples, 15000u);
-  FitMapSettings shell;
-  shell.shell = ShellSettings{};
-  shell.oneToOne = OneToOne::on;
-  EXPECT_THROW(fitMap(source, source, shell), SettingError);
+  EXPECT_THROW(fitMap(source, source, {.shell = ShellSettings{}, .oneToOne = OneToOne::on}),
+               SettingError);
 }
 
 TEST(FitMap, ShellsOfMoreChargesAreMoreExact) {
@@ -181,8 +169,7 @@ TEST(FitMap, ShellsOfMoreChargesAreMoreExact) {
 }
 
 TEST(FitMap, ChargesOnASphere) {
-  FitMapSettings settings;
-  settings.shell = ShellSettings{};
+  FitMapSettings settings{.shell = ShellSettings{}};
   settings.shell->sources = 200;
   settings.shell->radiusRatio = 2;
   settings.shell->method = Regularization::truncatedSvd;
@@ -199,10 +186,7 @@ TEST(FitMap, AToleranceThatCannotBeMetIsSaidNotThrown) {
   Mesh target = source;
   for (std::size_t v = 0; v < target.vertices.size(); v += 2)
     target.vertices[v] = 1.3 * target.vertices[v];  // kinks at every edge
-  FitMapSettings settings;
-  settings.tolerance = 1e-6;
-  settings.maxSources = 1000;
-  const MapFit fit = fitMap(source, target, settings);
+  const MapFit fit = fitMap(source, target, {.tolerance = 1e-6, .maxSources = 1000});
   ASSERT_TRUE(fit.tolerance);
   EXPECT_FALSE(fit.tolerance->met);
   EXPECT_EQ(fit.tolerance->end, AdaptiveEnd::maxSources);
@@ -238,8 +222,7 @@ TEST(FitMap, TellsOfTheBoundariesWhenGivenMeshes) {
 
 TEST(FitMap, RefusesSettingsOutsideTheirRange) {
   const Mesh source = ball(2);
-  FitMapSettings settings;
-  settings.tolerance = 0;
+  FitMapSettings settings{.tolerance = 0};
   EXPECT_THROW(fitMap(source, source, settings), SettingError);
   settings = {};
   settings.shell = ShellSettings{};
@@ -253,8 +236,7 @@ TEST(FitMap, RefusesSettingsOutsideTheirRange) {
 }
 
 TEST(FitMap, CountsItsMemory) {
-  FitMapSettings settings;
-  settings.shell = ShellSettings{};
+  FitMapSettings settings{.shell = ShellSettings{}};
   const std::uint64_t few = fitMapMemory(settings, 1000);
   settings.shell->sources = 20000;
   settings.shell->solver = FitSolver::dense;
@@ -265,11 +247,7 @@ TEST(FitMap, CountsItsMemory) {
 }
 
 TEST(FitMap, Cancels) {
-  RunContext run;
-  run.cancel();
-  FitMapSettings settings;
-  const RunScope scope(run);
-  EXPECT_THROW(fitMap(ball(2), ball(2), settings), Cancelled);
+  test::expectCancels([&] { fitMap(ball(2), ball(2), {}); });
 }
 
 }  // namespace

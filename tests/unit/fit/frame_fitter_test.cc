@@ -10,11 +10,7 @@
 namespace innermap {
 namespace {
 
-FrameFitterSettings few() {
-  FrameFitterSettings settings;
-  settings.sources = 400;
-  return settings;
-}
+FrameFitterSettings few() { return {.sources = 400}; }
 
 // At time t; at rest for t = 0. Quadratic in t, so that the parabola through three is exact.
 Vec3 at(double t, const Vec3& p) {
@@ -52,9 +48,7 @@ TEST(FrameFitter, FitsEachFrameForItself) {
 
 TEST(FrameFitter, ManyChargesAreSolvedForIteratively) {
   const Mesh rest = ball();
-  FrameFitterSettings settings;
-  settings.sources = 4000;
-  const FrameFitter fitter(makeSourceBoundary(rest), settings);
+  const FrameFitter fitter(makeSourceBoundary(rest), {.sources = 4000});
   EXPECT_TRUE(fitter.iterative());
   EXPECT_EQ(fitter.sources().size(), 4500u);
   EXPECT_LT(fitter.fit(frame(rest, 1)).error.p99, 1e-3);
@@ -67,9 +61,7 @@ TEST(FrameFitterRelease, FramesNearTheRestAreMet) {
                            scaled(ball(), {1, 0.03, 0.03})})
     for (const std::size_t charges : {300u, 4000u}) {
       SCOPED_TRACE(rest.name + ", charges: " + std::to_string(charges));
-      FrameFitterSettings settings;
-      settings.sources = charges;
-      const FrameFitter fitter(makeSourceBoundary(rest), settings);
+      const FrameFitter fitter(makeSourceBoundary(rest), {.sources = charges});
       EXPECT_LT(fitter.fit(rest).error.max, 1e-12);
       EXPECT_LT(fitter.fit(moved(rest, affineMap)).error.max, 1e-12);
       for (const double t : {1e-3, 1e-6, 1e-9})
@@ -144,17 +136,13 @@ TEST_F(Fits, OneFrameHasNoVelocity) {
 TEST(FrameFitter, RefusesFramesOfOtherConnectivityAndFarCharges) {
   const FrameFitter fitter(makeSourceBoundary(ball(2)), few());
   EXPECT_THROW(fitter.fit(ball(3)), DataError);
-  FrameFitterSettings far;
-  far.distance = 0.5;
-  EXPECT_THROW(FrameFitter(makeSourceBoundary(ball(2)), far), SettingError);
+  EXPECT_THROW(FrameFitter(makeSourceBoundary(ball(2)), {.distance = 0.5}), SettingError);
 }
 
 TEST(FrameFitter, CountsItsMemory) {
-  FrameFitterSettings settings;
-  const std::uint64_t thousands = frameFitterMemory(settings);
-  settings.sources = 100000;
-  EXPECT_GT(frameFitterMemory(settings), 5 * thousands);
-  EXPECT_EQ(frameCollocation(settings), 300000u);
+  const std::uint64_t thousands = frameFitterMemory({});
+  EXPECT_GT(frameFitterMemory({.sources = 100000}), 5 * thousands);
+  EXPECT_EQ(frameCollocation({.sources = 100000}), 300000u);
 }
 
 TEST(FrameFitter, SaysWherePartsSlide) {

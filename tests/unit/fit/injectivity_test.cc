@@ -8,19 +8,14 @@ namespace innermap {
 namespace {
 
 DeterminantFigures figures(std::size_t checked, std::size_t folded, double least) {
-  DeterminantFigures out;
-  out.checked = checked;
-  out.folded = folded;
-  out.least = least;
-  return out;
+  return {.checked = checked, .folded = folded, .least = least};
 }
 
 // All that can be known, and nothing that speaks against the map.
 Injectivity sound() {
-  Injectivity known;
-  known.inside = figures(20000, 0, 0.25);
-  known.boundary = figures(10000, 0, 0.125);
-  known.voxels = figures(5000, 0, 0.5);
+  Injectivity known{.inside = figures(20000, 0, 0.25),
+                    .boundary = figures(10000, 0, 0.125),
+                    .voxels = figures(5000, 0, 0.5)};
   static_cast<DeterminantFigures&>(known.cells) = figures(24000, 0, 0.75);
   known.cells.share = 0.9;
   known.cells.overlaps = 0;
@@ -62,8 +57,7 @@ TEST(Injectivity, SaysNothingOfWhatWasNotChecked) {
       "one-to-one is not known.");
   EXPECT_EQ(injectivityLine({}), "one-to-one: not checked");
   EXPECT_TRUE(injectivityFacts({}).empty());
-  Injectivity grid;
-  grid.voxels = figures(5000, 0, 0.5);
+  Injectivity grid{.voxels = figures(5000, 0, 0.5)};
   EXPECT_TRUE(says(grid, "nothing proves it"));
   EXPECT_FALSE(says(grid, "points inside"));
   EXPECT_FALSE(says(grid, "winds"));
@@ -206,12 +200,7 @@ TEST(Injectivity, DeterminantsAreCounted) {
 }
 
 ProofFigures proven() {
-  ProofFigures p;
-  p.cells = 5000;
-  p.proven = 1;
-  p.least = 0.01;
-  p.boundaryError = 0.004;
-  return p;
+  return {.cells = 5000, .proven = 1, .least = 0.01, .boundaryError = 0.004};
 }
 
 TEST(Injectivity, AProofSaysWhatFollowsAndTakesThePlaceOfWhatPointsSuggest) {
@@ -355,8 +344,7 @@ TEST(Injectivity, FactsGiveTheFiguresBack) {
 }
 
 TEST(Injectivity, OfManyCrossingsTheFirstArePlaced) {
-  MeshReport check;
-  check.selfIntersections = 500;
+  MeshReport check{.selfIntersections = 500};
   for (int i = 0; i < 100; ++i) check.crossings.push_back({i, i + 1, {double(i), 0, 0}});
   const SelfIntersectionFigures out = selfIntersectionFigures(check);
   EXPECT_EQ(out.pairs, 500u);

@@ -6,15 +6,10 @@ namespace innermap {
 namespace {
 
 TEST(ShellCollocation, IsSomeOfEachSourceUnlessGiven) {
-  ShellSettings shell;
-  shell.sources = 1000;
-  EXPECT_EQ(shellCollocation(shell), 4000U);
-  shell.sources = 10000;
-  EXPECT_EQ(shellCollocation(shell), 30000U);
-  shell.sources = 1;
-  EXPECT_EQ(shellCollocation(shell), 16U);
-  shell.collocation = 77;
-  EXPECT_EQ(shellCollocation(shell), 77U);
+  EXPECT_EQ(shellCollocation({.sources = 1000}), 4000U);
+  EXPECT_EQ(shellCollocation({.sources = 10000}), 30000U);
+  EXPECT_EQ(shellCollocation({.sources = 1}), 16U);
+  EXPECT_EQ(shellCollocation({.sources = 1, .collocation = 77}), 77U);
 }
 
 }  // namespace

@@ -21,11 +21,9 @@ SolidField known() {
     }
     return out;
   };
-  HarmonicFitSettings settings;
-  settings.tolerance = 1e-2;
-  settings.seed = 7;
-  const HarmonicFit fit = fitHarmonic(boundary, conditions, settings);
-  Facts facts = harmonicFacts(fit, settings, "ball.obj", {"saddle", "height"});
+  const HarmonicFit fit = fitHarmonic(boundary, conditions, {.tolerance = 1e-2, .seed = 7});
+  Facts facts =
+      harmonicFacts(fit, {.tolerance = 1e-2, .seed = 7}, "ball.obj", {"saddle", "height"});
   return {fit.field, std::move(boundary), {"saddle", "height"}, std::move(facts)};
 }
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "innermap/core/run.h"
+#include "core/expect.h"
 #include "innermap/field/fit.h"
 #include "mesh/shapes.h"
 
@@ -31,25 +31,21 @@ double rmsAtFreshPoints(const HarmonicField& field, const Solid& solid) {
 
 TEST(SurfaceProblem, FieldOnAShellMeetsAPolynomial) {
   const Solid solid(shapes::icosphere(3));
-  SurfaceProblemSettings settings;
-  settings.collocation = 1200;
-  settings.heldOut = 500;
-  const FitProblem problem = surfaceProblem(solid, polynomial(solid), settings);
+  const FitProblem problem =
+      surfaceProblem(solid, polynomial(solid), {.collocation = 1200, .heldOut = 500});
   EXPECT_EQ(problem.surface.points.size(), 1200u);
   EXPECT_EQ(problem.surface.values.rows(), 1200u);
   EXPECT_EQ(problem.surface.heldOut.size(), 500u);
-  FitSettings fit;
-  fit.sources = 300;
-  fit.interpolation = Interpolation::linear;
-  EXPECT_LT(rmsAtFreshPoints(fitField(problem, fit).field, solid), 1e-5);
+  EXPECT_LT(
+      rmsAtFreshPoints(
+          fitField(problem, {.sources = 300, .interpolation = Interpolation::linear}).field, solid),
+      1e-5);
 }
 
 TEST(SurfaceProblem, AdaptiveFieldMeetsItsTolerance) {
   const Solid solid(shapes::icosphere(3));
-  AdaptiveSettings settings;
-  settings.tolerance = 1e-3;
   const AdaptiveResult fit =
-      fitToTolerance(adaptiveProblem(solid, polynomial(solid), kUnit), settings);
+      fitToTolerance(adaptiveProblem(solid, polynomial(solid), kUnit), {.tolerance = 1e-3});
   EXPECT_EQ(fit.end, AdaptiveEnd::met);
   EXPECT_LE(fit.error.p99, 1e-3);
   EXPECT_LT(rmsAtFreshPoints(fit.field, solid), 1e-3);
@@ -61,9 +57,6 @@ TEST(SurfaceProblem, NeedlesHaveMorePointsThanCharges) {
   Mesh needle = shapes::icosphere(3);
   for (Vec3& p : needle.vertices) p = {p.x, 2e-3 * p.y, 2e-3 * p.z};
   const Solid solid(needle);
-  AdaptiveSettings settings;
-  settings.firstSources = 100;
-  settings.maxSources = 5000;
   const AdaptiveResult fit =
       fitToTolerance(adaptiveProblem(
                          solid,
@@ -76,7 +69,7 @@ TEST(SurfaceProblem, NeedlesHaveMorePointsThanCharges) {
                            return values;
                          },
                          1),
-                     settings);
+                     {.firstSources = 100, .maxSources = 5000});
   EXPECT_GT(fit.rounds.size(), 1u);
   for (const AdaptiveRound& round : fit.rounds) EXPECT_GT(round.collocation, round.sources);
   EXPECT_LT(fit.error.p99, 0.1);
@@ -84,15 +77,9 @@ TEST(SurfaceProblem, NeedlesHaveMorePointsThanCharges) {
 
 TEST(SurfaceProblem, SetsOfOneSeedShareNoPoint) {
   const Solid solid(shapes::icosphere(2));
-  SurfaceProblemSettings settings;
-  settings.collocation = 200;
-  settings.heldOut = 200;
-  settings.seed = 7;
-  const FitProblem problem = surfaceProblem(solid, polynomial(solid), settings);
-  FreshSampleSettings fresh;
-  fresh.count = 300;
-  fresh.seed = 7;
-  const Points other = freshSamples(solid, polynomial(solid), fresh).points;
+  const FitProblem problem =
+      surfaceProblem(solid, polynomial(solid), {.collocation = 200, .heldOut = 200, .seed = 7});
+  const Points other = freshSamples(solid, polynomial(solid), {.count = 300, .seed = 7}).points;
   ASSERT_EQ(other.size(), 300u);
   for (const Points* set : {&problem.surface.points, &problem.surface.heldOut})
     for (const Vec3& p : *set)
@@ -101,23 +88,15 @@ TEST(SurfaceProblem, SetsOfOneSeedShareNoPoint) {
 
 TEST(SurfaceProblem, FreshSamplesAreTheFirstDrawOfTheAdaptiveProblem) {
   const Solid solid(shapes::icosphere(2));
-  FreshSampleSettings fresh;
-  fresh.count = 50;
-  fresh.seed = 3;
-  AdaptiveProblemSettings settings;
-  settings.seed = 3;
-  const Points a = freshSamples(solid, polynomial(solid), fresh).points,
-               b = adaptiveProblem(solid, polynomial(solid), kUnit, settings).draw(50, 0).points;
+  const Points a = freshSamples(solid, polynomial(solid), {.count = 50, .seed = 3}).points,
+               b = adaptiveProblem(solid, polynomial(solid), kUnit, {.seed = 3}).draw(50, 0).points;
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(norm(a[i] - b[i]), 0);
 }
 
 TEST(SurfaceProblem, Cancels) {
   const Solid solid(shapes::icosphere(2));
   const auto values = polynomial(solid);
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(surfaceProblem(solid, values, {}), Cancelled);
+  test::expectCancels([&] { surfaceProblem(solid, values, {}); });
 }
 
 }  // namespace

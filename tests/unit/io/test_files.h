@@ -2,6 +2,8 @@
 #pragma once
 
 #include <openvdb/openvdb.h>
+#include <signal.h>
+#include <sys/resource.h>
 
 #include <fstream>
 #include <string>
@@ -13,6 +15,32 @@ namespace innermap::test {
 inline void write(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
+
+// In a folder that goes with the program.
+inline std::string pathOf(const std::string& name) {
+  static const TemporaryFolder folder;
+  return folder.file(name);
+}
+
+inline std::string written(const std::string& name, const std::string& bytes) {
+  write(pathOf(name), bytes);
+  return pathOf(name);
+}
+
+// While it lives, no file grows over so many bytes, as on a disk that is full.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) {
+    signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit small{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+  }
+  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_{};
+};
 
 // Level set of a ball about `centre` (index space), half width 3.
 inline openvdb::FloatGrid::Ptr ball(double radius, openvdb::Vec3d centre, double voxel) {

@@ -10,19 +10,17 @@ namespace innermap {
 namespace {
 
 CellMesh cube() {
-  CellMesh mesh;
-  mesh.name = "cube";
-  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
-                   {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
-  mesh.hexahedra = {{0, 1, 2, 3, 4, 5, 6, 7}};
+  CellMesh mesh{
+      .name = "cube",
+      .vertices =
+          {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
+      .hexahedra = {{0, 1, 2, 3, 4, 5, 6, 7}}};
   return mesh;
 }
 
 CellMesh twoTetrahedra() {
-  CellMesh mesh;
-  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
-  mesh.tetrahedra = {{0, 1, 2, 3}, {1, 4, 2, 3}};
-  return mesh;
+  return {.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}},
+          .tetrahedra = {{0, 1, 2, 3}, {1, 4, 2, 3}}};
 }
 
 TEST(CellMesh, SignedVolumeTellsInverted) {

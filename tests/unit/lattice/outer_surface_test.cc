@@ -2,11 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "core/memory_limit.h"
+#include "core/expect.h"
 #include "core/pi.h"
 #include "core/random.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/mesh/check.h"
 #include "mesh/shapes.h"
 
@@ -14,10 +13,7 @@ namespace innermap {
 namespace {
 
 OuterSurface outer(const Mesh& mesh, int resolution, std::optional<int> handles = {}) {
-  OuterSurfaceSettings settings;
-  settings.resolution = resolution;
-  settings.handles = handles;
-  return outerSurface(Solid(mesh), settings);
+  return outerSurface(Solid(mesh), {.resolution = resolution, .handles = handles});
 }
 
 void expectEmbedded(const Mesh& mesh) {
@@ -92,10 +88,7 @@ TEST(OuterSurface, LeavesOutOtherPiecesIfOnePieceIsWanted) {
   const Mesh two =
       shapes::joined(shapes::icosphere(3, 1, {-2, 0, 0}), shapes::icosphere(3, 0.5, {2, 0, 0}));
   EXPECT_EQ(outer(two, 40).topology.components, 2);
-  OuterSurfaceSettings settings;
-  settings.resolution = 40;
-  settings.onePiece = true;
-  const OuterSurface one = outerSurface(Solid(two), settings);
+  const OuterSurface one = outerSurface(Solid(two), {.resolution = 40, .onePiece = true});
   EXPECT_EQ(one.topology.components, 1);
   EXPECT_EQ(one.leftOut, 1u);
   EXPECT_NEAR(one.leftOutShare, 1.0 / 9, 0.02);
@@ -106,16 +99,8 @@ TEST(OuterSurface, RefusesWhatCannotBe) {
   EXPECT_THROW(outer(ball, 7), SettingError);
   EXPECT_THROW(outer(ball, 40, -1), SettingError);
   EXPECT_THROW(outer(ball, 40, 1), DataError);
-  OuterSurfaceSettings settings;
-  {
-    const MemoryLimit limit(1000);
-    EXPECT_THROW(outerSurface(Solid(ball), settings), MemoryError);
-  }
-  RunContext run;
-  run.cancel();
-  settings = {};
-  const RunScope scope(run);
-  EXPECT_THROW(outerSurface(Solid(ball), settings), Cancelled);
+  test::expectOverLimit(1000, [&] { outerSurface(Solid(ball), {}); });
+  test::expectCancels([&] { outerSurface(Solid(ball), {}); });
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "core/expect.h"
 #include "core/random.h"
-#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -120,11 +120,7 @@ TEST(Untangle, NothingToMove) {
 
 TEST(Untangle, IsCancelled) {
   TetPatch patch = lattice();
-  RunContext run;
-  run.cancel();
-  UntangleSettings settings;
-  const RunScope scope(run);
-  EXPECT_THROW(untangle(patch, settings), Cancelled);
+  test::expectCancels([&] { untangle(patch, {}); });
 }
 
 }  // namespace

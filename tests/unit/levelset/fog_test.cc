@@ -11,11 +11,7 @@ namespace {
 
 using openvdb::FloatGrid;
 
-LevelSetSettings resolution(int n) {
-  LevelSetSettings settings;
-  settings.resolution = n;
-  return settings;
-}
+LevelSetSettings resolution(int n) { return {.resolution = n}; }
 
 TEST(Fog, CellFractionAgreesWithCounting) {
   const CounterRandom random(6, 6);
@@ -74,9 +70,7 @@ TEST(Fog, IsAFogVolume) {
   EXPECT_EQ(fog->getGridClass(), openvdb::GRID_FOG_VOLUME);
   EXPECT_EQ(fog->background(), 0);
   EXPECT_EQ(openvdb::tools::checkFogVolume(*fog, 9), "");
-  for (auto value = fog->cbeginValueAll(); value; ++value) {
-    EXPECT_EQ(value.isValueOn(), *value > 0);
-  }
+  for (auto value = fog->cbeginValueAll(); value; ++value) EXPECT_EQ(value.isValueOn(), *value > 0);
   // The level set is as it was.
   EXPECT_EQ(openvdb::tools::checkLevelSet(*levelSet, 9), "");
   FloatGrid::Ptr other = levelSet->deepCopy();

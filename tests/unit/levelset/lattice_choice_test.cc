@@ -7,11 +7,9 @@ namespace innermap {
 namespace {
 
 TEST(LatticeChoice, WhatIsNotChosenStays) {
-  LevelSetSettings settings;
-  settings.resolution = 40;
+  const LevelSetSettings settings{.resolution = 40};
   EXPECT_EQ(LatticeChoice{}.in(settings).resolution, 40);
-  LatticeChoice choice;
-  choice.resolution = 64;
+  LatticeChoice choice{.resolution = 64};
   EXPECT_EQ(choice.in(settings).resolution, 64);
   EXPECT_EQ(choice.in(settings).voxelSize, 0);
   choice.voxelSize = 0.5;

@@ -3,9 +3,8 @@
 #include <gtest/gtest.h>
 #include <openvdb/tools/Diagnostics.h>
 
-#include "core/memory_limit.h"
+#include "core/expect.h"
 #include "core/random.h"
-#include "innermap/core/run.h"
 #include "mesh/shapes.h"
 
 namespace innermap {
@@ -13,11 +12,7 @@ namespace {
 
 using openvdb::FloatGrid;
 
-LevelSetSettings resolution(int n) {
-  LevelSetSettings settings;
-  settings.resolution = n;
-  return settings;
-}
+LevelSetSettings resolution(int n) { return {.resolution = n}; }
 
 // Every active voxel has the solid's own distance, and every inactive one near it the right sign.
 void expectRightValues(const FloatGrid& grid, const Solid& solid) {
@@ -121,16 +116,13 @@ TEST(LevelSet, ScaleAndPlaceDoNotMatter) {
     const Solid moved(shapes::transformed(mesh, scale, shift));
     const FloatGrid::Ptr other = makeLevelSet(moved, resolution(40));
     const FloatGrid::ConstAccessor values = other->getConstAccessor();
-    for (auto value = grid->cbeginValueOn(); value; ++value) {
+    for (auto value = grid->cbeginValueOn(); value; ++value)
       ASSERT_NEAR(values.getValue(value.getCoord()) / scale, *value, 1e-6);
-    }
   }
 }
 
 TEST(LevelSet, OneLatticeForSeveralSolids) {
-  LevelSetSettings settings;
-  settings.voxelSize = 0.1;
-  settings.origin = Vec3{0.01, -0.02, 5};
+  LevelSetSettings settings{.voxelSize = 0.1, .origin = Vec3{0.01, -0.02, 5}};
   const auto here = makeLevelSet(Solid(shapes::icosphere(3)), settings),
              there = makeLevelSet(Solid(shapes::icosphere(3, 1, {0.5, 20 * 0.1, -3})), settings);
   EXPECT_EQ(here->transform(), there->transform());
@@ -156,32 +148,16 @@ TEST(LevelSet, LatticeOfAnother) {
 
 TEST(LevelSet, SettingsOutOfRange) {
   const Solid solid(shapes::icosphere(2));
-  const auto with = [&](auto change) {
-    LevelSetSettings settings;
-    change(settings);
-    return makeLevelSet(solid, settings);
-  };
-  using S = LevelSetSettings;
-  EXPECT_THROW(with([](S& s) { s.resolution = 3; }), SettingError);
-  EXPECT_THROW(with([](S& s) { s.resolution = 4097; }), SettingError);
-  EXPECT_THROW(with([](S& s) { s.voxelSize = -1; }), SettingError);
-  EXPECT_THROW(with([](S& s) { s.voxelSize = std::nan(""); }), SettingError);
-  EXPECT_THROW(with([](S& s) { s.voxelSize = 1e-9; }), SettingError);
-  EXPECT_THROW(with([](S& s) { s.halfWidth = 1.9; }), SettingError);
-  EXPECT_THROW(with([](S& s) { s.halfWidth = 101; }), SettingError);
-  {
-    const MemoryLimit limit(1000);
-    EXPECT_THROW(with([](S&) {}), MemoryError);
-  }
-  RunContext run;
-  run.cancel();
-  {
-    const RunScope scope(run);
-    EXPECT_THROW(with([](S&) {}), Cancelled);
-  }
-  LevelSetSettings coarse;
-  coarse.voxelSize = 0.5;
-  EXPECT_EQ(voxelSizeFor(solid, coarse), 0.5);
+  EXPECT_THROW(makeLevelSet(solid, {.resolution = 3}), SettingError);
+  EXPECT_THROW(makeLevelSet(solid, {.resolution = 4097}), SettingError);
+  EXPECT_THROW(makeLevelSet(solid, {.voxelSize = -1}), SettingError);
+  EXPECT_THROW(makeLevelSet(solid, {.voxelSize = std::nan("")}), SettingError);
+  EXPECT_THROW(makeLevelSet(solid, {.voxelSize = 1e-9}), SettingError);
+  EXPECT_THROW(makeLevelSet(solid, {.halfWidth = 1.9}), SettingError);
+  EXPECT_THROW(makeLevelSet(solid, {.halfWidth = 101}), SettingError);
+  test::expectOverLimit(1000, [&] { makeLevelSet(solid); });
+  test::expectCancels([&] { makeLevelSet(solid); });
+  EXPECT_EQ(voxelSizeFor(solid, {.voxelSize = 0.5}), 0.5);
 }
 
 TEST(LevelSetRelease, MemoryEstimateBoundsTheTree) {
@@ -239,12 +215,7 @@ TEST(AutomaticVoxels, SayWhatHopelesslyThinSolidsWouldTake) {
   const std::string note = voxelSizeNote(plate, LevelSetSettings());
   EXPECT_NE(note.find(need), std::string::npos) << note;
   EXPECT_NE(note.find("4096"), std::string::npos) << note;
-  try {
-    requireInterior(0, plate, "plate");
-    FAIL();
-  } catch (const DataError& error) {
-    EXPECT_NE(std::string(error.what()).find(need), std::string::npos) << error.what();
-  }
+  test::expectRefused<DataError>([&] { requireInterior(0, plate, "plate"); }, need);
   EXPECT_NO_THROW(requireInterior(1, plate, "plate"));
 }
 
@@ -261,11 +232,9 @@ TEST(LevelSetCheck, ThinSheetsAreSaidToBeLost) {
 TEST(Attributes, FollowTheClosestPoint) {
   Mesh mesh = shapes::icosphere(4);
   mesh.colours.resize(mesh.vertices.size());
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    for (int a = 0; a < 3; ++a) {
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    for (int a = 0; a < 3; ++a)
       mesh.colours[v][a] = static_cast<float>(0.5 + 0.5 * mesh.vertices[v][a]);
-    }
-  }
   // One texture vertex a corner, as at seams everywhere.
   for (const Triangle& t : mesh.triangles) {
     const int n = static_cast<int>(mesh.uvs.size());
@@ -311,13 +280,10 @@ TEST(Attributes, FollowTheClosestPoint) {
 }
 
 TEST(LevelSet, TinySolidsGetTheSmallestVoxelsThatOpenVdbHolds) {
-  LevelSetSettings settings;
-  settings.resolution = 128;
   const Solid tiny(shapes::icosphere(2, 5e-4));
-  EXPECT_DOUBLE_EQ(makeLevelSet(tiny, settings)->voxelSize()[0], kSmallestVoxel);
-  EXPECT_THROW(makeLevelSet(Solid(shapes::icosphere(2, 1e-5)), settings), DataError);
-  settings.voxelSize = 1e-5;
-  EXPECT_THROW(makeLevelSet(tiny, settings), SettingError);
+  EXPECT_DOUBLE_EQ(makeLevelSet(tiny, {.resolution = 128})->voxelSize()[0], kSmallestVoxel);
+  EXPECT_THROW(makeLevelSet(Solid(shapes::icosphere(2, 1e-5)), {.resolution = 128}), DataError);
+  EXPECT_THROW(makeLevelSet(tiny, {.voxelSize = 1e-5, .resolution = 128}), SettingError);
 }
 
 }  // namespace

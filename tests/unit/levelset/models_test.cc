@@ -16,9 +16,7 @@ TEST_P(Models, LevelSetHoldsTheSolid) {
   const std::string path = std::string(INNERMAP_MODELS) + "/" + GetParam();
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
   const Solid solid(readMesh(path));
-  LevelSetSettings settings;
-  settings.resolution = 128;
-  const LevelSetCheck check = checkLevelSet(*makeLevelSet(solid, settings), solid);
+  const LevelSetCheck check = checkLevelSet(*makeLevelSet(solid, {.resolution = 128}), solid);
   EXPECT_LT(check.volumeError, 0.01);
   EXPECT_LT(check.lostSurface, 0.001);
   for (const std::string& warning : check.warnings) ADD_FAILURE() << warning;

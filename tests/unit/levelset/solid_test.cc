@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/expect.h"
 #include "core/random.h"
-#include "innermap/core/run.h"
 #include "mesh/shapes.h"
 
 namespace innermap {
@@ -117,11 +117,9 @@ TEST(Solid, BoxesWithFacesInOnePlane) {
 }
 
 TEST(Solid, VolumeByLevelSetWhereThePiecesAreLarge) {
-  SolidSettings settings;
-  settings.pieceSize = 0.05;
   const Solid solid(shapes::joined(shapes::box({0, 0, 0}, {2, 1, 1}),
                                    shapes::box({1.3, 0.4, 0.3}, {3.1, 1.7, 0.8})),
-                    settings);
+                    {.pieceSize = 0.05});
   const double volume = 2 + 1.8 * 1.3 * 0.5 - 0.7 * 0.6 * 0.5;
   EXPECT_NEAR(solid.volume(), volume, 5e-3 * volume);
 }
@@ -142,9 +140,8 @@ TEST(Solid, HolesAreCapped) {
   Mesh mesh = shapes::icosphere(4);
   const Mesh whole = mesh;
   std::vector<Triangle> kept;
-  for (const Triangle& t : mesh.triangles) {
+  for (const Triangle& t : mesh.triangles)
     if (mesh.vertices[t[0]].z < 0.8) kept.push_back(t);
-  }
   mesh.triangles = kept;
   const Solid solid(mesh);
   EXPECT_EQ(solid.repaired().caps, 1);
@@ -191,11 +188,8 @@ TEST(Solid, SettingsAndCancelling) {
     settings.pieceSize = size;
     EXPECT_THROW(Solid(mesh, settings), SettingError);
   }
-  RunContext run;
-  run.cancel();
   settings = {};
-  const RunScope scope(run);
-  EXPECT_THROW(Solid(mesh, settings), Cancelled);
+  test::expectCancels([&] { Solid(mesh, settings); });
 }
 
 TEST(Solid, ManyCrossingTrianglesStayBounded) {
@@ -209,9 +203,7 @@ TEST(Solid, ManyCrossingTrianglesStayBounded) {
         mesh.triangles.end(),
         {{v, v + 1, v + 2}, {v, v + 2, v + 3}, {v, v + 3, v + 1}, {v + 1, v + 3, v + 2}});
   }
-  SolidSettings settings;
-  settings.pieceSize = 1.0 / 100;
-  const Solid solid(mesh, settings);
+  const Solid solid(mesh, {.pieceSize = 1.0 / 100});
   EXPECT_TRUE(solid.overlaps());
   EXPECT_LT(solid.surface().triangles.size(), 1'500'000u);
   // Volume of the union by counting.

@@ -4,9 +4,9 @@
 
 #include <filesystem>
 
+#include "core/expect.h"
 #include "core/random.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/mesh/mesh_file.h"
 #include "mesh/test_meshes.h"
 
@@ -148,30 +148,22 @@ TEST(Check, SheetsHaveNoInside) {
 
 TEST(Check, SelfIntersectionsAreListedInOrder) {
   const Mesh mesh = shapes::joined(shapes::icosphere(2), shapes::icosphere(2, 1, {0.7, 0, 0}));
-  CheckSettings settings;
-  settings.listed = 5;
-  const MeshReport report = checkMesh(mesh, settings);
+  const MeshReport report = checkMesh(mesh, {.listed = 5});
   EXPECT_GT(report.selfIntersections, 20u);
   ASSERT_EQ(report.crossings.size(), 5u);
   for (std::size_t k = 1; k < 5; ++k)
     EXPECT_LE(report.crossings[k - 1].first, report.crossings[k].first);
   EXPECT_EQ(namesOf(report), (Names{"self_intersections", "components"}));
-  settings.selfIntersections = false;
-  EXPECT_EQ(checkMesh(mesh, settings).selfIntersections, 0u);
-  settings.selfIntersections = true;
-  settings.listed = 0;
-  EXPECT_EQ(checkMesh(mesh, settings).selfIntersections, report.selfIntersections);
+  EXPECT_EQ(checkMesh(mesh, {.selfIntersections = false, .listed = 5}).selfIntersections, 0u);
+  EXPECT_EQ(checkMesh(mesh, {.selfIntersections = true, .listed = 0}).selfIntersections,
+            report.selfIntersections);
 }
 
 TEST(Check, RefusesInvalidMeshesAndCancels) {
   Mesh mesh = cube();
   mesh.triangles[0][0] = 99;
   EXPECT_THROW(checkMesh(mesh), DataError);
-  RunContext run;
-  run.cancel();
-  CheckSettings settings;
-  const RunScope scope(run);
-  EXPECT_THROW(checkMesh(cube(), settings), Cancelled);
+  test::expectCancels([&] { checkMesh(cube(), {}); });
 }
 
 TEST(Check, RandomSoupsDoNotBreakIt) {

@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "core/expect.h"
 #include "core/pi.h"
 #include "core/random.h"
 #include "innermap/core/error.h"
@@ -75,16 +76,11 @@ TEST(Mesh, ValidateAcceptsGoodMeshes) {
 }
 
 TEST(Mesh, ValidateNamesWhatIsWrong) {
-  const auto message = [](const std::function<void(Mesh&)>& spoil) -> std::string {
+  const auto message = [](const std::function<void(Mesh&)>& spoil) {
     Mesh mesh = cube();
     mesh.name = "box.obj";
     spoil(mesh);
-    try {
-      validate(mesh);
-    } catch (const DataError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return test::refusalOf<DataError>([&] { validate(mesh); });
   };
   EXPECT_EQ(message([](Mesh& m) { m.triangles[3][1] = 8; }),
             "box.obj: triangle 3 uses vertex 8 of 8 (counted from 0)");

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "core/expect.h"
 #include "core/random.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
@@ -116,12 +117,7 @@ std::vector<BadFile> badFiles() {
 }
 
 std::string messageOf(const std::string& path) {
-  try {
-    readMesh(path);
-  } catch (const FileError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::refusalOf<FileError>([&] { readMesh(path); });
 }
 
 TEST(ReadBadInput, EachIsRefusedWithTheReason) {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "core/expect.h"
 #include "core/pi.h"
 #include "core/random.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/mesh/check.h"
 #include "innermap/mesh/mesh_file.h"
 #include "mesh/test_meshes.h"
@@ -227,22 +227,17 @@ TEST(Repair, WhatCannotBeComputedIsSaid) {
 
 TEST(Repair, MeshesWithoutInsideAreRefused) {
   const auto refuse = [](const Mesh& mesh) {
-    try {
-      repair(mesh);
-      return std::string("accepted");
-    } catch (const DataError& error) {
-      return std::string(error.what());
-    }
+    return test::refusalOf<DataError>([&] { repair(mesh); });
   };
-  EXPECT_NE(refuse(Mesh{}), "");
-  EXPECT_NE(refuse(testing::makeMesh({{}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}})), "");
-  EXPECT_NE(refuse(testing::makeMesh({{}, {1, 0, 0}}, {{0, 1, 1}})), "");
+  EXPECT_NE(refuse(Mesh{}), "accepted");
+  EXPECT_NE(refuse(testing::makeMesh({{}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}})), "accepted");
+  EXPECT_NE(refuse(testing::makeMesh({{}, {1, 0, 0}}, {{0, 1, 1}})), "accepted");
   Mesh flat = cube();
   for (Vec3& p : flat.vertices) p.z *= 1e-12;
-  EXPECT_NE(refuse(flat), "");
+  EXPECT_NE(refuse(flat), "accepted");
   Mesh bad = cube();
   bad.vertices[3].x = NAN;
-  EXPECT_NE(refuse(bad), "");
+  EXPECT_NE(refuse(bad), "accepted");
 }
 
 TEST(Repair, ScaleAndPlaceDoNotMatter) {
@@ -287,10 +282,7 @@ TEST(Repair, RandomSoupsHaveWholeWindingNumbers) {
 }
 
 TEST(Repair, CanBeCancelled) {
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(repair(cube()), Cancelled);
+  test::expectCancels([&] { repair(cube()); });
 }
 
 TEST(RepairModels, AreSensibleSolids) {

@@ -2,9 +2,9 @@
 
 #include <set>
 
+#include "core/expect.h"
 #include "core/pi.h"
 #include "core/random.h"
-#include "innermap/core/run.h"
 #include "innermap/mesh/check.h"
 #include "mesh/test_meshes.h"
 
@@ -131,14 +131,12 @@ TEST(SelfIntersection, DoesNotDependOnScaleOrThreads) {
     for (Vec3& p : scaled.vertices) p = scale * p;
     EXPECT_EQ(count(scaled), expected);
   }
-  const auto placesWith = [&](int threads) {
-    const ThreadLimit limit(threads);
+  test::expectSameForThreads([&] {
     std::vector<double> places;
     forEachSelfIntersection(mesh.vertices, mesh.triangles,
                             [&](const Crossing& c) { places.push_back(c.place.x); });
     return places;
-  };
-  EXPECT_EQ(placesWith(1), placesWith(4));
+  });
 }
 
 TEST(SelfIntersection, CountsManyWithoutKeepingThemAndCanBeCancelled) {
@@ -155,10 +153,7 @@ TEST(SelfIntersection, CountsManyWithoutKeepingThemAndCanBeCancelled) {
   EXPECT_GT(report.selfIntersections, 3000000u);
   EXPECT_EQ(report.crossings.size(), 20u);
   EXPECT_EQ(report.crossings[0].first, 0);
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(selfIntersections(mesh.vertices, mesh.triangles), Cancelled);
+  test::expectCancels([&] { selfIntersections(mesh.vertices, mesh.triangles); });
 }
 
 }  // namespace

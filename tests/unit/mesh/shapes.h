@@ -91,9 +91,8 @@ inline Mesh joined(const Mesh& a, const Mesh& b) {
   mesh.triangles = a.triangles;
   const int offset = static_cast<int>(a.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), b.vertices.begin(), b.vertices.end());
-  for (const auto& [i, j, k] : b.triangles) {
+  for (const auto& [i, j, k] : b.triangles)
     mesh.triangles.push_back({i + offset, j + offset, k + offset});
-  }
   return mesh;
 }
 
@@ -120,9 +119,8 @@ inline Mesh soup(int count, double size, std::uint64_t seed) {
   mesh.name = "soup";
   for (int t = 0; t < count; ++t) {
     const Vec3 place = randomPoint(random, 4 * t);
-    for (int k = 1; k <= 3; ++k) {
+    for (int k = 1; k <= 3; ++k)
       mesh.vertices.push_back(place + size * randomPoint(random, 4 * t + k));
-    }
     mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
   }
   return mesh;

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <map>
-#include <string>
 
 #include "core/temporary_folder.h"
 #include "innermap/mesh/mesh.h"

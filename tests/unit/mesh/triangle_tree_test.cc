@@ -27,9 +27,8 @@ double referenceDistance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
   if (squaredNorm(n) > 0) {
     const Vec3 q = p - (dot(p - a, n) / squaredNorm(n)) * n;
     bool within = true;
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 3; ++k)
       within = within && dot(cross(corners[(k + 1) % 3] - corners[k], q - corners[k]), n) >= 0;
-    }
     if (within) best = std::min(best, norm(p - q));
   }
   return best;
@@ -46,9 +45,8 @@ double referenceDistance(const Mesh& mesh, const Vec3& p) {
 
 Vec3 positionAt(const Mesh& mesh, const SurfacePoint& s) {
   Vec3 sum;
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < 3; ++k)
     sum += s.barycentric[k] * mesh.vertices[mesh.triangles[s.triangle][k]];
-  }
   return sum;
 }
 
@@ -132,8 +130,7 @@ TEST(TriangleTree, DegenerateTriangles) {
 }
 
 TEST(TriangleTree, CoincidentTrianglesDoNotDeepenTheTree) {
-  Mesh mesh;
-  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  Mesh mesh{.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
   mesh.triangles.assign(5000, {0, 1, 2});
   const TriangleTree tree(mesh.vertices, mesh.triangles);
   const ClosestPoint found = tree.closest({0.25, 0.25, 2});
@@ -195,9 +192,8 @@ TEST(TriangleTree, OverlappingPairsAreAllPairsOfOverlappingBoxes) {
     EXPECT_EQ(calls, found.size());
     std::set<std::pair<int, int>> expected;
     std::vector<Box3> boxes(300);
-    for (int t = 0; t < 300; ++t) {
+    for (int t = 0; t < 300; ++t)
       for (const int v : mesh.triangles[t]) boxes[t].add(mesh.vertices[v]);
-    }
     for (int i = 0; i < 300; ++i) {
       for (int j = i + 1; j < 300; ++j) {
         bool overlap = true;

@@ -6,8 +6,8 @@
 #include <limits>
 #include <set>
 
+#include "core/expect.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "mesh/shapes.h"
 
 namespace innermap {
@@ -15,8 +15,7 @@ namespace {
 
 // An open tube of n quads around and m along, unrolled: u runs around from 0 to 1 and jumps back.
 Mesh tube(int n, int m, double height = 1, double uMost = 1) {
-  Mesh mesh;
-  mesh.name = "tube";
+  Mesh mesh{.name = "tube"};
   for (int j = 0; j <= m; ++j) {
     for (int i = 0; i < n; ++i) {
       const double a = 2 * kPi * i / n;
@@ -59,11 +58,7 @@ void expectResolved(const Mesh& mesh, const UvCharts& charts, const UvGroups& gr
   }
 }
 
-UvGroupSettings atMost(int groups) {
-  UvGroupSettings settings;
-  settings.most = groups;
-  return settings;
-}
+UvGroupSettings atMost(int groups) { return {.most = groups}; }
 
 TEST(UvCharts, ATubeIsOneChartThatMeetsItselfAlongItsHeight) {
   const Mesh mesh = tube(24, 10, 3);
@@ -130,9 +125,8 @@ TEST(UvCharts, ACutThatEndsInsideAChartIsDividedFromItsTip) {
   // The tube's jump over the lower half of its height only: above, u runs on continuously.
   Mesh mesh = tube(24, 12, 1, 0.05);
   const auto at = [&](int i, int j) { return j * 25 + i; };
-  for (int j = 6; j <= 12; ++j) {
+  for (int j = 6; j <= 12; ++j)
     for (int i = 0; i <= 24; ++i) mesh.uvs[at(i, j)].x = 0.05 * std::abs(std::sin(kPi * i / 24));
-  }
   const UvCharts charts = uvCharts(mesh);
   EXPECT_EQ(charts.count, 1);
   EXPECT_EQ(charts.seams.size(), 6u);
@@ -182,10 +176,7 @@ TEST(UvCharts, RandomCutsAreResolved) {
 }
 
 TEST(UvCharts, CanBeCancelled) {
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(uvCharts(tube(12, 4)), Cancelled);
+  test::expectCancels([&] { uvCharts(tube(12, 4)); });
 }
 
 }  // namespace

@@ -75,8 +75,7 @@ TEST(Write, PlyHasFurtherPropertiesOfTheVertices) {
   const TemporaryFolder folder;
   const std::string path = folder.file("extra.ply");
   const Mesh mesh = testing::cube();
-  PlyExtras extras;
-  extras.comment = "two properties";
+  PlyExtras extras{.comment = "two properties"};
   std::vector<std::int32_t> integers;
   std::vector<double> numbers;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {

@@ -62,15 +62,12 @@ void expectSigns(const ProofCells& cells, const HarmonicMap& map, double sign, s
 
 void checkSeeds(std::uint64_t first, std::uint64_t count, std::size_t samples) {
   const Mesh ball = shapes::icosphere(2);
-  ProofSettings settings;
-  settings.keepProven = true;
-  settings.cellsPerCharge = 1;
-  settings.leastCells = 4000;
   double proven = 0;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     const KnownFold fold = knownFold(ball, seed);
     ASSERT_LE(testing::longDeterminant(fold.map, fold.place), 0) << seed;
-    const SenseProof proof = proveSense(fold.map, ball, settings);
+    const SenseProof proof =
+        proveSense(fold.map, ball, {.cellsPerCharge = 1, .leastCells = 4000, .keepProven = true});
     ASSERT_FALSE(proof.whole()) << seed;
     ASSERT_FALSE(holds(proof.proven, fold.place)) << seed;
     ASSERT_TRUE(holds(proof.negative, fold.place) || holds(proof.undecided, fold.place)) << seed;

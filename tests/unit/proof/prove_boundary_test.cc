@@ -79,9 +79,7 @@ TEST(ProveBoundaryError, SaysWhereTheLargestErrorIs) {
   const ComposedMap map(mapOf(affineOf(kIdentity), {}));
   Points target = mesh.vertices;
   target[7] = target[7] + Vec3{0, 0.25, 0};
-  ProofSettings settings;
-  settings.errorMargin = 0.01;
-  const BoundaryProof proof = proveBoundaryError(map, mesh, target, settings);
+  const BoundaryProof proof = proveBoundaryError(map, mesh, target, {.errorMargin = 0.01});
   EXPECT_TRUE(proof.close);
   EXPECT_NEAR(proof.error, 0.25 / diagonalOf(target), 0.0101 * proof.error);
   EXPECT_LT(norm(proof.seenAt - mesh.vertices[7]), 0.05);
@@ -91,10 +89,9 @@ TEST(ProveBoundaryError, AChargeOnTheSurfaceHasNoBound) {
   const Mesh mesh = shapes::icosphere(1);
   const Vec3 place =
       0.5 * (mesh.vertices[mesh.triangles[3][0]] + mesh.vertices[mesh.triangles[3][1]]);
-  ProofSettings few;
-  few.leastCells = 20000;
-  const BoundaryProof proof = proveBoundaryError(
-      mapOf(affineOf(kIdentity), {{place, {0.01, 0, 0}}}), mesh, mesh.vertices, few);
+  const BoundaryProof proof =
+      proveBoundaryError(mapOf(affineOf(kIdentity), {{place, {0.01, 0, 0}}}), mesh, mesh.vertices,
+                         {.leastCells = 20000});
   EXPECT_FALSE(proof.close);
   EXPECT_FALSE(std::isfinite(proof.error));
   EXPECT_LT(proof.examined, 2000u);  // no work for what is not to be had

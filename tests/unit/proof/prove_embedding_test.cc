@@ -85,9 +85,7 @@ TEST(ProveEmbedding, FoldedSurfacesAreNotProven) {
     most = std::max(most, x);
   }
   ASSERT_TRUE(back);
-  ProofSettings few;
-  few.leastCells = 5000;
-  const EmbeddingProof proof = proveEmbedding(map, plate, few);
+  const EmbeddingProof proof = proveEmbedding(map, plate, {.leastCells = 5000});
   EXPECT_FALSE(proof.proven);
   EXPECT_GT(proof.undecided, 0u);
   ASSERT_FALSE(proof.places.empty());

@@ -69,31 +69,27 @@ TEST(ProveSense, MirroredMapsAreProvenToo) {
 TEST(ProveSense, CellsAreCutUntilTheDeterminantIsLarge) {
   const HarmonicMap map = gentle(0.02);
   const Mesh ball = shapes::icosphere(3);
-  ProofSettings settings;
-  const SenseProof plain = proveSense(map, ball, settings);
+  const SenseProof plain = proveSense(map, ball, {});
   EXPECT_EQ(plain.weak.count, 0u);
   EXPECT_EQ(plain.leastShare, 1);
   double least = 1e300;
   for (const Vec3& p : ball.vertices) least = std::min(least, determinant(map.jacobian(p)));
   ASSERT_GT(0.9 * least, 2 * plain.least);
-  settings.least = 0.9 * least;
-  const SenseProof cut = proveSense(map, ball, settings);
+  const SenseProof cut = proveSense(map, ball, {.least = 0.9 * least});
   EXPECT_EQ(cut.weak.count, 0u);
   EXPECT_EQ(cut.leastShare, 1);
   EXPECT_EQ(cut.proven.count, plain.proven.count);
-  settings.least = 1.1 * least;
-  const SenseProof tooMuch = proveSense(map, ball, settings);
+  const SenseProof tooMuch = proveSense(map, ball, {.least = 1.1 * least});
   EXPECT_GT(tooMuch.weak.count, 0u);
   EXPECT_LT(tooMuch.leastShare, 1);
   EXPECT_GT(tooMuch.leastShare, 0);
 }
 
 TEST(ProveSense, ADeterminantOfZeroIsNeverProven) {
-  ProofSettings few;
-  few.leastCells = 1000;
   for (const double third : {0.0, 1e-300, 1e-14}) {
-    const SenseProof proof = proveSense(
-        mapOf(affineOf({{{1, 0, 0}, {0, 1, 0}, {1, 1, third}}}), {}), shapes::icosphere(1), few);
+    const SenseProof proof =
+        proveSense(mapOf(affineOf({{{1, 0, 0}, {0, 1, 0}, {1, 1, third}}}), {}),
+                   shapes::icosphere(1), {.leastCells = 1000});
     EXPECT_EQ(proof.proven.count, 0u);
     EXPECT_EQ(proof.provenShare, 0);
     EXPECT_FALSE(proof.whole());
@@ -105,10 +101,8 @@ TEST(ProveSense, ADeterminantThatIsZeroAtOnePointIsNeverProvenThere) {
   const HarmonicMap map =
       mapOf(affineOf(kIdentity), {{{2, 0, 0}, {-2, 0, 0}}, {{-2, 0, 0}, {2, 0, 0}}});
   ASSERT_NEAR(determinant(map.jacobian({0, 0, 0})), 0, 1e-15);
-  ProofSettings few;
-  few.leastCells = 3000;
-  few.keepProven = true;
-  const SenseProof proof = proveSense(map, shapes::icosphere(2), few);
+  const SenseProof proof =
+      proveSense(map, shapes::icosphere(2), {.leastCells = 3000, .keepProven = true});
   EXPECT_FALSE(proof.whole());
   EXPECT_GT(proof.undecided.count, 0u);
   for (const ProofCells* cells : {&proof.proven, &proof.negative})
@@ -119,21 +113,19 @@ TEST(ProveSense, ADeterminantThatIsZeroAtOnePointIsNeverProvenThere) {
 }
 
 TEST(ProveSense, NumbersOutOfRangeProveNothing) {
-  ProofSettings few;
-  few.leastCells = 1000;
   std::vector<Charge> charges = testing::chargesAbout(20, 1.9, 1, 1);
   for (Charge& c : charges) c.weight = 1e307 * c.weight;
-  EXPECT_EQ(proveSense(mapOf(affineOf(kIdentity), charges), shapes::icosphere(1), few).proven.count,
-            0u);
+  EXPECT_EQ(
+      proveSense(mapOf(affineOf(kIdentity), charges), shapes::icosphere(1), {.leastCells = 1000})
+          .proven.count,
+      0u);
 }
 
 TEST(ProveSense, AChargeInsideLeavesItsCellsUndecided) {
-  ProofSettings few;
-  few.leastCells = 3000;
-  few.keepProven = true;
   const Vec3 place{0.31, 0.2, -0.1};
   const SenseProof proof =
-      proveSense(mapOf(affineOf(kIdentity), {{place, {1e-9, 0, 0}}}), shapes::icosphere(2), few);
+      proveSense(mapOf(affineOf(kIdentity), {{place, {1e-9, 0, 0}}}), shapes::icosphere(2),
+                 {.leastCells = 3000, .keepProven = true});
   EXPECT_FALSE(proof.whole());
   EXPECT_GT(proof.provenShare, 0.99);
   ASSERT_GT(proof.undecided.count, 0u);
@@ -158,9 +150,7 @@ TEST(ProveSense, TwoFoldsDoNotMakeAProof) {
   ASSERT_LT(testing::longDeterminant(second, first(p)), 0);
   const ComposedMap map({first, second});
   ASSERT_GT(determinant(map.jacobian(p)), 0);
-  ProofSettings settings;
-  settings.keepProven = true;
-  const SenseProof proof = proveSense(map, shapes::icosphere(3), settings);
+  const SenseProof proof = proveSense(map, shapes::icosphere(3), {.keepProven = true});
   EXPECT_FALSE(proof.whole());
   EXPECT_GT(proof.provenShare, 0.9);
   for (const ProofCell& cell : proof.proven.places) {
@@ -181,8 +171,7 @@ bool same(const ProofCells& a, const ProofCells& b) {
 TEST(ProveSense, EachCellMoreIsUsed) {
   const HarmonicMap map = mapOf(affineOf(kIdentity), testing::chargesAbout(600, 1.3, 0.004, 5));
   const Mesh ball = shapes::icosphere(3);
-  ProofSettings settings;
-  settings.cellsPerCharge = 1;
+  ProofSettings settings{.cellsPerCharge = 1};
   double before = -1;
   for (const std::uint64_t limit : {500u, 1000u, 2000u, 4000u, 8000u}) {
     settings.leastCells = limit;
@@ -210,26 +199,23 @@ HarmonicMap foldedOnOneSide() {
 TEST(ProveSense, CellsOfWhichLittleIsMissingComeFirst) {
   const HarmonicMap map = foldedOnOneSide();
   ASSERT_LT(determinant(map.jacobian({0, 0, 0.95})) * determinant(map.jacobian({0, 0, -0.95})), 0);
-  ProofSettings settings;
-  settings.cellsPerCharge = 1;
-  settings.leastCells = 500;
-  EXPECT_GT(proveSense(map, shapes::icosphere(3), settings).provenShare, 0.4);
-  settings.leastCells = 3000;
-  EXPECT_GT(proveSense(map, shapes::icosphere(3), settings).provenShare, 0.622);
+  EXPECT_GT(
+      proveSense(map, shapes::icosphere(3), {.cellsPerCharge = 1, .leastCells = 500}).provenShare,
+      0.4);
+  EXPECT_GT(
+      proveSense(map, shapes::icosphere(3), {.cellsPerCharge = 1, .leastCells = 3000}).provenShare,
+      0.622);
 }
 
 // Parts that overlap are one solid: of its volume shares are told, which the mesh has twice.
 TEST(ProveSense, SharesAreOfTheVolumeGiven) {
   const Mesh ball = shapes::icosphere(3);
-  ProofSettings settings;
-  settings.cellsPerCharge = 1;
-  settings.leastCells = 10000;
   const HarmonicMap map = foldedOnOneSide();
-  const SenseProof all = proveSense(map, ball, settings);
+  const SenseProof all = proveSense(map, ball, {.cellsPerCharge = 1, .leastCells = 10000});
   ASSERT_GT(all.undecided.share, 0);
   ASSERT_LT(all.undecided.share, 0.5);
-  settings.volume = signedVolume(ball) / 2;
-  const SenseProof half = proveSense(map, ball, settings);
+  const SenseProof half = proveSense(
+      map, ball, {.cellsPerCharge = 1, .leastCells = 10000, .volume = signedVolume(ball) / 2});
   EXPECT_NEAR(half.undecided.share, 2 * all.undecided.share, 1e-12);
   EXPECT_NEAR(half.provenShare, 1 - 2 * (1 - all.provenShare), 1e-12);
 }
@@ -263,14 +249,12 @@ TEST(ProveSense, ThreadsDoNotMatter) {
   std::vector<Charge> charges = testing::chargesAbout(600, 1.3, 0.004, 5);
   charges.push_back({{1.05, 0, 0}, {-0.01, 0, 0}});
   const HarmonicMap map = mapOf(affineOf(kIdentity), charges);
-  ProofSettings settings;
-  settings.keepProven = true;
-  settings.cellsPerCharge = 10;
-  settings.leastCells = 8000;
   const ThreadLimit two(2);
-  const SenseProof a = proveSense(map, shapes::icosphere(3), settings);
+  const SenseProof a = proveSense(map, shapes::icosphere(3),
+                                  {.cellsPerCharge = 10, .leastCells = 8000, .keepProven = true});
   const ThreadLimit one(1);
-  const SenseProof b = proveSense(map, shapes::icosphere(3), settings);
+  const SenseProof b = proveSense(map, shapes::icosphere(3),
+                                  {.cellsPerCharge = 10, .leastCells = 8000, .keepProven = true});
   EXPECT_TRUE(same(a.proven, b.proven));
   EXPECT_TRUE(same(a.negative, b.negative));
   EXPECT_TRUE(same(a.undecided, b.undecided));
@@ -299,9 +283,7 @@ TEST(ProveSense, RefusesWhatItCannotTake) {
   EXPECT_THROW(mapOf(affineOf(kIdentity), {{{2, 0, 0}, {std::nan(""), 0, 0}}}), DataError);
   EXPECT_THROW(proveSense(ComposedMap(std::vector<HarmonicMap>(65, map)), shapes::icosphere(1)),
                DataError);
-  ProofSettings settings;
-  settings.cellsPerCharge = 0;
-  EXPECT_THROW(proveSense(map, shapes::icosphere(1), settings), SettingError);
+  EXPECT_THROW(proveSense(map, shapes::icosphere(1), {.cellsPerCharge = 0}), SettingError);
 }
 
 }  // namespace

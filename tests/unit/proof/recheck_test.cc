@@ -13,11 +13,7 @@ using innermap::testing::affineOf;
 using innermap::testing::kIdentity;
 using innermap::testing::mapOf;
 
-RecheckSettings settingsOf(std::uint64_t seed = 1) {
-  RecheckSettings out;
-  out.seed = seed;
-  return out;
-}
+RecheckSettings settingsOf(std::uint64_t seed = 1) { return {.seed = seed}; }
 
 HarmonicMap gentle(std::uint64_t seed = 1, double strength = 0.02) {
   return mapOf(affineOf(kIdentity), innermap::testing::chargesAbout(200, 1.5, strength, seed));
@@ -33,9 +29,7 @@ HarmonicMap folded() {
 }
 
 SenseProof proofOf(const ComposedMap& map, const Mesh& solid) {
-  ProofSettings s;
-  s.keepProven = true;
-  return proveSense(map, solid, s);
+  return proveSense(map, solid, {.keepProven = true});
 }
 
 TEST(Recheck, AgreesWithProofs) {

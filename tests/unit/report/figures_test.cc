@@ -34,16 +34,12 @@ TEST(ResultFigures, HaveKeysOfTheirOwnAndNames) {
 }
 
 TEST(ResultFigures, OfASolveAreThoseOfItsMethod) {
-  MapSolve dense;
-  dense.method = SolveMethod::truncatedSvd;
-  dense.distance = 0.1;
-  dense.condition = 1e6;
+  MapSolve dense{.method = SolveMethod::truncatedSvd, .distance = 0.1, .condition = 1e6};
   EXPECT_EQ(numberAt(figures(dense), "condition"), 1e6);
   EXPECT_EQ(numberAt(figures(dense), "distance"), 0.1);
   EXPECT_EQ(findFigure(figures(dense), "residuals"), nullptr);
   EXPECT_EQ(findFigure(figures(dense), "radius_ratio"), nullptr);
-  MapSolve adaptive;
-  adaptive.levels = {{0.1, 0.2, 50}, {0.05, 0.1, 70}};
+  MapSolve adaptive{.levels = {{0.1, 0.2, 50}, {0.05, 0.1, 70}}};
   const Figure* sources = nullptr;
   const Figures of = figures(adaptive);
   sources = findFigure(of, "level_sources");
@@ -63,9 +59,7 @@ TEST(ResultFigures, OfWhatWasNotCheckedAreNotKnown) {
 }
 
 TEST(ResultFigures, OfADensityBeginWithItsName) {
-  CarriedMass mass;
-  mass.name = "smoke";
-  mass.before = 2;
+  CarriedMass mass{.name = "smoke", .before = 2};
   EXPECT_EQ(numberAt(massFigures(mass), "smoke_before"), 2);
   EXPECT_EQ(numberAt(densityFigures(mass), "smoke_cells"), 0);
 }

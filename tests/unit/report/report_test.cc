@@ -20,8 +20,7 @@ Figures solve(double regularization) {
 }
 
 Report full() {
-  Report r;
-  r.command = "map";
+  Report r{.command = "map"};
   r.add("solve", solve(1e-10));
   r.seconds = {{"read", 0.1}, {"solve", 1.5}};
   r.peakMemory = 123456789;
@@ -60,9 +59,7 @@ TEST(Report, SaysWhatRanAndHowItIsJudged) {
 }
 
 TEST(Report, LeavesOutWhatWasNotComputed) {
-  Report r;
-  r.command = "check";
-  const Json j = Json::parse(reportJson(r));
+  const Json j = Json::parse(reportJson({.command = "check"}));
   EXPECT_FALSE(j.contains("solve"));
   EXPECT_FALSE(j.contains("target"));
   EXPECT_TRUE(j.contains("seconds"));

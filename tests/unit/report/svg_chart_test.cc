@@ -30,8 +30,7 @@ std::vector<std::pair<double, double>> curve(const std::string& svg) {
 }
 
 SvgPanel panel(bool logarithmic) {
-  SvgPanel p;
-  p.title = "errors";
+  SvgPanel p{.title = "errors"};
   p.xLogarithmic = p.yLogarithmic = logarithmic;
   p.series.push_back({"a", {1, 10, 100}, {1e-3, 1e-2, 1e-1}, true});
   return p;

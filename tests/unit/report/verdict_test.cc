@@ -17,9 +17,7 @@ HarmonicMap identity() {
 
 MappedSolid mapOf(double p99, double tolerance) {
   const Mesh ball = shapes::icosphere(1);
-  BoundaryError error;
-  error.p99 = p99;
-  Facts facts = factsOf(error);
+  Facts facts = factsOf({.p99 = p99});
   for (const auto& fact : factsOfTolerance(tolerance, p99, p99 <= tolerance)) facts.push_back(fact);
   MappedSolid out{identity(), makeBoundaryPair(ball, ball), facts, {}};
   out.injectivity.inside.checked = 1000;
@@ -56,11 +54,9 @@ TEST(Verdict, SharesOverTheirThresholdsAreNotMet) {
     EXPECT_FALSE(findingOf(verdict, name).met) << name;
     EXPECT_FALSE(findingOf(verdict, name).advice.empty()) << name;
   }
-  VerdictSettings more;
-  more.maxFolded = 2e-3;
-  more.maxOutside = 3e-3;
-  more.maxCrossings = 1;
-  const Verdict allowed = judgeMap(mapped, nullptr, more, MapOrigin::related);
+  const Verdict allowed =
+      judgeMap(mapped, nullptr, {.maxFolded = 2e-3, .maxOutside = 3e-3, .maxCrossings = 1},
+               MapOrigin::related);
   for (const char* name : {"folds", "outside", "self_intersections"})
     EXPECT_TRUE(findingOf(allowed, name).met) << name;
 }
@@ -75,8 +71,7 @@ TEST(Verdict, WhatWasToldIsNotWarnedOfAgain) {
 // What voxels say counts where it is more than points say.
 TEST(Verdict, FoldsAreTheLargerShareOfPointsAndVoxels) {
   MappedSolid mapped = mapOf(5e-4, 1e-3);
-  SolidGrids grids;
-  grids.injectivity = mapped.injectivity;
+  SolidGrids grids{.injectivity = mapped.injectivity};
   grids.injectivity.inside.folded = 1;
   grids.values.interiorVoxels = 1000;
   grids.values.foldedVoxels = 5;
@@ -99,9 +94,8 @@ TEST(Verdict, OfFramesTheWorstIsNamed) {
 }
 
 TEST(Verdict, DensitiesMayGrowAsTheVolumesShrink) {
-  const CarryVerdictSettings settings;
   const auto met = [&](double growth, double volumes) {
-    return judgeDensity({"smoke", "", growth, volumes}, settings).findings.front().finding.met;
+    return judgeDensity({"smoke", "", growth, volumes}, {}).findings.front().finding.met;
   };
   EXPECT_TRUE(met(5, 1));
   EXPECT_FALSE(met(7, 1));

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/expect.h"
 #include "innermap/core/run.h"
 #include "mesh/shapes.h"
 
@@ -9,17 +10,13 @@ namespace innermap {
 namespace {
 
 SourceSettings sources(std::size_t count, std::uint64_t seed = 1) {
-  SourceSettings settings;
-  settings.count = count;
-  settings.seed = seed;
-  return settings;
+  return {.count = count, .seed = seed};
 }
 
 double leastDistance(const Points& points) {
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  for (std::size_t i = 0; i < points.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) least = std::min(least, norm(points[i] - points[j]));
-  }
   return least;
 }
 
@@ -69,9 +66,8 @@ TEST(SourceShell, SameForAnyNumberOfThreadsAndForScaleAndPlace) {
     const Vec3 shift = scale * 1000 * solid.diagonal() * Vec3{0.6, -0.64, 0.48};
     const Solid moved(shapes::transformed(mesh, scale, shift));
     const Points points = sourceShell(moved, 0.03, sources(500));
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t i = 0; i < points.size(); ++i)
       ASSERT_LT(norm((points[i] - shift) / scale - one[i]), 1e-6);
-    }
   }
 }
 
@@ -82,12 +78,8 @@ TEST(SourceShell, SettingsAndCancelling) {
   EXPECT_THROW(sourceShell(solid, 0, sources(10)), SettingError);
   EXPECT_THROW(sourceShell(solid, 3, sources(10)), SettingError);
   EXPECT_EQ(sourceShell(solid, 0.05, sources(1)).size(), 1u);
-  RunContext run;
-  run.cancel();
-  SourceSettings settings;
-  const RunScope scope(run);
-  EXPECT_THROW(sourceShell(solid, 0.05, settings), Cancelled);
-  EXPECT_THROW(sourceSphere(solid, 2, settings), Cancelled);
+  test::expectCancels([&] { sourceShell(solid, 0.05, {}); });
+  test::expectCancels([&] { sourceSphere(solid, 2, {}); });
 }
 
 TEST(SourceSphere, IsBlueNoiseOnTheSphere) {
@@ -106,9 +98,8 @@ TEST(SourceSphere, IsBlueNoiseOnTheSphere) {
     const double largest = 2 * std::sqrt(4 * kPi * r * r / (2 * std::sqrt(3.0) * n));
     EXPECT_GT(leastDistance(points), 0.6 * largest);
   }
-  for (const double ratio : {1.0, 0.0, -2.0, 101.0, std::nan("")}) {
+  for (const double ratio : {1.0, 0.0, -2.0, 101.0, std::nan("")})
     EXPECT_THROW(sourceSphere(solid, ratio, sources(10)), SettingError);
-  }
 }
 
 }  // namespace

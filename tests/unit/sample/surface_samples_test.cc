@@ -5,8 +5,8 @@
 #include <chrono>
 #include <set>
 
+#include "core/expect.h"
 #include "core/random.h"
-#include "innermap/core/run.h"
 #include "mesh/shapes.h"
 #include "sample/detail/sample_elimination.h"
 
@@ -21,9 +21,8 @@ Points positions(const Mesh& mesh, const std::vector<SurfacePoint>& samples) {
 
 double leastDistance(const Points& points) {
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  for (std::size_t i = 0; i < points.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) least = std::min(least, norm(points[i] - points[j]));
-  }
   return least;
 }
 
@@ -33,9 +32,8 @@ bool operator==(const SurfacePoint& x, const SurfacePoint& y) {
 
 TEST(RandomSamples, UniformByArea) {
   // Areas 1 : 4 : 0 : 20, and places within a triangle by their third coordinate.
-  Mesh mesh;
-  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {4, 0, 0}, {0, 4, 5}, {8, 0, 0}};
-  mesh.triangles = {{0, 1, 2}, {0, 3, 2}, {1, 1, 2}, {0, 5, 4}};
+  Mesh mesh{.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {4, 0, 0}, {0, 4, 5}, {8, 0, 0}},
+            .triangles = {{0, 1, 2}, {0, 3, 2}, {1, 1, 2}, {0, 5, 4}}};
   const std::size_t n = 100000;
   const std::vector<SurfacePoint> samples = randomSamples(mesh, n);
   ASSERT_EQ(samples.size(), n);
@@ -59,9 +57,7 @@ TEST(RandomSamples, DependOnSeedAndIndexAlone) {
   const Mesh mesh = shapes::icosphere(2);
   const std::vector<SurfacePoint> few = randomSamples(mesh, 100), many = randomSamples(mesh, 20000);
   for (std::size_t i = 0; i < few.size(); ++i) EXPECT_TRUE(few[i] == many[i]);
-  SampleSettings other;
-  other.seed = 2;
-  EXPECT_FALSE(randomSamples(mesh, 1, other)[0] == few[0]);
+  EXPECT_FALSE(randomSamples(mesh, 1, {.seed = 2})[0] == few[0]);
   EXPECT_TRUE(randomSamples(mesh, 0).empty());
 }
 
@@ -75,10 +71,7 @@ TEST(RandomSamples, Refusals) {
   EXPECT_THROW(randomSamples(Mesh{}, 10), DataError);
   EXPECT_THROW(randomSamples(shapes::icosphere(1), 100'000'001), SettingError);
   EXPECT_THROW(blueNoiseSamples(shapes::icosphere(1), 100'000'001), SettingError);
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(blueNoiseSamples(shapes::icosphere(1), 1000, {1}), Cancelled);
+  test::expectCancels([&] { blueNoiseSamples(shapes::icosphere(1), 1000, {1}); });
 }
 
 TEST(BlueNoise, SamplesKeepTheirDistance) {
@@ -112,9 +105,8 @@ TEST(BlueNoise, ScaleAndPlaceDoNotMatter) {
       ASSERT_EQ(moved.size(), samples.size());
       for (std::size_t i = 0; i < moved.size(); ++i) {
         ASSERT_EQ(moved[i].triangle, samples[i].triangle);
-        for (int k = 0; k < 3; ++k) {
+        for (int k = 0; k < 3; ++k)
           ASSERT_NEAR(moved[i].barycentric[k], samples[i].barycentric[k], 1e-9);
-        }
       }
     }
   }
@@ -123,9 +115,8 @@ TEST(BlueNoise, ScaleAndPlaceDoNotMatter) {
 TEST(EliminateSamples, KeepsCountInAscendingOrder) {
   const CounterRandom random(1, 1);
   Points points;
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < 500; ++i)
     points.push_back({random.uniform(2 * i), random.uniform(2 * i + 1), 0});
-  }
   for (const std::size_t n : {0u, 1u, 77u, 499u, 500u, 1000u}) {
     const std::vector<std::size_t> kept = eliminateSamples(points, n, 1);
     ASSERT_EQ(kept.size(), std::min<std::size_t>(n, 500));
@@ -155,9 +146,8 @@ TEST(EliminateSamples, OneOfCoincidentPointsStays) {
 TEST(EliminateSamples, PilesAndBadAreas) {
   Points points(200000, Vec3{1, 2, 3});
   const auto start = std::chrono::steady_clock::now();
-  for (const double area : {0.0, 1.0, -1.0, std::nan(""), 1e-300}) {
+  for (const double area : {0.0, 1.0, -1.0, std::nan(""), 1e-300})
     EXPECT_EQ(eliminateSamples(points, 40000, area).size(), 40000u);
-  }
   for (std::size_t i = 0; i < 1000; ++i) points[i].x += 1e-3 * static_cast<double>(i);
   for (const double area : {0.0, 1.0, 1e10, 1e-300}) {
     const std::vector<std::size_t> kept = eliminateSamples(points, 2000, area);

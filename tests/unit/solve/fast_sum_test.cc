@@ -2,6 +2,7 @@
 
 #include <atomic>
 
+#include "core/expect.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/solve/kernel_sum.h"
@@ -48,10 +49,8 @@ void expectHierarchy(const FieldSamples& got, const FieldSamples& exact, double 
 }
 
 FastSumSettings hierarchical(double accuracy, bool gradients = true) {
-  FastSumSettings settings;
-  settings.accuracy = accuracy;
-  settings.gradients = gradients;
-  settings.method = SumMethod::hierarchical;
+  FastSumSettings settings{
+      .accuracy = accuracy, .gradients = gradients, .method = SumMethod::hierarchical};
   return settings;
 }
 
@@ -184,8 +183,7 @@ TEST(FastSumRelease, TakesTheBestOrderWhereWeightsNearlyCancel) {
                        exact = sumCharges(charges, some, false),
                        magnitudes = sumCharges(charges.magnitudes(), some, false);
     EXPECT_GT(got.error, 0) << "plain sums were taken";
-    FieldSamples gotAtSome;
-    gotAtSome.values = Matrix(some.size(), 1);
+    FieldSamples gotAtSome{.values = Matrix(some.size(), 1)};
     for (std::size_t i = 0; i < some.size(); ++i) gotAtSome.values(i, 0) = got.values(100 * i, 0);
     const double error = rmsDifference(gotAtSome.values, exact.values, 0, 1);
     // Of sums of doubles no more can be asked, of their error no less.
@@ -237,8 +235,7 @@ TEST(FastSum, SameForAnyNumberOfThreads) {
 
 // A ball of blocks about the origin, whose outer blocks want some of their points only.
 LatticeBlocks ballOfBlocks(int across) {
-  LatticeBlocks lattice;
-  lattice.spacing = 2.0 / across;
+  LatticeBlocks lattice{.spacing = 2.0 / across};
   lattice.origin = {-1 + 0.5 * lattice.spacing, -1 + 0.5 * lattice.spacing,
                     -1 + 0.5 * lattice.spacing};
   for (int x = 0; x < across; x += 8)
@@ -279,8 +276,7 @@ FieldSamples onLattice(const FastSum& sum, const LatticeBlocks& lattice,
       begin[b + 1] += static_cast<std::size_t>(__builtin_popcountll(word));
   }
   const std::size_t channels = sum.channels();
-  FieldSamples out;
-  out.values = Matrix(begin.back(), channels);
+  FieldSamples out{.values = Matrix(begin.back(), channels)};
   if (settings.gradients) out.gradients = Matrix(begin.back(), 3 * channels);
   std::atomic<std::size_t> visits{0};
   sum.onLattice(
@@ -340,9 +336,7 @@ TEST(FastSum, BadSettingsAndPoints) {
   const FastSum sum({{0, 0, 0}}, Matrix(1, 1));
   for (const double accuracy : {0.0, -1.0, 0.2, std::nan("")})
     EXPECT_THROW(sum.at({{1, 0, 0}}, hierarchical(accuracy)), SettingError);
-  FastSumSettings negative;
-  negative.absolute = -1;
-  EXPECT_THROW(sum.at({{1, 0, 0}}, negative), SettingError);
+  EXPECT_THROW(sum.at({{1, 0, 0}}, {.absolute = -1}), SettingError);
   EXPECT_THROW(sum.at({{std::nan(""), 0, 0}}, hierarchical(1e-3)), DataError);
   LatticeBlocks lattice = ballOfBlocks(8);
   lattice.spacing = 0;
@@ -354,15 +348,13 @@ TEST(FastSum, BadSettingsAndPoints) {
 
 TEST(FastSum, CanBeCancelled) {
   const Points points = testing::randomPoints(20000, 1), sources = testing::randomPoints(3000, 2);
-  RunContext run;
-  run.cancel();
   const FastSumSettings settings = hierarchical(1e-6);
   const FastSum sum(sources, testing::randomWeights(3000, 3, 1));
-  const RunScope scope(run);
-  EXPECT_THROW(sum.at(points, settings), Cancelled);
-  EXPECT_THROW(sum.onLattice(
-                   ballOfBlocks(16), [](std::size_t, const double*, const double*) {}, settings),
-               Cancelled);
+  test::expectCancels([&] { sum.at(points, settings); });
+  test::expectCancels([&] {
+    sum.onLattice(
+        ballOfBlocks(16), [](std::size_t, const double*, const double*) {}, settings);
+  });
 }
 
 }  // namespace

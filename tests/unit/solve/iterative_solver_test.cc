@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/memory_limit.h"
+#include "core/expect.h"
 #include "core/pi.h"
 #include "core/random.h"
 #include "innermap/core/error.h"
@@ -126,9 +126,8 @@ TEST(IterativeSolver, ReachesTheDenseResidualOnSmallProblems) {
     Matrix b(collocation.size(), 2);
     for (std::size_t i = 0; i < 2 * collocation.size(); ++i)
       b.data()[i] = random.uniform(10 + i) - 0.5;
-    IterativeSettings s;
-    s.maxIterations = 30;
-    const IterativeSolver solver(collocation, {{coarse, 2 * h, 2.5 * h}, {fine, h, 1.25 * h}}, s);
+    const IterativeSolver solver(collocation, {{coarse, 2 * h, 2.5 * h}, {fine, h, 1.25 * h}},
+                                 {.maxIterations = 30});
     const IterativeSolution fast = solver.solve(b);
     const DenseSolution dense =
         DenseSolver(collocation, solver.sources(), {}).solve(b, Regularization::tikhonov, {}, 1e-3);
@@ -187,20 +186,11 @@ TEST(IterativeSolver, OneLevelIsEnough) {
 
 TEST(IterativeSolver, RefusesWhatCannotBe) {
   Problem p;
-  IterativeSettings s;
-  {
-    const MemoryLimit limit(10000);
-    EXPECT_THROW(p.solver(s), MemoryError);
-  }
+  test::expectOverLimit(10000, [&] { p.solver({}); });
   EXPECT_THROW(IterativeSolver(p.collocation, {}), SettingError);
   EXPECT_THROW(IterativeSolver(p.collocation, {p.coarse, {{}, 1, 1}}), SettingError);
   EXPECT_THROW(IterativeSolver(p.coarse.sources, {p.coarse, p.fine}), SettingError);
-  {
-    RunContext run;
-    run.cancel();
-    const RunScope scope(run);
-    EXPECT_THROW(p.solver(s), Cancelled);
-  }
+  test::expectCancels([&] { p.solver({}); });
   p.fine.spacing = 0;
   EXPECT_THROW(p.solver(), SettingError);
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/expect.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "solve/points.h"
@@ -94,10 +95,7 @@ TEST(KernelSum, RefusesWrongSizesAndNan) {
 }
 
 TEST(KernelSum, CancelStopsIt) {
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(sumCharges(Charges(Points(1), Matrix(1, 1)), Points(10), false), Cancelled);
+  test::expectCancels([&] { sumCharges(Charges(Points(1), Matrix(1, 1)), Points(10), false); });
 }
 
 }  // namespace

@@ -16,9 +16,7 @@ double column(const std::string& name, const Study& study, const StudyRow& row) 
 }
 
 TEST(StudyColumns, HaveThePapersRatios) {
-  Study study;
-  study.vertices = 500;
-  study.spacing = 2;
+  Study study{.vertices = 500, .spacing = 2};
   StudyRow row;
   row.sources = 250;
   row.points = 1000;

@@ -26,11 +26,10 @@ StudyRow rowOf(StudyRun run, double rms) {
 
 // Errors by distance (0.1, 0.05, 0.025), number (100, 200), ratio (1, 2) and radius (1.5).
 Study studyOf(const std::function<double(const StudyRun&)>& error) {
-  Study study;
-  study.base = {100, 2, ChargePlacement::offset, 0.05};
-  study.baseSphere = {100, 2, ChargePlacement::sphere, 1.5};
-  study.vertices = 1000;
-  study.spacing = 0.5;
+  Study study{.base = {100, 2, ChargePlacement::offset, 0.05},
+              .baseSphere = {100, 2, ChargePlacement::sphere, 1.5},
+              .vertices = 1000,
+              .spacing = 0.5};
   std::vector<StudyRun> runs{study.base, study.baseSphere};
   for (const double at : {0.1, 0.025}) runs.push_back({100, 2, ChargePlacement::offset, at});
   runs.push_back({200, 2, ChargePlacement::offset, 0.05});
@@ -129,14 +128,14 @@ TEST(StudyFindings, Words) {
       sphere{500, 1, ChargePlacement::sphere, 1.5};
   EXPECT_EQ(describeRun(offset), "1000 charges at 0.02, 4 points each");
   EXPECT_NE(describeRun(sphere).find("sphere of 1.5"), std::string::npos);
-  StudySettings settings;
-  EXPECT_EQ(optionsOf(offset, settings),
+  EXPECT_EQ(optionsOf(offset, {}),
             "--charges 1000 --collocation 4000 --distance 0.02 --solver dense --interpolation "
             "linear --seed 1");
-  settings.method = Regularization::truncatedSvd;
-  settings.regularization = 1e-6;
-  EXPECT_NE(optionsOf(sphere, settings).find("--radius-ratio 1.5"), std::string::npos);
-  EXPECT_NE(optionsOf(sphere, settings).find("--method tsvd --regularization 1e-06"),
+  EXPECT_NE(optionsOf(sphere, {.method = Regularization::truncatedSvd, .regularization = 1e-6})
+                .find("--radius-ratio 1.5"),
+            std::string::npos);
+  EXPECT_NE(optionsOf(sphere, {.method = Regularization::truncatedSvd, .regularization = 1e-6})
+                .find("--method tsvd --regularization 1e-06"),
             std::string::npos);
   EXPECT_EQ(verdictText(Verdict::partly), "in part");
 }

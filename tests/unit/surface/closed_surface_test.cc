@@ -2,8 +2,8 @@
 
 #include <map>
 
+#include "core/expect.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/mesh/mesh_file.h"
 #include "innermap/surface/correspond.h"
 #include "mesh/test_meshes.h"
@@ -53,14 +53,7 @@ double volumeOf(const ClosedSurface& shell) {
 }
 
 std::string messageOf(const Mesh& mesh, bool closeHoles = false) {
-  ClosedSurfaceSettings settings;
-  settings.closeHoles = closeHoles;
-  try {
-    closedSurfaces(mesh, settings);
-  } catch (const DataError& e) {
-    return e.what();
-  }
-  return "no error";
+  return test::refusalOf<DataError>([&] { closedSurfaces(mesh, {.closeHoles = closeHoles}); });
 }
 
 void expectSays(const std::string& message, const std::string& part) {
@@ -116,9 +109,7 @@ TEST(ClosedSurfaces, HolesAreRefusedOrClosed) {
   mesh.triangles.erase(mesh.triangles.begin());
   mesh.triangles.erase(mesh.triangles.begin() + 99, mesh.triangles.begin() + 103);
   expectSays(messageOf(mesh), "is open, with 2 holes, the longest");
-  ClosedSurfaceSettings settings;
-  settings.closeHoles = true;
-  const SurfaceShells surfaces = closedSurfaces(mesh, settings);
+  const SurfaceShells surfaces = closedSurfaces(mesh, {.closeHoles = true});
   expectSound(surfaces);
   EXPECT_EQ(surfaces.caps, 2);
   ASSERT_EQ(surfaces.shells.size(), 1u);
@@ -139,8 +130,7 @@ TEST(ClosedSurfaces, CrowdedEdgesAreNamed) {
 
 TEST(ClosedSurfaces, OneSidedSurfacesAreRefused) {
   // A Moebius strip of five squares, with a tetrahedron that has an inside.
-  Mesh mesh;
-  mesh.name = "strip";
+  Mesh mesh{.name = "strip"};
   for (int i = 0; i < 5; ++i) {
     const double a = 2 * kPi * i / 5, h = a / 2;
     for (const double side : {-0.3, 0.3}) {
@@ -164,9 +154,7 @@ TEST(ClosedSurfaces, SheetsAreRefused) {
 TEST(ClosedSurfaces, PartsThatEncloseNothingAreLeftOut) {
   Mesh mesh = shapes::joined(shapes::icosphere(2),
                              makeMesh({{3, 0, 0}, {4, 0, 0}, {4, 1, 0}}, {{0, 1, 2}}));
-  ClosedSurfaceSettings settings;
-  settings.closeHoles = true;
-  const SurfaceShells surfaces = closedSurfaces(mesh, settings);
+  const SurfaceShells surfaces = closedSurfaces(mesh, {.closeHoles = true});
   expectSound(surfaces);
   EXPECT_EQ(surfaces.shells.size(), 1u);
   EXPECT_EQ(surfaces.shellVertex.back().shell, -1);
@@ -254,11 +242,7 @@ TEST(ClosedSurfaces, RealModels) {
 }
 
 TEST(ClosedSurfaces, CanBeCancelled) {
-  RunContext run;
-  run.cancel();
-  ClosedSurfaceSettings settings;
-  const RunScope scope(run);
-  EXPECT_THROW(closedSurfaces(cube(), settings), Cancelled);
+  test::expectCancels([&] { closedSurfaces(cube(), {}); });
 }
 
 }  // namespace

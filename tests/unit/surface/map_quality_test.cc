@@ -1,10 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 
+#include "core/expect.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/surface/correspond.h"
 #include "mesh/test_meshes.h"
 #include "surface/detail/refining/locate.h"
@@ -34,11 +33,8 @@ Mesh scaled(Mesh mesh, const Vec3& factors) {
 Correspondence through(const SurfaceShells& a, const Layout& image, const SurfaceShells& b,
                        const Layout& target) {
   Correspondence map;
-  ShellCorrespondence shell;
-  shell.surface = a.shells[0];
-  shell.image = image;
-  shell.targetSurface = b.shells[0];
-  shell.targetLayout = target;
+  ShellCorrespondence shell{
+      .surface = a.shells[0], .image = image, .targetSurface = b.shells[0], .targetLayout = target};
   const Locator onB(b.shells[0].triangles, target);
   for (const Vec3& p : image.place) {
     const Located where = onB.find(p);
@@ -188,9 +184,7 @@ TEST(MapQuality, FindsFlipsInvertedTrianglesAndCrossings) {
   EXPECT_GT(crossed.imageSelfIntersections, 0u);
   EXPECT_EQ(crossed.targetSelfIntersections, 0u);
   EXPECT_GT(crossed.deviation.max, 0.05);
-  MapQualitySettings settings;
-  settings.selfIntersections = false;
-  EXPECT_EQ(mapQuality(map, settings).imageSelfIntersections, 0u);
+  EXPECT_EQ(mapQuality(map, {.selfIntersections = false}).imageSelfIntersections, 0u);
 }
 
 TEST(MapQuality, SliversDoNotCount) {
@@ -215,14 +209,8 @@ TEST(MapQuality, CanBeCancelledAndChecksItsSettings) {
   const SurfaceShells a = closedSurfaces(shapes::icosphere(1));
   const Layout layout = onSphere(a.shells[0].vertices);
   const Correspondence map = through(a, layout, a, layout);
-  RunContext run;
-  run.cancel();
-  MapQualitySettings settings;
-  settings.samples = 0;
-  EXPECT_THROW(mapQuality(map, settings), SettingError);
-  settings.samples = 10;
-  const RunScope scope(run);
-  EXPECT_THROW(mapQuality(map, settings), Cancelled);
+  EXPECT_THROW(mapQuality(map, {.samples = 0}), SettingError);
+  test::expectCancels([&] { mapQuality(map, {.samples = 10}); });
 }
 
 }  // namespace

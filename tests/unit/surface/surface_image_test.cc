@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "innermap/core/error.h"
-#include "innermap/core/run.h"
+#include "core/expect.h"
 #include "innermap/surface/correspond.h"
 #include "mesh/test_meshes.h"
 #include "surface/detail/refining/locate.h"
@@ -19,11 +18,10 @@ struct Balls {
 
   Balls() {
     for (int s = 0; s < 2; ++s) {
-      ShellCorrespondence shell;
-      shell.source = s;
-      shell.target = 1 - s;
-      shell.surface = a.shells[static_cast<std::size_t>(s)];
-      shell.targetSurface = b.shells[static_cast<std::size_t>(1 - s)];
+      ShellCorrespondence shell{.source = s,
+                                .target = 1 - s,
+                                .surface = a.shells[static_cast<std::size_t>(s)],
+                                .targetSurface = b.shells[static_cast<std::size_t>(1 - s)]};
       shell.image.place = directions(shell.surface.vertices);
       shell.targetLayout.place = directions(shell.targetSurface.vertices);
       // A cavity's layout is that of the surface turned over, seen in a mirror.
@@ -84,11 +82,8 @@ TEST(PreimagesOf, OfTrianglesThatAreInNoShellComeFromTheClosestOne) {
 
 TEST(ImagesOf, CanBeCancelled) {
   const Balls balls;
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(preimagesOf({{0, {1, 0, 0}}}, balls.map, balls.b), Cancelled);
-  EXPECT_THROW(imagesOf({{1, 0, 0}}, balls.map, balls.b), Cancelled);
+  test::expectCancels([&] { preimagesOf({{0, {1, 0, 0}}}, balls.map, balls.b); });
+  test::expectCancels([&] { imagesOf({{1, 0, 0}}, balls.map, balls.b); });
 }
 
 }  // namespace

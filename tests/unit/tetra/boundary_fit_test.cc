@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "core/expect.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/tetra/hexahedralize.h"
 #include "mesh/shapes.h"
 
@@ -12,8 +12,7 @@ namespace {
 
 // A cube of one hexahedron.
 CellMesh cube(double lower, double upper) {
-  CellMesh mesh;
-  mesh.name = "cube";
+  CellMesh mesh{.name = "cube"};
   for (int i = 0; i < 8; ++i)
     mesh.vertices.push_back({i & 1 ? upper : lower, i & 2 ? upper : lower, i & 4 ? upper : lower});
   mesh.hexahedra = {{0, 1, 3, 2, 4, 5, 7, 6}};
@@ -46,14 +45,8 @@ TEST(BoundaryFit, CountsFacesThatFaceInwards) {
 TEST(BoundaryFit, RefusesNothing) {
   const Solid solid(shapes::box({0, 0, 0}, {1, 1, 1}));
   EXPECT_THROW(boundaryFit({}, solid), DataError);
-  BoundaryFitSettings settings;
-  settings.samples = 0;
-  EXPECT_THROW(boundaryFit(cube(0, 1), solid, settings), SettingError);
-  RunContext run;
-  run.cancel();
-  settings.samples = 100;
-  const RunScope scope(run);
-  EXPECT_THROW(boundaryFit(cube(0, 1), solid, settings), Cancelled);
+  EXPECT_THROW(boundaryFit(cube(0, 1), solid, {.samples = 0}), SettingError);
+  test::expectCancels([&] { boundaryFit(cube(0, 1), solid, {.samples = 100}); });
 }
 
 }  // namespace

@@ -14,9 +14,7 @@ namespace {
 using test::affineBall;
 
 CellMesh filled(const MappedSolid& mapped, int resolution = 10) {
-  TetrahedralizeSettings settings;
-  settings.resolution = resolution;
-  return tetrahedralize(mapped.solid(), settings);
+  return tetrahedralize(mapped.solid(), {.resolution = resolution});
 }
 
 TEST(CarryCells, InsideByTheMapBoundaryByItsPlaces) {
@@ -89,9 +87,7 @@ TEST(CarryCells, SaysWhatDoesNotFit) {
   const MappedSolid mapped = affineBall();
   CellMesh mesh = filled(mapped);
   EXPECT_THROW(carryCells(CellMesh(), mapped), DataError);
-  CarryCellsSettings settings;
-  settings.farthest = 0;
-  EXPECT_THROW(carryCells(mesh, mapped, settings), SettingError);
+  EXPECT_THROW(carryCells(mesh, mapped, {.farthest = 0}), SettingError);
   for (Vec3& p : mesh.vertices) p.x += 1;
   EXPECT_THROW(carryCells(mesh, mapped), DataError);
 }

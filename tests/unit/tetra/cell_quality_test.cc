@@ -3,8 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "innermap/core/error.h"
-#include "innermap/core/run.h"
+#include "core/expect.h"
 #include "innermap/tetra/cells.h"
 
 namespace innermap {
@@ -44,8 +43,7 @@ TEST(CellQuality, ScaledJacobianOfKnownCells) {
 }
 
 TEST(CellQuality, CountsAndFields) {
-  CellMesh mesh;
-  mesh.vertices = cube();
+  CellMesh mesh{.vertices = cube()};
   mesh.tetrahedra = {{0, 1, 3, 4}, {0, 3, 1, 4}};  // the second is inverted
   mesh.hexahedra = {kUnit};
   const CellQuality q = cellQuality(mesh);
@@ -74,10 +72,7 @@ TEST(CellQuality, EmptyAndCancelled) {
   EXPECT_TRUE(mesh.cellFields.empty());
   mesh.vertices = cube();
   mesh.hexahedra = {kUnit};
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(cellQuality(mesh), Cancelled);
+  test::expectCancels([&] { cellQuality(mesh); });
 }
 
 }  // namespace

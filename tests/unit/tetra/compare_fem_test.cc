@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/expect.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "mesh/shapes.h"
 
 namespace innermap {
@@ -11,20 +11,12 @@ namespace {
 
 TEST(CompareFem, RefusesNonsense) {
   const Solid solid(shapes::icosphere(2));
-  CompareFemSettings settings;
-  settings.resolutions = {};
-  EXPECT_THROW(compareFemOnFunctions(solid, settings), SettingError);
-  settings.resolutions = {32, 16};
-  EXPECT_THROW(compareFemOnFunctions(solid, settings), SettingError);
-  settings.resolutions = {8};
-  settings.charges = {1};
-  EXPECT_THROW(compareFemOnFunctions(solid, settings), SettingError);
-  settings.charges = {100};
-  EXPECT_GT(compareFemMemory(solid, settings), 0u);
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(compareFemOnFunctions(solid, settings), Cancelled);
+  EXPECT_THROW(compareFemOnFunctions(solid, {.resolutions = {}}), SettingError);
+  EXPECT_THROW(compareFemOnFunctions(solid, {.resolutions = {32, 16}}), SettingError);
+  EXPECT_THROW(compareFemOnFunctions(solid, {.resolutions = {8}, .charges = {1}}), SettingError);
+  EXPECT_GT(compareFemMemory(solid, {.resolutions = {8}, .charges = {100}}), 0u);
+  test::expectCancels(
+      [&] { compareFemOnFunctions(solid, {.resolutions = {8}, .charges = {100}}); });
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/expect.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/tetra/compare_fem.h"
@@ -12,9 +13,7 @@ namespace innermap {
 namespace {
 
 CellMesh ball(int resolution) {
-  TetrahedralizeSettings settings;
-  settings.resolution = resolution;
-  return tetrahedralize(Solid(shapes::icosphere(3)), settings);
+  return tetrahedralize(Solid(shapes::icosphere(3)), {.resolution = resolution});
 }
 
 // Of a function at all vertices; those inside must not be looked at.
@@ -78,18 +77,10 @@ TEST(HarmonicCells, RefusesWhatIsNoMeshOfTetrahedra) {
   const auto f = [](const Vec3& p) { return p.x; };
   EXPECT_THROW(harmonicOnCells(mesh, Matrix(3, 1)), DataError);
   EXPECT_THROW(harmonicOnCells({}, Matrix()), DataError);
-  HarmonicCellsSettings settings;
-  settings.maxIterations = 1;
-  EXPECT_THROW(harmonicOnCells(mesh, valuesOf(mesh, f), settings), DataError);
-  settings.residual = 2;
-  EXPECT_THROW(harmonicOnCells(mesh, valuesOf(mesh, f), settings), SettingError);
-  settings = {};
-  {
-    RunContext run;
-    run.cancel();
-    const RunScope scope(run);
-    EXPECT_THROW(harmonicOnCells(mesh, valuesOf(mesh, f), settings), Cancelled);
-  }
+  EXPECT_THROW(harmonicOnCells(mesh, valuesOf(mesh, f), {.maxIterations = 1}), DataError);
+  EXPECT_THROW(harmonicOnCells(mesh, valuesOf(mesh, f), {.residual = 2, .maxIterations = 1}),
+               SettingError);
+  test::expectCancels([&] { harmonicOnCells(mesh, valuesOf(mesh, f), {}); });
   std::swap(mesh.tetrahedra[5][0], mesh.tetrahedra[5][1]);
   EXPECT_THROW(harmonicOnCells(mesh, valuesOf(mesh, f)), DataError);
 }

@@ -213,8 +213,7 @@ TEST(HexahedronCheck, FlatCellsEndAtOnce) {
 }
 
 TEST(HexahedronCheck, CountsWhatIsWrong) {
-  CellMesh mesh;
-  mesh.vertices = cube();
+  CellMesh mesh{.vertices = cube()};
   const Points moved = cube();
   for (const Vec3& v : moved) mesh.vertices.push_back(v);
   std::swap(mesh.vertices[8], mesh.vertices[14]);
@@ -223,9 +222,7 @@ TEST(HexahedronCheck, CountsWhatIsWrong) {
   EXPECT_EQ(check.inverted, 1u);
   EXPECT_EQ(check.invertedCorners, 1u);
   EXPECT_FALSE(check.proven());
-  HexahedronCheckSettings settings;
-  settings.halvings = 11;
-  EXPECT_THROW(checkHexahedra(mesh, settings), SettingError);
+  EXPECT_THROW(checkHexahedra(mesh, {.halvings = 11}), SettingError);
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "core/expect.h"
 #include "core/random.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/tetra/cells.h"
 #include "innermap/tetra/remesh_cells.h"
 #include "mesh/triangle_tree.h"
@@ -61,9 +61,7 @@ TEST(ImproveCells, RaisesAnglesAndKeepsTheMeshAMap) {
     ASSERT_EQ(c.inverted(), 0u);
     const CellQuality before = c.quality();
     const std::size_t count = c.mesh.tetrahedra.size();
-    ImproveCellsSettings settings;
-    settings.connect = connect;
-    const CellImprovement done = improveCells(c.mesh, c.surface, c.cells, settings);
+    const CellImprovement done = improveCells(c.mesh, c.surface, c.cells, {.connect = connect});
     const CellQuality after = c.quality();
     EXPECT_GT(done.poorBefore, 100u);
     EXPECT_LT(done.poorAfter, done.poorBefore / (connect ? 4 : 1));
@@ -102,19 +100,9 @@ TEST(ImproveCells, GoodOnesStay) {
 
 TEST(ImproveCells, SaysWhatIsWrongAndIsCancelled) {
   Case c;
-  ImproveCellsSettings settings;
-  settings.angle = 0;
-  EXPECT_THROW(improveCells(c.mesh, c.surface, c.cells, settings), SettingError);
-  settings = {};
-  settings.passes = 0;
-  EXPECT_THROW(improveCells(c.mesh, c.surface, c.cells, settings), SettingError);
-  settings = {};
-  {
-    RunContext run;
-    run.cancel();
-    const RunScope scope(run);
-    EXPECT_THROW(improveCells(c.mesh, c.surface, c.cells, settings), Cancelled);
-  }
+  EXPECT_THROW(improveCells(c.mesh, c.surface, c.cells, {.angle = 0}), SettingError);
+  EXPECT_THROW(improveCells(c.mesh, c.surface, c.cells, {.passes = 0}), SettingError);
+  test::expectCancels([&] { improveCells(c.mesh, c.surface, c.cells, {}); });
   c.cells.onSurface.pop_back();
   EXPECT_THROW(improveCells(c.mesh, c.surface, c.cells), DataError);
 }

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include "innermap/mesh/check.h"
 #include "innermap/tetra/hexahedralize.h"
 #include "mesh/shapes.h"
 #include "tetra/detail/block_topology.h"
@@ -8,11 +7,7 @@
 namespace innermap {
 namespace {
 
-PolycubeSettings across(int blocks) {
-  PolycubeSettings settings;
-  settings.blocks = blocks;
-  return settings;
-}
+PolycubeSettings across(int blocks) { return {.blocks = blocks}; }
 
 void append(Mesh& mesh, const Mesh& other, bool turned) {
   const int first = static_cast<int>(mesh.vertices.size());

@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#include "innermap/core/error.h"
-#include "innermap/core/run.h"
+#include "core/expect.h"
 #include "innermap/tetra/cells.h"
 #include "tetra/kuhn_mesh.h"
 
@@ -81,17 +80,16 @@ TEST(ProveCells, WhatTouchesIsNotShown) {
   CellMesh twice = cube;  // its faces belong to four cells each, or to two on one side
   twice.tetrahedra.insert(twice.tetrahedra.end(), cube.tetrahedra.begin(), cube.tetrahedra.end());
   expectOverlap(Overlap::unknown, twice, "cells twice");
-  CellMesh sameSide;
-  sameSide.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.3, 0.3, 2}};
-  sameSide.tetrahedra = {{0, 1, 2, 3}, {0, 1, 2, 4}};
-  expectOverlap(Overlap::unknown, sameSide, "both on one side");
+  expectOverlap(Overlap::unknown,
+                {.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.3, 0.3, 2}},
+                 .tetrahedra = {{0, 1, 2, 3}, {0, 1, 2, 4}}},
+                "both on one side");
 }
 
 // Cells about an edge that go round it twice: each is right side out, each inner face has two
 // sides, and no vertex tells.
 TEST(ProveCells, TwiceAboutAnEdgeOverlaps) {
-  CellMesh mesh;
-  mesh.vertices = {{0, 0, -1}, {0, 0, 1}};
+  CellMesh mesh{.vertices = {{0, 0, -1}, {0, 0, 1}}};
   constexpr int kCells = 14;
   for (int k = 0; k < kCells; ++k) {
     const double angle = 4 * M_PI * (k + 0.1) / kCells, r = 1 + 0.05 * k;
@@ -122,8 +120,7 @@ TEST(ProveCells, CountsInvertedFlatAndHexahedra) {
 }
 
 TEST(ProveCells, SentencesSayNoMoreThanIsProven) {
-  CellProof proof;
-  proof.cells = 5;
+  CellProof proof{.cells = 5};
   EXPECT_NE(statementOf(proof).find("local"), std::string::npos);
   EXPECT_EQ(linearMapStatement(proof, proof), "");  // hexahedra
   proof.boundary = {{0, 1, 2}};
@@ -142,15 +139,8 @@ TEST(ProveCells, SentencesSayNoMoreThanIsProven) {
 
 TEST(ProveCells, SameForAnyNumberOfThreadsAndCancels) {
   const CellMesh mesh = bent(1.4, 0.003);
-  const auto meetings = [&](int threads) {
-    const ThreadLimit limit(threads);
-    return proveCells(mesh).meetings;
-  };
-  EXPECT_EQ(meetings(1), meetings(3));
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(proveCells(mesh), Cancelled);
+  test::expectSameForThreads([&] { return proveCells(mesh).meetings; });
+  test::expectCancels([&] { proveCells(mesh); });
 }
 
 }  // namespace

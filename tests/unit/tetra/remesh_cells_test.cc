@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "innermap/tetra/cells.h"
 #include "innermap/tetra/tetrahedralize.h"
 #include "tetra/kuhn_mesh.h"
 #include "tetra/mapped_balls.h"
@@ -13,9 +12,7 @@ namespace innermap {
 namespace {
 
 CellMesh filled(const Solid& solid, int resolution) {
-  TetrahedralizeSettings settings;
-  settings.resolution = resolution;
-  return tetrahedralize(solid, settings);
+  return tetrahedralize(solid, {.resolution = resolution});
 }
 
 TEST(RemeshCells, AffineMapsNeedNoRepairAndTurnFields) {
@@ -36,9 +33,7 @@ TEST(RemeshCells, AffineMapsNeedNoRepairAndTurnFields) {
     normal.values.insert(normal.values.end(), {0, 1, 0});
   mesh.cellFields = {fibre, label};
   mesh.vertexFields = {normal};
-  RemeshSettings settings;
-  settings.keepConnectivity = true;
-  const Remesh made = remeshCells(mesh, mapped, settings);
+  const Remesh made = remeshCells(mesh, mapped, {.keepConnectivity = true});
   EXPECT_EQ(made.invertedCarried, 0u);
   EXPECT_EQ(made.repair.slid, 0u);
   EXPECT_EQ(made.mesh.cellFields[1].values, label.values);

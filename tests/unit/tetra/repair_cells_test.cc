@@ -118,10 +118,8 @@ TEST(RepairCells, AnchorsHoldTheBoundary) {
       const double x = cells.positions[v].x;
       if (cells.onSurface[v].triangle >= 0) cells.positions[v].x = 0.5 * x + 0.5 * x * x;
     }
-    RepairCellsSettings settings;
-    settings.whole = true;
-    settings.anchor = k == 0 ? 0 : 20;
-    const CellRepair repair = repairCells(mesh, surface, cells, settings);
+    const CellRepair repair =
+        repairCells(mesh, surface, cells, {.whole = true, .anchor = k == 0 ? 0.0 : 20.0});
     EXPECT_EQ(repair.invertedAfter, 0u);
     ways[k] = 0;
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
@@ -144,15 +142,12 @@ TEST(RepairCells, SaysWhatIsWrongAndIsCancelled) {
   CarriedCells lost = cells;
   lost.onSurface[0].triangle = 999999;
   EXPECT_THROW(repairCells(mesh, surface, lost), DataError);
-  RepairCellsSettings settings;
-  settings.least = 0;
-  EXPECT_THROW(repairCells(mesh, surface, cells, settings), SettingError);
+  EXPECT_THROW(repairCells(mesh, surface, cells, {.least = 0}), SettingError);
   RunContext run;
   run.cancel();
-  settings = {};
   const RunScope scope(run);
   shake(cells, 0.5, 1);
-  EXPECT_THROW(repairCells(mesh, surface, cells, settings), Cancelled);
+  EXPECT_THROW(repairCells(mesh, surface, cells, {}), Cancelled);
 }
 
 }  // namespace

@@ -11,11 +11,7 @@
 namespace innermap {
 namespace {
 
-TetrahedralizeSettings across(int resolution) {
-  TetrahedralizeSettings settings;
-  settings.resolution = resolution;
-  return settings;
-}
+TetrahedralizeSettings across(int resolution) { return {.resolution = resolution}; }
 
 double volumeOf(const CellMesh& mesh) {
   double sum = 0;
@@ -37,9 +33,8 @@ Shell shellOf(const CellMesh& mesh) {
       ++vertices[t[k]];
       ++edges[std::minmax(t[k], t[(k + 1) % 3])];
     }
-  Shell shell;
-  shell.euler = static_cast<long>(vertices.size()) - static_cast<long>(edges.size()) +
-                static_cast<long>(boundary.size());
+  Shell shell{.euler = static_cast<long>(vertices.size()) - static_cast<long>(edges.size()) +
+                       static_cast<long>(boundary.size())};
   for (const auto& edge : edges) shell.unpaired += edge.second != 2;
   return shell;
 }
@@ -93,8 +88,7 @@ TEST(Tetrahedralize, EveryCellHasAVertexInside) {
 // Two slabs that are joined along one side, `gap` apart: a lattice coarser than that joins them.
 Mesh clamp(double gap) {
   const double a = 0.5 - 0.5 * gap, b = 0.5 + 0.5 * gap;
-  Mesh mesh;
-  mesh.name = "clamp";
+  Mesh mesh{.name = "clamp"};
   const double outline[8][2] = {{0, 0}, {1, 0}, {1, a}, {0.2, a}, {0.2, b}, {1, b}, {1, 1}, {0, 1}};
   for (const double z : {0.0, 0.5})
     for (const auto& p : outline) mesh.vertices.push_back({p[0], p[1], z});

@@ -9,11 +9,7 @@
 namespace innermap {
 namespace {
 
-TetrahedralizeSettings coarse() {
-  TetrahedralizeSettings settings;
-  settings.resolution = 10;
-  return settings;
-}
+TetrahedralizeSettings coarse() { return {.resolution = 10}; }
 
 CellMesh carriedBall(const MappedSolid& mapped) {
   return remeshCells(tetrahedralize(mapped.solid(), coarse()), mapped).mesh;

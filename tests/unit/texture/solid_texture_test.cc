@@ -35,11 +35,7 @@ Mesh ballWithUvs() {
 
 SolidTextureSettings coarse(TextureMode mode) {
   openvdb::initialize();
-  SolidTextureSettings s;
-  s.mode = mode;
-  s.resolution = 24;
-  s.sources = 300;
-  return s;
+  return {.mode = mode, .resolution = 24, .sources = 300};
 }
 
 const TextureLookup kGreen = [](const Vec2&, const Vec2&, const Vec2&) {

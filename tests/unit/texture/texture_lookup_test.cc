@@ -10,8 +10,7 @@ namespace {
 
 // A triangle for each place, small about it.
 Mesh trianglesAt(const std::vector<Vec2>& places) {
-  Mesh mesh;
-  mesh.name = "places";
+  Mesh mesh{.name = "places"};
   for (const Vec2& p : places) {
     const int first = static_cast<int>(mesh.uvs.size());
     mesh.uvs.insert(mesh.uvs.end(), {{p.x - 0.1, p.y}, {p.x + 0.1, p.y - 0.1}, {p.x, p.y + 0.1}});

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/memory_limit.h"
+#include "core/expect.h"
 #include "innermap/core/error.h"
 #include "innermap/transfer/geometry.h"
 
@@ -22,9 +22,7 @@ CarriedPoints bend(const Points& points, bool jacobians) {
 }
 
 Geometry line(double length) {
-  Geometry g;
-  g.points = {{0, 0, 0}, {length, 0, 0}};
-  g.ownPoints = 2;
+  Geometry g{.points = {{0, 0, 0}, {length, 0, 0}}, .ownPoints = 2};
   const Corner corners[2] = {{0, -1, -1}, {1, -1, -1}};
   g.elements.add(Elements::Kind::line, 0, corners, 2);
   return g;
@@ -33,9 +31,7 @@ Geometry line(double length) {
 TEST(CarryGeometry, SplitsUntilStraightIsNear) {
   for (const double tolerance : {0.1, 1e-2, 1e-4}) {
     Geometry g = line(2);
-    CarryGeometrySettings settings;
-    settings.subdivide = tolerance;
-    const CarriedGeometry carried = carryGeometry(g, bend, settings);
+    const CarriedGeometry carried = carryGeometry(g, bend, {.subdivide = tolerance});
     // The chord of a parabola of width h is h^2 / 4 away from it.
     const double width = std::pow(2, -std::ceil(std::log2(2 / std::sqrt(4 * tolerance))));
     EXPECT_EQ(carried.added + 1, static_cast<std::uint64_t>(std::lround(1 / width)));
@@ -63,25 +59,16 @@ TEST(CarryGeometry, FoldsAreToldByTheMapsSense) {
   for (const bool mirrored : {false, true}) {
     Geometry g = line(3);
     g.directions.push_back({"n", DirectionKind::normal, {{0, 1, 0}}, {0}});
-    CarryGeometrySettings settings;
-    settings.mirrored = mirrored;
-    EXPECT_EQ(carryGeometry(g, bend, settings).folded, mirrored ? 2u : 0u);
+    EXPECT_EQ(carryGeometry(g, bend, {.mirrored = mirrored}).folded, mirrored ? 2u : 0u);
   }
 }
 
 TEST(CarryGeometry, Limits) {
   Geometry g = line(2);
-  CarryGeometrySettings settings;
-  settings.subdivide = 1e-12;
-  {
-    const MemoryLimit limit(100000);
-    EXPECT_THROW(carryGeometry(g, bend, settings), MemoryError);
-  }
-  settings.subdivide = -1;
-  EXPECT_THROW(carryGeometry(g, bend, settings), SettingError);
+  test::expectOverLimit(100000, [&] { carryGeometry(g, bend, {.subdivide = 1e-12}); });
+  EXPECT_THROW(carryGeometry(g, bend, {.subdivide = -1}), SettingError);
   g.splittable = false;
-  settings.subdivide = 0.1;
-  EXPECT_THROW(carryGeometry(g, bend, settings), SettingError);
+  EXPECT_THROW(carryGeometry(g, bend, {.subdivide = 0.1}), SettingError);
   EXPECT_GT(carryGeometryMemory(g), 0u);
 }
 

@@ -20,18 +20,14 @@ TEST(CarryMemory, GrowsWithVoxelsGridsAndWhatIsAround) {
   LevelSetSettings coarse, fine;
   coarse.resolution = 64;
   fine.resolution = 256;
-  OutsideSettings outside;
-  outside.distance = 0.5;
   EXPECT_LT(carryMemory(solid, {grid}, coarse), carryMemory(solid, {grid}, fine));
   EXPECT_LT(carryMemory(solid, {grid}, fine), carryMemory(solid, {grid, finer}, fine));
-  EXPECT_LT(carryMemory(solid, {grid}, fine), carryMemory(solid, {grid}, fine, outside));
-  CarrySettings densities;
-  densities.allDensities = true;
+  EXPECT_LT(carryMemory(solid, {grid}, fine), carryMemory(solid, {grid}, fine, {.distance = 0.5}));
   const CarryKind pulled{false, 0}, withField{true, 1};
   const std::uint64_t pushed = carryMemory(solid, {grid}, fine);
   EXPECT_LT(carryMemory(solid, {grid}, fine, {}, {}, pulled), pushed);
   EXPECT_LT(carryMemory(solid, {grid}, fine, {}, {}, pulled),
-            carryMemory(solid, {grid}, fine, {}, densities));
+            carryMemory(solid, {grid}, fine, {}, {.allDensities = true}));
   EXPECT_GT(carryMemory(solid, {grid}, fine, {}, {}, withField), pushed);
 }
 

@@ -144,9 +144,7 @@ TEST(CarryPoints, BadInput) {
   const PointPusher pusher{Solid(ball())};
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(pusher.push(chargedMap(), {{0, nan, 0}}, false), DataError);
-  CarryPointsSettings settings;
-  settings.skin = 1;
-  EXPECT_THROW(PointPusher(Solid(ball()), settings), SettingError);
+  EXPECT_THROW(PointPusher(Solid(ball()), {.skin = 1}), SettingError);
   RunContext run;
   run.cancel();
   const RunScope scope(run);

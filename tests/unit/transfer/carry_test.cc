@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <openvdb/tools/ChangeBackground.h>
 
+#include "core/expect.h"
 #include "innermap/core/error.h"
 #include "innermap/transfer/push_pull.h"
 #include "transfer/test_maps.h"
@@ -26,15 +27,10 @@ struct Pair {
         to(levelSetOf(target, resolution)) {}
 
   openvdb::GridPtrVec push(const openvdb::GridPtrVec& grids, const CarrySettings& carry) const {
-    PushSettings settings;
-    settings.carry = carry;
-    return VolumePusher(source, grids, settings).push(map, *to).grids;
+    return VolumePusher(source, grids, {.carry = carry}).push(map, *to).grids;
   }
   openvdb::GridPtrVec pull(const openvdb::GridPtrVec& grids, const CarrySettings& carry) const {
-    PullSettings settings;
-    settings.carry = carry;
-    settings.targetLevelSet = to.get();
-    return pullGrids(map, source, *from, grids, settings).grids;
+    return pullGrids(map, source, *from, grids, {.carry = carry, .targetLevelSet = to.get()}).grids;
   }
 };
 
@@ -175,8 +171,7 @@ TEST(Carry, TensorsByRowsAreTheSame) {
           const Mat3 t = tensorAt(p);
           return openvdb::Vec3f(openvdb::Vec3d(t[r][0], t[r][1], t[r][2]));
         }));
-  CarrySettings carry;
-  carry.stresses = {"t"};
+  CarrySettings carry{.stresses = {"t"}};
   const auto byRows = pair.push(rows, carry), byParts = pair.push(tensorGrids(pair, "t"), carry);
   double error = 0;
   for (int k = 0; k < 6; ++k) {
@@ -255,9 +250,7 @@ TEST(Carry, MasksMoveTheirActiveVoxels) {
 TEST(Carry, LevelSetsBecomeDistancesAgain) {
   const Pair pair(affineMap({{{1.5, 0, 0}, {0, 1.5, 0}, {0, 0, 1.5}}}, {0, 0, 0}), 64);
   const Solid inner(ball(0.6));
-  LevelSetSettings settings;
-  settings.voxelSize = pair.from->voxelSize()[0];
-  const auto out = pair.push({makeLevelSet(inner, settings)}, {});
+  const auto out = pair.push({makeLevelSet(inner, {.voxelSize = pair.from->voxelSize()[0]})}, {});
   const auto& surface = static_cast<const openvdb::FloatGrid&>(*out[0]);
   EXPECT_EQ(surface.getGridClass(), openvdb::GRID_LEVEL_SET);
   EXPECT_EQ(surface.getName(), "surface");
@@ -327,28 +320,15 @@ TEST(Carry, AttributesAreContinuedBeyondTheSurface) {
 TEST(Carry, RefusesWhatMakesNoSense) {
   const Pair pair(chargedMap(), 16);
   const auto scalar = sampledScalar(*pair.from, "s");
-  CarrySettings carry;
-  carry.densities = {"missing"};
-  EXPECT_THROW(pair.push({scalar}, carry), DataError);
-  carry = {};
-  carry.stresses = {"s"};
-  EXPECT_THROW(pair.push({scalar}, carry), DataError);
-  carry = {};
-  carry.densities = {"v"};
-  EXPECT_THROW(pair.push({sampledVector(*pair.from, "v", openvdb::VEC_INVARIANT)}, carry),
-               DataError);
+  EXPECT_THROW(pair.push({scalar}, {.densities = {"missing"}}), DataError);
+  EXPECT_THROW(pair.push({scalar}, {.stresses = {"s"}}), DataError);
+  EXPECT_THROW(
+      pair.push({sampledVector(*pair.from, "v", openvdb::VEC_INVARIANT)}, {.densities = {"v"}}),
+      DataError);
   auto grids = tensorGrids(pair, "t");
   grids.pop_back();
-  carry = {};
-  carry.stresses = {"t"};
-  try {
-    pair.push(grids, carry);
-    FAIL();
-  } catch (const DataError& e) {
-    EXPECT_NE(std::string(e.what()).find("t.xz"), std::string::npos) << e.what();
-  }
-  carry.strains = {"t"};
-  EXPECT_THROW(pair.push(tensorGrids(pair, "t"), carry), DataError);
+  test::expectRefused<DataError>([&] { pair.push(grids, {.stresses = {"t"}}); }, "t.xz");
+  EXPECT_THROW(pair.push(tensorGrids(pair, "t"), {.stresses = {"t"}, .strains = {"t"}}), DataError);
 }
 
 TEST(VoxelGrowth, FollowsTheSolidsBeyondATenth) {

@@ -7,7 +7,6 @@
 
 #include "field/affine_map.h"
 #include "innermap/core/error.h"
-#include "innermap/evaluate/evaluate_map.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"
 
@@ -29,9 +28,7 @@ double boxDepth(const openvdb::Vec3d& p) {
 }
 
 openvdb::FloatGrid::Ptr levelSet(const Solid& solid) {
-  LevelSetSettings settings;
-  settings.resolution = 40;
-  return makeLevelSet(solid, settings);
+  return makeLevelSet(solid, {.resolution = 40});
 }
 
 TEST(DistanceTransfer, DepthIsExactEverywhereInside) {
@@ -56,10 +53,9 @@ TEST(DistanceTransfer, DepthIsExactEverywhereInside) {
 TEST(DistanceTransfer, OneCallGivesBothSolidsAndTheFigures) {
   const Solid source(shapes::box(kLower, kUpper));
   const Solid target(shapes::box(2 * kLower, 2 * kUpper));
-  DistanceTransferSettings settings;
-  settings.resolution = 40;
   const Mat3 twice{{{2, 0, 0}, {0, 2, 0}, {0, 0, 2}}};
-  const DistanceTransfer made = transferDistance(affineMap(twice, {}), source, target, settings);
+  const DistanceTransfer made =
+      transferDistance(affineMap(twice, {}), source, target, {.resolution = 40});
   EXPECT_EQ(made.source.depth->getName(), "source_distance");
   EXPECT_EQ(made.target.depth->getName(), "distance");
   EXPECT_EQ(made.through->getName(), "distance");
@@ -73,19 +69,18 @@ TEST(DistanceTransfer, OneCallGivesBothSolidsAndTheFigures) {
   EXPECT_EQ(made.seconds[3].first, "transfer");
   // Moved half out of the target.
   const DistanceTransfer half =
-      transferDistance(affineMap(twice, {2.1, 0, 0}), source, target, settings);
+      transferDistance(affineMap(twice, {2.1, 0, 0}), source, target, {.resolution = 40});
   EXPECT_NEAR(half.outsideFraction, 0.5, 0.03);
   EXPECT_EQ(half.throughFigures.negative > 0, true);
 }
 
 TEST(DistanceTransfer, SourcesThinnerThanTheVoxelsAreRefused) {
   const Solid plate(shapes::box({0, 0, 0.012}, {1, 1, 0.0121}));
-  DistanceTransferSettings settings;
-  settings.resolution = 8;
   const Mat3 identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  EXPECT_THROW(transferDistance(affineMap(identity, {}), plate, plate, settings), DataError);
-  settings.resolution = 1;
-  EXPECT_THROW(transferDistance(affineMap(identity, {}), plate, plate, settings), SettingError);
+  EXPECT_THROW(transferDistance(affineMap(identity, {}), plate, plate, {.resolution = 8}),
+               DataError);
+  EXPECT_THROW(transferDistance(affineMap(identity, {}), plate, plate, {.resolution = 1}),
+               SettingError);
 }
 
 TEST(DistanceTransfer, OverlappingTargetsAreTheirUnion) {

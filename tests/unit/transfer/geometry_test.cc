@@ -10,8 +10,8 @@ namespace {
 
 // Two triangles with a common edge, a pentagon beside them and a line along that edge.
 Geometry patch() {
-  Geometry g;
-  g.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}, {2.5, 0.5, 0}, {2, 1, 0}};
+  Geometry g{
+      .points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}, {2.5, 0.5, 0}, {2, 1, 0}}};
   g.ownPoints = g.points.size();
   const auto add = [&](Elements::Kind kind, const std::vector<int>& points) {
     std::vector<Corner> corners;

@@ -2,10 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "core/memory_limit.h"
+#include "core/expect.h"
 #include "evaluate/active_region.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "transfer/test_maps.h"
 
 namespace innermap {
@@ -14,8 +13,7 @@ namespace {
 using namespace test;
 
 SourceLattice latticeOf(const Solid& solid, int resolution) {
-  SourceLattice out;
-  out.levelSet = levelSetOf(solid, resolution);
+  SourceLattice out{.levelSet = levelSetOf(solid, resolution)};
   out.region = activeRegion(*out.levelSet);
   return out;
 }
@@ -123,9 +121,8 @@ TEST(InverseMap, VoxelsFromNowhereHaveTheirNeighboursSource) {
   const HarmonicMap map = affineMap({{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {});
   // The target given is twice as large as the map's: beyond the skin nothing comes from anywhere.
   const Solid target(ball(1.5));
-  InverseSettings settings;
   const InvertedMap inverted =
-      invertMap(map, source, latticeOf(source, 32), *levelSetOf(target, 32), settings);
+      invertMap(map, source, latticeOf(source, 32), *levelSetOf(target, 32), {});
   EXPECT_GT(inverted.statistics.uncovered, 0u);
   forVoxels(inverted, [&](const openvdb::Coord&, const Vec3& q, std::size_t i) {
     ASSERT_LT(norm(inverted.sources[i] - q), 0.2);
@@ -179,24 +176,15 @@ TEST(InverseMap, InvertsPointsBetweenVoxels) {
 }
 
 TEST(InverseMap, RefusesBadSettingsAndObeysCancel) {
-  InverseSettings settings;
-  settings.tolerance = 0;
+  InverseSettings settings{.tolerance = 0};
   EXPECT_THROW(invert(chargedMap(), ball(), 16, settings), SettingError);
   settings = {};
   settings.outside.distance = -1;
   EXPECT_THROW(invert(chargedMap(), ball(), 16, settings), SettingError);
   settings = {};
-  {
-    RunContext run;
-    run.cancel();
-    const RunScope scope(run);
-    EXPECT_THROW(invert(chargedMap(), ball(), 16, settings), Cancelled);
-  }
+  test::expectCancels([&] { invert(chargedMap(), ball(), 16, settings); });
   settings = {};
-  {
-    const MemoryLimit limit(1000);
-    EXPECT_THROW(invert(chargedMap(), ball(), 16, settings), MemoryError);
-  }
+  test::expectOverLimit(1000, [&] { invert(chargedMap(), ball(), 16, settings); });
 }
 
 TEST(InverseStatistics, SaysSharesAndWarnsOfMany) {

@@ -11,9 +11,8 @@ TEST(Outside, FindsTheRigidMotion) {
   const CounterRandom random(3, 0);
   for (int trial = 0; trial < 20; ++trial) {
     const auto number = [&](int k) { return 6 * random.uniform(100 * trial + k) - 3; };
-    RigidMotion motion;
-    motion.rotation = test::rotation(number(0), number(1));
-    motion.translation = {number(2), number(3), 1000 * number(4)};
+    RigidMotion motion{.rotation = test::rotation(number(0), number(1)),
+                       .translation = {number(2), number(3), 1000 * number(4)}};
     Points from, to;
     for (int i = 0; i < 10; ++i) {
       from.push_back({number(5 + 3 * i), number(6 + 3 * i), number(7 + 3 * i)});

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "core/expect.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/transfer/push_pull.h"
 #include "transfer/test_maps.h"
 
@@ -30,9 +30,7 @@ TEST(Pull, PushAfterPullReturnsTheField) {
   const Solid source(ball()), target(moved(ball(), map));
   const auto from = levelSetOf(source, 64), to = levelSetOf(target, 64);
   const auto original = sampledScalar(*to, "s");
-  PullSettings settings;
-  settings.targetLevelSet = to.get();
-  const auto rest = pullGrids(map, source, *from, {original}, settings).grids;
+  const auto rest = pullGrids(map, source, *from, {original}, {.targetLevelSet = to.get()}).grids;
   const auto again = VolumePusher(source, rest).push(map, *to).grids[0];
   double error = 0;
   forInside<openvdb::FloatGrid>(*again, *to, [&](const Vec3& q, float value) {
@@ -70,17 +68,12 @@ TEST(Pull, RefusesWhatItCannotDo) {
   const HarmonicMap map = chargedMap();
   const Solid source(ball());
   const auto from = levelSetOf(source, 16);
-  PullSettings settings;
-  settings.accuracy = 1;
-  EXPECT_THROW(pullGrids(map, source, *from, {sampledScalar(*from, "s")}, settings), SettingError);
+  EXPECT_THROW(pullGrids(map, source, *from, {sampledScalar(*from, "s")}, {.accuracy = 1}),
+               SettingError);
   // Positions without the target's level set.
   const auto positions = sampledVector(*from, "P", openvdb::VEC_CONTRAVARIANT_ABSOLUTE);
   EXPECT_THROW(pullGrids(map, source, *from, {positions}), DataError);
-  RunContext run;
-  run.cancel();
-  settings = {};
-  const RunScope scope(run);
-  EXPECT_THROW(pullGrids(map, source, *from, {sampledScalar(*from, "s")}, settings), Cancelled);
+  test::expectCancels([&] { pullGrids(map, source, *from, {sampledScalar(*from, "s")}, {}); });
 }
 
 }  // namespace

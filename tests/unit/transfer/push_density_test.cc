@@ -2,12 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <string>
-#include <string_view>
-#include <utility>
 
-#include "innermap/core/error.h"
 #include "innermap/transfer/push_pull.h"
 #include "transfer/test_maps.h"
 

@@ -91,9 +91,7 @@ TEST(Push, TheSurfaceOfTheSolidBecomesThatOfTheTarget) {
   }
   const Solid source(ball()), target(moved(ball(), affineMap(larger, {}))), wall(ball(0.6));
   const auto to = levelSetOf(target, 44);
-  LevelSetSettings forty;
-  forty.resolution = 40;
-  const LevelSetSettings lattice = onLatticeOf(source, forty);
+  const LevelSetSettings lattice = onLatticeOf(source, {.resolution = 40});
   const auto hollow = openvdb::tools::csgDifferenceCopy(*makeLevelSet(source, lattice),
                                                         *makeLevelSet(wall, lattice));
   hollow->setGridClass(openvdb::GRID_LEVEL_SET);
@@ -343,11 +341,7 @@ TEST(PushRelease, WhatLiesAroundComesAlong) {
 // A rest pose, and a frame turned and shifted from it.
 class FramePushes : public testing::Test {
  protected:
-  static FrameFitterSettings few() {
-    FrameFitterSettings settings;
-    settings.sources = 200;
-    return settings;
-  }
+  static FrameFitterSettings few() { return {.sources = 200}; }
   const HarmonicMap motion = affineMap(rotation(0.4, 0.2), {3, 0, 1});
   const FrameFitter fitter{makeSourceBoundary(ball()), few()};
   const FrameFit fit = fitter.fit(moved(ball(), motion));

@@ -120,9 +120,7 @@ TEST(Splats, FlatOnesKeepTheirThickness) {
     const Vec3 out = carriedSplat(j, s).splat.logScales;
     EXPECT_NEAR(out.x + out.y + out.z, -32.5 + std::log(determinant(j)), 1e-9);
   }
-  Splat s;
-  s.logScales = {0, -1000, 3};
-  const Splat out = carriedSplat(scaled(2, 3, 4), s).splat;
+  const Splat out = carriedSplat(scaled(2, 3, 4), {.logScales = {0, -1000, 3}}).splat;
   EXPECT_NEAR(out.logScales.x, std::log(2), 1e-12);
   EXPECT_NEAR(out.logScales.y, std::log(3) - 1000, 1e-9);
   EXPECT_NEAR(out.logScales.z, std::log(4) + 3, 1e-12);
@@ -202,17 +200,14 @@ TEST(Splats, MassKeepsWhatIsDimmed) {
     EXPECT_EQ(carriedSplat(j, s).splat.opacity, s.opacity);
   }
   // Twice as large: a quarter.
-  Splat s;
-  s.opacity = 1.5;
+  Splat s{.opacity = 1.5};
   EXPECT_NEAR(alphaOf(carriedSplat(scaled(2, 2, 2), s, SplatOpacity::mass).splat), alphaOf(s) / 4,
               1e-15);
 }
 
 TEST(Splats, AlphaHasALimit) {
   const auto grown = [](double opacity, double scale) {
-    Splat s;
-    s.opacity = opacity;
-    return carriedSplat(scaled(scale, scale, scale), s, SplatOpacity::mass);
+    return carriedSplat(scaled(scale, scale, scale), {.opacity = opacity}, SplatOpacity::mass);
   };
   EXPECT_TRUE(grown(0, 0.5).capped);
   EXPECT_NEAR(alphaOf(grown(0, 0.5).splat), 0.99, 1e-12);

@@ -37,9 +37,7 @@ Mesh ballMesh(bool moved) {
 }
 
 openvdb::FloatGrid::Ptr levelSetOf(const Mesh& mesh) {
-  LevelSetSettings settings;
-  settings.resolution = 24;
-  return makeLevelSet(Solid(mesh), settings);
+  return makeLevelSet(Solid(mesh), {.resolution = 24});
 }
 
 openvdb::Vec3fGrid::Ptr flow(const openvdb::FloatGrid& like) {
@@ -85,13 +83,13 @@ TEST(ThroughMap, PushAndPullAgreeWithTheMapItself) {
   EXPECT_LT(
       largestDifference(*plain[0], *VolumePusher(source, given, push).push(map, *there).grids[0]),
       1e-3);
-  PullSettings pull;
-  pull.targetLevelSet = there.get();
   const openvdb::GridPtrVec posed{flow(*there)};
-  const auto back = pullGrids(map, source, *here, posed, pull).grids;
-  pull.through = &through;
-  EXPECT_LT(largestDifference(*back[0], *pullGrids(map, source, *here, posed, pull).grids[0]),
-            1e-3);
+  const auto back = pullGrids(map, source, *here, posed, {.targetLevelSet = there.get()}).grids;
+  EXPECT_LT(
+      largestDifference(*back[0], *pullGrids(map, source, *here, posed,
+                                             {.targetLevelSet = there.get(), .through = &through})
+                                       .grids[0]),
+      1e-3);
 }
 
 TEST(ThroughMap, DensitiesAreRefused) {
@@ -101,8 +99,7 @@ TEST(ThroughMap, DensitiesAreRefused) {
   density->setName("density");
   density->setTransform(levelSetOf(ballMesh(false))->transform().copy());
   density->fill(openvdb::CoordBBox(openvdb::Coord(-3), openvdb::Coord(3)), 1.0F);
-  PushSettings push;
-  push.through = &through;
+  PushSettings push{.through = &through};
   push.carry.allDensities = true;
   EXPECT_THROW(VolumePusher(source, {density}, push), DataError);
 }

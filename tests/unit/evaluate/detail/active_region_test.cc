@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/memory_limit.h"
+#include "core/expect.h"
 #include "innermap/core/error.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"
@@ -11,9 +11,7 @@ namespace innermap {
 namespace {
 
 openvdb::FloatGrid::Ptr ball(int resolution) {
-  LevelSetSettings settings;
-  settings.resolution = resolution;
-  return makeLevelSet(Solid(shapes::icosphere(3)), settings);
+  return makeLevelSet(Solid(shapes::icosphere(3)), {.resolution = resolution});
 }
 
 TEST(ActiveRegion, HoldsTheInsideAndTheSkin) {
@@ -30,15 +28,8 @@ TEST(ActiveRegion, HoldsTheInsideAndTheSkin) {
 
 TEST(ActiveRegion, RefusesASkinBeyondTheBandAndTooMuchMemory) {
   const auto grid = ball(32);
-  RegionSettings wide;
-  wide.skin = 5;
-  EXPECT_THROW(activeRegion(*grid, wide), SettingError);
-  RegionSettings large;
-  large.bytesPerVoxel = 100;
-  {
-    const MemoryLimit limit(100000);
-    EXPECT_THROW(activeRegion(*grid, large), MemoryError);
-  }
+  EXPECT_THROW(activeRegion(*grid, {.skin = 5}), SettingError);
+  test::expectOverLimit(100000, [&] { activeRegion(*grid, {.bytesPerVoxel = 100}); });
 }
 
 }  // namespace

@@ -4,9 +4,8 @@
 
 #include <cmath>
 
+#include "core/expect.h"
 #include "evaluate/test_lattice.h"
-#include "innermap/core/error.h"
-#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -105,15 +104,8 @@ TEST(CellCheck, SameForAnyNumberOfThreadsAndCancels) {
   Lattice lattice;
   lattice.addBox({0, 0, 0}, {30, 30, 30},
                  [](const Vec3& p) { return harmonicPolynomial(0.03 * p); });
-  const auto least = [&](int threads) {
-    const ThreadLimit limit(threads);
-    return lattice.check().least;
-  };
-  EXPECT_EQ(least(1), least(3));
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(lattice.check(), Cancelled);
+  test::expectSameForThreads([&] { return lattice.check().least; });
+  test::expectCancels([&] { lattice.check(); });
 }
 
 }  // namespace

@@ -51,10 +51,9 @@ TEST(FoldRepair, AMirroredMapIsRepairedAsItsReflection) {
   mirrored.map->tree().setValue(Coord(8), {-9.7f, 8.2f, 8.1f});
   const auto minus = ones(mirrored);
   for (auto voxel = minus->beginValueOn(); voxel; ++voxel) voxel.setValue(-1);
-  FoldRepairSettings settings;
-  settings.mirrored = true;
   const FoldRepair repair = repairFolds(*lattice.map, *ones(lattice), *lattice.levelSet, {}),
-                   other = repairFolds(*mirrored.map, *minus, *mirrored.levelSet, settings);
+                   other =
+                       repairFolds(*mirrored.map, *minus, *mirrored.levelSet, {.mirrored = true});
   ASSERT_FALSE(repair.voxels.empty());
   ASSERT_EQ(other.voxels.size(), repair.voxels.size());
   EXPECT_DOUBLE_EQ(other.farthest, repair.farthest);
@@ -103,14 +102,13 @@ TEST(FoldRepair, SaysHowFarItIs) {
     const auto at = static_cast<float>(x);
     lattice.map->tree().setValue(Coord(x, 5, 5), {at + 1.7f, 5.2f, 5.1f});
   }
-  FoldRepairSettings settings;
   const RunScope scope(run);
   const auto jacobian = ones(lattice);
-  repairFolds(*lattice.map, *jacobian, *lattice.levelSet, settings);
+  repairFolds(*lattice.map, *jacobian, *lattice.levelSet, {});
   EXPECT_GE(run.reports, 2);
   EXPECT_GT(run.last, 0);
   run.cancel();
-  EXPECT_THROW(repairFolds(*lattice.map, *jacobian, *lattice.levelSet, settings), Cancelled);
+  EXPECT_THROW(repairFolds(*lattice.map, *jacobian, *lattice.levelSet, {}), Cancelled);
 }
 
 TEST(FoldRepair, NothingIsDoneWhereNothingIsFolded) {

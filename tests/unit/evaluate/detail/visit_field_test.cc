@@ -4,10 +4,10 @@
 
 #include <atomic>
 
+#include "core/expect.h"
 #include "core/random.h"
 #include "evaluate/active_region.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"
 
@@ -32,9 +32,7 @@ struct Scene {
   openvdb::MaskGrid::Ptr region;
 
   Scene() {
-    LevelSetSettings settings;
-    settings.resolution = 24;
-    levelSet = makeLevelSet(solid, settings);
+    levelSet = makeLevelSet(solid, {.resolution = 24});
     region = activeRegion(*levelSet);
   }
 };
@@ -113,9 +111,7 @@ TEST(VisitField, ValuesInsideAndBeyond) {
 TEST(VisitField, ValuesAlone) {
   const Scene scene;
   std::vector<double> error(scene.region->tree().leafCount(), 0);
-  VisitSettings settings;
-  settings.accuracy = 1e-10;
-  settings.gradients = false;
+  VisitSettings settings{.accuracy = 1e-10, .gradients = false};
   visitField(
       twoChannels(), scene.solid, *scene.levelSet, *scene.region,
       [&](std::size_t leaf, const LeafValues& v) {
@@ -161,12 +157,9 @@ TEST(VisitField, RefusesOtherLattices) {
                DataError);
   EXPECT_THROW(visitField(twoChannels(), scene.solid, *scene.levelSet, *scene.region, nothing, {}),
                SettingError);
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(
-      visitField(twoChannels(), scene.solid, *scene.levelSet, *scene.region, nothing, {1e-8, {}}),
-      Cancelled);
+  test::expectCancels([&] {
+    visitField(twoChannels(), scene.solid, *scene.levelSet, *scene.region, nothing, {1e-8, {}});
+  });
 }
 
 }  // namespace

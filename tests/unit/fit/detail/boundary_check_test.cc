@@ -2,25 +2,19 @@
 
 #include <gtest/gtest.h>
 
+#include "core/expect.h"
 #include "fit/test_pairs.h"
-#include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/fit/fit_map.h"
 
 namespace innermap {
 namespace {
 
 MapFit fitted(const Mesh& source, const Mesh& target) {
-  FitMapSettings settings;
-  settings.tolerance = 5e-3;
-  settings.oneToOne = OneToOne::off;
-  return fitMap(source, target, settings);
+  return fitMap(source, target, {.tolerance = 5e-3, .oneToOne = OneToOne::off});
 }
 
 BoundaryCheckSettings settingsFor(const MapFit& fit) {
-  BoundaryCheckSettings settings;
-  settings.error = fit.error.max * fit.boundary.target.diagonal;
-  return settings;
+  return {.error = fit.error.max * fit.boundary.target.diagonal};
 }
 
 SolidFigures figuresOf(const Mesh& mesh) {
@@ -117,16 +111,10 @@ TEST(BoundaryCheck, SameForAnyNumberOfThreadsAndCancels) {
   const MapFit fit = fitted(source, moved(source, harmonicPolynomial));
   const TargetShape target(fit.boundary);
   BoundaryCheckSettings settings = settingsFor(fit);
-  const auto least = [&](int threads) {
-    const ThreadLimit limit(threads);
-    return boundaryDeterminants(fit.map, fit.boundary, target, settings).least;
-  };
-  EXPECT_EQ(least(1), least(3));
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(boundaryDeterminants(fit.map, fit.boundary, target, settings), Cancelled);
-  EXPECT_THROW(boundaryDegree(fit.map, fit.boundary, target, settings), Cancelled);
+  test::expectSameForThreads(
+      [&] { return boundaryDeterminants(fit.map, fit.boundary, target, settings).least; });
+  test::expectCancels([&] { boundaryDeterminants(fit.map, fit.boundary, target, settings); });
+  test::expectCancels([&] { boundaryDegree(fit.map, fit.boundary, target, settings); });
 }
 
 }  // namespace

@@ -121,9 +121,7 @@ TEST_F(Carried, KnownHarmonicStepsCompose) {
       ways.push_back(maps[s](p) - p);
       p = maps[s](p);
     }
-    AdaptiveSettings fitting;
-    fitting.tolerance = kTolerance;
-    const AdaptiveResult fit = fitToTolerance(boundary.problem(ways, 1), fitting);
+    const AdaptiveResult fit = fitToTolerance(boundary.problem(ways, 1), {.tolerance = kTolerance});
     boundary.advance(HarmonicMap(fit.field), s + 1 == maps.size());
     error = boundary.errorFrom(shape, 1);
   }

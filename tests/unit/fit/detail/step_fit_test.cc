@@ -39,9 +39,7 @@ Move twisted(double angle) {
 }
 
 StepFit fitted(const BoundaryPair& pair, double tolerance) {
-  StepFitSettings settings;
-  settings.tolerance = tolerance;
-  return fitInSteps(pair, pointsInside(pair.solid(), 2000), settings);
+  return fitInSteps(pair, pointsInside(pair.solid(), 2000), {.tolerance = tolerance});
 }
 
 // Over the target's diagonal.
@@ -96,10 +94,8 @@ TEST(StepFitRelease, ErrorsElsewhereAreThoseOfTheCertificate) {
                              4e-3}}) {
     const BoundaryPair pair = makeBoundaryPair(c.source, moved(c.source, c.map));
     const StepFit fit = fitted(pair, c.tolerance);
-    SampleSettings other;
-    other.seed = 7777;
     const std::vector<SurfacePoint> places =
-        randomSamples(pair.solid().surface(), static_cast<std::size_t>(kOthers), other);
+        randomSamples(pair.solid().surface(), static_cast<std::size_t>(kOthers), {.seed = 7777});
     const Points points = interpolate(c.source.vertices, c.source.triangles, places),
                  targets = interpolate(pair.target.moved, c.source.triangles, places);
     const std::vector<double> errors =
@@ -126,10 +122,9 @@ TEST(StepFit, TheUnitIsTheTargetsDiagonal) {
                          return Vec3{q.x - q.y, q.x + q.y, std::sqrt(2) * q.z};
                        }));
   const StepFit fit = fitted(pair, 5e-3);
-  SampleSettings certificate;
-  certificate.seed = seedOf(StepFitSettings{}.seed, Stream::fresh);
   const std::vector<SurfacePoint> places =
-      randomSamples(pair.solid().surface(), kFreshSamples, certificate);
+      randomSamples(pair.solid().surface(), kFreshSamples,
+                    {.seed = seedOf(StepFitSettings{}.seed, Stream::fresh)});
   const Points targets = interpolate(pair.target.moved, source.triangles, places);
   const BoundaryError again =
       summarizeErrors(errorsAt(fit, pair, interpolate(source.vertices, source.triangles, places),

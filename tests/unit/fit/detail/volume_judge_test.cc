@@ -10,11 +10,7 @@ namespace {
 
 ClosedSurface ball() {
   const Mesh mesh = shapes::icosphere(4);
-  ClosedSurface out;
-  out.name = "ball";
-  out.vertices = mesh.vertices;
-  out.triangles = mesh.triangles;
-  return out;
+  return {.name = "ball", .vertices = mesh.vertices, .triangles = mesh.triangles};
 }
 
 template <class Map>

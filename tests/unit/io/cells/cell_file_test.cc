@@ -3,24 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <limits>
 
-#include "core/memory_limit.h"
-#include "core/temporary_folder.h"
+#include "core/expect.h"
 #include "innermap/core/error.h"
+#include "io/test_files.h"
 
 namespace innermap {
 namespace {
 
-std::string pathOf(const std::string& name) {
-  static const test::TemporaryFolder folder;
-  return folder.file(name);
-}
-
-void write(const std::string& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
+using test::pathOf;
+using test::write;
 
 // A cube and two tetrahedra on its top, with fields of each kind.
 CellMesh mixed() {
@@ -61,12 +54,7 @@ void expectSameFields(const std::vector<CellField>& a, const std::vector<CellFie
 
 template <class E = FileError>
 void expectError(const std::string& path, const std::string& part) {
-  try {
-    readCells(path);
-    FAIL() << path << " was read";
-  } catch (const E& error) {
-    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-  }
+  test::expectRefused<E>([&] { readCells(path); }, part);
 }
 
 TEST(CellFile, VtuComesBackAsItWas) {
@@ -119,10 +107,7 @@ TEST(CellFile, AFileCutShortAnywhereIsAnError) {
     for (std::size_t size = 0; size + 60 < bytes.size(); size += step) {
       write(cut, bytes.substr(0, size));
       // What is cut behind the last thing that matters may be read.
-      try {
-        expectSame(readCells(cut).mesh, mixed());
-      } catch (const Error&) {
-      }
+      test::refusalOf([&] { expectSame(readCells(cut).mesh, mixed()); });
     }
     write(cut, bytes.substr(0, bytes.size() / 2));
     EXPECT_THROW(readCells(cut), Error) << name;
@@ -139,10 +124,7 @@ TEST(CellFile, DamagedBytesNeverCrash) {
         std::string changed = bytes;
         changed[i] = with;
         write(damaged, changed);
-        try {
-          validate(readCells(damaged).mesh);
-        } catch (const Error&) {
-        }
+        test::refusalOf([&] { validate(readCells(damaged).mesh); });
       }
   }
 }
@@ -245,10 +227,9 @@ TEST(CellFile, VtuAsTextAndItsOtherCells) {
 
 TEST(CellFile, HangingVerticesAreCounted) {
   // A tetrahedron and two that share half of its face each.
-  CellMesh mesh;
-  mesh.name = "hanging";
-  mesh.vertices = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 1}, {0, 0, -1}, {1, 1, 0}};
-  mesh.tetrahedra = {{0, 1, 2, 3}, {0, 5, 1, 4}, {0, 2, 5, 4}};
+  CellMesh mesh{.name = "hanging",
+                .vertices = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 1}, {0, 0, -1}, {1, 1, 0}},
+                .tetrahedra = {{0, 1, 2, 3}, {0, 5, 1, 4}, {0, 2, 5, 4}}};
   const std::string path = pathOf("hanging.vtu");
   writeCells(path, mesh);
   const CellFile file = readCells(path);
@@ -259,10 +240,7 @@ TEST(CellFile, HangingVerticesAreCounted) {
 TEST(CellFile, MemoryIsLimited) {
   const std::string path = pathOf("mixed.vtu");
   writeCells(path, mixed());
-  {
-    const MemoryLimit limit(1000);
-    EXPECT_THROW(readCells(path), MemoryError);
-  }
+  test::expectOverLimit(1000, [&] { readCells(path); });
   EXPECT_THROW(readCells("nowhere.vtu"), FileError);
   EXPECT_THROW(readCells("nowhere.vtk"), FileError);
 }

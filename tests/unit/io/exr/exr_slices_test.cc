@@ -10,10 +10,8 @@
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/resource.h>
 
-#include "core/memory_limit.h"
+#include "core/expect.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/io/pictures.h"
@@ -50,10 +48,8 @@ std::vector<float> channel(Imf::MultiPartInputFile& file, int part, const std::s
 TEST(ExrSlices, HoldsTheVoxelsWithTheirPlaces) {
   const TemporaryFolder folder;
   const auto grids = twoGrids();
-  ExrSliceSettings settings;
-  settings.axis = 1;
-  settings.count = 3;
-  const ExrSliceResult result = writeExrSlices(folder.file("s.exr"), grids, settings);
+  const ExrSliceResult result =
+      writeExrSlices(folder.file("s.exr"), grids, {.axis = 1, .count = 3});
   EXPECT_EQ(result.slices, 3);
   EXPECT_EQ(folder.count(), 1u);
   const SliceFrame frame = sliceFrame(grids, 1);
@@ -104,9 +100,7 @@ TEST(ExrSlices, HalfFloatsAreClampedAndCounted) {
   auto grid = block<openvdb::FloatGrid>("v", kBox, [](auto) { return 1.5f; });
   grid->tree().setValue(openvdb::Coord(0, 4, 35), 1e6f);
   grid->tree().setValue(openvdb::Coord(1, 4, 35), -1e6f);
-  ExrSliceSettings settings;
-  settings.half = true;
-  const ExrSliceResult result = writeExrSlices(folder.file("s.exr"), {grid}, settings);
+  const ExrSliceResult result = writeExrSlices(folder.file("s.exr"), {grid}, {.half = true});
   EXPECT_EQ(result.clamped, 2u);
   Imf::MultiPartInputFile file(folder.file("s.exr").c_str());
   EXPECT_EQ(file.header(0).channels().findChannel("v.V")->type, Imf::HALF);
@@ -114,20 +108,13 @@ TEST(ExrSlices, HalfFloatsAreClampedAndCounted) {
 
 TEST(ExrSlices, RefusesBeforeItWrites) {
   const TemporaryFolder folder;
-  ExrSliceSettings settings;
-  {
-    const MemoryLimit limit(100);
-    EXPECT_THROW(writeExrSlices(folder.file("s.exr"), twoGrids(), settings), MemoryError);
-  }
-  EXPECT_GT(exrSliceMemory(twoGrids(), settings), 18u * 8 * 5 * 4);
-  settings = {};
-  settings.count = 0;
-  EXPECT_THROW(writeExrSlices(folder.file("s.exr"), twoGrids(), settings), SettingError);
+  test::expectOverLimit(100, [&] { writeExrSlices(folder.file("s.exr"), twoGrids(), {}); });
+  EXPECT_GT(exrSliceMemory(twoGrids(), {}), 18u * 8 * 5 * 4);
+  EXPECT_THROW(writeExrSlices(folder.file("s.exr"), twoGrids(), {.count = 0}), SettingError);
   RunContext run;
   run.cancel();
-  settings = {};
   const RunScope scope(run);
-  EXPECT_THROW(writeExrSlices(folder.file("s.exr"), twoGrids(), settings), Cancelled);
+  EXPECT_THROW(writeExrSlices(folder.file("s.exr"), twoGrids(), {}), Cancelled);
   EXPECT_EQ(folder.count(), 0u);
 }
 
@@ -136,15 +123,12 @@ TEST(ExrSlices, NoticesAFullDisk) {
   const auto grids = twoGrids();
   writeExrSlices(folder.file("s.exr"), grids, {});
   const auto size = static_cast<rlim_t>(std::filesystem::file_size(folder.file("s.exr")));
-  signal(SIGXFSZ, SIG_IGN);
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
   for (const rlim_t limit : {rlim_t(0), size / 2, size - 1}) {
     SCOPED_TRACE(limit);
-    const rlimit small{limit, before.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &small);
-    EXPECT_THROW(writeExrSlices(folder.file("t.exr"), grids, {}), FileError);
-    setrlimit(RLIMIT_FSIZE, &before);
+    {
+      const FullDisk disk(limit);
+      EXPECT_THROW(writeExrSlices(folder.file("t.exr"), grids, {}), FileError);
+    }
     EXPECT_EQ(folder.count(), 1u);
   }
 }

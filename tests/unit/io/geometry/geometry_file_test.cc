@@ -3,26 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <fstream>
 
-#include "core/memory_limit.h"
-#include "core/temporary_folder.h"
+#include "core/expect.h"
 #include "innermap/core/error.h"
 #include "innermap/io/cell_file.h"
 #include "innermap/mesh/mesh_file.h"
+#include "io/test_files.h"
 
 namespace innermap {
 namespace {
 
-std::string pathOf(const std::string& name) {
-  static const test::TemporaryFolder folder;
-  return folder.file(name);
-}
-
-std::string write(const std::string& name, const std::string& text) {
-  std::ofstream(pathOf(name), std::ios::binary) << text;
-  return pathOf(name);
-}
+using test::pathOf;
+using test::written;
 
 // x goes to twice itself, y to y + x^2; points beyond x = 5 are cut.
 CarriedPoints warp(const Points& points, bool jacobians) {
@@ -38,21 +30,15 @@ CarriedPoints warp(const Points& points, bool jacobians) {
 
 std::string carriedBytes(const std::string& name, const std::string& text, double subdivide = 0,
                          const ReadGeometrySettings& read = {}) {
-  const auto file = readGeometry(write(name, text), read);
-  CarryGeometrySettings settings;
-  settings.subdivide = subdivide;
-  const CarriedGeometry carried = carryGeometry(file->geometry, warp, settings);
+  const auto file = readGeometry(written(name, text), read);
+  const CarriedGeometry carried = carryGeometry(file->geometry, warp, {.subdivide = subdivide});
   writeGeometry(pathOf("out_" + name), *file, carried);
   return test::contents(pathOf("out_" + name));
 }
 
 void expectError(const std::string& name, const std::string& text, const std::string& part) {
-  try {
-    readGeometry(write(name, text));
-    FAIL() << name << " was read: " << text;
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-  }
+  const std::string path = written(name, text);
+  test::expectRefused([&] { readGeometry(path); }, part);
 }
 
 TEST(GeometryFile, ObjKeepsAllElse) {
@@ -87,7 +73,7 @@ TEST(GeometryFile, ObjSubdivided) {
                    "v 0 0 0 1 0 0\nv 4 0 0 0 0 1\nv 4 2 0 0 0 1\nv 0 2 0 1 0 0\nvt 0 0\nvt 1 0\n"
                    "vt 1 1\nvt 0 1\ng q\nf 1/1 2/2 3/3 4/4\nl 1 2\n",
                    0.5);
-  const auto file = readGeometry(write("d2.obj", out));
+  const auto file = readGeometry(written("d2.obj", out));
   // The lines y = 0 and y = 2 want chords of at most sqrt(2): four of width 1.
   EXPECT_GE(file->geometry.points.size(), 10u);
   EXPECT_NE(out.find("v 4 4 0 0.5 0 0.5\n"), std::string::npos) << out;
@@ -105,17 +91,14 @@ const char kPly[] =
     "3 0 1 2 7\n3 1 2 3 8\n";
 
 TEST(GeometryFile, PlyKeepsProperties) {
-  ReadGeometrySettings settings;
-  settings.vectors = {"v"};
-  const std::string out = carriedBytes("a.ply", kPly, 0, settings);
+  const std::string out = carriedBytes("a.ply", kPly, 0, {.vectors = {"v"}});
   EXPECT_NE(out.find("element vertex 3\n"), std::string::npos);
   EXPECT_NE(out.find("element face 1\n"), std::string::npos);
   EXPECT_NE(out.find("comment an element of surprise\n"), std::string::npos);
   EXPECT_NE(out.find("2 1 0.125 10 -0.70710677 0.70710677 0 2 2 0\n"), std::string::npos) << out;
   EXPECT_NE(out.find("3 0 1 2 7\n"), std::string::npos) << out;
   EXPECT_EQ(out.find("40"), std::string::npos);
-  settings.vectors = {"w"};
-  EXPECT_THROW(carriedBytes("a.ply", kPly, 0, settings), FileError);
+  EXPECT_THROW(carriedBytes("a.ply", kPly, 0, {.vectors = {"w"}}), FileError);
 }
 
 // Edges without ends stay as they are, and so do values of faces that are written anew, be they
@@ -150,7 +133,7 @@ TEST(GeometryFile, PlySubdivided) {
   std::string text = kPly;
   text.replace(text.find("9 0 0 40"), 8, "2 0 0 40");
   const std::string out = carriedBytes("b.ply", text, 0.1);
-  const auto file = readGeometry(write("b2.ply", out));
+  const auto file = readGeometry(written("b2.ply", out));
   EXPECT_GT(file->geometry.points.size(), 4u);
   EXPECT_GT(file->geometry.elements.size(), 2u);
   EXPECT_NO_THROW(readMesh(pathOf("b2.ply")));
@@ -205,18 +188,15 @@ TEST(GeometryFile, OffAndStl) {
 }
 
 TEST(GeometryFile, CellsWithTheirFields) {
-  CellMesh mesh;
-  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {9, 0, 0}};
-  mesh.tetrahedra = {{0, 1, 2, 3}, {1, 4, 2, 3}, {0, 2, 1, 3}};
-  mesh.vertexFields = {{"fibre", 3, CellField::Kind::scalar, {}, false}};
+  CellMesh mesh{.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {9, 0, 0}},
+                .tetrahedra = {{0, 1, 2, 3}, {1, 4, 2, 3}, {0, 2, 1, 3}},
+                .vertexFields = {{"fibre", 3, CellField::Kind::scalar, {}, false}}};
   for (int v = 0; v < 5; ++v)
     for (const double value : {1.0, 0.0, 0.0}) mesh.vertexFields[0].values.push_back(value);
   mesh.cellFields = {{"part", 1, CellField::Kind::scalar, {1, 2, 3}, true},
                      {"axis", 3, CellField::Kind::vector, {1, 0, 0, 1, 0, 0, 0, 0, 1}, false}};
   writeCells(pathOf("a.vtu"), mesh);
-  ReadGeometrySettings settings;
-  settings.vectors = {"fibre"};
-  const auto file = readGeometry(pathOf("a.vtu"), settings);
+  const auto file = readGeometry(pathOf("a.vtu"), {.vectors = {"fibre"}});
   const CarriedGeometry carried = carryGeometry(file->geometry, warp);
   EXPECT_EQ(file->inverted(carried).cells, 2u);
   EXPECT_EQ(file->inverted(carried).before, 1u);
@@ -256,11 +236,7 @@ TEST(GeometryFile, BadInput) {
   EXPECT_THROW(requireWritableAs("a.obj", "b.ply"), FileError);
   EXPECT_THROW(requireWritableAs("a.vtu", "b.ply"), FileError);
   EXPECT_NO_THROW(requireWritableAs("a.VTU", "b.mesh"));
-  ReadGeometrySettings settings;
-  {
-    const MemoryLimit limit(1000);
-    EXPECT_THROW(readGeometry(write("y.ply", kPly), settings), MemoryError);
-  }
+  test::expectOverLimit(1000, [&] { readGeometry(written("y.ply", kPly), {}); });
 }
 
 TEST(GeometryFile, DamagedBytesNeverCrash) {
@@ -273,10 +249,7 @@ TEST(GeometryFile, DamagedBytesNeverCrash) {
       for (const char with : {'\xff', '9', '\n', ' '}) {
         std::string changed = text;
         changed[i] = with;
-        try {
-          carriedBytes(name, changed, 0.3);
-        } catch (const Error&) {
-        }
+        test::refusalOf([&] { carriedBytes(name, changed, 0.3); });
       }
   }
 }

@@ -6,8 +6,7 @@
 #include <limits>
 #include <sstream>
 
-#include "core/memory_limit.h"
-#include "core/temporary_folder.h"
+#include "core/expect.h"
 #include "innermap/core/error.h"
 #include "innermap/io/geometry_file.h"
 #include "io/test_files.h"
@@ -15,15 +14,8 @@
 namespace innermap {
 namespace {
 
-std::string pathOf(const std::string& name) {
-  static const test::TemporaryFolder folder;
-  return folder.file(name);
-}
-
-std::string write(const std::string& name, const std::string& bytes) {
-  test::write(pathOf(name), bytes);
-  return pathOf(name);
-}
+using test::pathOf;
+using test::written;
 
 // A splat, and the names of its properties.
 struct Row {
@@ -108,8 +100,7 @@ CarriedPoints stretch(const Points& points, bool jacobians) {
 }
 
 CarriedPoints stay(const Points& points, bool jacobians) {
-  CarriedPoints out;
-  out.points = points;
+  CarriedPoints out{.points = points};
   if (jacobians) out.jacobians.assign(points.size(), {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
   out.fates.assign(points.size(), PointFate::carried);
   return out;
@@ -117,10 +108,8 @@ CarriedPoints stay(const Points& points, bool jacobians) {
 
 std::string carriedBytes(const std::string& bytes, const PointCarry& carry,
                          SplatOpacity opacity = SplatOpacity::look) {
-  const auto file = readGeometry(write("splats.ply", bytes));
-  CarryGeometrySettings settings;
-  settings.splats = opacity;
-  const CarriedGeometry carried = carryGeometry(file->geometry, carry, settings);
+  const auto file = readGeometry(written("splats.ply", bytes));
+  const CarriedGeometry carried = carryGeometry(file->geometry, carry, {.splats = opacity});
   writeGeometry(pathOf("out.ply"), *file, carried);
   return test::contents(pathOf("out.ply"));
 }
@@ -136,8 +125,7 @@ TEST(SplatFile, OfEveryDegreeThatStayIsTheSameBytes) {
 }
 
 Splat splatOf(const Row& row, int rest) {
-  Splat out;
-  out.degree = rest == 45 ? 3 : rest == 24 ? 2 : rest == 9 ? 1 : 0;
+  Splat out{.degree = rest == 45 ? 3 : rest == 24 ? 2 : rest == 9 ? 1 : 0};
   for (int i = 0; i < 3; ++i) out.logScales[i] = row.at("scale_" + std::to_string(i));
   for (std::size_t i = 0; i < 4; ++i) out.quaternion[i] = row.at("rot_" + std::to_string(i));
   for (int i = 0; i < rest; ++i)
@@ -184,12 +172,8 @@ TEST(SplatFile, TextIsReadToo) {
 }
 
 void expectError(const std::vector<Row>& rows, const std::string& part) {
-  try {
-    readGeometry(write("bad.ply", bytesOf(rows)));
-    FAIL() << "was read, without " << part;
-  } catch (const FileError& error) {
-    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-  }
+  const std::string path = written("bad.ply", bytesOf(rows));
+  test::expectRefused<FileError>([&] { readGeometry(path); }, part);
 }
 
 TEST(SplatFile, NumbersThatSayNothing) {
@@ -229,41 +213,39 @@ TEST(SplatFile, PropertiesThatAreNotThose) {
   }
   std::string bytes = bytesOf({splat(9)});
   bytes.replace(bytes.find("float opacity"), 5, "uint");
-  EXPECT_THROW(readGeometry(write("bad.ply", bytes)), FileError);
+  EXPECT_THROW(readGeometry(written("bad.ply", bytes)), FileError);
   // Neither scales nor turns: a cloud of points, however it calls its numbers.
   row = splat(10);
   row.rename("scale_0", "size");
-  EXPECT_EQ(readGeometry(write("cloud.ply", bytesOf({row})))->geometry.splats.degree, -1);
+  EXPECT_EQ(readGeometry(written("cloud.ply", bytesOf({row})))->geometry.splats.degree, -1);
 }
 
 TEST(SplatFile, CountsThatLie) {
   std::string bytes = bytesOf({splat(9)});
   bytes.replace(bytes.find("vertex 1"), 8, "vertex 4000000000");
-  EXPECT_THROW(readGeometry(write("bad.ply", bytes)), FileError);
+  EXPECT_THROW(readGeometry(written("bad.ply", bytes)), FileError);
   bytes = bytesOf({splat(9)});
-  EXPECT_THROW(readGeometry(write("bad.ply", bytes.substr(0, bytes.size() - 1))), FileError);
+  EXPECT_THROW(readGeometry(written("bad.ply", bytes.substr(0, bytes.size() - 1))), FileError);
 }
 
 TEST(SplatFile, MemoryIsThatOfPointsAndTheFile) {
-  const std::string path = write("many.ply", bytesOf(std::vector<Row>(40000, splat(45))));
+  const std::string path = written("many.ply", bytesOf(std::vector<Row>(40000, splat(45))));
   const std::uint64_t need = geometryMemory(path), size = test::contents(path).size();
   EXPECT_GT(need, size + 40000 * 150);
   EXPECT_LT(need, size + 80000000);  // with one pass
-  const MemoryLimit limit(size);
-  EXPECT_THROW(readGeometry(path), MemoryError);
+  test::expectOverLimit(size, [&] { readGeometry(path); });
 }
 
 TEST(SplatFile, MassIsForSplats) {
-  const auto file = readGeometry(write(
+  const auto file = readGeometry(written(
       "cloud.ply",
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float "
       "z\nend_header\n0 0 0\n"));
-  CarryGeometrySettings settings;
-  settings.splats = SplatOpacity::mass;
-  EXPECT_THROW(carryGeometry(file->geometry, stay, settings), SettingError);
-  const auto splats = readGeometry(write("one.ply", bytesOf({splat(9)})));
-  settings.subdivide = 0.1;
-  EXPECT_THROW(carryGeometry(splats->geometry, stay, settings), SettingError);
+  EXPECT_THROW(carryGeometry(file->geometry, stay, {.splats = SplatOpacity::mass}), SettingError);
+  const auto splats = readGeometry(written("one.ply", bytesOf({splat(9)})));
+  EXPECT_THROW(
+      carryGeometry(splats->geometry, stay, {.subdivide = 0.1, .splats = SplatOpacity::mass}),
+      SettingError);
 }
 
 TEST(SplatFile, CappedOpacitiesAreCounted) {
@@ -274,11 +256,11 @@ TEST(SplatFile, CappedOpacitiesAreCounted) {
   };
   std::vector<Row> rows(3, splat(0));
   rows[1].set("opacity", -3);  // a twentieth
-  const auto file = readGeometry(write("splats.ply", bytesOf(rows)));
-  CarryGeometrySettings settings;
-  EXPECT_EQ(file->cappedOpacities(carryGeometry(file->geometry, shrink, settings)), 0u);
-  settings.splats = SplatOpacity::mass;
-  EXPECT_EQ(file->cappedOpacities(carryGeometry(file->geometry, shrink, settings)), 2u);
+  const auto file = readGeometry(written("splats.ply", bytesOf(rows)));
+  EXPECT_EQ(file->cappedOpacities(carryGeometry(file->geometry, shrink, {})), 0u);
+  EXPECT_EQ(
+      file->cappedOpacities(carryGeometry(file->geometry, shrink, {.splats = SplatOpacity::mass})),
+      2u);
 }
 
 }  // namespace

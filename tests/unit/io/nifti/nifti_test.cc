@@ -7,7 +7,7 @@
 #include <iterator>
 #include <random>
 
-#include "core/memory_limit.h"
+#include "core/expect.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/volume_texture.h"
@@ -20,11 +20,6 @@ using namespace test;
 using openvdb::Coord;
 
 const openvdb::CoordBBox kBox(Coord(-5, 2, 30), Coord(4, 9, 41));
-
-std::string contents(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 openvdb::Int32Grid::Ptr labels() {
   openvdb::initialize();
@@ -106,10 +101,7 @@ TEST(Nifti, DamagedFilesAreRefusedOrRead) {
       for (int k = 0; k < 4; ++k)
         other[random() % std::min<std::size_t>(352, other.size())] = char(random());
       write(bad, other);
-      try {
-        readVolumeTexture(bad);
-      } catch (const Error&) {
-      }
+      test::refusalOf([&] { readVolumeTexture(bad); });
     }
   }
 }
@@ -127,23 +119,16 @@ TEST(Nifti, CountsBeyondTheFileAreRefused) {
     EXPECT_THROW(readVolumeTexture(path), FileError);
   }
   writeVolumeTexture(path, {labels()});
-  const MemoryLimit limit(1);
-  EXPECT_THROW(readVolumeTexture(path), MemoryError);
+  test::expectOverLimit(1, [&] { readVolumeTexture(path); });
 }
 
 TEST(Nifti, RefusesSettingsOfPicturesAndFormatsThatAreNotRead) {
   const TemporaryFolder folder;
   const std::string path = folder.file("a.nii");
   writeVolumeTexture(path, {labels()});
-  VolumeTextureReadSettings settings;
-  settings.tiles = {2, 2};
-  EXPECT_THROW(readVolumeTexture(path, settings), SettingError);
-  settings = {};
-  settings.names = {"a", "b"};
-  EXPECT_THROW(readVolumeTexture(path, settings), SettingError);
-  settings = {};
-  settings.asVoxels = true;
-  const auto grid = readVolumeTexture(path, settings).grids[0];
+  EXPECT_THROW(readVolumeTexture(path, {.tiles = std::pair{2, 2}}), SettingError);
+  EXPECT_THROW(readVolumeTexture(path, {.names = {"a", "b"}}), SettingError);
+  const auto grid = readVolumeTexture(path, {.asVoxels = true}).grids[0];
   EXPECT_EQ(grid->indexToWorld(Coord(0)), openvdb::Vec3d(0));
   EXPECT_THROW(readVolumeTexture(folder.file("a.vti")), FileError);
   EXPECT_THROW(writeVolumeTexture(path, {labels(), labels()}), DataError);

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "core/expect.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/io/pictures.h"
 #include "innermap/io/solid_pictures.h"
 #include "io/test_files.h"
@@ -11,8 +11,7 @@ namespace {
 
 // A row of hexahedra along z, n of them.
 CellMesh tower(int n) {
-  CellMesh mesh;
-  mesh.name = "tower";
+  CellMesh mesh{.name = "tower"};
   for (int k = 0; k <= n; ++k)
     for (const auto& [x, y] : {std::pair(0., 0.), {1., 0.}, {1., 1.}, {0., 1.}})
       mesh.vertices.push_back({x, y, static_cast<double>(k)});
@@ -39,13 +38,10 @@ Vec3 middle(const std::string& path) {
 
 TEST(CellPicture, ShowsTheCellBehindTheCut) {
   const test::TemporaryFolder folder;
-  CellPictureSettings settings;
-  settings.pixels = 200;
-  settings.blue = 1;
-  settings.red = 0;
   // The second of three cells is the first that shows; it is the bad one, then a good one.
   for (const double value : {0.0, 1.0}) {
-    writeCellPicture(folder.file("a.png"), tower(3), {1 - value, value, 1 - value}, settings);
+    writeCellPicture(folder.file("a.png"), tower(3), {1 - value, value, 1 - value},
+                     {.blue = 1, .red = 0, .pixels = 200});
     const Vec3 c = middle(folder.file("a.png"));
     EXPECT_EQ(c.x > c.z, value < 0.5);
   }
@@ -64,12 +60,9 @@ TEST(CellPicture, RefusesNonsense) {
   settings = {};
   settings.red = settings.blue;
   EXPECT_THROW(writeCellPicture(path, tower(1), {1}, settings), SettingError);
-  RunContext run;
-  run.cancel();
   settings = {};
   settings.at = 1;
-  const RunScope scope(run);
-  EXPECT_THROW(writeCellPicture(path, tower(1), {1}, settings), Cancelled);
+  test::expectCancels([&] { writeCellPicture(path, tower(1), {1}, settings); });
 }
 
 }  // namespace

@@ -1,14 +1,12 @@
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <vector>
 
-#include "core/memory_limit.h"
+#include "core/expect.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/io/pictures.h"
 #include "io/test_files.h"
 
@@ -62,11 +60,7 @@ void expectPixel(const ImageFile& file, int x, int y, double r, double g, double
   EXPECT_NEAR(p[2], b, tolerance);
 }
 
-ImageSettings as(ColourSpace space) {
-  ImageSettings s;
-  s.colourSpace = space;
-  return s;
-}
+ImageSettings as(ColourSpace space) { return {.colourSpace = space}; }
 
 TEST(ImageFile, EightBitsAreSrgbAndFloatsLinear) {
   const TemporaryFolder folder;
@@ -137,12 +131,7 @@ TEST(ImageFile, NamesOfLayersAndOtherChannels) {
                                std::vector<std::string>{"N.X", "N.Y"}}) {
     write(folder.file("z.exr"), specOf(channels, OIIO::TypeDesc::FLOAT),
           std::vector<float>(channels.size(), 1.0f));
-    try {
-      readImage(folder.file("z.exr"));
-      FAIL() << "not refused";
-    } catch (const FileError& error) {
-      EXPECT_NE(std::string(error.what()).find(channels[0]), std::string::npos);
-    }
+    test::expectRefused<FileError>([&] { readImage(folder.file("z.exr")); }, channels[0]);
   }
 }
 
@@ -224,16 +213,8 @@ TEST(ImageFile, MemoryAndCancelling) {
   const TemporaryFolder folder;
   write(folder.file("a.png"), specOf({"R", "G", "B"}, OIIO::TypeDesc::UINT8, 64, 64), {1, 0, 1});
   EXPECT_GE(imageMemory(folder.file("a.png")), 64u * 64 * 12);
-  ImageSettings settings;
-  {
-    const MemoryLimit limit(1000);
-    EXPECT_THROW(readImage(folder.file("a.png"), settings), MemoryError);
-  }
-  RunContext run;
-  run.cancel();
-  settings = {};
-  const RunScope scope(run);
-  EXPECT_THROW(readImage(folder.file("a.png"), settings), Cancelled);
+  test::expectOverLimit(1000, [&] { readImage(folder.file("a.png"), {}); });
+  test::expectCancels([&] { readImage(folder.file("a.png"), {}); });
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
+#include "core/expect.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/fit/boundary_pair.h"
 #include "innermap/io/pictures.h"
 #include "innermap/io/solid_pictures.h"
@@ -15,10 +15,9 @@ namespace {
 
 // A square in the plane z = 0, its left half red and its right half green.
 PictureSurface square(double z = 0) {
-  PictureSurface s;
-  s.label = "square";
-  s.vertices = {{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}};
-  s.triangles = {{0, 1, 2}, {0, 2, 3}};
+  PictureSurface s{.label = "square",
+                   .vertices = {{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}},
+                   .triangles = {{0, 1, 2}, {0, 2, 3}}};
   const Points at = s.vertices;
   const auto triangles = s.triangles;
   s.colours = [at, triangles](const std::vector<VisiblePoint>& points) {
@@ -33,12 +32,7 @@ PictureSurface square(double z = 0) {
   return s;
 }
 
-MeshPictureSettings frontal(int pixels = 100) {
-  MeshPictureSettings settings;
-  settings.pixels = pixels;
-  settings.from = {{0, 0, 1}};
-  return settings;
-}
+MeshPictureSettings frontal(int pixels = 100) { return {.pixels = pixels, .from = {{0, 0, 1}}}; }
 
 Vec3 pixel(const Pixels& p, int x, int y) {
   const std::size_t i = 3 * (static_cast<std::size_t>(y) * p.width + x);
@@ -112,12 +106,7 @@ TEST(MeshPicture, RefusesWhatCannotBeShown) {
   settings.from = {{0, 0, 0}};
   EXPECT_THROW(writeMeshPicture(path, {square()}, settings), SettingError);
   settings = frontal();
-  {
-    RunContext run;
-    run.cancel();
-    const RunScope scope(run);
-    EXPECT_THROW(writeMeshPicture(path, {square()}, settings), Cancelled);
-  }
+  test::expectCancels([&] { writeMeshPicture(path, {square()}, settings); });
   EXPECT_FALSE(std::filesystem::exists(path));
   EXPECT_THROW(writeMeshPicture("/nowhere/a.png", {square()}, frontal()), FileError);
 }
@@ -127,10 +116,7 @@ TEST(CorrespondencePicture, ShowsPlacesByColour) {
   Mesh ball = shapes::icosphere(2);
   for (Vec3& p : ball.vertices) p = {1.3 * p.x, p.y * (1 + 0.3 * p.x), 0.8 * p.z};
   ball.name = "ball.obj";
-  MeshCorrespondenceSettings aligned;
-  aligned.aligned = true;
-  aligned.candidates = 1;
-  const MeshCorrespondence map = correspondMeshes(ball, ball, aligned);
+  const MeshCorrespondence map = correspondMeshes(ball, ball, {.aligned = true, .candidates = 1});
   const test::TemporaryFolder folder;
   writeCorrespondencePicture(folder.file("a.png"), map, frontal(200));
   const Pixels p = readImage(folder.file("a.png")).pixels;

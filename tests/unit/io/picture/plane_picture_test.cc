@@ -22,9 +22,7 @@ std::vector<double> half(const Points& points) {
 
 TEST(PlanePicture, ShowsValuesAndBlanks) {
   const test::TemporaryFolder folder;
-  PlanePictureSettings settings;
-  settings.pixels = 100;
-  writePlanePicture(folder.file("a.png"), kBox, {{"half", half}, {"again", half}}, settings);
+  writePlanePicture(folder.file("a.png"), kBox, {{"half", half}, {"again", half}}, {.pixels = 100});
   const Pixels p = readImage(folder.file("a.png")).pixels;
   EXPECT_EQ(p.width, 3 * 24 + 2 * 100);
   const auto at = [&](int x, int y) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "core/expect.h"
 #include "innermap/core/error.h"
 #include "innermap/io/pictures.h"
 #include "io/test_files.h"
@@ -34,9 +35,7 @@ TEST(TextureImages, OneImageIsLookedUpWithItsWrap) {
   EXPECT_EQ(repeated.count(), 1u);
   EXPECT_EQ(repeated.channels(), "R,G,B");
   EXPECT_EQ(repeated.colourSpace(), "Rec. 709");  // that of PPM
-  TextureImageSettings settings;
-  settings.wrap = Wrap::black;
-  expectColour(TextureImages(path, {}, settings).at({7.5, 0.5}, {}, {}), {0, 0, 0});
+  expectColour(TextureImages(path, {}, {.wrap = Wrap::black}).at({7.5, 0.5}, {}, {}), {0, 0, 0});
 }
 
 TEST(TextureImages, TilesStandSideBySide) {
@@ -60,12 +59,11 @@ TEST(TextureImages, TilesStandSideBySide) {
 TEST(TextureImages, MissingFilesAreNamed) {
   const TemporaryFolder folder;
   EXPECT_THROW(TextureImages(folder.file("none.png"), {}), FileError);
-  try {
-    TextureImages(folder.file("skin.<UDIM>.ppm"), {{3, 0}});
-    FAIL();
-  } catch (const FileError& e) {
-    EXPECT_NE(std::string(e.what()).find("skin.1004.ppm"), std::string::npos) << e.what();
-  }
+  test::expectRefused<FileError>(
+      [&] {
+        TextureImages(folder.file("skin.<UDIM>.ppm"), {{3, 0}});
+      },
+      "skin.1004.ppm");
 }
 
 }  // namespace

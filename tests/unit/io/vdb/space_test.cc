@@ -13,12 +13,7 @@ namespace {
 using openvdb::Coord;
 
 SpaceSettings settings(UpAxis up, double unit, UpAxis outUp, double outUnit) {
-  SpaceSettings space;
-  space.up = up;
-  space.unitScale = unit;
-  space.outUp = outUp;
-  space.outUnitScale = outUnit;
-  return space;
+  return {.up = up, .unitScale = unit, .outUp = outUp, .outUnitScale = outUnit};
 }
 
 openvdb::math::Transform::Ptr place() {

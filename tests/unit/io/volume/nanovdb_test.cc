@@ -85,10 +85,8 @@ TEST(NanoVdb, HoldsValuesStatesNamesClassesAndPlaces) {
   const auto surface = ball(6, {3, 4, 5}, 0.25);
   const auto velocity = vectors<openvdb::Vec3SGrid>("v");
   for (const bool zip : {false, true}) {
-    VolumeTextureSettings settings;
-    settings.zip = zip;
     const std::string path = folder.file("a.nvdb");
-    const auto r = writeVolumeTexture(path, {fog, surface, velocity}, settings);
+    const auto r = writeVolumeTexture(path, {fog, surface, velocity}, {.zip = zip});
     EXPECT_EQ(r.format, "NanoVDB");
     EXPECT_EQ(r.channels, (std::vector<std::string>{"density", "surface", "v"}));
     const Handles handles = readBack(path);
@@ -135,10 +133,9 @@ TEST(NanoVdb, OtherTypesBecomeThoseOfReaders) {
 TEST(NanoVdb, HalfIsSixteenBitsOfEachLeafsSpan) {
   const TemporaryFolder folder;
   const auto fog = density();
-  VolumeTextureSettings settings;
-  writeVolumeTexture(folder.file("f.nvdb"), {fog}, settings);
-  settings.half = true;
-  writeVolumeTexture(folder.file("h.nvdb"), {fog, vectors<openvdb::Vec3SGrid>("v")}, settings);
+  writeVolumeTexture(folder.file("f.nvdb"), {fog}, {});
+  writeVolumeTexture(folder.file("h.nvdb"), {fog, vectors<openvdb::Vec3SGrid>("v")},
+                     {.half = true});
   const Handles h = readBack(folder.file("h.nvdb"));
   // Over the whole grid the values span 19 and more.
   EXPECT_LT(difference(valid<nanovdb::Fp16>(h, 0, "density"), *fog), 19.0 / 65535);
@@ -172,12 +169,8 @@ TEST(NanoVdb, RefusesWhatItCannotHold) {
   other->setName("a");
   other->tree().setValue(Coord(0), 1);
   EXPECT_THROW(writeVolumeTexture(path, {other}), DataError);
-  VolumeTextureSettings settings;
-  settings.resolution = 16;
-  EXPECT_THROW(writeVolumeTexture(path, {density()}, settings), SettingError);
-  settings = {};
-  settings.tiles = {1, 12};
-  EXPECT_THROW(writeVolumeTexture(path, {density()}, settings), SettingError);
+  EXPECT_THROW(writeVolumeTexture(path, {density()}, {.resolution = 16}), SettingError);
+  EXPECT_THROW(writeVolumeTexture(path, {density()}, {.tiles = std::pair{1, 12}}), SettingError);
   EXPECT_FALSE(std::ifstream(path).good());
 }
 

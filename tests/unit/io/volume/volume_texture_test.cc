@@ -11,15 +11,11 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfVecAttribute.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/resource.h>
 
 #include <algorithm>
-#include <cmath>
 
-#include "core/memory_limit.h"
+#include "core/expect.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "io/test_files.h"
 
 namespace innermap {
@@ -76,9 +72,7 @@ TEST(VolumeTexture, AtlasHasEachVoxelWhereItSays) {
   const TemporaryFolder folder;
   const std::string path = folder.file("a.exr");
   for (const bool up : {false, true}) {
-    VolumeTextureSettings settings;
-    settings.rowsUp = up;
-    const auto r = writeVolumeTexture(path, {scalar()}, settings);
+    const auto r = writeVolumeTexture(path, {scalar()}, {.rowsUp = up});
     EXPECT_EQ(r.resolution, Coord(18, 8, 12));
     EXPECT_EQ(r.channels, std::vector<std::string>{"Y"});
     EXPECT_EQ(r.slices, 12);
@@ -103,10 +97,7 @@ TEST(VolumeTexture, AttributesSayWhatAndWhere) {
   grid->setVectorType(openvdb::VEC_COVARIANT);
   const auto fog = scalar("density");
   fog->setGridClass(openvdb::GRID_FOG_VOLUME);
-  VolumeTextureSettings settings;
-  settings.axis = 1;
-  settings.active = true;
-  const auto r = writeVolumeTexture(folder.file("a.exr"), {fog, grid}, settings);
+  const auto r = writeVolumeTexture(folder.file("a.exr"), {fog, grid}, {.axis = 1, .active = true});
   Imf::MultiPartInputFile file(folder.file("a.exr").c_str());
   const Imf::Header& h = file.header(0);
   EXPECT_EQ(attribute<Imf::StringAttribute>(h, "volumeLayout"), "atlas");
@@ -143,9 +134,7 @@ TEST(VolumeTexture, AttributesSayWhatAndWhere) {
 
 TEST(VolumeTexture, ChannelsAreWhatEnginesLookFor) {
   const auto names = [](const openvdb::GridPtrVec& grids, VolumeChannels channels) {
-    VolumeTextureSettings settings;
-    settings.channels = channels;
-    return planVolumeTexture("a.exr", grids, settings).channels;
+    return planVolumeTexture("a.exr", grids, {.channels = channels}).channels;
   };
   using Names = std::vector<std::string>;
   const auto a = scalar("a"), b = scalar("b"), c = scalar("c"), d = scalar("d");
@@ -164,33 +153,25 @@ TEST(VolumeTexture, BoxesGrowToCubesAndPowersOfTwo) {
   const auto plan = [](VolumeTextureSettings settings) {
     return planVolumeTexture("a.exr", {scalar()}, settings);
   };
-  VolumeTextureSettings s;
-  s.pad = 2;
-  EXPECT_EQ(plan(s).resolution, Coord(22, 12, 16));
-  s = {};
-  s.powerOfTwo = true;
-  const auto r = plan(s);
+  EXPECT_EQ(plan({.pad = 2}).resolution, Coord(22, 12, 16));
+  const auto r = plan({.powerOfTwo = true});
   EXPECT_EQ(r.resolution, Coord(32, 8, 16));
   for (const int n : {r.width, r.height, r.tileColumns, r.tileRows}) EXPECT_EQ(n & (n - 1), 0);
   EXPECT_EQ(r.tileColumns * r.tileRows, 16);
-  s = {};
-  s.cube = true;
-  EXPECT_EQ(plan(s).resolution, Coord(18, 18, 18));
-  s.resolution = 64;
-  const auto cube = plan(s);
+  EXPECT_EQ(plan({.cube = true}).resolution, Coord(18, 18, 18));
+  const auto cube = plan({.cube = true, .resolution = 64});
   EXPECT_EQ(cube.resolution, Coord(64, 64, 64));
   EXPECT_EQ(cube.width, 512);
   EXPECT_EQ(cube.height, 512);
-  s.cube = false;
-  EXPECT_EQ(plan(s).resolution, Coord(64, 29, 43));
+  EXPECT_EQ(plan({.cube = false, .resolution = 64}).resolution, Coord(64, 29, 43));
   // The middle stays where it is.
-  EXPECT_LT((plan(s).worldBox.getCenter() - plan({}).worldBox.getCenter()).length(), 1e-12);
+  EXPECT_LT(
+      (plan({.cube = false, .resolution = 64}).worldBox.getCenter() - plan({}).worldBox.getCenter())
+          .length(),
+      1e-12);
   EXPECT_LT((cube.worldBox.getCenter() - plan({}).worldBox.getCenter()).length(), 1e-12);
-  s = {};
-  s.tiles = {3, 4};
-  EXPECT_EQ(plan(s).width, 54);
-  s.tiles = {3, 3};
-  EXPECT_THROW(plan(s), SettingError);
+  EXPECT_EQ(plan({.tiles = std::pair{3, 4}}).width, 54);
+  EXPECT_THROW(plan({.tiles = std::pair{3, 3}}), SettingError);
 }
 
 TEST(VolumeTexture, BackgroundStandsWhereNothingIsActive) {
@@ -200,9 +181,7 @@ TEST(VolumeTexture, BackgroundStandsWhereNothingIsActive) {
   grid->setName("v");
   grid->tree().setValue(Coord(0, 0, 0), 1.0f);
   grid->tree().setValue(Coord(2, 1, 4), 2.0f);
-  VolumeTextureSettings settings;
-  settings.active = true;
-  const auto r = writeVolumeTexture(folder.file("a.exr"), {grid}, settings);
+  const auto r = writeVolumeTexture(folder.file("a.exr"), {grid}, {.active = true});
   const Pixels p = pixels(folder.file("a.exr"), "Y");
   EXPECT_EQ(p.at(0, 0), 1.0f);
   EXPECT_EQ(p.at(1, 0), 7.0f);
@@ -220,10 +199,8 @@ TEST(VolumeTexture, ResamplingKeepsLinearFunctionsAndMeans) {
   auto grid = block<openvdb::DoubleGrid>(
       "v", box, [&](auto c) { return linear(c.asVec3d() * 0.25); }, 0.25);
   for (const int n : {16, 20, 48}) {
-    VolumeTextureSettings settings;
-    settings.layout = VolumeLayout::parts;
-    settings.resolution = n;
-    const auto r = writeVolumeTexture(folder.file("p.exr"), {grid}, settings);
+    const auto r = writeVolumeTexture(folder.file("p.exr"), {grid},
+                                      {.layout = VolumeLayout::parts, .resolution = n});
     EXPECT_EQ(r.resolution.x(), n);
     Imf::MultiPartInputFile file(folder.file("p.exr").c_str());
     ASSERT_EQ(file.parts(), r.slices);
@@ -239,9 +216,7 @@ TEST(VolumeTexture, ResamplingKeepsLinearFunctionsAndMeans) {
   // A checkerboard of single voxels at half the resolution is its mean, not one of its colours.
   auto board = block<openvdb::FloatGrid>("board", box,
                                          [](auto c) { return float((c.x() + c.y() + c.z()) & 1); });
-  VolumeTextureSettings settings;
-  settings.resolution = 8;
-  writeVolumeTexture(folder.file("b.exr"), {board}, settings);
+  writeVolumeTexture(folder.file("b.exr"), {board}, {.resolution = 8});
   EXPECT_NEAR(pixels(folder.file("b.exr"), "Y").at(3, 2), 0.5, 0.01);
 }
 
@@ -251,32 +226,27 @@ TEST(VolumeTexture, ValuesThatPixelsDoNotHoldAreCounted) {
   auto grid = block<openvdb::FloatGrid>("v", kBox, [](auto) { return 1.5f; });
   grid->tree().setValue(Coord(0, 4, 35), 1e6f);
   grid->tree().setValue(Coord(1, 4, 35), -1e6f);
-  VolumeTextureSettings settings;
-  settings.half = true;
-  EXPECT_EQ(writeVolumeTexture(folder.file("h.exr"), {grid}, settings).clamped, 2u);
+  EXPECT_EQ(writeVolumeTexture(folder.file("h.exr"), {grid}, {.half = true}).clamped, 2u);
   const Pixels p = pixels(folder.file("h.exr"), "Y");
   EXPECT_EQ(*std::max_element(p.values.begin(), p.values.end()), 65504.0f);
   Imf::MultiPartInputFile file(folder.file("h.exr").c_str());
   EXPECT_EQ(file.header(0).channels().findChannel("Y")->type, Imf::HALF);
-  settings.half = false;
-  EXPECT_EQ(writeVolumeTexture(folder.file("h.exr"), {grid}, settings).clamped, 0u);
+  EXPECT_EQ(writeVolumeTexture(folder.file("h.exr"), {grid}, {.half = false}).clamped, 0u);
   auto ids = block<openvdb::Int32Grid>("id", kBox, [](auto c) { return 1001 * c.x(); });
   ids->tree().setValue(Coord(0, 4, 35), (1 << 24) + 1);
-  EXPECT_EQ(writeVolumeTexture(folder.file("i.exr"), {ids}, settings).inexact, 1u);
-  settings.half = true;
-  EXPECT_GT(writeVolumeTexture(folder.file("i.exr"), {ids}, settings).inexact, 1u);
+  EXPECT_EQ(writeVolumeTexture(folder.file("i.exr"), {ids}, {.half = false}).inexact, 1u);
+  EXPECT_GT(writeVolumeTexture(folder.file("i.exr"), {ids}, {.half = true}).inexact, 1u);
 }
 
 TEST(VolumeTexture, SlicesAreNumberedFiles) {
   const TemporaryFolder folder;
-  VolumeTextureSettings settings;
-  settings.layout = VolumeLayout::slices;
-  auto r = writeVolumeTexture(folder.file("s.##.exr"), {scalar()}, settings);
+  auto r =
+      writeVolumeTexture(folder.file("s.##.exr"), {scalar()}, {.layout = VolumeLayout::slices});
   ASSERT_EQ(r.files.size(), 12u);
   EXPECT_EQ(r.files[7], folder.file("s.07.exr"));
   EXPECT_EQ(folder.count(), 12u);
   EXPECT_EQ(pixels(r.files[7], "Y").at(3, 2), scalarAt(kBox.min().offsetBy(3, 2, 7)));
-  r = writeVolumeTexture(folder.file("t.exr"), {scalar()}, settings);
+  r = writeVolumeTexture(folder.file("t.exr"), {scalar()}, {.layout = VolumeLayout::slices});
   EXPECT_EQ(r.files[11], folder.file("t.0011.exr"));
 }
 
@@ -284,69 +254,53 @@ TEST(VolumeTexture, RefusesBeforeItWrites) {
   const TemporaryFolder folder;
   const std::string path = folder.file("a.exr");
   VolumeTextureSettings settings;
-  {
-    const MemoryLimit limit(100);
-    EXPECT_THROW(writeVolumeTexture(path, {scalar()}, settings), MemoryError);
-  }
+  test::expectOverLimit(100, [&] { writeVolumeTexture(path, {scalar()}, settings); });
   EXPECT_GT(volumeTextureMemory("a.exr", {scalar()}, {}), 18u * 8 * 12 * 4);
   settings = {};
   settings.resolution = -1;
   EXPECT_THROW(writeVolumeTexture(path, {scalar()}, settings), SettingError);
   EXPECT_THROW(writeVolumeTexture(path, {}, {}), DataError);
   EXPECT_THROW(writeVolumeTexture(path, {openvdb::FloatGrid::create()}, {}), DataError);
-  EXPECT_THROW(writeVolumeTexture(path, {scalar("a"), scalar("a")},
-                                  [] {
-                                    VolumeTextureSettings s;
-                                    s.channels = VolumeChannels::layers;
-                                    return s;
-                                  }()),
-               DataError);
+  EXPECT_THROW(
+      writeVolumeTexture(path, {scalar("a"), scalar("a")}, {.channels = VolumeChannels::layers}),
+      DataError);
   auto other = scalar("other");
   other->setTransform(openvdb::math::Transform::createLinearTransform(2));
   EXPECT_THROW(writeVolumeTexture(path, {scalar(), other}, {}), DataError);
-  RunContext run;
-  run.cancel();
   for (const VolumeLayout layout :
        {VolumeLayout::atlas, VolumeLayout::slices, VolumeLayout::parts}) {
     settings = {};
     settings.layout = layout;
-    const RunScope scope(run);
-    EXPECT_THROW(writeVolumeTexture(path, {scalar()}, settings), Cancelled);
+    test::expectCancels([&] { writeVolumeTexture(path, {scalar()}, settings); });
   }
   EXPECT_EQ(folder.count(), 0u);
 }
 
 TEST(VolumeTexture, NoticesAFullDisk) {
-  signal(SIGXFSZ, SIG_IGN);
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
   for (const VolumeLayout layout :
        {VolumeLayout::atlas, VolumeLayout::slices, VolumeLayout::parts}) {
     const TemporaryFolder folder;
-    VolumeTextureSettings settings;
-    settings.layout = layout;
-    const auto r = writeVolumeTexture(folder.file("s.exr"), {scalar()}, settings);
+    const auto r = writeVolumeTexture(folder.file("s.exr"), {scalar()}, {.layout = layout});
     const auto size = static_cast<rlim_t>(std::filesystem::file_size(r.files.front()));
     for (const rlim_t limit : {rlim_t(0), size / 2, size - 1}) {
       SCOPED_TRACE(limit);
-      const rlimit small{limit, before.rlim_max};
-      setrlimit(RLIMIT_FSIZE, &small);
-      EXPECT_THROW(writeVolumeTexture(folder.file("t.exr"), {scalar()}, settings), FileError);
-      setrlimit(RLIMIT_FSIZE, &before);
+      {
+        const test::FullDisk disk(limit);
+        EXPECT_THROW(writeVolumeTexture(folder.file("t.exr"), {scalar()}, {.layout = layout}),
+                     FileError);
+      }
       EXPECT_EQ(folder.count(), r.files.size());
     }
   }
 }
 
 TEST(VolumeTexture, IsDescribedAndDoubted) {
-  VolumeTextureResult r;
-  r.width = 20000;
+  VolumeTextureResult r{.width = 20000};
   r.height = r.tileWidth = r.tileHeight = 8;
   r.slices = 4;
   r.channels = {"R", "G"};
   r.clamped = 3;
-  VolumeTextureSettings settings;
-  settings.half = true;
+  VolumeTextureSettings settings{.half = true};
   const std::string text = describe(r, "a.exr", settings);
   EXPECT_NE(text.find("a.exr: 1 x 1 tiles of 8 x 8, 20000 x 8 pixels\n4 slices along z"),
             std::string::npos)

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "innermap/core/run.h"
+#include "core/expect.h"
 #include "mesh/shapes.h"
 
 namespace innermap {
@@ -63,9 +63,8 @@ TEST(OffsetSurface, InsideSheetsAreLeftOutCavitiesAreNot) {
 TEST(OffsetSurface, PartsThatOverlapGiveTheUnion) {
   const Solid solid(
       shapes::joined(shapes::icosphere(3), shapes::icosphere(3, 0.8, {0.9, 0.1, 0.2})));
-  for (const double d : {0.001, 0.02}) {
+  for (const double d : {0.001, 0.02})
     expectAtDistance(solid, offsetSurface(solid, {d}), d * solid.diagonal());
-  }
 }
 
 TEST(OffsetSurface, MovePointsToTheDistance) {
@@ -79,14 +78,10 @@ TEST(OffsetSurface, MovePointsToTheDistance) {
 
 TEST(OffsetSurface, SettingsAndCancelling) {
   const Solid solid(shapes::icosphere(2));
-  for (const double d : {0.0, 9e-5, 2.1, -1.0, std::nan("")}) {
+  for (const double d : {0.0, 9e-5, 2.1, -1.0, std::nan("")})
     EXPECT_THROW(offsetSurface(solid, {d}), SettingError);
-  }
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(offsetSurface(solid, {0.05}), Cancelled);
-  EXPECT_THROW(offsetSurface(solid, {0.001}), Cancelled);
+  test::expectCancels([&] { offsetSurface(solid, {0.05}); });
+  test::expectCancels([&] { offsetSurface(solid, {0.001}); });
 }
 
 }  // namespace

@@ -2,13 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "core/byte_order.h"
+#include "core/expect.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/mesh/mesh_file.h"
 #include "mesh/test_meshes.h"
 
@@ -59,15 +57,10 @@ class PointCaches : public ::testing::Test {
   }
 
   std::string refusal(const std::string& name, const std::string& content) {
-    try {
+    return test::refusalOf([&] {
       const auto source = open(name, content);
       for (std::size_t i = 0; i < source->numbers.size(); ++i) source->read(i, rest_);
-    } catch (const FileError& error) {
-      return error.what();
-    } catch (const DataError& error) {
-      return error.what();
-    }
-    return "accepted";
+    });
   }
 
   void expectRefused(const std::string& name, const std::string& content, const std::string& word) {
@@ -99,10 +92,8 @@ TEST_F(PointCaches, FramesAreNumberedAsTheFileOrTheCallerSays) {
   EXPECT_EQ(open("a.mdd", mdd(3, 8))->numbers, (Numbers{1, 2, 3}));
   EXPECT_EQ(open("a.pc2", pc2(3, 8, 4.6f))->numbers, (Numbers{5, 6, 7}));
   EXPECT_EQ(open("a.pc2", pc2(3, 8, -4, 2))->numbers, (Numbers{-4, -2, 0}));
-  AnimationSettings settings;
-  settings.firstFrame = 101;
-  EXPECT_EQ(open("a.mdd", mdd(2, 8), settings)->numbers, (Numbers{101, 102}));
-  const auto halves = open("a.pc2", pc2(3, 8, 1, 0.5f), settings);
+  EXPECT_EQ(open("a.mdd", mdd(2, 8), {.firstFrame = 101})->numbers, (Numbers{101, 102}));
+  const auto halves = open("a.pc2", pc2(3, 8, 1, 0.5f), {.firstFrame = 101});
   EXPECT_EQ(halves->numbers, (Numbers{101, 102, 103}));
   EXPECT_EQ(halves->notes.size(), 1u);
 }

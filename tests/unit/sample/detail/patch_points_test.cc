@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/expect.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 
@@ -10,8 +11,7 @@ namespace {
 
 // Two boxes with a narrow gap between them: x in [0, 1] and [1.02, 2].
 Mesh boxesWithGap() {
-  Mesh mesh;
-  mesh.name = "boxes";
+  Mesh mesh{.name = "boxes"};
   const auto add = [&](double x0, double x1) {
     const int first = static_cast<int>(mesh.vertices.size());
     for (int i = 0; i < 8; ++i)
@@ -40,9 +40,7 @@ TEST(PatchPoints, SourcesKeepDistanceSpacingAndOutside) {
   const Solid solid(boxesWithGap());
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    PatchSettings s;
-    s.spacing = 0.03;
-    s.seed = seed;
+    PatchSettings s{.spacing = 0.03, .seed = seed};
     const double d = solid.diagonal(), distance = 0.04;
     const Points points = patchSources(solid, {}, distance, {}, s);
     // The area of both boxes over spacing squared, and the shell is larger: at least 0.6 of that.
@@ -62,22 +60,17 @@ TEST(PatchPoints, NarrowGapsWaitForAShorterDistance) {
       return p.x > 1 && p.x < 1.02 && p.y > 0 && p.y < 1 && p.z > 0 && p.z < 1;
     });
   };
-  PatchSettings s;
-  s.spacing = 0.01;
-  s.reach = 0.05;
   const Points marks{{1.01, 0.5, 0.5}};
-  EXPECT_EQ(inGap(patchSources(solid, marks, 0.02, {}, s)), 0);
+  EXPECT_EQ(inGap(patchSources(solid, marks, 0.02, {}, {.spacing = 0.01, .reach = 0.05})), 0);
   // Fits between the boxes, but over one of them it is too near to the other.
-  EXPECT_EQ(inGap(patchSources(solid, marks, 0.006, {}, s)), 0);
-  EXPECT_GT(inGap(patchSources(solid, marks, 0.003, {}, s)), 20);
+  EXPECT_EQ(inGap(patchSources(solid, marks, 0.006, {}, {.spacing = 0.01, .reach = 0.05})), 0);
+  EXPECT_GT(inGap(patchSources(solid, marks, 0.003, {}, {.spacing = 0.01, .reach = 0.05})), 20);
 }
 
 TEST(PatchPoints, StayNearMarksAndAwayFromWhatIsThere) {
   const Solid solid(boxesWithGap());
   const double d = solid.diagonal();
-  PatchSettings s;
-  s.spacing = 0.01;
-  s.reach = 0.05;
+  PatchSettings s{.spacing = 0.01, .reach = 0.05};
   const Points marks{{0, 0.5, 0.5}, {2, 1, 1}}, existing{{0, 0.5, 0.5}};
   const std::vector<SurfacePoint> samples = patchSamples(solid, marks, existing, s);
   ASSERT_GT(samples.size(), 50u);
@@ -96,8 +89,7 @@ TEST(PatchPoints, StayNearMarksAndAwayFromWhatIsThere) {
 
 TEST(PatchPoints, SameForAnyNumberOfThreadsAndAtMostSoMany) {
   const Solid solid(boxesWithGap());
-  PatchSettings s;
-  s.spacing = 0.05;
+  PatchSettings s{.spacing = 0.05};
   const auto sources = [&] { return patchSources(solid, {}, 0.05, {}, s); };
   const Points all = sources();
   {
@@ -112,19 +104,11 @@ TEST(PatchPoints, SameForAnyNumberOfThreadsAndAtMostSoMany) {
 
 TEST(PatchPoints, RefusesBadSettings) {
   const Solid solid(boxesWithGap());
-  PatchSettings s;
-  EXPECT_THROW(patchSources(solid, {}, 0, {}, s), SettingError);
-  EXPECT_THROW(patchSources(solid, {}, 3, {}, s), SettingError);
-  s.spacing = 0;
-  EXPECT_THROW(patchSamples(solid, {}, {}, s), SettingError);
-  s = {};
-  s.reach = -1;
-  EXPECT_THROW(patchSamples(solid, {}, {}, s), SettingError);
-  RunContext run;
-  run.cancel();
-  s = {};
-  const RunScope scope(run);
-  EXPECT_THROW(patchSources(solid, {}, 0.01, {}, s), Cancelled);
+  EXPECT_THROW(patchSources(solid, {}, 0, {}, {}), SettingError);
+  EXPECT_THROW(patchSources(solid, {}, 3, {}, {}), SettingError);
+  EXPECT_THROW(patchSamples(solid, {}, {}, {.spacing = 0}), SettingError);
+  EXPECT_THROW(patchSamples(solid, {}, {}, {.reach = -1}), SettingError);
+  test::expectCancels([&] { patchSources(solid, {}, 0.01, {}, {}); });
 }
 
 }  // namespace

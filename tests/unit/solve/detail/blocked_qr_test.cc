@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/expect.h"
 #include "core/random.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -33,10 +33,7 @@ TEST(BlockedQr, TurnsTheMatrixIntoItsTriangle) {
 TEST(BlockedQr, RefusesWideMatrices) { EXPECT_THROW(BlockedQr(Matrix(3, 4)), SettingError); }
 
 TEST(BlockedQr, CancelStopsIt) {
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(BlockedQr(randomMatrix(200, 100, 1)), Cancelled);
+  test::expectCancels([&] { BlockedQr(randomMatrix(200, 100, 1)); });
 }
 
 TEST(Multiply, EqualsThePlainLoop) {

@@ -53,8 +53,7 @@ TEST(BccLattice, TheLinkIsASphere) {
 
 // A lattice whose nodes are inside at random, but for its sides.
 LatticeSigns randomSigns(std::uint64_t seed, double share) {
-  LatticeSigns signs;
-  signs.lattice = BccLattice({0, 0, 0}, 1, {12, 12, 12});
+  LatticeSigns signs{.lattice = BccLattice({0, 0, 0}, 1, {12, 12, 12})};
   const CounterRandom random(seed, 1);
   const std::size_t nodes = signs.lattice.nodes();
   signs.distance.resize(nodes);

@@ -4,10 +4,9 @@
 
 #include <cmath>
 
-#include "core/memory_limit.h"
+#include "core/expect.h"
 #include "core/pi.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/levelset/level_set.h"
 #include "mesh/shapes.h"
 
@@ -33,9 +32,7 @@ struct Ball {
 
   explicit Ball(int resolution = 32) {
     openvdb::initialize();
-    LevelSetSettings settings;
-    settings.resolution = resolution;
-    levelSet = makeLevelSet(solid, settings);
+    levelSet = makeLevelSet(solid, {.resolution = resolution});
     voxel = levelSet->voxelSize()[0];
   }
   Vec3 world(const openvdb::Coord& ijk) const {
@@ -62,10 +59,8 @@ BoundaryValues boundaryOf(const HarmonicField& field, const Vec3& more = {}) {
 TEST(Continuation, WhatTheFieldMeetsIsTheFieldInsideAndTheBoundaryOutside) {
   const Ball ball;
   const HarmonicField field = fieldOf(6);
-  ContinuationSettings settings;
-  settings.spacing = 3 * ball.voxel;
-  settings.accuracy = 1e-7;
-  const auto grids = continueInside(field, ball.solid, *ball.levelSet, boundaryOf(field), settings);
+  const auto grids = continueInside(field, ball.solid, *ball.levelSet, boundaryOf(field),
+                                    {.spacing = 3 * ball.voxel, .accuracy = 1e-7});
   ASSERT_EQ(grids.size(), 2u);
   EXPECT_TRUE(grids[0]->tree().hasSameTopology(grids[1]->tree()));
   EXPECT_EQ(grids[0]->getVectorType(), openvdb::VEC_INVARIANT);
@@ -92,11 +87,8 @@ TEST(Continuation, WhatTheFieldMissesFallsOffInwards) {
   const Ball ball(48);
   const HarmonicField field = fieldOf(3);
   const Vec3 missed{1, -2, 0.5};
-  ContinuationSettings settings;
-  settings.spacing = 3 * ball.voxel;
-  settings.accuracy = 1e-7;
-  const auto grid =
-      continueInside(field, ball.solid, *ball.levelSet, boundaryOf(field, missed), settings)[0];
+  const auto grid = continueInside(field, ball.solid, *ball.levelSet, boundaryOf(field, missed),
+                                   {.spacing = 3 * ball.voxel, .accuracy = 1e-7})[0];
   for (auto it = grid->cbeginValueOn(); it; ++it) {
     const Vec3 p = ball.world(it.getCoord());
     const double distance = ball.solid.signedDistance(p);
@@ -129,23 +121,14 @@ TEST(Continuation, BadSettings) {
   const Ball ball(16);
   const HarmonicField field = fieldOf(3);
   const BoundaryValues boundary = boundaryOf(field);
-  ContinuationSettings s;
-  s.spacing = -1;
-  EXPECT_THROW(continueInside(field, ball.solid, *ball.levelSet, boundary, s), SettingError);
-  s = {};
-  s.skin = 4;
-  EXPECT_THROW(continueInside(field, ball.solid, *ball.levelSet, boundary, s), SettingError);
-  s = {};
-  {
-    const MemoryLimit limit(1000);
-    EXPECT_THROW(continueInside(field, ball.solid, *ball.levelSet, boundary, s), MemoryError);
-  }
+  EXPECT_THROW(continueInside(field, ball.solid, *ball.levelSet, boundary, {.spacing = -1}),
+               SettingError);
+  EXPECT_THROW(continueInside(field, ball.solid, *ball.levelSet, boundary, {.skin = 4}),
+               SettingError);
+  test::expectOverLimit(1000,
+                        [&] { continueInside(field, ball.solid, *ball.levelSet, boundary, {}); });
   EXPECT_THROW(continueInside(fieldOf(4), ball.solid, *ball.levelSet, boundary, {}), DataError);
-  RunContext run;
-  run.cancel();
-  s = {};
-  const RunScope scope(run);
-  EXPECT_THROW(continueInside(field, ball.solid, *ball.levelSet, boundary, s), Cancelled);
+  test::expectCancels([&] { continueInside(field, ball.solid, *ball.levelSet, boundary, {}); });
 }
 
 }  // namespace

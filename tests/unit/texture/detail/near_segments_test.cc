@@ -25,9 +25,7 @@ TEST(NearSegments, DistanceToASegment) {
 TEST(NearSegments, FindsTheVoxelsOfABallAlongRandomSegments) {
   openvdb::initialize();
   const Solid solid(shapes::icosphere(2));
-  LevelSetSettings settings;
-  settings.resolution = 24;
-  const auto levelSet = makeLevelSet(solid, settings);
+  const auto levelSet = makeLevelSet(solid, {.resolution = 24});
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const CounterRandom random(seed, 9);

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "core/expect.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -112,11 +112,8 @@ TEST(TextureGrids, BadGroups) {
   auto groups = twoGroups();
   groups[1].weighted = block([](int, int, int) { return Vec3f(1); }, 5);
   EXPECT_THROW(blendChartGroups(groups, texture), DataError);
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(blendChartGroups(twoGroups(), texture), Cancelled);
-  EXPECT_THROW(lookUpColours(*twoGroups()[0].weighted, texture), Cancelled);
+  test::expectCancels([&] { blendChartGroups(twoGroups(), texture); });
+  test::expectCancels([&] { lookUpColours(*twoGroups()[0].weighted, texture); });
 }
 
 }  // namespace

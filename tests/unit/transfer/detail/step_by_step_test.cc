@@ -32,19 +32,15 @@ TEST(StepByStep, InvertsFromFarAway) {
     targets.push_back(map(p));
     starts.push_back(start);
   }
-  StepByStepSettings settings;
-  settings.tolerance = 1e-10;
-  const Points found = invertStepByStep(map, targets, starts, settings);
+  const Points found = invertStepByStep(map, targets, starts, {.tolerance = 1e-10});
   for (std::size_t i = 0; i < sources.size(); ++i)
     EXPECT_LT(norm(found[i] - sources[i]), 1e-7) << i;
 }
 
 TEST(StepByStep, KeepsTheStartWhereThereIsNoSource) {
   const HarmonicMap flat = affineMap({{{1, 0, 0}, {0, 1, 0}, {0, 0, 0}}}, {});
-  StepByStepSettings settings;
-  settings.tolerance = 1e-6;
-  const Points found =
-      invertStepByStep(ComposedMap({chargedMap(), flat}), {{0, 0, 1}}, {{0.1, 0.2, 0.3}}, settings);
+  const Points found = invertStepByStep(ComposedMap({chargedMap(), flat}), {{0, 0, 1}},
+                                        {{0.1, 0.2, 0.3}}, {.tolerance = 1e-6});
   EXPECT_EQ(norm(found.at(0) - Vec3{0.1, 0.2, 0.3}), 0);
 }
 

@@ -4,8 +4,8 @@
 
 #include <set>
 
+#include "core/expect.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "surface/detail/handles/cut_alike.h"
 #include "surface/detail/handles/match_handles.h"
 #include "surface/detail/sphere/sphere_layout.h"
@@ -150,16 +150,8 @@ TEST(CutHandles, KnottedTunnelsAreRefused) {
       without(with(shapes::knottedTunnel(), block({11, -2, -2}, {15, 10, 4})),
               block({13, 4, -2}, {13, 4, 4}));
   EXPECT_THROW(cutHandles(boundaryOf(shapes::knottedTunnel(), 1)), DataError);
-  try {
-    cutHandles(boundaryOf(solid, 2));
-    FAIL() << "accepted";
-  } catch (const DataError& error) {
-    EXPECT_NE(std::string(error.what()).find("knotted"), std::string::npos) << error.what();
-  }
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(cutHandles(plate(2)), Cancelled);
+  test::expectRefused<DataError>([&] { cutHandles(boundaryOf(solid, 2)); }, "knotted");
+  test::expectCancels([&] { cutHandles(plate(2)); });
 }
 
 struct Laid {
@@ -231,9 +223,7 @@ TEST(CutAlike, PosesAndLandmarksDecide) {
 
 TEST(MatchHandles, ManyAreMatchedByDescent) {
   const Laid a = laid(plate(8));
-  HandleSearch search;
-  search.aligned = true;
-  const HandleMatch best = matchHandles(a.cut, a.layout, a.cut, a.layout, search).at(0);
+  const HandleMatch best = matchHandles(a.cut, a.layout, a.cut, a.layout, {.aligned = true}).at(0);
   for (std::size_t i = 0; i < 8; ++i) {
     EXPECT_EQ(best.target[i], static_cast<int>(i));
     EXPECT_FALSE(best.swapped[i]);
@@ -245,10 +235,9 @@ TEST(Seamed, RimsLieOnRims) {
   const Laid a = laid(plate(2, 3)), b = laid(markedPlate(2));
   // Of three handles of b only as many as a has are used here; all matches are legal.
   for (const bool swapped : {false, true}) {
-    HandleMatch match;
-    match.target = {2, 0};
-    match.swapped = {swapped, !swapped};
-    match.rotation = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    HandleMatch match{.target = {2, 0},
+                      .swapped = {swapped, !swapped},
+                      .rotation = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
     const SeamedSurface s = seamed(a.cut, a.layout, b.cut, b.layout, match);
     const LayoutQuality quality =
         layoutQuality(s.cut.surface.triangles, s.cut.surface.vertices, s.layout);

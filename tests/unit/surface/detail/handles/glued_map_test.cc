@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/expect.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "surface/detail/refining/target_metric.h"
 #include "surface/handle_shapes.h"
 
@@ -37,9 +37,7 @@ ClosedSurface rounded(ClosedSurface surface, int steps) {
 Points expectMap(const ClosedSurface& a, const ClosedSurface& b, double most,
                  const GluedMapSettings& settings = {}) {
   const HandleLoops loopsOfA = handleLoops(a), loopsOfB = handleLoops(b);
-  CutAlikeSettings alike;
-  alike.landmarks = settings.landmarks;
-  const CutPair pair = cutAlike(loopsOfA, loopsOfB, alike);
+  const CutPair pair = cutAlike(loopsOfA, loopsOfB, {.landmarks = settings.landmarks});
   const GluedMap map = gluedMap(pair, settings);
   const LayoutQuality quality =
       layoutQuality(map.cut.surface.triangles, map.cut.surface.vertices, map.image);
@@ -128,11 +126,7 @@ TEST(GluedMapRelease, MeetsLandmarks) {
 
 TEST(GluedMap, CanBeCancelled) {
   const CutPair pair = cutAlike(handleLoops(plate(2)), handleLoops(plate(2, 2)));
-  GluedMapSettings settings;
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(gluedMap(pair, settings), Cancelled);
+  test::expectCancels([&] { gluedMap(pair, {}); });
 }
 
 }  // namespace

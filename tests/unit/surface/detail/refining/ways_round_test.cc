@@ -23,8 +23,7 @@ JudgedMap turned(double degrees, double score) {
   Points images;
   const Mat3 rotation = rotationAbout({0, degrees * std::acos(-1.0) / 180, 0});
   for (const Vec3& p : body()) images.push_back(rotation * p + Vec3{5, 6, 7});
-  MapJudge judge;
-  judge.score = [score](const Points&) { return score; };
+  MapJudge judge{.score = [score](const Points&) { return score; }};
   return judgedMap(judge, body(), std::move(images));
 }
 

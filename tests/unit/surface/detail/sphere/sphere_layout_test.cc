@@ -5,8 +5,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/expect.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "innermap/mesh/mesh_file.h"
 #include "innermap/surface/correspond.h"
 #include "mesh/shapes.h"
@@ -83,10 +83,7 @@ TEST(SphereLayout, OtherTopologyIsRefused) {
 }
 
 TEST(SphereLayout, Cancels) {
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(layOutSphere(shapes::closed(shapes::icosphere(3), 0)), Cancelled);
+  test::expectCancels([&] { layOutSphere(shapes::closed(shapes::icosphere(3), 0)); });
 }
 
 TEST(SphereLayout, RealMeshes) {
@@ -94,9 +91,8 @@ TEST(SphereLayout, RealMeshes) {
   if (!std::filesystem::exists(models)) GTEST_SKIP() << "no ../shared/models";
   for (const char* name :
        {"spot.obj", "homer.obj", "cheburashka.obj", "fandisk.obj", "horse-poses/reference.obj"}) {
-    ClosedSurfaceSettings closing;
-    closing.closeHoles = true;
-    const SurfaceShells shells = closedSurfaces(readMesh(models + "/" + name), closing);
+    const SurfaceShells shells =
+        closedSurfaces(readMesh(models + "/" + name), {.closeHoles = true});
     ASSERT_EQ(shells.shells.size(), 1u) << name;
     const ClosedSurface& surface = shells.shells[0];
     expectOneToOne(surface, -2, name);

@@ -4,7 +4,6 @@
 
 #include <set>
 
-#include "innermap/core/error.h"
 #include "surface/detail/topology/knot.h"
 #include "surface/detail/topology/linking.h"
 #include "surface/detail/topology/meridians.h"
@@ -47,9 +46,7 @@ TEST(HomologyBasis, LoopsAreSimpleAndTheFormsDual) {
 TEST(LeftKernel, SpansAllIntegerSolutions) {
   const IntegerMatrix kernel = leftKernel({{2, 4}, {3, 6}, {0, 0}});
   ASSERT_EQ(kernel.size(), 2u);
-  for (const Integers& x : kernel) {
-    EXPECT_EQ(2 * x[0] + 3 * x[1], 0);
-  }
+  for (const Integers& x : kernel) EXPECT_EQ(2 * x[0] + 3 * x[1], 0);
   // Primitive: the minors' greatest common divisor is 1. (3, -2, 0) and (0, 0, 1) span it.
   const long long minor = kernel[0][0] * kernel[1][2] - kernel[0][2] * kernel[1][0];
   EXPECT_EQ(std::abs(minor), 3);

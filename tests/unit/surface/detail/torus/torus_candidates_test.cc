@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "innermap/core/error.h"
+#include "core/expect.h"
 #include "innermap/core/run.h"
 #include "innermap/mesh/mesh_file.h"
 #include "surface/detail/refining/locate.h"
@@ -64,9 +64,7 @@ TEST(TorusCandidates, FindASurfaceOnItselfInAnotherPose) {
   ClosedSurface b = bumpyTorus(50, 40);
   for (Vec3& p : b.vertices) p = turn * p;
   const Layout onA = layOutTorus(a), onB = layOutTorus(b);
-  TorusSearch settings;
-  settings.count = 4;
-  const std::vector<TorusCandidate> found = torusCandidates(a, onA, b, onB, settings);
+  const std::vector<TorusCandidate> found = torusCandidates(a, onA, b, onB, {.count = 4});
   ASSERT_EQ(found.size(), 4u);
   for (const TorusCandidate& c : found) expectValid(a, c, onB);
   for (std::size_t i = 1; i < found.size(); ++i) EXPECT_LE(found[i - 1].cost, found[i].cost);
@@ -78,8 +76,7 @@ TEST(TorusCandidates, ShiftsFollowTheLatticeMap) {
   // All candidates, twisted and reversed: meridians must go to plus or minus meridians.
   const ClosedSurface a = bumpyTorus(24, 16), b = closed(shapes::torus(30, 12, 1, 0.5), 1);
   const Layout onA = layOutTorus(a), onB = layOutTorus(b);
-  TorusSearch settings;
-  settings.count = 64;
+  TorusSearch settings{.count = 64};
   bool reversed = false, twisted = false;
   for (const TorusCandidate& c : torusCandidates(a, onA, b, onB, settings)) {
     expectValid(a, c, onB);
@@ -107,9 +104,7 @@ TEST(TorusCandidates, ShiftsFollowTheLatticeMap) {
 TEST(TorusCandidates, AlignedPosesAgreeInTheirNormals) {
   const ClosedSurface a = closed(shapes::torus(60, 30), 1), b = closed(shapes::torus(48, 36), 1);
   const Layout onA = layOutTorus(a), onB = layOutTorus(b);
-  TorusSearch settings;
-  settings.aligned = true;
-  const std::vector<TorusCandidate> found = torusCandidates(a, onA, b, onB, settings);
+  const std::vector<TorusCandidate> found = torusCandidates(a, onA, b, onB, {.aligned = true});
   EXPECT_LT(medianDistance(a, b, onB, found.at(0).image, kStill), 0.1);
 }
 
@@ -132,17 +127,13 @@ TEST(TorusCandidates, LandmarksSayWhatSymmetryCannot) {
 TEST(TorusCandidates, SameForAnyNumberOfThreadsAndCancelled) {
   const ClosedSurface a = bumpyTorus(24, 16), b = closed(shapes::torus(30, 12), 1);
   const Layout onA = layOutTorus(a), onB = layOutTorus(b);
-  TorusSearch settings;
-  settings.grid = 8;
+  TorusSearch settings{.grid = 8};
   const double cost = torusCandidates(a, onA, b, onB, settings).at(0).cost;
   {
     const ThreadLimit one(1);
     EXPECT_EQ(torusCandidates(a, onA, b, onB, settings).at(0).cost, cost);
   }
-  RunContext run;
-  run.cancel();
-  const RunScope scope(run);
-  EXPECT_THROW(torusCandidates(a, onA, b, onB, settings), Cancelled);
+  test::expectCancels([&] { torusCandidates(a, onA, b, onB, settings); });
 }
 
 TEST(TorusCandidatesModelsRelease, RockerArmOntoATorusAndBack) {
