@@ -103,7 +103,7 @@ std::string proofWords(const ProofFigures& p) {
         "should be. ",
         atMost(p.boundaryError));
   else
-    out += "How far the boundary is off at most is not decided. ";
+    out += "It is not decided how far the boundary is off at most. ";
   if (p.oneToOne > 0)
     out += "No two points of the solid go to one: it is mapped one-to-one as a whole. ";
   if (p.oneToOne == 0) out += "It is not decided whether two points of the solid go to one. ";

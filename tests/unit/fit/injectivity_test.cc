@@ -247,7 +247,7 @@ TEST(Injectivity, CellsThatAreUndecidedOrFoldedAreNoProof) {
 TEST(Injectivity, AMissingBoundIsNamed) {
   Injectivity known = sound();
   known.proof = proven();
-  const char* const kMissing = "How far the boundary is off at most is not decided.";
+  const char* const kMissing = "It is not decided how far the boundary is off at most.";
   EXPECT_FALSE(says(known, kMissing));
   known.proof.boundaryError = 0;
   EXPECT_TRUE(says(known, kMissing));
