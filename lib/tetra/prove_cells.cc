@@ -108,7 +108,7 @@ std::string linearMapStatement(const CellProof& from, const CellProof& to) {
            "one-to-one, globally.";
   if (from.rightSideOut() && to.rightSideOut())
     return "The same holds for the cells that they came from: the map that is linear on them is "
-           "one-to-one on each cell, but not proven to be so globally.";
+           "one-to-one on each cell; whether it is so globally is not proven.";
   return "";
 }
 

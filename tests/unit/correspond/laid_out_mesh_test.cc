@@ -53,7 +53,7 @@ TEST(LayOutMeshes, CutsTheUnionOfSeveralPiecesAsTheOtherHas) {
   EXPECT_EQ(b.handles(), 0);
   ASSERT_TRUE(b.outer);
   EXPECT_FALSE(b.outer->cuts.empty());
-  EXPECT_TRUE(anyHas(b.notes, "cut until it has 0 as ball.obj"));
+  EXPECT_TRUE(anyHas(b.notes, "cuts it until it has 0, like ball.obj"));
   const CleanSurface asked = cleanSurface(ring, {.outerResolution = 16, .handles = 1});
   EXPECT_FALSE(asked.handlesOfUnion) << "what is asked for stays";
   EXPECT_EQ(asked.handles, 1);

@@ -124,7 +124,7 @@ TEST(ProveCells, SentencesSayNoMoreThanIsProven) {
   EXPECT_NE(statementOf(proof).find("local"), std::string::npos);
   EXPECT_EQ(linearMapStatement(proof, proof), "");  // hexahedra
   proof.boundary = {{0, 1, 2}};
-  EXPECT_NE(linearMapStatement(proof, proof).find("not shown"), std::string::npos);
+  EXPECT_NE(linearMapStatement(proof, proof).find("not proven"), std::string::npos);
   proof.overlap = Overlap::none;
   EXPECT_EQ(statementOf(proof).find("local"), std::string::npos);
   EXPECT_NE(linearMapStatement(proof, proof).find("globally."), std::string::npos);
