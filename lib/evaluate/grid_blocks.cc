@@ -130,7 +130,6 @@ void GridBlocks::refuse(const GridBlock& block, const std::string& name) {
                   "' is no part of this volume; make its share again");
 }
 
-// Null where the block's grid is of another type.
 template <class Grid>
 typename Grid::Ptr GridBlocks::gridOf(std::size_t block, const std::string& name) const {
   const CoordBBox within = CoordBBox::createCube(sums_[block].block, kBlock);

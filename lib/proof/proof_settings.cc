@@ -19,7 +19,7 @@ std::vector<Setting> describe(ProofSettings& s) {
 
 std::uint64_t proofMemory(const ComposedMap& map, std::size_t triangles,
                           const ProofSettings& settings) {
-  return 2 * proof::FieldTree::memory(map.sources()) +
+  return (proof::passesCharges(map) ? 2 : 1) * proof::FieldTree::memory(map.sources()) +
          proof::kBytesPerPiece * proof::pieceLimit(map, triangles, settings);
 }
 

@@ -130,6 +130,10 @@ class BoundarySearch {
   }
 
  private:
+  bool isFine(const SurfacePiece& piece) const {
+    return passesCharges(map_) && piece.halvings >= kFineHalvings;
+  }
+
   // Each piece halved so many times.
   void round(const std::vector<SurfacePiece>& pieces, int times) {
     std::vector<BlockPieces> blocks((pieces.size() + kBlock - 1) / kBlock);
@@ -138,8 +142,8 @@ class BoundarySearch {
       for (std::size_t i = begin; i < end; ++i) cut(pieces[i], times, out.pieces);
       SetGroup group;
       for (std::size_t i = 0; i < out.pieces.size(); i += kLanes)
-        boundPieces(out.pieces[i].halvings < kFineHalvings ? steps_ : fine_, group,
-                    out.pieces.data() + i, std::min(kLanes, out.pieces.size() - i), out.witness);
+        boundPieces(isFine(out.pieces[i]) ? fine_ : steps_, group, out.pieces.data() + i,
+                    std::min(kLanes, out.pieces.size() - i), out.witness);
     });
     Witness best;
     for (const BlockPieces& block : blocks) takeBetter(block.witness, best);

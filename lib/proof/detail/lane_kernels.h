@@ -38,7 +38,7 @@ constexpr std::size_t kChargeStride = 8;
 // enter its expansion.
 constexpr double kFarRatio = 0.36;
 // What an expansion cuts off is some 1e-5 of all that it holds, however small a set within its node
-// is; with this ratio some 1e-8, and nodes take twice the time.
+// is; with this ratio some 1e-8, with more charges near.
 constexpr double kFineFarRatio = 0.2;
 // Charges nearer than radius / kNearRatio to a centre leave nothing known about that set.
 constexpr double kNearRatio = 0.8;
