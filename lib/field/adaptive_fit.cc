@@ -29,11 +29,12 @@ constexpr double kNearest = 1e-6;  // of the diagonal
 constexpr std::size_t kMarkSamples = 30000;
 // Of the tolerance; other points than those that were looked at differ a little.
 constexpr double kMargin = 0.97;
-constexpr double kErrorAccuracy = 1e-3;  // of the tolerance
-constexpr double kLeastGain = 0.97;      // of the score in the rounds of patience
-constexpr double kForNothing = 4;        // times the charges that did as well
-constexpr double kMostRounds = 20;       // that are looked ahead
-constexpr std::size_t kLookBack = 2;     // rounds, for how the next will go
+constexpr double kAccuracy = 1e-3;      // of the solution, of the tolerance
+constexpr double kMarkAccuracy = 1e-2;  // of the errors that are marked, of the tolerance
+constexpr double kLeastGain = 0.97;     // of the score in the rounds of patience
+constexpr double kForNothing = 4;       // times the charges that did as well
+constexpr double kMostRounds = 20;      // that are looked ahead
+constexpr std::size_t kLookBack = 2;    // rounds, for how the next will go
 constexpr double kOfOutlierRounds = 0.5;
 constexpr double kNextRound = 1.5;  // seconds, of the one before; for a deadline
 
@@ -146,7 +147,7 @@ void AdaptiveFitting::first() {
   collocate(request, values_);
   requireMemory("the first level of charges", memory(), room_, "raise the limit of memory");
   IterativeSettings s;
-  s.accuracy = std::clamp(kErrorAccuracy * settings_.tolerance, 1e-12, s.accuracy);
+  s.accuracy = std::clamp(kAccuracy * settings_.tolerance, 1e-12, s.accuracy);
   solver_.emplace(collocation_,
                   std::vector<SourceLevel>{{coarse.sources, coarse.spacing * problem_.diagonal,
                                             coarse.distance * problem_.diagonal}},
@@ -318,7 +319,7 @@ AdaptiveResult AdaptiveFitting::run() {
     const BoundarySamples fresh = problem_.draw(kMarkSamples, round);
     std::vector<double> errors =
         boundaryErrors(*field_, fresh.collocation(), fresh.values, problem_.unit,
-                       {kErrorAccuracy * settings_.tolerance * problem_.unit});
+                       {kMarkAccuracy * settings_.tolerance * problem_.unit});
     const BoundaryError error = marks_->awayFromJumps(fresh.points, errors);
     rounds_.push_back(
         {solver_->sources().size(), collocation_.size(), solution_.iterations, error});

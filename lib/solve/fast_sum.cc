@@ -173,24 +173,18 @@ struct Checked {
   double error = 0;                                         // in the values' units
 };
 
-// Plain sums at the points that are checked.
-using PlainSums = std::function<FieldSamples(const Charges&)>;
-
 // Orders are raised until what `sample(hierarchy)` gives is within the accuracy, or no better for
 // it: where charges nearly cancel, rounding is most of the error, and no order reaches further.
 // Then the best of them. keep() is called after the sample of each that is the best so far.
 template <typename Sample, typename Keep>
-Checked mostAccurate(const ChargeTree& tree, const Charges& charges, const PlainSums& plain,
-                     const SumSize& size, const FastSumSettings& settings, SumReference& reference,
-                     const Sample& sample, const Keep& keep) {
+Checked mostAccurate(const ChargeTree& tree, const SumSize& size, const FastSumSettings& settings,
+                     const SumReference& reference, const Sample& sample, const Keep& keep) {
   Checked best;
   FarFieldPlan plan = planFor(reference.accuracy());
   while (plan.order <= ExpansionBasis::kMostOrder) {
     Checked now;
     now.hierarchy = std::make_unique<const Hierarchy>(tree, plan, settings);
     const FieldSamples got = sample(*now.hierarchy);
-    if (reference.excess(got) > 1 && !reference.allowsRounding())
-      reference.allowRounding(plain(charges.magnitudes()));
     now.excess = reference.excess(got);
     now.error = reference.error(got);
     const bool gains = now.excess < kLeastGain * best.excess;
@@ -223,12 +217,11 @@ LatticeBlocks someOf(const LatticeBlocks& lattice) {
   return out;
 }
 
-FieldSamples directAt(const Charges& charges, const LatticeBlocks& lattice,
-                      const FastSumSettings& settings) {
+FieldSamples directAt(const Charges& charges, const LatticeBlocks& lattice, bool gradients) {
   Points points;
   for (const Block& b : lattice.blocks)
     for (const std::uint16_t place : placesOf(b)) points.push_back(pointOf(lattice, b, place));
-  return sumCharges(charges, points, settings.gradients);
+  return sumCharges(charges, points, gradients);
 }
 
 // The wanted points of all blocks, in the order of directAt.
@@ -289,12 +282,14 @@ FieldSamples FastSum::at(const Points& points, const FastSumSettings& settings) 
     return sumCharges(data_->direct, some, settings.gradients);
   };
   if (count() == 0 || channels() == 0 || points.empty()) return plain(points);
+  SumSize size{count(), points.size(), kPointsPerLeaf, kLeastOrder, settings.gradients};
+  if (!useHierarchy(size, settings.method)) return plain(points);
   const std::vector<std::size_t> sample = evenly(kSampled, points.size());
   Points some;
   for (const std::size_t i : sample) some.push_back(points[i]);
-  SumReference reference(plain(some), settings.accuracy, settings.absolute);
-  const SumSize size{count(), points.size(), kPointsPerLeaf, planFor(reference.accuracy()).order,
-                     settings.gradients};
+  const SumReference reference(plain(some), sumCharges(data_->direct.magnitudes(), some, false),
+                               settings.accuracy, settings.absolute);
+  size.order = planFor(reference.accuracy()).order;
   if (!useHierarchy(size, settings.method)) return plain(points);
   FieldSamples out, tried;
   const auto sampled = [&](const Hierarchy& hierarchy) {
@@ -307,9 +302,8 @@ FieldSamples FastSum::at(const Points& points, const FastSumSettings& settings) 
     }
     return got;
   };
-  const auto atSome = [&](const Charges& charges) { return sumCharges(charges, some, false); };
-  const Checked best = mostAccurate(data_->tree, data_->direct, atSome, size, settings, reference,
-                                    sampled, [&] { out = std::move(tried); });
+  const Checked best = mostAccurate(data_->tree, size, settings, reference, sampled,
+                                    [&] { out = std::move(tried); });
   if (!best.hierarchy) return plain(points);
   out.error = best.error;
   return out;
@@ -323,15 +317,14 @@ double FastSum::onLattice(const LatticeBlocks& lattice, const BlockVisitor& visi
   Checked best;
   if (count() > 0 && channels() > 0) {
     const LatticeBlocks some = someOf(lattice);
-    SumReference reference(directAt(data_->direct, some, settings), settings.accuracy,
-                           settings.absolute);
+    const SumReference reference(directAt(data_->direct, some, settings.gradients),
+                                 directAt(data_->direct.magnitudes(), some, false),
+                                 settings.accuracy, settings.absolute);
     const SumSize size{count(), wantedPoints(lattice), LatticeBlock::kPoints,
                        planFor(reference.accuracy()).order, settings.gradients};
     if (useHierarchy(size, settings.method))
       best = mostAccurate(
-          data_->tree, data_->direct,
-          [&](const Charges& charges) { return directAt(charges, some, settings); }, size, settings,
-          reference,
+          data_->tree, size, settings, reference,
           [&](const Hierarchy& tried) { return hierarchicalAt(tried, some, channels(), settings); },
           [] {});
   }

@@ -36,8 +36,10 @@ constexpr int kLastPatience = 3;  // what the last step does not reach is missed
 // proportion at a smaller one. Steps that can be met take 4,000 to 13,000; jumps across slits take
 // all there are.
 constexpr double kStepSources = 15000;
-// Of the target's diagonal. Sums, and where points inside go; the mesh about an intermediate shape.
-constexpr double kSumAccuracy = 1e-6, kChord = 1e-3;
+// Of the target's diagonal: sums, and where points inside go (a share of the tolerance where that
+// is less); the mesh about an intermediate shape.
+constexpr double kSumShare = 2e-3;
+constexpr double kSumAccuracy = 3e-6, kChord = 1e-3;
 
 struct Step {
   MapStep record;
@@ -96,7 +98,7 @@ class StepFitter {
  private:
   CarriedSettings carrySettings() const {
     CarriedSettings s;
-    s.accuracy = std::min(kSumAccuracy, 1e-3 * settings_.tolerance) * unit_;
+    s.accuracy = std::min(kSumAccuracy, kSumShare * settings_.tolerance) * unit_;
     s.chord = std::min(kChord, settings_.tolerance) * unit_;
     s.seed = settings_.seed;
     return s;

@@ -7,16 +7,18 @@
 
 namespace innermap {
 
-// For sums with this relative accuracy, in [1e-12, 0.1].
+// For sums with this accuracy, above 0, as a share of the sums of absolute weights.
 FarFieldPlan planFor(double accuracy);
 
 // After the error was `excess` times what is allowed; the order may pass the highest there is.
 FarFieldPlan raised(FarFieldPlan plan, double excess);
 
+constexpr int kLeastOrder = 5;
+
 struct SumSize {
   std::size_t charges = 0, points = 0;
   std::size_t pointsPerLeaf = 1;
-  int order = 0;
+  int order = kLeastOrder;
   bool gradients = false;
 };
 

@@ -9,8 +9,8 @@ namespace {
 constexpr double kGradients = 100;  // their error may be so many times that of the values
 // Where an absolute accuracy allows more: gradients still count.
 constexpr double kLoosest = 1e-3;
-// Of the charges' own size: the root mean square of what sums of any kind lose; measured 4e-17 with
-// 60,000 charges.
+// Of the magnitudes: the root mean square of what sums of any kind lose; measured 4e-17 with 60,000
+// charges.
 constexpr double kRounding = 2e-16;
 
 double rootMeanSquare(const double* values, std::size_t count) {
@@ -35,19 +35,25 @@ double ratio(const Matrix& got, const Matrix& exact, std::size_t first, std::siz
 
 }  // namespace
 
-SumReference::SumReference(FieldSamples exact, double accuracy, double absolute)
+SumReference::SumReference(FieldSamples exact, const FieldSamples& magnitudes, double accuracy,
+                           double absolute)
     : exact_(std::move(exact)),
       relative_(exact_.values.columns(), accuracy),
-      rounding_(relative_.size(), 0) {
+      magnification_(relative_.size(), 1) {
+  const std::size_t count = exact_.values.rows();
   for (std::size_t k = 0; k < relative_.size(); ++k) {
-    const double size = rootMeanSquare(exact_.values.column(k), exact_.values.rows());
-    if (size > 0)
-      relative_[k] = std::clamp(absolute / size, relative_[k], std::max(relative_[k], kLoosest));
+    const double size = rootMeanSquare(exact_.values.column(k), count);
+    if (!(size > 0)) continue;
+    relative_[k] = std::clamp(absolute / size, relative_[k], std::max(relative_[k], kLoosest));
+    magnification_[k] = rootMeanSquare(magnitudes.values.column(k), count) / size;
   }
 }
 
 double SumReference::accuracy() const {
-  return *std::min_element(relative_.begin(), relative_.end());
+  double least = 1;
+  for (std::size_t k = 0; k < relative_.size(); ++k)
+    least = std::min(least, relative_[k] / magnification_[k]);
+  return std::max(least, kRounding);
 }
 
 double SumReference::error(const FieldSamples& got) const {
@@ -57,21 +63,11 @@ double SumReference::error(const FieldSamples& got) const {
   return worst;
 }
 
-void SumReference::allowRounding(const FieldSamples& magnitudes) {
-  allowsRounding_ = true;
-  const std::size_t count = exact_.values.rows();
-  for (std::size_t k = 0; k < relative_.size(); ++k) {
-    const double size = rootMeanSquare(exact_.values.column(k), count);
-    if (size > 0)
-      rounding_[k] = kRounding * rootMeanSquare(magnitudes.values.column(k), count) / size;
-  }
-}
-
 double SumReference::excess(const FieldSamples& got) const {
   double worst = 0;
   for (std::size_t k = 0; k < relative_.size(); ++k) {
-    worst = std::max(worst,
-                     ratio(got.values, exact_.values, k, 1) / std::max(relative_[k], rounding_[k]));
+    worst = std::max(worst, ratio(got.values, exact_.values, k, 1) /
+                                std::max(relative_[k], kRounding * magnification_[k]));
     if (!exact_.gradients.empty())
       worst = std::max(
           worst, ratio(got.gradients, exact_.gradients, 3 * k, 3) / (kGradients * relative_[k]));

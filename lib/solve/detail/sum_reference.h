@@ -9,10 +9,13 @@ namespace innermap {
 
 class SumReference {
  public:
-  // accuracy, absolute: as in FastSumSettings.
-  SumReference(FieldSamples exact, double accuracy, double absolute);
+  // magnitudes: the sums of absolute weights, at the same points; gradients are not read. accuracy,
+  // absolute: as in FastSumSettings.
+  SumReference(FieldSamples exact, const FieldSamples& magnitudes, double accuracy,
+               double absolute);
 
-  // The relative accuracy that all channels need.
+  // What all channels need, as a share of the magnitudes: where charges nearly cancel, far less
+  // than of the values.
   double accuracy() const;
 
   // Of sums at the same points: the largest error over what is allowed.
@@ -21,17 +24,10 @@ class SumReference {
   // Of values at the same points: the largest root mean square error of a channel, in their units.
   double error(const FieldSamples& got) const;
 
-  // Where charges nearly cancel their sums are exact to rounding of the charges' own sizes, no
-  // more: from now on as much is allowed. magnitudes: the sums of absolute weights, at the same
-  // points.
-  void allowRounding(const FieldSamples& magnitudes);
-  bool allowsRounding() const { return allowsRounding_; }
-
  private:
   FieldSamples exact_;
-  std::vector<double> relative_;  // of each channel
-  std::vector<double> rounding_;  // relative to the values too; where it is allowed
-  bool allowsRounding_ = false;
+  std::vector<double> relative_;       // of each channel
+  std::vector<double> magnification_;  // of each channel: its magnitudes to its values
 };
 
 }  // namespace innermap
