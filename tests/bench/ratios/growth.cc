@@ -27,7 +27,7 @@ constexpr Curve kCurves[] = {
     {"voxels", "level set", "levelset", 0, "voxels", "level set s", "triangles", false},
     {"triangles", "level set", "levelset", 0, "triangles", "level set s", "across"},
     {"triangles", "meshToVolume", "levelset", 0, "triangles", "meshToVolume s", "across"},
-    {"triangles", "cleaning, trees", "levelset", 0, "triangles", "solid s", "across"},
+    {"triangles", "solid", "levelset", 0, "triangles", "solid s", "across"},
 };
 
 SvgSeries pointsOf(const Curve& curve, const Json& sections) {
