@@ -119,26 +119,85 @@ struct TriangleTree::Implementation {
     }
   }
 
-  void searchLeaf(const Bvh::Node& node, const Vec3& p, Candidate& best, int& bestIndex) const {
-    for (int i = node.first; i < node.first + node.count; ++i) {
-      const Leaf& t = triangles[i];
-      const Candidate found = closestOnTriangle(p, t.a, t.b, t.c, t.sliver);
-      if (found.squared < best.squared ||
-          (found.squared == best.squared && bestIndex >= 0 && t.index < bestIndex)) {
-        best = found;
-        bestIndex = t.index;
-      }
+  void search(int i, const Vec3& p, Candidate& best, int& bestIndex) const {
+    const Leaf& t = triangles[i];
+    const Candidate found = closestOnTriangle(p, t.a, t.b, t.c, t.sliver);
+    if (found.squared < best.squared ||
+        (found.squared == best.squared && bestIndex >= 0 && t.index < bestIndex)) {
+      best = found;
+      bestIndex = t.index;
     }
   }
 
-  ClosestPoint closest(const Vec3& world, double within) const {
+  ClosestPoint pointOf(const Candidate& best, int bestIndex) const {
     ClosestPoint result;
-    result.address.triangle = -1;
-    if (bvh.nodes.empty() || !isFinite(world) || !(within > 0)) return result;
+    result.address.triangle = bestIndex;
+    if (bestIndex < 0) return result;
+    result.address.barycentric = {1 - best.v - best.w, best.v, best.w};
+    result.position = frame.toWorld(best.position);
+    result.distance = std::sqrt(best.squared) * frame.inverse;
+    return result;
+  }
+
+  double squaredDistance(int i, const Vec3& p) const {
+    const Box3& box = boxes[i];
+    double sum = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double d = std::max({box.lower[a] - p[a], 0.0, p[a] - box.upper[a]});
+      sum += d * d;
+    }
+    return sum;
+  }
+
+  double squaredReach(double within) const {
+    return (within * frame.scale) * (within * frame.scale);
+  }
+
+  void collect(const Vec3& world, double within, Part& part) const {
+    part.clear();
+    if (bvh.nodes.empty()) return;
+    const Vec3 p = frame.toLocal(world);
+    const double reach = squaredReach(within);
+    std::array<int, Bvh::kMaxDepth + 2> stack;
+    int top = 0;
+    stack[top++] = 0;
+    while (top > 0) {
+      const Bvh::Node& node = bvh.nodes[stack[--top]];
+      if (!(node.squaredDistance(p) <= reach)) continue;
+      if (!node.leaf()) {
+        stack[top++] = node.first + 1;
+        stack[top++] = node.first;
+        continue;
+      }
+      for (int i = node.first; i < node.first + node.count; ++i)
+        if (squaredDistance(i, p) <= reach) part.push_back(i);
+    }
+  }
+
+  void collect(const Vec3& world, double within, const Part& from, Part& part) const {
+    part.clear();
+    const Vec3 p = frame.toLocal(world);
+    const double reach = squaredReach(within);
+    for (const int i : from)
+      if (squaredDistance(i, p) <= reach) part.push_back(i);
+  }
+
+  ClosestPoint closest(const Vec3& world, double within, const Part& part) const {
     const Vec3 p = frame.toLocal(world);
     Candidate best;
-    best.squared = (within * frame.scale) * (within * frame.scale);
+    best.squared = squaredReach(within);
     int bestIndex = -1;
+    for (const int i : part)
+      if (squaredDistance(i, p) <= best.squared) search(i, p, best, bestIndex);
+    return pointOf(best, bestIndex);
+  }
+
+  ClosestPoint closest(const Vec3& world, double within) const {
+    Candidate best;
+    int bestIndex = -1;
+    if (bvh.nodes.empty() || !isFinite(world) || !(within > 0)) return pointOf(best, bestIndex);
+    const Vec3 p = frame.toLocal(world);
+    best.squared = squaredReach(within);
 
     struct Entry {
       int node;
@@ -153,7 +212,7 @@ struct TriangleTree::Implementation {
       if (!(entry.squared <= best.squared)) continue;
       const Bvh::Node& node = bvh.nodes[entry.node];
       if (node.leaf()) {
-        searchLeaf(node, p, best, bestIndex);
+        for (int i = node.first; i < node.first + node.count; ++i) search(i, p, best, bestIndex);
         continue;
       }
       Entry near{node.first, bvh.nodes[node.first].squaredDistance(p)};
@@ -162,12 +221,7 @@ struct TriangleTree::Implementation {
       if (far.squared <= best.squared) stack[top++] = far;
       if (near.squared <= best.squared) stack[top++] = near;
     }
-    if (bestIndex < 0) return result;
-    result.address.triangle = bestIndex;
-    result.address.barycentric = {1 - best.v - best.w, best.v, best.w};
-    result.position = frame.toWorld(best.position);
-    result.distance = std::sqrt(best.squared) * frame.inverse;
-    return result;
+    return pointOf(best, bestIndex);
   }
 
   void visitLeaves(const Bvh::Node& x, const Bvh::Node& y,
@@ -218,6 +272,18 @@ TriangleTree::TriangleTree(const Points& vertices, const std::vector<Triangle>& 
 
 ClosestPoint TriangleTree::closest(const Vec3& p, double within) const {
   return implementation_->closest(p, within);
+}
+
+void TriangleTree::collect(const Vec3& p, double within, Part& part) const {
+  implementation_->collect(p, within, part);
+}
+
+void TriangleTree::collect(const Vec3& p, double within, const Part& from, Part& part) const {
+  implementation_->collect(p, within, from, part);
+}
+
+ClosestPoint TriangleTree::closest(const Vec3& p, double within, const Part& part) const {
+  return implementation_->closest(p, within, part);
 }
 
 void TriangleTree::overlappingPairs(const std::function<void(int, int)>& visit) const {

@@ -32,6 +32,17 @@ class TriangleTree {
   ClosestPoint closest(const Vec3& p,
                        double within = std::numeric_limits<double>::infinity()) const;
 
+  // Some of the triangles, by the tree's own numbers: searches of many places that lie together
+  // need not look at all of them.
+  using Part = std::vector<int>;
+
+  // Those that may be as near to p as `within`: all that are, and some more. `part` is replaced.
+  void collect(const Vec3& p, double within, Part& part) const;
+  void collect(const Vec3& p, double within, const Part& from, Part& part) const;
+
+  // The same as closest() of all, if the part has that one.
+  ClosestPoint closest(const Vec3& p, double within, const Part& part) const;
+
   // Calls visit(i, j), i < j, for each pair of triangles whose boxes overlap.
   void overlappingPairs(const std::function<void(int, int)>& visit) const;
 

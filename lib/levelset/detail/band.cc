@@ -1,5 +1,6 @@
 #include "levelset/detail/band.h"
 
+#include <array>
 #include <cmath>
 
 #include "innermap/core/run.h"
@@ -110,39 +111,58 @@ double Band::estimateLeaves() const {
   return static_cast<double>(level.corners.size()) * fill * ratio * ratio * ratio;
 }
 
-void Band::fill(const Coord& leaf, const Coord& corner, int size, double bound,
-                double* values) const {
+// A leaf's values, and for each size of blocks the triangles that its voxels may be closest to.
+struct Band::Filling {
+  openvdb::Coord leaf;
+  double* values;
+  std::array<TriangleTree::Part, 4> near;
+
+  double* row(const Coord& voxel) const {
+    const Coord at = voxel - leaf;
+    return values + (at[0] << 6 | at[1] << 3 | at[2]);
+  }
+};
+
+void Band::fill(const Coord& corner, int size, double bound, const TriangleTree::Part& near,
+                Filling& filling) const {
   const double half = 0.5 * (size - 1) * voxelSize_;
   const Vec3 center = position(corner) + Vec3{half, half, half};
   const double radius = blockRadius(size) * voxelSize_;
   const double slack = kSlack * voxelSize_;
   const double within = std::min(bound, upper_ + radius) + slack;
-  const ClosestPoint found = body_.closest(center, within);
+  const ClosestPoint found = body_.tree().closest(center, within, near);
   const bool far = found.address.triangle < 0;
-  const Coord at = corner - leaf;
   if (size == 1) {
-    values[at[0] << 6 | at[1] << 3 | at[2]] = far ? kInfinity : found.distance;
+    *filling.row(corner) = far ? kInfinity : found.distance;
     return;
   }
   if (far || found.distance + radius + slack < lower_) {
     for (int x = 0; x < size; ++x) {
       for (int y = 0; y < size; ++y) {
-        double* row = values + ((at[0] + x) << 6 | (at[1] + y) << 3 | at[2]);
+        double* row = filling.row(corner.offsetBy(x, y, 0));
         std::fill(row, row + size, far ? kInfinity : 0.0);
       }
     }
     return;
   }
+  // What is closest to a voxel is no farther from the centre than by twice the radius more.
+  TriangleTree::Part& nearer = filling.near[size / 4];
+  body_.tree().collect(center, std::min(found.distance + 2 * radius, upper_ + radius) + slack, near,
+                       nearer);
   const double childBound = found.distance + 0.25 * size * kSqrt3 * voxelSize_;
   const int s = size / 2;
-  for (int c = 0; c < 8; ++c) {
-    const Coord child = corner.offsetBy(c & 4 ? s : 0, c & 2 ? s : 0, c & 1 ? s : 0);
-    fill(leaf, child, s, childBound, values);
-  }
+  for (int c = 0; c < 8; ++c)
+    fill(corner.offsetBy(c & 4 ? s : 0, c & 2 ? s : 0, c & 1 ? s : 0), s, childBound, nearer,
+         filling);
 }
 
 void Band::distances(const Coord& leaf, double* values) const {
-  fill(leaf, leaf, kLeaf, kInfinity, values);
+  const double half = 0.5 * (kLeaf - 1) * voxelSize_,
+               reach = upper_ + (blockRadius(kLeaf) + kSlack) * voxelSize_;
+  Filling filling{leaf, values, {}};
+  TriangleTree::Part& near = filling.near[3];
+  body_.tree().collect(position(leaf) + Vec3{half, half, half}, reach, near);
+  fill(leaf, kLeaf, kInfinity, near, filling);
 }
 
 }  // namespace innermap

@@ -38,8 +38,9 @@ class Band {
   Level firstLevel() const;
   Level refined(const Level& level) const;
   bool mayTouch(const openvdb::Coord& corner, int size) const;
-  void fill(const openvdb::Coord& leaf, const openvdb::Coord& corner, int size, double bound,
-            double* values) const;
+  struct Filling;
+  void fill(const openvdb::Coord& corner, int size, double bound, const TriangleTree::Part& near,
+            Filling& filling) const;
 
   const SolidBody& body_;
   Vec3 origin_;

@@ -32,21 +32,24 @@ float backgroundOf(double width) {
 }
 
 // Signs of one leaf's voxels. Two neighbours have the same sign when the balls about them that are
-// free of surface meet; one winding number settles each set of voxels so connected.
+// free of surface meet; one winding number settles each set of voxels so connected. Next to the
+// surface it is often only a neighbour across an edge or a corner whose ball is large enough.
 class LeafSigns {
  public:
   LeafSigns(const SolidBody& body, const Band& band, const Coord& leaf, double voxelSize,
             const double* distances)
       : distances_(distances), sets_(Band::kLeafVoxels) {
     // More than one voxel by a margin for rounding: faces often lie just between two voxels.
-    const double reach = (1 + 1e-6) * voxelSize + 2 * body.gap();
+    for (int n = 1; n <= 3; ++n)
+      reach_[n] = (1 + 1e-6) * std::sqrt(double(n)) * voxelSize + 2 * body.gap();
     for (int x = 0; x < 8; ++x) {
       for (int y = 0; y < 8; ++y) {
         for (int z = 0; z < 8; ++z) {
           const int i = x << 6 | y << 3 | z;
-          if (x < 7) connect(i, i + 64, reach);
-          if (y < 7) connect(i, i + 8, reach);
-          if (z < 7) connect(i, i + 1, reach);
+          if (x < 7) connect(i, i + 64, reach_[1]);
+          if (y < 7) connect(i, i + 8, reach_[1]);
+          if (z < 7) connect(i, i + 1, reach_[1]);
+          if (2 * distances[i] <= reach_[1]) connectAcross(x, y, z);
         }
       }
     }
@@ -71,7 +74,20 @@ class LeafSigns {
     if (distances_[i] + distances_[j] > reach) sets_.unite(i, j);
   }
 
+  void connectAcross(int x, int y, int z) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dz = -1; dz <= 1; ++dz) {
+          const int axes = dx * dx + dy * dy + dz * dz;
+          if (axes < 2 || ((x + dx) | (y + dy) | (z + dz)) & ~7) continue;
+          connect(x << 6 | y << 3 | z, (x + dx) << 6 | (y + dy) << 3 | (z + dz), reach_[axes]);
+        }
+      }
+    }
+  }
+
   const double* distances_;
+  std::array<double, 4> reach_{};
   DisjointSets sets_;
   std::array<bool, Band::kLeafVoxels> inside_{};
 };

@@ -25,6 +25,8 @@ class SolidBody {
   // Triangle -1 when farther than `within`.
   ClosestPoint closest(const Vec3& p, double within) const { return tree_.closest(p, within); }
 
+  const TriangleTree& tree() const { return tree_; }
+
   // By the divergence theorem; whether that is exact enough.
   double enclosedVolume() const { return signedVolume(surface()); }
   bool closedWellEnough() const;

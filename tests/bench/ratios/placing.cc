@@ -1,5 +1,6 @@
 // What comes before the fit: reading, checking, the solid, points on and outside the surface.
 #include <cmath>
+#include <filesystem>
 
 #include "innermap/levelset/solid.h"
 #include "innermap/mesh/check.h"
@@ -30,9 +31,20 @@ Json place(const std::string& file, std::size_t sources, const Options& options)
   const double spacing = std::sqrt(solid.area() / static_cast<double>(sources));
   sourceShell(solid, kDistance * spacing / solid.diagonal(), settings);
   const double shell = watch.lap();
-  return {{"mesh", file},       {"sources", sources},      {"read s", read},
-          {"check s", check},   {"solid s", solidSeconds}, {"surface points s", surface},
-          {"sources s", shell}, {"all s", whole.lap()}};
+  const double all = whole.lap();
+  Json row{{"mesh", file},
+           {"sources", sources},
+           {"read s", read},
+           {"check s", check},
+           {"solid s", solidSeconds},
+           {"surface points s", surface},
+           {"sources s", shell},
+           {"all s", all}};
+  Work work;  // the file, and four points a source
+  work.bytes = static_cast<double>(std::filesystem::file_size(options.model(file)) +
+                                   4 * sizeof(Vec3) * sources);
+  row.update(besideLimit(options.limits, work, all));
+  return row;
 }
 
 }  // namespace

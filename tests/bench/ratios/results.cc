@@ -43,7 +43,7 @@ void Table::add(const Json& row) {
     fmt::print("\n");
   }
   for (std::size_t c = 0; c < columns_.size(); ++c)
-    fmt::print("{:<{}}", row.contains(columns_[c]) ? cell(row[columns_[c]]) : "", widths_[c]);
+    fmt::print("{:<{}} ", row.contains(columns_[c]) ? cell(row[columns_[c]]) : "", widths_[c] - 1);
   fmt::print("\n");
   std::fflush(stdout);
   rows_.push_back(row);

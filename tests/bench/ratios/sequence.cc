@@ -10,6 +10,7 @@
 namespace innermap::bench {
 
 Tables sequence(const Options& options) {
+  constexpr int kShown = 12;  // every so manieth frame has a row, and the first two
   const int frames = options.quick ? 3 : 24;
   const Mesh reference = readMesh(options.model("horse-gallop/reference.obj"));
   FrameFitterSettings settings;
@@ -30,13 +31,19 @@ Tables sequence(const Options& options) {
     if (f == 1) first = setUp + seconds;
     if (f > 1) slowest = std::max(slowest, seconds);
     if (f > 1) sum += seconds;
-    table.add({{"frame", f},
-               {"set-up s", f == 1 ? setUp : 0.0},
-               {"fit s", seconds},
-               {"iterations", fit.iterations},
-               {"fit / first", f == 1 ? 1.0 : seconds / first},
-               {"rms", fit.error.rms},
-               {"p99", fit.error.p99}});
+    if (f > 2 && f % kShown != 0) continue;
+    Json row{{"frame", f},
+             {"set-up s", f == 1 ? setUp : 0.0},
+             {"fit s", seconds},
+             {"iterations", fit.iterations},
+             {"fit / first", f == 1 ? 1.0 : seconds / first},
+             {"rms", fit.error.rms},
+             {"p99", fit.error.p99}};
+    Work work;  // the frame's vertices and the charges' weights
+    work.bytes =
+        static_cast<double>(sizeof(Vec3) * (frame.vertices.size() + fitter.sources().size()));
+    row.update(besideLimit(options.limits, work, seconds));
+    table.add(row);
   }
   const double mean = sum / (frames - 1);
   table.note(fmt::format(

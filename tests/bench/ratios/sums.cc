@@ -15,6 +15,7 @@
 #include "pairs.h"
 #include "program.h"
 #include "sample/source_points.h"
+#include "solve/detail/sum_plan.h"
 
 namespace innermap::bench {
 namespace {
@@ -174,7 +175,18 @@ struct Measured {
   Json row;
 };
 
-Measured measure(const Sources& sources, const Voxels& voxels, int across, double accuracy) {
+// Writing the values and derivatives of a voxel, and evaluating its polynomial; charges nearby come
+// on top.
+Work leastWork(const Voxels& voxels, double accuracy) {
+  const double n = static_cast<double>(voxels.count), order = planFor(accuracy).order;
+  Work work;
+  work.bytes = 12 * sizeof(float) * n;
+  work.multiplyAdds = 12 * (order + 1) * (order + 1) * n;
+  return work;
+}
+
+Measured measure(const Sources& sources, const Voxels& voxels, int across, double accuracy,
+                 const Limits& limits) {
   const Charges charges(sources.points, sources.weights);
   const Points timed = voxels.positions(voxels.timed);
   Measured out;
@@ -207,6 +219,10 @@ Measured measure(const Sources& sources, const Voxels& voxels, int across, doubl
              {"gradient error", relativeError(kept.gradients(), exact.gradients, 3)},
              {"Mvoxels/s", 1e-6 * n / out.seconds},
              {"bytes/voxel", static_cast<std::int64_t>(std::max(0.0, bytes / n))}};
+  out.row.update(besideLimit(limits, leastWork(voxels, accuracy), out.seconds));
+  Work plain;
+  plain.pairs = n * static_cast<double>(sources.points.size());
+  out.row["direct of limit %"] = besideLimit(limits, plain, out.direct)["of limit %"];
   return out;
 }
 
@@ -221,14 +237,17 @@ Tables sums(const Options& options) {
   const Sources random = shells(solid, count), many = shells(solid, 4 * count);
 
   Table table("Sums at all interior voxels of the horse: three channels, values and gradients");
-  const Measured a = measure(random, small, coarse, 1e-5), b = measure(random, large, fine, 1e-5);
-  const Measured c = measure(random, large, fine, 1e-7);
-  const Measured d = measure(many, small, coarse, 1e-5), e = measure(many, large, fine, 1e-5);
+  const Limits& limits = options.limits;
+  const Measured a = measure(random, small, coarse, 1e-5, limits),
+                 b = measure(random, large, fine, 1e-5, limits),
+                 c = measure(random, large, fine, 1e-7, limits),
+                 d = measure(many, small, coarse, 1e-5, limits),
+                 e = measure(many, large, fine, 1e-5, limits);
   for (const Measured& m : {a, b, c, d, e}) table.add(m.row);
   const Sources fitted = fittedSources(pair, count, options);
-  table.add(measure(fitted, small, coarse, 1e-5).row);
-  table.add(measure(fitted, large, fine, 1e-5).row);
-  table.add(measure(fitted, large, fine, 1e-7).row);
+  table.add(measure(fitted, small, coarse, 1e-5, limits).row);
+  table.add(measure(fitted, large, fine, 1e-5, limits).row);
+  table.add(measure(fitted, large, fine, 1e-7, limits).row);
   table.note("direct: the vectorised sum, timed at " + std::to_string(kTimed) +
              " of the voxels and scaled; errors: rms over rms at " + std::to_string(kChecked) +
              " voxels against direct sums, half of them in leaves along the boundary");
@@ -240,6 +259,10 @@ Tables sums(const Options& options) {
   table.note(
       "bytes/voxel: peak memory of the sum and its result of 48 bytes a voxel of the leaves, "
       "over interior voxels");
+  table.note(
+      "limit s: 48 bytes a voxel and the multiply-adds of the far charges' polynomial alone; of "
+      "the "
+      "direct sum: its pairs");
   return {table.json()};
 }
 

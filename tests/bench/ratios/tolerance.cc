@@ -15,17 +15,17 @@ Json run(const Pair& pair, const char* tolerance, const Options& options) {
                                      options);
   const HarmonicField field = readField(file).steps.front();
   const FreshError error = freshError(field, pair, kFresh);
-  return {{"pair", pair.name},
-          {"tolerance", tolerance},
-          {"met", error.p99 <= std::stod(tolerance) ? "yes" : "NO"},
-          {"to weights s", secondsToWeights(done.report)},
-          {"process s", done.seconds},
-          {"sources", field.sources().size()},
-          {"rms", error.rms},
-          {"p99", error.p99},
-          {"max", error.max},
-          {"max / rms", error.max / error.rms},
-          {"peak GB", gigabytes(done.report)}};
+  Json row{{"pair", pair.name},
+           {"tolerance", tolerance},
+           {"met", error.p99 <= std::stod(tolerance) ? "yes" : "NO"},
+           {"to weights s", secondsToWeights(done.report)},
+           {"sources", field.sources().size()},
+           {"rms", error.rms},
+           {"p99", error.p99},
+           {"max", error.max},
+           {"max / rms", error.max / error.rms}};
+  row.update(done.costs(options));
+  return row;
 }
 
 }  // namespace

@@ -74,6 +74,30 @@ TEST(TriangleTree, ClosestAgreesWithAllTriangles) {
   }
 }
 
+// Places in a ball: the part about its centre, and of that the part about a smaller ball's.
+TEST(TriangleTree, PartsHoldWhatIsClosestInABall) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const Mesh mesh = shapes::soup(400, seed == 2 ? 2.0 : 0.1, seed);
+    const TriangleTree tree(mesh.vertices, mesh.triangles);
+    const CounterRandom random(seed, 6);
+    TriangleTree::Part part, smaller;
+    for (std::uint64_t i = 0; i < 300; ++i) {
+      const Vec3 center = 1.2 * randomPoint(random, 3 * i);
+      const double radius = 0.1;
+      tree.collect(center, tree.closest(center).distance + 2.001 * radius, part);
+      const Vec3 within = center + 0.4 * radius * randomPoint(random, 3 * i + 1);
+      tree.collect(within, tree.closest(within).distance + 0.201 * radius, part, smaller);
+      EXPECT_LE(smaller.size(), part.size());
+      const Vec3 p = within + 0.05 * radius * randomPoint(random, 3 * i + 2);
+      const ClosestPoint found = tree.closest(p), inPart = tree.closest(p, 10, smaller);
+      EXPECT_EQ(inPart.address.triangle, found.address.triangle);
+      EXPECT_EQ(inPart.distance, found.distance);  // the same sums
+      EXPECT_EQ(tree.closest(p, 0.999 * found.distance, smaller).address.triangle, -1);
+    }
+  }
+}
+
 TEST(TriangleTree, RadiusBoundsTheSearch) {
   const Mesh mesh = shapes::icosphere(3);
   const TriangleTree tree(mesh.vertices, mesh.triangles);
