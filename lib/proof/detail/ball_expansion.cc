@@ -6,7 +6,11 @@ namespace innermap::proof {
 namespace {
 
 // Of what degree 2 does to the gradient.
-constexpr double kWorthless = 0.003;
+constexpr double kWorthless = 0.001;
+
+// Of what is left out of charges that are just far enough, for lower orders: there are more of
+// these charges.
+constexpr double kLower = 0.1;
 
 double leftOut(int order, double ratio) {
   return std::pow(ratio, order) * (order + 1 - order * ratio) / ((1 - ratio) * (1 - ratio));
@@ -41,9 +45,10 @@ std::array<double, kOrder + 1> degreeNorms(const StepExpansion& from) {
 }  // namespace
 
 OrderRule::OrderRule(double farRatio) {
-  for (std::size_t i = 0; i < kOrders.size(); ++i) {
-    const double ratio = ratioOf(kOrders[i], leftOut(kOrder, farRatio));
-    least_[i] = (1 + 1e-12) / (ratio * ratio);
+  least_[0] = 1 / (farRatio * farRatio);
+  for (std::size_t i = 1; i < kOrders.size(); ++i) {
+    const double ratio = ratioOf(kOrders[i], kLower * leftOut(kOrder, farRatio));
+    least_[i] = 1 / (ratio * ratio);
   }
 }
 
@@ -61,8 +66,9 @@ void arrange(const std::uint32_t* charges, const std::vector<std::uint8_t>& plac
   for (std::size_t i = 0; i < places.size(); ++i) out.list[next[places[i]]++] = charges[i];
 }
 
-void sortCharges(const double* charges, const std::vector<std::uint32_t>& some, const Ball& ball,
-                 const OrderRule& rule, std::vector<std::uint8_t>& places, OrderedCharges& out) {
+void sortCharges(const double* charges, const std::vector<std::uint32_t>& some,
+                 const ExpansionBall& ball, const OrderRule& rule,
+                 std::vector<std::uint8_t>& places, OrderedCharges& out) {
   // Of their own, so that bytes written do not seem to change them.
   const OrderRule at = rule;
   const Vec3 center = ball.center;
@@ -77,7 +83,7 @@ void sortCharges(const double* charges, const std::vector<std::uint32_t>& some, 
 }
 
 void expandAbout(const double* charges, const StepExpansion& from, int order,
-                 const OrderedCharges& added, const Ball& ball, StepExpansion& out) {
+                 const OrderedCharges& added, const ExpansionBall& ball, StepExpansion& out) {
   out.center = ball.center;
   out.coefficients.resize(kCoefficients);
   moveExpansion(from, order, ball.center, out.coefficients.data());
@@ -87,7 +93,7 @@ void expandAbout(const double* charges, const StepExpansion& from, int order,
   addCharges(charges, added, ball.radius, out);
 }
 
-int worthyOrder(const StepExpansion& from, const Ball& ball, Remainder& rest) {
+int worthyOrder(const StepExpansion& from, const ExpansionBall& ball, Remainder& rest) {
   // About the expansion's own centre.
   const double radius = (norm(ball.center - from.center) + ball.radius) * (1 + 1e-13);
   const std::array<double, kOrder + 1> norms = degreeNorms(from);

@@ -70,7 +70,7 @@ std::unique_ptr<FieldTree::Node> FieldTree::childOf(const Node& parent, const Ve
   auto child = std::make_unique<Node>();
   child->half = 0.5 * parent.half;
   child->level = parent.level + 1;
-  const Ball ball{center, kReach * child->half};
+  const ExpansionBall ball{center, kReach * child->half};
   OrderedCharges far;
   std::vector<std::uint8_t> places;
   sortCharges(charges(), parent.expansion.near, ball, rule_, places, far);

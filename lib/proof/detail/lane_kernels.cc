@@ -58,8 +58,8 @@ struct Complex {
 // I_nm(q) = (n - m)! P_n^m(cos theta) e^(i m phi) / r^(n+1): 1/|x - q| is the sum of
 // I_nm(q) conj(R_nm(x)).
 struct Arm {
-  V x, y, z;  // to the charge, over the square of the distance
-  V inverse;  // of that square
+  V x, y, z;         // to the charge, over the square of the distance
+  V inverse;         // of that square
   Complex diagonal;  // I_mm, at first of m = 0
   V weight[3];
 };

@@ -66,8 +66,7 @@ void addCharges(const double* charges, const OrderedCharges& some, double radius
 // coefficients, kCoefficients x kLanes or kCoefficients; those above are 0.
 void moveExpansion(const StepExpansion& from, int order, const LaneSets& sets,
                    double* coefficients);
-void moveExpansion(const StepExpansion& from, int order, const Vec3& center,
-                   double* coefficients);
+void moveExpansion(const StepExpansion& from, int order, const Vec3& center, double* coefficients);
 
 // The test of whole sets.
 void examine(const double* coefficients, const LaneRemainders& remainders, const LaneSets& sets,

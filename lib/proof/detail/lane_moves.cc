@@ -182,8 +182,7 @@ void moveExpansion(const StepExpansion& from, int order, const LaneSets& sets,
   HWY_DYNAMIC_DISPATCH(MoveExpansion)(from, order, sets, coefficients);
 }
 
-void moveExpansion(const StepExpansion& from, int order, const Vec3& center,
-                   double* coefficients) {
+void moveExpansion(const StepExpansion& from, int order, const Vec3& center, double* coefficients) {
   HWY_DYNAMIC_DISPATCH(MoveToOne)(from, order, center, coefficients);
 }
 

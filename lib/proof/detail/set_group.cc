@@ -58,10 +58,10 @@ std::uint8_t evenLanes(const LaneSets& sets, std::uint8_t lanes) {
   return lanes & lanesBelow(sets.radius, kMostUneven * least);
 }
 
-Ball ballAbout(const LaneSets& sets) {
+ExpansionBall ballAbout(const LaneSets& sets) {
   Box3 box;
   for (std::size_t lane = 0; lane < kLanes; ++lane) box.add(centerOf(sets, lane));
-  Ball out{box.center(), 0};
+  ExpansionBall out{box.center(), 0};
   for (std::size_t lane = 0; lane < kLanes; ++lane)
     out.radius = std::max(out.radius, norm(centerOf(sets, lane) - out.center) + sets.radius[lane]);
   out.radius *= 1 + 1e-12;
@@ -74,7 +74,7 @@ Ball ballAbout(const LaneSets& sets) {
 bool SetGroup::computeStep(const FieldTree& tree, LaneSets& sets, std::uint8_t needed,
                            LaneFindings& out) {
   fillUnused(sets, needed);
-  const Ball ball = ballAbout(sets);
+  const ExpansionBall ball = ballAbout(sets);
   const StepExpansion& node = tree.about(ball.center, ball.radius);
   // Nodes of the tree are up to three times as large as the group, so that most of what is near a
   // node is far from the group: it is expanded about it once, not about each set.

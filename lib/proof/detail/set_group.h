@@ -35,7 +35,7 @@ class SetGroup {
 
   std::vector<LaneFindings> findings_;
   Numbers coefficients_ = Numbers(kCoefficients * kLanes);
-  StepExpansion own_;  // about the whole group
+  StepExpansion own_;          // about the whole group
   OrderedCharges far_, near_;  // of it
   std::vector<std::uint8_t> places_;
   std::vector<double> nearest_;

@@ -19,7 +19,9 @@ inline ValueAndGradient evaluate(const proof::StepExpansion& from, const Vec3& p
   proof::moveExpansion(from, proof::kOrder, p, c);
   ValueAndGradient out;
   for (int k = 0; k < 3; ++k) {
-    const auto at = [&](int n, int m, int part) { return c[6 * proof::termOf(n, m) + 2 * k + part]; };
+    const auto at = [&](int n, int m, int part) {
+      return c[6 * proof::termOf(n, m) + 2 * k + part];
+    };
     out.value[k] = at(0, 0, 0);
     out.gradient[k] = {at(1, 1, 0), at(1, 1, 1), at(1, 0, 0)};
   }

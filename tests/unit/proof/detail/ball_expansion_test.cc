@@ -31,7 +31,7 @@ std::vector<std::uint32_t> upTo(std::size_t count) {
 }
 
 // Of charges in a ball: its expansion.
-StepExpansion expanded(const std::vector<testing::Charge>& charges, const Ball& ball,
+StepExpansion expanded(const std::vector<testing::Charge>& charges, const ExpansionBall& ball,
                        double farRatio, OrderedCharges& far) {
   const std::vector<double> all = packed(charges);
   std::vector<std::uint8_t> places;
@@ -75,9 +75,8 @@ TEST(BallExpansion, WhatEachOrderLeavesOut) {
       EXPECT_LE(off, got.remainder.gradient + rounding);
       EXPECT_GE(off, 0.99 * got.remainder.gradient - rounding);
       EXPECT_LE(norm(is.value - should.value), got.remainder.value + rounding * d);
-      EXPECT_GE(norm(is.value - should.value),
-                0.99 * got.remainder.value - rounding * d);
-      // No more than at the ratio where charges are near.
+      EXPECT_GE(norm(is.value - should.value), 0.99 * got.remainder.value - rounding * d);
+      // No more than where charges become near.
       const double most = std::pow(farRatio, kOrder) * (kOrder + 1 - kOrder * farRatio) /
                           ((1 - farRatio) * (1 - farRatio));
       EXPECT_LE(got.remainder.gradient, most * weight / (d * d) * (1 + 1e-6));
@@ -100,7 +99,7 @@ TEST(BallExpansion, HoldsInItsBall) {
     const std::vector<testing::Charge> more = testing::chargesAbout(50, 3, 0.1, seed + 50);
     charges.insert(charges.end(), more.begin(), more.end());
     OrderedCharges far;
-    const StepExpansion outer = expanded(charges, {{}, 0.54}, 0.36, far);
+    const StepExpansion outer = expanded(charges, {{}, 0.5}, 0.36, far);
     ASSERT_EQ(far.count(), charges.size());
     StepExpansion inner;
     expandAbout(nullptr, outer, kOrder, {}, {{0.1, 0.2, -0.1}, 0.25}, inner);
@@ -124,7 +123,7 @@ TEST(BallExpansion, DegreesThatAreNotWorthMoving) {
     for (const double radius : {0.5, 0.2, 0.05, 0.01}) {
       const std::vector<testing::Charge> charges = testing::chargesAbout(60, 1.5, 0.1, seed);
       OrderedCharges far;
-      const StepExpansion from = expanded(charges, {{}, 0.54}, 0.36, far);
+      const StepExpansion from = expanded(charges, {{}, 0.5}, 0.36, far);
       Remainder rest;
       const int order = worthyOrder(from, {{}, radius}, rest);
       ++orders[order];
@@ -138,8 +137,7 @@ TEST(BallExpansion, DegreesThatAreNotWorthMoving) {
         p = radius / norm(p) * p;
         const ValueAndGradient is = testing::evaluate(low, p), should = testing::evaluate(from, p);
         EXPECT_LE(norm(is.value - should.value), rest.value + 1e-14);
-        EXPECT_LE(testing::largestDifference(is.gradient, should.gradient),
-                  rest.gradient + 1e-13);
+        EXPECT_LE(testing::largestDifference(is.gradient, should.gradient), rest.gradient + 1e-13);
         // The lanes' move leaves out the same.
         LaneSets sets{};
         for (std::size_t lane = 0; lane < kLanes; ++lane)
