@@ -144,6 +144,10 @@ TEST(BallExpansion, DegreesThatAreNotWorthMoving) {
           for (int a = 0; a < 3; ++a) sets.center[a][lane] = p[a];
         alignas(64) double c[kCoefficients * kLanes];
         moveExpansion(from, order, sets, c);
+        LaneRemainders remainders{};
+        addInherited(from, rest, sets, remainders);
+        EXPECT_GE(remainders.gradient[2], from.remainder.gradient + rest.gradient);
+        EXPECT_GE(remainders.value[2], from.remainder.value + rest.value);
         for (int k = 0; k < 3; ++k) {
           EXPECT_NEAR(c[2 * k * kLanes + 5], is.value[k], 1e-13);
           EXPECT_NEAR(c[(6 * termOf(1, 0) + 2 * k) * kLanes + 5], is.gradient[k][2], 1e-12);
