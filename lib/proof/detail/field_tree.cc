@@ -1,7 +1,5 @@
 #include "proof/detail/field_tree.h"
 
-#include <tbb/cache_aligned_allocator.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -13,8 +11,6 @@ constexpr std::size_t kNearCharges = 160;  // of a leaf, at most
 constexpr int kMostLevels = 24;
 // Of a node's ball, in half edges: more than the cube's own, so that sets across its faces fit.
 constexpr double kReach = 2.2;
-
-using Numbers = std::vector<double, tbb::cache_aligned_allocator<double>>;
 
 std::vector<double> packed(const HarmonicField& field, double scale) {
   const Points& sources = field.sources();
@@ -53,62 +49,35 @@ StepExpansion affineExpansion(const HarmonicField& field, double scale) {
   return out;
 }
 
-LaneSets octants(const Vec3& center, double half) {
-  LaneSets out{};
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    for (int a = 0; a < 3; ++a)
-      out.center[a][lane] = center[a] + (lane >> a & 1 ? 0.5 : -0.5) * half;
-    out.radius[lane] = kReach * 0.5 * half;
-  }
-  return out;
-}
-
 }  // namespace
 
 FieldTree::FieldTree(const HarmonicField& field, double scale, double farRatio)
-    : farRatio_(farRatio), charges_(packed(field, scale)), root_(std::make_unique<Node>()) {
-  StepExpansion& expansion = root_->expansion;
-  expansion = affineExpansion(field, scale);
+    : rule_(farRatio), charges_(packed(field, scale)), root_(std::make_unique<Node>()) {
+  const StepExpansion affine = affineExpansion(field, scale);
   Box3 box;
   for (const Vec3& q : field.sources()) box.add(scale * q);
-  if (box.empty()) return;
+  if (box.empty()) {
+    root_->expansion = affine;
+    return;
+  }
   const Vec3 extent = box.extent();
   root_->half = 0.5 * std::max({extent.x, extent.y, extent.z});
-  // The affine part about the middle of the cube.
-  Numbers moved(kCoefficients * kLanes);
-  moveExpansion(expansion, octants(box.center(), 0), moved.data());
-  expansion.remainder.valueMagnitude +=
-      norm(box.center() - expansion.center) * expansion.remainder.gradientMagnitude;
-  for (std::size_t i = 0; i < kCoefficients; ++i) expansion.coefficients[i] = moved[i * kLanes];
-  expansion.center = box.center();
+  expandAbout(charges(), affine, kOrder, {}, {box.center(), 0}, root_->expansion);
+  root_->expansion.near = affine.near;
 }
 
-void FieldTree::split(const Node& parent) const {
-  const StepExpansion& from = parent.expansion;
-  const LaneSets sets = octants(from.center, parent.half);
-  const std::size_t count = from.near.size();
-  std::vector<std::uint8_t> far(count);
-  Numbers all(kCoefficients * kLanes);
-  LaneRemainders added, near;
-  classify(charges(), from.near.data(), count, sets, farRatio_, far.data(), added, near);
-  moveExpansion(from, sets, all.data());
-  addCharges(charges(), from.near.data(), far.data(), 0, count, sets, all.data());
-  addInherited(from, sets, added);
-  auto children = std::make_unique<std::array<Node, kLanes>>();
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    Node& node = (*children)[lane];
-    node.half = 0.5 * parent.half;
-    node.level = parent.level + 1;
-    StepExpansion& child = node.expansion;
-    child.center = {sets.center[0][lane], sets.center[1][lane], sets.center[2][lane]};
-    child.coefficients.resize(kCoefficients);
-    for (std::size_t i = 0; i < kCoefficients; ++i) child.coefficients[i] = all[i * kLanes + lane];
-    child.remainder = {added.gradient[lane], added.value[lane], added.gradientMagnitude[lane],
-                       added.valueMagnitude[lane]};
-    for (std::size_t i = 0; i < count; ++i)
-      if (!(far[i] >> lane & 1)) child.near.push_back(from.near[i]);
-  }
-  parent.children = std::move(children);
+std::unique_ptr<FieldTree::Node> FieldTree::childOf(const Node& parent, const Vec3& center) const {
+  auto child = std::make_unique<Node>();
+  child->half = 0.5 * parent.half;
+  child->level = parent.level + 1;
+  const ExpansionBall ball{center, kReach * child->half};
+  OrderedCharges far;
+  std::vector<std::uint8_t> places;
+  sortCharges(charges(), parent.expansion.near, ball, rule_, places, far);
+  expandAbout(charges(), parent.expansion, kOrder, far, ball, child->expansion);
+  child->expansion.near.assign(far.list.begin() + static_cast<std::ptrdiff_t>(far.count()),
+                               far.list.end());
+  return child;
 }
 
 const StepExpansion& FieldTree::about(const Vec3& center, double radius) const {
@@ -123,8 +92,9 @@ const StepExpansion& FieldTree::about(const Vec3& center, double radius) const {
       child[a] += center[a] > middle[a] ? half : -half;
     }
     if (!(norm(center - child) + radius <= kReach * half * (1 - 1e-12))) break;
-    std::call_once(node->splitting, [&] { split(*node); });
-    node = &(*node->children)[octant];
+    std::unique_ptr<Node>& made = node->children[octant];
+    std::call_once(node->making[octant], [&] { made = childOf(*node, child); });
+    node = made.get();
   }
   return node->expansion;
 }

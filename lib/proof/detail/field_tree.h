@@ -12,10 +12,16 @@
 #include <vector>
 
 #include "innermap/field/harmonic_field.h"
-#include "proof/detail/lane_kernels.h"
-#include "proof/detail/step_expansion.h"
+#include "proof/detail/ball_expansion.h"
 
 namespace innermap::proof {
+
+// Charges are far from a set when its radius is at most this part of their distance: then they
+// enter its expansion.
+constexpr double kFarRatio = 0.36;
+// What an expansion cuts off is some 1e-5 of all that it holds, however small a set within its node
+// is; with this ratio some 1e-8, with more charges near.
+constexpr double kFineFarRatio = 0.2;
 
 // Safe from any number of threads; what it says does not depend on what was asked before.
 class FieldTree {
@@ -23,7 +29,7 @@ class FieldTree {
   // Lengths before and after the step are multiplied by `scale`, a power of two: no digit changes.
   FieldTree(const HarmonicField& field, double scale, double farRatio = kFarRatio);
 
-  double farRatio() const { return farRatio_; }
+  const OrderRule& rule() const { return rule_; }
 
   const double* charges() const { return charges_.data(); }  // kChargeStride each
 
@@ -44,12 +50,12 @@ class FieldTree {
     StepExpansion expansion;
     double half = 0;  // of its cube's edge
     int level = 0;
-    mutable std::once_flag splitting;
-    mutable std::unique_ptr<std::array<Node, kLanes>> children;
+    mutable std::array<std::once_flag, kLanes> making;
+    mutable std::array<std::unique_ptr<Node>, kLanes> children;
   };
-  void split(const Node& parent) const;
+  std::unique_ptr<Node> childOf(const Node& parent, const Vec3& center) const;
 
-  double farRatio_;
+  OrderRule rule_;
   std::vector<double> charges_;
   std::unique_ptr<Node> root_;  // the affine part, and all charges near: it holds everywhere
 };

@@ -119,8 +119,6 @@ HWY_INLINE Symmetric Hessian(const double* coefficients, int channel) {
            CoefficientOf(coefficients, 2, 1, channel, 1), zz}};
 }
 
-constexpr double factorial(int n) { return n < 2 ? 1.0 : n * factorial(n - 1); }
-
 // L_n L_n^T of the coefficients of degree n in the basis of Schmidt: for one charge of weight w at
 // distance d its largest eigenvalue is (|w| / d^(n+1))^2.
 HWY_INLINE Symmetric DegreeGram(const double* coefficients, int n) {
@@ -128,7 +126,7 @@ HWY_INLINE Symmetric DegreeGram(const double* coefficients, int n) {
   Symmetric out;
   for (V& v : out.m) v = hn::Zero(d);
   for (int m = 0; m <= n; ++m) {
-    const V scale = Number((m == 0 ? 1.0 : 2.0) / (factorial(n - m) * factorial(n + m)));
+    const V scale = Number(kSchmidt[termOf(n, m)]);
     for (int part = 0; part < (m == 0 ? 1 : 2); ++part) {
       V c[3];
       for (int k = 0; k < 3; ++k) c[k] = CoefficientOf(coefficients, n, m, k, part);

@@ -22,269 +22,233 @@ using D = hn::CappedTag<double, kLanes>;
 using V = hn::Vec<D>;
 
 HWY_INLINE V Number(double x) { return hn::Set(D(), x); }
+HWY_INLINE double Total(V v) { return hn::GetLane(hn::SumOfLanes(D(), v)); }
 
-HWY_INLINE hn::Mask<D> MaskOf(std::uint8_t bits, std::size_t lane) {
-  const std::uint8_t all[8] = {static_cast<std::uint8_t>(bits >> lane)};
-  return hn::LoadMaskBits(D(), all);
-}
-
-void Classify(const double* HWY_RESTRICT charges, const std::uint32_t* HWY_RESTRICT list,
-              std::size_t count, const LaneSets& sets, double farRatio,
-              std::uint8_t* HWY_RESTRICT farLanes, LaneRemainders& far, LaneRemainders& near) {
+std::uint8_t Measure(const double* HWY_RESTRICT charges, const std::uint32_t* HWY_RESTRICT list,
+                     std::size_t count, const LaneSets& sets, double* HWY_RESTRICT nearest) {
   const D d;
-  const V one = Number(1), infinite = Number(std::numeric_limits<double>::infinity());
-  std::fill_n(farLanes, count, std::uint8_t{0});
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  std::fill_n(nearest, count, kInfinite);
+  Lanes least;
   for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(d)) {
     const V cx = hn::Load(d, sets.center[0] + lane), cy = hn::Load(d, sets.center[1] + lane),
             cz = hn::Load(d, sets.center[2] + lane), radius = hn::Load(d, sets.radius + lane);
-    V sums[2][4];
-    for (auto& lot : sums)
-      for (V& sum : lot) sum = hn::Zero(d);
+    const V scale = Number(1) / (radius * radius);
+    V closest = Number(kInfinite);
     for (std::size_t i = 0; i < count; ++i) {
       const double* q = charges + kChargeStride * list[i];
       const V x = Number(q[0]) - cx, y = Number(q[1]) - cy, z = Number(q[2]) - cz;
-      const V distance = hn::Sqrt(hn::MulAdd(x, x, hn::MulAdd(y, y, z * z)));
-      const V inverse = one / distance, ratio = radius * inverse;
-      const auto isFar = hn::Le(ratio, Number(farRatio));
-      const auto known = hn::Le(ratio, Number(kNearRatio));
-      std::uint8_t bits[8] = {};
-      hn::StoreMaskBits(d, isFar, bits);
-      farLanes[i] = static_cast<std::uint8_t>(farLanes[i] | (bits[0] << lane));
-      V power = ratio;  // ratio^kOrder
-      for (int n = 1; n < kOrder; ++n) power = power * ratio;
-      const V spread = one / (one - ratio);  // sum of ratio^n
-      const V value = Number(q[6]) * inverse * spread, gradient = value * inverse * spread;
-      const V cutValue = value * power * ratio;
-      const V cut = gradient * power * hn::NegMulAdd(Number(kOrder), ratio, Number(kOrder + 1));
-      const V terms[4] = {cut, cutValue, gradient, value};
-      for (int k = 0; k < 4; ++k) {
-        const V term = hn::IfThenElse(known, terms[k], infinite);
-        sums[0][k] = sums[0][k] + hn::IfThenElseZero(isFar, term);
-        sums[1][k] = sums[1][k] + hn::IfThenZeroElse(isFar, term);
-      }
+      const V square = scale * hn::MulAdd(x, x, hn::MulAdd(y, y, z * z));
+      closest = hn::Min(closest, square);
+      nearest[i] = std::min(nearest[i], hn::GetLane(hn::MinOfLanes(d, square)));
     }
-    LaneRemainders* const lots[2] = {&far, &near};
-    for (int lot = 0; lot < 2; ++lot) {
-      hn::Store(sums[lot][0], d, lots[lot]->gradient + lane);
-      hn::Store(sums[lot][1], d, lots[lot]->value + lane);
-      hn::Store(sums[lot][2], d, lots[lot]->gradientMagnitude + lane);
-      hn::Store(sums[lot][3], d, lots[lot]->valueMagnitude + lane);
-    }
+    hn::StoreU(closest, d, least + lane);
   }
+  unsigned out = 0;
+  for (std::size_t lane = 0; lane < kLanes; ++lane)
+    if (least[lane] * (kNearRatio * kNearRatio) >= 1) out |= 1u << lane;
+  return static_cast<std::uint8_t>(out);
 }
 
 struct Complex {
   V re, im;
 };
 
-// I_nm(q) = (n - m)! P_n^m(cos theta) e^(i m phi) / r^(n+1), so that 1/|x - q| is the sum of
-// I_nm(q) conj(R_nm(x)). 0 outside the mask.
-HWY_INLINE void Irregular(V x, V y, V z, hn::Mask<D> mask, Complex* HWY_RESTRICT out) {
-  const D d;
-  const V square = hn::MulAdd(x, x, hn::MulAdd(y, y, z * z));
-  const V inverse = Number(1) / hn::IfThenElse(mask, square, Number(1));
-  x = hn::IfThenElseZero(mask, x * inverse);
-  y = hn::IfThenElseZero(mask, y * inverse);
-  z = hn::IfThenElseZero(mask, z * inverse);
-  Complex diagonal{hn::IfThenElseZero(mask, hn::Sqrt(inverse)), hn::Zero(d)};
-  for (int m = 0; m <= kOrder; ++m) {
-    Complex before{hn::Zero(d), hn::Zero(d)}, now = diagonal;
-    out[termOf(m, m)] = now;
-    for (int n = m; n < kOrder; ++n) {
-      const V up = Number(2.0 * n + 1) * z, down = Number(1.0 * n * n - 1.0 * m * m) * inverse;
-      const Complex next{hn::NegMulAdd(down, before.re, up * now.re),
-                         hn::NegMulAdd(down, before.im, up * now.im)};
-      before = now;
-      now = next;
-      out[termOf(n + 1, m)] = now;
-    }
-    const V factor = Number(2.0 * m + 1);
-    diagonal = {factor * hn::NegMulAdd(y, diagonal.im, x * diagonal.re),
-                factor * hn::MulAdd(y, diagonal.re, x * diagonal.im)};
-  }
-}
-
-// Charges at once: the sums are read and written once for all of them.
-constexpr std::size_t kBlock = 4;
-
-struct ChargeBlock {
-  const double* charge[kBlock];
-  std::uint8_t lanes[kBlock];
+// A charge, seen from the places that it is expanded about. Its harmonics are
+// I_nm(q) = (n - m)! P_n^m(cos theta) e^(i m phi) / r^(n+1): 1/|x - q| is the sum of
+// I_nm(q) conj(R_nm(x)).
+struct Arm {
+  V x, y, z;         // to the charge, over the square of the distance
+  V inverse;         // of that square
+  Complex diagonal;  // I_mm, at first of m = 0
+  V weight[3];
 };
 
-HWY_INLINE void AddBlock(const ChargeBlock& block, std::size_t lane, const LaneSets& sets,
-                         Complex (*HWY_RESTRICT harmonics)[kTerms],
-                         double* HWY_RESTRICT coefficients) {
+HWY_INLINE Arm ArmTo(V x, V y, V z, V w0, V w1, V w2) {
+  const V inverse = Number(1) / hn::MulAdd(x, x, hn::MulAdd(y, y, z * z));
+  return {x * inverse, y * inverse, z * inverse, inverse, {hn::Sqrt(inverse), hn::Zero(D())},
+          {w0, w1, w2}};
+}
+
+HWY_INLINE Complex NextDegree(const Arm& arm, V up, V down, const Complex& now,
+                              const Complex& before) {
+  const V a = up * arm.z, b = down * arm.inverse;
+  return {hn::NegMulAdd(b, before.re, a * now.re), hn::NegMulAdd(b, before.im, a * now.im)};
+}
+
+HWY_INLINE Complex NextDiagonal(const Arm& arm, V factor, const Complex& diagonal) {
+  return {factor * hn::NegMulAdd(arm.y, diagonal.im, arm.x * diagonal.re),
+          factor * hn::MulAdd(arm.y, diagonal.re, arm.x * diagonal.im)};
+}
+
+HWY_INLINE void AddProducts(V a, V p, V b, V q, double* HWY_RESTRICT out) {
   const D d;
-  V weights[kBlock][3];
-  for (std::size_t b = 0; b < kBlock; ++b) {
-    const double* q = block.charge[b];
-    const V x = Number(q[0]) - hn::Load(d, sets.center[0] + lane);
-    const V y = Number(q[1]) - hn::Load(d, sets.center[1] + lane);
-    const V z = Number(q[2]) - hn::Load(d, sets.center[2] + lane);
-    Irregular(x, y, z, MaskOf(block.lanes[b], lane), harmonics[b]);
-    for (int k = 0; k < 3; ++k) weights[b][k] = Number(q[3 + k]);
+  hn::Store(hn::MulAdd(b, q, hn::MulAdd(a, p, hn::Load(d, out))), d, out);
+}
+
+// Factors of the recurrences.
+struct Factors {
+  double up[kOrder + 1], down[kTerms];
+};
+constexpr Factors kFactors = [] {
+  Factors out{};
+  for (int n = 0; n <= kOrder; ++n) {
+    out.up[n] = 2 * n + 1;
+    for (int m = 0; m <= n; ++m) out.down[termOf(n, m)] = n * n - m * m;
   }
-  for (std::size_t t = 0; t < kTerms; ++t) {
-    for (int k = 0; k < 3; ++k) {
-      double* const out = coefficients + (6 * t + 2 * k) * kLanes + lane;
-      V re = hn::Load(d, out), im = hn::Load(d, out + kLanes);
-      for (std::size_t b = 0; b < kBlock; ++b) {
-        re = hn::MulAdd(weights[b][k], harmonics[b][t].re, re);
-        im = hn::MulAdd(weights[b][k], harmonics[b][t].im, im);
+  return out;
+}();
+
+// Two charges at once: the sums are read and written once for both.
+HWY_NOINLINE void AddPair(int order, Arm a, Arm b, double* HWY_RESTRICT coefficients) {
+  for (int m = 0; m <= order; ++m) {
+    const Complex none{hn::Zero(D()), hn::Zero(D())};
+    Complex beforeA = none, beforeB = none, nowA = a.diagonal, nowB = b.diagonal;
+    for (int n = m;; ++n) {
+      double* out = coefficients + 6 * termOf(n, m) * kLanes;
+      for (int k = 0; k < 3; ++k, out += 2 * kLanes) {
+        AddProducts(a.weight[k], nowA.re, b.weight[k], nowB.re, out);
+        if (m > 0) AddProducts(a.weight[k], nowA.im, b.weight[k], nowB.im, out + kLanes);
       }
-      hn::Store(re, d, out);
-      hn::Store(im, d, out + kLanes);
+      if (n == order) break;
+      const V up = Number(kFactors.up[n]), down = Number(kFactors.down[termOf(n, m)]);
+      const Complex nextA = NextDegree(a, up, down, nowA, beforeA);
+      const Complex nextB = NextDegree(b, up, down, nowB, beforeB);
+      beforeA = nowA;
+      beforeB = nowB;
+      nowA = nextA;
+      nowB = nextB;
     }
+    const V factor = Number(kFactors.up[m]);
+    a.diagonal = NextDiagonal(a, factor, a.diagonal);
+    b.diagonal = NextDiagonal(b, factor, b.diagonal);
   }
 }
 
-void AddCharges(const double* HWY_RESTRICT charges, const std::uint32_t* HWY_RESTRICT list,
-                const std::uint8_t* HWY_RESTRICT lanes, std::uint8_t flip, std::size_t count,
-                const LaneSets& sets, double* HWY_RESTRICT coefficients) {
-  Complex harmonics[kBlock][kTerms];
+struct Rest {
+  V gradient, value, gradientMagnitude, valueMagnitude;
+};
+
+// What a charge of a weight of that length adds, on sets of these radii.
+HWY_INLINE void AddRest(int order, const Arm& arm, V length, V radius, Rest& sum) {
+  const V one = Number(1), infinite = Number(std::numeric_limits<double>::infinity());
+  const V inverse = arm.diagonal.re, ratio = radius * inverse;
+  const auto known = hn::Le(ratio, Number(kNearRatio));
+  V power = ratio;  // ratio^order
+  for (int n = 1; n < order; ++n) power = power * ratio;
+  const V spread = one / (one - ratio);  // sum of ratio^n
+  const V value = length * inverse * spread, gradient = value * inverse * spread;
+  const V cut = power * hn::NegMulAdd(Number(order), ratio, Number(order + 1));
+  const auto orInfinite = [&](V x) { return hn::IfThenElse(known, x, infinite); };
+  sum.gradient = sum.gradient + orInfinite(gradient * cut);
+  sum.value = sum.value + orInfinite(value * power * ratio);
+  sum.gradientMagnitude = sum.gradientMagnitude + orInfinite(gradient);
+  sum.valueMagnitude = sum.valueMagnitude + orInfinite(value);
+}
+
+// Of the charge at that place of the list.
+HWY_INLINE int OrderAt(const OrderedCharges& some, std::size_t place) {
   std::size_t i = 0;
-  while (i < count) {
-    ChargeBlock block{};
-    std::size_t filled = 0;
-    for (; i < count && filled < kBlock; ++i) {
-      const std::uint8_t used = lanes[i] ^ flip;
-      if (used == 0) continue;
-      block.charge[filled] = charges + kChargeStride * list[i];
-      block.lanes[filled++] = used;
-    }
-    if (filled == 0) break;
-    for (std::size_t b = filled; b < kBlock; ++b) block.charge[b] = block.charge[0];
+  while (place >= some.ends[i]) ++i;
+  return kOrders[i];
+}
+
+HWY_INLINE Arm ArmOf(const double* HWY_RESTRICT q, const LaneSets& sets, std::size_t lane) {
+  const D d;
+  return ArmTo(Number(q[0]) - hn::Load(d, sets.center[0] + lane),
+               Number(q[1]) - hn::Load(d, sets.center[1] + lane),
+               Number(q[2]) - hn::Load(d, sets.center[2] + lane), Number(q[3]), Number(q[4]),
+               Number(q[5]));
+}
+
+// `other` may be none.
+HWY_INLINE void AddTwo(int order, const double* HWY_RESTRICT charge,
+                       const double* HWY_RESTRICT other, const LaneSets& sets, std::size_t lane,
+                       double* HWY_RESTRICT coefficients, LaneRemainders& remainders) {
+  const D d;
+  const V radius = hn::Load(d, sets.radius + lane);
+  Rest sum{hn::Load(d, remainders.gradient + lane), hn::Load(d, remainders.value + lane),
+           hn::Load(d, remainders.gradientMagnitude + lane),
+           hn::Load(d, remainders.valueMagnitude + lane)};
+  const Arm a = ArmOf(charge, sets, lane);
+  AddRest(order, a, Number(charge[6]), radius, sum);
+  Arm b = a;
+  if (other) {
+    b = ArmOf(other, sets, lane);
+    AddRest(order, b, Number(other[6]), radius, sum);
+  } else {
+    for (V& w : b.weight) w = hn::Zero(d);
+  }
+  AddPair(order, a, b, coefficients + lane);
+  hn::Store(sum.gradient, d, remainders.gradient + lane);
+  hn::Store(sum.value, d, remainders.value + lane);
+  hn::Store(sum.gradientMagnitude, d, remainders.gradientMagnitude + lane);
+  hn::Store(sum.valueMagnitude, d, remainders.valueMagnitude + lane);
+}
+
+void AddCharges(const double* HWY_RESTRICT charges, const OrderedCharges& some,
+                const LaneSets& sets, double* HWY_RESTRICT coefficients,
+                LaneRemainders& remainders) {
+  for (std::size_t i = 0; i < some.count(); i += 2) {
+    const double* const charge = charges + kChargeStride * some.list[i];
+    const double* const other =
+        i + 1 < some.count() ? charges + kChargeStride * some.list[i + 1] : nullptr;
     for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(D()))
-      AddBlock(block, lane, sets, harmonics, coefficients);
+      AddTwo(OrderAt(some, i), charge, other, sets, lane, coefficients, remainders);
   }
 }
 
-// Eight charges, one a lane, about the origin: coordinates and weights.
+// Charges, one a lane, about the origin: coordinates, weights, the weights' lengths.
 struct alignas(64) ChargeLanes {
-  Lanes place[3], weight[3];
+  Lanes place[3], weight[3], length;
 };
 
-HWY_INLINE void AddLanes(const ChargeLanes& q, std::size_t lane, Complex* HWY_RESTRICT harmonics,
-                         double* HWY_RESTRICT sums) {
+HWY_INLINE Arm ArmOf(const ChargeLanes& q) {
   const D d;
-  const V x = hn::Load(d, q.place[0] + lane);
-  Irregular(x, hn::Load(d, q.place[1] + lane), hn::Load(d, q.place[2] + lane), hn::Eq(x, x),
-            harmonics);
-  for (int k = 0; k < 3; ++k) {
-    const V weight = hn::Load(d, q.weight[k] + lane);
-    double* out = sums + 2 * k * kLanes + lane;
-    for (std::size_t t = 0; t < kTerms; ++t, out += 6 * kLanes) {
-      hn::Store(hn::MulAdd(weight, harmonics[t].re, hn::Load(d, out)), d, out);
-      hn::Store(hn::MulAdd(weight, harmonics[t].im, hn::Load(d, out + kLanes)), d, out + kLanes);
+  return ArmTo(hn::Load(d, q.place[0]), hn::Load(d, q.place[1]), hn::Load(d, q.place[2]),
+               hn::Load(d, q.weight[0]), hn::Load(d, q.weight[1]), hn::Load(d, q.weight[2]));
+}
+
+// Those from `begin` on; lanes that are left have no weight.
+HWY_INLINE void Gather(const double* HWY_RESTRICT charges, const OrderedCharges& some,
+                       std::size_t begin, const Vec3& center, ChargeLanes& out) {
+  for (std::size_t l = 0; l < hn::Lanes(D()); ++l) {
+    const bool real = begin + l < some.count();
+    const double* const charge =
+        charges + kChargeStride * some.list[real ? begin + l : some.count() - 1];
+    for (int a = 0; a < 3; ++a) {
+      out.place[a][l] = charge[a] - center[a];
+      out.weight[a][l] = real ? charge[3 + a] : 0;
     }
+    out.length[l] = real ? charge[6] : 0;
   }
 }
 
-void AddAboutOne(const double* HWY_RESTRICT charges, const std::uint32_t* HWY_RESTRICT list,
-                 std::size_t count, StepExpansion& expansion) {
-  alignas(64) double sums[kCoefficients * kLanes] = {};
-  Complex harmonics[kTerms];
-  for (std::size_t i = 0; i < count; i += kLanes) {
-    ChargeLanes q{};
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      const bool real = i + l < count;
-      const double* const charge = charges + kChargeStride * list[real ? i + l : i];
-      for (int a = 0; a < 3; ++a) {
-        q.place[a][l] = charge[a] - expansion.center[a];
-        q.weight[a][l] = real ? charge[3 + a] : 0;
-      }
-    }
-    for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(D()))
-      AddLanes(q, lane, harmonics, sums);
-  }
-  for (std::size_t c = 0; c < kCoefficients; ++c)
-    for (std::size_t l = 0; l < kLanes; ++l) expansion.coefficients[c] += sums[c * kLanes + l];
-}
-
-constexpr std::size_t kAll = (kOrder + 1) * (kOrder + 1);  // pairs (n, m), -n <= m <= n
-constexpr std::size_t allOf(int n, int m) { return static_cast<std::size_t>(n * (n + 1) + m); }
-
-// conj(R_nm(x)) for all m: kAll.
-HWY_INLINE void ConjugateRegular(V x, V y, V z, Complex* HWY_RESTRICT out) {
+void AddAboutOne(const double* HWY_RESTRICT charges, const OrderedCharges& some, double radius,
+                 StepExpansion& expansion) {
+  if (some.count() == 0) return;
   const D d;
-  const V square = hn::MulAdd(x, x, hn::MulAdd(y, y, z * z));
-  Complex diagonal{Number(1), hn::Zero(d)};
-  for (int m = 0; m <= kOrder; ++m) {
-    Complex before{hn::Zero(d), hn::Zero(d)}, now = diagonal;
-    for (int n = m; n <= kOrder; ++n) {
-      out[allOf(n, m)] = now;
-      const V divisor = Number(1 / ((n + 1.0) * (n + 1.0) - 1.0 * m * m));
-      const V up = Number(2.0 * n + 1) * z;
-      const Complex next{divisor * hn::NegMulAdd(square, before.re, up * now.re),
-                         divisor * hn::NegMulAdd(square, before.im, up * now.im)};
-      before = now;
-      now = next;
-    }
-    // Conjugates all through: x - i y.
-    const V factor = Number(1 / (2.0 * m + 2));
-    diagonal = {factor * hn::MulAdd(y, diagonal.im, x * diagonal.re),
-                factor * hn::NegMulAdd(y, diagonal.re, x * diagonal.im)};
+  const V zero = hn::Zero(d), within = Number(radius);
+  alignas(64) double sums[kCoefficients * kLanes];
+  const std::size_t used = 6 * termOf(OrderAt(some, 0) + 1, 0);
+  for (std::size_t c = 0; c < used; ++c) hn::Store(zero, d, sums + c * kLanes);
+  Rest rest{zero, zero, zero, zero};
+  for (std::size_t i = 0; i < some.count(); i += 2 * hn::Lanes(d)) {
+    const int order = OrderAt(some, i);
+    ChargeLanes q[2];
+    for (std::size_t half = 0; half < 2; ++half)
+      Gather(charges, some, i + half * hn::Lanes(d), expansion.center, q[half]);
+    const Arm a = ArmOf(q[0]), b = ArmOf(q[1]);
+    AddRest(order, a, hn::Load(d, q[0].length), within, rest);
+    AddRest(order, b, hn::Load(d, q[1].length), within, rest);
+    AddPair(order, a, b, sums);
   }
-  for (int n = 1; n <= kOrder; ++n)
-    for (int m = 1; m <= n; ++m) {
-      const Complex c = out[allOf(n, m)];
-      const V sign = Number(m % 2 ? -1 : 1);
-      out[allOf(n, -m)] = {sign * c.re, hn::Neg(sign * c.im)};
-    }
-}
-
-// The same for the coefficients, real numbers: kAll x 6.
-void CoefficientsOfAll(const double* HWY_RESTRICT coefficients, double* HWY_RESTRICT out) {
-  for (int n = 0; n <= kOrder; ++n)
-    for (int m = 0; m <= n; ++m)
-      for (int k = 0; k < 3; ++k) {
-        const double re = coefficients[6 * termOf(n, m) + 2 * k],
-                     im = coefficients[6 * termOf(n, m) + 2 * k + 1];
-        const double sign = m % 2 ? -1 : 1;
-        out[6 * allOf(n, -m) + 2 * k] = sign * re;
-        out[6 * allOf(n, -m) + 2 * k + 1] = -sign * im;
-        out[6 * allOf(n, m) + 2 * k] = re;
-        out[6 * allOf(n, m) + 2 * k + 1] = im;
-      }
-}
-
-// L'_ji = sum over n >= j and m of L_nm conj(R_(n-j)(m-i)(shift)).
-HWY_INLINE void MoveTerm(int j, int i, const double* HWY_RESTRICT from,
-                         const Complex* HWY_RESTRICT regular, double* HWY_RESTRICT out) {
-  const D d;
-  V re[3], im[3];
-  for (int k = 0; k < 3; ++k) re[k] = im[k] = hn::Zero(d);
-  for (int k = 0; k <= kOrder - j; ++k)
-    for (int l = -k; l <= k; ++l) {
-      const Complex r = regular[allOf(k, l)];
-      const double* const c = from + 6 * allOf(j + k, i + l);
-      for (int channel = 0; channel < 3; ++channel) {
-        const V a = Number(c[2 * channel]), b = Number(c[2 * channel + 1]);
-        re[channel] = hn::NegMulAdd(b, r.im, hn::MulAdd(a, r.re, re[channel]));
-        im[channel] = hn::MulAdd(b, r.re, hn::MulAdd(a, r.im, im[channel]));
-      }
-    }
-  for (int k = 0; k < 3; ++k) {
-    hn::Store(re[k], d, out + 2 * k * kLanes);
-    hn::Store(im[k], d, out + (2 * k + 1) * kLanes);
-  }
-}
-
-void MoveExpansion(const StepExpansion& from, const LaneSets& sets,
-                   double* HWY_RESTRICT coefficients) {
-  const D d;
-  double all[6 * kAll];
-  CoefficientsOfAll(from.coefficients.data(), all);
-  Complex regular[kAll];
-  for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(d)) {
-    ConjugateRegular(hn::Load(d, sets.center[0] + lane) - Number(from.center.x),
-                     hn::Load(d, sets.center[1] + lane) - Number(from.center.y),
-                     hn::Load(d, sets.center[2] + lane) - Number(from.center.z), regular);
-    for (int j = 0; j <= kOrder; ++j)
-      for (int i = 0; i <= j; ++i)
-        MoveTerm(j, i, all, regular, coefficients + 6 * termOf(j, i) * kLanes + lane);
-  }
+  for (std::size_t c = 0; c < used; ++c)
+    expansion.coefficients[c] += Total(hn::Load(d, sums + c * kLanes));
+  expansion.remainder.gradient += Total(rest.gradient);
+  expansion.remainder.value += Total(rest.value);
+  expansion.remainder.gradientMagnitude += Total(rest.gradientMagnitude);
+  expansion.remainder.valueMagnitude += Total(rest.valueMagnitude);
 }
 
 // NOLINTEND(readability-identifier-naming)
@@ -295,41 +259,23 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace innermap::proof {
 
-HWY_EXPORT(Classify);
+HWY_EXPORT(Measure);
 HWY_EXPORT(AddCharges);
 HWY_EXPORT(AddAboutOne);
-HWY_EXPORT(MoveExpansion);
 
-void classify(const double* charges, const std::uint32_t* list, std::size_t count,
-              const LaneSets& sets, double farRatio, std::uint8_t* farLanes, LaneRemainders& far,
-              LaneRemainders& near) {
-  HWY_DYNAMIC_DISPATCH(Classify)(charges, list, count, sets, farRatio, farLanes, far, near);
+std::uint8_t measure(const double* charges, const std::uint32_t* list, std::size_t count,
+                     const LaneSets& sets, double* nearest) {
+  return HWY_DYNAMIC_DISPATCH(Measure)(charges, list, count, sets, nearest);
 }
 
-void addCharges(const double* charges, const std::uint32_t* list, const std::uint8_t* lanes,
-                std::uint8_t flip, std::size_t count, const LaneSets& sets, double* coefficients) {
-  HWY_DYNAMIC_DISPATCH(AddCharges)(charges, list, lanes, flip, count, sets, coefficients);
+void addCharges(const double* charges, const OrderedCharges& some, const LaneSets& sets,
+                double* coefficients, LaneRemainders& remainders) {
+  HWY_DYNAMIC_DISPATCH(AddCharges)(charges, some, sets, coefficients, remainders);
 }
 
-void addCharges(const double* charges, const std::uint32_t* list, std::size_t count,
+void addCharges(const double* charges, const OrderedCharges& some, double radius,
                 StepExpansion& expansion) {
-  HWY_DYNAMIC_DISPATCH(AddAboutOne)(charges, list, count, expansion);
-}
-
-void addInherited(const StepExpansion& from, const LaneSets& sets, LaneRemainders& remainders) {
-  const Remainder& r = from.remainder;
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    const Vec3 center{sets.center[0][lane], sets.center[1][lane], sets.center[2][lane]};
-    remainders.gradient[lane] += r.gradient;
-    remainders.value[lane] += r.value;
-    remainders.gradientMagnitude[lane] += r.gradientMagnitude;
-    remainders.valueMagnitude[lane] +=
-        r.valueMagnitude + norm(center - from.center) * r.gradientMagnitude;
-  }
-}
-
-void moveExpansion(const StepExpansion& from, const LaneSets& sets, double* coefficients) {
-  HWY_DYNAMIC_DISPATCH(MoveExpansion)(from, sets, coefficients);
+  HWY_DYNAMIC_DISPATCH(AddAboutOne)(charges, some, radius, expansion);
 }
 
 }  // namespace innermap::proof

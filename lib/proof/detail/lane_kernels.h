@@ -1,8 +1,10 @@
 // The innermost loops of the proof, on eight places at a time, for the machine's instruction set.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "proof/detail/step_expansion.h"
 
@@ -33,36 +35,38 @@ struct alignas(64) LaneFindings {
 
 // Eight numbers a charge: x, y, z, three weights, the weight's length, 0.
 constexpr std::size_t kChargeStride = 8;
-
-// Charges are far from a set when its radius is at most this part of their distance: then they
-// enter its expansion.
-constexpr double kFarRatio = 0.36;
-// What an expansion cuts off is some 1e-5 of all that it holds, however small a set within its node
-// is; with this ratio some 1e-8, with more charges near.
-constexpr double kFineFarRatio = 0.2;
 // Charges nearer than radius / kNearRatio to a centre leave nothing known about that set.
 constexpr double kNearRatio = 0.8;
 
-// Tells far from near charges: bit l of farLanes[i] is set where charge list[i] is far from set l.
-// Writes what both lots add to the remainders; infinite where nothing is known.
-void classify(const double* charges, const std::uint32_t* list, std::size_t count,
-              const LaneSets& sets, double farRatio, std::uint8_t* farLanes, LaneRemainders& far,
-              LaneRemainders& near);
+// The farther a charge, the lower the order that it is expanded to.
+constexpr std::array<int, 4> kOrders = {kOrder, 7, 5, 3};
 
-// Adds what an expansion about another centre brings along when it is moved.
-void addInherited(const StepExpansion& from, const LaneSets& sets, LaneRemainders& remainders);
+// Some charges, those of the highest order first; behind all of them those that are left out.
+struct OrderedCharges {
+  std::vector<std::uint32_t> list;
+  std::array<std::size_t, kOrders.size()> ends = {};  // of the charges of each order
+  std::size_t count() const { return ends.back(); }
+};
 
-// Adds the expansions of charges about the eight centres: in lane l where bit l of
-// lanes[i] ^ flip is set. coefficients: kCoefficients x kLanes.
-void addCharges(const double* charges, const std::uint32_t* list, const std::uint8_t* lanes,
-                std::uint8_t flip, std::size_t count, const LaneSets& sets, double* coefficients);
+// Tells which lanes have no charge nearer than kNearRatio allows. nearest[i]: the least over the
+// lanes of (distance / radius)^2 of charge list[i].
+std::uint8_t measure(const double* charges, const std::uint32_t* list, std::size_t count,
+                     const LaneSets& sets, double* nearest);
 
-// Adds to an expansion about one centre, eight charges at a time; `count` is at least 1.
-void addCharges(const double* charges, const std::uint32_t* list, std::size_t count,
+// Adds the expansions of charges about the eight centres, kCoefficients x kLanes, and what they
+// add to the remainders; that is infinite where nothing is known.
+void addCharges(const double* charges, const OrderedCharges& some, const LaneSets& sets,
+                double* coefficients, LaneRemainders& remainders);
+
+// Adds charges to an expansion that holds in a ball of that radius about its centre.
+void addCharges(const double* charges, const OrderedCharges& some, double radius,
                 StepExpansion& expansion);
 
-// The expansion about another centre, moved to the eight ones: exact. Overwrites.
-void moveExpansion(const StepExpansion& from, const LaneSets& sets, double* coefficients);
+// The expansion's degrees up to `order`, about eight other centres or one: exact. Overwrites all
+// coefficients, kCoefficients x kLanes or kCoefficients; those above are 0.
+void moveExpansion(const StepExpansion& from, int order, const LaneSets& sets,
+                   double* coefficients);
+void moveExpansion(const StepExpansion& from, int order, const Vec3& center, double* coefficients);
 
 // The test of whole sets.
 void examine(const double* coefficients, const LaneRemainders& remainders, const LaneSets& sets,

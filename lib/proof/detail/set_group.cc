@@ -12,6 +12,8 @@ namespace {
 constexpr double kProven = 0.8;
 // Sets this much larger than the smallest of their group are left to be split.
 constexpr double kMostUneven = 8;
+// So many charges are expanded about the whole group first.
+constexpr std::size_t kWorthExpanding = 16;
 
 Vec3 centerOf(const LaneSets& sets, std::size_t lane) {
   return {sets.center[0][lane], sets.center[1][lane], sets.center[2][lane]};
@@ -56,95 +58,54 @@ std::uint8_t evenLanes(const LaneSets& sets, std::uint8_t lanes) {
   return lanes & lanesBelow(sets.radius, kMostUneven * least);
 }
 
-GroupBall ballAbout(const LaneSets& sets) {
+ExpansionBall ballAbout(const LaneSets& sets) {
   Box3 box;
   for (std::size_t lane = 0; lane < kLanes; ++lane) box.add(centerOf(sets, lane));
-  GroupBall out{box.center(), 0};
+  ExpansionBall out{box.center(), 0};
   for (std::size_t lane = 0; lane < kLanes; ++lane)
     out.radius = std::max(out.radius, norm(centerOf(sets, lane) - out.center) + sets.radius[lane]);
   out.radius *= 1 + 1e-12;
   return out;
 }
 
-// All eight centres in one place.
-LaneSets oneSet(const GroupBall& ball) {
-  LaneSets out{};
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    for (int a = 0; a < 3; ++a) out.center[a][lane] = ball.center[a];
-    out.radius[lane] = ball.radius;
-  }
-  return out;
-}
-
-void add(LaneRemainders& a, const LaneRemainders& b) {
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    a.gradient[lane] += b.gradient[lane];
-    a.value[lane] += b.value[lane];
-    a.gradientMagnitude[lane] += b.gradientMagnitude[lane];
-    a.valueMagnitude[lane] += b.valueMagnitude[lane];
-  }
-}
-
 }  // namespace
-
-// Nodes of the tree are up to three times as large as the group, so that most of what is near a
-// node is far from the group: it is expanded about it once, not about each set.
-void SetGroup::expandAbout(const FieldTree& tree, const StepExpansion& from,
-                           const GroupBall& ball) {
-  const LaneSets one = oneSet(ball);
-  LaneRemainders added, none;
-  far_.resize(farOfOwn_.size());
-  classify(tree.charges(), farOfOwn_.data(), farOfOwn_.size(), one, tree.farRatio(), far_.data(),
-           added, none);
-  add(added, none);
-  addInherited(from, one, added);
-  moveExpansion(from, one, coefficients_.data());
-  own_.center = ball.center;
-  own_.coefficients.resize(kCoefficients);
-  for (std::size_t i = 0; i < kCoefficients; ++i) own_.coefficients[i] = coefficients_[i * kLanes];
-  own_.remainder = {added.gradient[0], added.value[0], added.gradientMagnitude[0],
-                    added.valueMagnitude[0]};
-  addCharges(tree.charges(), farOfOwn_.data(), farOfOwn_.size(), own_);
-}
-
-// Whether it pays to expand about the group what is near the node and far from the group.
-bool SetGroup::sortCharges(const FieldTree& tree, const StepExpansion& from,
-                           const GroupBall& ball) {
-  own_.near.clear();
-  farOfOwn_.clear();
-  const double far = ball.radius / tree.farRatio() * (1 + 1e-12);
-  for (const std::uint32_t j : from.near) {
-    const double* q = tree.charges() + kChargeStride * j;
-    const bool isFar = squaredNorm(Vec3{q[0], q[1], q[2]} - ball.center) > far * far;
-    (isFar ? farOfOwn_ : own_.near).push_back(j);
-  }
-  return farOfOwn_.size() >= 2 * kLanes;
-}
 
 // False where nothing is known of any lane that is needed.
 bool SetGroup::computeStep(const FieldTree& tree, LaneSets& sets, std::uint8_t needed,
                            LaneFindings& out) {
   fillUnused(sets, needed);
-  const GroupBall ball = ballAbout(sets);
+  const ExpansionBall ball = ballAbout(sets);
   const StepExpansion& node = tree.about(ball.center, ball.radius);
-  const bool pays = sortCharges(tree, node, ball);
+  // Nodes of the tree are up to three times as large as the group, so that most of what is near a
+  // node is far from the group: it is expanded about it once, not about each set.
+  sortCharges(tree.charges(), node.near, ball, tree.rule(), places_, far_);
+  const bool pays = far_.count() >= kWorthExpanding;
+  const std::uint32_t* const near = far_.list.data() + (pays ? far_.count() : 0);
+  const std::size_t count = far_.list.size() - (pays ? far_.count() : 0);
+  nearest_.resize(count);
+  const std::uint8_t known = measure(tree.charges(), near, count, sets, nearest_.data());
+  if ((known & needed) == 0) return false;
+  Remainder cut;
+  int order = worthyOrder(node, ball, cut);
+  if (pays) {
+    expandAbout(tree.charges(), node, order, far_, ball, own_);
+    order = worthyOrder(own_, ball, cut);
+  }
   const StepExpansion& from = pays ? own_ : node;
-  const std::size_t count = from.near.size();
-  far_.resize(count);
-  LaneRemainders remainder, near;
-  classify(tree.charges(), from.near.data(), count, sets, tree.farRatio(), far_.data(), remainder,
-           near);
-  if (!(lanesBelow(near.gradient, std::numeric_limits<double>::infinity()) & needed)) return false;
-  if (pays) expandAbout(tree, node, ball);
-  addInherited(from, sets, remainder);
-  add(remainder, near);
+  LaneRemainders remainder{};
+  addInherited(from, cut, sets, remainder);
+  moveExpansion(from, order, sets, coefficients_.data());
+  places_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint8_t place = tree.rule()(nearest_[i]);
+    places_[i] = place == OrderRule::kNear ? 0 : place;
+  }
+  arrange(near, places_, near_);
+  addCharges(tree.charges(), near_, sets, coefficients_.data(), remainder);
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     remainder.gradientMagnitude[lane] *= tree.rounding();
     remainder.valueMagnitude[lane] *= tree.rounding();
   }
-  moveExpansion(from, sets, coefficients_.data());
-  far_.assign(count, 0xff);
-  addCharges(tree.charges(), from.near.data(), far_.data(), 0, count, sets, coefficients_.data());
   examine(coefficients_.data(), remainder, sets, out);
   return true;
 }

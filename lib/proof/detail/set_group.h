@@ -12,12 +12,6 @@
 
 namespace innermap::proof {
 
-// Holds all sets of a group.
-struct GroupBall {
-  Vec3 center;
-  double radius = 0;
-};
-
 // All steps, one after the other. Its memory serves again.
 class SetGroup {
  public:
@@ -37,15 +31,14 @@ class SetGroup {
 
  private:
   using Numbers = std::vector<double, tbb::cache_aligned_allocator<double>>;
-  void expandAbout(const FieldTree& tree, const StepExpansion& from, const GroupBall& ball);
-  bool sortCharges(const FieldTree& tree, const StepExpansion& from, const GroupBall& ball);
   bool computeStep(const FieldTree& tree, LaneSets& sets, std::uint8_t needed, LaneFindings& out);
 
   std::vector<LaneFindings> findings_;
   Numbers coefficients_ = Numbers(kCoefficients * kLanes);
-  StepExpansion own_;  // about the whole group
-  std::vector<std::uint32_t> farOfOwn_;
-  std::vector<std::uint8_t> far_;
+  StepExpansion own_;          // about the whole group
+  OrderedCharges far_, near_;  // of it
+  std::vector<std::uint8_t> places_;
+  std::vector<double> nearest_;
   std::uint8_t proven_ = 0, enclosed_ = 0;
   Lanes excess_ = {};
 };

@@ -9,6 +9,7 @@
 // Equations", SIAM J. Sci. Comput. 1995; P_n^m without the sign (-1)^m.)
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -23,6 +24,21 @@ constexpr std::size_t kTerms = (kOrder + 1) * (kOrder + 2) / 2;  // pairs (n, m)
 constexpr std::size_t kLanes = 8;
 
 constexpr std::size_t termOf(int n, int m) { return static_cast<std::size_t>(n * (n + 1) / 2 + m); }
+
+// The squares of a degree's coefficients, times these, sum to that of its norm in Schmidt's basis.
+inline constexpr std::array<double, kTerms> kSchmidt = [] {
+  const auto factorial = [](int n) {
+    double out = 1;
+    for (int i = 2; i <= n; ++i) out *= i;
+    return out;
+  };
+  std::array<double, kTerms> out{};
+  for (int n = 0; n <= kOrder; ++n)
+    for (int m = 0; m <= n; ++m)
+      out[termOf(n, m)] = (m == 0 ? 1.0 : 2.0) / (factorial(n - m) * factorial(n + m));
+  return out;
+}();
+
 // Real numbers of an expansion of three channels: place (2 (3 t + channel) + part).
 constexpr std::size_t kCoefficients = 6 * kTerms;
 

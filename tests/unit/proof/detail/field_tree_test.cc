@@ -2,27 +2,27 @@
 
 #include <gtest/gtest.h>
 
+#include "proof/expansions.h"
 #include "proof/maps.h"
 
 namespace innermap::proof {
 namespace {
 
 using testing::Charge;
-
-struct ValueAndGradient {
-  Vec3 value;
-  Mat3 gradient{};
-};
+using testing::largestDifference;
+using testing::ValueAndGradient;
 
 // Of an expansion and of its near charges, at a point.
-ValueAndGradient evaluate(const FieldTree& tree, const StepExpansion& from, const Vec3& p) {
+ValueAndGradient evaluateAll(const FieldTree& tree, const StepExpansion& from, const Vec3& p) {
   LaneSets sets{};
   for (std::size_t lane = 0; lane < kLanes; ++lane)
     for (int a = 0; a < 3; ++a) sets.center[a][lane] = p[a];
   alignas(64) double coefficients[kCoefficients * kLanes];
-  moveExpansion(from, sets, coefficients);
-  const std::vector<std::uint8_t> all(from.near.size(), 0xff);
-  addCharges(tree.charges(), from.near.data(), all.data(), 0, all.size(), sets, coefficients);
+  LaneRemainders remainders{};
+  moveExpansion(from, kOrder, sets, coefficients);
+  OrderedCharges near{from.near, {}};
+  near.ends.fill(from.near.size());
+  addCharges(tree.charges(), near, sets, coefficients, remainders);
   const auto at = [&](int n, int m, int k, int part) {
     return coefficients[(6 * termOf(n, m) + 2 * k + part) * kLanes + 3];
   };
@@ -34,17 +34,10 @@ ValueAndGradient evaluate(const FieldTree& tree, const StepExpansion& from, cons
   return out;
 }
 
-double largestDifference(const Mat3& a, const Mat3& b) {
-  double out = 0;
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) out = std::max(out, std::abs(a[r][c] - b[r][c]));
-  return out;
-}
-
 // The errors at a ball's centre, over what is allowed of each.
 double checkBall(const HarmonicMap& map, const FieldTree& tree, const Vec3& p, double radius) {
   const StepExpansion& from = tree.about(p, radius);
-  const ValueAndGradient got = evaluate(tree, from, p);
+  const ValueAndGradient got = evaluateAll(tree, from, p);
   const double value = norm(got.value - map(p));
   const double gradient = largestDifference(got.gradient, map.jacobian(p));
   const Remainder& r = from.remainder;
