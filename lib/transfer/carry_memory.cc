@@ -79,8 +79,9 @@ std::uint64_t carryBlockMemory(const Solid& other, const openvdb::GridPtrVec& gr
   // source takes; and what else does not grow. Of full blocks of a ball and a cube this was 4 to
   // 11% above the need.
   constexpr double kVoxels = 128.0 * 128 * 128, kInverted = 90, kLattice = 125e6, kOther = 25e6;
-  // Voxels of the target that the images of a density's cells lie in, at most.
-  constexpr double kImages = 2.4 * kVoxels;
+  // Voxels of the target that the images of a density's cells lie in, at most: cells are cut where
+  // they are 1.75 times as large (push.cc).
+  constexpr double kImages = 5.4 * kVoxels;
   double voxel = 8 + (pushed ? kInverted : 0);
   std::uint64_t kept = 0;  // copies that go on beyond the surface
   std::uint64_t density = 0;
