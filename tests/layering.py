@@ -20,7 +20,7 @@ FORBIDDEN = {"solve": r"\bmesh\b|\bMesh\b|openvdb"}
 # Rooms whose private headers serve the programs of this repository too.
 OPEN = ("core", "report")
 MOST_PUBLIC = 50
-TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)[^;(]*\{", re.M)
+TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)\b(?!::)[^;(]*\{", re.M)
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.M)
 PUBLIC = "lib/include/innermap"
 

@@ -79,12 +79,16 @@ class Cubes {
   openvdb::math::Transform::Ptr transform_;
 };
 
-// What a block is called in files that it comes from: they hold numbers of any size.
+// Totals come from files, and these may hold any numbers.
+bool beginsWithOrigin(const std::vector<double>& totals) {
+  constexpr double kFarthest = 1e9;
+  return std::all_of(totals.begin(), totals.begin() + 3, [&](double at) {
+    return std::abs(at) < kFarthest && !(std::abs(std::remainder(at, kBlock)) > 0);
+  });
+}
+
 Coord originFrom(const std::vector<double>& totals) {
-  const auto at = [&](std::size_t i) {
-    return std::abs(totals[i]) < 1e9 ? static_cast<int>(totals[i]) : 1;
-  };
-  return {at(0), at(1), at(2)};
+  return {static_cast<int>(totals[0]), static_cast<int>(totals[1]), static_cast<int>(totals[2])};
 }
 
 }  // namespace
@@ -111,8 +115,7 @@ GridBlocks::GridBlocks(std::vector<GridBlock> blocks, openvdb::math::Transform::
                        std::size_t numbers)
     : blocks_(std::move(blocks)), transform_(std::move(transform)) {
   for (const GridBlock& block : blocks_)
-    if (block.totals.size() != 3 + numbers ||
-        blockOf(originFrom(block.totals)) != originFrom(block.totals))
+    if (block.totals.size() != 3 + numbers || !beginsWithOrigin(block.totals))
       throw DataError(block.name + ": its totals are none of this volume's; make its share again");
   std::sort(blocks_.begin(), blocks_.end(), [](const GridBlock& a, const GridBlock& b) {
     return originFrom(a.totals) < originFrom(b.totals);

@@ -11,19 +11,11 @@
 #include "innermap/core/run.h"
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/evaluate/grids.h"
-#include "innermap/transfer/push_pull.h"
-#include "levelset/level_set_settings.h"
-#include "transfer/detail/block_figures.h"
-#include "transfer/detail/carry_density.h"
-#include "transfer/detail/carry_output.h"
-#include "transfer/detail/density_voxels.h"
-#include "transfer/detail/extended_map.h"
+#include "innermap/mesh/mesh.h"
 #include "transfer/detail/field_grid.h"
-#include "transfer/detail/invert_block.h"
-#include "transfer/detail/source_lattice.h"
+#include "transfer/detail/volume_pusher.h"
 
 namespace innermap {
-namespace {
 
 InverseSettings inverseSettings(const PushSettings& s) {
   InverseSettings out;
@@ -34,21 +26,28 @@ InverseSettings inverseSettings(const PushSettings& s) {
   return out;
 }
 
-// Cells along the edge of a density's voxels, so that their images are about as fine as the
-// target's voxels.
-int partsOf(const openvdb::GridBase& density, const Solid& source,
-            const openvdb::FloatGrid& target) {
-  constexpr double kLarger = 0.75;  // than the target's voxels, at most
-  constexpr int kMost = 32;
-  const openvdb::Vec3d voxel = density.voxelSize();
-  const double to = target.voxelSize()[0];
-  const double volume = static_cast<double>(interiorVoxels(target)) * std::pow(to, 3);
-  const double grown = std::cbrt(volume / source.volume());
-  const double ratio = std::max({voxel.x(), voxel.y(), voxel.z()}) * grown / to;
-  return std::clamp(static_cast<int>(ratio + 1 - kLarger), 1, kMost);
+double meanGrowth(const ComposedMap& map, const Solid& source, double accuracy) {
+  const Mesh& mesh = source.repaired().mesh;
+  EvaluateFieldSettings evaluate;
+  evaluate.accuracy = accuracy * targetExtent(map, source);
+  const Points moved = pointsOf(map.evaluate(mesh.vertices, evaluate).values);
+  return std::cbrt(
+      volumeRatio(std::abs(signedVolume(mesh)), std::abs(signedVolume(moved, mesh.triangles))));
 }
 
-// Of each block, in their order.
+CarryDensitySettings densitySettings(const openvdb::GridBase& density, double grown, double to,
+                                     const CarrySettings& carry) {
+  constexpr double kLarger = 0.75;  // than the target's voxels, at most
+  constexpr double kMost = 32;
+  const openvdb::Vec3d voxel = density.voxelSize();
+  const double ratio = std::max({voxel.x(), voxel.y(), voxel.z()}) * grown / to;
+  CarryDensitySettings out;
+  out.parts = static_cast<int>(std::clamp(ratio + 1 - kLarger, 1.0, kMost));
+  out.limit = carry.densityLimit;
+  out.constant = carry.sampling == Sampling::nearest;
+  return out;
+}
+
 std::vector<BlockFigures> resamplingOf(const InvertedMap& inverted,
                                        const openvdb::FloatGrid& target,
                                        const openvdb::GridPtrVec& grids) {
@@ -69,27 +68,6 @@ std::vector<BlockFigures> resamplingOf(const InvertedMap& inverted,
   }
   return out;
 }
-
-}  // namespace
-
-struct VolumePusher::Data {
-  Solid source;
-  openvdb::GridPtrVec grids;
-  PushSettings settings;
-  SourceLattice lattice;
-  Carriers sampled;
-  std::vector<std::pair<std::size_t, DensityVoxels>> densities;  // by place among the grids
-  std::vector<std::string> warnings;
-
-  openvdb::MaskGrid::Ptr regionOf(const openvdb::FloatGrid& target) const;
-  PushResult result(const CarryFigures& figures) const;
-  ExtendedMap extended(const ComposedMap& map) const;
-  Vec3 inSolid(const Vec3& p) const;
-  void carrySampled(const InvertedMap& inverted, const CarryOutput& output) const;
-  void finish(const ComposedMap& map, CarryOutput& output, openvdb::GridPtrVec& out) const;
-  void carryDensities(const ComposedMap& map, const openvdb::FloatGrid& target,
-                      const openvdb::MaskGrid& region, PushResult& out) const;
-};
 
 VolumePusher::VolumePusher(const Solid& source, const openvdb::GridPtrVec& grids,
                            const PushSettings& settings) {
@@ -177,16 +155,16 @@ void VolumePusher::Data::finish(const ComposedMap& map, CarryOutput& output,
       out);
 }
 
-void VolumePusher::Data::carryDensities(const ComposedMap& map, const openvdb::FloatGrid& target,
-                                        const openvdb::MaskGrid& region, PushResult& out) const {
+void VolumePusher::Data::carryDensities(const ComposedMap& map, const openvdb::MaskGrid& region,
+                                        PushResult& out) const {
+  if (densities.empty()) return;
   const ExtendedMap extendedMap = extended(map);
+  const double grown = meanGrowth(map, source, settings.accuracy);
   for (const auto& [place, voxels] : densities) {
-    CarryDensitySettings carry;
-    carry.parts = partsOf(*voxels.grid, source, target);
-    carry.limit = settings.carry.densityLimit;
-    carry.constant = settings.carry.sampling == Sampling::nearest;
     out.masses.emplace_back();
-    out.grids[place] = carryDensity(voxels, extendedMap, region, out.masses.back(), carry);
+    out.grids[place] =
+        carryDensity(voxels, extendedMap, region, out.masses.back(),
+                     densitySettings(*voxels.grid, grown, region.voxelSize()[0], settings.carry));
   }
 }
 
@@ -204,16 +182,22 @@ PushResult VolumePusher::Data::result(const CarryFigures& figures) const {
   return out;
 }
 
+PushResult VolumePusher::Data::uninverted(std::uint64_t voxels) const {
+  PushResult out;
+  out.warnings = warnings;
+  out.grids.resize(grids.size());
+  out.statistics.voxels = voxels;
+  return out;
+}
+
 PushResult VolumePusher::push(const ComposedMap& map, const openvdb::FloatGrid& targetLevelSet,
                               const std::vector<CarriedField>& fields) const {
   const Data& d = *data_;
   PushResult out;
   openvdb::MaskGrid::Ptr region;
   if (d.sampled.empty() && fields.empty()) {
-    out.warnings = d.warnings;
-    out.grids.resize(d.grids.size());
     region = d.regionOf(targetLevelSet);
-    out.statistics.voxels = region->activeVoxelCount();
+    out = d.uninverted(region->activeVoxelCount());
   } else {
     const InvertedMap inverted =
         d.settings.through
@@ -232,60 +216,7 @@ PushResult VolumePusher::push(const ComposedMap& map, const openvdb::FloatGrid& 
     for (const CarriedField& field : fields)
       out.grids.push_back(fieldGrid(field, d.source, d.lattice, inverted, d.settings.accuracy));
   }
-  d.carryDensities(map, targetLevelSet, *region, out);
-  noteOutside(out.grids, d.settings.outside);
-  return out;
-}
-
-struct BlockPusher::Data {
-  std::shared_ptr<const VolumePusher::Data> pusher;
-  ComposedMap map;
-  const Solid& target;
-  LevelSetSettings output;
-  std::optional<LatticeImages> images;  // once a block is pushed
-
-  InvertedMap inverted(const openvdb::FloatGrid& levelSet);
-};
-
-BlockPusher::BlockPusher(const VolumePusher& pusher, const ComposedMap& map, const Solid& target,
-                         const LevelSetSettings& output)
-    : data_(std::make_shared<Data>(Data{pusher.data_, map, target, output, {}})) {
-  requireNoOutside(pusher.data_->settings.outside);
-  if (!pusher.data_->densities.empty())
-    throw DataError(
-        "densities: their mass is summed over all of the volume, so they are not pushed in shares; "
-        "push them in one run, or let them be sampled");
-}
-
-InvertedMap BlockPusher::Data::inverted(const openvdb::FloatGrid& levelSet) {
-  const VolumePusher::Data& d = *pusher;
-  if (d.settings.through) return invertThrough(*d.settings.through, d.regionOf(levelSet));
-  const InverseSettings inverse = inverseSettings(d.settings);
-  if (!images) images = imagesOf(map, d.source, d.lattice, levelSet.transform(), inverse);
-  return invertBlock(map, d.source, d.lattice, *images, levelSet, inverse);
-}
-
-GridBlock BlockPusher::push(const openvdb::Coord& origin) const {
-  const VolumePusher::Data& d = *data_->pusher;
-  const openvdb::FloatGrid::Ptr levelSet = makeLevelSetBlock(data_->target, data_->output, origin);
-  const InvertedMap inverted = data_->inverted(*levelSet);
-  const CarryOutput output(d.sampled, *inverted.region, *levelSet);
-  d.carrySampled(inverted, output);
-  std::vector<BlockFigures> figures = resamplingOf(inverted, *levelSet, d.grids);
-  figuresAt(origin, figures).inverse = inverted.statistics;
-  return {output.blockGrids(), totalsOf(sumsOf(figures.front()))};
-}
-
-PushResult BlockPusher::join(std::vector<GridBlock> blocks) const {
-  const VolumePusher::Data& d = *data_->pusher;
-  const openvdb::FloatGrid::Ptr nothing = emptyLevelSet(data_->target, data_->output);
-  GridBlocks all(std::move(blocks), nothing->transformPtr(), kCarryNumbers);
-  CarryOutput output(d.sampled, *d.regionOf(*nothing), *nothing);
-  output.take(all);
-  const CarryFigures figures = sumOf(all, voxelsOf(d.grids, nothing->voxelSize()[0]));
-  if (!d.settings.through) requireInverted(figures.inverse);
-  PushResult out = d.result(figures);
-  d.finish(data_->map, output, out.grids);
+  d.carryDensities(map, *region, out);
   noteOutside(out.grids, d.settings.outside);
   return out;
 }

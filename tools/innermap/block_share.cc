@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "innermap/io/vdb_file.h"
@@ -19,8 +20,10 @@ Frames framesOf(const std::vector<VoxelBlock>& blocks) {
   for (const VoxelBlock& block : blocks) {
     const openvdb::Coord& o = block.origin;
     frames.wanted.push_back(frames.all.size());
-    frames.all.push_back({static_cast<std::int64_t>(frames.all.size() + 1),
-                          fmt::format("{},{},{}", o.x(), o.y(), o.z())});
+    frames.all.push_back(
+        {static_cast<std::int64_t>(frames.all.size() + 1),
+         fmt::format("{},{},{}{}", o.x(), o.y(), o.z(),
+                     block.density > 0 ? fmt::format(" of density {}", block.density) : "")});
     frames.weights.push_back(block.voxels);
   }
   return frames;
@@ -30,13 +33,53 @@ Frames framesOf(const std::vector<VoxelBlock>& blocks) {
 
 std::string sharesOf(const std::string& output) { return output + kFolder; }
 
+namespace {
+
+std::filesystem::path named(const std::string& folder) {
+  const std::filesystem::path path(folder);
+  return path.filename().empty() ? path.parent_path() : path;
+}
+
+}  // namespace
+
+bool isShares(const std::string& folder) {
+  return named(folder).extension() == kFolder && !named(folder).stem().empty();
+}
+
 std::string outputOf(const std::string& shares) {
-  std::filesystem::path path(shares);
-  if (path.filename().empty()) path = path.parent_path();
-  if (path.extension() != kFolder || path.stem().empty())
+  if (!isShares(shares))
     throw DataError(shares + ": its name must end in " + kFolder +
                     ", as that of a folder beside the output does");
-  return path.replace_extension().string();
+  return named(shares).replace_extension().string();
+}
+
+JoinedParts partsWithFiles(JoinedParts joined, const FramePattern& pattern, bool broken) {
+  std::vector<Part> whole;
+  for (Part& part : joined.parts)
+    if (part.broken.empty() ? hasOutput(part, pattern.path(part.frame)) : broken)
+      whole.push_back(std::move(part));
+    else
+      joined.missing.push_back(part.frame);
+  joined.parts = std::move(whole);
+  std::sort(joined.missing.begin(), joined.missing.end());
+  return joined;
+}
+
+std::string missingText(const std::string& folder, const JoinedParts& joined) {
+  return fmt::format("{}: {} of {} {}s are missing: {}", folder, joined.missing.size(),
+                     joined.run.frames.size(), unitOf(joined.run), framesText(joined.missing));
+}
+
+std::vector<std::string> blockFiles(const std::string& shares) {
+  const FramePattern pattern = blockPattern(shares);
+  const JoinedParts joined = partsWithFiles(readParts(shares), pattern, false);
+  if (joined.run.command != "evaluate" && joined.run.command != "voxelize")
+    throw DataError(shares + ": blocks of " + joined.run.command +
+                    " hold no finished grids; make the file with innermap join");
+  if (!joined.missing.empty()) throw DataError(missingText(shares, joined) + "; make their shares");
+  std::vector<std::string> files;
+  for (const Part& part : joined.parts) files.push_back(pattern.path(part.frame));
+  return files;
 }
 
 FramePattern blockPattern(const std::string& shares) {
@@ -67,7 +110,6 @@ void addBlockOptions(Command& command, ShareOptions& options) {
 }
 
 void beginBlocks(const ShareOptions& options, const std::string& output, Context& context) {
-  applyCpuTarget(options);
   if (!writesJobs(options, context) && !inShares(options)) context.output(output);
 }
 
@@ -89,11 +131,10 @@ void makeShare(const ShareOptions& options, const BlockWork& work, Context& cont
   PartValues made;
   const auto makeBlock = [&](std::size_t index) {
     const FrameFile& file = frames.all[index];
-    const GridBlock block =
-        context.timed(work.stage, [&] { return work.make(blocks[index].origin); });
-    writeFrame(file, [&] {
-      context.timed("write", [&] { writeVdb(pattern.path(file.number), block.grids); });
-    });
+    const GridBlock block = context.timed(work.stage, [&] { return work.make(blocks[index]); });
+    const auto write = [&] { writeVdb(pattern.path(file.number), block.grids); };
+    writeFrame(
+        file, [&] { context.timed("write", write); }, frames.unit);
     made = {{kTotals, block.totals}};
   };
   share.conclude(runFrames(frames, true, context, makeBlock,

@@ -15,8 +15,18 @@ namespace innermap::tool {
 std::string sharesOf(const std::string& output);
 // The output whose parts a folder has. Throws DataError for a folder of another name.
 std::string outputOf(const std::string& shares);
+bool isShares(const std::string& folder);  // by its name
 // Where the voxels of a block go.
 FramePattern blockPattern(const std::string& shares);
+
+// What workers left there, less those whose file is not there or not whole: these are missing, but
+// for broken ones if `broken`.
+JoinedParts partsWithFiles(JoinedParts joined, const FramePattern& pattern, bool broken);
+// "FOLDER: 2 of 4 blocks are missing: 3, 4"
+std::string missingText(const std::string& folder, const JoinedParts& joined);
+// The files of all blocks of a volume whose grids are those of the output, ascending. Throws
+// FileError, DataError.
+std::vector<std::string> blockFiles(const std::string& shares);
 
 // As addShareOptions().
 void addBlockOptions(Command& command, ShareOptions& options);
@@ -32,7 +42,7 @@ struct BlockWork {
   std::string doing;                                // "evaluate map.ply"
   std::string stage;                                // of the report's seconds
   std::function<std::vector<VoxelBlock>()> blocks;  // all of the run
-  std::function<GridBlock(const openvdb::Coord&)> make;
+  std::function<GridBlock(const VoxelBlock&)> make;
   std::uint64_t memory = 0, joinMemory = 0;  // of a block; of the join; bytes
   std::vector<JobPhase> making, joining;     // of all blocks; of the join
 };

@@ -41,7 +41,6 @@ std::vector<JobPhase> carryingPhases(Way way, const CarryJob& job, const Transfe
       JobSize held = from;
       held.items = static_cast<double>(densities) * from.inside;
       phases.push_back(stageOf("finding the inside", held));
-      phases.push_back(stageOf("mapping the densities", held));
       phases.push_back(stageOf("carrying the densities", held));
     }
   }

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "lists.h"
+#include "report/parts.h"
 #include "spelling.h"
 
 namespace innermap::tool {
@@ -210,6 +211,12 @@ std::vector<Option> commonOptionTable(CommonOptions& common) {
        "--max-memory", "SIZE", &common.maxMemory,
        "use no more memory than this, such as 800M or 4GB; refuse to start a run that needs more")
       .defaults("80% of the machine's");
+  c.option("--cpu-target", "NAME", &common.cpuTarget,
+           fmt::format("use only the vector instructions of {}, to get the same bits on newer "
+                       "processors",
+                       fmt::join(cpuNames(), " or ")))
+      .defaults("this processor's best")
+      .advanced();
   c.flag("--dry-run", &common.dryRun,
          "say what the run would do and how much memory and time it needs; write nothing");
   c.option("--report", "FILE", &common.report, "write the report, with figures and times, as JSON");

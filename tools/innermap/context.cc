@@ -20,7 +20,7 @@
 namespace innermap::tool {
 
 Context::Context(const CommonOptions& options, TerminalProgress& progress)
-    : options_(options), progress_(progress), space_(options.space) {
+    : options_(options), progress_(progress), maxTime_(options.maxTime), space_(options.space) {
   maxMemory_ = options.maxMemory.empty() ? availableMemory() / 10 * 8
                                          : parseBytes("--max-memory", options.maxMemory);
   if (!options.html.empty()) page_ = std::make_unique<Page>();
@@ -35,14 +35,14 @@ double Context::secondsGone() const {
 }
 
 bool Context::timeIsUp() {
-  if (secondsGone() < options_.maxTime) return false;
+  if (secondsGone() < maxTime_) return false;
   progress_.endByTime();
   return true;
 }
 
 void Context::spend(double share, double later) {
   constexpr double kMargin = 3;  // what is expected of a solid's grids is that far out, at times
-  progress_.setSecondsLeft(share * (options_.maxTime - secondsGone() - kMargin * later));
+  progress_.setSecondsLeft(share * (maxTime_ - secondsGone() - kMargin * later));
 }
 
 void Context::noteTime() {

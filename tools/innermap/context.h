@@ -39,6 +39,7 @@ struct CommonOptions {
   std::string maxMemory;
   double maxTime = std::numeric_limits<double>::infinity();  // seconds
   SpaceSettings space;
+  std::string cpuTarget;  // empty: the processor's best
   bool dryRun = false;
   bool strict = false;
   std::string report;
@@ -85,9 +86,10 @@ class Context {
 
   // What workers left of this run, for `join`, which has the command conclude it: the command takes
   // these in place of what it would compute. Null in other runs.
-  void joins(std::shared_ptr<const JoinedParts> parts, const SpaceSettings& space) {
+  void joins(std::shared_ptr<const JoinedParts> parts, const SpaceSettings& space, double maxTime) {
     joined_ = std::move(parts);
     space_ = space;
+    maxTime_ = maxTime;
   }
   const JoinedParts* joined() const { return joined_.get(); }
 
@@ -201,6 +203,7 @@ class Context {
   const CommonOptions& options_;
   TerminalProgress& progress_;
   std::uint64_t maxMemory_ = 0;
+  double maxTime_;  // seconds
   double secondsGone() const;
 
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

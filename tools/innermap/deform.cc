@@ -281,7 +281,6 @@ void plan(const DeformOptions& options, const Frames& frames, const FramePattern
 }
 
 void run(const DeformOptions& options, Context& context) {
-  applyCpuTarget(options.farm);
   const FramePattern pattern("--output", options.output);
   Frames frames = listFrames(options.frames, options.rest, context);
   check(options, frames);

@@ -94,7 +94,9 @@ BlockWork blockWork(const EvaluateOptions& options, const MappedSolid& mapped,
   work.output = options.output;
   work.inputs = fingerprintOf(options.map);
   work.doing = "evaluate " + options.map;
-  work.make = [&](const openvdb::Coord& block) { return evaluateBlock(mapped, settings, block); };
+  work.make = [&](const VoxelBlock& block) {
+    return evaluateBlock(mapped, settings, block.origin);
+  };
   return work;
 }
 

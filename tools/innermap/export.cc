@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "block_share.h"
 #include "commands.h"
 #include "core/frame_files.h"
 #include "innermap/io/pictures.h"
@@ -34,12 +35,17 @@ void fillReport(const VolumeTextureResult& r, const ExportOptions& options, Cont
   report.add("texture", figures(r));
 }
 
-// One .vdb file, which stands at all times, or the frames of a pattern or a folder.
+// One .vdb file or the blocks of a volume, which stand at all times, or the frames of a pattern or
+// a folder.
 std::vector<UsdFrame> framesOf(const std::string& file) {
+  std::vector<UsdFrame> frames;
+  if (isShares(file)) {
+    for (const std::string& block : blockFiles(file)) frames.push_back({std::nullopt, block});
+    return frames;
+  }
   const std::string name = std::filesystem::path(file).filename().string();
   if (name.find_first_of("#*?%") == std::string::npos && !std::filesystem::is_directory(file))
     return {{std::nullopt, file}};
-  std::vector<UsdFrame> frames;
   for (const FrameFile& frame : findFrames({file}, {".vdb"}).frames)
     frames.push_back({frame.number, frame.path});
   return frames;
@@ -49,7 +55,7 @@ void runReferences(const ExportOptions& options, Context& context) {
   context.output(options.output);
   const std::vector<UsdFrame> frames = framesOf(options.file);
   for (const UsdFrame& frame : frames)
-    if (frame.number) context.input(frame.path);
+    if (frame.path != options.file) context.input(frame.path);
   if (context.dryRun())
     return context.plan(
         {fmt::format("refer to {} .vdb files in {}", frames.size(), options.output)}, 0);
@@ -122,8 +128,10 @@ Command makeExportCommand() {
       "Attributes tell tiling, order, voxel size, bounds, matrices and what each grid is; "
       "`innermap import` reads them. One scalar grid is the channel Y, a vector R, G, B, a vector "
       "and a scalar R, G, B, A; more than four channels are layers (`density.V`, `Cd.R`).");
-  c.positional("FILE", &o->file,
-               "the .vdb file; for .usda also a folder or pattern of frames, with #### or *");
+  c.positional(
+      "FILE", &o->file,
+      "the .vdb file; for .usda also a folder or pattern of frames, with #### or *, or the "
+      "folder .shares of a volume that evaluate or voxelize made in shares");
   c.outputFile(
       &o->output, outputEndings(),
       "the file, in the format of its ending; for slices with #### or %04d for the number, "
@@ -141,6 +149,7 @@ Command makeExportCommand() {
   c.example("innermap export smoke.vdb -o smoke.exr --grids density --resolution 64 --cube --half");
   c.example("innermap export smoke.vdb -o smoke.nvdb --half");
   c.example("innermap export 'out/smoke.####.vdb' -o smoke.usda --fps 25");
+  c.example("innermap export map.vdb.shares -o map.usda");
   c.example("innermap export map.vdb -o 'slices/map.####.exr' --layout slices --grids map,density");
   c.run([o](Context& context) { run(*o, context); });
   return c;

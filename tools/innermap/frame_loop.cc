@@ -14,7 +14,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-void sayBroken(const std::vector<FrameResult>& results, Context& context) {
+void sayBroken(const std::vector<FrameResult>& results, const std::string& unit, Context& context) {
   std::vector<std::int64_t> broken;
   const FrameResult* first = nullptr;
   for (const FrameResult& r : results) {
@@ -27,10 +27,10 @@ void sayBroken(const std::vector<FrameResult>& results, Context& context) {
                                    [](const FrameResult& r) { return !r.error.empty(); });
   if (count == static_cast<std::ptrdiff_t>(results.size()))
     throw DataError(count == 1 ? first->error
-                               : fmt::format("none of the {} frames can be used; the first: {}",
-                                             count, first->error));
-  context.failAfterwards(fmt::format("{} of {} frames could not be used: {}{}; the first: {}",
-                                     count, results.size(), fmt::join(broken, ", "),
+                               : fmt::format("none of the {} {}s can be used; the first: {}", count,
+                                             unit, first->error));
+  context.failAfterwards(fmt::format("{} of {} {}s could not be used: {}{}; the first: {}", count,
+                                     results.size(), unit, fmt::join(broken, ", "),
                                      static_cast<std::size_t>(count) > broken.size() ? ", ..." : "",
                                      first->error));
 }
@@ -88,21 +88,23 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
     context.warning(fmt::format("--max-time ended: {} of {} {}s are left, from {} on", left,
                                 frames.wanted.size(), frames.unit,
                                 frames.all[frames.wanted[results.size()]].number));
-  concludeFrames(results, left, context);
+  concludeFrames(results, left, context, frames.unit);
   return results;
 }
 
-void concludeFrames(const std::vector<FrameResult>& results, std::size_t left, Context& context) {
+void concludeFrames(const std::vector<FrameResult>& results, std::size_t left, Context& context,
+                    const std::string& unit) {
   context.report().add("frames", frameFigures(results));
   context.report().add("frames", leftFigures(left));
-  sayBroken(results, context);
+  sayBroken(results, unit, context);
 }
 
-void writeFrame(const FrameFile& frame, const std::function<void()>& write) {
+void writeFrame(const FrameFile& frame, const std::function<void()>& write,
+                const std::string& unit) {
   try {
     write();
   } catch (const FileError& error) {
-    throw OutputFailure(fmt::format("{}; stopped at frame {}", error.what(), frame.number));
+    throw OutputFailure(fmt::format("{}; stopped at {} {}", error.what(), unit, frame.number));
   }
 }
 

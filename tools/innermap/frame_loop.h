@@ -25,10 +25,12 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
 
 // Fills the report's "frames" and sets the context's failure when some are broken. Throws DataError
 // when all are.
-void concludeFrames(const std::vector<FrameResult>& results, std::size_t left, Context& context);
+void concludeFrames(const std::vector<FrameResult>& results, std::size_t left, Context& context,
+                    const std::string& unit = "frame");
 
 // Calls `write`; its FileErrors become OutputFailures that name the frame.
-void writeFrame(const FrameFile& frame, const std::function<void()>& write);
+void writeFrame(const FrameFile& frame, const std::function<void()>& write,
+                const std::string& unit = "frame");
 
 // "seconds a frame: mean 0.41, least 0.38, most 0.52" of the good ones; also into the report.
 std::string secondsText(const std::vector<FrameResult>& results, Context& context);

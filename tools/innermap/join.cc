@@ -96,24 +96,12 @@ std::vector<FrameResult> resultsOf(const JoinedParts& joined, Context& context) 
   return results;
 }
 
-// What has no grids is not made; broken: but for frames that cannot be.
-void dropWithoutOutput(const FramePattern& pattern, bool broken, JoinedParts& joined) {
-  std::vector<Part> whole;
-  for (Part& part : joined.parts)
-    if (part.broken.empty() ? hasOutput(part, pattern.path(part.frame)) : broken)
-      whole.push_back(std::move(part));
-    else
-      joined.missing.push_back(part.frame);
-  joined.parts = std::move(whole);
-  std::sort(joined.missing.begin(), joined.missing.end());
-}
-
-void requireAll(const JoinedParts& joined, bool partial, Context& context) {
+void requireAll(const JoinedParts& joined, const JoinOptions& options, Context& context) {
   if (joined.missing.empty()) return;
-  const std::string text =
-      fmt::format("{} of {} {}s are missing: {}", joined.missing.size(), joined.run.frames.size(),
-                  unitOf(joined.run), framesText(joined.missing));
-  if (!partial) throw DataError(text + "; make their shares, or join the others with --partial");
+  const std::string text = missingText(options.folder, joined);
+  if (!options.partial)
+    throw DataError(text + "; make their shares" +
+                    (unitOf(joined.run) == "frame" ? ", or join the others with --partial" : ""));
   if (joined.parts.empty()) throw DataError(text);
   context.warning(text);
 }
@@ -121,8 +109,8 @@ void requireAll(const JoinedParts& joined, bool partial, Context& context) {
 void joinSequence(const JoinOptions& options, JoinedParts joined, Context& context) {
   const FramePattern pattern("FOLDER", options.folder + "/energy.####.vdb");
   const bool grids = !textAt(joined.run.settings, "grids").empty();
-  if (grids) dropWithoutOutput(pattern, true, joined);
-  requireAll(joined, options.partial, context);
+  if (grids) joined = partsWithFiles(std::move(joined), pattern, true);
+  requireAll(joined, options, context);
   std::vector<std::string> beside{"parts"};
   for (const Part& part : joined.parts)
     beside.push_back(std::filesystem::path(pattern.path(part.frame)).filename().string());
@@ -155,8 +143,8 @@ void joinSequence(const JoinOptions& options, JoinedParts joined, Context& conte
 void joinVolume(const JoinOptions& options, JoinedParts joined, Context& context) {
   if (options.partial) throw UsageError("--partial: is for frames; a volume needs all blocks");
   const std::string output = outputOf(options.folder);
-  dropWithoutOutput(blockPattern(options.folder), false, joined);
-  requireAll(joined, false, context);
+  joined = partsWithFiles(std::move(joined), blockPattern(options.folder), false);
+  requireAll(joined, options, context);
   const Command command = findCommand(joined.run.command);
   CommonOptions common;
   const std::vector<std::string>& line = joined.run.commandLine;
@@ -167,9 +155,11 @@ void joinVolume(const JoinOptions& options, JoinedParts joined, Context& context
     if (text && option.isInput && !(*text)->empty()) context.input(**text);
     if (text && option.name == "--output") **text = output;
   }
+  if (!common.cpuTarget.empty()) keepToCpu("--cpu-target", common.cpuTarget);
   takeRun(joined.run, context);
   resultsOf(joined, context);
-  context.joins(std::make_shared<const JoinedParts>(std::move(joined)), command.space());
+  context.joins(std::make_shared<const JoinedParts>(std::move(joined)), command.space(),
+                command.maxTime());
   command.execute(context);
 }
 

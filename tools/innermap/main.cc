@@ -13,6 +13,7 @@
 #include "core/file.h"
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
+#include "report/parts.h"
 #include "run_record.h"
 #include "signals.h"
 #include "terminal_progress.h"
@@ -30,6 +31,7 @@ void execute(const Command& command, const CommonOptions& common, TerminalProgre
     if (const auto text = std::get_if<std::string*>(&option.target)) context.input(**text);
   }
   if (!common.report.empty()) context.output(common.report);
+  if (!common.cpuTarget.empty()) keepToCpu("--cpu-target", common.cpuTarget);
   // Never undone: TBB would start the threads that were kept from it.
   static const auto* const threads = new ThreadLimit(common.threads);
   static_cast<void>(threads);

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "block_share.h"
+#include "command_words.h"
 #include "commands.h"
 #include "core/file.h"
 #include "correspondence.h"
@@ -16,7 +17,6 @@
 #include "innermap/mesh/mesh_file.h"
 #include "inputs.h"
 #include "job_cost.h"
-#include "map_jobs.h"
 #include "map_report.h"
 #include "report/page/contents.h"
 #include "report/verdict.h"
@@ -184,11 +184,13 @@ void writeJobs(const MapOptions& options, Context& context) {
                                   {1, needsLocalMap(meshes.target.vertices, fitting.tolerance)});
   work.output = (std::filesystem::path(options.output) / "map.vdb").string();
   ShareRun run = shareRun(work);
-  const MapCommands commands = mapCommands(
-      {context.report().run->commandLine.begin() + 2, context.report().run->commandLine.end()},
-      options.source, options.target, options.output);
-  run.first = commands.fit;
-  run.command = commands.evaluate;
+  const CommandLine& line = context.report().run->commandLine;
+  if (const std::string option = keptByNone(line, {"fit", "evaluate"}); !option.empty())
+    throw UsageError(option +
+                     ": the jobs fit and evaluate alone, and make no pictures; leave it out");
+  const std::string map = (std::filesystem::path(options.output) / "map.ply").string();
+  run.first = handedOn(line, {"innermap", "fit", options.source, options.target, "-o", map}, false);
+  run.command = handedOn(line, {"innermap", "evaluate", map, "-o", work.output}, false);
   run.beginning = fittingPhases(
       fitting, bentPlaces(meshes.source, meshes.target.vertices, fitting.tolerance), false);
   run.beginningBytes = fitMapMemory(fitting, vertices);

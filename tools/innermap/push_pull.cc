@@ -149,35 +149,19 @@ openvdb::GridPtrVec pull(const CarryJob& job, const CarryOptions& options, Conte
   return result.grids;
 }
 
-// Throws UsageError for what is not made in shares.
-void requireCuttable(Way way, const CarryOptions& options, const CarryJob& job) {
-  if (!inShares(options.farm)) return;
-  if (options.transfer.outside > 0)
-    throw UsageError(
-        "--outside: what lies around the solid is carried in one run; leave out --share and "
-        "--jobs");
-  const CarrySettings carry = carrySettings(options.transfer);
-  for (const openvdb::GridBase::Ptr& grid : job.grids)
-    if (way == Way::push && isDensity(*grid, carry))
-      throw UsageError(fmt::format(
-          "--density: push sums the mass of '{}' over all of the volume; leave out --share and "
-          "--jobs, or carry other grids by --grids",
-          grid->getName()));
-}
-
 // What makes blocks is set up with the first of them.
-std::function<GridBlock(const openvdb::Coord&)> blockMaker(Way way, const CarryJob& job,
-                                                           const CarryOptions& options,
-                                                           Context& context) {
+std::function<GridBlock(const VoxelBlock&)> blockMaker(Way way, const CarryJob& job,
+                                                       const CarryOptions& options,
+                                                       Context& context) {
   const LevelSetSettings output = outputOf(way, job, options.transfer);
   if (way == Way::pull)
-    return [&, output,
-            puller = std::make_shared<std::optional<Puller>>()](const openvdb::Coord& block) {
-      if (!*puller) puller->emplace(pullerOf(job, options.transfer, context));
-      return (*puller)->puller.pullBlock(output, block);
-    };
+    return
+        [&, output, puller = std::make_shared<std::optional<Puller>>()](const VoxelBlock& block) {
+          if (!*puller) puller->emplace(pullerOf(job, options.transfer, context));
+          return (*puller)->puller.pullBlock(output, block.origin);
+        };
   return [&, output,
-          pusher = std::make_shared<std::optional<BlockPusher>>()](const openvdb::Coord& block) {
+          pusher = std::make_shared<std::optional<BlockPusher>>()](const VoxelBlock& block) {
     if (!*pusher)
       pusher->emplace(
           VolumePusher(job.mapped.solid(), job.grids, pushSettings(job, options.transfer)),
@@ -195,9 +179,15 @@ BlockWork blockWork(Way way, const CarryJob& job, const CarryOptions& options,
   work.inputs = inputsOf(options);
   work.stage = pushes ? "push" : "pull";
   work.doing = fmt::format("{} {} by {}", work.stage, options.volume, options.map);
-  work.blocks = [&, way] { return voxelBlocks(solid, outputOf(way, job, options.transfer)); };
+  work.blocks = [&, way] {
+    const LevelSetSettings output = outputOf(way, job, options.transfer);
+    if (way == Way::pull) return voxelBlocks(solid, output);
+    return pushBlocks(job.mapped.map, job.mapped.solid(), job.grids,
+                      pushSettings(job, options.transfer), solid, output);
+  };
   work.make = blockMaker(way, job, options, context);
-  work.memory = carryBlockMemory(pushes ? job.mapped.solid() : job.target, job.grids, pushes);
+  work.memory = carryBlockMemory(pushes ? job.mapped.solid() : job.target, job.grids,
+                                 carrySettings(options.transfer), pushes);
   work.joinMemory =
       transferMemory(solid, job.grids, options.transfer, {pushes, 0}, growthOf(way, job));
   work.making = phases;
@@ -262,7 +252,13 @@ void run(Way way, const CarryOptions& options, Context& context) {
   requireFitting(options.volume, options.output, options.transfer, options.geometry);
   const bool geometry = isGeometryFile(options.volume);
   if (geometry && inShares(options.farm))
-    throw UsageError("--share and --jobs: geometry is carried in one run; leave them out");
+    throw UsageError(
+        "--share and --jobs: geometry is carried in one run, a million points in a second and a "
+        "million splats in some seven; leave them out");
+  if (options.transfer.outside > 0 && inShares(options.farm))
+    throw UsageError(
+        "--outside: what lies around the solid is carried in one run; leave out --share and "
+        "--jobs");
   beginBlocks(options.farm, options.output, context);
   if (geometry) return runGeometry(way, options, context);
   const CarryJob job = read(options, context);
@@ -271,7 +267,6 @@ void run(Way way, const CarryOptions& options, Context& context) {
   const CarryKind kind{way == Way::push, 0};
   const std::vector<JobPhase> phases = carryingPhases(way, job, options.transfer, growth);
   context.expect(phases);
-  requireCuttable(way, options, job);
   if (madeInShares(options.farm, blockWork(way, job, options, phases, context), context)) return;
   if (context.dryRun())
     return context.plan({fmt::format("{} {} grids of {} by {}", way == Way::push ? "push" : "pull",

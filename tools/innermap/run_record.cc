@@ -79,6 +79,8 @@ void recordRun(const Command& command, const CommonOptions& common, Report& repo
   for (const Option& option : command.options())
     run.settings.emplace_back(settingKey(option.name),
                               std::visit(ValueOf{option, common}, option.target));
+  run.settings.emplace_back(settingKey("--cpu-target"),
+                            ValueOf{Option(), common}(&common.cpuTarget));
   report.run = std::move(run);
 }
 

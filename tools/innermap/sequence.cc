@@ -68,7 +68,6 @@ void run(const SequenceOptions& options, Context& context) {
   if (!options.frames.usd.empty() && options.grids.empty())
     throw UsageError("--usd: refers to grids; give --grids too");
   requireUsdOfAll(options.frames, inShares(options.farm));
-  applyCpuTarget(options.farm);
   gridsToWrite(options);  // refuses names that cannot be before anything is read
   if (!options.gridList.empty()) context.note("--grid-list is now the list of --grids=LIST");
   Frames frames = listFrames(options.frames, options.rest, context);

@@ -9,6 +9,7 @@
 #include <limits>
 #include <sstream>
 
+#include "command_words.h"
 #include "core/file.h"
 #include "core/share.h"
 #include "innermap/core/memory.h"
@@ -20,7 +21,6 @@ namespace innermap::tool {
 namespace {
 
 constexpr const char* kShare = "--share";
-constexpr const char* kCpuTarget = "--cpu-target";
 constexpr const char* kJobs = "--jobs";
 constexpr const char* kTasks = "--tasks";
 
@@ -33,21 +33,6 @@ bool decides(const std::string& setting) {
 
 FigureValue partValue(const ReportValue& value) {
   return std::visit([](const auto& v) -> FigureValue { return v; }, value);
-}
-
-// Without these options and their values.
-std::vector<std::string> without(const std::vector<std::string>& commandLine,
-                                 const std::vector<std::string>& options) {
-  std::vector<std::string> out;
-  for (std::size_t i = 0; i < commandLine.size(); ++i) {
-    const std::string& word = commandLine[i];
-    const std::string name = word.substr(0, word.find('='));
-    if (std::find(options.begin(), options.end(), name) == options.end())
-      out.push_back(word);
-    else if (name.size() == word.size())
-      ++i;
-  }
-  return out;
 }
 
 // This program, by its name where that is found.
@@ -103,14 +88,6 @@ void addShareOptions(Command& command, ShareOptions& options, const std::string&
                   "OpenCue. " +
                   results)
       .advanced();
-  command
-      .option(
-          kCpuTarget, "NAME", &options.cpuTarget,
-          fmt::format(
-              "use only the vector instructions of {}, to get the same bits on newer processors",
-              fmt::join(cpuNames(), " or ")))
-      .defaults("this processor's best")
-      .advanced();
   addJobsOptions(command, options);
 }
 
@@ -150,13 +127,20 @@ void writeShareJobs(const ShareOptions& options, const ShareRun& run, Context& c
   const ReportRun& told = *context.report().run;
   jobs.name = "innermap " + context.report().command;
   jobs.folder = std::filesystem::current_path().string();
-  jobs.command = run.command.empty() ? without(told.commandLine, {kJobs, kTasks}) : run.command;
-  jobs.command.front() = programName();
+  const CommandLine whole = without(told.commandLine, {kJobs, kTasks});
   jobs.first = run.first;
-  if (!jobs.first.empty()) jobs.first.front() = jobs.command.front();
+  jobs.command = run.command.empty() ? without(whole, optionsOfTheWhole()) : run.command;
+  if (!run.joined.empty())
+    jobs.join = handedOn(whole, {"innermap", "join", run.joined}, true);
+  else if (run.sameCommand)
+    jobs.join = whole;
+  else if (jobs.command.size() < whole.size())
+    throw UsageError(
+        fmt::format("{}: are of the whole run, and no job of {} ends it; leave them out",
+                    fmt::join(optionsOfTheWhole(), " and "), context.report().command));
+  for (CommandLine* line : {&jobs.first, &jobs.command, &jobs.join})
+    if (!line->empty()) line->front() = programName();
   jobs.beginning = {totalSeconds(run.beginning), processMemory(run.beginningBytes)};
-  if (!run.joined.empty()) jobs.join = {jobs.command.front(), "join", run.joined};
-  if (run.sameCommand) jobs.join = jobs.command;
   jobs.task = {setup + perUnit * std::ceil(units / static_cast<double>(jobs.tasks)),
                processMemory(run.bytes)};
   jobs.joining = jobs.task;
@@ -174,10 +158,6 @@ void writeShareJobs(const ShareOptions& options, const ShareRun& run, Context& c
 
 bool inShares(const ShareOptions& options) {
   return !options.share.empty() || !options.jobs.empty();
-}
-
-void applyCpuTarget(const ShareOptions& options) {
-  if (!options.cpuTarget.empty()) keepToCpu(kCpuTarget, options.cpuTarget);
 }
 
 std::string cutToShare(const std::string& share, Frames& frames) {
@@ -268,7 +248,8 @@ void FrameShare::ended(const FrameResult& result, PartValues values) {
   }
   warnings_ = report.warnings.size();
   seconds_ = report.seconds;
-  writeFrame(result.file, [&] { folder_->write(part); });
+  writeFrame(
+      result.file, [&] { folder_->write(part); }, frames_.unit);
 }
 
 void FrameShare::conclude(const std::vector<FrameResult>& results) {

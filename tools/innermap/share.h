@@ -12,14 +12,12 @@
 namespace innermap::tool {
 
 struct ShareOptions {
-  std::string share;      // empty: all
-  std::string cpuTarget;  // empty: the processor's best
-  std::string jobs;       // a file to write, or empty
+  std::string share;  // empty: all
+  std::string jobs;   // a file to write, or empty
   std::optional<std::uint64_t> tasks;
 };
 
-// --share, --cpu-target, --jobs, --tasks. units: "frames"; results: what becomes of a share, a
-// sentence.
+// --share, --jobs, --tasks. units: "frames"; results: what becomes of a share, a sentence.
 void addShareOptions(Command& command, ShareOptions& options, const std::string& units,
                      const std::string& results);
 
@@ -28,9 +26,6 @@ void addJobsOptions(Command& command, ShareOptions& options);
 
 // Whether other processes make parts of the run, too.
 bool inShares(const ShareOptions& options);
-
-// Before anything is computed. Throws SettingError.
-void applyCpuTarget(const ShareOptions& options);
 
 // Whether --jobs is given. Throws UsageError, SettingError for what does not go with it.
 bool writesJobs(const ShareOptions& options, Context& context);

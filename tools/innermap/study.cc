@@ -238,7 +238,6 @@ void concludeShare(const Study& study, const StudySettings& settings, Context& c
 
 void run(const StudyOptions& options, Context& context) {
   const StudySettings settings = settingsOf(options);
-  applyCpuTarget(options.farm);
   const bool asJobs = writesJobs(options.farm, context);
   std::vector<std::string> names{"study.csv", "study.json", "study.html", "report.json"};
   for (const std::string& name : studyChartNames()) names.push_back(name);

@@ -80,8 +80,8 @@ BlockWork blockWork(const VoxelizeOptions& options, const Solid& solid, const Me
   work.doing = "voxelize " + options.mesh;
   work.stage = "level set";
   work.blocks = [&] { return voxelBlocks(solid, settings); };
-  work.make = [&](const openvdb::Coord& block) {
-    return voxelizeBlock(solid, settings, options.attributes ? &mesh : nullptr, block);
+  work.make = [&](const VoxelBlock& block) {
+    return voxelizeBlock(solid, settings, options.attributes ? &mesh : nullptr, block.origin);
   };
   work.memory = kSurface + (options.attributes ? 2 * kAttribute : 0);
   work.joinMemory = voxelizeMemory(solid, settings, mesh, options.fog, options.attributes);

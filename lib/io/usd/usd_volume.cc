@@ -163,6 +163,43 @@ std::string transformOp(const Similarity& by) {
       rows);
 }
 
+// place: "/ROOT" or "/ROOT/NAME"; transform: lines of the prim.
+std::string volumeText(const std::string& place, const Scene& scene, const std::string& transform) {
+  std::string text = transform;
+  if (!scene.extents.empty()) text += attribute("    ", "float3[] extent", scene.extents, textOf);
+  std::set<std::string> taken;
+  std::string prims;
+  for (const Field& field : scene.fields) {
+    const std::string name = primName(field.name, taken);
+    text += fmt::format("    rel field:{} = <{}/{}>\n", name, place, name);
+    prims += fmt::format("\n    def OpenVDBAsset \"{}\"\n    {{\n        token fieldName = {}\n",
+                         name, quoted(field.name));
+    if (!field.type.empty())
+      prims += fmt::format("        token fieldDataType = \"{}\"\n", field.type);
+    std::vector<std::pair<std::optional<std::int64_t>, std::string>> samples;
+    for (const Asset& asset : field.assets) samples.emplace_back(asset.frame, asset.path);
+    prims += attribute("        ", "asset filePath", samples,
+                       [](const std::string& p) { return "@" + p + "@"; });
+    prims += "    }\n";
+  }
+  return fmt::format("def Volume \"{}\"\n{{\n", place.substr(place.rfind('/') + 1)) + text + prims +
+         "}\n";
+}
+
+std::string stemName(const std::string& path, std::set<std::string>& taken) {
+  return primName(std::filesystem::path(path).stem().string(), taken);
+}
+
+std::string indented(const std::string& text) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text.find('\n', at) + 1;
+    out += (end > at + 1 ? "    " : "") + text.substr(at, end - at);
+    at = end;
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<Setting> describe(UsdVolumeSettings& s) {
@@ -176,29 +213,20 @@ void writeUsdVolume(const std::string& path, const std::vector<UsdFrame>& frames
   openvdb::initialize();
   requireDescribed(settings);
   if (frames.empty()) throw DataError("there are no .vdb files to refer to");
-  const Scene scene = collect(path, frames, settings);
   std::set<std::string> roots;
-  const std::string root = primName(std::filesystem::path(path).stem().string(), roots);
+  const std::string root = stemName(path, roots);
+  const std::string transform = transformOp(inputToOutput(settings.space));
   std::string text = layerMetadata(root, frames, settings);
-  text += fmt::format("def Volume \"{}\"\n{{\n", root);
-  text += transformOp(inputToOutput(settings.space));
-  if (!scene.extents.empty()) text += attribute("    ", "float3[] extent", scene.extents, textOf);
-  std::set<std::string> taken;
-  std::string prims;
-  for (const Field& field : scene.fields) {
-    const std::string name = primName(field.name, taken);
-    text += fmt::format("    rel field:{} = </{}/{}>\n", name, root, name);
-    prims += fmt::format("\n    def OpenVDBAsset \"{}\"\n    {{\n        token fieldName = {}\n",
-                         name, quoted(field.name));
-    if (!field.type.empty())
-      prims += fmt::format("        token fieldDataType = \"{}\"\n", field.type);
-    std::vector<std::pair<std::optional<std::int64_t>, std::string>> samples;
-    for (const Asset& asset : field.assets) samples.emplace_back(asset.frame, asset.path);
-    prims += attribute("        ", "asset filePath", samples,
-                       [](const std::string& p) { return "@" + p + "@"; });
-    prims += "    }\n";
+  if (frames.front().number || frames.size() == 1) {
+    text += volumeText("/" + root, collect(path, frames, settings), transform);
+  } else {
+    text += fmt::format("def Xform \"{}\"\n{{\n", root) + transform;
+    std::set<std::string> taken;
+    for (const UsdFrame& file : frames)
+      text += "\n" + indented(volumeText("/" + root + "/" + stemName(file.path, taken),
+                                         collect(path, {file}, settings), ""));
+    text += "}\n";
   }
-  text += prims + "}\n";
   writeWholeFile(path, [&](std::ostream& stream) { stream << text; });
 }
 

@@ -9,7 +9,6 @@
 #include "evaluate/topology.h"
 #include "innermap/core/memory.h"
 #include "innermap/core/run.h"
-#include "transfer/detail/cell_deposit.h"
 #include "transfer/detail/cell_nodes.h"
 
 namespace innermap {
@@ -20,6 +19,7 @@ using Leaf = openvdb::MaskTree::LeafNodeType;
 using MaskReader = openvdb::tree::ValueAccessor<const openvdb::MaskTree, false>;
 
 constexpr char kStage[] = "carrying the densities";
+constexpr int kCubeCells = 128;                // along each side of a cube
 constexpr std::size_t kTogether = 256;         // leaves of cells
 constexpr std::uint64_t kParts = 100'000'000;  // bytes of what is summed by itself, about
 // An edge that is so many times as long as the derivative at its ends says lies across a jump: its
@@ -59,27 +59,48 @@ bool isTorn(const std::array<Vec3, 8>& images, const std::array<float, 8>& stret
   return false;
 }
 
+int floorDivide(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
+
+int cubeEdge(int parts) { return kCubeCells / parts; }
+
+Coord cubeOf(const Coord& voxel, int edge) {
+  return {floorDivide(voxel.x(), edge), floorDivide(voxel.y(), edge), floorDivide(voxel.z(), edge)};
+}
+
+openvdb::CoordBBox voxelsOf(const Coord& cube, int edge) {
+  return openvdb::CoordBBox::createCube({edge * cube.x(), edge * cube.y(), edge * cube.z()}, edge);
+}
+
+openvdb::MaskTree voxelsIn(const Coord& cube, int parts, const openvdb::MaskTree& voxels) {
+  openvdb::MaskTree out;
+  out.fill(voxelsOf(cube, cubeEdge(parts)), true, true);
+  out.topologyIntersection(voxels);
+  return out;
+}
+
+void requireFor(const DensityVoxels& source, std::uint64_t bytes) {
+  requireMemory("carrying the density \"" + source.grid->getName() + "\"", bytes,
+                "use larger voxels, or cut the volume off around the solid");
+}
+
+// Of the voxels of one cube.
 class DensityCarry {
  public:
-  DensityCarry(const DensityVoxels& source, const ExtendedMap& map, const openvdb::MaskGrid& region,
-               const CarryDensitySettings& settings)
+  DensityCarry(const DensityVoxels& source, const ExtendedMap& map,
+               const openvdb::math::Transform& target, const CarryDensitySettings& settings,
+               const Coord& cube)
       : source_(source),
         map_(map),
         settings_(settings),
-        lattice_(region.transform()),
-        nodes_(*source.carried, source.grid->transform(), settings.parts),
+        carried_(voxelsIn(cube, settings.parts, *source.carried)),
+        lattice_(target),
+        nodes_(carried_, source.grid->transform(), settings.parts),
         deposit_(voxelVolume(source.grid->transform()) / std::pow(settings.parts, 3),
-                 voxelVolume(region.transform())) {
-    requireMemory("carrying the density \"" + source.grid->getName() + "\"",
-                  CellNodes::memory(nodes_.size()) + kParts +
-                      sizeof(VoxelSums::LeafSums) * region.tree().leafCount(),
-                  "use larger voxels, or cut the volume off around the solid");
+                 voxelVolume(target)) {
+    requireFor(source, CellNodes::memory(nodes_.size()) + kParts);
   }
 
-  void run();
-
-  const VoxelSums& sums() const { return sums_; }
-  const DepositFigures& figures() const { return figures_; }
+  DepositedDensity run();
 
  private:
   // What is summed by one thread.
@@ -100,11 +121,11 @@ class DensityCarry {
   const DensityVoxels& source_;
   const ExtendedMap& map_;
   const CarryDensitySettings& settings_;
+  openvdb::MaskTree carried_;
   Lattice lattice_;
   CellNodes nodes_;
   CellDeposit deposit_;
-  VoxelSums sums_;
-  DepositFigures figures_;
+  DepositedDensity made_;
 };
 
 void DensityCarry::addCells(const openvdb::CoordBBox& cells, const Coord& voxel,
@@ -133,7 +154,7 @@ void DensityCarry::addCells(const openvdb::CoordBBox& cells, const Coord& voxel,
 void DensityCarry::addLeaf(std::size_t leaf, Part& part) const {
   CellNodes::Corners corners;
   nodes_.corners(leaf, corners);
-  const MaskReader carried(*source_.carried);
+  const MaskReader carried(carried_);
   const std::unique_ptr<DensityReader> densities = readerOf(*source_.grid, settings_.constant);
   const openvdb::CoordBBox inLeaf = nodes_.leaves()[leaf].getNodeBoundingBox();
   const openvdb::CoordBBox voxels(nodes_.voxelOf(inLeaf.min()), nodes_.voxelOf(inLeaf.max()));
@@ -180,14 +201,19 @@ void DensityCarry::carryTorn(const std::vector<Coord>& torn) {
 void DensityCarry::take(std::vector<Part>& parts) {
   std::vector<VoxelSums> sums;
   for (Part& part : parts) {
-    figures_.add(part.figures);
+    made_.figures.add(part.figures);
     sums.push_back(std::move(part.sums));
   }
-  sums_.add(sums);
+  made_.sums.add(sums);
 }
 
-void DensityCarry::run() {
-  nodes_.map(map_, lattice_);
+DepositedDensity DensityCarry::run() {
+  constexpr double kMapping = 0.3;  // of the time, about
+  {
+    const PartOfStage mapping(0, kMapping);
+    nodes_.map(map_, lattice_, kStage);
+  }
+  const PartOfStage carrying(kMapping, 1);
   const std::size_t count = nodes_.leaves().size();
   std::vector<Coord> torn;
   for (std::size_t begin = 0; begin < count; begin += kTogether) {
@@ -200,6 +226,7 @@ void DensityCarry::run() {
                    static_cast<double>(begin + kTogether) / static_cast<double>(count + kTogether));
   }
   carryTorn(torn);
+  return std::move(made_);
 }
 
 // Active voxels of `grid` become 0, and the others as the sums say. What lets volume grow together
@@ -210,9 +237,10 @@ double write(const VoxelSums& sums, double voxelVolume, double limit, Grid& grid
   using Value = typename Grid::ValueType;
   for (auto voxel = grid.beginValueOn(); voxel; ++voxel) voxel.setValue(Value(0));
   for (const auto& [origin, leafSums] : sums.leaves()) {
-    auto* leaf = grid.tree().touchLeaf(origin);
+    typename Grid::TreeType::LeafNodeType* leaf = nullptr;
     for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
       if (leafSums[i].volume > 0) {
+        if (!leaf) leaf = grid.tree().touchLeaf(origin);
         const double share = std::min(1.0, limit * voxelVolume / leafSums[i].volume);
         leaf->setValueOn(i, static_cast<Value>(share * leafSums[i].mass / voxelVolume));
         cut += (1 - share) * leafSums[i].mass;
@@ -228,29 +256,79 @@ std::uint64_t densityMemory(std::uint64_t sourceVoxels, double targetVoxels) {
   // along the surface cells have more corners than there are cells.
   const double source = std::max(1.0, static_cast<double>(sourceVoxels));
   const double parts = std::clamp(std::floor(std::cbrt(targetVoxels / source) + 0.25), 1.0, 32.0);
-  const double nodes = 1.2 * source * parts * parts * parts;
+  const double nodes =
+      1.2 * std::min(source * parts * parts * parts, std::pow(1.0 * kCubeCells, 3));
   constexpr std::uint64_t kSummed = 30'000'000;  // of kParts, measured
   return kSummed + CellNodes::memory(static_cast<std::size_t>(nodes)) +
          static_cast<std::uint64_t>(targetVoxels) * sizeof(VoxelSums::Sum);
 }
 
+void DepositedDensity::add(DepositedDensity more) {
+  figures.add(more.figures);
+  std::vector<VoxelSums> parts;
+  parts.push_back(std::move(more.sums));
+  sums.add(parts);
+}
+
+std::map<Coord, std::uint64_t> densityCubes(const openvdb::MaskTree& voxels, int parts) {
+  const int edge = cubeEdge(parts);
+  std::map<Coord, std::uint64_t> out;
+  const auto add = [&](const openvdb::CoordBBox& box, const Leaf* leaf) {
+    const Coord first = cubeOf(box.min(), edge), last = cubeOf(box.max(), edge);
+    for (auto cube = openvdb::CoordBBox(first, last).begin(); cube; ++cube) {
+      openvdb::CoordBBox common = voxelsOf(*cube, edge);
+      common.intersect(box);
+      std::uint64_t count = common.volume();
+      if (leaf)
+        for (auto voxel = common.begin(); voxel; ++voxel) count -= !leaf->isValueOn(*voxel);
+      if (count > 0) out[*cube] += count;
+    }
+  };
+  auto tile = voxels.cbeginValueOn();
+  tile.setMaxDepth(tile.getLeafDepth() - 1);
+  for (; tile; ++tile)
+    if (!tile.isVoxelValue()) add(tile.getBoundingBox(), nullptr);
+  for (auto leaf = voxels.cbeginLeaf(); leaf; ++leaf) add(leaf->getNodeBoundingBox(), &*leaf);
+  return out;
+}
+
+DepositedDensity carryDensityCube(const DensityVoxels& source, const ExtendedMap& map,
+                                  const openvdb::math::Transform& target,
+                                  const CarryDensitySettings& settings, const Coord& cube) {
+  return DensityCarry(source, map, target, settings, cube).run();
+}
+
 openvdb::GridBase::Ptr carryDensity(const DensityVoxels& source, const ExtendedMap& map,
                                     const openvdb::MaskGrid& region, CarriedMass& figures,
                                     const CarryDensitySettings& settings) {
-  DensityCarry carry(source, map, region, settings);
-  carry.run();
+  requireFor(source, kParts + sizeof(VoxelSums::LeafSums) * region.tree().leafCount());
+  const auto cubes = densityCubes(*source.carried, settings.parts);
+  DepositedDensity all;
+  std::size_t done = 0;
+  for (const auto& [cube, voxels] : cubes) {
+    const auto shareOf = [&](std::size_t n) {
+      return static_cast<double>(n) / static_cast<double>(cubes.size());
+    };
+    const PartOfStage part(shareOf(done), shareOf(done + 1));
+    ++done;
+    all.add(carryDensityCube(source, map, region.transform(), settings, cube));
+  }
+  return densityGrid(source, all, region, figures, settings);
+}
+
+openvdb::GridBase::Ptr densityGrid(const DensityVoxels& source, const DepositedDensity& all,
+                                   const openvdb::MaskGrid& region, CarriedMass& figures,
+                                   const CarryDensitySettings& settings) {
   const openvdb::GridBase::Ptr out = emptyLike(*source.grid, region);
   const double volume = voxelVolume(region.transform());
   if (out->isType<openvdb::FloatGrid>())
-    figures.cut =
-        write(carry.sums(), volume, settings.limit, static_cast<openvdb::FloatGrid&>(*out));
+    figures.cut = write(all.sums, volume, settings.limit, static_cast<openvdb::FloatGrid&>(*out));
   else
-    figures.cut =
-        write(carry.sums(), volume, settings.limit, static_cast<openvdb::DoubleGrid&>(*out));
+    figures.cut = write(all.sums, volume, settings.limit, static_cast<openvdb::DoubleGrid&>(*out));
   double most = 0;
-  for (const auto& [origin, sums] : carry.sums().leaves())
+  for (const auto& [origin, sums] : all.sums.leaves())
     for (const VoxelSums::Sum& sum : sums) most = std::max(most, sum.volume);
-  const DepositFigures& cells = carry.figures();
+  const DepositFigures& cells = all.figures;
   figures.name = source.grid->getName();
   figures.before = source.mass;
   figures.left = source.left;

@@ -121,7 +121,7 @@ Vec3 CellNodes::worldOf(const openvdb::Vec3d& node) const {
   return {p.x(), p.y(), p.z()};
 }
 
-void CellNodes::map(const ExtendedMap& map, const Lattice& target) {
+void CellNodes::map(const ExtendedMap& map, const Lattice& target, std::string_view stage) {
   images_.resize(size());
   stretch_.assign(size(), std::numeric_limits<float>::infinity());
   // From there no edge of a cell leads out of the solid.
@@ -148,8 +148,7 @@ void CellNodes::map(const ExtendedMap& map, const Lattice& target) {
         longest = std::max(longest, norm(target.linear * (samples[n].jacobian * edge)));
       stretch_[places[1][n]] = static_cast<float>(longest);
     }
-    reportProgress("mapping the densities",
-                   static_cast<double>(l) / static_cast<double>(leaves_.size()));
+    reportProgress(stage, static_cast<double>(l) / static_cast<double>(leaves_.size()));
   }
 }
 

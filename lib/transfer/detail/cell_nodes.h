@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "transfer/detail/extended_map.h"
@@ -40,7 +41,7 @@ class CellNodes {
 
   // Finds the images: in the target's index space, shifted by half a voxel so that voxel (i, j, k)
   // spans [i, i + 1] and so on.
-  void map(const ExtendedMap& map, const Lattice& target);
+  void map(const ExtendedMap& map, const Lattice& target, std::string_view stage);
 
   // Of the nodes (9^3, z fastest) of the cells whose lowest corner is in a leaf. stretch: how long,
   // in voxels of the target, the map's derivative makes the longest of a cell's three edges;

@@ -145,21 +145,27 @@ double keepCarried(openvdb::MaskTree& active, const Grid& grid, const Solid& sol
 
 }  // namespace
 
+openvdb::MaskTree activeNear(const openvdb::GridBase& grid, const Solid& solid,
+                             const OutsideSettings& outside) {
+  if (!grid.transform().isLinear())
+    throw DataError("density \"" + grid.getName() +
+                    "\": has a frustum for transform; resample it to voxels of one size");
+  const double margin = marginOf(grid, solid, outside);
+  openvdb::MaskTree active = activeTopology(grid);
+  if (!(margin < kEndless)) return active;
+  Box3 box = solid.box();
+  box.add(box.upper + Vec3{margin, margin, margin});
+  box.add(box.lower - Vec3{margin, margin, margin});
+  openvdb::MaskTree within;
+  within.fill(indicesOf(box, grid.transform()), true, true);
+  active.topologyIntersection(within);
+  return active;
+}
+
 DensityVoxels densityVoxels(const openvdb::GridBase::ConstPtr& grid, const Solid& solid,
                             const openvdb::FloatGrid& levelSet, const OutsideSettings& outside) {
-  if (!grid->transform().isLinear())
-    throw DataError("density \"" + grid->getName() +
-                    "\": has a frustum for transform; resample it to voxels of one size");
   const double margin = marginOf(*grid, solid, outside);
-  auto active = std::make_shared<openvdb::MaskTree>(activeTopology(*grid));
-  if (margin < kEndless) {
-    Box3 box = solid.box();
-    box.add(box.upper + Vec3{margin, margin, margin});
-    box.add(box.lower - Vec3{margin, margin, margin});
-    openvdb::MaskTree within;
-    within.fill(indicesOf(box, grid->transform()), true, true);
-    active->topologyIntersection(within);
-  }
+  auto active = std::make_shared<openvdb::MaskTree>(activeNear(*grid, solid, outside));
   requireMemory("the density \"" + grid->getName() + "\"", active->activeVoxelCount() / 4,
                 "cut the volume off around the solid");
   active->voxelizeActiveTiles();

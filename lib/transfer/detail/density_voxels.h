@@ -18,6 +18,11 @@ struct DensityVoxels {
   double left = 0;  // of all other active voxels
 };
 
+// Active voxels that may be carried: those near the solid's box or, where `outside` has no end,
+// all. May have tiles.
+openvdb::MaskTree activeNear(const openvdb::GridBase& grid, const Solid& solid,
+                             const OutsideSettings& outside);
+
 // Carried are those of its active voxels whose centre is inside the solid; of a fog volume, whose
 // values along the surface are shares, those that touch the solid; with `outside` also those up to
 // its distance, or all. levelSet: of the solid. Throws DataError for a transform that is not

@@ -84,6 +84,9 @@ MapGridKind mapGridKind(const MappedSolid& mapped);
 struct VoxelBlock {
   openvdb::Coord origin;
   std::uint64_t voxels = 0;  // inside, roughly; along the surface as many as take that long
+  // Above 0 of pushBlocks() alone: a cube of voxels of the source, of the density at this place
+  // among the grids, counted from 1; `origin` is its place among the cubes.
+  int density = 0;
 };
 
 // Those in which a level set of the solid may have voxels inside or in its band, ascending by

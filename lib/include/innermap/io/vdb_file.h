@@ -108,9 +108,10 @@ std::vector<Setting> describe(UsdVolumeSettings& settings);
 // Writes a Volume prim named as the file, with an OpenVDBAsset for each grid (fieldName,
 // fieldDataType, filePath relative to the file) and the extent by the active boxes that the grids'
 // statistics say; of numbered frames, which ascend, as time samples, with the times that they begin
-// and end at. Reads headers alone. Reference: Pixar, UsdVol. The file appears whole or not at all.
-// Throws FileError (a grid that is not there, a path that USD cannot refer to), DataError (no
-// files), SettingError, Cancelled.
+// and end at. Several files without numbers stand side by side: each is a Volume, named as the
+// file, in an Xform. Reads headers alone. Reference: Pixar, UsdVol. The file appears whole or not
+// at all. Throws FileError (a grid that is not there, a path that USD cannot refer to), DataError
+// (no files), SettingError, Cancelled.
 void writeUsdVolume(const std::string& path, const std::vector<UsdFrame>& frames,
                     const UsdVolumeSettings& settings = {});
 

@@ -80,19 +80,27 @@ class VolumePusher {
   std::shared_ptr<const Data> data_;
 };
 
+// All blocks of BlockPusher: voxelBlocks(target, output), and of each density cubes of its own
+// voxels, which go where the map takes them. Throws as voxelBlocks(), DataError for a density whose
+// transform is not linear.
+std::vector<VoxelBlock> pushBlocks(const ComposedMap& map, const Solid& source,
+                                   const openvdb::GridPtrVec& grids, const PushSettings& settings,
+                                   const Solid& target, const LevelSetSettings& output);
+
 // VolumePusher::push() in shares (evaluate/grids.h), to the level set that makeLevelSet(target,
-// output) is, without outside settings, densities and fields.
+// output) is, without outside settings and fields.
 class BlockPusher {
  public:
-  // Throws SettingError, DataError for outside settings and densities. target: must outlive it.
+  // Throws SettingError for outside settings. target: must outlive it.
   BlockPusher(const VolumePusher& pusher, const ComposedMap& map, const Solid& target,
               const LevelSetSettings& output);
 
-  // The voxels of a block. Throws as VolumePusher::push. One at a time.
-  GridBlock push(const openvdb::Coord& origin) const;
-  // From all blocks, each once, what push() of one run returns, to the bit: level sets become
-  // distances there, and positions are moved. Throws as that, DataError for what are no such
-  // blocks.
+  // One of pushBlocks(): its voxels, or the volume and mass that its voxels bring to the target's.
+  // Throws as VolumePusher::push. One at a time.
+  GridBlock push(const VoxelBlock& block) const;
+  // From all blocks, each once, what push() of one run returns, to the bit: masses are added, level
+  // sets become distances, and positions are moved there. Throws as that, DataError for what are no
+  // such blocks.
   PushResult join(std::vector<GridBlock> blocks) const;
 
  private:
@@ -184,7 +192,8 @@ class VolumePuller {
 
 // Need of pushing or pulling a block in bytes, of any block, with the grids read already. other:
 // the solid that they live in.
-std::uint64_t carryBlockMemory(const Solid& other, const openvdb::GridPtrVec& grids, bool pushed);
+std::uint64_t carryBlockMemory(const Solid& other, const openvdb::GridPtrVec& grids,
+                               const CarrySettings& carry, bool pushed);
 
 // One of them.
 PullResult pullGrids(const ComposedMap& map, const Solid& source,
