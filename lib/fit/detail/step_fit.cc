@@ -22,8 +22,10 @@ constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32;
 // Of what is left of the tolerance for the way that is left: errors of steps add up, but do not all
 // point the same way. The last step has to do with what is left.
 constexpr double kShare = 1.3, kLastShare = 1, kLeastShare = 0.5;
-// Of the error, once it is over the tolerance: what a step may add where no step can mend that.
-constexpr double kOfMissed = 0.25;
+// Of the error, once it is over the tolerance: what a step may add where no step can mend that. Of
+// what a step before was left with that missed, for the same way: what charges do not reach costs
+// all there are, and leaves more than a tolerance that they do reach.
+constexpr double kOfMissed = 0.25, kOfMissedStep = 0.5;
 // Of the folds that are left: after a step, and after its first charges.
 constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
 constexpr double kOfTolerance = 0.9;  // is given to the steps
@@ -115,8 +117,8 @@ class StepFitter {
     const double left = kOfTolerance * settings_.tolerance - error_.p99;
     const double tolerance = (end < 1 ? kShare : kLastShare) * part * left;
     const double missed = error_.p99 > settings_.tolerance ? kOfMissed * error_.p99 : 0;
-    return std::max(
-        {tolerance, kLeastShare * part * settings_.tolerance, missed, kSmallestTolerance});
+    return std::max({tolerance, kLeastShare * part * settings_.tolerance, missed,
+                     kOfMissedStep * missedByWay_ * (end - at_), kSmallestTolerance});
   }
 
   std::size_t mostSources() const {
@@ -193,6 +195,8 @@ class StepFitter {
 
   void take(Step step, bool last) {
     if (end_ == AdaptiveEnd::met) end_ = step.fit.end;
+    if (step.fit.end != AdaptiveEnd::met)
+      missedByWay_ = step.fit.error.p99 / (step.record.to - step.record.from);
     at_ = step.record.to;
     folded_ = step.record.folded;
     records_.push_back(step.record);
@@ -208,8 +212,9 @@ class StepFitter {
   CarriedBoundary boundary_;
   MappedPoints inside_;
   std::vector<MapStep> records_;
-  double at_ = 0;      // of the way
-  double folded_ = 0;  // share of the points inside, so far
+  double at_ = 0;           // of the way
+  double folded_ = 0;       // share of the points inside, so far
+  double missedByWay_ = 0;  // error of the last step that missed its tolerance, to its way
   BoundaryError error_;
   AdaptiveEnd end_ = AdaptiveEnd::met;
 };
