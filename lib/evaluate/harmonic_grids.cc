@@ -8,7 +8,6 @@
 #include "evaluate/topology.h"
 #include "evaluate/visit_field.h"
 #include "innermap/core/error.h"
-#include "innermap/core/memory.h"
 #include "innermap/evaluate/grids.h"
 #include "innermap/levelset/level_set.h"
 #include "levelset/level_set_settings.h"

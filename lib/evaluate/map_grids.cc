@@ -13,7 +13,6 @@
 #include "evaluate/detail/outside_voxels.h"
 #include "evaluate/detail/proof_marks.h"
 #include "innermap/core/error.h"
-#include "innermap/core/memory.h"
 #include "innermap/evaluate/grids.h"
 #include "innermap/field/field_file.h"
 #include "innermap/levelset/level_set.h"

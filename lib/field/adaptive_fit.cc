@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
-#include <string>
 
 #include "core/require_number.h"
 #include "field/detail/refinement_marks.h"

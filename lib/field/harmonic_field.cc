@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 
 namespace innermap {
 

@@ -119,15 +119,25 @@ BoundaryConditions weightConditions(const Mesh& mesh, const std::vector<SurfaceG
                                 groups.size() == 1 ? "is one" : "are none"));
   Matrix values(groups.size(), groups.size());
   for (std::size_t g = 0; g < groups.size(); ++g) values(g, g) = 1;
-  return valuesOnGroups(mesh, groups, values);
+  BoundaryConditions out = valuesOnGroups(mesh, groups, values);
+  out.unitSum = true;
+  return out;
+}
+
+std::string joinedText(double share) {
+  return share > 0 ? fmt::format(
+                         "values that touch are joined: on {:.2g}% of the surface, the triangles "
+                         "along their borders, they blend",
+                         100 * share)
+                   : "";
 }
 
 double removeJumps(const Mesh& mesh, BoundaryConditions& conditions) {
   const std::size_t triangles = mesh.triangles.size(), channels = conditions.values.columns();
+  if (conditions.function || conditions.values.rows() != 3 * triangles) return 0;
+  if (!conditions.free.empty() && conditions.free.size() != triangles)
+    throw DataError("removeJumps: triangles are not those of the mesh");
   const Matrix corners = std::move(conditions.values);
-  if (corners.rows() != 3 * triangles ||
-      (!conditions.free.empty() && conditions.free.size() != triangles))
-    throw DataError("removeJumps: values are not given at the corners of the mesh's triangles");
   const auto held = [&](std::size_t t) { return conditions.free.empty() || !conditions.free[t]; };
   const std::vector<std::size_t> first = firstAtPlace(mesh.vertices);
   const auto vertexOf = [&](std::size_t t, std::size_t c) {

@@ -1,7 +1,5 @@
 #include "innermap/fit/fit_harmonic.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -10,8 +8,6 @@
 #include "fit/detail/problem_samples.h"
 #include "fit/detail/surface_conditions.h"
 #include "fit/detail/value_jumps.h"
-#include "innermap/core/error.h"
-#include "innermap/core/memory.h"
 #include "innermap/fit/fit_map.h"
 #include "innermap/fit/surface_problem.h"
 
@@ -193,6 +189,20 @@ double comparisonBound(const SourceBoundary& boundary, const SurfaceConditions& 
   return std::max(certified.values, most + fit.error.p99 * largest);
 }
 
+HarmonicField withUnitSum(const HarmonicField& field) {
+  const auto count = static_cast<double>(field.channels());
+  const auto share = [&](Matrix m, bool affine) {
+    for (std::size_t i = 0; i < m.rows(); ++i) {
+      double sum = affine && i == 0 ? -1 : 0;
+      for (std::size_t k = 0; k < m.columns(); ++k) sum += m(i, k);
+      for (std::size_t k = 0; k < m.columns(); ++k) m(i, k) -= sum / count;
+    }
+    return m;
+  };
+  return {field.sources(), share(field.weights(), false),
+          Affine{field.affine().center, share(field.affine().coefficients, true)}};
+}
+
 }  // namespace
 
 HarmonicFit fitHarmonic(const SourceBoundary& boundary, const BoundaryConditions& conditions,
@@ -229,22 +239,9 @@ HarmonicFit fitHarmonic(const SourceBoundary& boundary, const BoundaryConditions
   out.met = out.error.p99 <= settings.tolerance;
   if (const std::string text = jumpsText(jumps, span, "the values' span"); !text.empty())
     out.notes.push_back(boundary.mesh.name + ": " + text);
+  if (conditions.unitSum) out.field = withUnitSum(out.field);
   out.seconds = std::move(seconds);
   return out;
-}
-
-HarmonicField withUnitSum(const HarmonicField& field) {
-  const auto count = static_cast<double>(field.channels());
-  const auto share = [&](Matrix m, bool affine) {
-    for (std::size_t i = 0; i < m.rows(); ++i) {
-      double sum = affine && i == 0 ? -1 : 0;
-      for (std::size_t k = 0; k < m.columns(); ++k) sum += m(i, k);
-      for (std::size_t k = 0; k < m.columns(); ++k) m(i, k) -= sum / count;
-    }
-    return m;
-  };
-  return {field.sources(), share(field.weights(), false),
-          Affine{field.affine().center, share(field.affine().coefficients, true)}};
 }
 
 std::vector<Setting> describe(HarmonicFitSettings& s) {

@@ -5,8 +5,6 @@
 #include <algorithm>
 
 #include "fit/detail/map_fitter.h"
-#include "innermap/core/error.h"
-#include "innermap/core/memory.h"
 #include "innermap/core/version.h"
 #include "innermap/field/field_file.h"
 

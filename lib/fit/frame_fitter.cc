@@ -166,16 +166,9 @@ FrameFit FrameFitter::fit(const Mesh& frame) const {
   std::string jumps =
       jumpsText(lines_->jumps(solid(), boundary.moved, kLeastJumpTold * boundary.diagonal),
                 boundary.diagonal, "the diagonal");
-  FrameFit out{std::move(boundary),
-               std::move(field),
-               error,
-               0,
-               0,
-               {},
-               solution.iterations,
-               std::move(jumps),
-               std::move(warnings),
-               std::move(seconds)};
+  FrameFit out{
+      std::move(boundary), std::move(field),  error, {}, solution.iterations, std::move(jumps),
+      std::move(warnings), std::move(seconds)};
   examine(frame, out);
   return out;
 }
@@ -197,17 +190,22 @@ void FrameFitter::examine(const Mesh& frame, FrameFit& fit) const {
   timed(fit.seconds, "inside", [&] {
     const MappedPoints mapped = mapPoints(map, inside_, kSumAccuracy * diagonal);
     const TargetShape target = pair ? TargetShape(*pair) : TargetShape(solid(), fit.boundary);
-    fit.folded = foldedShare(mapped.determinants, target.orientation());
-    fit.outside = outsideShare(mapped.points, target, fit.error.p99 * diagonal);
     known.mirrored = target.orientation() < 0;
     known.inside = determinantsOf(mapped, target, fit.error.p99 * diagonal);
-    known.outside = fit.outside;
+    known.outside = outsideShare(mapped.points, target, fit.error.p99 * diagonal);
     if (pair) checkBoundary(map, *pair, target, fit.error.p99, settings_.seed, known);
   });
   if (pair)
     timed(fit.seconds, "proof", [&] {
       known.proof = tryProof(map, *pair, settings_.prove, settings_.proofCells, fit.warnings);
     });
+}
+
+double FrameFit::folded() const {
+  const DeterminantFigures& inside = injectivity.inside;
+  return inside.checked > 0
+             ? static_cast<double>(inside.folded) / static_cast<double>(inside.checked)
+             : 0;
 }
 
 HarmonicField velocityAt(const NumberedFit& frame, const std::optional<NumberedFit>& before,

@@ -1,6 +1,5 @@
 #include "fit/target_shape.h"
 
-#include <cmath>
 #include <limits>
 
 #include "fit/detail/refined_surface.h"

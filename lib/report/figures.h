@@ -3,7 +3,6 @@
 // takes it; report.json, docs/report.schema.json, the page and Python's dicts follow.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -138,12 +137,9 @@ Figures solveFigures(const SolidTexture& made);
 Figures figures(const SeamFigures& seams);
 Figures surfaceFigures(const SolidTexture& made);
 Figures figures(const VolumeTextureResult& made);  // "texture"
-// "geometry" that was carried. directions: vectors and normals; then cells, and how many of them
-// were inverted before and after.
-Figures geometryFigures(const CarriedGeometry& carried, std::uint64_t directions,
-                        const std::array<std::uint64_t, 3>& cells);
-Figures figures(const ExrSliceResult& slices);  // "slices"
-Figures figures(const SectionResult& section);  // "section"
+Figures figures(const CarriedGeometry& carried);   // "geometry"
+Figures figures(const ExrSliceResult& slices);     // "slices"
+Figures figures(const SectionResult& section);     // "section"
 
 // -- studies (study_figures.cc) --
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "innermap/core/error.h"
-#include "innermap/correspond/mesh_correspondence.h"
 #include "innermap/evaluate/grids.h"
 #include "innermap/fit/fit_map.h"
 #include "innermap/io/exr_slices.h"
@@ -145,7 +144,7 @@ std::vector<ReportSection> carrySections(const Unknown& u) {
       {"geometry",
        "Geometry",
        "Points, directions and cells that were carried.",
-       geometryFigures(CarriedGeometry{}, 0, {}),
+       figures(CarriedGeometry{}),
        {}},
       {"distance",
        "Distance",

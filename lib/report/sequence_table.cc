@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "report/figures.h"
@@ -28,7 +27,7 @@ Figures proofOf(const ProofFigures& proof) {
 
 SequenceRow sequenceRow(const FrameFit& fit, const MapGrids& grids) {
   SequenceRow row;
-  row.outside = fit.outside;
+  row.outside = fit.injectivity.outside;
   row.error = fit.error;
   row.harmonic = grids.harmonicTotal;
   row.deformation = grids.deformationTotal;

@@ -169,6 +169,11 @@ Verdict judgeMap(const MappedSolid& mapped, const SolidGrids* grids,
   return out;
 }
 
+JudgedFrame judgedFrame(const NumberedFit& frame) {
+  const FrameFit& fit = *frame.fit;
+  return {frame.number, fit.error.p99, fit.folded(), fit.injectivity.outside};
+}
+
 Verdict judgeFrames(const std::vector<JudgedFrame>& frames, double tolerance,
                     const VerdictSettings& settings) {
   Verdict out;

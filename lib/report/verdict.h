@@ -53,6 +53,7 @@ struct JudgedFrame {
   double p99 = 0, folded = 0, outside = 0;
   bool misses(double tolerance) const { return !(p99 <= tolerance); }
 };
+JudgedFrame judgedFrame(const NumberedFit& frame);
 Verdict judgeFrames(const std::vector<JudgedFrame>& frames, double tolerance,
                     const VerdictSettings& settings);
 

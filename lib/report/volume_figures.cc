@@ -151,9 +151,10 @@ Figures figures(const VolumeTextureResult& r) {
         {"rounded", r.inexact, "rounded", "whole numbers that the pixels do not have"}}});
 }
 
-Figures geometryFigures(const CarriedGeometry& carried, std::uint64_t directions,
-                        const std::array<std::uint64_t, 3>& cells) {
+Figures figures(const CarriedGeometry& carried) {
   const CarriedPoints& points = carried.points;
+  std::uint64_t directions = 0;
+  for (const Points& values : carried.directions) directions += values.size();
   return {{"points", carried.ownPoints, "points", ""},
           {"directions", directions, "directions", "vectors and normals"},
           {"points_added", carried.added, "points added", "on split edges"},
@@ -168,9 +169,9 @@ Figures geometryFigures(const CarriedGeometry& carried, std::uint64_t directions
            "of the points"},
           {"opacities_capped", carried.splats.capped, "opacities capped",
            "of splats that shrink more than --splats mass can make up for"},
-          {"cells", cells[0], "cells", ""},
-          {"cells_inverted_before", cells[1], "cells inverted before", ""},
-          {"cells_inverted_after", cells[2], "cells inverted after", ""}};
+          {"cells", carried.inverted.cells, "cells", ""},
+          {"cells_inverted_before", carried.inverted.before, "cells inverted before", ""},
+          {"cells_inverted_after", carried.inverted.after, "cells inverted after", ""}};
 }
 
 Figures figures(const ExrSliceResult& r) {

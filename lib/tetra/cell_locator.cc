@@ -1,7 +1,6 @@
 #include <algorithm>
 
 #include "core/bvh.h"
-#include "innermap/core/run.h"
 #include "innermap/tetra/cells.h"
 #include "mesh/triangle_tree.h"
 

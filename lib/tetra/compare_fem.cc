@@ -10,7 +10,6 @@
 #include "core/random.h"
 #include "core/require_number.h"
 #include "innermap/core/error.h"
-#include "innermap/core/memory.h"
 #include "innermap/core/run.h"
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/fit/surface_problem.h"

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "innermap/core/error.h"
-#include "innermap/core/memory.h"
 #include "innermap/levelset/solid.h"
 #include "innermap/surface/correspond.h"
 #include "innermap/tetra/hexahedralize.h"

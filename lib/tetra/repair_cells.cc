@@ -63,7 +63,6 @@ class Repair {
     CellRepair out;
     out.cells = mesh_.tetrahedra.size() + mesh_.hexahedra.size();
     out.invertedAtRest = invertedCells(mesh_, mesh_.vertices);
-    out.invertedBefore = invertedCells(mesh_, cells_.positions);
     std::vector<int> poor = poorTets(system_, cells_.positions, settings_.least);
     const std::size_t first = poor.size();
     if (settings_.whole && !system_.tets.empty()) {

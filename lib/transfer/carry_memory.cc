@@ -4,7 +4,6 @@
 
 #include "innermap/transfer/carry.h"
 #include "innermap/transfer/push_pull.h"
-#include "transfer/detail/carrier.h"
 #include "transfer/detail/carry_density.h"
 
 namespace innermap {

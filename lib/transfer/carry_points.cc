@@ -9,6 +9,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/evaluate/evaluate_map.h"
+#include "innermap/fit/mapped_solid.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/transfer/inverse_map.h"
 #include "transfer/detail/extended_map.h"
@@ -306,6 +307,28 @@ CarriedPoints PointPuller::pull(const Points& points, bool jacobians) const {
       limits.judge(found.at[n].outside, i, out);
     }
   });
+}
+
+FramePointPusher::FramePointPusher(const Solid& rest, CarryPointsSettings settings, bool fitted)
+    : pusher_(rest, [&] {
+        if (fitted) settings.outside.fadeTo = RigidMotion();  // until the frame is known
+        return settings;
+      }()) {
+  if (fitted) from_ = rest.repaired().mesh.vertices;
+}
+
+PointPusher FramePointPusher::to(const Points& moved) const {
+  return from_.empty() ? pusher_ : pusher_.fadingTo(bestRigidMotion(from_, moved));
+}
+
+PointCarry carryByMap(const MappedSolid& mapped, bool push, const CarryPointsSettings& settings) {
+  if (push)
+    return
+        [pusher = PointPusher(mapped.solid(), settings), map = mapped.map](
+            const Points& points, bool jacobians) { return pusher.push(map, points, jacobians); };
+  return [puller =
+              PointPuller(mapped.map, mapped.solid(), makeTargetSolid(mapped.boundary), settings)](
+             const Points& points, bool jacobians) { return puller.pull(points, jacobians); };
 }
 
 std::uint64_t carryPointsMemory(std::uint64_t points, bool jacobians) {

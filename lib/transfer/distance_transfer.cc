@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "evaluate/active_region.h"
-#include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/levelset/level_set.h"

@@ -7,8 +7,6 @@ Grids are read by pyopenvdb; what needs it is skipped where it is not installed.
 import json
 import math
 import os
-import shutil
-import subprocess
 
 import cli
 from cli import MODELS, fails, icosphere_arrays, innermap, no_leftovers
@@ -228,23 +226,12 @@ def test_udim_tiles():
 
 
 def test_images_that_are_none():
+    """Other bad files: the unit test ImageFile.BadFiles."""
     planar_ball()
-    write_png("good.png", (16, 16), ramp)
-    for name, data in [("empty.png", b""), ("text.png", b"hello\n" * 40), ("text.exr", b"hello\n"),
-                       ("cut.png", open("good.png", "rb").read()[:300]),
-                       ("lying.ppm", b"P6\n2000000000 2000000000\n255\n" + bytes(99)),
-                       ("model.obj", open("ball.obj", "rb").read())]:
-        with open(name, "wb") as file:
-            file.write(data)
+    with open("lying.ppm", "wb") as file:
+        file.write(b"P6\n2000000000 2000000000\n255\n" + bytes(99))
+    for name in ("lying.ppm", "ball.obj", "missing.png"):
         fails(1, "texture", "ball.obj", name, "-o", "t.vdb", says=[name], timeout=60)
-    fails(1, "texture", "ball.obj", "missing.png", "-o", "t.vdb", says=["missing.png"])
-    os.mkdir("folder.png")
-    fails(1, "texture", "ball.obj", "folder.png", "-o", "t.vdb", says=["folder.png"])
-    if shutil.which("oiiotool"):
-        for channel in ["Z", "A"]:
-            subprocess.run(["oiiotool", "good.png", "--ch", "R", "--chnames", channel, "-o", "z.exr"],
-                           check=True)
-            fails(1, "texture", "ball.obj", "z.exr", "-o", "t.vdb")
 
 
 def test_meshes_that_have_no_texture():

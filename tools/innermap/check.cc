@@ -131,11 +131,10 @@ void run(const CheckOptions& options, Context& context) {
   Mesh mesh = readMeshFile(options.mesh, context);
   const std::uint64_t need = checkMemory(mesh);
   if (context.dryRun() && !options.outer.empty()) cleanSurface(mesh, options.layOut);
-  if (context.dryRun())
-    return context.plan(
-        {"check " + options.mesh + fmt::format(" ({} triangles)", mesh.triangles.size())}, need);
-  context.requireMemory("checking " + options.mesh, need,
-                        "raise --max-memory or simplify the mesh");
+  if (!context.begins(
+          {"check " + options.mesh + fmt::format(" ({} triangles)", mesh.triangles.size())}, need,
+          "checking " + options.mesh, "raise --max-memory or simplify the mesh"))
+    return;
   const MeshReport report = context.timed("check", [&] { return checkMesh(mesh, options.check); });
   const std::vector<Finding> found = findings(report);
   fillReport(mesh, report, found, context.report());

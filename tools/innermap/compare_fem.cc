@@ -8,8 +8,6 @@
 #include <cmath>
 
 #include "commands.h"
-#include "correspondence.h"
-#include "cut_options.h"
 #include "innermap/core/memory.h"
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/io/solid_pictures.h"
@@ -20,6 +18,7 @@
 #include "report/figures.h"
 #include "report/svg_chart.h"
 #include "report/table.h"
+#include "section_options.h"
 
 namespace innermap::tool {
 namespace {
@@ -29,7 +28,7 @@ struct CompareOptions {
   bool functions = false;
   std::string resolutions = "16,32,64", charges = "250,500,1000", tolerances = "4e-3,1e-3,4e-4";
   CompareFemSettings settings;
-  CutOptions cut;
+  SectionOptions cut;
 };
 
 std::vector<double> numbers(const std::string& option, const std::string& list) {
@@ -235,12 +234,12 @@ void run(const CompareOptions& options, Context& context) {
     reference.tolerance = settings.referenceTolerance;
     need = std::max(need, fitMapMemory(reference, source.vertices.size()));
   }
-  if (context.dryRun())
-    return context.plan(
-        {fmt::format("compare finite elements at resolutions {} with charges", options.resolutions),
-         "write comparison.csv, curves.svg, section.png and report.json to " + options.output},
-        need);
-  context.requireMemory("finite elements", need, "use lower --resolutions");
+  if (!context.begins(
+          {fmt::format("compare finite elements at resolutions {} with charges",
+                       options.resolutions),
+           "write comparison.csv, curves.svg, section.png and report.json to " + options.output},
+          need, "finite elements", "use lower --resolutions"))
+    return;
   const CompareFem result = context.timed("compare", [&] {
     return pair ? compareFemOnMap(*pair, settings) : compareFemOnFunctions(solid, settings);
   });

@@ -76,6 +76,15 @@ void Context::plan(const std::vector<std::string>& lines, std::uint64_t need) {
                                formatBytes(bytes), formatBytes(maxMemory_)));
 }
 
+bool Context::begins(const std::vector<std::string>& lines, std::uint64_t bytes,
+                     const std::string& doing, const std::string& advice) {
+  if (dryRun())
+    plan(lines, bytes);
+  else
+    requireMemory(doing, bytes, advice);
+  return !dryRun();
+}
+
 void Context::requireProgram() const {
   if (const std::uint64_t own = processMemory(0); own > maxMemory_)
     throw MemoryError(

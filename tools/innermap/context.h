@@ -98,6 +98,9 @@ class Context {
   // of, and the peak of the process (also whether it is over the limit), on stdout. bytes: the need
   // beyond what the process has by now.
   void plan(const std::vector<std::string>& lines, std::uint64_t bytes);
+  // A dry run: false, after plan(). Else true, after requireMemory(doing, bytes, advice).
+  bool begins(const std::vector<std::string>& lines, std::uint64_t bytes, const std::string& doing,
+              const std::string& advice);
   // Throws MemoryError when as many bytes more would be over the limit, as core/memory.h says. What
   // plan() says is the most that was asked for here: of a file that is read before it, too.
   void requireMemory(const std::string& what, std::uint64_t bytes, const std::string& advice) const;

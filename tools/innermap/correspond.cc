@@ -38,15 +38,14 @@ void run(const Options& options, Context& context) {
   Mesh a = readMeshFile(options.a, context), b = readMeshFile(options.b, context);
   const std::size_t countA = a.vertices.size(), countB = b.vertices.size();
   context.expect(correspondPhases(countA + countB));
-  if (context.dryRun()) {
+  if (context.dryRun())
     context.timed("check", [&] { requireLayable(a, b, options.correspond.map.layOut); });
-    return context.plan({fmt::format("map the {} vertices of {} onto {} ({} vertices)", countA,
-                                     options.a, options.b, countB),
-                         "write them to " + options.output},
-                        memoryOf(options, countA, countB));
-  }
-  context.requireMemory("the correspondence", memoryOf(options, countA, countB),
-                        "use coarser meshes");
+  if (!context.begins({fmt::format("map the {} vertices of {} onto {} ({} vertices)", countA,
+                                   options.a, options.b, countB),
+                       "write them to " + options.output},
+                      memoryOf(options, countA, countB), "the correspondence",
+                      "use coarser meshes"))
+    return;
   context.spend(Context::kMostOfTime);
   const MeshCorrespondence moved =
       correspondMeshes(std::move(a), std::move(b), options.correspond, context);

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <map>
 
@@ -119,9 +118,9 @@ class Deformer {
     FramePushSettings settings;
     settings.push.carry = carrySettings(options.transfer);
     settings.push.accuracy = kAccuracy;
-    settings.fadeToFitted = options.transfer.fadeTo == "fitted";
-    if (!settings.fadeToFitted) settings.push.outside = outsideSettings(options.transfer, {}, {});
-    settings.push.outside.distance = options.transfer.outside;
+    const FrameOutside outside = frameOutside(options.transfer);
+    settings.fadeToFitted = outside.fitted;
+    settings.push.outside = outside.settings;
     settings.output = outputSettings(grids_, options.transfer.grid);
     pusher_.emplace(fitter_, grids_, settings);
   }
@@ -153,8 +152,7 @@ class Deformer {
     writeFrame(frame,
                [&] { writeGridFile(path, result.grids, options_.transfer.names, context_, file); });
     judge(result, *fit, frame.number);
-    return {
-        result.statistics, fit->error, {frame.number, fit->error.p99, fit->folded, fit->outside}};
+    return {result.statistics, fit->error, judgedFrame({fit.get(), frame.number})};
   }
 
  private:
@@ -214,8 +212,7 @@ void check(const DeformOptions& options, const Frames& frames) {
   if (options.velocity && frames.all.size() < 2)
     throw UsageError("--velocity: needs at least two frames; give more or leave it out");
   // Refuses what makes no sense before anything is read; which motion fits is not known yet.
-  if (options.transfer.fadeTo != "fitted" || !(options.transfer.outside > 0))
-    outsideSettings(options.transfer, {}, {});
+  frameOutside(options.transfer);
 }
 
 // Those whose output is not there or was made from something else.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <map>
 #include <optional>
@@ -29,7 +28,9 @@ class Deformer {
         fitter_(makeFrameFitter(readRest(job.rest, frames, context), job.frames.fitting, context)),
         fits_(makeFrameFits(fitter_, frames, context)),
         file_(readGeometryFile(job.input, job.geometry, context)) {
-    if (job.transfer.fadeTo != "fitted") pusher_ = pusherFor({});
+    const FrameOutside outside = frameOutside(job.transfer);
+    pusher_.emplace(fitter_.solid(), carryPointsSettings(outside.settings, kAccuracy),
+                    outside.fitted);
   }
 
   struct Row {
@@ -45,23 +46,23 @@ class Deformer {
   Row run(std::size_t index, const std::function<void(const CarriedGeometry&)>& write) {
     const FrameFile& frame = frames_.all[index];
     const std::shared_ptr<const FrameFit> fit = fits_.at(index);
-    const PointPusher pusher = pusher_ ? *pusher_ : pusherFor(fit->boundary.moved);
+    const PointPusher pusher = pusher_->to(fit->boundary.moved);
     const ComposedMap map = HarmonicMap(fit->field);
     Row row;
     row.error = fit->error;
-    row.judged = {frame.number, fit->error.p99, fit->folded, fit->outside};
+    row.judged = judgedFrame({fit.get(), frame.number});
     CarryGeometrySettings settings;
     settings.splats = job_.geometry.splats;
     settings.mirrored = fit->injectivity.mirrored;
     row.carried = context_.timed("carry", [&] {
-      return carryFile(
+      return carryGeometry(
           *file_,
           fromInput([&](const Points& points,
                         bool jacobians) { return pusher.push(map, points, jacobians); },
                     context_),
-          settings, context_);
+          settings);
     });
-    warnOf(*file_, row.carried, job_.transfer, fmt::format("frame {}: ", frame.number), context_);
+    warnOf(row.carried, job_.transfer, fmt::format("frame {}: ", frame.number), context_);
     writeFrame(frame, [&] { write(row.carried); });
     return row;
   }
@@ -72,23 +73,17 @@ class Deformer {
 
   // Of the last frame: which points are outside is the same in all.
   std::string report(const CarriedGeometry& carried) const {
-    return reportGeometry(*file_, carried, context_);
+    return reportGeometry(carried, context_);
   }
 
  private:
-  PointPusher pusherFor(const Points& moved) const {
-    const OutsideSettings outside =
-        outsideSettings(job_.transfer, fitter_.solid().repaired().mesh.vertices, moved);
-    return PointPusher(fitter_.solid(), carryPointsSettings(outside, kAccuracy));
-  }
-
   const DeformGeometry& job_;
   Context& context_;
   const Frames& frames_;
   const FrameFitter fitter_;
   FrameFits fits_;
   const std::unique_ptr<GeometryFile> file_;
-  std::optional<PointPusher> pusher_;  // none where each frame needs its own
+  std::optional<FramePointPusher> pusher_;
 };
 
 // What is made of the frames, beside the files.

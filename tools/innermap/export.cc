@@ -81,13 +81,11 @@ void run(const ExportOptions& options, Context& context) {
   }
   const std::vector<std::string> names = commaList(options.grids);
   const openvdb::GridPtrVec grids = readGridFile(options.file, names, context);
-  const std::uint64_t need = volumeTextureMemory(options.output, grids, settings);
-  if (context.dryRun())
-    return context.plan({fmt::format("write {} as {} to {}", options.file,
-                                     volumeFormatOf(options.output).name, options.output)},
-                        need);
-  context.requireMemory("writing " + options.output, need,
-                        "export fewer grids or at a lower --resolution");
+  const std::string format = planVolumeTexture(options.output, grids, settings).format;
+  if (!context.begins({fmt::format("write {} as {} to {}", options.file, format, options.output)},
+                      volumeTextureMemory(options.output, grids, settings),
+                      "writing " + options.output, "export fewer grids or at a lower --resolution"))
+    return;
   const VolumeTextureResult result =
       context.timed("write", [&] { return writeVolumeTexture(options.output, grids, settings); });
   for (const std::string& warning : warningsOf(result, options.output, settings))

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "innermap/core/memory.h"
 #include "lists.h"
 #include "report/figures.h"
 
@@ -70,17 +69,8 @@ CarryPointsSettings carryPointsSettings(const OutsideSettings& outside, double a
   return settings;
 }
 
-CarriedGeometry carryFile(GeometryFile& file, const PointCarry& carry,
-                          const CarryGeometrySettings& settings, Context& context) {
-  context.requireMemory("carrying the geometry", carryGeometryMemory(file.geometry),
-                        "cut the file into parts");
-  CarriedGeometry out = carryGeometry(file.geometry, carry, settings);
-  out.splats.capped = file.cappedOpacities(out);
-  return out;
-}
-
-void warnOf(const GeometryFile& file, const CarriedGeometry& carried,
-            const TransferOptions& options, const std::string& part, Context& context) {
+void warnOf(const CarriedGeometry& carried, const TransferOptions& options, const std::string& part,
+            Context& context) {
   const CarriedPoints& points = carried.points;
   if (points.cut > 0)
     context.warning(fmt::format(
@@ -101,23 +91,18 @@ void warnOf(const GeometryFile& file, const CarriedGeometry& carried,
         fmt::format("{}{} splats shrink so much that no opacity dims as much as before; they get "
                     "the largest, 0.99 or their own",
                     part, carried.splats.capped));
-  const GeometryFile::Inverted inverted = file.inverted(carried);
-  if (inverted.after > inverted.before)
-    context.warning(fmt::format("{}{} of {} cells are inverted, {} were before", part,
-                                inverted.after, inverted.cells, inverted.before));
+  const auto& [cells, before, after] = carried.inverted;
+  if (after > before)
+    context.warning(
+        fmt::format("{}{} of {} cells are inverted, {} were before", part, after, cells, before));
 }
 
-std::string reportGeometry(const GeometryFile& file, const CarriedGeometry& carried,
-                           Context& context) {
+std::string reportGeometry(const CarriedGeometry& carried, Context& context) {
   const CarriedPoints& points = carried.points;
-  std::uint64_t directions = 0;
-  for (const Points& values : carried.directions) directions += values.size();
-  const GeometryFile::Inverted inverted = file.inverted(carried);
-  context.report().add(
-      "geometry",
-      geometryFigures(carried, directions, {inverted.cells, inverted.before, inverted.after}));
-  std::string text =
-      fmt::format("{} points, {} directions carried\n", carried.ownPoints, directions);
+  const Figures made = figures(carried);
+  context.report().add("geometry", made);
+  std::string text = fmt::format("{} points, {} directions carried\n", carried.ownPoints,
+                                 numberOf(*findFigure(made, "directions")));
   if (carried.splats.degree >= 0)
     text += fmt::format("the points are Gaussian splats, with colours of degree {}\n",
                         carried.splats.degree);
@@ -127,9 +112,8 @@ std::string reportGeometry(const GeometryFile& file, const CarriedGeometry& carr
         "{} points outside the solid, {} cut, the others up to {:.3g} of the "
         "diagonal away\n",
         points.outside, points.cut, points.farthest);
-  if (inverted.cells > 0)
-    text += fmt::format("{} cells, inverted: {} before, {} after\n", inverted.cells,
-                        inverted.before, inverted.after);
+  if (const auto& [cells, before, after] = carried.inverted; cells > 0)
+    text += fmt::format("{} cells, inverted: {} before, {} after\n", cells, before, after);
   return text;
 }
 

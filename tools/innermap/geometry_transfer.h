@@ -31,16 +31,12 @@ std::unique_ptr<GeometryFile> readGeometryFile(const std::string& path,
 
 CarryPointsSettings carryPointsSettings(const OutsideSettings& outside, double accuracy);
 
-CarriedGeometry carryFile(GeometryFile& file, const PointCarry& carry,
-                          const CarryGeometrySettings& settings, Context& context);
-
 // Warns of what went wrong. part: "frame 7: " or nothing.
-void warnOf(const GeometryFile& file, const CarriedGeometry& carried,
-            const TransferOptions& options, const std::string& part, Context& context);
+void warnOf(const CarriedGeometry& carried, const TransferOptions& options, const std::string& part,
+            Context& context);
 
 // Fills the report's "geometry"; the lines for the terminal.
-std::string reportGeometry(const GeometryFile& file, const CarriedGeometry& carried,
-                           Context& context);
+std::string reportGeometry(const CarriedGeometry& carried, Context& context);
 
 // Timed; fields that the format cannot hold are warned of.
 void writeGeometryFile(const std::string& path, const GeometryFile& file,

@@ -180,7 +180,7 @@ Command makeHarmonicCommand() {
   c.example("innermap harmonic part.ply -o heat.vdb --property temperature --field heat.ply");
   c.run([o](Context& context) {
     runHarmonic(
-        o->harmonic, [&](const Mesh& mesh) { return Conditions(*o, mesh).make(); }, false, context);
+        o->harmonic, [&](const Mesh& mesh) { return Conditions(*o, mesh).make(); }, context);
   });
   return c;
 }

@@ -83,7 +83,7 @@ void addHarmonicOptions(Command& command, HarmonicOptions& o, const std::string&
 }
 
 void runHarmonic(const HarmonicOptions& options,
-                 const std::function<NamedConditions(const Mesh& mesh)>& conditionsOf, bool unitSum,
+                 const std::function<NamedConditions(const Mesh& mesh)>& conditionsOf,
                  Context& context) {
   const HarmonicGridSettings grids = gridSettingsOf(options);
   context.output(options.output);
@@ -91,20 +91,13 @@ void runHarmonic(const HarmonicOptions& options,
   Mesh mesh = readMeshFile(options.mesh, context);
   NamedConditions known = conditionsOf(mesh);
   known.conditions.creaseAngle = options.creaseAngle;
-  if (known.conditions.values.rows() == 3 * mesh.triangles.size()) {
-    const double share = removeJumps(mesh, known.conditions);
-    if (share > 0)
-      context.note(
-          fmt::format("groups with different values touch: along their borders, on {:.2g}% of the "
-                      "surface, the values blend",
-                      100 * share));
-  }
+  if (const std::string note = joinedText(removeJumps(mesh, known.conditions)); !note.empty())
+    context.note(note);
   const std::size_t vertices = mesh.vertices.size();
   const SourceBoundary boundary = makeSourceBoundary(std::move(mesh));
   reportSource(boundary, context);
-  HarmonicFitSettings settings = options.fit;
   FitMapSettings like;
-  like.tolerance = settings.tolerance;
+  like.tolerance = options.fit.tolerance;
   like.oneToOne = OneToOne::off;
   like.prove = Prove::off;
   const std::uint64_t need = std::max(
@@ -120,15 +113,12 @@ void runHarmonic(const HarmonicOptions& options,
   for (const char* stage : {"level set", "evaluating the field", "writing the VDB file"})
     phases.push_back(stageOf(stage, size));
   context.expect(phases);
-  if (context.dryRun())
-    return context.plan({fmt::format("fit {} channel(s) on {}", known.names.size(), options.mesh),
-                         "write grids to " + options.output},
-                        need);
-  context.requireMemory("the harmonic field", need,
-                        "use a lower --resolution or raise --max-memory");
+  if (!context.begins({fmt::format("fit {} channel(s) on {}", known.names.size(), options.mesh),
+                       "write grids to " + options.output},
+                      need, "the harmonic field", "use a lower --resolution or raise --max-memory"))
+    return;
   context.spend(Context::kMostOfTime);
-  HarmonicFit fit = fitHarmonic(boundary, known.conditions, settings);
-  if (unitSum) fit.field = withUnitSum(fit.field);
+  const HarmonicFit fit = fitHarmonic(boundary, known.conditions, options.fit);
   reportHarmonic(fit, options, context);
   const Facts facts = harmonicFacts(fit, options.fit, options.mesh, known.names);
   HarmonicGridSettings evaluation = grids;

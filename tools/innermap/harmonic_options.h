@@ -6,7 +6,6 @@
 
 #include "command.h"
 #include "grid_options.h"
-#include "innermap/evaluate/grids.h"
 #include "innermap/fit/fit_harmonic.h"
 
 namespace innermap::tool {
@@ -30,9 +29,9 @@ struct NamedConditions {
   std::vector<std::string> names;
 };
 
-// Fits, evaluates and writes. conditionsOf: called with the mesh. unitSum: see withUnitSum.
+// Fits, evaluates and writes. conditionsOf: called with the mesh.
 void runHarmonic(const HarmonicOptions& options,
-                 const std::function<NamedConditions(const Mesh& mesh)>& conditionsOf, bool unitSum,
+                 const std::function<NamedConditions(const Mesh& mesh)>& conditionsOf,
                  Context& context);
 
 }  // namespace innermap::tool

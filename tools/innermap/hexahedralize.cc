@@ -5,10 +5,8 @@
 
 #include "cell_report.h"
 #include "commands.h"
-#include "cut_options.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/cell_file.h"
-#include "innermap/io/solid_pictures.h"
 #include "innermap/mesh/mesh_file.h"
 #include "job_cost.h"
 #include "polycube_report.h"
@@ -21,7 +19,7 @@ struct Options {
   std::string mesh, output, picture, cubes, cubesPicture, inBlocks;
   HexahedralizeSettings settings;
   SurfaceOptions surface;
-  CutOptions cut;
+  SectionOptions cut;
 };
 
 void claimOutputs(const Options& options, Context& context) {
@@ -51,31 +49,18 @@ void fillReport(const Hexahedralization& result, Context& context) {
                     result.featureLength, result.fromFeatures.rms, result.fromFeatures.max));
 }
 
-void drawCut(const Options& options, const Hexahedralization& result) {
-  CellPictureSettings settings = options.cut.cellPicture(options.mesh);
-  settings.blue = 1;
-  settings.red = 0;
-  settings.caption = fmt::format("scaled Jacobian of each of {} cells: red 0, blue 1",
-                                 result.mesh.hexahedra.size());
-  const std::vector<float>& jacobians = result.quality.scaledJacobian;
-  writeCellPicture(options.picture, result.mesh,
-                   std::vector<double>(jacobians.begin(), jacobians.end()), settings);
-}
-
 void writeAll(const Options& options, const Mesh& mesh, const Hexahedralization& result,
               Context& context) {
+  writeCellFile(options.output, result.mesh, context);
   context.timed("write", [&] {
-    for (const std::string& field : writeCells(options.output, result.mesh))
-      context.note(fmt::format("{} cannot hold the field {}", options.output, field));
     if (!options.inBlocks.empty()) writeCells(options.inBlocks, result.inBlocks);
     if (!options.cubes.empty())
       writeMesh(options.cubes, blockSurface(result.polycube.blocks, result.pieces));
   });
-  context.timed("picture", [&] {
-    if (!options.picture.empty()) drawCut(options, result);
-    if (!options.cubesPicture.empty())
-      drawPolycube(options.cubesPicture, mesh, result.polycube.blocks);
-  });
+  drawCells(options.picture, result.mesh, result.quality, options.cut, options.mesh, context);
+  if (!options.cubesPicture.empty())
+    context.timed("picture",
+                  [&] { drawPolycube(options.cubesPicture, mesh, result.polycube.blocks); });
 }
 
 void run(const Options& options, Context& context) {
@@ -91,14 +76,12 @@ void run(const Options& options, Context& context) {
                             "untangling hexahedra", "shaping hexahedra"})
     phases.push_back(stageOf(stage, size));
   context.expect(phases);
-  if (context.dryRun())
-    return context.plan(
-        {fmt::format("fill {} with hexahedra, {} along the edge of each of about {:.0f} blocks, to "
-                     "{}",
-                     options.mesh, settings.pieces, expectedBlocks(mesh, settings.polycube.blocks),
-                     options.output)},
-        need);
-  context.requireMemory("hexahedra of " + options.mesh, need, "use fewer --blocks or --pieces");
+  if (!context.begins(
+          {fmt::format("fill {} with hexahedra, {} along the edge of each of about {:.0f} blocks, "
+                       "to {}",
+                       options.mesh, settings.pieces, blocks, options.output)},
+          need, "hexahedra of " + options.mesh, "use fewer --blocks or --pieces"))
+    return;
   context.spend(Context::kMostOfTime);
   const Hexahedralization result = hexahedralize(mesh, settings);
   context.tell(result);

@@ -46,7 +46,7 @@ void writePictures(const SolidGrids& solidGrids, const MapFit& fit, PendingFolde
   const openvdb::GridPtrVec grids = solidGrids.all();
   folder.write("slices.exr",
                [&](const std::string& path) { writeExrSlices(path, grids, options.slices); });
-  SectionSettings section = sectionSettings(options.section, fit.solid(), *solidGrids.density);
+  SectionSettings section = options.section.of(fit.solid(), *solidGrids.density);
   section.grid = options.sectionGrid;
   folder.write("section.png",
                [&](const std::string& path) { writeSectionImage(path, grids, section); });

@@ -25,13 +25,11 @@ void run(const PolycubeOptions& options, Context& context) {
   if (!options.picture.empty()) context.output(options.picture);
   const Mesh mesh = readCleanSurface(options.mesh, options.surface, context);
   const PolycubeSettings settings = options.settings;
-  const std::uint64_t need = polycubeMemory(mesh, settings);
-  if (context.dryRun())
-    return context.plan(
-        {fmt::format("write a polycube of about {:.0f} blocks of {} to {}",
-                     expectedBlocks(mesh, settings.blocks), options.mesh, options.output)},
-        need);
-  context.requireMemory("a polycube of " + options.mesh, need, "use fewer --blocks");
+  if (!context.begins(
+          {fmt::format("write a polycube of about {:.0f} blocks of {} to {}",
+                       expectedBlocks(mesh, settings.blocks), options.mesh, options.output)},
+          polycubeMemory(mesh, settings), "a polycube of " + options.mesh, "use fewer --blocks"))
+    return;
   const Polycube cube = makePolycube(mesh, settings);
   context.tell(cube);
   reportPolycube(cube, context);

@@ -13,7 +13,6 @@
 #include "innermap/tetra/cells.h"
 #include "innermap/transfer/carry.h"
 #include "inputs.h"
-#include "job_cost.h"
 #include "report/report_figures.h"
 #include "transfer_options.h"
 
@@ -201,21 +200,6 @@ std::uint64_t carrierMemory(Way way, const Solid& source, const OutsideSettings&
                           : carryMemory(source, {}, {}, outside, {}, {false, 0});
 }
 
-PointCarry carryOf(Way way, const MappedSolid& mapped, const CarryPointsSettings& settings,
-                   Context& context) {
-  if (way == Way::push) {
-    const PointPusher pusher =
-        context.timed("level set", [&] { return PointPusher(mapped.solid(), settings); });
-    return [=, map = mapped.map](const Points& points, bool jacobians) {
-      return pusher.push(map, points, jacobians);
-    };
-  }
-  const Solid target = targetSolid(mapped, context);
-  const PointPuller puller = context.timed(
-      "invert", [&] { return PointPuller(mapped.map, mapped.solid(), target, settings); });
-  return [=](const Points& points, bool jacobians) { return puller.pull(points, jacobians); };
-}
-
 void runGeometry(Way way, const CarryOptions& options, Context& context) {
   const MappedSolid mapped = readMapFile(options.map, context);
   const Points& moved = mapped.boundary.target.moved;
@@ -223,27 +207,27 @@ void runGeometry(Way way, const CarryOptions& options, Context& context) {
       outsideSettings(options.transfer, mapped.solid().repaired().mesh.vertices, moved);
   const std::uint64_t need =
       geometryMemory(options.volume) + carrierMemory(way, mapped.solid(), outside);
-  if (context.dryRun())
-    return context.plan({fmt::format("{} {} by {}", way == Way::push ? "push" : "pull",
-                                     options.volume, options.map),
-                         "write " + options.output},
-                        need);
-  context.requireMemory("carrying " + options.volume, need, "cut the file into parts");
+  if (!context.begins({fmt::format("{} {} by {}", way == Way::push ? "push" : "pull",
+                                   options.volume, options.map),
+                       "write " + options.output},
+                      need, "carrying " + options.volume, "cut the file into parts"))
+    return;
   const auto file = readGeometryFile(options.volume, options.geometry, context);
   const CarryPointsSettings settings = carryPointsSettings(outside, sumAccuracy(mapped));
+  const bool push = way == Way::push;
   const PointCarry carry =
       options.through.empty()
-          ? carryOf(way, mapped, settings, context)
-          : carryThrough(readThrough(options.through, mapped, context), way == Way::push, settings);
+          ? context.timed(push ? "level set" : "invert",
+                          [&] { return carryByMap(mapped, push, settings); })
+          : carryThrough(readThrough(options.through, mapped, context), push, settings);
   const PointCarry whole = fromInput(carry, context);
-  const double diagonal =
-      way == Way::push ? boundingBox(moved).diagonal() : mapped.solid().diagonal();
+  const double diagonal = push ? boundingBox(moved).diagonal() : mapped.solid().diagonal();
   const CarryGeometrySettings how{options.geometry.subdivide * diagonal, options.geometry.splats,
                                   mapped.injectivity.mirrored};
   const CarriedGeometry carried =
-      context.timed("carry", [&] { return carryFile(*file, whole, how, context); });
-  warnOf(*file, carried, options.transfer, "", context);
-  context.detail(reportGeometry(*file, carried, context));
+      context.timed("carry", [&] { return carryGeometry(*file, whole, how); });
+  warnOf(carried, options.transfer, "", context);
+  context.detail(reportGeometry(carried, context));
   context.judge(judgeMap(mapped, nullptr, options.verdict, MapOrigin::file));
   writeGeometryFile(options.output, *file, carried, context);
 }

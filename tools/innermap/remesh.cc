@@ -6,10 +6,8 @@
 
 #include "cell_report.h"
 #include "commands.h"
-#include "cut_options.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/cell_file.h"
-#include "innermap/io/solid_pictures.h"
 #include "innermap/tetra/cells.h"
 #include "innermap/tetra/remesh_cells.h"
 #include "inputs.h"
@@ -22,7 +20,7 @@ namespace {
 struct RemeshOptions {
   std::string map, cells, surface, output, picture;
   RemeshSettings settings;
-  CutOptions cut;
+  SectionOptions cut;
 };
 
 void reportRemesh(const Remesh& result, double diagonal, Context& context) {
@@ -33,25 +31,6 @@ void reportRemesh(const Remesh& result, double diagonal, Context& context) {
       result.invertedCarried, result.inverted, result.repair.moved / diagonal,
       result.repair.farthestMoved / diagonal, result.swaps, result.collapses, result.boundaryRms,
       result.boundaryMax));
-}
-
-void drawCut(const RemeshOptions& options, const Remesh& result) {
-  CellPictureSettings settings = options.cut.cellPicture(options.output);
-  std::vector<double> values(result.quality.leastDihedral.begin(),
-                             result.quality.leastDihedral.end());
-  for (const float j : result.quality.scaledJacobian) values.push_back(60.0 * j);
-  settings.caption = result.mesh.hexahedra.empty()
-                         ? "least dihedral angle of each cell: red 0, yellow 30, blue 60 degrees"
-                         : "scaled Jacobian of each cell: red 0, yellow 0.5, blue 1";
-  writeCellPicture(options.picture, result.mesh, values, settings);
-}
-
-void write(const RemeshOptions& options, Remesh& result, Context& context) {
-  context.timed("write", [&] {
-    for (const std::string& field : writeCells(options.output, result.mesh))
-      context.warning(options.output + ": its format cannot hold the field '" + field +
-                      "'; it is left out");
-  });
 }
 
 void run(const RemeshOptions& options, Context& context) {
@@ -72,13 +51,12 @@ void run(const RemeshOptions& options, Context& context) {
   boundary.steady = false;
   context.expect({stageOf("repairing", size), boundary, stageOf("improving shapes", size),
                   stageOf("writing cells", size)});
-  if (context.dryRun())
-    return context.plan({fmt::format("carry the {} cells of {} by {}",
-                                     file.mesh.tetrahedra.size() + file.mesh.hexahedra.size(),
-                                     options.cells, options.map),
-                         "write " + options.output},
-                        need);
-  context.requireMemory("carrying " + options.cells, need, "use a coarser mesh");
+  if (!context.begins({fmt::format("carry the {} cells of {} by {}",
+                                   file.mesh.tetrahedra.size() + file.mesh.hexahedra.size(),
+                                   options.cells, options.map),
+                       "write " + options.output},
+                      need, "carrying " + options.cells, "use a coarser mesh"))
+    return;
   RemeshSettings settings = options.settings;
   std::optional<Mesh> surface;
   if (!options.surface.empty()) {
@@ -88,19 +66,15 @@ void run(const RemeshOptions& options, Context& context) {
   const Mesh own = settings.back ? sourceSurface(mapped) : targetSurface(mapped);
   const Mesh& onto = surface ? *surface : own;
   context.spend(Context::kMostOfTime);
-  Remesh result = remeshCells(file.mesh, mapped, settings);
+  const Remesh result = remeshCells(file.mesh, mapped, settings);
   context.tell(result);
   reportRemesh(result, boundingBox(onto).diagonal(), context);
   reportCells(result.mesh, result.quality, result.proof, context);
   if (const std::string map = linearMapStatement(result.sourceProof, result.proof); !map.empty())
     context.print(map + "\n");
-  BoundaryFitSettings known;
-  known.boundary = &result.proof.boundary;
-  const BoundaryFit fit =
-      context.timed("boundary", [&] { return boundaryFit(result.mesh, Solid(onto), known); });
-  reportBoundaryFit(fit, context);
-  if (!options.picture.empty()) context.timed("picture", [&] { drawCut(options, result); });
-  write(options, result, context);
+  reportBoundary(result.mesh, Solid(onto), result.proof, context);
+  drawCells(options.picture, result.mesh, result.quality, options.cut, options.output, context);
+  writeCellFile(options.output, result.mesh, context);
 }
 
 }  // namespace

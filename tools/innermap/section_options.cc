@@ -1,8 +1,27 @@
 #include "section_options.h"
 
-#include "innermap/io/pictures.h"
+#include <filesystem>
 
 namespace innermap::tool {
+
+CellPictureSettings SectionOptions::cellPicture(const std::string& path) const {
+  CellPictureSettings settings;
+  settings.colormap = colormap;
+  settings.direction = {0, 0, 0};
+  settings.direction[axis()] = 1;
+  settings.at = at();
+  settings.label = std::filesystem::path(path).filename().string() + ", cut";
+  return settings;
+}
+
+SectionSettings SectionOptions::of(const Solid& solid, const openvdb::FloatGrid& density) const {
+  SectionSettings section;
+  section.colormap = colormap;
+  section.scale = scale;
+  section.axis = cut.axis ? *cut.axis : thinnestAxis(solid.box().extent());
+  section.at = cut.at ? *cut.at : fullLayer(density, section.axis);
+  return section;
+}
 
 void addSectionOptions(Command& c, SectionOptions& o) {
   c.option("--section", kCutPlaceholder, &o.cut,
@@ -13,14 +32,20 @@ void addSectionOptions(Command& c, SectionOptions& o) {
   c.setting(scaleSetting(&o.scale));
 }
 
-SectionSettings sectionSettings(const SectionOptions& options, const Solid& solid,
-                                const openvdb::FloatGrid& density) {
-  SectionSettings section;
-  section.colormap = options.colormap;
-  section.scale = options.scale;
-  section.axis = options.cut.axis ? *options.cut.axis : thinnestAxis(solid.box().extent());
-  section.at = options.cut.at ? *options.cut.at : fullLayer(density, section.axis);
-  return section;
+void addCut(Command& command, SectionOptions& o) {
+  command.setting(colormapSetting(&o.colormap));
+  command
+      .option("--section", kCutPlaceholder, &o.cut,
+              "where the picture cuts: x, y or z, and the fraction of the box along it")
+      .defaults("z=0.5")
+      .was("--axis,--at");
+}
+
+void addCellPicture(Command& command, std::string& path, SectionOptions& cut,
+                    const std::string& help) {
+  command.group("picture");
+  command.option("--picture", "FILE", &path, help).writes({".png"});
+  addCut(command, cut);
 }
 
 }  // namespace innermap::tool

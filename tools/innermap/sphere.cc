@@ -21,15 +21,12 @@ void run(const Options& options, Context& context) {
   context.output(options.output);
   Mesh mesh = readMeshFile(options.mesh, context);
   const std::size_t vertices = mesh.vertices.size();
-  const std::uint64_t need = layOutMemory(vertices);
-  if (context.dryRun()) {
-    requireSphere(mesh, options.surface.layOut);
-    return context.plan(
-        {fmt::format("lay the {} vertices of {} out on the unit sphere", vertices, options.mesh),
-         "write them to " + options.output},
-        need);
-  }
-  context.requireMemory("the layout", need, "use a coarser mesh");
+  if (context.dryRun()) requireSphere(mesh, options.surface.layOut);
+  if (!context.begins(
+          {fmt::format("lay the {} vertices of {} out on the unit sphere", vertices, options.mesh),
+           "write them to " + options.output},
+          layOutMemory(vertices), "the layout", "use a coarser mesh"))
+    return;
   const LaidOutMesh laid = layOut(std::move(mesh), options.surface, context);
   reportLaidOut("source", laid, context.report());
   const MeshOnSphere sphere = onSphere(laid);

@@ -7,10 +7,7 @@
 
 #include "cell_report.h"
 #include "commands.h"
-#include "cut_options.h"
 #include "innermap/core/memory.h"
-#include "innermap/io/cell_file.h"
-#include "innermap/io/solid_pictures.h"
 #include "inputs.h"
 #include "job_cost.h"
 #include "map_report.h"
@@ -23,7 +20,7 @@ struct TetrahedralizeOptions {
   std::string mesh, output, picture;
   TetrahedralizeSettings settings;
   bool anyTopology = false;
-  CutOptions cut;
+  SectionOptions cut;
 };
 
 // Measured: of a tetrahedron, the faces among which the boundary is found, its quality as fields
@@ -36,16 +33,6 @@ std::uint64_t memoryFor(const TetrahedralizeOptions& options, const Solid& solid
   const std::uint64_t drawing =
       options.picture.empty() ? 0 : need.tetrahedra * kDrawnBytesACell + kPicture;
   return std::max({need.memory, drawing, need.tetrahedra * kBytesACell + need.vertices * 40});
-}
-
-void drawCut(const TetrahedralizeOptions& options, const CellMesh& mesh,
-             const CellQuality& quality) {
-  CellPictureSettings settings = options.cut.cellPicture(options.mesh);
-  settings.caption = fmt::format(
-      "least dihedral angle of each of {} cells: red 0, yellow 30, blue 60 degrees and more",
-      mesh.tetrahedra.size());
-  const std::vector<double> values(quality.leastDihedral.begin(), quality.leastDihedral.end());
-  writeCellPicture(options.picture, mesh, values, settings);
 }
 
 void fillReport(const Tetrahedralization& result, const Mesh& mesh, const Solid& solid,
@@ -84,11 +71,10 @@ void run(const TetrahedralizeOptions& options, Context& context) {
   context.expect({voxels, thin, stageOf("filling with tetrahedra", size),
                   stageOf("fitting the boundary", size), stageOf("measuring cells", size),
                   stageOf("comparing the boundaries", size), stageOf("writing cells", size)});
-  if (context.dryRun())
-    return context.plan(
-        {fmt::format("fill {} with tetrahedra, to {}", options.mesh, options.output)}, need);
-  context.requireMemory("tetrahedra of " + options.mesh, need,
-                        "use a lower --resolution or a longer --edge");
+  if (!context.begins({fmt::format("fill {} with tetrahedra, to {}", options.mesh, options.output)},
+                      need, "tetrahedra of " + options.mesh,
+                      "use a lower --resolution or a longer --edge"))
+    return;
   Tetrahedralization result =
       context.timed("tetrahedra", [&] { return tetrahedralization(solid, settings); });
   for (const std::string& note : result.notes) context.note(note);
@@ -97,19 +83,10 @@ void run(const TetrahedralizeOptions& options, Context& context) {
   const CellQuality quality = context.timed("quality", [&] { return cellQuality(result.mesh); });
   const CellProof proof = context.timed("proof", [&] { return proveCells(result.mesh); });
   reportCells(result.mesh, quality, proof, context);
-  BoundaryFitSettings known;
-  known.boundary = &proof.boundary;
-  const BoundaryFit fit =
-      context.timed("boundary", [&] { return boundaryFit(result.mesh, solid, known); });
-  reportBoundaryFit(fit, context);
-  if (!options.picture.empty())
-    context.timed("picture", [&] { drawCut(options, result.mesh, quality); });
-  context.timed("write", [&] {
-    setQualityFields(result.mesh, quality);
-    const std::vector<std::string> left = writeCells(options.output, result.mesh);
-    for (const std::string& field : left)
-      context.note(fmt::format("{} cannot hold the field {}", options.output, field));
-  });
+  reportBoundary(result.mesh, solid, proof, context);
+  drawCells(options.picture, result.mesh, quality, options.cut, options.mesh, context);
+  setQualityFields(result.mesh, quality);
+  writeCellFile(options.output, result.mesh, context);
 }
 
 }  // namespace

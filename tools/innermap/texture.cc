@@ -107,15 +107,14 @@ void run(const TextureOptions& o, Context& context) {
   const std::uint64_t need =
       plan.memory + (o.image.empty() ? 0 : textureImageMemory(o.image, tiles));
   expectPhases(o, settings, plan, context);
-  if (context.dryRun())
-    return context.plan({fmt::format("continue {} into {} with {} charges and voxels of {:.6g}",
-                                     image, o.mesh, plan.sources, plan.voxelSize),
-                         "write surface, density, Cd and uv to " + o.output},
-                        need);
-  context.requireMemory("the solid texture", need,
-                        fmt::format("use a --voxel-size above {:.3g}, fewer --charges or raise "
-                                    "--max-memory",
-                                    1.5 * plan.voxelSize));
+  if (!context.begins({fmt::format("continue {} into {} with {} charges and voxels of {:.6g}",
+                                   image, o.mesh, plan.sources, plan.voxelSize),
+                       "write surface, density, Cd and uv to " + o.output},
+                      need, "the solid texture",
+                      fmt::format("use a --voxel-size above {:.3g}, fewer --charges or raise "
+                                  "--max-memory",
+                                  1.5 * plan.voxelSize)))
+    return;
   TextureLookup lookup;
   if (!o.image.empty())
     lookup = [images = readImages(o, tiles, context)](

@@ -28,7 +28,7 @@ void writeSection(const std::string& path, const std::string& title, const Solid
   const openvdb::GridBase::Ptr shown = distance.deepCopyGrid();
   shown->setName(title);
   const openvdb::GridBase::Ptr solidGrid = surface.deepCopyGrid();
-  SectionSettings section = sectionSettings(options.section, solid, *makeFog(surface));
+  SectionSettings section = options.section.of(solid, *makeFog(surface));
   section.grid = title;
   section.range = range;
   writeSectionImage(path, {shown, solidGrid}, section);

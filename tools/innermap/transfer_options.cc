@@ -86,6 +86,14 @@ OutsideSettings outsideSettings(const TransferOptions& options, const Points& fr
   return out;
 }
 
+FrameOutside frameOutside(const TransferOptions& options) {
+  FrameOutside out;
+  out.fitted = options.fadeTo == "fitted" && options.outside > 0;
+  if (!out.fitted) out.settings = outsideSettings(options, {}, {});
+  out.settings.distance = options.outside;
+  return out;
+}
+
 openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& options,
                                Context& context) {
   const bool tensors = !options.stress.empty() || !options.strain.empty();

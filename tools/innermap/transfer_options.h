@@ -29,6 +29,8 @@ CarrySettings carrySettings(const TransferOptions& options);
 // for a motion that is none.
 OutsideSettings outsideSettings(const TransferOptions& options, const Points& from,
                                 const Points& to);
+// Where the motion of --fade-to fitted is each frame's own. Throws as above.
+FrameOutside frameOutside(const TransferOptions& options);
 
 // The grids to be carried. Throws FileError for a name that is not there.
 openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& options,

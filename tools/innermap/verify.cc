@@ -59,10 +59,9 @@ std::string failureOf(const VerifyOptions& options, const Verification& made) {
 
 void run(const VerifyOptions& options, Context& context) {
   const MappedSolid mapped = readMapFile(options.map, context);
-  const std::uint64_t need = verifyMemory(mapped, options.settings);
-  if (context.dryRun()) return context.plan({"verify " + options.map}, need);
-  context.requireMemory("verifying " + options.map, need,
-                        "raise --max-memory or lower --proof-cells");
+  if (!context.begins({"verify " + options.map}, verifyMemory(mapped, options.settings),
+                      "verifying " + options.map, "raise --max-memory or lower --proof-cells"))
+    return;
   const Verification made =
       context.timed("verify", [&] { return verifyMap(mapped, options.settings); });
   context.report().add("verification", figures(made));

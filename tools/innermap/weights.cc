@@ -36,8 +36,7 @@ NamedConditions conditionsOf(const WeightOptions& options, const Mesh& mesh) {
 
 Command makeWeightsCommand() {
   auto o = std::make_shared<WeightOptions>();
-  o->harmonic.fit.tolerance =
-      1e-2;  // where groups touch, a finer one is spent on the border's kinks
+  o->harmonic.fit.tolerance = kWeightsTolerance;
   Command c("weights", "Compute harmonic weights inside a solid from groups of its surface");
   c.description(
       "Each group gets a channel: 1 on the group, 0 on the other groups, and no flux through the "
@@ -49,7 +48,7 @@ Command makeWeightsCommand() {
   c.example("innermap weights body.obj -o weights.vdb --groups head,arms,legs");
   c.run([o](Context& context) {
     runHarmonic(
-        o->harmonic, [&](const Mesh& mesh) { return conditionsOf(*o, mesh); }, true, context);
+        o->harmonic, [&](const Mesh& mesh) { return conditionsOf(*o, mesh); }, context);
   });
   return c;
 }

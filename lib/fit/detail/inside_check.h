@@ -1,7 +1,6 @@
 // Whether a map is one-to-one, as far as points inside tell.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 
 #include "fit/target_shape.h"

@@ -1,7 +1,6 @@
 #include "fit/detail/map_certificate.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "fit/detail/problem_samples.h"

@@ -82,6 +82,16 @@ std::unique_ptr<GeometryFile> readGeometry(const std::string& path,
   return file;
 }
 
+CarriedGeometry carryGeometry(GeometryFile& file, const PointCarry& carry,
+                              const CarryGeometrySettings& settings) {
+  requireMemory("carrying the geometry", processMemory(carryGeometryMemory(file.geometry)),
+                "cut the file into parts");
+  CarriedGeometry out = carryGeometry(file.geometry, carry, settings);
+  out.splats.capped = file.cappedOpacities(out);
+  out.inverted = file.inverted(out);
+  return out;
+}
+
 std::uint64_t geometryMemory(const std::string& path) {
   if (isCellFile(path)) return readCellsMemory(path) * 11 / 10 + kOnTheWay;
   std::error_code error;

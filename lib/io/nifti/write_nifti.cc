@@ -6,7 +6,6 @@
 #include "core/file.h"
 #include "core/text_scanner.h"
 #include "innermap/core/error.h"
-#include "innermap/core/run.h"
 #include "io/nifti/detail/gzip.h"
 #include "io/nifti/detail/nifti_header.h"
 #include "io/volume/detail/dense_types.h"

@@ -1,7 +1,6 @@
 // How much of each block of a lattice lies inside of a solid.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "innermap/levelset/solid.h"

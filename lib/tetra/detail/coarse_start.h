@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 
 #include "innermap/lattice/cell_mesh.h"
 #include "innermap/tetra/cells.h"

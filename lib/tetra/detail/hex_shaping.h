@@ -1,7 +1,6 @@
 // Hexahedra carried into a solid, untangled and evened out with their boundary on its surface.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 

@@ -1,7 +1,6 @@
 // Vertices of the boundary that slid, laid on the surface again.
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 #include "tetra/detail/patch_solver.h"

@@ -11,7 +11,6 @@
 
 #include <openvdb/openvdb.h>
 
-#include <cstdint>
 #include <functional>
 #include <vector>
 

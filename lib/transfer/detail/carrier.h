@@ -4,10 +4,8 @@
 
 #include <openvdb/openvdb.h>
 
-#include <functional>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "innermap/core/vec3.h"

@@ -3,7 +3,6 @@
 
 #include <openvdb/openvdb.h>
 
-#include <cstdint>
 #include <memory>
 
 #include "innermap/levelset/solid.h"

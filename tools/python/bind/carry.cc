@@ -145,14 +145,7 @@ PointCarry Job::carryOf() const {
   CarryPointsSettings settings;
   settings.outside = outside_;
   settings.accuracy = std::min(sumAccuracy(mapped), kPointAccuracy);
-  if (through_) return carryThrough(*through_, push_, settings);
-  if (push_)
-    return
-        [pusher = PointPusher(mapped.solid(), settings), map = mapped.map](
-            const Points& points, bool jacobians) { return pusher.push(map, points, jacobians); };
-  const Solid target = makeTargetSolid(mapped.boundary);
-  return [puller = PointPuller(mapped.map, mapped.solid(), target, settings)](
-             const Points& points, bool jacobians) { return puller.pull(points, jacobians); };
+  return through_ ? carryThrough(*through_, push_, settings) : carryByMap(mapped, push_, settings);
 }
 
 py::object Job::points(const py::object& what) const {

@@ -3,8 +3,8 @@
 #include "bind/arrays.h"
 #include "bind/errors.h"
 #include "bind/lists.h"
-#include "innermap/core/memory.h"
 #include "innermap/transfer/geometry.h"
+#include "report/figures.h"
 
 namespace py = pybind11;
 using namespace py::literals;
@@ -115,13 +115,6 @@ py::dict totalsOf(const PushResult& result) {
   return out;
 }
 
-py::dict dictOf(const FileFigures& figures) {
-  py::dict out;
-  for (const auto& [name, number] : figures.numbers) out[name] = number;
-  out["fields_lost"] = figures.lost;
-  return out;
-}
-
 ReadGeometrySettings geometrySettings(const CarryOptions& o) {
   ReadGeometrySettings out;
   out.vectors = textsFrom(o.vectors, "vectors");
@@ -129,28 +122,13 @@ ReadGeometrySettings geometrySettings(const CarryOptions& o) {
   return out;
 }
 
-FileFigures carryFile(const std::string& from, const std::string& to,
-                      const ReadGeometrySettings& reading, const CarryGeometrySettings& settings,
-                      const PointCarry& carry) {
+Figures carryFile(const std::string& from, const std::string& to,
+                  const ReadGeometrySettings& reading, const CarryGeometrySettings& settings,
+                  const PointCarry& carry) {
   const auto file = readGeometry(from, reading);
-  requireMemory("carrying the geometry", carryGeometryMemory(file->geometry),
-                "cut the file into parts");
-  const CarriedGeometry carried = carryGeometry(file->geometry, carry, settings);
-  FileFigures out;
-  out.lost = writeGeometry(to, *file, carried);
-  const GeometryFile::Inverted inverted = file->inverted(carried);
-  out.numbers = {{"points", carried.ownPoints},
-                 {"points_added", carried.added},
-                 {"points_outside", carried.points.outside},
-                 {"points_cut", carried.points.cut},
-                 {"points_not_inverted", carried.points.failed},
-                 {"points_folded", carried.folded},
-                 {"elements_cut", carried.cutElements},
-                 {"splats", carried.splats.degree < 0 ? 0 : carried.ownPoints},
-                 {"opacities_capped", file->cappedOpacities(carried)},
-                 {"cells", inverted.cells},
-                 {"cells_inverted_before", inverted.before},
-                 {"cells_inverted_after", inverted.after}};
+  const CarriedGeometry carried = carryGeometry(*file, carry, settings);
+  Figures out = figures(carried);
+  out.emplace_back("fields_lost", writeGeometry(to, *file, carried), "fields lost");
   return out;
 }
 

@@ -4,9 +4,9 @@
 #include <pybind11/pybind11.h>
 
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "bind/figures.h"
 #include "bind/grids.h"
 #include "bind/keywords.h"
 #include "innermap/fit/mapped_solid.h"
@@ -45,19 +45,12 @@ OutsideSettings outsideFrom(double outside, const pybind11::object& fadeTo, cons
 // What became of grids, for Grids.totals.
 pybind11::dict totalsOf(const PushResult& result);
 
-// What became of a file of geometry.
-struct FileFigures {
-  std::vector<std::pair<const char*, std::uint64_t>> numbers;
-  std::vector<std::string> lost;  // fields
-};
-pybind11::dict dictOf(const FileFigures& figures);
-
 // What a file of geometry or cells is read with.
 ReadGeometrySettings geometrySettings(const CarryOptions& o);
 
-// A file carried and written. Without the lock of the interpreter.
-FileFigures carryFile(const std::string& from, const std::string& to,
-                      const ReadGeometrySettings& reading, const CarryGeometrySettings& settings,
-                      const PointCarry& carry);
+// A file carried and written, and what became of it. Without the lock of the interpreter.
+Figures carryFile(const std::string& from, const std::string& to,
+                  const ReadGeometrySettings& reading, const CarryGeometrySettings& settings,
+                  const PointCarry& carry);
 
 }  // namespace innermap::python

@@ -40,7 +40,7 @@ struct DeformOptions : CarryOptions {
 class Deformation {
  public:
   Deformation(const Mesh& rest, const FrameSet& frames, const DeformOptions& o)
-      : rest_(rest), frames_(frames), o_(o), outside_(o.outside, o.fadeTo) {}
+      : rest_(rest), frames_(frames), o_(o), outside_(frameOutsideFrom(o.outside, o.fadeTo)) {}
 
   py::object grids(const py::object& what, const std::optional<FramePattern>& pattern) const;
   py::object points(const Points& points) const;
@@ -50,9 +50,9 @@ class Deformation {
   // carry: of a frame's number, its fit and the pusher to it.
   template <class Carry>
   FrameTable table(const FrameCarrier& carrier, const Carry& carry) const {
-    return frames_.table(carrier.fitter(), [&](const FittedFrame& frame) {
+    return frames_.table(carrier.fitter, [&](const FittedFrame& frame) {
       const FrameFit& fit = *frame.fit.fit;
-      carry(frame.fit.number, fit, carrier.pusherTo(fit.boundary));
+      carry(frame.fit.number, fit, carrier.pusher.to(fit.boundary.moved));
       return rowOf(fit);
     });
   }
@@ -115,7 +115,7 @@ py::object Deformation::points(const Points& points) const {
   PlacedPoints placed;
   const FrameTable made = call(o_.call, [&]() {
     const FrameCarrier carrier(fitterOf(rest_, o_.fitting, 0), outside_);
-    placed = carrier.place(points);
+    placed = carrier.pusher.place(points);
     return table(carrier, [&](std::int64_t, const FrameFit& fit, const PointPusher& pusher) {
       places.push_back(placesOf(pusher.push(HarmonicMap(fit.field), placed, false)));
     });

@@ -22,16 +22,7 @@ namespace py = pybind11;
 namespace innermap::python {
 namespace {
 
-constexpr double kAccuracy = 1e-7;  // of the sums of charges
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-PointPusher pusherFor(const Solid& solid, const FrameOutside& outside) {
-  CarryPointsSettings settings;
-  settings.outside = outside.settings;
-  if (outside.fitted) settings.outside.fadeTo = RigidMotion();  // until the frame is known
-  settings.accuracy = kAccuracy;
-  return PointPusher(solid, settings);
-}
 
 struct DeformerOptions {
   FrameFitterSettings fitting;
@@ -56,13 +47,13 @@ std::shared_ptr<PyDeformer> makeDeformer(const py::object& source, const py::obj
                                          const DeformerOptions& o) {
   const Mesh rest = meshFrom(source, "source");
   const Points points = pointsFrom(inside, "X");
-  const FrameOutside outside(o.outside, o.fadeTo);
+  const FrameOutside outside = frameOutsideFrom(o.outside, o.fadeTo);
   FittingOptions fitting;
   fitting.fitting = o.fitting;
   return call(o.call, [&] {
     const std::uint64_t kept = 3 * sizeof(Vec3) * points.size();
     FrameCarrier carrier(fitterOf(rest, fitting, kept), outside);
-    PlacedPoints placed = carrier.place(points);
+    PlacedPoints placed = carrier.pusher.place(points);
     return std::make_shared<PyDeformer>(PyDeformer{rest, std::move(carrier), std::move(placed)});
   });
 }
@@ -105,8 +96,8 @@ py::object carry(const Arguments& a, CallOptions& o) {
   const auto self = py::cast<std::shared_ptr<PyDeformer>>(a[0]);
   const Mesh frame = frameFrom(*self, a[1]);
   return arrayOf(call(o, [&] {
-    const FrameSolution solution = self->carrier.fitter().solve(frame);
-    const PointPusher pusher = self->carrier.pusherTo(solution.boundary);
+    const FrameSolution solution = self->carrier.fitter.solve(frame);
+    const PointPusher pusher = self->carrier.pusher.to(solution.boundary.moved);
     return placesOf(pusher.push(HarmonicMap(solution.field), self->placed, false));
   }));
 }
@@ -114,7 +105,7 @@ py::object carry(const Arguments& a, CallOptions& o) {
 py::object measure(const Arguments& a, CallOptions& o) {
   const auto self = py::cast<std::shared_ptr<PyDeformer>>(a[0]);
   const Mesh frame = frameFrom(*self, a[1]);
-  return dictOf(call(o, [&] { return rowOf(self->carrier.fitter().fit(frame)); }));
+  return dictOf(call(o, [&] { return rowOf(self->carrier.fitter.fit(frame)); }));
 }
 
 struct LatticeOptions {
@@ -156,22 +147,17 @@ py::object lattice(const Arguments& a, LatticeOptions& o) {
 
 }  // namespace
 
-FrameOutside::FrameOutside(double outside, const py::object& fadeTo) {
-  fitted =
+FrameOutside frameOutsideFrom(double outside, const py::object& fadeTo) {
+  FrameOutside out;
+  out.fitted =
       outside > 0 && py::isinstance<py::str>(fadeTo) && textFrom(fadeTo, "fade_to") == "fitted";
-  if (!fitted) settings = outsideFrom(outside, fadeTo, {}, {});
-  settings.distance = outside;
+  if (!out.fitted) out.settings = outsideFrom(outside, fadeTo, {}, {});
+  out.settings.distance = outside;
+  return out;
 }
 
-FrameCarrier::FrameCarrier(FrameFitter fitter, const FrameOutside& outside)
-    : fitter_(std::move(fitter)),
-      pusher_(pusherFor(fitter_.solid(), outside)),
-      fitted_(outside.fitted) {}
-
-PointPusher FrameCarrier::pusherTo(const TargetBoundary& frame) const {
-  if (!fitted_) return pusher_;
-  return pusher_.fadingTo(bestRigidMotion(fitter_.solid().repaired().mesh.vertices, frame.moved));
-}
+FrameCarrier::FrameCarrier(FrameFitter of, const FrameOutside& outside)
+    : fitter(std::move(of)), pusher(fitter.solid(), {outside.settings}, outside.fitted) {}
 
 Points placesOf(CarriedPoints carried) {
   for (std::size_t i = 0; i < carried.points.size(); ++i)

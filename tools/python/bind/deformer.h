@@ -11,28 +11,15 @@ namespace innermap::python {
 
 void bindDeformer(pybind11::module_& m);
 
-// What outside and fade_to say, where each frame may have a motion of its own.
-struct FrameOutside {
-  // Throws SettingError, TypeError.
-  FrameOutside(double outside, const pybind11::object& fadeTo);
+// What outside and fade_to say. Throws SettingError, TypeError.
+FrameOutside frameOutsideFrom(double outside, const pybind11::object& fadeTo);
 
-  OutsideSettings settings;
-  bool fitted = false;  // to the best rigid motion of each frame
-};
+// Made without the lock of the interpreter. Thread-safe.
+struct FrameCarrier {
+  FrameCarrier(FrameFitter of, const FrameOutside& outside);
 
-// Without the lock of the interpreter. Thread-safe.
-class FrameCarrier {
- public:
-  FrameCarrier(FrameFitter fitter, const FrameOutside& outside);
-
-  const FrameFitter& fitter() const { return fitter_; }
-  PlacedPoints place(const Points& points) const { return pusher_.place(points); }
-  PointPusher pusherTo(const TargetBoundary& frame) const;
-
- private:
-  FrameFitter fitter_;
-  PointPusher pusher_;
-  bool fitted_;
+  FrameFitter fitter;
+  FramePointPusher pusher;
 };
 
 // With NaN for what is not carried.

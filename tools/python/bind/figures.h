@@ -5,7 +5,6 @@
 
 #include "core/figure.h"
 #include "innermap/field/field_file.h"
-#include "innermap/field/fit.h"
 
 namespace innermap::python {
 

@@ -159,7 +159,7 @@ py::dict FrameTable::dict() const {
 Figures rowOf(const FrameFit& fit) {
   Figures row = only(figures(sequenceRow(fit, {})), {"boundary_rms", "boundary_p99", "boundary_max",
                                                      "outside_fraction", "volume"});
-  row.emplace_back("folded_fraction", fit.folded, "folded");
+  row.emplace_back("folded_fraction", fit.folded(), "folded");
   return row;
 }
 

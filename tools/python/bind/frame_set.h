@@ -12,7 +12,6 @@
 
 #include "bind/keywords.h"
 #include "core/figure.h"
-#include "innermap/core/error.h"
 #include "innermap/fit/frame_fitter.h"
 #include "innermap/mesh/mesh_file.h"
 

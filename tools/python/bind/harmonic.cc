@@ -1,7 +1,6 @@
 // harmonic() and weights().
 #include <fmt/format.h>
 
-#include "bind/arrays.h"
 #include "bind/conditions.h"
 #include "bind/errors.h"
 #include "bind/field.h"
@@ -15,8 +14,6 @@ namespace py = pybind11;
 
 namespace innermap::python {
 namespace {
-
-constexpr double kWeightsTolerance = 1e-2;  // where groups touch, a finer one is spent on kinks
 
 struct FieldFitOptions {
   HarmonicFitSettings fit;
@@ -74,27 +71,16 @@ std::vector<std::string> namesFrom(const py::object& given, std::size_t channels
   return out;
 }
 
-// unitSum: see withUnitSum.
 std::shared_ptr<PyField> fitted(const Mesh& mesh, BoundaryConditions& conditions,
-                                const py::object& names, bool unitSum, const FieldFitOptions& o) {
+                                const py::object& names, const FieldFitOptions& o) {
   if (!conditions.function) namesFrom(names, conditions.values.columns());  // before the work
   conditions.creaseAngle = o.creaseAngle;
   auto made = call(o.call, [&]() {
-    FitMapSettings like;
-    like.tolerance = o.fit.tolerance;
-    requireMemory("the harmonic field", fitMapMemory(like, mesh.vertices.size()),
-                  "raise max_memory");
-    const bool corners =
-        !conditions.function && conditions.values.rows() == 3 * mesh.triangles.size();
-    const double joined = corners ? removeJumps(mesh, conditions) : 0;
+    requireMemory("the harmonic field", fitMapMemory({}, mesh.vertices.size()), "raise max_memory");
+    const std::string joined = joinedText(removeJumps(mesh, conditions));
     SourceBoundary boundary = makeSourceBoundary(mesh);
     HarmonicFit fit = fitHarmonic(boundary, conditions, o.fit);
-    if (unitSum) fit.field = withUnitSum(fit.field);
-    if (joined > 0)
-      fit.notes.push_back(
-          fmt::format("values that touch are joined: on {:.2g}% of the surface, the triangles "
-                      "along their borders, they blend",
-                      100 * joined));
+    if (!joined.empty()) fit.notes.push_back(joined);
     return std::make_pair(std::move(boundary), std::move(fit));
   });
   auto& [boundary, fit] = made;
@@ -115,7 +101,7 @@ py::object harmonic(const Arguments& a, HarmonicOptions& o) {
   }
   if (at < a.size()) throw py::type_error("harmonic() takes a mesh and values, no more");
   ConditionsFrom conditions(mesh, o.given);
-  return py::cast(fitted(mesh, conditions.conditions(), o.names, false, o.fit));
+  return py::cast(fitted(mesh, conditions.conditions(), o.names, o.fit));
 }
 
 struct WeightOptions {
@@ -143,7 +129,7 @@ py::object weights(const Arguments& a, WeightOptions& o) {
   py::list names;
   for (const SurfaceGroup& group : groups) names.append(group.name);
   BoundaryConditions conditions = weightConditions(mesh, groups);
-  return py::cast(fitted(mesh, conditions, names, true, o.fit));
+  return py::cast(fitted(mesh, conditions, names, o.fit));
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include "bind/call.h"
 #include "bind/errors.h"
 #include "bind/lists.h"
-#include "innermap/mesh/check.h"
 #include "innermap/mesh/mesh_file.h"
 
 namespace py = pybind11;

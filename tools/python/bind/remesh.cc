@@ -1,5 +1,4 @@
 // Cells carried by a map and repaired; finite elements beside charges.
-#include "bind/arrays.h"
 #include "bind/cells.h"
 #include "bind/errors.h"
 #include "bind/figures.h"

@@ -1,6 +1,5 @@
 // Volume textures in EXR files, out and in.
 
-#include "bind/arrays.h"
 #include "bind/errors.h"
 #include "bind/grids.h"
 #include "bind/keywords.h"

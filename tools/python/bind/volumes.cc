@@ -249,10 +249,7 @@ py::object writeSection(const Arguments& a, SectionOptions& o) {
   const auto shown = textsFrom(o.grid, "grid");
   if (!shown.empty()) o.section.grid = shown.front();
   if (!o.range.is_none()) o.section.range = pairFrom(o.range, "range");
-  const SectionResult made =
-      call(o.call, [&]() { return writeSectionImage(path, given, o.section); });
-  return py::dict("grid"_a = made.grid, "position"_a = made.position, "least"_a = made.least,
-                  "most"_a = made.most, "range"_a = py::make_tuple(made.lower, made.upper));
+  return dictOf(figures(call(o.call, [&]() { return writeSectionImage(path, given, o.section); })));
 }
 
 }  // namespace

@@ -45,6 +45,9 @@ struct BoundaryConditions {
   // triangles' own normals the flux of a smooth field jumps at each edge, and charges would crowd
   // there for nothing. 0: the triangles' own.
   double creaseAngle = 30;
+  // Channels are to sum up to 1 everywhere: what they lack is shared among them equally. Each stays
+  // harmonic, and moves by no more than the sum was off.
+  bool unitSum = false;
 };
 
 // Of BoundaryConditions::creaseAngle.
@@ -70,16 +73,19 @@ BoundaryConditions valuesOnGroups(const Mesh& mesh, const std::vector<SurfaceGro
 void setFluxes(const Mesh& mesh, const std::vector<SurfaceGroup>& groups, const Matrix& flux,
                BoundaryConditions& conditions);
 
-// What harmonic weights are made from: of each group a channel, 1 on it and 0 on the others. Throws
-// as above; DataError for less than two groups.
+// What harmonic weights are made from: of each group a channel, 1 on it and 0 on the others, that
+// sum up to 1. Throws as above; DataError for less than two groups.
 BoundaryConditions weightConditions(const Mesh& mesh, const std::vector<SurfaceGroup>& groups);
 
-// Makes values continuous that are given three a triangle, as no harmonic field meets a jump: each
-// vertex takes the mean of the corners about it whose value is given, weighted by their angles, so
-// that channels keep their sum, and `values` becomes one row a vertex. Returns the share of the
-// surface whose values that changes: triangles along the jumps. Throws DataError for sizes that do
-// not fit the mesh.
+// Makes values continuous if they are given three a triangle, as no harmonic field meets a jump:
+// each vertex takes the mean of the corners about it whose value is given, weighted by their
+// angles, so that channels keep their sum, and `values` becomes one row a vertex. Returns the share
+// of the surface whose values that changes: triangles along the jumps. Throws DataError for sizes
+// that do not fit the mesh.
 double removeJumps(const Mesh& mesh, BoundaryConditions& conditions);
+std::string joinedText(double share);  // what that did, in words; nothing of 0
+
+constexpr double kWeightsTolerance = 1e-2;  // where groups touch, a finer one is spent on kinks
 
 struct HarmonicFitSettings {
   double tolerance = 1e-3;  // of the largest span of a channel's values
@@ -116,10 +122,6 @@ struct HarmonicFit {
 // the number of threads.
 HarmonicFit fitHarmonic(const SourceBoundary& boundary, const BoundaryConditions& conditions,
                         const HarmonicFitSettings& settings = {});
-
-// The field whose channels sum up to 1 everywhere: what they lack is shared among them equally.
-// Each stays harmonic, and moves by no more than the sum was off.
-HarmonicField withUnitSum(const HarmonicField& field);
 
 // A harmonic field together with the solid that it fills: what its file holds.
 

@@ -11,7 +11,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "innermap/core/setting.h"
@@ -59,12 +58,10 @@ struct FrameFit {
   TargetBoundary boundary;
   HarmonicField field;
   BoundaryError error;  // by certify, fractions of the frame's diagonal
-  // Of some thousand points inside: the share whose Jacobian determinant is not above 0, and the
-  // share whose image is farther out of the frame's solid than error.p99.
-  double folded = 0, outside = 0;
-  // The same of a map of its own; with Prove::off `mirrored`, `inside` and `outside`
-  // alone.
+  // As of a map of its own, of some thousand points inside; with Prove::off `mirrored`, `inside`
+  // and `outside` alone.
   Injectivity injectivity;
+  double folded() const;  // share of these points whose Jacobian determinant is not above 0
   int iterations = 0;
   // Where exposed parts cross and slide along each other by more than kLeastJumpTold, and
   // how far, in words; empty where none do. The charges stand where they stand, so the fit blends

@@ -44,11 +44,7 @@ class GeometryFile {
   Geometry geometry;
   std::vector<std::string> notes;  // what was left out on reading
 
-  // Negative volumes: cells before and after; nothing for files without cells.
-  struct Inverted {
-    std::uint64_t cells = 0, before = 0, after = 0;
-  };
-  virtual Inverted inverted(const CarriedGeometry&) const { return {}; }
+  virtual InvertedCells inverted(const CarriedGeometry&) const { return {}; }
 
   // Splats whose opacity SplatOpacity::mass would have grown above its limit.
   virtual std::uint64_t cappedOpacities(const CarriedGeometry&) const { return 0; }
@@ -74,6 +70,11 @@ std::unique_ptr<GeometryFile> readGeometry(const std::string& path,
 // Peak need in bytes of reading and carrying the file, from its size. Throws FileError when there
 // is none.
 std::uint64_t geometryMemory(const std::string& path);
+
+// The file's geometry, carried, with what the file counts. Throws as carryGeometry() of
+// transfer/geometry.h; MemoryError.
+CarriedGeometry carryGeometry(GeometryFile& file, const PointCarry& carry,
+                              const CarryGeometrySettings& settings = {});
 
 // What of the file was carried. It appears whole or not at all. Returns as GeometryFile::write.
 // Throws FileError.

@@ -65,10 +65,10 @@ struct RepairCellsSettings {
 
 struct CellRepair {
   std::size_t cells = 0;
-  std::size_t invertedAtRest = 0;                     // of the mesh as it was given
-  std::size_t invertedBefore = 0, invertedAfter = 0;  // carried, and after the repair
-  std::size_t poorAfter = 0;                          // tetrahedra below settings.least
-  std::size_t slid = 0;                               // vertices of the boundary that moved
+  std::size_t invertedAtRest = 0;       // of the mesh as it was given
+  std::size_t invertedAfter = 0;        // the repair
+  std::size_t poorAfter = 0;            // tetrahedra below settings.least
+  std::size_t slid = 0;                 // vertices of the boundary that moved
   std::size_t notLanded = 0;            // of those, off the surface by over 1e-9 of its diagonal
   double farthestOff = 0;               // of the surface, world units
   double moved = 0, farthestMoved = 0;  // root mean square and largest way, world units

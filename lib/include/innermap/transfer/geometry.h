@@ -151,10 +151,16 @@ struct CarriedSplats {
   std::uint64_t capped = 0;  // of them, as GeometryFile::cappedOpacities() counts them
 };
 
+// Cells with a negative volume, before and after; nothing for geometry without cells.
+struct InvertedCells {
+  std::uint64_t cells = 0, before = 0, after = 0;
+};
+
 struct CarriedGeometry {
   CarriedPoints points;            // of geometry.points, those of cells' values included
   std::vector<Points> directions;  // as geometry.directions
   CarriedSplats splats;
+  InvertedCells inverted;         // as GeometryFile::inverted() counts them
   std::uint64_t ownPoints = 0;    // those of the file that were there before edges were split
   std::uint64_t added = 0;        // on split edges
   std::uint64_t folded = 0;       // points where the map folds, where Jacobians were taken

@@ -17,6 +17,8 @@
 
 namespace innermap {
 
+struct MappedSolid;
+
 struct InverseSettings {
   OutsideSettings outside;
   double skin = 2;          // voxels outside the target's surface, in [0, 3]
@@ -155,6 +157,28 @@ class PointPusher {
   std::shared_ptr<const Data> data_;
 };
 
+// What lies around, where frames may each fade to the best rigid motion of their own.
+struct FrameOutside {
+  OutsideSettings settings;
+  bool fitted = false;
+};
+
+// The pushers of an animation's frames.
+class FramePointPusher {
+ public:
+  // fitted: what lies outside fades to the best rigid motion of each frame, whatever the settings
+  // say. Throws as PointPusher.
+  FramePointPusher(const Solid& rest, CarryPointsSettings settings, bool fitted);
+
+  PlacedPoints place(const Points& points) const { return pusher_.place(points); }
+  // moved: where a frame has the vertices of the rest pose's repaired mesh.
+  PointPusher to(const Points& moved) const;
+
+ private:
+  PointPusher pusher_;
+  Points from_;  // empty unless fitted
+};
+
 // From the target to the source: y becomes the x with f(x) = y, the Jacobian is the inverse of f's
 // there. The inverse on a grid of the target gives the starts (see inverse_map.h), Newton's method
 // does the rest, to 1e-5 of the target's diagonal and mostly to `accuracy`.
@@ -171,6 +195,11 @@ class PointPuller {
   struct Data;
   std::shared_ptr<const Data> data_;
 };
+
+// By a solid's map, from its source to its target (push) or back; keeps what it needs of it. Throws
+// as PointPusher and PointPuller.
+PointCarry carryByMap(const MappedSolid& mapped, bool push,
+                      const CarryPointsSettings& settings = {});
 
 // Peak need in bytes of carrying so many points, beyond the points given: with Jacobians or
 // without.

@@ -1,7 +1,6 @@
 // The formats behind io/cell_file.h.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <ostream>

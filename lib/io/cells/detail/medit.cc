@@ -6,7 +6,6 @@
 
 #include "core/output_buffer.h"
 #include "core/text_scanner.h"
-#include "innermap/core/error.h"
 #include "io/cells/detail/cell_formats.h"
 
 namespace innermap {

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/text_scanner.h"
-#include "innermap/core/error.h"
 #include "io/cells/detail/cell_formats.h"
 #include "io/cells/detail/msh_fields.h"
 

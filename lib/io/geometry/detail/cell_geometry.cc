@@ -30,8 +30,8 @@ class CellGeometry : public GeometryFile {
     addCellDirections();
   }
 
-  Inverted inverted(const CarriedGeometry& carried) const override {
-    Inverted out;
+  InvertedCells inverted(const CarriedGeometry& carried) const override {
+    InvertedCells out;
     std::size_t e = 0;
     const auto count = [&](const auto& cells) {
       for (const auto& cell : cells) {

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <memory>
-#include <ostream>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "core/file_bytes.h"
 #include "core/output_buffer.h"

@@ -4,7 +4,6 @@
 
 #include <openvdb/openvdb.h>
 
-#include <string>
 #include <utility>
 
 namespace innermap {

@@ -1,7 +1,6 @@
 // The pictures of a volume texture: found, described, checked, and read slice by slice.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>

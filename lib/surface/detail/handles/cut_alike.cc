@@ -12,7 +12,6 @@
 #include "surface/detail/refining/target_metric.h"
 #include "surface/detail/sphere/sphere_layout.h"
 #include "surface/detail/topology/edge_distance.h"
-#include "surface/detail/topology/half_edges.h"
 #include "surface/detail/topology/homology.h"
 
 namespace innermap {

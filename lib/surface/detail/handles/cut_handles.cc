@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <unordered_map>
 
 #include "innermap/core/error.h"
@@ -214,13 +213,6 @@ CutSurface cutAlong(const HandleLoops& loops, const std::vector<int>& chosen) {
   for (CutHandle& handle : cut.handles) cap(cut, handle);
   cut.surface.genus = 0;
   return cut;
-}
-
-CutSurface cutHandles(const ClosedSurface& surface) {
-  const HandleLoops loops = handleLoops(surface);
-  std::vector<int> first(loops.handles);
-  std::iota(first.begin(), first.end(), 0);
-  return cutAlong(loops, first);
 }
 
 void splitEdges(CutSurface& cut, Layout& layout, const std::vector<EdgeSplit>& splits) {

@@ -47,10 +47,6 @@ HandleLoops handleLoops(const ClosedSurface& surface);
 // Along the loops chosen (numbers in loops.loops; as many as handles, independent).
 CutSurface cutAlong(const HandleLoops& loops, const std::vector<int>& chosen);
 
-// Along the first, which are the shortest. Throws as handleLoops(). A surface without handles comes
-// back as it is.
-CutSurface cutHandles(const ClosedSurface& surface);
-
 // Points to put in on edges of a cut surface.
 struct EdgeSplit {
   int from = 0, to = 0;   // an edge

@@ -2,7 +2,6 @@
 // rims lie on one another. With that, a map between the cut surfaces is one between the uncut.
 #pragma once
 
-#include <array>
 #include <utility>
 #include <vector>
 

@@ -1,7 +1,6 @@
 #include "surface/detail/refining/coarse_to_fine.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "innermap/core/run.h"
 

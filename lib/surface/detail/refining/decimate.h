@@ -1,8 +1,6 @@
 // Which vertices a progressive mesh gives up first.
 #pragma once
 
-#include <functional>
-
 #include "surface/detail/refining/progressive_mesh.h"
 
 namespace innermap {

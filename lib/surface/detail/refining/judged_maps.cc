@@ -4,7 +4,6 @@
 #include <memory>
 #include <utility>
 
-#include "innermap/core/error.h"
 #include "innermap/core/run.h"
 #include "surface/detail/refining/layout_map.h"
 #include "surface/detail/refining/ways_round.h"

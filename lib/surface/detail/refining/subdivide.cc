@@ -1,7 +1,6 @@
 #include "surface/detail/refining/subdivide.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <unordered_map>
@@ -12,7 +11,6 @@
 #include "surface/detail/refining/coarse_to_fine.h"
 #include "surface/detail/refining/locate.h"
 #include "surface/detail/refining/pullback_energy.h"
-#include "surface/detail/sphere/star_kernel.h"
 #include "surface/detail/topology/adjacency.h"
 
 namespace innermap {

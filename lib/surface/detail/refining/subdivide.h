@@ -1,7 +1,6 @@
 // A source split until its image follows the target.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "innermap/surface/correspond.h"

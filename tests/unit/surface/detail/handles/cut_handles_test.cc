@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <set>
 
 #include "core/expect.h"
@@ -27,6 +28,14 @@ double lengthOf(const Points& vertices, const std::vector<int>& loop) {
   for (std::size_t i = 0; i < loop.size(); ++i)
     length += norm(vertices[loop[(i + 1) % loop.size()]] - vertices[loop[i]]);
   return length;
+}
+
+// Along the shortest loops.
+CutSurface cutHandles(const ClosedSurface& surface) {
+  const HandleLoops loops = handleLoops(surface);
+  std::vector<int> first(loops.handles);
+  std::iota(first.begin(), first.end(), 0);
+  return cutAlong(loops, first);
 }
 
 // A sphere whose triangles lie where those of `surface` do, but for the caps.
@@ -149,9 +158,9 @@ TEST(CutHandles, KnottedTunnelsAreRefused) {
   const shapes::Cells solid =
       without(with(shapes::knottedTunnel(), block({11, -2, -2}, {15, 10, 4})),
               block({13, 4, -2}, {13, 4, 4}));
-  EXPECT_THROW(cutHandles(boundaryOf(shapes::knottedTunnel(), 1)), DataError);
-  test::expectRefused<DataError>([&] { cutHandles(boundaryOf(solid, 2)); }, "knotted");
-  test::expectCancels([&] { cutHandles(plate(2)); });
+  EXPECT_THROW(handleLoops(boundaryOf(shapes::knottedTunnel(), 1)), DataError);
+  test::expectRefused<DataError>([&] { handleLoops(boundaryOf(solid, 2)); }, "knotted");
+  test::expectCancels([&] { handleLoops(plate(2)); });
 }
 
 struct Laid {
