@@ -134,9 +134,12 @@ std::string joinedText(double share) {
 
 double removeJumps(const Mesh& mesh, BoundaryConditions& conditions) {
   const std::size_t triangles = mesh.triangles.size(), channels = conditions.values.columns();
-  if (conditions.function || conditions.values.rows() != 3 * triangles) return 0;
-  if (!conditions.free.empty() && conditions.free.size() != triangles)
-    throw DataError("removeJumps: triangles are not those of the mesh");
+  const std::size_t rows = conditions.values.rows();
+  const bool atCorners = !conditions.function && rows == 3 * triangles;
+  if ((!atCorners && !conditions.function && rows != mesh.vertices.size()) ||
+      (!conditions.free.empty() && conditions.free.size() != triangles))
+    throw DataError("removeJumps: values or free triangles are not those of the mesh");
+  if (!atCorners) return 0;
   const Matrix corners = std::move(conditions.values);
   const auto held = [&](std::size_t t) { return conditions.free.empty() || !conditions.free[t]; };
   const std::vector<std::size_t> first = firstAtPlace(mesh.vertices);

@@ -143,6 +143,8 @@ TEST(BoundaryConditions, ValuesWithoutJumpsStay) {
   const Matrix before = h.conditions.values;  // now one row a vertex
   EXPECT_EQ(removeJumps(h.mesh, h.conditions), 0);
   EXPECT_EQ(h.conditions.values.rows(), before.rows());
+  h.conditions.values = Matrix(h.mesh.vertices.size() + 1, 2);
+  EXPECT_THROW(removeJumps(h.mesh, h.conditions), DataError);
 }
 
 }  // namespace
