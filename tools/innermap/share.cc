@@ -147,9 +147,10 @@ void writeShareJobs(const ShareOptions& options, const ShareRun& run, Context& c
   if (!run.joining.empty())
     jobs.joining = {totalSeconds(run.joining), processMemory(run.joiningBytes)};
   jobs.cores = static_cast<std::uint64_t>(told.threads);
-  const std::string text = fmt::format(
-      "{} shares of {} {}s to {}: about {:.0f} s and {} each", jobs.tasks, run.units, run.unit,
-      options.jobs, std::max(1.0, jobs.task.seconds), formatBytes(jobs.task.memory));
+  const std::string text =
+      fmt::format("{} share{} of {} {}{} to {}: about {:.0f} s and {} each", jobs.tasks,
+                  jobs.tasks == 1 ? "" : "s", run.units, run.unit, run.units == 1 ? "" : "s",
+                  options.jobs, std::max(1.0, jobs.task.seconds), formatBytes(jobs.task.memory));
   if (context.dryRun()) return context.plan({"write " + text}, 0);
   context.output(options.jobs);
   context.timed("write", [&] { writeJobs(kJobs, options.jobs, jobs); });
