@@ -1,4 +1,5 @@
-// What the kernels of all lanes are written in, once for each instruction set.
+// What the kernels of all lanes are written in, once for each instruction set. For sources that
+// include lane_kernels.h, which has the number of lanes.
 // NOLINTBEGIN(readability-identifier-naming): named like the functions of Highway.
 #if defined(INNERMAP_PROOF_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef INNERMAP_PROOF_LANES_INL_H_
@@ -8,7 +9,6 @@
 #endif
 
 #include "hwy/highway.h"
-#include "proof/detail/lane_kernels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace innermap::proof {
