@@ -86,8 +86,7 @@ CorrespondSettings settingsOf(const MeshCorrespondenceSettings& settings) {
   out.candidates = settings.candidates;
   out.way = settings.way;
   out.refine = settings.refine;
-  if (settings.byInside)
-    out.judge = [](const ClosedSurface& a, const ClosedSurface& b) { return judgeOf(a, b); };
+  out.judge = [](const ClosedSurface& a, const ClosedSurface& b) { return judgeOf(a, b); };
   out.seed = settings.seed;
   out.subdivide = settings.subdivide;
   return out;

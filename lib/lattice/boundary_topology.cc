@@ -110,7 +110,6 @@ BoundaryTopology boundaryTopology(const Points& vertices, const std::vector<Tria
   for (const int fansHere : fanCount) result.nonManifoldVertices += fansHere > 1;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     if (shellOf[t] != static_cast<int>(t)) continue;
-    result.eulerCharacteristics.push_back(euler[t]);
     result.solid.handles += 1 - euler[t] / 2;
     ++(volume[t] < 0 ? result.solid.cavities : result.solid.components);
   }

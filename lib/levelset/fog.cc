@@ -112,14 +112,6 @@ FloatGrid::Ptr makeFog(const FloatGrid& levelSet) {
   return fog;
 }
 
-double fogVolume(const FloatGrid& fog) {
-  double sum = 0;
-  for (auto value = fog.cbeginValueOn(); value; ++value) {
-    sum += double(value.getValue()) * static_cast<double>(value.getVoxelCount());
-  }
-  return sum * std::pow(fog.voxelSize()[0], 3);
-}
-
 double insideVolume(const FloatGrid& levelSet) {
   requireLevelSet(levelSet);
   const double h = levelSet.voxelSize()[0];

@@ -76,7 +76,6 @@ class DenseSolver::Factors {
 
   DenseSolution solve(const Matrix& values, Regularization method, const Matrix& heldOutValues,
                       std::optional<double> regularization) const;
-  const Matrix& singularValues() const { return singularValues_; }
 
  private:
   struct Projected;
@@ -299,7 +298,5 @@ DenseSolution DenseSolver::solve(const Matrix& values, Regularization method,
                                  std::optional<double> regularization) const {
   return factors_->solve(values, method, heldOutValues, regularization);
 }
-
-const Matrix& DenseSolver::singularValues() const { return factors_->singularValues(); }
 
 }  // namespace innermap

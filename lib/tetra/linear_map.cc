@@ -28,9 +28,9 @@ Points sourceOf(const CellMesh& mesh) {
   return out;
 }
 
-LinearSample sampleOf(const CellLocator& locator, const std::vector<Tetrahedron>& tets,
-                      const Points& from, const Points& to, const Vec3& p) {
-  LinearSample out;
+PointImage sampleOf(const CellLocator& locator, const std::vector<Tetrahedron>& tets,
+                    const Points& from, const Points& to, const Vec3& p) {
+  PointImage out;
   const CellPoint at = locator.locate(p);
   if (at.tetrahedron < 0) return {p, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, 0};
   out.image = valueAt(to, tets, at);
@@ -41,47 +41,45 @@ LinearSample sampleOf(const CellLocator& locator, const std::vector<Tetrahedron>
   return out;
 }
 
+bool apart(const Box3& mesh, const Box3& solid) {
+  constexpr double kApart = 0.1;  // of the diagonal
+  const double most = kApart * solid.diagonal();
+  return norm(mesh.lower - solid.lower) > most || norm(mesh.upper - solid.upper) > most;
+}
+
 }  // namespace
 
-struct LinearCellMap::Data {
-  std::vector<Tetrahedron> tets;
-  Points source, target;
-  CellLocator there, back;
-
-  explicit Data(const CellMesh& mesh)
-      : tets(mesh.tetrahedra),
-        source(sourceOf(mesh)),
-        target(mesh.vertices),
-        there(source, tets),
-        back(target, tets) {}
-};
-
-LinearCellMap::LinearCellMap(const CellMesh& carried) {
+SolidMap linearMapOf(const CellMesh& carried) {
   validate(carried);
   if (!carried.hexahedra.empty() || carried.tetrahedra.empty())
     unfit(carried, fmt::format("has {} tetrahedra and {} hexahedra; a map is made of tetrahedra",
                                carried.tetrahedra.size(), carried.hexahedra.size()));
   const Points source = sourceOf(carried);
-  std::size_t here = 0, there = 0;
+  std::size_t folded = 0, foldedThere = 0;
   for (const Tetrahedron& t : carried.tetrahedra) {
-    here += isInverted(carried.vertices, t);
-    there += isInverted(source, t);
+    folded += isInverted(carried.vertices, t);
+    foldedThere += isInverted(source, t);
   }
-  if (here + there > 0)
+  if (folded + foldedThere > 0)
     unfit(carried, fmt::format("{} of {} tetrahedra are inverted, and {} in their source: as a map "
                                "it would fold; remesh a finer mesh",
-                               here, carried.tetrahedra.size(), there));
-  data_ = std::make_shared<Data>(carried);
-  sourceDiagonal_ = boundingBox(data_->source).diagonal();
-  targetDiagonal_ = boundingBox(data_->target).diagonal();
+                               folded, carried.tetrahedra.size(), foldedThere));
+  const CellLocator here(source, carried.tetrahedra), there(carried.vertices, carried.tetrahedra);
+  const auto way = [tets = carried.tetrahedra](const CellLocator& locator, const Points& from,
+                                               const Points& to) {
+    return [=](const Vec3& p) { return sampleOf(locator, tets, from, to, p); };
+  };
+  return SolidMap::Pointwise{way(here, source, carried.vertices),
+                             way(there, carried.vertices, source), boundingBox(source).diagonal(),
+                             boundingBox(carried.vertices).diagonal()};
 }
 
-LinearSample LinearCellMap::push(const Vec3& p) const {
-  return sampleOf(data_->there, data_->tets, data_->source, data_->target, p);
-}
-
-LinearSample LinearCellMap::pull(const Vec3& q) const {
-  return sampleOf(data_->back, data_->tets, data_->target, data_->source, q);
+SolidMap linearMapOf(const CellMesh& carried, const MappedSolid& mapped) {
+  if (apart(boundingBox(carried.vertices), boundingBox(mapped.boundary.target.moved)))
+    throw DataError(carried.name +
+                    ": does not fill the map's target; give the mesh that remesh made with "
+                    "this map");
+  return linearMapOf(carried);
 }
 
 }  // namespace innermap

@@ -6,7 +6,7 @@
 
 namespace innermap {
 
-BackwardDisplacement backwardDisplacement(const ComposedMap& map, const Solid& source,
+BackwardDisplacement backwardDisplacement(const SolidMap& map, const Solid& source,
                                           const openvdb::FloatGrid& targetLevelSet,
                                           const InverseSettings& settings) {
   using openvdb::Vec3STree;

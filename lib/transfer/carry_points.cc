@@ -96,7 +96,7 @@ SourceLattice latticeOf(const Solid& source, const CarryPointsSettings& settings
   return out;
 }
 
-void keep(const ExtendedSample& sample, std::size_t i, CarriedPoints& out) {
+void keep(const PointImage& sample, std::size_t i, CarriedPoints& out) {
   out.points[i] = sample.image;
   if (!out.jacobians.empty()) out.jacobians[i] = sample.jacobian;
 }
@@ -104,6 +104,24 @@ void keep(const ExtendedSample& sample, std::size_t i, CarriedPoints& out) {
 Points slice(const Points& points, std::size_t begin, std::size_t end) {
   return Points(points.begin() + static_cast<std::ptrdiff_t>(begin),
                 points.begin() + static_cast<std::ptrdiff_t>(end));
+}
+
+PointCarry carryPointwise(const SolidMap& map, bool push, const CarryPointsSettings& settings) {
+  const double diagonal = push ? map.pointwise()->sourceDiagonal : map.pointwise()->targetDiagonal;
+  const double most = std::max(settings.skin, settings.outside.distance) * diagonal;
+  return [=](const Points& points, bool jacobians) {
+    CarriedPoints out;
+    for (const PointImage& s : push ? map.push(points) : map.pull(points)) {
+      const bool cut = s.outside > most;
+      out.points.push_back(s.image);
+      out.fates.push_back(cut ? PointFate::cut : PointFate::carried);
+      if (jacobians) out.jacobians.push_back(s.jacobian);
+      out.outside += s.outside > kOutside * diagonal;
+      out.cut += cut;
+      if (!cut) out.farthest = std::max(out.farthest, s.outside / diagonal);
+    }
+    return out;
+  };
 }
 
 // Points that are rows of `out` from `begin` on. Inside, the derivative is not needed for the
@@ -126,7 +144,7 @@ void pushPart(const ExtendedMap& extended, const Limits& limits, const Points& p
   }
   const Points images = extended.imagesInside(inside);
   for (std::size_t n = 0; n < images.size(); ++n) out.points[insideAt[n]] = images[n];
-  const std::vector<ExtendedSample> samples = extended.at(outside, away);
+  const std::vector<PointImage> samples = extended.at(outside, away);
   for (std::size_t n = 0; n < samples.size(); ++n) keep(samples[n], outsideAt[n], out);
   for (std::size_t i = 0; i < part.size(); ++i)
     limits.judge(norm(places.beyond[i]), begin + i, out);
@@ -321,14 +339,17 @@ PointPusher FramePointPusher::to(const Points& moved) const {
   return from_.empty() ? pusher_ : pusher_.fadingTo(bestRigidMotion(from_, moved));
 }
 
-PointCarry carryByMap(const MappedSolid& mapped, bool push, const CarryPointsSettings& settings) {
+PointCarry carryByMap(const SolidMap& map, const MappedSolid& mapped, bool push,
+                      const CarryPointsSettings& settings) {
+  if (map.pointwise()) return carryPointwise(map, push, settings);
   if (push)
     return
-        [pusher = PointPusher(mapped.solid(), settings), map = mapped.map](
+        [pusher = PointPusher(mapped.solid(), settings), map = *map.harmonic()](
             const Points& points, bool jacobians) { return pusher.push(map, points, jacobians); };
-  return [puller =
-              PointPuller(mapped.map, mapped.solid(), makeTargetSolid(mapped.boundary), settings)](
-             const Points& points, bool jacobians) { return puller.pull(points, jacobians); };
+  return [puller = PointPuller(*map.harmonic(), mapped.solid(), makeTargetSolid(mapped.boundary),
+                               settings)](const Points& points, bool jacobians) {
+    return puller.pull(points, jacobians);
+  };
 }
 
 std::uint64_t carryPointsMemory(std::uint64_t points, bool jacobians) {

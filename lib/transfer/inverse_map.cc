@@ -210,8 +210,8 @@ std::size_t Inversion::invertFailures(const LeafIndex& leaves,
   }
   if (stepByStep) {
     if (batch.targets.size() > kMostStepByStep) return 0;
-    batch.sources =
-        invertStepByStep(map_.map(), batch.targets, batch.sources, {settings_.tolerance * voxel_});
+    batch.sources = invertStepByStep(map_.harmonic(), batch.targets, batch.sources,
+                                     {settings_.tolerance * voxel_});
   }
   const std::size_t inverted = solve(batch, out);
   fillFailures(leaves, out);
@@ -248,7 +248,7 @@ void Inversion::invertBlock(const LeafIndex& leaves, LeafStarts* starts,
     return invertFailures(leaves, targetLevelSet, stepByStep, out) > 0;
   };
   for (int round = 0; round < kRounds && again(false); ++round) continue;
-  if (map_.map().steps().size() > 1)
+  if (map_.harmonic().steps().size() > 1)
     for (int round = 0; round < kRounds && again(true); ++round) continue;
   count(leaves, targetLevelSet, out.statistics);
 }
@@ -271,6 +271,28 @@ InvertedMap Inversion::run(const openvdb::FloatGrid& targetLevelSet, const Latti
     begin_ += block.size();
     block.clear();
   }
+  return out;
+}
+
+InvertedMap invertPointwise(const SolidMap& map, const openvdb::FloatGrid& targetLevelSet,
+                            const InverseSettings& settings) {
+  InvertedMap out;
+  out.region = activeRegion(targetLevelSet, {settings.skin, kVoxelBytes});
+  out.first = {0};
+  Points targets;
+  for (auto leaf = out.region->tree().cbeginLeaf(); leaf; ++leaf) {
+    for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel)
+      targets.push_back(toVec3(out.region->indexToWorld(voxel.getCoord())));
+    out.first.push_back(targets.size());
+  }
+  out.jacobians.resize(targets.size());
+  for (const PointImage& s : map.pull(targets)) {
+    const Mat3 jacobian = inverse(s.jacobian);
+    for (std::size_t k = 0; k < 9; ++k)
+      out.jacobians[out.sources.size()][k] = static_cast<float>(jacobian[k / 3][k % 3]);
+    out.sources.push_back(s.image);
+  }
+  out.statistics.voxels = out.statistics.inverted = targets.size();
   return out;
 }
 
@@ -302,10 +324,11 @@ std::string InverseStatistics::warning() const {
       100 * (1 - invertedInside()), at.x, at.y, at.z);
 }
 
-InvertedMap invertMap(const ComposedMap& map, const Solid& source, const SourceLattice& lattice,
+InvertedMap invertMap(const SolidMap& map, const Solid& source, const SourceLattice& lattice,
                       const openvdb::FloatGrid& targetLevelSet, const InverseSettings& settings) {
   requireInRange(settings);
-  Inversion inversion(map, source, lattice, targetLevelSet.transform(), settings);
+  if (map.pointwise()) return invertPointwise(map, targetLevelSet, settings);
+  Inversion inversion(*map.harmonic(), source, lattice, targetLevelSet.transform(), settings);
   InvertedMap out = inversion.run(targetLevelSet, inversion.images());
   requireInverted(out.statistics);
   return out;

@@ -14,7 +14,7 @@
 namespace innermap {
 
 struct VolumePuller::Data {
-  ComposedMap map;
+  SolidMap map;
   Solid source;
   openvdb::GridPtrVec grids;
   PullSettings settings;
@@ -29,10 +29,6 @@ struct VolumePuller::Data {
   Points movedBack(const Points& positions) const;
   std::vector<BlockFigures> carry(const ExtendedMap& extended, const openvdb::MaskGrid& region,
                                   const CarryOutput& output) const;
-  void carryThrough(const openvdb::MaskGrid& region, const CarryOutput& output) const;
-  std::vector<ResamplingFigures> carryByMap(const ExtendedMap& extended,
-                                            const openvdb::MaskGrid& region,
-                                            const CarryOutput& output) const;
   PullResult conclude(const CarryFigures& all, CarryOutput& output) const;
 };
 
@@ -49,11 +45,10 @@ openvdb::MaskGrid::Ptr VolumePuller::Data::region(const ExtendedMap& extended) c
 
 // The inverse map at positions of the target, found only when a grid holds positions.
 Points VolumePuller::Data::movedBack(const Points& positions) const {
-  if (settings.through) {
-    Points images;
-    std::vector<Mat3> jacobians;
-    settings.through->pull(positions, images, jacobians);
-    return images;
+  if (map.pointwise()) {
+    Points out;
+    for (const PointImage& s : map.pull(positions)) out.push_back(s.image);
+    return out;
   }
   if (!settings.targetLevelSet)
     throw DataError(
@@ -63,57 +58,33 @@ Points VolumePuller::Data::movedBack(const Points& positions) const {
   InverseSettings inverse;
   inverse.accuracy = settings.accuracy;
   const InvertedMap inverted = invertMap(map, source, lattice, *settings.targetLevelSet, inverse);
-  return invertAt(map, source, lattice, inverted, positions, inverse);
-}
-
-void VolumePuller::Data::carryThrough(const openvdb::MaskGrid& region,
-                                      const CarryOutput& output) const {
-  forLeavesThrough(region, settings.through->push,
-                   [&](std::size_t, const openvdb::Coord& origin, const Points& images,
-                       const std::vector<Mat3>& jacobians) {
-                     std::vector<Site> sites;
-                     for (std::size_t i = 0; i < images.size(); ++i)
-                       sites.push_back({images[i], images[i], inverse(jacobians[i])});
-                     output.carry(origin, sites.data());
-                   });
-}
-
-// One for each leaf of the region.
-std::vector<ResamplingFigures> VolumePuller::Data::carryByMap(const ExtendedMap& extended,
-                                                              const openvdb::MaskGrid& region,
-                                                              const CarryOutput& output) const {
-  std::vector<ResamplingFigures> parts(region.tree().leafCount(),
-                                       voxelsOf(grids, extended.levelSet().voxelSize()[0]));
-  extended.visit(
-      region,
-      [&](std::size_t number, const LeafValues& leaf, const std::vector<ExtendedSample>& samples) {
-        std::vector<Site> sites;
-        for (std::size_t i = 0; i < samples.size(); ++i) {
-          const ExtendedSample& s = samples[i];
-          sites.push_back({s.image, s.image, inverse(s.jacobian)});
-          if (leaf.inside[i]) parts[number].add(1 / determinant(s.jacobian));
-        }
-        output.carry(leaf.origin, sites.data());
-      },
-      "pulling the grids");
-  return parts;
+  return invertAt(*map.harmonic(), source, lattice, inverted, positions, inverse);
 }
 
 // What it tells of each block, in their order.
 std::vector<BlockFigures> VolumePuller::Data::carry(const ExtendedMap& extended,
                                                     const openvdb::MaskGrid& region,
                                                     const CarryOutput& output) const {
-  std::vector<ResamplingFigures> parts;
-  if (settings.through)
-    carryThrough(region, output);
-  else
-    parts = carryByMap(extended, region, output);
+  std::vector<ResamplingFigures> parts(region.tree().leafCount(),
+                                       voxelsOf(grids, extended.levelSet().voxelSize()[0]));
+  extended.visit(
+      region,
+      [&](std::size_t number, const LeafValues& leaf, const std::vector<PointImage>& samples) {
+        std::vector<Site> sites;
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+          const PointImage& s = samples[i];
+          sites.push_back({s.image, s.image, inverse(s.jacobian)});
+          if (leaf.inside[i]) parts[number].add(1 / determinant(s.jacobian));
+        }
+        output.carry(leaf.origin, sites.data());
+      },
+      "pulling the grids");
   std::vector<BlockFigures> blocks;
   std::size_t number = 0;
   for (auto leaf = region.tree().cbeginLeaf(); leaf; ++leaf, ++number) {
     CarryFigures& figures = figuresAt(blockOf(leaf->origin()), blocks);
     figures.inverse.voxels += leaf->onVoxelCount();
-    if (!parts.empty()) figures.resampling.add(parts[number]);
+    figures.resampling.add(parts[number]);
   }
   return blocks;
 }
@@ -125,17 +96,16 @@ PullResult VolumePuller::Data::conclude(const CarryFigures& all, CarryOutput& ou
   output.finish([&](const Points& points) { return movedBack(points); }, out.grids);
   noteOutside(out.grids, settings.outside);
   out.voxels = all.inverse.voxels;
-  if (settings.through) return out;
   out.resampling = all.resampling;
   out.resampling.finish();
   return out;
 }
 
-VolumePuller::VolumePuller(const ComposedMap& map, const Solid& source,
+VolumePuller::VolumePuller(const SolidMap& map, const Solid& source,
                            const openvdb::GridPtrVec& grids, const PullSettings& settings) {
   requireNumber("accuracy", settings.accuracy, {1e-12, 1e-3}, "of the target's extent");
   auto data = std::make_shared<Data>(
-      Data{map, source, grids, settings, settings.accuracy * targetExtent(map, source), {}, {}});
+      Data{map, source, grids, settings, settings.accuracy * map.targetDiagonal(source), {}, {}});
   const openvdb::FloatGrid* target = settings.targetLevelSet;
   if (target && !(settings.outside.distance > 0))
     requireMeeting(grids, *target, "of the map's target", data->warnings);
@@ -173,9 +143,8 @@ PullResult VolumePuller::join(const LevelSetSettings& output, std::vector<GridBl
   return data_->conclude(sumOf(all, voxelsOf(data_->grids, nothing->voxelSize()[0])), carried);
 }
 
-PullResult pullGrids(const ComposedMap& map, const Solid& source,
-                     const openvdb::FloatGrid& levelSet, const openvdb::GridPtrVec& grids,
-                     const PullSettings& settings) {
+PullResult pullGrids(const SolidMap& map, const Solid& source, const openvdb::FloatGrid& levelSet,
+                     const openvdb::GridPtrVec& grids, const PullSettings& settings) {
   return VolumePuller(map, source, grids, settings).pull(levelSet);
 }
 

@@ -26,11 +26,9 @@ InverseSettings inverseSettings(const PushSettings& s) {
   return out;
 }
 
-double meanGrowth(const ComposedMap& map, const Solid& source, double accuracy) {
+double meanGrowth(const SolidMap& map, const Solid& source, double accuracy) {
   const Mesh& mesh = source.repaired().mesh;
-  EvaluateFieldSettings evaluate;
-  evaluate.accuracy = accuracy * targetExtent(map, source);
-  const Points moved = pointsOf(map.evaluate(mesh.vertices, evaluate).values);
+  const Points moved = map.images(mesh.vertices, accuracy * map.targetDiagonal(source));
   return std::cbrt(
       volumeRatio(std::abs(signedVolume(mesh)), std::abs(signedVolume(moved, mesh.triangles))));
 }
@@ -80,10 +78,6 @@ VolumePusher::VolumePusher(const Solid& source, const openvdb::GridPtrVec& grids
   for (auto& carrier : makeCarriers(grids, settings.carry, &levelSet)) {
     if (carrier->isDensity()) {
       const std::size_t place = carrier->places().front();
-      if (settings.through)
-        throw DataError("grid " + grids[place]->getName() +
-                        ": densities go by the map alone, not through a mesh; leave it out or let "
-                        "it be sampled");
       data->densities.emplace_back(place,
                                    densityVoxels(grids[place], source, levelSet, settings.outside));
     } else {
@@ -100,9 +94,9 @@ openvdb::MaskGrid::Ptr VolumePusher::Data::regionOf(const openvdb::FloatGrid& ta
   return activeRegion(target, region);
 }
 
-ExtendedMap VolumePusher::Data::extended(const ComposedMap& map) const {
+ExtendedMap VolumePusher::Data::extended(const SolidMap& map) const {
   return {map, source, *lattice.levelSet, settings.outside,
-          settings.accuracy * targetExtent(map, source)};
+          settings.accuracy * map.targetDiagonal(source)};
 }
 
 // Where the map crushes the source, the target's boundary error is many of the source's voxels,
@@ -139,23 +133,18 @@ void VolumePusher::Data::carrySampled(const InvertedMap& inverted,
       "carrying the grids");
 }
 
-void VolumePusher::Data::finish(const ComposedMap& map, CarryOutput& output,
+void VolumePusher::Data::finish(const SolidMap& map, CarryOutput& output,
                                 openvdb::GridPtrVec& out) const {
   output.finish(
       [&](const Points& points) {
         Points images;
-        if (settings.through) {
-          std::vector<Mat3> jacobians;
-          settings.through->push(points, images, jacobians);
-          return images;
-        }
-        for (const ExtendedSample& s : extended(map).at(points)) images.push_back(s.image);
+        for (const PointImage& s : extended(map).at(points)) images.push_back(s.image);
         return images;
       },
       out);
 }
 
-void VolumePusher::Data::carryDensities(const ComposedMap& map, const openvdb::MaskGrid& region,
+void VolumePusher::Data::carryDensities(const SolidMap& map, const openvdb::MaskGrid& region,
                                         PushResult& out) const {
   if (densities.empty()) return;
   const ExtendedMap extendedMap = extended(map);
@@ -190,7 +179,7 @@ PushResult VolumePusher::Data::uninverted(std::uint64_t voxels) const {
   return out;
 }
 
-PushResult VolumePusher::push(const ComposedMap& map, const openvdb::FloatGrid& targetLevelSet,
+PushResult VolumePusher::push(const SolidMap& map, const openvdb::FloatGrid& targetLevelSet,
                               const std::vector<CarriedField>& fields) const {
   const Data& d = *data_;
   PushResult out;
@@ -200,9 +189,7 @@ PushResult VolumePusher::push(const ComposedMap& map, const openvdb::FloatGrid& 
     out = d.uninverted(region->activeVoxelCount());
   } else {
     const InvertedMap inverted =
-        d.settings.through
-            ? invertThrough(*d.settings.through, d.regionOf(targetLevelSet))
-            : invertMap(map, d.source, d.lattice, targetLevelSet, inverseSettings(d.settings));
+        invertMap(map, d.source, d.lattice, targetLevelSet, inverseSettings(d.settings));
     region = inverted.region;
     CarryFigures all;
     all.inverse = inverted.statistics;

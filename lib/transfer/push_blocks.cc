@@ -111,7 +111,7 @@ DepositedDensity depositedOf(const GridBlock& block, const openvdb::math::Transf
 
 }  // namespace
 
-std::vector<VoxelBlock> pushBlocks(const ComposedMap& map, const Solid& source,
+std::vector<VoxelBlock> pushBlocks(const SolidMap& map, const Solid& source,
                                    const openvdb::GridPtrVec& grids, const PushSettings& settings,
                                    const Solid& target, const LevelSetSettings& output) {
   std::vector<VoxelBlock> out = voxelBlocks(target, output);
@@ -131,7 +131,7 @@ std::vector<VoxelBlock> pushBlocks(const ComposedMap& map, const Solid& source,
 
 struct BlockPusher::Data {
   std::shared_ptr<const VolumePusher::Data> pusher;
-  ComposedMap map;
+  SolidMap map;
   const Solid& target;
   LevelSetSettings output;
   openvdb::FloatGrid::Ptr nothing;      // of the output
@@ -144,7 +144,7 @@ struct BlockPusher::Data {
   void joinDensities(Cubes cubes, const openvdb::MaskGrid& region, PushResult& out);
 };
 
-BlockPusher::BlockPusher(const VolumePusher& pusher, const ComposedMap& map, const Solid& target,
+BlockPusher::BlockPusher(const VolumePusher& pusher, const SolidMap& map, const Solid& target,
                          const LevelSetSettings& output)
     : data_(std::make_shared<Data>(
           Data{pusher.data_, map, target, output, emptyLevelSet(target, output), {}, {}})) {
@@ -153,10 +153,11 @@ BlockPusher::BlockPusher(const VolumePusher& pusher, const ComposedMap& map, con
 
 InvertedMap BlockPusher::Data::inverted(const openvdb::FloatGrid& levelSet) {
   const VolumePusher::Data& d = *pusher;
-  if (d.settings.through) return invertThrough(*d.settings.through, d.regionOf(levelSet));
   const InverseSettings inverse = inverseSettings(d.settings);
-  if (!images) images = imagesOf(map, d.source, d.lattice, levelSet.transform(), inverse);
-  return invertBlock(map, d.source, d.lattice, *images, levelSet, inverse);
+  if (map.pointwise()) return invertMap(map, d.source, d.lattice, levelSet, inverse);
+  const ComposedMap& harmonic = *map.harmonic();
+  if (!images) images = imagesOf(harmonic, d.source, d.lattice, levelSet.transform(), inverse);
+  return invertBlock(harmonic, d.source, d.lattice, *images, levelSet, inverse);
 }
 
 CarryDensitySettings BlockPusher::Data::settingsOf(const DensityVoxels& density) {
@@ -233,7 +234,7 @@ PushResult BlockPusher::join(std::vector<GridBlock> blocks) const {
   } else {
     CarryOutput output(d.sampled, *region, nothing);
     output.take(all);
-    if (!d.settings.through) requireInverted(figures.inverse);
+    requireInverted(figures.inverse);
     out = d.result(figures);
     d.finish(data_->map, output, out.grids);
   }

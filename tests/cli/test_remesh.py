@@ -76,8 +76,10 @@ print(abs(a - b).max(), abs(c - d).max())
     innermap("voxelize", "ball.obj", "-o", "rest.vdb", "--resolution", 32, "--fog", "--quiet")
     innermap("push", "map.ply", "rest.vdb", "-o", "posed.vdb", "--through", "dented.vtu", "--quiet")
     innermap("pull", "map.ply", "posed.vdb", "-o", "again.vdb", "--through", "dented.vtu", "--quiet")
-    fails(1, "push", "map.ply", "rest.vdb", "-o", "x.vdb", "--through", "dented.vtu", "--density",
-          says=["densities"])
+    innermap("push", "map.ply", "rest.vdb", "-o", "x.vdb", "--through", "dented.vtu", "--density",
+             "--report", "mass.json", "--quiet")
+    mass = read_json("mass.json")["mass"]
+    assert abs(mass["density_after"] / mass["density_before"] - 1) < 1e-6, mass
     fails(1, "push", "map.ply", "rest.vdb", "-o", "x.vdb", "--through", "ball.vtu", says=["ball.vtu"])
 
 

@@ -80,6 +80,7 @@ def test_meets_mixed_conditions_on_a_cylinder():
 
 
 def test_weights_sum_up_to_one():
+    """Here by their values alone; what fits lack is shared out in FitHarmonic's unit test."""
     V, F, part = cylinder()
     w = innermap.weights(V, F, {"low": part == 1, "high": np.nonzero(part == 2)[0]})
     X = shapes.inside(500, 0.9) * [1, 1, 0.5] + [0, 0, 0.5]

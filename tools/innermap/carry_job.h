@@ -1,7 +1,6 @@
 // What `push` and `pull` carry, which way, and what that takes.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "innermap/transfer/inverse_map.h"
@@ -18,7 +17,7 @@ struct CarryJob {
   Solid target;
   OutsideSettings outside;
   openvdb::GridPtrVec grids;
-  std::optional<ThroughMap> through;
+  SolidMap map;
 };
 
 // What voxels grow by, unless told otherwise.

@@ -27,8 +27,10 @@ struct CarryOptions {
   ShareOptions farm;
 };
 
-LinearCellMap readThrough(const std::string& path, const MappedSolid& mapped, Context& context) {
-  const CellMesh mesh = context.timed("read", [&] { return readCells(path).mesh; });
+// What carries: the map, or a mesh that stands for it.
+SolidMap mapOf(const CarryOptions& options, const MappedSolid& mapped, Context& context) {
+  if (options.through.empty()) return mapped.map;
+  const CellMesh mesh = context.timed("read", [&] { return readCells(options.through).mesh; });
   return linearMapOf(mesh, mapped);
 }
 
@@ -38,9 +40,8 @@ CarryJob read(const CarryOptions& options, Context& context) {
       options.transfer, mapped.solid().repaired().mesh.vertices, mapped.boundary.target.moved);
   openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
   Solid target = targetSolid(mapped, context);
-  std::optional<ThroughMap> through;
-  if (!options.through.empty()) through = throughMap(readThrough(options.through, mapped, context));
-  return {std::move(mapped), std::move(target), outside, std::move(grids), std::move(through)};
+  SolidMap map = mapOf(options, mapped, context);
+  return {std::move(mapped), std::move(target), outside, std::move(grids), std::move(map)};
 }
 
 // A voxel size that nobody asked for is said where it is not the grids' own.
@@ -60,7 +61,6 @@ PushSettings pushSettings(const CarryJob& job, const TransferOptions& options) {
   settings.carry = carrySettings(options);
   settings.outside = job.outside;
   settings.accuracy = sumAccuracy(job.mapped);
-  settings.through = job.through ? &*job.through : nullptr;
   return settings;
 }
 
@@ -78,14 +78,14 @@ PushResult pushed(const CarryJob& job, const CarryOptions& options, Context& con
   const TransferOptions& o = options.transfer;
   if (context.joined()) {
     const VolumePusher pusher(job.mapped.solid(), job.grids, pushSettings(job, o));
-    const BlockPusher blocks(pusher, job.mapped.map, job.target, outputOf(Way::push, job, o));
+    const BlockPusher blocks(pusher, job.map, job.target, outputOf(Way::push, job, o));
     return blocks.join(readShares(options.output, inputsOf(options), context));
   }
   const openvdb::FloatGrid::Ptr levelSet =
       outputLevelSet(job.target, job.grids, o, context, growthOf(Way::push, job));
   return context.timed("push", [&] {
     return VolumePusher(job.mapped.solid(), job.grids, pushSettings(job, o))
-        .push(job.mapped.map, *levelSet);
+        .push(job.map, *levelSet);
   });
 }
 
@@ -113,11 +113,10 @@ Puller pullerOf(const CarryJob& job, const TransferOptions& options, Context& co
   settings.carry = carrySettings(options);
   settings.outside = job.outside;
   settings.accuracy = sumAccuracy(job.mapped);
-  settings.through = job.through ? &*job.through : nullptr;
   const openvdb::FloatGrid::Ptr target =
       outputLevelSet(job.target, job.grids, TransferOptions(), context);
   settings.targetLevelSet = target.get();
-  return {target, VolumePuller(job.mapped.map, job.mapped.solid(), job.grids, settings)};
+  return {target, VolumePuller(job.map, job.mapped.solid(), job.grids, settings)};
 }
 
 PullResult pulled(const CarryJob& job, const CarryOptions& options, Context& context) {
@@ -163,8 +162,8 @@ std::function<GridBlock(const VoxelBlock&)> blockMaker(Way way, const CarryJob& 
           pusher = std::make_shared<std::optional<BlockPusher>>()](const VoxelBlock& block) {
     if (!*pusher)
       pusher->emplace(
-          VolumePusher(job.mapped.solid(), job.grids, pushSettings(job, options.transfer)),
-          job.mapped.map, job.target, output);
+          VolumePusher(job.mapped.solid(), job.grids, pushSettings(job, options.transfer)), job.map,
+          job.target, output);
     return (*pusher)->push(block);
   };
 }
@@ -181,8 +180,8 @@ BlockWork blockWork(Way way, const CarryJob& job, const CarryOptions& options,
   work.blocks = [&, way] {
     const LevelSetSettings output = outputOf(way, job, options.transfer);
     if (way == Way::pull) return voxelBlocks(solid, output);
-    return pushBlocks(job.mapped.map, job.mapped.solid(), job.grids,
-                      pushSettings(job, options.transfer), solid, output);
+    return pushBlocks(job.map, job.mapped.solid(), job.grids, pushSettings(job, options.transfer),
+                      solid, output);
   };
   work.make = blockMaker(way, job, options, context);
   work.memory = carryBlockMemory(pushes ? job.mapped.solid() : job.target, job.grids,
@@ -215,11 +214,9 @@ void runGeometry(Way way, const CarryOptions& options, Context& context) {
   const auto file = readGeometryFile(options.volume, options.geometry, context);
   const CarryPointsSettings settings = carryPointsSettings(outside, sumAccuracy(mapped));
   const bool push = way == Way::push;
-  const PointCarry carry =
-      options.through.empty()
-          ? context.timed(push ? "level set" : "invert",
-                          [&] { return carryByMap(mapped, push, settings); })
-          : carryThrough(readThrough(options.through, mapped, context), push, settings);
+  const SolidMap map = mapOf(options, mapped, context);
+  const PointCarry carry = context.timed(push ? "level set" : "invert",
+                                         [&] { return carryByMap(map, mapped, push, settings); });
   const PointCarry whole = fromInput(carry, context);
   const double diagonal = push ? boundingBox(moved).diagonal() : mapped.solid().diagonal();
   const CarryGeometrySettings how{options.geometry.subdivide * diagonal, options.geometry.splats,
@@ -281,7 +278,7 @@ Command makeCarryCommand(Way way, const std::string& name, const std::string& su
       .required();
   c.option("--through", "CELLS", &o->through,
            "use the piecewise linear map of this mesh from remesh (.vtu or .msh) instead; the "
-           "result agrees with the mesh and folds nowhere; not for densities")
+           "result agrees with the mesh and folds nowhere")
       .reads();
   addTransferOptions(c, o->transfer);
   addGeometryOptions(c, o->geometry, true);

@@ -46,7 +46,6 @@ class TerminalProgress : public RunContext {
   JobClock job_;
   Clock::time_point last_{};
   std::string part_;
-  std::string stage_;           // last shown
   std::set<std::string> seen_;  // stages that have had their line
   bool drawn_ = false;          // a bar stands on the terminal
 };

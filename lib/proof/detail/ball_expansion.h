@@ -26,10 +26,9 @@ class OrderRule {
   // The place in kOrders, by the square of distance / radius; kNear for what does not enter.
   static constexpr std::uint8_t kNear = kOrders.size();
   std::uint8_t operator()(double square) const {
-    constexpr std::uint8_t kPlaces[] = {kNear, 0, 1, 2, 3};
     std::size_t passed = 0;
     for (const double least : least_) passed += square > least ? 1 : 0;
-    return kPlaces[passed];
+    return static_cast<std::uint8_t>(passed > 0 ? passed - 1 : kNear);
   }
 
  private:

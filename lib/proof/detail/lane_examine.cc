@@ -5,22 +5,12 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "proof/detail/lane_examine.cc"
 #include "hwy/foreach_target.h"  // compiles this file once for each instruction set
-#include "hwy/highway.h"
+#include "proof/detail/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace innermap::proof {
 namespace HWY_NAMESPACE {
 // NOLINTBEGIN(readability-identifier-naming): named like the functions of Highway.
-
-namespace hn = hwy::HWY_NAMESPACE;
-#if HWY_TARGET == HWY_SCALAR
-using D = hn::ScalableTag<double>;
-#else
-using D = hn::CappedTag<double, kLanes>;
-#endif
-using V = hn::Vec<D>;
-
-HWY_INLINE V Number(double x) { return hn::Set(D(), x); }
 
 // Symmetric: xx, xy, xz, yy, yz, zz.
 struct Symmetric {

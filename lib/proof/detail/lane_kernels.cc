@@ -6,22 +6,13 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "proof/detail/lane_kernels.cc"
 #include "hwy/foreach_target.h"  // compiles this file once for each instruction set
-#include "hwy/highway.h"
+#include "proof/detail/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace innermap::proof {
 namespace HWY_NAMESPACE {
 // NOLINTBEGIN(readability-identifier-naming): named like the functions of Highway.
 
-namespace hn = hwy::HWY_NAMESPACE;
-#if HWY_TARGET == HWY_SCALAR
-using D = hn::ScalableTag<double>;
-#else
-using D = hn::CappedTag<double, kLanes>;
-#endif
-using V = hn::Vec<D>;
-
-HWY_INLINE V Number(double x) { return hn::Set(D(), x); }
 HWY_INLINE double Total(V v) { return hn::GetLane(hn::SumOfLanes(D(), v)); }
 
 std::uint8_t Measure(const double* HWY_RESTRICT charges, const std::uint32_t* HWY_RESTRICT list,
@@ -49,10 +40,6 @@ std::uint8_t Measure(const double* HWY_RESTRICT charges, const std::uint32_t* HW
     if (least[lane] * (kNearRatio * kNearRatio) >= 1) out |= 1u << lane;
   return static_cast<std::uint8_t>(out);
 }
-
-struct Complex {
-  V re, im;
-};
 
 // A charge, seen from the places that it is expanded about. Its harmonics are
 // I_nm(q) = (n - m)! P_n^m(cos theta) e^(i m phi) / r^(n+1): 1/|x - q| is the sum of

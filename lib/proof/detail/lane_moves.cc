@@ -6,26 +6,12 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "proof/detail/lane_moves.cc"
 #include "hwy/foreach_target.h"  // compiles this file once for each instruction set
-#include "hwy/highway.h"
+#include "proof/detail/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace innermap::proof {
 namespace HWY_NAMESPACE {
 // NOLINTBEGIN(readability-identifier-naming): named like the functions of Highway.
-
-namespace hn = hwy::HWY_NAMESPACE;
-#if HWY_TARGET == HWY_SCALAR
-using D = hn::ScalableTag<double>;
-#else
-using D = hn::CappedTag<double, kLanes>;
-#endif
-using V = hn::Vec<D>;
-
-HWY_INLINE V Number(double x) { return hn::Set(D(), x); }
-
-struct Complex {
-  V re, im;
-};
 
 constexpr std::size_t kAll = (kOrder + 1) * (kOrder + 1);  // pairs (n, m), -n <= m <= n
 constexpr std::size_t allOf(int n, int m) { return static_cast<std::size_t>(n * (n + 1) + m); }

@@ -113,7 +113,7 @@ class DensityCarry {
   void addLeaf(std::size_t leaf, Part& part) const;
   void addCells(const openvdb::CoordBBox& cells, const Coord& voxel, const LinearDensity& density,
                 const Coord& origin, const CellNodes::Corners& corners, Part& part) const;
-  void addTorn(const Coord& cell, const ExtendedSample& middle, const DensityReader& densities,
+  void addTorn(const Coord& cell, const PointImage& middle, const DensityReader& densities,
                Part& part) const;
   void carryTorn(const std::vector<Coord>& torn);
   void take(std::vector<Part>& parts);
@@ -169,7 +169,7 @@ void DensityCarry::addLeaf(std::size_t leaf, Part& part) const {
 }
 
 // A torn cell goes with its middle and the map's derivative there.
-void DensityCarry::addTorn(const Coord& cell, const ExtendedSample& middle,
+void DensityCarry::addTorn(const Coord& cell, const PointImage& middle,
                            const DensityReader& densities, Part& part) const {
   const Coord voxel = nodes_.voxelOf(cell);
   CellImage image;
@@ -188,7 +188,7 @@ void DensityCarry::carryTorn(const std::vector<Coord>& torn) {
   Points middles;
   for (const Coord& cell : torn)
     middles.push_back(nodes_.worldOf(cell.asVec3d() + openvdb::Vec3d(0.5)));
-  const std::vector<ExtendedSample> samples = map_.at(middles);
+  const std::vector<PointImage> samples = map_.at(middles);
   std::vector<Part> parts((torn.size() + kBlock - 1) / kBlock);
   parallelBlocks(torn.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     const std::unique_ptr<DensityReader> densities = readerOf(*source_.grid, settings_.constant);

@@ -220,7 +220,7 @@ LatticeImages imagesOf(const ExtendedMap& map, const openvdb::MaskGrid& region,
   std::vector<std::array<std::uint64_t, 2>> turned(region.tree().leafCount());
   map.visit(
       region,
-      [&](std::size_t leaf, const LeafValues& values, const std::vector<ExtendedSample>& samples) {
+      [&](std::size_t leaf, const LeafValues& values, const std::vector<PointImage>& samples) {
         auto* images = out.images->tree().probeLeaf(values.origin);
         auto* outside = out.outside->tree().probeLeaf(values.origin);
         for (std::size_t i = 0; i < samples.size(); ++i) {

@@ -107,7 +107,7 @@ CellNodes::CellNodes(const openvdb::MaskTree& voxels, const openvdb::math::Trans
 
 std::uint64_t CellNodes::memory(std::size_t nodes) {
   // Samples of one batch: the map's values and derivatives, twice, and where they are taken.
-  constexpr std::uint64_t kSample = 2 * sizeof(ExtendedSample) + 3 * sizeof(Vec3);
+  constexpr std::uint64_t kSample = 2 * sizeof(PointImage) + 3 * sizeof(Vec3);
   return nodes * (sizeof(Vec3) + sizeof(float)) + std::min(nodes, kTogether) * kSample;
 }
 
@@ -140,7 +140,7 @@ void CellNodes::map(const ExtendedMap& map, const Lattice& target, std::string_v
       }
     const Points deep = map.imagesInside(points[0]);
     for (std::size_t n = 0; n < deep.size(); ++n) images_[places[0][n]] = shifted(target, deep[n]);
-    const std::vector<ExtendedSample> samples = map.at(points[1]);
+    const std::vector<PointImage> samples = map.at(points[1]);
     for (std::size_t n = 0; n < samples.size(); ++n) {
       images_[places[1][n]] = shifted(target, samples[n].image);
       double longest = 0;

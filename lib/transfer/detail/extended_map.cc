@@ -7,7 +7,7 @@
 namespace innermap {
 
 // w = 1 at the solid, 0 from the reach on, smooth at both ends: F = w E + (1 - w) R.
-void ExtendedMap::fade(const Vec3& p, const Vec3& beyond, ExtendedSample& sample) const {
+void ExtendedMap::fade(const Vec3& p, const Vec3& beyond, PointImage& sample) const {
   sample.outside = norm(beyond);
   if (!outside_.fadeTo || sample.outside == 0) return;
   const double reach = this->reach(), t = std::min(sample.outside / reach, 1.0);
@@ -32,8 +32,9 @@ bool ExtendedMap::isRigidAt(const Vec3& p) const {
   return squared > reach() * reach();
 }
 
-std::vector<ExtendedSample> ExtendedMap::at(const Points& points) const {
-  std::vector<ExtendedSample> out(points.size());
+std::vector<PointImage> ExtendedMap::at(const Points& points) const {
+  if (map_.pointwise()) return map_.push(points);
+  std::vector<PointImage> out(points.size());
   Points near;
   std::vector<std::size_t> index;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -44,23 +45,18 @@ std::vector<ExtendedSample> ExtendedMap::at(const Points& points) const {
       index.push_back(i);
     }
   }
-  const std::vector<ExtendedSample> found = at(near, placeExtended(solid_, levelSet_, near));
+  const std::vector<PointImage> found = at(near, placeExtended(solid_, levelSet_, near));
   for (std::size_t n = 0; n < index.size(); ++n) out[index[n]] = found[n];
   return out;
 }
 
 Points ExtendedMap::imagesInside(const Points& points) const {
-  const FieldSamples samples = map_.evaluate(points, {accuracy_, false});
-  Points out(points.size());
-  for (std::size_t i = 0; i < out.size(); ++i)
-    for (int r = 0; r < 3; ++r) out[i][r] = samples.values(i, r);
-  return out;
+  return map_.images(points, accuracy_);
 }
 
-std::vector<ExtendedSample> ExtendedMap::at(const Points& points,
-                                            const ExtendedPlaces& places) const {
-  const FieldSamples samples = sampleExtended(map_, places, {accuracy_, {}});
-  std::vector<ExtendedSample> out(points.size());
+std::vector<PointImage> ExtendedMap::at(const Points& points, const ExtendedPlaces& places) const {
+  const FieldSamples samples = sampleExtended(harmonic(), places, {accuracy_, {}});
+  std::vector<PointImage> out(points.size());
   constexpr std::size_t kBlock = 4096;
   parallelBlocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -74,11 +70,39 @@ std::vector<ExtendedSample> ExtendedMap::at(const Points& points,
   return out;
 }
 
+void ExtendedMap::visitPointwise(const openvdb::MaskGrid& region, const Visitor& visit,
+                                 std::string_view stage) const {
+  constexpr std::size_t kLeaves = 64;  // that are mapped together
+  std::vector<const openvdb::MaskTree::LeafNodeType*> leaves;
+  region.tree().getNodes(leaves);
+  parallelBlocks(
+      leaves.size(), kLeaves,
+      [&](std::size_t begin, std::size_t end) {
+        const auto distance = levelSet_.getConstAccessor();
+        for (std::size_t l = begin; l < end; ++l) {
+          Points at;
+          std::vector<std::uint8_t> inside;
+          for (auto voxel = leaves[l]->cbeginValueOn(); voxel; ++voxel) {
+            const openvdb::Vec3d p = region.indexToWorld(voxel.getCoord());
+            at.push_back({p.x(), p.y(), p.z()});
+            inside.push_back(distance.getValue(voxel.getCoord()) < 0);
+          }
+          LeafValues values;
+          values.origin = leaves[l]->origin();
+          values.count = at.size();
+          values.inside = inside.data();
+          visit(l, values, map_.push(at));
+        }
+      },
+      stage);
+}
+
 void ExtendedMap::visit(const openvdb::MaskGrid& region, const Visitor& visit,
                         std::string_view stage) const {
-  visitField(map_, solid_, levelSet_, region,
+  if (map_.pointwise()) return visitPointwise(region, visit, stage);
+  visitField(harmonic(), solid_, levelSet_, region,
              [&](std::size_t leaf, const LeafValues& values) {
-               std::vector<ExtendedSample> samples(values.count);
+               std::vector<PointImage> samples(values.count);
                for (std::size_t i = 0; i < values.count; ++i) {
                  const openvdb::Coord ijk =
                      values.origin +

@@ -35,7 +35,7 @@ class Newton {
     for (int step = 0; step <= kMostSteps && !open_.empty(); ++step) {
       Points trial(open_.size());
       for (std::size_t n = 0; n < open_.size(); ++n) trial[n] = best_[open_[n]] + steps_[open_[n]];
-      const std::vector<ExtendedSample> samples = map_.at(trial);
+      const std::vector<PointImage> samples = map_.at(trial);
       parallelBlocks(open_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) judge(open_[n], trial[n], samples[n]);
       });
@@ -49,7 +49,7 @@ class Newton {
   }
 
  private:
-  void judge(std::size_t i, const Vec3& trial, const ExtendedSample& sample) {
+  void judge(std::size_t i, const Vec3& trial, const PointImage& sample) {
     const Vec3 away = targets_[i] - sample.image;
     const double residual = norm(away);
     if (!(residual < out_.residuals[i])) {

@@ -13,8 +13,8 @@ struct NewtonSettings {
 };
 
 struct NewtonResult {
-  std::vector<ExtendedSample> at;  // of the map at the points found
-  std::vector<double> residuals;   // |f(p) - q|, world units of the target
+  std::vector<PointImage> at;     // of the map at the points found
+  std::vector<double> residuals;  // |f(p) - q|, world units of the target
 };
 
 // points: the starts; receives the best found. targets: #points.

@@ -26,18 +26,17 @@ struct VolumePusher::Data {
   openvdb::MaskGrid::Ptr regionOf(const openvdb::FloatGrid& target) const;
   PushResult result(const CarryFigures& figures) const;
   PushResult uninverted(std::uint64_t voxels) const;
-  ExtendedMap extended(const ComposedMap& map) const;
+  ExtendedMap extended(const SolidMap& map) const;
   Vec3 inSolid(const Vec3& p) const;
   void carrySampled(const InvertedMap& inverted, const CarryOutput& output) const;
-  void finish(const ComposedMap& map, CarryOutput& output, openvdb::GridPtrVec& out) const;
-  void carryDensities(const ComposedMap& map, const openvdb::MaskGrid& region,
-                      PushResult& out) const;
+  void finish(const SolidMap& map, CarryOutput& output, openvdb::GridPtrVec& out) const;
+  void carryDensities(const SolidMap& map, const openvdb::MaskGrid& region, PushResult& out) const;
 };
 
 InverseSettings inverseSettings(const PushSettings& settings);
 
 // By how much the map makes lengths grow in the mean: by the volume within the boundary's images.
-double meanGrowth(const ComposedMap& map, const Solid& source, double accuracy);
+double meanGrowth(const SolidMap& map, const Solid& source, double accuracy);
 
 // grown: meanGrowth(); to: the target's voxels. Cells are so fine that their images are about as
 // fine as those.

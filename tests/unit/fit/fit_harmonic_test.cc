@@ -253,12 +253,14 @@ TEST(FitHarmonic, ChannelsOfGroupsSumUpToOne) {
   const Points points{{0, 0, 0}, {0.9, 0.4, -0.3}, {-0.5, 0.1, 0.2}};
   // Nothing flows through the sides: linear from end to end.
   const Matrix found = fit.field.evaluate(points).values;
+  // Values that lack something: both channels take half of it.
   conditions.unitSum = true;
+  for (std::size_t i = 0; i < conditions.values.rows(); ++i) conditions.values(i, 0) -= 0.02;
   const Matrix exact = fitHarmonic(boundary, conditions).field.evaluate(points).values;
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_NEAR(found(i, 0), 0.5 * (1 + points[i].x), fit.bound + 1e-12);
     EXPECT_NEAR(exact(i, 0) + exact(i, 1), 1, 1e-12);
-    EXPECT_NEAR(exact(i, 0), found(i, 0), fit.bound + 1e-12);
+    EXPECT_NEAR(exact(i, 0), found(i, 0) - 0.01, fit.bound + 1e-12);
   }
 }
 

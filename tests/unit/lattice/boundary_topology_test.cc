@@ -16,7 +16,6 @@ Mesh turned(Mesh mesh) {
 TEST(BoundaryTopology, CountsComponentsCavitiesAndHandles) {
   const BoundaryTopology ball = of(shapes::icosphere(2));
   EXPECT_TRUE(ball.manifold());
-  EXPECT_EQ(ball.eulerCharacteristics, std::vector<int>{2});
   EXPECT_TRUE((ball.solid == SolidTopology{1, 0, 0}));
   const BoundaryTopology ring = of(shapes::torus(12, 8));
   EXPECT_TRUE((ring.solid == SolidTopology{1, 0, 1}));
@@ -43,7 +42,7 @@ TEST(BoundaryTopology, FindsWhatIsNotManifold) {
   const BoundaryTopology t = of(touching);
   EXPECT_EQ(t.nonManifoldVertices, 1u);
   EXPECT_EQ(t.nonManifoldEdges, 0u);
-  EXPECT_EQ(t.eulerCharacteristics, (std::vector<int>{2, 2}));
+  EXPECT_TRUE((t.solid == SolidTopology{2, 0, 0}));
   for (Triangle& f : touching.triangles)
     for (int& v : f) v = v == 4 ? 1 : v;
   EXPECT_GT(of(touching).nonManifoldEdges, 0u);

@@ -45,6 +45,13 @@ TEST(Fog, CellFractionAgreesWithCounting) {
   EXPECT_NEAR(cellFraction((1.5 - 0.1) * s, {s, s, s}), 1e-3 / 6, 1e-15);
 }
 
+double fogVolume(const FloatGrid& fog) {
+  double sum = 0;
+  for (auto value = fog.cbeginValueOn(); value; ++value)
+    sum += double(value.getValue()) * static_cast<double>(value.getVoxelCount());
+  return sum * std::pow(fog.voxelSize()[0], 3);
+}
+
 TEST(FogRelease, VolumeConvergesAtSecondOrder) {
   for (const Mesh& mesh : {shapes::icosphere(6), shapes::torus(400, 200)}) {
     SCOPED_TRACE(mesh.name);

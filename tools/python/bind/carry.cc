@@ -35,7 +35,7 @@ struct WayOptions : CarryOptions {
     k.flag("jacobian", &jacobian, "of points: also the derivative at each");
     k.object("through", &through, "cells",
              "go by the piecewise linear map of the cells that remesh() made with the map instead: "
-             "nowhere folded; not for densities");
+             "nowhere folded");
     k.setting(subdivideSetting(&subdivide));
     CarryOptions::describe(k);
   }
@@ -44,12 +44,12 @@ struct WayOptions : CarryOptions {
 // One call of push() or pull().
 class Job {
  public:
-  Job(bool push, const PyMap& map, const WayOptions& o) : push_(push), map_(map), o_(o) {
+  Job(bool push, const PyMap& map, const WayOptions& o)
+      : push_(push), map_(map), o_(o), way_(map.mapped->map) {
     const MappedSolid& mapped = *map.mapped;
     outside_ =
         o.outsideSettings(mapped.solid().repaired().mesh.vertices, mapped.boundary.target.moved);
-    if (!o.through.is_none())
-      through_.emplace(linearMapOf(cellsFrom(o.through, "through", o.call), mapped));
+    if (!o.through.is_none()) way_ = linearMapOf(cellsFrom(o.through, "through", o.call), mapped);
   }
 
   py::object grids(const py::object& what, const py::object& path) const;
@@ -67,12 +67,11 @@ class Job {
 
   void carryGrids(const openvdb::GridPtrVec& given, const CarrySettings& carry, Grids& out) const;
   template <class Settings>
-  Settings settings(const CarrySettings& carry, const ThroughMap* through) const {
+  Settings settings(const CarrySettings& carry) const {
     Settings out;
     out.carry = carry;
     out.outside = outside_;
     out.accuracy = sumAccuracy(*map_.mapped);
-    out.through = through;
     return out;
   }
   PointCarry carryOf() const;
@@ -84,7 +83,7 @@ class Job {
   const PyMap& map_;
   const WayOptions& o_;
   OutsideSettings outside_;
-  std::optional<LinearCellMap> through_;
+  SolidMap way_;
 };
 
 void Job::carryGrids(const openvdb::GridPtrVec& given, const CarrySettings& carry,
@@ -98,21 +97,17 @@ void Job::carryGrids(const openvdb::GridPtrVec& given, const CarrySettings& carr
   requireMemory("carrying the grids",
                 carryMemory(push_ ? target : source, given, output, outside_, carry, {push_, 0}),
                 "use a lower resolution");
-  std::optional<ThroughMap> through;
-  if (through_) through = throughMap(*through_);
-  const ThroughMap* way = through ? &*through : nullptr;
   const openvdb::FloatGrid::Ptr levelSet = makeLevelSet(push_ ? target : source, output);
   if (push_) {
-    out.pushed =
-        VolumePusher(source, given, settings<PushSettings>(carry, way)).push(mapped.map, *levelSet);
+    out.pushed = VolumePusher(source, given, settings<PushSettings>(carry)).push(way_, *levelSet);
     out.made = out.pushed.grids;
   } else {
-    auto pulling = settings<PullSettings>(carry, way);
+    auto pulling = settings<PullSettings>(carry);
     LevelSetSettings own;
     own.voxelSize = finestVoxel(given);
     const openvdb::FloatGrid::Ptr ofTarget = makeLevelSet(target, own);
     pulling.targetLevelSet = ofTarget.get();
-    out.pulled = pullGrids(mapped.map, source, *levelSet, given, pulling);
+    out.pulled = pullGrids(way_, source, *levelSet, given, pulling);
     out.made = out.pulled.grids;
   }
   describeMap(out.made, mapped);
@@ -145,7 +140,7 @@ PointCarry Job::carryOf() const {
   CarryPointsSettings settings;
   settings.outside = outside_;
   settings.accuracy = std::min(sumAccuracy(mapped), kPointAccuracy);
-  return through_ ? carryThrough(*through_, push_, settings) : carryByMap(mapped, push_, settings);
+  return carryByMap(way_, mapped, push_, settings);
 }
 
 py::object Job::points(const py::object& what) const {

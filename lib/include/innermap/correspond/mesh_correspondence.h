@@ -132,10 +132,9 @@ struct MeshCorrespondenceSettings {
   bool carryBack = true;
   LandmarkList landmarks;  // kept exactly
   bool aligned = false;
-  int candidates = 3;    // ways to lay A on B that are refined
-  bool byInside = true;  // choose by a coarse harmonic map of the inside; otherwise, and where
-                         // there is none, by the surfaces' energy
-  WantedWay way;         // which of the ways to lay A on B that differ; needs byInside
+  int candidates = 3;    // ways to lay A on B that are refined; a coarse harmonic map of the inside
+                         // chooses, or the surfaces' energy where there is none
+  WantedWay way;         // which of the ways to lay A on B that differ
   bool refine = true;    // false: fast, rough
   double subdivide = 0;  // split A until it follows B within this fraction of B's diagonal
   std::uint64_t seed = 1;

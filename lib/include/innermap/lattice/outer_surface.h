@@ -24,11 +24,12 @@ bool operator==(const SolidTopology& a, const SolidTopology& b);
 std::string describe(const SolidTopology& topology);  // "1 component, 0 cavities, 2 handles"
 
 struct BoundaryTopology {
-  std::size_t openEdges = 0;              // with one triangle
-  std::size_t nonManifoldEdges = 0;       // with more than two, or two that run the same way
-  std::size_t nonManifoldVertices = 0;    // whose triangles form more than one fan
-  std::vector<int> eulerCharacteristics;  // of each shell, cut apart where parts touch in a vertex
-  SolidTopology solid;                    // meaningless where edges are open or not manifold
+  std::size_t openEdges = 0;            // with one triangle
+  std::size_t nonManifoldEdges = 0;     // with more than two, or two that run the same way
+  std::size_t nonManifoldVertices = 0;  // whose triangles form more than one fan
+  // Of shells cut apart where parts touch in a vertex; meaningless where edges are open or not
+  // manifold.
+  SolidTopology solid;
   bool manifold() const { return openEdges + nonManifoldEdges + nonManifoldVertices == 0; }
 };
 

@@ -21,10 +21,7 @@ namespace innermap {
 // volume.
 openvdb::FloatGrid::Ptr makeFog(const openvdb::FloatGrid& levelSet);
 
-// Sum of the values times the voxel's volume, world units cubed.
-double fogVolume(const openvdb::FloatGrid& fog);
-
-// The same, as makeFog() of the level set would have it, without the memory for a grid.
+// That sum, world units cubed, without the memory for a grid.
 double insideVolume(const openvdb::FloatGrid& levelSet);
 
 // Share of the unit cell about a voxel centre on the negative side of the plane with signed

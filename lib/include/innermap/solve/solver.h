@@ -110,8 +110,6 @@ class DenseSolver {
   DenseSolution solve(const Matrix& values, Regularization method, const Matrix& heldOutValues,
                       std::optional<double> regularization = {}) const;
 
-  const Matrix& singularValues() const;  // #sources x 1, decreasing
-
  private:
   class Factors;
   std::shared_ptr<const Factors> factors_;

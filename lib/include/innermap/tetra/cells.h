@@ -161,48 +161,18 @@ struct CellMap {
 CellCarry carryCellsBack(const CellMesh& mesh, const MappedSolid& mapped, const CellMap& map,
                          const CarryCellsSettings& settings = {});
 
-// A carried mesh with the places that its vertices came from, as a map: linear on each tetrahedron,
-// locally one-to-one as none is inverted; globally where proveCells() says so of both.
+// A carried and repaired mesh (remesh_cells.h) with the places that its vertices came from, in
+// place of the map that it was carried by: linear on each tetrahedron, locally one-to-one as none
+// is inverted; globally where proveCells() says so of both. What goes through it agrees with the
+// mesh. Outside the mesh the nearest tetrahedron continues linearly.
 
-struct LinearSample {
-  Vec3 image;
-  Mat3 jacobian{};     // of the way taken
-  double outside = 0;  // distance from the mesh, in the units of the point given
-};
+// carried: what remesh writes, its vertices' field "source" the places that they came from. Throws
+// DataError for a mesh without such a field of three components, with hexahedra, without
+// tetrahedra, or with a tetrahedron that is inverted, there or here (how many).
+SolidMap linearMapOf(const CellMesh& carried);
 
-// Immutable, cheap to copy, safe from any number of threads. Outside the mesh the nearest
-// tetrahedron continues linearly.
-class LinearCellMap {
- public:
-  // carried: what remesh writes, its vertices' field "source" the places that they came from.
-  // Throws DataError for a mesh without such a field of three components, with hexahedra, without
-  // tetrahedra, or with a tetrahedron that is inverted, there or here (how many).
-  explicit LinearCellMap(const CellMesh& carried);
-
-  LinearSample push(const Vec3& p) const;  // from the source
-  LinearSample pull(const Vec3& q) const;  // to it
-
-  double sourceDiagonal() const { return sourceDiagonal_; }  // of the box of its vertices
-  double targetDiagonal() const { return targetDiagonal_; }
-
- private:
-  struct Data;
-  std::shared_ptr<const Data> data_;
-  double sourceDiagonal_ = 0, targetDiagonal_ = 0;
-};
-
-// A carried and repaired mesh (remesh_cells.h) in place of the map that it was carried by: what
-// goes through it agrees with the mesh and is nowhere folded.
-
-// Of a mesh that remeshCells() made with the map. Throws as LinearCellMap; DataError for a mesh
-// that lies elsewhere than the map's target (their boxes differ by over a tenth of the diagonal).
-LinearCellMap linearMapOf(const CellMesh& carried, const MappedSolid& mapped);
-
-// For PushSettings::through and PullSettings::through.
-ThroughMap throughMap(const LinearCellMap& map);
-
-// Points, from the source (push) or to it. Those farther from the mesh than settings.outside and
-// the skin say are cut.
-PointCarry carryThrough(const LinearCellMap& map, bool push, const CarryPointsSettings& settings);
+// Of a mesh that remeshCells() made with the map. Throws also DataError for a mesh that lies
+// elsewhere than the map's target (their boxes differ by over a tenth of the diagonal).
+SolidMap linearMapOf(const CellMesh& carried, const MappedSolid& mapped);
 
 }  // namespace innermap

@@ -19,6 +19,45 @@ namespace innermap {
 
 struct MappedSolid;
 
+// What a map does at one point.
+struct PointImage {
+  Vec3 image;
+  Mat3 jacobian{};     // of the way taken
+  double outside = 0;  // distance from the solid, in the units of the point given
+};
+
+// A map of a solid, both ways, whatever it is made of: all that carries things takes any.
+// Immutable, cheap to copy, safe from any number of threads.
+class SolidMap {
+ public:
+  // A map both ways that is given point by point, for points anywhere: a repaired mesh as a
+  // piecewise linear map, say. Both are called from any number of threads.
+  struct Pointwise {
+    std::function<PointImage(const Vec3&)> push, pull;  // from the source; to it
+    double sourceDiagonal = 0, targetDiagonal = 0;      // of what it maps, world units
+  };
+
+  // Implicit, as each is one in every respect. Harmonic ones are inverted by Newton's method.
+  SolidMap(HarmonicMap map) : harmonic_(std::make_shared<ComposedMap>(std::move(map))) {}
+  SolidMap(ComposedMap map) : harmonic_(std::make_shared<ComposedMap>(std::move(map))) {}
+  SolidMap(Pointwise map) : pointwise_(std::make_shared<Pointwise>(std::move(map))) {}
+
+  const ComposedMap* harmonic() const { return harmonic_.get(); }  // in one or more steps; or
+  const Pointwise* pointwise() const { return pointwise_.get(); }  // null
+
+  // Of what the source becomes, world units.
+  double targetDiagonal(const Solid& source) const;
+  // Of points inside. accuracy: of the sums of charges, world units of the target.
+  Points images(const Points& points, double accuracy) const;
+  // Of a map that is pointwise(), on all threads; deterministic.
+  std::vector<PointImage> push(const Points& points) const;
+  std::vector<PointImage> pull(const Points& points) const;
+
+ private:
+  std::shared_ptr<const ComposedMap> harmonic_;
+  std::shared_ptr<const Pointwise> pointwise_;
+};
+
 struct InverseSettings {
   OutsideSettings outside;
   double skin = 2;          // voxels outside the target's surface, in [0, 3]
@@ -69,9 +108,10 @@ struct SourceLattice {
 // steps, from what inverting these one after the other finds. A voxel that is not inverted has the
 // source and Jacobian of the nearest one that is. Outside the solid the map is extended as
 // transfer/carry.h says, so voxels along the boundary, which the map meets but for its boundary
-// error, have sources just outside. Same result for any number of threads. Throws SettingError,
-// DataError (nothing of the target is inverted), MemoryError, Cancelled.
-InvertedMap invertMap(const ComposedMap& map, const Solid& source, const SourceLattice& lattice,
+// error, have sources just outside. Pointwise maps say themselves where the voxels of the skin come
+// from. Same result for any number of threads. Throws SettingError, DataError (nothing of the
+// target is inverted), MemoryError, Cancelled.
+InvertedMap invertMap(const SolidMap& map, const Solid& source, const SourceLattice& lattice,
                       const openvdb::FloatGrid& targetLevelSet,
                       const InverseSettings& settings = {});
 
@@ -90,7 +130,7 @@ struct BackwardDisplacement {
 };
 
 // Throws as invertMap() does.
-BackwardDisplacement backwardDisplacement(const ComposedMap& map, const Solid& source,
+BackwardDisplacement backwardDisplacement(const SolidMap& map, const Solid& source,
                                           const openvdb::FloatGrid& targetLevelSet,
                                           const InverseSettings& settings = {});
 
@@ -196,9 +236,10 @@ class PointPuller {
   std::shared_ptr<const Data> data_;
 };
 
-// By a solid's map, from its source to its target (push) or back; keeps what it needs of it. Throws
-// as PointPusher and PointPuller.
-PointCarry carryByMap(const MappedSolid& mapped, bool push,
+// From the source of a solid's map to its target (push) or back, by that map or another between
+// them; keeps what it needs. A pointwise one cuts what is too far from the mesh that it maps.
+// Throws as PointPusher and PointPuller.
+PointCarry carryByMap(const SolidMap& map, const MappedSolid& mapped, bool push,
                       const CarryPointsSettings& settings = {});
 
 // Peak need in bytes of carrying so many points, beyond the points given: with Jacobians or
@@ -209,27 +250,5 @@ std::uint64_t carryPointsMemory(std::uint64_t points, bool jacobians);
 // was. A normal stays as it is where A is singular.
 Vec3 carriedVector(const Mat3& jacobian, const Vec3& v);
 Vec3 carriedNormal(const Mat3& jacobian, const Vec3& n);
-
-// A map both ways that is given point by point, in place of a harmonic one: a repaired mesh as a
-// piecewise linear map, say.
-
-// Each carries #points and gives the Jacobian of the way taken at each; for points anywhere, also
-// outside. Deterministic.
-struct ThroughMap {
-  std::function<void(const Points& points, Points& images, std::vector<Mat3>& jacobians)> push;
-  std::function<void(const Points& points, Points& images, std::vector<Mat3>& jacobians)> pull;
-};
-
-// Calls use(leaf's origin, places of its active voxels' centres in world units, images, Jacobians)
-// for each leaf of the region in order, some of them side by side on the way there. Throws
-// Cancelled.
-void forLeavesThrough(
-    const openvdb::MaskGrid& region,
-    const std::function<void(const Points&, Points&, std::vector<Mat3>&)>& way,
-    const std::function<void(std::size_t leaf, const openvdb::Coord& origin, const Points& images,
-                             const std::vector<Mat3>& jacobians)>& use);
-
-// The inverse at the voxels of a region of the target.
-InvertedMap invertThrough(const ThroughMap& through, const openvdb::MaskGrid::Ptr& region);
 
 }  // namespace innermap

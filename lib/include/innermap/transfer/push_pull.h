@@ -40,8 +40,6 @@ struct PushSettings {
   double skin = 2;          // active voxels outside the target's surface, in [0, 3]
   double tolerance = 1e-3;  // of f(p) = q, target voxels, in [1e-6, 0.01]
   double accuracy = 1e-7;   // of the sums of charges, as EvaluateSettings::accuracy
-  // Goes this way instead of by the map; for what is sampled, not for densities. Null: by the map.
-  const ThroughMap* through = nullptr;
 };
 
 struct PushResult {
@@ -71,7 +69,7 @@ class VolumePusher {
   // outside settings, also where the volume around the source comes to. Densities are active also
   // where mass of theirs comes to beyond that. Throws as invertMap does. Same result for any number
   // of threads.
-  PushResult push(const ComposedMap& map, const openvdb::FloatGrid& targetLevelSet,
+  PushResult push(const SolidMap& map, const openvdb::FloatGrid& targetLevelSet,
                   const std::vector<CarriedField>& fields = {}) const;
 
  private:
@@ -83,7 +81,7 @@ class VolumePusher {
 // All blocks of BlockPusher: voxelBlocks(target, output), and of each density cubes of its own
 // voxels, which go where the map takes them. Throws as voxelBlocks(), DataError for a density whose
 // transform is not linear.
-std::vector<VoxelBlock> pushBlocks(const ComposedMap& map, const Solid& source,
+std::vector<VoxelBlock> pushBlocks(const SolidMap& map, const Solid& source,
                                    const openvdb::GridPtrVec& grids, const PushSettings& settings,
                                    const Solid& target, const LevelSetSettings& output);
 
@@ -92,7 +90,7 @@ std::vector<VoxelBlock> pushBlocks(const ComposedMap& map, const Solid& source,
 class BlockPusher {
  public:
   // Throws SettingError for outside settings. target: must outlive it.
-  BlockPusher(const VolumePusher& pusher, const ComposedMap& map, const Solid& target,
+  BlockPusher(const VolumePusher& pusher, const SolidMap& map, const Solid& target,
               const LevelSetSettings& output);
 
   // One of pushBlocks(): its voxels, or the volume and mass that its voxels bring to the target's.
@@ -153,14 +151,12 @@ struct PullSettings {
   // attributes that end at the target's surface are continued by three voxels beyond, so that what
   // is sampled along the surface does not mix with the background; positions need it.
   const openvdb::FloatGrid* targetLevelSet = nullptr;
-  // Goes this way instead of by the map. Null: by the map.
-  const ThroughMap* through = nullptr;
 };
 
 struct PullResult {
   openvdb::GridPtrVec grids;     // in the order given
   std::uint64_t voxels = 0;      // active
-  ResamplingFigures resampling;  // of the voxels inside; none when pulled through a mesh
+  ResamplingFigures resampling;  // of the voxels inside
   std::vector<std::string> warnings;
 };
 
@@ -168,7 +164,7 @@ struct PullResult {
 class VolumePuller {
  public:
   // Throws as VolumePusher does.
-  VolumePuller(const ComposedMap& map, const Solid& source, const openvdb::GridPtrVec& grids,
+  VolumePuller(const SolidMap& map, const Solid& source, const openvdb::GridPtrVec& grids,
                const PullSettings& settings = {});
 
   // For each voxel p of the source, the grids' values at f(p), moved back by what they are.
@@ -196,8 +192,7 @@ std::uint64_t carryBlockMemory(const Solid& other, const openvdb::GridPtrVec& gr
                                const CarrySettings& carry, bool pushed);
 
 // One of them.
-PullResult pullGrids(const ComposedMap& map, const Solid& source,
-                     const openvdb::FloatGrid& levelSet, const openvdb::GridPtrVec& grids,
-                     const PullSettings& settings = {});
+PullResult pullGrids(const SolidMap& map, const Solid& source, const openvdb::FloatGrid& levelSet,
+                     const openvdb::GridPtrVec& grids, const PullSettings& settings = {});
 
 }  // namespace innermap
