@@ -1,6 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <exception>
+#include <functional>
+#include <optional>
 
 #include "fit/tangle.h"
 #include "innermap/core/error.h"
@@ -130,6 +134,20 @@ void makeAlike(const Mesh& mesh, const Mesh& other, LayOutSettings settings, Cle
   clean = std::move(cut);
 }
 
+// At the same time. Where both fail, it is the first one's error.
+void forBoth(const std::function<void()>& first, const std::function<void()>& second) {
+  std::array<std::exception_ptr, 2> failed;
+  parallelBlocks(2, 1, [&](std::size_t begin, std::size_t) {
+    try {
+      (begin == 0 ? first : second)();
+    } catch (...) {
+      failed[begin] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& failure : failed)
+    if (failure) std::rethrow_exception(failure);
+}
+
 struct CleanPair {
   CleanSurface a, b;
   StageSeconds secondsA, secondsB;
@@ -137,8 +155,8 @@ struct CleanPair {
 
 CleanPair cleanPair(const Mesh& a, const Mesh& b, const LayOutSettings& settings) {
   CleanPair out;
-  out.a = checked(a, settings, out.secondsA);
-  out.b = checked(b, settings, out.secondsB);
+  forBoth([&] { out.a = checked(a, settings, out.secondsA); },
+          [&] { out.b = checked(b, settings, out.secondsB); });
   makeAlike(a, b, settings, out.a, out.b, out.secondsA);
   makeAlike(b, a, settings, out.b, out.a, out.secondsB);
   return out;
@@ -245,8 +263,10 @@ LaidOutMesh layOutMesh(Mesh mesh, const LayOutSettings& settings) {
 
 std::pair<LaidOutMesh, LaidOutMesh> layOutMeshes(Mesh a, Mesh b, const LayOutSettings& settings) {
   CleanPair clean = cleanPair(a, b, settings);
-  return {laidOut(std::move(a), std::move(clean.a), std::move(clean.secondsA)),
-          laidOut(std::move(b), std::move(clean.b), std::move(clean.secondsB))};
+  std::optional<LaidOutMesh> laidA, laidB;
+  forBoth([&] { laidA = laidOut(std::move(a), std::move(clean.a), std::move(clean.secondsA)); },
+          [&] { laidB = laidOut(std::move(b), std::move(clean.b), std::move(clean.secondsB)); });
+  return {std::move(*laidA), std::move(*laidB)};
 }
 
 void requireLayable(const Mesh& a, const Mesh& b, const LayOutSettings& settings) {

@@ -106,7 +106,7 @@ Points preimagesOf(const std::vector<SurfacePoint>& onTarget, const Corresponden
             point = tree.closest(positionOf(target.mesh, point)).address;
             place = shells.placeOf(point.triangle);
           }
-          result[i] = maps[place.shell]->composed.of(place.triangle, point.barycentric).position;
+          result[i] = maps[place.shell]->composed.preimage(place.triangle, point.barycentric);
         }
       },
       kStage);

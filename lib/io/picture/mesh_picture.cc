@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/require_number.h"
 #include "innermap/core/error.h"
@@ -15,6 +16,7 @@ constexpr char kStage[] = "drawing the surfaces";
 constexpr Rgb kPaper{1, 1, 1}, kInk{0.13f, 0.14f, 0.16f};
 constexpr int kMargin = 24, kTitle = 44, kFooter = 40, kSubsamples = 3;
 constexpr int kTogether = 1 << 19;  // subsamples that are coloured together
+constexpr std::size_t kRows = 16;   // of them that a thread looks at together
 constexpr double kWidest = 1.6;     // a view, in its heights
 
 // Right, up and towards the viewer.
@@ -155,52 +157,79 @@ double light(Vec3 normal, const View& view) {
          0.14 * std::max(0.0, dot(n, fill));
 }
 
+// Where the points of each row begin among those of all rows, and how many there are.
+std::vector<std::size_t> pointsBefore(const Seen& seen, int firstRow, int endRow) {
+  const auto width = static_cast<std::size_t>(seen.width);
+  std::vector<std::size_t> out(static_cast<std::size_t>(endRow - firstRow) + 1, 0);
+  parallelBlocks(out.size() - 1, kRows, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) {
+      const int* row = &seen.triangle[(static_cast<std::size_t>(firstRow) + r) * width];
+      out[r + 1] = width - static_cast<std::size_t>(std::count(row, row + width, -1));
+    }
+  });
+  std::partial_sum(out.begin(), out.end(), out.begin());
+  return out;
+}
+
+// The rows of a view, whole pixels of which lie in them.
+void drawRows(const PictureSurface& surface, const View& view, const Normals& normals,
+              const Seen& seen, int firstRow, int endRow, int x0, int y0, Picture& picture) {
+  const std::vector<std::size_t> before = pointsBefore(seen, firstRow, endRow);
+  const auto visit = [&](std::size_t row, const auto& body) {
+    const std::size_t first =
+        (static_cast<std::size_t>(firstRow) + row) * static_cast<std::size_t>(seen.width);
+    std::size_t point = before[row];
+    for (std::size_t x = 0; x < static_cast<std::size_t>(seen.width); ++x)
+      if (seen.triangle[first + x] >= 0) body(first + x, x, point++);
+  };
+  std::vector<VisiblePoint> points(before.back());
+  parallelBlocks(before.size() - 1, kRows, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row)
+      visit(row, [&](std::size_t i, std::size_t, std::size_t point) {
+        const double u = static_cast<double>(seen.u[i]), v = static_cast<double>(seen.v[i]);
+        points[point] = {seen.triangle[i], {std::max(0.0, 1 - u - v), u, v}};
+      });
+  });
+  const std::vector<Vec3> colours = surface.colours(points);
+  if (colours.size() != points.size())
+    throw DataError(surface.label + ": not as many colours as points");
+  const auto width = static_cast<std::size_t>(seen.width / kSubsamples);
+  const std::size_t pixelRows = (before.size() - 1) / kSubsamples;
+  const int firstPixelRow = firstRow / kSubsamples;
+  parallelBlocks(pixelRows, 4, [&](std::size_t begin, std::size_t end) {
+    std::vector<Vec3> sum(width);
+    std::vector<int> covered(width);
+    for (std::size_t y = begin; y < end; ++y) {
+      std::fill(sum.begin(), sum.end(), Vec3{});
+      std::fill(covered.begin(), covered.end(), 0);
+      for (std::size_t row = y * kSubsamples; row < (y + 1) * kSubsamples; ++row)
+        visit(row, [&](std::size_t, std::size_t x, std::size_t point) {
+          const auto& b = points[point].barycentric;
+          const Vec3 normal = normals.at(points[point].triangle, b[1], b[2]);
+          sum[x / kSubsamples] += light(normal, view) * colours[point];
+          ++covered[x / kSubsamples];
+        });
+      for (std::size_t x = 0; x < width; ++x) {
+        if (covered[x] == 0) continue;
+        Rgb colour;
+        for (int c = 0; c < 3; ++c)
+          colour[static_cast<std::size_t>(c)] = static_cast<float>(encoded(sum[x][c] / covered[x]));
+        picture.blend(x0 + static_cast<int>(x), y0 + firstPixelRow + static_cast<int>(y), colour,
+                      static_cast<float>(covered[x]) / (kSubsamples * kSubsamples));
+      }
+    }
+  });
+}
+
 void drawView(const PictureSurface& surface, const View& view, int x0, int y0, int width,
               int height, Picture& picture) {
   const Seen seen = rasterise(surface, view, width * kSubsamples, height * kSubsamples);
   const Normals normals(surface);
-  std::vector<Vec3> sum(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  std::vector<int> covered(sum.size(), 0);
   // Points and colours take much more than what is seen, so not of all rows at once.
-  const int rows = std::max(1, kTogether / seen.width);
-  std::vector<VisiblePoint> points;
-  std::vector<std::size_t> pixels;
-  for (int first = 0; first < seen.height; first += rows) {
-    points.clear();
-    pixels.clear();
-    for (int y = first; y < std::min(first + rows, seen.height); ++y)
-      for (int x = 0; x < seen.width; ++x) {
-        const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(seen.width) +
-                              static_cast<std::size_t>(x);
-        if (seen.triangle[i] < 0) continue;
-        const double u = static_cast<double>(seen.u[i]), v = static_cast<double>(seen.v[i]);
-        points.push_back({seen.triangle[i], {std::max(0.0, 1 - u - v), u, v}});
-        pixels.push_back(static_cast<std::size_t>(y / kSubsamples) *
-                             static_cast<std::size_t>(width) +
-                         static_cast<std::size_t>(x / kSubsamples));
-      }
-    std::vector<Vec3> colours = surface.colours(points);
-    if (colours.size() != points.size())
-      throw DataError(surface.label + ": not as many colours as points");
-    parallelBlocks(points.size(), 4096, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const auto& b = points[i].barycentric;
-        colours[i] = light(normals.at(points[i].triangle, b[1], b[2]), view) * colours[i];
-      }
-    });
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      sum[pixels[i]] += colours[i];
-      ++covered[pixels[i]];
-    }
-  }
-  for (std::size_t p = 0; p < sum.size(); ++p) {
-    if (covered[p] == 0) continue;
-    Rgb colour;
-    for (int c = 0; c < 3; ++c)
-      colour[static_cast<std::size_t>(c)] = static_cast<float>(encoded(sum[p][c] / covered[p]));
-    picture.blend(x0 + static_cast<int>(p) % width, y0 + static_cast<int>(p) / width, colour,
-                  static_cast<float>(covered[p]) / (kSubsamples * kSubsamples));
-  }
+  const int rows = kSubsamples * std::max(1, kTogether / (kSubsamples * seen.width));
+  for (int first = 0; first < seen.height; first += rows)
+    drawRows(surface, view, normals, seen, first, std::min(first + rows, seen.height), x0, y0,
+             picture);
 }
 
 // Width over height of what the view shows, kept to what fits beside others.

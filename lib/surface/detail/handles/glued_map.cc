@@ -219,6 +219,7 @@ class GluedMapper {
     relax.stage = "refining the map";
     relax.sweeps = std::min(sweeps, 4);
     relax.lastSweeps = std::min(sweeps, 8);
+    relax.parallel = true;
     CoarseToFine fine(mesh, seam_.layout, energy, placed_, relax);
     fine.relaxAll(sweeps);
     if (fine.refine(seam_.cut.surface.vertices.size()) >= 0) fail();
@@ -280,6 +281,7 @@ class GluedMapper {
     PullbackEnergy energy(seam_.cut.surface, mesh, seam_.layout, target_, kSamples);
     RelaxSettings relax;
     relax.lastSweeps = 2;
+    relax.parallel = true;
     if (CoarseToFine(mesh, seam_.layout, energy, placed_, relax).refine(vertices) >= 0) fail();
   }
 
@@ -343,19 +345,20 @@ class GluedMapper {
   }
 
   // Each anchor towards its place as far as its triangles bear; the sum of what is left.
-  static double advance(Layout& layout, const std::vector<Anchor>& anchors, PullbackEnergy& energy,
-                        double bound) {
+  static double advance(Layout& layout, const std::vector<Anchor>& anchors,
+                        const PullbackEnergy& energy, double bound) {
+    const std::unique_ptr<Star> star = energy.star();
     double left = 0;
     for (const Anchor& a : anchors) {
       Vec3& place = layout.place[a.vertex];
       if (!(norm(place - a.target) > 0)) continue;
       const Vec3 way = wayTo(layout, place, a.target);
-      energy.gather(a.vertex);
-      const double most = std::max(bound, energy.at(place));
+      star->gather(a.vertex);
+      const double most = std::max(bound, star->at(place));
       double share = 1;
       for (int halving = 0; halving < 8; ++halving, share *= 0.5) {
         const Vec3 to = halving == 0 ? a.target : moveAlong(ModelSpace::sphere, place, share * way);
-        if (!(energy.at(to) < most)) continue;
+        if (!(star->at(to) < most)) continue;
         place = to;
         break;
       }

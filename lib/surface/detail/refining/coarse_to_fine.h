@@ -4,7 +4,9 @@
 // 2003), for any energy that is a sum over triangles.
 #pragma once
 
-#include <functional>
+#include <tbb/enumerable_thread_specific.h>
+
+#include <memory>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -16,16 +18,9 @@
 namespace innermap {
 
 // The energy of the triangles around one vertex as a function of its place.
-class StarEnergy {
+class Star {
  public:
-  virtual ~StarEnergy() = default;
-  virtual void changed(int triangle) = 0;  // its corners are others now
-  virtual void grown(std::size_t vertices) {
-    (void)vertices;
-  }  // before all triangles are `changed`
-  // Before each sweep over the vertices; whether the energy changed all over, so that all are
-  // visited.
-  virtual bool sweeps() { return false; }
+  virtual ~Star() = default;
   virtual void gather(int vertex) = 0;
   // Whether some triangle of the gathered star is so thin that steps get nowhere.
   virtual bool squeezed() const { return false; }
@@ -41,15 +36,33 @@ class StarEnergy {
   virtual Vec3 step(const Vec3& place, double now) const = 0;
 };
 
+// An energy that is a sum over triangles.
+class StarEnergy {
+ public:
+  virtual ~StarEnergy() = default;
+  virtual void changed(int triangle) = 0;  // its corners are others now
+  virtual void grown(std::size_t vertices) {
+    (void)vertices;
+  }  // before all triangles are `changed`
+  // Before each sweep over the vertices; whether the energy changed all over, so that all are
+  // visited.
+  virtual bool sweeps() { return false; }
+  // Stars of one energy may be used on several threads while it does not change.
+  virtual std::unique_ptr<Star> star() const = 0;
+};
+
 struct RelaxSettings {
   double growth = 1.5;   // all vertices are relaxed when there are so many times more
   int sweeps = 4;        // most, over all vertices at each growth
   int lastSweeps = 12;   // when the mesh is complete
   int steps = 2;         // most, at each vertex of a sweep
   double enough = 5e-3;  // share of its energy that a star must win for its neighbours to go on
+  // Vertices that do not touch at the same time, where a star is worth handing to another thread.
+  bool parallel = false;
   std::string_view stage = "relaxing";
 };
 
+// The result is that of one vertex after the other, whatever the number of threads.
 class CoarseToFine {
  public:
   // `fixed`: #V or empty, vertices that are never moved. All references must outlive it.
@@ -59,7 +72,10 @@ class CoarseToFine {
         layout_(layout),
         energy_(energy),
         fixed_(std::move(fixed)),
-        settings_(settings) {}
+        settings_(settings),
+        relaxers_([&energy] {
+          return Relaxer{energy.star(), {}, {}};
+        }) {}
 
   // At most `sweeps` over all vertices that are present.
   void relaxAll(int sweeps);
@@ -69,16 +85,33 @@ class CoarseToFine {
   int refine(std::size_t vertices);
 
  private:
-  double relax(int v, int steps);
-  bool insert(int v, int into);
+  // What a thread needs to move a vertex.
+  struct Relaxer {
+    std::unique_ptr<Star> star;
+    Ring ring;
+    RingPlaces places;
+  };
+  struct Returned {
+    int vertex, into;
+  };
+
+  double relax(Relaxer& relaxer, int v, int steps);
+  bool insert(Relaxer& relaxer, const Returned& returned);
+  std::vector<Returned> splitApart(std::size_t vertices);
+  int insertAll(const std::vector<Returned>& returned);
+  void findLevels(const std::vector<char>& active);
+  void relaxLevel(const std::vector<int>& level, std::vector<char>& moved);
 
   ProgressiveMesh& mesh_;
   Layout& layout_;
   StarEnergy& energy_;
   std::vector<char> fixed_;
   RelaxSettings settings_;
-  Ring ring_, starRing_;
-  RingPlaces places_, starPlaces_;
+  tbb::enumerable_thread_specific<Relaxer> relaxers_;
+  std::vector<std::vector<int>> levels_;
+  std::vector<int> levelOf_, star_;
+  std::vector<std::size_t> touched_;  // by vertex: the last round of splits around it
+  std::size_t round_ = 0;
 };
 
 }  // namespace innermap

@@ -66,6 +66,12 @@ LayoutMap::Image LayoutMap::at(int triangle, const std::array<double, 3>& baryce
   return image;
 }
 
+Vec3 LayoutMap::preimage(int triangle, const std::array<double, 3>& barycentric) const {
+  const Vec3 ray = b_.ray(triangle, barycentric);
+  const Located where = find(a_, ray);
+  return mean(cornersOf(a_.surface, where.triangle).data(), a_.locator.barycentric(ray, where));
+}
+
 LayoutMap::Preimage LayoutMap::of(int triangle, const std::array<double, 3>& barycentric) const {
   Vec3 ray = b_.ray(triangle, barycentric);
   const Located where = find(a_, ray);

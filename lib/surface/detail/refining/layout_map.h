@@ -76,6 +76,8 @@ class LayoutMap {
   };
   // Of a point of B.
   Preimage of(int triangle, const std::array<double, 3>& barycentric) const;
+  // Its position alone.
+  Vec3 preimage(int triangle, const std::array<double, 3>& barycentric) const;
 
  private:
   // ray: a mean of the corners of A's triangle (weights of sum 1), in the frame of B's.

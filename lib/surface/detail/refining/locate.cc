@@ -17,7 +17,8 @@ Vec3 latticeCoordinates(const Vec3& p, const std::array<Vec3, 2>& period) {
 Locator::Locator(const std::vector<Triangle>& triangles, const Layout& layout)
     : periodic_(layout.space == ModelSpace::torus),
       period_(layout.period),
-      cones_(triangles.size()) {
+      cones_(triangles.size()),
+      longestWalk_(200 + 8 * static_cast<int>(std::sqrt(static_cast<double>(triangles.size())))) {
   const Neighbours neighbours = neighboursOf(triangles);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     Cone& cone = cones_[t];
@@ -97,17 +98,17 @@ Located Locator::hintFor(const Vec3& p) const {
   return hint;
 }
 
-Located Locator::find(const Vec3& p, const Located& hint, Weights& w) const {
+// w: p's in the hint.
+Located Locator::walk(const Vec3& p, const Located& hint, Weights& w) const {
   Located at = hint;
   // Where a step is to begin looking for a way out: not the same side always, or walks may circle.
   unsigned turn = 0;
-  const int most = 200 + 8 * static_cast<int>(std::sqrt(static_cast<double>(cones_.size())));
-  for (int i = 0; i < most; ++i) {
-    w = cones_[at.triangle].weights(local(p, at));
-    const double rounding = -1e-14 * (std::abs(w[0]) + std::abs(w[1]) + std::abs(w[2]));
+  for (int i = 0; i < longestWalk_; ++i) {
     // Most walks are a step or two long: out by the side that is farthest away at first.
     int leave = w[0] < w[1] ? 0 : 1;
     if (w[2] < w[leave]) leave = 2;
+    if (w[leave] >= 0) return at;
+    const double rounding = -1e-14 * (std::abs(w[0]) + std::abs(w[1]) + std::abs(w[2]));
     if (w[leave] >= rounding) return at;
     if (i >= 16) {
       turn = turn * 1664525u + 1013904223u;
@@ -118,6 +119,7 @@ Located Locator::find(const Vec3& p, const Located& hint, Weights& w) const {
     }
     if (periodic_) at.shift = at.shift + crossing_[at.triangle][leave];
     at.triangle = cones_[at.triangle].next[leave];
+    w = cones_[at.triangle].weights(local(p, at));
   }
   at = search(p, hint);
   w = cones_[at.triangle].weights(local(p, at));

@@ -1,6 +1,7 @@
 // Which triangle of a layout a ray passes through.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "innermap/core/vec3.h"
@@ -36,7 +37,11 @@ class Locator {
   Locator(const std::vector<Triangle>& triangles, const Layout& layout);
 
   // p: a ray near unit length, or a point of the plane z = 1. weights: its own in what is found.
-  Located find(const Vec3& p, const Located& hint, Weights& weights) const;
+  Located find(const Vec3& p, const Located& hint, Weights& weights) const {
+    weights = cones_[hint.triangle].weights(local(p, hint));
+    const double least = std::min(std::min(weights[0], weights[1]), weights[2]);
+    return least >= 0 ? hint : walk(p, hint, weights);
+  }
   Located find(const Vec3& p, const Located& hint) const {
     Weights weights;
     return find(p, hint, weights);
@@ -59,6 +64,7 @@ class Locator {
     return static_cast<double>(s.a) * period_[0] + static_cast<double>(s.b) * period_[1];
   }
   Located hintFor(const Vec3& p) const;
+  Located walk(const Vec3& p, const Located& hint, Weights& weights) const;
   Located search(const Vec3& p, const Located& hint) const;
   Vec3 cellCenter(std::size_t cell) const;
   std::size_t cellOf(const Vec3& p, Shift* shift) const;
@@ -66,6 +72,7 @@ class Locator {
   bool periodic_ = false;
   std::array<Vec3, 2> period_{};
   std::vector<Cone> cones_;
+  int longestWalk_ = 0;                         // steps, before all triangles are tried
   std::vector<std::array<Shift, 3>> crossing_;  // torus: of the frame, across each edge
   int cells_ = 1;                               // along each side of the table
   std::vector<Located> hints_;

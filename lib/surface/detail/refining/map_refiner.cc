@@ -15,6 +15,7 @@ RelaxSettings relaxation(const RefineSettings& settings) {
   relax.lastSweeps = settings.relax ? 10 : 0;
   relax.steps = 1;
   relax.enough = 2e-3;
+  relax.parallel = true;
   relax.stage = "refining the map";
   return relax;
 }

@@ -108,6 +108,16 @@ void ProgressiveMesh::collapse(int v, const RingVertex& w) {
   splits_.push_back(record);
 }
 
+void ProgressiveMesh::nextStar(std::vector<int>& vertices) const {
+  const Split& record = splits_.back();
+  vertices = {record.vertex};
+  const auto add = [&](int t) {
+    vertices.insert(vertices.end(), triangles_[t].begin(), triangles_[t].end());
+  };
+  std::for_each(moved_.begin() + static_cast<std::ptrdiff_t>(record.moved), moved_.end(), add);
+  for (const int t : record.dead) add(t);
+}
+
 int ProgressiveMesh::split() {
   const Split record = splits_.back();
   splits_.pop_back();

@@ -47,6 +47,8 @@ class ProgressiveMesh {
 
   std::size_t collapses() const { return splits_.size(); }
   int lastInto() const { return splits_.back().into; }
+  // What split() returns next, and all its neighbours then.
+  void nextStar(std::vector<int>& vertices) const;
   // Undoes the last collapse; the vertex that returns.
   int split();
 

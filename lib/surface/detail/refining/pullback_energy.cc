@@ -15,6 +15,28 @@ constexpr double kRounding = 1e-12;
 
 }  // namespace
 
+class PullbackEnergy::PullbackStar : public Star {
+ public:
+  explicit PullbackStar(const PullbackEnergy& energy) : energy_(energy) {}
+
+  void gather(int vertex) override;
+  bool squeezed() const override { return squeezed_; }
+  double at(const Vec3& place) const override { return below(kInfinite, place); }
+  double below(double most, const Vec3& place) const override;
+  Vec3 step(const Vec3& place, double now) const override;
+
+ private:
+  const PullbackEnergy& energy_;
+  std::vector<StarTriangle> triangles_;
+  // Where each sample of the triangles was found last, or triangle -1: the places that are tried
+  // for a vertex are next to one another, the samples of one place are not.
+  mutable std::vector<Located> found_;
+  bool squeezed_ = false;
+  double reach_ = 0;  // mean distance of the gathered ring
+};
+
+std::unique_ptr<Star> PullbackEnergy::star() const { return std::make_unique<PullbackStar>(*this); }
+
 std::vector<Vec2> triangleSamples(int m) {
   std::vector<Vec2> out;
   const double part = 1.0 / m;
@@ -69,23 +91,24 @@ PullbackEnergy::StarTriangle PullbackEnergy::starTriangle(int t, int k) const {
   return out;
 }
 
-void PullbackEnergy::gather(int v) {
-  star_.clear();
+void PullbackEnergy::PullbackStar::gather(int v) {
+  triangles_.clear();
   reach_ = 0;
-  for (const int t : mesh_.around(v)) {
-    const Triangle& tri = mesh_.triangle(t);
-    star_.push_back(starTriangle(t, tri[0] == v ? 0 : tri[1] == v ? 1 : 2));
-    reach_ += norm(star_.back().b - star_.back().a);
+  for (const int t : energy_.mesh_.around(v)) {
+    const Triangle& tri = energy_.mesh_.triangle(t);
+    triangles_.push_back(energy_.starTriangle(t, tri[0] == v ? 0 : tri[1] == v ? 1 : 2));
+    reach_ += norm(triangles_.back().b - triangles_.back().a);
   }
-  reach_ /= static_cast<double>(star_.size());
-  found_.assign(star_.size() * samples_.size(), Located{});
+  const auto count = static_cast<double>(triangles_.size());
+  reach_ /= count;
+  found_.assign(triangles_.size() * energy_.samples_.size(), Located{});
   double least = kInfinite, sum = 0;
-  for (const StarTriangle& t : star_) {
-    const double det = tripleProduct(image_.place[v], t.a, t.b);
+  for (const StarTriangle& t : triangles_) {
+    const double det = tripleProduct(energy_.image_.place[v], t.a, t.b);
     least = std::min(least, det);
     sum += det;
   }
-  squeezed_ = least < kThin * sum / static_cast<double>(star_.size());
+  squeezed_ = least < kThin * sum / count;
 }
 
 double PullbackEnergy::of(const StarTriangle& t, const Vec3& place, Located& where, Located* found,
@@ -113,20 +136,18 @@ double PullbackEnergy::of(const StarTriangle& t, const Vec3& place, Located& whe
   return sum * t.area / static_cast<double>(samples_.size());
 }
 
-double PullbackEnergy::at(const Vec3& place) const { return below(kInfinite, place); }
-
-double PullbackEnergy::below(double most, const Vec3& place) const {
+double PullbackEnergy::PullbackStar::below(double most, const Vec3& place) const {
   most *= 1 + kRounding;
-  for (const StarTriangle& t : star_)
+  for (const StarTriangle& t : triangles_)
     if (!(tripleProduct(place, t.a, t.b) > 0)) return kInfinite;
   double sum = 0;
   Located where;
   if (!found_.empty()) where = found_.front();  // before grown() there are no samples
-  if (where.triangle < 0) where = target_.locator().find(place);
+  if (where.triangle < 0) where = energy_.target_.locator().find(place);
   Located* found = found_.data();
-  for (const StarTriangle& t : star_) {
-    sum += of(t, place, where, found, most - sum);
-    found += samples_.size();
+  for (const StarTriangle& t : triangles_) {
+    sum += energy_.of(t, place, where, found, most - sum);
+    found += energy_.samples_.size();
     if (sum > most) break;
   }
   return sum;
@@ -134,17 +155,18 @@ double PullbackEnergy::below(double most, const Vec3& place) const {
 
 // From six points around the place: differences over a length see through the jumps that the
 // target's metric makes from triangle to triangle.
-Vec3 PullbackEnergy::step(const Vec3& place, double now) const {
+Vec3 PullbackEnergy::PullbackStar::step(const Vec3& place, double now) const {
   static const double kCos[6] = {1, 0.5, -0.5, -1, -0.5, 0.5};
   static const double kSin[6] = {0, 0.8660254037844386,  0.8660254037844386,
                                  0, -0.8660254037844386, -0.8660254037844386};
-  const Tangent tangent = tangentAt(image_.space, place);
+  const ModelSpace space = energy_.image_.space;
+  const Tangent tangent = tangentAt(space, place);
   double r = 0.15 * reach_;
   for (int attempt = 0; attempt < 5; ++attempt, r *= 0.3) {
     double mean = 0, gu = 0, gv = 0, c2 = 0, s2 = 0;
     for (int k = 0; k < 6 && mean < kInfinite; ++k) {
       const double e =
-          at(moveAlong(image_.space, place, (r * kCos[k]) * tangent.u + (r * kSin[k]) * tangent.v));
+          at(moveAlong(space, place, (r * kCos[k]) * tangent.u + (r * kSin[k]) * tangent.v));
       mean += e / 6;
       gu += e * kCos[k];
       gv += e * kSin[k];

@@ -24,17 +24,14 @@ class PullbackEnergy : public StarEnergy {
 
   void grown(std::size_t vertices) override;
   void changed(int triangle) override;
-  void gather(int vertex) override;
-  bool squeezed() const override { return squeezed_; }
-  double at(const Vec3& place) const override;
-  double below(double most, const Vec3& place) const override;
-  Vec3 step(const Vec3& place, double now) const override;
+  std::unique_ptr<Star> star() const override;
 
   // Of one triangle; of all that stand.
   double ofTriangle(int t) const;
   double total() const;
 
  private:
+  class PullbackStar;
   struct StarTriangle {
     Vec3 a, b;
     double cotFree, cotA, cotB, area;
@@ -53,12 +50,6 @@ class PullbackEnergy : public StarEnergy {
   double slack_ = 0;
   std::vector<Vec2> samples_;  // weights of the second and third corner, next to one another
   std::vector<RestTriangle> rest_;
-  std::vector<StarTriangle> star_;
-  // Where each sample of star_ was found last, or triangle -1: the places that are tried for a
-  // vertex are next to one another, the samples of one place are not.
-  mutable std::vector<Located> found_;
-  bool squeezed_ = false;
-  double reach_ = 0;  // mean distance of the gathered ring
 };
 
 // Centroids of a triangle's m^2 congruent parts, back and forth.

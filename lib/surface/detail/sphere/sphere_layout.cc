@@ -37,14 +37,31 @@ class SphereEnergy : public StarEnergy {
     rest_[t] = RestTriangle::of(points_[tri[0]], points_[tri[1]], points_[tri[2]], slack_);
   }
 
+  std::unique_ptr<Star> star() const override;
+
+ private:
+  class SphereStar;
+
+  const ProgressiveMesh& mesh_;
+  const Layout& layout_;
+  Points points_;
+  double slack_ = 0;
+  std::vector<RestTriangle> rest_;
+};
+
+class SphereEnergy::SphereStar : public Star {
+ public:
+  explicit SphereStar(const SphereEnergy& energy) : energy_(energy) {}
+
   void gather(int v) override {
     star_.clear();
-    for (const int t : mesh_.around(v)) {
-      const Triangle& tri = mesh_.triangle(t);
+    const Points& place = energy_.layout_.place;
+    for (const int t : energy_.mesh_.around(v)) {
+      const Triangle& tri = energy_.mesh_.triangle(t);
       const int k = tri[0] == v ? 0 : tri[1] == v ? 1 : 2, i = (k + 1) % 3, j = (k + 2) % 3;
-      const RestTriangle& r = rest_[t];
-      star_.push_back({layout_.place[tri[i]], layout_.place[tri[j]], r.halfCot[k], r.halfCot[i],
-                       r.halfCot[j], 4 * r.area * r.area});
+      const RestTriangle& r = energy_.rest_[t];
+      star_.push_back({place[tri[i]], place[tri[j]], r.halfCot[k], r.halfCot[i], r.halfCot[j],
+                       4 * r.area * r.area});
     }
   }
 
@@ -77,13 +94,11 @@ class SphereEnergy : public StarEnergy {
   }
 
  private:
-  const ProgressiveMesh& mesh_;
-  const Layout& layout_;
-  Points points_;
-  double slack_ = 0;
-  std::vector<RestTriangle> rest_;
+  const SphereEnergy& energy_;
   std::vector<StarTriangle> star_;
 };
+
+std::unique_ptr<Star> SphereEnergy::star() const { return std::make_unique<SphereStar>(*this); }
 
 void placeTetrahedron(const ProgressiveMesh& mesh, Layout& layout) {
   int alive = 0;

@@ -76,44 +76,11 @@ class TorusEnergy : public StarEnergy {
     return true;
   }
 
-  void gather(int v) override {
-    star_.clear();
-    for (const int t : mesh_.around(v)) {
-      const Triangle& tri = mesh_.triangle(t);
-      const int k = tri[0] == v ? 0 : tri[1] == v ? 1 : 2, i = (k + 1) % 3, j = (k + 2) % 3;
-      const RestTriangle& r = rest_[t];
-      const Shift own = mesh_.shift(t, k);
-      star_.push_back({layout_.moved(layout_.place[tri[i]], mesh_.shift(t, i) - own),
-                       layout_.moved(layout_.place[tri[j]], mesh_.shift(t, j) - own), r.halfCot[k],
-                       r.halfCot[i], r.halfCot[j], 4 * r.area * r.area});
-    }
-  }
-
-  double at(const Vec3& q) const override { return stretchEnergy(star_, q); }
-
-  Vec3 step(const Vec3& q, double) const override {
-    double gx = 0, gy = 0, hxx = 0, hxy = 0, hyy = 0;
-    for (const StarTriangle& t : star_) {
-      const double nx = t.a.y - t.b.y, ny = t.b.x - t.a.x;  // the gradient of det
-      const double det = tripleProduct(q, t.a, t.b), k = t.fourAreaSquared / (det * det);
-      const double dirichlet = t.dirichlet(q);
-      const Vec3 d = 2 * t.cotA * (q - t.b) + 2 * t.cotB * (q - t.a);
-      const double slope = -2 * dirichlet * k / det;
-      gx += (1 + k) * d.x + slope * nx;
-      gy += (1 + k) * d.y + slope * ny;
-      const double laplacian = 2 * (t.cotA + t.cotB) * (1 + k), mixed = -2 * k / det,
-                   barrier = 6 * dirichlet * k / (det * det);
-      hxx += laplacian + 2 * mixed * d.x * nx + barrier * nx * nx;
-      hyy += laplacian + 2 * mixed * d.y * ny + barrier * ny * ny;
-      hxy += mixed * (d.x * ny + d.y * nx) + barrier * nx * ny;
-    }
-    const Vec2 s = newtonStep(gx, gy, hxx, hxy, hyy);
-    const Vec3 step{s.x, s.y, 0};
-    const double length = norm(step);
-    return length > 0.5 ? (0.5 / length) * step : step;
-  }
+  std::unique_ptr<Star> star() const override;
 
  private:
+  class TorusStar;
+
   Vec3 corner(int t, int k) const {
     return layout_.moved(layout_.place[mesh_.triangle(t)[k]], mesh_.shift(t, k));
   }
@@ -151,8 +118,57 @@ class TorusEnergy : public StarEnergy {
   Layout& layout_;
   double scale_;
   std::vector<RestTriangle> rest_;
+};
+
+class TorusEnergy::TorusStar : public Star {
+ public:
+  explicit TorusStar(const TorusEnergy& energy) : energy_(energy) {}
+
+  void gather(int v) override {
+    star_.clear();
+    const ProgressiveMesh& mesh = energy_.mesh_;
+    const Layout& layout = energy_.layout_;
+    for (const int t : mesh.around(v)) {
+      const Triangle& tri = mesh.triangle(t);
+      const int k = tri[0] == v ? 0 : tri[1] == v ? 1 : 2, i = (k + 1) % 3, j = (k + 2) % 3;
+      const RestTriangle& r = energy_.rest_[t];
+      const Shift own = mesh.shift(t, k);
+      star_.push_back({layout.moved(layout.place[tri[i]], mesh.shift(t, i) - own),
+                       layout.moved(layout.place[tri[j]], mesh.shift(t, j) - own), r.halfCot[k],
+                       r.halfCot[i], r.halfCot[j], 4 * r.area * r.area});
+    }
+  }
+
+  double at(const Vec3& q) const override { return stretchEnergy(star_, q); }
+
+  Vec3 step(const Vec3& q, double) const override {
+    double gx = 0, gy = 0, hxx = 0, hxy = 0, hyy = 0;
+    for (const StarTriangle& t : star_) {
+      const double nx = t.a.y - t.b.y, ny = t.b.x - t.a.x;  // the gradient of det
+      const double det = tripleProduct(q, t.a, t.b), k = t.fourAreaSquared / (det * det);
+      const double dirichlet = t.dirichlet(q);
+      const Vec3 d = 2 * t.cotA * (q - t.b) + 2 * t.cotB * (q - t.a);
+      const double slope = -2 * dirichlet * k / det;
+      gx += (1 + k) * d.x + slope * nx;
+      gy += (1 + k) * d.y + slope * ny;
+      const double laplacian = 2 * (t.cotA + t.cotB) * (1 + k), mixed = -2 * k / det,
+                   barrier = 6 * dirichlet * k / (det * det);
+      hxx += laplacian + 2 * mixed * d.x * nx + barrier * nx * nx;
+      hyy += laplacian + 2 * mixed * d.y * ny + barrier * ny * ny;
+      hxy += mixed * (d.x * ny + d.y * nx) + barrier * nx * ny;
+    }
+    const Vec2 s = newtonStep(gx, gy, hxx, hxy, hyy);
+    const Vec3 step{s.x, s.y, 0};
+    const double length = norm(step);
+    return length > 0.5 ? (0.5 / length) * step : step;
+  }
+
+ private:
+  const TorusEnergy& energy_;
   std::vector<StarTriangle> star_;
 };
+
+std::unique_ptr<Star> TorusEnergy::star() const { return std::make_unique<TorusStar>(*this); }
 
 // The layout of the coarse form with the least sum of squared edges, on a square.
 Layout coarseLayout(const ProgressiveMesh& mesh, const std::vector<CornerShifts>& shift) {
