@@ -35,6 +35,25 @@ BoundarySamples samplesFrom(const Points& now, const Points& ways) {
   return {now, std::move(to)};
 }
 
+// from: where `now` should be.
+Points mended(Points ways, const Points& now, const Points& from, double most) {
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    const Vec3 off = from[i] - now[i];
+    const double size = norm(off);
+    ways[i] = ways[i] + (size > most ? most / size : 1) * off;
+  }
+  return ways;
+}
+
+// Three columns for each.
+Matrix beside(const std::vector<Matrix>& parts) {
+  Matrix out(parts.front().rows(), 3 * parts.size());
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    for (std::size_t k = 0; k < 3; ++k)
+      std::copy_n(parts[p].column(k), out.rows(), out.column(3 * p + k));
+  return out;
+}
+
 }  // namespace
 
 CarriedBoundary::CarriedBoundary(const Solid& source, const CarriedSettings& settings)
@@ -123,24 +142,24 @@ Points CarriedBoundary::known(const Points& charges, double distance, const Surf
   return out;
 }
 
-AdaptiveProblem CarriedBoundary::problem(const Points& ways, double unit) {
+AdaptiveProblem CarriedBoundary::problem(const Points& ways, double unit,
+                                         const std::optional<Mending>& mending) {
   AdaptiveProblemSettings s;
   s.seed = settings_.seed;
-  // Columns: the point of the source, and its way.
-  const auto values =
-      [solid = solid_, from = surface_.positions,
-       way = onSource(ways, surface_.vertices)](const std::vector<SurfacePoint>& places) {
-        const Matrix a = interpolated(from, solid, places), b = interpolated(way, solid, places);
-        Matrix out(places.size(), 6);
-        for (std::size_t k = 0; k < 3; ++k) {
-          std::copy_n(a.column(k), places.size(), out.column(k));
-          std::copy_n(b.column(k), places.size(), out.column(k + 3));
-        }
-        return out;
-      };
+  // Columns: the point of the source, its way, and where it should be.
+  std::vector<Points> columns{surface_.positions, onSource(ways, surface_.vertices)};
+  if (mending) columns.push_back(onSource(mending->from, surface_.vertices));
+  const auto values = [solid = solid_, columns](const std::vector<SurfacePoint>& places) {
+    std::vector<Matrix> parts;
+    for (const Points& column : columns) parts.push_back(interpolated(column, solid, places));
+    return beside(parts);
+  };
   AdaptiveProblem out = adaptiveProblem(solid_, values, unit, s);
-  const auto carry = [this](const BoundarySamples& samples) {
-    return samplesFrom(carried(pointsOf(samples.values), 0), pointsOf(samples.values, 3));
+  const auto carry = [this, mending](const BoundarySamples& samples) {
+    const Points now = carried(pointsOf(samples.values), 0);
+    Points way = pointsOf(samples.values, 3);
+    if (mending) way = mended(std::move(way), now, pointsOf(samples.values, 6), mending->most);
+    return samplesFrom(now, way);
   };
   if (!steps_.empty())
     out.placeSources = [this, values, diagonal = out.diagonal, place = out.placeSources](
@@ -151,9 +170,12 @@ AdaptiveProblem CarriedBoundary::problem(const Points& ways, double unit) {
     return carry(place(request));
   };
   // Uniform by the source's area, as the certificate is.
-  out.draw = [this, ways](std::size_t count, std::uint64_t index) {
+  out.draw = [this, ways, mending](std::size_t count, std::uint64_t index) {
     const Draw& d = drawn(count, index);
-    return samplesFrom(d.now, onSource(ways, d.places));
+    Points way = onSource(ways, d.places);
+    if (mending)
+      way = mended(std::move(way), d.now, onSource(mending->from, d.places), mending->most);
+    return samplesFrom(d.now, way);
   };
   return out;
 }

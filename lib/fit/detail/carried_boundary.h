@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,13 @@ struct CarriedSettings {
   std::uint64_t seed = 1;
 };
 
+// What points are off where `from`, positions of the source's vertices, has them: the way makes up
+// for it, by `most` at most, world units.
+struct Mending {
+  Points from;
+  double most = 0;
+};
+
 class CarriedBoundary {
  public:
   CarriedBoundary(const Solid& source, const CarriedSettings& settings);
@@ -34,8 +42,10 @@ class CarriedBoundary {
 
   // Each point of the boundary goes from where it is by its way: fitted where it is not buried in
   // other parts now, measured everywhere. ways: of the vertices of source.repaired().mesh, linear
-  // between them. unit: what errors are fractions of. Holds a reference to this.
-  AdaptiveProblem problem(const Points& ways, double unit);
+  // between them; mending adds to these. unit: what errors are fractions of. Holds a reference to
+  // this.
+  AdaptiveProblem problem(const Points& ways, double unit,
+                          const std::optional<Mending>& mending = {});
 
   // Distances from where `shape`, positions of those vertices, has them: at the points of
   // freshSamples, fractions of the unit.

@@ -19,16 +19,14 @@ namespace {
 // Of the way: halves that are made where a coarse fit folds, and where only the full one does,
 // whose folds beside the surface smaller steps cure more seldom.
 constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32;
-// Of what is left of the tolerance for the way that is left: errors of steps add up, but do not all
-// point the same way. The last step has to do with what is left.
-constexpr double kShare = 1.3, kLastShare = 1, kLeastShare = 0.5;
-// Of the error, once it is over the tolerance: what a step may add where no step can mend that. Of
-// what a step before was left with that missed, for the same way: what charges do not reach costs
-// all there are, and leaves more than a tolerance that they do reach.
-constexpr double kOfMissed = 0.25, kOfMissedStep = 0.5;
+// Of the tolerance: what a step before the last may leave, times its part of the way; what the last
+// one may leave; and by how much it mends a point at most. Where one step's errors are large the
+// others' are too, and point the same way, so they add up in full. Tolerances small enough for
+// their sum cost more charges than a last step that also mends what the others left. What is
+// farther off than it mends lies in creases, where charges do not help.
+constexpr double kShare = 2, kLastShare = 0.95, kMended = 1.25;
 // Of the folds that are left: after a step, and after its first charges.
 constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
-constexpr double kOfTolerance = 0.9;  // is given to the steps
 // Of the work until there to the work in all, by the way until there: the nearer to the target, the
 // shorter the steps and the more charges they take.
 constexpr double kWorkPower = 2.4;
@@ -113,12 +111,8 @@ class StepFitter {
   }
 
   double toleranceUntil(double end) const {
-    const double part = (end - at_) / (1 - at_);
-    const double left = kOfTolerance * settings_.tolerance - error_.p99;
-    const double tolerance = (end < 1 ? kShare : kLastShare) * part * left;
-    const double missed = error_.p99 > settings_.tolerance ? kOfMissed * error_.p99 : 0;
-    return std::max({tolerance, kLeastShare * part * settings_.tolerance, missed,
-                     kOfMissedStep * missedByWay_ * (end - at_), kSmallestTolerance});
+    const double share = end < 1 ? kShare * (end - at_) : kLastShare;
+    return std::max(share * settings_.tolerance, kSmallestTolerance);
   }
 
   std::size_t mostSources() const {
@@ -129,14 +123,17 @@ class StepFitter {
   // mayHalve: stops where a round folds too many points that are not folded yet. Folds of the first
   // level of charges are few or none where those of the whole fit are none.
   Step fitStep(double to, bool mayHalve) {
+    const bool last = !(to < 1);
     const Points now = path_.at(at_);
     Points ways = path_.at(to);
     for (std::size_t v = 0; v < ways.size(); ++v) ways[v] = ways[v] - now[v];
+    std::optional<Mending> mending;
+    if (last && at_ > 0) mending = Mending{now, kMended * settings_.tolerance * unit_};
     AdaptiveSettings s;
     s.tolerance = toleranceUntil(to);
     s.maxSources = mostSources();
-    s.outlierRounds = to < 1 ? 0 : kOutlierRounds;
-    s.patience = to < 1 ? kPatience : kLastPatience;
+    s.outlierRounds = last ? kOutlierRounds : 0;
+    s.patience = last ? kLastPatience : kPatience;
     const double half = (to - at_) / 2;
     InsideAfter inside(*this);
     if (mayHalve && half >= kShortest)
@@ -145,7 +142,7 @@ class StepFitter {
         return foldedShare(inside.of(field).determinants, 1) <=
                allowed(round == 1 ? kCoarseFoldShare : kFoldShare);
       };
-    AdaptiveResult fit = fitToTolerance(boundary_.problem(ways, unit_), s);
+    AdaptiveResult fit = fitToTolerance(boundary_.problem(ways, unit_, mending), s);
     if (fit.end == AdaptiveEnd::maxSources && s.maxSources < settings_.maxSources)
       fit.end = AdaptiveEnd::noGain;
     MappedPoints ends = inside.of(fit.field);
@@ -195,8 +192,6 @@ class StepFitter {
 
   void take(Step step, bool last) {
     if (end_ == AdaptiveEnd::met) end_ = step.fit.end;
-    if (step.fit.end != AdaptiveEnd::met)
-      missedByWay_ = step.fit.error.p99 / (step.record.to - step.record.from);
     at_ = step.record.to;
     folded_ = step.record.folded;
     records_.push_back(step.record);
@@ -212,9 +207,8 @@ class StepFitter {
   CarriedBoundary boundary_;
   MappedPoints inside_;
   std::vector<MapStep> records_;
-  double at_ = 0;           // of the way
-  double folded_ = 0;       // share of the points inside, so far
-  double missedByWay_ = 0;  // error of the last step that missed its tolerance, to its way
+  double at_ = 0;      // of the way
+  double folded_ = 0;  // share of the points inside, so far
   BoundaryError error_;
   AdaptiveEnd end_ = AdaptiveEnd::met;
 };

@@ -67,6 +67,29 @@ TEST_F(Carried, LaterOnesAreOfTheImage) {
   }
 }
 
+// The points are 0.1 short of where they should be.
+TEST_F(Carried, WaysMakeUpForWhatIsOff) {
+  CarriedBoundary boundary(solid, settings);
+  boundary.advance(bending({0.5, 0, 0}, 0), false);
+  Points from = solid.repaired().mesh.vertices;
+  for (Vec3& p : from) p.x += 0.6;
+  for (const auto& [most, made] : {std::pair{1.0, 0.1}, {0.03, 0.03}, {0.0, 0.0}}) {
+    const AdaptiveProblem problem =
+        boundary.problem(ways({0, 0, 1}), solid.diagonal(), Mending{from, most});
+    PlacementRequest everywhere;
+    everywhere.spacing = everywhere.reach = 0.05;
+    everywhere.most = 1000;
+    for (const BoundarySamples& samples :
+         {problem.draw(300, 3), problem.placeCollocation(everywhere)}) {
+      ASSERT_FALSE(samples.points.empty());
+      for (std::size_t i = 0; i < samples.points.size(); ++i) {
+        EXPECT_NEAR(samples.values(i, 0), samples.points[i].x + made, 1e-9);
+        EXPECT_NEAR(samples.values(i, 2), samples.points[i].z + 1, 1e-9);
+      }
+    }
+  }
+}
+
 // The mesh about the image is coarse: where it lies within the image, charges as near to it as it
 // is off would stand inside.
 TEST_F(Carried, NoChargeStandsInsideTheExactImage) {
