@@ -35,12 +35,12 @@ BoundarySamples samplesFrom(const Points& now, const Points& ways) {
   return {now, std::move(to)};
 }
 
-// from: where `now` should be.
-Points mended(Points ways, const Points& now, const Points& from, double most) {
+Points mended(Points ways, const Points& now, const Points& from, const Mending& mending) {
   for (std::size_t i = 0; i < ways.size(); ++i) {
     const Vec3 off = from[i] - now[i];
     const double size = norm(off);
-    ways[i] = ways[i] + (size > most ? most / size : 1) * off;
+    const double part = std::min(size - mending.kept, mending.most);
+    if (part > 0) ways[i] = ways[i] + (part / size) * off;
   }
   return ways;
 }
@@ -158,7 +158,7 @@ AdaptiveProblem CarriedBoundary::problem(const Points& ways, double unit,
   const auto carry = [this, mending](const BoundarySamples& samples) {
     const Points now = carried(pointsOf(samples.values), 0);
     Points way = pointsOf(samples.values, 3);
-    if (mending) way = mended(std::move(way), now, pointsOf(samples.values, 6), mending->most);
+    if (mending) way = mended(std::move(way), now, pointsOf(samples.values, 6), *mending);
     return samplesFrom(now, way);
   };
   if (!steps_.empty())
@@ -173,8 +173,7 @@ AdaptiveProblem CarriedBoundary::problem(const Points& ways, double unit,
   out.draw = [this, ways, mending](std::size_t count, std::uint64_t index) {
     const Draw& d = drawn(count, index);
     Points way = onSource(ways, d.places);
-    if (mending)
-      way = mended(std::move(way), d.now, onSource(mending->from, d.places), mending->most);
+    if (mending) way = mended(std::move(way), d.now, onSource(mending->from, d.places), *mending);
     return samplesFrom(d.now, way);
   };
   return out;

@@ -21,11 +21,11 @@ struct CarriedSettings {
   std::uint64_t seed = 1;
 };
 
-// What points are off where `from`, positions of the source's vertices, has them: the way makes up
-// for it, by `most` at most, world units.
+// The way also brings points back to where `from`, positions of the source's vertices, has them: to
+// within `kept`, and by `most` at most. World units.
 struct Mending {
   Points from;
-  double most = 0;
+  double kept = 0, most = 0;
 };
 
 class CarriedBoundary {

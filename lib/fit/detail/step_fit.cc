@@ -20,11 +20,14 @@ namespace {
 // whose folds beside the surface smaller steps cure more seldom.
 constexpr double kShortest = 1.0 / 128, kShortestFitted = 1.0 / 32;
 // Of the tolerance: what a step before the last may leave, times its part of the way; what the last
-// one may leave; and by how much it mends a point at most. Where one step's errors are large the
-// others' are too, and point the same way, so they add up in full. Tolerances small enough for
-// their sum cost more charges than a last step that also mends what the others left. What is
-// farther off than it mends lies in creases, where charges do not help.
-constexpr double kShare = 2, kLastShare = 0.95, kMended = 1.25;
+// one may leave. Where one step's errors are large the others' are too, and point the same way, so
+// they add up in full. Tolerances small enough for their sum cost more charges than a last step
+// that also mends what the others left.
+constexpr double kShare = 1.5, kLastShare = 0.6;
+// Of the tolerance: what is left of a point's error, as mending all of it makes the map rough, with
+// many times the volume whose sense is undecided; and by how much a point is mended at most, as
+// what is farther off lies in creases, where charges do not help.
+constexpr double kKept = 0.375, kMended = 1.25;
 // Of the folds that are left: after a step, and after its first charges.
 constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
 // Of the work until there to the work in all, by the way until there: the nearer to the target, the
@@ -128,7 +131,10 @@ class StepFitter {
     Points ways = path_.at(to);
     for (std::size_t v = 0; v < ways.size(); ++v) ways[v] = ways[v] - now[v];
     std::optional<Mending> mending;
-    if (last && at_ > 0) mending = Mending{now, kMended * settings_.tolerance * unit_};
+    if (last && at_ > 0) {
+      const double tolerance = settings_.tolerance * unit_;
+      mending = Mending{now, kKept * tolerance, kMended * tolerance};
+    }
     AdaptiveSettings s;
     s.tolerance = toleranceUntil(to);
     s.maxSources = mostSources();

@@ -73,9 +73,13 @@ TEST_F(Carried, WaysMakeUpForWhatIsOff) {
   boundary.advance(bending({0.5, 0, 0}, 0), false);
   Points from = solid.repaired().mesh.vertices;
   for (Vec3& p : from) p.x += 0.6;
-  for (const auto& [most, made] : {std::pair{1.0, 0.1}, {0.03, 0.03}, {0.0, 0.0}}) {
+  struct Case {
+    double kept, most, made;
+  };
+  for (const auto& [kept, most, made] :
+       {Case{0, 1, 0.1}, {0.04, 1, 0.06}, {0.04, 0.03, 0.03}, {0.2, 1, 0}}) {
     const AdaptiveProblem problem =
-        boundary.problem(ways({0, 0, 1}), solid.diagonal(), Mending{from, most});
+        boundary.problem(ways({0, 0, 1}), solid.diagonal(), Mending{from, kept, most});
     PlacementRequest everywhere;
     everywhere.spacing = everywhere.reach = 0.05;
     everywhere.most = 1000;
