@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "innermap/core/error.h"
 #include "innermap/tetra/cells.h"
@@ -41,6 +42,20 @@ PointImage sampleOf(const CellLocator& locator, const std::vector<Tetrahedron>& 
   return out;
 }
 
+// Both ends of a carried mesh, which its two ways share.
+struct Ends {
+  std::vector<Tetrahedron> tets;
+  Points source, target;
+  CellLocator here, there;
+
+  Ends(const CellMesh& carried, const Points& from)
+      : tets(carried.tetrahedra),
+        source(from),
+        target(carried.vertices),
+        here(source, tets),
+        there(target, tets) {}
+};
+
 bool apart(const Box3& mesh, const Box3& solid) {
   constexpr double kApart = 0.1;  // of the diagonal
   const double most = kApart * solid.diagonal();
@@ -64,14 +79,15 @@ SolidMap linearMapOf(const CellMesh& carried) {
     unfit(carried, fmt::format("{} of {} tetrahedra are inverted, and {} in their source: as a map "
                                "it would fold; remesh a finer mesh",
                                folded, carried.tetrahedra.size(), foldedThere));
-  const CellLocator here(source, carried.tetrahedra), there(carried.vertices, carried.tetrahedra);
-  const auto way = [tets = carried.tetrahedra](const CellLocator& locator, const Points& from,
-                                               const Points& to) {
-    return [=](const Vec3& p) { return sampleOf(locator, tets, from, to, p); };
-  };
-  return SolidMap::Pointwise{way(here, source, carried.vertices),
-                             way(there, carried.vertices, source), boundingBox(source).diagonal(),
-                             boundingBox(carried.vertices).diagonal()};
+  const auto ends = std::make_shared<const Ends>(carried, source);
+  return SolidMap::Pointwise{
+      [ends](const Vec3& p) {
+        return sampleOf(ends->here, ends->tets, ends->source, ends->target, p);
+      },
+      [ends](const Vec3& p) {
+        return sampleOf(ends->there, ends->tets, ends->target, ends->source, p);
+      },
+      boundingBox(source).diagonal(), boundingBox(carried.vertices).diagonal()};
 }
 
 SolidMap linearMapOf(const CellMesh& carried, const MappedSolid& mapped) {

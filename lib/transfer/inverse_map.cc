@@ -274,25 +274,33 @@ InvertedMap Inversion::run(const openvdb::FloatGrid& targetLevelSet, const Latti
   return out;
 }
 
-InvertedMap invertPointwise(const SolidMap& map, const openvdb::FloatGrid& targetLevelSet,
+InvertedMap invertPointwise(const SolidMap::Pointwise& map,
+                            const openvdb::FloatGrid& targetLevelSet,
                             const InverseSettings& settings) {
+  constexpr std::size_t kLeaves = 8;  // that a thread looks at together
   InvertedMap out;
   out.region = activeRegion(targetLevelSet, {settings.skin, kVoxelBytes});
+  std::vector<const openvdb::MaskTree::LeafNodeType*> leaves;
+  out.region->tree().getNodes(leaves);
   out.first = {0};
-  Points targets;
-  for (auto leaf = out.region->tree().cbeginLeaf(); leaf; ++leaf) {
-    for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel)
-      targets.push_back(toVec3(out.region->indexToWorld(voxel.getCoord())));
-    out.first.push_back(targets.size());
-  }
-  out.jacobians.resize(targets.size());
-  for (const PointImage& s : map.pull(targets)) {
-    const Mat3 jacobian = inverse(s.jacobian);
-    for (std::size_t k = 0; k < 9; ++k)
-      out.jacobians[out.sources.size()][k] = static_cast<float>(jacobian[k / 3][k % 3]);
-    out.sources.push_back(s.image);
-  }
-  out.statistics.voxels = out.statistics.inverted = targets.size();
+  for (const auto* leaf : leaves) out.first.push_back(out.first.back() + leaf->onVoxelCount());
+  out.sources.resize(out.first.back());
+  out.jacobians.resize(out.first.back());
+  parallelBlocks(
+      leaves.size(), kLeaves,
+      [&](std::size_t begin, std::size_t end) {
+        std::size_t i = out.first[begin];
+        for (std::size_t l = begin; l < end; ++l)
+          for (auto voxel = leaves[l]->cbeginValueOn(); voxel; ++voxel, ++i) {
+            const PointImage s = map.pull(toVec3(out.region->indexToWorld(voxel.getCoord())));
+            out.sources[i] = s.image;
+            const Mat3 jacobian = inverse(s.jacobian);
+            for (std::size_t k = 0; k < 9; ++k)
+              out.jacobians[i][k] = static_cast<float>(jacobian[k / 3][k % 3]);
+          }
+      },
+      "carrying voxels");
+  out.statistics.voxels = out.statistics.inverted = out.first.back();
   return out;
 }
 
@@ -327,7 +335,7 @@ std::string InverseStatistics::warning() const {
 InvertedMap invertMap(const SolidMap& map, const Solid& source, const SourceLattice& lattice,
                       const openvdb::FloatGrid& targetLevelSet, const InverseSettings& settings) {
   requireInRange(settings);
-  if (map.pointwise()) return invertPointwise(map, targetLevelSet, settings);
+  if (map.pointwise()) return invertPointwise(*map.pointwise(), targetLevelSet, settings);
   Inversion inversion(*map.harmonic(), source, lattice, targetLevelSet.transform(), settings);
   InvertedMap out = inversion.run(targetLevelSet, inversion.images());
   requireInverted(out.statistics);

@@ -95,7 +95,8 @@ class StepFitter {
     }
     std::vector<HarmonicMap> steps = boundary_.steps();
     steps.back() = HarmonicMap(movedBy(path_.rest(), steps.back().field()));
-    return {ComposedMap(std::move(steps)), std::move(records_), error_, end_};
+    return {ComposedMap(std::move(steps)), std::move(records_),
+            boundary_.errorFrom(path_.at(at_), unit_), end_};
   }
 
  private:
@@ -203,7 +204,6 @@ class StepFitter {
     records_.push_back(step.record);
     inside_ = std::move(step.inside);
     boundary_.advance(step.map, last);
-    error_ = boundary_.errorFrom(path_.at(at_), unit_);
   }
 
   const StepFitSettings& settings_;
@@ -215,7 +215,6 @@ class StepFitter {
   std::vector<MapStep> records_;
   double at_ = 0;      // of the way
   double folded_ = 0;  // share of the points inside, so far
-  BoundaryError error_;
   AdaptiveEnd end_ = AdaptiveEnd::met;
 };
 

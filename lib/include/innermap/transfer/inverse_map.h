@@ -42,14 +42,15 @@ class SolidMap {
   SolidMap(ComposedMap map) : harmonic_(std::make_shared<ComposedMap>(std::move(map))) {}
   SolidMap(Pointwise map) : pointwise_(std::make_shared<Pointwise>(std::move(map))) {}
 
-  const ComposedMap* harmonic() const { return harmonic_.get(); }  // in one or more steps; or
-  const Pointwise* pointwise() const { return pointwise_.get(); }  // null
+  // What it is made of: one of the two, the other is null.
+  const ComposedMap* harmonic() const { return harmonic_.get(); }
+  const Pointwise* pointwise() const { return pointwise_.get(); }
 
   // Of what the source becomes, world units.
   double targetDiagonal(const Solid& source) const;
   // Of points inside. accuracy: of the sums of charges, world units of the target.
   Points images(const Points& points, double accuracy) const;
-  // Of a map that is pointwise(), on all threads; deterministic.
+  // Of a pointwise map alone: on all threads, deterministic.
   std::vector<PointImage> push(const Points& points) const;
   std::vector<PointImage> pull(const Points& points) const;
 

@@ -104,21 +104,32 @@ TEST(SetGroup, BoundsWhatTheDerivativeDoesOnEachCube) {
   EXPECT_LE(used.most, 1);
 }
 
-// One charge on the ray through a corner: there each term of the bound is reached, and what is cut
-// off is a third of the whole.
+// Charges in one place, on the ray through a cube's corner.
+HarmonicMap chargesTowards(const Vec3& corner, double distance, double strength,
+                           std::size_t count) {
+  const Vec3 way = corner / norm(corner);
+  return testing::mapOf(testing::affineOf(testing::kIdentity),
+                        std::vector<Charge>(count, {distance * way, strength * way}));
+}
+
+// A cube about the origin, in all lanes.
+SetGroup groupOf(const HarmonicMap& map, double half) {
+  SetGroup out;
+  out.compute(StepTrees(map, 1), cubes(Points(8), std::vector<double>(8, half)), 0xff, true);
+  return out;
+}
+
+// One charge: at the corner each term of the bound is reached, and what is cut off is a third of
+// the whole.
 TEST(SetGroup, BoundIsNearlyReachedTowardsOneCharge) {
   const Vec3 corner{1, 1, 1};
   for (const double ratio : {0.3, 0.5, 0.7, 0.78}) {
     const double half = 0.1, distance = std::sqrt(3.0) * half / ratio;
-    const Vec3 place = (distance / std::sqrt(3.0)) * corner;
     // J changes by less than half all over the cube.
     const double room = distance * (1 - ratio);
     const double strength = 0.2 * room * room * room / distance;
-    const HarmonicMap map = testing::mapOf(testing::affineOf(testing::kIdentity),
-                                           {{place, (strength / std::sqrt(3.0)) * corner}});
-    const StepTrees trees(map, 1);
-    SetGroup group;
-    group.compute(trees, cubes(Points(8), std::vector<double>(8, half)), 0xff, true);
+    const HarmonicMap map = chargesTowards(corner, distance, strength, 1);
+    const SetGroup group = groupOf(map, half);
     ASSERT_EQ(group.proven(), 0xff);
     const double bound = group.findings(0).excess[0];
     const double there = excessAt(map, inverse(map.jacobian({})), {half, half, half});
@@ -136,16 +147,9 @@ TEST(SetGroup, BoundIsNearlyReachedTowardsOneCharge) {
 // Charges in one place are expanded about the group first. That expansion's last degree is not
 // worth moving to the sets: 6e-4 of the bound, which is 2e-4 above what is reached.
 TEST(SetGroup, BoundCountsTheDegreesThatAreNotMoved) {
-  const Vec3 corner{1, 1, 1};
-  const double half = 0.1, ratio = 0.3, distance = std::sqrt(3.0) * half / ratio;
-  const Vec3 place = (distance / std::sqrt(3.0)) * corner;
-  const double strength = 0.002 * distance * distance;
-  const HarmonicMap map =
-      testing::mapOf(testing::affineOf(testing::kIdentity),
-                     std::vector<Charge>(32, {place, (strength / std::sqrt(3.0)) * corner}));
-  const StepTrees trees(map, 1);
-  SetGroup group;
-  group.compute(trees, cubes(Points(8), std::vector<double>(8, half)), 0xff, true);
+  const double half = 0.1, distance = std::sqrt(3.0) * half / 0.3;
+  const HarmonicMap map = chargesTowards({1, 1, 1}, distance, 0.002 * distance * distance, 32);
+  const SetGroup group = groupOf(map, half);
   ASSERT_EQ(group.proven(), 0xff);
   const double bound = group.findings(0).excess[0];
   const double there = excessAt(map, inverse(map.jacobian({})), {half, half, half});
