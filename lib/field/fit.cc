@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <string>
 
@@ -21,6 +22,9 @@ constexpr double kGain = 0.8;
 // can: the more sources, the smoother the values look.
 constexpr double kClose = 1.25, kNextNearest = 1.6;
 constexpr std::size_t kTrialSources = 600;
+// Trials end here: an error so many times the best, or over it so often in a row.
+constexpr double kMuchWorse = 1.5;
+constexpr int kMostWorse = 2;
 constexpr std::size_t kTrialPointsPerSource = 4;
 constexpr std::size_t kMostDense = 20000;
 // The iterative solver's shells: distances in spacings of their own sources.
@@ -103,11 +107,17 @@ class Fitting {
   const Trial& trial(bool smooth);
   Trial makeTrial(bool smooth);
   std::vector<double> distancesFor(bool smooth, std::size_t count);
-  Solved solve(const BoundaryData& data, std::size_t count, std::size_t points,
-               double distance) const;
+  Solved solve(const BoundaryData& data, std::size_t count, std::size_t points, double distance);
 
-  SourceLevel level(std::size_t count, double distance) const {
-    return {problem_.placeSources(count, distance), spacing(count), distance * problem_.diagonal};
+  SourceLevel level(std::size_t count, double distance) {
+    return {shell(count, distance), spacing(count), distance * problem_.diagonal};
+  }
+
+  // The trials of linear and of smooth values stand on the same ones.
+  const Points& shell(std::size_t count, double distance) {
+    const auto known = shells_.find({count, distance});
+    if (known != shells_.end()) return known->second;
+    return shells_[{count, distance}] = problem_.placeSources(count, distance);
   }
 
   double spacing(std::size_t count) const {
@@ -140,6 +150,7 @@ class Fitting {
   const FitProblem& problem_;
   const FitSettings& settings_;
   std::optional<Trial> trialOf_[2];
+  std::map<std::pair<std::size_t, double>, Points> shells_;
   std::vector<DistanceTrial> trials_;
 };
 
@@ -172,10 +183,10 @@ void Fitting::check() const {
 }
 
 Solved Fitting::solve(const BoundaryData& data, std::size_t count, std::size_t points,
-                      double distance) const {
+                      double distance) {
   Solved out;
   out.distance = distance;
-  out.sources = problem_.placeSources(count, distance);
+  out.sources = shell(count, distance);
   const std::size_t used = std::min(data.points.size(), points);
   std::vector<std::size_t> first(used);
   std::iota(first.begin(), first.end(), 0);
@@ -197,6 +208,7 @@ Trial Fitting::makeTrial(bool smooth) {
   out.nearest = settings_.distance.value_or(nearest(few));
   const double farthest = settings_.distance.value_or(std::max(kFarthest, out.nearest));
   const int steps = static_cast<int>(std::ceil(std::log2(farthest / out.nearest)));
+  int worse = 0;
   for (int step = 0; step <= steps; ++step) {
     const double ratio = steps ? 1.0 * step / steps : 0;
     reportProgress("choosing the distance", ratio);
@@ -207,9 +219,10 @@ Trial Fitting::makeTrial(bool smooth) {
       remember(solved, smooth);
       const double rms = solved.solution.heldOutRms;
       if (step == 1 && out.best) out.close = rms < kClose * out.best->solution.heldOutRms;
+      worse = out.best && rms > out.best->solution.heldOutRms ? worse + 1 : 0;
       if (!out.best || rms < kGain * out.best->solution.heldOutRms)
         out.best = std::move(solved);
-      else if (rms > 1.5 * out.best->solution.heldOutRms)
+      else if (worse == kMostWorse || rms > kMuchWorse * out.best->solution.heldOutRms)
         break;
     } catch (const DataError&) {
       continue;  // no room at this distance

@@ -24,6 +24,7 @@ constexpr double kLeastGain = 0.03;  // of the residual; less is not worth an it
 // An iteration's gain (in squares of the residual) is taken to be at least this share of the one
 // before.
 constexpr double kLeastShrinkage = 0.04;
+constexpr double kFewAdded = 0.02;  // of all charges: they are solved for alone
 constexpr double kFinestProduct = 1e-12, kCoarsestProduct = 1e-3;  // relative
 constexpr double kSameSpacing = 1e-6;                              // relative
 
@@ -35,11 +36,12 @@ double affineValue(const Collocation& at, std::size_t i, const double* coefficie
   return std::inner_product(row.begin(), row.end(), coefficients, 0.0);
 }
 
-double rms(const Matrix& residual) {
+// Of the rows from `first` on.
+double rms(const Matrix& residual, std::size_t first = 0) {
   double sum = 0;
-  for (std::size_t i = 0; i < residual.rows() * residual.columns(); ++i)
-    sum += residual.data()[i] * residual.data()[i];
-  return std::sqrt(sum / static_cast<double>(residual.rows()));
+  for (std::size_t k = 0; k < residual.columns(); ++k)
+    for (std::size_t i = first; i < residual.rows(); ++i) sum += residual(i, k) * residual(i, k);
+  return std::sqrt(sum / static_cast<double>(residual.rows() - first));
 }
 
 // Whether another iteration would gain next to nothing, from the rms residuals before and after
@@ -102,10 +104,13 @@ class IterativeSolver::Levels {
   double startFrom(const IterativeSolution& start, const Scaled& values, Matrix& residual,
                    Matrix& x) const;
   Matrix scaledStart(const IterativeSolution& start, const Scaled& values) const;
-  IterativeSolution iterate(const Scaled& values, Matrix& residual, Matrix& x,
-                            double productError) const;
-  void runLevels(OrthogonalDirections& directions, Matrix& residual, Matrix& x,
+  void iterate(const Scaled& values, Matrix& residual, Matrix& x, IterativeSolution& out) const;
+  void runCoarse(OrthogonalDirections& directions, Matrix& residual, Matrix& x,
                  IterativeSolution& out) const;
+  void runLevels(std::size_t known, OrthogonalDirections& directions, Matrix& residual, Matrix& x,
+                 IterativeSolution& out) const;
+  bool settleAdded(const IterativeSolution& start, double rounding, Matrix& residual, Matrix& x,
+                   IterativeSolution& out) const;
   void takeDirections(const Matrix& weights, const std::vector<std::size_t>& rows,
                       const Points& sources, OrthogonalDirections& directions, Matrix& residual,
                       Matrix& x, IterativeSolution& out) const;
@@ -338,34 +343,59 @@ void IterativeSolver::Levels::takeDirections(const Matrix& weights,
   directions.project(first, residual, x);
 }
 
-void IterativeSolver::Levels::runLevels(OrthogonalDirections& directions, Matrix& residual,
+void IterativeSolver::Levels::runCoarse(OrthogonalDirections& directions, Matrix& residual,
                                         Matrix& x, IterativeSolution& out) const {
   takeDirections(coarse_.correction(residual), coarseRows_, coarseSources_, directions, residual, x,
                  out);
+}
+
+// Of each level the charges beyond the `known` ones.
+void IterativeSolver::Levels::runLevels(std::size_t known, OrthogonalDirections& directions,
+                                        Matrix& residual, Matrix& x, IterativeSolution& out) const {
   for (const Level& level : levels_) {
-    std::vector<std::size_t> rows = level.sources;
+    const auto added = std::lower_bound(level.sources.begin(), level.sources.end(), known);
+    if (added == level.sources.end()) continue;
+    const auto first = static_cast<std::size_t>(added - level.sources.begin());
+    std::vector<std::size_t> rows(added, level.sources.end());
     for (std::size_t& i : rows) i += kAffine;
-    takeDirections(level.solver.correction(residual), rows, level.solver.sources(), directions,
-                   residual, x, out);
+    const Points& all = level.solver.sources();
+    const Points sources(all.begin() + static_cast<std::ptrdiff_t>(first), all.end());
+    takeDirections(level.solver.correction(residual, first), rows, sources, directions, residual, x,
+                   out);
   }
 }
 
-IterativeSolution IterativeSolver::Levels::iterate(const Scaled& values, Matrix& residual,
-                                                   Matrix& x, double productError) const {
-  IterativeSolution out;
-  out.productError = productError;
+// Solves for what was added to an earlier solution by itself, for the other charges fit the points
+// that they had as well as they can. Whether that is all there is to do.
+bool IterativeSolver::Levels::settleAdded(const IterativeSolution& start, double rounding,
+                                          Matrix& residual, Matrix& x,
+                                          IterativeSolution& out) const {
+  const std::size_t known = start.weights.rows(), seen = start.residual.rows();
+  if (known == sources_.size() || seen == residual.rows() || !(rms(residual) > rounding))
+    return false;
   OrthogonalDirections directions(collocation_.size(), unknowns());
-  out.residuals.push_back(values.size * rms(residual));
+  std::vector<double> there{rms(residual, seen)};
+  do {
+    runLevels(known, directions, residual, x, out);
+    there.push_back(rms(residual, seen));
+  } while (!littleIsLeft(there) && static_cast<int>(there.size()) <= settings_.maxIterations &&
+           !outOfTime());
+  const auto all = static_cast<double>(sources_.size());
+  return all - static_cast<double>(known) <= kFewAdded * all;
+}
+
+void IterativeSolver::Levels::iterate(const Scaled& values, Matrix& residual, Matrix& x,
+                                      IterativeSolution& out) const {
+  OrthogonalDirections directions(collocation_.size(), unknowns());
   bool left = rms(residual) > values.rounding;
   while (left && out.iterations < settings_.maxIterations) {
     reportProgress("solving", static_cast<double>(out.iterations) / settings_.maxIterations);
-    runLevels(directions, residual, x, out);
+    runCoarse(directions, residual, x, out);
+    runLevels(0, directions, residual, x, out);
     ++out.iterations;
     out.residuals.push_back(values.size * rms(residual));
     left = !littleIsLeft(out.residuals) && !outOfTime();
   }
-  unscale(values, residual, x, out);
-  return out;
 }
 
 // The unknowns of an earlier solution, and its residual: known where it was solved for.
@@ -391,8 +421,15 @@ IterativeSolution IterativeSolver::Levels::solve(const Matrix& values,
                                                  const IterativeSolution* start) const {
   const Scaled rhs = scaled(values);
   Matrix residual = rhs.values, x(unknowns(), values.columns());
-  const double productError = start ? startFrom(*start, rhs, residual, x) : 0;
-  return iterate(rhs, residual, x, productError);
+  IterativeSolution out;
+  if (start) out.productError = startFrom(*start, rhs, residual, x);
+  out.residuals.push_back(rhs.size * rms(residual));
+  if (start && settleAdded(*start, rhs.rounding, residual, x, out))
+    out.residuals.push_back(rhs.size * rms(residual));
+  else
+    iterate(rhs, residual, x, out);
+  unscale(rhs, residual, x, out);
+  return out;
 }
 
 IterativeSolver::IterativeSolver(const Collocation& collocation,

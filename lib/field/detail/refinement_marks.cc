@@ -7,8 +7,9 @@ namespace innermap {
 namespace {
 
 constexpr double kMarkReach = 0.8;  // spacings of the level above
-// Marks are points over the tolerance times a factor that falls to the lower one as it comes near.
-constexpr double kMarkLeast = 0.93, kMarkMost = 1.5;
+// Marks are points over the tolerance, or over a little less as it comes near. Marking from 1.5
+// times the tolerance on takes about as many charges, in twice the rounds.
+constexpr double kMarkLeast = 0.93, kMarkMost = 1;
 // When the tolerance holds but the largest error is over kWorstRatio of the rms: what is marked.
 constexpr double kWorstRatio = 17, kOutlier = 10;
 // Once this level has been tried about a jump, errors nearer to it than so many spacings of the

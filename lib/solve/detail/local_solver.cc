@@ -4,6 +4,7 @@
 #include <lapacke.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "core/point_grid.h"
 #include "innermap/core/error.h"
@@ -28,35 +29,42 @@ Points subset(const Points& points, const std::vector<std::size_t>& indices) {
   return out;
 }
 
+using Floats = std::vector<float>;  // column-major
+
 // On the calling thread: clusters are what runs side by side.
-Matrix kernelMatrix(const Collocation& at, const Points& sources) {
+Floats kernelMatrix(const Collocation& at, const Points& sources) {
   const Points& points = at.points;
-  const std::size_t padded = simd::padded(points.size());
-  std::vector<double> x(padded), y(padded), z(padded);
+  const std::size_t rows = points.size(), padded = simd::padded(rows);
+  std::vector<double> x(padded), y(padded), z(padded), column(rows);
   for (std::size_t i = 0; i < padded; ++i) {
-    const Vec3& p = points[std::min(i, points.size() - 1)];
+    const Vec3& p = points[std::min(i, rows - 1)];
     x[i] = p.x;
     y[i] = p.y;
     z[i] = p.z;
   }
-  Matrix a(points.size(), sources.size());
-  for (std::size_t j = 0; j < sources.size(); ++j)
-    simd::kernelColumn(x.data(), y.data(), z.data(), points.size(), sources[j].x, sources[j].y,
-                       sources[j].z, 1, a.column(j));
-  fillDerivativeRows(at, sources, a.data(), a.rows());
+  Floats a;
+  a.reserve(rows * sources.size());
+  for (const Vec3& s : sources) {
+    simd::kernelColumn(x.data(), y.data(), z.data(), rows, s.x, s.y, s.z, 1, column.data());
+    fillDerivativeRows(at, {s}, column.data(), rows);
+    a.insert(a.end(), column.begin(), column.end());
+  }
   return a;
 }
 
-// A^T A + lambda^2 I, of which the lower triangle is filled, then factored.
-Matrix choleskyOfNormalMatrix(const Matrix& a) {
-  const int m = static_cast<int>(a.rows()), n = static_cast<int>(a.columns());
-  Matrix g(a.columns(), a.columns());
-  cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, n, m, 1, a.data(), m, 0, g.data(), n);
+// A^T A + lambda^2 I, of which the lower triangle is filled, then factored. Single precision does
+// for corrections of a residual that is summed in double; lambda is not below its rounding.
+Floats choleskyOfNormalMatrix(const Floats& a, std::size_t rows, std::size_t columns) {
+  const int m = static_cast<int>(rows), n = static_cast<int>(columns);
+  Floats g(columns * columns);
+  cblas_ssyrk(CblasColMajor, CblasLower, CblasTrans, n, m, 1, a.data(), m, 0, g.data(), n);
   double trace = 0;
-  for (std::size_t j = 0; j < g.rows(); ++j) trace += g(j, j);
-  for (std::size_t j = 0; j < g.rows(); ++j)
-    g(j, j) += kLocalLambda * kLocalLambda * trace / static_cast<double>(n);
-  if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', n, g.data(), n) != 0)
+  for (std::size_t j = 0; j < columns; ++j) trace += g[j * columns + j];
+  const double squared =
+      std::max(kLocalLambda * kLocalLambda, n * double{std::numeric_limits<float>::epsilon()});
+  for (std::size_t j = 0; j < columns; ++j)
+    g[j * columns + j] += static_cast<float>(squared * trace / n);
+  if (LAPACKE_spotrf_work(LAPACK_COL_MAJOR, 'L', n, g.data(), n) != 0)
     throw DataError(
         "solve: a cluster's matrix is singular; the points hold NaN or infinite numbers");
   return g;
@@ -95,30 +103,31 @@ void LocalSolver::add(const Points& sources, const Collocation& collocation) {
 
 void LocalSolver::factor(Cluster& cluster, const std::vector<std::size_t>& around,
                          const Collocation& collocation) const {
-  const Matrix a = kernelMatrix(collocation.subset(cluster.rows), subset(sources_, around));
-  const Matrix g = choleskyOfNormalMatrix(a);
-  const std::size_t own = cluster.sources.size();
-  Matrix inverse(around.size(), own);  // own columns of G^-1
+  const Floats a = kernelMatrix(collocation.subset(cluster.rows), subset(sources_, around));
+  const std::size_t rows = cluster.rows.size(), all = around.size(), own = cluster.sources.size();
+  const Floats g = choleskyOfNormalMatrix(a, rows, all);
+  Floats inverse(all * own);  // own columns of G^-1
   for (std::size_t k = 0; k < own; ++k) {
     const auto at = std::lower_bound(around.begin(), around.end(), cluster.sources[k]);
-    inverse(static_cast<std::size_t>(at - around.begin()), k) = 1;
+    inverse[k * all + static_cast<std::size_t>(at - around.begin())] = 1;
   }
-  const int m = static_cast<int>(a.rows()), n = static_cast<int>(a.columns()),
-            columns = static_cast<int>(own);
-  LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', n, columns, g.data(), n, inverse.data(), n);
-  Matrix solve(a.rows(), own);
-  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, m, columns, n, 1, a.data(), m,
-              inverse.data(), n, 0, solve.data(), m);
-  cluster.solve.assign(solve.data(), solve.data() + a.rows() * own);
+  const int m = static_cast<int>(rows), n = static_cast<int>(all), columns = static_cast<int>(own);
+  LAPACKE_spotrs_work(LAPACK_COL_MAJOR, 'L', n, columns, g.data(), n, inverse.data(), n);
+  cluster.solve.resize(rows * own);
+  cblas_sgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, m, columns, n, 1, a.data(), m,
+              inverse.data(), n, 0, cluster.solve.data(), m);
 }
 
-Matrix LocalSolver::correction(const Matrix& residual) const {
+Matrix LocalSolver::correction(const Matrix& residual, std::size_t first) const {
   const std::size_t channels = residual.columns();
-  Matrix out(sources_.size(), channels);
+  Matrix out(sources_.size() - first, channels);
+  const auto from =
+      std::partition_point(clusters_.begin(), clusters_.end(),
+                           [&](const Cluster& cluster) { return cluster.sources.front() < first; });
   const SingleThreadedBlas guard;
-  parallelBlocks(clusters_.size(), 4, [&](std::size_t begin, std::size_t end) {
+  parallelBlocks(clusters_.end() - from, 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
-      const Cluster& cluster = clusters_[c];
+      const Cluster& cluster = from[static_cast<std::ptrdiff_t>(c)];
       const std::size_t m = cluster.rows.size(), own = cluster.sources.size();
       if (m == 0) continue;
       std::vector<float> seen(m * channels), weights(own * channels);
@@ -130,7 +139,8 @@ Matrix LocalSolver::correction(const Matrix& residual) const {
                   static_cast<int>(m), seen.data(), static_cast<int>(m), 0, weights.data(),
                   static_cast<int>(own));
       for (std::size_t k = 0; k < channels; ++k)
-        for (std::size_t j = 0; j < own; ++j) out(cluster.sources[j], k) = weights[k * own + j];
+        for (std::size_t j = 0; j < own; ++j)
+          out(cluster.sources[j] - first, k) = weights[k * own + j];
     }
   });
   return out;

@@ -22,9 +22,10 @@ class LocalSolver {
   // is that of earlier calls with points added at the end.
   void add(const Points& sources, const Collocation& collocation);
 
-  // Weights (#charges of the level x #K) that lower the residual (#collocation x #K); rows beyond
-  // what a cluster has seen play no part in it.
-  Matrix correction(const Matrix& residual) const;
+  // Weights that lower the residual (#collocation x #K), of the charges from number `first` on,
+  // where an add() began ((#charges of the level - first) x #K); rows beyond what a cluster has
+  // seen play no part in it.
+  Matrix correction(const Matrix& residual, std::size_t first = 0) const;
 
   const Points& sources() const { return sources_; }
   double spacing() const { return spacing_; }
