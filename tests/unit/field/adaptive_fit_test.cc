@@ -202,13 +202,15 @@ TEST(AdaptiveFit, GoesOnBelowALevelWithoutRoom) {
   EXPECT_EQ(r.end, AdaptiveEnd::met);
 }
 
-// One half is moved along the other: no charges meet that, and finer ones about the line between
+// Quarters are moved along each other: no charges meet that, and finer ones about the lines between
 // them are no better.
 TEST(AdaptiveFit, DoesNotChaseJumps) {
   const auto split = [](const Points& points) {
     Matrix v = testing::harmonicMapValues(points);
-    for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t i = 0; i < points.size(); ++i) {
       if (points[i].y > 0) v(i, 0) += 0.1;
+      if (points[i].x > 0) v(i, 1) += 0.1;
+    }
     return v;
   };
   Ball ball;
@@ -222,8 +224,11 @@ TEST(AdaptiveFit, DoesNotChaseJumps) {
   };
   ball.settings.tolerance = 4e-3;
   ball.settings.maxSources = 5000;
-  for (int k = 0; k < 1000; ++k)
-    ball.problem.jumps.push_back({std::cos(2 * kPi * k / 1000), 0, std::sin(2 * kPi * k / 1000)});
+  for (int k = 0; k < 1000; ++k) {
+    const double a = std::cos(2 * kPi * k / 1000), b = std::sin(2 * kPi * k / 1000);
+    ball.problem.jumps.push_back({a, 0, b});
+    ball.problem.jumps.push_back({0, a, b});
+  }
   const AdaptiveResult known = fitToTolerance(ball.problem, ball.settings);
   EXPECT_EQ(known.end, AdaptiveEnd::jumps);
   EXPECT_GT(known.error.p99, ball.settings.tolerance);
@@ -232,7 +237,7 @@ TEST(AdaptiveFit, DoesNotChaseJumps) {
   const double spacing = std::sqrt(4 * kPi / 150) / 4;
   Points away;
   for (const Vec3& p : onSphere(20000, 999))
-    if (std::abs(p.y) > 3 * spacing) away.push_back(p);
+    if (std::min(std::abs(p.x), std::abs(p.y)) > 3 * spacing) away.push_back(p);
   EXPECT_LT(measureBoundaryError(known.field, away, split(away), kDiagonal).p99,
             ball.settings.tolerance);
   ball.problem.jumps.clear();
