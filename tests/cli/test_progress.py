@@ -119,6 +119,17 @@ def test_more_voxels_are_said_to_take_longer():
     assert said[1] > said[0], said
 
 
+def test_each_stage_of_a_plan_has_a_weight():
+    folder = cli.ROOT / "tools" / "innermap"
+    text = "".join(path.read_text() for path in sorted(folder.glob("*.cc")))
+    named = set()
+    for call in re.findall(r"(?:stageOf\(|stage :\s+\{)([^;]*?)(?:, \w|\})", text):
+        named.update(re.findall(r'"([^"]+)"', call))
+    weighed = set(re.findall(r'\{"([^"]+)"', (folder / "stage_weights.inc").read_text()))
+    assert len(named) > 50, named
+    assert named == weighed, named ^ weighed
+
+
 def shown(columns, *arguments, **more):
     """All that a terminal of so many columns is shown, without the bar, and whether the run succeeded."""
     ours, theirs = pty.openpty()

@@ -23,8 +23,9 @@ std::vector<JobPhase> carryingPhases(Way way, const CarryJob& job, const Transfe
   JobSize made = sizeOf(to, outputSettings(job.grids, options.grid, growth));
   made.items = static_cast<double>(job.grids.size()) * made.inside;
   const JobSize from = sizeOf(way == Way::push ? source : job.target, given);
-  JobPhase levelSets = stageOf("level set", made, 2);
-  levelSets.seconds = (levelSets.seconds + stageOf("level set", from, 2).seconds) / 2;
+  JobPhase levelSets = stageOf("level set", made);
+  levelSets += stageOf("level set", from);
+  levelSets.times = 2;
   std::vector<JobPhase> phases = {levelSets};
   const CarrySettings carry = carrySettings(options);
   std::size_t densities = 0;

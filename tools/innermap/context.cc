@@ -307,6 +307,7 @@ void Context::judge(const Verdict& verdict) {
 
 void Context::conclude() {
   if (dryRun()) return;
+  progress_.endJob();
   noteTime();
   std::vector<std::string> unmet;
   for (const ReportFinding& f : report_.verdict)

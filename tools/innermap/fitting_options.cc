@@ -121,9 +121,10 @@ std::vector<JobPhase> proofPhases(const FitMapSettings& settings, double charges
 std::vector<JobPhase> chargePhases(const FitMapSettings& settings, double places, bool laidOn) {
   JobSize size;
   if (settings.shell) {
-    const double sources = static_cast<double>(settings.shell->sources) / 1000;
-    size.items = sources <= 3 ? 0.25 * std::pow(sources, 2.5) : 1.5 * sources;
-    return {stageOf("fitting: a shell", size)};
+    constexpr std::size_t kDense = 3000;
+    size.charges = static_cast<double>(settings.shell->sources) / 1000;
+    return {stageOf(
+        settings.shell->sources <= kDense ? "fitting: a dense shell" : "fitting: a shell", size)};
   }
   size.items = std::pow(places, kRoundsPower);
   std::vector<JobPhase> phases = {stageOf("fitting", size),

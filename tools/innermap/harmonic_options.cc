@@ -109,7 +109,7 @@ void runHarmonic(const HarmonicOptions& options,
   JobSize size = jobSize(boundary.solid, grids);
   size.items = static_cast<double>(known.names.size()) * size.inside;
   std::vector<JobPhase> phases = fittingPhases(like, likelyPlaces(vertices, like.tolerance), false);
-  for (JobPhase& phase : phases) phase.seconds *= 1 + 0.1 * static_cast<double>(known.names.size());
+  for (JobPhase& phase : phases) phase *= 1 + 0.1 * static_cast<double>(known.names.size());
   for (const char* stage : {"level set", "evaluating the field", "writing the VDB file"})
     phases.push_back(stageOf(stage, size));
   context.expect(phases);

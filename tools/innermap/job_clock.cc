@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <utility>
 
 namespace innermap::tool {
@@ -19,14 +20,34 @@ constexpr double kSilent = 0.3;
 constexpr double kTells = 0.08;
 // A stage that is reported to have gone back this far has begun once more.
 constexpr double kAgain = 0.5;
+// No time is told while more than this of what is left is doubtful.
+constexpr double kDoubtful = 0.5;
+
+double coreSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 }  // namespace
+
+JobPhase& operator+=(JobPhase& phase, const JobPhase& other) {
+  phase.seconds += other.seconds;
+  phase.doubtful += other.doubtful;
+  phase.works.insert(phase.works.end(), other.works.begin(), other.works.end());
+  return phase;
+}
+
+JobPhase& operator*=(JobPhase& phase, double times) {
+  phase.seconds *= times;
+  phase.doubtful *= times;
+  for (JobWork& work : phase.works) work.times *= times;
+  return phase;
+}
 
 void JobClock::expect(std::vector<JobPhase> phases, double now) {
   phases_ = std::move(phases);
   current_ = 0;
   begun_ = false;
+  taken_.clear();
   planned_ = since_ = reported_ = now;
+  coresSince_ = coreSeconds();
   fraction_ = part_ = 0;
   time_ = 0;
 }
@@ -38,8 +59,9 @@ void JobClock::report(std::string_view stage, double fraction, double now) {
       continue;
     }
     if (i != current_ || !begun_) {
-      current_ = i;
       // What came before the first phase counts as part of it.
+      if (begun_) close(now);
+      current_ = i;
       since_ = reported_ = begun_ ? now : planned_;
       fraction_ = part_ = 0;
       time_ = 0;
@@ -49,6 +71,19 @@ void JobClock::report(std::string_view stage, double fraction, double now) {
     advance(std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0, now);
     return;
   }
+}
+
+void JobClock::close(double now) {
+  const double cores = coreSeconds();
+  taken_.push_back({phases_[current_], now - since_, cores - coresSince_});
+  coresSince_ = cores;
+}
+
+std::vector<JobPhaseTaken> JobClock::end(double now) {
+  if (begun_) close(now);
+  phases_.clear();
+  begun_ = false;
+  return std::move(taken_);
 }
 
 void JobClock::advance(double fraction, double now) {
@@ -107,10 +142,13 @@ JobClock::State JobClock::at(double now) {
   const double share = trust * own / (done + own + prior);
   const double pace = (1 - share) * speed + share * phase;
   state.secondsLeft = left + pace * (total - done - own);
+  double doubtful = left * (1 - trust) * phases_[current_].doubtful / std::max(own, 1e-9);
+  for (std::size_t i = current_ + 1; i < phases_.size(); ++i)
+    if (!phases_[i].perhaps) doubtful += pace * phases_[i].doubtful;
   const double fraction = now / std::max(now + state.secondsLeft, 1e-9);
   shown_ = std::max(shown_, std::min(fraction, 0.99));
   state.fraction = shown_;
-  state.tellsTime = fraction > kTells && now > 1;
+  state.tellsTime = fraction > kTells && now > 1 && doubtful <= kDoubtful * state.secondsLeft;
   return state;
 }
 

@@ -7,6 +7,21 @@
 
 namespace innermap::tool {
 
+// What a stage works on.
+struct JobSize {
+  double inside = 0;   // voxels of the solid, millions
+  double surface = 0;  // voxels that its surface runs through, millions
+  double charges = 0;  // thousands
+  double items = 0;    // whatever else the stage counts
+};
+
+// So often over that much: what a row of the table of weights is multiplied with.
+struct JobWork {
+  std::string row;
+  JobSize size;
+  double times = 1;
+};
+
 // A part of a job, in the order in which parts follow one another.
 struct JobPhase {
   // As the library reports it, or as Context::phase() names it.
@@ -24,6 +39,20 @@ struct JobPhase {
   bool gate = false;
   // Its fractions say how long it takes.
   bool steady = true;
+  // Of its seconds, those that may be out by more than a factor of two.
+  double doubtful = 0;
+  // What its seconds are the sum of.
+  std::vector<JobWork> works = {};
+};
+
+// Both at once; so many of it.
+JobPhase& operator+=(JobPhase& phase, const JobPhase& other);
+JobPhase& operator*=(JobPhase& phase, double times);
+
+// A phase that is over: of the whole process.
+struct JobPhaseTaken {
+  JobPhase phase;
+  double seconds, coreSeconds;
 };
 
 // Times are seconds since the job began. Phases that are over say how the job goes beside what was
@@ -39,22 +68,28 @@ class JobClock {
   // Of the phase under way; empty before the first.
   const std::string& title() const;
 
+  // Those that are over; the one under way is, too.
+  std::vector<JobPhaseTaken> end(double now);
+
   struct State {
     double fraction = 0;  // of the whole job; never less than before
     double secondsLeft = 0;
-    bool tellsTime = false;  // enough has passed to tell
+    bool tellsTime = false;  // enough has passed to tell, and most of what is left is known
   };
   State at(double now);
 
  private:
+  void close(double now);
   double expectedUntil(std::size_t end) const;
   void advance(double fraction, double now);
   double leftByFraction(double now, double otherwise) const;
 
   std::vector<JobPhase> phases_;
+  std::vector<JobPhaseTaken> taken_;
   std::size_t current_ = 0;
   bool begun_ = false;
-  double planned_ = 0;  // when the phases became known
+  double planned_ = 0;     // when the phases became known
+  double coresSince_ = 0;  // of the current phase: core seconds of the process when it began
   // Of the current phase: when it began, how much of it is done and when that was reported, and the
   // same of the time under way where it comes several times.
   double since_ = 0, fraction_ = 0, reported_ = 0;

@@ -1,5 +1,5 @@
-// What the stages of a job are expected to take: a sum over what they work on, by costs that were
-// measured once, times how fast this machine is at the moment.
+// What the stages of a job are expected to take: a weight for each times the size of what it works
+// on, times how fast this machine is at the moment.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,6 @@
 
 namespace innermap::tool {
 
-// What a stage works on.
-struct JobSize {
-  double inside = 0;   // voxels of the solid, millions
-  double surface = 0;  // voxels that its surface runs through, millions
-  double charges = 0;  // thousands
-  double items = 0;    // whatever else the stage counts
-};
-
 JobSize jobSize(double volume, double area, double voxelSize, std::size_t charges);
 // Of a solid in voxels; settings: any with a resolution and a voxel size.
 template <class Settings>
@@ -31,11 +23,9 @@ JobSize jobSize(const Solid& solid, const Settings& settings, std::size_t charge
   return jobSize(solid.volume(), solid.area(), voxelSizeFor(solid, voxels), charges);
 }
 
-// With the near sums of charges and voxels as items.
-JobSize withNearSums(JobSize size);
-
 // A stage of the library, as it reports it, over `size`; it comes `times` times one after another.
-// "STAGE: WHAT": see the table of costs. Throws Error for a stage of which no cost is known.
+// "STAGE: WHAT" is a row for a stage that takes another time when it does that. Throws Error for a
+// stage that has no row.
 JobPhase stageOf(const std::string& stage, const JobSize& size, int times = 1,
                  const std::string& title = "");
 
@@ -45,6 +35,9 @@ JobPhase stageOf(const std::string& stage, const JobSize& size, int times = 1,
 double bentPlaces(const Mesh& source, const Points& moved, double tolerance);
 // The same, where it is not known how the vertices move.
 double likelyPlaces(std::size_t vertices, double tolerance);
+
+// Seconds of a block of work on this machine: "S s alone, S s together".
+std::string paceText();
 
 // What a map's grids take once it is fitted, until they are in their file.
 std::vector<JobPhase> evaluationPhases(const JobSize& size);

@@ -89,11 +89,9 @@ void run(const SequenceOptions& options, Context& context) {
   const std::uint64_t gridsNeed =
       mapGridMemory(rest.solid, mapGridSettings(options.evaluation), {1, false, false});
   const JobSize size = jobSize(rest.solid, mapGridSettings(options.evaluation), settings.sources);
-  JobPhase each = stageOf("frames: grids", withNearSums(size));
+  JobPhase each = stageOf("frames: grids", size);
   if (settings.prove != Prove::off)
-    each.seconds +=
-        stageOf(settings.prove == Prove::full ? "frames: full proof" : "frames: proof", size)
-            .seconds;
+    each += stageOf(settings.prove == Prove::full ? "frames: full proof" : "frames: proof", size);
   std::vector<JobPhase> phases = framePhases(settings.sources, frames.wanted.size(), each);
   phases.insert(phases.end() - 1, stageOf("level set", size));
   context.expect(phases);

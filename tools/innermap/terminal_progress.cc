@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "job_cost.h"
+
 namespace innermap::tool {
 namespace {
 
@@ -59,6 +61,22 @@ void TerminalProgress::report(std::string_view stage, double fraction) {
     drawBar(stage, share);
   else
     writeLine(stage, share);
+}
+
+void TerminalProgress::endJob() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::vector<JobPhaseTaken> taken = job_.end(now());
+  if (style_ != Style::lines || taken.empty()) return;
+  std::fprintf(stderr, "%6.1f s  pace: %s\n", now(), paceText().c_str());
+  for (const auto& [phase, seconds, coreSeconds] : taken) {
+    std::string line =
+        fmt::format("{:6.1f} s  {} took {:.3f} s, {:.3f} s of cores, where {:.3f} s were expected",
+                    now(), phase.stage, seconds, coreSeconds, phase.seconds);
+    for (const auto& [row, size, times] : phase.works)
+      line += fmt::format("; {}: {:.4g} of {:.4g} {:.4g} {:.4g} {:.4g}", row, times, size.inside,
+                          size.surface, size.charges, size.items);
+    std::fprintf(stderr, "%s\n", line.c_str());
+  }
 }
 
 void TerminalProgress::setPart(const std::string& part) {

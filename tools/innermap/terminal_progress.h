@@ -30,6 +30,10 @@ class TerminalProgress : public RunContext {
   // What the whole job consists of: there is then one bar for it, with the time that is left.
   void expect(std::vector<JobPhase> phases);
 
+  // The job is over: as plain lines, one a stage, what each took beside what was expected, and of
+  // what size it was: times, then voxels inside and on the surface, charges, items (JobSize).
+  void endJob();
+
   // Takes the bar away, so that a message can be written.
   void clear();
 

@@ -71,7 +71,7 @@ void expectPhases(const TransferDistanceOptions& options, const MappedSolid& map
   JobPhase source = stageOf("level set", here);
   source.gate = true;
   context.expect({stageOf("level set", there), stageOf("distances", there), source,
-                  stageOf("distances", here), stageOf("evaluating the map", withNearSums(here)),
+                  stageOf("distances", here), stageOf("evaluating the map", here),
                   stageOf("distances", here), stageOf("drawing the section", here, 2),
                   stageOf("writing the VDB file", here, 2)});
 }
