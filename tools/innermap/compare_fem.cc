@@ -238,7 +238,7 @@ void run(const CompareOptions& options, Context& context) {
           {fmt::format("compare finite elements at resolutions {} with charges",
                        options.resolutions),
            "write comparison.csv, curves.svg, section.png and report.json to " + options.output},
-          need, "finite elements", "use lower --resolutions"))
+          {"finite elements", need, "use lower {resolutions}"}))
     return;
   const CompareFem result = context.timed("compare", [&] {
     return pair ? compareFemOnMap(*pair, settings) : compareFemOnFunctions(solid, settings);

@@ -195,9 +195,10 @@ void requireFrameMemory(const FrameFitterSettings& settings, std::uint64_t other
     fewer.collocation = 0;
     return frameFitterMemory(fewer, others);
   };
-  context.requireMemory(fmt::format("a sequence with {} charges", settings.sources),
-                        frameFitterMemory(settings, others), {"--charges", 1, kMaxCharges, need},
-                        "use a lower --resolution or raise --max-memory");
+  context.requireMemory({fmt::format("a sequence with {} charges", settings.sources),
+                         frameFitterMemory(settings, others),
+                         "use a lower {resolution} or raise {max_memory}",
+                         SizeOption{"charges", 1, kMaxCharges, need}});
 }
 
 }  // namespace innermap::tool

@@ -209,7 +209,7 @@ void runGeometry(Way way, const CarryOptions& options, Context& context) {
   if (!context.begins({fmt::format("{} {} by {}", way == Way::push ? "push" : "pull",
                                    options.volume, options.map),
                        "write " + options.output},
-                      need, "carrying " + options.volume, "cut the file into parts"))
+                      {"carrying " + options.volume, need, "cut the file into parts"}))
     return;
   const auto file = readGeometryFile(options.volume, options.geometry, context);
   const CarryPointsSettings settings = carryPointsSettings(outside, sumAccuracy(mapped));

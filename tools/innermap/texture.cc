@@ -110,10 +110,10 @@ void run(const TextureOptions& o, Context& context) {
   if (!context.begins({fmt::format("continue {} into {} with {} charges and voxels of {:.6g}",
                                    image, o.mesh, plan.sources, plan.voxelSize),
                        "write surface, density, Cd and uv to " + o.output},
-                      need, "the solid texture",
-                      fmt::format("use a --voxel-size above {:.3g}, fewer --charges or raise "
-                                  "--max-memory",
-                                  1.5 * plan.voxelSize)))
+                      {"the solid texture", need,
+                       fmt::format("use a {{voxel_size}} above {:.3g}, fewer {{charges}} or raise "
+                                   "{{max_memory}}",
+                                   1.5 * plan.voxelSize)}))
     return;
   TextureLookup lookup;
   if (!o.image.empty())

@@ -125,11 +125,12 @@ std::uint64_t transferMemory(const Solid& solid, const openvdb::GridPtrVec& grid
 void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
                            const TransferOptions& options, const Context& context,
                            const CarryKind& kind, double growth) {
-  requireGridMemory("carrying the volume", options.grid, context, [&](const LatticeChoice& grid) {
-    TransferOptions other = options;
-    other.grid = grid;
-    return transferMemory(solid, grids, other, kind, growth);
-  });
+  context.requireMemory(
+      gridNeed("carrying the volume", options.grid, [&](const LatticeChoice& grid) {
+        TransferOptions other = options;
+        other.grid = grid;
+        return transferMemory(solid, grids, other, kind, growth);
+      }));
 }
 
 openvdb::FloatGrid::Ptr outputLevelSet(const Solid& solid, const openvdb::GridPtrVec& grids,

@@ -94,9 +94,9 @@ void Job::carryGrids(const openvdb::GridPtrVec& given, const CarrySettings& carr
   const double from = push_ ? source.volume() : target.volume(),
                to = push_ ? target.volume() : source.volume();
   const LevelSetSettings output = o_.output(given, voxelGrowth(from, to));
-  requireMemory("carrying the grids",
-                carryMemory(push_ ? target : source, given, output, outside_, carry, {push_, 0}),
-                "use a lower resolution");
+  requireMemory({"carrying the grids",
+                 carryMemory(push_ ? target : source, given, output, outside_, carry, {push_, 0}),
+                 "use a lower resolution"});
   const openvdb::FloatGrid::Ptr levelSet = makeLevelSet(push_ ? target : source, output);
   if (push_) {
     out.pushed = VolumePusher(source, given, settings<PushSettings>(carry)).push(way_, *levelSet);

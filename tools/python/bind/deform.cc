@@ -76,10 +76,10 @@ py::object Deformation::grids(const py::object& what,
   const FrameTable made = call(o_.call, [&]() {
     settings.output = o_.output(given, 1);
     const FrameFitter fitter = fitterOf(rest_, o_.fitting, 0);
-    requireMemory("carrying the grids",
-                  carryMemory(fitter.solid(), given, settings.output, outside_.settings,
-                              settings.push.carry, {true, o_.velocity ? 1 : 0}),
-                  "use a lower resolution");
+    requireMemory({"carrying the grids",
+                   carryMemory(fitter.solid(), given, settings.output, outside_.settings,
+                               settings.push.carry, {true, o_.velocity ? 1 : 0}),
+                   "use a lower resolution"});
     const FramePusher pusher(fitter, given, settings);
     return frames_.table(fitter, [&](const FittedFrame& frame) {
       std::vector<CarriedField> fields;

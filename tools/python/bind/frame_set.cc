@@ -165,8 +165,8 @@ Figures rowOf(const FrameFit& fit) {
 
 FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, std::uint64_t others) {
   const FrameFitterSettings& settings = o.fitting;
-  requireMemory(fmt::format("a sequence with {} charges", settings.sources),
-                frameFitterMemory(settings, others), "use fewer charges");
+  requireMemory({fmt::format("a sequence with {} charges", settings.sources),
+                 frameFitterMemory(settings, others), "use fewer charges"});
   return FrameFitter(makeSourceBoundary(rest), settings);
 }
 

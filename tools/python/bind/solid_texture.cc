@@ -60,9 +60,9 @@ py::object texture(const Arguments& a, TextureOptions& o) {
     const SolidTexturePlan plan = planSolidTexture(std::move(mesh), settings);
     std::vector<UdimTile> tiles;
     if (isTiled(image)) tiles = udimTiles(plan.mesh());
-    requireMemory("the solid texture",
-                  plan.memory + (image.empty() ? 0 : textureImageMemory(image, tiles)),
-                  "use larger voxels or fewer charges");
+    requireMemory({"the solid texture",
+                   plan.memory + (image.empty() ? 0 : textureImageMemory(image, tiles)),
+                   "use larger voxels or fewer charges"});
     TextureLookup lookup;
     if (!image.empty())
       lookup = [images = TextureImages(image, tiles, o.images)](
