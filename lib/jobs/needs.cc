@@ -8,12 +8,12 @@
 namespace innermap {
 
 void requireMemory(const MemoryNeed& need, std::uint64_t held, std::uint64_t limit,
-                   const std::function<std::string(const std::string&)>& shown) {
-  const std::string advice = withNames(need.advice, shown);
+                   const SettingSpelling& spelled) {
+  const std::string advice = withNames(need.advice, spelled);
   if (!need.size) return requireMemory(need.doing, held + need.bytes, limit, advice);
   const auto inAll = [&](std::uint64_t value) { return held + need.size->need(value); };
   requireMemoryFor(need.doing, held + need.bytes, limit,
-                   {shown(need.size->setting), need.size->least, need.size->most, inAll}, advice);
+                   {spelled(need.size->setting), need.size->least, need.size->most, inAll}, advice);
 }
 
 MemoryNeed gridNeed(const std::string& doing, const LatticeChoice& grid,

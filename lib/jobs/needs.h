@@ -22,10 +22,14 @@ struct MemoryNeed {
   std::optional<SizeOption> size = {};  // a setting that lowers the need, as the library calls it
 };
 
+// A setting as the caller's users write it: "--max-memory".
+using SettingSpelling = std::function<std::string(const std::string&)>;
+inline std::string asCalled(const std::string& setting) { return setting; }
+
 // Throws MemoryError when the need and `held` bytes are over `limit`, with the largest size that
-// would fit. shown: a setting as the caller's users write it, "--max-memory".
+// would fit.
 void requireMemory(const MemoryNeed& need, std::uint64_t held, std::uint64_t limit,
-                   const std::function<std::string(const std::string&)>& shown);
+                   const SettingSpelling& spelled);
 
 // Of grids, by how fine they are. need: bytes.
 MemoryNeed gridNeed(const std::string& doing, const LatticeChoice& grid,

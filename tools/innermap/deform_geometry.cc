@@ -162,17 +162,15 @@ bool DeformGeometry::cache() const { return isPointCache(output); }
 void deformGeometry(const DeformGeometry& job, const Frames& frames, Context& context) {
   // What the fitter leaves scattered over the heap counts when the first frame is carried.
   constexpr std::uint64_t kScattered = 25'000'000;
+  const FrameFitterSettings& settings = job.frames.fitting;
   const std::uint64_t need = geometryMemory(job.input) + kScattered;
   JobSize size;
   size.items = static_cast<double>(need) / 1e6;
   context.expect(framePhases(job.frames.fitting.sources, frames.wanted.size(),
                              stageOf("frames: geometry", size)));
-  if (context.dryRun()) {
-    const FrameFitterSettings settings = job.frames.fitting;
-    return context.plan({framesPlan(settings, frames), planned(job, frames)},
-                        frameFitterMemory(settings, need));
-  }
-  requireFrameMemory(job.frames.fitting, need, context);
+  if (!context.begins({framesPlan(settings, frames), planned(job, frames)},
+                      framesNeed(settings, need)))
+    return;
   Deformer deformer(job, frames, context);
   const auto writeFile = [&](std::size_t index, const CarriedGeometry& carried) {
     const FramePattern pattern("--output", job.output);

@@ -15,6 +15,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 void sayBroken(const std::vector<FrameResult>& results, const std::string& unit, Context& context) {
+  std::vector<std::string> errors;
+  for (const FrameResult& r : results) errors.push_back(r.error);
+  requireOneGood(errors, unit);
   std::vector<std::int64_t> broken;
   const FrameResult* first = nullptr;
   for (const FrameResult& r : results) {
@@ -25,26 +28,10 @@ void sayBroken(const std::vector<FrameResult>& results, const std::string& unit,
   if (!first) return;
   const auto count = std::count_if(results.begin(), results.end(),
                                    [](const FrameResult& r) { return !r.error.empty(); });
-  if (count == static_cast<std::ptrdiff_t>(results.size()))
-    throw DataError(count == 1 ? first->error
-                               : fmt::format("none of the {} {}s can be used; the first: {}", count,
-                                             unit, first->error));
   context.failAfterwards(fmt::format("{} of {} {}s could not be used: {}{}; the first: {}", count,
                                      results.size(), unit, fmt::join(broken, ", "),
                                      static_cast<std::size_t>(count) > broken.size() ? ", ..." : "",
                                      first->error));
-}
-
-// The error's text when the frame is broken.
-std::string tryFrame(std::size_t index, const std::function<void(std::size_t)>& body) {
-  try {
-    body(index);
-  } catch (const FileError& error) {
-    return error.what();
-  } catch (const DataError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 }  // namespace
@@ -66,7 +53,7 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
       if (Page* page = context.page())
         page->frame = PageFrame{result.file.number, results.size(), frames.wanted.size()};
       const auto start = Clock::now();
-      result.error = tryFrame(index, body);
+      result.error = whyBroken([&] { body(index); });
       result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
       if (!result.error.empty())
         context.warning(

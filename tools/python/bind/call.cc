@@ -194,8 +194,7 @@ void keepPythonError(const py::error_already_set& error) {
 }
 
 void requireMemory(const MemoryNeed& need) {
-  innermap::requireMemory(need, processMemory(0), memoryLimit(),
-                          [](const std::string& setting) { return setting; });
+  innermap::requireMemory(need, processMemory(0), memoryLimit(), asCalled);
 }
 
 void runCall(const CallOptions& options, const std::function<void()>& work) {

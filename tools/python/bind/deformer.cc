@@ -52,7 +52,7 @@ std::shared_ptr<PyDeformer> makeDeformer(const py::object& source, const py::obj
   fitting.fitting = o.fitting;
   return call(o.call, [&] {
     const std::uint64_t kept = 3 * sizeof(Vec3) * points.size();
-    FrameCarrier carrier(fitterOf(rest, fitting, kept), outside);
+    FrameCarrier carrier(fitterOf(makeSourceBoundary(rest), fitting, kept), outside);
     PlacedPoints placed = carrier.pusher.place(points);
     return std::make_shared<PyDeformer>(PyDeformer{rest, std::move(carrier), std::move(placed)});
   });
