@@ -13,6 +13,7 @@
 #include "innermap/core/version.h"
 #include "innermap/io/vdb_file.h"
 #include "job_cost.h"
+#include "jobs/carry_job.h"
 #include "report/report_figures.h"
 #include "share.h"
 #include "transfer_options.h"
@@ -99,7 +100,7 @@ bool isFinished(const std::string& path, const std::string& inputs) {
 FrameCarry frameCarry(const DeformOptions& o, const openvdb::GridPtrVec& grids) {
   return {carrySettings(o.transfer),
           frameOutside(o.transfer),
-          outputSettings(grids, o.transfer.grid),
+          carriedVoxels(grids, o.transfer.grid),
           o.velocity,
           o.framesPerSecond(),
           o.shutter};
@@ -242,7 +243,7 @@ std::vector<JobPhase> phasesOf(const DeformOptions& options, const Solid& solid,
   const std::size_t charges = options.frames.fitting.sources;
   if (grids.empty())  // geometry, which takes no time beside the fit
     return framePhases(charges, frames.wanted.size(), stageOf("frames: volume", JobSize{}));
-  JobSize size = jobSize(solid, outputSettings(grids, options.transfer.grid), charges);
+  JobSize size = jobSize(solid, carriedVoxels(grids, options.transfer.grid), charges);
   size.items = static_cast<double>(grids.size()) * size.inside;
   return framePhases(charges, frames.wanted.size(), stageOf("frames: volume", size));
 }

@@ -107,40 +107,6 @@ openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& o
   return grids;
 }
 
-LevelSetSettings outputSettings(const openvdb::GridPtrVec& grids, const LatticeChoice& options,
-                                double growth) {
-  auto settings = options.in<LevelSetSettings>();
-  if (!options.voxelSize && !options.resolution) settings.voxelSize = growth * finestVoxel(grids);
-  return settings;
-}
-
-std::uint64_t transferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                             const TransferOptions& options, const CarryKind& kind, double growth) {
-  OutsideSettings outside;
-  outside.distance = options.outside;
-  return carryMemory(solid, grids, outputSettings(grids, options.grid, growth), outside,
-                     carrySettings(options), kind);
-}
-
-void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                           const TransferOptions& options, const Context& context,
-                           const CarryKind& kind, double growth) {
-  context.requireMemory(
-      gridNeed("carrying the volume", options.grid, [&](const LatticeChoice& grid) {
-        TransferOptions other = options;
-        other.grid = grid;
-        return transferMemory(solid, grids, other, kind, growth);
-      }));
-}
-
-openvdb::FloatGrid::Ptr outputLevelSet(const Solid& solid, const openvdb::GridPtrVec& grids,
-                                       const TransferOptions& options, Context& context,
-                                       double growth) {
-  return context.timed("level set", [&] {
-    return makeLevelSet(solid, outputSettings(grids, options.grid, growth));
-  });
-}
-
 void reportPush(const PushResult& result, Context& context) {
   Report& report = context.report();
   if (result.inverted) report.add("inverse", figures(result.statistics));

@@ -36,24 +36,6 @@ FrameOutside frameOutside(const TransferOptions& options);
 openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& options,
                                Context& context);
 
-// Need in bytes of pushing or pulling the grids, read already, to the solid's voxels.
-std::uint64_t transferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                             const TransferOptions& options, const CarryKind& kind,
-                             double growth = 1);
-
-void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                           const TransferOptions& options, const Context& context,
-                           const CarryKind& kind, double growth = 1);
-
-// Of the output's solid: by --voxel-size or --resolution, else with the finest voxels of the grids,
-// times `growth`.
-LevelSetSettings outputSettings(const openvdb::GridPtrVec& grids, const LatticeChoice& options,
-                                double growth = 1);
-
-openvdb::FloatGrid::Ptr outputLevelSet(const Solid& solid, const openvdb::GridPtrVec& grids,
-                                       const TransferOptions& options, Context& context,
-                                       double growth = 1);
-
 // Fills the report's "inverse", "mass" and "densities"; passes on the warnings.
 void reportPush(const PushResult& result, Context& context);
 

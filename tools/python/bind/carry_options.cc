@@ -91,12 +91,6 @@ OutsideSettings outsideFrom(double outside, const py::object& fadeTo, const Poin
   return out;
 }
 
-LevelSetSettings CarryOptions::output(const openvdb::GridPtrVec& carried, double growth) const {
-  auto out = lattice.in<LevelSetSettings>();
-  if (!lattice.resolution && !lattice.voxelSize) out.voxelSize = growth * finestVoxel(carried);
-  return out;
-}
-
 py::dict totalsOf(const PushResult& result) {
   py::dict out, masses;
   for (const CarriedMass& mass : result.masses) {

@@ -33,8 +33,6 @@ struct CarryOptions {
   CarrySettings carry() const;
   // from, to: corresponding points of the two solids.
   OutsideSettings outsideSettings(const Points& from, const Points& to) const;
-  // Voxels of the output: as asked for, else those of the grids times `growth`.
-  LevelSetSettings output(const openvdb::GridPtrVec& carried, double growth) const;
 };
 
 // Keywords outside and fade_to, and what they say. from, to: corresponding points of the solids.

@@ -12,6 +12,7 @@
 #include "core/frame_files.h"
 #include "innermap/core/memory.h"
 #include "innermap/transfer/carry.h"
+#include "jobs/carry_job.h"
 #include "jobs/frames_job.h"
 
 namespace py = pybind11;
@@ -70,7 +71,7 @@ py::object Deformation::grids(const py::object& what,
                  o_.shutter};
   std::vector<PushResult> results;
   const FrameTable made = call(o_.call, [&]() {
-    how.output = o_.output(given, 1);
+    how.output = carriedVoxels(given, o_.lattice);
     requireNoVelocity(how, given, o_.names, "inside", asCalled);
     SourceBoundary rest = makeSourceBoundary(rest_);
     const std::uint64_t others = frameCarryMemory(rest.solid, given, how);
