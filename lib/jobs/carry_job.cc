@@ -9,6 +9,18 @@ LevelSetSettings carriedVoxels(const openvdb::GridPtrVec& grids, const LatticeCh
   return out;
 }
 
+OutsideSettings outsideSettings(double distance, const FadeTo& fade, const Points& from,
+                                const Points& to) {
+  OutsideSettings out;
+  out.distance = distance;
+  out.fadeTo = fade.fitted ? bestRigidMotion(from, to) : fade.motion;
+  return out;
+}
+
+FrameOutside frameOutside(double distance, const FadeTo& fade) {
+  return {outsideSettings(distance, {fade.motion}, {}, {}), fade.fitted};
+}
+
 MemoryNeed CarryJob::need() const {
   return gridNeed("carrying the grids", lattice, [this](const LatticeChoice& choice) {
     return carryMemory(to(), grids, carriedVoxels(grids, choice, growth()), outside, carry,

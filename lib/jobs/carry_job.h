@@ -4,6 +4,7 @@
 #include <openvdb/openvdb.h>
 
 #include <memory>
+#include <optional>
 
 #include "innermap/fit/mapped_solid.h"
 #include "innermap/transfer/inverse_map.h"
@@ -15,6 +16,19 @@ namespace innermap {
 // Voxels of the grids that are made of others: as chosen, else the finest of theirs times `growth`.
 LevelSetSettings carriedVoxels(const openvdb::GridPtrVec& grids, const LatticeChoice& choice,
                                double growth = 1);
+
+// What the map fades to around a solid: this motion, or the best rigid one of the surface; neither:
+// it ends there.
+struct FadeTo {
+  std::optional<RigidMotion> motion;
+  bool fitted = false;
+};
+
+// from, to: corresponding points of the two solids.
+OutsideSettings outsideSettings(double distance, const FadeTo& fade, const Points& from,
+                                const Points& to);
+// The motion that is fitted is each frame's own.
+FrameOutside frameOutside(double distance, const FadeTo& fade);
 
 struct CarryJob {
   bool push = true;  // else pull

@@ -23,12 +23,8 @@ std::vector<std::size_t> wantedFrames(const std::vector<std::int64_t>& numbers,
   for (std::size_t i = 0; i < numbers.size(); ++i)
     if (!chosen || chosen->contains(numbers[i])) out.push_back(i);
   if (!out.empty()) return out;
-  throw SettingError(
-      setting,
-      fmt::format("'{}' has none of the frames; {}", ranges,
-                  numbers.size() == 1 ? fmt::format("the only one is {}", numbers.front())
-                                      : fmt::format("there are {} from {} to {}", numbers.size(),
-                                                    numbers.front(), numbers.back())));
+  throw SettingError(setting, fmt::format("'{}' has none of the frames; there are {} from {} to {}",
+                                          ranges, numbers.size(), numbers.front(), numbers.back()));
 }
 
 std::string whyBroken(const std::function<void()>& body) {
@@ -63,8 +59,9 @@ MemoryNeed framesNeed(const FrameFitterSettings& settings, std::uint64_t others)
           SizeOption{"charges", 1, kMaxCharges, at}};
 }
 
-std::uint64_t frameGridMemory(const Solid& rest, const MapGridSettings& settings) {
-  return mapGridMemory(rest, settings, {1, false, false});
+MemoryNeed sequenceNeed(const FrameFitterSettings& settings, const Solid& rest,
+                        const MapGridSettings& grids) {
+  return framesNeed(settings, mapGridMemory(rest, grids, {1, false, false}));
 }
 
 FramePushSettings pushSettings(const FrameCarry& how) {

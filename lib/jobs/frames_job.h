@@ -28,9 +28,9 @@ void requireOneGood(const std::vector<std::string>& errors, const std::string& u
 
 // others: bytes that a frame takes beside its fit.
 MemoryNeed framesNeed(const FrameFitterSettings& settings, std::uint64_t others);
-
-// Bytes that a FrameEvaluator takes.
-std::uint64_t frameGridMemory(const Solid& rest, const MapGridSettings& settings);
+// Of measuring maps from this rest pose on grids.
+MemoryNeed sequenceNeed(const FrameFitterSettings& settings, const Solid& rest,
+                        const MapGridSettings& grids);
 
 // How grids are carried through frames.
 struct FrameCarry {

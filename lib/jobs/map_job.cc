@@ -10,15 +10,7 @@ MapJob mapJob(Mesh source, Mesh target) {
     moved.vertices = std::move(target.vertices);
     target = std::move(moved);
   }
-  return mapJob(std::move(source), TargetMesh{std::move(target), related});
-}
-
-MapJob mapJob(Mesh source, TargetMesh target) {
-  return {std::move(source), std::move(target.mesh), target.related, false};
-}
-
-MapJob laidMapJob(Mesh source, Mesh target) {
-  return {std::move(source), std::move(target), true, true};
+  return {std::move(source), std::move(target), related};
 }
 
 MeshCorrespondenceSettings layingSettings(MeshCorrespondenceSettings given, std::uint64_t seed) {

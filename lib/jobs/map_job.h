@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "innermap/correspond/mesh_correspondence.h"
-#include "innermap/mesh/mesh_file.h"
 
 namespace innermap {
 
@@ -18,11 +17,8 @@ struct MapJob {
   bool laidOn() const { return laid || !related; }
 };
 
-// Finds out whether they are related: a target that is has the source's polygons.
+// Finds out whether they are related; a target that is gets the source's polygons.
 MapJob mapJob(Mesh source, Mesh target);
-MapJob mapJob(Mesh source, TargetMesh target);
-// target: the source with its vertices on a stranger.
-MapJob laidMapJob(Mesh source, Mesh target);
 
 // For a source that a map with this seed is fitted to afterwards.
 MeshCorrespondenceSettings layingSettings(MeshCorrespondenceSettings given, std::uint64_t seed);

@@ -13,7 +13,6 @@
 #include "innermap/core/version.h"
 #include "innermap/io/vdb_file.h"
 #include "job_cost.h"
-#include "jobs/carry_job.h"
 #include "report/report_figures.h"
 #include "share.h"
 #include "transfer_options.h"
@@ -99,7 +98,7 @@ bool isFinished(const std::string& path, const std::string& inputs) {
 
 FrameCarry frameCarry(const DeformOptions& o, const openvdb::GridPtrVec& grids) {
   return {carrySettings(o.transfer),
-          frameOutside(o.transfer),
+          frameOutside(o.transfer.outside, fadeTo(o.transfer)),
           carriedVoxels(grids, o.transfer.grid),
           o.velocity,
           o.framesPerSecond(),
@@ -200,7 +199,7 @@ void check(const DeformOptions& options, const Frames& frames) {
   if (options.velocity && frames.all.size() < 2)
     throw UsageError("--velocity: needs at least two frames; give more or leave it out");
   // Refuses what makes no sense before anything is read; which motion fits is not known yet.
-  frameOutside(options.transfer);
+  fadeTo(options.transfer);
 }
 
 // Those whose output is not there or was made from something else.
@@ -259,14 +258,6 @@ void writeJobs(const DeformOptions& options, const Frames& frames, Context& cont
                  context);
 }
 
-std::vector<std::string> planOf(const DeformOptions& options, const Frames& frames,
-                                const FramePattern& pattern) {
-  const auto path = [&](std::size_t i) { return pattern.path(frames.all[i].number); };
-  return {framesPlan(options.frames.fitting, frames), "carry " + options.volume + " to " +
-                                                          path(frames.wanted.front()) + " to " +
-                                                          path(frames.wanted.back())};
-}
-
 void run(const DeformOptions& options, Context& context) {
   const FramePattern pattern("--output", options.output);
   Frames frames = listFrames(options.frames, options.rest, context);
@@ -298,7 +289,10 @@ void run(const DeformOptions& options, Context& context) {
   SourceBoundary rest = readRest(options.rest, frames, context);
   Inside inside = readInside(options, rest.solid, context);
   context.expect(phasesOf(options, rest.solid, inside.grids, left));
-  if (!context.begins(planOf(options, frames, pattern), inside.need)) return;
+  if (!context.begins({framesPlan(options.frames.fitting, frames),
+                       carryPlan(options.volume, options.output, frames)},
+                      inside.need))
+    return;
   Deformer deformer(options, left, std::move(rest), inside.grids, context);
   std::map<std::size_t, DeformRow> rows;
   context.print(fmt::format("{:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "frame", "voxels",

@@ -28,7 +28,7 @@ class Deformer {
         fitter_(makeFrameFitter(readRest(job.rest, frames, context), job.frames.fitting, context)),
         fits_(makeFrameFits(fitter_, frames, context)),
         file_(readGeometryFile(job.input, job.geometry, context)) {
-    const FrameOutside outside = frameOutside(job.transfer);
+    const FrameOutside outside = frameOutside(job.transfer.outside, fadeTo(job.transfer));
     pusher_.emplace(fitter_.solid(), carryPointsSettings(outside.settings, kAccuracy),
                     outside.fitted);
   }
@@ -147,14 +147,6 @@ Made makeCache(const DeformGeometry& job, const Frames& frames, const std::strin
   return made;
 }
 
-std::string planned(const DeformGeometry& job, const Frames& frames) {
-  if (job.cache()) return "carry " + job.input + " to " + job.output;
-  const FramePattern pattern("--output", job.output);
-  const auto path = [&](std::size_t i) { return pattern.path(frames.all[i].number); };
-  return "carry " + job.input + " to " + path(frames.wanted.front()) + " to " +
-         path(frames.wanted.back());
-}
-
 }  // namespace
 
 bool DeformGeometry::cache() const { return isPointCache(output); }
@@ -168,9 +160,9 @@ void deformGeometry(const DeformGeometry& job, const Frames& frames, Context& co
   size.items = static_cast<double>(need) / 1e6;
   context.expect(framePhases(job.frames.fitting.sources, frames.wanted.size(),
                              stageOf("frames: geometry", size)));
-  if (!context.begins({framesPlan(settings, frames), planned(job, frames)},
-                      framesNeed(settings, need)))
-    return;
+  const std::string carry = job.cache() ? "carry " + job.input + " to " + job.output
+                                        : carryPlan(job.input, job.output, frames);
+  if (!context.begins({framesPlan(settings, frames), carry}, framesNeed(settings, need))) return;
   Deformer deformer(job, frames, context);
   const auto writeFile = [&](std::size_t index, const CarriedGeometry& carried) {
     const FramePattern pattern("--output", job.output);

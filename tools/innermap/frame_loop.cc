@@ -16,22 +16,21 @@ using Clock = std::chrono::steady_clock;
 
 void sayBroken(const std::vector<FrameResult>& results, const std::string& unit, Context& context) {
   std::vector<std::string> errors;
-  for (const FrameResult& r : results) errors.push_back(r.error);
-  requireOneGood(errors, unit);
   std::vector<std::int64_t> broken;
   const FrameResult* first = nullptr;
   for (const FrameResult& r : results) {
+    errors.push_back(r.error);
     if (r.error.empty()) continue;
     if (!first) first = &r;
-    if (broken.size() < 20) broken.push_back(r.file.number);
+    broken.push_back(r.file.number);
   }
+  requireOneGood(errors, unit);
   if (!first) return;
-  const auto count = std::count_if(results.begin(), results.end(),
-                                   [](const FrameResult& r) { return !r.error.empty(); });
+  const std::size_t count = broken.size(), told = std::min<std::size_t>(count, 20);
+  broken.resize(told);
   context.failAfterwards(fmt::format("{} of {} {}s could not be used: {}{}; the first: {}", count,
                                      results.size(), unit, fmt::join(broken, ", "),
-                                     static_cast<std::size_t>(count) > broken.size() ? ", ..." : "",
-                                     first->error));
+                                     count > told ? ", ..." : "", first->error));
 }
 
 }  // namespace

@@ -175,4 +175,9 @@ std::string framesPlan(const FrameFitterSettings& settings, const Frames& frames
                      frames.all[frames.wanted.back()].number);
 }
 
+std::string carryPlan(const std::string& input, const std::string& output, const Frames& frames) {
+  const std::vector<std::string> paths = framePaths(FramePattern("--output", output), frames);
+  return fmt::format("carry {} to {} to {}", input, paths.front(), paths.back());
+}
+
 }  // namespace innermap::tool

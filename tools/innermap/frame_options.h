@@ -69,5 +69,7 @@ FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context
 
 // "fit 8000 charges to 24000 boundary points for 48 frames, 1 to 48", for --dry-run.
 std::string framesPlan(const FrameFitterSettings& settings, const Frames& frames);
+// "carry smoke.vdb to out/a.0001.vdb to out/a.0048.vdb", likewise.
+std::string carryPlan(const std::string& input, const std::string& output, const Frames& frames);
 
 }  // namespace innermap::tool

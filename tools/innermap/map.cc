@@ -65,13 +65,13 @@ MapJob readJob(const MapOptions& options, Context& context) {
                       context);
     });
     if (!options.target.empty()) requireOnTarget(laid, readMeshFile(options.target, context));
-    return laidMapJob(std::move(source), std::move(laid));
+    return {std::move(source), std::move(laid), true, true};
   }
   requireMeshMemory(options.target, context);
   TargetMesh target = context.timed("read", [&] { return readTarget(options.target, source); });
   target.mesh = inOutput(options.target, std::move(target.mesh), context);
   if (!target.related && context.page()) addMesh(*context.page(), target.mesh);
-  return mapJob(std::move(source), std::move(target));
+  return {std::move(source), std::move(target.mesh), target.related};
 }
 
 std::string correspondPlan(const MapOptions& options) {

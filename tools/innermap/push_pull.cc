@@ -40,7 +40,8 @@ CarryJob read(bool push, const CarryOptions& options, Context& context) {
   auto mapped = std::make_shared<const MappedSolid>(readMapFile(options.map, context));
   const TransferOptions& o = options.transfer;
   const OutsideSettings outside =
-      outsideSettings(o, mapped->solid().repaired().mesh.vertices, mapped->boundary.target.moved);
+      outsideSettings(o.outside, fadeTo(o), mapped->solid().repaired().mesh.vertices,
+                      mapped->boundary.target.moved);
   openvdb::GridPtrVec grids = readVolume(options.volume, o, context);
   Solid target = targetSolid(*mapped, context);
   SolidMap map = mapOf(options, *mapped, context);
@@ -159,7 +160,8 @@ void runGeometry(bool push, const CarryOptions& options, Context& context) {
   const MappedSolid mapped = readMapFile(options.map, context);
   const Points& moved = mapped.boundary.target.moved;
   const OutsideSettings outside =
-      outsideSettings(options.transfer, mapped.solid().repaired().mesh.vertices, moved);
+      outsideSettings(options.transfer.outside, fadeTo(options.transfer),
+                      mapped.solid().repaired().mesh.vertices, moved);
   const std::uint64_t need =
       geometryMemory(options.volume) + carrierMemory(push, mapped.solid(), outside);
   if (!context.begins({fmt::format("{} {} by {}", wordOf(push), options.volume, options.map),

@@ -86,8 +86,7 @@ void run(const SequenceOptions& options, Context& context) {
   const FrameFitterSettings settings = options.frames.fitting;
   SourceBoundary rest = readRest(options.rest, frames, context);
   requireInterior(rest.solid, options.evaluation.grid.in<LevelSetSettings>());
-  const MemoryNeed need =
-      framesNeed(settings, frameGridMemory(rest.solid, mapGridSettings(options.evaluation)));
+  const MemoryNeed need = sequenceNeed(settings, rest.solid, mapGridSettings(options.evaluation));
   const JobSize size = jobSize(rest.solid, mapGridSettings(options.evaluation), settings.sources);
   JobPhase each = stageOf("frames: grids", withNearSums(size));
   if (settings.prove != Prove::off)

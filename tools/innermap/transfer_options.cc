@@ -71,27 +71,12 @@ CarrySettings carrySettings(const TransferOptions& options) {
   return out;
 }
 
-OutsideSettings outsideSettings(const TransferOptions& options, const Points& from,
-                                const Points& to) {
-  OutsideSettings out;
-  out.distance = options.outside;
-  if (options.fadeTo == "cut") return out;
+FadeTo fadeTo(const TransferOptions& options) {
+  if (options.fadeTo == "cut") return {};
   if (!(options.outside > 0))
     throw UsageError("--fade-to: is for what lies outside; give --outside too");
-  if (options.fadeTo == "identity")
-    out.fadeTo = RigidMotion();
-  else
-    out.fadeTo =
-        options.fadeTo == "fitted" ? bestRigidMotion(from, to) : parseMotion(options.fadeTo);
-  return out;
-}
-
-FrameOutside frameOutside(const TransferOptions& options) {
-  FrameOutside out;
-  out.fitted = options.fadeTo == "fitted" && options.outside > 0;
-  if (!out.fitted) out.settings = outsideSettings(options, {}, {});
-  out.settings.distance = options.outside;
-  return out;
+  if (options.fadeTo == "fitted") return {{}, true};
+  return {options.fadeTo == "identity" ? RigidMotion() : parseMotion(options.fadeTo)};
 }
 
 openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& options,

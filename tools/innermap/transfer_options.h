@@ -6,6 +6,7 @@
 #include "grid_options.h"
 #include "innermap/transfer/carry.h"
 #include "innermap/transfer/push_pull.h"
+#include "jobs/carry_job.h"
 #include "report/verdict.h"
 
 namespace innermap::tool {
@@ -25,12 +26,8 @@ void addTransferOptions(Command& command, TransferOptions& options);
 
 CarrySettings carrySettings(const TransferOptions& options);
 
-// from, to: boundary points before and after the motion, for --fade-to fitted. Throws UsageError
-// for a motion that is none.
-OutsideSettings outsideSettings(const TransferOptions& options, const Points& from,
-                                const Points& to);
-// Where the motion of --fade-to fitted is each frame's own. Throws as above.
-FrameOutside frameOutside(const TransferOptions& options);
+// What --fade-to says. Throws UsageError for a motion that is none.
+FadeTo fadeTo(const TransferOptions& options);
 
 // The grids to be carried. Throws FileError for a name that is not there.
 openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& options,

@@ -18,7 +18,6 @@
 #include "innermap/io/geometry_file.h"
 #include "innermap/tetra/cells.h"
 #include "innermap/transfer/push_pull.h"
-#include "jobs/carry_job.h"
 
 namespace py = pybind11;
 
@@ -49,7 +48,8 @@ class Job {
       : push_(push), map_(map), o_(o), way_(map.mapped->map) {
     const MappedSolid& mapped = *map.mapped;
     outside_ =
-        o.outsideSettings(mapped.solid().repaired().mesh.vertices, mapped.boundary.target.moved);
+        outsideSettings(o.outside, fadeToFrom(o.outside, o.fadeTo),
+                        mapped.solid().repaired().mesh.vertices, mapped.boundary.target.moved);
     if (!o.through.is_none()) way_ = linearMapOf(cellsFrom(o.through, "through", o.call), mapped);
   }
 

@@ -12,7 +12,6 @@
 #include "core/frame_files.h"
 #include "innermap/core/memory.h"
 #include "innermap/transfer/carry.h"
-#include "jobs/carry_job.h"
 #include "jobs/frames_job.h"
 
 namespace py = pybind11;
@@ -40,7 +39,10 @@ struct DeformOptions : CarryOptions {
 class Deformation {
  public:
   Deformation(const Mesh& rest, const FrameSet& frames, const DeformOptions& o)
-      : rest_(rest), frames_(frames), o_(o), outside_(frameOutsideFrom(o.outside, o.fadeTo)) {}
+      : rest_(rest),
+        frames_(frames),
+        o_(o),
+        outside_(frameOutside(o.outside, fadeToFrom(o.outside, o.fadeTo))) {}
 
   py::object grids(const py::object& what, const std::optional<FramePattern>& pattern) const;
   py::object points(const Points& points) const;

@@ -30,7 +30,7 @@ struct FitOptions {
 MapJob jobOf(const Arguments& a, const CallOptions& options) {
   if (a.size() == 1 && py::isinstance<PyCorrespondence>(a[0])) {
     const auto& c = py::cast<const PyCorrespondence&>(a[0]);
-    return laidMapJob(c.source, c.target("target"));
+    return {c.source, c.target("target"), true, true};
   }
   std::size_t at = 0;
   Mesh source = takeMesh(a, at, "source");
@@ -38,12 +38,12 @@ MapJob jobOf(const Arguments& a, const CallOptions& options) {
   const bool last = at + 1 == a.size();
   if (last && isArrayLike(a[at])) {
     Mesh target = takeTarget(a, at, source);
-    return mapJob(std::move(source), TargetMesh{std::move(target)});
+    return {std::move(source), std::move(target)};
   }
   if (last && isPath(a[at])) {
     const std::string path = pathFrom(a[at], "target");
     TargetMesh target = call(options, [&] { return readTarget(path, source); });
-    return mapJob(std::move(source), std::move(target));
+    return {std::move(source), std::move(target.mesh), target.related};
   }
   Mesh target = takeMesh(a, at, "target");
   if (at < a.size()) throw py::type_error("fit() takes a source and a target, no more");
@@ -58,7 +58,7 @@ py::object fit(const Arguments& a, FitOptions& o) {
     laying.timeShare = kLayingTimeShare;
     const auto laid = correspondMeshes(
         job.source, job.target, layingSettings(o.correspond.settings(), settings.seed), laying);
-    job = laidMapJob(laid->source, laid->target(job.target.name));
+    job = {laid->source, laid->target(job.target.name), true, true};
   }
   return py::cast(std::make_shared<PyMap>(call(o.call, [&]() {
     requireMemory(fitNeed(settings, job.source.vertices.size()));

@@ -58,8 +58,8 @@ py::object sequence(const Arguments& a, SequenceOptions& o) {
     auto settings = o.grid.in(MapGridSettings{});
     settings.lame = o.lame;
     SourceBoundary boundary = makeSourceBoundary(rest);
-    const std::uint64_t others = frameGridMemory(boundary.solid, settings);
-    const FrameFitter fitter = fitterOf(std::move(boundary), o.fitting, others);
+    requireMemory(sequenceNeed(o.fitting.fitting, boundary.solid, settings));
+    const FrameFitter fitter(std::move(boundary), o.fitting.fitting);
     const FrameEvaluator evaluator(fitter, names, settings);
     return frames.table(fitter, [&](const FittedFrame& frame) {
       const MapGrids grids = evaluator.evaluate(*frame.fit.fit);
