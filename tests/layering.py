@@ -18,7 +18,7 @@ import sys
 # Words that must not stand in a room's sources, comments aside.
 FORBIDDEN = {"solve": r"\bmesh\b|\bMesh\b|openvdb"}
 # Rooms whose private headers serve the programs of this repository too.
-OPEN = ("core", "report")
+OPEN = ("core", "jobs", "report")
 MOST_PUBLIC = 50
 TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)\b(?!::)[^;(]*\{", re.M)
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.M)

@@ -251,8 +251,9 @@ def test_bad_input():
     fails(2, "deform", "rest.obj", "rest.vdb", "-o", "x.vdb", says=["FRAMES"])
     ball_frames(moved, {1: 0.1, 2: 0.2})
     deform("--velocity", "--grids", "density", "--frames", "1")
-    fails(1, "deform", "rest.obj", "out/d.0001.vdb", "frames", "-o", "y.vdb", "--velocity", *SMALL,
-          says=["velocity", "--grids"])
+    for dry in [], ["--dry-run"]:
+        fails(1, "deform", "rest.obj", "out/d.0001.vdb", "frames", "-o", "y.vdb", "--velocity", *SMALL, *dry,
+              says=["velocity", "--grids"])
     text = cli.dry_run(*names, "-o", "x.vdb").text
     assert "x.0001.vdb" in text and "x.0002.vdb" in text, text
 

@@ -59,6 +59,8 @@ def test_names_the_argument_that_is_wrong():
 
 def test_refuses_what_needs_more_memory():
     V, F = shapes.ball(2)
+    shapes.refuses((lambda: innermap.fit(V, F, V, charges=20000, max_memory="500MB"), MemoryError,
+                    "use charges "))
     try:
         innermap.fit(V, F, V, max_memory="1MB")
     except innermap.MemoryError as error:

@@ -72,7 +72,14 @@ def test_frames_have_the_numbers_given():
         assert np.abs(v[np.abs(v[..., 0]) > 0] - [0.1, 0, 0]).max() < 1e-5
     table = innermap.sequence((V, F), frames[:2], numbers=[3, 5], only="5", resolution=16, charges=50)
     assert list(table["frame"]) == [5]
+    posed = innermap.read_vdb("s.0007.vdb")
     shapes.refuses(
+        (lambda: innermap.deform((V, F), posed, frames, velocity=True), innermap.DataError,
+         "already has a grid 'velocity'; leave out velocity or choose the others by grids"),
+        (lambda: innermap.deform((V, F), V, frames, only="5-9"), innermap.SettingError,
+         "only: '5-9' has none of the frames; there are 3 from 0 to 2"),
+        (lambda: innermap.sequence((V, F), frames, resolution=2000, max_memory="2GB"),
+         MemoryError, "a sequence with 8000 charges"),
         (lambda: innermap.deform((V, F), V, frames, numbers=[1, 2]), innermap.DataError, "numbers"),
         (lambda: innermap.deform((V, F), V, frames, numbers=[1, 2, 2]), innermap.DataError, "ascend"),
         (lambda: innermap.deform((V, F), V, frames, numbers=[-1, 2, 3]), innermap.DataError,

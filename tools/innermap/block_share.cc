@@ -117,7 +117,7 @@ namespace {
 
 void makeShare(const ShareOptions& options, const BlockWork& work, Context& context) {
   const std::vector<VoxelBlock> blocks = work.blocks();
-  context.requireMemory("making a block of the volume", work.memory, "raise --max-memory");
+  context.requireMemory({"making a block of the volume", work.memory});
   Frames frames = framesOf(blocks);
   const std::string folder = sharesOf(work.output);
   const FramePattern pattern = blockPattern(folder);

@@ -4,33 +4,21 @@
 
 namespace innermap::tool {
 
-double growthOf(Way way, const CarryJob& job) {
-  const double from = job.mapped.solid().volume(), to = job.target.volume();
-  return way == Way::push ? voxelGrowth(from, to) : voxelGrowth(to, from);
-}
-
-std::vector<JobPhase> carryingPhases(Way way, const CarryJob& job, const TransferOptions& options,
-                                     double growth) {
-  const std::size_t charges = job.mapped.map.sources();
-  const double asGiven = finestVoxel(job.grids);
+std::vector<JobPhase> carryingPhases(const CarryJob& job) {
+  const std::size_t charges = job.mapped->map.sources();
   const auto sizeOf = [&](const Solid& solid, const LevelSetSettings& settings) {
     return jobSize(solid, settings, charges);
   };
-  LevelSetSettings given;
-  given.voxelSize = asGiven;
-  const Solid& source = job.mapped.solid();
-  const Solid& to = way == Way::push ? job.target : source;
-  JobSize made = sizeOf(to, outputSettings(job.grids, options.grid, growth));
+  JobSize made = sizeOf(job.to(), job.output());
   made.items = static_cast<double>(job.grids.size()) * made.inside;
-  const JobSize from = sizeOf(way == Way::push ? source : job.target, given);
+  const JobSize from = sizeOf(job.from(), carriedVoxels(job.grids, {}));
   JobPhase levelSets = stageOf("level set", made);
   levelSets += stageOf("level set", from);
   levelSets.times = 2;
   std::vector<JobPhase> phases = {levelSets};
-  const CarrySettings carry = carrySettings(options);
   std::size_t densities = 0;
-  for (const openvdb::GridBase::Ptr& grid : job.grids) densities += isDensity(*grid, carry);
-  if (way == Way::pull) {
+  for (const openvdb::GridBase::Ptr& grid : job.grids) densities += isDensity(*grid, job.carry);
+  if (!job.push) {
     phases.push_back(stageOf("pulling the grids", made));
   } else {
     if (densities < job.grids.size()) {

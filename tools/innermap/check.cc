@@ -132,8 +132,8 @@ void run(const CheckOptions& options, Context& context) {
   const std::uint64_t need = checkMemory(mesh);
   if (context.dryRun() && !options.outer.empty()) cleanSurface(mesh, options.layOut);
   if (!context.begins(
-          {"check " + options.mesh + fmt::format(" ({} triangles)", mesh.triangles.size())}, need,
-          "checking " + options.mesh, "raise --max-memory or simplify the mesh"))
+          {"check " + options.mesh + fmt::format(" ({} triangles)", mesh.triangles.size())},
+          {"checking " + options.mesh, need, "raise {max_memory} or simplify the mesh"}))
     return;
   const MeshReport report = context.timed("check", [&] { return checkMesh(mesh, options.check); });
   const std::vector<Finding> found = findings(report);

@@ -8,12 +8,12 @@
 #include <cmath>
 
 #include "commands.h"
-#include "innermap/core/memory.h"
 #include "innermap/evaluate/evaluate_map.h"
 #include "innermap/io/solid_pictures.h"
 #include "innermap/levelset/level_set.h"
 #include "innermap/mesh/mesh_file.h"
 #include "inputs.h"
+#include "jobs/solid_needs.h"
 #include "lists.h"
 #include "report/figures.h"
 #include "report/svg_chart.h"
@@ -228,17 +228,11 @@ void run(const CompareOptions& options, Context& context) {
     context.tell(*pair);
   }
   const Solid& solid = pair ? pair->solid() : *alone;
-  std::uint64_t need = compareFemMemory(solid, settings);
-  if (pair) {
-    FitMapSettings reference;
-    reference.tolerance = settings.referenceTolerance;
-    need = std::max(need, fitMapMemory(reference, source.vertices.size()));
-  }
   if (!context.begins(
           {fmt::format("compare finite elements at resolutions {} with charges",
                        options.resolutions),
            "write comparison.csv, curves.svg, section.png and report.json to " + options.output},
-          need, "finite elements", "use lower --resolutions"))
+          compareFemNeed(solid, settings, pair ? source.vertices.size() : 0)))
     return;
   const CompareFem result = context.timed("compare", [&] {
     return pair ? compareFemOnMap(*pair, settings) : compareFemOnFunctions(solid, settings);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "command.h"
 #include "conclusion.h"
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
@@ -76,12 +77,11 @@ void Context::plan(const std::vector<std::string>& lines, std::uint64_t need) {
                                formatBytes(bytes), formatBytes(maxMemory_)));
 }
 
-bool Context::begins(const std::vector<std::string>& lines, std::uint64_t bytes,
-                     const std::string& doing, const std::string& advice) {
+bool Context::begins(const std::vector<std::string>& lines, const MemoryNeed& need) {
   if (dryRun())
-    plan(lines, bytes);
+    plan(lines, need.bytes);
   else
-    requireMemory(doing, bytes, advice);
+    requireMemory(need);
   return !dryRun();
 }
 
@@ -93,26 +93,16 @@ void Context::requireProgram() const {
                     formatBytes(own), formatBytes(maxMemory_)));
 }
 
+std::uint64_t Context::held() const { return processMemory(page_ ? kPageMemory : 0); }
+
 std::uint64_t Context::claimed(std::uint64_t bytes) const {
-  const std::uint64_t page = page_ ? kPageMemory : 0;
-  return most_ = std::max(most_, processMemory(bytes + page));
+  return most_ = std::max(most_, held() + bytes);
 }
 
-void Context::requireMemory(const std::string& what, std::uint64_t bytes,
-                            const std::string& advice) const {
+void Context::requireMemory(const MemoryNeed& need) const {
   requireProgram();
-  innermap::requireMemory(what, claimed(bytes), maxMemory_, advice);
-}
-
-void Context::requireMemory(const std::string& what, std::uint64_t bytes, SizeOption size,
-                            const std::string& otherwise) const {
-  requireProgram();
-  const std::uint64_t before = processMemory(0);
-  const std::uint64_t page = page_ ? kPageMemory : 0;
-  size.need = [before, page, need = size.need](std::uint64_t value) {
-    return before + page + need(value);
-  };
-  requireMemoryFor(what, claimed(bytes), maxMemory_, size, otherwise);
+  claimed(need.bytes);
+  innermap::requireMemory(need, held(), maxMemory_, optionName);
 }
 
 namespace {

@@ -15,6 +15,7 @@
 #include "innermap/core/run.h"
 #include "innermap/mesh/mesh_file.h"
 #include "job_clock.h"
+#include "jobs/needs.h"
 #include "report/report.h"
 #include "report/verdict.h"
 
@@ -98,14 +99,11 @@ class Context {
   // of, and the peak of the process (also whether it is over the limit), on stdout. bytes: the need
   // beyond what the process has by now.
   void plan(const std::vector<std::string>& lines, std::uint64_t bytes);
-  // A dry run: false, after plan(). Else true, after requireMemory(doing, bytes, advice).
-  bool begins(const std::vector<std::string>& lines, std::uint64_t bytes, const std::string& doing,
-              const std::string& advice);
+  // A dry run: false, after plan(). Else true, after requireMemory(need).
+  bool begins(const std::vector<std::string>& lines, const MemoryNeed& need);
   // Throws MemoryError when as many bytes more would be over the limit, as core/memory.h says. What
   // plan() says is the most that was asked for here: of a file that is read before it, too.
-  void requireMemory(const std::string& what, std::uint64_t bytes, const std::string& advice) const;
-  void requireMemory(const std::string& what, std::uint64_t bytes, SizeOption size,
-                     const std::string& otherwise) const;
+  void requireMemory(const MemoryNeed& need) const;
 
   // A file that is read. Arguments, and options that are marked with reads(), are told already;
   // this is for files that are found, say by a pattern. Throws FileError when it is an output.
@@ -187,6 +185,8 @@ class Context {
                       const std::vector<std::string>& beside);
   void requireProgram() const;
 
+  // What the process holds, with the page.
+  std::uint64_t held() const;
   // The peak with so many bytes more, or with what was asked for before.
   std::uint64_t claimed(std::uint64_t bytes) const;
 

@@ -23,9 +23,10 @@ std::string sourceOutputOf(const Options& options) {
   return options.output.substr(0, options.output.size() - 4) + ".source.ply";
 }
 
-std::uint64_t memoryOf(const Options& options, std::size_t countA, std::size_t countB) {
-  const std::uint64_t map = correspondMemory(countA, countB);
-  return options.picture.empty() ? map : std::max(map, meshPictureMemory());
+MemoryNeed needOf(const Options& options, std::size_t countA, std::size_t countB) {
+  MemoryNeed need = correspondNeed(countA, countB);
+  if (!options.picture.empty()) need.bytes = std::max(need.bytes, meshPictureMemory());
+  return need;
 }
 
 void run(const Options& options, Context& context) {
@@ -43,8 +44,7 @@ void run(const Options& options, Context& context) {
   if (!context.begins({fmt::format("map the {} vertices of {} onto {} ({} vertices)", countA,
                                    options.a, options.b, countB),
                        "write them to " + options.output},
-                      memoryOf(options, countA, countB), "the correspondence",
-                      "use coarser meshes"))
+                      needOf(options, countA, countB)))
     return;
   context.spend(Context::kMostOfTime);
   const MeshCorrespondence moved =

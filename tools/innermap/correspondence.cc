@@ -90,9 +90,6 @@ std::string otherPicture(const std::string& path) {
 
 MeshCorrespondence correspondMeshes(Mesh a, Mesh b, const CorrespondOptions& options,
                                     Context& context) {
-  context.requireMemory("the correspondence",
-                        correspondMemory(a.vertices.size(), b.vertices.size()),
-                        "use coarser meshes");
   MeshCorrespondenceSettings settings = options.map;
   if (!options.landmarks.empty()) settings.landmarks = readLandmarks(options.landmarks);
   auto [laidA, laidB] = layOutMeshes(std::move(a), std::move(b), settings.layOut);

@@ -20,7 +20,6 @@
 namespace innermap::tool {
 namespace {
 
-constexpr double kAccuracy = 1e-6;  // of sums of charges; well below what the fits leave
 constexpr char kInputs[] = "innermap_inputs";
 
 struct DeformOptions {
@@ -97,6 +96,15 @@ bool isFinished(const std::string& path, const std::string& inputs) {
   }
 }
 
+FrameCarry frameCarry(const DeformOptions& o, const openvdb::GridPtrVec& grids) {
+  return {carrySettings(o.transfer),
+          frameOutside(o.transfer.outside, fadeTo(o.transfer)),
+          carriedVoxels(grids, o.transfer.grid),
+          o.velocity,
+          o.framesPerSecond(),
+          o.shutter};
+}
+
 struct DeformRow {
   InverseStatistics statistics;
   BoundaryError error;
@@ -107,38 +115,25 @@ struct DeformRow {
 class Deformer {
  public:
   Deformer(const DeformOptions& options, const Frames& frames, SourceBoundary rest,
-           openvdb::GridPtrVec grids, Context& context)
+           const openvdb::GridPtrVec& grids, Context& context)
       : options_(options),
         context_(context),
         frames_(frames),
         fitter_(makeFrameFitter(std::move(rest), options.frames.fitting, context)),
         fits_(makeFrameFits(fitter_, frames, context)),
-        grids_(std::move(grids)) {
-    requireNoVelocity();
-    FramePushSettings settings;
-    settings.push.carry = carrySettings(options.transfer);
-    settings.push.accuracy = kAccuracy;
-    const FrameOutside outside = frameOutside(options.transfer);
-    settings.fadeToFitted = outside.fitted;
-    settings.push.outside = outside.settings;
-    settings.output = outputSettings(grids_, options.transfer.grid);
-    pusher_.emplace(fitter_, grids_, settings);
-  }
+        how_(frameCarry(options, grids)),
+        pusher_(fitter_, grids, pushSettings(how_)) {}
 
-  double voxelSize() const { return pusher_->voxelSize(); }
+  double voxelSize() const { return pusher_.voxelSize(); }
   // Of all frames so far: the densities that grow most beside their solids.
   const std::map<std::string, JudgedDensity>& densities() const { return densities_; }
 
   DeformRow run(std::size_t index, const std::string& path, const std::string& inputs) {
     const FrameFile& frame = frames_.all[index];
     const std::shared_ptr<const FrameFit> fit = fits_.at(index);
-    std::vector<CarriedField> fields;
-    if (options_.velocity)
-      fields.push_back({"velocity", fits_.velocity(index, options_.framesPerSecond()),
-                        openvdb::VEC_CONTRAVARIANT_RELATIVE,
-                        options_.shutter / options_.framesPerSecond()});
     // No structured binding: lambdas cannot capture one in C++17.
-    const FramePush pushed = pusher_->push({fit.get(), frame.number}, fields);
+    const FramePush pushed =
+        pusher_.push({fit.get(), frame.number}, carriedFields(how_, fits_, index));
     const auto& result = pushed.result;
     addSeconds(context_.report().seconds, pushed.seconds);
     for (const std::string& warning : result.warnings)
@@ -168,22 +163,14 @@ class Deformer {
     }
   }
 
-  void requireNoVelocity() const {
-    const NamingScheme scheme = options_.transfer.names;
-    for (const openvdb::GridBase::Ptr& grid : grids_)
-      if (options_.velocity && gridName(grid->getName(), scheme) == gridName("velocity", scheme))
-        throw DataError(options_.volume + ": already has a grid '" + grid->getName() +
-                        "'; leave out --velocity or choose the others by --grids");
-  }
-
   const DeformOptions& options_;
   Context& context_;
   const Frames& frames_;
   const FrameFitter fitter_;
   FrameFits fits_;
   std::map<std::string, JudgedDensity> densities_;
-  const openvdb::GridPtrVec grids_;
-  std::optional<FramePusher> pusher_;
+  const FrameCarry how_;
+  const FramePusher pusher_;
 };
 
 std::string lineOf(const FrameFile& frame, const DeformRow& row, double seconds, double tolerance) {
@@ -212,7 +199,7 @@ void check(const DeformOptions& options, const Frames& frames) {
   if (options.velocity && frames.all.size() < 2)
     throw UsageError("--velocity: needs at least two frames; give more or leave it out");
   // Refuses what makes no sense before anything is read; which motion fits is not known yet.
-  frameOutside(options.transfer);
+  fadeTo(options.transfer);
 }
 
 // Those whose output is not there or was made from something else.
@@ -236,10 +223,18 @@ Frames framesLeft(const DeformOptions& options, const Frames& frames, const Fram
   return left;
 }
 
-// In bytes, beside what is read.
-std::uint64_t memoryOf(const DeformOptions& options, const Solid& solid,
-                       const openvdb::GridPtrVec& grids) {
-  return transferMemory(solid, grids, options.transfer, {true, options.velocity ? 1 : 0});
+// The grids that are carried, and what that needs. Throws as requireNoVelocity().
+struct Inside {
+  openvdb::GridPtrVec grids;
+  MemoryNeed need;
+};
+
+Inside readInside(const DeformOptions& o, const Solid& solid, Context& context) {
+  openvdb::GridPtrVec grids = readVolume(o.volume, o.transfer, context);
+  const FrameCarry how = frameCarry(o, grids);
+  requireNoVelocity(how, grids, o.transfer.names, o.volume, optionName);
+  MemoryNeed need = framesNeed(o.frames.fitting, frameCarryMemory(solid, grids, how));
+  return {std::move(grids), std::move(need)};
 }
 
 std::vector<JobPhase> phasesOf(const DeformOptions& options, const Solid& solid,
@@ -247,7 +242,7 @@ std::vector<JobPhase> phasesOf(const DeformOptions& options, const Solid& solid,
   const std::size_t charges = options.frames.fitting.sources;
   if (grids.empty())  // geometry, which takes no time beside the fit
     return framePhases(charges, frames.wanted.size(), stageOf("frames: volume", JobSize{}));
-  JobSize size = jobSize(solid, outputSettings(grids, options.transfer.grid), charges);
+  JobSize size = jobSize(solid, carriedVoxels(grids, options.transfer.grid), charges);
   size.items = static_cast<double>(grids.size()) * size.inside;
   return framePhases(charges, frames.wanted.size(), stageOf("frames: volume", size));
 }
@@ -255,26 +250,12 @@ std::vector<JobPhase> phasesOf(const DeformOptions& options, const Solid& solid,
 // The outputs are the result: there is nothing to join.
 void writeJobs(const DeformOptions& options, const Frames& frames, Context& context) {
   const SourceBoundary rest = readRest(options.rest, frames, context);
-  openvdb::GridPtrVec grids;
-  std::uint64_t others = 0;
-  if (!isGeometryFile(options.volume)) {
-    grids = readVolume(options.volume, options.transfer, context);
-    others = memoryOf(options, rest.solid, grids);
-  }
+  Inside inside{{}, framesNeed(options.frames.fitting, 0)};
+  if (!isGeometryFile(options.volume)) inside = readInside(options, rest.solid, context);
   writeShareJobs(options.farm,
-                 {frames.wanted.size(), phasesOf(options, rest.solid, grids, frames),
-                  frameFitterMemory(options.frames.fitting, others)},
+                 {frames.wanted.size(), phasesOf(options, rest.solid, inside.grids, frames),
+                  inside.need.bytes},
                  context);
-}
-
-void plan(const DeformOptions& options, const Frames& frames, const FramePattern& pattern,
-          std::uint64_t others, Context& context) {
-  const auto path = [&](std::size_t i) { return pattern.path(frames.all[i].number); };
-  const FrameFitterSettings settings = options.frames.fitting;
-  context.plan({framesPlan(settings, frames), "carry " + options.volume + " to " +
-                                                  path(frames.wanted.front()) + " to " +
-                                                  path(frames.wanted.back())},
-               frameFitterMemory(settings, others));
 }
 
 void run(const DeformOptions& options, Context& context) {
@@ -297,24 +278,22 @@ void run(const DeformOptions& options, Context& context) {
     return deformGeometry({options.rest, options.volume, options.output, options.framesPerSecond(),
                            options.frames, options.transfer, options.geometry},
                           frames, context);
-  if (context.dryRun()) {
-    const SourceBoundary rest = readRest(options.rest, frames, context);
-    const openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
-    context.expect(phasesOf(options, rest.solid, grids, frames));
-    return plan(options, frames, pattern, memoryOf(options, rest.solid, grids), context);
-  }
   std::optional<Inputs> inputs;
-  Frames left;
-  context.timed("compare", [&] {
-    inputs.emplace(options, frames, context.space());
-    left = framesLeft(options, frames, pattern, *inputs, context);
-  });
+  Frames left = frames;
+  if (!context.dryRun())
+    context.timed("compare", [&] {
+      inputs.emplace(options, frames, context.space());
+      left = framesLeft(options, frames, pattern, *inputs, context);
+    });
   if (left.wanted.empty()) return writeUsd(options.frames, pattern, frames, context);
   SourceBoundary rest = readRest(options.rest, frames, context);
-  openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
-  requireFrameMemory(options.frames.fitting, memoryOf(options, rest.solid, grids), context);
-  context.expect(phasesOf(options, rest.solid, grids, left));
-  Deformer deformer(options, left, std::move(rest), std::move(grids), context);
+  Inside inside = readInside(options, rest.solid, context);
+  context.expect(phasesOf(options, rest.solid, inside.grids, left));
+  if (!context.begins({framesPlan(options.frames.fitting, frames),
+                       carryPlan(options.volume, options.output, frames)},
+                      inside.need))
+    return;
+  Deformer deformer(options, left, std::move(rest), inside.grids, context);
   std::map<std::size_t, DeformRow> rows;
   context.print(fmt::format("{:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "frame", "voxels",
                             "found %", "error rms", "error 99%", "seconds"));

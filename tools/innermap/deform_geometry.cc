@@ -28,7 +28,7 @@ class Deformer {
         fitter_(makeFrameFitter(readRest(job.rest, frames, context), job.frames.fitting, context)),
         fits_(makeFrameFits(fitter_, frames, context)),
         file_(readGeometryFile(job.input, job.geometry, context)) {
-    const FrameOutside outside = frameOutside(job.transfer);
+    const FrameOutside outside = frameOutside(job.transfer.outside, fadeTo(job.transfer));
     pusher_.emplace(fitter_.solid(), carryPointsSettings(outside.settings, kAccuracy),
                     outside.fitted);
   }
@@ -147,14 +147,6 @@ Made makeCache(const DeformGeometry& job, const Frames& frames, const std::strin
   return made;
 }
 
-std::string planned(const DeformGeometry& job, const Frames& frames) {
-  if (job.cache()) return "carry " + job.input + " to " + job.output;
-  const FramePattern pattern("--output", job.output);
-  const auto path = [&](std::size_t i) { return pattern.path(frames.all[i].number); };
-  return "carry " + job.input + " to " + path(frames.wanted.front()) + " to " +
-         path(frames.wanted.back());
-}
-
 }  // namespace
 
 bool DeformGeometry::cache() const { return isPointCache(output); }
@@ -162,17 +154,15 @@ bool DeformGeometry::cache() const { return isPointCache(output); }
 void deformGeometry(const DeformGeometry& job, const Frames& frames, Context& context) {
   // What the fitter leaves scattered over the heap counts when the first frame is carried.
   constexpr std::uint64_t kScattered = 25'000'000;
+  const FrameFitterSettings& settings = job.frames.fitting;
   const std::uint64_t need = geometryMemory(job.input) + kScattered;
   JobSize size;
   size.items = static_cast<double>(need) / 1e6;
   context.expect(framePhases(job.frames.fitting.sources, frames.wanted.size(),
                              stageOf("frames: geometry", size)));
-  if (context.dryRun()) {
-    const FrameFitterSettings settings = job.frames.fitting;
-    return context.plan({framesPlan(settings, frames), planned(job, frames)},
-                        frameFitterMemory(settings, need));
-  }
-  requireFrameMemory(job.frames.fitting, need, context);
+  const std::string carry = job.cache() ? "carry " + job.input + " to " + job.output
+                                        : carryPlan(job.input, job.output, frames);
+  if (!context.begins({framesPlan(settings, frames), carry}, framesNeed(settings, need))) return;
   Deformer deformer(job, frames, context);
   const auto writeFile = [&](std::size_t index, const CarriedGeometry& carried) {
     const FramePattern pattern("--output", job.output);

@@ -31,14 +31,6 @@ bool isDisplacementField(const std::string& path) {
   return equalsIgnoringCase(ending, ".nii") || equalsIgnoringCase(ending, ".gz");
 }
 
-void requireInverseMemory(const Solid& target, const EvaluateOptions& options,
-                          const Context& context) {
-  requireGridMemory("inverting the map on a grid", options.evaluation.grid, context,
-                    [&](const LatticeChoice& grid) {
-                      return carryMemory(target, {}, grid.in<LevelSetSettings>());
-                    });
-}
-
 // Throws UsageError for what only maps' grids heed.
 void requireInverseOptions(const EvaluateOptions& o) {
   const EvaluateOptions plain;
@@ -65,11 +57,13 @@ void runInverse(const EvaluateOptions& options, const MappedSolid& mapped, Conte
   const auto settings = options.evaluation.grid.in<LevelSetSettings>();
   requireInterior(target, settings);
   context.expect(inversePhases(jobSize(target, settings, mapped.map.sources())));
-  if (context.dryRun())
-    return context.plan({"invert " + options.map + " on its target's voxels",
-                         "write the displacement to " + options.output},
-                        carryMemory(target, {}, settings));
-  requireInverseMemory(target, options, context);
+  const auto need = [&](const LatticeChoice& grid) {
+    return carryMemory(target, {}, grid.in<LevelSetSettings>());
+  };
+  if (!context.begins({"invert " + options.map + " on its target's voxels",
+                       "write the displacement to " + options.output},
+                      gridNeed("inverting the map on a grid", options.evaluation.grid, need)))
+    return;
   const openvdb::FloatGrid::Ptr levelSet =
       context.timed("level set", [&] { return makeLevelSet(target, settings); });
   InverseSettings inverse;
@@ -121,10 +115,9 @@ void run(const EvaluateOptions& options, Context& context) {
   context.expect(evaluationPhases(jobSize(mapped.solid(), settings, mapped.map.sources())));
   if (madeInShares(options.farm, blockWork(options, mapped, settings), context)) return;
   requireInterior(mapped.solid(), options.evaluation.grid.in<LevelSetSettings>());
-  if (context.dryRun())
-    return context.plan({"evaluate " + options.map, "write grids to " + options.output},
-                        mapGridMemory(mapped.solid(), settings, mapGridKind(mapped)));
-  requireEvaluationMemory(mapped.solid(), options.evaluation.grid, context, mapGridKind(mapped));
+  if (!context.begins({"evaluate " + options.map, "write grids to " + options.output},
+                      mapGridNeed(mapped.solid(), options.evaluation.grid, mapGridKind(mapped))))
+    return;
   context.spend(Context::kMostOfTime);
   const SolidGrids grids = makeGrids(options, mapped, settings, context);
   reportGrids(grids, settings.lame, context);

@@ -82,9 +82,10 @@ void run(const ExportOptions& options, Context& context) {
   const std::vector<std::string> names = commaList(options.grids);
   const openvdb::GridPtrVec grids = readGridFile(options.file, names, context);
   const std::string format = planVolumeTexture(options.output, grids, settings).format;
-  if (!context.begins({fmt::format("write {} as {} to {}", options.file, format, options.output)},
-                      volumeTextureMemory(options.output, grids, settings),
-                      "writing " + options.output, "export fewer grids or at a lower --resolution"))
+  if (!context.begins(
+          {fmt::format("write {} as {} to {}", options.file, format, options.output)},
+          {"writing " + options.output, volumeTextureMemory(options.output, grids, settings),
+           "export fewer grids or at a lower {resolution}"}))
     return;
   const VolumeTextureResult result =
       context.timed("write", [&] { return writeVolumeTexture(options.output, grids, settings); });

@@ -30,10 +30,9 @@ void run(const FitOptions& options, Context& context) {
   reportBoundaries(pair, context);
   const std::size_t vertices = pair.source.mesh.vertices.size();
   context.expect(fittingPhases(settings, places, false));
-  if (context.dryRun())
-    return context.plan({fittingPlan(settings), "write the map to " + options.output},
-                        fitMapMemory(settings, vertices));
-  requireFittingMemory(settings, vertices, context);
+  if (!context.begins({fittingPlan(settings), "write the map to " + options.output},
+                      fitNeed(settings, vertices)))
+    return;
   context.phase("fitting");
   context.spend(Context::kMostOfTime);
   const MapFit fit = fitMap(std::move(pair), settings);

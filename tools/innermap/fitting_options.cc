@@ -82,23 +82,6 @@ std::string fittingPlan(const FitMapSettings& settings) {
                      shellCollocation(*settings.shell));
 }
 
-void requireFittingMemory(const FitMapSettings& settings, std::size_t vertices,
-                          const Context& context) {
-  const std::uint64_t bytes = fitMapMemory(settings, vertices);
-  if (!settings.shell)
-    return context.requireMemory("the first level of charges", bytes, "raise --max-memory");
-  const double points = static_cast<double>(shellCollocation(*settings.shell)) /
-                        static_cast<double>(settings.shell->sources);
-  const auto need = [&](std::uint64_t sources) {
-    FitMapSettings fewer = settings;
-    fewer.shell->sources = sources;
-    fewer.shell->collocation = static_cast<std::size_t>(points * static_cast<double>(sources));
-    return fitMapMemory(fewer, vertices);
-  };
-  context.requireMemory(fmt::format("fitting {} sources", settings.shell->sources), bytes,
-                        {"--charges", 1, settings.shell->sources, need}, "raise --max-memory");
-}
-
 namespace {
 
 // The more charges, the more rounds until they do.

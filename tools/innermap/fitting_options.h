@@ -25,10 +25,6 @@ FitMapSettings fitMapSettings(const FittingOptions& options, std::size_t vertice
 // Throws what fitMapSettings throws for any mesh, before one is read.
 void checkFittingOptions(const FittingOptions& options);
 
-// Throws MemoryError, with the largest --charges that would fit, when the need is over the limit.
-void requireFittingMemory(const FitMapSettings& settings, std::size_t vertices,
-                          const Context& context);
-
 // "fit 2000 charges to 8000 boundary points", for --dry-run.
 std::string fittingPlan(const FitMapSettings& settings);
 

@@ -15,36 +15,22 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 void sayBroken(const std::vector<FrameResult>& results, const std::string& unit, Context& context) {
+  std::vector<std::string> errors;
   std::vector<std::int64_t> broken;
   const FrameResult* first = nullptr;
   for (const FrameResult& r : results) {
+    errors.push_back(r.error);
     if (r.error.empty()) continue;
     if (!first) first = &r;
-    if (broken.size() < 20) broken.push_back(r.file.number);
+    broken.push_back(r.file.number);
   }
+  requireOneGood(errors, unit);
   if (!first) return;
-  const auto count = std::count_if(results.begin(), results.end(),
-                                   [](const FrameResult& r) { return !r.error.empty(); });
-  if (count == static_cast<std::ptrdiff_t>(results.size()))
-    throw DataError(count == 1 ? first->error
-                               : fmt::format("none of the {} {}s can be used; the first: {}", count,
-                                             unit, first->error));
+  const std::size_t count = broken.size(), told = std::min<std::size_t>(count, 20);
+  broken.resize(told);
   context.failAfterwards(fmt::format("{} of {} {}s could not be used: {}{}; the first: {}", count,
                                      results.size(), unit, fmt::join(broken, ", "),
-                                     static_cast<std::size_t>(count) > broken.size() ? ", ..." : "",
-                                     first->error));
-}
-
-// The error's text when the frame is broken.
-std::string tryFrame(std::size_t index, const std::function<void(std::size_t)>& body) {
-  try {
-    body(index);
-  } catch (const FileError& error) {
-    return error.what();
-  } catch (const DataError& error) {
-    return error.what();
-  }
-  return "";
+                                     count > told ? ", ..." : "", first->error));
 }
 
 }  // namespace
@@ -66,7 +52,7 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
       if (Page* page = context.page())
         page->frame = PageFrame{result.file.number, results.size(), frames.wanted.size()};
       const auto start = Clock::now();
-      result.error = tryFrame(index, body);
+      result.error = whyBroken([&] { body(index); });
       result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
       if (!result.error.empty())
         context.warning(

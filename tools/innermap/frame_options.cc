@@ -15,12 +15,6 @@
 namespace innermap::tool {
 namespace {
 
-std::string span(const std::vector<FrameFile>& frames) {
-  return frames.size() == 1 ? fmt::format("the only one is {}", frames.front().number)
-                            : fmt::format("there are {} from {} to {}", frames.size(),
-                                          frames.front().number, frames.back().number);
-}
-
 std::vector<std::string> withFilesBeside(const std::string& path) {
   std::vector<std::string> all = filesBeside(path);
   all.push_back(path);
@@ -90,13 +84,7 @@ Frames listFrames(const FrameOptions& options, const std::string& rest, Context&
   for (std::size_t i = 0; i < frames.all.size(); ++i)
     if (frames.all[i].path != (i == 0 ? rest : frames.all[i - 1].path))
       for (const std::string& path : withFilesBeside(frames.all[i].path)) context.input(path);
-  std::optional<FrameRanges> ranges;
-  if (!options.ranges.empty()) ranges.emplace("--frames", options.ranges);
-  for (std::size_t i = 0; i < frames.all.size(); ++i)
-    if (!ranges || ranges->contains(frames.all[i].number)) frames.wanted.push_back(i);
-  if (frames.wanted.empty())
-    throw SettingError("--frames", fmt::format("'{}' has none of the frames; {}", options.ranges,
-                                               span(frames.all)));
+  frames.wanted = wantedFrames(frames.source->numbers, "--frames", options.ranges);
   return frames;
 }
 
@@ -187,17 +175,9 @@ std::string framesPlan(const FrameFitterSettings& settings, const Frames& frames
                      frames.all[frames.wanted.back()].number);
 }
 
-void requireFrameMemory(const FrameFitterSettings& settings, std::uint64_t others,
-                        const Context& context) {
-  const auto need = [&](std::uint64_t sources) {
-    FrameFitterSettings fewer = settings;
-    fewer.sources = sources;
-    fewer.collocation = 0;
-    return frameFitterMemory(fewer, others);
-  };
-  context.requireMemory(fmt::format("a sequence with {} charges", settings.sources),
-                        frameFitterMemory(settings, others), {"--charges", 1, kMaxCharges, need},
-                        "use a lower --resolution or raise --max-memory");
+std::string carryPlan(const std::string& input, const std::string& output, const Frames& frames) {
+  const std::vector<std::string> paths = framePaths(FramePattern("--output", output), frames);
+  return fmt::format("carry {} to {} to {}", input, paths.front(), paths.back());
 }
 
 }  // namespace innermap::tool

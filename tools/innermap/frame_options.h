@@ -10,6 +10,7 @@
 #include "core/frame_files.h"
 #include "innermap/fit/frame_fitter.h"
 #include "innermap/mesh/mesh_file.h"
+#include "jobs/frames_job.h"
 #include "report/verdict.h"
 
 namespace innermap::tool {
@@ -68,10 +69,7 @@ FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context
 
 // "fit 8000 charges to 24000 boundary points for 48 frames, 1 to 48", for --dry-run.
 std::string framesPlan(const FrameFitterSettings& settings, const Frames& frames);
-
-// Throws MemoryError, with the largest --charges that would fit beside `others` bytes, when the
-// need of all together is over the limit.
-void requireFrameMemory(const FrameFitterSettings& settings, std::uint64_t others,
-                        const Context& context);
+// "carry smoke.vdb to out/a.0001.vdb to out/a.0048.vdb", likewise.
+std::string carryPlan(const std::string& input, const std::string& output, const Frames& frames);
 
 }  // namespace innermap::tool

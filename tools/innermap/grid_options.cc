@@ -4,17 +4,6 @@
 #include "report/page/page.h"
 
 namespace innermap::tool {
-void requireGridMemory(const std::string& doing, const LatticeChoice& options,
-                       const Context& context,
-                       const std::function<std::uint64_t(const LatticeChoice&)>& need) {
-  const auto needAt = [&](std::uint64_t resolution) {
-    LatticeChoice other;
-    other.resolution = static_cast<int>(resolution);
-    return need(other);
-  };
-  context.requireMemory(doing, need(options), {"--resolution", kLeastVoxels, kMostVoxels, needAt},
-                        "raise --max-memory");
-}
 
 void writeGridFile(const std::string& path, const openvdb::GridPtrVec& grids,
                    const NamingScheme& names, Context& context, const openvdb::MetaMap& metadata) {
@@ -38,13 +27,6 @@ MapGridSettings mapGridSettings(const EvaluationOptions& options) {
   settings.lame = options.lame;
   settings.repair = options.repair;
   return settings;
-}
-
-void requireEvaluationMemory(const Solid& solid, const LatticeChoice& options,
-                             const Context& context, const MapGridKind& kind) {
-  requireGridMemory("evaluating the map on a grid", options, context, [&](const LatticeChoice& o) {
-    return mapGridMemory(solid, o.in<MapGridSettings>(), kind);
-  });
 }
 
 }  // namespace innermap::tool

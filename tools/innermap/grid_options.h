@@ -14,12 +14,6 @@
 
 namespace innermap::tool {
 
-// Throws MemoryError, with the highest --resolution that would fit, when the need is over the
-// limit. doing: "evaluating the map on a grid". need: bytes.
-void requireGridMemory(const std::string& doing, const LatticeChoice& options,
-                       const Context& context,
-                       const std::function<std::uint64_t(const LatticeChoice&)>& need);
-
 void writeGridFile(const std::string& path, const openvdb::GridPtrVec& grids,
                    const NamingScheme& names, Context& context,
                    const openvdb::MetaMap& metadata = {});
@@ -35,8 +29,5 @@ struct EvaluationOptions {
 void addEvaluationOptions(Command& command, EvaluationOptions& options);
 
 MapGridSettings mapGridSettings(const EvaluationOptions& options);
-
-void requireEvaluationMemory(const Solid& solid, const LatticeChoice& options,
-                             const Context& context, const MapGridKind& kind);
 
 }  // namespace innermap::tool

@@ -1,8 +1,6 @@
 // `innermap harmonic`: a harmonic field from what is known on a solid's surface.
 #include <fmt/format.h>
 
-#include <limits>
-
 #include "commands.h"
 #include "harmonic_options.h"
 #include "innermap/io/geometry_file.h"
@@ -16,8 +14,6 @@ struct FieldOptions {
   std::string fix, flux, properties, table, channels;
   bool colours = false;
 };
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // "endo=0:1,epi=1:0"
 std::vector<std::pair<std::string, std::vector<double>>> parseGroups(const std::string& option,

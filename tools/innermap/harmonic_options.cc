@@ -113,9 +113,10 @@ void runHarmonic(const HarmonicOptions& options,
   for (const char* stage : {"level set", "evaluating the field", "writing the VDB file"})
     phases.push_back(stageOf(stage, size));
   context.expect(phases);
-  if (!context.begins({fmt::format("fit {} channel(s) on {}", known.names.size(), options.mesh),
-                       "write grids to " + options.output},
-                      need, "the harmonic field", "use a lower --resolution or raise --max-memory"))
+  if (!context.begins(
+          {fmt::format("fit {} channel(s) on {}", known.names.size(), options.mesh),
+           "write grids to " + options.output},
+          {"the harmonic field", need, "use a lower {resolution} or raise {max_memory}"}))
     return;
   context.spend(Context::kMostOfTime);
   const HarmonicFit fit = fitHarmonic(boundary, known.conditions, options.fit);

@@ -80,7 +80,7 @@ void run(const Options& options, Context& context) {
           {fmt::format("fill {} with hexahedra, {} along the edge of each of about {:.0f} blocks, "
                        "to {}",
                        options.mesh, settings.pieces, blocks, options.output)},
-          need, "hexahedra of " + options.mesh, "use fewer --blocks or --pieces"))
+          {"hexahedra of " + options.mesh, need, "use fewer {blocks} or {pieces}"}))
     return;
   context.spend(Context::kMostOfTime);
   const Hexahedralization result = hexahedralize(mesh, settings);

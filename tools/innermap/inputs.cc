@@ -14,9 +14,9 @@ void requireMeshMemory(const std::string& path, const Context& context) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error) return;  // the reader says why
-  context.requireMemory("reading " + path,
-                        static_cast<std::uint64_t>(kMeshByte * static_cast<double>(size)),
-                        "use a coarser mesh or raise --max-memory");
+  context.requireMemory({"reading " + path,
+                         static_cast<std::uint64_t>(kMeshByte * static_cast<double>(size)),
+                         "use a coarser mesh or raise {max_memory}"});
 }
 
 Mesh readMeshFile(const std::string& path, Context& context) {
@@ -50,9 +50,9 @@ openvdb::GridPtrVec readGridFile(const std::string& path, const std::vector<std:
   VdbReadSettings settings;
   settings.names = names;
   const Similarity toOutput = inputToOutput(context.space());
-  context.requireMemory("reading " + path,
-                        (toOutput.isIdentity() ? 1 : 2) * readMemory(readVdbInfo(path), names),
-                        "read fewer of its grids or raise --max-memory");
+  context.requireMemory({"reading " + path,
+                         (toOutput.isIdentity() ? 1 : 2) * readMemory(readVdbInfo(path), names),
+                         "read fewer of its grids or raise {max_memory}"});
   openvdb::GridPtrVec grids = context.timed("read", [&] { return readVdb(path, settings).grids; });
   moveGrids(grids, toOutput);
   if (context.page()) addGrids(*context.page(), grids);

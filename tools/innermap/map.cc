@@ -17,6 +17,7 @@
 #include "innermap/mesh/mesh_file.h"
 #include "inputs.h"
 #include "job_cost.h"
+#include "jobs/map_job.h"
 #include "map_report.h"
 #include "report/page/contents.h"
 #include "report/verdict.h"
@@ -54,33 +55,23 @@ void writePictures(const SolidGrids& solidGrids, const MapFit& fit, PendingFolde
   folder.write("steps.png", [&](const std::string& path) { writeStepsPicture(path, fit); });
 }
 
-// Both meshes as the files have them; `related` tells whether they have the same connectivity.
-struct Meshes {
-  Mesh source, target;
-  bool related = true;
-};
-
-Meshes readMeshes(const MapOptions& options, Context& context) {
+MapJob readJob(const MapOptions& options, Context& context) {
   if (options.target.empty() && options.correspondence.empty())
     throw UsageError("TARGET is missing; give it, or --correspond (see 'innermap map --help')");
-  Meshes meshes;
-  meshes.source = readMeshFile(options.source, context);
+  Mesh source = readMeshFile(options.source, context);
   if (!options.correspondence.empty()) {
-    meshes.target = context.timed("read", [&] {
-      return inOutput(options.correspondence,
-                      readCorrespondence(options.correspondence, meshes.source), context);
+    Mesh laid = context.timed("read", [&] {
+      return inOutput(options.correspondence, readCorrespondence(options.correspondence, source),
+                      context);
     });
-    if (!options.target.empty())
-      requireOnTarget(meshes.target, readMeshFile(options.target, context));
-    return meshes;
+    if (!options.target.empty()) requireOnTarget(laid, readMeshFile(options.target, context));
+    return {std::move(source), std::move(laid), true, true};
   }
   requireMeshMemory(options.target, context);
-  TargetMesh target =
-      context.timed("read", [&] { return readTarget(options.target, meshes.source); });
-  meshes.target = inOutput(options.target, std::move(target.mesh), context);
-  meshes.related = target.related;
-  if (!meshes.related && context.page()) addMesh(*context.page(), meshes.target);
-  return meshes;
+  TargetMesh target = context.timed("read", [&] { return readTarget(options.target, source); });
+  target.mesh = inOutput(options.target, std::move(target.mesh), context);
+  if (!target.related && context.page()) addMesh(*context.page(), target.mesh);
+  return {std::move(source), std::move(target.mesh), target.related};
 }
 
 std::string correspondPlan(const MapOptions& options) {
@@ -99,26 +90,21 @@ JobSize gridSize(const MapOptions& options, const Mesh& source) {
                  kLikelyCharges * source.vertices.size());
 }
 
-bool laidOn(const MapOptions& options, const Meshes& meshes) {
-  return !meshes.related || !options.correspondence.empty();
-}
-
-FitMapSettings fittingFor(const MapOptions& options, const Meshes& meshes) {
-  return fitMapSettings(options.fitting, meshes.source.vertices.size(), laidOn(options, meshes));
+FitMapSettings fittingFor(const MapOptions& options, const MapJob& job) {
+  return fitMapSettings(options.fitting, job.source.vertices.size(), job.laidOn());
 }
 
 // The job after the meshes are read; the seconds from the evaluation on.
-double expectPhases(const MapOptions& options, const Meshes& meshes, Context& context) {
-  const std::size_t vertices = meshes.source.vertices.size();
-  const bool strangers = laidOn(options, meshes);
+double expectPhases(const MapOptions& options, const MapJob& job, Context& context) {
+  const std::size_t vertices = job.source.vertices.size();
+  const bool strangers = job.laidOn();
   std::vector<JobPhase> phases;
-  if (!meshes.related) phases = correspondPhases(vertices + meshes.target.vertices.size());
-  const FitMapSettings fitting = fittingFor(options, meshes);
-  const double places = meshes.related
-                            ? bentPlaces(meshes.source, meshes.target.vertices, fitting.tolerance)
-                            : likelyPlaces(vertices, fitting.tolerance);
+  if (!job.related) phases = correspondPhases(vertices + job.target.vertices.size());
+  const FitMapSettings fitting = fittingFor(options, job);
+  const double places = job.related ? bentPlaces(job.source, job.target.vertices, fitting.tolerance)
+                                    : likelyPlaces(vertices, fitting.tolerance);
   for (const JobPhase& phase : fittingPhases(fitting, places, strangers)) phases.push_back(phase);
-  const JobSize size = gridSize(options, meshes.source);
+  const JobSize size = gridSize(options, job.source);
   JobPhase begin{"evaluating", 0};
   begin.gate = true;
   std::vector<JobPhase> last{begin};
@@ -132,37 +118,36 @@ double expectPhases(const MapOptions& options, const Meshes& meshes, Context& co
 
 // What refuses the run refuses its plan: the pair is made, or it is looked at whether the two can
 // be laid onto each other.
-Solid solidToMap(const MapOptions& options, const Meshes& meshes, Context& context) {
-  if (meshes.related) {
-    BoundaryPair pair = makeBoundaryPair(meshes.source, meshes.target);
+Solid solidToMap(const MapOptions& options, const MapJob& job, Context& context) {
+  if (job.related) {
+    BoundaryPair pair = makeBoundaryPair(job.source, job.target);
     reportBoundaries(pair, context);
     return std::move(pair.source.solid);
   }
-  context.timed("check", [&] {
-    requireLayable(meshes.source, meshes.target, options.correspond.map.layOut);
-  });
-  SourceBoundary source = makeSourceBoundary(meshes.source);
+  context.timed("check",
+                [&] { requireLayable(job.source, job.target, options.correspond.map.layOut); });
+  SourceBoundary source = makeSourceBoundary(job.source);
   reportSource(source, context);
   return std::move(source.solid);
 }
 
-void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
-  const Solid solid = solidToMap(options, meshes, context);
+void plan(const MapOptions& options, const MapJob& job, Context& context) {
+  const Solid solid = solidToMap(options, job, context);
   requireInterior(solid, options.evaluation.grid.in<LevelSetSettings>());
-  const std::size_t vertices = meshes.source.vertices.size();
-  const FitMapSettings fitting = fittingFor(options, meshes);
+  const std::size_t vertices = job.source.vertices.size();
+  const FitMapSettings fitting = fittingFor(options, job);
   std::vector<std::string> lines;
-  const bool steps = laidOn(options, meshes) && fitting.oneToOne != OneToOne::off;
+  const bool steps = job.laidOn() && fitting.oneToOne != OneToOne::off;
   std::uint64_t need = std::max(
       fitMapMemory(fitting, vertices) + (steps ? kStepsMemory : 0),
       mapGridMemory(
           solid, mapGridSettings(options.evaluation),
-          {steps ? std::size_t{2} : 1, needsLocalMap(meshes.target.vertices, fitting.tolerance)}));
+          {steps ? std::size_t{2} : 1, needsLocalMap(job.target.vertices, fitting.tolerance)}));
   std::string files = "map.ply, map.vdb, slices.exr, section.png";
-  if (!meshes.related) {
+  if (!job.related) {
     lines.push_back(correspondPlan(options));
     need = std::max(
-        {need, correspondMemory(vertices, meshes.target.vertices.size()), meshPictureMemory()});
+        {need, correspondMemory(vertices, job.target.vertices.size()), meshPictureMemory()});
     files += ", correspondence.ply, correspondence.png";
   }
   lines.push_back(fittingPlan(fitting));
@@ -172,16 +157,16 @@ void plan(const MapOptions& options, const Meshes& meshes, Context& context) {
 
 // The fit is one job, whose map the shares of the voxels read.
 void writeJobs(const MapOptions& options, Context& context) {
-  const Meshes meshes = readMeshes(options, context);
-  if (laidOn(options, meshes))
+  const MapJob job = readJob(options, context);
+  if (job.laidOn())
     throw UsageError(
         "--jobs: fits the same mesh with its vertices moved; make the map of other meshes in one "
         "run, and give its map.ply to innermap evaluate --jobs");
-  const Solid solid = solidToMap(options, meshes, context);
-  const std::size_t vertices = meshes.source.vertices.size();
-  const FitMapSettings fitting = fittingFor(options, meshes);
+  const Solid solid = solidToMap(options, job, context);
+  const std::size_t vertices = job.source.vertices.size();
+  const FitMapSettings fitting = fittingFor(options, job);
   BlockWork work = evaluationWork(solid, options.evaluation, kLikelyCharges * vertices,
-                                  {1, needsLocalMap(meshes.target.vertices, fitting.tolerance)});
+                                  {1, needsLocalMap(job.target.vertices, fitting.tolerance)});
   work.output = (std::filesystem::path(options.output) / "map.vdb").string();
   ShareRun run = shareRun(work);
   const CommandLine& line = context.report().run->commandLine;
@@ -191,24 +176,24 @@ void writeJobs(const MapOptions& options, Context& context) {
   const std::string map = (std::filesystem::path(options.output) / "map.ply").string();
   run.first = handedOn(line, {"innermap", "fit", options.source, options.target, "-o", map}, false);
   run.command = handedOn(line, {"innermap", "evaluate", map, "-o", work.output}, false);
-  run.beginning = fittingPhases(
-      fitting, bentPlaces(meshes.source, meshes.target.vertices, fitting.tolerance), false);
+  run.beginning =
+      fittingPhases(fitting, bentPlaces(job.source, job.target.vertices, fitting.tolerance), false);
   run.beginningBytes = fitMapMemory(fitting, vertices);
   if (!context.dryRun()) makeFolder(options.output);
   writeShareJobs(options.farm, run, context);
 }
 
 // Lays the source onto the target where they are not related, and puts that into the folder.
-BoundaryPair makePair(const MapOptions& options, Meshes meshes, PendingFolder& folder,
+BoundaryPair makePair(const MapOptions& options, MapJob job, PendingFolder& folder,
                       Context& context) {
-  if (meshes.related) return makeBoundaryPair(std::move(meshes.source), std::move(meshes.target));
+  if (job.related) return makeBoundaryPair(std::move(job.source), std::move(job.target));
   context.note(correspondPlan(options) + "; --correspond takes one made before");
-  const std::string name = meshes.target.name;
+  const std::string name = job.target.name;
   CorrespondOptions correspond = options.correspond;
-  correspond.map.seed = options.fitting.fit.seed;
-  correspond.map.carryBack = false;
+  correspond.map = layingSettings(correspond.map, options.fitting.fit.seed);
+  context.requireMemory(correspondNeed(job.source.vertices.size(), job.target.vertices.size()));
   const MeshCorrespondence moved =
-      correspondMeshes(std::move(meshes.source), std::move(meshes.target), correspond, context);
+      correspondMeshes(std::move(job.source), std::move(job.target), correspond, context);
   const Mesh target = moved.target(name);
   folder.write(kLaidFile, [&](const std::string& path) { writeCorrespondence(path, moved); });
   if (moved.changed)
@@ -232,22 +217,22 @@ void run(const MapOptions& options, Context& context) {
          {kLaidFile, "correspondence.source.ply", "correspondence.png", "correspondence.other.png"})
       files.emplace_back(name);
   const auto folder = context.outputFolder(options.output, files);
-  Meshes meshes = readMeshes(options, context);
-  const double later = expectPhases(options, meshes, context);
-  if (context.dryRun()) return plan(options, meshes, context);
-  const bool laid = laidOn(options, meshes);
+  MapJob job = readJob(options, context);
+  const double later = expectPhases(options, job, context);
+  if (context.dryRun()) return plan(options, job, context);
+  const bool laid = job.laidOn();
   context.spend(kLayingTimeShare, later);
-  const bool strangers = !meshes.related;
-  BoundaryPair pair = makePair(options, std::move(meshes), *folder, context);
+  const bool strangers = !job.related;
+  BoundaryPair pair = makePair(options, std::move(job), *folder, context);
   if (strangers)
     reportLaid(pair, options.output + "/" + kLaidFile, context);
   else
     reportBoundaries(pair, context);
   const std::size_t vertices = pair.source.mesh.vertices.size();
   const FitMapSettings fitting = fitMapSettings(options.fitting, vertices, laid);
-  requireFittingMemory(fitting, vertices, context);
-  requireEvaluationMemory(pair.solid(), options.evaluation.grid, context,
-                          {1, needsLocalMap(pair.target.moved, fitting.tolerance)});
+  context.requireMemory(fitNeed(fitting, vertices));
+  context.requireMemory(mapGridNeed(pair.solid(), options.evaluation.grid,
+                                    {1, needsLocalMap(pair.target.moved, fitting.tolerance)}));
   requireInterior(pair.solid(), options.evaluation.grid.in<LevelSetSettings>());
   context.phase("fitting");
   context.spend(1, later);

@@ -28,7 +28,7 @@ void run(const PolycubeOptions& options, Context& context) {
   if (!context.begins(
           {fmt::format("write a polycube of about {:.0f} blocks of {} to {}",
                        expectedBlocks(mesh, settings.blocks), options.mesh, options.output)},
-          polycubeMemory(mesh, settings), "a polycube of " + options.mesh, "use fewer --blocks"))
+          {"a polycube of " + options.mesh, polycubeMemory(mesh, settings), "use fewer {blocks}"}))
     return;
   const Polycube cube = makePolycube(mesh, settings);
   context.tell(cube);

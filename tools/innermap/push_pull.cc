@@ -27,6 +27,8 @@ struct CarryOptions {
   ShareOptions farm;
 };
 
+const char* wordOf(bool push) { return push ? "push" : "pull"; }
+
 // What carries: the map, or a mesh that stands for it.
 SolidMap mapOf(const CarryOptions& options, const MappedSolid& mapped, Context& context) {
   if (options.through.empty()) return mapped.map;
@@ -34,21 +36,24 @@ SolidMap mapOf(const CarryOptions& options, const MappedSolid& mapped, Context& 
   return linearMapOf(mesh, mapped);
 }
 
-CarryJob read(const CarryOptions& options, Context& context) {
-  MappedSolid mapped = readMapFile(options.map, context);
-  const OutsideSettings outside = outsideSettings(
-      options.transfer, mapped.solid().repaired().mesh.vertices, mapped.boundary.target.moved);
-  openvdb::GridPtrVec grids = readVolume(options.volume, options.transfer, context);
-  Solid target = targetSolid(mapped, context);
-  SolidMap map = mapOf(options, mapped, context);
-  return {std::move(mapped), std::move(target), outside, std::move(grids), std::move(map)};
+CarryJob read(bool push, const CarryOptions& options, Context& context) {
+  auto mapped = std::make_shared<const MappedSolid>(readMapFile(options.map, context));
+  const TransferOptions& o = options.transfer;
+  const OutsideSettings outside =
+      outsideSettings(o.outside, fadeTo(o), mapped->solid().repaired().mesh.vertices,
+                      mapped->boundary.target.moved);
+  openvdb::GridPtrVec grids = readVolume(options.volume, o, context);
+  Solid target = targetSolid(*mapped, context);
+  SolidMap map = mapOf(options, *mapped, context);
+  return {push,    mapped, std::move(target), std::move(map), std::move(grids), carrySettings(o),
+          outside, o.grid};
 }
 
 // A voxel size that nobody asked for is said where it is not the grids' own.
-void noteVoxelSize(const openvdb::GridPtrVec& grids, const TransferOptions& options, double growth,
-                   Context& context) {
-  if (growth == 1 || options.grid.voxelSize || options.grid.resolution) return;
-  const double from = finestVoxel(grids);
+void noteVoxelSize(const CarryJob& job, Context& context) {
+  const double growth = job.growth();
+  if (growth == 1 || job.lattice.voxelSize || job.lattice.resolution) return;
+  const double from = finestVoxel(job.grids);
   context.used("--voxel-size", growth * from);
   context.note(
       fmt::format("voxels of {:.4g}: the grids' {:.4g} times {:.4g}, the growth of the solid; "
@@ -56,17 +61,8 @@ void noteVoxelSize(const openvdb::GridPtrVec& grids, const TransferOptions& opti
                   growth * from, from, growth));
 }
 
-PushSettings pushSettings(const CarryJob& job, const TransferOptions& options) {
-  PushSettings settings;
-  settings.carry = carrySettings(options);
-  settings.outside = job.outside;
-  settings.accuracy = sumAccuracy(job.mapped);
-  return settings;
-}
-
-// The voxels and the solid that grids are carried to.
-LevelSetSettings outputOf(Way way, const CarryJob& job, const TransferOptions& options) {
-  return outputSettings(job.grids, options.grid, growthOf(way, job));
+openvdb::FloatGrid::Ptr outputLevelSet(const CarryJob& job, Context& context) {
+  return context.timed("level set", [&] { return makeLevelSet(job.to(), job.output()); });
 }
 
 std::string inputsOf(const CarryOptions& options) {
@@ -75,25 +71,19 @@ std::string inputsOf(const CarryOptions& options) {
 }
 
 PushResult pushed(const CarryJob& job, const CarryOptions& options, Context& context) {
-  const TransferOptions& o = options.transfer;
   if (context.joined()) {
-    const VolumePusher pusher(job.mapped.solid(), job.grids, pushSettings(job, o));
-    const BlockPusher blocks(pusher, job.map, job.target, outputOf(Way::push, job, o));
+    const BlockPusher blocks(pusherOf(job), job.map, job.target, job.output());
     return blocks.join(readShares(options.output, inputsOf(options), context));
   }
-  const openvdb::FloatGrid::Ptr levelSet =
-      outputLevelSet(job.target, job.grids, o, context, growthOf(Way::push, job));
-  return context.timed("push", [&] {
-    return VolumePusher(job.mapped.solid(), job.grids, pushSettings(job, o))
-        .push(job.map, *levelSet);
-  });
+  const openvdb::FloatGrid::Ptr levelSet = outputLevelSet(job, context);
+  return context.timed("push", [&] { return pusherOf(job).push(job.map, *levelSet); });
 }
 
 openvdb::GridPtrVec push(const CarryJob& job, const CarryOptions& options, Context& context) {
   const PushResult result = pushed(job, options, context);
   reportPush(result, context);
   context.detail(pushText(result));
-  const double volumes = volumeRatio(job.mapped.solid().volume(), job.target.volume());
+  const double volumes = volumeRatio(job.from().volume(), job.to().volume());
   const double limit = options.transfer.carry.densityLimit;
   for (const CarriedMass& mass : result.masses)
     context.judge(judgeDensity({mass.name, "", std::min(mass.largestRatio, limit), volumes},
@@ -102,31 +92,11 @@ openvdb::GridPtrVec push(const CarryJob& job, const CarryOptions& options, Conte
   return result.grids;
 }
 
-// With the target's level set, which is none of the output's.
-struct Puller {
-  openvdb::FloatGrid::Ptr target;
-  VolumePuller puller;
-};
-
-Puller pullerOf(const CarryJob& job, const TransferOptions& options, Context& context) {
-  PullSettings settings;
-  settings.carry = carrySettings(options);
-  settings.outside = job.outside;
-  settings.accuracy = sumAccuracy(job.mapped);
-  const openvdb::FloatGrid::Ptr target =
-      outputLevelSet(job.target, job.grids, TransferOptions(), context);
-  settings.targetLevelSet = target.get();
-  return {target, VolumePuller(job.map, job.mapped.solid(), job.grids, settings)};
-}
-
 PullResult pulled(const CarryJob& job, const CarryOptions& options, Context& context) {
-  const TransferOptions& o = options.transfer;
-  const Puller puller = pullerOf(job, o, context);
+  const Puller puller = context.timed("level set", [&] { return pullerOf(job); });
   if (context.joined())
-    return puller.puller.join(outputOf(Way::pull, job, o),
-                              readShares(options.output, inputsOf(options), context));
-  const openvdb::FloatGrid::Ptr levelSet =
-      outputLevelSet(job.mapped.solid(), job.grids, o, context, growthOf(Way::pull, job));
+    return puller.puller.join(job.output(), readShares(options.output, inputsOf(options), context));
+  const openvdb::FloatGrid::Ptr levelSet = outputLevelSet(job, context);
   return context.timed("pull", [&] { return puller.puller.pull(*levelSet); });
 }
 
@@ -135,85 +105,71 @@ openvdb::GridPtrVec pull(const CarryJob& job, const CarryOptions& options, Conte
   for (const std::string& warning : result.warnings) context.warning(warning);
   context.report().add("pull", pulledFigures(result.voxels));
   context.detail(fmt::format("pulled {} grids, {} voxels\n", result.grids.size(), result.voxels));
-  const double volumes = volumeRatio(job.target.volume(), job.mapped.solid().volume());
-  const CarrySettings carry = carrySettings(options.transfer);
+  const double volumes = volumeRatio(job.from().volume(), job.to().volume());
   for (const openvdb::GridBase::Ptr& grid : job.grids)
-    if (result.resampling.largestGrowth > 0 && isDensity(*grid, carry))
+    if (result.resampling.largestGrowth > 0 && isDensity(*grid, job.carry))
       context.judge(
           judgeDensity({grid->getName(), "",
-                        std::min(result.resampling.largestGrowth, carry.densityLimit), volumes},
+                        std::min(result.resampling.largestGrowth, job.carry.densityLimit), volumes},
                        options.transfer.verdict));
   context.judge(judgeResampling(result.resampling, options.transfer.verdict));
   return result.grids;
 }
 
 // What makes blocks is set up with the first of them.
-std::function<GridBlock(const VoxelBlock&)> blockMaker(Way way, const CarryJob& job,
-                                                       const CarryOptions& options,
-                                                       Context& context) {
-  const LevelSetSettings output = outputOf(way, job, options.transfer);
-  if (way == Way::pull)
+std::function<GridBlock(const VoxelBlock&)> blockMaker(const CarryJob& job, Context& context) {
+  const LevelSetSettings output = job.output();
+  if (!job.push)
     return
         [&, output, puller = std::make_shared<std::optional<Puller>>()](const VoxelBlock& block) {
-          if (!*puller) puller->emplace(pullerOf(job, options.transfer, context));
+          if (!*puller) puller->emplace(context.timed("level set", [&] { return pullerOf(job); }));
           return (*puller)->puller.pullBlock(output, block.origin);
         };
   return [&, output,
           pusher = std::make_shared<std::optional<BlockPusher>>()](const VoxelBlock& block) {
-    if (!*pusher)
-      pusher->emplace(
-          VolumePusher(job.mapped.solid(), job.grids, pushSettings(job, options.transfer)), job.map,
-          job.target, output);
+    if (!*pusher) pusher->emplace(pusherOf(job), job.map, job.target, output);
     return (*pusher)->push(block);
   };
 }
 
-BlockWork blockWork(Way way, const CarryJob& job, const CarryOptions& options,
+BlockWork blockWork(const CarryJob& job, const CarryOptions& options,
                     const std::vector<JobPhase>& phases, Context& context) {
-  const bool pushes = way == Way::push;
-  const Solid& solid = pushes ? job.target : job.mapped.solid();
   BlockWork work;
   work.output = options.output;
   work.inputs = inputsOf(options);
-  work.stage = pushes ? "push" : "pull";
+  work.stage = wordOf(job.push);
   work.doing = fmt::format("{} {} by {}", work.stage, options.volume, options.map);
-  work.blocks = [&, way] {
-    const LevelSetSettings output = outputOf(way, job, options.transfer);
-    if (way == Way::pull) return voxelBlocks(solid, output);
-    return pushBlocks(job.map, job.mapped.solid(), job.grids, pushSettings(job, options.transfer),
-                      solid, output);
+  work.blocks = [&] {
+    if (!job.push) return voxelBlocks(job.to(), job.output());
+    return pushBlocks(job.map, job.from(), job.grids, pushSettings(job), job.to(), job.output());
   };
-  work.make = blockMaker(way, job, options, context);
-  work.memory = carryBlockMemory(pushes ? job.mapped.solid() : job.target, job.grids,
-                                 carrySettings(options.transfer), pushes);
-  work.joinMemory =
-      transferMemory(solid, job.grids, options.transfer, {pushes, 0}, growthOf(way, job));
+  work.make = blockMaker(job, context);
+  work.memory = carryBlockMemory(job.from(), job.grids, job.carry, job.push);
+  work.joinMemory = job.need().bytes;
   work.making = phases;
   work.joining = {phases.back(), phases.back()};
   return work;
 }
 
 // Peak need in bytes of carrying geometry, beyond what its file takes.
-std::uint64_t carrierMemory(Way way, const Solid& source, const OutsideSettings& outside) {
-  return way == Way::push ? levelSetMemory(source, {})
-                          : carryMemory(source, {}, {}, outside, {}, {false, 0});
+std::uint64_t carrierMemory(bool push, const Solid& source, const OutsideSettings& outside) {
+  return push ? levelSetMemory(source, {}) : carryMemory(source, {}, {}, outside, {}, {false, 0});
 }
 
-void runGeometry(Way way, const CarryOptions& options, Context& context) {
+void runGeometry(bool push, const CarryOptions& options, Context& context) {
   const MappedSolid mapped = readMapFile(options.map, context);
   const Points& moved = mapped.boundary.target.moved;
   const OutsideSettings outside =
-      outsideSettings(options.transfer, mapped.solid().repaired().mesh.vertices, moved);
+      outsideSettings(options.transfer.outside, fadeTo(options.transfer),
+                      mapped.solid().repaired().mesh.vertices, moved);
   const std::uint64_t need =
-      geometryMemory(options.volume) + carrierMemory(way, mapped.solid(), outside);
-  if (!context.begins({fmt::format("{} {} by {}", way == Way::push ? "push" : "pull",
-                                   options.volume, options.map),
+      geometryMemory(options.volume) + carrierMemory(push, mapped.solid(), outside);
+  if (!context.begins({fmt::format("{} {} by {}", wordOf(push), options.volume, options.map),
                        "write " + options.output},
-                      need, "carrying " + options.volume, "cut the file into parts"))
+                      {"carrying " + options.volume, need, "cut the file into parts"}))
     return;
   const auto file = readGeometryFile(options.volume, options.geometry, context);
   const CarryPointsSettings settings = carryPointsSettings(outside, sumAccuracy(mapped));
-  const bool push = way == Way::push;
   const SolidMap map = mapOf(options, mapped, context);
   const PointCarry carry = context.timed(push ? "level set" : "invert",
                                          [&] { return carryByMap(map, mapped, push, settings); });
@@ -229,7 +185,7 @@ void runGeometry(Way way, const CarryOptions& options, Context& context) {
   writeGeometryFile(options.output, *file, carried, context);
 }
 
-void run(Way way, const CarryOptions& options, Context& context) {
+void run(bool toTarget, const CarryOptions& options, Context& context) {
   requireFitting(options.volume, options.output, options.transfer, options.geometry);
   const bool geometry = isGeometryFile(options.volume);
   if (geometry && inShares(options.farm))
@@ -241,32 +197,27 @@ void run(Way way, const CarryOptions& options, Context& context) {
         "--outside: what lies around the solid is carried in one run; leave out --share and "
         "--jobs");
   beginBlocks(options.farm, options.output, context);
-  if (geometry) return runGeometry(way, options, context);
-  const CarryJob job = read(options, context);
-  const Solid& solid = way == Way::push ? job.target : job.mapped.solid();
-  const double growth = growthOf(way, job);
-  const CarryKind kind{way == Way::push, 0};
-  const std::vector<JobPhase> phases = carryingPhases(way, job, options.transfer, growth);
+  if (geometry) return runGeometry(toTarget, options, context);
+  const CarryJob job = read(toTarget, options, context);
+  const std::vector<JobPhase> phases = carryingPhases(job);
   context.expect(phases);
-  if (madeInShares(options.farm, blockWork(way, job, options, phases, context), context)) return;
-  if (context.dryRun())
-    return context.plan({fmt::format("{} {} grids of {} by {}", way == Way::push ? "push" : "pull",
-                                     job.grids.size(), options.volume, options.map),
-                         "write " + options.output},
-                        transferMemory(solid, job.grids, options.transfer, kind, growth));
-  requireTransferMemory(solid, job.grids, options.transfer, context, kind, growth);
-  noteVoxelSize(job.grids, options.transfer, growth, context);
-  const openvdb::GridPtrVec grids = (way == Way::push ? push : pull)(job, options, context);
-  context.judge(judgeMap(job.mapped, nullptr, options.verdict, MapOrigin::file));
-  describeMap(grids, job.mapped);
+  if (madeInShares(options.farm, blockWork(job, options, phases, context), context)) return;
+  if (!context.begins({fmt::format("{} {} grids of {} by {}", wordOf(job.push), job.grids.size(),
+                                   options.volume, options.map),
+                       "write " + options.output},
+                      job.need()))
+    return;
+  noteVoxelSize(job, context);
+  const openvdb::GridPtrVec grids = (job.push ? push : pull)(job, options, context);
+  context.judge(judgeMap(*job.mapped, nullptr, options.verdict, MapOrigin::file));
+  describeMap(grids, *job.mapped);
   writeGridFile(options.output, grids, options.transfer.names, context);
 }
 
 // inputSpace: where the grids live.
-Command makeCarryCommand(Way way, const std::string& name, const std::string& summary,
-                         const std::string& inputSpace) {
+Command makeCarryCommand(bool push, const std::string& summary, const std::string& inputSpace) {
   auto o = std::make_shared<CarryOptions>();
-  Command c(name, summary);
+  Command c(wordOf(push), summary);
   c.positional("MAP", &o->map, "a map.ply written by fit or map");
   c.positional("INSIDE", &o->volume,
                "the things to carry, in the " + inputSpace +
@@ -285,16 +236,15 @@ Command makeCarryCommand(Way way, const std::string& name, const std::string& su
   c.settings(describe(o->verdict));
   addBlockOptions(c, o->farm);
   c.addSpace();
-  c.run([o, way](Context& context) { run(way, *o, context); });
+  c.run([o, push](Context& context) { run(push, *o, context); });
   return c;
 }
 
 }  // namespace
 
 Command makePushCommand() {
-  Command c = makeCarryCommand(Way::push, "push",
-                               "Carry grids or geometry inside a map's source solid to its target",
-                               "source");
+  Command c = makeCarryCommand(
+      true, "Carry grids or geometry inside a map's source solid to its target", "source");
   c.description(
       "For each voxel of the target, push finds the point of the source that the map brings there, "
       "by Newton's method, and samples the grids at it. Scalars keep their values. Vectors move by "
@@ -317,8 +267,7 @@ Command makePushCommand() {
 
 Command makePullCommand() {
   Command c = makeCarryCommand(
-      Way::pull, "pull", "Bring grids or geometry inside a map's target back to its source solid",
-      "target");
+      false, "Bring grids or geometry inside a map's target back to its source solid", "target");
   c.description(
       "Each voxel p of the source gets the grids' values at f(p), where the map brings it. "
       "Otherwise pull works like push, in the other direction.");

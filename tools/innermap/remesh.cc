@@ -40,7 +40,7 @@ void run(const RemeshOptions& options, Context& context) {
   if (!options.picture.empty()) context.output(options.picture);
   const MappedSolid mapped = readMapFile(options.map, context);
   const std::uint64_t reading = readCellsMemory(options.cells);
-  context.requireMemory("reading " + options.cells, reading, "use a coarser mesh");
+  context.requireMemory({"reading " + options.cells, reading, "use a coarser mesh"});
   CellFile file = context.timed("read", [&] { return readCells(options.cells); });
   for (const std::string& note : file.notes) context.note(note);
   const std::uint64_t need = std::max(reading, remeshMemory(file.mesh));
@@ -55,7 +55,7 @@ void run(const RemeshOptions& options, Context& context) {
                                    file.mesh.tetrahedra.size() + file.mesh.hexahedra.size(),
                                    options.cells, options.map),
                        "write " + options.output},
-                      need, "carrying " + options.cells, "use a coarser mesh"))
+                      {"carrying " + options.cells, need, "use a coarser mesh"}))
     return;
   RemeshSettings settings = options.settings;
   std::optional<Mesh> surface;

@@ -86,8 +86,7 @@ void run(const SequenceOptions& options, Context& context) {
   const FrameFitterSettings settings = options.frames.fitting;
   SourceBoundary rest = readRest(options.rest, frames, context);
   requireInterior(rest.solid, options.evaluation.grid.in<LevelSetSettings>());
-  const std::uint64_t gridsNeed =
-      mapGridMemory(rest.solid, mapGridSettings(options.evaluation), {1, false, false});
+  const MemoryNeed need = sequenceNeed(settings, rest.solid, mapGridSettings(options.evaluation));
   const JobSize size = jobSize(rest.solid, mapGridSettings(options.evaluation), settings.sources);
   JobPhase each = stageOf("frames: grids", size);
   if (settings.prove != Prove::off)
@@ -96,19 +95,16 @@ void run(const SequenceOptions& options, Context& context) {
   phases.insert(phases.end() - 1, stageOf("level set", size));
   context.expect(phases);
   if (asJobs)
-    return writeShareJobs(
-        options.farm,
-        {frames.wanted.size(), phases, frameFitterMemory(settings, gridsNeed), options.output},
-        context);
-  if (context.dryRun())
-    return context.plan({framesPlan(settings, frames),
-                         "write " +
-                             std::string(share ? "a part of each frame"
-                                               : "energies.csv, energies.svg and report.json") +
-                             (!options.grids.empty() ? " and the grids of each frame" : "") +
-                             " to " + options.output},
-                        frameFitterMemory(settings, gridsNeed));
-  requireFrameMemory(settings, gridsNeed, context);
+    return writeShareJobs(options.farm, {frames.wanted.size(), phases, need.bytes, options.output},
+                          context);
+  if (!context.begins({framesPlan(settings, frames),
+                       "write " +
+                           std::string(share ? "a part of each frame"
+                                             : "energies.csv, energies.svg and report.json") +
+                           (!options.grids.empty() ? " and the grids of each frame" : "") + " to " +
+                           options.output},
+                      need))
+    return;
   const FrameFitter fitter = makeFrameFitter(std::move(rest), settings, context);
   const FrameEvaluator evaluator = makeEvaluator(options, fitter, context);
   FrameFits fits = makeFrameFits(fitter, frames, context);

@@ -101,7 +101,8 @@ void run(const SliceOptions& given, Context& context) {
       lines.push_back("draw a section of " + options.file + " to " + options.picture);
     return context.plan(lines, need);
   }
-  context.requireMemory("cutting " + options.file, need, "slice fewer grids or along another axis");
+  context.requireMemory(
+      {"cutting " + options.file, need, "slice fewer grids or along another axis"});
   if (!options.output.empty())
     context.timed("slices", [&] { writeSlices(options, grids, context); });
   if (!options.picture.empty())

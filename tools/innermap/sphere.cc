@@ -25,7 +25,7 @@ void run(const Options& options, Context& context) {
   if (!context.begins(
           {fmt::format("lay the {} vertices of {} out on the unit sphere", vertices, options.mesh),
            "write them to " + options.output},
-          layOutMemory(vertices), "the layout", "use a coarser mesh"))
+          {"the layout", layOutMemory(vertices), "use a coarser mesh"}))
     return;
   const LaidOutMesh laid = layOut(std::move(mesh), options.surface, context);
   reportLaidOut("source", laid, context.report());

@@ -71,9 +71,9 @@ void run(const TetrahedralizeOptions& options, Context& context) {
   context.expect({voxels, thin, stageOf("filling with tetrahedra", size),
                   stageOf("fitting the boundary", size), stageOf("measuring cells", size),
                   stageOf("comparing the boundaries", size), stageOf("writing cells", size)});
-  if (!context.begins({fmt::format("fill {} with tetrahedra, to {}", options.mesh, options.output)},
-                      need, "tetrahedra of " + options.mesh,
-                      "use a lower --resolution or a longer --edge"))
+  if (!context.begins(
+          {fmt::format("fill {} with tetrahedra, to {}", options.mesh, options.output)},
+          {"tetrahedra of " + options.mesh, need, "use a lower {resolution} or a longer {edge}"}))
     return;
   Tetrahedralization result =
       context.timed("tetrahedra", [&] { return tetrahedralization(solid, settings); });

@@ -9,6 +9,7 @@
 #include "innermap/texture/solid_texture.h"
 #include "inputs.h"
 #include "job_cost.h"
+#include "jobs/solid_needs.h"
 #include "report/figures.h"
 #include "report/report_figures.h"
 #include "report/verdict.h"
@@ -104,16 +105,11 @@ void run(const TextureOptions& o, Context& context) {
   const std::string image = o.image.empty() ? "vertex colours" : o.image;
   std::vector<UdimTile> tiles;
   if (isTiled(o.image)) tiles = udimTiles(plan.mesh());
-  const std::uint64_t need =
-      plan.memory + (o.image.empty() ? 0 : textureImageMemory(o.image, tiles));
   expectPhases(o, settings, plan, context);
   if (!context.begins({fmt::format("continue {} into {} with {} charges and voxels of {:.6g}",
                                    image, o.mesh, plan.sources, plan.voxelSize),
                        "write surface, density, Cd and uv to " + o.output},
-                      need, "the solid texture",
-                      fmt::format("use a --voxel-size above {:.3g}, fewer --charges or raise "
-                                  "--max-memory",
-                                  1.5 * plan.voxelSize)))
+                      textureNeed(plan, o.image, tiles)))
     return;
   TextureLookup lookup;
   if (!o.image.empty())

@@ -86,13 +86,11 @@ void run(const TransferDistanceOptions& options, Context& context) {
   };
   expectPhases(options, mapped, target, context);
   requireInterior(mapped.solid(), options.grid.in<LevelSetSettings>());
-  if (context.dryRun())
-    return context.plan(
-        {"transfer the target's distance field through " + options.map,
-         "write source.vdb, target.vdb, source.png, target.png and report.json to " +
-             options.output},
-        need(options.grid));
-  requireGridMemory("transferring the distance", options.grid, context, need);
+  if (!context.begins({"transfer the target's distance field through " + options.map,
+                       "write source.vdb, target.vdb, source.png, target.png and report.json to " +
+                           options.output},
+                      gridNeed("transferring the distance", options.grid, need)))
+    return;
   auto settings = options.grid.in<DistanceTransferSettings>();
   settings.accuracy = sumAccuracy(mapped);
   const DistanceTransfer made = transferDistance(mapped.map, mapped.solid(), target, settings);

@@ -71,27 +71,12 @@ CarrySettings carrySettings(const TransferOptions& options) {
   return out;
 }
 
-OutsideSettings outsideSettings(const TransferOptions& options, const Points& from,
-                                const Points& to) {
-  OutsideSettings out;
-  out.distance = options.outside;
-  if (options.fadeTo == "cut") return out;
+FadeTo fadeTo(const TransferOptions& options) {
+  if (options.fadeTo == "cut") return {};
   if (!(options.outside > 0))
     throw UsageError("--fade-to: is for what lies outside; give --outside too");
-  if (options.fadeTo == "identity")
-    out.fadeTo = RigidMotion();
-  else
-    out.fadeTo =
-        options.fadeTo == "fitted" ? bestRigidMotion(from, to) : parseMotion(options.fadeTo);
-  return out;
-}
-
-FrameOutside frameOutside(const TransferOptions& options) {
-  FrameOutside out;
-  out.fitted = options.fadeTo == "fitted" && options.outside > 0;
-  if (!out.fitted) out.settings = outsideSettings(options, {}, {});
-  out.settings.distance = options.outside;
-  return out;
+  if (options.fadeTo == "fitted") return {{}, true};
+  return {options.fadeTo == "identity" ? RigidMotion() : parseMotion(options.fadeTo)};
 }
 
 openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& options,
@@ -105,39 +90,6 @@ openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& o
   if (grids.empty()) throw FileError(path, "holds no grid");
   requireCarriable(grids, carrySettings(options));
   return grids;
-}
-
-LevelSetSettings outputSettings(const openvdb::GridPtrVec& grids, const LatticeChoice& options,
-                                double growth) {
-  auto settings = options.in<LevelSetSettings>();
-  if (!options.voxelSize && !options.resolution) settings.voxelSize = growth * finestVoxel(grids);
-  return settings;
-}
-
-std::uint64_t transferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                             const TransferOptions& options, const CarryKind& kind, double growth) {
-  OutsideSettings outside;
-  outside.distance = options.outside;
-  return carryMemory(solid, grids, outputSettings(grids, options.grid, growth), outside,
-                     carrySettings(options), kind);
-}
-
-void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                           const TransferOptions& options, const Context& context,
-                           const CarryKind& kind, double growth) {
-  requireGridMemory("carrying the volume", options.grid, context, [&](const LatticeChoice& grid) {
-    TransferOptions other = options;
-    other.grid = grid;
-    return transferMemory(solid, grids, other, kind, growth);
-  });
-}
-
-openvdb::FloatGrid::Ptr outputLevelSet(const Solid& solid, const openvdb::GridPtrVec& grids,
-                                       const TransferOptions& options, Context& context,
-                                       double growth) {
-  return context.timed("level set", [&] {
-    return makeLevelSet(solid, outputSettings(grids, options.grid, growth));
-  });
 }
 
 void reportPush(const PushResult& result, Context& context) {

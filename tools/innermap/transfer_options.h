@@ -6,6 +6,7 @@
 #include "grid_options.h"
 #include "innermap/transfer/carry.h"
 #include "innermap/transfer/push_pull.h"
+#include "jobs/carry_job.h"
 #include "report/verdict.h"
 
 namespace innermap::tool {
@@ -25,34 +26,12 @@ void addTransferOptions(Command& command, TransferOptions& options);
 
 CarrySettings carrySettings(const TransferOptions& options);
 
-// from, to: boundary points before and after the motion, for --fade-to fitted. Throws UsageError
-// for a motion that is none.
-OutsideSettings outsideSettings(const TransferOptions& options, const Points& from,
-                                const Points& to);
-// Where the motion of --fade-to fitted is each frame's own. Throws as above.
-FrameOutside frameOutside(const TransferOptions& options);
+// What --fade-to says. Throws UsageError for a motion that is none.
+FadeTo fadeTo(const TransferOptions& options);
 
 // The grids to be carried. Throws FileError for a name that is not there.
 openvdb::GridPtrVec readVolume(const std::string& path, const TransferOptions& options,
                                Context& context);
-
-// Need in bytes of pushing or pulling the grids, read already, to the solid's voxels.
-std::uint64_t transferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                             const TransferOptions& options, const CarryKind& kind,
-                             double growth = 1);
-
-void requireTransferMemory(const Solid& solid, const openvdb::GridPtrVec& grids,
-                           const TransferOptions& options, const Context& context,
-                           const CarryKind& kind, double growth = 1);
-
-// Of the output's solid: by --voxel-size or --resolution, else with the finest voxels of the grids,
-// times `growth`.
-LevelSetSettings outputSettings(const openvdb::GridPtrVec& grids, const LatticeChoice& options,
-                                double growth = 1);
-
-openvdb::FloatGrid::Ptr outputLevelSet(const Solid& solid, const openvdb::GridPtrVec& grids,
-                                       const TransferOptions& options, Context& context,
-                                       double growth = 1);
 
 // Fills the report's "inverse", "mass" and "densities"; passes on the warnings.
 void reportPush(const PushResult& result, Context& context);

@@ -59,8 +59,9 @@ std::string failureOf(const VerifyOptions& options, const Verification& made) {
 
 void run(const VerifyOptions& options, Context& context) {
   const MappedSolid mapped = readMapFile(options.map, context);
-  if (!context.begins({"verify " + options.map}, verifyMemory(mapped, options.settings),
-                      "verifying " + options.map, "raise --max-memory or lower --proof-cells"))
+  if (!context.begins({"verify " + options.map},
+                      {"verifying " + options.map, verifyMemory(mapped, options.settings),
+                       "raise {max_memory} or lower {proof_cells}"}))
     return;
   const Verification made =
       context.timed("verify", [&] { return verifyMap(mapped, options.settings); });

@@ -98,8 +98,8 @@ void write(const VoxelizeOptions& options, const openvdb::GridPtrVec& grids, Con
 
 void requireNeed(const VoxelizeOptions& options, std::uint64_t need, double voxelSize,
                  Context& context) {
-  context.requireMemory("voxelizing " + options.mesh, need,
-                        fmt::format("use a --voxel-size above {:.3g}", 1.5 * voxelSize));
+  context.requireMemory({"voxelizing " + options.mesh, need,
+                         fmt::format("use a {{voxel_size}} above {:.3g}", 1.5 * voxelSize)});
 }
 
 void runMesh(const VoxelizeOptions& options, Context& context) {
@@ -153,8 +153,8 @@ double finestVoxelOf(const openvdb::GridBase& grid) {
 void runScan(const VoxelizeOptions& options, Context& context) {
   if (options.attributes) throw UsageError("--attributes: is for meshes; leave it out");
   const std::vector<std::int64_t> labels = labelsOf(options);
-  context.requireMemory("reading " + options.mesh, volumeTextureReadNeed(options.mesh).memory,
-                        "cut the scan or raise --max-memory");
+  context.requireMemory({"reading " + options.mesh, volumeTextureReadNeed(options.mesh).memory,
+                         "cut the scan or raise {max_memory}"});
   openvdb::GridPtrVec scan =
       context.timed("read", [&] { return readVolumeTexture(options.mesh).grids; });
   moveGrids(scan, inputToOutput(context.space()));

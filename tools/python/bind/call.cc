@@ -193,8 +193,8 @@ void keepPythonError(const py::error_already_set& error) {
   static_cast<CallRun&>(currentRun()->whole()).keep(error);
 }
 
-void requireMemory(const std::string& what, std::uint64_t bytes, const std::string& advice) {
-  innermap::requireMemory(what, processMemory(bytes), advice);
+void requireMemory(const MemoryNeed& need) {
+  innermap::requireMemory(need, processMemory(0), memoryLimit(), asCalled);
 }
 
 void runCall(const CallOptions& options, const std::function<void()>& work) {

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "innermap/core/error.h"
+#include "jobs/needs.h"
 
 namespace innermap::python {
 
@@ -50,9 +51,8 @@ auto call(const CallOptions& options, Work&& work) -> decltype(work()) {
   return std::move(*out);
 }
 
-// Within a call: throws MemoryError where a job that takes as many bytes would take the process
-// over the call's limit.
-void requireMemory(const std::string& what, std::uint64_t bytes, const std::string& advice);
+// Within a call: throws MemoryError where a job would take the process over the call's limit.
+void requireMemory(const MemoryNeed& need);
 
 // For work that is over at once: with the lock released. Gives None.
 template <class Work>

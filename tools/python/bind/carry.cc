@@ -48,7 +48,8 @@ class Job {
       : push_(push), map_(map), o_(o), way_(map.mapped->map) {
     const MappedSolid& mapped = *map.mapped;
     outside_ =
-        o.outsideSettings(mapped.solid().repaired().mesh.vertices, mapped.boundary.target.moved);
+        outsideSettings(o.outside, fadeToFrom(o.outside, o.fadeTo),
+                        mapped.solid().repaired().mesh.vertices, mapped.boundary.target.moved);
     if (!o.through.is_none()) way_ = linearMapOf(cellsFrom(o.through, "through", o.call), mapped);
   }
 
@@ -66,14 +67,6 @@ class Job {
   };
 
   void carryGrids(const openvdb::GridPtrVec& given, const CarrySettings& carry, Grids& out) const;
-  template <class Settings>
-  Settings settings(const CarrySettings& carry) const {
-    Settings out;
-    out.carry = carry;
-    out.outside = outside_;
-    out.accuracy = sumAccuracy(*map_.mapped);
-    return out;
-  }
   PointCarry carryOf() const;
   CarriedPoints carryPoints(const Points& points, bool jacobians) const {
     return carryOf()(points, jacobians);
@@ -88,29 +81,19 @@ class Job {
 
 void Job::carryGrids(const openvdb::GridPtrVec& given, const CarrySettings& carry,
                      Grids& out) const {
-  const MappedSolid& mapped = *map_.mapped;
-  const Solid& source = mapped.solid();
-  const Solid target = makeTargetSolid(mapped.boundary);
-  const double from = push_ ? source.volume() : target.volume(),
-               to = push_ ? target.volume() : source.volume();
-  const LevelSetSettings output = o_.output(given, voxelGrowth(from, to));
-  requireMemory("carrying the grids",
-                carryMemory(push_ ? target : source, given, output, outside_, carry, {push_, 0}),
-                "use a lower resolution");
-  const openvdb::FloatGrid::Ptr levelSet = makeLevelSet(push_ ? target : source, output);
+  const CarryJob job{push_,    map_.mapped, makeTargetSolid(map_.mapped->boundary),
+                     way_,     given,       carry,
+                     outside_, o_.lattice};
+  requireMemory(job.need());
+  const openvdb::FloatGrid::Ptr levelSet = makeLevelSet(job.to(), job.output());
   if (push_) {
-    out.pushed = VolumePusher(source, given, settings<PushSettings>(carry)).push(way_, *levelSet);
+    out.pushed = pusherOf(job).push(way_, *levelSet);
     out.made = out.pushed.grids;
   } else {
-    auto pulling = settings<PullSettings>(carry);
-    LevelSetSettings own;
-    own.voxelSize = finestVoxel(given);
-    const openvdb::FloatGrid::Ptr ofTarget = makeLevelSet(target, own);
-    pulling.targetLevelSet = ofTarget.get();
-    out.pulled = pullGrids(way_, source, *levelSet, given, pulling);
+    out.pulled = pullerOf(job).puller.pull(*levelSet);
     out.made = out.pulled.grids;
   }
-  describeMap(out.made, mapped);
+  describeMap(out.made, *map_.mapped);
 }
 
 py::object Job::grids(const py::object& what, const py::object& path) const {

@@ -68,33 +68,15 @@ CarrySettings CarryOptions::carry() const {
   return out;
 }
 
-OutsideSettings CarryOptions::outsideSettings(const Points& from, const Points& to) const {
-  return outsideFrom(outside, fadeTo, from, to);
-}
-
-OutsideSettings outsideFrom(double outside, const py::object& fadeTo, const Points& from,
-                            const Points& to) {
-  OutsideSettings out;
-  out.distance = outside;
+FadeTo fadeToFrom(double outside, const py::object& fadeTo) {
   const bool isText = py::isinstance<py::str>(fadeTo);
   const std::string text = isText ? textFrom(fadeTo, "fade_to") : "cut";
-  if (fadeTo.is_none() || (isText && text == "cut")) return out;
+  if (fadeTo.is_none() || (isText && text == "cut")) return {};
   if (!(outside > 0)) wrongValue("fade_to", "is for what lies outside; give outside too");
-  if (!isText)
-    out.fadeTo = motionFrom(fadeTo);
-  else if (text == "identity")
-    out.fadeTo = RigidMotion();
-  else if (text == "fitted")
-    out.fadeTo = bestRigidMotion(from, to);
-  else
-    wrongValue("fade_to", "expects 'cut', 'identity', 'fitted' or a rigid motion's matrix");
-  return out;
-}
-
-LevelSetSettings CarryOptions::output(const openvdb::GridPtrVec& carried, double growth) const {
-  auto out = lattice.in<LevelSetSettings>();
-  if (!lattice.resolution && !lattice.voxelSize) out.voxelSize = growth * finestVoxel(carried);
-  return out;
+  if (!isText) return {motionFrom(fadeTo)};
+  if (text == "identity") return {RigidMotion()};
+  if (text == "fitted") return {{}, true};
+  wrongValue("fade_to", "expects 'cut', 'identity', 'fitted' or a rigid motion's matrix");
 }
 
 py::dict totalsOf(const PushResult& result) {

@@ -14,6 +14,7 @@
 #include "innermap/levelset/level_set.h"
 #include "innermap/transfer/inverse_map.h"
 #include "innermap/transfer/push_pull.h"
+#include "jobs/carry_job.h"
 
 namespace innermap::python {
 
@@ -31,16 +32,11 @@ struct CarryOptions {
   void describe(Keywords& k);
 
   CarrySettings carry() const;
-  // from, to: corresponding points of the two solids.
-  OutsideSettings outsideSettings(const Points& from, const Points& to) const;
-  // Voxels of the output: as asked for, else those of the grids times `growth`.
-  LevelSetSettings output(const openvdb::GridPtrVec& carried, double growth) const;
 };
 
-// Keywords outside and fade_to, and what they say. from, to: corresponding points of the solids.
+// Keywords outside and fade_to, and what the latter says.
 void describeOutside(Keywords& k, double* outside, pybind11::object* fadeTo);
-OutsideSettings outsideFrom(double outside, const pybind11::object& fadeTo, const Points& from,
-                            const Points& to);
+FadeTo fadeToFrom(double outside, const pybind11::object& fadeTo);
 
 // What became of grids, for Grids.totals.
 pybind11::dict totalsOf(const PushResult& result);

@@ -27,7 +27,7 @@ struct CheckOptions {
 py::object check(const Arguments& a, CheckOptions& o) {
   const Mesh mesh = onlyMesh(a, "check");
   return py::cast(call(o.call, [&]() {
-    requireMemory("checking the mesh", checkMemory(mesh), "raise max_memory");
+    requireMemory({"checking the mesh", checkMemory(mesh)});
     CheckSettings settings;
     settings.selfIntersections = o.selfIntersections;
     return checkMesh(mesh, settings);

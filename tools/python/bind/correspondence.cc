@@ -95,7 +95,7 @@ py::object save(const Arguments& a, NoOptions&) {
   if (path.size() < 5 || path.compare(path.size() - 4, 4, ".ply") != 0)
     wrongValue("path", "must end in .ply, got '" + path + "'");
   return withoutLock([&] {
-    if (self.onTarget.empty()) return writeMesh(path, self.target());
+    if (self.onTarget.empty()) return writeMesh(path, self.target(self.source.name));
     if (self.changed) {
       Mesh source = self.source;
       source.colours.clear();
@@ -142,8 +142,9 @@ std::string reprOf(const PyCorrespondence& c) {
 
 }  // namespace
 
-Mesh PyCorrespondence::target() const {
+Mesh PyCorrespondence::target(const std::string& name) const {
   Mesh out = source;
+  out.name = name;
   out.vertices = positions;
   return out;
 }
@@ -165,8 +166,10 @@ MeshCorrespondenceSettings CorrespondOptions::settings() const {
 std::shared_ptr<PyCorrespondence> correspondMeshes(const Mesh& a, const Mesh& b,
                                                    const MeshCorrespondenceSettings& settings,
                                                    const CallOptions& options) {
-  const MeshCorrespondence made =
-      call(options, [&]() { return innermap::correspondMeshes(a, b, settings); });
+  const MeshCorrespondence made = call(options, [&]() {
+    requireMemory(correspondNeed(a.vertices.size(), b.vertices.size()));
+    return innermap::correspondMeshes(a, b, settings);
+  });
   auto out = std::make_shared<PyCorrespondence>();
   out->source = made.source;
   out->positions = made.positions;
@@ -186,8 +189,9 @@ void bindCorrespondence(py::module_& m) {
   c.def_readonly("source", &PyCorrespondence::source,
                  "The source, a Mesh: as given, or with its triangles split; its own vertices come "
                  "first.")
-      .def_property_readonly("target", &PyCorrespondence::target,
-                             "The same mesh with its vertices on the target, a Mesh.")
+      .def_property_readonly(
+          "target", [](const PyCorrespondence& self) { return self.target(self.source.name); },
+          "The same mesh with its vertices on the target, a Mesh.")
       .def_property_readonly(
           "positions", [](const PyCorrespondence& self) { return arrayOf(self.positions); },
           "(n, 3) float64: the places of the source's vertices, world units of the target.")

@@ -20,7 +20,7 @@ struct PyCorrespondence {
   std::vector<std::string> notes, warnings;
   pybind11::dict quality;  // empty where it was read from a file
 
-  Mesh target() const;  // source with its vertices there
+  Mesh target(const std::string& name) const;  // source with its vertices there
 };
 
 // How one mesh is laid onto another: keywords of correspond() and, between strangers, of fit().

@@ -12,13 +12,12 @@
 #include "core/frame_files.h"
 #include "innermap/core/memory.h"
 #include "innermap/transfer/carry.h"
+#include "jobs/frames_job.h"
 
 namespace py = pybind11;
 
 namespace innermap::python {
 namespace {
-
-constexpr double kGridAccuracy = 1e-6;  // of the sums of charges
 
 struct DeformOptions : CarryOptions {
   FittingOptions fitting;
@@ -40,7 +39,10 @@ struct DeformOptions : CarryOptions {
 class Deformation {
  public:
   Deformation(const Mesh& rest, const FrameSet& frames, const DeformOptions& o)
-      : rest_(rest), frames_(frames), o_(o), outside_(frameOutsideFrom(o.outside, o.fadeTo)) {}
+      : rest_(rest),
+        frames_(frames),
+        o_(o),
+        outside_(frameOutside(o.outside, fadeToFrom(o.outside, o.fadeTo))) {}
 
   py::object grids(const py::object& what, const std::optional<FramePattern>& pattern) const;
   py::object points(const Points& points) const;
@@ -67,27 +69,18 @@ py::object Deformation::grids(const py::object& what,
                               const std::optional<FramePattern>& pattern) const {
   const openvdb::GridPtrVec given =
       takeGrids(what, "inside", textsFrom(o_.grids, "grids"), o_.call);
-  FramePushSettings settings;
-  settings.push.carry = o_.carry();
-  settings.push.outside = outside_.settings;
-  settings.push.accuracy = kGridAccuracy;
-  settings.fadeToFitted = outside_.fitted;
+  FrameCarry how{o_.carry(), outside_, {}, o_.velocity, o_.fitting.animation.framesPerSecond,
+                 o_.shutter};
   std::vector<PushResult> results;
   const FrameTable made = call(o_.call, [&]() {
-    settings.output = o_.output(given, 1);
-    const FrameFitter fitter = fitterOf(rest_, o_.fitting, 0);
-    requireMemory("carrying the grids",
-                  carryMemory(fitter.solid(), given, settings.output, outside_.settings,
-                              settings.push.carry, {true, o_.velocity ? 1 : 0}),
-                  "use a lower resolution");
-    const FramePusher pusher(fitter, given, settings);
+    how.output = carriedVoxels(given, o_.lattice);
+    requireNoVelocity(how, given, o_.names, "inside", asCalled);
+    SourceBoundary rest = makeSourceBoundary(rest_);
+    const std::uint64_t others = frameCarryMemory(rest.solid, given, how);
+    const FrameFitter fitter = fitterOf(std::move(rest), o_.fitting, others);
+    const FramePusher pusher(fitter, given, pushSettings(how));
     return frames_.table(fitter, [&](const FittedFrame& frame) {
-      std::vector<CarriedField> fields;
-      const double rate = o_.fitting.animation.framesPerSecond;
-      if (o_.velocity)
-        fields.push_back({"velocity", frame.all.velocity(frame.index, rate),
-                          openvdb::VEC_CONTRAVARIANT_RELATIVE, o_.shutter / rate});
-      PushResult result = pusher.push(frame.fit, fields).result;
+      PushResult result = pusher.push(frame.fit, carriedFields(how, frame.all, frame.index)).result;
       Figures row = rowOf(*frame.fit.fit);
       row.emplace_back("inverted_fraction", result.statistics.invertedInside(), "inverted");
       row.emplace_back("voxels", result.statistics.voxels, "voxels");
@@ -114,7 +107,7 @@ py::object Deformation::points(const Points& points) const {
   std::vector<Points> places;
   PlacedPoints placed;
   const FrameTable made = call(o_.call, [&]() {
-    const FrameCarrier carrier(fitterOf(rest_, o_.fitting, 0), outside_);
+    const FrameCarrier carrier(fitterOf(makeSourceBoundary(rest_), o_.fitting, 0), outside_);
     placed = carrier.pusher.place(points);
     return table(carrier, [&](std::int64_t, const FrameFit& fit, const PointPusher& pusher) {
       places.push_back(placesOf(pusher.push(HarmonicMap(fit.field), placed, false)));
@@ -136,7 +129,8 @@ py::object Deformation::file(const std::string& from, const FramePattern& patter
   ReadGeometrySettings reading = geometrySettings(o_);
   requireWritableAs(from, pattern.path(0));
   const FrameTable made = call(o_.call, [&]() {
-    const FrameCarrier carrier(fitterOf(rest_, o_.fitting, geometryMemory(from)), outside_);
+    const FrameCarrier carrier(
+        fitterOf(makeSourceBoundary(rest_), o_.fitting, geometryMemory(from)), outside_);
     return table(carrier, [&](std::int64_t number, const FrameFit& fit, const PointPusher& pusher) {
       const HarmonicMap map(fit.field);
       carryFile(from, pattern.path(number), reading, {0, o_.splats, fit.injectivity.mirrored},

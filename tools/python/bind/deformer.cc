@@ -47,12 +47,12 @@ std::shared_ptr<PyDeformer> makeDeformer(const py::object& source, const py::obj
                                          const DeformerOptions& o) {
   const Mesh rest = meshFrom(source, "source");
   const Points points = pointsFrom(inside, "X");
-  const FrameOutside outside = frameOutsideFrom(o.outside, o.fadeTo);
+  const FrameOutside outside = frameOutside(o.outside, fadeToFrom(o.outside, o.fadeTo));
   FittingOptions fitting;
   fitting.fitting = o.fitting;
   return call(o.call, [&] {
     const std::uint64_t kept = 3 * sizeof(Vec3) * points.size();
-    FrameCarrier carrier(fitterOf(rest, fitting, kept), outside);
+    FrameCarrier carrier(fitterOf(makeSourceBoundary(rest), fitting, kept), outside);
     PlacedPoints placed = carrier.pusher.place(points);
     return std::make_shared<PyDeformer>(PyDeformer{rest, std::move(carrier), std::move(placed)});
   });
@@ -146,15 +146,6 @@ py::object lattice(const Arguments& a, LatticeOptions& o) {
 }
 
 }  // namespace
-
-FrameOutside frameOutsideFrom(double outside, const py::object& fadeTo) {
-  FrameOutside out;
-  out.fitted =
-      outside > 0 && py::isinstance<py::str>(fadeTo) && textFrom(fadeTo, "fade_to") == "fitted";
-  if (!out.fitted) out.settings = outsideFrom(outside, fadeTo, {}, {});
-  out.settings.distance = outside;
-  return out;
-}
 
 FrameCarrier::FrameCarrier(FrameFitter of, const FrameOutside& outside)
     : fitter(std::move(of)), pusher(fitter.solid(), {outside.settings}, outside.fitted) {}

@@ -11,9 +11,6 @@ namespace innermap::python {
 
 void bindDeformer(pybind11::module_& m);
 
-// What outside and fade_to say. Throws SettingError, TypeError.
-FrameOutside frameOutsideFrom(double outside, const pybind11::object& fadeTo);
-
 // Made without the lock of the interpreter. Thread-safe.
 struct FrameCarrier {
   FrameCarrier(FrameFitter of, const FrameOutside& outside);

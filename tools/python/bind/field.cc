@@ -79,9 +79,9 @@ HarmonicGrids gridsOf(const PyField& field, const FieldGridOptions& o) {
   HarmonicGrids grids = call(o.call, [&]() {
     auto settings = o.grid.in(o.settings);
     settings.span = field.span;
-    requireMemory("evaluating the field on a grid",
-                  harmonicGridMemory(solid.boundary.solid, solid.names.size(), settings),
-                  "use a lower resolution");
+    requireMemory({"evaluating the field on a grid",
+                   harmonicGridMemory(solid.boundary.solid, solid.names.size(), settings),
+                   "use a lower resolution"});
     return evaluateHarmonic(solid.field, solid.boundary.solid, solid.names, settings);
   });
   describeField(grids.all(), solid.facts);

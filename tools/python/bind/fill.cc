@@ -78,8 +78,8 @@ py::object hexahedra(const Arguments& a, HexahedralizeOptions& o) {
   o.settings.polycube = o.polycube;
   Hexahedralization made = call(o.call, [&]() {
     const Mesh surface = o.surfaceToFill(mesh);
-    requireMemory("hexahedra", hexahedralizeMemory(surface, o.settings),
-                  "use fewer blocks or pieces");
+    requireMemory(
+        {"hexahedra", hexahedralizeMemory(surface, o.settings), "use fewer {blocks} or {pieces}"});
     return hexahedralize(surface, o.settings);
   });
   py::dict figures("proven"_a = made.after.proven(), "inverted"_a = made.after.inverted,
@@ -110,7 +110,7 @@ py::object polycube(const Arguments& a, PolycubeOptions& o) {
   Mesh surface;
   const Polycube made = call(o.call, [&]() {
     const Mesh toFill = o.surfaceToFill(mesh);
-    requireMemory("a polycube", polycubeMemory(toFill, o.polycube), "use fewer blocks");
+    requireMemory({"a polycube", polycubeMemory(toFill, o.polycube), "use fewer {blocks}"});
     Polycube cube = makePolycube(toFill, o.polycube);
     surface = blockSurface(cube.blocks, o.pieces.value_or(usualPieces(cube.blocks)));
     return cube;

@@ -5,9 +5,8 @@
 #include "bind/keywords.h"
 #include "bind/map.h"
 #include "bind/meshes.h"
-#include "innermap/core/memory.h"
 #include "innermap/fit/fit_map.h"
-#include "innermap/mesh/mesh_file.h"
+#include "jobs/map_job.h"
 
 namespace py = pybind11;
 
@@ -28,71 +27,41 @@ struct FitOptions {
   }
 };
 
-// What is to be mapped: a pair of one connectivity, or strangers.
-struct Job {
-  Mesh source, target;
-  bool related = true, laidOn = false;
-};
-
-Mesh likeSource(const Mesh& source, Points vertices, const std::string& name) {
-  Mesh out = source;
-  out.name = name;
-  out.vertices = std::move(vertices);
-  return out;
-}
-
-void readTargetOf(const std::string& path, const CallOptions& options, Job& job) {
-  runCall(options, [&]() {
-    TargetMesh target = readTarget(path, job.source);
-    job.target = std::move(target.mesh);
-    job.related = target.related;
-  });
-}
-
-Job jobOf(const Arguments& a, const CallOptions& options) {
-  Job job;
+MapJob jobOf(const Arguments& a, const CallOptions& options) {
   if (a.size() == 1 && py::isinstance<PyCorrespondence>(a[0])) {
     const auto& c = py::cast<const PyCorrespondence&>(a[0]);
-    job.source = c.source;
-    job.target = likeSource(c.source, c.positions, "target");
-    job.laidOn = true;
-    return job;
+    return {c.source, c.target("target"), true, true};
   }
   std::size_t at = 0;
-  job.source = takeMesh(a, at, "source");
+  Mesh source = takeMesh(a, at, "source");
   if (at >= a.size()) throw py::type_error("fit() lacks its target: V_target, or a mesh");
   const bool last = at + 1 == a.size();
   if (last && isArrayLike(a[at])) {
-    job.target = takeTarget(a, at, job.source);
-    return job;
+    Mesh target = takeTarget(a, at, source);
+    return {std::move(source), std::move(target)};
   }
   if (last && isPath(a[at])) {
-    readTargetOf(pathFrom(a[at], "target"), options, job);
-    return job;
+    const std::string path = pathFrom(a[at], "target");
+    TargetMesh target = call(options, [&] { return readTarget(path, source); });
+    return {std::move(source), std::move(target.mesh), target.related};
   }
-  job.target = takeMesh(a, at, "target");
+  Mesh target = takeMesh(a, at, "target");
   if (at < a.size()) throw py::type_error("fit() takes a source and a target, no more");
-  job.related = sameConnectivity(job.source, job.target);
-  if (job.related) job.target = likeSource(job.source, job.target.vertices, job.target.name);
-  return job;
+  return mapJob(std::move(source), std::move(target));
 }
 
 py::object fit(const Arguments& a, FitOptions& o) {
-  Job job = jobOf(a, o.call);
-  const FitMapSettings settings = o.fit.settings(job.laidOn || !job.related);
+  MapJob job = jobOf(a, o.call);
+  const FitMapSettings settings = o.fit.settings(job.laidOn());
   if (!job.related) {
-    CorrespondOptions correspond = o.correspond;
-    correspond.map.seed = settings.seed;
-    correspond.map.carryBack = false;
     CallOptions laying = o.call;
     laying.timeShare = kLayingTimeShare;
-    const auto laid = correspondMeshes(job.source, job.target, correspond.settings(), laying);
-    job.source = laid->source;
-    job.target = likeSource(laid->source, laid->positions, job.target.name);
+    const auto laid = correspondMeshes(
+        job.source, job.target, layingSettings(o.correspond.settings(), settings.seed), laying);
+    job = {laid->source, laid->target(job.target.name), true, true};
   }
   return py::cast(std::make_shared<PyMap>(call(o.call, [&]() {
-    requireMemory("fitting the map", fitMapMemory(settings, job.source.vertices.size()),
-                  "use fewer charges or raise max_memory");
+    requireMemory(fitNeed(settings, job.source.vertices.size()));
     return fitMap(job.source, job.target, settings);
   })));
 }

@@ -2,16 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <limits>
 
 #include "bind/arrays.h"
 #include "bind/errors.h"
 #include "bind/lists.h"
 #include "bind/meshes.h"
-#include "core/frame_files.h"
-#include "innermap/core/memory.h"
 #include "innermap/mesh/mesh_file.h"
+#include "jobs/frames_job.h"
 #include "report/sequence_table.h"
 
 namespace py = pybind11;
@@ -114,23 +112,12 @@ void FrameSet::number(const py::object& numbers) {
 }
 
 void FrameSet::choose(const py::object& only) {
-  std::optional<FrameRanges> ranges;
-  if (!only.is_none()) ranges.emplace("only", textOf(only, "only"));
-  for (std::size_t i = 0; i < numbers_.size(); ++i)
-    if (!ranges || ranges->contains(numbers_[i])) wanted_.push_back(i);
-  if (wanted_.empty()) throw SettingError("only", "has none of the frames");
+  wanted_ = wantedFrames(numbers_, "only", only.is_none() ? "" : textOf(only, "only"));
 }
 
 void FrameTable::add(std::int64_t number, const std::function<Figures()>& body) {
   Figures row;
-  std::string failure;
-  try {
-    row = body();
-  } catch (const FileError& problem) {
-    failure = problem.what();
-  } catch (const DataError& problem) {
-    failure = problem.what();
-  }
+  error.push_back(whyBroken([&] { row = body(); }));
   for (const Figure& figure : row) {
     if (!figure.known) continue;
     if (const auto* text = std::get_if<std::string>(&figure.value))
@@ -140,14 +127,12 @@ void FrameTable::add(std::int64_t number, const std::function<Figures()>& body) 
           .first->second.push_back(numberOf(figure));
   }
   frame.push_back(number);
-  error.push_back(failure);
   for (auto& [name, values] : columns) values.resize(frame.size(), kNone);
   for (auto& [name, values] : texts) values.resize(frame.size());
 }
 
 py::dict FrameTable::dict() const {
-  if (std::none_of(error.begin(), error.end(), [](const std::string& e) { return e.empty(); }))
-    throw DataError("none of the frames can be used; the first: " + error.front());
+  requireOneGood(error);
   py::dict out;
   out["frame"] = arrayOf(frame);
   for (const auto& [name, values] : columns) out[name.c_str()] = arrayOf(values);
@@ -163,11 +148,9 @@ Figures rowOf(const FrameFit& fit) {
   return row;
 }
 
-FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, std::uint64_t others) {
-  const FrameFitterSettings& settings = o.fitting;
-  requireMemory(fmt::format("a sequence with {} charges", settings.sources),
-                frameFitterMemory(settings, others), "use fewer charges");
-  return FrameFitter(makeSourceBoundary(rest), settings);
+FrameFitter fitterOf(SourceBoundary rest, const FittingOptions& o, std::uint64_t others) {
+  requireMemory(framesNeed(o.fitting, others));
+  return {std::move(rest), o.fitting};
 }
 
 }  // namespace innermap::python

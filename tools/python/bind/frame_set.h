@@ -82,6 +82,6 @@ class FrameSet {
 };
 
 // others: memory that is needed beside it, bytes.
-FrameFitter fitterOf(const Mesh& rest, const FittingOptions& o, std::uint64_t others);
+FrameFitter fitterOf(SourceBoundary rest, const FittingOptions& o, std::uint64_t others);
 
 }  // namespace innermap::python

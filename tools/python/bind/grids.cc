@@ -201,8 +201,8 @@ openvdb::GridPtrVec takeGrids(const py::object& grids, const std::string& argume
   openvdb::GridPtrVec out = call(options, [&]() {
     VdbReadSettings settings;
     settings.names = names;
-    requireMemory("reading " + path, readMemory(readVdbInfo(path), names),
-                  "read fewer of its grids");
+    requireMemory(
+        {"reading " + path, readMemory(readVdbInfo(path), names), "read fewer of its grids"});
     return readVdb(path, settings).grids;
   });
   if (out.empty()) throw FileError(path, "holds no grid");

@@ -76,7 +76,7 @@ std::shared_ptr<PyField> fitted(const Mesh& mesh, BoundaryConditions& conditions
   if (!conditions.function) namesFrom(names, conditions.values.columns());  // before the work
   conditions.creaseAngle = o.creaseAngle;
   auto made = call(o.call, [&]() {
-    requireMemory("the harmonic field", fitMapMemory({}, mesh.vertices.size()), "raise max_memory");
+    requireMemory({"the harmonic field", fitMapMemory({}, mesh.vertices.size())});
     const std::string joined = joinedText(removeJumps(mesh, conditions));
     SourceBoundary boundary = makeSourceBoundary(mesh);
     HarmonicFit fit = fitHarmonic(boundary, conditions, o.fit);

@@ -39,18 +39,12 @@ struct WriteMapOptions : MapGridOptions {
   }
 };
 
-void requireGridMemory(const PyMap& map, const MapGridSettings& settings) {
-  requireMemory("evaluating the map on a grid",
-                mapGridMemory(map.mapped->solid(), settings, mapGridKind(*map.mapped)),
-                "use a lower resolution");
-}
-
 SolidGrids gridsOf(const PyMap& map, const MapGridOptions& o) {
   return call(o.call, [&]() {
     auto settings = o.grid.in(MapGridSettings{});
     settings.lame = o.lame;
     settings.repair = o.repair;
-    requireGridMemory(map, settings);
+    requireMemory(mapGridNeed(map.mapped->solid(), o.grid, mapGridKind(*map.mapped)));
     return evaluateOnGrid(*map.mapped, settings);
   });
 }
@@ -86,7 +80,7 @@ using FoldOptions = SettingsOptions<LatticeChoice>;
 
 Folds foldsOf(const PyMap& map, const FoldOptions& o) {
   const MappedSolid& mapped = *map.mapped;
-  requireGridMemory(map, o.settings.in(MapGridSettings{}));
+  requireMemory(mapGridNeed(mapped.solid(), o.settings, mapGridKind(mapped)));
   const auto levelSet = makeLevelSet(mapped.solid(), o.settings.in(LevelSetSettings{}));
   EvaluateSettings settings;
   settings.map = settings.harmonicEnergy = settings.deformationEnergy = false;

@@ -6,9 +6,9 @@
 #include "bind/lists.h"
 #include "bind/map.h"
 #include "bind/meshes.h"
-#include "innermap/core/memory.h"
 #include "innermap/tetra/compare_fem.h"
 #include "innermap/tetra/remesh_cells.h"
+#include "jobs/solid_needs.h"
 #include "report/figures.h"
 
 namespace py = pybind11;
@@ -46,7 +46,7 @@ py::object remesh(const Arguments& a, RemeshOptions& o) {
   if (!o.surface.is_none()) surface = meshFrom(o.surface, "surface");
   if (surface) o.settings.surface = &*surface;
   Remesh made = call(o.call, [&]() {
-    requireMemory("carrying the cells", remeshMemory(cells), "use a coarser mesh");
+    requireMemory({"carrying the cells", remeshMemory(cells), "use a coarser mesh"});
     return remeshCells(cells, *map.mapped, o.settings);
   });
   py::dict figures("inverted"_a = made.inverted, "inverted_at_rest"_a = made.invertedAtRest,
@@ -97,12 +97,11 @@ py::object compareFem(const Arguments& a, CompareOptions& o) {
   return tableOf(call(o.call, [&]() {
     if (target) {
       const BoundaryPair pair = makeBoundaryPair(source, *target);
-      requireMemory("finite elements", compareFemMemory(pair.solid(), o.settings),
-                    "use lower resolutions");
+      requireMemory(compareFemNeed(pair.solid(), o.settings, source.vertices.size()));
       return compareFemOnMap(pair, o.settings);
     }
     const Solid solid(source);
-    requireMemory("finite elements", compareFemMemory(solid, o.settings), "use lower resolutions");
+    requireMemory(compareFemNeed(solid, o.settings, 0));
     return compareFemOnFunctions(solid, o.settings);
   }));
 }

@@ -7,6 +7,7 @@
 #include "bind/meshes.h"
 #include "core/frame_files.h"
 #include "innermap/evaluate/grids.h"
+#include "jobs/frames_job.h"
 #include "report/sequence_table.h"
 
 namespace py = pybind11;
@@ -56,7 +57,9 @@ py::object sequence(const Arguments& a, SequenceOptions& o) {
   const FrameTable made = call(o.call, [&]() {
     auto settings = o.grid.in(MapGridSettings{});
     settings.lame = o.lame;
-    const FrameFitter fitter = fitterOf(rest, o.fitting, 0);
+    SourceBoundary boundary = makeSourceBoundary(rest);
+    requireMemory(sequenceNeed(o.fitting.fitting, boundary.solid, settings));
+    const FrameFitter fitter(std::move(boundary), o.fitting.fitting);
     const FrameEvaluator evaluator(fitter, names, settings);
     return frames.table(fitter, [&](const FittedFrame& frame) {
       const MapGrids grids = evaluator.evaluate(*frame.fit.fit);

@@ -7,8 +7,8 @@
 #include "bind/keywords.h"
 #include "bind/meshes.h"
 #include "bind/volumes.h"
-#include "innermap/core/memory.h"
 #include "innermap/io/pictures.h"
+#include "jobs/solid_needs.h"
 
 namespace py = pybind11;
 using namespace py::literals;
@@ -60,9 +60,7 @@ py::object texture(const Arguments& a, TextureOptions& o) {
     const SolidTexturePlan plan = planSolidTexture(std::move(mesh), settings);
     std::vector<UdimTile> tiles;
     if (isTiled(image)) tiles = udimTiles(plan.mesh());
-    requireMemory("the solid texture",
-                  plan.memory + (image.empty() ? 0 : textureImageMemory(image, tiles)),
-                  "use larger voxels or fewer charges");
+    requireMemory(textureNeed(plan, image, tiles));
     TextureLookup lookup;
     if (!image.empty())
       lookup = [images = TextureImages(image, tiles, o.images)](

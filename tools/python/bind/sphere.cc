@@ -28,7 +28,7 @@ struct SphereOptions {
 py::object sphere(const Arguments& a, SphereOptions& o) {
   const Mesh mesh = onlyMesh(a, "sphere");
   MeshOnSphere made = call(o.call, [&]() {
-    requireMemory("the layout", layOutMemory(mesh.vertices.size()), "use a coarser mesh");
+    requireMemory({"the layout", layOutMemory(mesh.vertices.size()), "use a coarser mesh"});
     return onSphere(layOutMesh(mesh, o.settings));
   });
   return py::make_tuple(std::make_shared<Mesh>(std::move(made.mesh)),

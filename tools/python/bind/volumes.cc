@@ -167,8 +167,8 @@ py::object voxelize(const Arguments& a, VoxelizeOptions& o) {
     settings.resolution = o.grid.resolution.value_or(0);
     settings.voxelSize = o.grid.voxelSize.value_or(0);
     const Solid solid(mesh);
-    requireMemory("voxelizing", voxelizeMemory(solid, settings, mesh, o.fog, o.attributes),
-                  "use larger voxels");
+    requireMemory({"voxelizing", voxelizeMemory(solid, settings, mesh, o.fog, o.attributes),
+                   "use larger voxels"});
     const openvdb::FloatGrid::Ptr surface = makeLevelSet(solid, settings);
     made.push_back(surface);
     if (o.fog) made.push_back(makeFog(*surface));
@@ -191,9 +191,9 @@ py::object distance(const Arguments& a, DistanceOptions& o) {
     settings.resolution = o.settings.resolution.value_or(0);
     settings.accuracy = sumAccuracy(mapped);
     const Solid target = makeTargetSolid(mapped.boundary);
-    requireMemory("transferring the distance",
-                  distanceTransferMemory(mapped.solid(), target, settings),
-                  "use a lower resolution");
+    requireMemory({"transferring the distance",
+                   distanceTransferMemory(mapped.solid(), target, settings),
+                   "use a lower resolution"});
     return transferDistance(mapped.map, mapped.solid(), target, settings);
   });
   const openvdb::GridPtrVec source{made.source.surface, made.through, made.source.depth},
@@ -220,7 +220,7 @@ py::object writeSlices(const Arguments& a, SliceOptions& o) {
   const std::string path = pathFrom(a[0], "path");
   const openvdb::GridPtrVec given = takeGrids(a[1], "grids", textsFrom(o.names, "names"), o.call);
   const ExrSliceResult made = call(o.call, [&]() {
-    requireMemory("slices", exrSliceMemory(given, o.slices), "slice fewer grids");
+    requireMemory({"slices", exrSliceMemory(given, o.slices), "slice fewer grids"});
     return writeExrSlices(path, given, o.slices);
   });
   return py::dict("slices"_a = made.slices, "width"_a = made.columns, "height"_a = made.rows,

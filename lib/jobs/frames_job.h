@@ -1,0 +1,57 @@
+// The job of an animation's frames: which of them, what they need, and what becomes of one that
+// cannot be used.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "innermap/fit/frame_fitter.h"
+#include "innermap/io/vdb_file.h"
+#include "innermap/transfer/push_pull.h"
+#include "jobs/needs.h"
+
+namespace innermap {
+
+// Places in `numbers`, which ascend, of the frames that `ranges` names, as FrameRanges has them;
+// empty: all. Throws SettingError naming `setting` where it names none.
+std::vector<std::size_t> wantedFrames(const std::vector<std::int64_t>& numbers,
+                                      const std::string& setting, const std::string& ranges);
+
+// Why a frame cannot be used: the FileError or DataError that `body` throws; empty if it can.
+std::string whyBroken(const std::function<void()>& body);
+
+// Throws DataError where none can be used. errors: of each frame, empty for a good one. unit: what
+// one is called.
+void requireOneGood(const std::vector<std::string>& errors, const std::string& unit = "frame");
+
+// others: bytes that a frame takes beside its fit.
+MemoryNeed framesNeed(const FrameFitterSettings& settings, std::uint64_t others);
+// Of measuring maps from this rest pose on grids.
+MemoryNeed sequenceNeed(const FrameFitterSettings& settings, const Solid& rest,
+                        const MapGridSettings& grids);
+
+// How grids are carried through frames.
+struct FrameCarry {
+  CarrySettings carry;
+  FrameOutside outside;
+  LevelSetSettings output;  // voxels of the grids made
+  bool velocity = false;    // also a grid of that name, for motion blur
+  double framesPerSecond = 24;
+  double shutter = kUsualShutter;  // frames that it is open for: the velocity goes on that far
+};
+
+FramePushSettings pushSettings(const FrameCarry& how);
+
+// What is carried beside the grids, to the frame at this place among all.
+std::vector<CarriedField> carriedFields(const FrameCarry& how, FrameFits& fits, std::size_t index);
+
+std::uint64_t frameCarryMemory(const Solid& rest, const openvdb::GridPtrVec& grids,
+                               const FrameCarry& how);
+
+// Throws DataError naming `from` where a grid already has the name that the velocity is to get.
+void requireNoVelocity(const FrameCarry& how, const openvdb::GridPtrVec& grids, NamingScheme names,
+                       const std::string& from, const SettingSpelling& spelled);
+
+}  // namespace innermap

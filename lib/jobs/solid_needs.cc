@@ -1,0 +1,24 @@
+#include "jobs/solid_needs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace innermap {
+
+MemoryNeed compareFemNeed(const Solid& solid, const CompareFemSettings& settings,
+                          std::size_t mapped) {
+  const std::uint64_t reference = mapped > 0 ? fitMapMemory({}, mapped) : 0;
+  return {"finite elements", std::max(compareFemMemory(solid, settings), reference),
+          "use lower {resolutions}"};
+}
+
+MemoryNeed textureNeed(const SolidTexturePlan& plan, const std::string& image,
+                       const std::vector<UdimTile>& tiles) {
+  return {"the solid texture", plan.memory + (image.empty() ? 0 : textureImageMemory(image, tiles)),
+          fmt::format("use a {{voxel_size}} above {:.3g}, fewer {{charges}} or raise "
+                      "{{max_memory}}",
+                      1.5 * plan.voxelSize)};
+}
+
+}  // namespace innermap
