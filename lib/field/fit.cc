@@ -109,8 +109,8 @@ class Fitting {
   std::vector<double> distancesFor(bool smooth, std::size_t count);
   Solved solve(const BoundaryData& data, std::size_t count, std::size_t points, double distance);
 
-  SourceLevel level(std::size_t count, double distance) {
-    return {shell(count, distance), spacing(count), distance * problem_.diagonal};
+  SourceLevel level(std::size_t count, double distance) const {
+    return {problem_.placeSources(count, distance), spacing(count), distance * problem_.diagonal};
   }
 
   // The trials of linear and of smooth values stand on the same ones.

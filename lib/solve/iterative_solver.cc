@@ -424,10 +424,12 @@ IterativeSolution IterativeSolver::Levels::solve(const Matrix& values,
   IterativeSolution out;
   if (start) out.productError = startFrom(*start, rhs, residual, x);
   out.residuals.push_back(rhs.size * rms(residual));
-  if (start && settleAdded(*start, rhs.rounding, residual, x, out))
+  if (start && settleAdded(*start, rhs.rounding, residual, x, out)) {
+    ++out.iterations;
     out.residuals.push_back(rhs.size * rms(residual));
-  else
+  } else {
     iterate(rhs, residual, x, out);
+  }
   unscale(rhs, residual, x, out);
   return out;
 }

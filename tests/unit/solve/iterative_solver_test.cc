@@ -172,6 +172,36 @@ TEST(IterativeSolver, GrowsAndStartsWarm) {
   EXPECT_THROW(IterativeSolver(p.collocation, {p.coarse}).solve(values, &warm), DataError);
 }
 
+// A handful about one place: there the residual falls, and the other charges stay as they are.
+TEST(IterativeSolver, FewAddedChargesAreSolvedForAlone) {
+  const Problem p;
+  IterativeSolver solver = p.solver();
+  const Vec3 place{1, 0, 0};
+  const IterativeSolution before = solver.solve(roughValues(p.collocation));
+  const auto near = [&](const Points& points, double reach) {
+    Points out;
+    for (const Vec3& q : points)
+      if (norm(q / norm(q) - place) < reach) out.push_back(q);
+    return out;
+  };
+  const double half = 0.5 * p.spacing;
+  const SourceLevel finer{near(spherePoints(4800, 1 + half, 3), 1.3 * p.spacing), half, half};
+  const Points added = near(spherePoints(20000, 1, 0.7), 2 * p.spacing);
+  ASSERT_LE(50 * finer.sources.size(), solver.sources().size());
+  ASSERT_GT(added.size(), 2 * finer.sources.size());
+  solver.add(added, {finer});
+  Points all = p.collocation;
+  all.insert(all.end(), added.begin(), added.end());
+  const IterativeSolution after = solver.solve(roughValues(all), &before);
+  ASSERT_EQ(after.residuals.size(), static_cast<std::size_t>(after.iterations) + 1);
+  EXPECT_NEAR(rmsError(after, solver.sources(), all), after.residuals.back(), 1e-9);
+  EXPECT_LT(rmsError(after, solver.sources(), added),
+            0.8 * rmsError(before, p.solver().sources(), added));
+  for (std::size_t k = 0; k < 2; ++k)
+    for (std::size_t j = 0; j < before.weights.rows(); ++j)
+      EXPECT_NEAR(after.weights(j, k), before.weights(j, k), 1e-9 * before.weightNorm);
+}
+
 TEST(IterativeSolver, OneLevelIsEnough) {
   const Problem p;
   const IterativeSolver solver(p.collocation, {p.coarse});
