@@ -44,18 +44,19 @@ std::array<double, kOrder + 1> degreeNorms(const StepExpansion& from) {
 
 }  // namespace
 
-OrderRule::OrderRule(double farRatio) {
-  least_[0] = 1 / (farRatio * farRatio);
+LeastSquares leastSquares(double farRatio) {
+  LeastSquares out{1 / (farRatio * farRatio)};
   for (std::size_t i = 1; i < kOrders.size(); ++i) {
     const double ratio = ratioOf(kOrders[i], kLower * leftOut(kOrder, farRatio));
-    least_[i] = 1 / (ratio * ratio);
+    out[i] = 1 / (ratio * ratio);
   }
+  return out;
 }
 
-void arrange(const std::uint32_t* charges, const std::vector<std::uint8_t>& places,
+void arrange(const std::uint32_t* charges, const std::vector<std::int32_t>& places,
              OrderedCharges& out) {
   std::array<std::size_t, kOrders.size() + 1> counts{}, next{};
-  for (const std::uint8_t place : places) ++counts[place];
+  for (const std::int32_t place : places) ++counts[place];
   std::size_t total = 0;
   for (std::size_t i = 0; i < kOrders.size(); ++i) {
     next[i] = total;
@@ -67,18 +68,10 @@ void arrange(const std::uint32_t* charges, const std::vector<std::uint8_t>& plac
 }
 
 void sortCharges(const double* charges, const std::vector<std::uint32_t>& some,
-                 const ExpansionBall& ball, const OrderRule& rule,
-                 std::vector<std::uint8_t>& places, OrderedCharges& out) {
-  // Of their own, so that bytes written do not seem to change them.
-  const OrderRule at = rule;
-  const Vec3 center = ball.center;
-  const double scale = 1 / (ball.radius * ball.radius);
+                 const ExpansionBall& ball, const LeastSquares& least,
+                 std::vector<std::int32_t>& places, OrderedCharges& out) {
   places.resize(some.size());
-  std::uint8_t* next = places.data();
-  for (const std::uint32_t j : some) {
-    const double* q = charges + kChargeStride * j;
-    *next++ = at(scale * squaredNorm(Vec3{q[0], q[1], q[2]} - center));
-  }
+  orderPlaces(charges, some.data(), some.size(), ball.center, ball.radius, least, places.data());
   arrange(some.data(), places, out);
 }
 

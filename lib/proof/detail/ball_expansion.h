@@ -19,30 +19,16 @@ struct ExpansionBall {
 // |w| / d^2 ratio^p ((p+1) - p ratio) / (1 - ratio)^2 of the gradient at most. Charges up to the
 // ratio `farRatio` enter a ball's expansion, each to the least of kOrders for which what follows
 // |w| / d^2 is at most a tenth of that for order kOrder at farRatio; else to order kOrder.
-class OrderRule {
- public:
-  explicit OrderRule(double farRatio);
+LeastSquares leastSquares(double farRatio);
 
-  // The place in kOrders, by the square of distance / radius; kNear for what does not enter.
-  static constexpr std::uint8_t kNear = kOrders.size();
-  std::uint8_t operator()(double square) const {
-    std::size_t passed = 0;
-    for (const double least : least_) passed += square > least ? 1 : 0;
-    return static_cast<std::uint8_t>(passed > 0 ? passed - 1 : kNear);
-  }
-
- private:
-  std::array<double, kOrders.size()> least_;
-};
-
-// By the place in kOrders of each; kNear is left out.
-void arrange(const std::uint32_t* charges, const std::vector<std::uint8_t>& places,
+// By the place in kOrders of each; kNotExpanded is left out.
+void arrange(const std::uint32_t* charges, const std::vector<std::int32_t>& places,
              OrderedCharges& out);
 
 // Those that are far from a ball. places: memory for that.
 void sortCharges(const double* charges, const std::vector<std::uint32_t>& some,
-                 const ExpansionBall& ball, const OrderRule& rule,
-                 std::vector<std::uint8_t>& places, OrderedCharges& out);
+                 const ExpansionBall& ball, const LeastSquares& least,
+                 std::vector<std::int32_t>& places, OrderedCharges& out);
 
 // An expansion's degrees up to `order` moved to a ball within its own, and charges added; all but
 // the list of near ones.

@@ -52,7 +52,7 @@ StepExpansion affineExpansion(const HarmonicField& field, double scale) {
 }  // namespace
 
 FieldTree::FieldTree(const HarmonicField& field, double scale, double farRatio)
-    : rule_(farRatio), charges_(packed(field, scale)), root_(std::make_unique<Node>()) {
+    : least_(proof::leastSquares(farRatio)), charges_(packed(field, scale)), root_(std::make_unique<Node>()) {
   const StepExpansion affine = affineExpansion(field, scale);
   Box3 box;
   for (const Vec3& q : field.sources()) box.add(scale * q);
@@ -72,8 +72,8 @@ std::unique_ptr<FieldTree::Node> FieldTree::childOf(const Node& parent, const Ve
   child->level = parent.level + 1;
   const ExpansionBall ball{center, kReach * child->half};
   OrderedCharges far;
-  std::vector<std::uint8_t> places;
-  sortCharges(charges(), parent.expansion.near, ball, rule_, places, far);
+  std::vector<std::int32_t> places;
+  sortCharges(charges(), parent.expansion.near, ball, least_, places, far);
   expandAbout(charges(), parent.expansion, kOrder, far, ball, child->expansion);
   child->expansion.near.assign(far.list.begin() + static_cast<std::ptrdiff_t>(far.count()),
                                far.list.end());

@@ -41,6 +41,36 @@ std::uint8_t Measure(const double* HWY_RESTRICT charges, const std::uint32_t* HW
   return static_cast<std::uint8_t>(out);
 }
 
+void OrderPlaces(const double* HWY_RESTRICT charges, const std::uint32_t* HWY_RESTRICT list,
+                 std::size_t count, const Vec3& center, double radius, const LeastSquares& least,
+                 std::int32_t* HWY_RESTRICT places) {
+  const double scale = 1 / (radius * radius);
+  std::size_t i = 0;
+#if HWY_TARGET != HWY_SCALAR
+  const D d;
+  const hn::RebindToSigned<D> whole;
+  const hn::Rebind<std::int32_t, D> small;
+  const V none = Number(kNotExpanded), zero = hn::Zero(d), one = Number(1);
+  for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
+    const auto index = hn::LoadU(small, reinterpret_cast<const std::int32_t*>(list + i));
+    const auto at = hn::Mul(hn::PromoteTo(whole, index), hn::Set(whole, kChargeStride));
+    const V x = hn::GatherIndex(d, charges, at) - Number(center.x),
+            y = hn::GatherIndex(d, charges + 1, at) - Number(center.y),
+            z = hn::GatherIndex(d, charges + 2, at) - Number(center.z);
+    const V square = Number(scale) * hn::MulAdd(x, x, hn::MulAdd(y, y, z * z));
+    V passed = zero;
+    for (const double l : least)
+      passed = passed + hn::IfThenElseZero(hn::Gt(square, Number(l)), one);
+    const V place = hn::IfThenElse(hn::Eq(passed, zero), none, passed - one);
+    hn::StoreU(hn::DemoteTo(small, place), small, places + i);
+  }
+#endif
+  for (; i < count; ++i) {
+    const double* const q = charges + kChargeStride * list[i];
+    places[i] = orderPlace(least, scale * squaredNorm(Vec3{q[0], q[1], q[2]} - center));
+  }
+}
+
 // A charge, seen from the places that it is expanded about. Its harmonics are
 // I_nm(q) = (n - m)! P_n^m(cos theta) e^(i m phi) / r^(n+1): 1/|x - q| is the sum of
 // I_nm(q) conj(R_nm(x)).
@@ -247,12 +277,19 @@ HWY_AFTER_NAMESPACE();
 namespace innermap::proof {
 
 HWY_EXPORT(Measure);
+HWY_EXPORT(OrderPlaces);
 HWY_EXPORT(AddCharges);
 HWY_EXPORT(AddAboutOne);
 
 std::uint8_t measure(const double* charges, const std::uint32_t* list, std::size_t count,
                      const LaneSets& sets, double* nearest) {
   return HWY_DYNAMIC_DISPATCH(Measure)(charges, list, count, sets, nearest);
+}
+
+void orderPlaces(const double* charges, const std::uint32_t* list, std::size_t count,
+                 const Vec3& center, double radius, const LeastSquares& least,
+                 std::int32_t* places) {
+  HWY_DYNAMIC_DISPATCH(OrderPlaces)(charges, list, count, center, radius, least, places);
 }
 
 void addCharges(const double* charges, const OrderedCharges& some, const LaneSets& sets,

@@ -37,7 +37,7 @@ class SetGroup {
   Numbers coefficients_ = Numbers(kCoefficients * kLanes);
   StepExpansion own_;          // about the whole group
   OrderedCharges far_, near_;  // of it
-  std::vector<std::uint8_t> places_;
+  std::vector<std::int32_t> places_;
   std::vector<double> nearest_;
   std::uint8_t proven_ = 0, enclosed_ = 0;
   Lanes excess_ = {};
