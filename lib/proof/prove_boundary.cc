@@ -19,8 +19,15 @@ namespace {
 using namespace proof;
 
 constexpr double kExact = 1e-11;  // of the diagonal: an error that is as good as none
-// Pieces that one thread splits in one go; triangles at first, eight times as many.
-constexpr std::size_t kBlock = 32;
+// Pieces that one thread splits in one go; triangles at first, four times as many.
+constexpr std::size_t kBlock = 64;
+// Halvings of a piece before its parts are looked at. Fewer leave fewer parts smaller than they
+// need be, more leave the eight that are looked at together nearer to one another.
+constexpr int kHalvings = 2;
+constexpr std::uint64_t kParts = 1 << kHalvings;
+// Of the longest edge among pieces: the diagonal of a box about those that are looked at together.
+// What is far from all of them is expanded once.
+constexpr double kMostApart = 4;
 
 // Of the surface's area over the number of pieces that may be looked at: where a piece whose
 // longest edge has so small a square has no bound, the image of the boundary runs into charges of a
@@ -30,7 +37,7 @@ constexpr double kLeastSquare = 1e-4;
 // off does not shrink with them.
 constexpr int kFineHalvings = 6;
 // Pieces without a bound that are cut in one go.
-constexpr std::uint64_t kDive = 1024;
+constexpr std::uint64_t kDive = 4096;
 
 double areaOf(const SurfacePiece& piece) {
   return 0.5 * norm(cross(piece.at[1] - piece.at[0], piece.at[2] - piece.at[0]));
@@ -97,21 +104,22 @@ class BoundarySearch {
   void begin(const std::vector<SurfacePiece>& triangles) {
     double area = 0;
     for (const SurfacePiece& piece : triangles) area += areaOf(piece);
+    box_ = boxOf(triangles);
     leastSquare_ = kLeastSquare * area / static_cast<double>(limit_);
     round(triangles, 0);
   }
 
-  // Cuts open pieces in eight: first those that have no bound, the smallest of them, so that it is
+  // Cuts open pieces in four: first those that have no bound, the smallest of them, so that it is
   // soon known where there is none; then all of them, where `room` for more pieces allows that,
   // else those of the largest bounds, and so few that there is room to cut what comes of them.
   void goOn(std::uint64_t room) {
-    std::uint64_t most = room / kLanes;
+    std::uint64_t most = room / kParts;
     if (open_.size() > most) most = std::max<std::uint64_t>(most / 2, 1);
     if (unbounded_) most = std::min(most, kDive);
-    round(takeLargest(most), 3);
+    round(takeLargest(most), kHalvings);
   }
 
-  bool mayGoOn() const { return !open_.empty() && examined_ + kLanes <= limit_ && !hopeless_; }
+  bool mayGoOn() const { return !open_.empty() && examined_ + kParts <= limit_ && !hopeless_; }
 
   std::uint64_t examined() const { return examined_; }
 
@@ -134,16 +142,33 @@ class BoundarySearch {
     return passesCharges(map_) && piece.halvings >= kFineHalvings;
   }
 
+  // Where the first of these pieces end that are looked at together.
+  std::size_t groupEnd(const std::vector<SurfacePiece>& pieces, std::size_t begin) const {
+    Box3 box;
+    double square = 0;
+    std::size_t end = begin;
+    for (; end < std::min(begin + kLanes, pieces.size()); ++end) {
+      for (const Vec3& v : pieces[end].at) box.add(v);
+      square = std::max(square, squaredLength(pieces[end]));
+      const bool apart = squaredNorm(box.extent()) > kMostApart * kMostApart * square;
+      if (end > begin && (apart || isFine(pieces[end]) != isFine(pieces[begin]))) break;
+    }
+    return end;
+  }
+
   // Each piece halved so many times.
-  void round(const std::vector<SurfacePiece>& pieces, int times) {
+  void round(std::vector<SurfacePiece> pieces, int times) {
+    sortAlongCurve(box_, pieces);
     std::vector<BlockPieces> blocks((pieces.size() + kBlock - 1) / kBlock);
     parallelBlocks(pieces.size(), kBlock, [&](std::size_t begin, std::size_t end) {
       BlockPieces& out = blocks[begin / kBlock];
       for (std::size_t i = begin; i < end; ++i) cut(pieces[i], times, out.pieces);
       SetGroup group;
-      for (std::size_t i = 0; i < out.pieces.size(); i += kLanes)
-        boundPieces(isFine(out.pieces[i]) ? fine_ : steps_, group, out.pieces.data() + i,
-                    std::min(kLanes, out.pieces.size() - i), out.witness);
+      for (std::size_t i = 0, next = 0; i < out.pieces.size(); i = next) {
+        next = groupEnd(out.pieces, i);
+        boundPieces(isFine(out.pieces[i]) ? fine_ : steps_, group, out.pieces.data() + i, next - i,
+                    out.witness);
+      }
     });
     Witness best;
     for (const BlockPieces& block : blocks) takeBetter(block.witness, best);
@@ -212,6 +237,7 @@ class BoundarySearch {
   const StepTrees fine_;
   const double scale_, diagonal_, margin_;
   const std::uint64_t limit_;
+  Box3 box_;  // of all pieces
   double leastSquare_ = 0;
   bool unbounded_ = false, hopeless_ = false;  // of the open pieces: some have no bound; none will
   std::vector<SurfacePiece> open_;
@@ -252,7 +278,7 @@ BoundaryProof proveBoundaryError(const ExpandedMap& expanded, const Mesh& surfac
   const auto steps = expanded.expansions(scale);
   BoundarySearch search(map, *steps, scale, diagonal, settings.errorMargin, limit);
   reportProgress("bounding the error", 0);
-  search.begin(sortedPieces(surface, target, scale));
+  search.begin(piecesOf(surface, target, scale));
   while (search.mayGoOn()) {
     reportProgress("bounding the error",
                    static_cast<double>(search.examined()) / static_cast<double>(limit));

@@ -52,7 +52,9 @@ StepExpansion affineExpansion(const HarmonicField& field, double scale) {
 }  // namespace
 
 FieldTree::FieldTree(const HarmonicField& field, double scale, double farRatio)
-    : least_(proof::leastSquares(farRatio)), charges_(packed(field, scale)), root_(std::make_unique<Node>()) {
+    : least_(proof::leastSquares(farRatio)),
+      charges_(packed(field, scale)),
+      root_(std::make_unique<Node>()) {
   const StepExpansion affine = affineExpansion(field, scale);
   Box3 box;
   for (const Vec3& q : field.sources()) box.add(scale * q);

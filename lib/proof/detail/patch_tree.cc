@@ -109,7 +109,8 @@ bool apart(const Box3& a, const Box3& b) {
 }
 
 PatchTree::PatchTree(const StepTrees& steps, const Mesh& surface, double scale, std::size_t most) {
-  std::vector<SurfacePiece> pieces = sortedPieces(surface, surface.vertices, scale);
+  std::vector<SurfacePiece> pieces = piecesOf(surface, surface.vertices, scale);
+  sortAlongCurve(boxOf(pieces), pieces);
   std::vector<Image> images;
   cutLoosePieces(steps, most, pieces, images);
   const Vec3 middle = scale * boundingBox(surface).center();

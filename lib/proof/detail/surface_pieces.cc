@@ -66,23 +66,32 @@ std::uint32_t curveKey(const Vec3& p, const Box3& box) {
   return key;
 }
 
-std::vector<SurfacePiece> sortedPieces(const Mesh& surface, const Points& target, double scale) {
-  Box3 box;
-  for (const Triangle& t : surface.triangles)
-    for (const int v : t) box.add(scale * surface.vertices[v]);
-  std::vector<std::pair<std::uint32_t, SurfacePiece>> keyed;
+Box3 boxOf(const std::vector<SurfacePiece>& pieces) {
+  Box3 out;
+  for (const SurfacePiece& piece : pieces)
+    for (const Vec3& v : piece.at) out.add(v);
+  return out;
+}
+
+void sortAlongCurve(const Box3& box, std::vector<SurfacePiece>& pieces) {
+  std::vector<std::pair<std::uint32_t, std::size_t>> keyed;
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    keyed.emplace_back(curveKey(centroid(pieces[i].at), box), i);
+  std::sort(keyed.begin(), keyed.end());
+  std::vector<SurfacePiece> sorted;
+  for (const auto& [key, i] : keyed) sorted.push_back(pieces[i]);
+  pieces.swap(sorted);
+}
+
+std::vector<SurfacePiece> piecesOf(const Mesh& surface, const Points& target, double scale) {
+  std::vector<SurfacePiece> out;
   for (const Triangle& t : surface.triangles) {
-    SurfacePiece piece;
+    SurfacePiece& piece = out.emplace_back();
     for (int i = 0; i < 3; ++i) {
       piece.at[i] = scale * surface.vertices[t[i]];
       piece.to[i] = scale * target[t[i]];
     }
-    keyed.emplace_back(curveKey(centroid(piece.at), box), piece);
   }
-  std::stable_sort(keyed.begin(), keyed.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<SurfacePiece> out;
-  for (auto& [key, piece] : keyed) out.push_back(piece);
   return out;
 }
 

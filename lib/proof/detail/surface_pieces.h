@@ -32,8 +32,13 @@ LaneSets setsOf(const SurfacePiece* pieces, std::size_t count);
 // Along a curve of Morton through the box: points whose keys are near lie near one another.
 std::uint32_t curveKey(const Vec3& p, const Box3& box);
 
-// All triangles in the order of that curve.
-std::vector<SurfacePiece> sortedPieces(const Mesh& surface, const Points& target, double scale);
+Box3 boxOf(const std::vector<SurfacePiece>& pieces);
+
+// In the order of that curve.
+void sortAlongCurve(const Box3& box, std::vector<SurfacePiece>& pieces);
+
+// All triangles.
+std::vector<SurfacePiece> piecesOf(const Mesh& surface, const Points& target, double scale);
 
 double largestCoordinate(const Vec3& v);
 

@@ -34,7 +34,7 @@ std::vector<std::uint32_t> upTo(std::size_t count) {
 StepExpansion expanded(const std::vector<testing::Charge>& charges, const ExpansionBall& ball,
                        double farRatio, OrderedCharges& far) {
   const std::vector<double> all = packed(charges);
-  std::vector<std::uint8_t> places;
+  std::vector<std::int32_t> places;
   sortCharges(all.data(), upTo(charges.size()), ball, leastSquares(farRatio), places, far);
   StepExpansion out;
   expandAbout(all.data(), nothing(), kOrder, far, ball, out);
