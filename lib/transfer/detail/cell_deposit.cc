@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/kuhn_cells.h"
 #include "transfer/detail/split_tetrahedron.h"
@@ -29,40 +30,43 @@ bool isPlaced(const CellImage& cell) {
   return true;
 }
 
-// Sums of one cell's image, taken up at once: neighbouring voxels may be in other leaves.
+// Of a cell's volume: less than that in a voxel is rounding.
+constexpr double kRounding = 1e-13;
+
+// Sums of one cell's image, taken up at once: neighbouring voxels may be in other leaves, and parts
+// are taken away from voxels again.
 class LocalSums {
  public:
-  static constexpr int kMost = 256;  // voxels
-
   LocalSums(const openvdb::Coord& lower, const openvdb::Coord& size) : lower_(lower), size_(size) {
-    std::fill_n(sums_.begin(), size.x() * size.y() * size.z(), VoxelSums::Sum());
+    const auto count = static_cast<std::size_t>(size.x() * size.y() * size.z());
+    if (count > few_.size()) many_.resize(count);
+    sums_ = many_.empty() ? few_.data() : many_.data();
+    std::fill_n(sums_, count, VoxelSums::Sum());
   }
 
   void add(const openvdb::Coord& voxel, double volume, double mass) {
     const openvdb::Coord at = voxel - lower_;
-    VoxelSums::Sum& sum =
-        sums_[static_cast<std::size_t>((at.x() * size_.y() + at.y()) * size_.z() + at.z())];
+    VoxelSums::Sum& sum = sums_[(at.x() * size_.y() + at.y()) * size_.z() + at.z()];
     sum.volume += volume;
     sum.mass += mass;
   }
 
-  void addTo(VoxelSums& sums) const {
-    std::size_t n = 0;
+  void addTo(double least, VoxelSums& sums) const {
+    const VoxelSums::Sum* sum = sums_;
     for (int x = 0; x < size_.x(); ++x)
       for (int y = 0; y < size_.y(); ++y)
-        for (int z = 0; z < size_.z(); ++z, ++n)
-          if (sums_[n].volume > 0)
-            sums.add(lower_.offsetBy(x, y, z), sums_[n].volume, sums_[n].mass);
+        for (int z = 0; z < size_.z(); ++z, ++sum)
+          if (sum->volume > least) sums.add(lower_.offsetBy(x, y, z), sum->volume, sum->mass);
   }
 
  private:
   openvdb::Coord lower_, size_;
-  std::array<VoxelSums::Sum, kMost> sums_;
+  std::array<VoxelSums::Sum, 256> few_;
+  std::vector<VoxelSums::Sum> many_;
+  VoxelSums::Sum* sums_;
 };
 
-// sums: VoxelSums or LocalSums.
-template <class Sums>
-void split(const CellImage& cell, double volume, Sums& sums) {
+void split(const CellImage& cell, double volume, LocalSums& sums) {
   std::array<TetrahedronCorner, 8> corners;
   for (std::size_t c = 0; c < 8; ++c) {
     const Vec3& p = cell.images[c];
@@ -116,10 +120,9 @@ void CellDeposit::add(const CellImage& cell, VoxelSums& sums, DepositFigures& fi
     return sums.add(floorOf(box.center()), sourceVolume_, massOf(cell, volume));
   const int voxels = size.x() * size.y() * size.z();
   if (voxels == 1) return sums.add(lower, sourceVolume_, massOf(cell, volume));
-  if (voxels > LocalSums::kMost) return split(cell, volume, sums);
   LocalSums local(lower, size);
   split(cell, volume, local);
-  local.addTo(sums);
+  local.addTo(kRounding * sourceVolume_, sums);
 }
 
 }  // namespace innermap

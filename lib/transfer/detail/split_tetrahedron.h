@@ -2,8 +2,10 @@
 //
 // The exact conservative remap of Powell and Abel, "An exact general remeshing scheme applied to
 // physically conservative voxelization" (J. Comput. Phys. 297, 2015). In place of their clipped
-// polyhedra edges are bisected where they cross a plane between voxels: then the volumes of parts
-// are products of shares of edges, which sum to 1 however thin or flat the tetrahedron is.
+// polyhedra tetrahedra are cut off where edges cross a plane between voxels: then the volumes of
+// parts are products of shares of edges, which sum to 1 however thin or flat the tetrahedron is.
+// What is left of it is not cut up: the whole counts on one side, and what is cut off is taken away
+// from it there.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -33,6 +35,13 @@ VolumeAndMass partBelow(const Tetrahedron& sorted, double plane);
 
 namespace detail {
 
+// Voxels that a part counts in along an axis: one layer of them, or two, one of which it is taken
+// away from.
+struct Layers {
+  int lower = 0;
+  double inLower = 1, inUpper = 0;
+};
+
 inline TetrahedronCorner between(const TetrahedronCorner& a, const TetrahedronCorner& b, double t) {
   TetrahedronCorner out;
   for (std::size_t k = 0; k < 3; ++k) out.at[k] = a.at[k] + t * (b.at[k] - a.at[k]);
@@ -40,55 +49,83 @@ inline TetrahedronCorner between(const TetrahedronCorner& a, const TetrahedronCo
   return out;
 }
 
-// The last axis needs no parts but their volumes.
-template <class Visit>
-void splitLast(Tetrahedron tet, double volume, openvdb::Coord& voxel, const Visit& visit) {
+inline void sortAlong(std::size_t axis, Tetrahedron& tet) {
   const auto order = [&](std::size_t a, std::size_t b) {
-    if (tet[b]->at[2] < tet[a]->at[2]) std::swap(tet[a], tet[b]);
+    const TetrahedronCorner *p = tet[a], *q = tet[b];
+    const bool swap = q->at[axis] < p->at[axis];
+    tet[a] = swap ? q : p;
+    tet[b] = swap ? p : q;
   };
   order(0, 1), order(2, 3), order(0, 2), order(1, 3), order(1, 2);
+}
+
+// Hands a part on to all voxels that it counts in, of x and y; z is that of one layer.
+template <class Visit>
+void visitLayers(const Layers& x, const Layers& y, int z, const VolumeAndMass& part,
+                 const Visit& visit) {
+  for (int i = 0; i < (x.inUpper == 0 ? 1 : 2); ++i)
+    for (int j = 0; j < (y.inUpper == 0 ? 1 : 2); ++j) {
+      const double sign = (i ? x.inUpper : x.inLower) * (j ? y.inUpper : y.inLower);
+      visit(openvdb::Coord(x.lower + i, y.lower + j, z), sign * part.volume, sign * part.mass);
+    }
+}
+
+// The last axis needs no parts but their volumes.
+template <class Visit>
+void splitLast(Tetrahedron tet, double volume, const Layers& x, const Layers& y,
+               const Visit& visit) {
+  sortAlong(2, tet);
   const double from = tet[0]->at[2], to = tet[3]->at[2];
   VolumeAndMass done;
   double plane = std::floor(from) + 1;
   for (; plane < to; ++plane) {
     const VolumeAndMass below = partBelow(tet, plane);
-    if (!(below.volume > done.volume)) continue;  // but for rounding
-    voxel[2] = static_cast<int>(plane) - 1;
-    visit(voxel, volume * (below.volume - done.volume), volume * (below.mass - done.mass));
+    visitLayers(x, y, static_cast<int>(plane) - 1,
+                {volume * (below.volume - done.volume), volume * (below.mass - done.mass)}, visit);
     done = below;
   }
   const double mass =
       0.25 * (tet[0]->density + tet[1]->density + tet[2]->density + tet[3]->density);
-  voxel[2] = static_cast<int>(plane) - 1;
-  visit(voxel, volume * (1 - done.volume), volume * (mass - done.mass));
+  visitLayers(x, y, static_cast<int>(plane) - 1,
+              {volume * (1 - done.volume), volume * (mass - done.mass)}, visit);
 }
 
-template <std::size_t kAxis, class Visit>
-void splitAlong(const Tetrahedron& tet, double volume, openvdb::Coord& voxel, const Visit& visit) {
-  if constexpr (kAxis == 2) {
-    splitLast(tet, volume, voxel, visit);
-  } else {
-    std::size_t low = 0, high = 0;
-    for (std::size_t k = 1; k < 4; ++k) {
-      if (tet[k]->at[kAxis] < tet[low]->at[kAxis]) low = k;
-      if (tet[k]->at[kAxis] > tet[high]->at[kAxis]) high = k;
+// Calls next(part, volume, layers) for parts that make up the tetrahedron.
+template <std::size_t kAxis, class Next>
+void splitAlong(Tetrahedron tet, double volume, const Next& next) {
+  sortAlong(kAxis, tet);
+  const auto [a, b, c, d] = tet;
+  const auto share = [](const TetrahedronCorner* p, const TetrahedronCorner* q, double plane) {
+    return (plane - p->at[kAxis]) / (q->at[kAxis] - p->at[kAxis]);
+  };
+  double plane = std::floor(a->at[kAxis]) + 1;
+  int whole = static_cast<int>(plane) - 1;  // the layer where the whole counts
+  for (; plane < d->at[kAxis]; ++plane) {
+    const int lower = static_cast<int>(plane) - 1;
+    if (plane >= c->at[kAxis]) {  // only d is above
+      const double s = share(d, a, plane), t = share(d, b, plane), u = share(d, c, plane);
+      const TetrahedronCorner p = between(*d, *a, s), q = between(*d, *b, t),
+                              r = between(*d, *c, u);
+      next({d, &p, &q, &r}, s * t * u * volume, Layers{lower, -1, 1});
+      continue;
     }
-    const double from = tet[low]->at[kAxis], to = tet[high]->at[kAxis];
-    const double plane = std::max(std::floor(from) + 1, std::floor(0.5 * (from + to)));
-    if (!(plane < to)) {
-      voxel[kAxis] = static_cast<int>(std::floor(from));
-      return splitAlong<kAxis + 1>(tet, volume, voxel, visit);
+    whole = lower + 1;
+    const Layers below{lower, 1, -1};
+    const double s = share(a, c, plane), t = share(a, d, plane);
+    const TetrahedronCorner p = between(*a, *c, s), q = between(*a, *d, t);
+    if (plane <= b->at[kAxis]) {  // only a is below
+      const double u = share(a, b, plane);
+      const TetrahedronCorner r = between(*a, *b, u);
+      next({a, &p, &q, &r}, s * t * u * volume, below);
+      continue;
     }
-    const double t = (plane - from) / (to - from);
-    TetrahedronCorner middle = between(*tet[low], *tet[high], t);
-    middle.at[kAxis] = plane;  // so that it is on neither side
-    Tetrahedron part = tet;
-    part[high] = &middle;
-    splitAlong<kAxis>(part, t * volume, voxel, visit);
-    part[high] = tet[high];
-    part[low] = &middle;
-    splitAlong<kAxis>(part, volume - t * volume, voxel, visit);
+    const double u = share(b, c, plane), v = share(b, d, plane);
+    const TetrahedronCorner r = between(*b, *c, u), w = between(*b, *d, v);
+    next({a, b, &p, &q}, s * t * volume, below);
+    next({b, &p, &q, &w}, s * (1 - t) * v * volume, below);
+    next({b, &p, &r, &w}, (1 - s) * u * v * volume, below);
   }
+  next(tet, volume, Layers{whole});
 }
 
 }  // namespace detail
@@ -96,11 +133,17 @@ void splitAlong(const Tetrahedron& tet, double volume, openvdb::Coord& voxel, co
 // Calls visit(voxel, volume, mass) for parts that make up the tetrahedron, each in one voxel, with
 // its share of `volume` (which need not be that of the corners: say, of what they are the image of)
 // and the integral over that of the density, which is linear between the corners. A voxel may be
-// visited several times. All corners finite, below 1e9.
+// visited several times, and parts be taken away from it again: what is left of 1e-15 of the volume
+// is rounding. Voxels lie in the box of the corners. All corners finite, below 1e9.
 template <class Visit>
 void splitAtVoxels(const Tetrahedron& tet, double volume, const Visit& visit) {
-  openvdb::Coord voxel;
-  detail::splitAlong<0>(tet, volume, voxel, visit);
+  detail::splitAlong<0>(
+      tet, volume, [&](const Tetrahedron& slab, double inSlab, const detail::Layers& x) {
+        detail::splitAlong<1>(
+            slab, inSlab, [&](const Tetrahedron& column, double inColumn, const detail::Layers& y) {
+              detail::splitLast(column, inColumn, x, y, visit);
+            });
+      });
 }
 
 inline VolumeAndMass partBelow(const Tetrahedron& sorted, double plane) {
