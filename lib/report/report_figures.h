@@ -61,6 +61,20 @@ struct FarmFigures {
 };
 Figures figures(const FarmFigures& farm);
 
+// "stages": what a job's stages took, a row for each kind of work that a stage is the sum of.
+struct StageWork {
+  std::string stage;
+  double seconds = 0, coreSeconds = 0, expected = 0;  // of the whole stage
+  std::string work;
+  double times = 0;                                        // so often
+  double inside = 0, surface = 0, charges = 0, items = 0;  // of what size
+};
+struct StageFigures {
+  double alone = 0, together = 0;  // seconds of a block of work
+  std::vector<StageWork> works;
+};
+Figures figures(const StageFigures& stages);
+
 // Beside the sections.
 Figures outsideFigures(double share);
 Figures stoppedByTimeFigures();

@@ -65,6 +65,17 @@ def test_lines_carry_seconds():
     assert seconds == sorted(seconds), seconds
 
 
+def test_report_says_what_the_stages_took():
+    pair()
+    innermap("map", "ball.obj", "egg.obj", "-o", "out", "--resolution", "32", "--quiet")
+    stages = cli.read_json("out/report.json")["stages"]
+    columns = {key: column for key, column in stages.items() if isinstance(column, list)}
+    assert len({len(column) for column in columns.values()}) == 1, columns
+    assert {"level set", "evaluating the map", "writing slices"} <= set(stages["work"]), stages["work"]
+    assert all(s >= 0 for s in stages["seconds"]) and sum(stages["core_seconds"]) > 0, stages
+    assert min(stages["block_seconds"], *stages["times"]) > 0, stages
+
+
 def test_dry_run_says_seconds_that_include_the_fit():
     pair()
     said = {}

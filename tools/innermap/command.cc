@@ -228,9 +228,9 @@ std::vector<Option> commonOptionTable(CommonOptions& common) {
   c.flag("--strict", &common.strict,
          "end with exit code 1 if the verdict is not met; write all files nevertheless");
   c.flag("--quiet", &common.quiet, "print nothing on stderr but errors").shortName("-q");
-  c.flag("--verbose", &common.verbose,
-         "print a line on stderr as each stage begins, with the seconds, and at the end what each "
-         "took beside what was expected");
+  c.flag(
+      "--verbose", &common.verbose,
+      "print a line on stderr as each stage begins, with the seconds, and at the end the longest");
   c.flag("--help", &common.help, "show help on the usual options").shortName("-h");
   c.flag("--help-all", &common.helpAll, "show help on every option");
   c.flag("--version", &common.version, "show the program's version").shortName("-V");

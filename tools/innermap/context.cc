@@ -12,6 +12,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/pictures.h"
+#include "job_cost.h"
 #include "report/page/page.h"
 #include "report/report_figures.h"
 #include "run_record.h"
@@ -297,7 +298,7 @@ void Context::judge(const Verdict& verdict) {
 
 void Context::conclude() {
   if (dryRun()) return;
-  progress_.endJob();
+  progress_.sayLongest();
   noteTime();
   std::vector<std::string> unmet;
   for (const ReportFinding& f : report_.verdict)
@@ -340,6 +341,8 @@ const Report& Context::finishedReport() {
   noteTime();
   report_.peakMemory = peakMemory();
   report_.outputs = outputsNow();
+  if (const auto taken = progress_.taken(); !taken.empty())
+    report_.add("stages", figures(stageFigures(taken)));
   noteMemory();
   for (const auto& [stage, bytes] : memoryAfter_)
     report_.add("memory_after_bytes", memoryFigures(stage, bytes));

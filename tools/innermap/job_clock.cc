@@ -60,7 +60,10 @@ void JobClock::report(std::string_view stage, double fraction, double now) {
     }
     if (i != current_ || !begun_) {
       // What came before the first phase counts as part of it.
-      if (begun_) close(now);
+      if (begun_) {
+        taken_.push_back(underWay(now));
+        coresSince_ += taken_.back().coreSeconds;
+      }
       current_ = i;
       since_ = reported_ = begun_ ? now : planned_;
       fraction_ = part_ = 0;
@@ -73,17 +76,14 @@ void JobClock::report(std::string_view stage, double fraction, double now) {
   }
 }
 
-void JobClock::close(double now) {
-  const double cores = coreSeconds();
-  taken_.push_back({phases_[current_], now - since_, cores - coresSince_});
-  coresSince_ = cores;
+JobPhaseTaken JobClock::underWay(double now) const {
+  return {phases_[current_], now - since_, coreSeconds() - coresSince_};
 }
 
-std::vector<JobPhaseTaken> JobClock::end(double now) {
-  if (begun_) close(now);
-  phases_.clear();
-  begun_ = false;
-  return std::move(taken_);
+std::vector<JobPhaseTaken> JobClock::taken(double now) const {
+  std::vector<JobPhaseTaken> out = taken_;
+  if (begun_) out.push_back(underWay(now));
+  return out;
 }
 
 void JobClock::advance(double fraction, double now) {
