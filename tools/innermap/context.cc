@@ -78,11 +78,13 @@ void Context::plan(const std::vector<std::string>& lines, std::uint64_t need) {
                                formatBytes(bytes), formatBytes(maxMemory_)));
 }
 
-bool Context::begins(const std::vector<std::string>& lines, const MemoryNeed& need) {
-  if (dryRun())
-    plan(lines, need.bytes);
-  else
-    requireMemory(need);
+bool Context::begins(const std::vector<std::string>& lines, const std::vector<MemoryNeed>& needs) {
+  std::uint64_t most = 0;
+  for (const MemoryNeed& need : needs) {
+    most = std::max(most, need.bytes);
+    if (!dryRun()) requireMemory(need);
+  }
+  if (dryRun()) plan(lines, most);
   return !dryRun();
 }
 
