@@ -26,13 +26,6 @@ struct ReportMesh {
 };
 Figures figures(const ReportMesh& mesh);
 
-// A frame of an animation that was worked on.
-struct FrameResult {
-  FrameFile file;
-  double seconds = 0;
-  std::string error;  // empty: good
-};
-
 // "frames" of any command for animations; of `deform`, whose frames may be finished already; their
 // seconds; what they are judged by.
 Figures frameFigures(const std::vector<FrameResult>& results);
