@@ -57,7 +57,7 @@ void Context::noteTime() {
 void Context::setPart(const std::string& part) { progress_.setPart(part); }
 
 void Context::expect(const std::vector<JobPhase>& phases) {
-  expectedSeconds_ = totalSeconds(phases);
+  expectedSeconds_ = tellableSeconds(phases);
   progress_.expect(phases);
 }
 
@@ -66,9 +66,8 @@ void Context::phase(const std::string& stage) { progress_.report(stage, 0); }
 void Context::plan(const std::vector<std::string>& lines, std::uint64_t need) {
   const std::uint64_t bytes = claimed(need);
   for (const std::string& line : lines) print(line + "\n");
-  if (expectedSeconds_ > 0) {
+  if (expectedSeconds_ > 0)
     print(fmt::format("time: about {:.0f} s\n", std::max(1.0, expectedSeconds_)));
-  }
   print(fmt::format("memory: about {} of at most {}{}\n", formatBytes(bytes),
                     formatBytes(maxMemory_),
                     bytes > maxMemory_ ? ", so this would be refused" : ""));

@@ -96,8 +96,8 @@ class Context {
 
   bool dryRun() const { return options_.dryRun; }
   // What --dry-run says: a line for each thing that would be done, the seconds that expect() knows
-  // of, and the peak of the process (also whether it is over the limit), on stdout. bytes: the need
-  // beyond what the process has by now.
+  // of unless they are doubtful, and the peak of the process (also whether it is over the limit),
+  // on stdout. bytes: the need beyond what the process has by now.
   void plan(const std::vector<std::string>& lines, std::uint64_t bytes);
   // A dry run: false, after plan() of the largest need. Else true, after requireMemory() of each.
   bool begins(const std::vector<std::string>& lines, const MemoryNeed& need) {

@@ -22,6 +22,7 @@ constexpr double kTells = 0.08;
 constexpr double kAgain = 0.5;
 // No time is told while more than this of what is left is doubtful.
 constexpr double kDoubtful = 0.5;
+constexpr double kLittle = 3;  // seconds: a plan may be out by that
 
 double coreSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -157,6 +158,14 @@ double totalSeconds(const std::vector<JobPhase>& phases) {
   for (const JobPhase& p : phases)
     if (!p.perhaps) total += p.seconds;
   return total;
+}
+
+double tellableSeconds(const std::vector<JobPhase>& phases) {
+  double doubtful = 0;
+  for (const JobPhase& p : phases)
+    if (!p.perhaps) doubtful += p.doubtful;
+  const double total = totalSeconds(phases);
+  return doubtful <= std::max(kLittle, kDoubtful * total) ? total : 0;
 }
 
 }  // namespace innermap::tool

@@ -98,6 +98,8 @@ class JobClock {
   double shown_ = 0;
 };
 
+// Of the phases that are sure to come; 0 seconds may be told where most of it is doubtful.
 double totalSeconds(const std::vector<JobPhase>& phases);
+double tellableSeconds(const std::vector<JobPhase>& phases);
 
 }  // namespace innermap::tool

@@ -181,8 +181,7 @@ std::vector<JobPhase> framePhases(std::size_t charges, std::size_t frames,
   all += perFrame;
   all *= static_cast<double>(frames);
   all.gate = true;
-  return {stageOf("placing samples", size), stageOf("factoring", size),
-          stageOf("factoring clusters", size), all};
+  return {stageOf("placing samples", size), stageOf("factoring clusters", size), all};
 }
 
 }  // namespace innermap::tool
