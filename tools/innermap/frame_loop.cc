@@ -87,6 +87,37 @@ void writeFrame(const FrameFile& frame, const std::function<void()>& write,
   }
 }
 
+DeformedFrames deformFrames(const Frames& frames, const FrameOptions& options, bool stays,
+                            const std::string& columns, Context& context,
+                            const std::function<DeformedRow(std::size_t)>& body) {
+  DeformedFrames out;
+  context.print(fmt::format("{:>8} {} {:>10} {:>10} {:>9}\n", "frame", columns, "error rms",
+                            "error 99%", "seconds"));
+  out.results = runFrames(frames, stays, context, [&](std::size_t index) {
+    StageSeconds seconds;
+    DeformedRow row = timed(seconds, "frame", [&] { return body(index); });
+    context.print(fmt::format("{:>8} {} {:>10.2e} {:>10.2e} {:>9.3g}{}\n", frames.all[index].number,
+                              row.counts, row.made.error->rms, row.made.error->p99,
+                              seconds.front().second,
+                              missedMark(row.judged.misses(options.tolerance))));
+    out.rows[index] = std::move(row);
+  });
+  return out;
+}
+
+Figures concludeDeformed(const DeformedFrames& made, const Frames& frames,
+                         const FrameOptions& options, Context& context) {
+  std::vector<DeformedFrame> all(made.results.size());
+  std::vector<JudgedFrame> judged;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (const auto row = made.rows.find(frames.wanted[i]); row != made.rows.end()) {
+      all[i] = row->second.made;
+      judged.push_back(row->second.judged);
+    }
+  context.judge(judgeFrames(judged, options.tolerance, options.verdict));
+  return deformedFigures(all);
+}
+
 std::string secondsText(const std::vector<FrameResult>& results, Context& context) {
   double sum = 0, least = 0, most = 0;
   int count = 0;
