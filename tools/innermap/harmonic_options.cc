@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "fitting_options.h"
 #include "innermap/core/memory.h"
 #include "innermap/fit/fit_harmonic.h"

@@ -1,7 +1,6 @@
 // `innermap remesh`: the cells of one solid made those of another by a map between them.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <optional>
 
 #include "cell_report.h"

@@ -1,6 +1,4 @@
 // `innermap weights`: harmonic weights of groups of a surface, inside it.
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "commands.h"
