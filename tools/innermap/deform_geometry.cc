@@ -15,8 +15,6 @@
 namespace innermap::tool {
 namespace {
 
-constexpr double kAccuracy = 1e-7;  // of sums of charges
-
 // The set-up that all frames share.
 class Deformer {
  public:
@@ -28,8 +26,7 @@ class Deformer {
         fits_(makeFrameFits(fitter_, frames, context)),
         file_(readGeometryFile(job.input, job.geometry, context)) {
     const FrameOutside outside = frameOutside(job.transfer.outside, fadeTo(job.transfer));
-    pusher_.emplace(fitter_.solid(), carryPointsSettings(outside.settings, kAccuracy),
-                    outside.fitted);
+    pusher_.emplace(fitter_.solid(), CarryPointsSettings{outside.settings}, outside.fitted);
   }
 
   // Points that the file has.
