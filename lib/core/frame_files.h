@@ -13,6 +13,13 @@ struct FrameFile {
   std::string path;
 };
 
+// A frame of an animation that was worked on.
+struct FrameResult {
+  FrameFile file;
+  double seconds = 0;
+  std::string error;  // empty: good
+};
+
 // The last run of digits in the file's name before its extension: 12 for "walk_v2.0012.obj". A
 // minus sign counts behind a dot, an underscore or nothing ("walk.-0003.obj"). None without digits
 // and for numbers over 15 digits.

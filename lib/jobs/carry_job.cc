@@ -1,5 +1,7 @@
 #include "jobs/carry_job.h"
 
+#include <algorithm>
+
 namespace innermap {
 
 LevelSetSettings carriedVoxels(const openvdb::GridPtrVec& grids, const LatticeChoice& choice,
@@ -9,16 +11,35 @@ LevelSetSettings carriedVoxels(const openvdb::GridPtrVec& grids, const LatticeCh
   return out;
 }
 
-OutsideSettings outsideSettings(double distance, const FadeTo& fade, const Points& from,
-                                const Points& to) {
-  OutsideSettings out;
-  out.distance = distance;
-  out.fadeTo = fade.fitted ? bestRigidMotion(from, to) : fade.motion;
+OutsideSettings outsideSettings(double distance, const FadeTo& fade, const MappedSolid& mapped) {
+  OutsideSettings out = frameOutside(distance, fade).settings;
+  if (fade.fitted)
+    out.fadeTo =
+        bestRigidMotion(mapped.solid().repaired().mesh.vertices, mapped.boundary.target.moved);
   return out;
 }
 
 FrameOutside frameOutside(double distance, const FadeTo& fade) {
-  return {outsideSettings(distance, {fade.motion}, {}, {}), fade.fitted};
+  FrameOutside out;
+  out.settings.distance = distance;
+  out.settings.fadeTo = fade.motion;
+  out.fitted = fade.fitted;
+  return out;
+}
+
+PointCarry pointCarry(const SolidMap& map, const MappedSolid& mapped, bool push,
+                      const OutsideSettings& outside) {
+  CarryPointsSettings settings;
+  settings.outside = outside;
+  settings.accuracy = std::min(sumAccuracy(mapped), settings.accuracy);
+  return carryByMap(map, mapped, push, settings);
+}
+
+CarryGeometrySettings carryGeometrySettings(const MappedSolid& mapped, bool push, double subdivide,
+                                            SplatOpacity splats) {
+  const double diagonal =
+      push ? boundingBox(mapped.boundary.target.moved).diagonal() : mapped.solid().diagonal();
+  return {subdivide * diagonal, splats, mapped.injectivity.mirrored};
 }
 
 MemoryNeed CarryJob::need() const {

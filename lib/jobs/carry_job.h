@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "innermap/fit/mapped_solid.h"
+#include "innermap/transfer/geometry.h"
 #include "innermap/transfer/inverse_map.h"
 #include "innermap/transfer/push_pull.h"
 #include "jobs/needs.h"
@@ -24,11 +25,17 @@ struct FadeTo {
   bool fitted = false;
 };
 
-// from, to: corresponding points of the two solids.
-OutsideSettings outsideSettings(double distance, const FadeTo& fade, const Points& from,
-                                const Points& to);
+OutsideSettings outsideSettings(double distance, const FadeTo& fade, const MappedSolid& mapped);
 // The motion that is fitted is each frame's own.
 FrameOutside frameOutside(double distance, const FadeTo& fade);
+
+// Points by the map, or by what stands for it, or back. They are kept in double precision and may
+// go there and back, so their sums are at least as exact as usual.
+PointCarry pointCarry(const SolidMap& map, const MappedSolid& mapped, bool push,
+                      const OutsideSettings& outside);
+// subdivide: fraction of the diagonal of what is carried to.
+CarryGeometrySettings carryGeometrySettings(const MappedSolid& mapped, bool push, double subdivide,
+                                            SplatOpacity splats);
 
 struct CarryJob {
   bool push = true;  // else pull

@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <optional>
 
-#include "core/frame_files.h"
 #include "innermap/core/error.h"
+#include "innermap/core/run.h"
 
 namespace innermap {
 namespace {
@@ -27,15 +28,39 @@ std::vector<std::size_t> wantedFrames(const std::vector<std::int64_t>& numbers,
                                           ranges, numbers.size(), numbers.front(), numbers.back()));
 }
 
-std::string whyBroken(const std::function<void()>& body) {
-  try {
-    body();
-  } catch (const FileError& error) {
-    return error.what();
-  } catch (const DataError& error) {
-    return error.what();
+std::vector<FrameResult> eachFrame(const std::vector<std::size_t>& wanted, const FrameWatch& watch,
+                                   const std::function<void(std::size_t)>& body) {
+  using Clock = std::chrono::steady_clock;
+  std::vector<FrameResult> out;
+  for (const std::size_t index : wanted) {
+    if (watch.begins && !watch.begins(out.size())) break;
+    reportProgress("frames", static_cast<double>(out.size()) / static_cast<double>(wanted.size()));
+    FrameResult result;
+    const auto start = Clock::now();
+    try {
+      body(index);
+    } catch (const FileError& error) {
+      result.error = error.what();
+    } catch (const DataError& error) {
+      result.error = error.what();
+    }
+    result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    if (watch.ended) watch.ended(index, result);
+    out.push_back(std::move(result));
   }
-  return "";
+  return out;
+}
+
+FrameFits frameFits(const FrameFitter& fitter, std::vector<std::int64_t> numbers,
+                    std::function<Mesh(std::size_t)> read,
+                    std::function<void(std::size_t, const Mesh&, const FrameFit&)> fitted) {
+  return {std::move(numbers),
+          [&fitter, read = std::move(read), fitted = std::move(fitted)](std::size_t index) {
+            const Mesh mesh = read(index);
+            FrameFit fit = fitter.fit(mesh);
+            if (fitted) fitted(index, mesh, fit);
+            return fit;
+          }};
 }
 
 void requireOneGood(const std::vector<std::string>& errors, const std::string& unit) {

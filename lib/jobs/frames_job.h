@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/frame_files.h"
 #include "innermap/fit/frame_fitter.h"
 #include "innermap/io/vdb_file.h"
 #include "innermap/transfer/push_pull.h"
@@ -19,8 +20,24 @@ namespace innermap {
 std::vector<std::size_t> wantedFrames(const std::vector<std::int64_t>& numbers,
                                       const std::string& setting, const std::string& ranges);
 
-// Why a frame cannot be used: the FileError or DataError that `body` throws; empty if it can.
-std::string whyBroken(const std::function<void()>& body);
+// What goes on beside the frames: each may be missing.
+struct FrameWatch {
+  // Before a frame, the number of those that came before; false: it is left, with all after it.
+  std::function<bool(std::size_t)> begins;
+  // After it: its place among all, and what became of it.
+  std::function<void(std::size_t, FrameResult&)> ended;
+};
+
+// Calls `body` for all frames wanted, in order, with the frame's place among all. One that cannot
+// be used, by a FileError or a DataError of `body`, has that as its error, and the others go on.
+std::vector<FrameResult> eachFrame(const std::vector<std::size_t>& wanted, const FrameWatch& watch,
+                                   const std::function<void(std::size_t)>& body);
+
+// The fits of frames as they are asked for. read: the frame at a place in `numbers`. fitted: told
+// of each. The fitter must outlive them.
+FrameFits frameFits(const FrameFitter& fitter, std::vector<std::int64_t> numbers,
+                    std::function<Mesh(std::size_t)> read,
+                    std::function<void(std::size_t, const Mesh&, const FrameFit&)> fitted = {});
 
 // Throws DataError where none can be used. errors: of each frame, empty for a good one. unit: what
 // one is called.

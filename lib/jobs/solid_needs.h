@@ -1,4 +1,4 @@
-// What finite elements on a solid, and its texture, need of memory.
+// What cells in a solid, finite elements on it, and its texture need of memory.
 #pragma once
 
 #include <string>
@@ -6,10 +6,19 @@
 
 #include "innermap/io/pictures.h"
 #include "innermap/tetra/compare_fem.h"
+#include "innermap/tetra/hexahedralize.h"
+#include "innermap/tetra/remesh_cells.h"
 #include "innermap/texture/solid_texture.h"
 #include "jobs/needs.h"
 
 namespace innermap {
+
+// name: the mesh's; reading: bytes that reading the cells takes.
+MemoryNeed hexahedraNeed(const std::string& name, const Mesh& mesh,
+                         const HexahedralizeSettings& settings);
+MemoryNeed polycubeNeed(const std::string& name, const Mesh& mesh,
+                        const PolycubeSettings& settings);
+MemoryNeed remeshNeed(const std::string& name, const CellMesh& cells, std::uint64_t reading = 0);
 
 // mapped: vertices of the solid whose map is compared; 0: known functions are.
 MemoryNeed compareFemNeed(const Solid& solid, const CompareFemSettings& settings,

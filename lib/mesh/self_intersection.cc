@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "innermap/core/run.h"
 #include "innermap/mesh/check.h"

@@ -107,6 +107,24 @@ Figures figures(const FarmFigures& farm) {
       {"machines_seconds", times, "would take", "at best", kSeconds}};
 }
 
+Figures figures(const StageFigures& stages) {
+  const auto work = [](const StageWork& w) -> Figures {
+    return {{"stage", w.stage, "stages", ""},
+            {"seconds", w.seconds, "times", "of the stage", kSeconds},
+            {"core_seconds", w.coreSeconds, "times of all cores", "of the stage", kSeconds},
+            {"expected_seconds", w.expected, "expected times", "of the stage", kSeconds},
+            {"work", w.work, "works", "that a stage is the sum of"},
+            {"times", w.times, "so often", ""},
+            {"inside", w.inside, "voxels inside", "millions"},
+            {"surface", w.surface, "voxels of the surface", "millions"},
+            {"charges", w.charges, "charges", "thousands"},
+            {"items", w.items, "items", "that this kind of work counts"}};
+  };
+  return together({{{"block_seconds_alone", stages.alone, "pace", "of a core alone", kSeconds},
+                    {"block_seconds", stages.together, "pace", "of all cores", kSeconds}},
+                   columns(stages.works, work)});
+}
+
 Figures leftFigures(std::uint64_t left) {
   return {{"left", left, "left", "not begun, as --max-time ended"}};
 }

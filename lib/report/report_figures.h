@@ -26,13 +26,6 @@ struct ReportMesh {
 };
 Figures figures(const ReportMesh& mesh);
 
-// A frame of an animation that was worked on.
-struct FrameResult {
-  FrameFile file;
-  double seconds = 0;
-  std::string error;  // empty: good
-};
-
 // "frames" of any command for animations; of `deform`, whose frames may be finished already; their
 // seconds; what they are judged by.
 Figures frameFigures(const std::vector<FrameResult>& results);
@@ -60,6 +53,20 @@ struct FarmFigures {
   std::vector<FarmPart> parts;
 };
 Figures figures(const FarmFigures& farm);
+
+// "stages": what a job's stages took, a row for each kind of work that a stage is the sum of.
+struct StageWork {
+  std::string stage;
+  double seconds = 0, coreSeconds = 0, expected = 0;  // of the whole stage
+  std::string work;
+  double times = 0;                                        // so often
+  double inside = 0, surface = 0, charges = 0, items = 0;  // of what size
+};
+struct StageFigures {
+  double alone = 0, together = 0;  // seconds of a block of work
+  std::vector<StageWork> works;
+};
+Figures figures(const StageFigures& stages);
 
 // Beside the sections.
 Figures outsideFigures(double share);

@@ -123,6 +123,11 @@ std::vector<ReportSection> mapSections(const Unknown& u) {
        merged({frameFigures({}), deformedFigures({}), finishedFigures(0), leftFigures(0),
                frameSeconds(0, 0, 0), judgedFigures(0, {})}),
        {}},
+      {"stages",
+       "Stages",
+       "What the stages of the job took beside what was expected.",
+       figures(StageFigures{}),
+       {}},
       {"farm", "Farm", "How a run in shares was made.", figures(FarmFigures{}), {}}};
 }
 

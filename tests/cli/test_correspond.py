@@ -325,6 +325,18 @@ def test_a_dry_run_refuses_what_the_run_refuses():
             assert fails(1, *job, "--dry-run", says=[why]) == said
 
 
+def test_a_dry_run_refuses_the_memory_that_the_run_refuses():
+    blob("a.obj", 3, bump=0.8)
+    blob("b.obj", 2, (1.2, 0.9, 1), 0.8)
+    job = ["map", "a.obj", "b.obj", "-o", "out", "--resolution", "96"]
+    claim = dry_run(*job).memory
+    less, enough = (["--max-memory", f"{bytes / 1e3:.0f}k"] for bytes in (0.93 * claim, claim + 8e6))
+    fails(1, *job, *less, "--dry-run", says=["--max-memory"])
+    fails(1, *job, *less, says=["--max-memory"])
+    dry_run(*job, *enough)
+    innermap(*job, *enough)
+
+
 def test_dry_runs_write_nothing():
     icosphere("a.obj")
     icosphere("b.obj", subdivisions=3)

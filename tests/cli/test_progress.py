@@ -65,16 +65,25 @@ def test_lines_carry_seconds():
     assert seconds == sorted(seconds), seconds
 
 
+def test_report_says_what_the_stages_took():
+    pair()
+    innermap("map", "ball.obj", "egg.obj", "-o", "out", "--resolution", "32", "--quiet")
+    stages = cli.read_json("out/report.json")["stages"]
+    columns = {key: column for key, column in stages.items() if isinstance(column, list)}
+    assert len({len(column) for column in columns.values()}) == 1, columns
+    assert {"level set", "evaluating the map", "writing slices"} <= set(stages["work"]), stages["work"]
+    assert all(s >= 0 for s in stages["seconds"]) and sum(stages["core_seconds"]) > 0, stages
+    assert min(stages["block_seconds"], *stages["times"]) > 0, stages
+
+
 def test_dry_run_says_seconds_that_include_the_fit():
     pair()
-    said = {}
-    for tolerance in ["1e-3", "1e-6"]:
-        said[tolerance] = cli.dry_run("map", "ball.obj", "egg.obj", "-o", "out", "--tolerance",
-                                      tolerance).seconds
-    assert said["1e-6"] > said["1e-3"] >= 1, said
+    few, many = (cli.dry_run("map", "ball.obj", "egg.obj", "-o", "out", "--charges", charges).seconds
+                 for charges in (100, 20000))
+    assert many > few >= 1, (few, many)
 
 
-def test_every_long_command_says_seconds_in_a_dry_run():
+def test_every_long_command_says_seconds_that_can_be_told():
     pair()
     innermap("fit", "ball.obj", "egg.obj", "-o", "map.ply")
     innermap("evaluate", "map.ply", "-o", "map.vdb", "--resolution", "24")
@@ -106,7 +115,8 @@ def test_every_long_command_says_seconds_in_a_dry_run():
                     ["hexahedralize", "ball.obj", "-o", "a.vtu"],
                     ["study", "ball.obj", "egg.obj", "-o", "out"],
                     ["fit", "ball.obj", "egg.obj", "-o", "a.ply"]]:
-        assert cli.dry_run(*command).seconds is not None, command
+        # How long the runs of a study take is not known within a factor of two.
+        assert (cli.dry_run(*command).seconds is None) == (command[0] == "study"), command
 
 
 def test_more_voxels_are_said_to_take_longer():
@@ -128,6 +138,11 @@ def test_each_stage_of_a_plan_has_a_weight():
     weighed = set(re.findall(r'\{"([^"]+)"', (folder / "stage_weights.inc").read_text()))
     assert len(named) > 50, named
     assert named == weighed, named ^ weighed
+    # And something reports it, or a run would never come to it.
+    sources = [*(cli.ROOT / "lib").rglob("*.[ch]*"), *folder.glob("*.cc")]
+    told = "".join(line for path in sources for line in path.read_text().splitlines()
+                   if "stageOf(" not in line)
+    assert [name for name in sorted(named) if f'"{name.split(":")[0]}"' not in told] == []
 
 
 def shown(columns, *arguments, **more):

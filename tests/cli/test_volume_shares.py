@@ -95,7 +95,7 @@ def textured_rod():
             file.write("f " + " ".join(f"{i + 1}/{i + 1}" for i in face) + "\n")
 
 
-PASSING = {"seconds", "date", "peak_memory_bytes", "memory_after_bytes", "farm", "host", "command_line", "settings",
+PASSING = {"seconds", "date", "peak_memory_bytes", "memory_after_bytes", "stages", "farm", "host", "command_line", "settings",
            "outputs", "frames", "notes"}
 
 

@@ -68,34 +68,6 @@ def test_bent_maps_agree_with_their_jacobians():
     check(captures.errors(floats, pushed(m, floats), at, J), 1e-5)
 
 
-def dimmed(capture, matrix_volume):
-    """Of light that crosses a unit of length, on average over directions, by a uniform cloud that had
-    one splat a volume before: minus the logarithm of what is left."""
-    S = captures.covariances(capture)
-    inverse = np.linalg.inv(S)
-    d = captures.directions(4000)
-    areas = np.sqrt(np.linalg.det(S)[:, None] * np.einsum("mi,nij,mj->nm", d, inverse, d))
-    alpha = 1 / (1 + np.exp(-capture["opacity"]))
-    return 2 * np.pi * np.mean(alpha[:, None] * areas) / matrix_volume
-
-
-def test_mass_dims_as_fog_does():
-    P = shapes.inside(2000)
-    m = linear_map(A)
-    capture = captures.random_capture(P, 0, kind="<f8")
-    out = pushed(m, capture, splats="mass")
-    volume = abs(np.linalg.det(A))
-    ratio = dimmed(out, volume) / (dimmed(capture, 1) / volume)
-    assert abs(ratio - 1) < 0.02, ratio  # some directions
-    twice = linear_map(2 * np.eye(3))
-    out = pushed(twice, capture, splats="mass")
-    alpha = 1 / (1 + np.exp(-out["opacity"]))
-    assert np.allclose(alpha, 0.25 / (1 + np.exp(-capture["opacity"])), atol=1e-7)
-    figures = innermap.pull(twice, "pushed.ply", "back.ply", splats="mass")
-    assert figures["opacities_capped"] == 0, figures
-    assert np.allclose(captures.read("back.ply")["opacity"], capture["opacity"], atol=1e-5)
-
-
 def test_frames_and_what_is_outside():
     V, F = shapes.ball(3)
     P = np.concatenate([shapes.inside(500), [[3.0, 0, 0]]])

@@ -218,7 +218,8 @@ std::vector<Option> commonOptionTable(CommonOptions& common) {
       .defaults("this processor's best")
       .advanced();
   c.flag("--dry-run", &common.dryRun,
-         "say what the run would do and how much memory and time it needs; write nothing");
+         "say what the run would do, how much memory it needs, and how much time if that is known "
+         "within a factor of two; write nothing");
   c.option("--report", "FILE", &common.report, "write the report, with figures and times, as JSON");
   c.flag("--json", &common.json, "print the report on stdout instead of other text");
   c.option("--html", "FILE", &common.html,
@@ -229,8 +230,8 @@ std::vector<Option> commonOptionTable(CommonOptions& common) {
          "end with exit code 1 if the verdict is not met; write all files nevertheless");
   c.flag("--quiet", &common.quiet, "print nothing on stderr but errors").shortName("-q");
   c.flag("--verbose", &common.verbose,
-         "print a line on stderr as each stage begins, with the seconds, and at the end what each "
-         "took beside what was expected");
+         "print a line on stderr as each stage begins, with the seconds, and at the end the "
+         "longest stages");
   c.flag("--help", &common.help, "show help on the usual options").shortName("-h");
   c.flag("--help-all", &common.helpAll, "show help on every option");
   c.flag("--version", &common.version, "show the program's version").shortName("-V");

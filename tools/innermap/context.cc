@@ -12,6 +12,7 @@
 #include "innermap/core/error.h"
 #include "innermap/core/memory.h"
 #include "innermap/io/pictures.h"
+#include "job_cost.h"
 #include "report/page/page.h"
 #include "report/report_figures.h"
 #include "run_record.h"
@@ -56,7 +57,7 @@ void Context::noteTime() {
 void Context::setPart(const std::string& part) { progress_.setPart(part); }
 
 void Context::expect(const std::vector<JobPhase>& phases) {
-  expectedSeconds_ = totalSeconds(phases);
+  expectedSeconds_ = tellableSeconds(phases);
   progress_.expect(phases);
 }
 
@@ -65,9 +66,8 @@ void Context::phase(const std::string& stage) { progress_.report(stage, 0); }
 void Context::plan(const std::vector<std::string>& lines, std::uint64_t need) {
   const std::uint64_t bytes = claimed(need);
   for (const std::string& line : lines) print(line + "\n");
-  if (expectedSeconds_ > 0) {
+  if (expectedSeconds_ > 0)
     print(fmt::format("time: about {:.0f} s\n", std::max(1.0, expectedSeconds_)));
-  }
   print(fmt::format("memory: about {} of at most {}{}\n", formatBytes(bytes),
                     formatBytes(maxMemory_),
                     bytes > maxMemory_ ? ", so this would be refused" : ""));
@@ -77,11 +77,13 @@ void Context::plan(const std::vector<std::string>& lines, std::uint64_t need) {
                                formatBytes(bytes), formatBytes(maxMemory_)));
 }
 
-bool Context::begins(const std::vector<std::string>& lines, const MemoryNeed& need) {
-  if (dryRun())
-    plan(lines, need.bytes);
-  else
-    requireMemory(need);
+bool Context::begins(const std::vector<std::string>& lines, const std::vector<MemoryNeed>& needs) {
+  std::uint64_t most = 0;
+  for (const MemoryNeed& need : needs) {
+    most = std::max(most, need.bytes);
+    if (!dryRun()) requireMemory(need);
+  }
+  if (dryRun()) plan(lines, most);
   return !dryRun();
 }
 
@@ -297,7 +299,7 @@ void Context::judge(const Verdict& verdict) {
 
 void Context::conclude() {
   if (dryRun()) return;
-  progress_.endJob();
+  progress_.sayLongest();
   noteTime();
   std::vector<std::string> unmet;
   for (const ReportFinding& f : report_.verdict)
@@ -340,6 +342,8 @@ const Report& Context::finishedReport() {
   noteTime();
   report_.peakMemory = peakMemory();
   report_.outputs = outputsNow();
+  if (const auto taken = progress_.taken(); !taken.empty())
+    report_.add("stages", figures(stageFigures(taken)));
   noteMemory();
   for (const auto& [stage, bytes] : memoryAfter_)
     report_.add("memory_after_bytes", memoryFigures(stage, bytes));

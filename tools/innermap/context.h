@@ -96,11 +96,14 @@ class Context {
 
   bool dryRun() const { return options_.dryRun; }
   // What --dry-run says: a line for each thing that would be done, the seconds that expect() knows
-  // of, and the peak of the process (also whether it is over the limit), on stdout. bytes: the need
-  // beyond what the process has by now.
+  // of unless they are doubtful, and the peak of the process (also whether it is over the limit),
+  // on stdout. bytes: the need beyond what the process has by now.
   void plan(const std::vector<std::string>& lines, std::uint64_t bytes);
-  // A dry run: false, after plan(). Else true, after requireMemory(need).
-  bool begins(const std::vector<std::string>& lines, const MemoryNeed& need);
+  // A dry run: false, after plan() of the largest need. Else true, after requireMemory() of each.
+  bool begins(const std::vector<std::string>& lines, const MemoryNeed& need) {
+    return begins(lines, std::vector<MemoryNeed>{need});
+  }
+  bool begins(const std::vector<std::string>& lines, const std::vector<MemoryNeed>& needs);
   // Throws MemoryError when as many bytes more would be over the limit, as core/memory.h says. What
   // plan() says is the most that was asked for here: of a file that is read before it, too.
   void requireMemory(const MemoryNeed& need) const;

@@ -105,12 +105,6 @@ FrameCarry frameCarry(const DeformOptions& o, const openvdb::GridPtrVec& grids) 
           o.shutter};
 }
 
-struct DeformRow {
-  InverseStatistics statistics;
-  BoundaryError error;
-  JudgedFrame judged;
-};
-
 // The set-up that all frames share.
 class Deformer {
  public:
@@ -128,7 +122,7 @@ class Deformer {
   // Of all frames so far: the densities that grow most beside their solids.
   const std::map<std::string, JudgedDensity>& densities() const { return densities_; }
 
-  DeformRow run(std::size_t index, const std::string& path, const std::string& inputs) {
+  DeformedRow run(std::size_t index, const std::string& path, const std::string& inputs) {
     const FrameFile& frame = frames_.all[index];
     const std::shared_ptr<const FrameFit> fit = fits_.at(index);
     // No structured binding: lambdas cannot capture one in C++17.
@@ -147,7 +141,11 @@ class Deformer {
     writeFrame(frame,
                [&] { writeGridFile(path, result.grids, options_.transfer.names, context_, file); });
     judge(result, *fit, frame.number);
-    return {result.statistics, fit->error, judgedFrame({fit.get(), frame.number})};
+    const InverseStatistics& s = result.statistics;
+    const JudgedFrame judged = judgedFrame({fit.get(), frame.number});
+    return {{s, fit->error, judged.folded, judged.outside},
+            judged,
+            fmt::format("{:>10} {:>10.4f}", s.voxels, 100 * s.invertedInside())};
   }
 
  private:
@@ -172,13 +170,6 @@ class Deformer {
   const FrameCarry how_;
   const FramePusher pusher_;
 };
-
-std::string lineOf(const FrameFile& frame, const DeformRow& row, double seconds, double tolerance) {
-  const InverseStatistics& s = row.statistics;
-  return fmt::format("{:>8} {:>10} {:>10.4f} {:>10.2e} {:>10.2e} {:>9.3g}{}\n", frame.number,
-                     s.voxels, 100 * s.invertedInside(), row.error.rms, row.error.p99, seconds,
-                     missedMark(row.judged.misses(tolerance)));
-}
 
 void check(const DeformOptions& options, const Frames& frames) {
   std::string extension = std::filesystem::path(options.output).extension().string();
@@ -294,32 +285,18 @@ void run(const DeformOptions& options, Context& context) {
                       inside.need))
     return;
   Deformer deformer(options, left, std::move(rest), inside.grids, context);
-  std::map<std::size_t, DeformRow> rows;
-  context.print(fmt::format("{:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "frame", "voxels",
-                            "found %", "error rms", "error 99%", "seconds"));
-  const auto results = runFrames(left, true, context, [&](std::size_t index) {
-    const FrameFile& frame = frames.all[index];
-    StageSeconds seconds;
-    rows[index] = timed(seconds, "frame", [&] {
-      return deformer.run(index, pattern.path(frame.number), inputs->of(index));
-    });
-    context.print(lineOf(frame, rows[index], seconds.front().second, options.frames.tolerance));
-  });
+  const DeformedFrames made = deformFrames(
+      left, options.frames, true, fmt::format("{:>10} {:>10}", "voxels", "found %"), context,
+      [&](std::size_t index) {
+        return deformer.run(index, pattern.path(frames.all[index].number), inputs->of(index));
+      });
   writeUsd(options.frames, pattern, frames, context);
   context.report().add("grid", voxelSizeFigures(deformer.voxelSize()));
   // Of those that were made now; the others' are missing.
-  std::vector<DeformedFrame> made(results.size());
-  for (std::size_t i = 0; i < made.size(); ++i)
-    if (const auto row = rows.find(left.wanted[i]); row != rows.end())
-      made[i] = {row->second.statistics, row->second.error, row->second.judged.folded,
-                 row->second.judged.outside};
-  context.report().add("frames", deformedFigures(made));
-  std::vector<JudgedFrame> judged;
-  for (const auto& [index, row] : rows) judged.push_back(row.judged);
-  context.judge(judgeFrames(judged, options.frames.tolerance, options.frames.verdict));
+  context.report().add("frames", concludeDeformed(made, left, options.frames, context));
   for (const auto& [name, density] : deformer.densities())
     context.judge(judgeDensity(density, options.transfer.verdict));
-  context.print(secondsText(results, context));
+  context.print(secondsText(made.results, context));
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <map>
 #include <optional>
 
 #include "frame_loop.h"
@@ -15,8 +14,6 @@
 
 namespace innermap::tool {
 namespace {
-
-constexpr double kAccuracy = 1e-7;  // of sums of charges
 
 // The set-up that all frames share.
 class Deformer {
@@ -29,32 +26,22 @@ class Deformer {
         fits_(makeFrameFits(fitter_, frames, context)),
         file_(readGeometryFile(job.input, job.geometry, context)) {
     const FrameOutside outside = frameOutside(job.transfer.outside, fadeTo(job.transfer));
-    pusher_.emplace(fitter_.solid(), carryPointsSettings(outside.settings, kAccuracy),
-                    outside.fitted);
+    pusher_.emplace(fitter_.solid(), CarryPointsSettings{outside.settings}, outside.fitted);
   }
-
-  struct Row {
-    CarriedGeometry carried;
-    BoundaryError error;
-    JudgedFrame judged;
-  };
 
   // Points that the file has.
   std::size_t points() const { return file_->geometry.ownPoints; }
 
   // write: puts what was carried in place.
-  Row run(std::size_t index, const std::function<void(const CarriedGeometry&)>& write) {
+  DeformedRow run(std::size_t index, const std::function<void(const CarriedGeometry&)>& write) {
     const FrameFile& frame = frames_.all[index];
     const std::shared_ptr<const FrameFit> fit = fits_.at(index);
     const PointPusher pusher = pusher_->to(fit->boundary.moved);
     const ComposedMap map = HarmonicMap(fit->field);
-    Row row;
-    row.error = fit->error;
-    row.judged = judgedFrame({fit.get(), frame.number});
     CarryGeometrySettings settings;
     settings.splats = job_.geometry.splats;
     settings.mirrored = fit->injectivity.mirrored;
-    row.carried = context_.timed("carry", [&] {
+    last_ = context_.timed("carry", [&] {
       return carryGeometry(
           *file_,
           fromInput([&](const Points& points,
@@ -62,9 +49,11 @@ class Deformer {
                     context_),
           settings);
     });
-    warnOf(row.carried, job_.transfer, fmt::format("frame {}: ", frame.number), context_);
-    writeFrame(frame, [&] { write(row.carried); });
-    return row;
+    warnOf(*last_, job_.transfer, fmt::format("frame {}: ", frame.number), context_);
+    writeFrame(frame, [&] { write(*last_); });
+    return {{{}, fit->error, {}, {}},
+            judgedFrame({fit.get(), frame.number}),
+            fmt::format("{:>10} {:>10}", last_->ownPoints, last_->folded)};
   }
 
   void writeFile(const std::string& path, const CarriedGeometry& carried) const {
@@ -72,9 +61,7 @@ class Deformer {
   }
 
   // Of the last frame: which points are outside is the same in all.
-  std::string report(const CarriedGeometry& carried) const {
-    return reportGeometry(carried, context_);
-  }
+  std::string report() const { return last_ ? reportGeometry(*last_, context_) : ""; }
 
  private:
   const DeformGeometry& job_;
@@ -84,37 +71,19 @@ class Deformer {
   FrameFits fits_;
   const std::unique_ptr<GeometryFile> file_;
   std::optional<FramePointPusher> pusher_;
-};
-
-// What is made of the frames, beside the files.
-struct Made {
-  std::map<std::size_t, BoundaryError> errors;
-  std::vector<JudgedFrame> judged;
-  std::optional<CarriedGeometry> last;
-  std::vector<FrameResult> results;
+  std::optional<CarriedGeometry> last_;
 };
 
 // stays: what `write` writes of a frame stays when the others are not made.
-Made makeFrames(const DeformGeometry& job, const Frames& frames, Deformer& deformer, bool stays,
-                const std::function<void(std::size_t, const CarriedGeometry&)>& write,
-                Context& context) {
-  Made made;
-  context.print(fmt::format("{:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "frame", "points",
-                            "folded", "error rms", "error 99%", "seconds"));
-  made.results = runFrames(frames, stays, context, [&](std::size_t index) {
-    StageSeconds seconds;
-    auto row = timed(seconds, "frame", [&] {
-      return deformer.run(index, [&](const CarriedGeometry& carried) { write(index, carried); });
-    });
-    made.errors[index] = row.error;
-    made.judged.push_back(row.judged);
-    context.print(fmt::format("{:>8} {:>10} {:>10} {:>10.2e} {:>10.2e} {:>9.3g}{}\n",
-                              frames.all[index].number, row.carried.ownPoints, row.carried.folded,
-                              row.error.rms, row.error.p99, seconds.front().second,
-                              missedMark(row.judged.misses(job.frames.tolerance))));
-    made.last = std::move(row.carried);
-  });
-  return made;
+DeformedFrames makeFrames(const DeformGeometry& job, const Frames& frames, Deformer& deformer,
+                          bool stays,
+                          const std::function<void(std::size_t, const CarriedGeometry&)>& write,
+                          Context& context) {
+  return deformFrames(frames, job.frames, stays, fmt::format("{:>10} {:>10}", "points", "folded"),
+                      context, [&](std::size_t index) {
+                        return deformer.run(
+                            index, [&](const CarriedGeometry& carried) { write(index, carried); });
+                      });
 }
 
 // The file's own points, all of which a cache has in every frame.
@@ -131,13 +100,13 @@ Points cachePoints(const std::string& input, const CarriedGeometry& carried) {
 }
 
 // All frames in one file.
-Made makeCache(const DeformGeometry& job, const Frames& frames, const std::string& path,
-               Deformer& deformer, Context& context) {
+DeformedFrames makeCache(const DeformGeometry& job, const Frames& frames, const std::string& path,
+                         Deformer& deformer, Context& context) {
   PointCacheLayout layout;
   layout.points = deformer.points();
   layout.framesPerSecond = job.framesPerSecond;
   for (const std::size_t index : frames.wanted) layout.numbers.push_back(frames.all[index].number);
-  Made made;
+  DeformedFrames made;
   writePointCache(path, layout, [&](const auto& add) {
     made = makeFrames(
         job, frames, deformer, false,
@@ -168,17 +137,13 @@ void deformGeometry(const DeformGeometry& job, const Frames& frames, Context& co
     const FramePattern pattern("--output", job.output);
     deformer.writeFile(pattern.path(frames.all[index].number), carried);
   };
-  const Made all = job.cache() ? makeCache(job, frames, job.output, deformer, context)
-                               : makeFrames(job, frames, deformer, true, writeFile, context);
-  if (all.last) context.print(deformer.report(*all.last));
-  std::vector<DeformedFrame> made(all.results.size());
-  for (std::size_t i = 0; i < made.size(); ++i)
-    if (const auto error = all.errors.find(frames.wanted[i]); error != all.errors.end())
-      made[i].error = error->second;
-  context.report().add(
-      "frames", only(deformedFigures(made), {"boundary_rms", "boundary_p99", "boundary_max"}));
-  context.judge(judgeFrames(all.judged, job.frames.tolerance, job.frames.verdict));
-  context.print(secondsText(all.results, context));
+  const DeformedFrames made = job.cache()
+                                  ? makeCache(job, frames, job.output, deformer, context)
+                                  : makeFrames(job, frames, deformer, true, writeFile, context);
+  context.print(deformer.report());
+  context.report().add("frames", only(concludeDeformed(made, frames, job.frames, context),
+                                      {"boundary_rms", "boundary_p99", "boundary_max"}));
+  context.print(secondsText(made.results, context));
 }
 
 }  // namespace innermap::tool

@@ -3,16 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
-#include "innermap/core/run.h"
 #include "report/page/page.h"
 #include "report/report_figures.h"
 
 namespace innermap::tool {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 void sayBroken(const std::vector<FrameResult>& results, const std::string& unit, Context& context) {
   std::vector<std::string> errors;
@@ -39,41 +35,38 @@ std::vector<FrameResult> runFrames(const Frames& frames, bool stays, Context& co
                                    const std::function<void(std::size_t)>& body,
                                    const std::function<void(const FrameResult&)>& ended) {
   std::vector<FrameResult> results;
+  const std::size_t count = frames.wanted.size();
   std::size_t finished = 0;
+  FrameWatch watch;
+  watch.begins = [&](std::size_t before) {
+    if (before > 0 && context.timeIsUp()) return false;
+    const std::int64_t number = frames.all[frames.wanted[before]].number;
+    context.setPart(fmt::format("{} {} ({} of {})", frames.unit, number, before + 1, count));
+    if (Page* page = context.page()) page->frame = PageFrame{number, before, count};
+    return true;
+  };
+  watch.ended = [&](std::size_t index, FrameResult& result) {
+    result.file = frames.all[index];
+    if (result.error.empty())
+      ++finished;
+    else
+      context.warning(
+          fmt::format("{} {} is left out: {}", frames.unit, result.file.number, result.error));
+    if (ended) ended(result);
+  };
   try {
-    for (const std::size_t index : frames.wanted) {
-      if (!results.empty() && context.timeIsUp()) break;
-      FrameResult result;
-      result.file = frames.all[index];
-      context.setPart(fmt::format("{} {} ({} of {})", frames.unit, result.file.number,
-                                  results.size() + 1, frames.wanted.size()));
-      reportProgress("frames", static_cast<double>(results.size()) /
-                                   static_cast<double>(frames.wanted.size()));
-      if (Page* page = context.page())
-        page->frame = PageFrame{result.file.number, results.size(), frames.wanted.size()};
-      const auto start = Clock::now();
-      result.error = whyBroken([&] { body(index); });
-      result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
-      if (!result.error.empty())
-        context.warning(
-            fmt::format("{} {} is left out: {}", frames.unit, result.file.number, result.error));
-      else
-        ++finished;
-      if (ended) ended(result);
-      results.push_back(std::move(result));
-    }
+    results = eachFrame(frames.wanted, watch, body);
   } catch (const Cancelled&) {
     if (!stays || finished == 0) throw;
-    throw CancelledLate(fmt::format("cancelled; {} of {} {}s are in place", finished,
-                                    frames.wanted.size(), frames.unit));
+    throw CancelledLate(
+        fmt::format("cancelled; {} of {} {}s are in place", finished, count, frames.unit));
   }
   context.setPart("");
   if (context.page()) context.page()->frame.reset();
-  const std::size_t left = frames.wanted.size() - results.size();
+  const std::size_t left = count - results.size();
   if (left > 0)
-    context.warning(fmt::format("--max-time ended: {} of {} {}s are left, from {} on", left,
-                                frames.wanted.size(), frames.unit,
-                                frames.all[frames.wanted[results.size()]].number));
+    context.warning(fmt::format("--max-time ended: {} of {} {}s are left, from {} on", left, count,
+                                frames.unit, frames.all[frames.wanted[results.size()]].number));
   concludeFrames(results, left, context, frames.unit);
   return results;
 }
@@ -92,6 +85,37 @@ void writeFrame(const FrameFile& frame, const std::function<void()>& write,
   } catch (const FileError& error) {
     throw OutputFailure(fmt::format("{}; stopped at {} {}", error.what(), unit, frame.number));
   }
+}
+
+DeformedFrames deformFrames(const Frames& frames, const FrameOptions& options, bool stays,
+                            const std::string& columns, Context& context,
+                            const std::function<DeformedRow(std::size_t)>& body) {
+  DeformedFrames out;
+  context.print(fmt::format("{:>8} {} {:>10} {:>10} {:>9}\n", "frame", columns, "error rms",
+                            "error 99%", "seconds"));
+  out.results = runFrames(frames, stays, context, [&](std::size_t index) {
+    StageSeconds seconds;
+    DeformedRow row = timed(seconds, "frame", [&] { return body(index); });
+    context.print(fmt::format("{:>8} {} {:>10.2e} {:>10.2e} {:>9.3g}{}\n", frames.all[index].number,
+                              row.counts, row.made.error->rms, row.made.error->p99,
+                              seconds.front().second,
+                              missedMark(row.judged.misses(options.tolerance))));
+    out.rows[index] = std::move(row);
+  });
+  return out;
+}
+
+Figures concludeDeformed(const DeformedFrames& made, const Frames& frames,
+                         const FrameOptions& options, Context& context) {
+  std::vector<DeformedFrame> all(made.results.size());
+  std::vector<JudgedFrame> judged;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (const auto row = made.rows.find(frames.wanted[i]); row != made.rows.end()) {
+      all[i] = row->second.made;
+      judged.push_back(row->second.judged);
+    }
+  context.judge(judgeFrames(judged, options.tolerance, options.verdict));
+  return deformedFigures(all);
 }
 
 std::string secondsText(const std::vector<FrameResult>& results, Context& context) {

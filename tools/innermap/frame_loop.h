@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,25 @@ void concludeFrames(const std::vector<FrameResult>& results, std::size_t left, C
 // Calls `write`; its FileErrors become OutputFailures that name the frame.
 void writeFrame(const FrameFile& frame, const std::function<void()>& write,
                 const std::string& unit = "frame");
+
+// What `deform` makes of a frame.
+struct DeformedRow {
+  DeformedFrame made;
+  JudgedFrame judged;
+  std::string counts;  // two columns of its line
+};
+struct DeformedFrames {
+  std::vector<FrameResult> results;
+  std::map<std::size_t, DeformedRow> rows;  // of the good ones, by their places in frames.all
+};
+
+// As runFrames(), with a line for each. columns: what its counts are.
+DeformedFrames deformFrames(const Frames& frames, const FrameOptions& options, bool stays,
+                            const std::string& columns, Context& context,
+                            const std::function<DeformedRow(std::size_t)>& body);
+// Judges them; the columns of the report's "frames".
+Figures concludeDeformed(const DeformedFrames& made, const Frames& frames,
+                         const FrameOptions& options, Context& context);
 
 // "seconds a frame: mean 0.41, least 0.38, most 0.52" of the good ones; also into the report.
 std::string secondsText(const std::vector<FrameResult>& results, Context& context);

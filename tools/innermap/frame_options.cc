@@ -152,20 +152,21 @@ FrameFits makeFrameFits(const FrameFitter& fitter, const Frames& frames, Context
   std::shared_ptr<PageFrames> shown;
   if (context.page())
     shown = std::make_shared<PageFrames>(*context.page(), fitter.rest().mesh, frames.wanted.size());
+  const auto read = [&](std::size_t index) {
+    return context.timed("read", [&] { return frames.source->read(index, fitter.rest().mesh); });
+  };
   // The first frame of a share need not be the run's.
-  return {std::move(numbers), [&, shown, told = frames.share](std::size_t index) mutable {
-            const FrameFile& frame = frames.all[index];
-            const Mesh mesh = context.timed(
-                "read", [&] { return frames.source->read(index, fitter.rest().mesh); });
-            FrameFit fit = fitter.fit(mesh);
-            addSeconds(context.report().seconds, fit.seconds);
-            for (const std::string& warning : fit.warnings)
-              context.warning(fmt::format("frame {}: {}", frame.number, warning));
-            if (!fit.jumps.empty() && !told) noteJumps(frame.number, fit.jumps, context);
-            told = told || !fit.jumps.empty();
-            if (shown) shown->add(frame.number, mesh.vertices, fit);
-            return fit;
-          }};
+  const auto fitted = [&, shown, told = frames.share](std::size_t index, const Mesh& mesh,
+                                                      const FrameFit& fit) mutable {
+    const std::int64_t number = frames.all[index].number;
+    addSeconds(context.report().seconds, fit.seconds);
+    for (const std::string& warning : fit.warnings)
+      context.warning(fmt::format("frame {}: {}", number, warning));
+    if (!fit.jumps.empty() && !told) noteJumps(number, fit.jumps, context);
+    told = told || !fit.jumps.empty();
+    if (shown) shown->add(number, mesh.vertices, fit);
+  };
+  return frameFits(fitter, std::move(numbers), read, fitted);
 }
 
 std::string framesPlan(const FrameFitterSettings& settings, const Frames& frames) {

@@ -2,17 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "lists.h"
 #include "report/figures.h"
 
 namespace innermap::tool {
-namespace {
-
-constexpr double kPointAccuracy = 1e-7;  // of the target's extent
-
-}  // namespace
 
 void addGeometryOptions(Command& c, GeometryOptions& o, bool subdivide) {
   c.group("geometry that is carried");
@@ -59,14 +52,6 @@ std::unique_ptr<GeometryFile> readGeometryFile(const std::string& path,
   auto file = context.timed("read", [&] { return readGeometry(path, settings); });
   for (const std::string& note : file->notes) context.note(note);
   return file;
-}
-
-CarryPointsSettings carryPointsSettings(const OutsideSettings& outside, double accuracy) {
-  CarryPointsSettings settings;
-  settings.outside = outside;
-  // Points are kept in double precision and may go there and back; their sums cost little.
-  settings.accuracy = std::min(accuracy, kPointAccuracy);
-  return settings;
 }
 
 void warnOf(const CarriedGeometry& carried, const TransferOptions& options, const std::string& part,

@@ -29,8 +29,6 @@ void requireFitting(const std::string& input, const std::string& output,
 std::unique_ptr<GeometryFile> readGeometryFile(const std::string& path,
                                                const GeometryOptions& options, Context& context);
 
-CarryPointsSettings carryPointsSettings(const OutsideSettings& outside, double accuracy);
-
 // Warns of what went wrong. part: "frame 7: " or nothing.
 void warnOf(const CarriedGeometry& carried, const TransferOptions& options, const std::string& part,
             Context& context);

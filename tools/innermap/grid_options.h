@@ -3,8 +3,6 @@
 
 #include <openvdb/openvdb.h>
 
-#include <cstdint>
-#include <functional>
 #include <string>
 
 #include "command.h"

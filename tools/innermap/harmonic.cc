@@ -4,6 +4,7 @@
 #include "commands.h"
 #include "harmonic_options.h"
 #include "innermap/io/geometry_file.h"
+#include "jobs/harmonic_job.h"
 #include "lists.h"
 
 namespace innermap::tool {
@@ -36,18 +37,6 @@ struct GroupNumbers {
   std::vector<SurfaceGroup> groups;
   Matrix numbers;
 };
-
-const SurfaceGroup& groupNamed(const std::vector<SurfaceGroup>& groups, const std::string& name,
-                               const std::string& path) {
-  std::vector<std::string> known;
-  for (const SurfaceGroup& group : groups) {
-    known.push_back(group.name);
-    if (group.name == name) return group;
-  }
-  throw FileError(path,
-                  fmt::format("has no group '{}'; it has {}", name,
-                              known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
-}
 
 class Conditions {
  public:
@@ -82,7 +71,9 @@ class Conditions {
     for (std::size_t g = 0; g < given.size(); ++g) {
       const auto& [name, numbers] = given[g];
       requireChannels(option, name, numbers.size(), channels);
-      out.groups.push_back(groupNamed(groups(), name, mesh_.name));
+      const SurfaceGroup* group = findGroup(groups(), name);
+      if (!group) throw FileError(mesh_.name, noGroup(groups(), name));
+      out.groups.push_back(*group);
       for (std::size_t k = 0; k < channels; ++k) out.numbers(g, k) = numbers[k];
     }
     return out;
@@ -130,9 +121,7 @@ class Conditions {
   void nameChannels() {
     const std::size_t channels = out_.conditions.values.columns();
     if (!options_.channels.empty()) out_.names = commaList(options_.channels);
-    if (out_.names.empty() && channels == 1) out_.names = {"value"};
-    for (std::size_t k = out_.names.size(); k < channels && options_.channels.empty(); ++k)
-      out_.names.push_back(fmt::format("value{}", k));
+    if (out_.names.empty()) out_.names = channelNames(channels);
     if (out_.names.size() != channels)
       throw UsageError(
           fmt::format("--channels: {} names for {} channels", out_.names.size(), channels));

@@ -2,14 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "fitting_options.h"
 #include "innermap/core/memory.h"
 #include "innermap/fit/fit_harmonic.h"
 #include "innermap/fit/fit_map.h"
 #include "inputs.h"
 #include "job_cost.h"
+#include "jobs/harmonic_job.h"
 #include "lists.h"
 #include "map_report.h"
 #include "report/figures.h"
@@ -90,23 +89,17 @@ void runHarmonic(const HarmonicOptions& options,
   if (!options.field.empty()) context.output(options.field);
   Mesh mesh = readMeshFile(options.mesh, context);
   NamedConditions known = conditionsOf(mesh);
-  known.conditions.creaseAngle = options.creaseAngle;
-  if (const std::string note = joinedText(removeJumps(mesh, known.conditions)); !note.empty())
-    context.note(note);
   const std::size_t vertices = mesh.vertices.size();
-  const SourceBoundary boundary = makeSourceBoundary(std::move(mesh));
-  reportSource(boundary, context);
+  const HarmonicJob job =
+      harmonicJob(std::move(mesh), std::move(known.conditions), options.creaseAngle);
+  const Solid& solid = job.boundary.solid;
+  reportSource(job.boundary, context);
   FitMapSettings like;
   like.tolerance = options.fit.tolerance;
   like.oneToOne = OneToOne::off;
   like.prove = Prove::off;
-  const std::uint64_t need = std::max(
-      fitMapMemory(like, vertices), harmonicGridMemory(boundary.solid, known.names.size(), grids));
-  LevelSetSettings cells;
-  cells.voxelSize = grids.voxelSize;
-  cells.resolution = grids.resolution;
-  requireInterior(boundary.solid, cells);
-  JobSize size = jobSize(boundary.solid, grids);
+  requireInterior(solid, options.grid.in<LevelSetSettings>());
+  JobSize size = jobSize(solid, grids);
   size.items = static_cast<double>(known.names.size()) * size.inside;
   std::vector<JobPhase> phases = fittingPhases(like, likelyPlaces(vertices, like.tolerance), false);
   for (JobPhase& phase : phases) phase *= 1 + 0.1 * static_cast<double>(known.names.size());
@@ -116,15 +109,15 @@ void runHarmonic(const HarmonicOptions& options,
   if (!context.begins(
           {fmt::format("fit {} channel(s) on {}", known.names.size(), options.mesh),
            "write grids to " + options.output},
-          {"the harmonic field", need, "use a lower {resolution} or raise {max_memory}"}))
+          {harmonicNeed(vertices), fieldGridNeed(solid, known.names.size(), options.grid, grids)}))
     return;
   context.spend(Context::kMostOfTime);
-  const HarmonicFit fit = fitHarmonic(boundary, known.conditions, options.fit);
+  const HarmonicFit fit = job.fit(options.fit);
   reportHarmonic(fit, options, context);
   const Facts facts = harmonicFacts(fit, options.fit, options.mesh, known.names);
   HarmonicGridSettings evaluation = grids;
   evaluation.span = fit.span;
-  const HarmonicGrids made = evaluateHarmonic(fit.field, boundary.solid, known.names, evaluation);
+  const HarmonicGrids made = evaluateHarmonic(fit.field, solid, known.names, evaluation);
   for (const std::string& text : made.warnings) context.warning(text);
   addSeconds(context.report().seconds, made.seconds);
   context.report().add("grid", gridFigures(made.voxelSize, made.activeVoxels, made.interiorVoxels));
@@ -132,7 +125,7 @@ void runHarmonic(const HarmonicOptions& options,
   writeGridFile(options.output, made.all(), options.names, context);
   if (!options.field.empty())
     context.timed("write", [&] {
-      writeSolidField(options.field, {fit.field, boundary, known.names, facts});
+      writeSolidField(options.field, {fit.field, job.boundary, known.names, facts});
     });
 }
 

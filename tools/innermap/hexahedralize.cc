@@ -5,10 +5,10 @@
 
 #include "cell_report.h"
 #include "commands.h"
-#include "innermap/core/memory.h"
 #include "innermap/io/cell_file.h"
 #include "innermap/mesh/mesh_file.h"
 #include "job_cost.h"
+#include "jobs/solid_needs.h"
 #include "polycube_report.h"
 #include "report/figures.h"
 
@@ -67,7 +67,6 @@ void run(const Options& options, Context& context) {
   claimOutputs(options, context);
   const Mesh mesh = readCleanSurface(options.mesh, options.surface, context);
   const HexahedralizeSettings settings = options.settings;
-  const std::uint64_t need = hexahedralizeMemory(mesh, settings);
   JobSize size;
   const double blocks = expectedBlocks(mesh, settings.polycube.blocks);
   size.items = blocks * std::pow(settings.pieces, 3) / 1000;
@@ -80,7 +79,7 @@ void run(const Options& options, Context& context) {
           {fmt::format("fill {} with hexahedra, {} along the edge of each of about {:.0f} blocks, "
                        "to {}",
                        options.mesh, settings.pieces, blocks, options.output)},
-          {"hexahedra of " + options.mesh, need, "use fewer {blocks} or {pieces}"}))
+          hexahedraNeed(options.mesh, mesh, settings)))
     return;
   context.spend(Context::kMostOfTime);
   const Hexahedralization result = hexahedralize(mesh, settings);

@@ -22,6 +22,7 @@ constexpr double kTells = 0.08;
 constexpr double kAgain = 0.5;
 // No time is told while more than this of what is left is doubtful.
 constexpr double kDoubtful = 0.5;
+constexpr double kLittle = 3;  // seconds: a plan may be out by that
 
 double coreSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -60,7 +61,10 @@ void JobClock::report(std::string_view stage, double fraction, double now) {
     }
     if (i != current_ || !begun_) {
       // What came before the first phase counts as part of it.
-      if (begun_) close(now);
+      if (begun_) {
+        taken_.push_back(underWay(now));
+        coresSince_ += taken_.back().coreSeconds;
+      }
       current_ = i;
       since_ = reported_ = begun_ ? now : planned_;
       fraction_ = part_ = 0;
@@ -73,17 +77,14 @@ void JobClock::report(std::string_view stage, double fraction, double now) {
   }
 }
 
-void JobClock::close(double now) {
-  const double cores = coreSeconds();
-  taken_.push_back({phases_[current_], now - since_, cores - coresSince_});
-  coresSince_ = cores;
+JobPhaseTaken JobClock::underWay(double now) const {
+  return {phases_[current_], now - since_, coreSeconds() - coresSince_};
 }
 
-std::vector<JobPhaseTaken> JobClock::end(double now) {
-  if (begun_) close(now);
-  phases_.clear();
-  begun_ = false;
-  return std::move(taken_);
+std::vector<JobPhaseTaken> JobClock::taken(double now) const {
+  std::vector<JobPhaseTaken> out = taken_;
+  if (begun_) out.push_back(underWay(now));
+  return out;
 }
 
 void JobClock::advance(double fraction, double now) {
@@ -157,6 +158,14 @@ double totalSeconds(const std::vector<JobPhase>& phases) {
   for (const JobPhase& p : phases)
     if (!p.perhaps) total += p.seconds;
   return total;
+}
+
+double tellableSeconds(const std::vector<JobPhase>& phases) {
+  double doubtful = 0;
+  for (const JobPhase& p : phases)
+    if (!p.perhaps) doubtful += p.doubtful;
+  const double total = totalSeconds(phases);
+  return doubtful <= std::max(kLittle, kDoubtful * total) ? total : 0;
 }
 
 }  // namespace innermap::tool

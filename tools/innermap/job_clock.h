@@ -68,8 +68,8 @@ class JobClock {
   // Of the phase under way; empty before the first.
   const std::string& title() const;
 
-  // Those that are over; the one under way is, too.
-  std::vector<JobPhaseTaken> end(double now);
+  // Those that are over; the one under way counts as over.
+  std::vector<JobPhaseTaken> taken(double now) const;
 
   struct State {
     double fraction = 0;  // of the whole job; never less than before
@@ -79,7 +79,7 @@ class JobClock {
   State at(double now);
 
  private:
-  void close(double now);
+  JobPhaseTaken underWay(double now) const;
   double expectedUntil(std::size_t end) const;
   void advance(double fraction, double now);
   double leftByFraction(double now, double otherwise) const;
@@ -98,6 +98,8 @@ class JobClock {
   double shown_ = 0;
 };
 
+// Of the phases that are sure to come; 0 seconds may be told where most of it is doubtful.
 double totalSeconds(const std::vector<JobPhase>& phases);
+double tellableSeconds(const std::vector<JobPhase>& phases);
 
 }  // namespace innermap::tool

@@ -1,7 +1,5 @@
 #include "job_cost.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -101,10 +99,14 @@ JobPhase stageOf(const std::string& stage, const JobSize& size, int times,
   return phase;
 }
 
-std::string paceText() {
+StageFigures stageFigures(const std::vector<JobPhaseTaken>& taken) {
   const Pace& pace = machinePace();
-  return fmt::format("{:.3g} s alone, {:.3g} s together", kBlockSeconds * pace.alone,
-                     kBlockSeconds * pace.together);
+  StageFigures out{kBlockSeconds * pace.alone, kBlockSeconds * pace.together, {}};
+  for (const JobPhaseTaken& t : taken)
+    for (const auto& [row, size, times] : t.phase.works)
+      out.works.push_back({t.phase.stage, t.seconds, t.coreSeconds, t.phase.seconds, row, times,
+                           size.inside, size.surface, size.charges, size.items});
+  return out;
 }
 
 std::vector<JobPhase> evaluationPhases(const JobSize& size) {
@@ -179,8 +181,7 @@ std::vector<JobPhase> framePhases(std::size_t charges, std::size_t frames,
   all += perFrame;
   all *= static_cast<double>(frames);
   all.gate = true;
-  return {stageOf("placing samples", size), stageOf("factoring", size),
-          stageOf("factoring clusters", size), all};
+  return {stageOf("placing samples", size), stageOf("factoring clusters", size), all};
 }
 
 }  // namespace innermap::tool

@@ -10,6 +10,7 @@
 #include "innermap/levelset/solid.h"
 #include "innermap/mesh/mesh.h"
 #include "job_clock.h"
+#include "report/report_figures.h"
 
 namespace innermap::tool {
 
@@ -36,8 +37,8 @@ double bentPlaces(const Mesh& source, const Points& moved, double tolerance);
 // The same, where it is not known how the vertices move.
 double likelyPlaces(std::size_t vertices, double tolerance);
 
-// Seconds of a block of work on this machine: "S s alone, S s together".
-std::string paceText();
+// With how fast this machine is, by a block of work on it.
+StageFigures stageFigures(const std::vector<JobPhaseTaken>& taken);
 
 // What a map's grids take once it is fitted, until they are in their file.
 std::vector<JobPhase> evaluationPhases(const JobSize& size);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "block_share.h"
 #include "command_words.h"
@@ -116,43 +117,19 @@ double expectPhases(const MapOptions& options, const MapJob& job, Context& conte
   return totalSeconds(last);
 }
 
-// What refuses the run refuses its plan: the pair is made, or it is looked at whether the two can
-// be laid onto each other.
-Solid solidToMap(const MapOptions& options, const MapJob& job, Context& context) {
-  if (job.related) {
-    BoundaryPair pair = makeBoundaryPair(job.source, job.target);
-    reportBoundaries(pair, context);
-    return std::move(pair.source.solid);
-  }
-  context.timed("check",
-                [&] { requireLayable(job.source, job.target, options.correspond.map.layOut); });
-  SourceBoundary source = makeSourceBoundary(job.source);
-  reportSource(source, context);
-  return std::move(source.solid);
-}
-
-void plan(const MapOptions& options, const MapJob& job, Context& context) {
-  const Solid solid = solidToMap(options, job, context);
-  requireInterior(solid, options.evaluation.grid.in<LevelSetSettings>());
-  const std::size_t vertices = job.source.vertices.size();
-  const FitMapSettings fitting = fittingFor(options, job);
-  std::vector<std::string> lines;
-  const bool steps = job.laidOn() && fitting.oneToOne != OneToOne::off;
-  std::uint64_t need = std::max(
-      fitMapMemory(fitting, vertices) + (steps ? kStepsMemory : 0),
-      mapGridMemory(
-          solid, mapGridSettings(options.evaluation),
-          {steps ? std::size_t{2} : 1, needsLocalMap(job.target.vertices, fitting.tolerance)}));
+std::vector<std::string> planOf(const MapOptions& options, const MapJob& job,
+                                const FitMapSettings& fitting) {
+  std::vector<std::string> lines{fittingPlan(fitting)};
   std::string files = "map.ply, map.vdb, slices.exr, section.png";
   if (!job.related) {
-    lines.push_back(correspondPlan(options));
-    need = std::max(
-        {need, correspondMemory(vertices, job.target.vertices.size()), meshPictureMemory()});
+    lines.insert(lines.begin(), correspondPlan(options));
     files += ", correspondence.ply, correspondence.png";
   }
-  lines.push_back(fittingPlan(fitting));
+  if (job.mayTakeSteps(fitting))
+    lines.push_back(fmt::format("go in steps where one map folds and there are {} more memory",
+                                formatBytes(kStepsMemory)));
   lines.push_back(fmt::format("write {} and report.json to {}", files, options.output));
-  context.plan(lines, need);
+  return lines;
 }
 
 // The fit is one job, whose map the shares of the voxels read.
@@ -162,10 +139,11 @@ void writeJobs(const MapOptions& options, Context& context) {
     throw UsageError(
         "--jobs: fits the same mesh with its vertices moved; make the map of other meshes in one "
         "run, and give its map.ply to innermap evaluate --jobs");
-  const Solid solid = solidToMap(options, job, context);
+  const BoundaryPair pair = makeBoundaryPair(job.source, job.target);
+  reportBoundaries(pair, context);
   const std::size_t vertices = job.source.vertices.size();
   const FitMapSettings fitting = fittingFor(options, job);
-  BlockWork work = evaluationWork(solid, options.evaluation, kLikelyCharges * vertices,
+  BlockWork work = evaluationWork(pair.solid(), options.evaluation, kLikelyCharges * vertices,
                                   {1, needsLocalMap(job.target.vertices, fitting.tolerance)});
   work.output = (std::filesystem::path(options.output) / "map.vdb").string();
   ShareRun run = shareRun(work);
@@ -183,15 +161,13 @@ void writeJobs(const MapOptions& options, Context& context) {
   writeShareJobs(options.farm, run, context);
 }
 
-// Lays the source onto the target where they are not related, and puts that into the folder.
-BoundaryPair makePair(const MapOptions& options, MapJob job, PendingFolder& folder,
-                      Context& context) {
-  if (job.related) return makeBoundaryPair(std::move(job.source), std::move(job.target));
+// Puts the source as it is laid onto the target into the folder.
+BoundaryPair layPair(const MapOptions& options, MapJob job, PendingFolder& folder,
+                     Context& context) {
   context.note(correspondPlan(options) + "; --correspond takes one made before");
   const std::string name = job.target.name;
   CorrespondOptions correspond = options.correspond;
   correspond.map = layingSettings(correspond.map, options.fitting.fit.seed);
-  context.requireMemory(correspondNeed(job.source.vertices.size(), job.target.vertices.size()));
   const MeshCorrespondence moved =
       correspondMeshes(std::move(job.source), std::move(job.target), correspond, context);
   const Mesh target = moved.target(name);
@@ -204,7 +180,35 @@ BoundaryPair makePair(const MapOptions& options, MapJob job, PendingFolder& fold
         "correspondence.png", moved,
         [&](const std::string& file, const auto& write) { folder.write(file, write); });
   });
-  return makeBoundaryPair(moved.source, target);
+  BoundaryPair pair = makeBoundaryPair(moved.source, target);
+  reportLaid(pair, options.output + "/" + kLaidFile, context);
+  return pair;
+}
+
+// The same in a dry run as in a run: whether the job is to be done, or what is refused of it.
+bool begins(const MapOptions& options, const MapJob& job, const Solid& solid, Context& context) {
+  const FitMapSettings fitting = fittingFor(options, job);
+  requireInterior(solid, options.evaluation.grid.in<LevelSetSettings>());
+  return context.begins(planOf(options, job, fitting),
+                        mapNeeds(job, solid, fitting, options.evaluation.grid));
+}
+
+// None in a dry run.
+std::optional<BoundaryPair> makePair(const MapOptions& options, MapJob job, PendingFolder* folder,
+                                     Context& context) {
+  if (job.related) {
+    BoundaryPair pair = makeBoundaryPair(job.source, job.target);
+    reportBoundaries(pair, context);
+    if (!begins(options, job, pair.solid(), context)) return {};
+    return pair;
+  }
+  const SourceBoundary source = makeSourceBoundary(job.source);
+  if (begins(options, job, source.solid, context))
+    return layPair(options, std::move(job), *folder, context);
+  reportSource(source, context);
+  context.timed("check",
+                [&] { requireLayable(job.source, job.target, options.correspond.map.layOut); });
+  return {};
 }
 
 void run(const MapOptions& options, Context& context) {
@@ -219,24 +223,15 @@ void run(const MapOptions& options, Context& context) {
   const auto folder = context.outputFolder(options.output, files);
   MapJob job = readJob(options, context);
   const double later = expectPhases(options, job, context);
-  if (context.dryRun()) return plan(options, job, context);
   const bool laid = job.laidOn();
   context.spend(kLayingTimeShare, later);
-  const bool strangers = !job.related;
-  BoundaryPair pair = makePair(options, std::move(job), *folder, context);
-  if (strangers)
-    reportLaid(pair, options.output + "/" + kLaidFile, context);
-  else
-    reportBoundaries(pair, context);
-  const std::size_t vertices = pair.source.mesh.vertices.size();
-  const FitMapSettings fitting = fitMapSettings(options.fitting, vertices, laid);
-  context.requireMemory(fitNeed(fitting, vertices));
-  context.requireMemory(mapGridNeed(pair.solid(), options.evaluation.grid,
-                                    {1, needsLocalMap(pair.target.moved, fitting.tolerance)}));
-  requireInterior(pair.solid(), options.evaluation.grid.in<LevelSetSettings>());
+  std::optional<BoundaryPair> pair = makePair(options, std::move(job), folder.get(), context);
+  if (!pair) return;
+  const FitMapSettings fitting =
+      fitMapSettings(options.fitting, pair->source.mesh.vertices.size(), laid);
   context.phase("fitting");
   context.spend(1, later);
-  const MapFit fit = fitMap(std::move(pair), fitting);
+  const MapFit fit = fitMap(std::move(*pair), fitting);
   reportFit(fit, fitting, options.fitting.bestEffort, context);
   context.phase("evaluating");
   context.spend(kRepairShare);

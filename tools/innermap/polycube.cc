@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "commands.h"
-#include "innermap/core/memory.h"
 #include "innermap/mesh/mesh_file.h"
 #include "innermap/tetra/hexahedralize.h"
+#include "jobs/solid_needs.h"
 #include "polycube_report.h"
 #include "report/report_figures.h"
 
@@ -28,7 +28,7 @@ void run(const PolycubeOptions& options, Context& context) {
   if (!context.begins(
           {fmt::format("write a polycube of about {:.0f} blocks of {} to {}",
                        expectedBlocks(mesh, settings.blocks), options.mesh, options.output)},
-          {"a polycube of " + options.mesh, polycubeMemory(mesh, settings), "use fewer {blocks}"}))
+          polycubeNeed(options.mesh, mesh, settings)))
     return;
   const Polycube cube = makePolycube(mesh, settings);
   context.tell(cube);

@@ -39,9 +39,7 @@ SolidMap mapOf(const CarryOptions& options, const MappedSolid& mapped, Context& 
 CarryJob read(bool push, const CarryOptions& options, Context& context) {
   auto mapped = std::make_shared<const MappedSolid>(readMapFile(options.map, context));
   const TransferOptions& o = options.transfer;
-  const OutsideSettings outside =
-      outsideSettings(o.outside, fadeTo(o), mapped->solid().repaired().mesh.vertices,
-                      mapped->boundary.target.moved);
+  const OutsideSettings outside = outsideSettings(o.outside, fadeTo(o), *mapped);
   openvdb::GridPtrVec grids = readVolume(options.volume, o, context);
   Solid target = targetSolid(*mapped, context);
   SolidMap map = mapOf(options, *mapped, context);
@@ -158,10 +156,8 @@ std::uint64_t carrierMemory(bool push, const Solid& source, const OutsideSetting
 
 void runGeometry(bool push, const CarryOptions& options, Context& context) {
   const MappedSolid mapped = readMapFile(options.map, context);
-  const Points& moved = mapped.boundary.target.moved;
   const OutsideSettings outside =
-      outsideSettings(options.transfer.outside, fadeTo(options.transfer),
-                      mapped.solid().repaired().mesh.vertices, moved);
+      outsideSettings(options.transfer.outside, fadeTo(options.transfer), mapped);
   const std::uint64_t need =
       geometryMemory(options.volume) + carrierMemory(push, mapped.solid(), outside);
   if (!context.begins({fmt::format("{} {} by {}", wordOf(push), options.volume, options.map),
@@ -169,14 +165,12 @@ void runGeometry(bool push, const CarryOptions& options, Context& context) {
                       {"carrying " + options.volume, need, "cut the file into parts"}))
     return;
   const auto file = readGeometryFile(options.volume, options.geometry, context);
-  const CarryPointsSettings settings = carryPointsSettings(outside, sumAccuracy(mapped));
   const SolidMap map = mapOf(options, mapped, context);
   const PointCarry carry = context.timed(push ? "level set" : "invert",
-                                         [&] { return carryByMap(map, mapped, push, settings); });
+                                         [&] { return pointCarry(map, mapped, push, outside); });
   const PointCarry whole = fromInput(carry, context);
-  const double diagonal = push ? boundingBox(moved).diagonal() : mapped.solid().diagonal();
-  const CarryGeometrySettings how{options.geometry.subdivide * diagonal, options.geometry.splats,
-                                  mapped.injectivity.mirrored};
+  const CarryGeometrySettings how =
+      carryGeometrySettings(mapped, push, options.geometry.subdivide, options.geometry.splats);
   const CarriedGeometry carried =
       context.timed("carry", [&] { return carryGeometry(*file, whole, how); });
   warnOf(carried, options.transfer, "", context);

@@ -1,7 +1,6 @@
 // `innermap remesh`: the cells of one solid made those of another by a map between them.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <optional>
 
 #include "cell_report.h"
@@ -12,6 +11,7 @@
 #include "innermap/tetra/remesh_cells.h"
 #include "inputs.h"
 #include "job_cost.h"
+#include "jobs/solid_needs.h"
 #include "report/figures.h"
 
 namespace innermap::tool {
@@ -43,19 +43,17 @@ void run(const RemeshOptions& options, Context& context) {
   context.requireMemory({"reading " + options.cells, reading, "use a coarser mesh"});
   CellFile file = context.timed("read", [&] { return readCells(options.cells); });
   for (const std::string& note : file.notes) context.note(note);
-  const std::uint64_t need = std::max(reading, remeshMemory(file.mesh));
   JobSize size;
   size.items = static_cast<double>(file.mesh.tetrahedra.size() + file.mesh.hexahedra.size()) / 1e6;
   // Comes several times, with the like of it in between.
   JobPhase boundary = stageOf("repairing the boundary", size);
   boundary.steady = false;
-  context.expect({stageOf("repairing", size), boundary, stageOf("improving shapes", size),
-                  stageOf("writing cells", size)});
+  context.expect({stageOf("repairing", size), boundary, stageOf("improving shapes", size)});
   if (!context.begins({fmt::format("carry the {} cells of {} by {}",
                                    file.mesh.tetrahedra.size() + file.mesh.hexahedra.size(),
                                    options.cells, options.map),
                        "write " + options.output},
-                      {"carrying " + options.cells, need, "use a coarser mesh"}))
+                      remeshNeed(options.cells, file.mesh, reading)))
     return;
   RemeshSettings settings = options.settings;
   std::optional<Mesh> surface;

@@ -93,12 +93,13 @@ void addShareOptions(Command& command, ShareOptions& options, const std::string&
 
 void addJobsOptions(Command& command, ShareOptions& options) {
   command
-      .option(kJobs, "FILE", &options.jobs,
-              "compute nothing; write the run as jobs for a farm. .txt: a command on each line "
-              "(GNU parallel, cuecmd, PDG); .sh or .sbatch: a script that submits a job array and "
-              "the join to Slurm; .json or .yaml: an OpenJD template. Of the time and memory that "
-              "--dry-run prints, jobs ask for " +
-                  marginsText())
+      .option(
+          kJobs, "FILE", &options.jobs,
+          "compute nothing; write the run as jobs for a farm. .txt: a command on each line "
+          "(GNU parallel, cuecmd, PDG); .sh or .sbatch: a script that submits a job array and "
+          "the join to Slurm; .json or .yaml: an OpenJD template. Of the time and memory that a "
+          "run is expected to take, jobs ask for " +
+              marginsText())
       .advanced();
   command.option(kTasks, "N", &options.tasks, "number of shares for --jobs")
       .range(1, static_cast<double>(Share::kMost))

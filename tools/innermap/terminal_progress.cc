@@ -9,8 +9,6 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "job_cost.h"
-
 namespace innermap::tool {
 namespace {
 
@@ -51,7 +49,6 @@ void TerminalProgress::expect(std::vector<JobPhase> phases) {
 }
 
 void TerminalProgress::report(std::string_view stage, double fraction) {
-  if (style_ == Style::none) return;
   // Whoever comes while another thread writes has nothing new to say.
   std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
   if (!lock) return;
@@ -59,24 +56,27 @@ void TerminalProgress::report(std::string_view stage, double fraction) {
   job_.report(stage, share, now());
   if (style_ == Style::bar)
     drawBar(stage, share);
-  else
+  else if (style_ != Style::none)
     writeLine(stage, share);
 }
 
-void TerminalProgress::endJob() {
+std::vector<JobPhaseTaken> TerminalProgress::taken() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const std::vector<JobPhaseTaken> taken = job_.end(now());
-  if (style_ != Style::lines || taken.empty()) return;
-  std::fprintf(stderr, "%6.1f s  pace: %s\n", now(), paceText().c_str());
-  for (const auto& [phase, seconds, coreSeconds] : taken) {
-    std::string line =
-        fmt::format("{:6.1f} s  {} took {:.3f} s, {:.3f} s of cores, where {:.3f} s were expected",
-                    now(), phase.stage, seconds, coreSeconds, phase.seconds);
-    for (const auto& [row, size, times] : phase.works)
-      line += fmt::format("; {}: {:.4g} of {:.4g} {:.4g} {:.4g} {:.4g}", row, times, size.inside,
-                          size.surface, size.charges, size.items);
-    std::fprintf(stderr, "%s\n", line.c_str());
-  }
+  return job_.taken(now());
+}
+
+void TerminalProgress::sayLongest() const {
+  constexpr std::size_t kShown = 3;
+  std::vector<JobPhaseTaken> stages = taken();
+  if (style_ != Style::lines || stages.empty()) return;
+  std::stable_sort(stages.begin(), stages.end(),
+                   [](const auto& a, const auto& b) { return a.seconds > b.seconds; });
+  stages.resize(std::min(stages.size(), kShown));
+  std::string text;
+  for (const JobPhaseTaken& t : stages)
+    text += fmt::format("{} {} {:.1f} s ({:.1f} s expected)", text.empty() ? "" : ",",
+                        t.phase.stage, t.seconds, t.phase.seconds);
+  std::fprintf(stderr, "%6.1f s  longest:%s\n", now(), text.c_str());
 }
 
 void TerminalProgress::setPart(const std::string& part) {

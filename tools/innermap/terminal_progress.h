@@ -30,9 +30,10 @@ class TerminalProgress : public RunContext {
   // What the whole job consists of: there is then one bar for it, with the time that is left.
   void expect(std::vector<JobPhase> phases);
 
-  // The job is over: as plain lines, one a stage, what each took beside what was expected, and of
-  // what size it was: times, then voxels inside and on the surface, charges, items (JobSize).
-  void endJob();
+  // The job's stages so far.
+  std::vector<JobPhaseTaken> taken() const;
+  // As plain lines: the longest of them.
+  void sayLongest() const;
 
   // Takes the bar away, so that a message can be written.
   void clear();
@@ -45,7 +46,7 @@ class TerminalProgress : public RunContext {
   void writeLine(std::string_view stage, double fraction);
 
   const Style style_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   const Clock::time_point start_ = Clock::now();
   JobClock job_;
   Clock::time_point last_{};

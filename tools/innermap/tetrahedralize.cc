@@ -70,7 +70,7 @@ void run(const TetrahedralizeOptions& options, Context& context) {
   thin.perhaps = true;
   context.expect({voxels, thin, stageOf("filling with tetrahedra", size),
                   stageOf("fitting the boundary", size), stageOf("measuring cells", size),
-                  stageOf("comparing the boundaries", size), stageOf("writing cells", size)});
+                  stageOf("comparing the boundaries", size)});
   if (!context.begins(
           {fmt::format("fill {} with tetrahedra, to {}", options.mesh, options.output)},
           {"tetrahedra of " + options.mesh, need, "use a lower {resolution} or a longer {edge}"}))

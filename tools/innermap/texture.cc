@@ -82,8 +82,7 @@ void expectPhases(const TextureOptions& o, const SolidTextureSettings& settings,
   size.items = fields * size.charges;
   std::vector<JobPhase> phases;
   if (!o.image.empty()) phases.push_back(stageOf("reading the image", size));
-  for (const char* stage :
-       {"placing samples", "factoring", "factoring clusters", "solving", "level set"})
+  for (const char* stage : {"placing samples", "factoring clusters", "solving", "level set"})
     phases.push_back(stageOf(stage, size));
   size.items = fields * size.inside;
   phases.push_back(stageOf(colours ? "continuing inwards: colours" : "continuing inwards", size));

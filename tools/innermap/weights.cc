@@ -1,11 +1,10 @@
 // `innermap weights`: harmonic weights of groups of a surface, inside it.
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "commands.h"
 #include "harmonic_options.h"
 #include "innermap/io/geometry_file.h"
+#include "jobs/harmonic_job.h"
 #include "lists.h"
 
 namespace innermap::tool {
@@ -20,13 +19,13 @@ NamedConditions conditionsOf(const WeightOptions& options, const Mesh& mesh) {
   const std::vector<std::string> wanted = commaList(options.groups);
   NamedConditions out;
   std::vector<SurfaceGroup> groups;
-  for (SurfaceGroup& group : readGroups(mesh.name, mesh)) {
+  const std::vector<SurfaceGroup> known = readGroups(mesh.name, mesh);
+  for (const SurfaceGroup& group : known) {
     const bool named = std::find(wanted.begin(), wanted.end(), group.name) != wanted.end();
-    if ((wanted.empty() && !group.triangles.empty()) || named) groups.push_back(std::move(group));
+    if ((wanted.empty() && !group.triangles.empty()) || named) groups.push_back(group);
   }
   for (const std::string& name : wanted)
-    if (std::none_of(groups.begin(), groups.end(), [&](const auto& g) { return g.name == name; }))
-      throw FileError(mesh.name, fmt::format("has no group '{}'", name));
+    if (!findGroup(groups, name)) throw FileError(mesh.name, noGroup(known, name));
   out.conditions = weightConditions(mesh, groups);
   for (const SurfaceGroup& group : groups) out.names.push_back(group.name);
   return out;

@@ -29,19 +29,4 @@ inline MappedSolid affineBall() {
           {}};
 }
 
-// A deep dent from above: the harmonic map folds below it.
-inline MappedSolid dentedBall() {
-  const Mesh source = ball(4);
-  FitMapSettings settings;
-  settings.shell = ShellSettings{};
-  settings.shell->sources = 600;
-  return fitMap(source,
-                moved(source,
-                      [](const Vec3& p) {
-                        const double across = p.x * p.x + p.y * p.y;
-                        return p.z > 0 ? Vec3{p.x, p.y, p.z - 1.6 * std::exp(-across / 0.08)} : p;
-                      }),
-                settings);
-}
-
 }  // namespace innermap::test

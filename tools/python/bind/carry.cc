@@ -24,8 +24,6 @@ namespace py = pybind11;
 namespace innermap::python {
 namespace {
 
-constexpr double kPointAccuracy = 1e-7;  // of sums of charges, of the target's diagonal
-
 struct WayOptions : CarryOptions {
   py::object through;
   double subdivide = 0;
@@ -47,9 +45,7 @@ class Job {
   Job(bool push, const PyMap& map, const WayOptions& o)
       : push_(push), map_(map), o_(o), way_(map.mapped->map) {
     const MappedSolid& mapped = *map.mapped;
-    outside_ =
-        outsideSettings(o.outside, fadeToFrom(o.outside, o.fadeTo),
-                        mapped.solid().repaired().mesh.vertices, mapped.boundary.target.moved);
+    outside_ = outsideSettings(o.outside, fadeToFrom(o.outside, o.fadeTo), mapped);
     if (!o.through.is_none()) way_ = linearMapOf(cellsFrom(o.through, "through", o.call), mapped);
   }
 
@@ -118,13 +114,7 @@ py::object Job::grids(const py::object& what, const py::object& path) const {
   return gridsObject(std::move(out.made), totals, o_.call);
 }
 
-PointCarry Job::carryOf() const {
-  const MappedSolid& mapped = *map_.mapped;
-  CarryPointsSettings settings;
-  settings.outside = outside_;
-  settings.accuracy = std::min(sumAccuracy(mapped), kPointAccuracy);
-  return carryByMap(way_, mapped, push_, settings);
-}
+PointCarry Job::carryOf() const { return pointCarry(way_, *map_.mapped, push_, outside_); }
 
 py::object Job::points(const py::object& what) const {
   const Points points = pointsFrom(what, push_ ? "X" : "Y");
@@ -196,12 +186,10 @@ py::object Job::cells(CellMesh mesh) const {
 py::object Job::file(const std::string& from, const py::object& path) const {
   const std::string to = pathFrom(path, "path");
   requireWritableAs(from, to);
-  const double diagonal = push_ ? boundingBox(map_.mapped->boundary.target.moved).diagonal()
-                                : map_.mapped->solid().diagonal();
   ReadGeometrySettings reading = geometrySettings(o_);
   return dictOf(call(o_.call, [&]() {
     return carryFile(from, to, reading,
-                     {o_.subdivide * diagonal, o_.splats, map_.mapped->injectivity.mirrored},
+                     carryGeometrySettings(*map_.mapped, push_, o_.subdivide, o_.splats),
                      carryOf());
   }));
 }

@@ -11,6 +11,7 @@
 #include "bind/errors.h"
 #include "bind/lists.h"
 #include "innermap/io/geometry_file.h"
+#include "jobs/harmonic_job.h"
 
 namespace py = pybind11;
 
@@ -107,13 +108,8 @@ SurfaceGroup Groups::select(const py::object& given, const std::string& name) co
   if (!py::isinstance<py::str>(given))
     return {name, trianglesSelected(given, name, mesh_.triangles.size())};
   const std::string wanted = textFrom(given, name);
-  std::vector<std::string> names;
-  for (const SurfaceGroup& group : known()) {
-    if (group.name == wanted) return group;
-    names.push_back(group.name);
-  }
-  wrongValue(name, fmt::format("there is no group '{}'; there is {}", wanted,
-                               names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+  if (const SurfaceGroup* group = findGroup(known(), wanted)) return *group;
+  wrongValue(name, "the mesh " + noGroup(known(), wanted));
 }
 
 std::vector<SurfaceGroup> Groups::all(const py::object& names) const {

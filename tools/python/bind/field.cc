@@ -14,6 +14,7 @@
 #include "innermap/core/memory.h"
 #include "innermap/evaluate/grids.h"
 #include "innermap/field/field_file.h"
+#include "jobs/harmonic_job.h"
 
 namespace py = pybind11;
 
@@ -79,9 +80,7 @@ HarmonicGrids gridsOf(const PyField& field, const FieldGridOptions& o) {
   HarmonicGrids grids = call(o.call, [&]() {
     auto settings = o.grid.in(o.settings);
     settings.span = field.span;
-    requireMemory({"evaluating the field on a grid",
-                   harmonicGridMemory(solid.boundary.solid, solid.names.size(), settings),
-                   "use a lower resolution"});
+    requireMemory(fieldGridNeed(solid.boundary.solid, solid.names.size(), o.grid, settings));
     return evaluateHarmonic(solid.field, solid.boundary.solid, solid.names, settings);
   });
   describeField(grids.all(), solid.facts);

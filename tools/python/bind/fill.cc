@@ -4,10 +4,10 @@
 #include "bind/figures.h"
 #include "bind/keywords.h"
 #include "bind/meshes.h"
-#include "innermap/core/memory.h"
 #include "innermap/correspond/mesh_correspondence.h"
 #include "innermap/tetra/hexahedralize.h"
 #include "innermap/tetra/tetrahedralize.h"
+#include "jobs/solid_needs.h"
 #include "report/figures.h"
 
 namespace py = pybind11;
@@ -78,8 +78,7 @@ py::object hexahedra(const Arguments& a, HexahedralizeOptions& o) {
   o.settings.polycube = o.polycube;
   Hexahedralization made = call(o.call, [&]() {
     const Mesh surface = o.surfaceToFill(mesh);
-    requireMemory(
-        {"hexahedra", hexahedralizeMemory(surface, o.settings), "use fewer {blocks} or {pieces}"});
+    requireMemory(hexahedraNeed(mesh.name, surface, o.settings));
     return hexahedralize(surface, o.settings);
   });
   py::dict figures("proven"_a = made.after.proven(), "inverted"_a = made.after.inverted,
@@ -110,7 +109,7 @@ py::object polycube(const Arguments& a, PolycubeOptions& o) {
   Mesh surface;
   const Polycube made = call(o.call, [&]() {
     const Mesh toFill = o.surfaceToFill(mesh);
-    requireMemory({"a polycube", polycubeMemory(toFill, o.polycube), "use fewer {blocks}"});
+    requireMemory(polycubeNeed(mesh.name, toFill, o.polycube));
     Polycube cube = makePolycube(toFill, o.polycube);
     surface = blockSurface(cube.blocks, o.pieces.value_or(usualPieces(cube.blocks)));
     return cube;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <utility>
 
 #include "bind/arrays.h"
 #include "bind/errors.h"
@@ -63,13 +64,17 @@ Mesh FrameSet::mesh(std::size_t index) const {
 
 FrameTable FrameSet::table(const FrameFitter& fitter,
                            const std::function<Figures(const FittedFrame&)>& each) const {
-  FrameFits fits(numbers_, [&](std::size_t index) { return fitter.fit(mesh(index)); });
+  FrameFits fits = frameFits(fitter, numbers_, [&](std::size_t index) { return mesh(index); });
   FrameTable out;
-  for (const std::size_t index : wanted_)
-    out.add(numbers_[index], [&] {
-      const std::shared_ptr<const FrameFit> fit = fits.at(index);
-      return each({index, {fit.get(), numbers_[index]}, fits});
-    });
+  Figures row;
+  FrameWatch watch;
+  watch.ended = [&](std::size_t index, const FrameResult& result) {
+    out.add(numbers_[index], std::exchange(row, {}), result.error);
+  };
+  eachFrame(wanted_, watch, [&](std::size_t index) {
+    const std::shared_ptr<const FrameFit> fit = fits.at(index);
+    row = each({index, {fit.get(), numbers_[index]}, fits});
+  });
   return out;
 }
 
@@ -115,9 +120,8 @@ void FrameSet::choose(const py::object& only) {
   wanted_ = wantedFrames(numbers_, "only", only.is_none() ? "" : textOf(only, "only"));
 }
 
-void FrameTable::add(std::int64_t number, const std::function<Figures()>& body) {
-  Figures row;
-  error.push_back(whyBroken([&] { row = body(); }));
+void FrameTable::add(std::int64_t number, const Figures& row, const std::string& broken) {
+  error.push_back(broken);
   for (const Figure& figure : row) {
     if (!figure.known) continue;
     if (const auto* text = std::get_if<std::string>(&figure.value))

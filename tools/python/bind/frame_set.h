@@ -40,7 +40,7 @@ struct FrameTable {
   std::map<std::string, std::vector<std::string>> texts;
 
   // Figures that are not known in any frame have no column.
-  void add(std::int64_t number, const std::function<Figures()>& figures);
+  void add(std::int64_t number, const Figures& row, const std::string& broken);
   // Throws DataError where no frame could be used.
   pybind11::dict dict() const;
 };

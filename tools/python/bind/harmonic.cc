@@ -7,8 +7,7 @@
 #include "bind/keywords.h"
 #include "bind/lists.h"
 #include "bind/meshes.h"
-#include "innermap/core/memory.h"
-#include "innermap/fit/fit_map.h"
+#include "jobs/harmonic_job.h"
 
 namespace py = pybind11;
 
@@ -57,14 +56,10 @@ struct HarmonicOptions {
 };
 
 std::vector<std::string> namesFrom(const py::object& given, std::size_t channels) {
-  std::vector<std::string> out;
-  if (given.is_none()) {
-    for (std::size_t k = 0; k < channels; ++k)
-      out.push_back(channels == 1 ? "value" : fmt::format("value{}", k));
-    return out;
-  }
+  if (given.is_none()) return channelNames(channels);
   if (py::isinstance<py::str>(given) || !py::isinstance<py::iterable>(given))
     wrongType("names", "expects a list of the channels' names");
+  std::vector<std::string> out;
   for (const auto& name : py::iter(given)) out.push_back(textOf(name, "names"));
   if (out.size() != channels)
     wrongValue("names", fmt::format("has {} for {} channels", out.size(), channels));
@@ -74,14 +69,11 @@ std::vector<std::string> namesFrom(const py::object& given, std::size_t channels
 std::shared_ptr<PyField> fitted(const Mesh& mesh, BoundaryConditions& conditions,
                                 const py::object& names, const FieldFitOptions& o) {
   if (!conditions.function) namesFrom(names, conditions.values.columns());  // before the work
-  conditions.creaseAngle = o.creaseAngle;
   auto made = call(o.call, [&]() {
-    requireMemory({"the harmonic field", fitMapMemory({}, mesh.vertices.size())});
-    const std::string joined = joinedText(removeJumps(mesh, conditions));
-    SourceBoundary boundary = makeSourceBoundary(mesh);
-    HarmonicFit fit = fitHarmonic(boundary, conditions, o.fit);
-    if (!joined.empty()) fit.notes.push_back(joined);
-    return std::make_pair(std::move(boundary), std::move(fit));
+    requireMemory(harmonicNeed(mesh.vertices.size()));
+    HarmonicJob job = harmonicJob(mesh, std::move(conditions), o.creaseAngle);
+    HarmonicFit fit = job.fit(o.fit);
+    return std::make_pair(std::move(job.boundary), std::move(fit));
   });
   auto& [boundary, fit] = made;
   std::vector<std::string> channels = namesFrom(names, fit.field.channels());

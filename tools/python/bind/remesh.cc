@@ -46,7 +46,7 @@ py::object remesh(const Arguments& a, RemeshOptions& o) {
   if (!o.surface.is_none()) surface = meshFrom(o.surface, "surface");
   if (surface) o.settings.surface = &*surface;
   Remesh made = call(o.call, [&]() {
-    requireMemory({"carrying the cells", remeshMemory(cells), "use a coarser mesh"});
+    requireMemory(remeshNeed("the cells", cells));
     return remeshCells(cells, *map.mapped, o.settings);
   });
   py::dict figures("inverted"_a = made.inverted, "inverted_at_rest"_a = made.invertedAtRest,

@@ -43,7 +43,7 @@ function numberTable(key, title, told) {
 }
 
 const shownElsewhere = ["command", "seconds", "notes", "warnings", "run", "verdict", "outputs", "energies", "settings",
-                        "command_line", "version", "date", "host", "memory_after_bytes", "peak_memory_bytes"];
+                        "command_line", "version", "date", "host", "stages", "memory_after_bytes", "peak_memory_bytes"];
 
 function numbersSection() {
   const known = words.sections.map(([key]) => key);
