@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""Push and pull: volumes carried through maps of meshes made here."""
+"""Push and pull: volumes carried through maps of meshes made here, and of the horse where it is."""
 
-from cli import fails, file_size_limit, icosphere, independent, innermap, no_leftovers, read_json, run
+
+from cli import (MODELS, Skip, fails, file_size_limit, icosphere, independent, innermap,
+                 no_leftovers, read_json, run)
 from scenes import fitted_ball, swirl
 
 
@@ -56,6 +58,46 @@ def test_metadata_tells_the_map_and_its_error():
                      "print(len(g), g[0].name, g[0].gridClass, 'innermap_boundary_error_rms' in "
                      "g[0].metadata)", "posed.vdb")
     assert out.split() == ["1", "density", "fog", "volume", "True"], out
+
+
+def test_pull_undoes_push():
+    scene(resolution=64)
+    innermap("push", "map.ply", "rest.vdb", "-o", "posed.vdb", "--quiet")
+    innermap("pull", "map.ply", "posed.vdb", "-o", "again.vdb", "--quiet")
+    out = independent("""
+import sys, pyopenvdb as v
+a, b = (v.read(p, "surface") for p in sys.argv[1:])
+acc, worst, n = a.getConstAccessor(), 0, 0
+for x in b.citerOnValues():
+    if abs(x.value) < 2 * b.transform.voxelSize()[0]:
+        worst, n = max(worst, abs(x.value - acc.getValue(x.min))), n + 1
+print(worst / b.transform.voxelSize()[0], n)
+""", "rest.vdb", "again.vdb")
+    worst, count = map(float, out.split())
+    assert worst < 0.5 and count > 1000, out  # voxels; two interpolations and two rebuilds
+
+
+def test_vectors_of_the_map_itself():
+    # The grid `map` of the identity's positions, pushed: each voxel tells where it came from.
+    scene(resolution=32)
+    innermap("map", "ball.obj", "ball.obj", "-o", "same", "--resolution", "32", "--quiet")
+    innermap("push", "map.ply", "same/map.vdb", "-o", "posed.vdb", "--grids", "map", "--quiet")
+    out = independent("""
+import sys, math, pyopenvdb as v
+g = v.read(sys.argv[1], "map")
+worst = 0
+for x in g.citerOnValues():
+    p = x.value
+    if sum(a * a for a in p) > 0.95: continue
+    a = 0.6 * p[2]
+    f = (1.2 * (math.cos(a) * p[0] - math.sin(a) * p[1]) + 4,
+         1.2 * (math.sin(a) * p[0] + math.cos(a) * p[1]), 1.1 * p[2])
+    q = g.transform.indexToWorld(x.min)
+    worst = max(worst, max(abs(s - t) for s, t in zip(f, q)))
+print(worst)
+""", "posed.vdb")
+    # The swirl is no harmonic function: the map differs from it inside.
+    assert float(out) < 0.05, out
 
 
 def test_outside_and_what_it_fades_to():
@@ -115,6 +157,21 @@ def test_bad_input():
           says=["--max-memory"])
     fails(1, "push", "map.ply", "rest.vdb", "-o", "x.vdb",
           preexec_fn=file_size_limit(1000))
+
+
+def test_horse():
+    poses = MODELS / "horse-poses"
+    if not poses.exists():
+        raise Skip("no shared/models")
+    innermap("fit", poses / "reference.obj", poses / "pose-03.obj", "-o", "map.ply", "--quiet")
+    innermap("voxelize", poses / "reference.obj", "-o", "rest.vdb", "--resolution", "128", "--fog",
+             "--quiet")
+    innermap("push", "map.ply", "rest.vdb", "-o", "posed.vdb", "--density", "--report", "r.json",
+             "--quiet")
+    report = read_json("r.json")
+    assert report["inverse"]["inverted_fraction"] > 0.995, report["inverse"]
+    mass = report["mass"]
+    assert abs(mass["density_after"] / mass["density_before"] - 1) < 1e-3, mass
 
 
 run(globals())
