@@ -63,6 +63,20 @@ TEST(ProveBoundaryError, IsAboveEverySampleAndNearTheLargest) {
   }
 }
 
+// Edges of 0.15 beside charges 0.03 away: each triangle has to be cut before it has a bound.
+TEST(ProveBoundaryError, TrianglesLargerThanTheDistanceOfChargesHaveABound) {
+  const Mesh mesh = shapes::icosphere(3);
+  const ComposedMap map(mapOf(affineOf(kIdentity), testing::chargesAbout(2000, 1.03, 1e-4, 3)));
+  Points target;
+  for (const Vec3& v : mesh.vertices) target.push_back(map(v));
+  ProofSettings settings;
+  settings.cellsPerCharge = 40;
+  settings.leastCells = 1;
+  const BoundaryProof proof = proveBoundaryError(map, mesh, target, settings);
+  EXPECT_TRUE(proof.close);
+  EXPECT_GE(proof.error, sampledError(map, mesh, target, 20));
+}
+
 TEST(ProveBoundaryError, ExactMapsHaveNone) {
   const Mat3 a = {{{1, 2, 0}, {0, 1, 0}, {0.5, 0, 3}}};
   const ComposedMap map(mapOf(affineOf(a, {5, 6, 7}), {}));
