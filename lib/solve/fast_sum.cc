@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <memory>
+#include <mutex>
 
 #include "core/random.h"
 #include "core/require_number.h"
@@ -17,6 +20,7 @@ namespace innermap {
 namespace {
 
 constexpr std::size_t kPointsPerLeaf = 400;
+constexpr int kHalvings = 3;
 constexpr std::size_t kSampled = 128, kSampledBlocks = 32;
 constexpr double kLeastGain = 0.5;   // of a higher order: less, and the highest is found
 constexpr double kLeastBall = 1e-9;  // radius of a leaf of coincident points, of the charges' box
@@ -79,7 +83,41 @@ std::size_t wantedPoints(const LatticeBlocks& lattice) {
 
 }  // namespace
 
+struct SumPoints::Data {
+  explicit Data(Points all) : points(std::move(all)) {}
+
+  std::shared_ptr<const BallTree> tree() const {
+    if (auto made = get()) return made;
+    // Not under the lock: a thread that waits for parts of its tree may take up another sum at
+    // these points.
+    auto fresh = std::make_shared<const BallTree>(points, 0, kPointsPerLeaf, kHalvings);
+    const std::lock_guard lock(mutex);
+    if (!balls) balls = std::move(fresh);
+    return balls;
+  }
+
+  const Points points;
+
+ private:
+  std::shared_ptr<const BallTree> get() const {
+    const std::lock_guard lock(mutex);
+    return balls;
+  }
+
+  mutable std::mutex mutex;
+  mutable std::shared_ptr<const BallTree> balls;
+};
+
+SumPoints::SumPoints(Points points) : data_(std::make_shared<const Data>(std::move(points))) {}
+const Points& SumPoints::points() const { return data_->points; }
+
+// The tree of targets, of their places in the charges' units.
+using TargetTree = std::function<BallTree(const Points& local)>;
+
 struct FastSum::Data {
+  FieldSamples at(const Points& points, const TargetTree& targets,
+                  const FastSumSettings& settings) const;
+
   Charges direct;
   ChargeTree tree;
 };
@@ -103,7 +141,7 @@ class Hierarchy {
         proxies_(tree, ExpansionBasis::get(plan.order)),
         field_(proxies_, plan) {}
 
-  FieldSamples at(const Points& points) const;
+  FieldSamples at(const Points& points, const TargetTree& targetTree) const;
   void onLattice(const LatticeBlocks& lattice, const BlockVisitor& visit,
                  std::string_view stage) const;
 
@@ -114,10 +152,10 @@ class Hierarchy {
   FarField field_;
 };
 
-FieldSamples Hierarchy::at(const Points& points) const {
+FieldSamples Hierarchy::at(const Points& points, const TargetTree& targetTree) const {
   Points local(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) local[i] = tree_.toLocal(points[i]);
-  const BallTree targets(local, kLeastBall, kPointsPerLeaf, 3);
+  const BallTree targets = targetTree(local);
   const std::size_t channels = tree_.channels();
   FieldSamples out = samplesFor(points.size(), channels, settings_.gradients);
   descend(field_, targets,
@@ -274,36 +312,52 @@ void directOnLattice(const Charges& charges, const LatticeBlocks& lattice,
 }  // namespace
 
 FieldSamples FastSum::at(const Points& points, const FastSumSettings& settings) const {
+  const auto tree = [](const Points& local) {
+    return BallTree(local, kLeastBall, kPointsPerLeaf, kHalvings);
+  };
+  return data_->at(points, tree, settings);
+}
+
+FieldSamples FastSum::at(const SumPoints& kept, const FastSumSettings& settings) const {
+  const auto tree = [&](const Points& local) {
+    return kept.data_->tree()->about(local, kLeastBall);
+  };
+  return data_->at(kept.points(), tree, settings);
+}
+
+FieldSamples FastSum::Data::at(const Points& points, const TargetTree& targets,
+                               const FastSumSettings& settings) const {
   check(settings);
   for (std::size_t i = 0; i < points.size(); ++i)
     if (!isFinite(points[i]))
       throw DataError("sums: point " + std::to_string(i) + " is not finite");
   const auto plain = [&](const Points& some) {
-    return sumCharges(data_->direct, some, settings.gradients);
+    return sumCharges(direct, some, settings.gradients);
   };
-  if (count() == 0 || channels() == 0 || points.empty()) return plain(points);
-  SumSize size{count(), points.size(), kPointsPerLeaf, kLeastOrder, settings.gradients};
+  if (direct.count() == 0 || direct.channels() == 0 || points.empty()) return plain(points);
+  SumSize size{direct.count(), points.size(), kPointsPerLeaf, kLeastOrder, settings.gradients};
   if (!useHierarchy(size, settings.method)) return plain(points);
   const std::vector<std::size_t> sample = evenly(kSampled, points.size());
   Points some;
   for (const std::size_t i : sample) some.push_back(points[i]);
-  const SumReference reference(plain(some), sumCharges(data_->direct.magnitudes(), some, false),
+  const SumReference reference(plain(some), sumCharges(direct.magnitudes(), some, false),
                                settings.accuracy, settings.absolute);
   size.order = planFor(reference.accuracy()).order;
   if (!useHierarchy(size, settings.method)) return plain(points);
   FieldSamples out, tried;
   const auto sampled = [&](const Hierarchy& hierarchy) {
-    tried = hierarchy.at(points);
-    FieldSamples got = samplesFor(some.size(), channels(), settings.gradients);
+    tried = hierarchy.at(points, targets);
+    FieldSamples got = samplesFor(some.size(), direct.channels(), settings.gradients);
     for (std::size_t i = 0; i < sample.size(); ++i) {
-      for (std::size_t k = 0; k < channels(); ++k) got.values(i, k) = tried.values(sample[i], k);
-      for (std::size_t k = 0; settings.gradients && k < 3 * channels(); ++k)
+      for (std::size_t k = 0; k < direct.channels(); ++k)
+        got.values(i, k) = tried.values(sample[i], k);
+      for (std::size_t k = 0; settings.gradients && k < 3 * direct.channels(); ++k)
         got.gradients(i, k) = tried.gradients(sample[i], k);
     }
     return got;
   };
-  const Checked best = mostAccurate(data_->tree, size, settings, reference, sampled,
-                                    [&] { out = std::move(tried); });
+  const Checked best =
+      mostAccurate(tree, size, settings, reference, sampled, [&] { out = std::move(tried); });
   if (!best.hierarchy) return plain(points);
   out.error = best.error;
   return out;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <string>
 
 #include "core/require_number.h"
@@ -117,16 +118,17 @@ class IterativeSolver::Levels {
   void unscale(const Scaled& values, const Matrix& residual, const Matrix& x,
                IterativeSolution& out) const;
   FieldSamples image(const Matrix& weights, const Points& sources, const Collocation& at,
-                     double accuracy) const;
+                     const SumPoints& places, double accuracy) const;
   Points normalised(const Points& points) const;
   std::size_t unknowns() const { return CoarseSolver::kAffine + sources_.size(); }
 
   IterativeSettings settings_;
   Vec3 center_;
   double scale_ = 1;
-  Collocation collocation_;  // normalised
-  Points sources_;           // world units
-  Points coarseSources_;     // normalised
+  Collocation collocation_;          // normalised
+  std::optional<SumPoints> places_;  // its points
+  Points sources_;                   // world units
+  Points coarseSources_;             // normalised
   std::vector<std::size_t>
       coarseRows_;  // of the affine part and the first level among the unknowns
   CoarseSolver coarse_;
@@ -197,6 +199,7 @@ Points IterativeSolver::Levels::normalised(const Points& points) const {
 
 void IterativeSolver::Levels::addPoints(const Collocation& collocation) {
   collocation_.append(collocation.normalised(center_, scale_));
+  places_.emplace(collocation_.points);
 }
 
 std::vector<std::size_t> IterativeSolver::Levels::addSources(const Points& sources) {
@@ -301,13 +304,15 @@ void IterativeSolver::Levels::unscale(const Scaled& values, const Matrix& residu
   }
 }
 
-// What the charges' weights give at the points, to a relative accuracy; all in normalised units.
+// What the charges' weights give at the points, which `places` has too, to a relative accuracy; all
+// in normalised units.
 FieldSamples IterativeSolver::Levels::image(const Matrix& weights, const Points& sources,
-                                            const Collocation& at, double accuracy) const {
+                                            const Collocation& at, const SumPoints& places,
+                                            double accuracy) const {
   FastSumSettings s;
   s.accuracy = std::clamp(accuracy, kFinestProduct, kCoarsestProduct);
   const FastSum sum(sources, weights);
-  FieldSamples out = sum.at(at.points, s);
+  FieldSamples out = sum.at(places, s);
   const std::vector<std::size_t> rows = derivativeRows(at);
   if (!rows.empty()) {
     s.accuracy = std::max(kFinestProduct, kOfGradients * s.accuracy);
@@ -328,8 +333,8 @@ void IterativeSolver::Levels::takeDirections(const Matrix& weights,
                                              OrthogonalDirections& directions, Matrix& residual,
                                              Matrix& x, IterativeSolution& out) const {
   const std::size_t affine = rows.size() - sources.size();
-  FieldSamples sums =
-      image(rowsOf(weights, affine), sources, collocation_, settings_.accuracy / rms(residual));
+  FieldSamples sums = image(rowsOf(weights, affine), sources, collocation_, *places_,
+                            settings_.accuracy / rms(residual));
   out.productError = std::max(out.productError, sums.error);
   Matrix& images = sums.values;
   Matrix z(unknowns(), weights.columns());
@@ -406,8 +411,8 @@ double IterativeSolver::Levels::startFrom(const IterativeSolution& start, const 
   std::vector<std::size_t> added(collocation_.size() - known);
   std::iota(added.begin(), added.end(), known);
   const Collocation fresh = collocation_.subset(added);
-  const FieldSamples image =
-      this->image(rowsOf(x, kAffine), normalised(sources_), fresh, settings_.accuracy);
+  const FieldSamples image = this->image(rowsOf(x, kAffine), normalised(sources_), fresh,
+                                         SumPoints(fresh.points), settings_.accuracy);
   const Matrix& sums = image.values;
   for (std::size_t k = 0; k < residual.columns(); ++k) {
     for (std::size_t i = 0; i < known; ++i) residual(i, k) = start.residual(i, k) / values.size;

@@ -25,10 +25,16 @@ void forParts(std::size_t parts, std::uint32_t points, const Body& body) {
   for (std::size_t part = 0; part < parts; ++part) body(part);
 }
 
+const Vec3& positionOf(const Vec3& p) { return p; }
+template <typename Item>
+const Vec3& positionOf(const Item& item) {
+  return item.position;
+}
+
 template <typename Item>
 Box3 boxOf(const std::vector<Item>& items, Range range) {
   Box3 box;
-  for (std::uint32_t i = range.first; i < range.second; ++i) box.add(items[i].position);
+  for (std::uint32_t i = range.first; i < range.second; ++i) box.add(positionOf(items[i]));
   return box;
 }
 
@@ -56,14 +62,20 @@ void halve(std::vector<Item>& items, Range range, std::size_t leafSize, int time
 }
 
 template <typename Item>
+Ball ballOf(const std::vector<Item>& items, double reach, Range range) {
+  Ball ball{.center = boxOf(items, range).center()};
+  double squared = 0;
+  for (std::uint32_t i = range.first; i < range.second; ++i)
+    squared = std::max(squared, squaredNorm(positionOf(items[i]) - ball.center));
+  ball.radius = std::sqrt(squared) + reach;
+  return ball;
+}
+
+template <typename Item>
 BallTree::Node makeNode(const std::vector<Item>& items, double reach, Range range,
                         std::uint32_t depth) {
   BallTree::Node node;
-  node.ball.center = boxOf(items, range).center();
-  double squared = 0;
-  for (std::uint32_t i = range.first; i < range.second; ++i)
-    squared = std::max(squared, squaredNorm(items[i].position - node.ball.center));
-  node.ball.radius = std::sqrt(squared) + reach;
+  node.ball = ballOf(items, reach, range);
   node.begin = range.first;
   node.end = range.second;
   node.depth = depth;
@@ -105,6 +117,18 @@ BallTree::BallTree(const Points& points, double reach, std::size_t leafSize, int
   }
   order_.resize(count);
   for (std::uint32_t i = 0; i < count; ++i) order_[i] = items[i].index;
+}
+
+// Not from the old balls: rounding would tell by which way they came.
+BallTree BallTree::about(const Points& points, double reach) const {
+  BallTree out = *this;
+  Points ordered(points.size());
+  for (std::size_t i = 0; i < ordered.size(); ++i) ordered[i] = points[order_[i]];
+  parallelBlocks(out.nodes_.size(), 1, [&](std::size_t n, std::size_t) {
+    Node& node = out.nodes_[n];
+    node.ball = ballOf(ordered, reach, {node.begin, node.end});
+  });
+  return out;
 }
 
 }  // namespace innermap

@@ -31,6 +31,9 @@ class BallTree {
   // Deterministic.
   BallTree(const Points& points, double reach, std::size_t leafSize, int halvings);
 
+  // The same halving, of the same points in other units or about another origin.
+  BallTree about(const Points& points, double reach) const;
+
   bool empty() const { return nodes_.empty(); }
   const std::vector<Node>& nodes() const { return nodes_; }
   const std::vector<std::uint32_t>& order() const { return order_; }  // indices of the points

@@ -233,6 +233,23 @@ TEST(FastSum, SameForAnyNumberOfThreads) {
   for (std::size_t i = 0; i < 15000; ++i) ASSERT_EQ(one.values.data()[i], all.values.data()[i]);
 }
 
+// The points' order is made once, far from the charges and in other units than theirs.
+TEST(FastSum, SumsAtKeptPointsAreThoseAtPoints) {
+  const SumPoints kept(testing::randomPoints(5000, 1));
+  for (const double scale : {1e-3, 1.0, 1e3}) {
+    SCOPED_TRACE(scale);
+    Points sources = testing::randomPoints(3000, 2);
+    for (Vec3& p : sources) p = Vec3{0.3, -0.2, 0.1} + scale * p;
+    const Matrix w = testing::randomWeights(3000, 3, 1);
+    const FastSum sum(sources, w);
+    const FieldSamples got = sum.at(kept, hierarchical(1e-6)),
+                       exact = sumCharges(Charges(sources, w), kept.points(), true);
+    expectAccurate(got, exact, 1e-6);
+    const FieldSamples again = sum.at(kept.points(), hierarchical(1e-6));
+    for (std::size_t i = 0; i < 15000; ++i) ASSERT_EQ(got.values.data()[i], again.values.data()[i]);
+  }
+}
+
 // A ball of blocks about the origin, whose outer blocks want some of their points only.
 LatticeBlocks ballOfBlocks(int across) {
   LatticeBlocks lattice{.spacing = 2.0 / across};

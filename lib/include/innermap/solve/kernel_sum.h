@@ -105,6 +105,19 @@ struct LatticeBlocks {
 using BlockVisitor =
     std::function<void(std::size_t block, const double* values, const double* gradients)>;
 
+// Points at which sums of several charges are taken: what orders them is made for the first sum
+// that needs it, and kept. Immutable, thread-safe; copies share their data.
+class SumPoints {
+ public:
+  explicit SumPoints(Points points);
+  const Points& points() const;
+
+ private:
+  friend class FastSum;
+  struct Data;
+  std::shared_ptr<const Data> data_;
+};
+
 // Immutable, thread-safe; copies share their data.
 class FastSum {
  public:
@@ -121,6 +134,7 @@ class FastSum {
   // FieldSamples::error is the largest root mean square error of a channel's values at the points
   // checked, in their units; 0 by plain sums. Same result for any number of threads. Throws
   // SettingError for a bad accuracy, DataError when a point is not finite, Cancelled.
+  FieldSamples at(const SumPoints& points, const FastSumSettings& settings = {}) const;
   FieldSamples at(const Points& points, const FastSumSettings& settings = {}) const;
 
   // Visits each block once. Memory beyond what the visitor keeps: some kilobytes a thread and some
