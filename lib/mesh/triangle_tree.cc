@@ -224,6 +224,37 @@ struct TriangleTree::Implementation {
     return pointOf(best, bestIndex);
   }
 
+  bool hasCloser(const Vec3& world, double within) const {
+    if (bvh.nodes.empty() || !isFinite(world) || !(within > 0)) return false;
+    const Vec3 p = frame.toLocal(world);
+    Candidate best;
+    const double reach = best.squared = squaredReach(within);
+    int bestIndex = -1;
+    std::array<int, Bvh::kMaxDepth + 2> stack;
+    int top = 0;
+    stack[top++] = 0;
+    while (top > 0) {
+      const Bvh::Node& node = bvh.nodes[stack[--top]];
+      if (!node.leaf()) {
+        int near = node.first, far = node.first + 1;
+        double nearest = bvh.nodes[near].squaredDistance(p),
+               other = bvh.nodes[far].squaredDistance(p);
+        if (other < nearest) {
+          std::swap(near, far);
+          std::swap(nearest, other);
+        }
+        if (other < reach) stack[top++] = far;
+        if (nearest < reach) stack[top++] = near;
+        continue;
+      }
+      for (int i = node.first; i < node.first + node.count; ++i) {
+        search(i, p, best, bestIndex);
+        if (bestIndex >= 0) return true;
+      }
+    }
+    return false;
+  }
+
   void visitLeaves(const Bvh::Node& x, const Bvh::Node& y,
                    const std::function<void(int, int)>& visit) const {
     const bool same = &x == &y;
@@ -272,6 +303,10 @@ TriangleTree::TriangleTree(const Points& vertices, const std::vector<Triangle>& 
 
 ClosestPoint TriangleTree::closest(const Vec3& p, double within) const {
   return implementation_->closest(p, within);
+}
+
+bool TriangleTree::hasCloser(const Vec3& p, double within) const {
+  return implementation_->hasCloser(p, within);
 }
 
 void TriangleTree::collect(const Vec3& p, double within, Part& part) const {

@@ -32,6 +32,9 @@ class TriangleTree {
   ClosestPoint closest(const Vec3& p,
                        double within = std::numeric_limits<double>::infinity()) const;
 
+  // Whether any triangle is nearer than that: cheaper than where the closest one is.
+  bool hasCloser(const Vec3& p, double within) const;
+
   // Some of the triangles, by the tree's own numbers: searches of many places that lie together
   // need not look at all of them.
   using Part = std::vector<int>;

@@ -44,6 +44,7 @@ bool Band::mayTouch(const Coord& corner, int size) const {
   const double half = 0.5 * (size - 1) * voxelSize_;
   const Vec3 center = position(corner) + Vec3{half, half, half};
   const double radius = (blockRadius(size) + kSlack) * voxelSize_;
+  if (radius >= lower_) return body_.tree().hasCloser(center, upper_ + radius);
   const ClosestPoint found = body_.closest(center, upper_ + radius);
   return found.address.triangle >= 0 && found.distance + radius >= lower_;
 }

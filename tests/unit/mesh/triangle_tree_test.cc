@@ -65,6 +65,8 @@ TEST(TriangleTree, ClosestAgreesWithAllTriangles) {
         EXPECT_NEAR(found.distance, expected, 1e-13 * (1 + expected));
         EXPECT_NEAR(norm(p - found.position), found.distance, 1e-13 * (1 + expected));
         EXPECT_LT(norm(positionAt(mesh, found.address) - found.position), 1e-14 * 16);
+        EXPECT_TRUE(tree.hasCloser(p, found.distance * (1 + 1e-12) + 1e-12));
+        EXPECT_FALSE(tree.hasCloser(p, found.distance * (1 - 1e-12)));
         for (const double b : found.address.barycentric) {
           EXPECT_GE(b, -1e-15);
           EXPECT_LE(b, 1 + 1e-15);
