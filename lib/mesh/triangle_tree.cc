@@ -192,7 +192,8 @@ struct TriangleTree::Implementation {
     return pointOf(best, bestIndex);
   }
 
-  ClosestPoint closest(const Vec3& world, double within) const {
+  // first: any triangle that is nearer than `within` will do.
+  ClosestPoint closest(const Vec3& world, double within, bool first) const {
     Candidate best;
     int bestIndex = -1;
     if (bvh.nodes.empty() || !isFinite(world) || !(within > 0)) return pointOf(best, bestIndex);
@@ -213,6 +214,7 @@ struct TriangleTree::Implementation {
       const Bvh::Node& node = bvh.nodes[entry.node];
       if (node.leaf()) {
         for (int i = node.first; i < node.first + node.count; ++i) search(i, p, best, bestIndex);
+        if (first && bestIndex >= 0) break;
         continue;
       }
       Entry near{node.first, bvh.nodes[node.first].squaredDistance(p)};
@@ -222,37 +224,6 @@ struct TriangleTree::Implementation {
       if (near.squared <= best.squared) stack[top++] = near;
     }
     return pointOf(best, bestIndex);
-  }
-
-  bool hasCloser(const Vec3& world, double within) const {
-    if (bvh.nodes.empty() || !isFinite(world) || !(within > 0)) return false;
-    const Vec3 p = frame.toLocal(world);
-    Candidate best;
-    const double reach = best.squared = squaredReach(within);
-    int bestIndex = -1;
-    std::array<int, Bvh::kMaxDepth + 2> stack;
-    int top = 0;
-    stack[top++] = 0;
-    while (top > 0) {
-      const Bvh::Node& node = bvh.nodes[stack[--top]];
-      if (!node.leaf()) {
-        int near = node.first, far = node.first + 1;
-        double nearest = bvh.nodes[near].squaredDistance(p),
-               other = bvh.nodes[far].squaredDistance(p);
-        if (other < nearest) {
-          std::swap(near, far);
-          std::swap(nearest, other);
-        }
-        if (other < reach) stack[top++] = far;
-        if (nearest < reach) stack[top++] = near;
-        continue;
-      }
-      for (int i = node.first; i < node.first + node.count; ++i) {
-        search(i, p, best, bestIndex);
-        if (bestIndex >= 0) return true;
-      }
-    }
-    return false;
   }
 
   void visitLeaves(const Bvh::Node& x, const Bvh::Node& y,
@@ -302,11 +273,11 @@ TriangleTree::TriangleTree(const Points& vertices, const std::vector<Triangle>& 
     : implementation_(std::make_shared<const Implementation>(vertices, triangles)) {}
 
 ClosestPoint TriangleTree::closest(const Vec3& p, double within) const {
-  return implementation_->closest(p, within);
+  return implementation_->closest(p, within, false);
 }
 
 bool TriangleTree::hasCloser(const Vec3& p, double within) const {
-  return implementation_->hasCloser(p, within);
+  return implementation_->closest(p, within, true).address.triangle >= 0;
 }
 
 void TriangleTree::collect(const Vec3& p, double within, Part& part) const {

@@ -19,7 +19,7 @@ namespace {
 using namespace proof;
 
 constexpr double kExact = 1e-11;  // of the diagonal: an error that is as good as none
-// Pieces that one thread splits in one go; triangles at first, four times as many.
+// Pieces that one thread cuts in one go. It looks at their parts, or, at first, at the triangles.
 constexpr std::size_t kBlock = 64;
 // Halvings of a piece before its parts are looked at. Fewer leave fewer parts smaller than they
 // need be, more leave the eight that are looked at together nearer to one another.

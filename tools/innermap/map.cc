@@ -227,8 +227,10 @@ void run(const MapOptions& options, Context& context) {
   context.spend(kLayingTimeShare, later);
   std::optional<BoundaryPair> pair = makePair(options, std::move(job), folder.get(), context);
   if (!pair) return;
-  const FitMapSettings fitting =
-      fitMapSettings(options.fitting, pair->source.mesh.vertices.size(), laid);
+  const std::size_t vertices = pair->source.mesh.vertices.size();
+  const FitMapSettings fitting = fitMapSettings(options.fitting, vertices, laid);
+  // Laying may have made more vertices than mapNeeds() allows for.
+  context.requireMemory(fitNeed(fitting, vertices));
   context.phase("fitting");
   context.spend(1, later);
   const MapFit fit = fitMap(std::move(*pair), fitting);

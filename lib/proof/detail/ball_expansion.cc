@@ -44,8 +44,8 @@ std::array<double, kOrder + 1> degreeNorms(const StepExpansion& from) {
 
 }  // namespace
 
-LeastSquares leastSquares(double farRatio) {
-  LeastSquares out{1 / (farRatio * farRatio)};
+OrderLimits orderLimits(double farRatio) {
+  OrderLimits out{1 / (farRatio * farRatio)};
   for (std::size_t i = 1; i < kOrders.size(); ++i) {
     const double ratio = ratioOf(kOrders[i], kLower * leftOut(kOrder, farRatio));
     out[i] = 1 / (ratio * ratio);
@@ -68,10 +68,10 @@ void arrange(const std::uint32_t* charges, const std::vector<std::int32_t>& plac
 }
 
 void sortCharges(const double* charges, const std::vector<std::uint32_t>& some,
-                 const ExpansionBall& ball, const LeastSquares& least,
+                 const ExpansionBall& ball, const OrderLimits& limits,
                  std::vector<std::int32_t>& places, OrderedCharges& out) {
   places.resize(some.size());
-  orderPlaces(charges, some.data(), some.size(), ball.center, ball.radius, least, places.data());
+  orderPlaces(charges, some.data(), some.size(), ball.center, ball.radius, limits, places.data());
   arrange(some.data(), places, out);
 }
 

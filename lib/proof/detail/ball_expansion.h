@@ -19,7 +19,7 @@ struct ExpansionBall {
 // |w| / d^2 ratio^p ((p+1) - p ratio) / (1 - ratio)^2 of the gradient at most. Charges up to the
 // ratio `farRatio` enter a ball's expansion, each to the least of kOrders for which what follows
 // |w| / d^2 is at most a tenth of that for order kOrder at farRatio; else to order kOrder.
-LeastSquares leastSquares(double farRatio);
+OrderLimits orderLimits(double farRatio);
 
 // By the place in kOrders of each; kNotExpanded is left out.
 void arrange(const std::uint32_t* charges, const std::vector<std::int32_t>& places,
@@ -27,7 +27,7 @@ void arrange(const std::uint32_t* charges, const std::vector<std::int32_t>& plac
 
 // Those that are far from a ball. places: memory for that.
 void sortCharges(const double* charges, const std::vector<std::uint32_t>& some,
-                 const ExpansionBall& ball, const LeastSquares& least,
+                 const ExpansionBall& ball, const OrderLimits& limits,
                  std::vector<std::int32_t>& places, OrderedCharges& out);
 
 // An expansion's degrees up to `order` moved to a ball within its own, and charges added; all but

@@ -52,7 +52,7 @@ StepExpansion affineExpansion(const HarmonicField& field, double scale) {
 }  // namespace
 
 FieldTree::FieldTree(const HarmonicField& field, double scale, double farRatio)
-    : least_(proof::leastSquares(farRatio)),
+    : limits_(proof::orderLimits(farRatio)),
       charges_(packed(field, scale)),
       root_(std::make_unique<Node>()) {
   const StepExpansion affine = affineExpansion(field, scale);
@@ -75,7 +75,7 @@ std::unique_ptr<FieldTree::Node> FieldTree::childOf(const Node& parent, const Ve
   const ExpansionBall ball{center, kReach * child->half};
   OrderedCharges far;
   std::vector<std::int32_t> places;
-  sortCharges(charges(), parent.expansion.near, ball, least_, places, far);
+  sortCharges(charges(), parent.expansion.near, ball, limits_, places, far);
   expandAbout(charges(), parent.expansion, kOrder, far, ball, child->expansion);
   child->expansion.near.assign(far.list.begin() + static_cast<std::ptrdiff_t>(far.count()),
                                far.list.end());

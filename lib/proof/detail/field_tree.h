@@ -29,7 +29,7 @@ class FieldTree {
   // Lengths before and after the step are multiplied by `scale`, a power of two: no digit changes.
   FieldTree(const HarmonicField& field, double scale, double farRatio = kFarRatio);
 
-  const LeastSquares& leastSquares() const { return least_; }
+  const OrderLimits& orderLimits() const { return limits_; }
 
   const double* charges() const { return charges_.data(); }  // kChargeStride each
 
@@ -55,7 +55,7 @@ class FieldTree {
   };
   std::unique_ptr<Node> childOf(const Node& parent, const Vec3& center) const;
 
-  LeastSquares least_;
+  OrderLimits limits_;
   std::vector<double> charges_;
   std::unique_ptr<Node> root_;  // the affine part, and all charges near: it holds everywhere
 };

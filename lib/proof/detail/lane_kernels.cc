@@ -42,7 +42,7 @@ std::uint8_t Measure(const double* HWY_RESTRICT charges, const std::uint32_t* HW
 }
 
 void OrderPlaces(const double* HWY_RESTRICT charges, const std::uint32_t* HWY_RESTRICT list,
-                 std::size_t count, const Vec3& center, double radius, const LeastSquares& least,
+                 std::size_t count, const Vec3& center, double radius, const OrderLimits& limits,
                  std::int32_t* HWY_RESTRICT places) {
   const double scale = 1 / (radius * radius);
   std::size_t i = 0;
@@ -59,7 +59,7 @@ void OrderPlaces(const double* HWY_RESTRICT charges, const std::uint32_t* HWY_RE
             z = hn::GatherIndex(d, charges + 2, at) - Number(center.z);
     const V square = Number(scale) * hn::MulAdd(x, x, hn::MulAdd(y, y, z * z));
     V passed = zero;
-    for (const double l : least)
+    for (const double l : limits)
       passed = passed + hn::IfThenElseZero(hn::Gt(square, Number(l)), one);
     const V place = hn::IfThenElse(hn::Eq(passed, zero), none, passed - one);
     hn::StoreU(hn::DemoteTo(small, place), small, places + i);
@@ -67,7 +67,7 @@ void OrderPlaces(const double* HWY_RESTRICT charges, const std::uint32_t* HWY_RE
 #endif
   for (; i < count; ++i) {
     const double* const q = charges + kChargeStride * list[i];
-    places[i] = orderPlace(least, scale * squaredNorm(Vec3{q[0], q[1], q[2]} - center));
+    places[i] = orderPlace(limits, scale * squaredNorm(Vec3{q[0], q[1], q[2]} - center));
   }
 }
 
@@ -287,9 +287,9 @@ std::uint8_t measure(const double* charges, const std::uint32_t* list, std::size
 }
 
 void orderPlaces(const double* charges, const std::uint32_t* list, std::size_t count,
-                 const Vec3& center, double radius, const LeastSquares& least,
+                 const Vec3& center, double radius, const OrderLimits& limits,
                  std::int32_t* places) {
-  HWY_DYNAMIC_DISPATCH(OrderPlaces)(charges, list, count, center, radius, least, places);
+  HWY_DYNAMIC_DISPATCH(OrderPlaces)(charges, list, count, center, radius, limits, places);
 }
 
 void addCharges(const double* charges, const OrderedCharges& some, const LaneSets& sets,

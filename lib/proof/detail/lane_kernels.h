@@ -42,20 +42,20 @@ constexpr double kNearRatio = 0.8;
 constexpr std::array<int, 4> kOrders = {kOrder, 7, 5, 3};
 
 // From which square of distance / radius on a charge enters a ball's expansion, by order: rising.
-using LeastSquares = std::array<double, kOrders.size()>;
+using OrderLimits = std::array<double, kOrders.size()>;
 // The place in kOrders of what does not enter.
 constexpr std::int32_t kNotExpanded = kOrders.size();
 
 // The place in kOrders by that square.
-inline std::int32_t orderPlace(const LeastSquares& least, double square) {
+inline std::int32_t orderPlace(const OrderLimits& limits, double square) {
   std::int32_t passed = 0;
-  for (const double l : least) passed += square > l ? 1 : 0;
+  for (const double l : limits) passed += square > l ? 1 : 0;
   return passed > 0 ? passed - 1 : kNotExpanded;
 }
 
 // That of some charges for a ball.
 void orderPlaces(const double* charges, const std::uint32_t* list, std::size_t count,
-                 const Vec3& center, double radius, const LeastSquares& least,
+                 const Vec3& center, double radius, const OrderLimits& limits,
                  std::int32_t* places);
 
 // Some charges, those of the highest order first; behind all of them those that are left out.

@@ -78,7 +78,7 @@ bool SetGroup::computeStep(const FieldTree& tree, LaneSets& sets, std::uint8_t n
   const StepExpansion& node = tree.about(ball.center, ball.radius);
   // Nodes of the tree are up to three times as large as the group, so that most of what is near a
   // node is far from the group: it is expanded about it once, not about each set.
-  sortCharges(tree.charges(), node.near, ball, tree.leastSquares(), places_, far_);
+  sortCharges(tree.charges(), node.near, ball, tree.orderLimits(), places_, far_);
   const bool pays = far_.count() >= kWorthExpanding;
   const std::uint32_t* const near = far_.list.data() + (pays ? far_.count() : 0);
   const std::size_t count = far_.list.size() - (pays ? far_.count() : 0);
@@ -97,7 +97,7 @@ bool SetGroup::computeStep(const FieldTree& tree, LaneSets& sets, std::uint8_t n
   moveExpansion(from, order, sets, coefficients_.data());
   places_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::int32_t place = orderPlace(tree.leastSquares(), nearest_[i]);
+    const std::int32_t place = orderPlace(tree.orderLimits(), nearest_[i]);
     places_[i] = place == kNotExpanded ? 0 : place;
   }
   arrange(near, places_, near_);

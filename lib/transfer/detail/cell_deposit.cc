@@ -41,7 +41,6 @@ class LocalSums {
     const auto count = static_cast<std::size_t>(size.x() * size.y() * size.z());
     if (count > few_.size()) many_.resize(count);
     sums_ = many_.empty() ? few_.data() : many_.data();
-    std::fill_n(sums_, count, VoxelSums::Sum());
   }
 
   void add(const openvdb::Coord& voxel, double volume, double mass) {

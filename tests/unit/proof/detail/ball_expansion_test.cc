@@ -35,7 +35,7 @@ StepExpansion expanded(const std::vector<testing::Charge>& charges, const Expans
                        double farRatio, OrderedCharges& far) {
   const std::vector<double> all = packed(charges);
   std::vector<std::int32_t> places;
-  sortCharges(all.data(), upTo(charges.size()), ball, leastSquares(farRatio), places, far);
+  sortCharges(all.data(), upTo(charges.size()), ball, orderLimits(farRatio), places, far);
   StepExpansion out;
   expandAbout(all.data(), nothing(), kOrder, far, ball, out);
   return out;
