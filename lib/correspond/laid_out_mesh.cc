@@ -75,8 +75,19 @@ OuterSurface outerSurfaceOf(const Mesh& mesh, const Obstacle& obstacle,
   return outerSurface(Solid(mesh), how);
 }
 
-constexpr std::size_t kNotedCuts = 3;
+constexpr std::size_t kNotedChanges = 3;
 constexpr double kFewInsideOut = 0.005;  // of the surface: slivers where parts cross
+
+std::string placesOf(const std::vector<TopologyChange>& changes) {
+  std::string places;
+  for (std::size_t c = 0; c < std::min(kNotedChanges, changes.size()); ++c) {
+    const auto& [at, size] = changes[c];
+    places += fmt::format("{}({:.4g}, {:.4g}, {:.4g}), {:.2g} across", c ? "; " : "", at.x, at.y,
+                          at.z, size);
+  }
+  return fmt::format("{} place{}: {}{}", changes.size(), changes.size() == 1 ? "" : "s", places,
+                     changes.size() > kNotedChanges ? "; smaller ones" : "");
+}
 
 std::vector<std::string> notesOn(const OuterSurface& outer, const std::string& name) {
   std::vector<std::string> notes;
@@ -98,17 +109,12 @@ std::vector<std::string> notesOn(const OuterSurface& outer, const std::string& n
         fmt::format("{}: {} left out, {:.2g}% of the volume", name,
                     outer.leftOut == 1 ? "1 part is" : fmt::format("{} parts are", outer.leftOut),
                     100 * outer.leftOutShare));
-  if (outer.cuts.empty()) return notes;
-  std::string places;
-  for (std::size_t c = 0; c < std::min(kNotedCuts, outer.cuts.size()); ++c) {
-    const auto& [at, size] = outer.cuts[c];
-    places += fmt::format("{}({:.4g}, {:.4g}, {:.4g}), {:.2g} across", c ? "; " : "", at.x, at.y,
-                          at.z, size);
-  }
-  notes.push_back(
-      fmt::format("{}: innermap cut its parts apart where they meet, in {} place{}: {}{}", name,
-                  outer.cuts.size(), outer.cuts.size() == 1 ? "" : "s", places,
-                  outer.cuts.size() > kNotedCuts ? "; smaller ones" : ""));
+  if (!outer.plugs.empty())
+    notes.push_back(fmt::format("{}: innermap closed tunnels that its mesh does not have, in {}",
+                                name, placesOf(outer.plugs)));
+  if (!outer.cuts.empty())
+    notes.push_back(fmt::format("{}: innermap cut its parts apart where they meet, in {}", name,
+                                placesOf(outer.cuts)));
   return notes;
 }
 

@@ -14,10 +14,12 @@
 #include "innermap/levelset/level_set.h"
 #include "innermap/mesh/check.h"
 #include "lattice/detail/buried_sheets.h"
+#include "lattice/detail/close_tunnels.h"
 #include "lattice/detail/grow_solid.h"
 #include "lattice/detail/inside_distances.h"
 #include "lattice/detail/lattice_topology.h"
 #include "lattice/detail/simple_changes.h"
+#include "lattice/detail/smooth_surface.h"
 #include "lattice/detail/surface_cuts.h"
 #include "lattice/detail/thin_parts.h"
 #include "lattice/fit_boundary.h"
@@ -128,6 +130,28 @@ void grow(const Solid& solid, const SolidParts& parts, const std::vector<int>& h
   signs.side = united(grown);
 }
 
+// Adds to the parts what closes tunnels: its nodes. signs.side: the parts'.
+std::vector<std::size_t> closeTunnels(const Solid& solid, const LatticeSigns& signs,
+                                      const std::vector<int>& handles,
+                                      const std::vector<float>& order, SolidParts& parts) {
+  std::vector<std::size_t> all;
+  for (std::size_t p = 0; p < parts.parts.size(); ++p)
+    for (const std::size_t n :
+         tunnelsToClose(solid, signs, parts.parts[p], signs.side, handles[p], order)) {
+      parts.parts[p][n] = NodeSide::inside;
+      all.push_back(n);
+    }
+  return all;
+}
+
+std::vector<TopologyChange> changesAt(const std::vector<std::size_t>& nodes,
+                                      const LatticeSigns& signs) {
+  std::vector<TopologyChange> changes;
+  for (const Box3& box : boxesOf(nodes, signs))
+    changes.push_back({box.center(), norm(box.extent()) + signs.lattice.spacing()});
+  return changes;
+}
+
 // Vertices that were moved onto the solid's surface go back where that made triangles cross, as in
 // gaps narrower than a cell; where they were, none do.
 void uncross(const Points& before, Mesh& mesh) {
@@ -160,6 +184,9 @@ Mesh surfaceOf(const Solid& solid, LatticeSigns& signs) {
   for (Triangle& t : mesh.triangles)
     for (int& v : t) v -= stuffing.firstBoundary;
   uncross(before, mesh);
+  const Points rough = mesh.vertices;
+  mesh.vertices = smoothedWhereRough(solid, spacing, mesh);
+  uncross(rough, mesh);
   return mesh;
 }
 
@@ -209,7 +236,8 @@ OuterSurface enlargedOuterSurface(const Solid& solid, const OuterSurfaceSettings
   out.edge /= scale;
   for (Vec3& v : out.mesh.vertices) v = centre + v / scale;
   for (Box3& cap : out.caps) cap = {centre + cap.lower / scale, centre + cap.upper / scale};
-  for (SurfaceCut& cut : out.cuts) cut = {centre + cut.place / scale, cut.size / scale};
+  for (auto* changes : {&out.cuts, &out.plugs})
+    for (TopologyChange& c : *changes) c = {centre + c.place / scale, c.size / scale};
   return out;
 }
 
@@ -223,7 +251,7 @@ OuterSurface outerSurface(const Solid& solid, const OuterSurfaceSettings& settin
   requireMemory("the outer surface of " + name, memoryFor(solid, settings),
                 "a coarser lattice takes less (surface resolution)");
   LatticeSigns signs = signsOf(solid, out.edge);
-  const SolidParts parts = partsOf(signs, settings.onePiece);
+  SolidParts parts = partsOf(signs, settings.onePiece);
   if (parts.parts.empty())
     throw DataError(name +
                     ": has no outer surface, all parts are thinner than a cell of the lattice; "
@@ -233,14 +261,16 @@ OuterSurface outerSurface(const Solid& solid, const OuterSurfaceSettings& settin
   out.leftOut = parts.leftOut;
   out.leftOutShare = parts.leftOutShare;
   const std::vector<int> handles = wantedHandles(solid, signs, parts, settings);
-  const Sides all = united(parts.parts);
-  signs.side = all;
+  const Sides uncut = united(parts.parts);
+  signs.side = uncut;
   const std::vector<float> depth = depthsInside(signs);
-  grow(solid, parts, handles, settings.handles.has_value(), growingOrder(solid, signs, depth),
-       signs);
-  const std::vector<std::size_t> cut = cutNodes(all, signs);
-  for (const Box3& box : cutBoxes(cut, signs))
-    out.cuts.push_back({box.center(), norm(box.extent()) + signs.lattice.spacing()});
+  const std::vector<float> order = growingOrder(solid, signs, depth);
+  const std::vector<std::size_t> plugged = closeTunnels(solid, signs, handles, order, parts);
+  grow(solid, parts, handles, settings.handles.has_value(), order, signs);
+  const std::vector<std::size_t> cut = cutNodes(united(parts.parts), signs);
+  out.plugs = changesAt(plugged, signs);
+  out.cuts = changesAt(cut, signs);
+  thickenPlugs(plugged, cut, signs);
   openCuts(cut, depth, signs);
   out.mesh = surfaceOf(solid, signs);
   const BoundaryTopology made = boundaryTopology(out.mesh.vertices, out.mesh.triangles);

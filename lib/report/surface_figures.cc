@@ -52,7 +52,7 @@ Figures placeFigures(const std::vector<Box3>& boxes) {
 
 Figures outerSurfaceFigures(const std::optional<OuterSurface>& taken) {
   const OuterSurface none, &outer = taken ? *taken : none;
-  const auto cut = [](const SurfaceCut& c) { return placeFigures(c.place, c.size); };
+  const auto change = [](const TopologyChange& c) { return placeFigures(c.place, c.size); };
   return together(
       {{{"taken", taken.has_value(), "outer surface",
          "innermap maps it in place of a mesh that crosses itself"}},
@@ -71,7 +71,8 @@ Figures outerSurfaceFigures(const std::optional<OuterSurface>& taken) {
                   {"apart_max", outer.apartMax, "mesh from its outer surface", "at most",
                    kDiagonals}},
                  when(!outer.caps.empty(), under("cap_places", "caps", placeFigures(outer.caps))),
-                 under("cuts", "cuts", columns(outer.cuts, cut))}))});
+                 under("cuts", "cuts", columns(outer.cuts, change)),
+                 under("plugs", "closed tunnels", columns(outer.plugs, change))}))});
 }
 
 Figures figures(const Quantiles& q) {

@@ -20,7 +20,7 @@ constexpr std::size_t kInside = 20000, kPlaces = 16;
 // What a thousand charges fold is near what the whole fit does, where that is so much: no need to
 // go on to it.
 constexpr double kHopelessFolds = 2 * kManyFolds;
-constexpr double kWorthIt = 0.2;       // of one map's folds may be left by steps
+constexpr double kWorthIt = 0.5;       // of one map's folds may be left by steps
 constexpr double kSumAccuracy = 1e-7;  // of the target's diagonal, of what is checked inside
 
 // A fit with a number of charges.

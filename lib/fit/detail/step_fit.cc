@@ -28,6 +28,9 @@ constexpr double kShare = 1.5, kLastShare = 0.6;
 // many times the volume whose sense is undecided; and by how much a point is mended at most, as
 // what is farther off lies in creases, where charges do not help.
 constexpr double kKept = 0.375, kMended = 1.25;
+// Of the tolerance: where the steps' errors add up to more than that, or the map folds many points,
+// more steps do not help, and the last one is made at once. Steps that are met add up to kShare.
+constexpr double kLost = 2;
 // Of the folds that are left: after a step, and after its first charges.
 constexpr double kFoldShare = 0.5, kCoarseFoldShare = 0.25;
 // Of the work until there to the work in all, by the way until there: the nearer to the target, the
@@ -70,7 +73,7 @@ class StepFitter {
   StepFit fit() {
     std::vector<double> ends{1};  // the next one last
     if (settings_.maxSteps > 1) ends.push_back(0.5);
-    bool hurries = false;  // one step does the rest of the way, for lack of time
+    bool hurries = false;  // one step does the rest of the way, for lack of time or hope
     double seconds = 0;    // of the last step, taken or not
     while (!ends.empty()) {
       reportProgress("going in steps", std::pow(at_, kWorkPower));
@@ -85,6 +88,12 @@ class StepFitter {
       const auto began = std::chrono::steady_clock::now();
       Step step = fitStep(end, may);
       seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+      if (getenv("DBGS"))
+        fprintf(stderr,
+                "STEP %.4f -> %.4f charges %zu p99 %.2e max %.2e of tol %.2e folded %.5f (now "
+                "%.5f) end %d  %.2f s\n",
+                at_, end, step.record.sources, step.fit.error.p99, step.fit.error.max,
+                toleranceUntil(end), step.record.folded, folded_, (int)step.fit.end, seconds);
       if (step.fit.end == AdaptiveEnd::stopped ||
           (may && half >= kShortestFitted && foldsTooMuch(step))) {
         ends.push_back((at_ + end) / 2);
@@ -92,6 +101,10 @@ class StepFitter {
       }
       ends.pop_back();
       take(std::move(step), ends.empty());
+      if (isLost() && !ends.empty()) {
+        hurries = true;
+        ends = {1};
+      }
     }
     std::vector<HarmonicMap> steps = boundary_.steps();
     steps.back() = HarmonicMap(movedBy(path_.rest(), steps.back().field()));
@@ -197,7 +210,11 @@ class StepFitter {
     MappedPoints points_;
   };
 
+  // Whether what is left of the way cannot make the map good.
+  bool isLost() const { return missed_ > kLost * settings_.tolerance || folded_ > kManyFolds; }
+
   void take(Step step, bool last) {
+    missed_ += step.fit.error.p99;
     if (end_ == AdaptiveEnd::met) end_ = step.fit.end;
     at_ = step.record.to;
     folded_ = step.record.folded;
@@ -215,6 +232,7 @@ class StepFitter {
   std::vector<MapStep> records_;
   double at_ = 0;      // of the way
   double folded_ = 0;  // share of the points inside, so far
+  double missed_ = 0;  // the steps' errors, added up
   AdaptiveEnd end_ = AdaptiveEnd::met;
 };
 

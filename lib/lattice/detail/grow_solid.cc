@@ -80,6 +80,14 @@ std::vector<float> coresOf(const Sides& part, const std::vector<float>& order) {
 
 }  // namespace
 
+Sides nodesWithNeighbours(const BccLattice& lattice) {
+  const Middle middle(lattice);
+  Sides sides(lattice.nodes(), NodeSide::outside);
+  for (std::size_t n = 0; n < sides.size(); ++n)
+    if (middle(n)) sides[n] = NodeSide::inside;
+  return sides;
+}
+
 void fillPockets(const BccLattice& lattice, Sides& sides) {
   const Middle middle(lattice);
   std::vector<bool> seen(sides.size(), false);

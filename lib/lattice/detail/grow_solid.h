@@ -18,6 +18,9 @@ struct SolidParts {
 // The nodes inside in pieces that hang together, the largest first.
 std::vector<std::vector<std::size_t>> piecesInside(const BccLattice& lattice, const Sides& sides);
 
+// All nodes that stand far enough from the lattice's sides for all their neighbours to be nodes.
+Sides nodesWithNeighbours(const BccLattice& lattice);
+
 // Makes inside what the outside does not reach.
 void fillPockets(const BccLattice& lattice, Sides& sides);
 

@@ -12,8 +12,8 @@ namespace innermap {
 // The nodes that are inside in `all`, and no longer in signs.side.
 std::vector<std::size_t> cutNodes(const Sides& all, const LatticeSigns& signs);
 
-// Of each piece of them that hangs together, the largest first: the box of its nodes, world units.
-std::vector<Box3> cutBoxes(const std::vector<std::size_t>& cut, const LatticeSigns& signs);
+// Of each piece of nodes that hangs together, the largest first: the box of its nodes, world units.
+std::vector<Box3> boxesOf(const std::vector<std::size_t>& of, const LatticeSigns& signs);
 
 // Sets sides and distances so that the cuts stand open: narrow where they come to the surface, and
 // wider by as much as they lie deep. A boundary's values jump from one wall of a cut to the other;
@@ -21,5 +21,10 @@ std::vector<Box3> cutBoxes(const std::vector<std::size_t>& cut, const LatticeSig
 // #nodes, of depthsInside(), with the nodes of the cut inside.
 void openCuts(const std::vector<std::size_t>& cut, const std::vector<float>& depth,
               LatticeSigns& signs);
+
+// Likewise sets them so that what closes tunnels is thick enough to be mapped. keptOut: nodes that
+// stay outside, those of cuts.
+void thickenPlugs(const std::vector<std::size_t>& plugs, const std::vector<std::size_t>& keptOut,
+                  LatticeSigns& signs);
 
 }  // namespace innermap

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <map>
+#include <utility>
+
 #include "core/expect.h"
 #include "core/pi.h"
 #include "core/random.h"
@@ -49,7 +53,7 @@ TEST(OuterSurface, CutsWhereAMeshMeetsItself) {
     expectEmbedded(ring.mesh);
     // Where the ends overlap, half a turn away from the middle of the coil, and nowhere else.
     ASSERT_FALSE(ball.cuts.empty());
-    for (const SurfaceCut& cut : ball.cuts) EXPECT_GT(cut.place.y, 0);
+    for (const TopologyChange& cut : ball.cuts) EXPECT_GT(cut.place.y, 0);
   }
 }
 
@@ -82,6 +86,60 @@ TEST(OuterSurface, NarrowGapsPierceNoThinWalls) {
     EXPECT_TRUE(made.cuts.empty());
     EXPECT_LT(made.apartP99 * Solid(mesh).diagonal(), 0.5 * made.edge);
   }
+}
+
+// A ball whose skin is drawn in about one pole until it comes out at the other: there it is inside
+// out, and the solid has a tunnel.
+Mesh dentedThrough(double width) {
+  Mesh mesh = shapes::icosphere(5);
+  for (Vec3& v : mesh.vertices) {
+    if (v.z < 0) continue;
+    const double near = (v.x * v.x + v.y * v.y) / (width * width);
+    v.z -= 2.6 * std::exp(-near);
+  }
+  return mesh;
+}
+
+TEST(OuterSurface, ClosesTunnelsThatItsMeshDoesNotHave) {
+  for (const int resolution : {32, 48, 64}) {
+    SCOPED_TRACE("resolution " + std::to_string(resolution));
+    const OuterSurface closed = outer(dentedThrough(0.3), resolution, 0);
+    EXPECT_EQ(closed.topology, (SolidTopology{1, 0, 0}));
+    EXPECT_TRUE(closed.cuts.empty());
+    ASSERT_EQ(closed.plugs.size(), 1u);
+    EXPECT_LT(closed.plugs[0].place.z, -0.5) << "where the tunnel is narrowest";
+    expectEmbedded(closed.mesh);
+    EXPECT_LT(closed.apartP99 * std::sqrt(12.0), 2.5 * closed.edge);
+    const OuterSurface open = outer(dentedThrough(0.3), resolution, 1);
+    EXPECT_EQ(open.topology, (SolidTopology{1, 0, 1}));
+    EXPECT_TRUE(open.plugs.empty());
+  }
+}
+
+TEST(OuterSurface, ClosesNoTunnelThatAnotherPartRunsThrough) {
+  const Mesh rod = shapes::box({-0.08, -0.08, -1.1}, {0.08, 0.08, 1.5});
+  const OuterSurface made = outer(shapes::joined(dentedThrough(0.5), rod), 64, 0);
+  EXPECT_EQ(made.topology, (SolidTopology{2, 0, 0}));
+  EXPECT_TRUE(made.plugs.empty());
+  EXPECT_FALSE(made.cuts.empty());
+}
+
+// Two balls meet in a crease of 74 degrees.
+TEST(OuterSurface, HasNoTeethAlongCreases) {
+  const Mesh mesh = outer(shapes::joined(shapes::icosphere(4, 1, {-0.6, 0.05, 0}),
+                                         shapes::icosphere(4, 1, {0.6, 0, 0.03})),
+                          40)
+                        .mesh;
+  std::map<std::pair<int, int>, Vec3> normals;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3 area = areaVector(mesh, static_cast<int>(t));
+    for (int k = 0; k < 3; ++k)
+      normals[{mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]}] = area / norm(area);
+  }
+  double least = 1;
+  for (const auto& [edge, normal] : normals)
+    least = std::min(least, dot(normal, normals.at({edge.second, edge.first})));
+  EXPECT_GT(least, std::cos(kPi / 3));
 }
 
 TEST(OuterSurface, LeavesOutOtherPiecesIfOnePieceIsWanted) {

@@ -53,8 +53,8 @@ struct OuterSurfaceSettings {
   bool onePiece = false;  // the largest part alone
 };
 
-// Where the surface was cut apart: the solid's parts meet there, and would make a handle.
-struct SurfaceCut {
+// Where the surface has another topology than the solid, so that it has no handle there.
+struct TopologyChange {
   Vec3 place;       // its middle, world units
   double size = 0;  // the diagonal of its box, world units
 };
@@ -63,25 +63,27 @@ struct OuterSurface {
   Mesh mesh;               // world units; closed, manifold, outward, without self-intersections
   double edge = 0;         // of the lattice's cells, world units
   SolidTopology topology;  // of the mesh
-  std::vector<SurfaceCut> cuts;
-  std::vector<Box3> caps;  // of the mesh, where it was open; world units
+  std::vector<TopologyChange> cuts;   // parts that meet are cut apart
+  std::vector<TopologyChange> plugs;  // tunnels are closed
+  std::vector<Box3> caps;             // of the mesh, where it was open; world units
   // Parts of less than a thousandth of the volume of the largest, or all others; and their share of
   // the volume.
   std::size_t leftOut = 0;
   double leftOutShare = 0;
   double insideOut = 0;  // as Solid::insideOut()
-  // Of the solid's surface (Solid::surface()) from the mesh, fractions of the diagonal; the cuts
-  // are part of the mesh alone.
+  // Of the solid's surface (Solid::surface()) from the mesh, fractions of the diagonal; cuts and
+  // plugs are part of the mesh alone.
   double apartP99 = 0, apartMax = 0;
 };
 
 // The surface of what the mesh encloses (winding number above 1/2), holes closed, overlaps united,
 // with the topology of the mesh instead of the union's: where parts of one body touch or run
-// through one another the union has handles that the body has not. The solid is grown again on a
-// lattice, node by node from its deepest part, by nodes that change no topology (Bertrand 1994);
-// what cannot be taken is a cut. Then as tetrahedralization(): isosurface stuffing, boundary
-// vertices on the solid's surface. Sharp edges are cut across. Pockets that are enclosed are
-// filled.
+// through one another the union has handles that the body has not, and so has a body with a dent
+// that comes out on its other side. The solid is grown again on a lattice, node by node from its
+// deepest part, by nodes that change no topology (Bertrand 1994); what cannot be taken is a cut. A
+// tunnel that takes less to close than to cut open is closed first, where it is narrowest. Then as
+// tetrahedralization(): isosurface stuffing, boundary vertices on the solid's surface. Sharp edges
+// are cut across. Pockets that are enclosed are filled.
 //
 // Deterministic. Throws SettingError, MemoryError (before allocating), Cancelled; DataError where
 // nothing is inside at the resolution, no part of the solid has the handles that are asked for, or

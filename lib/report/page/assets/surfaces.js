@@ -73,6 +73,9 @@ function marksOf(panels) {
   add("outer_surface.cuts", "cut", 0);
   add("correspondence.source_outer_surface.cuts", "source is cut", 0);
   add("correspondence.target_outer_surface.cuts", "target is cut", 1);
+  add("outer_surface.plugs", "closed tunnel", 0);
+  add("correspondence.source_outer_surface.plugs", "closed tunnel", 0);
+  add("correspondence.target_outer_surface.plugs", "closed tunnel of the target", 1);
   return out;
 }
 
