@@ -184,17 +184,15 @@ void bindDeform(py::module_& m) {
        "animation.\n\nsource: the rest pose, a mesh: (V, F), a path, an innermap.Mesh, or that of "
        "a glTF file. inside: points (n, 3), which come back as (places (frames, n, 3), found "
        "(n,)), NaN where a point lies too far outside and in a frame that is left out; an "
-       "innermap.Grids or the path of a .vdb "
-       "file, which come back as a list of Grids, None for a frame that is left out, or are "
-       "written to output and figures come back; "
-       "or the path of a file of geometry (.obj, .ply, ..., .vtu, .msh), written to output. "
-       "frames: paths, a pattern ('walk.*.obj'), a point cache (.mdd, .pc2), glTF (.glb, .gltf), "
-       "or an array of each frame's vertices. output: a path with #### or %04d for the frame's "
-       "number. Figures are a dict of columns: frame, boundary_rms and so on, error, the text of "
-       "what was wrong with a frame that is left out. A RuntimeWarning says of each frame what "
-       "makes "
-       "it doubtful, or that it is left out. All frames are made, also those whose output "
-       "is there. Raises DataError where no frame can be used, FileError, MemoryError."},
+       "innermap.Grids or the path of a .vdb file, which come back as a list of Grids, None for a "
+       "frame that is left out, or are written to output and figures come back; or the path of a "
+       "file of geometry (.obj, .ply, ..., .vtu, .msh), written to output. frames: paths, a "
+       "pattern ('walk.*.obj'), a point cache (.mdd, .pc2), glTF (.glb, .gltf), or an array of "
+       "each frame's vertices. output: a path with #### or %04d for the frame's number. Figures "
+       "are a dict of columns: frame, boundary_rms and so on, error, the text of what was wrong "
+       "with a frame that is left out. A RuntimeWarning says of each frame what makes it doubtful, "
+       "or that it is left out. All frames are made, also those whose output is there. Raises "
+       "DataError where no frame can be used, FileError, MemoryError."},
       deform);
 }
 
